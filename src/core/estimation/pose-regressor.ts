@@ -1,0 +1,44 @@
+/** One tensor of a model, as its contract file states it. */
+export interface TensorContract {
+  readonly name: string;
+  readonly shape: readonly number[];
+  /** What the numbers are, in words: quantities, frames, order. */
+  readonly meaning: string;
+  /** 'm', 'rad', '1' or a ratio such as 'eyeHeight'. */
+  readonly unit: string;
+  readonly frame: 'floor' | 'heading';
+}
+
+/** The contract beside each model file: what goes in, what comes out, what it was trained on and how good it is. */
+export interface ModelContract {
+  readonly name: 'paper' | 'learned';
+  readonly version: string;
+  /** File name beside the contract, its size and SHA-256 (hex). */
+  readonly file: string;
+  readonly bytes: number;
+  readonly sha256: string;
+  readonly inputs: readonly TensorContract[];
+  readonly outputs: readonly TensorContract[];
+  /** Frames per second of the training motion. */
+  readonly rateHz: number;
+  /** Ages [s] of the frames in the input, newest first: [0] for a single frame. */
+  readonly windowSeconds: readonly number[];
+  readonly quantisation: { readonly scheme: string; readonly maxAbsoluteDifference: number };
+  readonly trainedOn: { readonly corpus: string; readonly corpusHash: string; readonly people: readonly string[] };
+  readonly gitCommit: string;
+  readonly seed: number;
+  /** MPJPE [cm] of the raw output by protocol and joint, as measured by the training run. */
+  readonly errors: Readonly<Record<string, Readonly<Record<string, number>>>>;
+}
+
+/** A network that maps one flat feature vector to one flat output vector. */
+export interface PoseRegressor {
+  readonly contract: ModelContract;
+  /** Where it runs, for the overlay: 'wasm', 'webgpu'. */
+  readonly provider: string;
+  /** True where `run` settles within the microtasks of the frame that called it, so that awaiting it costs no frame. */
+  readonly resolvesInFrame: boolean;
+  /** features: as many numbers as the input tensor has elements. Rejects when the runtime fails. One run at a time. */
+  run(features: Float32Array): Promise<Float32Array>;
+  dispose(): Promise<void>;
+}

@@ -1,0 +1,17 @@
+import type { Pose } from '../math/pose';
+
+/** tracked: seen in this frame. emulated: the device guesses the position (WebXR `emulatedPosition`). */
+export type TrackedPose = Pose<'floor'> & { readonly tracking: 'tracked' | 'emulated' };
+
+/**
+ * One frame of the three tracked points. Head: the viewer pose (origin between the eyes, −Z is the gaze).
+ * Hands: the wrist, already corrected for the controller's grip; −Z towards the knuckles, +Y out of the back of the hand.
+ */
+export interface TrackingFrame {
+  /** Seconds on a monotonic clock whose zero means nothing. */
+  readonly time: number;
+  readonly head: TrackedPose;
+  /** null: not seen. Never a pose at the origin. */
+  readonly leftHand: TrackedPose | null;
+  readonly rightHand: TrackedPose | null;
+}
