@@ -1,0 +1,94 @@
+import { spawn } from 'node:child_process';
+import { fileURLToPath } from 'node:url';
+
+/** The root of the repository, without a trailing slash. */
+export const root = fileURLToPath(new URL('..', import.meta.url)).replace(/[\\/]$/, '');
+
+/** A sentence for the person at the terminal; nobody needs its stack. */
+export class SetupError extends Error {}
+
+/** Children still running, each the leader of its own process group, so that nothing outlives the script that started it. */
+const running = new Set();
+
+function killGroup(child, signal) {
+  try {
+    if (process.platform === 'win32') child.kill(signal);
+    else process.kill(-child.pid, signal);
+  } catch (error) {
+    if (error.code !== 'ESRCH') throw error;
+  }
+}
+
+const exitCodes = { SIGINT: 130, SIGTERM: 143, SIGHUP: 129 };
+
+function endWithChildren(signal) {
+  for (const child of running) killGroup(child, 'SIGTERM');
+  process.exit(exitCodes[signal]);
+}
+
+/** Signals end the children too, but only while there are any: a server in this process ends in its own way. */
+function watchSignals() {
+  for (const signal of Object.keys(exitCodes)) {
+    process.off(signal, endWithChildren);
+    if (running.size > 0) process.on(signal, endWithChildren);
+  }
+}
+
+/**
+ * Runs a program in the repository's root, its standard input closed, and resolves to its exit code, its output (when
+ * `capture`) and whether it ran past `limitSeconds`. Never rejects for a program that fails; does for one that is not there.
+ */
+export function run(command, args, { env = {}, cwd = root, capture = false, limitSeconds = 3600 } = {}) {
+  return new Promise((resolve, reject) => {
+    const child = spawn(command, args, {
+      cwd,
+      env: { ...process.env, ...env },
+      stdio: ['ignore', capture ? 'pipe' : 'inherit', capture ? 'pipe' : 'inherit'],
+      detached: process.platform !== 'win32',
+      shell: process.platform === 'win32' && /^(npm|npx)$/.test(command),
+    });
+    running.add(child);
+    watchSignals();
+    let output = '';
+    for (const stream of [child.stdout, child.stderr]) {
+      stream?.setEncoding('utf8').on('data', (text) => {
+        output += text;
+      });
+    }
+    let timedOut = false;
+    const timer = setTimeout(() => {
+      timedOut = true;
+      killGroup(child, 'SIGTERM');
+      setTimeout(() => killGroup(child, 'SIGKILL'), 5000).unref();
+    }, limitSeconds * 1000);
+    const settle = (action) => {
+      clearTimeout(timer);
+      running.delete(child);
+      watchSignals();
+      action();
+    };
+    child.once('error', (error) => settle(() => reject(error)));
+    child.once('close', (code, signal) => settle(() => resolve({ code: code ?? 1, signal, output, timedOut })));
+  });
+}
+
+/** Like `run` with its output captured; null where the program is not installed. */
+export async function runQuietly(command, args, options = {}) {
+  try {
+    return await run(command, args, { ...options, capture: true });
+  } catch (error) {
+    if (error.code === 'ENOENT' || error.code === 'EACCES') return null;
+    throw error;
+  }
+}
+
+/** Runs the script body and turns a SetupError into its sentence and exit code 1. */
+export async function main(body) {
+  try {
+    process.exitCode = (await body()) ?? 0;
+  } catch (error) {
+    if (!(error instanceof SetupError)) throw error;
+    console.error(`\n${error.message}`);
+    process.exitCode = 1;
+  }
+}

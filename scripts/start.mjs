@@ -1,0 +1,13 @@
+import { buildWhenStale } from './build.mjs';
+import { ensureInstalled } from './installation.mjs';
+import { main } from './run-command.mjs';
+
+await main(async () => {
+  const asksForHelp = process.argv.includes('--help');
+  await ensureInstalled();
+  if (!asksForHelp) await buildWhenStale();
+  // Found only now: tsx may just have been installed.
+  const { register } = await import('tsx/esm/api');
+  register();
+  await import('../server/main.ts');
+});
