@@ -1,0 +1,61 @@
+import { X509Certificate } from 'node:crypto';
+import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { hostname } from 'node:os';
+import { join } from 'node:path';
+import { generate } from 'selfsigned';
+
+/** A private key and its certificate, PEM. */
+export interface Credentials {
+  readonly key: string;
+  readonly cert: string;
+}
+
+const day = 24 * 3600 * 1000;
+
+function stillServes(cert: string, addresses: readonly string[], now: Date): boolean {
+  const certificate = new X509Certificate(cert);
+  return (
+    new Date(certificate.validTo).getTime() - now.getTime() > 7 * day &&
+    addresses.every((address) => certificate.checkIP(address) !== undefined)
+  );
+}
+
+/**
+ * A self-signed certificate for these IPv4 addresses, localhost and this machine's name. It is kept in the directory, so
+ * that a headset which was told once to trust it need not be told again; a new one is made when an address is new or it
+ * expires within a week.
+ */
+export async function certificateFor(addresses: readonly string[], directory: string, now: Date): Promise<Credentials> {
+  const keyFile = join(directory, 'lan.key.pem');
+  const certFile = join(directory, 'lan.cert.pem');
+  const wanted = ['127.0.0.1', ...addresses];
+  if (existsSync(keyFile) && existsSync(certFile)) {
+    const cert = readFileSync(certFile, 'utf8');
+    if (stillServes(cert, wanted, now)) return { key: readFileSync(keyFile, 'utf8'), cert };
+  }
+  const names = [...new Set(['localhost', hostname(), `${hostname()}.local`])];
+  const pems = await generate([{ name: 'commonName', value: 'threepoint on this network' }], {
+    keyType: 'ec',
+    curve: 'P-256',
+    algorithm: 'sha256',
+    notBeforeDate: new Date(now.getTime() - day),
+    // Browsers refuse certificates that are valid for longer than 398 days.
+    notAfterDate: new Date(now.getTime() + 390 * day),
+    extensions: [
+      { name: 'basicConstraints', cA: false },
+      { name: 'keyUsage', digitalSignature: true },
+      { name: 'extKeyUsage', serverAuth: true },
+      {
+        name: 'subjectAltName',
+        altNames: [
+          ...names.map((value) => ({ type: 2 as const, value })),
+          ...wanted.map((ip) => ({ type: 7 as const, ip })),
+        ],
+      },
+    ],
+  });
+  mkdirSync(directory, { recursive: true });
+  writeFileSync(keyFile, pems.private, { mode: 0o600 });
+  writeFileSync(certFile, pems.cert);
+  return { key: pems.private, cert: pems.cert };
+}

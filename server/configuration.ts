@@ -1,0 +1,47 @@
+import { parseArgs } from 'node:util';
+
+/** How this process serves, from the command line and the environment. */
+export interface Configuration {
+  /** The port to try first; 0: any free one. */
+  readonly port: number;
+  /** Serve HTTPS to the whole network instead of HTTP to this machine alone. */
+  readonly lan: boolean;
+}
+
+export const usage = `Usage: npm start -- [options]
+  --port NUMBER  port to serve on (or the environment variable PORT); default 3333, the next free one if it is taken
+  --lan          HTTPS for every device on the network, with a certificate of our own
+  --help         this text`;
+
+/** What was asked for cannot be done; the message is for the person at the terminal. */
+export class ConfigurationError extends Error {}
+
+function portFrom(text: string, source: string): number {
+  const port = Number(text);
+  if (!/^\d+$/.test(text) || port > 65535) {
+    throw new ConfigurationError(`${source} must be a port number from 0 to 65535, not "${text}".`);
+  }
+  return port;
+}
+
+/** Reads the arguments after the script's name and the environment; 'help' when that is what was asked for. */
+export function configurationFrom(
+  args: readonly string[],
+  environment: Readonly<Record<string, string | undefined>>,
+): Configuration | 'help' {
+  const options = { port: { type: 'string' }, lan: { type: 'boolean' }, help: { type: 'boolean' } } as const;
+  let values: { port?: string; lan?: boolean; help?: boolean };
+  try {
+    ({ values } = parseArgs({ args: [...args], options, allowPositionals: false }));
+  } catch (error) {
+    throw new ConfigurationError(`${(error as Error).message.split('. ')[0]}.\n${usage}`);
+  }
+  if (values.help) return 'help';
+  const port =
+    values.port !== undefined
+      ? portFrom(values.port, '--port')
+      : environment.PORT
+        ? portFrom(environment.PORT, 'The environment variable PORT')
+        : 3333;
+  return { port, lan: values.lan ?? false };
+}

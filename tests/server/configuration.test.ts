@@ -1,0 +1,53 @@
+import { describe, expect, test } from 'vitest';
+import { ConfigurationError, configurationFrom } from '../../server/configuration';
+import { welcome } from '../../server/welcome';
+
+describe('the configuration', () => {
+  test('with nothing said: this machine alone, port 3333', () => {
+    expect(configurationFrom([], {})).toEqual({ port: 3333, lan: false });
+  });
+
+  test('the command line goes before the environment', () => {
+    expect(configurationFrom([], { PORT: '8080' })).toEqual({ port: 8080, lan: false });
+    expect(configurationFrom(['--port', '9000', '--lan'], { PORT: '8080' })).toEqual({ port: 9000, lan: true });
+    expect(configurationFrom(['--port=0'], {})).toEqual({ port: 0, lan: false });
+  });
+
+  test.each([
+    [['--port', 'many'], {}, /--port must be a port number from 0 to 65535, not "many"/],
+    [['--port', '70000'], {}, /not "70000"/],
+    [[], { PORT: '-1' }, /environment variable PORT must be a port number.*"-1"/],
+    [['--lam'], {}, /--lam[\s\S]*Usage: npm start/],
+    [['--port'], {}, /--port[\s\S]*Usage/],
+    [['lan'], {}, /lan[\s\S]*Usage/],
+  ])('%j with %j is refused in a sentence', (args, environment, message) => {
+    expect(() => configurationFrom(args, environment)).toThrow(message);
+    expect(() => configurationFrom(args, environment)).toThrow(ConfigurationError);
+  });
+
+  test('--help asks for help, whatever else is said', () => {
+    expect(configurationFrom(['--lan', '--help'], {})).toBe('help');
+  });
+});
+
+describe('the welcome', () => {
+  test('on this machine: the address, the cable and the network', () => {
+    const text = welcome({ port: 3333, requestedPort: 3333, addresses: null });
+    expect(text).toContain('http://localhost:3333');
+    expect(text).toContain('adb reverse tcp:3333 tcp:3333');
+    expect(text).toContain('npm start -- --lan');
+    expect(text).not.toContain('taken');
+  });
+
+  test('on the network: every address, and the warning that will come', () => {
+    const text = welcome({ port: 3334, requestedPort: 3333, addresses: ['192.168.7.20', '10.1.2.3'] });
+    expect(text).toContain('Port 3333 is taken; using 3334.');
+    expect(text).toContain('https://192.168.7.20:3334');
+    expect(text).toContain('https://10.1.2.3:3334');
+    expect(text).toContain('warns once');
+  });
+
+  test('without a network it says so', () => {
+    expect(welcome({ port: 3333, requestedPort: 3333, addresses: [] })).toContain('on no network');
+  });
+});
