@@ -7,7 +7,15 @@ import { brotliCompress, constants, gzip } from 'node:zlib';
 import { main, root, run, SetupError } from './run-command.mjs';
 
 /** Everything the built page depends on. */
-const sources = ['index.html', 'vite.config.ts', 'tsconfig.json', 'package-lock.json', 'public', 'src', 'scripts/build.mjs'];
+const sources = [
+  'index.html',
+  'vite.config.ts',
+  'tsconfig.json',
+  'package-lock.json',
+  'public',
+  'src',
+  'scripts/build.mjs',
+];
 const stampFile = join(root, 'dist/.source-hash');
 
 /** Text and machine code shrink; pictures and quantised weights do not. */
@@ -24,7 +32,10 @@ function filesUnder(path) {
 function sourceHash() {
   const hash = createHash('sha256');
   for (const file of sources.flatMap((source) => filesUnder(join(root, source)))) {
-    hash.update(`${relative(root, file)}\0`).update(readFileSync(file)).update('\0');
+    hash
+      .update(`${relative(root, file)}\0`)
+      .update(readFileSync(file))
+      .update('\0');
   }
   return hash.digest('hex');
 }

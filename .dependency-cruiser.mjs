@@ -1,0 +1,155 @@
+// Who may import whom (docs: the design's "Who may import whom"). Every rule says in its comment what it protects.
+// Type-only imports count too (tsPreCompilationDeps): a type from the wrong side is the first step of the wrong dependency.
+
+/** Each folder of core and the folders of core it may know. */
+const coreFolders = {
+  math: [],
+  tracking: ['math'],
+  body: ['math', 'tracking'],
+  estimation: ['math', 'tracking', 'body'],
+  games: ['math', 'tracking'],
+  protocol: ['math', 'tracking', 'body', 'games'],
+  room: ['math', 'tracking', 'body', 'games', 'protocol'],
+  study: ['math', 'tracking', 'body', 'estimation'],
+};
+
+const coreRules = Object.entries(coreFolders).map(([folder, known]) => ({
+  name: `core-${folder}`,
+  comment:
+    known.length === 0
+      ? `core/${folder} is the ground everything stands on: it knows nothing else.`
+      : `core/${folder} may know ${known.join(', ')}; anything else would let a change travel upwards.`,
+  severity: 'error',
+  from: { path: `^src/core/${folder}/` },
+  to: { path: '^src/core/', pathNot: `^src/core/(${[folder, ...known].join('|')})/` },
+}));
+
+/** `import 'three'` resolves into node_modules; a package that is not installed keeps its bare name. */
+const packagePath = (...names) => `(^|node_modules/)(${names.join('|')})(/|$)`;
+
+const adapters = 'xr|inference|avatar|scene|games|net|study|ui';
+const testsAndTools = '^(tests|e2e|bench|scripts)/';
+
+export default {
+  forbidden: [
+    ...coreRules,
+    {
+      name: 'core-folders-are-known',
+      comment: 'A new folder in core needs a line in this file that says whom it may know.',
+      severity: 'error',
+      from: { path: '^src/core/', pathNot: `^src/core/(${Object.keys(coreFolders).join('|')})/` },
+      to: {},
+    },
+    {
+      name: 'core-is-pure',
+      comment:
+        'core runs in the page, in the server and in tests alike: no package, no Node module and no adapter, so that it ' +
+        'can neither draw nor wait nor ask the time.',
+      severity: 'error',
+      from: { path: '^src/core/' },
+      to: { pathNot: '^src/core/' },
+    },
+    {
+      name: 'adapters-are-strangers',
+      comment:
+        'Adapters (one per outside thing) never know each other, or replacing one would mean changing another. main.ts and ' +
+        'the frame loop introduce them. All may use scene.',
+      severity: 'error',
+      from: { path: `^src/(${adapters})/` },
+      to: { path: `^src/(${adapters})/`, pathNot: '^src/($1|scene)/' },
+    },
+    {
+      name: 'nobody-imports-main',
+      comment: 'main.ts builds everything; who needs something from it should be given it.',
+      severity: 'error',
+      from: {},
+      to: { path: '^src/main\\.ts$' },
+    },
+    {
+      name: 'only-main-runs-the-frame-loop',
+      comment: 'The frame loop is the top of one frame: adapters are called by it, never the other way round.',
+      severity: 'error',
+      from: { path: `^src/(core|${adapters})/` },
+      to: { path: '^src/[^/]+\\.ts$' },
+    },
+    {
+      name: 'three-draws',
+      comment: "Three's vectors are live objects: they stay where things are drawn and are copied at the border.",
+      severity: 'error',
+      from: { path: '^(src|server)/', pathNot: '^src/(xr|avatar|scene|games|ui)/|^src/main\\.ts$' },
+      to: { path: packagePath('three', '@types/three', '@pixiv/[^/]+') },
+    },
+    {
+      name: 'onnxruntime-infers',
+      comment: 'The runtime stands behind PoseRegressor, so that an estimator never knows what computes it.',
+      severity: 'error',
+      from: { path: '^(src|server)/', pathNot: '^src/inference/' },
+      to: { path: packagePath('onnxruntime-[^/]+') },
+    },
+    {
+      name: 'socket-io-connects',
+      comment: 'The Room and the games know no socket: offline play is the same code.',
+      severity: 'error',
+      from: { path: '^(src|server)/', pathNot: '^(src/net|server)/' },
+      to: { path: packagePath('socket\\.io[^/]*', '@socket\\.io/[^/]+') },
+    },
+    {
+      name: 'server-knows-core-alone',
+      comment: 'The server shares the rules with the page, not the page: nothing that draws belongs in it.',
+      severity: 'error',
+      from: { path: '^server/' },
+      to: { path: '^src/', pathNot: '^src/core/' },
+    },
+    {
+      name: 'page-knows-no-server',
+      comment: 'The page reaches the server over the network alone.',
+      severity: 'error',
+      from: { path: '^src/' },
+      to: { path: '^server/' },
+    },
+    {
+      name: 'shipped-code-knows-no-tests',
+      comment: 'What ships must not need what does not.',
+      severity: 'error',
+      from: { path: '^(src|server)/' },
+      to: { path: testsAndTools },
+    },
+    {
+      name: 'page-runs-in-a-browser',
+      comment: "The page has no Node: a built-in module here would only fail in somebody's browser.",
+      severity: 'error',
+      from: { path: '^src/' },
+      to: { dependencyTypes: ['core'] },
+    },
+    {
+      name: 'no-cycles',
+      comment: 'Modules in a circle cannot be understood, tested or moved one at a time.',
+      severity: 'error',
+      from: {},
+      to: { circular: true },
+    },
+    {
+      name: 'imports-resolve',
+      comment: 'An import that leads nowhere fails at build time at best.',
+      severity: 'error',
+      from: {},
+      to: { couldNotResolve: true },
+    },
+    {
+      name: 'packages-are-declared',
+      comment: 'A package that is there only because another brought it along disappears with the next update.',
+      severity: 'error',
+      from: { path: '^(src|server|tests|e2e|bench)/' },
+      to: { dependencyTypes: ['npm-no-pkg', 'npm-unknown'] },
+    },
+  ],
+  options: {
+    tsPreCompilationDeps: true,
+    tsConfig: { fileName: 'tsconfig.json' },
+    doNotFollow: { path: 'node_modules' },
+    enhancedResolveOptions: {
+      exportsFields: ['exports'],
+      conditionNames: ['import', 'require', 'node', 'default', 'types'],
+    },
+  },
+};
