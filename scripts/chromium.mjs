@@ -1,0 +1,74 @@
+import { existsSync } from 'node:fs';
+import { join } from 'node:path';
+import { root, run, runQuietly, SetupError } from './run-command.mjs';
+
+const installedNames = [
+  'chromium',
+  'chromium-browser',
+  'google-chrome',
+  'google-chrome-stable',
+  '/Applications/Google Chrome.app/Contents/MacOS/Google Chrome',
+  '/Applications/Chromium.app/Contents/MacOS/Chromium',
+];
+
+/** A browser counts only when it starts: Ubuntu's chromium-browser may be a note that asks for a snap. */
+async function starts(executable) {
+  const result = await runQuietly(executable, ['--version', '--no-sandbox'], { limitSeconds: 30 });
+  return result !== null && result.code === 0 && /Chrom/.test(result.output);
+}
+
+async function onPath(name) {
+  if (name.startsWith('/')) return existsSync(name) ? name : null;
+  const found = await runQuietly(process.platform === 'win32' ? 'where' : 'which', [name]);
+  return found?.code === 0 ? found.output.trim().split(/\r?\n/)[0] : null;
+}
+
+async function playwrightsOwn() {
+  const { chromium } = await import('@playwright/test');
+  const path = chromium.executablePath();
+  return existsSync(path) && (await starts(path)) ? path : null;
+}
+
+/** The Chromium to test with: CHROMIUM_PATH, the system's, or Playwright's own; null where there is none. */
+export async function findChromium() {
+  const named = process.env.CHROMIUM_PATH;
+  if (named) {
+    if (await starts(named)) return named;
+    throw new SetupError(`CHROMIUM_PATH is ${named}, but no Chromium starts there.`);
+  }
+  for (const name of installedNames) {
+    const path = await onPath(name);
+    if (path !== null && (await starts(path))) return path;
+  }
+  return playwrightsOwn();
+}
+
+async function installWithPlaywright() {
+  const cli = join(root, 'node_modules/@playwright/test/cli.js');
+  const installed = await run(process.execPath, [cli, 'install', 'chromium'], { limitSeconds: 600 });
+  if (installed.code !== 0) return null;
+  const path = await playwrightsOwn();
+  if (path !== null || process.getuid?.() !== 0) return path;
+  await run(process.execPath, [cli, 'install-deps', 'chromium'], { limitSeconds: 600 });
+  return playwrightsOwn();
+}
+
+async function installWithDistribution() {
+  if (process.getuid?.() !== 0 || (await onPath('apt-get')) === null) return null;
+  const env = { DEBIAN_FRONTEND: 'noninteractive' };
+  await run('apt-get', ['update', '-qq'], { env, limitSeconds: 300 });
+  await run('apt-get', ['install', '-y', '-qq', '--no-install-recommends', 'chromium'], { env, limitSeconds: 900 });
+  return findChromium();
+}
+
+/** Like `findChromium`, but installs one where there is none. Throws a SetupError that says what to do. */
+export async function ensureChromium() {
+  const found = await findChromium();
+  if (found !== null) return found;
+  console.log('No Chromium is installed; fetching the one that belongs to Playwright ...');
+  const installed = (await installWithPlaywright()) ?? (await installWithDistribution());
+  if (installed !== null) return installed;
+  throw new SetupError(
+    'No Chromium could be found or installed. Install Chromium or Chrome, or set CHROMIUM_PATH to one, and run this again.',
+  );
+}

@@ -1,0 +1,93 @@
+import { createHash } from 'node:crypto';
+import { existsSync, mkdirSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { root, run, runQuietly, SetupError } from './run-command.mjs';
+
+const projectFile = join(root, 'training/pyproject.toml');
+const interpreters = ['python3', 'python3.13', 'python3.12', 'python3.11', 'python'];
+
+/** The lower bound of requires-python, as [major, minor]. */
+function neededVersion() {
+  const bound = /^requires-python\s*=\s*["']\s*>=\s*(\d+)\.(\d+)/m.exec(readFileSync(projectFile, 'utf8'));
+  if (!bound) throw new Error('training/pyproject.toml: expected requires-python = ">=MAJOR.MINOR"');
+  return [Number(bound[1]), Number(bound[2])];
+}
+
+async function findInterpreter() {
+  const [major, minor] = neededVersion();
+  const test = `import sys; sys.exit(sys.version_info[:2] < (${major}, ${minor}))`;
+  for (const name of process.env.PYTHON ? [process.env.PYTHON] : interpreters) {
+    if ((await runQuietly(name, ['-c', test]))?.code === 0) return name;
+  }
+  return null;
+}
+
+async function installDistributionPython() {
+  if (process.getuid?.() !== 0 || (await runQuietly('apt-get', ['--version'])) === null) return;
+  console.log('Installing python3 and python3-venv ...');
+  const env = { DEBIAN_FRONTEND: 'noninteractive' };
+  await run('apt-get', ['update', '-qq'], { env, limitSeconds: 300 });
+  await run('apt-get', ['install', '-y', '-qq', 'python3', 'python3-venv'], { env, limitSeconds: 600 });
+}
+
+async function createVenv(directory) {
+  const interpreter = await findInterpreter();
+  if (interpreter === null) return `Python ${neededVersion().join('.')} or newer is needed for training and its tests`;
+  rmSync(directory, { recursive: true, force: true });
+  const { code, output } = await runQuietly(interpreter, ['-m', 'venv', directory]);
+  return code === 0 ? null : `${interpreter} -m venv failed:\n${output.trim()}`;
+}
+
+const pythonIn = (directory) =>
+  process.platform === 'win32' ? join(directory, 'Scripts/python.exe') : join(directory, 'bin/python');
+
+/** What training/pyproject.toml asks for, read by Python itself, which knows TOML. */
+async function requirements(python, extras) {
+  const script = `
+import sys, tomllib
+project = tomllib.load(open(sys.argv[1], 'rb'))['project']
+optional = project.get('optional-dependencies', {})
+for requirement in project.get('dependencies', []) + [r for extra in sys.argv[2:] for r in optional[extra]]:
+    print(requirement)`;
+  const { code, output } = await runQuietly(python, ['-c', script, projectFile, ...extras]);
+  if (code !== 0) throw new SetupError(`training/pyproject.toml could not be read:\n${output.trim()}`);
+  return output.trim().split(/\r?\n/).filter(Boolean);
+}
+
+/**
+ * The path of a Python that has what training/pyproject.toml asks for, with its named extras; made in .cache on first use
+ * and again when that file changes. Throws a SetupError that says what is missing.
+ */
+export async function pythonEnvironment({ extras = [] } = {}) {
+  const hash = createHash('sha256').update(readFileSync(projectFile)).digest('hex').slice(0, 12);
+  const directory = join(root, '.cache', ['python', hash, ...extras].join('-'));
+  if (existsSync(join(directory, 'complete'))) return pythonIn(directory);
+
+  mkdirSync(join(root, '.cache'), { recursive: true });
+  // Made under another name and renamed when complete: two scripts that start together do not meet half a one.
+  const unfinished = `${directory}.${process.pid}`;
+  try {
+    let problem = await createVenv(unfinished);
+    if (problem !== null) {
+      await installDistributionPython();
+      problem = await createVenv(unfinished);
+    }
+    if (problem !== null) {
+      throw new SetupError(`${problem}\nOn Debian and Ubuntu: sudo apt-get install python3 python3-venv`);
+    }
+    const python = pythonIn(unfinished);
+    const wanted = await requirements(python, extras);
+    console.log(`Installing Python packages: ${wanted.join(', ')} ...`);
+    const pip = ['-m', 'pip', 'install', '--no-input', '--disable-pip-version-check', '--prefer-binary', ...wanted];
+    const { code } = await run(python, pip, { limitSeconds: 1800 });
+    if (code !== 0) throw new SetupError(`pip install failed with exit code ${code}; its messages are above.`);
+    writeFileSync(join(unfinished, 'complete'), `${wanted.join('\n')}\n`);
+    if (!existsSync(join(directory, 'complete'))) {
+      rmSync(directory, { recursive: true, force: true });
+      renameSync(unfinished, directory);
+    }
+  } finally {
+    rmSync(unfinished, { recursive: true, force: true });
+  }
+  return pythonIn(directory);
+}

@@ -1,0 +1,10 @@
+import { defineConfig } from 'vitest/config';
+
+export default defineConfig({
+  test: {
+    include: ['tests/**/*.test.ts'],
+    setupFiles: ['tests/property-runs.ts'],
+    // A property with many runs on a busy machine is slow, not wrong.
+    testTimeout: 30_000,
+  },
+});
