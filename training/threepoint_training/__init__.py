@@ -1,0 +1,1 @@
+"""From motion capture to the networks in public/models: prepare, features, model, train, export."""

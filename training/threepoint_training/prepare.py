@@ -1,0 +1,344 @@
+"""Motion capture files to one corpus: 60 frames a second, our joints in metres, floor frame, people facing −Z in T-pose."""
+
+import csv
+import hashlib
+import re
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import quaternion
+from .mocap_asf_amc import AsfSkeleton, parse_amc, parse_asf
+from .mocap_bvh import parse_bvh
+from .motion import MocapError, Motion
+from .prepared_corpus import JOINTS, PreparedCorpus, Person
+from .skeleton_map import CMU_METRES_PER_UNIT, SkeletonMap, find_skeleton_map, read_skeleton_map
+
+RATE_HZ = 60
+
+# Faster than any limb: the hands of boxers and of a sprinter's swing stay below 15 m/s, a fall below 8.
+TELEPORT_SPEED = 25.0
+SHORTEST_SEGMENT_SECONDS = 0.5
+
+# Where a headset's origin (between the eyes) sits from the head joint, in the head's frame: up and forward [m].
+EYES_FROM_HEAD_JOINT = np.array([0.0, 0.075, -0.10])
+
+# The wrist's −Z points to the knuckles, +Y out of the back of the hand; in T-pose the knuckles point sideways, palms down.
+_HAND_REST = {
+    "leftHand": quaternion.from_axis_angle(np.array([0.0, 1.0, 0.0]), np.array(np.pi / 2)),
+    "rightHand": quaternion.from_axis_angle(np.array([0.0, 1.0, 0.0]), np.array(-np.pi / 2)),
+}
+_LATERAL = {"leftHand": np.array([-1.0, 0.0, 0.0]), "rightHand": np.array([1.0, 0.0, 0.0])}
+
+# AMC files carry no frame rate. The database was recorded at 120 Hz, but for these subjects, recorded at 60 Hz
+# (the frame rates of mocap.cs.cmu.edu's trial pages).
+_CMU_60_HZ_SUBJECTS = frozenset({"60", "61", "75", "87", "88"})
+_CMU_NAME = re.compile(r"^0*(\d+)_\d+$")
+
+
+@dataclass(frozen=True)
+class PrepareConfig:
+    """mocap: a folder searched for .asf, .amc and .bvh files. people: only these (None: all)."""
+
+    mocap: Path
+    skeleton_map: Path | None = None
+    people: tuple[str, ...] | None = None
+    cache: Path | None = None
+
+
+@dataclass(frozen=True)
+class _Source:
+    person: str
+    path: Path
+    asf: Path | None
+
+
+def _sources(config: PrepareConfig) -> list[_Source]:
+    """Every motion file with its person: the folder it lies in, or the start of its name when all lie in one folder."""
+    if not config.mocap.is_dir():
+        raise MocapError(f"{config.mocap}: no such folder")
+    files = sorted(path for path in config.mocap.rglob("*") if path.suffix.lower() in (".amc", ".bvh"))
+    if not files:
+        raise MocapError(f"{config.mocap}: no .amc or .bvh files in this folder or below it")
+    sources = []
+    for path in files:
+        person = path.parent.name if path.parent != config.mocap else path.stem.split("_")[0]
+        number = re.fullmatch(r"0*(\d+)", person)
+        if number:
+            person = f"{int(number[1]):03d}"
+        asf = None
+        if path.suffix.lower() == ".amc":
+            skeletons = sorted(path.parent.glob("*.asf"))
+            own = [skeleton for skeleton in skeletons if path.stem.startswith(skeleton.stem)]
+            asf = max(own, key=lambda skeleton: len(skeleton.stem)) if own else (skeletons[0] if len(skeletons) == 1 else None)
+        if config.people is None or person in config.people:
+            sources.append(_Source(person, path, asf))
+    if not sources:
+        raise MocapError(f"{config.mocap}: nothing of {', '.join(config.people or ())} here")
+    return sources
+
+
+def _index_rates(folder: Path) -> dict[str, float]:
+    """Frame rates from an index.csv (columns Subject, Trial #, framerate) in the folder, above or below it."""
+    rates: dict[str, float] = {}
+    candidates = [folder / "index.csv", folder.parent / "index.csv", *sorted(folder.glob("*/index.csv"))]
+    for path in candidates:
+        if path.is_file():
+            with path.open(newline="", errors="replace") as lines:
+                for row in csv.DictReader(lines):
+                    try:
+                        rates[f"{int(row['Subject'])}_{int(row['Trial #'])}"] = float(row["framerate"])
+                    except (KeyError, TypeError, ValueError):
+                        continue  # A row of another table or an empty line: the clip is then looked up elsewhere.
+    return rates
+
+
+def _frame_rate(path: Path, skeleton: SkeletonMap, rates: dict[str, float]) -> float:
+    if skeleton.frame_rate:
+        return skeleton.frame_rate
+    match = re.fullmatch(r"0*(\d+)_0*(\d+)", path.stem)
+    if match and f"{match[1]}_{match[2]}" in rates:
+        return rates[f"{match[1]}_{match[2]}"]
+    if match and _CMU_NAME.match(path.stem):
+        return 60.0 if match[1] in _CMU_60_HZ_SUBJECTS else 120.0
+    raise MocapError(f"{path.name}: frame rate unknown; give “frameRate” in a skeleton map, or an index.csv beside the files")
+
+
+@dataclass(frozen=True)
+class _Clip:
+    """One clip in our joints and axes, still at its own rate; rest is the rest pose [joints, 3]."""
+
+    positions: NDArray[np.float64]
+    rotations: NDArray[np.float64]
+    feet: NDArray[np.float64] | None
+    rest: dict[str, NDArray[np.float64]]
+    rate: float
+
+
+def _scale(motion: Motion, skeleton: SkeletonMap, file_name: str) -> float:
+    """Metres per unit: the map's, else the one that makes the rest skeleton a person."""
+    if skeleton.scale:
+        return skeleton.scale
+    rest = {ours: motion.rest_positions[motion.index(theirs)] for ours, theirs in skeleton.joints.items() if theirs in motion.names}
+    arm = sum(
+        np.linalg.norm(rest[a] - rest[b]) for a, b in (("leftUpperArm", "leftLowerArm"), ("leftLowerArm", "leftHand"))
+    )
+    # Shoulder to wrist of 5th-percentile women to 95th-percentile men is 0.46–0.62 m; children and odd definitions widen it.
+    for scale in (1.0, 0.01, CMU_METRES_PER_UNIT, 0.0254, 0.001):
+        if 0.35 < arm * scale < 0.75:
+            return scale
+    raise MocapError(f"{file_name}: an arm of {arm:.3g} units fits no known unit; give “scale” (metres per unit) in a skeleton map")
+
+
+def _to_our_joints(motion: Motion, skeleton: SkeletonMap, rate: float, file_name: str) -> _Clip:
+    for theirs in skeleton.joints.values():
+        if theirs not in motion.names:
+            raise MocapError(f"{file_name}: no joint “{theirs}”, which the map “{skeleton.name}” names")
+    scale = _scale(motion, skeleton, file_name)
+    turn = quaternion.from_matrix(skeleton.floor_from_file())
+
+    def place(points: NDArray[np.float64]) -> NDArray[np.float64]:
+        return quaternion.rotate(np.broadcast_to(turn, (*points.shape[:-1], 4)), points) * scale
+
+    rest = {ours: place(motion.rest_positions[motion.index(theirs)]) for ours, theirs in skeleton.joints.items()}
+    columns = [motion.index(skeleton.joints.get(joint, skeleton.joints["hips"])) for joint in JOINTS]
+    positions = place(motion.positions[:, columns])
+    if "spine" not in skeleton.joints:
+        spine = JOINTS.index("spine")
+        positions[:, spine] = (positions[:, JOINTS.index("hips")] + positions[:, JOINTS.index("chest")]) / 2
+    rotations = []
+    for joint in ("head", "leftHand", "rightHand"):
+        source = motion.index(skeleton.rotations.get(joint, skeleton.joints[joint]))
+        # Rotations relative to the rest pose, in our axes: conjugated by the turn.
+        q = motion.rotations[:, source]
+        q = quaternion.multiply(np.broadcast_to(turn, q.shape), quaternion.multiply(q, np.broadcast_to(quaternion.conjugate(turn), q.shape)))
+        if joint in _HAND_REST:
+            elbow = rest[joint.replace("Hand", "LowerArm")]
+            align = quaternion.between(_LATERAL[joint], rest[joint] - elbow)
+            q = quaternion.multiply(q, np.broadcast_to(quaternion.multiply(align, _HAND_REST[joint]), q.shape))
+        rotations.append(quaternion.continuous(q))
+    foot_names = [name for name in ("leftFoot", "rightFoot", "leftToes", "rightToes") if name in skeleton.joints]
+    feet = place(motion.positions[:, [motion.index(skeleton.joints[name]) for name in foot_names]]) if foot_names else None
+    return _Clip(positions, np.stack(rotations, axis=1), feet, rest, rate)
+
+
+def _segments(clip: _Clip, name: str, report: Callable[[str], None]) -> Iterable[tuple[str, _Clip]]:
+    """The clip cut where it teleports; pieces too short to be motion are dropped."""
+    speed = np.linalg.norm(np.diff(clip.positions, axis=0), axis=-1).max(axis=1) * clip.rate
+    cuts = np.flatnonzero(speed > TELEPORT_SPEED) + 1
+    bounds = [0, *cuts.tolist(), len(clip.positions)]
+    shortest = max(4, round(SHORTEST_SEGMENT_SECONDS * clip.rate))
+    pieces = [(start, end) for start, end in zip(bounds[:-1], bounds[1:], strict=True) if end - start >= shortest]
+    if len(cuts):
+        report(f"{name}: teleports at frame {', '.join(str(cut + 1) for cut in cuts[:5])}; cut there")
+    for number, (start, end) in enumerate(pieces):
+        piece = replace(
+            clip,
+            positions=clip.positions[start:end],
+            rotations=clip.rotations[start:end],
+            feet=None if clip.feet is None else clip.feet[start:end],
+        )
+        yield (name if len(pieces) == 1 else f"{name}#{number + 1}"), piece
+
+
+def _resample(clip: _Clip) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The clip at 60 Hz: every nth frame where that is exact, else interpolated."""
+    step = clip.rate / RATE_HZ
+    if abs(step - round(step)) < 1e-3 and step >= 1:
+        every = round(step)
+        return clip.positions[::every], clip.rotations[::every]
+    duration = (len(clip.positions) - 1) / clip.rate
+    times = np.arange(int(np.floor(duration * RATE_HZ)) + 1) / RATE_HZ * clip.rate
+    before = np.minimum(times.astype(int), len(clip.positions) - 2)
+    share = times - before
+    positions = clip.positions[before] * (1 - share)[:, None, None] + clip.positions[before + 1] * share[:, None, None]
+    rotations = quaternion.slerp(clip.rotations[before], clip.rotations[before + 1], share[:, None] * np.ones((1, 3)))
+    return positions, rotations
+
+
+def _standing_eye_height(clip: _Clip) -> float | None:
+    """Eye height with straight legs and the trunk as at rest, from segment lengths; None without legs in the map."""
+    rest = clip.rest
+    if not all(joint in rest for joint in ("leftUpperLeg", "leftLowerLeg", "leftFoot")):
+        return None
+    legs = []
+    for side in ("left", "right"):
+        if f"{side}Foot" in rest:
+            thigh, knee, ankle = (rest[f"{side}{part}"] for part in ("UpperLeg", "LowerLeg", "Foot"))
+            legs.append(np.linalg.norm(thigh - knee) + np.linalg.norm(knee - ankle))
+    hip = np.mean([rest[joint][1] for joint in ("leftUpperLeg", "rightUpperLeg") if joint in rest])
+    # The ankle's height above the sole, about 4.5 % of the leg's 0.53 share of stature (Winter, Biomechanics: 0.039 of stature).
+    leg = float(np.mean(legs))
+    sole = leg * 0.039 / 0.491
+    return leg + sole + float(rest["head"][1] - hip) + EYES_FROM_HEAD_JOINT[1]
+
+
+def _person(person: str, clips: list[tuple[str, _Clip]]) -> Person:
+    first = clips[0][1]
+    rest = first.rest
+
+    def length(a: str, b: str) -> float:
+        return float(np.linalg.norm(rest[a] - rest[b]))
+
+    span = length("leftUpperArm", "rightUpperArm") + sum(
+        length(f"{side}UpperArm", f"{side}LowerArm") + length(f"{side}LowerArm", f"{side}Hand") for side in ("left", "right")
+    )
+    eye_height = _standing_eye_height(first)
+    if eye_height is None:
+        heads = np.concatenate([clip.positions[:, JOINTS.index("head"), 1] for _, clip in clips])
+        eye_height = float(np.percentile(heads, 90)) + EYES_FROM_HEAD_JOINT[1]
+    return Person(person, eye_height, span)
+
+
+def _neutral_head(clips: list[tuple[str, _Clip]]) -> NDArray[np.float64]:
+    """The head's rotation when this person looks ahead: the median pitch and roll over frames with an upright trunk."""
+    pitches, rolls = [], []
+    for _, clip in clips:
+        trunk = clip.positions[:, JOINTS.index("neck")] - clip.positions[:, JOINTS.index("hips")]
+        upright = trunk[:, 1] > 0.94 * np.linalg.norm(trunk, axis=-1)
+        head = clip.rotations[upright, 0]
+        if len(head):
+            upright_head = quaternion.multiply(quaternion.conjugate(quaternion.heading(head)), head)
+            gaze = quaternion.rotate(upright_head, np.broadcast_to([0.0, 0.0, -1.0], (len(head), 3)))
+            right = quaternion.rotate(upright_head, np.broadcast_to([1.0, 0.0, 0.0], (len(head), 3)))
+            pitches.append(np.arctan2(gaze[:, 1], -gaze[:, 2]))
+            rolls.append(np.arcsin(np.clip(right[:, 1], -1, 1)))
+    if not pitches:
+        return np.array([0.0, 0.0, 0.0, 1.0])
+    pitch, roll = float(np.median(np.concatenate(pitches))), float(np.median(np.concatenate(rolls)))
+    return quaternion.multiply(
+        quaternion.from_axis_angle(np.array([1.0, 0.0, 0.0]), np.array(pitch)),
+        quaternion.from_axis_angle(np.array([0.0, 0.0, 1.0]), np.array(roll)),
+    )
+
+
+def _floor_height(clips: list[tuple[str, _Clip]]) -> float:
+    """How far the lowest foot joint's usual height differs from a joint 2.5 cm above the floor; 0 where there are no feet."""
+    lowest = [clip.feet[..., 1].min(axis=1) for _, clip in clips if clip.feet is not None]
+    if not lowest:
+        return 0.0
+    offset = float(np.percentile(np.concatenate(lowest), 10)) - 0.025
+    return offset if abs(offset) > 0.04 else 0.0
+
+
+def corpus_hash(paths: Iterable[Path]) -> str:
+    """SHA-256 over the sorted names and contents of the files."""
+    digest = hashlib.sha256()
+    for path in sorted(set(paths)):
+        digest.update(path.name.encode())
+        digest.update(path.read_bytes())
+    return digest.hexdigest()
+
+
+def main(config: PrepareConfig, progress: Callable[[str], None] = lambda _: None) -> PreparedCorpus:
+    """Prepares every clip it can; what it cannot is in `problems`, a sentence each. Nothing usable raises MocapError."""
+    sources = _sources(config)
+    hashed = [path for source in sources for path in (source.path, source.asf) if path is not None]
+    digest = corpus_hash([*hashed, *([config.skeleton_map] if config.skeleton_map else [])])
+    cached = config.cache / f"{digest[:16]}-v{PreparedCorpus.VERSION}.npz" if config.cache else None
+    if cached and cached.is_file():
+        return PreparedCorpus.load(cached)
+
+    given = read_skeleton_map(config.skeleton_map) if config.skeleton_map else None
+    rates = _index_rates(config.mocap)
+    problems: list[str] = []
+    skeletons: dict[Path, AsfSkeleton] = {}
+    by_person: dict[str, list[tuple[str, _Clip]]] = {}
+    for source in sources:
+        progress(source.path.name)
+        try:
+            if source.path.suffix.lower() == ".bvh":
+                motion = parse_bvh(source.path)
+                skeleton = given or find_skeleton_map(motion.names, source.path.name)
+            else:
+                if source.asf is None:
+                    raise MocapError(f"{source.path.name}: no .asf skeleton beside it")
+                if source.asf not in skeletons:
+                    skeletons[source.asf] = parse_asf(source.asf)
+                motion = parse_amc(source.path, skeletons[source.asf])
+                skeleton = given or find_skeleton_map(motion.names, source.path.name)
+                motion = replace(motion, frame_rate=_frame_rate(source.path, skeleton, rates))
+            clip = _to_our_joints(motion, skeleton, motion.frame_rate or RATE_HZ, source.path.name)
+            by_person.setdefault(source.person, []).extend(_segments(clip, source.path.stem, problems.append))
+        except MocapError as error:
+            problems.append(str(error))
+        except OSError as error:
+            problems.append(f"{source.path.name}: cannot be read: {error.strerror}")
+
+    positions, rotations, names, people_of_clips, starts = [], [], [], [], [0]
+    people: dict[str, Person] = {}
+    for person, clips in sorted(by_person.items()):
+        if not clips:
+            continue
+        people[person] = _person(person, clips)
+        neutral = quaternion.conjugate(_neutral_head(clips))
+        floor = _floor_height(clips)
+        for name, clip in clips:
+            clip_positions, clip_rotations = _resample(clip)
+            clip_positions = clip_positions - np.array([0.0, floor, 0.0])
+            head = quaternion.multiply(clip_rotations[:, 0], np.broadcast_to(neutral, clip_rotations[:, 0].shape))
+            clip_rotations = np.concatenate([head[:, None], clip_rotations[:, 1:]], axis=1)
+            positions.append(clip_positions.astype(np.float32))
+            rotations.append(clip_rotations.astype(np.float32))
+            names.append(name)
+            people_of_clips.append(person)
+            starts.append(starts[-1] + len(clip_positions))
+    if not positions:
+        raise MocapError("nothing could be read:\n" + "\n".join(problems))
+    corpus = PreparedCorpus(
+        positions=np.concatenate(positions),
+        rotations=np.concatenate(rotations),
+        clips=tuple(names),
+        clip_people=tuple(people_of_clips),
+        clip_starts=np.array(starts),
+        people=people,
+        rate_hz=RATE_HZ,
+        corpus_hash=digest,
+        problems=tuple(problems),
+    )
+    if cached:
+        corpus.save(cached)
+    return corpus

@@ -1,0 +1,87 @@
+"""The prepared motion: what every later step reads."""
+
+import json
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+JOINTS = (
+    "hips", "spine", "chest", "neck", "head",
+    "leftUpperArm", "leftLowerArm", "leftHand",
+    "rightUpperArm", "rightLowerArm", "rightHand",
+)  # fmt: skip
+ROTATIONS = ("head", "leftHand", "rightHand")
+
+# The six joints nobody tracks, in the order of every tensor (src/core/body/joints.ts).
+ESTIMATED_JOINTS = ("leftLowerArm", "rightLowerArm", "leftUpperArm", "rightUpperArm", "chest", "hips")
+
+
+@dataclass(frozen=True)
+class Person:
+    """What a calibration would find: eye height and wrist-to-wrist span [m]."""
+
+    name: str
+    eye_height: float
+    arm_span: float
+
+
+@dataclass(frozen=True)
+class PreparedCorpus:
+    """positions [F, 11, 3] (JOINTS) in the floor frame [m]; rotations [F, 3, 4] (ROTATIONS) global, xyzw; 60 Hz."""
+
+    VERSION: ClassVar[int] = 1
+
+    positions: NDArray[np.float32]
+    rotations: NDArray[np.float32]
+    clips: tuple[str, ...]
+    clip_people: tuple[str, ...]
+    clip_starts: NDArray[np.int64]
+    people: dict[str, Person]
+    rate_hz: int
+    corpus_hash: str
+    problems: tuple[str, ...]
+
+    def clip_slice(self, clip: int) -> slice:
+        """The frames of a clip."""
+        return slice(int(self.clip_starts[clip]), int(self.clip_starts[clip + 1]))
+
+    def clips_of(self, people: set[str] | frozenset[str]) -> list[int]:
+        """The clips of these people."""
+        return [clip for clip, person in enumerate(self.clip_people) if person in people]
+
+    def truth(self, frames: slice | NDArray[np.int64]) -> NDArray[np.float32]:
+        """The six estimated joints [frames, 6, 3]."""
+        return self.positions[frames][:, [JOINTS.index(joint) for joint in ESTIMATED_JOINTS]]
+
+    def save(self, path: Path) -> None:
+        """Writes one .npz."""
+        path.parent.mkdir(parents=True, exist_ok=True)
+        meta = {
+            "clips": self.clips,
+            "clipPeople": self.clip_people,
+            "people": [asdict(person) for person in self.people.values()],
+            "rateHz": self.rate_hz,
+            "corpusHash": self.corpus_hash,
+            "problems": self.problems,
+        }
+        np.savez(path, positions=self.positions, rotations=self.rotations, clip_starts=self.clip_starts, meta=json.dumps(meta))
+
+    @staticmethod
+    def load(path: Path) -> "PreparedCorpus":
+        """Reads what `save` wrote."""
+        with np.load(path) as arrays:
+            meta = json.loads(str(arrays["meta"]))
+            return PreparedCorpus(
+                positions=arrays["positions"],
+                rotations=arrays["rotations"],
+                clips=tuple(meta["clips"]),
+                clip_people=tuple(meta["clipPeople"]),
+                clip_starts=arrays["clip_starts"],
+                people={person["name"]: Person(**person) for person in meta["people"]},
+                rate_hz=meta["rateHz"],
+                corpus_hash=meta["corpusHash"],
+                problems=tuple(meta["problems"]),
+            )

@@ -1,0 +1,118 @@
+"""Quaternions as arrays [..., 4] in the order x, y, z, w; every function is vectorised over the leading axes."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def multiply(a: Array, b: Array) -> Array:
+    """The rotation b followed by a."""
+    ax, ay, az, aw = np.moveaxis(a, -1, 0)
+    bx, by, bz, bw = np.moveaxis(b, -1, 0)
+    return np.stack(
+        [
+            aw * bx + ax * bw + ay * bz - az * by,
+            aw * by - ax * bz + ay * bw + az * bx,
+            aw * bz + ax * by - ay * bx + az * bw,
+            aw * bw - ax * bx - ay * by - az * bz,
+        ],
+        axis=-1,
+    )
+
+
+def conjugate(q: Array) -> Array:
+    """The inverse of a unit quaternion."""
+    return q * np.array([-1.0, -1.0, -1.0, 1.0])
+
+
+def rotate(q: Array, v: Array) -> Array:
+    """The vectors v [..., 3] rotated by q."""
+    t = 2.0 * np.cross(q[..., :3], v)
+    return v + q[..., 3:] * t + np.cross(q[..., :3], t)
+
+
+def from_axis_angle(axis: Array, angle: Array) -> Array:
+    """The rotation by angle [rad] about the unit vector axis."""
+    half = np.asarray(angle)[..., None] / 2.0
+    return np.concatenate([np.sin(half) * axis, np.cos(half) * np.ones_like(axis[..., :1])], axis=-1)
+
+
+def from_rotation_vector(v: Array) -> Array:
+    """The rotation by |v| [rad] about v; the identity for zero."""
+    angle = np.linalg.norm(v, axis=-1)
+    axis = v / np.maximum(angle, 1e-12)[..., None]
+    return from_axis_angle(axis, angle)
+
+
+def from_matrix(m: Array) -> Array:
+    """The unit quaternion of rotation matrices [..., 3, 3], w ≥ 0."""
+    m00, m11, m22 = m[..., 0, 0], m[..., 1, 1], m[..., 2, 2]
+    # Four candidates, each well conditioned where its own component is the largest.
+    candidates = np.stack(
+        [
+            np.stack([1 + m00 - m11 - m22, m[..., 0, 1] + m[..., 1, 0], m[..., 0, 2] + m[..., 2, 0], m[..., 2, 1] - m[..., 1, 2]], -1),
+            np.stack([m[..., 0, 1] + m[..., 1, 0], 1 - m00 + m11 - m22, m[..., 1, 2] + m[..., 2, 1], m[..., 0, 2] - m[..., 2, 0]], -1),
+            np.stack([m[..., 0, 2] + m[..., 2, 0], m[..., 1, 2] + m[..., 2, 1], 1 - m00 - m11 + m22, m[..., 1, 0] - m[..., 0, 1]], -1),
+            np.stack([m[..., 2, 1] - m[..., 1, 2], m[..., 0, 2] - m[..., 2, 0], m[..., 1, 0] - m[..., 0, 1], 1 + m00 + m11 + m22], -1),
+        ],
+        axis=-2,
+    )
+    best = np.argmax(np.stack([m00 - m11 - m22, m11 - m00 - m22, m22 - m00 - m11, m00 + m11 + m22], -1), axis=-1)
+    q = np.take_along_axis(candidates, best[..., None, None], axis=-2)[..., 0, :]
+    q = q / np.linalg.norm(q, axis=-1, keepdims=True)
+    return np.where(q[..., 3:] < 0, -q, q)
+
+
+def to_matrix(q: Array) -> Array:
+    """Rotation matrices [..., 3, 3]."""
+    x, y, z, w = np.moveaxis(q, -1, 0)
+    return np.stack(
+        [
+            np.stack([1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)], -1),
+            np.stack([2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)], -1),
+            np.stack([2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)], -1),
+        ],
+        axis=-2,
+    )
+
+
+def between(a: Array, b: Array) -> Array:
+    """The smallest rotation that takes the direction of a to that of b; half a turn about any normal when they oppose."""
+    a = a / np.linalg.norm(a, axis=-1, keepdims=True)
+    b = b / np.linalg.norm(b, axis=-1, keepdims=True)
+    w = 1.0 + np.sum(a * b, axis=-1, keepdims=True)
+    fallback = np.cross(a, np.where(np.abs(a[..., :1]) < 0.9, np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])))
+    q = np.where(w < 1e-9, np.concatenate([fallback, np.zeros_like(w)], -1), np.concatenate([np.cross(a, b), w], -1))
+    return q / np.linalg.norm(q, axis=-1, keepdims=True)
+
+
+def continuous(q: Array) -> Array:
+    """The same rotations with signs chosen so that neighbours along the first axis lie in the same hemisphere."""
+    flips = np.sign(np.sum(q[1:] * q[:-1], axis=-1))
+    flips = np.where(flips == 0, 1.0, flips)
+    return q * np.concatenate([np.ones_like(flips[:1]), np.cumprod(flips, axis=0)])[..., None]
+
+
+def slerp(a: Array, b: Array, t: Array) -> Array:
+    """Interpolation along the shorter arc; t in [0, 1] broadcasts over the leading axes."""
+    t = np.asarray(t)[..., None]
+    cosine = np.sum(a * b, axis=-1, keepdims=True)
+    b = np.where(cosine < 0, -b, b)
+    angle = np.arccos(np.clip(np.abs(cosine), 0.0, 1.0))
+    small = angle < 1e-4
+    sine = np.where(small, 1.0, np.sin(angle))
+    q = np.where(small, (1 - t) * a + t * b, np.sin((1 - t) * angle) / sine * a + np.sin(t * angle) / sine * b)
+    return q / np.linalg.norm(q, axis=-1, keepdims=True)
+
+
+def heading(q: Array) -> Array:
+    """The rotation about +Y [..., 4] of a head with orientation q, from its right axis (docs/estimation.md)."""
+    right = rotate(q, np.broadcast_to([1.0, 0.0, 0.0], (*q.shape[:-1], 3)))
+    gaze = rotate(q, np.broadcast_to([0.0, 0.0, -1.0], (*q.shape[:-1], 3)))
+    forward = np.stack([right[..., 2], -right[..., 0]], -1)
+    for substitute in (gaze[..., [0, 2]], np.broadcast_to([0.0, -1.0], forward.shape)):
+        degenerate = np.linalg.norm(forward, axis=-1, keepdims=True) < 1e-3
+        forward = np.where(degenerate, substitute, forward)
+    yaw = np.arctan2(-forward[..., 0], -forward[..., 1])
+    return from_axis_angle(np.broadcast_to([0.0, 1.0, 0.0], (*yaw.shape, 3)), yaw)

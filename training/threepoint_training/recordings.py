@@ -1,0 +1,90 @@
+"""Recordings for the evaluation: what the trackers saw, with the truth beside it; TypeScript reads and drives them."""
+
+import argparse
+import json
+import sys
+import zlib
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from . import prepare
+from .motion import MocapError
+from .prepared_corpus import JOINTS, PreparedCorpus
+from .simulate_trackers import TrackerConfig, draw_wearer, simulate
+
+VERSION = 1
+TRACKED = ("head", "leftHand", "rightHand")
+COLUMNS = tuple(f"{point}.{part}" for point in TRACKED for part in ("px", "py", "pz", "qx", "qy", "qz", "qw")) + tuple(
+    f"truth.{joint}.{axis}" for joint in JOINTS for axis in "xyz"
+)
+
+
+@dataclass(frozen=True)
+class RecordingsConfig:
+    """Where the motion is, where the recordings go, and how the trackers err."""
+
+    prepare: prepare.PrepareConfig
+    out: Path
+    seed: int = 2460
+    trackers: TrackerConfig = field(default_factory=TrackerConfig)
+
+
+def write(corpus: PreparedCorpus, config: RecordingsConfig) -> Path:
+    """One little-endian float32 file [frames, COLUMNS] per clip and index.json; the same seed writes the same bytes."""
+    config.out.mkdir(parents=True, exist_ok=True)
+    clips = []
+    for number, (name, person) in enumerate(zip(corpus.clips, corpus.clip_people, strict=True)):
+        # Keyed by person and clip, so that a selection of clips sees the same trackers as the whole corpus.
+        wearer = draw_wearer(config.trackers, np.random.default_rng([config.seed, zlib.crc32(person.encode())]))
+        random = np.random.default_rng([config.seed, zlib.crc32(name.encode())])
+        frames = corpus.clip_slice(number)
+        positions, rotations = simulate(corpus.positions[frames], corpus.rotations[frames], wearer, config.trackers, random)
+        tracked = np.concatenate([positions, rotations], axis=-1).reshape(len(positions), -1)
+        truth = corpus.positions[frames].reshape(len(positions), -1)
+        file = f"{number:04d}.f32"
+        (config.out / file).write_bytes(np.concatenate([tracked, truth], axis=1).astype("<f4").tobytes())
+        clips.append({"name": name, "person": person, "file": file, "frames": len(positions)})
+    index = {
+        "version": VERSION,
+        "rateHz": corpus.rate_hz,
+        "corpusHash": corpus.corpus_hash,
+        "seed": config.seed,
+        "trackers": asdict(config.trackers),
+        "columns": COLUMNS,
+        "joints": JOINTS,
+        "people": {name: {"eyeHeight": person.eye_height, "armSpan": person.arm_span} for name, person in corpus.people.items()},
+        "clips": clips,
+        "problems": corpus.problems,
+    }
+    path = config.out / "index.json"
+    path.write_text(json.dumps(index, ensure_ascii=False, indent=1))
+    return path
+
+
+def main(config: RecordingsConfig) -> Path:
+    """Prepares the motion and writes its recordings."""
+    return write(prepare.main(config.prepare, lambda name: print(f"  {name}", file=sys.stderr)), config)
+
+
+def _arguments() -> RecordingsConfig:
+    parser = argparse.ArgumentParser(description="Mocap files to recordings with their truth, for the evaluation.")
+    parser.add_argument("--mocap", type=Path, required=True)
+    parser.add_argument("--skeleton", type=Path)
+    parser.add_argument("--people", help="only these people, separated by commas")
+    parser.add_argument("--out", type=Path, required=True)
+    parser.add_argument("--cache", type=Path)
+    parser.add_argument("--seed", type=int, default=RecordingsConfig.seed)
+    given = parser.parse_args()
+    people = tuple(given.people.split(",")) if given.people else None
+    return RecordingsConfig(
+        prepare=prepare.PrepareConfig(given.mocap, given.skeleton, people, given.cache), out=given.out, seed=given.seed
+    )
+
+
+if __name__ == "__main__":
+    try:
+        main(_arguments())
+    except MocapError as error:
+        sys.exit(f"{error}")

@@ -1,0 +1,62 @@
+"""What a headset and two hands would have reported while the motion was recorded."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import quaternion
+from .prepare import EYES_FROM_HEAD_JOINT
+from .prepared_corpus import JOINTS
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class TrackerConfig:
+    """Standard deviations. Offsets are constant for a wearer: how this headset sits, what the grip table does not know."""
+
+    headset_offset: float = 0.010  # [m] per axis
+    headset_pitch: float = np.radians(2.0)  # [rad]
+    wrist_offset: float = 0.007  # [m] per axis
+    hand_turn: float = np.radians(3.0)  # [rad] about a random axis
+    position_noise: float = 0.0003  # [m] per frame
+    rotation_noise: float = np.radians(0.1)  # [rad] per frame
+
+
+@dataclass(frozen=True)
+class Wearer:
+    """The constant part: offsets [m] in the head's and hands' frames and turns (xyzw)."""
+
+    eyes_in_head: Array
+    head_turn: Array
+    wrist_offsets: Array  # [2, 3]
+    hand_turns: Array  # [2, 4]
+
+
+def draw_wearer(config: TrackerConfig, random: np.random.Generator) -> Wearer:
+    """One wearer's offsets."""
+    turns = random.normal(size=(2, 3)) * config.hand_turn / np.sqrt(3)
+    return Wearer(
+        eyes_in_head=EYES_FROM_HEAD_JOINT + random.normal(size=3) * config.headset_offset,
+        head_turn=quaternion.from_rotation_vector(np.array([random.normal() * config.headset_pitch, 0.0, 0.0])),
+        wrist_offsets=random.normal(size=(2, 3)) * config.wrist_offset,
+        hand_turns=quaternion.from_rotation_vector(turns),
+    )
+
+
+def simulate(
+    positions: Array, rotations: Array, wearer: Wearer, config: TrackerConfig, random: np.random.Generator
+) -> tuple[Array, Array]:
+    """Tracked positions [F, 3, 3] and rotations [F, 3, 4] of headset, left and right wrist, from JOINTS and ROTATIONS arrays."""
+    positions = np.asarray(positions, np.float64)
+    rotations = np.asarray(rotations, np.float64)
+    frames = len(positions)
+    anchors = positions[:, [JOINTS.index("head"), JOINTS.index("leftHand"), JOINTS.index("rightHand")]]
+    offsets = np.stack([wearer.eyes_in_head, *wearer.wrist_offsets])
+    tracked = anchors + quaternion.rotate(rotations, np.broadcast_to(offsets, (frames, 3, 3)))
+    tracked = tracked + random.normal(size=tracked.shape) * config.position_noise
+    turns = np.stack([wearer.head_turn, *wearer.hand_turns])
+    turned = quaternion.multiply(rotations, np.broadcast_to(turns, (frames, 3, 4)))
+    jitter = quaternion.from_rotation_vector(random.normal(size=(frames, 3, 3)) * config.rotation_noise / np.sqrt(3))
+    return tracked, quaternion.multiply(turned, jitter)

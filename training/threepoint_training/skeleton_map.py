@@ -1,0 +1,121 @@
+"""Which joint of a file is which joint of ours: built in for CMU's ASF and common BVH skeletons, else read from JSON."""
+
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .motion import MocapError
+
+REQUIRED_JOINTS = (
+    "hips", "chest", "neck", "head",
+    "leftUpperArm", "leftLowerArm", "leftHand",
+    "rightUpperArm", "rightLowerArm", "rightHand",
+)  # fmt: skip
+OPTIONAL_JOINTS = (
+    "spine",
+    "leftUpperLeg", "leftLowerLeg", "leftFoot", "leftToes",
+    "rightUpperLeg", "rightLowerLeg", "rightFoot", "rightToes",
+)  # fmt: skip
+_AXES = {"+x": (1, 0, 0), "-x": (-1, 0, 0), "+y": (0, 1, 0), "-y": (0, -1, 0), "+z": (0, 0, 1), "-z": (0, 0, -1)}
+
+# The database measures in units of 1/0.45 inch (the ASF header's `length 0.45`).
+CMU_METRES_PER_UNIT = 0.0254 / 0.45
+
+
+@dataclass(frozen=True)
+class SkeletonMap:
+    """joints: our name to the file's. scale [m per unit] is None where it must be guessed. rotations: whose turn head and hands follow."""
+
+    name: str
+    joints: dict[str, str]
+    scale: float | None = None
+    frame_rate: float | None = None
+    up: str = "+y"
+    forward: str = "+z"
+    rotations: dict[str, str] = field(default_factory=dict)
+
+    def floor_from_file(self) -> NDArray[np.float64]:
+        """The rotation matrix from the file's axes to ours (+Y up, −Z forward)."""
+        up, forward = np.array(_AXES[self.up], float), np.array(_AXES[self.forward], float)
+        return np.stack([np.cross(forward, up), up, -forward])
+
+
+CMU_ASF = SkeletonMap(
+    name="CMU ASF",
+    scale=CMU_METRES_PER_UNIT,
+    joints={
+        "hips": "root", "spine": "lowerback:end", "chest": "upperback:end", "neck": "thorax:end", "head": "head",
+        "leftUpperArm": "lhumerus", "leftLowerArm": "lradius", "leftHand": "lwrist:end",
+        "rightUpperArm": "rhumerus", "rightLowerArm": "rradius", "rightHand": "rwrist:end",
+        "leftUpperLeg": "lfemur", "leftLowerLeg": "ltibia", "leftFoot": "lfoot", "leftToes": "ltoes",
+        "rightUpperLeg": "rfemur", "rightLowerLeg": "rtibia", "rightFoot": "rfoot", "rightToes": "rtoes",
+    },
+    rotations={"leftHand": "lhand", "rightHand": "rhand"},
+)  # fmt: skip
+
+
+def _bvh(name: str, spine: tuple[str, str, str, str], arms: tuple[str, str, str], legs: tuple[str, str, str, str]) -> SkeletonMap:
+    joints = dict(zip(("hips", "spine", "chest", "neck"), ("Hips", *spine[:3]), strict=True)) | {"head": spine[3]}
+    for side in ("left", "right"):
+        prefix = side.capitalize()
+        ours = ("UpperArm", "LowerArm", "Hand", "UpperLeg", "LowerLeg", "Foot", "Toes")
+        joints |= {f"{side}{joint}": f"{prefix}{theirs}" for joint, theirs in zip(ours, (*arms, *legs), strict=True)}
+    return SkeletonMap(name=name, joints=joints)
+
+
+BUILT_IN = (
+    CMU_ASF,
+    _bvh("BVH of CMU (cmuconvert)", ("LowerBack", "Spine", "Neck", "Head"), ("Arm", "ForeArm", "Hand"), ("UpLeg", "Leg", "Foot", "ToeBase")),
+    _bvh("BVH with three spine joints", ("Spine", "Spine1", "Neck", "Head"), ("Arm", "ForeArm", "Hand"), ("UpLeg", "Leg", "Foot", "ToeBase")),
+    _bvh("BVH with three spine joints and toes", ("Spine", "Spine1", "Neck", "Head"), ("Arm", "ForeArm", "Hand"), ("UpLeg", "Leg", "Foot", "Toe")),
+)  # fmt: skip
+
+
+def read_skeleton_map(path: Path) -> SkeletonMap:
+    """Reads a map from JSON; anything missing or unknown raises MocapError with a sentence."""
+    try:
+        content = json.loads(path.read_text())
+    except json.JSONDecodeError as error:
+        raise MocapError(f"{path.name}, line {error.lineno}: no valid JSON: {error.msg}") from None
+    if not isinstance(content, dict) or not isinstance(content.get("joints"), dict):
+        raise MocapError(f"{path.name}: expected an object with “joints”")
+    unknown = set(content) - {"name", "scale", "frameRate", "up", "forward", "joints", "rotations"}
+    if unknown:
+        raise MocapError(f"{path.name}: “{sorted(unknown)[0]}” is not known; see docs/evaluation.md")
+    joints = content["joints"]
+    for joint in REQUIRED_JOINTS:
+        if not isinstance(joints.get(joint), str):
+            raise MocapError(f"{path.name}: joints.{joint} is missing")
+    for joint in joints:
+        if joint not in REQUIRED_JOINTS + OPTIONAL_JOINTS:
+            raise MocapError(f"{path.name}: joints.{joint} is none of ours ({', '.join(REQUIRED_JOINTS + OPTIONAL_JOINTS)})")
+    for key in ("up", "forward"):
+        if content.get(key, "+y") not in _AXES:
+            raise MocapError(f"{path.name}: “{key}” should be one of {', '.join(_AXES)}")
+    for key in ("scale", "frameRate"):
+        value = content.get(key)
+        if value is not None and (not isinstance(value, int | float) or value <= 0):
+            raise MocapError(f"{path.name}: “{key}” should be a number above zero")
+    return SkeletonMap(
+        name=content.get("name", path.stem),
+        joints=dict(joints),
+        scale=content.get("scale"),
+        frame_rate=content.get("frameRate"),
+        up=content.get("up", "+y"),
+        forward=content.get("forward", "+z"),
+        rotations=dict(content.get("rotations", {})),
+    )
+
+
+def find_skeleton_map(names: tuple[str, ...], file_name: str) -> SkeletonMap:
+    """The built-in map whose joints this file has; none raises MocapError."""
+    known = set(names)
+    for candidate in BUILT_IN:
+        if all(candidate.joints[joint] in known for joint in REQUIRED_JOINTS):
+            return candidate
+    raise MocapError(
+        f"{file_name}: a skeleton that is not known here (it has {', '.join(names[:8])}, …); give a map with --skeleton MAP.json"
+    )
