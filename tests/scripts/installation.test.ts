@@ -1,0 +1,50 @@
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { describe, expect, onTestFinished, test } from 'vitest';
+import { missingInstallation } from '../../scripts/installation.mjs';
+
+type Packages = Record<string, { version?: string; optional?: boolean; optionalDependencies?: Record<string, string> }>;
+
+function projectWith(wanted: Packages, installed: Packages | null): string {
+  const directory = mkdtempSync(join(tmpdir(), 'threepoint-'));
+  onTestFinished(() => rmSync(directory, { recursive: true, force: true }));
+  writeFileSync(join(directory, 'package-lock.json'), JSON.stringify({ packages: wanted }));
+  if (installed) {
+    mkdirSync(join(directory, 'node_modules'));
+    writeFileSync(join(directory, 'node_modules/.package-lock.json'), JSON.stringify({ packages: installed }));
+  }
+  return directory;
+}
+
+describe('what is missing', () => {
+  const wanted = {
+    '': { version: '0.1.0' },
+    'node_modules/three': { version: '0.187.0' },
+    'node_modules/fsevents': { version: '2.3.3', optional: true },
+  };
+
+  test('everything, in a fresh clone', () => {
+    expect(missingInstallation(projectWith(wanted, null))).toBe('nothing is installed yet');
+  });
+
+  test('nothing, when what the lock file wants is there; another platform’s packages may be absent', () => {
+    expect(missingInstallation(projectWith(wanted, { 'node_modules/three': { version: '0.187.0' } }))).toBeNull();
+  });
+
+  test('a package the lock file names newly or in another version', () => {
+    expect(missingInstallation(projectWith(wanted, {}))).toBe('three 0.187.0 is missing');
+    const older = { 'node_modules/three': { version: '0.186.0' } };
+    expect(missingInstallation(projectWith(wanted, older))).toBe('three 0.187.0 is missing');
+  });
+});
+
+test('the lock file names every platform’s packages, or npm ci would refuse it on that platform and on this one', () => {
+  const { packages } = JSON.parse(readFileSync('package-lock.json', 'utf8')) as { packages: Packages };
+  const unnamed = Object.entries(packages).flatMap(([path, { optionalDependencies }]) =>
+    Object.keys(optionalDependencies ?? {}).filter(
+      (name) => !packages[`node_modules/${name}`] && !packages[`${path}/node_modules/${name}`],
+    ),
+  );
+  expect(unnamed).toEqual([]);
+});

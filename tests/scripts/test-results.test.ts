@@ -1,0 +1,52 @@
+import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { expect, onTestFinished, test } from 'vitest';
+import { countLine, readResults } from '../../scripts/test-results.mjs';
+
+function report(content: unknown): string {
+  const directory = mkdtempSync(join(tmpdir(), 'threepoint-'));
+  onTestFinished(() => rmSync(directory, { recursive: true, force: true }));
+  const file = join(directory, 'report');
+  writeFileSync(file, typeof content === 'string' ? content : JSON.stringify(content));
+  return file;
+}
+
+test('pytest: errors while setting up count as failures', () => {
+  const file = report(
+    '<testsuites><testsuite name="pytest" errors="1" failures="2" skipped="3" tests="10" time="1.2"></testsuite></testsuites>',
+  );
+  expect(readResults('pytest', file)).toEqual({ passed: 4, failed: 3, skipped: 3 });
+});
+
+test('vitest: a file that does not load counts as a failure', () => {
+  const file = report({
+    numPassedTests: 7,
+    numFailedTests: 1,
+    numPendingTests: 1,
+    numTodoTests: 0,
+    testResults: [
+      { status: 'failed', assertionResults: [] },
+      { status: 'failed', assertionResults: [{}] },
+      { status: 'passed', assertionResults: [{}] },
+    ],
+  });
+  expect(readResults('vitest', file)).toEqual({ passed: 7, failed: 2, skipped: 1 });
+});
+
+test('Playwright: a server that does not start counts as a failure, a test that needed a second try does not', () => {
+  const file = report({
+    stats: { expected: 5, unexpected: 1, flaky: 1, skipped: 2 },
+    errors: [{ message: 'no server' }],
+  });
+  expect(readResults('playwright', file)).toEqual({ passed: 6, failed: 2, skipped: 2 });
+});
+
+test('a runner that died before its report has no results', () => {
+  expect(readResults('vitest', '/nowhere/report.json')).toBeNull();
+});
+
+test('the closing line names the skipped only where there are any', () => {
+  expect(countLine({ passed: 12, failed: 0, skipped: 0 })).toBe('12 passed, 0 failed');
+  expect(countLine({ passed: 12, failed: 1, skipped: 2 })).toBe('12 passed, 1 failed, 2 skipped');
+});
