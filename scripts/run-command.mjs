@@ -82,8 +82,17 @@ export async function runQuietly(command, args, options = {}) {
   }
 }
 
+/** npm passes a signal only to the shell between us: when that shell is gone, whoever ran `npm start` has stopped it. */
+function stopWithParent() {
+  const parent = process.ppid;
+  setInterval(() => {
+    if (process.ppid !== parent) process.kill(process.pid, 'SIGTERM');
+  }, 500).unref();
+}
+
 /** Runs the script body and turns a SetupError into its sentence and exit code 1. */
 export async function main(body) {
+  if (process.env.npm_lifecycle_event) stopWithParent();
   try {
     process.exitCode = (await body()) ?? 0;
   } catch (error) {
