@@ -1,0 +1,100 @@
+/** The stages of a frame, in the order in which they run. */
+export const stageNames = ['tracking', 'features', 'inference', 'kinematics', 'skinning', 'render'] as const;
+export type StageName = (typeof stageNames)[number];
+
+/** Frames looked back on: four seconds at 60 Hz. */
+const length = 240;
+/** A frame that took more than this many intervals of the device came late. */
+const lateAfterIntervals = 1.5;
+
+interface Ring {
+  readonly values: Float32Array;
+  count: number;
+}
+
+function push(ring: Ring, value: number): void {
+  ring.values[ring.count % length] = value;
+  ring.count += 1;
+}
+
+/** The q-quantile of what a ring holds; NaN while it holds nothing. */
+function quantiles(ring: Ring, ...at: readonly number[]): number[] {
+  const sorted = ring.values.slice(0, Math.min(ring.count, length)).sort();
+  return at.map((q) => sorted[Math.min(sorted.length - 1, Math.floor(q * sorted.length))] ?? Number.NaN);
+}
+
+export interface FrameSummary {
+  /** Work of this thread per frame [ms]. */
+  readonly p50Ms: number;
+  readonly p95Ms: number;
+  readonly stages: Readonly<Record<StageName, { readonly p50Ms: number; readonly p95Ms: number }>>;
+  /** Frames that the device showed late, of `frames`, at `rateHz`. */
+  readonly missed: number;
+  readonly frames: number;
+  readonly rateHz: number;
+}
+
+/** Where the time of the frame goes. Per frame it only writes numbers into rings; sorting is left to `summary`. */
+export interface FrameTiming {
+  /** The device began a frame now; its time stamp [ms] tells how long ago the last one was. */
+  begin(timestampMs: number): void;
+  /** Counts the time since the last mark of this frame towards this stage; a stage may be marked several times. */
+  mark(stage: StageName): void;
+  end(): void;
+  /** The rate at which the device wants frames [Hz]. */
+  setRate(rateHz: number): void;
+  /** Forgets what was: after a pause, a hidden page or another kind of frame nothing before is comparable. */
+  reset(): void;
+  summary(): FrameSummary;
+}
+
+/** now: milliseconds on a monotonic clock. */
+export function createFrameTiming(now: () => number): FrameTiming {
+  const ring = (): Ring => ({ values: new Float32Array(length), count: 0 });
+  const rings = Object.fromEntries(stageNames.map((name) => [name, ring()])) as Record<StageName, Ring>;
+  const spent = Object.fromEntries(stageNames.map((name) => [name, 0])) as Record<StageName, number>;
+  const total = ring();
+  const intervals = ring();
+  let rateHz = 60;
+  let lastTimestamp = Number.NaN;
+  let started = 0;
+  let marked = 0;
+  return {
+    begin(timestampMs) {
+      if (Number.isFinite(lastTimestamp)) push(intervals, timestampMs - lastTimestamp);
+      lastTimestamp = timestampMs;
+      for (const name of stageNames) spent[name] = 0;
+      started = now();
+      marked = started;
+    },
+    mark(stage) {
+      const time = now();
+      spent[stage] += time - marked;
+      marked = time;
+    },
+    end() {
+      for (const name of stageNames) push(rings[name], spent[name]);
+      push(total, now() - started);
+    },
+    setRate(rate) {
+      rateHz = rate;
+    },
+    reset() {
+      for (const each of [total, intervals, ...Object.values(rings)]) each.count = 0;
+      lastTimestamp = Number.NaN;
+    },
+    summary() {
+      const [p50Ms = Number.NaN, p95Ms = Number.NaN] = quantiles(total, 0.5, 0.95);
+      const stages = Object.fromEntries(
+        stageNames.map((name) => {
+          const [p50 = Number.NaN, p95 = Number.NaN] = quantiles(rings[name], 0.5, 0.95);
+          return [name, { p50Ms: p50, p95Ms: p95 }];
+        }),
+      ) as Record<StageName, { p50Ms: number; p95Ms: number }>;
+      const frames = Math.min(intervals.count, length);
+      const late = (lateAfterIntervals * 1000) / rateHz;
+      const missed = intervals.values.slice(0, frames).filter((interval) => interval > late).length;
+      return { p50Ms, p95Ms, stages, missed, frames, rateHz };
+    },
+  };
+}

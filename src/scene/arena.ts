@@ -1,0 +1,218 @@
+import {
+  BackSide,
+  CanvasTexture,
+  CircleGeometry,
+  Color,
+  DirectionalLight,
+  Fog,
+  Group,
+  HemisphereLight,
+  Mesh,
+  MeshBasicMaterial,
+  MeshStandardMaterial,
+  PlaneGeometry,
+  PMREMGenerator,
+  RingGeometry,
+  Scene,
+  ShaderMaterial,
+  SphereGeometry,
+  type WebGLRenderer,
+} from 'three';
+import type { Quality } from './renderer';
+
+const horizon = new Color('#39465a');
+const zenith = new Color('#141a25');
+const ground = new Color('#2b3647');
+const floorRadius = 24;
+
+/** Everything around the people: a floor, a sky, light. The floor is y = 0 of the floor frame. */
+export interface Arena {
+  readonly scene: Scene;
+  /** Moves shadow and light along with whoever stands at (x, z) [m], floor frame. */
+  follow(x: number, z: number): void;
+  /** Shows or hides the mark on the floor where to stand. */
+  setMarkVisible(visible: boolean): void;
+  /** Builds again what a lost context took with it. */
+  restore(): void;
+}
+
+/** A sphere of smooth colour, darker overhead; drawn behind everything, deaf to fog. */
+function createSky(): Mesh {
+  const material = new ShaderMaterial({
+    side: BackSide,
+    depthWrite: false,
+    fog: false,
+    uniforms: { horizon: { value: horizon }, zenith: { value: zenith } },
+    vertexShader: `varying vec3 direction;
+      void main() {
+        direction = normalize(position);
+        gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+      }`,
+    fragmentShader: `varying vec3 direction; uniform vec3 horizon; uniform vec3 zenith;
+      void main() {
+        float height = max(normalize(direction).y, 0.0);
+        gl_FragColor = vec4(mix(horizon, zenith, smoothstep(0.0, 0.55, height)), 1.0);
+        #include <tonemapping_fragment>
+        #include <colorspace_fragment>
+      }`,
+  });
+  const sky = new Mesh(new SphereGeometry(40, 24, 16), material);
+  sky.renderOrder = -1;
+  return sky;
+}
+
+/** Lines every half metre that vanish with distance, drawn without aliasing by their derivatives. */
+function createGrid(): Mesh {
+  const material = new ShaderMaterial({
+    transparent: true,
+    depthWrite: false,
+    fog: false,
+    uniforms: { lineColor: { value: new Color('#8fa3c2') } },
+    vertexShader: `varying vec3 onFloor;
+      void main() {
+        vec4 world = modelMatrix * vec4(position, 1.0);
+        onFloor = world.xyz;
+        gl_Position = projectionMatrix * viewMatrix * world;
+      }`,
+    fragmentShader: `varying vec3 onFloor; uniform vec3 lineColor;
+      float lines(vec2 at) {
+        vec2 width = fwidth(at);
+        vec2 distanceToLine = abs(fract(at - 0.5) - 0.5) / max(width, vec2(1e-5));
+        vec2 strength = (1.0 - min(distanceToLine, 1.0)) * (1.0 - smoothstep(0.15, 0.6, width));
+        return max(strength.x, strength.y);
+      }
+      void main() {
+        float fade = 1.0 - smoothstep(1.5, 9.0, length(onFloor.xz));
+        float alpha = (0.10 * lines(onFloor.xz * 2.0) + 0.16 * lines(onFloor.xz)) * fade;
+        gl_FragColor = vec4(lineColor, alpha);
+        #include <tonemapping_fragment>
+        #include <colorspace_fragment>
+      }`,
+  });
+  const grid = new Mesh(new CircleGeometry(9, 48).rotateX(-Math.PI / 2), material);
+  grid.position.y = 0.002;
+  return grid;
+}
+
+function createFloor(): Mesh {
+  const floor = new Mesh(
+    new CircleGeometry(floorRadius, 64).rotateX(-Math.PI / 2),
+    new MeshStandardMaterial({ color: ground, roughness: 0.92, metalness: 0, envMapIntensity: 0.25 }),
+  );
+  floor.receiveShadow = true;
+  return floor;
+}
+
+/** A ring with a notch towards the mirror (−Z): where to stand and where to look. */
+function createMark(): Group {
+  const material = new MeshBasicMaterial({ color: '#ffb468', transparent: true, opacity: 0.55, depthWrite: false });
+  const gap = 0.5;
+  const ring = new Mesh(new RingGeometry(0.4, 0.412, 72, 1, Math.PI / 2 + gap / 2, 2 * Math.PI - gap), material);
+  const arrow = new Mesh(new CircleGeometry(0.035, 3, Math.PI / 2), material);
+  arrow.position.y = 0.41;
+  const mark = new Group();
+  mark.add(ring, arrow);
+  mark.rotation.x = -Math.PI / 2;
+  mark.position.y = 0.004;
+  return mark;
+}
+
+/** A soft dark disc under the body: the cheap shadow that says the feet are on the ground. */
+function createBlobShadow(strength: number): Mesh {
+  const size = 128;
+  const canvas = document.createElement('canvas');
+  canvas.width = size;
+  canvas.height = size;
+  const context = canvas.getContext('2d');
+  if (!context) throw new Error('scene/arena: this browser offers no 2D canvas');
+  const gradient = context.createRadialGradient(size / 2, size / 2, 0, size / 2, size / 2, size / 2);
+  gradient.addColorStop(0, `rgba(6, 9, 14, ${strength})`);
+  gradient.addColorStop(0.45, `rgba(6, 9, 14, ${strength * 0.5})`);
+  gradient.addColorStop(1, 'rgba(6, 9, 14, 0)');
+  context.fillStyle = gradient;
+  context.fillRect(0, 0, size, size);
+  const blob = new Mesh(
+    new PlaneGeometry(1.1, 1.1).rotateX(-Math.PI / 2),
+    new MeshBasicMaterial({ map: new CanvasTexture(canvas), transparent: true, depthWrite: false, toneMapped: false }),
+  );
+  blob.position.y = 0.006;
+  blob.renderOrder = 1;
+  return blob;
+}
+
+/** The room as the surfaces see it: a bright ceiling panel, a warm side, a cool back. Never shown itself. */
+function createLightRoom(): Scene {
+  const room = new Scene();
+  room.background = new Color('#2a3342');
+  const panel = (color: string, intensity: number, width: number, height: number, at: [number, number, number]) => {
+    const mesh = new Mesh(
+      new PlaneGeometry(width, height),
+      new MeshBasicMaterial({ color: new Color(color).multiplyScalar(intensity), side: 2 }),
+    );
+    mesh.position.set(...at);
+    mesh.lookAt(0, 0, 0);
+    room.add(mesh);
+  };
+  panel('#ffffff', 9, 5, 5, [0, 6, 0]);
+  panel('#ffd9b0', 5, 3, 5, [5, 2.5, 2]);
+  panel('#a9c4ff', 4, 3, 5, [-5, 2, 1]);
+  panel('#c8d6f0', 2.5, 6, 3, [0, 2, -6]);
+  panel('#2b3647', 1, 14, 14, [0, -3, 0]);
+  return room;
+}
+
+/** Builds the studio: floor, sky, light and shadow, all made here, nothing loaded. */
+export function createArena(renderer: WebGLRenderer, quality: Quality): Arena {
+  const scene = new Scene();
+  scene.background = null;
+  scene.fog = new Fog(horizon, 7, floorRadius - 2);
+
+  const key = new DirectionalLight('#fff1e0', quality === 'high' ? 2.1 : 2.4);
+  const keyOffset = { x: 1.6, y: 4.2, z: 1.9 };
+  key.position.set(keyOffset.x, keyOffset.y, keyOffset.z);
+  if (quality === 'high') {
+    key.castShadow = true;
+    key.shadow.mapSize.set(1024, 1024);
+    key.shadow.radius = 5;
+    key.shadow.bias = -0.0006;
+    key.shadow.normalBias = 0.015;
+    const { camera } = key.shadow;
+    camera.left = camera.bottom = -1.7;
+    camera.right = camera.top = 1.7;
+    camera.near = 1;
+    camera.far = 9;
+  }
+  const rim = new DirectionalLight('#9dbbff', 1.3);
+  rim.position.set(-2.4, 2.6, -2.8);
+  const front = new DirectionalLight('#dfe9ff', 0.55);
+  front.position.set(-1.2, 1.8, -2.5);
+  const fill = new HemisphereLight('#cfdcf5', '#3a4354', quality === 'high' ? 0.75 : 1.5);
+
+  const blob = createBlobShadow(quality === 'high' ? 0.45 : 0.7);
+  const mark = createMark();
+  scene.add(createSky(), createFloor(), createGrid(), blob, mark, key, key.target, rim, front, fill);
+
+  const light = () => {
+    if (quality === 'low') return;
+    const generator = new PMREMGenerator(renderer);
+    scene.environment?.dispose();
+    scene.environment = generator.fromScene(createLightRoom(), 0.03).texture;
+    scene.environmentIntensity = 0.55;
+    generator.dispose();
+  };
+  light();
+
+  return {
+    scene,
+    follow(x, z) {
+      blob.position.x = x;
+      blob.position.z = z;
+      key.position.set(x + keyOffset.x, keyOffset.y, z + keyOffset.z);
+      key.target.position.set(x, 0.9, z);
+    },
+    setMarkVisible(visible) {
+      mark.visible = visible;
+    },
+    restore: light,
+  };
+}

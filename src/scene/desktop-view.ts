@@ -1,0 +1,141 @@
+import { PerspectiveCamera, Vector3 } from 'three';
+import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+
+export const viewNames = ['third-person', 'front', 'first-person'] as const;
+/** third-person: orbits the body from behind. front: from where the mirror hangs. first-person: through the eyes. */
+export type ViewName = (typeof viewNames)[number];
+
+interface Point {
+  readonly x: number;
+  readonly y: number;
+  readonly z: number;
+}
+
+/** Where the eyes are and where they look; floor frame. */
+interface Eyes {
+  readonly position: Point;
+  readonly orientation: Point & { readonly w: number };
+}
+
+/** Parts of the window [CSS pixels] that the controls cover, so that the body is centred in what is left. */
+export interface Insets {
+  readonly left: number;
+  readonly right: number;
+  readonly bottom: number;
+}
+
+/** The camera of the desktop; in a session the headset moves the camera and this rests. */
+export interface DesktopView {
+  readonly camera: PerspectiveCamera;
+  readonly view: ViewName;
+  setView(view: ViewName): void;
+  setInsets(insets: Insets): void;
+  /** Back to where the view began. */
+  recentre(): void;
+  /** Where the body is now (its pelvis and eyes, floor frame); elapsed [s] since the last call. */
+  update(pelvis: Point, eyes: Eyes, elapsed: number): void;
+}
+
+/** Seconds in which the camera makes half the way to a body that walks. */
+const followHalfLife = 0.35;
+/** Radians a press of an arrow key turns the camera. */
+const keyStep = Math.PI / 36;
+
+const start: Record<Exclude<ViewName, 'first-person'>, { offset: Vector3; fov: number }> = {
+  'third-person': { offset: new Vector3(1.75, 0.55, 2.15), fov: 42 },
+  front: { offset: new Vector3(-0.45, 0.2, -2.5), fov: 42 },
+};
+const firstPersonFov = 78;
+/** How far above the pelvis the camera aims [m]. */
+const aimAbovePelvis = 0.08;
+
+/** Orbit by mouse, touch and arrow keys around the body, a front view, and the view through the body's own eyes. */
+export function createDesktopView(canvas: HTMLCanvasElement): DesktopView {
+  const camera = new PerspectiveCamera(42, 1, 0.05, 90);
+  const controls = new OrbitControls(camera, canvas);
+  controls.enableDamping = true;
+  controls.dampingFactor = 0.12;
+  controls.enablePan = false;
+  controls.minDistance = 0.9;
+  controls.maxDistance = 7;
+  controls.minPolarAngle = 0.15;
+  controls.maxPolarAngle = Math.PI / 2 + 0.12;
+  const target = new Vector3(0, 1, 0);
+  let view: ViewName = 'third-person';
+  let insets: Insets = { left: 0, right: 0, bottom: 0 };
+
+  function place(): void {
+    if (view === 'first-person') return;
+    const { offset, fov } = start[view];
+    const free = Math.max(1, window.innerWidth - insets.left - insets.right) / window.innerHeight;
+    // A narrow window sees less to the sides: step back until the body and the mirror fit.
+    const distance = Math.max(1, Math.min(1.35, 1 / Math.max(free, 0.1)));
+    camera.fov = fov;
+    camera.up.set(0, 1, 0);
+    controls.target.copy(target);
+    camera.position.copy(target).addScaledVector(offset, distance);
+    controls.update();
+  }
+
+  function project(): void {
+    const width = window.innerWidth;
+    const height = window.innerHeight;
+    camera.aspect = width / height;
+    const shiftX = view === 'first-person' ? 0 : (insets.right - insets.left) / 2;
+    const shiftY = view === 'first-person' ? 0 : insets.bottom / 2;
+    camera.setViewOffset(width, height, shiftX, shiftY, width, height);
+    camera.updateProjectionMatrix();
+  }
+
+  canvas.addEventListener('keydown', (event) => {
+    if (view === 'first-person' || event.ctrlKey || event.metaKey || event.altKey) return;
+    const arm = camera.position.clone().sub(controls.target);
+    const right = new Vector3(0, 1, 0).cross(arm).normalize();
+    const elevation = Math.asin(arm.y / arm.length());
+    if (event.key === 'ArrowLeft') arm.applyAxisAngle(camera.up, -keyStep);
+    else if (event.key === 'ArrowRight') arm.applyAxisAngle(camera.up, keyStep);
+    else if (event.key === 'ArrowUp' && elevation < 1.3) arm.applyAxisAngle(right, -keyStep);
+    else if (event.key === 'ArrowDown' && elevation > -0.1) arm.applyAxisAngle(right, keyStep);
+    else if (event.key === '+' || event.key === '=') arm.multiplyScalar(0.92);
+    else if (event.key === '-') arm.multiplyScalar(1.08);
+    else return;
+    event.preventDefault();
+    camera.position.copy(controls.target).add(arm);
+  });
+
+  place();
+  project();
+  return {
+    camera,
+    get view() {
+      return view;
+    },
+    setView(next) {
+      view = next;
+      controls.enabled = view !== 'first-person';
+      if (view === 'first-person') camera.fov = firstPersonFov;
+      place();
+      project();
+    },
+    setInsets(next) {
+      insets = next;
+      project();
+    },
+    recentre: place,
+    update(pelvis, eyes, elapsed) {
+      if (view === 'first-person') {
+        camera.position.set(eyes.position.x, eyes.position.y, eyes.position.z);
+        camera.quaternion.set(eyes.orientation.x, eyes.orientation.y, eyes.orientation.z, eyes.orientation.w);
+        return;
+      }
+      const part = 1 - 0.5 ** (elapsed / followHalfLife);
+      const before = target.clone();
+      target.x += (pelvis.x - target.x) * part;
+      target.y += (pelvis.y + aimAbovePelvis - target.y) * part;
+      target.z += (pelvis.z - target.z) * part;
+      camera.position.add(target).sub(before);
+      controls.target.copy(target);
+      controls.update();
+    },
+  };
+}

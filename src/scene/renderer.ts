@@ -1,0 +1,41 @@
+import { AgXToneMapping, PCFShadowMap, SRGBColorSpace, WebGLRenderer } from 'three';
+
+/** high: antialiasing, shadow map, device pixels. low: for software rendering; blob shadows, fewer pixels. */
+export type Quality = 'high' | 'low';
+
+/** Whether this browser draws in software, where a headset's picture quality costs a second per frame. */
+function drawsInSoftware(context: WebGLRenderingContext | WebGL2RenderingContext): boolean {
+  const debug = context.getExtension('WEBGL_debug_renderer_info');
+  const name = debug ? String(context.getParameter(debug.UNMASKED_RENDERER_WEBGL)) : '';
+  return /swiftshader|llvmpipe|software/i.test(name);
+}
+
+/** The quality this machine can afford when nobody asked for one; throws where there is no WebGL 2. */
+export function affordableQuality(): Quality {
+  const context = document.createElement('canvas').getContext('webgl2');
+  if (!context) throw new Error('This browser offers no WebGL 2: switch on hardware acceleration or use another browser.');
+  const software = drawsInSoftware(context);
+  context.getExtension('WEBGL_lose_context')?.loseContext();
+  return software ? 'low' : 'high';
+}
+
+/** The renderer of canvas and headset. Throws where WebGL 2 is not to be had. */
+export function createRenderer(canvas: HTMLCanvasElement, quality: Quality): WebGLRenderer {
+  const renderer = new WebGLRenderer({ canvas, antialias: quality === 'high', powerPreference: 'high-performance' });
+  renderer.outputColorSpace = SRGBColorSpace;
+  renderer.toneMapping = AgXToneMapping;
+  renderer.toneMappingExposure = 1.15;
+  renderer.shadowMap.enabled = quality === 'high';
+  renderer.shadowMap.type = PCFShadowMap;
+  renderer.xr.enabled = true;
+  renderer.xr.setReferenceSpaceType('local-floor');
+  renderer.xr.setFoveation(1);
+  return renderer;
+}
+
+/** Fits the drawing buffer to the window; a headset's own buffer is none of its business. */
+export function fitToWindow(renderer: WebGLRenderer, quality: Quality): void {
+  if (renderer.xr.isPresenting) return;
+  renderer.setPixelRatio(quality === 'high' ? Math.min(window.devicePixelRatio, 2) : 0.66);
+  renderer.setSize(window.innerWidth, window.innerHeight, false);
+}

@@ -1,0 +1,12 @@
+import type { EstimatorName } from '../core/estimation/pose-estimator';
+
+/** How each estimator is called on the page and what it does, in one line. */
+export const estimatorTexts: Readonly<Record<EstimatorName, { readonly label: string; readonly text: string }>> = {
+  learned: { label: 'Learned', text: 'A network trained on motion capture corrects the IK body.' },
+  ik: { label: 'Inverse kinematics', text: 'Spine, shoulder girdle and elbows in closed form.' },
+  paper: { label: 'Paper', text: 'The network of Anvari, Park and Kim (2023), as published.' },
+  'hands-only': { label: 'Hands only', text: 'Head and hands as tracked, no body between them.' },
+};
+
+/** The order in which they are offered: best first. */
+export const estimatorOrder = ['learned', 'ik', 'paper', 'hands-only'] as const satisfies readonly EstimatorName[];

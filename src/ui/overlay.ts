@@ -1,0 +1,107 @@
+import { element } from './element';
+
+/** One stage of the frame and what it costs [ms]. */
+export interface StageCost {
+  readonly name: string;
+  readonly p50Ms: number;
+  readonly p95Ms: number;
+}
+
+/** What the overlay says; all of it measured over the last seconds. */
+export interface FrameReport {
+  readonly p50Ms: number;
+  readonly p95Ms: number;
+  readonly stages: readonly StageCost[];
+  readonly missed: number;
+  readonly frames: number;
+  readonly rateHz: number;
+  readonly estimator: string;
+  readonly provider: string;
+}
+
+export interface Overlay {
+  readonly visible: boolean;
+  setVisible(visible: boolean): void;
+  show(report: FrameReport): void;
+}
+
+/** Milliseconds with as many digits as mean something. */
+export function milliseconds(ms: number): string {
+  if (!Number.isFinite(ms)) return '–';
+  return ms < 0.995 ? ms.toFixed(2) : ms < 9.95 ? ms.toFixed(1) : ms.toFixed(0);
+}
+
+/** How many frames came late, in words: the count says more than a percentage while they are few. */
+export function missedFrames(report: Pick<FrameReport, 'missed' | 'frames' | 'rateHz'>): string {
+  const share = report.frames === 0 ? 0 : (100 * report.missed) / report.frames;
+  return `${share.toFixed(share > 0 && share < 9.95 ? 1 : 0)} % missed at ${Math.round(report.rateHz)} Hz`;
+}
+
+/** Frame time by stage, as a card on the desktop. Call `show` a few times a second, not per frame. */
+export function createOverlay(region: HTMLElement): Overlay {
+  const total = element('strong', {}, '–');
+  const tail = element('span', {}, '');
+  const missed = element('p', { class: 'missed' });
+  const method = element('p', { class: 'method' });
+  const bar = element('div', { class: 'stage-bar', 'aria-hidden': 'true' });
+  const rows = element('tbody');
+  const cells = new Map<string, { row: HTMLElement; part: HTMLElement; p50: HTMLElement; p95: HTMLElement }>();
+  region.append(
+    element('p', { class: 'total' }, total, tail),
+    bar,
+    element(
+      'table',
+      {},
+      element(
+        'thead',
+        {},
+        element(
+          'tr',
+          {},
+          element('th', { scope: 'col' }, 'ms per frame'),
+          element('th', { scope: 'col' }, 'p50'),
+          element('th', { scope: 'col' }, 'p95'),
+        ),
+      ),
+      rows,
+    ),
+    missed,
+    method,
+  );
+
+  function cellsOf(name: string) {
+    const known = cells.get(name);
+    if (known) return known;
+    const p50 = element('td');
+    const p95 = element('td');
+    const row = element('tr', {}, element('th', { scope: 'row', class: `stage ${name}` }, name), p50, p95);
+    const part = element('i', { class: `stage ${name}` });
+    rows.append(row);
+    bar.append(part);
+    const made = { row, part, p50, p95 };
+    cells.set(name, made);
+    return made;
+  }
+
+  return {
+    get visible() {
+      return !region.hidden;
+    },
+    setVisible(visible) {
+      region.hidden = !visible;
+    },
+    show(report) {
+      if (region.hidden) return;
+      total.textContent = `${milliseconds(report.p50Ms)} ms`;
+      tail.textContent = ` a frame, p95 ${milliseconds(report.p95Ms)} ms`;
+      for (const stage of report.stages) {
+        const { part, p50, p95 } = cellsOf(stage.name);
+        part.style.flexGrow = String(Math.max(stage.p50Ms, 0.0001));
+        p50.textContent = milliseconds(stage.p50Ms);
+        p95.textContent = milliseconds(stage.p95Ms);
+      }
+      missed.textContent = missedFrames(report);
+      method.textContent = `${report.estimator} · ${report.provider}`;
+    },
+  };
+}

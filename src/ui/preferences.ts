@@ -1,0 +1,86 @@
+import * as v from 'valibot';
+import { estimatorNames } from '../core/estimation/pose-estimator';
+
+/** Ranges [m] in which a person's measures lie; what is outside is a mistake of the hand. */
+export const eyeHeightRange = { min: 0.85, max: 2.15 } as const;
+export const armSpanRange = { min: 0.6, max: 2.1 } as const;
+
+const metres = ({ min, max }: { readonly min: number; readonly max: number }) =>
+  v.pipe(v.number(), v.finite(), v.minValue(min), v.maxValue(max));
+
+const schema = v.object({
+  calibration: v.optional(v.object({ eyeHeight: metres(eyeHeightRange), armSpan: metres(armSpanRange) })),
+  estimator: v.optional(v.picklist(estimatorNames)),
+  palette: v.optional(v.pipe(v.string(), v.maxLength(32))),
+  upperBodyOnly: v.optional(v.boolean()),
+  mirror: v.optional(v.boolean()),
+  overlay: v.optional(v.boolean()),
+  panel: v.optional(v.boolean()),
+});
+
+/** What the page remembers from one visit to the next, on this device only. */
+export type Preferences = v.InferOutput<typeof schema>;
+
+export interface PreferenceStore {
+  readonly preferences: Preferences;
+  /** Why what was stored could not be used; null: it could. */
+  readonly complaint: string | null;
+  /** Remembers a part; undefined forgets it. Where the browser stores nothing, it lasts as long as the page. */
+  remember(part: { readonly [Key in keyof Preferences]: Preferences[Key] | undefined }): void;
+}
+
+const key = 'threepoint.preferences.1';
+
+/** Reads stored preferences; anything that is not what we wrote is refused as a whole, with a sentence. */
+export function parsePreferences(text: string | null): { preferences: Preferences; complaint: string | null } {
+  if (text === null) return { preferences: {}, complaint: null };
+  try {
+    const result = v.safeParse(schema, JSON.parse(text));
+    if (result.success) return { preferences: result.output, complaint: null };
+    const [issue] = result.issues;
+    const where = v.getDotPath(issue) ?? 'the whole';
+    return {
+      preferences: {},
+      complaint: `What this browser remembered of your calibration and settings was damaged (${where}), so the defaults apply. Calibrate again to be remembered.`,
+    };
+  } catch (error) {
+    if (!(error instanceof SyntaxError)) throw error;
+    return {
+      preferences: {},
+      complaint:
+        'What this browser remembered of your calibration and settings was unreadable, so the defaults apply. Calibrate again to be remembered.',
+    };
+  }
+}
+
+/** Preferences in the storage given (localStorage); null where the browser grants none. */
+export function createPreferenceStore(storage: Pick<Storage, 'getItem' | 'setItem'> | null): PreferenceStore {
+  const read = parsePreferences(storage?.getItem(key) ?? null);
+  let preferences = read.preferences;
+  return {
+    get preferences() {
+      return preferences;
+    },
+    complaint: read.complaint,
+    remember(part) {
+      const next = Object.fromEntries(Object.entries({ ...preferences, ...part }).filter(([, value]) => value !== undefined));
+      preferences = next as Preferences;
+      try {
+        storage?.setItem(key, JSON.stringify(preferences));
+      } catch (error) {
+        // A full or forbidden storage costs the memory of the next visit, nothing of this one.
+        if (!(error instanceof DOMException)) throw error;
+      }
+    },
+  };
+}
+
+/** The browser's storage, or null where a policy or a private window forbids it. */
+export function browserStorage(): Storage | null {
+  try {
+    return window.localStorage;
+  } catch (error) {
+    if (error instanceof DOMException) return null;
+    throw error;
+  }
+}

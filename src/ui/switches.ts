@@ -1,0 +1,60 @@
+import * as v from 'valibot';
+import { type EstimatorName, estimatorNames } from '../core/estimation/pose-estimator';
+import { type ViewName, viewNames } from '../scene/desktop-view';
+import type { Quality } from '../scene/renderer';
+
+/** What the address asks for; null: nothing asked, the page decides. Listed in docs/page.md. */
+export interface Switches {
+  readonly emulate: boolean;
+  readonly actor: boolean;
+  readonly estimator: EstimatorName | null;
+  readonly executionProvider: 'wasm' | 'webgpu';
+  readonly avatar: string | null;
+  readonly quality: Quality | null;
+  readonly replay: string | null;
+  readonly view: ViewName | null;
+  readonly panel: boolean;
+}
+
+const onOff = v.optional(v.picklist(['on', 'off']), 'on');
+const schema = v.object({
+  actor: onOff,
+  panel: onOff,
+  estimator: v.optional(v.picklist(estimatorNames)),
+  ep: v.optional(v.picklist(['wasm', 'webgpu']), 'wasm'),
+  avatar: v.optional(v.pipe(v.string(), v.minLength(1))),
+  quality: v.optional(v.picklist(['high', 'low'])),
+  replay: v.optional(v.pipe(v.string(), v.minLength(1))),
+  view: v.optional(v.picklist(viewNames)),
+});
+
+/** Reads the query of the address. A value nobody knows counts as not given and yields a sentence. */
+export function readSwitches(query: string): { readonly switches: Switches; readonly complaints: readonly string[] } {
+  const given = Object.fromEntries(new URLSearchParams(query));
+  const complaints: string[] = [];
+  let result = v.safeParse(schema, given);
+  while (!result.success) {
+    for (const issue of result.issues) {
+      const key = String(issue.path?.[0]?.key ?? '');
+      const expected = issue.expected ? `; it takes ${issue.expected}` : '';
+      complaints.push(`The address says ${key}=${given[key]}, which this page does not know${expected}.`);
+      delete given[key];
+    }
+    result = v.safeParse(schema, given);
+  }
+  const { output } = result;
+  return {
+    complaints,
+    switches: {
+      emulate: 'emulate' in given && given.emulate !== 'off',
+      actor: output.actor === 'on',
+      panel: output.panel === 'on',
+      estimator: output.estimator ?? null,
+      executionProvider: output.ep,
+      avatar: output.avatar ?? null,
+      quality: output.quality ?? null,
+      replay: output.replay ?? null,
+      view: output.view ?? null,
+    },
+  };
+}
