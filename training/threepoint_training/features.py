@@ -1,0 +1,71 @@
+"""The learned network's features (docs/estimation.md), the one function for training and for the golden vectors."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import ik, quaternion
+from .skeleton import Body
+
+Array = NDArray[np.float64]
+
+FEATURES = 46
+OUTPUTS = 18
+IK_JOINTS = slice(27, 45)
+
+
+def frame_features(positions: Array, rotations: Array, body: Body, seen: Array | None = None) -> tuple[Array, Array]:
+    """Features [F, 46] of tracked points in the floor frame ([F, 3, 3], [F, 3, 4]) and the IK joints [F, 6, 3], heading frame [m].
+
+    seen [F, 2]: whether each hand is seen in this frame; all, when None.
+    """
+    local, turns, _, _ = ik.to_heading(positions, rotations)
+    joints = ik.solve(local, turns, body)
+    matrices = quaternion.to_matrix(turns)
+    headset = local[:, 0]
+    e, a = body.eye_height, body.arm
+    columns = [headset[:, 1:2] / e, *_two_columns(matrices[:, 0])]
+    for hand in (1, 2):
+        columns += [(local[:, hand] - headset) / a, *_two_columns(matrices[:, hand])]
+    columns.append(np.ones((len(local), 2)) if seen is None else np.asarray(seen, np.float64))
+    columns.append(((joints - headset[:, None]) / e[..., None]).reshape(len(local), -1))
+    columns.append(np.broadcast_to(a / e, (len(local), 1)))
+    return np.concatenate(columns, axis=-1), joints
+
+
+def _two_columns(matrix: Array) -> tuple[Array, Array]:
+    return matrix[..., :, 0], matrix[..., :, 1]
+
+
+def windowed(features: Array, times: Array, window: tuple[float, ...]) -> Array:
+    """The input [F, T·46]: the features at each frame's time minus each age [s]; the oldest frame stands in before the start."""
+    parts = []
+    for age in window:
+        wanted = np.maximum(times - age, times[0])
+        after = np.clip(np.searchsorted(times, wanted, side="right"), 1, max(len(times) - 1, 1))
+        before = after - 1
+        if len(times) == 1:
+            parts.append(features)
+            continue
+        share = np.clip((wanted - times[before]) / (times[after] - times[before]), 0.0, 1.0)[:, None]
+        parts.append(features[before] * (1 - share) + features[after] * share)
+    return np.concatenate(parts, axis=-1)
+
+
+def target(truth: Array, positions: Array, rotations: Array, body: Body) -> Array:
+    """The output [F, 18] that would be right: the six joints − headset in the heading frame, divided by the eye height."""
+    yaw = quaternion.heading(rotations[:, 0])
+    inverse = np.broadcast_to(quaternion.conjugate(yaw)[:, None], (*truth.shape[:-1], 4))
+    local = quaternion.rotate(inverse, truth - positions[:, :1])
+    return (local / body.eye_height[..., None]).reshape(len(truth), -1)
+
+
+def euler_yxz(q: Array) -> Array:
+    """Angles [rad] about x, y, z of R = Ry·Rx·Rz."""
+    m = quaternion.to_matrix(q)
+    x = np.arcsin(np.clip(-m[..., 1, 2], -1, 1))
+    return np.stack([x, np.arctan2(m[..., 0, 2], m[..., 2, 2]), np.arctan2(m[..., 1, 0], m[..., 1, 1])], -1)
+
+
+def paper_input(positions: Array, rotations: Array) -> Array:
+    """The paper's input [F, 2, 3, 3]: depth (position [m], Euler angles [rad]), row (x, y, z), column (head, left, right)."""
+    return np.stack([np.swapaxes(positions, 1, 2), np.swapaxes(euler_yxz(rotations), 1, 2)], axis=1)

@@ -1,0 +1,62 @@
+"""Body proportions: means over people of segment lengths as ratios of eye height (body-proportions.json)."""
+
+from typing import Any
+
+import numpy as np
+
+from .prepare import EYES_FROM_HEAD_JOINT
+from .prepared_corpus import JOINTS, PreparedCorpus
+
+
+def fit(corpus: PreparedCorpus, people: tuple[str, ...]) -> dict[str, Any]:
+    """The proportions of the average of these people; left and right averaged."""
+    rows = []
+    for name in people:
+        person = corpus.people[name]
+        clips = [np.asarray(corpus.positions[corpus.clip_slice(clip)], np.float64) for clip in corpus.clips_of({name})]
+        frames = np.concatenate(clips)
+        joint = {joint: frames[:, index] for index, joint in enumerate(JOINTS)}
+        x = joint["rightUpperArm"] - joint["leftUpperArm"]
+        x = x / np.linalg.norm(x, axis=-1, keepdims=True)
+        up = joint["neck"] - joint["chest"]
+        up = up - np.sum(up * x, axis=-1, keepdims=True) * x
+        up = up / np.linalg.norm(up, axis=-1, keepdims=True)
+        chest = np.stack([x, up, np.cross(x, up)], axis=1)  # rows are the axes: chest @ v is v in the chest frame
+
+        def mean_in_chest(v: np.ndarray, chest: np.ndarray = chest) -> np.ndarray:
+            return np.einsum("fij,fj->fi", chest, v).mean(axis=0)
+
+        def length(a: str, b: str, joint: dict[str, np.ndarray] = joint) -> float:
+            return float(np.linalg.norm(joint[a] - joint[b], axis=-1).mean())
+
+        left = mean_in_chest(joint["leftUpperArm"] - joint["neck"]) * np.array([-1.0, 1.0, 1.0])
+        right = mean_in_chest(joint["rightUpperArm"] - joint["neck"])
+        shoulder = (left + right) / 2
+        shoulder *= (length("neck", "leftUpperArm") + length("neck", "rightUpperArm")) / 2 / np.linalg.norm(shoulder)
+        neck_to_head = mean_in_chest(joint["head"] - joint["neck"])
+        neck_to_head[0] = 0.0
+        neck_to_head *= length("neck", "head") / np.linalg.norm(neck_to_head)
+        upper = length("leftUpperArm", "leftLowerArm") + length("rightUpperArm", "rightLowerArm")
+        fore = length("leftLowerArm", "leftHand") + length("rightLowerArm", "rightHand")
+        trunk = length("hips", "spine") + length("spine", "chest") + length("chest", "neck")
+        eyes = person.eye_height - (trunk + neck_to_head[1] + EYES_FROM_HEAD_JOINT[1])
+        rows.append(
+            np.array(
+                [eyes, length("hips", "spine"), length("spine", "chest"), length("chest", "neck"),
+                 neck_to_head[1], -neck_to_head[2], shoulder[0], shoulder[1], -shoulder[2]]
+            ) / person.eye_height
+        )  # fmt: skip
+        rows[-1] = np.concatenate([rows[-1], [upper / (upper + fore), EYES_FROM_HEAD_JOINT[1] / person.eye_height, -EYES_FROM_HEAD_JOINT[2] / person.eye_height]])
+    mean = [round(float(value), 5) for value in np.mean(rows, axis=0)]
+    root = 0.012  # The collarbone starts two centimetres beside the breastbone's middle.
+    return {
+        "hipsHeight": mean[0],
+        "hipsToSpine": mean[1],
+        "spineToChest": mean[2],
+        "chestToNeck": mean[3],
+        "neckToHead": [mean[4], mean[5]],
+        "clavicleRoot": root,
+        "clavicle": [round(mean[6] - root, 5), mean[7], mean[8]],
+        "upperArmShare": mean[9],
+        "eyesInHead": [mean[10], mean[11]],
+    }

@@ -1,0 +1,83 @@
+"""The calibrated skeleton of docs/estimation.md, for many bodies at once."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+PROPORTIONS_FILE = Path(__file__).parents[2] / "src/core/body/body-proportions.json"
+SHORTEST_ARM = 0.15  # of the eye height
+
+
+def load_proportions() -> dict[str, Any]:
+    """The ratios the page uses."""
+    return json.loads(PROPORTIONS_FILE.read_text())
+
+
+@dataclass(frozen=True)
+class Body:
+    """What kinematics needs of the skeleton, each [..., 1] or [..., 3] over bodies [m]; arms and shoulders for the right side."""
+
+    eye_height: Array
+    arm: Array
+    upper_arm: Array
+    forearm: Array
+    eyes_in_head: Array
+    neck_to_head: Array
+    thorax: Array  # chest to neck
+    lower_back: Array  # hips to chest
+    clavicle_root: Array  # from the neck's base
+    shoulder: Array  # from the neck's base
+
+
+def body_from_calibration(eye_height: Array, arm_span: Array, proportions: dict[str, Any] | None = None) -> Body:
+    """Bodies of eye heights and spans [m], arrays of one shape."""
+    p = proportions or load_proportions()
+    e = np.asarray(eye_height, np.float64)[..., None]
+    span = np.asarray(arm_span, np.float64)[..., None]
+    zero = np.zeros_like(e)
+    arm = np.maximum((span - 2 * (p["clavicleRoot"] + p["clavicle"][0]) * e) / 2, SHORTEST_ARM * e)
+    root = np.concatenate([p["clavicleRoot"] * e, zero, zero], -1)
+    clavicle = np.concatenate([p["clavicle"][0] * e, p["clavicle"][1] * e, -p["clavicle"][2] * e], -1)
+    return Body(
+        eye_height=e,
+        arm=arm,
+        upper_arm=p["upperArmShare"] * arm,
+        forearm=(1 - p["upperArmShare"]) * arm,
+        eyes_in_head=np.concatenate([zero, p["eyesInHead"][0] * e, -p["eyesInHead"][1] * e], -1),
+        neck_to_head=np.concatenate([zero, p["neckToHead"][0] * e, -p["neckToHead"][1] * e], -1),
+        thorax=p["chestToNeck"] * e,
+        lower_back=(p["hipsToSpine"] + p["spineToChest"]) * e,
+        clavicle_root=root,
+        shoulder=root + clavicle,
+    )
+
+
+def rest_offsets(eye_height: float, arm_span: float) -> dict[str, list[float]]:
+    """Every joint's offset from its parent and `eyesInHead`, as `skeletonFromCalibration` must give them."""
+    p = load_proportions()
+    body = body_from_calibration(np.array(eye_height), np.array(arm_span), p)
+    e = eye_height
+    offsets = {
+        "hips": [0.0, p["hipsHeight"] * e, 0.0],
+        "spine": [0.0, p["hipsToSpine"] * e, 0.0],
+        "chest": [0.0, p["spineToChest"] * e, 0.0],
+        "upperChest": [0.0, p["chestToNeck"] * e / 2, 0.0],
+        "neck": [0.0, p["chestToNeck"] * e / 2, 0.0],
+        "head": body.neck_to_head.tolist(),
+        "eyesInHead": body.eyes_in_head.tolist(),
+    }
+    for side, sign in (("left", -1.0), ("right", 1.0)):
+        clavicle = body.shoulder - body.clavicle_root
+        offsets |= {
+            f"{side}Shoulder": [sign * p["clavicleRoot"] * e, p["chestToNeck"] * e / 2, 0.0],
+            f"{side}UpperArm": [sign * clavicle[0], clavicle[1], clavicle[2]],
+            f"{side}LowerArm": [sign * body.upper_arm[0], 0.0, 0.0],
+            f"{side}Hand": [sign * body.forearm[0], 0.0, 0.0],
+        }
+    return {joint: [float(value) for value in offset] for joint, offset in offsets.items()}

@@ -1,0 +1,103 @@
+"""Trains the paper's network as its section 3.3 says: MSE, Adam 1e-3, five epochs, in-between poses as augmentation."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from .features import paper_input
+from .model import PaperNetwork
+from .prepared_corpus import PreparedCorpus
+from .simulate_trackers import TrackerConfig, draw_wearer, simulate
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class TrainPaperConfig:
+    """The paper's settings; the batch size is ours, the paper states none."""
+
+    epochs: int = 5
+    learning_rate: float = 1e-3
+    batch: int = 256
+    seed: int = 2023
+
+
+@dataclass(frozen=True)
+class PaperFrames:
+    """Inputs [F, 2, 3, 3], targets [F, 18] in the floor frame, the clip of each frame."""
+
+    inputs: NDArray[np.float32]
+    targets: NDArray[np.float32]
+    clips: NDArray[np.int64]
+
+
+def frames_of(corpus: PreparedCorpus, people: tuple[str, ...], seed: int) -> PaperFrames:
+    """All frames of these people as trackers would see them."""
+    trackers = TrackerConfig()
+    inputs, targets, clips = [], [], []
+    for number, name in enumerate(people):
+        wearer = draw_wearer(trackers, np.random.default_rng([seed, number]))
+        for clip in corpus.clips_of({name}):
+            frames = corpus.clip_slice(clip)
+            random = np.random.default_rng([seed, 1, clip])
+            positions, rotations = simulate(corpus.positions[frames], corpus.rotations[frames], wearer, trackers, random)
+            inputs.append(paper_input(positions, rotations).astype(np.float32))
+            targets.append(corpus.truth(frames).reshape(len(positions), -1).astype(np.float32))
+            clips.append(np.full(len(positions), clip))
+    return PaperFrames(np.concatenate(inputs), np.concatenate(targets), np.concatenate(clips))
+
+
+def train(
+    frames: PaperFrames,
+    chosen: NDArray[np.int64],
+    config: TrainPaperConfig,
+    report: Callable[[int, int, float], None] = lambda *_: None,
+) -> PaperNetwork:
+    """Trains on the chosen frames and the poses half-way to each one's successor; report(epoch, iteration, MSE)."""
+    torch.manual_seed(config.seed)
+    random = np.random.default_rng(config.seed)
+    network = PaperNetwork()
+    # In-between poses only between neighbours that both train: none may come from a test frame.
+    following = chosen[:-1][(np.diff(chosen) == 1) & (frames.clips[chosen[:-1]] == frames.clips[chosen[1:]])]
+    inputs = np.concatenate([frames.inputs[chosen], _between(frames.inputs, following)])
+    targets = np.concatenate([frames.targets[chosen], (frames.targets[following] + frames.targets[following + 1]) / 2])
+    x, y = torch.from_numpy(inputs), torch.from_numpy(targets)
+    network.normalise(x, y)
+    standardised = (y - network.output_mean) / network.output_scale
+    optimiser = torch.optim.Adam(network.parameters(), lr=config.learning_rate)
+    batches = max(1, len(x) // config.batch)
+    network.train()
+    for epoch in range(config.epochs):
+        order = torch.from_numpy(random.permutation(len(x)))
+        for iteration in range(batches):
+            batch = order[iteration * config.batch : (iteration + 1) * config.batch]
+            loss = torch.nn.functional.mse_loss(network.standardised(x[batch]), standardised[batch])
+            optimiser.zero_grad()
+            loss.backward()
+            optimiser.step()
+            if iteration % 50 == 0 or iteration == batches - 1:
+                report(epoch, iteration, float(loss.detach()))
+    return network.eval()
+
+
+def _between(inputs: NDArray[np.float32], following: NDArray[np.int64]) -> NDArray[np.float32]:
+    """Linear interpolation of positions and of angles, each angle along its shorter way."""
+    first, second = inputs[following], inputs[following + 1]
+    middle = (first + second) / 2
+    turn = np.mod(second[:, 1] - first[:, 1] + np.pi, 2 * np.pi) - np.pi
+    middle[:, 1] = np.mod(first[:, 1] + turn / 2 + np.pi, 2 * np.pi) - np.pi
+    return middle
+
+
+def predict(network: torch.nn.Module, inputs: NDArray[np.float32], batch: int = 8192) -> NDArray[np.float32]:
+    """The network's output, no gradients."""
+    with torch.no_grad():
+        return np.concatenate([network(torch.from_numpy(inputs[i : i + batch])).numpy() for i in range(0, len(inputs), batch)])
+
+
+def joint_errors_cm(output: NDArray[np.float32], target: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Distances [F, 6] in centimetres of outputs in metres."""
+    return np.linalg.norm((output - target).reshape(len(output), 6, 3), axis=-1) * 100
