@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from . import quaternion
 from .prepare import EYES_FROM_HEAD_JOINT
 from .prepared_corpus import JOINTS, PreparedCorpus
 
@@ -39,6 +40,7 @@ def fit(corpus: PreparedCorpus, people: tuple[str, ...]) -> dict[str, Any]:
         upper = length("leftUpperArm", "leftLowerArm") + length("rightUpperArm", "rightLowerArm")
         fore = length("leftLowerArm", "leftHand") + length("rightLowerArm", "rightHand")
         trunk = length("hips", "spine") + length("spine", "chest") + length("chest", "neck")
+        tilts = _standing_tilts(corpus, name)
         eyes = person.eye_height - (trunk + neck_to_head[1] + EYES_FROM_HEAD_JOINT[1])
         rows.append(
             np.array(
@@ -46,7 +48,7 @@ def fit(corpus: PreparedCorpus, people: tuple[str, ...]) -> dict[str, Any]:
                  neck_to_head[1], -neck_to_head[2], shoulder[0], shoulder[1], -shoulder[2]]
             ) / person.eye_height
         )  # fmt: skip
-        rows[-1] = np.concatenate([rows[-1], [upper / (upper + fore), EYES_FROM_HEAD_JOINT[1] / person.eye_height, -EYES_FROM_HEAD_JOINT[2] / person.eye_height]])
+        rows[-1] = np.concatenate([rows[-1], [upper / (upper + fore), EYES_FROM_HEAD_JOINT[1] / person.eye_height, -EYES_FROM_HEAD_JOINT[2] / person.eye_height, *tilts]])
     mean = [round(float(value), 5) for value in np.mean(rows, axis=0)]
     root = 0.012  # The collarbone starts two centimetres beside the breastbone's middle.
     return {
@@ -59,4 +61,23 @@ def fit(corpus: PreparedCorpus, people: tuple[str, ...]) -> dict[str, Any]:
         "clavicle": [round(mean[6] - root, 5), mean[7], mean[8]],
         "upperArmShare": mean[9],
         "eyesInHead": [mean[10], mean[11]],
+        "thoraxTilt": mean[12],
+        "lowerBackTilt": mean[13],
     }
+
+
+def _standing_tilts(corpus: PreparedCorpus, name: str) -> tuple[float, float]:
+    """How far [rad] thorax and lower back lean forward when this person stands upright: the shape of the spine, not a posture."""
+    frames = np.concatenate([np.arange(s.start, s.stop) for s in map(corpus.clip_slice, corpus.clips_of({name}))])
+    positions = corpus.positions[frames].astype(np.float64)
+    head_height = positions[:, JOINTS.index("head"), 1] + EYES_FROM_HEAD_JOINT[1]
+    standing = np.abs(head_height / corpus.people[name].eye_height - 1) < 0.04
+    if not standing.any():
+        standing[:] = True
+    yaw = quaternion.conjugate(quaternion.heading(corpus.rotations[frames][standing, 0].astype(np.float64)))
+
+    def tilt(lower: str, upper: str) -> float:
+        segment = quaternion.rotate(yaw, positions[standing][:, JOINTS.index(upper)] - positions[standing][:, JOINTS.index(lower)])
+        return float(np.median(np.arctan2(-segment[:, 2], segment[:, 1])))
+
+    return tilt("chest", "neck"), tilt("hips", "chest")

@@ -63,19 +63,26 @@ def rest_offsets(eye_height: float, arm_span: float) -> dict[str, list[float]]:
     p = load_proportions()
     body = body_from_calibration(np.array(eye_height), np.array(arm_span), p)
     e = eye_height
+
+    def lean(v: Array, angle: float) -> list[float]:
+        c, s = np.cos(angle), np.sin(angle)
+        return [v[0], c * v[1] + s * v[2], c * v[2] - s * v[1]]
+
+    lower, thorax = p["lowerBackTilt"], p["thoraxTilt"]
+    half = lean(np.array([0.0, p["chestToNeck"] * e / 2, 0.0]), thorax)
     offsets = {
         "hips": [0.0, p["hipsHeight"] * e, 0.0],
-        "spine": [0.0, p["hipsToSpine"] * e, 0.0],
-        "chest": [0.0, p["spineToChest"] * e, 0.0],
-        "upperChest": [0.0, p["chestToNeck"] * e / 2, 0.0],
-        "neck": [0.0, p["chestToNeck"] * e / 2, 0.0],
-        "head": body.neck_to_head.tolist(),
+        "spine": lean(np.array([0.0, p["hipsToSpine"] * e, 0.0]), lower),
+        "chest": lean(np.array([0.0, p["spineToChest"] * e, 0.0]), lower),
+        "upperChest": half,
+        "neck": half,
+        "head": lean(body.neck_to_head, thorax),
         "eyesInHead": body.eyes_in_head.tolist(),
     }
     for side, sign in (("left", -1.0), ("right", 1.0)):
-        clavicle = body.shoulder - body.clavicle_root
+        clavicle = lean(body.shoulder - body.clavicle_root, thorax)
         offsets |= {
-            f"{side}Shoulder": [sign * p["clavicleRoot"] * e, p["chestToNeck"] * e / 2, 0.0],
+            f"{side}Shoulder": [sign * p["clavicleRoot"] * e, half[1], half[2]],
             f"{side}UpperArm": [sign * clavicle[0], clavicle[1], clavicle[2]],
             f"{side}LowerArm": [sign * body.upper_arm[0], 0.0, 0.0],
             f"{side}Hand": [sign * body.forearm[0], 0.0, 0.0],
