@@ -46,7 +46,7 @@ const stages = {
       node('vitest/vitest.mjs', 'run', '--reporter=default', '--reporter=json', `--outputFile.json=${report}`),
     ],
   },
-  python: { runner: 'pytest', commands: (report) => pytest({ extras: ['test'], marker: 'not training', report }) },
+  python: { runner: 'pytest', commands: (report) => pytest({ extras: [], marker: 'not training', report }) },
   e2e: {
     runner: 'playwright',
     limitSeconds: 900,
@@ -61,7 +61,7 @@ const stages = {
     runner: 'pytest',
     limitSeconds: 1200,
     byName: true,
-    commands: (report) => pytest({ extras: ['test', 'train'], marker: 'training', report }),
+    commands: (report) => pytest({ extras: ['train'], marker: 'training', report }),
   },
   nightly: {
     runner: 'vitest',

@@ -1,0 +1,174 @@
+import type { Page } from '@playwright/test';
+
+export type Point = readonly [x: number, y: number, z: number];
+export type Rotation = readonly [x: number, y: number, z: number, w: number];
+export type Side = 'left' | 'right';
+
+/** Position [m] and orientation in the floor frame, as plain numbers that cross into the page. */
+export interface PlacedPose {
+  readonly position: Point;
+  readonly orientation: Rotation;
+}
+
+/** Where to put what the emulator tracks; a hand is placed by its target ray, as iwer does it. What is absent stays. */
+export interface Placement {
+  readonly head?: Partial<PlacedPose>;
+  readonly left?: Partial<PlacedPose>;
+  readonly right?: Partial<PlacedPose>;
+}
+
+/** What iwer keeps behind its symbols, as far as a test steers it. */
+interface Device {
+  position: { set(...xyz: Point): void };
+  quaternion: { set(...xyzw: Rotation): void };
+  primaryInputMode: 'controller' | 'hand';
+  readonly controllers: Record<Side, TrackedInput>;
+  readonly hands: Record<Side, TrackedInput>;
+  recenter(): void;
+  updateVisibilityState(state: 'visible' | 'visible-blurred' | 'hidden'): void;
+  readonly activeSession?: XRSession;
+}
+
+interface TrackedInput {
+  position: { set(...xyz: Point): void };
+  quaternion: { set(...xyzw: Rotation): void };
+  connected: boolean;
+  readonly inputSource: {
+    readonly targetRaySpace: object;
+    readonly gripSpace: object;
+    readonly hand?: Map<string, object>;
+  };
+}
+
+declare global {
+  interface Window {
+    /** Put there by `reachDevice` in this file: the emulator that iwer keeps behind navigator.xr. */
+    emulatedDevice: Device;
+  }
+}
+
+/** Finds the emulator behind navigator.xr, which iwer keeps under a symbol, and keeps it for the other functions here. */
+async function reachDevice(page: Page): Promise<void> {
+  await page.waitForFunction(() => {
+    const system = navigator.xr as unknown as Record<symbol, { device: Window['emulatedDevice'] }> | undefined;
+    const key = Object.getOwnPropertySymbols(system ?? {}).find(({ description }) => description === '@iwer/xr-system');
+    const kept = key && system?.[key];
+    if (kept) window.emulatedDevice = kept.device;
+    return Boolean(kept);
+  });
+}
+
+/** Resolves after as many animation frames of the page. */
+export async function frames(page: Page, count: number): Promise<void> {
+  await page.evaluate(
+    (left) =>
+      new Promise<void>((resolve) => {
+        const next = () => (left-- > 0 ? requestAnimationFrame(next) : resolve());
+        next();
+      }),
+    count,
+  );
+}
+
+/** Steers the emulated headset of a page. */
+export interface EmulatedHeadset {
+  place(placement: Placement): Promise<void>;
+  setConnected(side: Side, connected: boolean): Promise<void>;
+  useInput(mode: 'controller' | 'hand'): Promise<void>;
+  recentre(): Promise<void>;
+  setVisibility(state: 'visible' | 'visible-blurred' | 'hidden'): Promise<void>;
+  endSession(): Promise<void>;
+  /** Pose in the floor frame of the controller's grip as WebXR reports it, from iwer's own matrices. */
+  grip(side: Side): Promise<PlacedPose>;
+  /** Pose in the floor frame of the tracked hand's wrist joint. */
+  wristJoint(side: Side): Promise<PlacedPose>;
+}
+
+/** Takes the emulator of the page in hand; waits until the page has installed it. */
+export async function emulatedHeadset(page: Page): Promise<EmulatedHeadset> {
+  await reachDevice(page);
+
+  const place = (placement: Placement) =>
+    page.evaluate((wanted) => {
+      const device = window.emulatedDevice;
+      const put = (
+        target: { position: { set(...xyz: Point): void }; quaternion: { set(...xyzw: Rotation): void } },
+        pose: Partial<PlacedPose> | undefined,
+      ) => {
+        if (pose?.position) target.position.set(...pose.position);
+        if (pose?.orientation) target.quaternion.set(...pose.orientation);
+      };
+      put(device, wanted.head);
+      for (const side of ['left', 'right'] as const) {
+        put(device.controllers[side], wanted[side]);
+        put(device.hands[side], wanted[side]);
+      }
+    }, placement);
+
+  /** The pose of one of an input's spaces: iwer's 4×4 matrices, column by column, from the space up to the floor. */
+  const spacePose = (side: Side, name: 'gripSpace' | 'wrist'): Promise<PlacedPose> =>
+    page.evaluate(
+      ([side, name]) => {
+        type Space = { offsetMatrix: ArrayLike<number>; parentSpace?: object };
+        const { controllers, hands } = window.emulatedDevice;
+        const source = (name === 'wrist' ? hands : controllers)[side].inputSource;
+        const own = (space: object) => {
+          const key = Object.getOwnPropertySymbols(space).find(({ description }) => description === '@iwer/xr-space');
+          if (!key) throw new Error('this iwer keeps its spaces differently: expected the symbol @iwer/xr-space');
+          return (space as Record<symbol, Space>)[key] as Space;
+        };
+        let matrix = new DOMMatrix();
+        const wrist = source.hand?.get('wrist');
+        for (
+          let space: object | undefined = name === 'wrist' ? wrist : source.gripSpace;
+          space;
+          space = own(space).parentSpace
+        ) {
+          matrix = new DOMMatrix(Array.from(own(space).offsetMatrix)).multiply(matrix);
+        }
+        const m = matrix;
+        // The largest of the four components first: the others follow from it without cancellation.
+        const squares = [
+          1 + m.m11 - m.m22 - m.m33,
+          1 - m.m11 + m.m22 - m.m33,
+          1 - m.m11 - m.m22 + m.m33,
+          1 + m.m11 + m.m22 + m.m33,
+        ];
+        const largest = squares.indexOf(Math.max(...squares));
+        const s = 2 * Math.sqrt(squares[largest] as number);
+        const xy = (m.m12 + m.m21) / s;
+        const xz = (m.m13 + m.m31) / s;
+        const yz = (m.m23 + m.m32) / s;
+        const [wx, wy, wz] = [(m.m23 - m.m32) / s, (m.m31 - m.m13) / s, (m.m12 - m.m21) / s];
+        const orientations = [
+          [s / 4, xy, xz, wx],
+          [xy, s / 4, yz, wy],
+          [xz, yz, s / 4, wz],
+          [wx, wy, wz, s / 4],
+        ] as const;
+        return { position: [m.m41, m.m42, m.m43] as const, orientation: orientations[largest] as Rotation };
+      },
+      [side, name] as const,
+    );
+
+  return {
+    place,
+    setConnected: (side, connected) =>
+      page.evaluate(
+        ([side, connected]) => {
+          window.emulatedDevice.controllers[side].connected = connected;
+          window.emulatedDevice.hands[side].connected = connected;
+        },
+        [side, connected] as const,
+      ),
+    useInput: (mode) =>
+      page.evaluate((mode) => {
+        window.emulatedDevice.primaryInputMode = mode;
+      }, mode),
+    recentre: () => page.evaluate(() => window.emulatedDevice.recenter()),
+    setVisibility: (state) => page.evaluate((state) => window.emulatedDevice.updateVisibilityState(state), state),
+    endSession: () => page.evaluate(() => window.emulatedDevice.activeSession?.end()),
+    grip: (side) => spacePose(side, 'gripSpace'),
+    wristJoint: (side) => spacePose(side, 'wrist'),
+  };
+}
