@@ -1,5 +1,7 @@
-import type { Vec3 } from '../math/vec3';
-import type { JointName } from './joints';
+import { add, length, type Vec3, vec3 } from '../math/vec3';
+import proportions from './body-proportions.json';
+import type { Calibration } from './calibration';
+import type { JointName, Side } from './joints';
 
 /**
  * The calibrated body in T-pose, facing −Z: each joint's offset [m] from its parent (`hips`: from the floor below),
@@ -8,4 +10,88 @@ import type { JointName } from './joints';
 export interface Skeleton {
   readonly restOffsets: Readonly<Record<JointName, Vec3>>;
   readonly eyesInHead: Vec3;
+}
+
+/** σ of docs/estimation.md: −1 left, +1 right. */
+export const sideSign = (side: Side): -1 | 1 => (side === 'left' ? -1 : 1);
+
+/** Shoulder to wrist [m], at least 0.15 eye heights however small the span. */
+export function armLength({ eyeHeight, armSpan }: Calibration): number {
+  const shoulders = 2 * (proportions.clavicleRoot + proportions.clavicle[0]!) * eyeHeight;
+  return Math.max((armSpan - shoulders) / 2, 0.15 * eyeHeight);
+}
+
+const leanForward = (angle: number, v: Vec3): Vec3 => {
+  const c = Math.cos(angle);
+  const s = Math.sin(angle);
+  return vec3(v.x, c * v.y + s * v.z, c * v.z - s * v.y);
+};
+
+/** The average body of this eye height and span (docs/estimation.md); identity rotations are an upright person in T-pose. */
+export function skeletonFromCalibration(calibration: Calibration): Skeleton {
+  const p = proportions;
+  const e = calibration.eyeHeight;
+  const arm = armLength(calibration);
+  const lowerBack = (y: number) => leanForward(p.lowerBackTilt, vec3(0, y * e, 0));
+  const thorax = (v: Vec3) => leanForward(p.thoraxTilt, v);
+  const halfThorax = thorax(vec3(0, (p.chestToNeck * e) / 2, 0));
+  const shoulderOf = (side: Side): Vec3 => add(halfThorax, vec3(sideSign(side) * p.clavicleRoot * e, 0, 0));
+  const upperArmOf = (side: Side): Vec3 =>
+    thorax(vec3(sideSign(side) * p.clavicle[0]! * e, p.clavicle[1]! * e, -p.clavicle[2]! * e));
+  const alongArm = (side: Side, share: number): Vec3 => vec3(sideSign(side) * share * arm, 0, 0);
+  return {
+    restOffsets: {
+      hips: vec3(0, p.hipsHeight * e, 0),
+      spine: lowerBack(p.hipsToSpine),
+      chest: lowerBack(p.spineToChest),
+      upperChest: halfThorax,
+      neck: halfThorax,
+      head: thorax(vec3(0, p.neckToHead[0]! * e, -p.neckToHead[1]! * e)),
+      leftShoulder: shoulderOf('left'),
+      leftUpperArm: upperArmOf('left'),
+      leftLowerArm: alongArm('left', p.upperArmShare),
+      leftHand: alongArm('left', 1 - p.upperArmShare),
+      rightShoulder: shoulderOf('right'),
+      rightUpperArm: upperArmOf('right'),
+      rightLowerArm: alongArm('right', p.upperArmShare),
+      rightHand: alongArm('right', 1 - p.upperArmShare),
+    },
+    eyesInHead: vec3(0, p.eyesInHead[0]! * e, -p.eyesInHead[1]! * e),
+  };
+}
+
+/** What inverse kinematics needs, in chest space: y from the chest joint to the neck, arms and shoulders of the right side [m]. */
+export interface ChestSpaceBody {
+  readonly eyeHeight: number;
+  readonly arm: number;
+  readonly upperArm: number;
+  readonly forearm: number;
+  readonly eyesInHead: Vec3;
+  readonly neckToHead: Vec3;
+  readonly thorax: number;
+  readonly lowerBack: number;
+  readonly clavicleRoot: Vec3;
+  readonly clavicle: Vec3;
+  readonly clavicleLength: number;
+}
+
+/** The same body as `skeletonFromCalibration`, before the standing spine's curve. */
+export function chestSpaceBody(calibration: Calibration): ChestSpaceBody {
+  const p = proportions;
+  const e = calibration.eyeHeight;
+  const arm = armLength(calibration);
+  const clavicle = vec3(p.clavicle[0]! * e, p.clavicle[1]! * e, -p.clavicle[2]! * e);
+  return {
+    eyeHeight: e,
+    arm,
+    upperArm: p.upperArmShare * arm,
+    forearm: (1 - p.upperArmShare) * arm,
+    eyesInHead: vec3(0, p.eyesInHead[0]! * e, -p.eyesInHead[1]! * e),
+    neckToHead: vec3(0, p.neckToHead[0]! * e, -p.neckToHead[1]! * e),
+    thorax: p.chestToNeck * e,
+    lowerBack: (p.hipsToSpine + p.spineToChest) * e,
+    clavicleRoot: vec3(p.clavicleRoot * e, 0, 0),
+    clavicle,
+    clavicleLength: length(clavicle),
+  };
 }
