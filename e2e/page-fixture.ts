@@ -3,32 +3,16 @@ import { fileURLToPath } from 'node:url';
 import { test as base, expect, type Page } from '@playwright/test';
 import { createPageHandler } from '../server/page';
 import { serve } from '../server/web-server';
+import type { Probe } from '../src/probe';
 import { type EmulatedHeadset, emulatedHeadset, frames, type Point } from './emulated-headset';
 
 export { expect };
 
-/** What the page's probe returns, as far as the tests read it. */
-export interface Probe {
-  readonly ready: boolean;
-  readonly activity: string;
-  readonly estimator: string;
-  readonly provider: string;
-  readonly frame: {
-    readonly p50Ms: number;
-    readonly p95Ms: number;
-    readonly stages: Readonly<Record<string, unknown>>;
-  };
-  readonly avatar: { readonly joints: Readonly<Record<string, Point>> };
-}
-
-type ProbedWindow = Window & { readonly threepoint?: { probe(): Probe } };
-
 /** One snapshot of the probe; the page must have made it by now. */
 export function probe(page: Page): Promise<Probe> {
   return page.evaluate(() => {
-    const { threepoint } = window as ProbedWindow;
-    if (!threepoint) throw new Error('the page has no window.threepoint');
-    return threepoint.probe();
+    if (!window.threepoint) throw new Error('the page has no window.threepoint');
+    return window.threepoint.probe();
   });
 }
 
@@ -47,7 +31,7 @@ export function distance(a: Point, b: Point): number {
 /** Opens the page with this query and waits until a body is on the screen. */
 export async function open(page: Page, query: string): Promise<void> {
   await page.goto(`/?${query}`);
-  await page.waitForFunction(() => (window as ProbedWindow).threepoint?.probe().ready === true, undefined, {
+  await page.waitForFunction(() => window.threepoint?.probe().ready === true, undefined, {
     timeout: 60_000,
   });
 }

@@ -1,0 +1,77 @@
+import { frames } from './emulated-headset';
+import { distance, enterVr, expect, joint, openWithHeadset, probe, test } from './page-fixture';
+
+test('the button enters VR, and leaving brings the page back', async ({ page }) => {
+  const headset = await openWithHeadset(page);
+  await enterVr(page);
+  await expect.poll(async () => (await probe(page)).activity).toBe('vr');
+  const { session } = await probe(page);
+  expect(session).toEqual({ state: 'visible', emulated: true });
+  await headset.endSession();
+  await expect.poll(async () => (await probe(page)).activity).toBe('desktop');
+  await expect(page.getByRole('button', { name: 'Enter VR' })).toBeEnabled();
+});
+
+for (const estimator of ['ik', 'learned', 'paper'] as const) {
+  test(`${estimator}: the body goes where the head goes`, async ({ page }) => {
+    const headset = await openWithHeadset(page, `estimator=${estimator}`);
+    await enterVr(page);
+    await headset.place({
+      head: { position: [0, 1.6, 0] },
+      left: { position: [-0.25, 1.1, -0.3] },
+      right: { position: [0.25, 1.1, -0.3] },
+    });
+    await frames(page, 30);
+    const before = await probe(page);
+    expect(before.estimator).toBe(estimator);
+    await headset.place({
+      head: { position: [0.4, 1.6, 0] },
+      left: { position: [0.15, 1.1, -0.3] },
+      right: { position: [0.65, 1.1, -0.3] },
+    });
+    for (const name of ['head', 'neck', 'chest', 'hips', 'leftUpperArm', 'rightLowerArm']) {
+      const [x] = before.avatar.joints[name] ?? [Number.NaN];
+      // The paper's network sees the room, not the body: it follows, but not exactly.
+      await expect
+        .poll(async () => Math.abs((await joint(page, name))[0] - x - 0.4), {
+          message: `${name} moves 40 cm to the right`,
+        })
+        .toBeLessThan(estimator === 'paper' ? 0.15 : 0.02);
+    }
+  });
+}
+
+test('crouching lowers the body and never puts the pelvis below the floor', async ({ page }) => {
+  const headset = await openWithHeadset(page, 'estimator=ik');
+  await enterVr(page);
+  await headset.place({ head: { position: [0, 1.6, 0] } });
+  await frames(page, 30);
+  const standing = await joint(page, 'hips');
+  await headset.place({
+    head: { position: [0, 0.9, 0] },
+    left: { position: [-0.2, 0.6, -0.3] },
+    right: { position: [0.2, 0.6, -0.3] },
+  });
+  await expect.poll(async () => (await joint(page, 'hips'))[1]).toBeLessThan(standing[1] - 0.3);
+  await headset.place({ head: { position: [0, 0.3, 0] } });
+  await frames(page, 30);
+  expect((await joint(page, 'hips'))[1]).toBeGreaterThan(0);
+});
+
+test('a headset that is taken off and put on again leaves the body whole', async ({ page }) => {
+  const headset = await openWithHeadset(page, 'estimator=ik');
+  await enterVr(page);
+  await headset.place({ head: { position: [0, 1.6, 0] } });
+  await frames(page, 10);
+  const before = await joint(page, 'head');
+  for (const state of ['visible-blurred', 'visible', 'hidden', 'visible'] as const) {
+    await headset.setVisibility(state);
+    if (state !== 'hidden') await expect.poll(async () => (await probe(page)).session.state).toBe(state);
+  }
+  await frames(page, 10);
+  const { joints } = (await probe(page)).avatar;
+  for (const [name, position] of Object.entries(joints)) {
+    expect(position.every(Number.isFinite), `${name} is a place`).toBe(true);
+  }
+  expect(distance(await joint(page, 'head'), before)).toBeLessThan(0.01);
+});
