@@ -20,9 +20,9 @@ import {
 } from 'three';
 import type { Quality } from './renderer';
 
-const horizon = new Color('#39465a');
-const zenith = new Color('#141a25');
-const ground = new Color('#2b3647');
+const horizon = new Color('#3a475d');
+const zenith = new Color('#121722');
+const ground = new Color('#1c2431');
 const floorRadius = 24;
 
 /** Everything around the people: a floor, a sky, light. The floor is y = 0 of the floor frame. */
@@ -51,8 +51,8 @@ function createSky(): Mesh {
     fragmentShader: `varying vec3 direction; uniform vec3 horizon; uniform vec3 zenith;
       void main() {
         float height = max(normalize(direction).y, 0.0);
-        gl_FragColor = vec4(mix(horizon, zenith, smoothstep(0.0, 0.55, height)), 1.0);
-        #include <tonemapping_fragment>
+        gl_FragColor = vec4(mix(horizon, zenith, smoothstep(0.0, 0.5, height)), 1.0);
+        // Fog is not tone-mapped; neither is what it fades into.
         #include <colorspace_fragment>
       }`,
   });
@@ -85,7 +85,6 @@ function createGrid(): Mesh {
         float fade = 1.0 - smoothstep(1.5, 9.0, length(onFloor.xz));
         float alpha = (0.10 * lines(onFloor.xz * 2.0) + 0.16 * lines(onFloor.xz)) * fade;
         gl_FragColor = vec4(lineColor, alpha);
-        #include <tonemapping_fragment>
         #include <colorspace_fragment>
       }`,
   });
@@ -165,9 +164,9 @@ function createLightRoom(): Scene {
 export function createArena(renderer: WebGLRenderer, quality: Quality): Arena {
   const scene = new Scene();
   scene.background = null;
-  scene.fog = new Fog(horizon, 7, floorRadius - 2);
+  scene.fog = new Fog(horizon, 3, floorRadius - 6);
 
-  const key = new DirectionalLight('#fff1e0', quality === 'high' ? 2.1 : 2.4);
+  const key = new DirectionalLight('#fff1e0', quality === 'high' ? 2.6 : 2.8);
   const keyOffset = { x: 1.6, y: 4.2, z: 1.9 };
   key.position.set(keyOffset.x, keyOffset.y, keyOffset.z);
   if (quality === 'high') {
@@ -186,7 +185,7 @@ export function createArena(renderer: WebGLRenderer, quality: Quality): Arena {
   rim.position.set(-2.4, 2.6, -2.8);
   const front = new DirectionalLight('#dfe9ff', 0.55);
   front.position.set(-1.2, 1.8, -2.5);
-  const fill = new HemisphereLight('#cfdcf5', '#3a4354', quality === 'high' ? 0.75 : 1.5);
+  const fill = new HemisphereLight('#cfdcf5', '#3a4354', quality === 'high' ? 0.35 : 1.1);
 
   const blob = createBlobShadow(quality === 'high' ? 0.45 : 0.7);
   const mark = createMark();
@@ -197,7 +196,7 @@ export function createArena(renderer: WebGLRenderer, quality: Quality): Arena {
     const generator = new PMREMGenerator(renderer);
     scene.environment?.dispose();
     scene.environment = generator.fromScene(createLightRoom(), 0.03).texture;
-    scene.environmentIntensity = 0.55;
+    scene.environmentIntensity = 0.38;
     generator.dispose();
   };
   light();

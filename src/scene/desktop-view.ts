@@ -30,6 +30,8 @@ export interface DesktopView {
   readonly view: ViewName;
   setView(view: ViewName): void;
   setInsets(insets: Insets): void;
+  /** The window changed its size. */
+  resize(): void;
   /** Back to where the view began. */
   recentre(): void;
   /** Where the body is now (its pelvis and eyes, floor frame); elapsed [s] since the last call. */
@@ -42,12 +44,12 @@ const followHalfLife = 0.35;
 const keyStep = Math.PI / 36;
 
 const start: Record<Exclude<ViewName, 'first-person'>, { offset: Vector3; fov: number }> = {
-  'third-person': { offset: new Vector3(1.75, 0.55, 2.15), fov: 42 },
+  'third-person': { offset: new Vector3(1.9, 0.5, 2.75), fov: 42 },
   front: { offset: new Vector3(-0.45, 0.2, -2.5), fov: 42 },
 };
 const firstPersonFov = 78;
 /** How far above the pelvis the camera aims [m]. */
-const aimAbovePelvis = 0.08;
+const aimAbovePelvis = 0;
 
 /** Orbit by mouse, touch and arrow keys around the body, a front view, and the view through the body's own eyes. */
 export function createDesktopView(canvas: HTMLCanvasElement): DesktopView {
@@ -121,6 +123,7 @@ export function createDesktopView(canvas: HTMLCanvasElement): DesktopView {
       insets = next;
       project();
     },
+    resize: project,
     recentre: place,
     update(pelvis, eyes, elapsed) {
       if (view === 'first-person') {

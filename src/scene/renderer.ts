@@ -13,7 +13,8 @@ function drawsInSoftware(context: WebGLRenderingContext | WebGL2RenderingContext
 /** The quality this machine can afford when nobody asked for one; throws where there is no WebGL 2. */
 export function affordableQuality(): Quality {
   const context = document.createElement('canvas').getContext('webgl2');
-  if (!context) throw new Error('This browser offers no WebGL 2: switch on hardware acceleration or use another browser.');
+  if (!context)
+    throw new Error('This browser offers no WebGL 2: switch on hardware acceleration or use another browser.');
   const software = drawsInSoftware(context);
   context.getExtension('WEBGL_lose_context')?.loseContext();
   return software ? 'low' : 'high';

@@ -122,7 +122,11 @@ function createTabs(pages: readonly { readonly name: string; readonly content: r
     element('button', { type: 'button', role: 'tab', id: `tab-${name}`, 'aria-controls': `page-${name}` }, name),
   );
   const panels = pages.map(({ name, content }) =>
-    element('div', { role: 'tabpanel', id: `page-${name}`, 'aria-labelledby': `tab-${name}`, class: 'page' }, ...content),
+    element(
+      'div',
+      { role: 'tabpanel', id: `page-${name}`, 'aria-labelledby': `tab-${name}`, class: 'page' },
+      ...content,
+    ),
   );
   const select = (chosen: number) => {
     for (const [index, tab] of tabs.entries()) {
@@ -187,7 +191,10 @@ export function createPanel(region: HTMLElement, options: PanelOptions, actions:
       step: 1,
       'aria-label': `${label} in centimetres`,
     });
-    return { input, node: element('label', { class: 'measure' }, element('span', {}, label), input, element('i', {}, 'cm')) };
+    return {
+      input,
+      node: element('label', { class: 'measure' }, element('span', {}, label), input, element('i', {}, 'cm')),
+    };
   };
   const height = measure('Height', options.height);
   const armSpan = measure('Arm span', options.armSpan);
@@ -209,7 +216,11 @@ export function createPanel(region: HTMLElement, options: PanelOptions, actions:
 
   const avatarName = element('p', { class: 'avatar-name' });
   const ownAvatar = button('Back to ours', actions.showOwnAvatar);
-  const url = element('input', { type: 'url', placeholder: 'https://…/avatar.vrm', 'aria-label': 'Address of a VRM or GLB' });
+  const url = element('input', {
+    type: 'url',
+    placeholder: 'https://…/avatar.vrm',
+    'aria-label': 'Address of a VRM or GLB',
+  });
   const urlForm = element('form', { class: 'row' }, url, element('button', { type: 'submit' }, 'Load'));
   urlForm.addEventListener('submit', (event) => {
     event.preventDefault();
@@ -224,7 +235,12 @@ export function createPanel(region: HTMLElement, options: PanelOptions, actions:
   const recorderBar = element('progress', { max: 1, value: 0, 'aria-label': 'Progress of the replay' });
 
   const body = [
-    element('fieldset', { class: 'choices' }, element('legend', {}, 'Estimator'), ...estimators.map(({ node }) => node)),
+    element(
+      'fieldset',
+      { class: 'choices' },
+      element('legend', {}, 'Estimator'),
+      ...estimators.map(({ node }) => node),
+    ),
     element(
       'section',
       { class: 'calibration' },
@@ -240,7 +256,18 @@ export function createPanel(region: HTMLElement, options: PanelOptions, actions:
     ),
   ];
   const avatar = [
-    element('section', {}, element('h2', {}, 'Avatar'), avatarName, element('div', { class: 'swatches', role: 'group', 'aria-label': 'Colours' }, ...swatches.map(({ node }) => node)), ownAvatar),
+    element(
+      'section',
+      {},
+      element('h2', {}, 'Avatar'),
+      avatarName,
+      element(
+        'div',
+        { class: 'swatches', role: 'group', 'aria-label': 'Colours' },
+        ...swatches.map(({ node }) => node),
+      ),
+      ownAvatar,
+    ),
     element(
       'section',
       {},
@@ -256,12 +283,20 @@ export function createPanel(region: HTMLElement, options: PanelOptions, actions:
       'section',
       {},
       element('h2', {}, 'Recorder'),
-      element('p', { class: 'hint' }, 'Keeps what is tracked, in full precision, on this device; any recording replays through any estimator.'),
+      element(
+        'p',
+        { class: 'hint' },
+        'Keeps what is tracked, in full precision, on this device; any recording replays through any estimator.',
+      ),
       element('div', { class: 'row' }, record, stop, replay, download),
       recorderText,
       recorderBar,
       loop.node,
-      element('div', { class: 'row' }, ...fileButton('Open recording', '.json,application/json', actions.openRecording)),
+      element(
+        'div',
+        { class: 'row' },
+        ...fileButton('Open recording', '.json,application/json', actions.openRecording),
+      ),
     ),
     element('section', {}, element('h2', {}, 'Who moves'), actor.node, emulatorPanel.node),
   ];
@@ -279,7 +314,11 @@ export function createPanel(region: HTMLElement, options: PanelOptions, actions:
       'section',
       {},
       element('h2', {}, 'Keys'),
-      element('dl', { class: 'keys' }, ...keys.flatMap(([key, what]) => [element('dt', {}, key), element('dd', {}, what)])),
+      element(
+        'dl',
+        { class: 'keys' },
+        ...keys.flatMap(([key, what]) => [element('dt', {}, key), element('dd', {}, what)]),
+      ),
     ),
   ];
 

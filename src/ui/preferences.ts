@@ -63,7 +63,9 @@ export function createPreferenceStore(storage: Pick<Storage, 'getItem' | 'setIte
     },
     complaint: read.complaint,
     remember(part) {
-      const next = Object.fromEntries(Object.entries({ ...preferences, ...part }).filter(([, value]) => value !== undefined));
+      const next = Object.fromEntries(
+        Object.entries({ ...preferences, ...part }).filter(([, value]) => value !== undefined),
+      );
       preferences = next as Preferences;
       try {
         storage?.setItem(key, JSON.stringify(preferences));

@@ -1,0 +1,84 @@
+import {
+  CanvasTexture,
+  LinearMipmapLinearFilter,
+  Mesh,
+  MeshBasicMaterial,
+  PlaneGeometry,
+  SRGBColorSpace,
+  Vector3,
+} from 'three';
+
+/** A flat sheet in the world whose picture is a 2D canvas; seen from its front (+Z) only, so a mirror shows no back. */
+export interface VrPanel {
+  readonly mesh: Mesh;
+  readonly width: number;
+  readonly height: number;
+  /** Draws anew; call it only when something changed. */
+  draw(paint: (context: CanvasRenderingContext2D) => void): void;
+  /** Where a point of the world falls on the canvas [pixels], and how far before the sheet it is [m]. */
+  locate(point: Vector3): { readonly x: number; readonly y: number; readonly distance: number };
+}
+
+/** Width and height in canvas pixels; pixelsPerMetre sets the size in the world. */
+export function createVrPanel(width: number, height: number, pixelsPerMetre: number): VrPanel {
+  const canvas = document.createElement('canvas');
+  canvas.width = width;
+  canvas.height = height;
+  const context = canvas.getContext('2d');
+  if (!context) throw new Error('ui/vr-panel: this browser offers no 2D canvas');
+  const texture = new CanvasTexture(canvas);
+  texture.colorSpace = SRGBColorSpace;
+  texture.minFilter = LinearMipmapLinearFilter;
+  texture.anisotropy = 4;
+  const mesh = new Mesh(
+    new PlaneGeometry(width / pixelsPerMetre, height / pixelsPerMetre),
+    new MeshBasicMaterial({ map: texture, transparent: true, toneMapped: false, fog: false }),
+  );
+  const local = new Vector3();
+  return {
+    mesh,
+    width,
+    height,
+    draw(paint) {
+      context.clearRect(0, 0, width, height);
+      paint(context);
+      texture.needsUpdate = true;
+    },
+    locate(point) {
+      mesh.worldToLocal(local.copy(point));
+      return { x: width / 2 + local.x * pixelsPerMetre, y: height / 2 - local.y * pixelsPerMetre, distance: local.z };
+    },
+  };
+}
+
+/** The colours of the page (styles/page.css), for canvases. */
+export const vrColors = {
+  ink: '#f1f4f9',
+  inkSoft: '#b6c1d3',
+  glass: 'rgba(18, 24, 35, 0.92)',
+  line: 'rgba(190, 208, 238, 0.22)',
+  lift: 'rgba(190, 208, 238, 0.12)',
+  liftMore: 'rgba(190, 208, 238, 0.28)',
+  accent: '#ffb468',
+  accentInk: '#2a1703',
+} as const;
+
+export const vrFont = 'Inter, "Segoe UI", system-ui, Roboto, sans-serif';
+
+export function fillRounded(
+  context: CanvasRenderingContext2D,
+  [x, y, width, height]: readonly [number, number, number, number],
+  radius: number,
+  fill: string,
+  stroke?: string,
+): void {
+  context.beginPath();
+  context.roundRect(x, y, width, height, radius);
+  context.fillStyle = fill;
+  context.fill();
+  if (stroke) {
+    context.lineWidth = 2;
+    context.strokeStyle = stroke;
+    context.stroke();
+  }
+}

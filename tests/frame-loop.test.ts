@@ -1,0 +1,90 @@
+import { describe, expect, test } from 'vitest';
+import type { AvatarPose } from '../src/core/body/avatar-pose';
+import type { PoseEstimator } from '../src/core/estimation/pose-estimator';
+import type { TrackingFrame } from '../src/core/tracking/tracking-frame';
+import { createFrameLoop, type FrameParts } from '../src/frame-loop';
+import { createFrameTiming } from '../src/frame-timing';
+
+const head = {
+  position: { x: 0, y: 1.6, z: 0 },
+  orientation: { x: 0, y: 0, z: 0, w: 1 },
+  tracking: 'tracked',
+} as const;
+const tracked: TrackingFrame = { time: 1, head, leftHand: null, rightHand: null };
+const pose: AvatarPose = { head, leftHand: null, rightHand: null, body: null };
+
+/** The parts of a frame, each of which writes its name down. */
+function observedParts(change: Partial<FrameParts<string>> = {}) {
+  const calls: string[] = [];
+  const estimator: PoseEstimator = {
+    name: 'learned',
+    calibrate: () => void calls.push('calibrate'),
+    reset: () => void calls.push('reset'),
+    prepare: async () => {
+      calls.push('prepare');
+      await Promise.resolve();
+      calls.push('prepared');
+    },
+    estimate: () => {
+      calls.push('estimate');
+      return pose;
+    },
+  };
+  const parts: FrameParts<string> = {
+    track: (_, deviceFrame) => {
+      calls.push(`track ${deviceFrame ?? 'desktop'}`);
+      return tracked;
+    },
+    observe: () => void calls.push('observe'),
+    estimator: () => estimator,
+    inferenceSettlesInFrame: () => true,
+    skin: () => void calls.push('skin'),
+    render: (_, frame) => void calls.push(frame ? 'render' : 'render without tracking'),
+    fail: (error) => void calls.push(`fail ${String(error)}`),
+    ...change,
+  };
+  return {
+    parts,
+    calls,
+    loop: createFrameLoop(
+      parts,
+      createFrameTiming(() => 0),
+    ),
+  };
+}
+
+describe('one frame', () => {
+  test('reads the device before anything is awaited, and draws what this frame tracked', async () => {
+    const { loop, calls } = observedParts();
+    const frame = loop(0, 'xr');
+    expect(calls).toEqual(['track xr', 'observe', 'prepare']);
+    await frame;
+    expect(calls).toEqual(['track xr', 'observe', 'prepare', 'prepared', 'estimate', 'skin', 'render']);
+  });
+
+  test('waits for no inference that outlives the frame', () => {
+    const { loop, calls } = observedParts({ inferenceSettlesInFrame: () => false });
+    void loop(0);
+    expect(calls).toEqual(['track desktop', 'observe', 'prepare', 'estimate', 'skin', 'render']);
+  });
+
+  test('without a tracked head the last body stays and the world is drawn', async () => {
+    const { loop, calls } = observedParts({ track: () => null });
+    await loop(0);
+    expect(calls).toEqual(['render without tracking']);
+  });
+
+  test('a part that throws is told of, and the next frame runs', async () => {
+    let broken = true;
+    const { loop, calls } = observedParts({
+      skin: () => {
+        if (broken) throw new Error('no bones');
+      },
+    });
+    await loop(0);
+    expect(calls.at(-1)).toBe('fail Error: no bones');
+    broken = false;
+    await loop(1);
+    expect(calls.at(-1)).toBe('render');
+  });
+});

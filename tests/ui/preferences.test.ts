@@ -1,0 +1,72 @@
+import fc from 'fast-check';
+import { describe, expect, test } from 'vitest';
+import { armSpanRange, createPreferenceStore, eyeHeightRange, parsePreferences } from '../../src/ui/preferences';
+
+function memory(): Pick<Storage, 'getItem' | 'setItem'> {
+  const items = new Map<string, string>();
+  return { getItem: (key) => items.get(key) ?? null, setItem: (key, value) => void items.set(key, value) };
+}
+
+describe('what the page remembers', () => {
+  test('a calibration survives a reload', () => {
+    const storage = memory();
+    createPreferenceStore(storage).remember({ calibration: { eyeHeight: 1.58, armSpan: 1.33 } });
+    const next = createPreferenceStore(storage);
+    expect(next.complaint).toBeNull();
+    expect(next.preferences.calibration).toEqual({ eyeHeight: 1.58, armSpan: 1.33 });
+  });
+
+  test('remembering undefined forgets, and leaves the rest', () => {
+    const storage = memory();
+    const store = createPreferenceStore(storage);
+    store.remember({ calibration: { eyeHeight: 1.6, armSpan: 1.3 }, mirror: false });
+    store.remember({ calibration: undefined });
+    expect(createPreferenceStore(storage).preferences).toEqual({ mirror: false });
+  });
+
+  test('a first visit remembers nothing and complains of nothing', () => {
+    expect(parsePreferences(null)).toEqual({ preferences: {}, complaint: null });
+  });
+
+  test('a person three metres tall is a damaged memory, said in a sentence', () => {
+    const read = parsePreferences(JSON.stringify({ calibration: { eyeHeight: 3, armSpan: 1.4 } }));
+    expect(read.preferences).toEqual({});
+    expect(read.complaint).toMatch(/damaged \(calibration\.eyeHeight\)/);
+  });
+
+  test('whatever is stored, reading it throws nothing and yields no measure outside a person', () => {
+    fc.assert(
+      fc.property(
+        fc.oneof(
+          fc.string(),
+          fc.json(),
+          fc.object().map((value) => JSON.stringify({ calibration: value })),
+        ),
+        (text) => {
+          const { preferences, complaint } = parsePreferences(text);
+          if (complaint !== null) expect(preferences).toEqual({});
+          const { calibration } = preferences;
+          if (!calibration) return;
+          expect(calibration.eyeHeight).toBeGreaterThanOrEqual(eyeHeightRange.min);
+          expect(calibration.eyeHeight).toBeLessThanOrEqual(eyeHeightRange.max);
+          expect(calibration.armSpan).toBeGreaterThanOrEqual(armSpanRange.min);
+          expect(calibration.armSpan).toBeLessThanOrEqual(armSpanRange.max);
+        },
+      ),
+    );
+  });
+
+  test('where the browser stores nothing, the choice lasts as long as the page', () => {
+    const full = {
+      getItem: () => null,
+      setItem: () => {
+        throw new DOMException('full', 'QuotaExceededError');
+      },
+    };
+    for (const storage of [null, full]) {
+      const store = createPreferenceStore(storage);
+      store.remember({ mirror: false });
+      expect(store.preferences.mirror).toBe(false);
+    }
+  });
+});

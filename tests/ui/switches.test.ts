@@ -1,0 +1,44 @@
+import { describe, expect, test } from 'vitest';
+import { readSwitches } from '../../src/ui/switches';
+
+describe('the address of the page', () => {
+  test('asks for nothing by itself', () => {
+    expect(readSwitches('')).toEqual({
+      complaints: [],
+      switches: {
+        emulate: false,
+        actor: true,
+        panel: true,
+        estimator: null,
+        executionProvider: 'wasm',
+        avatar: null,
+        quality: null,
+        replay: null,
+        view: null,
+      },
+    });
+  });
+
+  test('chooses estimator, provider, avatar, quality and the emulator', () => {
+    const { switches, complaints } = readSwitches(
+      '?emulate&actor=off&estimator=ik&ep=webgpu&avatar=/a.vrm&quality=low',
+    );
+    expect(complaints).toEqual([]);
+    expect(switches).toMatchObject({
+      emulate: true,
+      actor: false,
+      estimator: 'ik',
+      executionProvider: 'webgpu',
+      avatar: '/a.vrm',
+      quality: 'low',
+    });
+  });
+
+  test('a value nobody knows is said in a sentence and counts as not given, the others count', () => {
+    const { switches, complaints } = readSwitches('?estimator=magic&quality=low&ep=gpu');
+    expect(switches).toMatchObject({ estimator: null, quality: 'low', executionProvider: 'wasm' });
+    expect(complaints).toHaveLength(2);
+    expect(complaints.join(' ')).toContain('estimator=magic');
+    expect(complaints.join(' ')).toContain('ep=gpu');
+  });
+});
