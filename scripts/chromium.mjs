@@ -1,5 +1,5 @@
 import { existsSync } from 'node:fs';
-import { join } from 'node:path';
+import { delimiter, isAbsolute, join } from 'node:path';
 import { root, run, runQuietly, SetupError } from './run-command.mjs';
 
 const installedNames = [
@@ -9,6 +9,7 @@ const installedNames = [
   'google-chrome-stable',
   '/Applications/Google Chrome.app/Contents/MacOS/Google Chrome',
   '/Applications/Chromium.app/Contents/MacOS/Chromium',
+  'C:\\Program Files\\Google\\Chrome\\Application\\chrome.exe',
 ];
 
 /** A browser counts only when it starts: Ubuntu's chromium-browser may be a note that asks for a snap. */
@@ -17,10 +18,10 @@ async function starts(executable) {
   return result !== null && result.code === 0 && /Chrom/.test(result.output);
 }
 
-async function onPath(name) {
-  if (name.startsWith('/')) return existsSync(name) ? name : null;
-  const found = await runQuietly(process.platform === 'win32' ? 'where' : 'which', [name]);
-  return found?.code === 0 ? found.output.trim().split(/\r?\n/)[0] : null;
+/** Where a program lies on PATH; null where it does not. */
+function onPath(name) {
+  const directories = isAbsolute(name) ? [''] : (process.env.PATH ?? '').split(delimiter);
+  return directories.map((directory) => join(directory, name)).find((path) => existsSync(path)) ?? null;
 }
 
 async function playwrightsOwn() {
@@ -37,7 +38,7 @@ export async function findChromium() {
     throw new SetupError(`CHROMIUM_PATH is ${named}, but no Chromium starts there.`);
   }
   for (const name of installedNames) {
-    const path = await onPath(name);
+    const path = onPath(name);
     if (path !== null && (await starts(path))) return path;
   }
   return playwrightsOwn();
@@ -54,7 +55,7 @@ async function installWithPlaywright() {
 }
 
 async function installWithDistribution() {
-  if (process.getuid?.() !== 0 || (await onPath('apt-get')) === null) return null;
+  if (process.getuid?.() !== 0 || onPath('apt-get') === null) return null;
   const env = { DEBIAN_FRONTEND: 'noninteractive' };
   await run('apt-get', ['update', '-qq'], { env, limitSeconds: 300 });
   await run('apt-get', ['install', '-y', '-qq', '--no-install-recommends', 'chromium'], { env, limitSeconds: 900 });

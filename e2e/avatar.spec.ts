@@ -1,0 +1,54 @@
+import { readdirSync, readFileSync } from 'node:fs';
+import { expect, joint, keepPicture, open, openWithHeadset, probe, test } from './page-fixture';
+
+const avatarFile = readdirSync('public/avatars').find((name) => name.endsWith('.vrm'));
+
+test('a VRM from a local file takes the place of ours, with the hands still on the controllers', async ({ page }) => {
+  if (!avatarFile) throw new Error('public/avatars holds no .vrm: npm run build:avatar');
+  await openWithHeadset(page, 'estimator=ik');
+  const hand = await joint(page, 'leftHand');
+  await page.getByRole('tab', { name: 'Avatar' }).click();
+  await page
+    .getByLabel('Open VRM file')
+    .and(page.locator('input'))
+    .setInputFiles({
+      name: 'somebody-else.vrm',
+      mimeType: 'model/gltf-binary',
+      buffer: readFileSync(`public/avatars/${avatarFile}`),
+    });
+  await expect.poll(async () => (await probe(page)).avatar.name).toMatch(/somebody-else/);
+  await expect
+    .poll(async () => {
+      const now = await joint(page, 'leftHand');
+      return 1000 * Math.hypot(now[0] - hand[0], now[1] - hand[1], now[2] - hand[2]);
+    })
+    .toBeLessThan(1);
+  await page.getByRole('button', { name: 'Back to ours' }).click();
+  await expect.poll(async () => (await probe(page)).avatar.name).not.toMatch(/somebody-else/);
+});
+
+test('a file that is no avatar is refused in a sentence, and ours stays', async ({ page, complaints }) => {
+  complaints.allow(/holiday/);
+  await openWithHeadset(page);
+  const { name } = (await probe(page)).avatar;
+  await page.getByRole('tab', { name: 'Avatar' }).click();
+  await page
+    .getByLabel('Open VRM file')
+    .and(page.locator('input'))
+    .setInputFiles({ name: 'holiday.vrm', mimeType: 'model/gltf-binary', buffer: Buffer.from('a picture') });
+  await expect(page.getByRole('alert')).toContainText('holiday.vrm');
+  expect((await probe(page)).avatar.name).toBe(name);
+});
+
+test('a switch shows the upper body alone', async ({ page }) => {
+  await open(page, 'emulate&actor=off&quality=low');
+  await keepPicture(page, 'full-body');
+  await page.getByRole('tab', { name: 'Avatar' }).click();
+  const upperBody = page.getByRole('switch', { name: 'Upper body only' });
+  const stage = page.locator('#stage');
+  const before = await stage.screenshot();
+  await upperBody.check();
+  await expect(upperBody).toBeChecked();
+  await expect.poll(async () => (await stage.screenshot()).equals(before)).toBe(false);
+  await keepPicture(page, 'upper-body-only');
+});

@@ -1,0 +1,78 @@
+import { enterVr, expect, joint, openWithHeadset, probe, test } from './page-fixture';
+
+test('by hand: height and arm span are taken over, remembered after a reload, and forgotten on request', async ({
+  page,
+}) => {
+  await openWithHeadset(page);
+  const before = (await probe(page)).calibration;
+  await page.getByRole('spinbutton', { name: 'Height in centimetres' }).fill('192');
+  await page.getByRole('spinbutton', { name: 'Arm span in centimetres' }).fill('160');
+  await page.keyboard.press('Tab');
+  await expect.poll(async () => (await probe(page)).calibration.armSpan).toBeCloseTo(1.6, 3);
+  const { eyeHeight } = (await probe(page)).calibration;
+  expect(eyeHeight).toBeGreaterThan(1.74);
+  expect(eyeHeight).toBeLessThan(1.86);
+
+  await openWithHeadset(page);
+  const after = (await probe(page)).calibration;
+  expect(after.eyeHeight).toBeCloseTo(eyeHeight, 3);
+  expect(after.armSpan).toBeCloseTo(1.6, 3);
+  await expect(page.getByRole('spinbutton', { name: 'Height in centimetres' })).toHaveValue('192');
+
+  await page.getByRole('button', { name: 'Reset calibration' }).click();
+  await expect.poll(async () => (await probe(page)).calibration.eyeHeight).toBeCloseTo(before.eyeHeight, 3);
+});
+
+test('by hand: what no person measures is refused where it is typed', async ({ page }) => {
+  await openWithHeadset(page);
+  const before = (await probe(page)).calibration;
+  const height = page.getByRole('spinbutton', { name: 'Height in centimetres' });
+  await height.fill('1800');
+  await page.keyboard.press('Tab');
+  expect(await height.evaluate((input: HTMLInputElement) => input.validity.valid)).toBe(false);
+  expect((await probe(page)).calibration).toEqual(before);
+});
+
+test('guided: standing still with the arms stretched forward measures the person, and it is remembered', async ({
+  page,
+}) => {
+  const headset = await openWithHeadset(page, 'estimator=ik');
+  await headset.place({
+    head: { position: [0, 1.72, 0], orientation: [0, 0, 0, 1] },
+    left: { position: [-0.19, 1.4, -0.6], orientation: [0, 0, 0, 1] },
+    right: { position: [0.19, 1.4, -0.6], orientation: [0, 0, 0, 1] },
+  });
+  await page.getByRole('button', { name: 'Calibrate', exact: true }).click();
+  const dialog = page.getByRole('dialog', { name: 'Calibrate' });
+  await expect(dialog).toBeVisible();
+  await expect(dialog.getByRole('status')).toHaveText('Done', { timeout: 30_000 });
+  const { calibration } = await probe(page);
+  expect(calibration.eyeHeight).toBeCloseTo(1.72, 2);
+  expect(calibration.armSpan).toBeGreaterThan(1.3);
+  expect(calibration.armSpan).toBeLessThan(1.8);
+  await dialog.getByRole('button', { name: 'Close' }).click();
+
+  await openWithHeadset(page);
+  expect((await probe(page)).calibration.eyeHeight).toBeCloseTo(1.72, 2);
+});
+
+test('a taller calibration makes a longer body under the same head', async ({ page }) => {
+  const headset = await openWithHeadset(page, 'estimator=ik');
+  await enterVr(page);
+  const upright = { head: { position: [0, 1.7, 0], orientation: [0, 0, 0, 1] } } as const;
+  await headset.place(upright);
+  await expect.poll(async () => (await joint(page, 'head'))[1]).toBeGreaterThan(1.55);
+  const trunk = async () => (await joint(page, 'neck'))[1] - (await joint(page, 'hips'))[1];
+  await headset.endSession();
+  await page.getByRole('spinbutton', { name: 'Height in centimetres' }).fill('160');
+  await page.keyboard.press('Tab');
+  await enterVr(page);
+  await headset.place(upright);
+  await expect.poll(async () => (await joint(page, 'head'))[1]).toBeGreaterThan(1.5);
+  const short = await trunk();
+  await headset.endSession();
+  await page.getByRole('spinbutton', { name: 'Height in centimetres' }).fill('195');
+  await page.keyboard.press('Tab');
+  await enterVr(page);
+  await expect.poll(trunk).toBeGreaterThan(short + 0.05);
+});

@@ -1,0 +1,79 @@
+import { enterVr, expect, joint, keepPicture, open, openWithHeadset, probe, test } from './page-fixture';
+
+test('a newcomer sees a moving body within seconds, without touching anything', async ({ page }) => {
+  await open(page, 'quality=low');
+  const { loading } = await probe(page);
+  console.log('loading [ms]', JSON.stringify(loading));
+  const before = await joint(page, 'leftHand');
+  await expect
+    .poll(async () => {
+      const now = await joint(page, 'leftHand');
+      return Math.hypot(now[0] - before[0], now[1] - before[1], now[2] - before[2]);
+    })
+    .toBeGreaterThan(0.02);
+  await expect(page.getByRole('heading', { name: 'threepoint' })).toBeVisible();
+});
+
+test('the estimators are switched live, on the same motion, without moving the hands', async ({ page }) => {
+  await openWithHeadset(page);
+  const hands = await joint(page, 'rightHand');
+  for (const [label, name] of [
+    ['Inverse kinematics', 'ik'],
+    ['Paper', 'paper'],
+    ['Hands only', 'hands-only'],
+    ['Learned', 'learned'],
+  ] as const) {
+    await page.getByRole('radio', { name: label }).check();
+    await expect.poll(async () => (await probe(page)).estimator).toBe(name);
+    const now = await joint(page, 'rightHand');
+    expect(1000 * Math.hypot(now[0] - hands[0], now[1] - hands[1], now[2] - hands[2])).toBeLessThan(1);
+  }
+  await page.keyboard.press('2');
+  await expect.poll(async () => (await probe(page)).estimator).toBe('ik');
+});
+
+test('third person, front and first person are a button away', async ({ page }) => {
+  await open(page, 'quality=low');
+  await page.getByRole('tab', { name: 'View' }).click();
+  for (const [label, view] of [
+    ['Front', 'front'],
+    ['First person', 'first-person'],
+    ['Third person', 'third-person'],
+  ] as const) {
+    const choice = page.getByRole('button', { name: label });
+    await choice.click();
+    await expect(choice).toHaveAttribute('aria-pressed', 'true');
+    await expect.poll(async () => (await probe(page)).view).toBe(view);
+    await keepPicture(page, `view-${view}`);
+  }
+});
+
+test('the overlay names the stages of a frame, the estimator and where it runs', async ({ page }) => {
+  await openWithHeadset(page, 'estimator=learned');
+  await page.getByRole('tab', { name: 'View' }).click();
+  await page.getByRole('switch', { name: 'Frame times' }).check();
+  const overlay = page.getByRole('region', { name: 'Frame time' });
+  for (const stage of ['tracking', 'features', 'inference', 'kinematics', 'skinning', 'render']) {
+    await expect(overlay.getByRole('rowheader', { name: stage })).toBeVisible();
+  }
+  await expect(overlay).toContainText(/wasm/i);
+  await expect(overlay).toContainText(/missed at/);
+});
+
+for (const estimator of ['hands-only', 'ik', 'paper', 'learned'] as const) {
+  test(`${estimator}: pictures of third person, front and the mirror in VR`, async ({ page }) => {
+    const headset = await openWithHeadset(page, `estimator=${estimator}&panel=off`);
+    await headset.place({
+      head: { position: [0, 1.6, 0], orientation: [0, 0, 0, 1] },
+      left: { position: [-0.32, 1.25, -0.35], orientation: [0, -0.1305262, 0, 0.9914449] },
+      right: { position: [0.3, 1.0, -0.25], orientation: [0, 0.1305262, 0, 0.9914449] },
+    });
+    await expect.poll(async () => Math.abs((await joint(page, 'head'))[1] - 1.52)).toBeLessThan(0.1);
+    await keepPicture(page, `third-person-${estimator}`);
+    await page.keyboard.press('v');
+    await keepPicture(page, `front-${estimator}`);
+    await enterVr(page);
+    await keepPicture(page, `mirror-${estimator}`);
+    expect((await probe(page)).estimator).toBe(estimator);
+  });
+}
