@@ -9,7 +9,6 @@ const installedNames = [
   'google-chrome-stable',
   '/Applications/Google Chrome.app/Contents/MacOS/Google Chrome',
   '/Applications/Chromium.app/Contents/MacOS/Chromium',
-  'C:\\Program Files\\Google\\Chrome\\Application\\chrome.exe',
 ];
 
 /** A browser counts only when it starts: Ubuntu's chromium-browser may be a note that asks for a snap. */

@@ -1,30 +1,19 @@
 import { spawnSync } from 'node:child_process';
-import { copyFileSync, mkdirSync, mkdtempSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
-import { dirname, join } from 'node:path';
+import { readFileSync, symlinkSync } from 'node:fs';
+import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { describe, expect, onTestFinished, test } from 'vitest';
+import { describe, expect, test } from 'vitest';
+import { directoryWith } from './temporary-directory';
 
 const root = fileURLToPath(new URL('..', import.meta.url));
 
 /** A project of these files alone, under the same rules as ours. */
 function projectOf(files: Readonly<Record<string, string>>): string {
-  const directory = mkdtempSync(join(tmpdir(), 'threepoint-rules-'));
-  onTestFinished(() => rmSync(directory, { recursive: true, force: true }));
-  for (const [path, content] of Object.entries(files)) {
-    mkdirSync(dirname(join(directory, path)), { recursive: true });
-    writeFileSync(join(directory, path), content);
-  }
-  mkdirSync(join(directory, 'scripts'), { recursive: true });
-  for (const file of [
-    'biome.json',
-    'scripts/no-chance-in-core.grit',
-    'tsconfig.json',
-    'tsconfig.core.json',
-    'package.json',
-  ]) {
-    copyFileSync(join(root, file), join(directory, file));
-  }
+  const ours = ['biome.json', 'scripts/no-chance-in-core.grit', 'tsconfig.json', 'tsconfig.core.json', 'package.json'];
+  const directory = directoryWith({
+    ...Object.fromEntries(ours.map((file) => [file, readFileSync(join(root, file))])),
+    ...files,
+  });
   symlinkSync(join(root, 'node_modules'), join(directory, 'node_modules'), 'dir');
   return directory;
 }

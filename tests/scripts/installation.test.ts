@@ -1,20 +1,15 @@
-import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
-import { join } from 'node:path';
-import { describe, expect, onTestFinished, test } from 'vitest';
+import { readFileSync } from 'node:fs';
+import { describe, expect, test } from 'vitest';
 import { missingInstallation } from '../../scripts/installation.mjs';
+import { directoryWith } from '../temporary-directory';
 
 type Packages = Record<string, { version?: string; optional?: boolean; optionalDependencies?: Record<string, string> }>;
 
 function projectWith(wanted: Packages, installed: Packages | null): string {
-  const directory = mkdtempSync(join(tmpdir(), 'threepoint-'));
-  onTestFinished(() => rmSync(directory, { recursive: true, force: true }));
-  writeFileSync(join(directory, 'package-lock.json'), JSON.stringify({ packages: wanted }));
-  if (installed) {
-    mkdirSync(join(directory, 'node_modules'));
-    writeFileSync(join(directory, 'node_modules/.package-lock.json'), JSON.stringify({ packages: installed }));
-  }
-  return directory;
+  return directoryWith({
+    'package-lock.json': JSON.stringify({ packages: wanted }),
+    ...(installed && { 'node_modules/.package-lock.json': JSON.stringify({ packages: installed }) }),
+  });
 }
 
 describe('what is missing', () => {

@@ -1,16 +1,14 @@
 import { spawnSync } from 'node:child_process';
-import { copyFileSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
-import { join } from 'node:path';
-import { expect, onTestFinished, test } from 'vitest';
+import { readFileSync } from 'node:fs';
+import { expect, test } from 'vitest';
+import { directoryWith } from '../temporary-directory';
 
 /** The check as it runs with this Node in a project that asks for that one. */
 function checkAgainst(engine: string) {
-  const directory = mkdtempSync(join(tmpdir(), 'threepoint-'));
-  onTestFinished(() => rmSync(directory, { recursive: true, force: true }));
-  mkdirSync(join(directory, 'scripts'));
-  copyFileSync('scripts/require-node.cjs', join(directory, 'scripts/require-node.cjs'));
-  writeFileSync(join(directory, 'package.json'), JSON.stringify({ engines: { node: engine } }));
+  const directory = directoryWith({
+    'package.json': JSON.stringify({ engines: { node: engine } }),
+    'scripts/require-node.cjs': readFileSync('scripts/require-node.cjs'),
+  });
   const { status, stderr } = spawnSync(process.execPath, ['scripts/require-node.cjs'], {
     cwd: directory,
     encoding: 'utf8',

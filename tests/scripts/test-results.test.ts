@@ -1,15 +1,11 @@
-import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { expect, onTestFinished, test } from 'vitest';
+import { expect, test } from 'vitest';
 import { countLine, readResults } from '../../scripts/test-results.mjs';
+import { directoryWith } from '../temporary-directory';
 
 function report(content: unknown): string {
-  const directory = mkdtempSync(join(tmpdir(), 'threepoint-'));
-  onTestFinished(() => rmSync(directory, { recursive: true, force: true }));
-  const file = join(directory, 'report');
-  writeFileSync(file, typeof content === 'string' ? content : JSON.stringify(content));
-  return file;
+  const text = typeof content === 'string' ? content : JSON.stringify(content);
+  return join(directoryWith({ report: text }), 'report');
 }
 
 test('pytest: errors while setting up count as failures', () => {

@@ -4,7 +4,8 @@ import { brotliCompressSync, brotliDecompressSync, gunzipSync, gzipSync } from '
 import { describe, expect, onTestFinished, test } from 'vitest';
 import { createPageHandler } from '../../server/page';
 import { serve } from '../../server/web-server';
-import { ask, directoryWith, temporaryDirectory } from './running-server';
+import { directoryWith } from '../temporary-directory';
+import { ask } from './running-server';
 
 const wasm = Buffer.from([0, 0x61, 0x73, 0x6d, 1, 0, 0, 0]);
 const site = {
@@ -101,7 +102,7 @@ describe('the page', () => {
   });
 
   test('nothing to serve is said at start-up, naming the directory', () => {
-    const empty = temporaryDirectory();
+    const empty = directoryWith();
     expect(() => createPageHandler(empty)).toThrow(`${empty} holds no index.html`);
   });
 });

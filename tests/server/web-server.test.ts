@@ -7,7 +7,8 @@ import { describe, expect, onTestFinished, test } from 'vitest';
 import { certificateFor } from '../../server/certificate';
 import { lanAddresses } from '../../server/lan-addresses';
 import { serve } from '../../server/web-server';
-import { ask, temporaryDirectory } from './running-server';
+import { directoryWith } from '../temporary-directory';
+import { ask } from './running-server';
 
 const now = new Date();
 const hello = (_: unknown, response: { end: (text: string) => void }) => response.end('hello');
@@ -44,7 +45,7 @@ describe('the port', () => {
 
 describe('HTTPS with a certificate of our own', () => {
   async function secured() {
-    const directory = temporaryDirectory();
+    const directory = directoryWith();
     const credentials = await certificateFor(['127.0.0.2'], directory, now);
     const server = await serve(hello, { host: '0.0.0.0', port: 0, credentials });
     onTestFinished(() => server.close());
@@ -78,7 +79,7 @@ describe('HTTPS with a certificate of our own', () => {
 
 describe('the certificate', () => {
   test('names every address and this machine, for about a year', async () => {
-    const { cert } = await certificateFor(['192.168.7.20', '10.1.2.3'], temporaryDirectory(), now);
+    const { cert } = await certificateFor(['192.168.7.20', '10.1.2.3'], directoryWith(), now);
     const certificate = new X509Certificate(cert);
     for (const address of ['127.0.0.1', '192.168.7.20', '10.1.2.3']) expect(certificate.checkIP(address)).toBe(address);
     expect(certificate.checkHost('localhost')).toBe('localhost');
@@ -88,13 +89,13 @@ describe('the certificate', () => {
   });
 
   test('is kept while it serves, so that nobody is warned twice', async () => {
-    const directory = temporaryDirectory();
+    const directory = directoryWith();
     const first = await certificateFor(['192.168.7.20', '10.1.2.3'], directory, now);
     expect(await certificateFor(['192.168.7.20'], directory, now)).toEqual(first);
   });
 
   test('is made anew for a new address and before it expires', async () => {
-    const directory = temporaryDirectory();
+    const directory = directoryWith();
     const first = await certificateFor(['192.168.7.20'], directory, now);
     const moved = await certificateFor(['192.168.8.4'], directory, now);
     expect(moved.cert).not.toBe(first.cert);
@@ -103,7 +104,7 @@ describe('the certificate', () => {
   });
 
   test.skipIf(process.platform === 'win32')('leaves a key that only its owner reads', async () => {
-    const directory = temporaryDirectory();
+    const directory = directoryWith();
     await certificateFor([], directory, now);
     expect(statSync(join(directory, 'lan.key.pem')).mode & 0o077).toBe(0);
   });

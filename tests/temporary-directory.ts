@@ -1,0 +1,15 @@
+import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { dirname, join } from 'node:path';
+import { onTestFinished } from 'vitest';
+
+/** A directory with these files, path to content, that exists until the test is over. */
+export function directoryWith(files: Readonly<Record<string, string | Buffer>> = {}): string {
+  const directory = mkdtempSync(join(tmpdir(), 'threepoint-'));
+  onTestFinished(() => rmSync(directory, { recursive: true, force: true }));
+  for (const [path, content] of Object.entries(files)) {
+    mkdirSync(dirname(join(directory, path)), { recursive: true });
+    writeFileSync(join(directory, path), content);
+  }
+  return directory;
+}
