@@ -6,5 +6,6 @@ export default defineConfig({
     setupFiles: ['tests/property-runs.ts'],
     // A property with many runs on a busy machine is slow, not wrong.
     testTimeout: 30_000,
+    slowTestThreshold: 5_000,
   },
 });
