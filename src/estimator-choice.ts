@@ -1,0 +1,126 @@
+import type { Calibration } from './core/body/calibration';
+import type { EstimatorName, PoseEstimator } from './core/estimation/pose-estimator';
+import type { PoseRegressor } from './core/estimation/pose-regressor';
+
+/** The estimators that are nothing without their network. */
+const networks = ['paper', 'learned'] as const satisfies readonly EstimatorName[];
+type NetworkName = (typeof networks)[number];
+
+const isNetwork = (name: EstimatorName): name is NetworkName => (networks as readonly string[]).includes(name);
+
+export interface EstimatorChoiceOptions {
+  readonly calibration: Calibration;
+  create(name: EstimatorName, calibration: Calibration, regressor?: PoseRegressor): PoseEstimator;
+  /** Rejects with a sentence that names the file and what is wrong with it. */
+  load(name: NetworkName): Promise<PoseRegressor>;
+  /** Another estimator draws from now on, or one has become unavailable. */
+  onChange(): void;
+  /** What was chosen is not to be had: inverse kinematics draws instead. */
+  onFault(name: EstimatorName, reason: string): void;
+}
+
+/** Which estimator draws. There is always one: until a network is loaded, or when it fails, it is inverse kinematics. */
+export interface EstimatorChoice {
+  readonly current: PoseEstimator;
+  /** What the user wants, which may still be loading. */
+  readonly wanted: EstimatorName;
+  /** The network behind the current estimator; null: it has none. */
+  readonly regressor: PoseRegressor | null;
+  readonly unavailable: Partial<Readonly<Record<EstimatorName, string>>>;
+  /** Resolves when this estimator draws, or when it turned out that it cannot. Never rejects. */
+  choose(name: EstimatorName): Promise<void>;
+  /** For every estimator from the next frame on. */
+  calibrate(calibration: Calibration): void;
+  reset(): void;
+}
+
+/** The reason behind anything that was thrown, as a sentence. */
+export function reasonOf(error: unknown): string {
+  return error instanceof Error ? error.message : String(error);
+}
+
+export function createEstimatorChoice(options: EstimatorChoiceOptions): EstimatorChoice {
+  let { calibration } = options;
+  const loading = new Map<NetworkName, Promise<PoseRegressor>>();
+  const unavailable: Partial<Record<EstimatorName, string>> = {};
+  let wanted: EstimatorName = 'ik';
+  let current = options.create('ik', calibration);
+  let regressor: PoseRegressor | null = null;
+
+  function drawWith(name: EstimatorName, network: PoseRegressor | null): void {
+    current = network ? options.create(name, calibration, network) : options.create(name, calibration);
+    regressor = network;
+    options.onChange();
+  }
+
+  function giveUp(name: EstimatorName, error: unknown): void {
+    if (unavailable[name] !== undefined) return;
+    unavailable[name] = reasonOf(error);
+    if (wanted === name) wanted = 'ik';
+    if (current.name === name) drawWith('ik', null);
+    options.onFault(name, reasonOf(error));
+    options.onChange();
+  }
+
+  /** The same network, whose failure while running makes IK take over instead of passing unnoticed. */
+  function watched(name: NetworkName, network: PoseRegressor): PoseRegressor {
+    return {
+      contract: network.contract,
+      provider: network.provider,
+      resolvesInFrame: network.resolvesInFrame,
+      async run(features) {
+        try {
+          const output = await network.run(features);
+          if (!output.every(Number.isFinite)) throw new Error('the network answered with something that is no number');
+          return output;
+        } catch (error) {
+          giveUp(name, error);
+          throw error;
+        }
+      },
+      dispose: () => network.dispose(),
+    };
+  }
+
+  function network(name: NetworkName): Promise<PoseRegressor> {
+    const known = loading.get(name);
+    if (known) return known;
+    const started = options.load(name).then((loaded) => watched(name, loaded));
+    loading.set(name, started);
+    return started;
+  }
+
+  return {
+    get current() {
+      return current;
+    },
+    get wanted() {
+      return wanted;
+    },
+    get regressor() {
+      return regressor;
+    },
+    get unavailable() {
+      return unavailable;
+    },
+    async choose(name) {
+      wanted = name;
+      if (!isNetwork(name)) {
+        drawWith(name, null);
+        return;
+      }
+      try {
+        const loaded = await network(name);
+        // While it loaded, the user may have thought of something else, or it may have failed at its first run.
+        if (wanted === name && unavailable[name] === undefined) drawWith(name, loaded);
+      } catch (error) {
+        giveUp(name, error);
+      }
+    },
+    calibrate(next) {
+      calibration = next;
+      current.calibrate(next);
+    },
+    reset: () => current.reset(),
+  };
+}

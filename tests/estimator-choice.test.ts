@@ -1,0 +1,91 @@
+import { describe, expect, test } from 'vitest';
+import type { EstimatorName, PoseEstimator } from '../src/core/estimation/pose-estimator';
+import type { PoseRegressor } from '../src/core/estimation/pose-regressor';
+import { createEstimatorChoice } from '../src/estimator-choice';
+
+const head = {
+  position: { x: 0, y: 1.6, z: 0 },
+  orientation: { x: 0, y: 0, z: 0, w: 1 },
+  tracking: 'tracked',
+} as const;
+
+function estimatorOf(name: EstimatorName): PoseEstimator {
+  return {
+    name,
+    calibrate: () => undefined,
+    reset: () => undefined,
+    prepare: async () => undefined,
+    estimate: () => ({ head, leftHand: null, rightHand: null, body: null }),
+  };
+}
+
+function networkThat(answers: () => Promise<Float32Array>): PoseRegressor {
+  return {
+    // reason: the choice of an estimator reads nothing of the contract
+    contract: {} as PoseRegressor['contract'],
+    provider: 'wasm',
+    resolvesInFrame: true,
+    run: answers,
+    dispose: async () => undefined,
+  };
+}
+
+function choiceThat(load: (name: 'paper' | 'learned') => Promise<PoseRegressor>) {
+  const faults: string[] = [];
+  const choice = createEstimatorChoice({
+    calibration: { eyeHeight: 1.6, armSpan: 1.4 },
+    create: estimatorOf,
+    load,
+    onChange: () => undefined,
+    onFault: (name, reason) => faults.push(`${name}: ${reason}`),
+  });
+  return { choice, faults };
+}
+
+describe('which estimator draws', () => {
+  test('inverse kinematics draws while the network loads, then the network does', async () => {
+    let arrive: (network: PoseRegressor) => void = () => undefined;
+    const { choice, faults } = choiceThat(() => new Promise((resolve) => (arrive = resolve)));
+    const chosen = choice.choose('learned');
+    expect([choice.wanted, choice.current.name]).toEqual(['learned', 'ik']);
+    arrive(networkThat(async () => new Float32Array(18)));
+    await chosen;
+    expect(choice.current.name).toBe('learned');
+    expect(faults).toEqual([]);
+  });
+
+  test('a network that cannot be loaded leaves inverse kinematics, with the reason', async () => {
+    const { choice, faults } = choiceThat(async () => {
+      throw new Error('learned.onnx: 404');
+    });
+    await choice.choose('learned');
+    expect([choice.wanted, choice.current.name]).toEqual(['ik', 'ik']);
+    expect(choice.unavailable.learned).toBe('learned.onnx: 404');
+    expect(faults).toEqual(['learned: learned.onnx: 404']);
+  });
+
+  test('a network that fails while it runs, or answers with NaN, gives way to inverse kinematics, once', async () => {
+    for (const answers of [
+      async () => Promise.reject(new Error('out of memory')),
+      async () => new Float32Array([0, Number.NaN]),
+    ]) {
+      const { choice, faults } = choiceThat(async () => networkThat(answers));
+      await choice.choose('learned');
+      const { regressor } = choice;
+      await expect(regressor?.run(new Float32Array(1))).rejects.toThrow();
+      await expect(regressor?.run(new Float32Array(1))).rejects.toThrow();
+      expect(choice.current.name).toBe('ik');
+      expect(faults).toHaveLength(1);
+    }
+  });
+
+  test('who changes their mind while a network loads keeps the later choice', async () => {
+    let arrive: (network: PoseRegressor) => void = () => undefined;
+    const { choice } = choiceThat(() => new Promise((resolve) => (arrive = resolve)));
+    const first = choice.choose('paper');
+    await choice.choose('hands-only');
+    arrive(networkThat(async () => new Float32Array(18)));
+    await first;
+    expect(choice.current.name).toBe('hands-only');
+  });
+});
