@@ -1,10 +1,13 @@
 // Who may import whom (docs: the design's "Who may import whom"). Every rule says in its comment what it protects.
 // Type-only imports count too (tsPreCompilationDeps): a type from the wrong side is the first step of the wrong dependency.
 
-/** Each folder of core and the folders of core it may know. */
+/**
+ * Each folder of core and the folders of core it may know. Body and tracking stand side by side: a tracked pose is part of an
+ * avatar's pose, and where an unseen hand rests depends on the body (no-cycles keeps their modules in order).
+ */
 const coreFolders = {
   math: [],
-  tracking: ['math'],
+  tracking: ['math', 'body'],
   body: ['math', 'tracking'],
   estimation: ['math', 'tracking', 'body'],
   games: ['math', 'tracking'],
