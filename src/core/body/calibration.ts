@@ -6,22 +6,30 @@ export interface Calibration {
   readonly armSpan: number;
 }
 
-/** What people know of themselves [m]: height without shoes, and from fingertip to fingertip with the arms stretched sideways. */
-export interface BodyMeasures {
-  readonly stature: number;
-  readonly fingertipSpan: number;
-}
-
-// Height of the eyes above the floor as a share of stature: Drillis & Contini, Body Segment Parameters (1966); ANSUR II agrees within 1 %.
+// Height of the eyes above the floor as a share of stature: Drillis & Contini, Body Segment Parameters (1966); ANSUR II agrees
+// within 1 %.
 const EYE_HEIGHT_PER_STATURE = 0.936;
 
-// Fingertip span equals stature on average (Drillis & Contini: within 3 %). The training people's arms and shoulders, bone by
-// bone, add up to 0.945 eye heights from wrist to wrist. That is more than a tape finds between the wrists, because shoulders give;
-// but an arm a little too long bends its elbow, while one too short misses the hand.
-const WRIST_SPAN_PER_EYE_HEIGHT = 0.945;
-const WRIST_SPAN_PER_FINGERTIP_SPAN = WRIST_SPAN_PER_EYE_HEIGHT * EYE_HEIGHT_PER_STATURE;
+// The arms and shoulders of the people we trained on, bone by bone, add up to 0.945 eye heights from wrist to wrist. A tape
+// between the wrists finds less, because shoulders give; but an arm a little too long bends its elbow, one too short misses the hand.
+const ARM_SPAN_PER_EYE_HEIGHT = 0.945;
 
-/** A range [m] of plausible measures. */
+// Fingertip span equals stature within 3 % on average (Drillis & Contini; ANSUR II).
+const ARM_SPAN_PER_FINGERTIP_SPAN = ARM_SPAN_PER_EYE_HEIGHT * EYE_HEIGHT_PER_STATURE;
+
+/** Eye height [m] of somebody of this stature [m] without shoes. */
+export const eyeHeightFromStature = (stature: number): number => stature * EYE_HEIGHT_PER_STATURE;
+
+/** The inverse of `eyeHeightFromStature`. */
+export const statureFromEyeHeight = (eyeHeight: number): number => eyeHeight / EYE_HEIGHT_PER_STATURE;
+
+/** Wrist to wrist [m] of somebody who measures this much [m] from fingertip to fingertip. */
+export const armSpanFromFingertipSpan = (fingertipSpan: number): number => fingertipSpan * ARM_SPAN_PER_FINGERTIP_SPAN;
+
+/** The inverse of `armSpanFromFingertipSpan`. */
+export const fingertipSpanFromArmSpan = (armSpan: number): number => armSpan / ARM_SPAN_PER_FINGERTIP_SPAN;
+
+/** A range [m] of plausible measures, both ends included. */
 export interface MeasureRange {
   readonly min: number;
   readonly max: number;
@@ -29,49 +37,33 @@ export interface MeasureRange {
 
 /** People from small children to giants; anything outside is a slip of the hand or a floor at the wrong height. */
 export const statureRange: MeasureRange = { min: 1, max: 2.3 };
-export const fingertipSpanRange: MeasureRange = { min: 0.85, max: 2.5 };
 export const eyeHeightRange: MeasureRange = {
-  min: statureRange.min * EYE_HEIGHT_PER_STATURE,
-  max: statureRange.max * EYE_HEIGHT_PER_STATURE,
+  min: eyeHeightFromStature(statureRange.min),
+  max: eyeHeightFromStature(statureRange.max),
 };
-export const armSpanRange: MeasureRange = {
-  min: fingertipSpanRange.min * WRIST_SPAN_PER_FINGERTIP_SPAN,
-  max: fingertipSpanRange.max * WRIST_SPAN_PER_FINGERTIP_SPAN,
-};
-
-const inRange = (value: number, { min, max }: MeasureRange): boolean => value >= min && value <= max;
-
-/** The calibration of a person of these measures. */
-export const calibrationFromMeasures = ({ stature, fingertipSpan }: BodyMeasures): Calibration => ({
-  eyeHeight: stature * EYE_HEIGHT_PER_STATURE,
-  armSpan: fingertipSpan * WRIST_SPAN_PER_FINGERTIP_SPAN,
-});
-
-/** The measures of a person of this calibration; the inverse of `calibrationFromMeasures`. */
-export const measuresFromCalibration = ({ eyeHeight, armSpan }: Calibration): BodyMeasures => ({
-  stature: eyeHeight / EYE_HEIGHT_PER_STATURE,
-  fingertipSpan: armSpan / WRIST_SPAN_PER_FINGERTIP_SPAN,
-});
+export const armSpanRange: MeasureRange = { min: 0.65, max: 2.25 };
 
 /** An adult of 1.70 m. */
-export const defaultCalibration: Calibration = calibrationFromMeasures({ stature: 1.7, fingertipSpan: 1.7 });
+export const defaultCalibration: Calibration = {
+  eyeHeight: eyeHeightFromStature(1.7),
+  armSpan: armSpanFromFingertipSpan(1.7),
+};
 
 /** Why these numbers are nobody's body, in a sentence; null where they are somebody's. */
-export function calibrationComplaint(calibration: Calibration): string | null {
-  const { stature, fingertipSpan } = measuresFromCalibration(calibration);
+export function calibrationComplaint({ eyeHeight, armSpan }: Calibration): string | null {
   const told = (value: number) => `${value.toFixed(2)} m`;
   // Written so that NaN is refused too.
-  if (!inRange(calibration.eyeHeight, eyeHeightRange)) {
-    return `A height of ${told(stature)} is outside ${told(statureRange.min)} to ${told(statureRange.max)}.`;
+  if (!(eyeHeight >= eyeHeightRange.min && eyeHeight <= eyeHeightRange.max)) {
+    const stature = told(statureFromEyeHeight(eyeHeight));
+    return `A height of ${stature} is outside ${told(statureRange.min)} to ${told(statureRange.max)}.`;
   }
-  if (!inRange(calibration.armSpan, armSpanRange)) {
-    return `An arm span of ${told(fingertipSpan)} is outside ${told(fingertipSpanRange.min)} to ${told(fingertipSpanRange.max)}.`;
+  if (!(armSpan >= armSpanRange.min && armSpan <= armSpanRange.max)) {
+    return `An arm span of ${told(armSpan)} is outside ${told(armSpanRange.min)} to ${told(armSpanRange.max)}.`;
   }
-  const ratio = fingertipSpan / stature;
-  if (ratio < 0.75 || ratio > 1.3) {
-    return `An arm span of ${told(fingertipSpan)} does not go with a height of ${told(stature)}.`;
-  }
-  return null;
+  const ratio = armSpan / eyeHeight / ARM_SPAN_PER_EYE_HEIGHT;
+  return ratio < 0.72 || ratio > 1.35
+    ? `An arm span of ${told(armSpan)} from wrist to wrist does not go with a height of ${told(statureFromEyeHeight(eyeHeight))}.`
+    : null;
 }
 
 // Below it somebody sits or the floor is wrong; a child that low needs the guided calibration.
@@ -83,5 +75,5 @@ const LOWEST_STANDING_ADULT = 1.35;
  */
 export function provisionalCalibration(headHeight: number): Calibration {
   if (!(headHeight >= LOWEST_STANDING_ADULT && headHeight <= eyeHeightRange.max)) return defaultCalibration;
-  return { eyeHeight: headHeight, armSpan: headHeight * WRIST_SPAN_PER_EYE_HEIGHT };
+  return { eyeHeight: headHeight, armSpan: headHeight * ARM_SPAN_PER_EYE_HEIGHT };
 }

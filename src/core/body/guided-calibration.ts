@@ -1,0 +1,161 @@
+import { transformPoint } from '../math/pose';
+import { rotate } from '../math/quat';
+import { add, addScaled, distance, forward, length, subtract, type Vec3, vec3 } from '../math/vec3';
+import { headingFromFloor } from '../tracking/heading';
+import type { TrackedPose, TrackingFrame } from '../tracking/tracking-frame';
+import { type Calibration, calibrationComplaint } from './calibration';
+import type { Side } from './joints';
+import { chestSpaceBody, sideSign } from './skeleton';
+
+/** The person stands straight, looks ahead and stretches both arms forward (or sideways) for this long. */
+export const measuringSeconds = 2;
+
+interface Sample {
+  /** Floor frame. */
+  readonly head: Vec3;
+  /** Elevation of the gaze as a sine. */
+  readonly gaze: number;
+  /** Wrists in the heading frame; null: not seen. */
+  readonly left: Vec3 | null;
+  readonly right: Vec3 | null;
+}
+
+export type GuidedCalibration =
+  | {
+      readonly kind: 'measuring';
+      /** How much is done, 0 to 1. */
+      readonly part: number;
+      readonly startTime: number | null;
+      readonly samples: readonly Sample[];
+    }
+  | { readonly kind: 'done'; readonly calibration: Calibration }
+  | { readonly kind: 'failed'; readonly reason: string };
+
+export const startGuidedCalibration: GuidedCalibration = { kind: 'measuring', part: 0, startTime: null, samples: [] };
+
+/** The next state after a frame; `done` and `failed` stay as they are. Time that runs backwards starts the measuring again. */
+export function stepGuidedCalibration(state: GuidedCalibration, frame: TrackingFrame): GuidedCalibration {
+  if (state.kind !== 'measuring') return state;
+  const startTime = state.startTime === null || frame.time < state.startTime ? frame.time : state.startTime;
+  const samples = startTime === frame.time ? [sampleOf(frame)] : [...state.samples, sampleOf(frame)];
+  const part = (frame.time - startTime) / measuringSeconds;
+  return part < 1 ? { kind: 'measuring', part, startTime, samples } : measure(samples);
+}
+
+function sampleOf({ head, leftHand, rightHand }: TrackingFrame): Sample {
+  const fromFloor = headingFromFloor(head);
+  const wrist = (hand: TrackedPose | null): Vec3 | null =>
+    hand?.tracking === 'tracked' ? transformPoint(fromFloor, hand.position) : null;
+  return {
+    head: head.position,
+    gaze: rotate(head.orientation, forward).y,
+    left: wrist(leftHand),
+    right: wrist(rightHand),
+  };
+}
+
+// A frame or two of a measuring that lasts two seconds say nothing.
+const FEWEST_SAMPLES = 20;
+/** [m] that a head at rest sways at most. */
+const HEAD_SWAY = 0.06;
+/** [m] that a hand at rest wanders at most, as the mean distance from its middle. */
+const HAND_SWAY = 0.05;
+/** A hand must be seen in this part of the frames. */
+const SEEN = 0.7;
+// 30° up or down.
+const STEEPEST_GAZE = 0.5;
+// The arms of those we trained on measure 0.33 to 0.38 eye heights from shoulder to wrist; an elbow bent by 80° leaves 0.27.
+const SHORTEST_ARM = 0.27;
+const LONGEST_ARM = 0.46;
+/** [m] between the left arm's length and the right's. */
+const UNEVEN_ARMS = 0.12;
+// How far, in eye heights, the shoulder joint comes forward with a stretched arm: what the fitted shoulder girdle of the
+// inverse kinematics does there.
+const PROTRACTION = 0.018;
+
+const failed = (reason: string): GuidedCalibration => ({ kind: 'failed', reason });
+
+function measure(samples: readonly Sample[]): GuidedCalibration {
+  if (samples.length < FEWEST_SAMPLES) return failed('Tracking was lost. Try again where the headset sees the room.');
+  const heads = samples.map(({ head }) => head);
+  const head = middleOf(heads);
+  if (heads.some((position) => distance(position, head) > HEAD_SWAY)) {
+    return failed('Your head moved. Stand still for two seconds.');
+  }
+  if (Math.abs(robustMean(samples.map(({ gaze }) => gaze))) > STEEPEST_GAZE) {
+    return failed('You looked up or down. Look straight ahead.');
+  }
+  const wrists: { side: Side; position: Vec3 }[] = [];
+  for (const side of ['left', 'right'] as const) {
+    const seen = samples.map((sample) => sample[side]).filter((wrist) => wrist !== null);
+    const part = seen.length / samples.length;
+    if (part === 0) continue;
+    if (part < SEEN) return failed(`Your ${side} hand was not seen all the time. Hold it where you can see it.`);
+    const position = middleOf(seen);
+    const sway = seen.reduce((sum, wrist) => sum + distance(wrist, position), 0) / seen.length;
+    if (sway > HAND_SWAY) return failed('Your hands moved. Hold them still for two seconds.');
+    wrists.push({ side, position });
+  }
+  // One hand that is never seen may be nobody's: the other one's arm then stands for both.
+  if (wrists.length === 0) return failed('Your hands were not seen. Hold them where you can see them.');
+
+  const eyeHeight = head.y;
+  const arms = wrists.map(({ side, position }) => reachOf(side, position, eyeHeight));
+  if (arms.some((arm) => arm === null)) {
+    return failed('Your arms pointed somewhere else. Stretch them straight forward, at the height of your shoulders.');
+  }
+  const lengths = arms.filter((arm) => arm !== null);
+  const shortest = Math.min(...lengths);
+  if (shortest < SHORTEST_ARM * eyeHeight)
+    return failed('Your arms were not stretched. Stretch them straight forward.');
+  if (Math.max(...lengths) > LONGEST_ARM * eyeHeight) {
+    return failed(
+      'Your arms are too long for the height of your head. Stand up straight, and check the floor’s height.',
+    );
+  }
+  if (Math.max(...lengths) - shortest > UNEVEN_ARMS) {
+    return failed('One arm was stretched further than the other. Stretch both straight forward.');
+  }
+  const arm = lengths.reduce((sum, l) => sum + l, 0) / lengths.length;
+  const shoulder = restShoulder('right', eyeHeight);
+  const calibration = { eyeHeight, armSpan: 2 * (arm + shoulder.x) };
+  const complaint = calibrationComplaint(calibration);
+  return complaint === null ? { kind: 'done', calibration } : failed(complaint);
+}
+
+/** Shoulder to wrist [m] of an arm stretched forward or sideways; null: it points elsewhere. Wrist in the heading frame. */
+function reachOf(side: Side, wrist: Vec3, eyeHeight: number): number | null {
+  const sigma = sideSign(side);
+  const shoulder = restShoulder(side, eyeHeight);
+  const arm = subtract(wrist, shoulder);
+  const reach = length(arm);
+  if (reach < 1e-6) return 0;
+  if (sigma * arm.x > 0.8 * reach) return reach;
+  if (-arm.z < 0.7 * reach) return null;
+  return length(subtract(wrist, addScaled(shoulder, forward, PROTRACTION * eyeHeight)));
+}
+
+/** The shoulder joint of a person who stands straight, heading frame; what the span of the arms is measured from. */
+function restShoulder(side: Side, eyeHeight: number): Vec3 {
+  // The span does not matter for shoulders.
+  const body = chestSpaceBody({ eyeHeight, armSpan: eyeHeight });
+  const head = subtract(vec3(0, eyeHeight, 0), body.eyesInHead);
+  const neck = subtract(head, body.neckToHead);
+  const shoulder = add(body.clavicleRoot, body.clavicle);
+  return add(neck, vec3(sideSign(side) * shoulder.x, shoulder.y, shoulder.z));
+}
+
+/** The mean of the middle half: a few wild values do not move it. */
+function robustMean(values: readonly number[]): number {
+  const sorted = [...values].sort((a, b) => a - b);
+  const cut = Math.floor(sorted.length / 4);
+  const middle = sorted.slice(cut, sorted.length - cut);
+  return middle.reduce((sum, value) => sum + value, 0) / middle.length;
+}
+
+const middleOf = (points: readonly Vec3[]): Vec3 =>
+  vec3(
+    robustMean(points.map(({ x }) => x)),
+    robustMean(points.map(({ y }) => y)),
+    robustMean(points.map(({ z }) => z)),
+  );
