@@ -1,0 +1,157 @@
+import type { Calibration } from '../body/calibration';
+import { slerp } from '../math/quat';
+import { lerp } from '../math/vec3';
+import type { TrackedPose, TrackingFrame } from './tracking-frame';
+
+/** What was tracked over a while, as it was tracked: full precision, lost hands as null. */
+export interface Recording {
+  /** What the frames come from, in words: a headset's name, 'emulated headset'. */
+  readonly device: string;
+  /** Frames per second that the device asked for; the frames' own times are what counts. */
+  readonly rateHz: number;
+  /** The body of the person; null: not known. */
+  readonly calibration: Calibration | null;
+  /** At least one, times rising. */
+  readonly frames: readonly TrackingFrame[];
+}
+
+const format = 'threepoint-recording';
+const version = 1;
+
+const poseColumns = 7;
+
+/** The text of a recording file: JSON with one frame per line. */
+export function writeRecording({ device, rateHz, calibration, frames }: Recording): string {
+  const header = JSON.stringify({ format, version, device, rateHz, calibration });
+  const pose = (tracked: TrackedPose | null) =>
+    tracked && [
+      ...[tracked.position.x, tracked.position.y, tracked.position.z],
+      ...[tracked.orientation.x, tracked.orientation.y, tracked.orientation.z, tracked.orientation.w],
+      tracked.tracking,
+    ];
+  const lines = frames.map(({ time, head, leftHand, rightHand }) =>
+    JSON.stringify([time, pose(head), pose(leftHand), pose(rightHand)]),
+  );
+  return `${header.slice(0, -1)},"columns":"time [s]; head, left hand, right hand: position [m], orientation xyzw, tracking","frames":[\n${lines.join(',\n')}\n]}\n`;
+}
+
+/** The recording in the text of a file; throws a sentence that says which line or frame is wrong, and why. */
+export function parseRecording(text: string): Recording {
+  const file = parseJson(text);
+  if (!isRecord(file) || file.format !== format) throw new Error('This is no recording of threepoint.');
+  if (file.version !== version) {
+    throw new Error(`The recording has version ${String(file.version)}; this page reads version ${version}.`);
+  }
+  if (typeof file.device !== 'string') throw new Error('The recording does not say its device.');
+  if (!isFinite(file.rateHz) || file.rateHz <= 0) throw new Error('The recording does not say its rate in Hz.');
+  if (!Array.isArray(file.frames) || file.frames.length === 0) throw new Error('The recording has no frames.');
+  const frames = file.frames.map(parseFrame);
+  for (let i = 1; i < frames.length; i++) {
+    if (frames[i]!.time <= frames[i - 1]!.time) {
+      throw new Error(`Frame ${i + 1} of the recording is not later than the one before it.`);
+    }
+  }
+  return { device: file.device, rateHz: file.rateHz, calibration: parseCalibration(file.calibration), frames };
+}
+
+function parseJson(text: string): unknown {
+  try {
+    return JSON.parse(text);
+  } catch (error) {
+    if (!(error instanceof SyntaxError)) throw error;
+    throw new Error(`The recording is no JSON${placeOfSyntaxError(text, error.message)}.`);
+  }
+}
+
+/** Frames are one to a line: the first line that is none on its own is where a damaged file breaks. */
+function placeOfSyntaxError(text: string, message: string): string {
+  const lines = text.split('\n');
+  const broken = lines.slice(1, -2).findIndex((line) => {
+    try {
+      JSON.parse(line.replace(/,\s*$/, ''));
+      return false;
+    } catch {
+      // reason: the line that does not parse is what is being looked for.
+      return true;
+    }
+  });
+  return lines.length > 3 && broken >= 0 ? `: line ${broken + 2} is damaged` : `: ${message}`;
+}
+
+const isRecord = (value: unknown): value is Record<string, unknown> =>
+  typeof value === 'object' && value !== null && !Array.isArray(value);
+
+const isFinite = (value: unknown): value is number => typeof value === 'number' && Number.isFinite(value);
+
+function parseCalibration(value: unknown): Calibration | null {
+  if (value === null || value === undefined) return null;
+  if (isRecord(value) && isFinite(value.eyeHeight) && isFinite(value.armSpan)) {
+    if (value.eyeHeight > 0 && value.armSpan > 0) return { eyeHeight: value.eyeHeight, armSpan: value.armSpan };
+  }
+  throw new Error('The recording’s calibration is neither null nor an eye height and an arm span in metres.');
+}
+
+function parseFrame(value: unknown, index: number): TrackingFrame {
+  const where = `Frame ${index + 1} of the recording`;
+  if (!Array.isArray(value) || value.length !== 4) {
+    throw new Error(`${where} is not a time, a head, a left hand and a right hand.`);
+  }
+  const [time, head, leftHand, rightHand] = value;
+  if (!isFinite(time)) throw new Error(`${where} has no time.`);
+  if (head === null) throw new Error(`${where} has no head.`);
+  return {
+    time,
+    head: parsePose(head, `${where}: the head`),
+    leftHand: leftHand === null ? null : parsePose(leftHand, `${where}: the left hand`),
+    rightHand: rightHand === null ? null : parsePose(rightHand, `${where}: the right hand`),
+  };
+}
+
+function parsePose(value: unknown, what: string): TrackedPose {
+  if (!Array.isArray(value) || value.length !== poseColumns + 1 || !value.slice(0, poseColumns).every(isFinite)) {
+    throw new Error(`${what} is not seven finite numbers and a word.`);
+  }
+  const tracking = value[poseColumns];
+  if (tracking !== 'tracked' && tracking !== 'emulated') {
+    throw new Error(`${what} is neither “tracked” nor “emulated”.`);
+  }
+  const [px, py, pz, x, y, z, w] = value as number[];
+  const orientation = { x: x!, y: y!, z: z!, w: w! };
+  if (Math.abs(Math.hypot(x!, y!, z!, w!) - 1) > 1e-3)
+    throw new Error(`${what} has an orientation of a length other than 1.`);
+  return { position: { x: px!, y: py!, z: pz! }, orientation, tracking };
+}
+
+/** Seconds from the first frame to the last. */
+export const recordingDuration = ({ frames }: Recording): number => frames.at(-1)!.time - frames[0]!.time;
+
+/**
+ * The frame at a time [s] of the recording's own clock, interpolated; before the first and after the last: that frame. A hand
+ * that either neighbour lacks is null: never on its way from or to nowhere.
+ */
+export function sampleRecording({ frames }: Recording, time: number): TrackingFrame {
+  let low = 0;
+  let high = frames.length - 1;
+  while (low < high) {
+    const middle = (low + high + 1) >> 1;
+    if (frames[middle]!.time <= time) low = middle;
+    else high = middle - 1;
+  }
+  const before = frames[low]!;
+  const after = frames[Math.min(low + 1, frames.length - 1)]!;
+  const share = after.time > before.time ? (time - before.time) / (after.time - before.time) : 0;
+  if (share <= 0) return { ...before, time };
+  const hand = (a: TrackedPose | null, b: TrackedPose | null) => a && b && interpolate(a, b, share);
+  return {
+    time,
+    head: interpolate(before.head, after.head, share),
+    leftHand: hand(before.leftHand, after.leftHand),
+    rightHand: hand(before.rightHand, after.rightHand),
+  };
+}
+
+const interpolate = (a: TrackedPose, b: TrackedPose, share: number): TrackedPose => ({
+  position: lerp(a.position, b.position, share),
+  orientation: slerp(a.orientation, b.orientation, share),
+  tracking: a.tracking === 'tracked' && b.tracking === 'tracked' ? 'tracked' : 'emulated',
+});
