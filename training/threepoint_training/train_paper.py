@@ -7,7 +7,7 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from .features import paper_input
+from .features import floor_under_head, paper_input
 from .model import PaperNetwork
 from .prepared_corpus import PreparedCorpus
 from .simulate_trackers import TrackerConfig, draw_wearer, simulate
@@ -21,13 +21,13 @@ class TrainPaperConfig:
 
     epochs: int = 5
     learning_rate: float = 1e-3
-    batch: int = 256
+    batch: int = 128
     seed: int = 2023
 
 
 @dataclass(frozen=True)
 class PaperFrames:
-    """Inputs [F, 2, 3, 3], targets [F, 18] in the floor frame, the clip of each frame."""
+    """Inputs [F, 2, 3, 3], targets [F, 18] from the floor under the head, room axes [m]; the clip of each frame."""
 
     inputs: NDArray[np.float32]
     targets: NDArray[np.float32]
@@ -45,7 +45,7 @@ def frames_of(corpus: PreparedCorpus, people: tuple[str, ...], seed: int) -> Pap
             random = np.random.default_rng([seed, 1, clip])
             positions, rotations = simulate(corpus.positions[frames], corpus.rotations[frames], wearer, trackers, random)
             inputs.append(paper_input(positions, rotations).astype(np.float32))
-            targets.append(corpus.truth(frames).reshape(len(positions), -1).astype(np.float32))
+            targets.append((corpus.truth(frames) - floor_under_head(positions)).reshape(len(positions), -1).astype(np.float32))
             clips.append(np.full(len(positions), clip))
     return PaperFrames(np.concatenate(inputs), np.concatenate(targets), np.concatenate(clips))
 

@@ -1,6 +1,7 @@
 import type { AvatarPose } from '../body/avatar-pose';
 import type { Calibration } from '../body/calibration';
 import type { TrackingFrame } from '../tracking/tracking-frame';
+import type { JointPositions } from './joint-positions';
 
 export const estimatorNames = ['hands-only', 'ik', 'paper', 'learned'] as const;
 export type EstimatorName = (typeof estimatorNames)[number];
@@ -23,4 +24,8 @@ export interface PoseEstimator {
    * whatever the network's age.
    */
   estimate(frame: TrackingFrame): AvatarPose;
+  /** The network's own joints [m] for the newest finished frame, floor frame, before filter and kinematics; null without one. */
+  rawJoints(): JointPositions | null;
+  /** Why the newest frame is IK although a network should have drawn it; null: nothing is wrong. */
+  fault(): string | null;
 }

@@ -53,4 +53,4 @@ export const lerp = (a: Vec3, b: Vec3, t: number): Vec3 => ({
   z: a.z + (b.z - a.z) * t,
 });
 
-export const isFinite = (a: Vec3): boolean => Number.isFinite(a.x + a.y + a.z);
+export const isFiniteVec3 = (a: Vec3): boolean => Number.isFinite(a.x + a.y + a.z);
