@@ -1,4 +1,5 @@
 import { existsSync, readFileSync } from 'node:fs';
+import { connect } from 'node:net';
 import { join } from 'node:path';
 import { describe, expect, test } from 'vitest';
 import { run, runQuietly } from '../../scripts/run-command.mjs';
@@ -6,13 +7,11 @@ import { directoryWith } from '../temporary-directory';
 
 const node = (script: string, options = {}) => run(process.execPath, ['-e', script], { capture: true, ...options });
 
-function isAlive(pid: number): boolean {
-  try {
-    return process.kill(pid, 0);
-  } catch (error) {
-    if ((error as NodeJS.ErrnoException).code === 'ESRCH') return false;
-    throw error;
-  }
+function answers(port: number): Promise<boolean> {
+  return new Promise((resolve) => {
+    const socket = connect(port, '127.0.0.1');
+    socket.once('connect', () => resolve(true)).once('error', () => resolve(false));
+  });
 }
 
 describe('a program that is run', () => {
@@ -28,18 +27,21 @@ describe('a program that is run', () => {
   });
 
   test.skipIf(process.platform === 'win32')('is ended with everything it started when it runs too long', async () => {
-    const directory = directoryWith();
-    const pidFile = join(directory, 'pid');
-    const forever = 'setInterval(() => {}, 1000)';
+    const portFile = join(directoryWith(), 'port');
+    const listening = `
+      const server = require('node:net').createServer().listen(0, '127.0.0.1', () =>
+        require('node:fs').writeFileSync(${JSON.stringify(portFile)}, String(server.address().port)));`;
     const script = `
-      const child = require('node:child_process').spawn(process.execPath, ['-e', ${JSON.stringify(forever)}]);
-      require('node:fs').writeFileSync(${JSON.stringify(pidFile)}, String(child.pid));
-      ${forever}`;
-    const result = await node(script, { limitSeconds: 1 });
-    expect(result).toMatchObject({ timedOut: true });
+      require('node:child_process').spawn(process.execPath, ['-e', ${JSON.stringify(listening)}]);
+      setInterval(() => {}, 1000);`;
+    const running = node(script, { limitSeconds: 2 });
+    await expect.poll(() => existsSync(portFile), { timeout: 2000 }).toBe(true);
+    const port = Number(readFileSync(portFile, 'utf8'));
+    expect(await answers(port)).toBe(true);
+    const result = await running;
+    expect(result.timedOut).toBe(true);
     expect(result.code).not.toBe(0);
-    expect(existsSync(pidFile)).toBe(true);
-    await expect.poll(() => isAlive(Number(readFileSync(pidFile, 'utf8')))).toBe(false);
+    await expect.poll(() => answers(port), { timeout: 5000 }).toBe(false);
   });
 
   test('that is not installed: null when asked quietly, an error otherwise', async () => {
