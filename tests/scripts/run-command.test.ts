@@ -35,7 +35,9 @@ describe('a program that is run', () => {
       require('node:child_process').spawn(process.execPath, ['-e', ${JSON.stringify(listening)}]);
       setInterval(() => {}, 1000);`;
     const running = node(script, { limitSeconds: 2 });
-    await expect.poll(() => existsSync(portFile), { timeout: 2000 }).toBe(true);
+    await expect
+      .poll(() => existsSync(portFile) && readFileSync(portFile, 'utf8') !== '', { timeout: 2000 })
+      .toBe(true);
     const port = Number(readFileSync(portFile, 'utf8'));
     expect(await answers(port)).toBe(true);
     const result = await running;
