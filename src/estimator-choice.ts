@@ -32,6 +32,8 @@ export interface EstimatorChoice {
   /** For every estimator from the next frame on. */
   calibrate(calibration: Calibration): void;
   reset(): void;
+  /** Gives up on an estimator whose network has failed while running; call it now and then. */
+  check(): void;
 }
 
 /** The reason behind anything that was thrown, as a sentence. */
@@ -62,30 +64,10 @@ export function createEstimatorChoice(options: EstimatorChoiceOptions): Estimato
     options.onChange();
   }
 
-  /** The same network, whose failure while running makes IK take over instead of passing unnoticed. */
-  function watched(name: NetworkName, network: PoseRegressor): PoseRegressor {
-    return {
-      contract: network.contract,
-      provider: network.provider,
-      resolvesInFrame: network.resolvesInFrame,
-      async run(features) {
-        try {
-          const output = await network.run(features);
-          if (!output.every(Number.isFinite)) throw new Error('the network answered with something that is no number');
-          return output;
-        } catch (error) {
-          giveUp(name, error);
-          throw error;
-        }
-      },
-      dispose: () => network.dispose(),
-    };
-  }
-
   function network(name: NetworkName): Promise<PoseRegressor> {
     const known = loading.get(name);
     if (known) return known;
-    const started = options.load(name).then((loaded) => watched(name, loaded));
+    const started = options.load(name);
     loading.set(name, started);
     return started;
   }
@@ -104,6 +86,7 @@ export function createEstimatorChoice(options: EstimatorChoiceOptions): Estimato
       return unavailable;
     },
     async choose(name) {
+      if (unavailable[name] !== undefined) return;
       wanted = name;
       if (!isNetwork(name)) {
         drawWith(name, null);
@@ -122,5 +105,9 @@ export function createEstimatorChoice(options: EstimatorChoiceOptions): Estimato
       current.calibrate(next);
     },
     reset: () => current.reset(),
+    check() {
+      const fault = current.fault();
+      if (fault !== null) giveUp(current.name, fault);
+    },
   };
 }

@@ -25,6 +25,8 @@ function observedParts(change: Partial<FrameParts<string>> = {}) {
       await Promise.resolve();
       calls.push('prepared');
     },
+    rawJoints: () => null,
+    fault: () => null,
     estimate: () => {
       calls.push('estimate');
       return pose;

@@ -1,15 +1,14 @@
 import * as v from 'valibot';
+import { calibrationComplaint } from '../core/body/calibration';
 import { estimatorNames } from '../core/estimation/pose-estimator';
 
-/** Ranges [m] in which a person's measures lie; what is outside is a mistake of the hand. */
-export const eyeHeightRange = { min: 0.85, max: 2.15 } as const;
-export const armSpanRange = { min: 0.6, max: 2.1 } as const;
-
-const metres = ({ min, max }: { readonly min: number; readonly max: number }) =>
-  v.pipe(v.number(), v.finite(), v.minValue(min), v.maxValue(max));
+const calibration = v.pipe(
+  v.object({ eyeHeight: v.number(), armSpan: v.number() }),
+  v.check((measures) => calibrationComplaint(measures) === null, 'nobody measures that'),
+);
 
 const schema = v.object({
-  calibration: v.optional(v.object({ eyeHeight: metres(eyeHeightRange), armSpan: metres(armSpanRange) })),
+  calibration: v.optional(calibration),
   estimator: v.optional(v.picklist(estimatorNames)),
   palette: v.optional(v.pipe(v.string(), v.maxLength(32))),
   upperBodyOnly: v.optional(v.boolean()),

@@ -1,6 +1,7 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
-import { armSpanRange, createPreferenceStore, eyeHeightRange, parsePreferences } from '../../src/ui/preferences';
+import { armSpanRange, eyeHeightRange } from '../../src/core/body/calibration';
+import { createPreferenceStore, parsePreferences } from '../../src/ui/preferences';
 
 function memory(): Pick<Storage, 'getItem' | 'setItem'> {
   const items = new Map<string, string>();
@@ -31,7 +32,7 @@ describe('what the page remembers', () => {
   test('a person three metres tall is a damaged memory, said in a sentence', () => {
     const read = parsePreferences(JSON.stringify({ calibration: { eyeHeight: 3, armSpan: 1.4 } }));
     expect(read.preferences).toEqual({});
-    expect(read.complaint).toMatch(/damaged \(calibration\.eyeHeight\)/);
+    expect(read.complaint).toMatch(/damaged \(calibration\)/);
   });
 
   test('whatever is stored, reading it throws nothing and yields no measure outside a person', () => {
