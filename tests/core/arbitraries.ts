@@ -1,0 +1,38 @@
+import fc from 'fast-check';
+import { fromAxisAngle, multiply, normaliseQuat, type Quat } from '../../src/core/math/quat';
+import { normalise, type Vec3, vec3 } from '../../src/core/math/vec3';
+
+/** Every property of core starts from this seed, so that a failure can be repeated. */
+export const seed = 2460;
+
+export const number = (min: number, max: number) => fc.double({ min, max, noNaN: true });
+
+export const vector = (size: number): fc.Arbitrary<Vec3> =>
+  fc.tuple(number(-size, size), number(-size, size), number(-size, size)).map(([x, y, z]) => vec3(x, y, z));
+
+/** Directions of length 1, the axes among them. */
+export const direction: fc.Arbitrary<Vec3> = fc.oneof(
+  vector(1).map((v) => normalise(v)),
+  fc.constantFrom(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, -1), vec3(-1, 0, 0), vec3(0, -1, 0), vec3(0, 0, 1)),
+);
+
+/** Rotations of all kinds: none, quarter and half turns about axes, any other; both signs. */
+export const rotation: fc.Arbitrary<Quat> = fc
+  .tuple(
+    direction,
+    fc.oneof(number(-Math.PI, Math.PI), fc.constantFrom(0, Math.PI / 2, Math.PI, -Math.PI / 2, 1e-9)),
+    fc.boolean(),
+  )
+  .map(([axis, angle, flipped]) => {
+    const q = fromAxisAngle(axis, angle);
+    return flipped ? { x: -q.x, y: -q.y, z: -q.z, w: -q.w } : q;
+  });
+
+/** Rotations near to none: at most `angle` [rad] about any axis. */
+export const smallRotation = (angle: number): fc.Arbitrary<Quat> =>
+  fc.tuple(direction, number(-angle, angle)).map(([axis, turn]) => fromAxisAngle(axis, turn));
+
+/** Where and which way round a person stands: properties never start at the origin facing −Z. */
+export const standpoint = fc.record({ x: number(-3, 3), z: number(-3, 3), yaw: number(-Math.PI, Math.PI) });
+
+export const composed = (...rotations: Quat[]): Quat => normaliseQuat(rotations.reduce(multiply));
