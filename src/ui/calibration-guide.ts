@@ -1,15 +1,13 @@
 import type { Calibration } from '../core/body/calibration';
+import { type GuidedCalibration, startGuidedCalibration, stepGuidedCalibration } from '../core/body/guided-calibration';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import type { CalibrationStep } from './calibration-dialog';
 
-/** Seconds to take the posture, seconds to hold it, seconds that "Done" stays in the headset. */
+/** Seconds to take the posture; seconds that the closing sentence stays in the headset. */
 const countdown = 3;
-const measuring = 2;
-const closing = 3;
+const closing = 4;
 
 export interface CalibrationGuideOptions {
-  /** The person in these frames; throws a sentence that says what to do differently. */
-  measure(frames: readonly TrackingFrame[]): Calibration;
   /** null: the guide is not running. */
   onStep(step: CalibrationStep | null): void;
   onMeasured(calibration: Calibration): void;
@@ -29,24 +27,11 @@ export interface CalibrationGuide {
 export function createCalibrationGuide(options: CalibrationGuideOptions): CalibrationGuide {
   let startTime: number | null = null;
   let running = false;
+  let measuring: GuidedCalibration = startGuidedCalibration;
   let endTime: number | null = null;
-  let frames: TrackingFrame[] = [];
-
-  function finish(time: number): void {
-    endTime = time;
-    try {
-      const calibration = options.measure(frames);
-      options.onMeasured(calibration);
-      const eyes = Math.round(calibration.eyeHeight * 100);
-      options.onStep({ kind: 'done', text: `Your eyes are ${eyes} cm above the floor. This is remembered.` });
-    } catch (error) {
-      options.onStep({ kind: 'failed', text: error instanceof Error ? error.message : String(error) });
-    }
-  }
 
   function stop(): void {
     running = false;
-    frames = [];
     options.onStep(null);
   }
 
@@ -58,7 +43,7 @@ export function createCalibrationGuide(options: CalibrationGuideOptions): Calibr
       running = true;
       startTime = null;
       endTime = null;
-      frames = [];
+      measuring = startGuidedCalibration;
       options.onStep({ kind: 'countdown', secondsLeft: countdown });
     },
     cancel() {
@@ -70,14 +55,26 @@ export function createCalibrationGuide(options: CalibrationGuideOptions): Calibr
       const elapsed = frame.time - startTime;
       if (endTime !== null) {
         if (options.closesItself() && frame.time - endTime > closing) stop();
-      } else if (elapsed < countdown) {
-        options.onStep({ kind: 'countdown', secondsLeft: countdown - elapsed });
-      } else if (elapsed < countdown + measuring) {
-        frames.push(frame);
-        options.onStep({ kind: 'measuring', part: (elapsed - countdown) / measuring });
-      } else {
-        finish(frame.time);
+        return;
       }
+      if (elapsed < countdown) {
+        options.onStep({ kind: 'countdown', secondsLeft: countdown - elapsed });
+        return;
+      }
+      measuring = stepGuidedCalibration(measuring, frame);
+      if (measuring.kind === 'measuring') {
+        options.onStep({ kind: 'measuring', part: measuring.part });
+        return;
+      }
+      endTime = frame.time;
+      if (measuring.kind === 'failed') {
+        options.onStep({ kind: 'failed', text: measuring.reason });
+        return;
+      }
+      const { calibration } = measuring;
+      options.onMeasured(calibration);
+      const eyes = Math.round(calibration.eyeHeight * 100);
+      options.onStep({ kind: 'done', text: `Your eyes are ${eyes} cm above the floor. This is remembered.` });
     },
   };
 }

@@ -1,0 +1,68 @@
+import { describe, expect, test } from 'vitest';
+import type { TrackingFrame } from '../src/core/tracking/tracking-frame';
+import { createRecorder } from '../src/recorder';
+
+const source = { device: 'emulated headset', rateHz: 72, calibration: { eyeHeight: 1.6, armSpan: 1.4 } };
+
+/** A head that goes right at one metre per second. */
+function frameAt(time: number): TrackingFrame {
+  return {
+    time,
+    head: { position: { x: time, y: 1.6, z: 0 }, orientation: { x: 0, y: 0, z: 0, w: 1 }, tracking: 'tracked' },
+    leftHand: null,
+    rightHand: null,
+  };
+}
+
+function recorded(from: number, to: number) {
+  const recorder = createRecorder();
+  recorder.record(source);
+  for (let time = from; time < to; time += 1 / 64) recorder.observe(frameAt(time));
+  recorder.stop();
+  return recorder;
+}
+
+describe('the recorder', () => {
+  test('keeps nothing before it is asked to', () => {
+    const recorder = createRecorder();
+    recorder.observe(frameAt(1));
+    expect([recorder.name, recorder.file(), recorder.frameCount]).toEqual([null, null, 0]);
+    recorder.replay();
+    expect(recorder.sample(5)).toBeNull();
+  });
+
+  test('what was recorded is replayed at the time of whoever watches', () => {
+    const recorder = recorded(10, 12);
+    recorder.replay();
+    expect(recorder.sample(100)?.head.position.x).toBeCloseTo(10, 6);
+    const later = recorder.sample(101.25);
+    expect(later?.time).toBe(101.25);
+    expect(later?.head.position.x).toBeCloseTo(11.25, 6);
+  });
+
+  test('a replay begins anew at its end, or ends', () => {
+    const recorder = recorded(0, 1);
+    recorder.replay();
+    recorder.sample(50);
+    expect(recorder.sample(51.5)?.head.position.x).toBeCloseTo(0, 6);
+    recorder.setLoop(false);
+    expect(recorder.sample(53)).toBeNull();
+    expect(recorder.mode).toBe('idle');
+  });
+
+  test('its file is read back to the bit', () => {
+    const recorder = recorded(1 / 3, 1);
+    const file = recorder.file();
+    const other = createRecorder();
+    const read = other.open('copy.json', file?.text ?? '');
+    expect(read.frames[0]).toEqual(frameAt(1 / 3));
+    expect(read).toMatchObject({ device: source.device, rateHz: source.rateHz, calibration: source.calibration });
+    expect(other.file()?.text).toBe(file?.text);
+  });
+
+  test('a file that is no recording leaves the one at hand', () => {
+    const recorder = recorded(0, 1);
+    expect(() => recorder.open('photos.json', '{"photos": []}')).toThrow(/no recording/);
+    expect(recorder.name).toBe('recording-1.json');
+  });
+});
