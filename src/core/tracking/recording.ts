@@ -43,7 +43,7 @@ export function parseRecording(text: string): Recording {
     throw new Error(`The recording has version ${String(file.version)}; this page reads version ${version}.`);
   }
   if (typeof file.device !== 'string') throw new Error('The recording does not say its device.');
-  if (!isFinite(file.rateHz) || file.rateHz <= 0) throw new Error('The recording does not say its rate in Hz.');
+  if (!isFiniteNumber(file.rateHz) || file.rateHz <= 0) throw new Error('The recording does not say its rate in Hz.');
   if (!Array.isArray(file.frames) || file.frames.length === 0) throw new Error('The recording has no frames.');
   const frames = file.frames.map(parseFrame);
   for (let i = 1; i < frames.length; i++) {
@@ -81,11 +81,11 @@ function placeOfSyntaxError(text: string, message: string): string {
 const isRecord = (value: unknown): value is Record<string, unknown> =>
   typeof value === 'object' && value !== null && !Array.isArray(value);
 
-const isFinite = (value: unknown): value is number => typeof value === 'number' && Number.isFinite(value);
+const isFiniteNumber = (value: unknown): value is number => typeof value === 'number' && Number.isFinite(value);
 
 function parseCalibration(value: unknown): Calibration | null {
   if (value === null || value === undefined) return null;
-  if (isRecord(value) && isFinite(value.eyeHeight) && isFinite(value.armSpan)) {
+  if (isRecord(value) && isFiniteNumber(value.eyeHeight) && isFiniteNumber(value.armSpan)) {
     if (value.eyeHeight > 0 && value.armSpan > 0) return { eyeHeight: value.eyeHeight, armSpan: value.armSpan };
   }
   throw new Error('The recording’s calibration is neither null nor an eye height and an arm span in metres.');
@@ -97,7 +97,7 @@ function parseFrame(value: unknown, index: number): TrackingFrame {
     throw new Error(`${where} is not a time, a head, a left hand and a right hand.`);
   }
   const [time, head, leftHand, rightHand] = value;
-  if (!isFinite(time)) throw new Error(`${where} has no time.`);
+  if (!isFiniteNumber(time)) throw new Error(`${where} has no time.`);
   if (head === null) throw new Error(`${where} has no head.`);
   return {
     time,
@@ -108,7 +108,7 @@ function parseFrame(value: unknown, index: number): TrackingFrame {
 }
 
 function parsePose(value: unknown, what: string): TrackedPose {
-  if (!Array.isArray(value) || value.length !== poseColumns + 1 || !value.slice(0, poseColumns).every(isFinite)) {
+  if (!Array.isArray(value) || value.length !== poseColumns + 1 || !value.slice(0, poseColumns).every(isFiniteNumber)) {
     throw new Error(`${what} is not seven finite numbers and a word.`);
   }
   const tracking = value[poseColumns];
