@@ -22,6 +22,7 @@ interface Device {
   position: { set(...xyz: Point): void };
   quaternion: { set(...xyzw: Rotation): void };
   primaryInputMode: 'controller' | 'hand';
+  controlMode: 'manual' | 'programmatic';
   readonly controllers: Record<Side, TrackedInput>;
   readonly hands: Record<Side, TrackedInput>;
   recenter(): void;
@@ -53,7 +54,11 @@ async function reachDevice(page: Page): Promise<void> {
     const system = navigator.xr as unknown as Record<symbol, { device: Window['emulatedDevice'] }> | undefined;
     const key = Object.getOwnPropertySymbols(system ?? {}).find(({ description }) => description === '@iwer/xr-system');
     const kept = key && system?.[key];
-    if (kept) window.emulatedDevice = kept.device;
+    if (kept) {
+      window.emulatedDevice = kept.device;
+      // Else the emulator's own panel puts head and hands back where its mouse left them, in every frame.
+      kept.device.controlMode = 'programmatic';
+    }
     return Boolean(kept);
   });
 }
