@@ -54,11 +54,7 @@ async function reachDevice(page: Page): Promise<void> {
     const system = navigator.xr as unknown as Record<symbol, { device: Window['emulatedDevice'] }> | undefined;
     const key = Object.getOwnPropertySymbols(system ?? {}).find(({ description }) => description === '@iwer/xr-system');
     const kept = key && system?.[key];
-    if (kept) {
-      window.emulatedDevice = kept.device;
-      // Else the emulator's own panel puts head and hands back where its mouse left them, in every frame.
-      kept.device.controlMode = 'programmatic';
-    }
+    if (kept) window.emulatedDevice = kept.device;
     return Boolean(kept);
   });
 }
@@ -96,6 +92,8 @@ export async function emulatedHeadset(page: Page): Promise<EmulatedHeadset> {
   const place = (placement: Placement) =>
     page.evaluate((wanted) => {
       const device = window.emulatedDevice;
+      // Else the emulator's own panel puts head and hands back where its mouse left them, in every frame.
+      device.controlMode = 'programmatic';
       const put = (
         target: { position: { set(...xyz: Point): void }; quaternion: { set(...xyzw: Rotation): void } },
         pose: Partial<PlacedPose> | undefined,
