@@ -34,7 +34,12 @@ export function readGolden<Content>(name: string): Content {
 }
 
 export const vec = ([x = Number.NaN, y = Number.NaN, z = Number.NaN]: Numbers): Vec3 => ({ x, y, z });
-export const quat = ([x = Number.NaN, y = Number.NaN, z = Number.NaN, w = Number.NaN]: Numbers): Quat => ({ x, y, z, w });
+export const quat = ([x = Number.NaN, y = Number.NaN, z = Number.NaN, w = Number.NaN]: Numbers): Quat => ({
+  x,
+  y,
+  z,
+  w,
+});
 
 /** A golden frame as the estimators see it. */
 export function continuedFrame(frame: GoldenCase['frames'][number]): ContinuedFrame {

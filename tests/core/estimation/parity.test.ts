@@ -1,4 +1,5 @@
 import { describe, expect, test } from 'vitest';
+import { estimatedJoints, type JointName } from '../../../src/core/body/joints';
 import { chestSpaceBody, skeletonFromCalibration } from '../../../src/core/body/skeleton';
 import { createFeatureWindow, featureCount, frameFeatures } from '../../../src/core/estimation/features';
 import { pointsInHeading } from '../../../src/core/estimation/ik';
@@ -6,7 +7,6 @@ import { transformJoints } from '../../../src/core/estimation/joint-positions';
 import { paperFeatures } from '../../../src/core/estimation/paper-features';
 import { solveIk } from '../../../src/core/estimation/solve-ik';
 import { floorFromHeading } from '../../../src/core/tracking/heading';
-import { estimatedJoints, type JointName } from '../../../src/core/body/joints';
 import { continuedFrame, type GoldenCase, readGolden } from './golden';
 
 const tolerance = 1e-5;
