@@ -25,6 +25,10 @@ const zenith = new Color('#121722');
 const ground = new Color('#1c2431');
 const floorRadius = 24;
 
+/** A level square about the origin. Its vertices lie far from where heads are: one right below a level camera has w = 0, and
+ * SwiftShader clips the triangles of such a vertex wrongly. */
+const levelSquare = (size: number) => new PlaneGeometry(size, size).rotateX(-Math.PI / 2);
+
 /** Everything around the people: a floor, a sky, light. The floor is y = 0 of the floor frame. */
 export interface Arena {
   readonly scene: Scene;
@@ -88,14 +92,14 @@ function createGrid(): Mesh {
         #include <colorspace_fragment>
       }`,
   });
-  const grid = new Mesh(new CircleGeometry(9, 48).rotateX(-Math.PI / 2), material);
+  const grid = new Mesh(levelSquare(18), material);
   grid.position.y = 0.002;
   return grid;
 }
 
 function createFloor(): Mesh {
   const floor = new Mesh(
-    new CircleGeometry(floorRadius, 64).rotateX(-Math.PI / 2),
+    levelSquare(2 * floorRadius),
     new MeshStandardMaterial({ color: ground, roughness: 0.92, metalness: 0, envMapIntensity: 0.25 }),
   );
   floor.receiveShadow = true;

@@ -9,11 +9,13 @@ export interface LoadingStep {
 export interface Progress {
   /** How far a step is, 0 to 1; never goes back. */
   report(step: string, part: number): void;
-  /** The body is on the screen: the bar goes. */
+  /** The first body is on the screen: what is still loading goes on as a thin bar above it. */
+  showBody(): void;
+  /** Everything asked for is there, or known not to come: the bar goes. */
   finish(): void;
 }
 
-/** The bar that is there from the first paint (index.html) until the first body is on the screen. */
+/** The bar that is there from the first paint (index.html) until everything has arrived. */
 export function createProgress(steps: readonly LoadingStep[]): Progress {
   const region = pageElement('progress', HTMLDivElement);
   const text = pageElement('progress-text', HTMLParagraphElement);
@@ -31,6 +33,9 @@ export function createProgress(steps: readonly LoadingStep[]): Progress {
     report(step, part) {
       parts.set(step, Math.min(1, Math.max(parts.get(step) ?? 0, part)));
       show();
+    },
+    showBody() {
+      document.body.classList.add('loaded');
     },
     finish() {
       region.hidden = true;
