@@ -1,0 +1,260 @@
+"""From mocap files to public/models, in one run: prepare, body and IK, the paper's network, ours, export, the table.
+
+`npm run train -- --mocap DIR` calls this. A run is seeded: the same data and options write the same weights on the same machine.
+"""
+
+import argparse
+import json
+import re
+import sys
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.table import Table
+
+from . import export, fit_body, fit_ik, golden, ik, people, prepare, skeleton, train_learned, train_paper
+from .features import paper_input
+from .generated_motion import generate_corpus
+from .motion import MocapError
+from .prepared_corpus import PreparedCorpus
+
+REPOSITORY = Path(__file__).parents[2]
+LABELS = ("left elbow", "right elbow", "left shoulder", "right shoulder", "spine", "pelvis")
+VERSION = "1"
+
+
+@dataclass(frozen=True)
+class TrainConfig:
+    """mocap None: generated motion, for trying the pipeline out. refit_kinematics also replaces the page's proportions and IK."""
+
+    mocap: Path | None
+    out: Path = REPOSITORY / "public/models"
+    cache: Path = REPOSITORY / ".cache/mocap"
+    skeleton_map: Path | None = None
+    folds: tuple[str, ...] = ("A", "B")
+    frame_random: bool = True
+    refit_kinematics: bool = False
+    seed: int = 2460
+    paper: train_paper.TrainPaperConfig = train_paper.TrainPaperConfig()
+    learned: train_learned.TrainLearnedConfig = train_learned.TrainLearnedConfig()
+    ik: fit_ik.FitIkConfig = fit_ik.FitIkConfig()
+    # The page's damping of the correction; chosen by `npm run evaluate`: jerk against error.
+    correction_half_life: float = 0.05
+
+
+def compact_json(content: Any) -> str:
+    """JSON with a line per innermost list, as the parameter files in src/core are written."""
+    def on_one_line(match: re.Match[str]) -> str:
+        return f"[{' '.join(match[1].split())}]"
+
+    return re.sub(r"\[\s+([^\[\]{}]*?)\s+\]", on_one_line, json.dumps(content, indent=2)) + "\n"
+
+
+def by_joint(errors: np.ndarray) -> dict[str, float]:
+    """Mean over frames of [F, 6] by joint, and `mean`."""
+    return {"mean": float(errors.mean())} | dict(zip(LABELS, errors.mean(axis=0).tolist(), strict=True))
+
+
+def main(config: TrainConfig, console: Console | None = None) -> dict[str, dict[str, float]]:
+    """Trains, writes models and contracts, prints the table and returns it: MPJPE [cm] by row and joint."""
+    console = console or Console()
+    rows: dict[str, dict[str, float]] = {}
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=console, transient=not console.is_terminal) as progress:
+        corpus = _corpus(config, progress, console)
+        everybody = tuple(corpus.people)
+        for fold in config.folds:
+            if not set(people.FOLDS[fold]) & set(everybody) or not people.training_people(fold, everybody):
+                console.print(f"Fold {fold} left out: it needs {', '.join(people.FOLDS[fold])} and others besides them")
+        folds = [fold for fold in config.folds if set(people.FOLDS[fold]) & set(everybody) and people.training_people(fold, everybody)]
+        shipped = folds[0] if folds else None
+
+        networks: dict[str, torch.nn.Module] = {}
+        for fold in folds or [None]:
+            training = people.training_people(fold, everybody) if fold else everybody
+            unseen = tuple(person for person in people.FOLDS[fold] if person in everybody) if fold else everybody
+            with _kinematics(config, corpus, training, fold, shipped, progress):
+                label = f"fold {fold}" if fold else "seen people"
+                paper_network = _train_paper(config, corpus, training, label, progress)
+                learned_network = _train_learned(config, corpus, training, label, progress)
+                test = train_learned.held_out(corpus, unseen, config.learned.window_seconds)
+                paper_test = train_paper.frames_of(corpus, unseen, config.seed)
+                rows[f"IK, {label} ({', '.join(unseen)})"] = by_joint(train_learned.ik_errors_cm(test))
+                rows[f"paper, {label} ({', '.join(unseen)})"] = by_joint(
+                    train_paper.joint_errors_cm(train_paper.predict(paper_network, paper_test.inputs), paper_test.targets)
+                )
+                rows[f"learned, {label} ({', '.join(unseen)})"] = by_joint(
+                    train_learned.errors_cm(train_paper.predict(learned_network, test.inputs), test)
+                )
+            if fold == shipped:
+                networks = {"paper": paper_network, "learned": learned_network}
+        if config.frame_random:
+            rows["paper, frame-random 80/20"] = by_joint(_paper_frame_random(config, corpus, progress))
+
+        training = people.training_people(shipped, everybody) if shipped else everybody
+        _export(config, corpus, training, networks, rows)
+    if config.out.resolve() == (REPOSITORY / "public/models").resolve():
+        golden.main(config.out)
+    _print_table(rows, console)
+    return rows
+
+
+def _corpus(config: TrainConfig, progress: Progress, console: Console) -> PreparedCorpus:
+    if config.mocap is None:
+        return generate_corpus(people=6, clips=4, frames=600, seed=config.seed)
+    task = progress.add_task("prepare", total=None)
+    corpus = prepare.main(
+        prepare.PrepareConfig(config.mocap, config.skeleton_map, cache=config.cache),
+        lambda name: progress.update(task, advance=1, description=f"prepare {name}"),
+    )
+    progress.remove_task(task)
+    for problem in corpus.problems:
+        console.print(f"  {problem}")
+    minutes = len(corpus.positions) / corpus.rate_hz / 60
+    console.print(f"{len(corpus.clips)} clips of {len(corpus.people)} people, {minutes:.0f} minutes at {corpus.rate_hz} Hz")
+    return corpus
+
+
+class _kinematics:  # noqa: N801 - reads as a verb where it is used
+    """Within it, proportions and IK are those of this fold's training people: the page's own for the shipped one."""
+
+    def __init__(self, config: TrainConfig, corpus: PreparedCorpus, training: tuple[str, ...], fold: str | None, shipped: str | None, progress: Progress) -> None:
+        self.saved = (skeleton.load_proportions, ik.load_parameters)
+        if fold == shipped and not config.refit_kinematics:
+            return
+        task = progress.add_task(f"IK {fold or ''}", total=config.ik.iterations)
+        proportions = fit_body.fit(corpus, training)
+        sample = fit_ik.sample(corpus, training, proportions, config.ik.frames_per_person, config.ik.seed)
+        parameters = fit_ik.fit(sample, config.ik, lambda iteration, _: progress.update(task, completed=iteration + 1))
+        progress.remove_task(task)
+        if fold == shipped:
+            skeleton.PROPORTIONS_FILE.write_text(compact_json(proportions))
+            ik.PARAMETERS_FILE.write_text(compact_json(parameters))
+        else:
+            skeleton.load_proportions = lambda: proportions
+            ik.load_parameters = lambda: parameters
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(self, *_: object) -> None:
+        skeleton.load_proportions, ik.load_parameters = self.saved
+
+
+def _train_paper(config: TrainConfig, corpus: PreparedCorpus, training: tuple[str, ...], label: str, progress: Progress) -> torch.nn.Module:
+    frames = train_paper.frames_of(corpus, training, config.seed)
+    return _fit_paper(config, frames, np.arange(len(frames.inputs)), f"paper {label}", progress)
+
+
+def _fit_paper(config: TrainConfig, frames: train_paper.PaperFrames, chosen: np.ndarray, label: str, progress: Progress) -> torch.nn.Module:
+    task = progress.add_task(label, total=config.paper.epochs * 100)
+    batches = max(1, 2 * len(chosen) // config.paper.batch)
+
+    def report(epoch: int, iteration: int, loss: float) -> None:
+        progress.update(task, completed=100 * epoch + 100 * iteration / batches, description=f"{label} {loss:.4f}")
+
+    network = train_paper.train(frames, chosen, config.paper, report)
+    progress.remove_task(task)
+    return network
+
+
+def _paper_frame_random(config: TrainConfig, corpus: PreparedCorpus, progress: Progress) -> np.ndarray:
+    """The paper's protocol: 20 % of all frames, drawn at random, are the test; their neighbours train."""
+    frames = train_paper.frames_of(corpus, tuple(corpus.people), config.seed)
+    test = np.sort(np.random.default_rng(config.seed).choice(len(frames.inputs), len(frames.inputs) // 5, replace=False))
+    chosen = np.setdiff1d(np.arange(len(frames.inputs)), test)
+    network = _fit_paper(config, frames, chosen, "paper frame-random", progress)
+    return train_paper.joint_errors_cm(train_paper.predict(network, frames.inputs[test]), frames.targets[test])
+
+
+def _train_learned(config: TrainConfig, corpus: PreparedCorpus, training: tuple[str, ...], label: str, progress: Progress) -> torch.nn.Module:
+    task = progress.add_task(f"learned {label}", total=config.learned.steps)
+    network = train_learned.train(
+        corpus, training, config.learned,
+        lambda step, loss, _: progress.update(task, completed=step + 1, description=f"learned {label} {loss:.3f}"),
+    )  # fmt: skip
+    progress.remove_task(task)
+    return network
+
+
+def _export(config: TrainConfig, corpus: PreparedCorpus, training: tuple[str, ...], networks: dict[str, torch.nn.Module], rows: dict[str, dict[str, float]]) -> None:
+    source = "generated motion" if config.mocap is None else "CMU Graphics Lab Motion Capture Database and like files"
+    examples = train_learned.held_out(corpus, training[:1], config.learned.window_seconds).inputs[::97]
+    first = corpus.clip_slice(0)
+    tracked = corpus.positions[first][:, [4, 7, 10]].astype(np.float64)
+    paper_examples = paper_input(tracked, corpus.rotations[first].astype(np.float64)).astype(np.float32)[::7]
+    for name, batch in (("paper", paper_examples), ("learned", examples)):
+        provenance = export.Provenance(
+            corpus=source,
+            corpus_hash=corpus.corpus_hash,
+            people=training,
+            seed=config.seed,
+            errors={row: values for row, values in rows.items() if row.startswith((name, "IK"))},
+        )
+        export.write(
+            name, networks[name], batch, config.out, VERSION,
+            (0.0,) if name == "paper" else config.learned.window_seconds, provenance,
+            None if name == "paper" else config.correction_half_life,
+        )  # fmt: skip
+
+
+def _print_table(rows: dict[str, dict[str, float]], console: Console) -> None:
+    table = Table(title="MPJPE of the networks' own output and of IK [cm]")
+    table.add_column("")
+    for label in ("mean", *LABELS):
+        table.add_column(label, justify="right")
+    for row, values in rows.items():
+        table.add_row(row, *(f"{values[label]:.2f}" for label in ("mean", *LABELS)))
+    console.print(table)
+
+
+def _arguments() -> TrainConfig:
+    parser = argparse.ArgumentParser(prog="npm run train --", description="Trains the networks of the page from motion capture.")
+    source = parser.add_mutually_exclusive_group(required=True)
+    source.add_argument("--mocap", type=Path, help="folder with .asf/.amc or .bvh files")
+    source.add_argument("--generated", action="store_true", help="generated motion instead, to try the pipeline")
+    parser.add_argument("--skeleton", type=Path, help="a skeleton map (docs/evaluation.md)")
+    parser.add_argument("--out", type=Path, default=TrainConfig.out)
+    parser.add_argument("--seed", type=int, default=TrainConfig.seed)
+    parser.add_argument("--folds", default=",".join(TrainConfig.folds), help="A and B; the first is shipped (default: A,B)")
+    parser.add_argument("--no-frame-random", action="store_true", help="leave the paper's own protocol out")
+    parser.add_argument("--refit-kinematics", action="store_true", help="also fit the page's body proportions and IK anew")
+    parser.add_argument("--quick", action="store_true", help="a twentieth of the training: does it run?")
+    given = parser.parse_args()
+    config = TrainConfig(
+        mocap=given.mocap,
+        out=given.out,
+        skeleton_map=given.skeleton,
+        folds=tuple(given.folds.split(",")),
+        frame_random=not given.no_frame_random,
+        refit_kinematics=given.refit_kinematics,
+        seed=given.seed,
+    )
+    if unknown := set(config.folds) - set(people.FOLDS):
+        parser.error(f"no fold {', '.join(sorted(unknown))}; there are {', '.join(people.FOLDS)}")
+    config = replace(config, paper=replace(config.paper, seed=config.seed), learned=replace(config.learned, seed=config.seed))
+    if given.quick:
+        config = quick(config)
+    return config
+
+
+def quick(config: TrainConfig) -> TrainConfig:
+    """The same pipeline, a twentieth of the work."""
+    return replace(
+        config,
+        paper=replace(config.paper, epochs=1, batch=1024),
+        learned=replace(config.learned, steps=80, batch=512),
+        ik=replace(config.ik, iterations=2, frames_per_person=200),
+    )
+
+
+if __name__ == "__main__":
+    try:
+        main(_arguments())
+    except MocapError as error:
+        sys.exit(str(error))

@@ -1,0 +1,187 @@
+"""Recombined bodies: one person's torso with the arms of two others, in chest space, as trackers would see it.
+
+Eleven people are too few to learn how arms and torsos go together; their recombinations are many.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import quaternion
+from .features import frame_features, target
+from .prepared_corpus import JOINTS, PreparedCorpus
+from .simulate_trackers import TrackerConfig
+from .prepare import EYES_FROM_HEAD_JOINT
+from .skeleton import body_from_calibration, load_proportions
+
+Array = NDArray[np.float64]
+
+TORSO = ("hips", "chest", "neck", "head")
+ARM = ("UpperArm", "LowerArm", "Hand")
+_MIRROR = np.array([-1.0, 1.0, 1.0])
+_MIRROR_TURN = np.array([1.0, -1.0, -1.0, 1.0])
+
+
+@dataclass(frozen=True)
+class AugmentConfig:
+    """Shares of the batch, and standard deviations of what varies between people, devices and calibrations."""
+
+    window_frames: tuple[int, ...] = (0, 6, 15)
+    recombined: float = 0.8
+    lost_hand: float = 0.06
+    arm_scale: float = 0.03
+    eye_height_error: float = 0.012
+    arm_span_error: float = 0.015
+    trackers: TrackerConfig = TrackerConfig(headset_offset=0.012, wrist_offset=0.009)
+
+
+@dataclass(frozen=True)
+class Batch:
+    """inputs [N, T·46], base [N, 18] the IK joints within them, targets [N, 18]; float32."""
+
+    inputs: NDArray[np.float32]
+    targets: NDArray[np.float32]
+
+
+class BodyParts:
+    """The corpus of some people taken apart: torsos in the floor frame, arms in chest space, all on the right side."""
+
+    def __init__(self, corpus: PreparedCorpus, people: tuple[str, ...]) -> None:
+        clips = corpus.clips_of(set(people))
+        slices = [corpus.clip_slice(clip) for clip in clips]
+        frames = np.concatenate([np.arange(s.start, s.stop) for s in slices])
+        positions = corpus.positions[frames].astype(np.float64)
+        rotations = corpus.rotations[frames].astype(np.float64)
+        joint = {name: positions[:, index] for index, name in enumerate(JOINTS)}
+        sizes = [(corpus.people[corpus.clip_people[clip]].eye_height, corpus.people[corpus.clip_people[clip]].arm_span) for clip in clips]
+        lengths = [s.stop - s.start for s in slices]
+        self.clip_start = np.repeat(np.cumsum([0, *lengths[:-1]]), lengths)
+        self.sizes = np.repeat(np.array(sizes), lengths, axis=0)
+        names = np.array([corpus.clip_people[clip] for clip in clips])
+        self.person = np.repeat(names, lengths)
+        # Everybody counts alike, but a person with ten times the motion still counts somewhat more.
+        _, inverse, counts = np.unique(self.person, return_inverse=True, return_counts=True)
+        weight = counts[inverse] ** -0.5
+        self.cumulative = np.cumsum(weight) / weight.sum()
+
+        x = joint["rightUpperArm"] - joint["leftUpperArm"]
+        x /= np.linalg.norm(x, axis=-1, keepdims=True)
+        up = joint["neck"] - joint["chest"]
+        up = up - np.sum(up * x, -1, keepdims=True) * x
+        up /= np.maximum(np.linalg.norm(up, axis=-1, keepdims=True), 1e-9)
+        self.chest = quaternion.from_matrix(np.stack([x, up, np.cross(x, up)], axis=-1))
+        self.torso = np.stack([joint[name] for name in TORSO], axis=1)
+        self.head_turn = rotations[:, 0]
+        inverse_chest = quaternion.conjugate(self.chest)
+        self.arms = []
+        self.wrist_turns = []
+        for side, turn in (("left", 1), ("right", 2)):
+            arm = np.stack([joint[f"{side}{part}"] for part in ARM], axis=1) - joint["neck"][:, None]
+            arm = quaternion.rotate(np.broadcast_to(inverse_chest[:, None], (*arm.shape[:-1], 4)), arm)
+            wrist = quaternion.multiply(inverse_chest, rotations[:, turn])
+            self.arms.append(arm * _MIRROR if side == "left" else arm)
+            self.wrist_turns.append(wrist * _MIRROR_TURN if side == "left" else wrist)
+        self.arm_length = [
+            np.linalg.norm(arm[:, 1] - arm[:, 0], axis=-1) + np.linalg.norm(arm[:, 2] - arm[:, 1], axis=-1) for arm in self.arms
+        ]
+
+    def draw(self, random: np.random.Generator, count: int) -> NDArray[np.int64]:
+        """Frames, people balanced."""
+        return np.searchsorted(self.cumulative, random.uniform(size=count)).clip(max=len(self.cumulative) - 1)
+
+
+def draw_batch(parts: BodyParts, count: int, config: AugmentConfig, random: np.random.Generator) -> Batch:
+    """That many windows."""
+    newest = parts.draw(random, count)
+    sizes = parts.sizes[newest].copy()
+    arm_frames, arm_sides = [], []
+    for side in (0, 1):
+        other = random.uniform(size=count) < config.recombined
+        arm_frames.append(np.where(other, parts.draw(random, count), newest))
+        arm_sides.append(np.where(other, random.integers(0, 2, count), side))
+    lengths = np.stack(parts.arm_length)
+    own = (lengths[0][newest] + lengths[1][newest]) / 2
+    wanted = own * (1 + random.normal(size=count) * config.arm_scale)
+    sizes[:, 1] += 2 * (wanted - own)
+
+    turn_jitter = quaternion.from_rotation_vector(random.normal(size=(count, 2, 3)) * config.trackers.hand_turn / np.sqrt(3))
+    head_jitter = quaternion.from_rotation_vector(
+        np.stack([random.normal(size=count) * config.trackers.headset_pitch, np.zeros(count), np.zeros(count)], -1)
+    )
+    offsets = np.concatenate(
+        [
+            EYES_FROM_HEAD_JOINT + random.normal(size=(count, 1, 3)) * config.trackers.headset_offset,
+            random.normal(size=(count, 2, 3)) * config.trackers.wrist_offset,
+        ],
+        axis=1,
+    )
+    mirrored = random.uniform(size=count) < 0.5
+    lost = random.uniform(size=(count, 2)) < config.lost_hand
+    calibrated = body_from_calibration(
+        sizes[:, 0] * (1 + random.normal(size=count) * config.eye_height_error),
+        sizes[:, 1] * (1 + random.normal(size=count) * config.arm_span_error),
+    )
+    columns = []
+    targets = np.empty(0)
+    for age in config.window_frames:
+        frames = np.maximum(newest - age, parts.clip_start[newest])
+        chest = parts.chest[frames]
+        torso = parts.torso[frames]
+        neck = torso[:, TORSO.index("neck")]
+        arms, turns = [], []
+        for side in (0, 1):
+            source = np.maximum(arm_frames[side] - age, parts.clip_start[arm_frames[side]])
+            which = arm_sides[side]
+            arm = np.where(which[:, None, None] == 0, parts.arms[0][source], parts.arms[1][source])
+            wrist = np.where(which[:, None] == 0, parts.wrist_turns[0][source], parts.wrist_turns[1][source])
+            length = np.where(which == 0, lengths[0][source], lengths[1][source])
+            # The shoulder scales with the body, the arm with its length.
+            shoulder = arm[:, :1] * (sizes[:, :1] / parts.sizes[source, :1])[:, None]
+            arm = shoulder + (arm - arm[:, :1]) * (wanted / length)[:, None, None]
+            if side == 0:
+                arm, wrist = arm * _MIRROR, wrist * _MIRROR_TURN
+            arms.append(neck[:, None] + quaternion.rotate(np.broadcast_to(chest[:, None], (*arm.shape[:-1], 4)), arm))
+            turns.append(quaternion.multiply(chest, wrist))
+        truth = np.stack([arms[0][:, 1], arms[1][:, 1], arms[0][:, 0], arms[1][:, 0], torso[:, 1], torso[:, 0]], axis=1)
+        anchors = np.stack([torso[:, 3], arms[0][:, 2], arms[1][:, 2]], axis=1)
+        rotations = np.stack([parts.head_turn[frames], *turns], axis=1)
+
+        flip = mirrored[:, None, None]
+        anchors = np.where(flip, anchors[:, [0, 2, 1]] * _MIRROR, anchors)
+        rotations = np.where(flip, rotations[:, [0, 2, 1]] * _MIRROR_TURN, rotations)
+        truth = np.where(flip, truth[:, [1, 0, 3, 2, 4, 5]] * _MIRROR, truth)
+
+        positions = anchors + quaternion.rotate(rotations, offsets)
+        positions = positions + random.normal(size=positions.shape) * config.trackers.position_noise
+        rotations = quaternion.multiply(rotations, np.concatenate([head_jitter[:, None], turn_jitter], axis=1))
+        positions, rotations = rest_lost_hands(positions, rotations, lost, calibrated.eye_height[:, 0], calibrated.arm[:, 0])
+        vector, _ = frame_features(positions, rotations, calibrated, ~lost)
+        columns.append(vector)
+        if age == 0:
+            targets = target(truth, positions, rotations, calibrated)
+    return Batch(np.concatenate(columns, axis=1).astype(np.float32), targets.astype(np.float32))
+
+
+def rest_lost_hands(positions: Array, rotations: Array, lost: NDArray[np.bool_], eye_height: Array, arm: Array) -> tuple[Array, Array]:
+    """Unseen hands [F, 2] beside the hips, as src/core/tracking/hand-continuity.ts leaves them after its ease."""
+    p = load_proportions()
+    yaw = quaternion.heading(rotations[:, 0])
+    positions, rotations = positions.copy(), rotations.copy()
+    shoulder = positions[:, 0, 1] + (-p["eyesInHead"][0] - p["neckToHead"][0] + p["clavicle"][1]) * eye_height
+    for hand, sign in ((0, -1.0), (1, 1.0)):
+        local = np.stack(
+            [
+                sign * (p["clavicleRoot"] + p["clavicle"][0] + 0.05) * eye_height,
+                np.maximum(shoulder - 0.96 * arm, 0.06 * eye_height),
+                0.02 * eye_height,
+            ],
+            axis=-1,
+        )
+        rest = quaternion.rotate(yaw, local) + positions[:, 0] * np.array([1.0, 0.0, 1.0])
+        axes = np.array([[0.0, sign, 0.0], [0.0, 0.0, 1.0], [sign, 0.0, 0.0]])
+        turn = quaternion.multiply(yaw, np.broadcast_to(quaternion.from_matrix(axes), yaw.shape))
+        chosen = lost[:, hand, None]
+        positions[:, 1 + hand] = np.where(chosen, rest, positions[:, 1 + hand])
+        rotations[:, 1 + hand] = np.where(chosen, turn, rotations[:, 1 + hand])
+    return positions, rotations

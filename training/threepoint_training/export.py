@@ -1,0 +1,200 @@
+"""Networks to ONNX with 8-bit weights, each with its contract.
+
+Weights are stored as int8 per output channel with a DequantizeLinear before the layer; activations stay in floating point. Eight-bit
+activations make the same mean error but two to five times the jerk, because their steps show between frames.
+"""
+
+import hashlib
+import io
+import json
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import onnx
+import onnxruntime
+import torch
+from numpy.typing import NDArray
+from onnx import numpy_helper
+
+from .features import FEATURES, OUTPUTS
+
+OPSET = 17
+# What onnxruntime's WASM may differ from its native build: sums in another order.
+RUNTIME_TOLERANCE = 1e-4
+JOINTS_IN_WORDS = "left elbow, right elbow, left shoulder, right shoulder, chest joint (the paper's spine), hips"
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """Where a model comes from."""
+
+    corpus: str
+    corpus_hash: str
+    people: tuple[str, ...]
+    seed: int
+    errors: dict[str, dict[str, float]]
+
+
+def to_onnx(network: torch.nn.Module, example: NDArray[np.float32], input_name: str, output_name: str) -> onnx.ModelProto:
+    """The network in evaluation mode as a graph of batch 1."""
+    stream = io.BytesIO()
+    torch.onnx.export(
+        network.eval(),
+        (torch.from_numpy(example),),
+        stream,
+        input_names=[input_name],
+        output_names=[output_name],
+        opset_version=OPSET,
+        dynamo=False,
+        do_constant_folding=True,
+    )
+    model = onnx.load_from_string(stream.getvalue())
+    onnx.checker.check_model(model)
+    return model
+
+
+def quantise_weights(model: onnx.ModelProto, smallest: int = 256) -> onnx.ModelProto:
+    """int8 weights, symmetric per output channel, for every matrix or kernel of at least `smallest` numbers."""
+    quantised = onnx.ModelProto()
+    quantised.CopyFrom(model)
+    graph = quantised.graph
+    weights = {
+        node.input[1]: 0 if node.op_type == "Conv" or any(a.name == "transB" and a.i for a in node.attribute) else 1
+        for node in graph.node
+        if node.op_type in ("Conv", "Gemm", "MatMul")
+    }
+    dequantisers = []
+    for initialiser in list(graph.initializer):
+        if initialiser.name not in weights:
+            continue
+        values = numpy_helper.to_array(initialiser)
+        if values.size < smallest:
+            continue
+        axis = weights[initialiser.name]
+        others = tuple(a for a in range(values.ndim) if a != axis)
+        scale = np.maximum(np.abs(values).max(axis=others) / 127, 1e-12).astype(np.float32)
+        shape = [-1 if a == axis else 1 for a in range(values.ndim)]
+        levels = np.clip(np.round(values / scale.reshape(shape)), -127, 127).astype(np.int8)
+        name = initialiser.name
+        graph.initializer.remove(initialiser)
+        graph.initializer.extend(
+            [
+                numpy_helper.from_array(levels, f"{name}.int8"),
+                numpy_helper.from_array(scale, f"{name}.scale"),
+                numpy_helper.from_array(np.zeros(len(scale), np.int8), f"{name}.zero"),
+            ]
+        )
+        dequantisers.append(
+            onnx.helper.make_node("DequantizeLinear", [f"{name}.int8", f"{name}.scale", f"{name}.zero"], [name], axis=axis)
+        )
+    for node in reversed(dequantisers):
+        graph.node.insert(0, node)
+    onnx.checker.check_model(quantised)
+    return quantised
+
+
+def run(model: onnx.ModelProto, inputs: NDArray[np.float32]) -> NDArray[np.float32]:
+    """The model's outputs, one run per row."""
+    session = onnxruntime.InferenceSession(model.SerializeToString())
+    name = session.get_inputs()[0].name
+    return np.concatenate([session.run(None, {name: row[None]})[0] for row in inputs])
+
+
+def git_commit() -> str:
+    """The commit of the code that trained, with a mark when it was changed since; 'unknown' outside a repository."""
+    folder = Path(__file__).parent
+    try:
+        commit = subprocess.run(["git", "rev-parse", "HEAD"], cwd=folder, capture_output=True, text=True, check=True).stdout.strip()
+        changed = subprocess.run(["git", "diff", "--quiet", "HEAD", "--", "."], cwd=folder, check=False).returncode
+    except (OSError, subprocess.CalledProcessError):
+        return "unknown"
+    return f"{commit}{'-modified' if changed else ''}"
+
+
+def write(
+    name: str,
+    network: torch.nn.Module,
+    examples: NDArray[np.float32],
+    out: Path,
+    version: str,
+    window_seconds: tuple[float, ...],
+    provenance: Provenance,
+    correction_half_life: float | None = None,
+) -> dict[str, Any]:
+    """Writes `name`.onnx and `name`.json into `out`; examples, real inputs, measure what the 8 bits cost."""
+    input_name, output_name = ("three_points", "joints") if name == "paper" else ("features", "joints")
+    exact = to_onnx(network, examples[:1], input_name, output_name)
+    quantised = quantise_weights(exact)
+    content = quantised.SerializeToString()
+    out.mkdir(parents=True, exist_ok=True)
+    (out / f"{name}.onnx").write_bytes(content)
+    before, after = run(exact, examples), run(quantised, examples)
+    contract: dict[str, Any] = {
+        "name": name,
+        "version": version,
+        "file": f"{name}.onnx",
+        "bytes": len(content),
+        "sha256": hashlib.sha256(content).hexdigest(),
+        "inputs": [_paper_input() if name == "paper" else _learned_input(len(window_seconds))],
+        "outputs": [_paper_output() if name == "paper" else _learned_output()],
+        "rateHz": 60,
+        "windowSeconds": window_seconds,
+    }
+    if correction_half_life is not None:
+        contract["correctionHalfLife"] = correction_half_life
+    contract |= {
+        "quantisation": {
+            "scheme": "int8 weights, symmetric per output channel; floating-point activations",
+            "maxAbsoluteDifference": round(float(np.abs(before - after).max()), 6),
+            "runtimeTolerance": RUNTIME_TOLERANCE,
+        },
+        "trainedOn": {"corpus": provenance.corpus, "corpusHash": provenance.corpus_hash, "people": provenance.people},
+        "gitCommit": git_commit(),
+        "seed": provenance.seed,
+        "errors": {protocol: {joint: round(value, 2) for joint, value in row.items()} for protocol, row in provenance.errors.items()},
+    }
+    (out / f"{name}.json").write_text(json.dumps(contract, indent=2, ensure_ascii=False) + "\n")
+    return contract
+
+
+def _paper_input() -> dict[str, Any]:
+    return {
+        "name": "three_points",
+        "shape": [1, 2, 3, 3],
+        "meaning": "depth: position from the floor under the headset, then Euler angles (Y-X-Z); row: x, y, z; column: head, left hand, right hand",
+        "unit": "m, rad",
+        "frame": "floor",
+    }
+
+
+def _paper_output() -> dict[str, Any]:
+    return {
+        "name": "joints",
+        "shape": [1, OUTPUTS],
+        "meaning": f"{JOINTS_IN_WORDS}: x, y, z from the floor under the headset",
+        "unit": "m",
+        "frame": "floor",
+    }
+
+
+def _learned_input(taps: int) -> dict[str, Any]:
+    return {
+        "name": "features",
+        "shape": [1, taps * FEATURES],
+        "meaning": f"{FEATURES} features of docs/estimation.md at each age of windowSeconds, newest first",
+        "unit": "1",
+        "frame": "heading",
+    }
+
+
+def _learned_output() -> dict[str, Any]:
+    return {
+        "name": "joints",
+        "shape": [1, OUTPUTS],
+        "meaning": f"{JOINTS_IN_WORDS}: x, y, z from the headset",
+        "unit": "eyeHeight",
+        "frame": "heading",
+    }

@@ -1,0 +1,125 @@
+"""Trains our network: the residual of the IK solution on recombined bodies; small, averaged, stopped early."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from .augment import AugmentConfig, BodyParts, draw_batch
+from .features import IK_JOINTS, frame_features, target, windowed
+from .model import ResidualNetwork
+from .prepared_corpus import PreparedCorpus
+from .simulate_trackers import TrackerConfig, draw_wearer, simulate
+from .skeleton import body_from_calibration
+
+
+@dataclass(frozen=True)
+class TrainLearnedConfig:
+    """Chosen by cross-validation over training people (docs/training.md)."""
+
+    width: int = 128
+    dropout: float = 0.2
+    hidden_layers: int = 2
+    steps: int = 1200
+    batch: int = 1024
+    learning_rate: float = 3e-3
+    weight_decay: float = 1e-2
+    average_half_life_steps: float = 150.0
+    seed: int = 2460
+    augment: AugmentConfig = field(default_factory=AugmentConfig)
+
+    @property
+    def window_seconds(self) -> tuple[float, ...]:
+        """Ages of the frames in the input [s]."""
+        return tuple(round(frames / 60, 6) for frames in self.augment.window_frames)
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """People as trackers see them, clip by clip, with the truth; outputs in eye heights times `eye_height` are metres."""
+
+    inputs: NDArray[np.float32]
+    targets: NDArray[np.float32]
+    eye_height: NDArray[np.float64]
+    people: NDArray[np.str_]
+    clips: NDArray[np.int64]
+
+
+def held_out(corpus: PreparedCorpus, people: tuple[str, ...], window_seconds: tuple[float, ...], seed: int = 1) -> HeldOut:
+    """All frames of these people with the calibration they would have."""
+    trackers = TrackerConfig()
+    rows = []
+    for number, name in enumerate(people):
+        person = corpus.people[name]
+        wearer = draw_wearer(trackers, np.random.default_rng([seed, number]))
+        body = body_from_calibration(np.array(person.eye_height), np.array(person.arm_span))
+        for clip in corpus.clips_of({name}):
+            frames = corpus.clip_slice(clip)
+            random = np.random.default_rng([seed, 1, clip])
+            positions, rotations = simulate(corpus.positions[frames], corpus.rotations[frames], wearer, trackers, random)
+            vector, _ = frame_features(positions, rotations, body)
+            count = len(vector)
+            rows.append(
+                (
+                    windowed(vector, np.arange(count) / corpus.rate_hz, window_seconds).astype(np.float32),
+                    target(corpus.truth(frames).astype(np.float64), positions, rotations, body).astype(np.float32),
+                    np.full(count, person.eye_height),
+                    np.full(count, name),
+                    np.full(count, clip),
+                )
+            )
+    return HeldOut(*(np.concatenate(column) for column in zip(*rows, strict=True)))
+
+
+def errors_cm(output: NDArray[np.float32], people: HeldOut) -> NDArray[np.float64]:
+    """Distances [F, 6] in centimetres of a network's output."""
+    difference = (output - people.targets).reshape(len(output), 6, 3)
+    return np.linalg.norm(difference, axis=-1) * people.eye_height[:, None] * 100
+
+
+def ik_errors_cm(people: HeldOut) -> NDArray[np.float64]:
+    """The same for the IK solution that the input carries."""
+    return errors_cm(people.inputs[:, IK_JOINTS], people)
+
+
+def train(
+    corpus: PreparedCorpus,
+    people: tuple[str, ...],
+    config: TrainLearnedConfig,
+    report: Callable[[int, float, Callable[[], ResidualNetwork]], None] = lambda *_: None,
+) -> ResidualNetwork:
+    """Trains on these people; report(step, loss, the averaged network so far)."""
+    torch.manual_seed(config.seed)
+    random = np.random.default_rng(config.seed)
+    parts = BodyParts(corpus, people)
+    network = ResidualNetwork(len(config.augment.window_frames), config.width, config.dropout, config.hidden_layers)
+    first = [draw_batch(parts, config.batch, config.augment, random) for _ in range(8)]
+    inputs = torch.from_numpy(np.concatenate([b.inputs for b in first]))
+    residuals = torch.from_numpy(np.concatenate([b.targets for b in first])) - inputs[:, IK_JOINTS]
+    network.normalise(inputs, residuals)
+    averaged = ResidualNetwork(len(config.augment.window_frames), config.width, config.dropout, config.hidden_layers)
+    averaged.load_state_dict(network.state_dict())
+    averaged.eval()
+    optimiser = torch.optim.AdamW(network.parameters(), lr=config.learning_rate, weight_decay=config.weight_decay)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, config.learning_rate, total_steps=config.steps, pct_start=0.1)
+    keep = 0.5 ** (1 / config.average_half_life_steps)
+    network.train()
+    for step in range(config.steps):
+        current = draw_batch(parts, config.batch, config.augment, random)
+        x, y = torch.from_numpy(current.inputs), torch.from_numpy(current.targets)
+        difference = ((network(x) - y) / network.output_scale).view(-1, 6, 3)
+        # Distances, not squares: what MPJPE counts, and steadier against climbers and tumblers.
+        loss = difference.norm(dim=-1).mean()
+        optimiser.zero_grad()
+        loss.backward()
+        torch.nn.utils.clip_grad_norm_(network.parameters(), 1.0)
+        optimiser.step()
+        schedule.step()
+        with torch.no_grad():
+            weight = min(keep, (1 + step) / (10 + step))
+            for average, value in zip(averaged.parameters(), network.parameters(), strict=True):
+                average.lerp_(value, 1 - weight)
+        report(step, float(loss.detach()), lambda: averaged)
+    return averaged
