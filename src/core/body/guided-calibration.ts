@@ -5,7 +5,7 @@ import { headingFromFloor } from '../tracking/heading';
 import type { TrackedPose, TrackingFrame } from '../tracking/tracking-frame';
 import { type Calibration, calibrationComplaint } from './calibration';
 import type { Side } from './joints';
-import { chestSpaceBody, sideSign } from './skeleton';
+import { sideSign, skeletonFromCalibration } from './skeleton';
 
 /** The person stands straight, looks ahead and stretches both arms forward (or sideways) for this long. */
 export const measuringSeconds = 2;
@@ -68,7 +68,7 @@ const STEEPEST_GAZE = 0.5;
 const SHORTEST_ARM = 0.27;
 const LONGEST_ARM = 0.46;
 /** [m] between the left arm's length and the right's. */
-const UNEVEN_ARMS = 0.12;
+const UNEVEN_ARMS = 0.1;
 // How far, in eye heights, the shoulder joint comes forward with a stretched arm: what the fitted shoulder girdle of the
 // inverse kinematics does there.
 const PROTRACTION = 0.018;
@@ -138,11 +138,10 @@ function reachOf(side: Side, wrist: Vec3, eyeHeight: number): number | null {
 /** The shoulder joint of a person who stands straight, heading frame; what the span of the arms is measured from. */
 function restShoulder(side: Side, eyeHeight: number): Vec3 {
   // The span does not matter for shoulders.
-  const body = chestSpaceBody({ eyeHeight, armSpan: eyeHeight });
-  const head = subtract(vec3(0, eyeHeight, 0), body.eyesInHead);
-  const neck = subtract(head, body.neckToHead);
-  const shoulder = add(body.clavicleRoot, body.clavicle);
-  return add(neck, vec3(sideSign(side) * shoulder.x, shoulder.y, shoulder.z));
+  const { restOffsets, eyesInHead } = skeletonFromCalibration({ eyeHeight, armSpan: eyeHeight });
+  const head = subtract(vec3(0, eyeHeight, 0), eyesInHead);
+  const upperChest = subtract(subtract(head, restOffsets.head), restOffsets.neck);
+  return add(upperChest, add(restOffsets[`${side}Shoulder`], restOffsets[`${side}UpperArm`]));
 }
 
 /** The mean of the middle half: a few wild values do not move it. */

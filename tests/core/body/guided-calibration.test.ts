@@ -1,0 +1,200 @@
+import fc from 'fast-check';
+import { describe, expect, test } from 'vitest';
+import type { Calibration } from '../../../src/core/body/calibration';
+import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
+import {
+  type GuidedCalibration,
+  startGuidedCalibration,
+  stepGuidedCalibration,
+} from '../../../src/core/body/guided-calibration';
+import { jointNames } from '../../../src/core/body/joints';
+import { armLength, skeletonFromCalibration } from '../../../src/core/body/skeleton';
+import { type Frame, type Pose, transformPose } from '../../../src/core/math/pose';
+import { fromAxisAngle, identity, type Quat, rotate } from '../../../src/core/math/quat';
+import { add, right, up, type Vec3, vec3 } from '../../../src/core/math/vec3';
+import type { TrackedPose, TrackingFrame } from '../../../src/core/tracking/tracking-frame';
+import { number, seed, standpoint } from '../arbitraries';
+
+const pose = (position: Vec3, orientation: Quat = identity): TrackedPose => ({
+  position,
+  orientation,
+  tracking: 'tracked',
+});
+
+/** Somebody of this body, upright at the origin, with both arms straight along `direction` (right side) from the shoulders. */
+function stretched(
+  calibration: Calibration,
+  direction: 'forward' | 'sideways',
+  bentTo = 1,
+): Omit<TrackingFrame, 'time'> {
+  const skeleton = skeletonFromCalibration(calibration);
+  const upright = Object.fromEntries(jointNames.map((joint) => [joint, identity])) as Record<
+    (typeof jointNames)[number],
+    Quat
+  >;
+  const joints = forwardKinematics(skeleton, { hipsPosition: skeleton.restOffsets.hips, localRotations: upright });
+  const eyes = add(joints.head.position, skeleton.eyesInHead);
+  const moved = vec3(-eyes.x, calibration.eyeHeight - eyes.y, -eyes.z);
+  const arm = armLength(calibration) * bentTo;
+  const wrist = (side: 'left' | 'right'): TrackedPose => {
+    const sigma = side === 'left' ? -1 : 1;
+    const shoulder = add(joints[`${side}UpperArm`].position, moved);
+    return pose(add(shoulder, direction === 'forward' ? vec3(0, 0, -arm) : vec3(sigma * arm, 0, 0)));
+  };
+  return {
+    head: pose(vec3(0, calibration.eyeHeight, 0)),
+    leftHand: wrist('left'),
+    rightHand: wrist('right'),
+  };
+}
+
+/** Two seconds and a bit at 72 Hz. */
+function guide(at: (seconds: number) => Omit<TrackingFrame, 'time'>, rateHz = 72): GuidedCalibration {
+  let state: GuidedCalibration = startGuidedCalibration;
+  for (let i = 0; i <= 2.1 * rateHz; i++)
+    state = stepGuidedCalibration(state, { ...at(i / rateHz), time: 50 + i / rateHz });
+  return state;
+}
+
+const person: Calibration = { eyeHeight: 1.6, armSpan: 1.5 };
+const longArmed: Calibration = { eyeHeight: 1.6, armSpan: 1.65 };
+
+const refused = (state: GuidedCalibration): string => {
+  if (state.kind !== 'failed') throw new Error(`expected a refusal, got ${state.kind}`);
+  return state.reason;
+};
+
+describe('the guided calibration', () => {
+  test.each(['forward', 'sideways'] as const)('finds height and span of who stretches both arms %s', (direction) => {
+    const bodies = fc
+      .tuple(number(1, 2.1), number(0.88, 1.02))
+      .map(([eyeHeight, ratio]) => ({ eyeHeight, armSpan: eyeHeight * ratio }));
+    fc.assert(
+      fc.property(bodies, standpoint, (calibration, { x, z, yaw }) => {
+        const there = { position: vec3(x, 0, z), orientation: fromAxisAngle(up, yaw) };
+        const still = stretched(calibration, direction);
+        const moved = (p: TrackedPose): TrackedPose => {
+          const { position, orientation } = transformPose(there, p as Pose<Frame>);
+          return pose(position, orientation);
+        };
+        const state = guide(() => ({
+          head: moved(still.head),
+          leftHand: moved(still.leftHand!),
+          rightHand: moved(still.rightHand!),
+        }));
+        if (state.kind !== 'done') throw new Error(JSON.stringify(state));
+        expect(Math.abs(state.calibration.eyeHeight - calibration.eyeHeight)).toBeLessThan(1e-9);
+        // Forward, the shoulders come along by a few centimetres, and bodies differ in how far.
+        expect(Math.abs(state.calibration.armSpan - calibration.armSpan)).toBeLessThan(0.05 * calibration.eyeHeight);
+      }),
+      { seed },
+    );
+  });
+
+  test('a wild frame or two does not move the result', () => {
+    const still = stretched(person, 'forward');
+    const jitter = (seconds: number) => Math.round(seconds * 72) % 24 === 5;
+    const state = guide((seconds) =>
+      jitter(seconds) ? { ...still, head: pose(vec3(0, 1.63, 0)), rightHand: pose(vec3(0.6, 1, -0.4)) } : still,
+    );
+    const clean = guide(() => still);
+    if (state.kind !== 'done' || clean.kind !== 'done') throw new Error(JSON.stringify([state, clean]));
+    expect(state.calibration.eyeHeight).toBeCloseTo(1.6, 6);
+    expect(state.calibration.armSpan).toBeCloseTo(clean.calibration.armSpan, 6);
+  });
+
+  test('tells how much is done, and ends after two seconds', () => {
+    const still = stretched(person, 'forward');
+    let state: GuidedCalibration = startGuidedCalibration;
+    const parts: number[] = [];
+    for (let i = 0; state.kind === 'measuring'; i++) {
+      parts.push(state.part);
+      state = stepGuidedCalibration(state, { ...still, time: i / 72 });
+    }
+    expect(parts).toEqual([...parts].sort((a, b) => a - b));
+    expect(parts.length).toBe(2 * 72 + 1);
+    expect(stepGuidedCalibration(state, { ...still, time: 99 })).toBe(state);
+  });
+
+  test('one hand that is nobody’s does not matter', () => {
+    const state = guide(() => ({ ...stretched(person, 'forward'), leftHand: null }));
+    expect(state.kind).toBe('done');
+  });
+
+  test('a hand lost for a moment does not matter either', () => {
+    const still = stretched(person, 'forward');
+    expect(guide((seconds) => (seconds > 0.5 && seconds < 0.8 ? { ...still, leftHand: null } : still)).kind).toBe(
+      'done',
+    );
+  });
+
+  test.each<[string, (seconds: number) => Omit<TrackingFrame, 'time'>, RegExp]>([
+    ['the head moved', (s) => ({ ...stretched(person, 'forward'), head: pose(vec3(0.1 * s, 1.6, 0)) }), /head moved/],
+    ['no hand was seen', () => ({ ...stretched(person, 'forward'), leftHand: null, rightHand: null }), /not seen/],
+    [
+      'a hand was guessed by the device half of the time',
+      (s) => {
+        const still = stretched(person, 'forward');
+        return s > 1 ? { ...still, leftHand: { ...still.leftHand!, tracking: 'emulated' } } : still;
+      },
+      /left hand was not seen/,
+    ],
+    ['the elbows were bent', () => stretched(person, 'forward', 0.6), /not stretched/],
+    [
+      'a hand waved',
+      (s) => {
+        const still = stretched(person, 'forward');
+        return { ...still, rightHand: pose(add(still.rightHand!.position, vec3(0, 0.2 * Math.sin(9 * s), 0))) };
+      },
+      /hands moved/,
+    ],
+    [
+      'the arms hung down',
+      () => ({
+        ...stretched(person, 'forward'),
+        leftHand: pose(vec3(-0.2, 0.8, 0)),
+        rightHand: pose(vec3(0.2, 0.8, 0)),
+      }),
+      /forward/,
+    ],
+    [
+      'one arm was shorter',
+      () => ({ ...stretched(longArmed, 'forward'), leftHand: stretched(longArmed, 'forward', 0.82).leftHand }),
+      /One arm/,
+    ],
+    [
+      'the eyes were on the floor',
+      () => ({
+        ...stretched(person, 'forward'),
+        head: pose(vec3(0, 1.6, 0), fromAxisAngle(right, -0.8)),
+      }),
+      /look/i,
+    ],
+    ['a tiny person', () => stretched({ eyeHeight: 0.7, armSpan: 0.66 }, 'forward'), /height of 0\.75 m/],
+    [
+      'the floor is a metre off',
+      () => {
+        const still = stretched(person, 'forward');
+        const sunk = (p: TrackedPose | null) => p && pose(add(p.position, vec3(0, -0.55, 0)));
+        return { head: sunk(still.head)!, leftHand: sunk(still.leftHand), rightHand: sunk(still.rightHand) };
+      },
+      /floor|too long/,
+    ],
+  ])('refuses with a sentence when %s', (_, at, sentence) => {
+    expect(refused(guide(at))).toMatch(sentence);
+  });
+
+  test('refuses when tracking was gone for most of the time', () => {
+    const still = stretched(person, 'forward');
+    let state: GuidedCalibration = startGuidedCalibration;
+    for (const time of [0, 0.01, 0.02, 2.5]) state = stepGuidedCalibration(state, { ...still, time });
+    expect(refused(state)).toMatch(/Tracking was lost/);
+  });
+
+  test('the measured arms are as long as the way from the shoulder to the wrist', () => {
+    const state = guide(() => stretched(person, 'sideways'));
+    if (state.kind !== 'done') throw new Error(JSON.stringify(state));
+    const hand = rotate(identity, stretched(person, 'sideways').rightHand!.position);
+    expect(hand.x).toBeCloseTo(state.calibration.armSpan / 2, 2);
+  });
+});

@@ -1,0 +1,100 @@
+import fc from 'fast-check';
+import { describe, expect, test } from 'vitest';
+import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
+import { jointNames, parentOf } from '../../../src/core/body/joints';
+import { armLength, skeletonFromCalibration } from '../../../src/core/body/skeleton';
+import { fromAxisAngle, identity, type Quat } from '../../../src/core/math/quat';
+import { add, distance, length, up, vec3 } from '../../../src/core/math/vec3';
+import { number, rotation, seed, vector } from '../arbitraries';
+
+const body = fc
+  .tuple(number(0.95, 2.15), number(0.75, 1.1))
+  .map(([eyeHeight, ratio]) => ({ eyeHeight, armSpan: eyeHeight * ratio }));
+
+const pose = (rotationOf: (joint: string) => Quat) =>
+  Object.fromEntries(jointNames.map((joint) => [joint, rotationOf(joint)])) as Record<
+    (typeof jointNames)[number],
+    Quat
+  >;
+
+describe('the calibrated skeleton', () => {
+  test('parents come before their children', () => {
+    for (const joint of jointNames) {
+      const parent = parentOf[joint];
+      if (parent !== null) expect(jointNames.indexOf(parent)).toBeLessThan(jointNames.indexOf(joint));
+    }
+  });
+
+  test('at rest somebody stands upright in T-pose: eyes at eye height, arms as wide as they span, face to −Z', () => {
+    fc.assert(
+      fc.property(body, (calibration) => {
+        const skeleton = skeletonFromCalibration(calibration);
+        const joints = forwardKinematics(skeleton, {
+          hipsPosition: skeleton.restOffsets.hips,
+          localRotations: pose(() => identity),
+        });
+        const eyes = add(joints.head.position, skeleton.eyesInHead);
+        expect(Math.abs(eyes.y / calibration.eyeHeight - 1)).toBeLessThan(0.03);
+        expect(eyes.z).toBeLessThan(joints.head.position.z);
+        const span = joints.rightHand.position.x - joints.leftHand.position.x;
+        expect(Math.abs(span - calibration.armSpan)).toBeLessThan(1e-9);
+        for (const joint of ['hips', 'spine', 'chest', 'upperChest', 'neck', 'head'] as const) {
+          expect(joints[joint].position.x).toBe(0);
+        }
+        expect(joints.leftUpperArm.position.x).toBeLessThan(joints.leftShoulder.position.x);
+      }),
+      { seed },
+    );
+  });
+
+  test('left and right are mirror images', () => {
+    const { restOffsets } = skeletonFromCalibration({ eyeHeight: 1.6, armSpan: 1.5 });
+    for (const joint of ['Shoulder', 'UpperArm', 'LowerArm', 'Hand'] as const) {
+      const { x, y, z } = restOffsets[`left${joint}`];
+      expect(distance(vec3(-x, y, z), restOffsets[`right${joint}`])).toBeLessThan(1e-12);
+    }
+  });
+
+  test('everything but the arms grows with the eye height alone, the arms with the span', () => {
+    const small = skeletonFromCalibration({ eyeHeight: 1, armSpan: 1 }).restOffsets;
+    const tall = skeletonFromCalibration({ eyeHeight: 2, armSpan: 2 }).restOffsets;
+    for (const joint of jointNames) expect(length(tall[joint])).toBeCloseTo(2 * length(small[joint]), 12);
+    const wide = skeletonFromCalibration({ eyeHeight: 1, armSpan: 1.1 }).restOffsets;
+    expect(wide.leftUpperArm).toEqual(small.leftUpperArm);
+    expect(length(wide.leftLowerArm)).toBeGreaterThan(length(small.leftLowerArm));
+  });
+
+  test('an arm never vanishes, however small the span', () => {
+    expect(armLength({ eyeHeight: 1.6, armSpan: 0.1 })).toBeCloseTo(0.24, 9);
+  });
+});
+
+describe('forward kinematics', () => {
+  test('no rotation changes the length of a bone', () => {
+    fc.assert(
+      fc.property(body, fc.array(rotation, { minLength: 14, maxLength: 14 }), vector(5), (calibration, turns, hips) => {
+        const skeleton = skeletonFromCalibration(calibration);
+        let next = 0;
+        const joints = forwardKinematics(skeleton, { hipsPosition: hips, localRotations: pose(() => turns[next++]!) });
+        expect(joints.hips.position).toEqual(hips);
+        for (const joint of jointNames) {
+          const parent = parentOf[joint];
+          if (parent === null) continue;
+          const bone = distance(joints[joint].position, joints[parent].position);
+          expect(bone).toBeCloseTo(length(skeleton.restOffsets[joint]), 9);
+        }
+      }),
+      { seed },
+    );
+  });
+
+  test('turning the hips by a quarter to the left points the left arm backward', () => {
+    const skeleton = skeletonFromCalibration({ eyeHeight: 1.6, armSpan: 1.5 });
+    const joints = forwardKinematics(skeleton, {
+      hipsPosition: skeleton.restOffsets.hips,
+      localRotations: pose((joint) => (joint === 'hips' ? fromAxisAngle(up, Math.PI / 2) : identity)),
+    });
+    expect(joints.leftHand.position.z).toBeGreaterThan(0.5);
+    expect(Math.abs(joints.leftHand.position.x)).toBeLessThan(0.15);
+  });
+});

@@ -1,0 +1,138 @@
+import { describe, expect, test } from 'vitest';
+import { fromAxisAngle, identity, multiply, rotate } from '../../../src/core/math/quat';
+import { add, distance, up, type Vec3, vec3 } from '../../../src/core/math/vec3';
+import { type ContinuedFrame, createHandContinuity } from '../../../src/core/tracking/hand-continuity';
+import type { TrackedPose, TrackingFrame } from '../../../src/core/tracking/tracking-frame';
+
+const calibration = { eyeHeight: 1.6, armSpan: 1.5 };
+const tracked = (position: Vec3, orientation = identity): TrackedPose => ({
+  position,
+  orientation,
+  tracking: 'tracked',
+});
+const reach = vec3(0.2, 1.3, -0.45);
+
+const frame = (time: number, rightHand: TrackedPose | null, yaw = 0): TrackingFrame => ({
+  time,
+  head: tracked(vec3(0, 1.6, 0), fromAxisAngle(up, yaw)),
+  leftHand: tracked(vec3(-0.2, 1.3, -0.45)),
+  rightHand,
+});
+
+/** The right hand over time: seen before 0, then as `at` says. */
+function follow(at: (time: number) => TrackingFrame, seconds: number, rateHz = 60): ContinuedFrame[] {
+  const continuity = createHandContinuity(() => calibration);
+  continuity.follow(frame(-0.01, tracked(reach)));
+  return Array.from({ length: Math.round(seconds * rateHz) + 1 }, (_, i) => continuity.follow(at(i / rateHz)));
+}
+
+const largestStep = (frames: readonly ContinuedFrame[]): number =>
+  Math.max(...frames.slice(1).map((f, i) => distance(f.rightHand.position, frames[i]!.rightHand.position)));
+
+const lost = (time: number) => frame(time, null);
+
+describe('a hand that is seen', () => {
+  test('is where it is seen', () => {
+    const [first] = follow((time) => frame(time, tracked(reach)), 0);
+    expect(first!.rightHand).toEqual({ position: reach, orientation: identity, seen: true });
+    expect(first!.leftHand.seen).toBe(true);
+  });
+});
+
+describe('a hand that is lost', () => {
+  test('is held at first: most losses are short', () => {
+    const frames = follow(lost, 0.1);
+    for (const { rightHand } of frames) {
+      expect(rightHand.seen).toBe(false);
+      expect(distance(rightHand.position, reach)).toBeLessThan(1e-3);
+    }
+  });
+
+  test('rests beside the hip within half a second, without a jump', () => {
+    const frames = follow(lost, 1);
+    const rest = frames.at(-1)!.rightHand.position;
+    expect(rest.y).toBeGreaterThan(0.6);
+    expect(rest.y).toBeLessThan(0.95);
+    expect(rest.x).toBeGreaterThan(0.15);
+    expect(Math.abs(rest.z)).toBeLessThan(0.2);
+    expect(distance(frames[30]!.rightHand.position, rest)).toBeLessThan(0.02);
+    expect(largestStep(frames)).toBeLessThan(0.05);
+  });
+
+  test('turns with the body meanwhile', () => {
+    const continuity = createHandContinuity(() => calibration);
+    continuity.follow(frame(0, tracked(reach)));
+    const { rightHand } = continuity.follow(frame(0.05, null, 0.3));
+    expect(distance(rightHand.position, rotate(fromAxisAngle(up, 0.3), reach))).toBeLessThan(1e-3);
+  });
+
+  test('does the same at 60, 72 and 120 Hz', () => {
+    const at60 = follow(lost, 0.25, 60).at(-1)!.rightHand.position;
+    for (const rate of [72, 120]) {
+      // The hold begins with the first frame that misses the hand, which is the same in each.
+      expect(distance(follow(lost, 0.25, rate).at(-1)!.rightHand.position, at60)).toBeLessThan(1e-6);
+    }
+  });
+
+  test('a guessed position is not believed', () => {
+    const guessed = (time: number) => frame(time, { ...tracked(vec3(0, 0, 0)), tracking: 'emulated' as const });
+    const frames = follow(guessed, 1);
+    for (const { rightHand } of frames) {
+      expect(rightHand.seen).toBe(false);
+      expect(rightHand.position.y).toBeGreaterThan(0.5);
+    }
+    expect(largestStep(frames)).toBeLessThan(0.05);
+  });
+});
+
+describe('a hand that returns', () => {
+  const returned = vec3(0.25, 1.35, -0.4);
+  const lostFor =
+    (seconds: number, back = returned) =>
+    (time: number) =>
+      frame(time, time < seconds ? null : tracked(back, fromAxisAngle(up, 1)));
+
+  test.each([0.05, 0.2, 0.35, 1])('blends back after %s s without a jump', (seconds) => {
+    const frames = follow(lostFor(seconds), seconds + 1);
+    expect(largestStep(frames)).toBeLessThan(0.05);
+    const { rightHand } = frames.at(-1)!;
+    expect(rightHand).toEqual({ position: returned, orientation: fromAxisAngle(up, 1), seen: true });
+  });
+
+  test('is there within 200 ms when it was not far', () => {
+    const near = add(reach, vec3(0.1, 0.05, 0));
+    const frames = follow(lostFor(0.1, near), 0.35);
+    expect(distance(frames.at(-1)!.rightHand.position, near)).toBeLessThan(1e-9);
+  });
+
+  test('follows its own movement while it blends', () => {
+    const moving = (time: number) =>
+      frame(time, time < 0.05 ? null : tracked(add(reach, vec3(0, 0, -0.5 * time)), multiply(identity, identity)));
+    const frames = follow(moving, 0.6);
+    expect(largestStep(frames)).toBeLessThan(0.05);
+    expect(distance(frames.at(-1)!.rightHand.position, add(reach, vec3(0, 0, -0.3)))).toBeLessThan(1e-9);
+  });
+
+  test('lost again on its way back, it sinks from where it is', () => {
+    const frames = follow((time) => frame(time, time > 0.5 && time < 0.6 ? tracked(returned) : null), 1.5);
+    expect(largestStep(frames)).toBeLessThan(0.05);
+  });
+});
+
+describe('a hand that was never seen', () => {
+  test('rests from the first frame, then comes from there', () => {
+    const continuity = createHandContinuity(() => calibration);
+    const first = continuity.follow(frame(0, null)).rightHand;
+    expect(first.position.y).toBeLessThan(1);
+    expect(first.position.y).toBeGreaterThan(0.5);
+    const next = continuity.follow(frame(1 / 60, tracked(reach))).rightHand;
+    expect(distance(next.position, first.position)).toBeLessThan(0.05);
+  });
+
+  test('after a reset nothing is bridged: seen is where it is seen', () => {
+    const continuity = createHandContinuity(() => calibration);
+    continuity.follow(frame(0, null));
+    continuity.reset();
+    expect(continuity.follow(frame(1 / 60, tracked(reach))).rightHand.position).toEqual(reach);
+  });
+});

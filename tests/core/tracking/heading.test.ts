@@ -1,0 +1,48 @@
+import fc from 'fast-check';
+import { describe, expect, test } from 'vitest';
+import { transformPoint } from '../../../src/core/math/pose';
+import { fromAxisAngle, fromEulerYxz, multiply, rotate } from '../../../src/core/math/quat';
+import { distance, forward, right, up, vec3 } from '../../../src/core/math/vec3';
+import { floorFromHeading, headingFromFloor, headingOf } from '../../../src/core/tracking/heading';
+import { number, rotation, seed, vector } from '../arbitraries';
+
+describe('the heading', () => {
+  test('is the yaw of the head, however it nods or tilts a little', () => {
+    fc.assert(
+      fc.property(number(-3, 3), number(-1.5, 1.5), number(-0.01, 0.01), (yaw, pitch, roll) => {
+        expect(headingOf(fromEulerYxz(vec3(pitch, yaw, roll)))).toBeSameRotationAs(fromAxisAngle(up, yaw), 1);
+      }),
+      { seed },
+    );
+  });
+
+  test('does not turn round when somebody looks up past the zenith', () => {
+    for (const pitch of [1.4, 1.55, 1.6, 1.75]) {
+      expect(headingOf(fromEulerYxz(vec3(pitch, 0.5, 0)))).toBeSameRotationAs(fromAxisAngle(up, 0.5), 1e-4);
+    }
+  });
+
+  test('a head on its side faces where it gazes', () => {
+    const onItsSide = multiply(fromAxisAngle(up, 1), fromAxisAngle(forward, Math.PI / 2));
+    expect(headingOf(onItsSide)).toBeSameRotationAs(fromAxisAngle(up, 1), 1e-4);
+  });
+
+  test('puts the head above the origin, facing −Z', () => {
+    fc.assert(
+      fc.property(vector(3), rotation, (position, orientation) => {
+        const head = { position, orientation };
+        const above = transformPoint(headingFromFloor(head), position);
+        expect(distance(above, vec3(0, position.y, 0))).toBeLessThan(1e-9);
+        const ahead = rotate(headingOf(orientation), forward);
+        expect(Math.abs(ahead.y)).toBeLessThan(1e-12);
+        expect(distance(transformPoint(floorFromHeading(head), above), position)).toBeLessThan(1e-9);
+      }),
+      { seed },
+    );
+  });
+
+  test('keeps right on the right', () => {
+    const orientation = fromEulerYxz(vec3(0.4, 2, 0.2));
+    expect(rotate(headingOf(orientation), right).x * rotate(orientation, right).x).toBeGreaterThan(0);
+  });
+});

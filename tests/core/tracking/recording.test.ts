@@ -1,0 +1,146 @@
+import fc from 'fast-check';
+import { describe, expect, test } from 'vitest';
+import { slerp } from '../../../src/core/math/quat';
+import { distance, lerp, vec3 } from '../../../src/core/math/vec3';
+import {
+  parseRecording,
+  type Recording,
+  recordingDuration,
+  sampleRecording,
+  writeRecording,
+} from '../../../src/core/tracking/recording';
+import type { TrackedPose, TrackingFrame } from '../../../src/core/tracking/tracking-frame';
+import { number, rotation, seed, vector } from '../arbitraries';
+
+const tracked: fc.Arbitrary<TrackedPose> = fc.record({
+  position: vector(10),
+  orientation: rotation,
+  tracking: fc.constantFrom<TrackedPose['tracking'][]>('tracked', 'emulated'),
+});
+
+const recording: fc.Arbitrary<Recording> = fc.record({
+  device: fc.string(),
+  rateHz: number(1, 144),
+  calibration: fc.option(fc.record({ eyeHeight: number(0.9, 2.2), armSpan: number(0.6, 2.3) })),
+  frames: fc
+    .array(
+      fc.record({
+        step: number(1e-3, 0.5),
+        head: tracked,
+        leftHand: fc.option(tracked),
+        rightHand: fc.option(tracked),
+      }),
+      { minLength: 1, maxLength: 8 },
+    )
+    .map((frames) => {
+      let time = 1000 / 3;
+      return frames.map(({ step, ...frame }): TrackingFrame => {
+        time += step;
+        return { time, ...frame };
+      });
+    }),
+});
+
+/** JSON knows no −0; nobody's hand does either. */
+const withoutNegativeZero = (value: unknown): unknown =>
+  typeof value === 'number'
+    ? value + 0
+    : typeof value === 'object' && value !== null
+      ? Array.isArray(value)
+        ? value.map(withoutNegativeZero)
+        : Object.fromEntries(Object.entries(value).map(([key, part]) => [key, withoutNegativeZero(part)]))
+      : value;
+
+const some: Recording = {
+  device: 'a headset',
+  rateHz: 72,
+  calibration: null,
+  frames: [0, 1, 2, 3].map((i) => ({
+    time: 5 + i / 10,
+    head: { position: vec3(i, 1.6, 0), orientation: { x: 0, y: 0, z: 0, w: 1 }, tracking: 'tracked' },
+    leftHand:
+      i === 2 ? null : { position: vec3(0, i, 0), orientation: { x: 0, y: 0, z: 0, w: 1 }, tracking: 'tracked' },
+    rightHand: null,
+  })),
+};
+
+describe('a recording', () => {
+  test('comes back from its file to the last bit, lost hands as null', () => {
+    fc.assert(
+      fc.property(recording, (recording) => {
+        expect(parseRecording(writeRecording(recording))).toEqual(withoutNegativeZero(recording));
+      }),
+      { seed },
+    );
+  });
+
+  test('is JSON with a frame per line', () => {
+    const text = writeRecording(some);
+    expect(JSON.parse(text)).toMatchObject({ format: 'threepoint-recording', version: 1, rateHz: 72 });
+    expect(text.trimEnd().split('\n').length).toBe(some.frames.length + 2);
+  });
+
+  test.each([
+    ['nothing', '', /no JSON/],
+    ['prose', 'Dear Sir', /no JSON/],
+    ['other JSON', '{"photos": []}', /no recording of threepoint/],
+    ['an array', '[]', /no recording of threepoint/],
+    ['a later version', writeRecording(some).replace('"version":1', '"version":7'), /version 7/],
+    ['no frames', '{"format":"threepoint-recording","version":1,"device":"","rateHz":60,"frames":[]}', /no frames/],
+    ['no rate', writeRecording(some).replace('"rateHz":72', '"rateHz":"often"'), /rate/],
+    ['a damaged line', writeRecording(some).replace('[5.1,', '[5.1 oops,'), /line 3 is damaged/],
+    ['a cut-off end', writeRecording(some).slice(0, -20), /no JSON/],
+    ['a frame without a time', writeRecording(some).replace('[5.1,', '["noon",'), /Frame 2 .*time/],
+    ['time that runs backwards', writeRecording(some).replace('[5.1,', '[4.1,'), /Frame 2 .*not later/],
+    ['a frame without a head', writeRecording(some).replace('[5.2,[2,', '[5.2,null,[2,'), /Frame 3/],
+    ['an unknown word', writeRecording(some).replace('"tracked"', '"dreamt"'), /Frame 1 .*head.*dreamt|Frame 1 .*head/],
+    [
+      'a quaternion of length 2',
+      writeRecording(some).replace('0,0,0,1,"tracked"', '0,0,0,2,"tracked"'),
+      /Frame 1 .*orientation/,
+    ],
+    [
+      'a half body',
+      writeRecording(some).replace('"calibration":null', '"calibration":{"eyeHeight":1.6}'),
+      /calibration/,
+    ],
+  ])('refuses %s in a sentence', (_, text, sentence) => {
+    expect(() => parseRecording(text)).toThrow(sentence);
+  });
+});
+
+describe('sampling', () => {
+  test('at a frame’s own time gives that frame', () => {
+    fc.assert(
+      fc.property(recording, (recording) => {
+        for (const frame of recording.frames) expect(sampleRecording(recording, frame.time)).toEqual(frame);
+      }),
+      { seed },
+    );
+  });
+
+  test('between two frames lies on the way from one to the other', () => {
+    fc.assert(
+      fc.property(recording, number(0.01, 0.99), (recording, share) => {
+        fc.pre(recording.frames.length > 1);
+        const [a, b] = recording.frames as [TrackingFrame, TrackingFrame];
+        const sampled = sampleRecording(recording, a.time + share * (b.time - a.time));
+        expect(distance(sampled.head.position, lerp(a.head.position, b.head.position, share))).toBeLessThan(1e-6);
+        expect(sampled.head.orientation).toBeSameRotationAs(slerp(a.head.orientation, b.head.orientation, share), 1e-4);
+      }),
+      { seed },
+    );
+  });
+
+  test('a hand that a neighbour lacks is not seen: never half-way to nowhere', () => {
+    expect(sampleRecording(some, 5.15).leftHand).toBeNull();
+    expect(sampleRecording(some, 5.25).leftHand).toBeNull();
+    expect(sampleRecording(some, 5.05).leftHand?.position.y).toBeCloseTo(0.5, 9);
+  });
+
+  test('before the start and after the end stands the nearest frame', () => {
+    expect(sampleRecording(some, 0).head).toEqual(some.frames[0]!.head);
+    expect(sampleRecording(some, 99).head).toEqual(some.frames[3]!.head);
+    expect(recordingDuration(some)).toBeCloseTo(0.3, 9);
+  });
+});
