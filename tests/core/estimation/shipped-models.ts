@@ -1,13 +1,11 @@
 import { createHash } from 'node:crypto';
-import { existsSync, readFileSync } from 'node:fs';
+import { readFileSync } from 'node:fs';
 import * as ort from 'onnxruntime-web/wasm';
 import type { ModelContract, PoseRegressor } from '../../../src/core/estimation/pose-regressor';
 
 const folder = new URL('../../../public/models/', import.meta.url);
 
 export type NetworkName = ModelContract['name'];
-
-export const isShipped = (name: NetworkName): boolean => existsSync(new URL(`${name}.json`, folder));
 
 /** A model as the page ships it, run by the runtime that the page uses. */
 export async function openShippedModel(name: NetworkName): Promise<PoseRegressor> {

@@ -1,0 +1,252 @@
+import fc from 'fast-check';
+import { describe, expect, test } from 'vitest';
+import type { Calibration } from '../../../src/core/body/calibration';
+import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
+import type { JointName, Side } from '../../../src/core/body/joints';
+import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
+import { createEstimator } from '../../../src/core/estimation/estimators';
+import type { Pose } from '../../../src/core/math/pose';
+import {
+  angleBetween,
+  fromAxisAngle,
+  fromEulerYxz,
+  identity,
+  multiply,
+  rotate,
+  twistAngle,
+} from '../../../src/core/math/quat';
+import { add, distance, dot, normalise, right, subtract, up, type Vec3, vec3 } from '../../../src/core/math/vec3';
+import type { TrackedPose, TrackingFrame } from '../../../src/core/tracking/tracking-frame';
+import { number, seed } from '../arbitraries';
+import { standing, wristOrientation } from './moving-person';
+
+const calibration: Calibration = { eyeHeight: 1.62, armSpan: 1.53 };
+const degrees = Math.PI / 180;
+
+type Joints = Readonly<Record<JointName, Pose<'floor'>>>;
+
+/** The body IK gives somebody who has held this pose for a while. */
+function bodyOf(frame: TrackingFrame, body = calibration): Joints {
+  const estimator = createEstimator('ik', body);
+  let joints: Joints | null = null;
+  for (let i = 0; i < 5; i++) {
+    const pose = estimator.estimate({ ...frame, time: frame.time + i / 60 });
+    joints = forwardKinematics(skeletonFromCalibration(body), pose.body!);
+  }
+  return joints!;
+}
+
+const at = (joints: Joints, joint: JointName): Vec3 => joints[joint].position;
+
+/** The angle [rad] at the elbow between the two bones. */
+const bentBy = (joints: Joints, side: Side): number => {
+  const upper = normalise(subtract(at(joints, `${side}LowerArm`), at(joints, `${side}UpperArm`)));
+  const lower = normalise(subtract(at(joints, `${side}Hand`), at(joints, `${side}LowerArm`)));
+  return Math.acos(Math.max(-1, Math.min(1, dot(upper, lower))));
+};
+
+const hip = { left: vec3(-0.22, 0.85, -0.05), right: vec3(0.22, 0.85, -0.05) };
+const ahead = { left: vec3(-0.2, 1.25, -0.4), right: vec3(0.2, 1.25, -0.4) };
+
+/** Elbow relative to the middle of the straight line from shoulder to wrist. */
+const elbowAside = (joints: Joints, side: Side): Vec3 => {
+  const shoulder = at(joints, `${side}UpperArm`);
+  const hand = at(joints, `${side}Hand`);
+  return subtract(
+    at(joints, `${side}LowerArm`),
+    vec3((shoulder.x + hand.x) / 2, (shoulder.y + hand.y) / 2, (shoulder.z + hand.z) / 2),
+  );
+};
+
+describe('arms', () => {
+  test('the elbow points backward when the hand rests at the hip', () => {
+    const joints = bodyOf(standing(calibration, hip.left, hip.right));
+    for (const side of ['left', 'right'] as const) {
+      expect(elbowAside(joints, side).z).toBeGreaterThan(0.02);
+      expect(at(joints, `${side}LowerArm`).y).toBeLessThan(at(joints, `${side}UpperArm`).y - 0.15);
+    }
+  });
+
+  test('the elbow points down and outward when the hands are held ahead', () => {
+    const joints = bodyOf(standing(calibration, ahead.left, ahead.right));
+    expect(elbowAside(joints, 'left').y).toBeLessThan(-0.03);
+    expect(elbowAside(joints, 'right').y).toBeLessThan(-0.03);
+    expect(elbowAside(joints, 'right').x).toBeGreaterThan(0);
+    expect(elbowAside(joints, 'left').x).toBeLessThan(0);
+  });
+
+  test('a stretched arm is straight', () => {
+    const joints = bodyOf(standing(calibration, vec3(-0.2, 1.4, -1.2), vec3(0.2, 1.4, -1.2)));
+    expect(bentBy(joints, 'left')).toBeLessThan(2 * degrees);
+    expect(bentBy(joints, 'right')).toBeLessThan(2 * degrees);
+  });
+
+  test('a hand at the shoulder bends the elbow sharply', () => {
+    const joints = bodyOf(standing(calibration, hip.left, vec3(0.2, 1.36, -0.12)));
+    expect(bentBy(joints, 'right')).toBeGreaterThan(110 * degrees);
+    expect(bentBy(joints, 'left')).toBeLessThan(60 * degrees);
+  });
+
+  test('raising the hand raises the shoulder', () => {
+    const low = bodyOf(standing(calibration, hip.left, hip.right));
+    const high = bodyOf(standing(calibration, hip.left, vec3(0.25, 1.95, -0.1)));
+    const lift = (joints: Joints) => at(joints, 'rightUpperArm').y - at(joints, 'rightShoulder').y;
+    expect(lift(high)).toBeGreaterThan(lift(low) + 0.01);
+  });
+
+  test('elbows stay out of the trunk wherever the hand is in front of it', () => {
+    const places = fc.record({
+      x: number(-0.35, 0.35),
+      y: number(0.9, 1.5),
+      z: number(-0.5, -0.18),
+      roll: number(-1.5, 1.5),
+    });
+    fc.assert(
+      fc.property(places, ({ x, y, z, roll }) => {
+        const frame = standing(calibration, hip.left, vec3(x, y, z));
+        const turned = {
+          ...frame.rightHand,
+          orientation: multiply(frame.rightHand.orientation, fromAxisAngle(vec3(0, 0, 1), roll)),
+        };
+        const joints = bodyOf({ ...frame, rightHand: turned });
+        const elbow = at(joints, 'rightLowerArm');
+        const chest = at(joints, 'chest');
+        const inside =
+          Math.hypot(elbow.x - chest.x, (elbow.z - chest.z) / 0.7) < 0.1 &&
+          elbow.y > at(joints, 'hips').y &&
+          elbow.y < at(joints, 'neck').y;
+        expect(inside).toBe(false);
+      }),
+      { seed, numRuns: 300 },
+    );
+  });
+
+  test('no wrist is wrung: the forearm takes its part of the hand’s turn', () => {
+    for (const roll of [-80, -40, 0, 40, 80]) {
+      const frame = standing(calibration, hip.left, ahead.right);
+      const orientation = multiply(
+        wristOrientation(normalise(vec3(0, -0.1, -1)), vec3(1, 0, 0)),
+        fromAxisAngle(vec3(0, 0, 1), roll * degrees),
+      );
+      const pose = createEstimator('ik', calibration).estimate({
+        ...frame,
+        rightHand: { ...frame.rightHand, orientation },
+      });
+      const wrist = twistAngle(pose.body!.localRotations.rightHand, right);
+      const forearm = twistAngle(pose.body!.localRotations.rightLowerArm, right);
+      expect(Math.abs(wrist)).toBeLessThan(70 * degrees);
+      expect(Math.abs(wrist - forearm)).toBeLessThan(1 * degrees);
+    }
+  });
+
+  test('a hand turns as its controller does, palm down, palm up and thumb up', () => {
+    for (const roll of [-80, 0, 80]) {
+      const frame = standing(calibration, hip.left, ahead.right);
+      const orientation = multiply(
+        wristOrientation(normalise(vec3(0, -0.1, -1)), vec3(1, 0, 0)),
+        fromAxisAngle(vec3(0, 0, 1), roll * degrees),
+      );
+      const joints = bodyOf({ ...frame, rightHand: { ...frame.rightHand, orientation } });
+      // In T-pose the right hand's fingers point to +X: its wrist frame is turned by −90° about +Y.
+      const shown = multiply(joints.rightHand.orientation, fromAxisAngle(up, -Math.PI / 2));
+      expect(shown).toBeSameRotationAs(orientation, 0.01);
+    }
+  });
+
+  test('an elbow does not flip while the hand sweeps through the straight arm and back', () => {
+    const estimator = createEstimator('ik', calibration);
+    let before: Joints | null = null;
+    for (let i = 0; i <= 240; i++) {
+      const z = -0.35 - 0.4 * Math.sin((i / 240) * Math.PI);
+      const frame = { ...standing(calibration, hip.left, vec3(0.2, 1.35, z)), time: i / 60 };
+      const joints = forwardKinematics(skeletonFromCalibration(calibration), estimator.estimate(frame).body!);
+      if (before) expect(distance(at(joints, 'rightLowerArm'), at(before, 'rightLowerArm'))).toBeLessThan(0.03);
+      before = joints;
+    }
+  });
+});
+
+describe('the trunk', () => {
+  const looking = (angles: Vec3, position = vec3(0, 1.62, 0)): TrackingFrame => {
+    const head: TrackedPose = { position, orientation: fromEulerYxz(angles), tracking: 'tracked' };
+    return { ...standing(calibration, hip.left, hip.right), head };
+  };
+  const facing = (joints: Joints, joint: JointName): Vec3 => rotate(joints[joint].orientation, vec3(0, 0, -1));
+
+  test('somebody who stands upright is upright: hips under the head, at their height', () => {
+    const joints = bodyOf(standing(calibration, hip.left, hip.right));
+    const hips = at(joints, 'hips');
+    expect(Math.abs(hips.x)).toBeLessThan(0.02);
+    expect(Math.abs(hips.z - at(joints, 'head').z)).toBeLessThan(0.15);
+    expect(hips.y / calibration.eyeHeight).toBeGreaterThan(0.56);
+    expect(hips.y / calibration.eyeHeight).toBeLessThan(0.66);
+  });
+
+  test('looking down does not push the chest away', () => {
+    const level = bodyOf(looking(vec3(0, 0, 0)));
+    // Eyes go forward and down about the top of the neck.
+    const down = bodyOf(looking(vec3(-0.8, 0, 0), vec3(0, 1.54, -0.03)));
+    expect(distance(at(level, 'chest'), at(down, 'chest'))).toBeLessThan(0.16);
+    expect(facing(down, 'head').y).toBeLessThan(-0.6);
+    expect(facing(down, 'hips').y).toBeGreaterThan(-0.4);
+  });
+
+  test('a glance to the side turns the head further than the hips', () => {
+    const joints = bodyOf(looking(vec3(0, 0.9, 0)));
+    const yawOf = (joint: JointName) => Math.atan2(-facing(joints, joint).x, -facing(joints, joint).z);
+    expect(yawOf('head')).toBeCloseTo(0.9, 6);
+    expect(yawOf('hips')).toBeLessThan(0.75);
+    expect(yawOf('hips')).toBeGreaterThan(-0.1);
+  });
+
+  test('bowing takes the head forward of the hips', () => {
+    const frame = looking(vec3(-0.7, 0, 0), vec3(0, 1.2, -0.4));
+    const joints = bodyOf({ ...frame, leftHand: null, rightHand: null });
+    expect(at(joints, 'hips').z - at(joints, 'head').z).toBeGreaterThan(0.1);
+    expect(at(joints, 'hips').y).toBeLessThan(1);
+  });
+
+  test('crouching lowers the hips, and they stay above the floor even when the head is on it', () => {
+    fc.assert(
+      fc.property(number(-0.2, 1.62), number(-1.5, 1), (height, pitch) => {
+        const joints = bodyOf(looking(vec3(pitch, 0, 0), vec3(0, height, 0)));
+        // A head under the floor is a floor at the wrong height: then the hips hang where the spine lets them.
+        if (height > 0.3) expect(at(joints, 'hips').y).toBeGreaterThan(0.05);
+      }),
+      { seed },
+    );
+  });
+
+  test('the head keeps its pose upside down', () => {
+    const joints = bodyOf(looking(vec3(Math.PI, 0, 0)));
+    const eyes = add(
+      at(joints, 'head'),
+      rotate(joints.head.orientation, skeletonFromCalibration(calibration).eyesInHead),
+    );
+    expect(distance(eyes, vec3(0, 1.62, 0))).toBeLessThan(1e-9);
+  });
+
+  test('reaching with one hand brings that shoulder forward and turns the chest', () => {
+    const joints = bodyOf(standing(calibration, hip.left, vec3(0.15, 1.3, -0.62)));
+    expect(at(joints, 'rightUpperArm').z).toBeLessThan(at(joints, 'leftUpperArm').z - 0.02);
+  });
+
+  test('both hands pulled to opposite sides beyond the arms turn the chest, and at last stay behind by what is missing', () => {
+    const joints = bodyOf(standing(calibration, vec3(-0.2, 1.35, 1.2), vec3(0.2, 1.35, -1.2)));
+    const line = subtract(at(joints, 'rightUpperArm'), at(joints, 'leftUpperArm'));
+    expect(line.z).toBeLessThan(-0.1);
+    expect(bentBy(joints, 'left')).toBeLessThan(2 * degrees);
+    const missing = distance(at(joints, 'rightHand'), vec3(0.2, 1.35, -1.2));
+    expect(missing).toBeGreaterThan(0.1);
+    expect(missing).toBeLessThan(0.9);
+  });
+
+  test('with the arms out the body is near its T-pose: no rotation, but for how far the elbows turn', () => {
+    const joints = bodyOf(standing(calibration, vec3(-0.76, 1.42, 0.08), vec3(0.76, 1.42, 0.08)));
+    for (const joint of ['hips', 'spine', 'chest', 'upperChest', 'leftShoulder', 'rightShoulder'] as const) {
+      expect(angleBetween(joints[joint].orientation, identity)).toBeLessThan(30 * degrees);
+    }
+    expect(rotate(joints.leftUpperArm.orientation, vec3(-1, 0, 0)).x).toBeLessThan(-0.9);
+    expect(rotate(joints.rightUpperArm.orientation, vec3(1, 0, 0)).x).toBeGreaterThan(0.9);
+  });
+});
