@@ -98,8 +98,7 @@ async function runStage(name) {
       else if (code !== 0) problems.push(`exit code ${code}`);
     }
   } catch (error) {
-    if (!(error instanceof SetupError)) throw error;
-    console.error(error.message);
+    console.error(error instanceof SetupError ? error.message : error);
     problems.push(error.message.split('\n')[0]);
   }
   const results = (runner && readResults(runner, report)) ?? { passed: 0, failed: 0, skipped: 0 };
