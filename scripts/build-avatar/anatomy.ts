@@ -1,0 +1,171 @@
+import { armHeight, armJoints, fingerPoint, fingers, phalanges } from './rig';
+import { type DistanceField, ellipsoid, type Point, roundedBox, smoothUnion, taperedCapsule } from './signed-distance';
+
+/** A piece of the body: a solid, the bone it moves with and how softly its weight fades beyond its surface [m]. */
+export interface Part {
+  readonly solid: DistanceField;
+  /** A bone of the left side or the trunk; `trunk`: shared among the spine by height. */
+  readonly bone: string;
+  readonly softness: number;
+}
+
+interface Region {
+  readonly parts: readonly Part[];
+  /** Fillet between its own parts, and where it meets what came before [m]. */
+  readonly inner: number;
+  readonly joint: number;
+}
+
+const y = armHeight;
+const { shoulder, elbow, wrist } = armJoints;
+const part = (bone: string, softness: number, solid: DistanceField): Part => ({ bone, softness, solid });
+
+const torso: Region = {
+  inner: 0.055,
+  joint: 0.05,
+  parts: [
+    // Ribcage, waist and pelvis are the masses; chest, back and seat muscles lie on them.
+    part('trunk', 0.02, ellipsoid([0, 1.255, -0.008], [0.142, 0.185, 0.098])),
+    part('trunk', 0.02, ellipsoid([0, 1.1, 0], [0.12, 0.15, 0.085])),
+    part('trunk', 0.02, ellipsoid([0, 0.975, -0.004], [0.148, 0.105, 0.095])),
+    part('trunk', 0.02, ellipsoid([0.072, 1.312, 0.056], [0.078, 0.052, 0.042], 0.25)),
+    part('trunk', 0.02, ellipsoid([0.1, 1.24, -0.048], [0.058, 0.13, 0.048])),
+    part('trunk', 0.02, taperedCapsule([0.02, 1.445, -0.03], [0.145, 1.396, -0.016], 0.046, 0.04)),
+    part('trunk', 0.02, taperedCapsule([0.03, 1.375, 0.02], [0.13, 1.385, 0.008], 0.045, 0.042)),
+    part('trunk', 0.02, ellipsoid([0.074, 0.925, -0.052], [0.078, 0.088, 0.066])),
+  ],
+};
+
+const neck: Region = {
+  inner: 0.02,
+  joint: 0.045,
+  parts: [
+    part('neck', 0.016, taperedCapsule([0, 1.42, -0.016], [0, 1.535, -0.002], 0.054, 0.05)),
+    part('neck', 0.016, taperedCapsule([0.028, 1.405, 0.028], [0.05, 1.53, -0.012], 0.014, 0.018)),
+  ],
+};
+
+const head: Region = {
+  inner: 0.03,
+  joint: 0.022,
+  parts: [
+    part('head', 0.02, ellipsoid([0, 1.613, -0.012], [0.0735, 0.087, 0.091])),
+    part('head', 0.02, ellipsoid([0, 1.572, 0.024], [0.06, 0.074, 0.064])),
+    part('head', 0.02, taperedCapsule([0, 1.516, 0.05], [0.018, 1.512, 0.044], 0.026, 0.026)),
+    part('head', 0.02, taperedCapsule([0.052, 1.553, -0.002], [0.026, 1.51, 0.036], 0.017, 0.02)),
+    part('head', 0.02, taperedCapsule([0.006, 1.622, 0.072], [0.042, 1.618, 0.058], 0.011, 0.009)),
+    part('head', 0.02, taperedCapsule([0.034, 1.574, 0.052], [0.052, 1.58, 0.03], 0.02, 0.018)),
+  ],
+};
+
+const face: Region = {
+  inner: 0.008,
+  joint: 0.014,
+  parts: [
+    part('head', 0.02, taperedCapsule([0, 1.605, 0.084], [0, 1.57, 0.098], 0.006, 0.0105)),
+    part('head', 0.02, ellipsoid([0.013, 1.567, 0.087], [0.008, 0.007, 0.009])),
+    part('head', 0.02, taperedCapsule([0, 1.541, 0.081], [0.016, 1.541, 0.073], 0.0072, 0.005)),
+    part('head', 0.02, taperedCapsule([0, 1.531, 0.0795], [0.013, 1.532, 0.073], 0.0072, 0.005)),
+  ],
+};
+
+const ears: Region = {
+  inner: 0.006,
+  joint: 0.01,
+  parts: [part('head', 0.02, ellipsoid([0.0745, 1.582, -0.012], [0.009, 0.028, 0.016], -0.25))],
+};
+
+const arm: Region = {
+  inner: 0.028,
+  joint: 0.06,
+  parts: [
+    part('leftUpperArm', 0.018, ellipsoid([shoulder + 0.012, y - 0.004, -0.006], [0.066, 0.058, 0.054])),
+    part('leftUpperArm', 0.016, taperedCapsule([shoulder + 0.02, y, -0.006], [elbow - 0.02, y, -0.006], 0.043, 0.034)),
+    part('leftUpperArm', 0.016, ellipsoid([shoulder + 0.14, y, 0.012], [0.085, 0.035, 0.034])),
+    part('leftUpperArm', 0.016, ellipsoid([shoulder + 0.14, y + 0.002, -0.024], [0.095, 0.036, 0.032])),
+    part('leftLowerArm', 0.016, taperedCapsule([elbow, y, -0.006], [wrist - 0.01, y, -0.002], 0.0365, 0.0225)),
+    part('leftLowerArm', 0.016, ellipsoid([elbow + 0.075, y + 0.003, 0.008], [0.085, 0.034, 0.036])),
+    part('leftLowerArm', 0.016, ellipsoid([elbow + 0.08, y - 0.002, -0.018], [0.09, 0.034, 0.03])),
+    part('leftLowerArm', 0.012, ellipsoid([wrist - 0.03, y, -0.001], [0.05, 0.0205, 0.0275])),
+  ],
+};
+
+const palm: Region = {
+  inner: 0.014,
+  joint: 0.018,
+  parts: [
+    part('leftHand', 0.009, roundedBox([wrist + 0.05, y - 0.001, 0], [0.046, 0.0145, 0.037], 0.0135)),
+    part('leftHand', 0.009, taperedCapsule([wrist + 0.004, y, -0.001], [wrist + 0.03, y, 0], 0.021, 0.022)),
+    part('leftHand', 0.009, ellipsoid([wrist + 0.038, y - 0.009, 0.02], [0.032, 0.015, 0.019])),
+    part('leftHand', 0.009, ellipsoid([wrist + 0.045, y - 0.009, -0.026], [0.034, 0.013, 0.014])),
+    ...fingers
+      .filter(({ name }) => name !== 'Thumb')
+      .map(({ knuckle, radius }) =>
+        part('leftHand', 0.007, taperedCapsule([wrist + 0.04, y, knuckle[2] * 0.8], knuckle, 0.012, radius * 1.12)),
+      ),
+  ],
+};
+
+const fingerRegions: Region[] = fingers.map((finger) => {
+  const names = phalanges(finger.name);
+  const segment = (index: number): Part => {
+    const from = fingerPoint(finger, index);
+    const to = fingerPoint(finger, index + 1);
+    const radius = (step: number) => finger.radius * (1 - 0.085 * step);
+    const tip: Point =
+      index < 2
+        ? to
+        : [
+            to[0] - finger.direction[0] * 0.006,
+            to[1] - finger.direction[1] * 0.006,
+            to[2] - finger.direction[2] * 0.006,
+          ];
+    return part(`left${names[index]}`, 0.0035, taperedCapsule(from, tip, radius(index), radius(index + 1)));
+  };
+  return { inner: 0.004, joint: finger.name === 'Thumb' ? 0.016 : 0.008, parts: [segment(0), segment(1), segment(2)] };
+});
+
+const leg: Region = {
+  inner: 0.05,
+  joint: 0.06,
+  parts: [
+    part('leftUpperLeg', 0.022, taperedCapsule([0.088, 0.9, -0.004], [0.096, 0.53, 0.002], 0.082, 0.052)),
+    part('leftUpperLeg', 0.022, ellipsoid([0.098, 0.74, 0.02], [0.064, 0.17, 0.056])),
+    part('leftUpperLeg', 0.022, ellipsoid([0.092, 0.76, -0.03], [0.06, 0.16, 0.05])),
+    part('leftLowerLeg', 0.02, ellipsoid([0.096, 0.5, 0.012], [0.049, 0.055, 0.048])),
+    part('leftLowerLeg', 0.02, taperedCapsule([0.096, 0.47, 0], [0.098, 0.1, -0.02], 0.048, 0.032)),
+    part('leftLowerLeg', 0.02, ellipsoid([0.097, 0.36, -0.026], [0.05, 0.115, 0.046])),
+  ],
+};
+
+const foot: Region = {
+  inner: 0.03,
+  joint: 0.035,
+  parts: [
+    part('leftFoot', 0.014, ellipsoid([0.098, 0.042, -0.034], [0.036, 0.05, 0.04])),
+    part('leftFoot', 0.014, taperedCapsule([0.099, 0.07, -0.006], [0.103, 0.03, 0.1], 0.04, 0.03)),
+    part('leftToes', 0.014, ellipsoid([0.106, 0.022, 0.135], [0.042, 0.024, 0.052])),
+    part('leftFoot', 0.014, ellipsoid([0.104, 0.022, 0.075], [0.04, 0.026, 0.06])),
+  ],
+};
+
+const regions: readonly Region[] = [torso, neck, head, face, ears, leg, foot, arm, palm, ...fingerRegions];
+
+/** Every part with its weight's bone. */
+export const parts: readonly Part[] = regions.flatMap((region) => region.parts);
+
+/** Both halves of the body meet without a crease: |x|, rounded within a centimetre of the middle. */
+export const foldedX = (x: number): number => Math.sqrt(x * x + 0.006 * 0.006);
+
+/** The whole surface: regions joined one after the other, cut flat at the floor. */
+export const body: DistanceField = (worldX, worldY, worldZ) => {
+  const x = foldedX(worldX);
+  let distance = 1;
+  for (const region of regions) {
+    let own = 1;
+    for (const { solid } of region.parts) own = smoothUnion(own, solid(x, worldY, worldZ), region.inner);
+    distance = smoothUnion(distance, own, region.joint);
+  }
+  // The soles: a flat cut with a rounded edge.
+  return -smoothUnion(-distance, worldY, 0.012);
+};

@@ -1,0 +1,117 @@
+import type { Point } from './signed-distance';
+
+/** A bone of the humanoid: its VRM name, its parent's, and where its joint is in T-pose [m], facing +Z, left = +X. */
+export interface Bone {
+  readonly name: string;
+  readonly parent: string | null;
+  readonly joint: Point;
+}
+
+/** Height of the straight arm [m]. */
+export const armHeight = 1.388;
+/** x of shoulder, elbow, wrist [m]. */
+export const armJoints = { shoulder: 0.18, elbow: 0.45, wrist: 0.695 };
+
+const trunk: Bone[] = [
+  { name: 'hips', parent: null, joint: [0, 0.985, 0] },
+  { name: 'spine', parent: 'hips', joint: [0, 1.095, -0.012] },
+  { name: 'chest', parent: 'spine', joint: [0, 1.21, -0.018] },
+  { name: 'upperChest', parent: 'chest', joint: [0, 1.3, -0.02] },
+  { name: 'neck', parent: 'upperChest', joint: [0, 1.42, -0.02] },
+  { name: 'head', parent: 'neck', joint: [0, 1.51, 0.004] },
+];
+
+interface Finger {
+  readonly name: string;
+  /** Knuckle in the left hand [m], lengths of its three phalanges [m], where it points. */
+  readonly knuckle: Point;
+  readonly lengths: readonly [number, number, number];
+  readonly direction: Point;
+  readonly radius: number;
+}
+
+const straight = (dy: number, dz: number): Point => {
+  const l = Math.hypot(1, dy, dz);
+  return [1 / l, dy / l, dz / l];
+};
+
+/** Five separate fingers; the thumb lies forward and a little below, as in a hand at ease. */
+export const fingers: readonly Finger[] = [
+  {
+    name: 'Index',
+    knuckle: [0.787, armHeight, 0.031],
+    lengths: [0.04, 0.025, 0.019],
+    direction: straight(-0.03, 0.06),
+    radius: 0.0098,
+  },
+  {
+    name: 'Middle',
+    knuckle: [0.791, armHeight + 0.001, 0.0095],
+    lengths: [0.044, 0.028, 0.02],
+    direction: straight(-0.03, 0.01),
+    radius: 0.0101,
+  },
+  {
+    name: 'Ring',
+    knuckle: [0.786, armHeight, -0.0125],
+    lengths: [0.041, 0.026, 0.019],
+    direction: straight(-0.03, -0.04),
+    radius: 0.0096,
+  },
+  {
+    name: 'Little',
+    knuckle: [0.777, armHeight - 0.002, -0.033],
+    lengths: [0.033, 0.02, 0.017],
+    direction: straight(-0.03, -0.1),
+    radius: 0.0085,
+  },
+  {
+    name: 'Thumb',
+    knuckle: [0.72, armHeight - 0.008, 0.027],
+    lengths: [0.042, 0.032, 0.026],
+    direction: straight(-0.16, 0.85),
+    radius: 0.0118,
+  },
+];
+
+/** Names of a finger's three joints in VRM 1.0. */
+export const phalanges = (finger: string): readonly [string, string, string] =>
+  finger === 'Thumb'
+    ? ['ThumbMetacarpal', 'ThumbProximal', 'ThumbDistal']
+    : [`${finger}Proximal`, `${finger}Intermediate`, `${finger}Distal`];
+
+/** Where along a finger joint `index` (0 to 3: knuckle to tip) lies. */
+export function fingerPoint(finger: Finger, index: number): Point {
+  const length = finger.lengths.slice(0, index).reduce((sum, l) => sum + l, 0);
+  const [dx, dy, dz] = finger.direction;
+  // A hint of a curl: the further out, the lower.
+  const sag = finger.name === 'Thumb' ? 0 : -0.45 * length * length;
+  return [finger.knuckle[0] + dx * length, finger.knuckle[1] + dy * length + sag, finger.knuckle[2] + dz * length];
+}
+
+const leftSide: Bone[] = [
+  { name: 'leftShoulder', parent: 'upperChest', joint: [0.022, 1.405, -0.008] },
+  { name: 'leftUpperArm', parent: 'leftShoulder', joint: [armJoints.shoulder, armHeight, -0.006] },
+  { name: 'leftLowerArm', parent: 'leftUpperArm', joint: [armJoints.elbow, armHeight, -0.006] },
+  { name: 'leftHand', parent: 'leftLowerArm', joint: [armJoints.wrist, armHeight, -0.002] },
+  ...fingers.flatMap((finger) =>
+    phalanges(finger.name).map((phalanx, index) => ({
+      name: `left${phalanx}`,
+      parent: index === 0 ? 'leftHand' : `left${phalanges(finger.name)[index - 1]}`,
+      joint: fingerPoint(finger, index),
+    })),
+  ),
+  { name: 'leftUpperLeg', parent: 'hips', joint: [0.09, 0.93, -0.004] },
+  { name: 'leftLowerLeg', parent: 'leftUpperLeg', joint: [0.096, 0.505, 0.004] },
+  { name: 'leftFoot', parent: 'leftLowerLeg', joint: [0.098, 0.082, -0.022] },
+  { name: 'leftToes', parent: 'leftFoot', joint: [0.104, 0.026, 0.108] },
+];
+
+const mirrored = (bone: Bone): Bone => ({
+  name: bone.name.replace('left', 'right'),
+  parent: bone.parent?.replace('left', 'right') ?? null,
+  joint: [-bone.joint[0], bone.joint[1], bone.joint[2]],
+});
+
+/** The whole rig, parents before children. */
+export const bones: readonly Bone[] = [...trunk, ...leftSide, ...leftSide.map(mirrored)];

@@ -1,0 +1,255 @@
+import { MeshoptSimplifier } from 'meshoptimizer';
+import { type DistanceField, gradient, type Point } from './signed-distance';
+
+/** Triangles over points: positions are xyz triples [m]. */
+export interface Surface {
+  readonly positions: Float32Array;
+  readonly indices: Uint32Array;
+}
+
+/** Cells of one block; a block far from the surface is skipped whole. */
+const blockCells = 8;
+
+/**
+ * Surface nets: one vertex in each cell of `cell` [m] that the surface passes through, quads between neighbours. The box must
+ * hold the whole surface.
+ */
+export function mesh(field: DistanceField, min: Point, max: Point, cell: number): Surface {
+  const size = [0, 1, 2].map((axis) => Math.ceil((max[axis]! - min[axis]!) / cell) + 2) as [number, number, number];
+  const [nx, ny, nz] = size;
+  const at = (i: number, j: number, k: number) => i + nx * (j + ny * k);
+  const values = new Float32Array(nx * ny * nz).fill(1);
+  const half = (blockCells * cell) / 2;
+  // Fillets make the field a little larger than true distance near joints; the margin covers it.
+  const reach = half * Math.sqrt(3) + 0.03;
+  for (let bk = 0; bk < nz; bk += blockCells) {
+    for (let bj = 0; bj < ny; bj += blockCells) {
+      for (let bi = 0; bi < nx; bi += blockCells) {
+        const centre = field(min[0] + bi * cell + half, min[1] + bj * cell + half, min[2] + bk * cell + half);
+        const ends = [Math.min(bi + blockCells, nx), Math.min(bj + blockCells, ny), Math.min(bk + blockCells, nz)];
+        const far = Math.abs(centre) > reach;
+        for (let k = bk; k < ends[2]!; k++) {
+          for (let j = bj; j < ends[1]!; j++) {
+            for (let i = bi; i < ends[0]!; i++) {
+              values[at(i, j, k)] = far ? centre : field(min[0] + i * cell, min[1] + j * cell, min[2] + k * cell);
+            }
+          }
+        }
+      }
+    }
+  }
+
+  const positions: number[] = [];
+  const vertexOf = new Int32Array(nx * ny * nz).fill(-1);
+  const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((c) => [c & 1, (c >> 1) & 1, c >> 2] as const);
+  const edges = [
+    [0, 1], [2, 3], [4, 5], [6, 7], [0, 2], [1, 3], [4, 6], [5, 7], [0, 4], [1, 5], [2, 6], [3, 7],
+  ] as const; // biome-ignore format: twelve edges of a cube
+  for (let k = 0; k < nz - 1; k++) {
+    for (let j = 0; j < ny - 1; j++) {
+      for (let i = 0; i < nx - 1; i++) {
+        const v = corners.map(([x, y, z]) => values[at(i + x, j + y, k + z)]!);
+        const inside = v.filter((value) => value < 0).length;
+        if (inside === 0 || inside === 8) continue;
+        let count = 0;
+        const sum = [0, 0, 0];
+        for (const [a, b] of edges) {
+          const va = v[a]!;
+          const vb = v[b]!;
+          if (va < 0 === vb < 0) continue;
+          const t = va / (va - vb);
+          for (let axis = 0; axis < 3; axis++) sum[axis]! += corners[a]![axis]! * (1 - t) + corners[b]![axis]! * t;
+          count += 1;
+        }
+        vertexOf[at(i, j, k)] = positions.length / 3;
+        positions.push(
+          min[0] + (i + sum[0]! / count) * cell,
+          min[1] + (j + sum[1]! / count) * cell,
+          min[2] + (k + sum[2]! / count) * cell,
+        );
+      }
+    }
+  }
+
+  const indices: number[] = [];
+  const quad = (a: number, b: number, c: number, d: number, flip: boolean) =>
+    flip ? indices.push(a, c, b, a, d, c) : indices.push(a, b, c, a, c, d);
+  for (let k = 1; k < nz - 1; k++) {
+    for (let j = 1; j < ny - 1; j++) {
+      for (let i = 1; i < nx - 1; i++) {
+        const here = values[at(i, j, k)]! < 0;
+        const v = (di: number, dj: number, dk: number) => vertexOf[at(i + di, j + dj, k + dk)]!;
+        if (here !== values[at(i + 1, j, k)]! < 0) quad(v(0, -1, -1), v(0, 0, -1), v(0, 0, 0), v(0, -1, 0), !here);
+        if (here !== values[at(i, j + 1, k)]! < 0) quad(v(-1, 0, -1), v(-1, 0, 0), v(0, 0, 0), v(0, 0, -1), !here);
+        if (here !== values[at(i, j, k + 1)]! < 0) quad(v(-1, -1, 0), v(0, -1, 0), v(0, 0, 0), v(-1, 0, 0), !here);
+      }
+    }
+  }
+  return { positions: new Float32Array(positions), indices: new Uint32Array(indices) };
+}
+
+/** Moves every vertex onto the surface along the field's gradient. */
+export function projectOnto(field: DistanceField, { positions, indices }: Surface, steps = 4): Surface {
+  const projected = positions.slice();
+  for (let i = 0; i < projected.length; i += 3) {
+    for (let step = 0; step < steps; step++) {
+      const [x, y, z] = [projected[i]!, projected[i + 1]!, projected[i + 2]!];
+      const [nx, ny, nz] = gradient(field, x, y, z);
+      const distance = field(x, y, z) * 0.9;
+      projected[i] = x - nx * distance;
+      projected[i + 1] = y - ny * distance;
+      projected[i + 2] = z - nz * distance;
+    }
+  }
+  return { positions: projected, indices };
+}
+
+/** Unit normals of the field at every vertex. */
+export function normalsOf(field: DistanceField, positions: Float32Array): Float32Array {
+  const normals = new Float32Array(positions.length);
+  for (let i = 0; i < positions.length; i += 3) {
+    normals.set(gradient(field, positions[i]!, positions[i + 1]!, positions[i + 2]!, 1e-3), i);
+  }
+  return normals;
+}
+
+/**
+ * Fewer triangles, more of them where `importance` (per vertex, about 0 to 1) is high. The topology stays: still one closed surface.
+ */
+export async function decimate(
+  surface: Surface,
+  normals: Float32Array,
+  importance: Float32Array,
+  triangles: number,
+): Promise<Surface> {
+  await MeshoptSimplifier.ready;
+  const vertices = surface.positions.length / 3;
+  const attributes = new Float32Array(vertices * 4);
+  for (let v = 0; v < vertices; v++) {
+    attributes.set(normals.subarray(3 * v, 3 * v + 3), 4 * v);
+    attributes[4 * v + 3] = importance[v]!;
+  }
+  // Normals weigh more where importance is high, by scaling them: the simplifier knows one weight per attribute only.
+  for (let v = 0; v < vertices; v++) {
+    for (let axis = 0; axis < 3; axis++) attributes[4 * v + axis]! *= 0.35 + importance[v]!;
+  }
+  const [indices] = MeshoptSimplifier.simplifyWithAttributes(
+    surface.indices,
+    surface.positions,
+    3,
+    attributes,
+    4,
+    [0.03, 0.03, 0.03, 0.0],
+    null,
+    triangles * 3,
+    1,
+    ['LockBorder'],
+  );
+  return compact({ positions: surface.positions, indices });
+}
+
+/** Only the vertices that triangles use. */
+export function compact({ positions, indices }: Surface): Surface {
+  const renumbered = new Map<number, number>();
+  const kept: number[] = [];
+  const compacted = indices.map((index) => {
+    let next = renumbered.get(index);
+    if (next === undefined) {
+      next = renumbered.size;
+      renumbered.set(index, next);
+      kept.push(positions[3 * index]!, positions[3 * index + 1]!, positions[3 * index + 2]!);
+    }
+    return next;
+  });
+  return { positions: new Float32Array(kept), indices: compacted };
+}
+
+/**
+ * Cuts triangles along the zero line of a value per vertex, so that the border between two materials is a smooth seam. New
+ * vertices lie on the line; `source` tells which two old ones each came from and how far between them.
+ */
+export function cutAlong(surface: Surface, value: (x: number, y: number, z: number) => number): Surface {
+  const positions = Array.from(surface.positions);
+  const values: number[] = [];
+  const valueOf = (v: number): number =>
+    (values[v] ??= value(positions[3 * v]!, positions[3 * v + 1]!, positions[3 * v + 2]!));
+  // Vertices nearly on the line are taken to lie on it: no slivers.
+  const on = 4e-4;
+  const side = (v: number): number => (Math.abs(valueOf(v)) < on ? 0 : Math.sign(valueOf(v)));
+  const between = new Map<string, number>();
+  const crossing = (a: number, b: number): number => {
+    const key = a < b ? `${a},${b}` : `${b},${a}`;
+    let vertex = between.get(key);
+    if (vertex === undefined) {
+      const t = valueOf(a) / (valueOf(a) - valueOf(b));
+      vertex = positions.length / 3;
+      for (let axis = 0; axis < 3; axis++) {
+        positions.push(positions[3 * a + axis]! * (1 - t) + positions[3 * b + axis]! * t);
+      }
+      values[vertex] = 0;
+      between.set(key, vertex);
+    }
+    return vertex;
+  };
+  const indices: number[] = [];
+  for (let t = 0; t < surface.indices.length; t += 3) {
+    const triangle = [surface.indices[t]!, surface.indices[t + 1]!, surface.indices[t + 2]!] as const;
+    const polygons: Record<'1' | '-1', number[]> = { '1': [], '-1': [] };
+    const sides = triangle.map(side);
+    if (!sides.includes(1) || !sides.includes(-1)) {
+      indices.push(...triangle);
+      continue;
+    }
+    for (let e = 0; e < 3; e++) {
+      const a = triangle[e]!;
+      const b = triangle[(e + 1) % 3]!;
+      const sa = sides[e]!;
+      const sb = sides[(e + 1) % 3]!;
+      if (sa >= 0) polygons['1'].push(a);
+      if (sa <= 0) polygons['-1'].push(a);
+      if (sa * sb < 0) {
+        const c = crossing(a, b);
+        polygons['1'].push(c);
+        polygons['-1'].push(c);
+      }
+    }
+    for (const polygon of Object.values(polygons)) {
+      for (let i = 2; i < polygon.length; i++) indices.push(polygon[0]!, polygon[i - 1]!, polygon[i]!);
+    }
+  }
+  return { positions: new Float32Array(positions), indices: new Uint32Array(indices) };
+}
+
+/** The mean of a value per vertex over its neighbours, `rounds` times; channels are interleaved. */
+export function smoothOver(
+  surface: Surface,
+  values: Float32Array,
+  channels: number,
+  rounds: number,
+  rate: number,
+): void {
+  const vertices = surface.positions.length / 3;
+  const neighbours: Set<number>[] = Array.from({ length: vertices }, () => new Set());
+  for (let t = 0; t < surface.indices.length; t += 3) {
+    for (let e = 0; e < 3; e++) {
+      const a = surface.indices[t + e]!;
+      const b = surface.indices[t + ((e + 1) % 3)]!;
+      neighbours[a]!.add(b);
+      neighbours[b]!.add(a);
+    }
+  }
+  let from = values.slice();
+  const to = values;
+  for (let round = 0; round < rounds; round++) {
+    for (let v = 0; v < vertices; v++) {
+      const around = neighbours[v]!;
+      for (let c = 0; c < channels; c++) {
+        let sum = 0;
+        for (const n of around) sum += from[n * channels + c]!;
+        const own = from[v * channels + c]!;
+        to[v * channels + c] = own + (around.size ? sum / around.size - own : 0) * rate;
+      }
+    }
+    from = to.slice();
+  }
+}
