@@ -316,7 +316,9 @@ function steadyPole(
   const kept = before ? rotate(floorFromChest, before.pole) : fallback;
   const keptAcross = normalise(reject(kept, axis), reject(fallback, axis));
   const sure = smoothstep(0, unsurePole, length(estimated));
-  const wanted = normalise(lerp(keptAcross, normalise(estimated, keptAcross), sure), keptAcross);
+  // An unsure estimate is followed by its share of the way every 1/60 s, at any frame rate.
+  const share = before ? 1 - (1 - sure) ** (60 * Math.max(deltaSeconds, 0)) : sure;
+  const wanted = normalise(lerp(keptAcross, normalise(estimated, keptAcross), share), keptAcross);
   if (!before) return wanted;
   const angle = Math.atan2(dot(cross(keptAcross, wanted), axis), dot(keptAcross, wanted));
   const most = swivelSpeed * Math.max(deltaSeconds, 0);
