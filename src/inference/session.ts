@@ -1,0 +1,52 @@
+import type { InferenceSession as OrtSession } from 'onnxruntime-web';
+import type { TensorContract } from '../core/estimation/pose-regressor';
+
+export type ExecutionProvider = 'wasm' | 'webgpu';
+
+/** One model in onnxruntime-web, one run at a time. */
+export interface InferenceSession {
+  readonly provider: ExecutionProvider;
+  readonly inputNames: readonly string[];
+  readonly outputNames: readonly string[];
+  run(input: TensorContract, features: Float32Array, output: string): Promise<Float32Array>;
+  release(): Promise<void>;
+}
+
+/**
+ * Opens a model. Only what the provider needs is downloaded: WebGPU's larger bundle comes when it is asked for.
+ * Rejects when the provider is not to be had or does not take the model.
+ */
+export async function createSession(model: Uint8Array, provider: ExecutionProvider): Promise<InferenceSession> {
+  const ort = provider === 'webgpu' ? await import('onnxruntime-web/webgpu') : await import('onnxruntime-web/wasm');
+  // One thread: two on two cores made the slowest frames four times slower, and no cross-origin isolation is needed.
+  ort.env.wasm.numThreads = 1;
+  ort.env.wasm.proxy = false;
+  ort.env.logLevel = 'error';
+  const options: OrtSession.SessionOptions = {
+    executionProviders: [provider],
+    graphOptimizationLevel: 'all',
+    // Weights are stored as bytes: fold their dequantisation at load instead of in every run.
+    extra: { session: { disable_quant_qdq: '1' } },
+  };
+  const session = await ort.InferenceSession.create(model, options);
+  let last: Promise<unknown> = Promise.resolve();
+  return {
+    provider,
+    inputNames: session.inputNames,
+    outputNames: session.outputNames,
+    run(input, features, output) {
+      const start = async (): Promise<Float32Array> => {
+        const results = await session.run({ [input.name]: new ort.Tensor('float32', features, [...input.shape]) });
+        const tensor = results[output];
+        if (!tensor) throw new Error(`no output “${output}”`);
+        return Float32Array.from((await tensor.getData()) as Float32Array);
+      };
+      if (provider === 'wasm') return start();
+      // Overlapping runs hang there.
+      const run = last.then(start, start);
+      last = run.catch(() => undefined);
+      return run;
+    },
+    release: () => session.release(),
+  };
+}
