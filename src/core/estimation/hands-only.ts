@@ -4,8 +4,8 @@ import type { PoseEstimator } from './pose-estimator';
 export function createHandsOnly(): PoseEstimator {
   return {
     name: 'hands-only',
-    calibrate() {},
-    reset() {},
+    calibrate: () => undefined,
+    reset: () => undefined,
     prepare: () => Promise.resolve(),
     estimate: ({ head, leftHand, rightHand }) => ({ head, leftHand, rightHand, body: null }),
     rawJoints: () => null,

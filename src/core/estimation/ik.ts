@@ -25,7 +25,7 @@ export function createIk(calibration: Calibration): PoseEstimator {
     calibrate(next) {
       body = chestSpaceBody(next);
     },
-    reset() {},
+    reset: () => undefined,
     prepare: () => Promise.resolve(),
     joints: (frame) => transformJoints(floorFromHeading(frame.head), solveIk(pointsInHeading(frame), body)),
     rawJoints: () => null,
