@@ -7,6 +7,7 @@ import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
 import { createEstimator } from '../../../src/core/estimation/estimators';
 import type { JointPositions } from '../../../src/core/estimation/joint-positions';
 import { emptyMemory, reconstructOrientations } from '../../../src/core/estimation/reconstruct-orientations';
+import { swivelAngle } from '../../../src/core/estimation/two-bone-ik';
 import type { Pose } from '../../../src/core/math/pose';
 import {
   angleBetween,
@@ -17,7 +18,19 @@ import {
   rotate,
   twistAngle,
 } from '../../../src/core/math/quat';
-import { add, distance, dot, normalise, right, subtract, up, type Vec3, vec3 } from '../../../src/core/math/vec3';
+import {
+  add,
+  addScaled,
+  cross,
+  distance,
+  dot,
+  normalise,
+  right,
+  subtract,
+  up,
+  type Vec3,
+  vec3,
+} from '../../../src/core/math/vec3';
 import type { TrackedPose, TrackingFrame } from '../../../src/core/tracking/tracking-frame';
 import { number, seed } from '../arbitraries';
 import { standing, wristOrientation } from './moving-person';
@@ -117,6 +130,63 @@ describe('arms', () => {
       }),
       { seed, numRuns: 300 },
     );
+  });
+
+  describe('an elbow from frame to frame', () => {
+    const skeleton = skeletonFromCalibration(calibration);
+    const frame = standing(calibration, hip.left, ahead.right);
+    const upright = bodyOf(frame);
+    const joints = Object.fromEntries(estimatedJoints.map((joint) => [joint, at(upright, joint)])) as JointPositions;
+    const shoulder = joints.rightUpperArm;
+    const wrist = ahead.right;
+    const middle = vec3((shoulder.x + wrist.x) / 2, (shoulder.y + wrist.y) / 2, (shoulder.z + wrist.z) / 2);
+    const across = normalise(subtract(at(upright, 'rightLowerArm'), middle));
+
+    /** The angle [rad] by which elbows turn about the arm's line, from one estimate to the next, `seconds` apart. */
+    const turned = (estimates: readonly Vec3[], seconds: number): number[] => {
+      const memory = emptyMemory();
+      const elbows = estimates.map((rightLowerArm, i) =>
+        at(
+          forwardKinematics(
+            skeleton,
+            reconstructOrientations(
+              { ...frame, joints: { ...joints, rightLowerArm } },
+              skeleton,
+              memory,
+              i ? seconds : 0,
+            ),
+          ),
+          'rightLowerArm',
+        ),
+      );
+      return elbows.slice(1).map((elbow, i) => Math.abs(swivelAngle(shoulder, wrist, elbows[i]!, elbow)));
+    };
+
+    test('does not flip when its estimate jumps to the other side', () => {
+      const [down, raised] = [addScaled(middle, across, 0.2), addScaled(middle, across, -0.2)];
+      for (const rate of [60, 120]) {
+        const angles = turned([down, raised, raised], 1 / rate);
+        for (const angle of angles) {
+          expect(angle).toBeGreaterThan(0.05);
+          expect(angle).toBeLessThan(15 / rate);
+        }
+      }
+    });
+
+    test('gets to the other side all the same, when the estimate stays there', () => {
+      const angles = turned(
+        [addScaled(middle, across, 0.2), ...Array(30).fill(addScaled(middle, across, -0.2))],
+        1 / 60,
+      );
+      expect(angles.reduce((sum, angle) => sum + angle, 0)).toBeGreaterThan(3);
+      expect(angles.at(-1)).toBeLessThan(1e-6);
+    });
+
+    test('heeds little of an estimate that is almost on the arm’s line', () => {
+      const beside = normalise(cross(subtract(wrist, shoulder), across));
+      const unsure = [1, -1, 1, -1].map((way) => addScaled(middle, beside, 0.004 * way));
+      for (const angle of turned([addScaled(middle, across, 0.2), ...unsure], 1 / 60)) expect(angle).toBeLessThan(0.06);
+    });
   });
 
   test('no wrist is wrung: the forearm takes its part of the hand’s turn', () => {
