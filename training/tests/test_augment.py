@@ -1,0 +1,89 @@
+"""Facts about recombined bodies."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from threepoint_training import features
+from threepoint_training.augment import AugmentConfig, BodyParts, draw_batch
+from threepoint_training.features import FEATURES, IK_JOINTS
+from threepoint_training.generated_motion import generate_corpus
+from threepoint_training.prepare import EYES_FROM_HEAD_JOINT
+from threepoint_training.simulate_trackers import TrackerConfig, Wearer, simulate
+from threepoint_training.skeleton import body_from_calibration
+
+CORPUS = generate_corpus(people=3, clips=2, frames=80, seed=6)
+PARTS = BodyParts(CORPUS, tuple(CORPUS.people))
+EXACT = TrackerConfig(*[0.0] * 6)
+PLAIN = AugmentConfig(recombined=0, lost_hand=0, arm_scale=0, eye_height_error=0, arm_span_error=0, trackers=EXACT)
+STILL = np.array([0.0, 0.0, 0.0, 1.0])
+
+
+def corpus_rows():
+    """Inputs and targets of every frame of the corpus with exact trackers, as it is and mirrored."""
+    wearer = Wearer(EYES_FROM_HEAD_JOINT, STILL, np.zeros((2, 3)), np.stack([STILL, STILL]))
+    inputs, targets = [], []
+    for clip, person in enumerate(CORPUS.clip_people):
+        frames = CORPUS.clip_slice(clip)
+        positions, rotations = simulate(CORPUS.positions[frames], CORPUS.rotations[frames], wearer, EXACT, np.random.default_rng(0))
+        body = body_from_calibration(np.array(CORPUS.people[person].eye_height), np.array(CORPUS.people[person].arm_span))
+        vector, _ = features.frame_features(positions, rotations, body)
+        inputs.append(features.windowed(vector, np.arange(len(vector)) / 60, (0, 0.1, 0.25)))
+        targets.append(features.target(CORPUS.truth(frames).astype(np.float64), positions, rotations, body))
+    return np.concatenate(inputs), np.concatenate(targets)
+
+
+def test_without_any_variation_a_window_is_the_corpus_s_own_or_its_mirror_image():
+    inputs, targets = corpus_rows()
+    batch = draw_batch(PARTS, 60, PLAIN, np.random.default_rng(1))
+    found = 0
+    for given, target in zip(batch.inputs, batch.targets, strict=True):
+        distance = np.abs(inputs - given).max(axis=1)
+        nearest = int(np.argmin(distance))
+        if distance[nearest] < 1e-4:
+            found += 1
+            np.testing.assert_allclose(target, targets[nearest], atol=1e-5)
+    assert 15 < found < 45
+
+
+def test_arms_of_others_move_the_hands_but_not_the_torso():
+    plain = draw_batch(PARTS, 200, PLAIN, np.random.default_rng(2))
+    mixed = draw_batch(PARTS, 200, replace(PLAIN, recombined=1.0), np.random.default_rng(2))
+    # The same frames are drawn first; mirroring is drawn later, so compare what mirroring leaves alone: the height of the hips.
+    np.testing.assert_allclose(mixed.targets[:, 16], plain.targets[:, 16], atol=1e-6)
+    assert np.abs(mixed.inputs[:, 7:10] - plain.inputs[:, 7:10]).max() > 0.3
+
+
+@pytest.mark.parametrize("recombined", [0.0, 1.0])
+def test_arms_have_the_length_that_the_calibration_knows(recombined):
+    """Upper arm and forearm as ratios of each other are a person's; their sum is the body's it was put on."""
+    config = replace(PLAIN, recombined=recombined, arm_scale=0.05)
+    batch = draw_batch(PARTS, 300, config, np.random.default_rng(3))
+    joints = batch.targets.reshape(-1, 6, 3)
+    span_ratio = batch.inputs[:, 45]
+    for elbow, shoulder, hand in ((0, 2, slice(7, 10)), (1, 3, slice(16, 19))):
+        wrist = batch.inputs[:, hand] * span_ratio[:, None]
+        length = np.linalg.norm(joints[:, elbow] - joints[:, shoulder], axis=1) + np.linalg.norm(wrist - joints[:, elbow], axis=1)
+        # Generated people are 0.24 of the eye height between the shoulders, the calibrated skeleton a little less.
+        assert np.abs(length / span_ratio - 1).max() < 0.06
+
+
+def test_a_lost_hand_says_so_and_rests_beside_the_hips():
+    batch = draw_batch(PARTS, 400, replace(PLAIN, lost_hand=0.3), np.random.default_rng(4))
+    for mask, hand, sign in ((25, slice(7, 10), -1), (26, slice(16, 19), 1)):
+        lost = batch.inputs[:, mask] == 0
+        assert 0.2 < lost.mean() < 0.4
+        wrist = batch.inputs[lost, hand]
+        assert np.ptp(wrist, axis=0).max() < 0.25
+        assert (wrist[:, 1] < -0.9).all()
+        assert (sign * wrist[:, 0] > 0.1).all()
+
+
+def test_a_batch_is_finite_and_repeatable():
+    config = AugmentConfig()
+    first, second = (draw_batch(PARTS, 128, config, np.random.default_rng(5)) for _ in range(2))
+    assert first.inputs.shape == (128, FEATURES * len(config.window_frames))
+    assert np.isfinite(first.inputs).all()
+    np.testing.assert_array_equal(first.inputs, second.inputs)
+    np.testing.assert_array_equal(first.targets, second.targets)
+    assert np.abs(first.inputs[:, IK_JOINTS] - first.targets).mean() < 0.15

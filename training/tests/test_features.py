@@ -1,0 +1,144 @@
+"""Facts about the features: what turning, moving, mirroring, growing and another frame rate do to them."""
+
+import numpy as np
+import pytest
+from threepoint_training import features, fit_ik, ik, quaternion
+from threepoint_training.generated_motion import generate_clip
+from threepoint_training.prepared_corpus import ESTIMATED_JOINTS, JOINTS, Person
+from threepoint_training.simulate_trackers import TrackerConfig, draw_wearer, simulate
+from threepoint_training.skeleton import body_from_calibration
+
+PERSON = Person("test", 1.63, 1.55)
+BODY = body_from_calibration(np.array(PERSON.eye_height), np.array(PERSON.arm_span))
+SIDE_SWAPPED = [1, 0, 3, 2, 4, 5]
+
+
+@pytest.fixture(params=range(3))
+def motion(request):
+    """Tracked points of generated motion that starts turned and away from the origin, and the true six joints."""
+    random = np.random.default_rng([5, request.param])
+    joints, turns = generate_clip(random, 120, PERSON)
+    trackers = TrackerConfig()
+    positions, rotations = simulate(joints, turns, draw_wearer(trackers, random), trackers, random)
+    return positions, rotations, joints[:, [JOINTS.index(name) for name in ESTIMATED_JOINTS]]
+
+
+def moved(positions, rotations, yaw, offset):
+    turn = quaternion.from_axis_angle(np.array([0.0, 1.0, 0.0]), np.array(yaw))
+    return (
+        quaternion.rotate(np.broadcast_to(turn, rotations.shape), positions) + offset,
+        quaternion.multiply(np.broadcast_to(turn, rotations.shape), rotations),
+    )
+
+
+def mirrored_features(vector):
+    """What the features of the mirrored motion must be: sides exchanged, x and the mirrored rotations' signs turned."""
+    axis_x, axis_y = np.array([1.0, -1, -1]), np.array([-1.0, 1, 1])
+    head = np.concatenate([vector[:, 1:4] * axis_x, vector[:, 4:7] * axis_y], 1)
+    hands = [
+        np.concatenate([vector[:, a : a + 3] * axis_y, vector[:, a + 3 : a + 6] * axis_x, vector[:, a + 6 : a + 9] * axis_y], 1)
+        for a in (16, 7)
+    ]
+    joints = vector[:, 27:45].reshape(-1, 6, 3)[:, SIDE_SWAPPED] * np.array([-1.0, 1, 1])
+    return np.concatenate([vector[:, :1], head, *hands, vector[:, [26, 25]], joints.reshape(-1, 18), vector[:, 45:]], 1)
+
+
+def test_the_vector_has_46_finite_numbers(motion):
+    vector, _ = features.frame_features(*motion[:2], BODY)
+    assert vector.shape == (120, features.FEATURES)
+    assert np.isfinite(vector).all()
+
+
+@pytest.mark.parametrize("yaw", [-3.0, -1.2, 0.4, 2.9])
+def test_walking_elsewhere_and_turning_changes_no_feature(motion, yaw):
+    positions, rotations, truth = motion
+    elsewhere = moved(positions, rotations, yaw, np.array([3.0, 0.0, -7.0]))
+    before, joints = features.frame_features(positions, rotations, BODY)
+    after, turned_joints = features.frame_features(*elsewhere, BODY)
+    np.testing.assert_allclose(after, before, atol=1e-9)
+    np.testing.assert_allclose(turned_joints, joints, atol=1e-9)
+    turned_truth, _ = moved(truth, np.broadcast_to(rotations[:, :1], (120, 6, 4)), yaw, np.array([3.0, 0.0, -7.0]))
+    np.testing.assert_allclose(
+        features.target(turned_truth, *elsewhere, BODY), features.target(truth, positions, rotations, BODY), atol=1e-9
+    )
+
+
+def test_the_paper_s_input_does_turn_with_the_person_but_does_not_move(motion):
+    positions, rotations, _ = motion
+    before = features.paper_input(positions, rotations)
+    np.testing.assert_allclose(features.paper_input(positions + [2.0, 0.0, 5.0], rotations), before, atol=1e-9)
+    turned = features.paper_input(*moved(positions, rotations, 1.0, np.zeros(3)))
+    assert np.abs(turned[:, 0] - before[:, 0]).max() > 0.1
+
+
+def test_the_mirror_image_has_the_mirrored_features(motion):
+    positions, rotations, truth = motion
+    seen = np.random.default_rng(2).uniform(size=(120, 2)) > 0.3
+    vector, _ = features.frame_features(positions, rotations, BODY, seen)
+    mirrored_positions, mirrored_rotations, _ = fit_ik.mirror(positions, rotations, truth)
+    mirrored, _ = features.frame_features(mirrored_positions, mirrored_rotations, BODY, seen[:, ::-1])
+    np.testing.assert_allclose(mirrored, mirrored_features(vector), atol=1e-9)
+
+
+@pytest.mark.parametrize("size", [0.7, 1.3])
+def test_a_child_in_an_adult_s_pose_has_the_adult_s_features(motion, size):
+    positions, rotations, truth = motion
+    grown = body_from_calibration(np.array(PERSON.eye_height * size), np.array(PERSON.arm_span * size))
+    before, _ = features.frame_features(positions, rotations, BODY)
+    after, _ = features.frame_features(positions * size, rotations, grown)
+    np.testing.assert_allclose(after, before, atol=1e-6)
+    np.testing.assert_allclose(
+        features.target(truth * size, positions * size, rotations, grown), features.target(truth, positions, rotations, BODY), atol=1e-9
+    )
+
+
+def test_an_unseen_hand_says_so_and_changes_nothing_else(motion):
+    seen = np.ones((120, 2), bool)
+    seen[:, 0] = False
+    with_hand, _ = features.frame_features(*motion[:2], BODY)
+    without, _ = features.frame_features(*motion[:2], BODY, seen)
+    assert np.flatnonzero((with_hand != without).any(axis=0)).tolist() == [25]
+
+
+def test_the_ik_joints_within_are_those_of_the_solver(motion):
+    positions, rotations, _ = motion
+    vector, joints = features.frame_features(positions, rotations, BODY)
+    local, turns, _, _ = ik.to_heading(positions, rotations)
+    expected = (ik.solve(local, turns, BODY) - local[:, :1]) / PERSON.eye_height
+    np.testing.assert_allclose(vector[:, features.IK_JOINTS].reshape(-1, 6, 3), expected, atol=1e-12)
+    np.testing.assert_allclose((joints - local[:, :1]) / PERSON.eye_height, expected, atol=1e-12)
+
+
+@pytest.mark.parametrize("rate", [60, 72, 90, 120])
+def test_the_window_means_the_same_at_every_frame_rate(rate):
+    """Of features that change linearly, at a moment that every rate samples."""
+    slope = np.random.default_rng(4).normal(size=features.FEATURES)
+    times = np.arange(rate + 1) / rate
+    window = features.windowed(times[:, None] * slope, times, (0.0, 0.1, 0.25))
+    np.testing.assert_allclose(window[-1].reshape(3, -1), np.array([1.0, 0.9, 0.75])[:, None] * slope, atol=1e-12)
+
+
+def test_before_there_is_a_history_the_oldest_frame_stands_in():
+    vector = np.arange(5.0)[:, None] * np.ones(features.FEATURES)
+    window = features.windowed(vector, np.arange(5) / 60, (0.0, 0.1, 0.25)).reshape(5, 3, -1)
+    np.testing.assert_array_equal(window[:, 0], vector)
+    np.testing.assert_array_equal(window[:, 1:], 0)
+    alone = features.windowed(vector[:1], np.zeros(1), (0.0, 0.1))
+    np.testing.assert_array_equal(alone, np.concatenate([vector[:1], vector[:1]], 1))
+
+
+def test_euler_angles_compose_to_the_rotation():
+    rotations = np.random.default_rng(6).normal(size=(200, 4))
+    rotations /= np.linalg.norm(rotations, axis=-1, keepdims=True)
+    angles = features.euler_yxz(rotations)
+    x, y, z = (quaternion.from_axis_angle(np.broadcast_to(np.eye(3)[axis], (200, 3)), angles[:, axis]) for axis in range(3))
+    composed = quaternion.multiply(quaternion.multiply(y, x), z)
+    np.testing.assert_allclose(np.abs(np.sum(composed * rotations, axis=-1)), 1, atol=1e-9)
+
+
+def test_looking_straight_down_or_up_keeps_the_heading():
+    """Towards the end of a bow the gaze is vertical; the heading comes from the ears, not from the gaze."""
+    for pitch in np.radians([-89.9, -90.0, -90.1, 90.0]):
+        yaw = quaternion.from_axis_angle(np.array([0.0, 1.0, 0.0]), np.array(0.7))
+        head = quaternion.multiply(yaw, quaternion.from_axis_angle(np.array([1.0, 0.0, 0.0]), np.array(pitch)))
+        np.testing.assert_allclose(quaternion.heading(head[None])[0], yaw, atol=1e-6)

@@ -1,0 +1,87 @@
+"""The committed golden vectors and models are those that this code makes."""
+
+import hashlib
+import json
+
+import numpy as np
+import onnx
+import onnxruntime
+import pytest
+from threepoint_training import golden
+from threepoint_training.features import FEATURES, OUTPUTS
+
+MODELS = golden.GOLDEN.parents[1] / "public/models"
+LARGEST = {"paper": 1_700_000, "learned": 300_000}
+
+
+def flat(value):
+    """All numbers of nested lists and dicts, in order."""
+    if isinstance(value, dict):
+        return [number for key in sorted(value) for number in flat(value[key])]
+    if isinstance(value, list):
+        return [number for part in value for number in flat(part)]
+    return [float(value)]
+
+
+def contract(name):
+    return json.loads((MODELS / f"{name}.json").read_text())
+
+
+def test_golden_features_are_what_the_features_are_now():
+    committed = json.loads((golden.GOLDEN / "features.json").read_text())
+    now = json.loads(json.dumps(golden._plain(golden.feature_vectors())))
+    assert [sorted(case) for case in committed] == [sorted(case) for case in now]
+    np.testing.assert_allclose(flat(now), flat(committed), atol=1e-7)
+
+
+def test_golden_frames_start_turned_and_away_from_the_origin():
+    for case in json.loads((golden.GOLDEN / "features.json").read_text()):
+        first = case["frames"][0]
+        assert np.linalg.norm(np.array(first["positions"][0])[[0, 2]]) > 0.1
+        assert abs(first["rotations"][0][1]) > 0.1
+
+
+@pytest.mark.parametrize("name", ["paper", "learned"])
+def test_the_runtime_gives_the_golden_outputs(name):
+    case = json.loads((golden.GOLDEN / "models.json").read_text())[name]
+    session = onnxruntime.InferenceSession(MODELS / f"{name}.onnx")
+    shape = contract(name)["inputs"][0]["shape"]
+    assert len(case["cases"]) >= 10
+    for pair in case["cases"]:
+        given = np.array(pair["input"], np.float32).reshape(shape)
+        (output,) = session.run(None, {session.get_inputs()[0].name: given})
+        np.testing.assert_allclose(output[0], pair["output"], atol=case["tolerance"])
+
+
+@pytest.mark.parametrize("name", ["paper", "learned"])
+def test_the_contract_speaks_of_the_file_beside_it(name):
+    stated = contract(name)
+    content = (MODELS / stated["file"]).read_bytes()
+    assert stated["name"] == name
+    assert stated["bytes"] == len(content) <= LARGEST[name]
+    assert stated["sha256"] == hashlib.sha256(content).hexdigest()
+    assert stated["sha256"] == json.loads((golden.GOLDEN / "models.json").read_text())[name]["sha256"]
+    session = onnxruntime.InferenceSession(content)
+    for tensors, stated_tensors in ((session.get_inputs(), stated["inputs"]), (session.get_outputs(), stated["outputs"])):
+        assert [(t.name, t.shape) for t in tensors] == [(t["name"], t["shape"]) for t in stated_tensors]
+    assert stated["outputs"][0]["shape"] == [1, OUTPUTS]
+    if name == "learned":
+        assert stated["inputs"][0]["shape"] == [1, FEATURES * len(stated["windowSeconds"])]
+        assert stated["windowSeconds"][0] == 0
+        assert stated["windowSeconds"] == sorted(stated["windowSeconds"])
+        assert 0 <= stated["correctionHalfLife"] <= 0.2
+
+
+@pytest.mark.parametrize("name", ["paper", "learned"])
+def test_held_out_people_trained_nothing(name):
+    assert not {"005", "135"} & set(contract(name)["trainedOn"]["people"])
+
+
+@pytest.mark.parametrize("name", ["paper", "learned"])
+def test_weights_are_eight_bits_and_activations_are_not(name):
+    model = onnx.load(MODELS / f"{name}.onnx")
+    assert max(entry.version for entry in model.opset_import if entry.domain in ("", "ai.onnx")) <= 17
+    large = [tensor for tensor in model.graph.initializer if np.prod(tensor.dims) >= 1024]
+    assert large
+    assert all(tensor.data_type == onnx.TensorProto.INT8 for tensor in large)
+    assert not {"QuantizeLinear", "DynamicQuantizeLinear"} & {node.op_type for node in model.graph.node}

@@ -1,0 +1,133 @@
+"""The whole pipeline on generated motion: npm run test:training. Needs PyTorch, so the module imports it only within tests."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import onnxruntime
+import pytest
+
+pytestmark = pytest.mark.training
+
+SEED = 5
+
+
+@pytest.fixture(scope="module")
+def config(tmp_path_factory):
+    from threepoint_training import __main__ as pipeline
+
+    base = pipeline.quick(pipeline.TrainConfig(mocap=None, folds=("A",), seed=SEED, out=tmp_path_factory.mktemp("models")))
+    return replace(base, learned=replace(base.learned, steps=60, batch=256, seed=SEED), paper=replace(base.paper, seed=SEED))
+
+
+@pytest.fixture(scope="module")
+def corpus():
+    from threepoint_training.generated_motion import generate_corpus
+
+    return generate_corpus(people=5, clips=3, frames=400, seed=SEED)
+
+
+@pytest.fixture(scope="module")
+def run(config):
+    """The pipeline's table, after it wrote its models."""
+    from threepoint_training import __main__ as pipeline
+
+    return pipeline.main(config)
+
+
+def contract(folder, name):
+    return json.loads((folder / f"{name}.json").read_text())
+
+
+@pytest.mark.parametrize("name", ["paper", "learned"])
+def test_the_pipeline_writes_a_model_that_keeps_its_contract(config, run, name):
+    stated = contract(config.out, name)
+    assert stated["seed"] == SEED
+    assert stated["trainedOn"]["people"]
+    assert stated["bytes"] == (config.out / stated["file"]).stat().st_size
+    assert all(set(errors) >= {"mean", "pelvis"} for errors in stated["errors"].values())
+    session = onnxruntime.InferenceSession(config.out / stated["file"])
+    given = np.random.default_rng(1).normal(size=stated["inputs"][0]["shape"]).astype(np.float32)
+    (output,) = session.run([stated["outputs"][0]["name"]], {stated["inputs"][0]["name"]: given})
+    assert list(output.shape) == stated["outputs"][0]["shape"]
+    assert np.isfinite(output).all()
+
+
+def test_the_table_has_a_row_per_estimator_and_protocol(run):
+    assert [row.split(",")[0] for row in run] == ["IK", "paper", "learned", "paper"]
+    assert all(0 < values["mean"] < 60 for values in run.values())
+
+
+def test_the_loss_of_both_networks_falls(config, corpus):
+    from threepoint_training import train_learned, train_paper
+
+    people = tuple(corpus.people)
+    losses = []
+    train_learned.train(corpus, people, config.learned, lambda step, loss, _: losses.append(loss))
+    assert np.mean(losses[-10:]) < 0.9 * np.mean(losses[:5])
+    losses.clear()
+    frames = train_paper.frames_of(corpus, people, SEED)
+    paper = replace(config.paper, epochs=3, batch=128)
+    train_paper.train(frames, np.arange(len(frames.inputs)), paper, lambda epoch, iteration, loss: losses.append(loss))
+    assert losses[-1] < 0.5 * losses[0]
+
+
+def test_eight_bits_agree_with_thirty_two(config, corpus):
+    """In error and in jerk: weights of 8 bits must not make the joints tremble."""
+    from threepoint_training import train_learned
+    from threepoint_training.export import to_onnx
+    from threepoint_training.quantise import quantise_weights, run
+
+    people = tuple(corpus.people)
+    network = train_learned.train(corpus, people, config.learned)
+    inputs = train_learned.held_out(corpus, people[:1], config.learned.window_seconds).inputs[:300]
+    exact = to_onnx(network, inputs[:1], "features", "joints")
+    fp32, int8 = run(exact, inputs), run(quantise_weights(exact), inputs)
+    assert 0 < np.abs(fp32 - int8).max() < 0.01
+    jerk = [np.abs(np.diff(output, 3, axis=0)).mean() for output in (fp32, int8)]
+    assert jerk[1] < 1.05 * jerk[0]
+
+
+def test_onnx_says_what_the_network_says(config, corpus):
+    import torch
+    from threepoint_training import train_learned
+    from threepoint_training.export import to_onnx
+    from threepoint_training.model import PaperNetwork
+    from threepoint_training.quantise import run
+
+    learned = train_learned.train(corpus, tuple(corpus.people), replace(config.learned, steps=3))
+    inputs = train_learned.held_out(corpus, ("001",), config.learned.window_seconds).inputs[:20]
+    paper = PaperNetwork().eval()
+    paper_inputs = np.random.default_rng(2).normal(size=(20, 2, 3, 3)).astype(np.float32)
+    for network, given in ((learned, inputs), (paper, paper_inputs)):
+        with torch.no_grad():
+            expected = network(torch.from_numpy(given)).numpy()
+        np.testing.assert_allclose(run(to_onnx(network, given[:1], "in", "out"), given), expected, atol=1e-5)
+
+
+def test_the_paper_s_network_has_the_paper_s_size():
+    from threepoint_training.model import PaperNetwork
+
+    network = PaperNetwork()
+    assert sum(p.numel() for p in network.parameters()) == pytest.approx(1.58e6, rel=0.005)
+    assert [c.out_channels for c in network.convolutions] == [32, 64, 128, 256]
+
+
+def test_the_same_seed_makes_the_same_weights_and_another_seed_others(config, corpus):
+    from threepoint_training import train_learned
+
+    def weights(seed):
+        network = train_learned.train(corpus, tuple(corpus.people), replace(config.learned, steps=12, seed=seed))
+        return np.concatenate([value.numpy().ravel() for value in network.state_dict().values()])
+
+    first = weights(1)
+    np.testing.assert_array_equal(first, weights(1))
+    assert np.abs(first - weights(2)).max() > 1e-3
+
+
+def test_the_whole_run_is_repeatable_to_the_byte(config, run, tmp_path):
+    from threepoint_training import __main__ as pipeline
+
+    pipeline.main(replace(config, out=tmp_path))
+    for name in ("paper", "learned"):
+        assert contract(tmp_path, name)["sha256"] == contract(config.out, name)["sha256"]
