@@ -1,0 +1,20 @@
+/** Colours of the mannequin's materials (docs/avatar.md), one palette per player. CSS colours. */
+export interface Palette {
+  readonly name: string;
+  readonly label: string;
+  /** The colour that stands for the palette in menus: the accent. */
+  readonly color: string;
+  readonly suit: string;
+  readonly head: string;
+  readonly visor: string;
+}
+
+/** Told apart by lightness as well as by hue. */
+export const palettes: readonly Palette[] = [
+  { name: 'porcelain', label: 'Porcelain', color: '#2f7de1', suit: '#c9ced6', head: '#e6e3de', visor: '#10141b' },
+  { name: 'ember', label: 'Ember', color: '#e2572b', suit: '#4a4d55', head: '#d8cfc6', visor: '#15100e' },
+  { name: 'moss', label: 'Moss', color: '#3f9a63', suit: '#d6d3c7', head: '#e7e2d3', visor: '#0e1712' },
+  { name: 'violet', label: 'Violet', color: '#8a63d6', suit: '#2f3242', head: '#cfcbd9', visor: '#0f0d18' },
+  { name: 'sand', label: 'Sand', color: '#c79a3b', suit: '#8d8577', head: '#eadfca', visor: '#17130c' },
+  { name: 'ink', label: 'Ink', color: '#35b6c9', suit: '#20252e', head: '#9aa4b1', visor: '#070a0e' },
+];
