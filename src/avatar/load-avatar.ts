@@ -5,7 +5,17 @@ import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
 const largestFileMegabytes = 60;
 
 /** Bones without which there is no upper body to move. */
-const neededBones = ['hips', 'spine', 'head', 'leftUpperArm', 'leftLowerArm', 'leftHand', 'rightUpperArm', 'rightLowerArm', 'rightHand'] as const;
+const neededBones = [
+  'hips',
+  'spine',
+  'head',
+  'leftUpperArm',
+  'leftLowerArm',
+  'leftHand',
+  'rightUpperArm',
+  'rightLowerArm',
+  'rightHand',
+] as const;
 
 /** A VRM (0.x or 1.0) ready to be fitted, and what to call it. */
 export interface LoadedAvatar {
@@ -17,7 +27,10 @@ export interface LoadedAvatar {
  * Loads a VRM from our own server, another address or a local file; onProgress gets the share [0, 1] that has arrived.
  * Rejects with a sentence that names the file.
  */
-export async function loadAvatar(source: string | File, onProgress: (share: number) => void = () => {}): Promise<LoadedAvatar> {
+export async function loadAvatar(
+  source: string | File,
+  onProgress: (share: number) => void = () => {},
+): Promise<LoadedAvatar> {
   const name = typeof source === 'string' ? (source.split(/[?#]/)[0]?.split('/').at(-1) ?? source) : source.name;
   const bytes = typeof source === 'string' ? await download(source, name, onProgress) : await source.arrayBuffer();
   onProgress(1);
@@ -48,7 +61,8 @@ async function download(url: string, name: string, onProgress: (share: number) =
   const response = await fetch(url).catch((error: unknown) => {
     throw new Error(`${name}: could not be fetched (${error instanceof Error ? error.message : error})`);
   });
-  if (!response.ok || !response.body) throw new Error(`${name}: the server answers ${response.status} ${response.statusText}`.trim());
+  if (!response.ok || !response.body)
+    throw new Error(`${name}: the server answers ${response.status} ${response.statusText}`.trim());
   const total = Number(response.headers.get('content-length')) || 0;
   const pieces: Uint8Array[] = [];
   let received = 0;

@@ -93,7 +93,8 @@ export function createStepping(): Stepping {
     }
     const share = smoothstep(0, 1, step.progress);
     const way = distance({ ...step.from, y: 0 }, { ...step.to, y: 0 });
-    const lift = Math.sin(Math.PI * step.progress) * clamp(0.25 * way, 0.02, 0.11) * Math.min(1, stance.legLength / 0.8);
+    const lift =
+      Math.sin(Math.PI * step.progress) * clamp(0.25 * way, 0.02, 0.11) * Math.min(1, stance.legLength / 0.8);
     const ground = lerp(step.from, step.to, share);
     foot.position = vec3(ground.x, stance.ankleHeight + lift, ground.z);
     foot.yaw = step.fromYaw + wrap(step.toYaw - step.fromYaw) * share;
@@ -108,7 +109,12 @@ export function createStepping(): Stepping {
       const pelvis = { ...stance.pelvis, y: 0 };
       if (feet && lastPelvis && distance(pelvis, lastPelvis) > 0.5 * stance.legLength) feet = null;
       if (deltaSeconds > 0 && lastPelvis) {
-        velocity = dampVec3(velocity, scale(subtract(pelvis, lastPelvis), 1 / deltaSeconds), velocityHalfLife, deltaSeconds);
+        velocity = dampVec3(
+          velocity,
+          scale(subtract(pelvis, lastPelvis), 1 / deltaSeconds),
+          velocityHalfLife,
+          deltaSeconds,
+        );
       }
       lastPelvis = pelvis;
       feet ??= standUp(stance);

@@ -196,6 +196,8 @@ async function verify(contract: ModelContract, model: Uint8Array): Promise<void>
   const digest = new Uint8Array(await crypto.subtle.digest('SHA-256', model as Uint8Array<ArrayBuffer>));
   const hex = Array.from(digest, (byte) => byte.toString(16).padStart(2, '0')).join('');
   if (hex !== contract.sha256) {
-    throw new Error(`${contract.file}: its SHA-256 begins ${hex.slice(0, 12)}, its contract says ${contract.sha256.slice(0, 12)}`);
+    throw new Error(
+      `${contract.file}: its SHA-256 begins ${hex.slice(0, 12)}, its contract says ${contract.sha256.slice(0, 12)}`,
+    );
   }
 }

@@ -1,0 +1,83 @@
+import {
+  BufferAttribute,
+  BufferGeometry,
+  Group,
+  LineBasicMaterial,
+  LineSegments,
+  type Object3D,
+  Points,
+  PointsMaterial,
+} from 'three';
+import { parentOf } from '../core/body/joints';
+import type { Vec3 } from '../core/math/vec3';
+
+/** Lines from joint to joint, drawn through the skin. */
+export interface DebugSkeleton {
+  readonly object: Object3D;
+  setVisible(visible: boolean): void;
+  /** Joints in the floor frame [m], as `Avatar.jointPositions` gives them. */
+  show(joints: Readonly<Record<string, Vec3 | undefined>>): void;
+  dispose(): void;
+}
+
+const bonesDrawn: readonly (readonly [string, string])[] = [
+  ...Object.entries(parentOf).flatMap(([joint, parent]) => (parent ? [[parent, joint] as const] : [])),
+  ...(['left', 'right'] as const).flatMap((side) => [
+    ['hips', `${side}UpperLeg`] as const,
+    [`${side}UpperLeg`, `${side}LowerLeg`] as const,
+    [`${side}LowerLeg`, `${side}Foot`] as const,
+  ]),
+];
+const dots = [...new Set(bonesDrawn.flat())];
+
+export function createDebugSkeleton(): DebugSkeleton {
+  const object = new Group();
+  object.name = 'debug skeleton';
+  object.visible = false;
+  const attribute = (count: number) => new BufferAttribute(new Float32Array(count * 3), 3);
+  const geometries = [new BufferGeometry(), new BufferGeometry()] as const;
+  geometries[0].setAttribute('position', attribute(bonesDrawn.length * 2));
+  geometries[1].setAttribute('position', attribute(dots.length));
+  const over = { depthTest: false, transparent: true } as const;
+  const lines = new LineSegments(geometries[0], new LineBasicMaterial({ color: 0x39d0ff, ...over }));
+  const points = new Points(geometries[1], new PointsMaterial({ color: 0xffd34d, size: 0.022, ...over }));
+  for (const part of [lines, points]) {
+    part.frustumCulled = false;
+    part.renderOrder = 10;
+    object.add(part);
+  }
+
+  function write(
+    geometry: BufferGeometry,
+    names: readonly string[],
+    joints: Readonly<Record<string, Vec3 | undefined>>,
+  ): void {
+    const positions = geometry.getAttribute('position');
+    names.forEach((name, index) => {
+      // What is not there lies far below the floor.
+      const { x, y, z } = joints[name] ?? { x: 0, y: -1000, z: 0 };
+      positions.setXYZ(index, x, y, z);
+    });
+    positions.needsUpdate = true;
+  }
+
+  return {
+    object,
+    setVisible(visible) {
+      object.visible = visible;
+    },
+    show(joints) {
+      if (!object.visible) return;
+      const known = bonesDrawn.filter(([from, to]) => joints[from] && joints[to]);
+      write(geometries[0], known.flat(), joints);
+      geometries[0].setDrawRange(0, known.length * 2);
+      write(geometries[1], dots, joints);
+    },
+    dispose() {
+      for (const geometry of geometries) geometry.dispose();
+      lines.material.dispose();
+      points.material.dispose();
+      object.removeFromParent();
+    },
+  };
+}

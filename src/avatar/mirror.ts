@@ -1,0 +1,77 @@
+import { BoxGeometry, Group, Mesh, MeshStandardMaterial, type Object3D, PlaneGeometry } from 'three';
+import { Reflector } from 'three/examples/jsm/objects/Reflector.js';
+import { thirdPersonOnlyLayer } from './avatar';
+
+export interface MirrorOptions {
+  /** How far ahead of the floor's origin, along −Z, it stands [m]. */
+  readonly distance?: number;
+  readonly width?: number;
+  readonly height?: number;
+  /** Pixels across the reflection's texture; a headset draws it once for each eye. */
+  readonly resolution?: number;
+  /** Samples per pixel of the reflection; 0 for software rendering. */
+  readonly samples?: number;
+}
+
+/** A standing mirror that shows the room and the whole avatar, the own head included; each eye sees its own reflection. */
+export interface Mirror {
+  readonly object: Object3D;
+  setVisible(visible: boolean): void;
+  dispose(): void;
+}
+
+const frameWidth = 0.035;
+const frameDepth = 0.05;
+const gapBelow = 0.06;
+
+export function createMirror({
+  distance = 1.8,
+  width = 1.5,
+  height = 2.15,
+  resolution = 1024,
+  samples = 4,
+}: MirrorOptions = {}): Mirror {
+  const object = new Group();
+  object.name = 'mirror';
+  object.position.set(0, gapBelow + height / 2 + frameWidth, -distance);
+
+  const glass = new Reflector(new PlaneGeometry(width, height), {
+    textureWidth: resolution,
+    textureHeight: Math.round((resolution * height) / width),
+    clipBias: 0.003,
+    multisample: samples,
+    // Silvered glass takes a little of the light.
+    color: 0x7a7d80,
+  });
+  // In first person the own head lies on this layer alone: a mirror shows it all the same.
+  glass.camera.layers.enable(thirdPersonOnlyLayer);
+  object.add(glass);
+
+  const frameMaterial = new MeshStandardMaterial({ color: 0x2a2f38, roughness: 0.35, metalness: 0.7 });
+  const bar = (across: number, up: number, x: number, y: number): void => {
+    const mesh = new Mesh(new BoxGeometry(across, up, frameDepth), frameMaterial);
+    mesh.position.set(x, y, -frameDepth / 2 + 0.006);
+    object.add(mesh);
+  };
+  bar(width + 2 * frameWidth, frameWidth, 0, (height + frameWidth) / 2);
+  bar(width + 2 * frameWidth, frameWidth, 0, -(height + frameWidth) / 2);
+  bar(frameWidth, height, (width + frameWidth) / 2, 0);
+  bar(frameWidth, height, -(width + frameWidth) / 2, 0);
+  const back = new Mesh(new PlaneGeometry(width + 2 * frameWidth, height + 2 * frameWidth), frameMaterial);
+  back.rotation.y = Math.PI;
+  back.position.z = -0.01;
+  object.add(back);
+
+  return {
+    object,
+    setVisible(visible) {
+      object.visible = visible;
+    },
+    dispose() {
+      glass.dispose();
+      glass.geometry.dispose();
+      frameMaterial.dispose();
+      object.removeFromParent();
+    },
+  };
+}

@@ -1,0 +1,52 @@
+import { BufferAttribute, type Object3D, type SkinnedMesh } from 'three';
+
+/** What a triangle of skin belongs to, in the order in which parts are kept: a prefix of them can be drawn alone. */
+export const skinParts = ['hands', 'head', 'trunk', 'legs'] as const;
+export type SkinPart = (typeof skinParts)[number];
+
+/** Sorts a skinned mesh's triangles by part and returns how many indices end after each part. */
+export function sortByPart(mesh: SkinnedMesh, partOfBone: (bone: Object3D) => SkinPart): Record<SkinPart, number> {
+  const { geometry, skeleton } = mesh;
+  const joints = geometry.getAttribute('skinIndex');
+  const weights = geometry.getAttribute('skinWeight');
+  const source = geometry.index ?? sequence(geometry.getAttribute('position').count);
+  const parts = skeleton.bones.map((bone) => skinParts.indexOf(partOfBone(bone)));
+  const vertexPart = (vertex: number): number => {
+    const sums = [0, 0, 0, 0];
+    for (let slot = 0; slot < 4; slot++) {
+      const part = parts[joints.getComponent(vertex, slot)] ?? 2;
+      sums[part] = (sums[part] ?? 0) + weights.getComponent(vertex, slot);
+    }
+    return sums.indexOf(Math.max(...sums));
+  };
+  const known = new Map<number, number>();
+  const partOf = (vertex: number): number => {
+    let part = known.get(vertex);
+    if (part === undefined) {
+      part = vertexPart(vertex);
+      known.set(vertex, part);
+    }
+    return part;
+  };
+  const sorted: number[][] = skinParts.map(() => []);
+  for (let i = 0; i < source.count; i += 3) {
+    const triangle = [source.getX(i), source.getX(i + 1), source.getX(i + 2)];
+    const [a = 2, b = 2, c = 2] = triangle.map(partOf);
+    // Two of three decide; three different ones: the middle part, so that borders lie on the trunk's side.
+    sorted[a === b || a === c ? a : b === c ? b : 2]?.push(...triangle);
+  }
+  const indices = sorted.flat();
+  const wide = geometry.getAttribute('position').count > 65535;
+  geometry.setIndex(new BufferAttribute(wide ? new Uint32Array(indices) : new Uint16Array(indices), 1));
+  let end = 0;
+  return Object.fromEntries(
+    skinParts.map((part, index) => {
+      end += sorted[index]?.length ?? 0;
+      return [part, end];
+    }),
+  ) as Record<SkinPart, number>;
+}
+
+function sequence(count: number): { readonly count: number; getX(index: number): number } {
+  return { count, getX: (index) => index };
+}
