@@ -48,7 +48,7 @@ export async function parseAvatar(bytes: ArrayBuffer, name: string): Promise<Loa
   const gltf = await loader.parseAsync(bytes, '').catch((error: unknown) => {
     throw new Error(`${name}: no VRM or GLB file (${error instanceof Error ? error.message : error})`);
   });
-  const vrm = gltf.userData['vrm'] as VRM | undefined;
+  const vrm = gltf.userData.vrm as VRM | undefined;
   if (!vrm?.humanoid) throw new Error(`${name}: no humanoid in it; a VRM 0.x or 1.0 avatar is needed`);
   const missing = neededBones.filter((bone) => !vrm.humanoid.getRawBoneNode(bone));
   if (missing.length > 0) throw new Error(`${name}: its humanoid has no ${missing.join(', ')}`);

@@ -1,4 +1,4 @@
-import { BoxGeometry, Group, Mesh, MeshStandardMaterial, type Object3D, PlaneGeometry } from 'three';
+import { BoxGeometry, type Camera, Group, Mesh, MeshStandardMaterial, type Object3D, PlaneGeometry } from 'three';
 import { Reflector } from 'three/examples/jsm/objects/Reflector.js';
 import { thirdPersonOnlyLayer } from './avatar';
 
@@ -43,8 +43,15 @@ export function createMirror({
     // Silvered glass takes a little of the light.
     color: 0x7a7d80,
   });
-  // In first person the own head lies on this layer alone: a mirror shows it all the same.
-  glass.camera.layers.enable(thirdPersonOnlyLayer);
+  // In first person the own head lies on this layer alone: a mirror shows it all the same. One reflecting camera per eye, made
+  // on demand by a method that three's types leave out.
+  const cameras = glass as unknown as { getReflectionCamera(camera: Camera): Camera };
+  const makeCamera = cameras.getReflectionCamera;
+  cameras.getReflectionCamera = (camera) => {
+    const reflecting = makeCamera.call(glass, camera);
+    reflecting.layers.enable(thirdPersonOnlyLayer);
+    return reflecting;
+  };
   object.add(glass);
 
   const frameMaterial = new MeshStandardMaterial({ color: 0x2a2f38, roughness: 0.35, metalness: 0.7 });
