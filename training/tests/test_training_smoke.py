@@ -12,6 +12,17 @@ pytestmark = pytest.mark.training
 SEED = 5
 
 
+@pytest.fixture(scope="module", autouse=True)
+def one_thread():
+    """As the pipeline does; several that wait for each other on a busy machine take minutes for seconds of work."""
+    import torch
+
+    before = torch.get_num_threads()
+    torch.set_num_threads(1)
+    yield
+    torch.set_num_threads(before)
+
+
 @pytest.fixture(scope="module")
 def config(tmp_path_factory):
     from threepoint_training import __main__ as pipeline

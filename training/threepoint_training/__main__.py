@@ -40,6 +40,8 @@ class TrainConfig:
     frame_random: bool = True
     refit_kinematics: bool = False
     seed: int = 2460
+    # Small layers gain little from more threads, and with one their sums keep their order on any machine.
+    threads: int = 1
     paper: train_paper.TrainPaperConfig = train_paper.TrainPaperConfig()
     learned: train_learned.TrainLearnedConfig = train_learned.TrainLearnedConfig()
     ik: fit_ik.FitIkConfig = fit_ik.FitIkConfig()
@@ -63,6 +65,7 @@ def by_joint(errors: np.ndarray) -> dict[str, float]:
 def main(config: TrainConfig, console: Console | None = None) -> dict[str, dict[str, float]]:
     """Trains, writes models and contracts, prints the table and returns it: MPJPE [cm] by row and joint."""
     console = console or Console()
+    torch.set_num_threads(config.threads)
     rows: dict[str, dict[str, float]] = {}
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=not console.is_terminal) as progress:
@@ -221,6 +224,7 @@ def _arguments() -> TrainConfig:
     parser.add_argument("--skeleton", type=Path, help="a skeleton map (docs/evaluation.md)")
     parser.add_argument("--out", type=Path, default=TrainConfig.out)
     parser.add_argument("--seed", type=int, default=TrainConfig.seed)
+    parser.add_argument("--threads", type=int, default=TrainConfig.threads, help="more are faster with large cores; weights differ in the last digits")
     parser.add_argument("--folds", default=",".join(TrainConfig.folds), help="A and B; the first is shipped (default: A,B)")
     parser.add_argument("--no-frame-random", action="store_true", help="leave the paper's own protocol out")
     parser.add_argument("--refit-kinematics", action="store_true", help="also fit the page's body proportions and IK anew")
@@ -234,6 +238,7 @@ def _arguments() -> TrainConfig:
         frame_random=not given.no_frame_random,
         refit_kinematics=given.refit_kinematics,
         seed=given.seed,
+        threads=given.threads,
     )
     if unknown := set(config.folds) - set(people.FOLDS):
         parser.error(f"no fold {', '.join(sorted(unknown))}; there are {', '.join(people.FOLDS)}")
