@@ -1,4 +1,4 @@
-import { armHeight, armJoints, fingerPoint, fingers, phalanges } from './rig';
+import { armDepth, armHeight, armJoints, fingerPoint, fingers, phalanges } from './rig';
 import { type DistanceField, ellipsoid, type Point, roundedBox, smoothUnion, taperedCapsule } from './signed-distance';
 
 /** A piece of the body: a solid, the bone it moves with and how softly its weight fades beyond its surface [m]. */
@@ -18,6 +18,9 @@ interface Region {
 
 const y = armHeight;
 const { shoulder, elbow, wrist } = armJoints;
+/** Arm and palm are modelled about z = 0 and put where the shoulder is. */
+const onArm = (part: Part): Part => ({ ...part, solid: (x, y, z) => part.solid(x, y, z - armDepth) });
+
 const part = (bone: string, softness: number, solid: DistanceField): Part => ({ bone, softness, solid });
 
 const torso: Region = {
@@ -26,13 +29,13 @@ const torso: Region = {
   parts: [
     // Ribcage, waist and pelvis are the masses; chest, back and seat muscles lie on them.
     part('trunk', 0.02, ellipsoid([0, 1.255, -0.008], [0.142, 0.185, 0.098])),
-    part('trunk', 0.02, ellipsoid([0, 1.1, 0], [0.12, 0.15, 0.085])),
-    part('trunk', 0.02, ellipsoid([0, 0.975, -0.004], [0.148, 0.105, 0.095])),
-    part('trunk', 0.02, ellipsoid([0.072, 1.312, 0.056], [0.078, 0.052, 0.042], 0.25)),
+    part('trunk', 0.02, ellipsoid([0, 1.1, 0], [0.127, 0.15, 0.088])),
+    part('trunk', 0.02, ellipsoid([0, 0.975, -0.004], [0.143, 0.105, 0.094])),
+    part('trunk', 0.02, ellipsoid([0.07, 1.305, 0.043], [0.085, 0.066, 0.038], 0.2)),
     part('trunk', 0.02, ellipsoid([0.1, 1.24, -0.048], [0.058, 0.13, 0.048])),
     part('trunk', 0.02, taperedCapsule([0.02, 1.445, -0.03], [0.145, 1.396, -0.016], 0.046, 0.04)),
     part('trunk', 0.02, taperedCapsule([0.03, 1.375, 0.02], [0.13, 1.385, 0.008], 0.045, 0.042)),
-    part('trunk', 0.02, ellipsoid([0.074, 0.925, -0.052], [0.078, 0.088, 0.066])),
+    part('trunk', 0.02, ellipsoid([0.072, 0.93, -0.046], [0.074, 0.085, 0.062])),
   ],
 };
 
@@ -79,15 +82,15 @@ const arm: Region = {
   inner: 0.028,
   joint: 0.06,
   parts: [
-    part('leftUpperArm', 0.018, ellipsoid([shoulder + 0.012, y - 0.004, -0.006], [0.066, 0.058, 0.054])),
-    part('leftUpperArm', 0.016, taperedCapsule([shoulder + 0.02, y, -0.006], [elbow - 0.02, y, -0.006], 0.043, 0.034)),
-    part('leftUpperArm', 0.016, ellipsoid([shoulder + 0.14, y, 0.012], [0.085, 0.035, 0.034])),
-    part('leftUpperArm', 0.016, ellipsoid([shoulder + 0.14, y + 0.002, -0.024], [0.095, 0.036, 0.032])),
-    part('leftLowerArm', 0.016, taperedCapsule([elbow, y, -0.006], [wrist - 0.01, y, -0.002], 0.0365, 0.0225)),
+    part('leftUpperArm', 0.018, ellipsoid([shoulder + 0.012, y - 0.004, 0.004], [0.066, 0.058, 0.054])),
+    part('leftUpperArm', 0.016, taperedCapsule([shoulder + 0.02, y, 0], [elbow - 0.02, y, 0], 0.043, 0.034)),
+    part('leftUpperArm', 0.016, ellipsoid([shoulder + 0.14, y, 0.016], [0.085, 0.035, 0.034])),
+    part('leftUpperArm', 0.016, ellipsoid([shoulder + 0.14, y + 0.002, -0.018], [0.095, 0.036, 0.032])),
+    part('leftLowerArm', 0.016, taperedCapsule([elbow, y, 0], [wrist - 0.01, y, -0.002], 0.0365, 0.0225)),
     part('leftLowerArm', 0.016, ellipsoid([elbow + 0.075, y + 0.003, 0.008], [0.085, 0.034, 0.036])),
     part('leftLowerArm', 0.016, ellipsoid([elbow + 0.08, y - 0.002, -0.018], [0.09, 0.034, 0.03])),
     part('leftLowerArm', 0.012, ellipsoid([wrist - 0.03, y, -0.001], [0.05, 0.0205, 0.0275])),
-  ],
+  ].map(onArm),
 };
 
 const palm: Region = {
@@ -103,7 +106,7 @@ const palm: Region = {
       .map(({ knuckle, radius }) =>
         part('leftHand', 0.007, taperedCapsule([wrist + 0.04, y, knuckle[2] * 0.8], knuckle, 0.012, radius * 1.12)),
       ),
-  ],
+  ].map(onArm),
 };
 
 const fingerRegions: Region[] = fingers.map((finger) => {

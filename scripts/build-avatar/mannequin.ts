@@ -39,14 +39,17 @@ const seams: readonly {
   { material: 'Accent', value: (x) => armJoints.wrist - 0.045 - Math.abs(x) },
   { material: 'Accent', value: (_, y, z) => y - 0.13 - 0.12 * z },
   { material: 'Accent', value: (x, y, z) => yoke(x, y, z) },
-  { material: 'Head', value: (_, y, z) => 1.468 + 0.35 * z - y },
+  { material: 'Head', value: (_, y, z) => collar(z) - y },
 ];
+
+/** Height [m] of the collar, where the head's mesh begins: under the chin, a little higher at the nape. */
+const collar = (z: number): number => 1.452 - 0.12 * z;
 
 /** A yoke: from the collar over the shoulders, pointed at the breastbone; stops before the deltoid. */
 function yoke(x: number, y: number, z: number): number {
   const side = Math.abs(x);
   const hem = z > 0 ? 1.345 + 0.28 * side : 1.33 + 0.25 * side;
-  return Math.max(hem - y, y - (1.468 + 0.35 * z), side - 0.155);
+  return Math.max(hem - y, y - collar(z), side - 0.15);
 }
 
 /** The first seam that has a triangle's middle on its inner side decides; all else is the suit. */

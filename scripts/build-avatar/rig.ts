@@ -1,3 +1,5 @@
+import { type JointName, parentOf } from '../../src/core/body/joints';
+import { skeletonFromCalibration } from '../../src/core/body/skeleton';
 import type { Point } from './signed-distance';
 
 /** A bone of the humanoid: its VRM name, its parent's, and where its joint is in T-pose [m], facing +Z, left = +X. */
@@ -7,23 +9,38 @@ export interface Bone {
   readonly joint: Point;
 }
 
-/** Height of the straight arm [m]. */
-export const armHeight = 1.388;
-/** x of shoulder, elbow, wrist [m]. */
-export const armJoints = { shoulder: 0.18, elbow: 0.45, wrist: 0.695 };
+/** The body that the mannequin is modelled on: 1.70 m tall, with an arm as long as the anatomy below draws it. */
+const calibration = { eyeHeight: 1.59, armSpan: 1.39 };
+const { restOffsets } = skeletonFromCalibration(calibration);
 
-const trunk: Bone[] = [
-  { name: 'hips', parent: null, joint: [0, 0.985, 0] },
-  { name: 'spine', parent: 'hips', joint: [0, 1.095, -0.012] },
-  { name: 'chest', parent: 'spine', joint: [0, 1.21, -0.018] },
-  { name: 'upperChest', parent: 'chest', joint: [0, 1.3, -0.02] },
-  { name: 'neck', parent: 'upperChest', joint: [0, 1.42, -0.02] },
-  { name: 'head', parent: 'neck', joint: [0, 1.51, 0.004] },
-];
+/** Our skeleton's hips lie behind the middle of the pelvis [m]: the eyes then come to lie where the face has them. */
+const hipsBehind = 0.05;
+
+/** A joint of our skeleton, which faces −Z, in the mannequin's T-pose, which faces +Z. */
+function jointOf(name: JointName): Point {
+  const parent = parentOf[name];
+  const [x, y, z] = parent ? jointOf(parent) : [0, 0, -hipsBehind];
+  const offset = restOffsets[name];
+  return [x - offset.x, y + offset.y, z - offset.z];
+}
+
+const shoulderJoint = jointOf('leftUpperArm');
+/** Height of the straight arm and how far ahead of the middle it lies [m]. */
+export const armHeight = shoulderJoint[1];
+export const armDepth = shoulderJoint[2];
+/** x of shoulder, elbow, wrist [m]. */
+export const armJoints = {
+  shoulder: shoulderJoint[0],
+  elbow: jointOf('leftLowerArm')[0],
+  wrist: jointOf('leftHand')[0],
+};
+
+const trunkNames = ['hips', 'spine', 'chest', 'upperChest', 'neck', 'head'] as const;
+const trunk: Bone[] = trunkNames.map((name) => ({ name, parent: parentOf[name], joint: jointOf(name) }));
 
 interface Finger {
   readonly name: string;
-  /** Knuckle in the left hand [m], lengths of its three phalanges [m], where it points. */
+  /** Knuckle in the left hand [m], z from the arm's own, lengths of its three phalanges [m], where it points. */
   readonly knuckle: Point;
   readonly lengths: readonly [number, number, number];
   readonly direction: Point;
@@ -86,14 +103,19 @@ export function fingerPoint(finger: Finger, index: number): Point {
   const [dx, dy, dz] = finger.direction;
   // A hint of a curl: the further out, the lower.
   const sag = finger.name === 'Thumb' ? 0 : -0.45 * length * length;
-  return [finger.knuckle[0] + dx * length, finger.knuckle[1] + dy * length + sag, finger.knuckle[2] + dz * length];
+  return [
+    finger.knuckle[0] + dx * length,
+    finger.knuckle[1] + dy * length + sag,
+    armDepth + finger.knuckle[2] + dz * length,
+  ];
 }
 
 const leftSide: Bone[] = [
-  { name: 'leftShoulder', parent: 'upperChest', joint: [0.022, 1.405, -0.008] },
-  { name: 'leftUpperArm', parent: 'leftShoulder', joint: [armJoints.shoulder, armHeight, -0.006] },
-  { name: 'leftLowerArm', parent: 'leftUpperArm', joint: [armJoints.elbow, armHeight, -0.006] },
-  { name: 'leftHand', parent: 'leftLowerArm', joint: [armJoints.wrist, armHeight, -0.002] },
+  ...(['leftShoulder', 'leftUpperArm', 'leftLowerArm', 'leftHand'] as const).map((name) => ({
+    name,
+    parent: parentOf[name],
+    joint: jointOf(name),
+  })),
   ...fingers.flatMap((finger) =>
     phalanges(finger.name).map((phalanx, index) => ({
       name: `left${phalanx}`,

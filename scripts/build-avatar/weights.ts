@@ -18,9 +18,9 @@ const smoothstep = (start: number, end: number, value: number): number => {
 
 /** The trunk's skin: handed up the spine by height [m], each vertebra blending into the next. */
 function trunkWeights(y: number): [string, number][] {
-  const toSpine = smoothstep(1.0, 1.14, y);
-  const toChest = smoothstep(1.13, 1.27, y);
-  const toUpper = smoothstep(1.24, 1.36, y);
+  const toSpine = smoothstep(1.02, 1.16, y);
+  const toChest = smoothstep(1.15, 1.27, y);
+  const toUpper = smoothstep(1.24, 1.35, y);
   const toNeck = smoothstep(1.405, 1.5, y);
   return [
     ['hips', 1 - toSpine],

@@ -158,7 +158,12 @@ export function createAvatar({ vrm }: LoadedAvatar): Avatar {
     if (hip && knee && ankle) {
       const downScale = tPose.hips.position.y / hipsRest.y;
       legs = {
-        hip: new Vector3(Math.abs(hip.x - hipsRest.x) * rigScale, (hip.y - hipsRest.y) * downScale, 0),
+        // The rig faces +Z, we face −Z.
+        hip: new Vector3(
+          Math.abs(hip.x - hipsRest.x) * rigScale,
+          (hip.y - hipsRest.y) * downScale,
+          -(hip.z - hipsRest.z) * rigScale,
+        ),
         upper: hip.distanceTo(knee) * downScale,
         lower: knee.distanceTo(ankle) * downScale,
         ankle: ankle.y * rigScale,
@@ -229,9 +234,11 @@ export function createAvatar({ vrm }: LoadedAvatar): Avatar {
       scale({ ...overhead, y: 0 }, Math.max(0, -ahead.y)),
     );
     const yaw = Math.atan2(-way.x, -way.z);
+    const level = fromAxisAngle(up, yaw);
     const feet = stepping.update(
       {
-        pelvis: hips.position,
+        // Between the hip joints; the spine's lowest point lies behind them.
+        pelvis: add(hips.position, rotate(level, vec3(0, 0, legs.hip.z))),
         yaw,
         halfWidth: legs.halfWidth,
         ankleHeight: legs.ankle,
@@ -243,7 +250,6 @@ export function createAvatar({ vrm }: LoadedAvatar): Avatar {
       const sigma = sideSign(side);
       const foot = feet[side];
       // Legs hang from a pelvis that tilts less than the lower back above it.
-      const level = fromAxisAngle(up, yaw);
       const hip = add(hips.position, rotate(level, vec3(sigma * legs.hip.x, legs.hip.y, legs.hip.z)));
       const reach = (legs.upper + legs.lower) * 0.999;
       const toAnkle = subtract(foot.position, hip);
