@@ -64,8 +64,13 @@ export function createFrameLoop<DeviceFrame>(
 export function withTiming(regressor: PoseRegressor, timing: FrameTiming): PoseRegressor {
   return {
     contract: regressor.contract,
-    provider: regressor.provider,
-    resolvesInFrame: regressor.resolvesInFrame,
+    // Live: a graphics device that is lost changes both.
+    get provider() {
+      return regressor.provider;
+    },
+    get resolvesInFrame() {
+      return regressor.resolvesInFrame;
+    },
     async run(features) {
       timing.mark('features');
       const running = regressor.run(features);

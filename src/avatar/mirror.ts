@@ -40,8 +40,8 @@ export function createMirror({
     textureHeight: Math.round((resolution * height) / width),
     clipBias: 0.003,
     multisample: samples,
-    // Silvered glass takes a little of the light.
-    color: 0x7a7d80,
+    // Silvered glass takes a little of the light; #bcbcbc would take none.
+    color: 0xb6b9bb,
   });
   // In first person the own head lies on this layer alone: a mirror shows it all the same. One reflecting camera per eye, made
   // on demand by a method that three's types leave out.
@@ -54,11 +54,21 @@ export function createMirror({
   };
   object.add(glass);
 
+  // What holds the glass lies between it and the reflecting camera; clipping it away is not exact everywhere.
+  const mount = new Group();
+  object.add(mount);
+  const reflect = glass.onBeforeRender;
+  glass.onBeforeRender = (...args) => {
+    mount.visible = false;
+    reflect.apply(glass, args);
+    mount.visible = true;
+  };
+
   const frameMaterial = new MeshStandardMaterial({ color: 0x2a2f38, roughness: 0.35, metalness: 0.7 });
   const bar = (across: number, up: number, x: number, y: number): void => {
     const mesh = new Mesh(new BoxGeometry(across, up, frameDepth), frameMaterial);
     mesh.position.set(x, y, -frameDepth / 2 + 0.006);
-    object.add(mesh);
+    mount.add(mesh);
   };
   bar(width + 2 * frameWidth, frameWidth, 0, (height + frameWidth) / 2);
   bar(width + 2 * frameWidth, frameWidth, 0, -(height + frameWidth) / 2);
@@ -67,7 +77,7 @@ export function createMirror({
   const back = new Mesh(new PlaneGeometry(width + 2 * frameWidth, height + 2 * frameWidth), frameMaterial);
   back.rotation.y = Math.PI;
   back.position.z = -0.01;
-  object.add(back);
+  mount.add(back);
 
   return {
     object,

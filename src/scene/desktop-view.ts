@@ -44,8 +44,8 @@ const followHalfLife = 0.35;
 const keyStep = Math.PI / 36;
 
 const start: Record<Exclude<ViewName, 'first-person'>, { offset: Vector3; fov: number }> = {
-  'third-person': { offset: new Vector3(1.9, 0.5, 2.75), fov: 42 },
-  front: { offset: new Vector3(-0.45, 0.2, -2.5), fov: 42 },
+  'third-person': { offset: new Vector3(1.95, 0.5, 2.95), fov: 42 },
+  front: { offset: new Vector3(-0.55, 0.25, -3.2), fov: 42 },
 };
 const firstPersonFov = 78;
 /** How far above the pelvis the camera aims [m]. */

@@ -93,7 +93,7 @@ export function createOverlay(region: HTMLElement): Overlay {
     show(report) {
       if (region.hidden) return;
       total.textContent = `${milliseconds(report.p50Ms)} ms`;
-      tail.textContent = ` a frame, p95 ${milliseconds(report.p95Ms)} ms`;
+      tail.textContent = ` p95 ${milliseconds(report.p95Ms)} ms`;
       for (const stage of report.stages) {
         const { part, p50, p95 } = cellsOf(stage.name);
         part.style.flexGrow = String(Math.max(stage.p50Ms, 0.0001));
