@@ -57,8 +57,8 @@ export async function writeVrm(
     WEIGHTS_0: accessor('VEC4', eighths(skin.weights), true),
   };
   const parts = [
-    { name: 'body', materials: ['Suit', 'Accent'] as MaterialName[] },
-    { name: 'head', materials: [...headMaterials] },
+    { name: 'bodySkin', materials: ['Suit', 'Accent'] as MaterialName[] },
+    { name: 'headSkin', materials: [...headMaterials] },
   ];
   for (const part of parts) {
     const mesh = document.createMesh(part.name);
@@ -162,8 +162,8 @@ function withVrm(glb: Uint8Array): Uint8Array {
       humanoid: { humanBones: Object.fromEntries(bones.map(({ name }) => [name, { node: node(name) }])) },
       firstPerson: {
         meshAnnotations: [
-          { node: node('body'), type: 'both' },
-          { node: node('head'), type: 'thirdPersonOnly' },
+          { node: node('bodySkin'), type: 'both' },
+          { node: node('headSkin'), type: 'thirdPersonOnly' },
         ],
       },
     },

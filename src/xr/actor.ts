@@ -1,0 +1,26 @@
+import { type Calibration, defaultCalibration } from '../core/body/calibration';
+import { actorFrame } from '../core/tracking/actor-motion';
+import type { TrackingFrame } from '../core/tracking/tracking-frame';
+
+/** Somebody who moves when nobody wears a headset. */
+export interface Actor {
+  /** Where head and hands of this performance are at a time [s] on any clock that runs on. */
+  frameAt(time: number): TrackingFrame;
+  /** The body that performs. */
+  calibrate(calibration: Calibration): void;
+}
+
+/** Performs from its first frame on. */
+export function createActor(): Actor {
+  let began: number | null = null;
+  let body = defaultCalibration;
+  return {
+    frameAt(time) {
+      began ??= time;
+      return { ...actorFrame(time - began, body), time };
+    },
+    calibrate(calibration) {
+      body = calibration;
+    },
+  };
+}

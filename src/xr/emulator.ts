@@ -1,0 +1,119 @@
+import type { XRDevice } from 'iwer';
+import type { Side } from '../core/body/joints';
+import { composeTransforms, invertTransform, type Pose } from '../core/math/pose';
+import { fromAxes } from '../core/math/quat';
+import { vec3 } from '../core/math/vec3';
+import type { TrackedPose, TrackingFrame } from '../core/tracking/tracking-frame';
+import { gripFromWrist, type HandleFit, handleFit, wristFromGrip } from './grip-offsets';
+
+/** An emulated headset, in place of a device that is not there. */
+export interface Emulator {
+  readonly device: XRDevice;
+  /** Head and wrists as the emulator has them now, outside of any session. */
+  read(time: number): TrackingFrame;
+  /** Puts headset and controllers where this frame's head and wrists are, to within 0.1 mm. */
+  drive(frame: TrackingFrame): void;
+  /** Lets whoever steers the panel move headset and controllers again. */
+  release(): void;
+  /** Shows or hides the developer's panel; it is loaded when first shown. */
+  setPanelVisible(visible: boolean): void;
+}
+
+/** Where a person of 1.70 m holds head and hands when nobody moves them yet. */
+const rest = { head: vec3(0, 1.59, 0), left: vec3(-0.22, 1.1, -0.32), right: vec3(0.22, 1.1, -0.32) };
+
+/**
+ * Installs iwer in place of the browser's own WebXR. The code of the emulator is loaded here and nowhere else, so that real
+ * headsets never pay for it.
+ */
+export async function installEmulator(): Promise<Emulator> {
+  const { XRDevice: Device, metaQuest3 } = await import('iwer');
+  const device = new Device(metaQuest3, { stereoEnabled: false });
+  device.installRuntime({ forceInstall: true });
+  device.position.set(rest.head.x, rest.head.y, rest.head.z);
+  const config = metaQuest3.controllerConfig;
+  const profiles = config ? [config.profileId, ...config.fallbackProfileIds] : [];
+  const fit: HandleFit = handleFit(profiles);
+
+  /** iwer places controllers by their target ray; the grip lies where its configuration has it. */
+  const gripInRay = (side: Side): Pose<'floor'> => matrixPose(config?.layout[side]?.gripOffsetMatrix);
+  for (const side of ['left', 'right'] as const) {
+    const { x, y, z } = rest[side];
+    device.controllers[side]?.position.set(x, y, z);
+  }
+
+  const copy = (target: {
+    readonly position: { x: number; y: number; z: number };
+    readonly quaternion: { x: number; y: number; z: number; w: number };
+  }): Pose<'floor'> => ({
+    position: vec3(target.position.x, target.position.y, target.position.z),
+    orientation: {
+      x: target.quaternion.x,
+      y: target.quaternion.y,
+      z: target.quaternion.z,
+      w: target.quaternion.w,
+    },
+  });
+
+  function readHand(side: Side): TrackedPose | null {
+    const controller = device.controllers[side];
+    if (!controller?.connected) return null;
+    const grip = composeTransforms<'floor', 'floor', 'floor'>(copy(controller), gripInRay(side));
+    return { ...wristFromGrip<'floor'>(grip, side, fit), tracking: 'tracked' };
+  }
+
+  function place(target: { readonly position: Setter3; readonly quaternion: Setter4 }, pose: Pose<'floor'>): void {
+    const { position: p, orientation: o } = pose;
+    target.position.set(p.x, p.y, p.z);
+    target.quaternion.set(o.x, o.y, o.z, o.w);
+  }
+
+  let panel: Promise<void> | null = null;
+  return {
+    device,
+    read: (time) => ({
+      time,
+      head: { ...copy(device), tracking: 'tracked' },
+      leftHand: readHand('left'),
+      rightHand: readHand('right'),
+    }),
+    drive(frame) {
+      // Else the panel puts everything back where its mouse left it, in every frame.
+      device.controlMode = 'programmatic';
+      place(device, frame.head);
+      for (const side of ['left', 'right'] as const) {
+        const wrist = side === 'left' ? frame.leftHand : frame.rightHand;
+        const controller = device.controllers[side];
+        if (!controller) continue;
+        controller.connected = wrist !== null;
+        if (!wrist) continue;
+        const grip = gripFromWrist<'floor'>(wrist, side, fit);
+        place(controller, composeTransforms<'floor', 'floor', 'floor'>(grip, invertTransform<'floor', 'floor'>(gripInRay(side))));
+      }
+    },
+    release() {
+      device.controlMode = 'manual';
+    },
+    setPanelVisible(visible) {
+      if (visible) panel ??= import('@iwer/devui').then(({ DevUI }) => device.installDevUI(DevUI));
+      const container = device.devui?.devUIContainer;
+      if (container) container.hidden = !visible;
+    },
+  };
+}
+
+interface Setter3 {
+  set(x: number, y: number, z: number): unknown;
+}
+interface Setter4 {
+  set(x: number, y: number, z: number, w: number): unknown;
+}
+
+/** The pose in a column-major 4×4 matrix; the identity where there is none. */
+function matrixPose(matrix: ArrayLike<number> | undefined): Pose<'floor'> {
+  const at = (index: number): number => matrix?.[index] ?? (index % 5 === 0 ? 1 : 0);
+  return {
+    orientation: fromAxes(vec3(at(0), at(1), at(2)), vec3(at(4), at(5), at(6)), vec3(at(8), at(9), at(10))),
+    position: vec3(at(12), at(13), at(14)),
+  };
+}

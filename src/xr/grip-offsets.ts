@@ -1,0 +1,80 @@
+import type { Side } from '../core/body/joints';
+import { sideSign } from '../core/body/skeleton';
+import type { Frame, Pose } from '../core/math/pose';
+import { conjugate, fromAxes, multiply, type Quat, rotate } from '../core/math/quat';
+import { add, scale, subtract, type Vec3, vec3 } from '../core/math/vec3';
+
+/**
+ * How a controller lies in the hand. WebXR's grip: origin in the middle of the fist, −Z along the handle towards the thumb, X
+ * through the back of the hand (+X right, −X left). The handle leans from upright (across the palm) towards the fingers.
+ */
+export interface HandleFit {
+  /** Middle of the fist from the wrist [m]: towards the knuckles, and below the back of the hand towards the palm. */
+  readonly ahead: number;
+  readonly below: number;
+  /** Lean of the handle's thumb end towards the fingers [rad]. */
+  readonly lean: number;
+}
+
+const degrees = (value: number): number => (value * Math.PI) / 180;
+
+/**
+ * By the profile names of the WebXR input profiles registry. The fist is the same for all; the leans are our estimates from the
+ * angle between grip and target ray that the runtimes report (Touch: 45°) with the hand pointing along the ray.
+ */
+const fits: Readonly<Record<string, HandleFit>> = {
+  'meta-quest-touch-plus': { ahead: 0.08, below: 0.025, lean: degrees(45) },
+  'meta-quest-touch-pro': { ahead: 0.08, below: 0.025, lean: degrees(45) },
+  'oculus-touch-v3': { ahead: 0.08, below: 0.025, lean: degrees(45) },
+  'oculus-touch-v2': { ahead: 0.08, below: 0.025, lean: degrees(45) },
+  'oculus-touch': { ahead: 0.08, below: 0.025, lean: degrees(40) },
+  'pico-4': { ahead: 0.08, below: 0.025, lean: degrees(42) },
+  'pico-4u': { ahead: 0.08, below: 0.025, lean: degrees(42) },
+  'bytedance-pico-4': { ahead: 0.08, below: 0.025, lean: degrees(42) },
+  'valve-index': { ahead: 0.085, below: 0.022, lean: degrees(40) },
+  'htc-vive': { ahead: 0.085, below: 0.03, lean: degrees(50) },
+  'htc-vive-focus-3': { ahead: 0.08, below: 0.025, lean: degrees(45) },
+  'microsoft-mixed-reality': { ahead: 0.08, below: 0.028, lean: degrees(35) },
+  'windows-mixed-reality': { ahead: 0.08, below: 0.028, lean: degrees(35) },
+};
+
+/** For profiles that nobody listed: most handles follow Touch. */
+export const genericFit: HandleFit = { ahead: 0.08, below: 0.025, lean: degrees(45) };
+
+/** The fit of the first of an input source's profiles that is known. */
+export function handleFit(profiles: readonly string[]): HandleFit {
+  for (const profile of profiles) {
+    const fit = fits[profile];
+    if (fit) return fit;
+  }
+  return genericFit;
+}
+
+/** The grip in the wrist's frame (docs/frames.md): its orientation and its origin [m]. */
+function gripInWrist(side: Side, { ahead, below, lean }: HandleFit): { readonly orientation: Quat; readonly position: Vec3 } {
+  const sigma = sideSign(side);
+  const thumb = vec3(-sigma, 0, 0);
+  const back = vec3(0, 1, 0);
+  const knuckles = vec3(0, 0, -1);
+  const handle = add(scale(thumb, Math.cos(lean)), scale(knuckles, Math.sin(lean)));
+  const x = scale(back, sigma);
+  const z = scale(handle, -1);
+  const y = vec3(z.y * x.z - z.z * x.y, z.z * x.x - z.x * x.z, z.x * x.y - z.y * x.x);
+  return { orientation: fromAxes(x, y, z), position: vec3(0, -below, -ahead) };
+}
+
+/** The wrist of a hand that holds a controller by this grip, in the grip's own frame. */
+export function wristFromGrip<F extends Frame>(grip: Pose<F>, side: Side, fit: HandleFit): Pose<F> {
+  const held = gripInWrist(side, fit);
+  const orientation = multiply(grip.orientation, conjugate(held.orientation));
+  return { orientation, position: subtract(grip.position, rotate(orientation, held.position)) };
+}
+
+/** Where a controller's grip lies in a hand with this wrist: the inverse of `wristFromGrip`. */
+export function gripFromWrist<F extends Frame>(wrist: Pose<F>, side: Side, fit: HandleFit): Pose<F> {
+  const held = gripInWrist(side, fit);
+  return {
+    orientation: multiply(wrist.orientation, held.orientation),
+    position: add(wrist.position, rotate(wrist.orientation, held.position)),
+  };
+}

@@ -1,0 +1,36 @@
+/** What the browser offers; `sentence` tells the user why not, or null. */
+export interface XrSupport {
+  readonly available: boolean;
+  readonly sentence: string | null;
+}
+
+/** Asks the browser once; never rejects. */
+export async function describeXrSupport(): Promise<XrSupport> {
+  const no = (sentence: string): XrSupport => ({ available: false, sentence });
+  if (!window.isSecureContext) {
+    return no('VR needs a secure page: open it by https:// or on localhost (docs/running-on-a-headset.md).');
+  }
+  if (!navigator.xr) return no('This browser has no WebXR.');
+  try {
+    const supported = await navigator.xr.isSessionSupported('immersive-vr');
+    return supported ? { available: true, sentence: null } : no('No headset is connected to this browser.');
+  } catch (error) {
+    return no(`WebXR is not allowed here (${error instanceof Error ? error.message : error}).`);
+  }
+}
+
+/** Starts an immersive session on the floor, with hands where the device tracks them. Rejects with a sentence. Needs a click. */
+export async function requestVrSession(): Promise<XRSession> {
+  if (!navigator.xr) throw new Error('this browser has no WebXR');
+  try {
+    return await navigator.xr.requestSession('immersive-vr', {
+      requiredFeatures: ['local-floor'],
+      optionalFeatures: ['hand-tracking', 'bounded-floor', 'layers'],
+    });
+  } catch (error) {
+    const name = error instanceof DOMException ? error.name : '';
+    if (name === 'NotAllowedError' || name === 'SecurityError') throw new Error('the headset refused the session');
+    if (name === 'NotSupportedError') throw new Error('the headset offers no floor to stand on (local-floor)');
+    throw error;
+  }
+}
