@@ -37,6 +37,7 @@ class TrainConfig:
     cache: Path = REPOSITORY / ".cache/mocap"
     skeleton_map: Path | None = None
     folds: tuple[str, ...] = ("A", "B")
+    networks: tuple[str, ...] = ("paper", "learned")
     frame_random: bool = True
     refit_kinematics: bool = False
     seed: int = 2460
@@ -83,20 +84,23 @@ def main(config: TrainConfig, console: Console | None = None) -> dict[str, dict[
             unseen = tuple(person for person in people.FOLDS[fold] if person in everybody) if fold else everybody
             with _kinematics(config, corpus, training, fold, shipped, progress):
                 label = f"fold {fold}" if fold else "seen people"
-                paper_network = _train_paper(config, corpus, training, label, progress)
-                learned_network = _train_learned(config, corpus, training, label, progress)
                 test = train_learned.held_out(corpus, unseen, config.learned.window_seconds)
-                paper_test = train_paper.frames_of(corpus, unseen, config.seed)
                 rows[f"IK, {label} ({', '.join(unseen)})"] = by_joint(train_learned.ik_errors_cm(test))
-                rows[f"paper, {label} ({', '.join(unseen)})"] = by_joint(
-                    train_paper.joint_errors_cm(train_paper.predict(paper_network, paper_test.inputs), paper_test.targets)
-                )
-                rows[f"learned, {label} ({', '.join(unseen)})"] = by_joint(
-                    train_learned.errors_cm(train_paper.predict(learned_network, test.inputs), test)
-                )
+                trained: dict[str, torch.nn.Module] = {}
+                if "paper" in config.networks:
+                    trained["paper"] = _train_paper(config, corpus, training, label, progress)
+                    frames = train_paper.frames_of(corpus, unseen, config.seed)
+                    rows[f"paper, {label} ({', '.join(unseen)})"] = by_joint(
+                        train_paper.joint_errors_cm(train_paper.predict(trained["paper"], frames.inputs), frames.targets)
+                    )
+                if "learned" in config.networks:
+                    trained["learned"] = _train_learned(config, corpus, training, label, progress)
+                    rows[f"learned, {label} ({', '.join(unseen)})"] = by_joint(
+                        train_learned.errors_cm(train_paper.predict(trained["learned"], test.inputs), test)
+                    )
             if fold == shipped:
-                networks = {"paper": paper_network, "learned": learned_network}
-        if config.frame_random:
+                networks = trained
+        if config.frame_random and "paper" in config.networks:
             rows["paper, frame-random 80/20"] = by_joint(_paper_frame_random(config, corpus, progress))
 
         training = people.training_people(shipped, everybody) if shipped else everybody
@@ -192,6 +196,8 @@ def _export(config: TrainConfig, corpus: PreparedCorpus, training: tuple[str, ..
     tracked = corpus.positions[first][:, [4, 7, 10]].astype(np.float64)
     paper_examples = paper_input(tracked, corpus.rotations[first].astype(np.float64)).astype(np.float32)[::7]
     for name, batch in (("paper", paper_examples), ("learned", examples)):
+        if name not in networks:
+            continue
         provenance = export.Provenance(
             corpus=source,
             corpus_hash=corpus.corpus_hash,
@@ -226,6 +232,7 @@ def _arguments() -> TrainConfig:
     parser.add_argument("--seed", type=int, default=TrainConfig.seed)
     parser.add_argument("--threads", type=int, default=TrainConfig.threads, help="more are faster with large cores; weights differ in the last digits")
     parser.add_argument("--folds", default=",".join(TrainConfig.folds), help="A and B; the first is shipped (default: A,B)")
+    parser.add_argument("--networks", default=",".join(TrainConfig.networks), help="train and replace only these (default: paper,learned)")
     parser.add_argument("--no-frame-random", action="store_true", help="leave the paper's own protocol out")
     parser.add_argument("--refit-kinematics", action="store_true", help="also fit the page's body proportions and IK anew")
     parser.add_argument("--quick", action="store_true", help="a twentieth of the training: does it run?")
@@ -235,6 +242,7 @@ def _arguments() -> TrainConfig:
         out=given.out,
         skeleton_map=given.skeleton,
         folds=tuple(given.folds.split(",")),
+        networks=tuple(given.networks.split(",")),
         frame_random=not given.no_frame_random,
         refit_kinematics=given.refit_kinematics,
         seed=given.seed,
@@ -242,6 +250,8 @@ def _arguments() -> TrainConfig:
     )
     if unknown := set(config.folds) - set(people.FOLDS):
         parser.error(f"no fold {', '.join(sorted(unknown))}; there are {', '.join(people.FOLDS)}")
+    if unknown := set(config.networks) - set(TrainConfig.networks):
+        parser.error(f"no network {', '.join(sorted(unknown))}; there are {', '.join(TrainConfig.networks)}")
     config = replace(config, paper=replace(config.paper, seed=config.seed), learned=replace(config.learned, seed=config.seed))
     if given.quick:
         config = quick(config)
