@@ -88,7 +88,10 @@ export async function installEmulator(): Promise<Emulator> {
         controller.connected = wrist !== null;
         if (!wrist) continue;
         const grip = gripFromWrist<'floor'>(wrist, side, fit);
-        place(controller, composeTransforms<'floor', 'floor', 'floor'>(grip, invertTransform<'floor', 'floor'>(gripInRay(side))));
+        place(
+          controller,
+          composeTransforms<'floor', 'floor', 'floor'>(grip, invertTransform<'floor', 'floor'>(gripInRay(side))),
+        );
       }
     },
     release() {

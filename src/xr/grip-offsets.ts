@@ -51,7 +51,10 @@ export function handleFit(profiles: readonly string[]): HandleFit {
 }
 
 /** The grip in the wrist's frame (docs/frames.md): its orientation and its origin [m]. */
-function gripInWrist(side: Side, { ahead, below, lean }: HandleFit): { readonly orientation: Quat; readonly position: Vec3 } {
+function gripInWrist(
+  side: Side,
+  { ahead, below, lean }: HandleFit,
+): { readonly orientation: Quat; readonly position: Vec3 } {
   const sigma = sideSign(side);
   const thumb = vec3(-sigma, 0, 0);
   const back = vec3(0, 1, 0);

@@ -1,0 +1,172 @@
+import type { Calibration } from '../body/calibration';
+import type { Side } from '../body/joints';
+import { chestSpaceBody, sideSign } from '../body/skeleton';
+import { clamp } from '../math/damper';
+import { fromAxes, fromAxisAngle, multiply, type Quat, rotate, slerp } from '../math/quat';
+import { add, addScaled, cross, distance, lerp, normalise, reject, scale, up, type Vec3, vec3 } from '../math/vec3';
+import type { TrackedPose, TrackingFrame } from './tracking-frame';
+
+/** A hand of a key pose, in the body's frame (yaw of the trunk), mirrored for the left: x is outward. */
+interface HandKey {
+  /** The wrist from its own shoulder, in arm lengths: outward, up, backward. */
+  readonly at: readonly [number, number, number];
+  /** Directions of the knuckles and of the back of the hand: outward, up, backward. */
+  readonly knuckles: readonly [number, number, number];
+  readonly back: readonly [number, number, number];
+}
+
+interface Key {
+  /** Seconds from the start of the loop. */
+  readonly time: number;
+  readonly left: HandKey;
+  readonly right: HandKey;
+  /** Of the head: pitch up and yaw to the left [degrees] against the trunk. */
+  readonly pitch?: number;
+  readonly look?: number;
+  /** Yaw of the whole body to the left [degrees], and how low the head is: 1 standing. */
+  readonly turn?: number;
+  readonly height?: number;
+  /** Shift of the head to the left and ahead [m]. */
+  readonly sway?: readonly [number, number];
+}
+
+const hanging: HandKey = { at: [0.16, -0.95, -0.08], knuckles: [0.05, -1, -0.2], back: [1, 0, -0.1] };
+const open: HandKey = { at: [0.18, -0.5, -0.62], knuckles: [0.1, 0.1, -1], back: [0.75, -0.6, 0] };
+const waving = (aside: number): HandKey => ({
+  at: [0.34 + aside, 0.2, -0.42],
+  knuckles: [aside * 1.6, 1, -0.05],
+  back: [0, 0.1, 1],
+});
+const pointing: HandKey = { at: [0.06, 0.02, -0.95], knuckles: [0.02, 0.02, -1], back: [0.3, 1, 0] };
+const onHip: HandKey = { at: [0.3, -0.66, -0.06], knuckles: [-0.75, -0.25, -0.5], back: [0.7, 0.4, 0.5] };
+const foldedOver: HandKey = { at: [-0.52, -0.35, -0.46], knuckles: [-1, 0.25, -0.05], back: [0, 0.35, -1] };
+const foldedUnder: HandKey = { at: [-0.46, -0.47, -0.4], knuckles: [-1, 0.1, 0.1], back: [0, 0.2, -1] };
+const guard: HandKey = { at: [-0.16, -0.06, -0.44], knuckles: [-0.2, 0.9, -0.35], back: [0.75, 0.3, -0.5] };
+const punch: HandKey = { at: [-0.26, -0.02, -0.9], knuckles: [0, 0, -1], back: [0.15, 1, 0] };
+const bowArm: HandKey = { at: [0.5, 0.05, -0.8], knuckles: [0.5, 0, -0.85], back: [0.85, 0.1, 0.5] };
+const nocking: HandKey = { at: [-0.28, 0, -0.74], knuckles: [-0.55, 0.05, -0.8], back: [0.55, 0.7, -0.2] };
+const drawn: HandKey = { at: [-0.12, 0.12, -0.2], knuckles: [-0.7, 0, -0.7], back: [0.5, 0.75, -0.3] };
+const overhead: HandKey = { at: [0.16, 0.92, -0.2], knuckles: [0, 1, -0.1], back: [0.3, 0, 1] };
+const aside: HandKey = { at: [0.93, 0.06, -0.12], knuckles: [1, 0, -0.05], back: [0, 1, 0] };
+const lowAhead: HandKey = { at: [0.12, -0.62, -0.6], knuckles: [0, -0.35, -1], back: [0.6, 0.75, 0] };
+
+/** Half a minute of somebody who shows what the body can do. It ends as it began. */
+const keys: readonly Key[] = [
+  { time: 0, left: hanging, right: hanging },
+  { time: 1.2, left: hanging, right: hanging, look: 8 },
+  { time: 2.1, left: hanging, right: waving(0), look: -6, pitch: 2 },
+  { time: 2.5, left: hanging, right: waving(0.16), look: -8, pitch: 2 },
+  { time: 2.9, left: hanging, right: waving(-0.12), look: -6, pitch: 2 },
+  { time: 3.3, left: hanging, right: waving(0.16), look: -8, pitch: 2 },
+  { time: 3.7, left: hanging, right: waving(-0.08), look: -4, pitch: 2 },
+  { time: 4.7, left: open, right: open },
+  { time: 5.7, left: open, right: open, look: 12, pitch: -6 },
+  { time: 6.8, left: onHip, right: onHip, look: -10 },
+  { time: 8.0, left: onHip, right: onHip, look: 14, sway: [0.04, 0] },
+  { time: 9.2, left: pointing, right: onHip, look: 6, turn: -14 },
+  { time: 10.1, left: pointing, right: onHip, look: 4, turn: -14, pitch: 4 },
+  { time: 11.4, left: foldedUnder, right: foldedOver, pitch: -3 },
+  { time: 13.2, left: foldedUnder, right: foldedOver, look: 16, sway: [-0.03, 0] },
+  { time: 14.4, left: guard, right: guard, turn: 10, height: 0.97 },
+  { time: 14.75, left: punch, right: guard, turn: -12, height: 0.965, sway: [0.02, 0.07] },
+  { time: 15.15, left: guard, right: guard, turn: 6, height: 0.97 },
+  { time: 15.5, left: guard, right: punch, turn: 28, height: 0.96, sway: [-0.02, 0.09] },
+  { time: 15.95, left: guard, right: guard, turn: 8, height: 0.97 },
+  { time: 17.2, left: hanging, right: hanging, turn: 0 },
+  { time: 18.4, left: bowArm, right: nocking, turn: -42, look: 38 },
+  { time: 19.0, left: bowArm, right: nocking, turn: -44, look: 40 },
+  { time: 20.2, left: bowArm, right: drawn, turn: -48, look: 46 },
+  { time: 21.2, left: bowArm, right: drawn, turn: -48, look: 46, pitch: 2 },
+  { time: 21.5, left: bowArm, right: { ...drawn, at: [0.06, 0.1, -0.1] }, turn: -48, look: 46 },
+  { time: 22.9, left: hanging, right: hanging, turn: -10 },
+  { time: 24.2, left: aside, right: aside, pitch: 5 },
+  { time: 25.4, left: overhead, right: overhead, pitch: 20, height: 1.005 },
+  { time: 26.6, left: aside, right: aside, pitch: 0 },
+  { time: 27.9, left: lowAhead, right: lowAhead, height: 0.7, pitch: -14, sway: [0, 0.12] },
+  { time: 29.0, left: lowAhead, right: lowAhead, height: 0.68, pitch: -8, sway: [0, 0.12] },
+  { time: 30.4, left: hanging, right: hanging },
+  { time: 32.0, left: hanging, right: hanging, turn: 90 },
+  { time: 33.6, left: hanging, right: open, turn: 180, look: 10 },
+  { time: 35.4, left: hanging, right: hanging, turn: 290 },
+  { time: 36.8, left: hanging, right: hanging, turn: 360 },
+];
+
+/** Length of the loop [s]. */
+export const actorLoopSeconds = keys.at(-1)?.time ?? 0;
+
+/** From 0 to 1 with neither speed nor acceleration at the ends: how hands move between two places (Flash & Hogan 1985). */
+const minimumJerk = (t: number): number => t * t * t * (10 - 15 * t + 6 * t * t);
+
+const radians = (degrees: number): number => (degrees * Math.PI) / 180;
+
+/**
+ * Head and wrists at a time [s] of an endless performance by this body, floor frame, standing about the origin and facing −Z at
+ * first. Smooth in position and speed; hands stay within reach.
+ */
+export function actorFrame(timeSeconds: number, calibration: Calibration): TrackingFrame {
+  const loops = Math.floor(timeSeconds / actorLoopSeconds);
+  const time = timeSeconds - loops * actorLoopSeconds;
+  let next = keys.findIndex((key) => key.time > time);
+  if (next < 1) next = keys.length - 1;
+  const from = keys[next - 1] as Key;
+  const to = keys[next] as Key;
+  const share = minimumJerk(clamp((time - from.time) / (to.time - from.time), 0, 1));
+  const mixed = (a = 0, b = 0): number => a + (b - a) * share;
+
+  const body = chestSpaceBody(calibration);
+  const e = calibration.eyeHeight;
+  const breath = Math.sin(timeSeconds * 1.5);
+  const drift = vec3(0.012 * Math.sin(timeSeconds * 0.61), 0.003 * breath, 0.01 * Math.sin(timeSeconds * 0.43 + 1));
+  const height =
+    from.height === undefined && to.height === undefined ? 1 : 1 + mixed((from.height ?? 1) - 1, (to.height ?? 1) - 1);
+  const trunk = fromAxisAngle(up, radians(mixed(from.turn, to.turn)));
+  const sway = vec3(-mixed(from.sway?.[0], to.sway?.[0]), 0, -mixed(from.sway?.[1], to.sway?.[1]));
+  const eyes = add(add(vec3(0, e * height, 0), drift), rotate(trunk, sway));
+  const nod = radians(mixed(from.pitch, to.pitch) + 1.2 * Math.sin(timeSeconds * 0.8));
+  const glance = radians(mixed(from.look, to.look) + 2 * Math.sin(timeSeconds * 0.37));
+  const orientation = multiply(trunk, multiply(fromAxisAngle(up, glance), fromAxisAngle(vec3(1, 0, 0), nod)));
+  // The trunk hangs under the head joint of a head that looks ahead, so that a glance moves no shoulder.
+  const neck = addScaled(eyes, rotate(trunk, vec3(0, -body.eyesInHead.y - body.neckToHead.y, -body.eyesInHead.z)), 1);
+
+  const hand = (side: Side): TrackedPose => {
+    const sigma = sideSign(side);
+    const outward = ([x, y, z]: readonly [number, number, number]): Vec3 => vec3(sigma * x, y, z);
+    const shoulder = vec3(sigma * (body.clavicleRoot.x + body.clavicle.x), body.clavicle.y, 0.01 * e);
+    const reach = (key: HandKey): Vec3 => add(shoulder, scale(outward(key.at), body.arm * 0.97));
+    const turned = (key: HandKey): Quat => handOrientation(outward(key.knuckles), outward(key.back));
+    const a = reach(from[side]);
+    const b = reach(to[side]);
+    // Hands swing a little ahead on long ways: never through the trunk.
+    const bulge = vec3(0, 0, -0.22 * distance(a, b) * Math.sin(Math.PI * share) ** 2);
+    const tremor = vec3(
+      0.005 * Math.sin(timeSeconds * 1.1 + sigma),
+      0.004 * breath,
+      0.005 * Math.sin(timeSeconds * 0.9 + 2 * sigma),
+    );
+    const inTrunk = within(add(add(lerp(a, b, share), bulge), tremor), shoulder, body.arm * 0.985);
+    return {
+      position: add(neck, rotate(trunk, inTrunk)),
+      orientation: multiply(trunk, slerp(turned(from[side]), turned(to[side]), share)),
+      tracking: 'tracked',
+    };
+  };
+  return {
+    time: timeSeconds,
+    head: { position: eyes, orientation, tracking: 'tracked' },
+    leftHand: hand('left'),
+    rightHand: hand('right'),
+  };
+}
+
+/** The wrist whose knuckles point one way and the back of whose hand faces another, as nearly as right angles allow. */
+function handOrientation(knuckles: Vec3, back: Vec3): Quat {
+  const z = scale(normalise(knuckles), -1);
+  const y = normalise(reject(back, z));
+  return fromAxes(cross(y, z), y, z);
+}
+
+/** The point, or the nearest one at most `radius` [m] from the centre. */
+function within(point: Vec3, centre: Vec3, radius: number): Vec3 {
+  const far = distance(point, centre);
+  return far <= radius ? point : lerp(centre, point, radius / far);
+}
