@@ -29,9 +29,18 @@ function rotated([x, y, z, w]: Rotation, [vx, vy, vz]: Point): Point {
   return [vx + w * tx + (y * tz - z * ty), vy + w * ty + (z * tx - x * tz), vz + w * tz + (x * ty - y * tx)];
 }
 
+/**
+ * The wrist in the frame of the emulated controller's grip (Touch Plus) [m]: the middle of the fist lies 8 cm ahead of the wrist
+ * and 2.5 cm towards the palm, and the handle leans 45° towards the fingers.
+ */
+const wristInGrip = {
+  left: [-0.025, 0.08 * Math.SQRT1_2, 0.08 * Math.SQRT1_2],
+  right: [0.025, 0.08 * Math.SQRT1_2, 0.08 * Math.SQRT1_2],
+} as const;
+
 const wristName = { left: 'leftHand', right: 'rightHand' } as const;
 
-/** Where the wrist must be: the grip as iwer has it, and the offset that docs/frames.md states for this controller. */
+/** Where the wrist must be: the grip as iwer has it, and how a hand holds it. */
 async function wristByGrip(headset: EmulatedHeadset, side: Side): Promise<Point> {
   const { position, orientation } = await headset.grip(side);
   const [x, y, z] = rotated(orientation, wristInGrip[side]);
