@@ -68,8 +68,11 @@ export function createDesktopView(canvas: HTMLCanvasElement): DesktopView {
 
   function place(): void {
     if (view === 'first-person') return;
-    const { offset, fov } = start[view];
+    const { offset: wide, fov } = start[view];
     const free = Math.max(1, window.innerWidth - insets.left - insets.right) / window.innerHeight;
+    // A narrow window shows the mirror only where it stands behind the body.
+    const offset = wide.clone();
+    if (free < 0.8) offset.x *= 0.6;
     // A narrow window sees less to the sides: step back until the body and the mirror fit.
     const distance = Math.max(1, Math.min(1.35, 1 / Math.max(free, 0.1)));
     camera.fov = fov;
@@ -85,6 +88,8 @@ export function createDesktopView(canvas: HTMLCanvasElement): DesktopView {
     camera.aspect = width / height;
     const shiftX = view === 'first-person' ? 0 : (insets.right - insets.left) / 2;
     const shiftY = view === 'first-person' ? 0 : insets.bottom / 2;
+    // What is left above a tall sheet of controls still holds the whole body.
+    camera.zoom = view === 'first-person' ? 1 : Math.min(1, (1 - insets.bottom / height) / 0.75);
     camera.setViewOffset(width, height, shiftX, shiftY, width, height);
     camera.updateProjectionMatrix();
   }

@@ -1,0 +1,693 @@
+import { PerspectiveCamera } from 'three';
+import { type Avatar, createAvatar } from './avatar/avatar';
+import { createDebugSkeleton } from './avatar/debug-skeleton';
+import { loadAvatar } from './avatar/load-avatar';
+import { createMirror } from './avatar/mirror';
+import { palettes } from './avatar/palettes';
+import {
+  armSpanFromFingertipSpan,
+  armSpanRange,
+  type Calibration,
+  calibrationComplaint,
+  defaultCalibration,
+  eyeHeightFromStature,
+  fingertipSpanFromArmSpan,
+  provisionalCalibration,
+  statureFromEyeHeight,
+  statureRange,
+} from './core/body/calibration';
+import { createEstimator } from './core/estimation/estimators';
+import type { EstimatorName } from './core/estimation/pose-estimator';
+import type { TrackingFrame } from './core/tracking/tracking-frame';
+import { createEstimatorChoice, reasonOf } from './estimator-choice';
+import { createFrameLoop, withTiming } from './frame-loop';
+import { createFrameTiming, stageNames } from './frame-timing';
+import { exposeProbe } from './probe';
+import { createRecorder } from './recorder';
+import { createArena } from './scene/arena';
+import { createDesktopView, type ViewName, viewNames } from './scene/desktop-view';
+import { affordableQuality, createRenderer, fitToWindow } from './scene/renderer';
+import { type CalibrationStep, createCalibrationDialog } from './ui/calibration-dialog';
+import { createCalibrationGuide } from './ui/calibration-guide';
+import { offerDownload } from './ui/downloads';
+import { acceptDroppedFiles } from './ui/dropped-files';
+import { pageElement } from './ui/element';
+import { createEnterButton } from './ui/enter-button';
+import { estimatorOrder, estimatorTexts } from './ui/estimator-texts';
+import { createNotices } from './ui/notices';
+import { createOverlay, type FrameReport } from './ui/overlay';
+import { createPanel } from './ui/panel';
+import { browserStorage, createPreferenceStore } from './ui/preferences';
+import { createProgress } from './ui/progress';
+import { listenToShortcuts } from './ui/shortcuts';
+import { readSwitches } from './ui/switches';
+import { createVrMenu } from './ui/vr-menu';
+import { createVrPointers } from './ui/vr-pointers';
+import { createActor } from './xr/actor';
+import { type Emulator, installEmulator } from './xr/emulator';
+import { describeXrSupport, requestVrSession } from './xr/session';
+import { createTracker, type Tracker } from './xr/tracker';
+
+/** Where our own networks and avatar lie, on our own server. */
+const modelsAt = '/models/';
+const ownAvatarAt = '/avatars/mannequin.vrm';
+
+/** Milliseconds between two looks at the ring buffers: fast enough to follow, slow enough to read. */
+const reportEveryMs = 250;
+/** The rate [Hz] at which a window, and the emulator in it, draws. */
+const windowRateHz = 60;
+/** Seconds of tracked frames after which the headset's height says something about who wears it. */
+const settleSeconds = 0.7;
+/** What the mannequin's mirror and the menu are placed by: the user stands at the origin and looks along −Z. */
+const mirrorDistance = 1.8;
+
+type Triple = readonly [number, number, number];
+const triple = ({ x, y, z }: { readonly x: number; readonly y: number; readonly z: number }): Triple => [x, y, z];
+
+interface ActiveSession {
+  readonly xr: XRSession;
+  readonly tracker: Tracker;
+  /** When the first frame was tracked [s]; 'done' once the height of the headset was taken. */
+  settledSince: number | 'done' | null;
+}
+
+const firstLine = (text: string): string => text.split('\n')[0] ?? text;
+
+/** Resolves at the first animation frame at which the condition holds. */
+function until(condition: () => boolean): Promise<void> {
+  return new Promise((resolve) => {
+    const look = () => (condition() ? resolve() : requestAnimationFrame(look));
+    look();
+  });
+}
+
+async function start(): Promise<void> {
+  const marks: Record<string, number> = {};
+  const mark = (name: string) => {
+    marks[name] ??= Math.round(performance.now());
+  };
+  mark('script');
+
+  const notices = createNotices(pageElement('notices', HTMLDivElement));
+  const { switches, complaints } = readSwitches(location.search);
+  const store = createPreferenceStore(browserStorage());
+  for (const complaint of [...complaints, store.complaint]) if (complaint) notices.show('warning', complaint);
+  window.addEventListener('error', ({ message }) =>
+    notices.show('error', `Something went wrong: ${firstLine(message)}`),
+  );
+  window.addEventListener('unhandledrejection', ({ reason }) =>
+    notices.show('error', `Something went wrong: ${firstLine(reasonOf(reason))}`),
+  );
+
+  const progress = createProgress([
+    { name: 'the avatar', weight: 3 },
+    { name: 'the network', weight: 3 },
+    { name: 'the first picture', weight: 1 },
+  ]);
+
+  // Everything that travels starts at once; only then is anything built.
+  const avatarArrives = loadAvatar(switches.avatar ?? ownAvatarAt, (part) => progress.report('the avatar', part));
+  avatarArrives.catch(() => undefined);
+  const inferenceArrives = import('./inference/load-regressor');
+  inferenceArrives.catch(() => undefined);
+
+  const timing = createFrameTiming(() => performance.now());
+  const canvas = pageElement('stage', HTMLCanvasElement);
+  const quality = switches.quality ?? affordableQuality();
+  document.body.classList.toggle('low-quality', quality === 'low');
+  const renderer = createRenderer(canvas, quality);
+  const arena = createArena(renderer, quality);
+  const view = createDesktopView(canvas);
+  const mirror = createMirror({
+    distance: mirrorDistance,
+    ...(quality === 'low' && { resolution: 512, samples: 0 }),
+  });
+  const skeletonLines = createDebugSkeleton();
+  arena.scene.add(mirror.object, skeletonLines.object);
+  mark('scene');
+
+  // What the user set; `show` brings it on the screen.
+  const settings = {
+    mirror: store.preferences.mirror ?? true,
+    upperBodyOnly: store.preferences.upperBodyOnly ?? false,
+    debugSkeleton: false,
+    overlay: store.preferences.overlay ?? window.innerWidth > 760,
+    vrOverlay: false,
+    palette: store.preferences.palette ?? 'porcelain',
+    actor: switches.actor,
+    emulatorPanel: true,
+    calibration: store.preferences.calibration ?? defaultCalibration,
+    calibrationSource: store.preferences.calibration ? 'remembered' : 'not calibrated yet',
+  };
+  const calibrated = () => store.preferences.calibration !== undefined;
+
+  const choice = createEstimatorChoice({
+    calibration: settings.calibration,
+    create: createEstimator,
+    async load(name) {
+      const { loadRegressor } = await inferenceArrives;
+      const loaded = await loadRegressor(`${modelsAt}${name}.json`, {
+        provider: switches.executionProvider,
+        onProgress: (part) => progress.report('the network', 0.9 * part),
+        onProviderFallback: (reason) => notices.show('warning', reason),
+      });
+      return withTiming(loaded, timing);
+    },
+    onChange: () => show(),
+    onFault(name, reason) {
+      const { label } = estimatorTexts[name];
+      notices.show('warning', `${label} could not be used (${firstLine(reason)}): inverse kinematics takes over.`);
+    },
+  });
+
+  // Who moves the body: a session, a replay, the actor, or the emulator that somebody steers.
+  const recorder = createRecorder();
+  const actor = createActor();
+  let emulator: Emulator | null = null;
+  let session: ActiveSession | null = null;
+  let replayedBody: Calibration | null = null;
+
+  function track(timeMs: number, deviceFrame: XRFrame | undefined): TrackingFrame | null {
+    const time = timeMs / 1000;
+    if (session) {
+      // What the actor does now is seen with the next frame: the device froze this one before it called.
+      if (emulator && settings.actor) emulator.drive(actor.frameAt(time));
+      return deviceFrame ? session.tracker.read(deviceFrame, time) : null;
+    }
+    const replayed = recorder.sample(time);
+    if (replayed) return replayed;
+    if (settings.actor || !emulator) return actor.frameAt(time);
+    return emulator.read(time);
+  }
+
+  /** The body that fits whoever moves: a recording brings its own person along. */
+  const bodyNow = () => (recorder.mode === 'replaying' && replayedBody) || settings.calibration;
+
+  function fit(): void {
+    const calibration = bodyNow();
+    choice.calibrate(calibration);
+    actor.calibrate(calibration);
+    avatar?.fitTo(calibration);
+  }
+
+  function calibrate(calibration: Calibration, source: string, remember: boolean): void {
+    settings.calibration = calibration;
+    settings.calibrationSource = source;
+    if (remember) store.remember({ calibration });
+    fit();
+    show();
+  }
+
+  const dialog = createCalibrationDialog(
+    () => guide.cancel(),
+    () => guide.start(),
+  );
+  let calibrationStep: CalibrationStep | null = null;
+  const guide = createCalibrationGuide({
+    onStep(step) {
+      calibrationStep = step;
+      if (!session && step) dialog.show(step);
+      else dialog.hide();
+      showInHeadset();
+    },
+    onMeasured: (calibration) => calibrate(calibration, 'measured', true),
+    closesItself: () => session !== null,
+  });
+
+  // The avatar. One is shown at a time; another takes its place only when it has arrived whole.
+  let avatar: Avatar | null = null;
+  let avatarName = 'Mannequin';
+  let ownAvatarShown = true;
+
+  function showAvatar(next: Avatar, name: string, own: boolean): void {
+    if (avatar) {
+      arena.scene.remove(avatar.object);
+      avatar.dispose();
+    }
+    avatar = next;
+    avatarName = name;
+    ownAvatarShown = own;
+    arena.scene.add(avatar.object);
+    if (own) avatar.setPalette(settings.palette);
+    avatar.setUpperBodyOnly(settings.upperBodyOnly);
+    avatar.fitTo(bodyNow());
+    show();
+  }
+
+  async function openAvatar(source: string | File, name: string, own = false): Promise<void> {
+    try {
+      showAvatar(createAvatar(await loadAvatar(source)), name, own);
+      if (!own) notices.show('info', `${name} is your avatar now.`);
+    } catch (error) {
+      notices.show('error', `${name} could not be shown: ${firstLine(reasonOf(error))}`);
+    }
+  }
+
+  async function openRecording(name: string, text: Promise<string>): Promise<void> {
+    try {
+      const recording = recorder.open(name, await text);
+      replayedBody = recording.calibration;
+      replay();
+    } catch (error) {
+      notices.show('error', `${name} could not be replayed: ${firstLine(reasonOf(error))}`);
+    }
+  }
+
+  function replay(): void {
+    recorder.replay();
+    choice.reset();
+    fit();
+    show();
+  }
+
+  function openFile(file: File): void {
+    if (/\.json$/i.test(file.name)) void openRecording(file.name, file.text());
+    else void openAvatar(file, file.name);
+  }
+
+  function recentre(): void {
+    if (session) session.tracker.recentre();
+    else view.recentre();
+    choice.reset();
+  }
+
+  function toggle(name: 'mirror' | 'upperBodyOnly' | 'overlay', on: boolean): void {
+    settings[name] = on;
+    store.remember({ [name]: on });
+    show();
+  }
+
+  function chooseEstimator(name: EstimatorName): void {
+    store.remember({ estimator: name });
+    void choice.choose(name);
+  }
+
+  function chooseView(name: ViewName): void {
+    view.setView(name);
+    show();
+  }
+
+  const setDebugSkeleton = (on: boolean) => {
+    settings.debugSkeleton = on;
+    show();
+  };
+
+  function startGuide(): void {
+    if (session || !settings.actor) guide.start();
+    else notices.show('info', 'This measures whoever wears the headset: enter VR first, or type your measures.');
+  }
+
+  const panel = createPanel(
+    pageElement('controls', HTMLElement),
+    {
+      palettes,
+      height: { min: 100 * statureRange.min, max: 100 * statureRange.max },
+      armSpan: {
+        min: 100 * fingertipSpanFromArmSpan(armSpanRange.min),
+        max: 100 * fingertipSpanFromArmSpan(armSpanRange.max),
+      },
+    },
+    {
+      chooseEstimator,
+      chooseView,
+      setMirror: (on) => toggle('mirror', on),
+      setUpperBodyOnly: (on) => toggle('upperBodyOnly', on),
+      setOverlay: (on) => toggle('overlay', on),
+      setDebugSkeleton,
+      choosePalette(name) {
+        settings.palette = name;
+        store.remember({ palette: name });
+        avatar?.setPalette(name);
+        show();
+      },
+      openAvatarFile: openFile,
+      openAvatarUrl: (url) => void openAvatar(url, url.split('/').at(-1) ?? url),
+      showOwnAvatar: () => void openAvatar(ownAvatarAt, 'Mannequin', true),
+      calibrate: startGuide,
+      setMeasures({ heightCm, armSpanCm }) {
+        const calibration = {
+          eyeHeight: eyeHeightFromStature(heightCm / 100),
+          armSpan: armSpanFromFingertipSpan(armSpanCm / 100),
+        };
+        const complaint = calibrationComplaint(calibration);
+        if (complaint) notices.show('warning', complaint);
+        else calibrate(calibration, 'by hand', true);
+      },
+      resetCalibration() {
+        store.remember({ calibration: undefined });
+        calibrate(defaultCalibration, 'not calibrated yet', false);
+      },
+      setActor(on) {
+        settings.actor = on;
+        choice.reset();
+        // Without the actor somebody must hold the headset: a real one, or the emulated one.
+        if (on) show();
+        else void ensureEmulator().then((there) => there?.release());
+      },
+      setEmulatorPanel(on) {
+        settings.emulatorPanel = on;
+        emulator?.setPanelVisible(on);
+        show();
+      },
+      recentre,
+      record() {
+        recorder.record({
+          device: session ? (emulator ? 'emulated headset' : 'headset') : settings.actor ? 'actor' : 'emulated headset',
+          rateHz: timing.summary().rateHz,
+          calibration: settings.calibration,
+        });
+        show();
+      },
+      stop() {
+        recorder.stop();
+        fit();
+        show();
+      },
+      replay,
+      download() {
+        const file = recorder.file();
+        if (file) offerDownload(file.name, 'application/json', file.text);
+      },
+      openRecording: (file) => void openRecording(file.name, file.text()),
+      setLoop(on) {
+        recorder.setLoop(on);
+        show();
+      },
+    },
+  );
+  const overlay = createOverlay(pageElement('overlay', HTMLElement));
+
+  // In the headset.
+  const headsetCamera = new PerspectiveCamera(70, 1, 0.05, 90);
+  const pointers = createVrPointers(renderer);
+  const menu = createVrMenu({
+    chooseEstimator,
+    calibrate: () => guide.start(),
+    cancelCalibration: () => guide.cancel(),
+    recentre,
+    setOverlay(on) {
+      settings.vrOverlay = on;
+      showInHeadset();
+    },
+    exit: () => void session?.xr.end(),
+  });
+  pointers.objects.visible = false;
+  arena.scene.add(menu.object, pointers.objects);
+
+  function showInHeadset(): void {
+    menu.show({
+      estimator: choice.current.name,
+      unavailable: choice.unavailable,
+      calibration: calibrationStep,
+      overlay: settings.vrOverlay,
+      notice: notices.current().at(-1)?.text ?? null,
+    });
+  }
+
+  const enterButton = createEnterButton(pageElement('enter', HTMLDivElement), () => void enter());
+
+  /** Controls cover a part of the window: the body stands in the middle of the rest. */
+  function layOut(): void {
+    const narrow = window.innerWidth <= 760;
+    const right = narrow || !panel.open ? 0 : 352;
+    document.body.classList.toggle('panel-open', panel.open);
+    document.body.style.setProperty('--panel-inset', `${right}px`);
+    const bottom = !narrow ? 110 : panel.open ? window.innerHeight * 0.48 : 130;
+    view.setInsets({ left: 0, right, bottom });
+    view.resize();
+    fitToWindow(renderer, quality);
+  }
+  window.addEventListener('resize', layOut);
+  pageElement('controls', HTMLElement).addEventListener('toggle', layOut);
+
+  function show(): void {
+    const { calibration } = settings;
+    overlay.setVisible(settings.overlay);
+    skeletonLines.setVisible(settings.debugSkeleton);
+    avatar?.setUpperBodyOnly(settings.upperBodyOnly);
+    panel.show({
+      ...settings,
+      estimator: choice.wanted,
+      unavailable: choice.unavailable,
+      view: view.view,
+      avatarName,
+      palette: ownAvatarShown ? settings.palette : null,
+      heightCm: 100 * statureFromEyeHeight(calibration.eyeHeight),
+      armSpanCm: 100 * fingertipSpanFromArmSpan(calibration.armSpan),
+      eyeHeightCm: 100 * calibration.eyeHeight,
+      emulated: emulator !== null,
+      recorder,
+    });
+    showInHeadset();
+  }
+
+  listenToShortcuts(
+    {
+      ...Object.fromEntries(estimatorOrder.map((name, index) => [String(index + 1), () => chooseEstimator(name)])),
+      v: () => chooseView(viewNames[(viewNames.indexOf(view.view) + 1) % viewNames.length] ?? 'third-person'),
+      c: startGuide,
+      r: recentre,
+      m: () => toggle('mirror', !settings.mirror),
+      b: () => setDebugSkeleton(!settings.debugSkeleton),
+      u: () => toggle('upperBodyOnly', !settings.upperBodyOnly),
+      o: () => toggle('overlay', !settings.overlay),
+      p: () => panel.setOpen(!panel.open),
+    },
+    () => session === null && !dialog.visible,
+  );
+  acceptDroppedFiles(openFile);
+
+  function frameReport(): FrameReport {
+    const summary = timing.summary();
+    return {
+      ...summary,
+      stages: stageNames.map((name) => ({ name, ...summary.stages[name] })),
+      estimator: estimatorTexts[choice.current.name].label,
+      provider: choice.regressor?.provider ?? 'no network',
+    };
+  }
+  setInterval(() => {
+    choice.check();
+    const report = frameReport();
+    overlay.show(report);
+    menu.showReport(report);
+    if (recorder.mode !== 'idle') show();
+  }, reportEveryMs);
+
+  // Entering and leaving.
+  let realHeadset = false;
+
+  /** The emulator where there is no headset, loaded when it is first needed; null and a notice where it fails. */
+  async function ensureEmulator(): Promise<Emulator | null> {
+    if (realHeadset || emulator) return emulator;
+    try {
+      emulator = await installEmulator();
+    } catch (error) {
+      notices.show('error', `The emulated headset could not be loaded: ${firstLine(reasonOf(error))}`);
+    }
+    show();
+    return emulator;
+  }
+
+  async function enter(): Promise<void> {
+    try {
+      if (!realHeadset && !(await ensureEmulator())) return;
+      const xrSession = await requestVrSession();
+      await renderer.xr.setSession(xrSession);
+      const space = renderer.xr.getReferenceSpace();
+      if (!space) throw new Error('the headset offers no floor to stand on (local-floor)');
+      recorder.stop();
+      const tracker = createTracker(xrSession, space, (moved) => renderer.xr.setReferenceSpace(moved));
+      session = { xr: xrSession, tracker, settledSince: null };
+      xrSession.addEventListener('end', leave);
+      xrSession.addEventListener('visibilitychange', () => timing.reset());
+      space.addEventListener('reset', () => choice.reset());
+      timing.setRate(emulator ? windowRateHz : (xrSession.frameRate ?? 72));
+      emulator?.setPanelVisible(settings.emulatorPanel);
+      if (!settings.actor) emulator?.release();
+      menu.setVisible(true);
+      pointers.objects.visible = true;
+      document.body.classList.add('in-session');
+    } catch (error) {
+      notices.show('error', `VR could not be entered: ${firstLine(reasonOf(error))}. The desktop view goes on.`);
+    }
+    timing.reset();
+    choice.reset();
+    fit();
+    show();
+  }
+
+  function leave(): void {
+    session = null;
+    guide.cancel();
+    menu.setVisible(false);
+    pointers.objects.visible = false;
+    document.body.classList.remove('in-session');
+    timing.setRate(windowRateHz);
+    timing.reset();
+    choice.reset();
+    view.setView(view.view);
+    layOut();
+    show();
+  }
+
+  /** Somebody who never calibrated is as tall as their headset hangs high, once it hangs there calmly. */
+  function settle(frame: TrackingFrame): void {
+    if (!session || calibrated() || session.settledSince === 'done') return;
+    session.settledSince ??= frame.time;
+    if (frame.time - session.settledSince < settleSeconds) return;
+    session.settledSince = 'done';
+    calibrate(provisionalCalibration(frame.head.position.y), 'from the headset’s height', false);
+  }
+
+  let frameCount = 0;
+  let newestFrame: TrackingFrame | null = null;
+  let lastTime = 0;
+  let lastFault = '';
+
+  const loop = createFrameLoop<XRFrame>(
+    {
+      track,
+      observe(frame) {
+        newestFrame = frame;
+        recorder.observe(frame);
+        guide.observe(frame);
+        settle(frame);
+      },
+      estimator: () => choice.current,
+      inferenceSettlesInFrame: () => choice.regressor?.resolvesInFrame ?? false,
+      skin(pose, frame) {
+        if (session) {
+          for (const side of ['left', 'right'] as const) avatar?.setGrip(side, session.tracker.squeezed[side]);
+        }
+        avatar?.apply(pose, frame.time);
+      },
+      render(timeMs, frame) {
+        const elapsed = Math.min(0.1, Math.max(0, (timeMs - lastTime) / 1000));
+        lastTime = timeMs;
+        frameCount += 1;
+        const joints = avatar?.jointPositions() ?? {};
+        skeletonLines.show(joints);
+        const { hips } = joints;
+        if (hips) arena.follow(hips.x, hips.z);
+        if (session) {
+          if (session.xr.visibilityState === 'visible') menu.point(pointers.take());
+        } else if (frame) {
+          view.update(hips ?? { ...frame.head.position, y: frame.head.position.y * 0.58 }, frame.head, elapsed);
+        }
+        const inside = session !== null || view.view === 'first-person';
+        avatar?.setFirstPerson(inside);
+        // Whoever looks from behind the mirror wants to see the body, not its back.
+        mirror.setVisible(settings.mirror && (inside || view.camera.position.z > 0.1 - mirrorDistance));
+        renderer.render(arena.scene, session ? headsetCamera : view.camera);
+      },
+      fail(error) {
+        const text = firstLine(reasonOf(error));
+        if (text !== lastFault) notices.show('error', `A frame could not be drawn: ${text}`);
+        lastFault = text;
+      },
+    },
+    timing,
+  );
+
+  /** What entering would mean: a real headset, or why not and the emulated one. */
+  async function prepareSessions(): Promise<void> {
+    const support = await describeXrSupport();
+    realHeadset = support.kind === 'device' && !switches.emulate;
+    enterButton.show({
+      label: realHeadset ? 'Enter VR' : 'Enter VR (emulated)',
+      sentence: realHeadset || switches.emulate ? null : `${support.sentence} An emulated headset takes its place.`,
+      enabled: true,
+    });
+    if (switches.emulate || !settings.actor) await ensureEmulator();
+  }
+
+  canvas.addEventListener('webglcontextlost', () =>
+    notices.show(
+      'warning',
+      'The graphics device was lost. The picture comes back as soon as the browser gives it back.',
+    ),
+  );
+  canvas.addEventListener('webglcontextrestored', () => {
+    arena.restore();
+    timing.reset();
+    notices.show('info', 'The graphics device is back.');
+  });
+  document.addEventListener('visibilitychange', () => timing.reset());
+
+  let ready = false;
+  exposeProbe(() => {
+    const summary = timing.summary();
+    const joints = avatar?.jointPositions() ?? {};
+    return {
+      ready,
+      activity: session ? 'vr' : ready ? 'desktop' : 'loading',
+      estimator: choice.current.name,
+      provider: choice.regressor?.provider ?? 'none',
+      frame: { ...summary, count: frameCount },
+      avatar: {
+        name: avatarName,
+        joints: Object.fromEntries(Object.entries(joints).map(([name, at]) => [name, triple(at)])),
+      },
+      tracking: newestFrame && {
+        head: triple(newestFrame.head.position),
+        leftHand: newestFrame.leftHand && triple(newestFrame.leftHand.position),
+        rightHand: newestFrame.rightHand && triple(newestFrame.rightHand.position),
+      },
+      calibration: { ...bodyNow(), source: settings.calibrationSource },
+      session: { state: session?.xr.visibilityState ?? 'none', emulated: emulator !== null },
+      view: view.view,
+      recorder: { mode: recorder.mode, frames: recorder.frameCount, seconds: recorder.seconds },
+      notices: notices.current(),
+      loading: { ...marks },
+      players: [],
+      game: null,
+    };
+  });
+
+  // The way to the first body: the chosen network loads beside the avatar, and IK draws until it is there.
+  panel.setOpen(switches.panel && window.innerWidth > 760);
+  if (switches.view) view.setView(switches.view);
+  layOut();
+  renderer.setAnimationLoop((timeMs, deviceFrame) => void loop(timeMs, deviceFrame ?? undefined));
+  const sessionsPrepared = prepareSessions();
+  const chosen = choice.choose(switches.estimator ?? store.preferences.estimator ?? 'learned');
+  void chosen.then(() => progress.report('the network', 1));
+  try {
+    showAvatar(createAvatar(await avatarArrives), switches.avatar ?? 'Mannequin', switches.avatar === null);
+  } catch (error) {
+    notices.show('error', `The avatar could not be shown: ${firstLine(reasonOf(error))}`);
+  }
+  mark('avatar');
+  progress.report('the avatar', 1);
+  const drawn = frameCount;
+  await until(() => frameCount > drawn);
+  progress.report('the first picture', 1);
+  progress.showBody();
+  mark('firstBody');
+  if (switches.replay) {
+    const address = switches.replay;
+    void openRecording(
+      address,
+      fetch(address).then((response) => {
+        if (!response.ok) throw new Error(`the server answers ${response.status}`);
+        return response.text();
+      }),
+    );
+  }
+  await Promise.all([chosen, sessionsPrepared]);
+  mark('estimator');
+  progress.finish();
+  ready = true;
+  // Compiling shaders is loading, not drawing.
+  timing.reset();
+  show();
+}
+
+start().catch((error: unknown) => {
+  const text = document.createElement('p');
+  text.className = 'fault';
+  text.setAttribute('role', 'alert');
+  text.textContent = `threepoint cannot start: ${firstLine(reasonOf(error))}`;
+  document.body.replaceChildren(text);
+});
