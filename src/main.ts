@@ -59,7 +59,7 @@ const windowRateHz = 60;
 /** Seconds of tracked frames after which the headset's height says something about who wears it. */
 const settleSeconds = 0.7;
 /** What the mannequin's mirror and the menu are placed by: the user stands at the origin and looks along −Z. */
-const mirrorDistance = 1.8;
+const mirrorDistance = 1.5;
 
 type Triple = readonly [number, number, number];
 const triple = ({ x, y, z }: { readonly x: number; readonly y: number; readonly z: number }): Triple => [x, y, z];
@@ -346,10 +346,11 @@ async function start(): Promise<void> {
       },
       setEmulatorPanel(on) {
         settings.emulatorPanel = on;
-        emulator?.setPanelVisible(on);
+        void emulator?.setPanelVisible(on);
         show();
       },
       recentre,
+      exitVr: () => void session?.xr.end(),
       record() {
         recorder.record({
           device: session ? (emulator ? 'emulated headset' : 'headset') : settings.actor ? 'actor' : 'emulated headset',
@@ -436,6 +437,7 @@ async function start(): Promise<void> {
       armSpanCm: 100 * fingertipSpanFromArmSpan(calibration.armSpan),
       eyeHeightCm: 100 * calibration.eyeHeight,
       emulated: emulator !== null,
+      inSession: session !== null,
       recorder,
     });
     showInHeadset();
@@ -476,6 +478,7 @@ async function start(): Promise<void> {
 
   // Entering and leaving.
   let realHeadset = false;
+  let panelOpenBefore = false;
 
   /** The emulator where there is no headset, loaded when it is first needed; null and a notice where it fails. */
   async function ensureEmulator(): Promise<Emulator | null> {
@@ -491,7 +494,11 @@ async function start(): Promise<void> {
 
   async function enter(): Promise<void> {
     try {
-      if (!realHeadset && !(await ensureEmulator())) return;
+      if (!realHeadset) {
+        const there = await ensureEmulator();
+        if (!there) return;
+        await there.setPanelVisible(settings.emulatorPanel);
+      }
       const xrSession = await requestVrSession();
       await renderer.xr.setSession(xrSession);
       const space = renderer.xr.getReferenceSpace();
@@ -503,11 +510,12 @@ async function start(): Promise<void> {
       xrSession.addEventListener('visibilitychange', () => timing.reset());
       space.addEventListener('reset', () => choice.reset());
       timing.setRate(emulator ? windowRateHz : (xrSession.frameRate ?? 72));
-      emulator?.setPanelVisible(settings.emulatorPanel);
       if (!settings.actor) emulator?.release();
       menu.setVisible(true);
       pointers.objects.visible = true;
       document.body.classList.add('in-session');
+      panelOpenBefore = panel.open;
+      panel.setOpen(false);
     } catch (error) {
       notices.show('error', `VR could not be entered: ${firstLine(reasonOf(error))}. The desktop view goes on.`);
     }
@@ -523,6 +531,7 @@ async function start(): Promise<void> {
     menu.setVisible(false);
     pointers.objects.visible = false;
     document.body.classList.remove('in-session');
+    panel.setOpen(panelOpenBefore);
     timing.setRate(windowRateHz);
     timing.reset();
     choice.reset();

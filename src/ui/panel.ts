@@ -34,6 +34,7 @@ export interface PanelState {
   readonly emulated: boolean;
   readonly emulatorPanel: boolean;
   readonly recorder: RecorderState;
+  readonly inSession: boolean;
 }
 
 export interface PanelActions {
@@ -53,6 +54,7 @@ export interface PanelActions {
   setActor(on: boolean): void;
   setEmulatorPanel(on: boolean): void;
   recentre(): void;
+  exitVr(): void;
   record(): void;
   stop(): void;
   replay(): void;
@@ -333,6 +335,7 @@ export function createPanel(region: HTMLElement, options: PanelOptions, actions:
     ]),
   );
   const recentre = button('Recentre', actions.recentre, { class: 'quiet' });
+  const exit = button('Exit VR', actions.exitVr, { class: 'quiet' });
   const opener = button('Controls', () => setOpen(content.hidden), {
     class: 'quiet opener',
     'aria-controls': 'panel',
@@ -344,7 +347,7 @@ export function createPanel(region: HTMLElement, options: PanelOptions, actions:
     region.classList.toggle('closed', !open);
     region.dispatchEvent(new Event('toggle'));
   }
-  region.append(element('div', { class: 'panel-bar' }, recentre, opener), content);
+  region.append(element('div', { class: 'panel-bar' }, exit, recentre, opener), content);
 
   /** A number someone is typing must not change under the fingers. */
   const showNumber = (input: HTMLInputElement, value: number) => {
@@ -379,6 +382,7 @@ export function createPanel(region: HTMLElement, options: PanelOptions, actions:
       actor.input.checked = state.actor;
       emulatorPanel.input.checked = state.emulatorPanel;
       emulatorPanel.node.hidden = !state.emulated;
+      exit.hidden = !state.inSession;
       loop.input.checked = state.recorder.loop;
       avatarName.textContent = state.avatarName;
       ownAvatar.hidden = state.palette !== null;

@@ -67,10 +67,10 @@ export function createVrMenu(actions: VrMenuActions): VrMenu {
   const menu = createVrPanel(width, height, 1000);
   const report = createVrPanel(520, 460, 1000);
   const object = new Group();
-  menu.mesh.position.set(1.12, 1.3, -1.35);
-  menu.mesh.rotation.y = -0.62;
-  report.mesh.position.set(-1.12, 1.35, -1.35);
-  report.mesh.rotation.y = 0.62;
+  menu.mesh.position.set(1.1, 1.3, -1.15);
+  menu.mesh.rotation.y = -0.74;
+  report.mesh.position.set(-1.1, 1.35, -1.15);
+  report.mesh.rotation.y = 0.74;
   object.add(menu.mesh, report.mesh);
   object.visible = false;
 

@@ -16,7 +16,7 @@ export interface Emulator {
   /** Lets whoever steers the panel move headset and controllers again. */
   release(): void;
   /** Shows or hides the developer's panel; it is loaded when first shown. */
-  setPanelVisible(visible: boolean): void;
+  setPanelVisible(visible: boolean): Promise<void>;
 }
 
 /** Where a person of 1.70 m holds head and hands when nobody moves them yet. */
@@ -69,6 +69,7 @@ export async function installEmulator(): Promise<Emulator> {
   }
 
   let panel: Promise<void> | null = null;
+  let panelWanted = false;
   return {
     device,
     read: (time) => ({
@@ -97,10 +98,15 @@ export async function installEmulator(): Promise<Emulator> {
     release() {
       device.controlMode = 'manual';
     },
-    setPanelVisible(visible) {
-      if (visible) panel ??= import('@iwer/devui').then(({ DevUI }) => device.installDevUI(DevUI));
+    async setPanelVisible(visible) {
+      panelWanted = visible;
+      // iwer lays the panel over the picture when a session begins, and stumbles at its end over one that came in between.
+      if (visible && !device.activeSession) {
+        panel ??= import('@iwer/devui').then(({ DevUI }) => device.installDevUI(DevUI));
+      }
+      await panel;
       const container = device.devui?.devUIContainer;
-      if (container) container.hidden = !visible;
+      if (container) container.hidden = !panelWanted;
     },
   };
 }
