@@ -1,0 +1,96 @@
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import * as v from 'valibot';
+import type { Calibration } from '../../src/core/body/calibration';
+import type { Quat } from '../../src/core/math/quat';
+import { type Vec3, vec3 } from '../../src/core/math/vec3';
+import type { TrackedPose, TrackingFrame } from '../../src/core/tracking/tracking-frame';
+
+/** What training/threepoint_training/recordings.py writes. */
+const indexSchema = v.object({
+  version: v.literal(1),
+  rateHz: v.pipe(v.number(), v.minValue(1)),
+  corpusHash: v.string(),
+  columns: v.array(v.string()),
+  people: v.record(v.string(), v.object({ eyeHeight: v.number(), armSpan: v.number() })),
+  clips: v.array(v.object({ name: v.string(), person: v.string(), file: v.string(), frames: v.number() })),
+  problems: v.array(v.string()),
+});
+
+export type RecordingIndex = v.InferOutput<typeof indexSchema>;
+
+export const readIndex = (folder: string): RecordingIndex =>
+  v.parse(indexSchema, JSON.parse(readFileSync(join(folder, 'index.json'), 'utf8')));
+
+/** Joints of the truth that the measures use. */
+export const truthJoints = [
+  'leftLowerArm',
+  'rightLowerArm',
+  'leftUpperArm',
+  'rightUpperArm',
+  'chest',
+  'hips',
+  'leftHand',
+  'rightHand',
+] as const;
+export type TruthJoint = (typeof truthJoints)[number];
+
+export interface RecordedFrame {
+  readonly frame: TrackingFrame;
+  readonly truth: Readonly<Record<TruthJoint, Vec3>>;
+}
+
+/** The body that the calibration of a person would give. */
+export const calibrationOf = (index: RecordingIndex, person: string): Calibration => {
+  const calibration = index.people[person];
+  if (!calibration) throw new Error(`index.json: clips of ${person}, but no such person`);
+  return calibration;
+};
+
+/** All frames of one clip, in order. */
+export function readClip(
+  folder: string,
+  index: RecordingIndex,
+  clip: RecordingIndex['clips'][number],
+): RecordedFrame[] {
+  const bytes = readFileSync(join(folder, clip.file));
+  const width = index.columns.length;
+  if (bytes.length !== clip.frames * width * 4) {
+    throw new Error(`${clip.file}: ${bytes.length} bytes, ${clip.frames} frames need ${clip.frames * width * 4}`);
+  }
+  const numbers = new Float32Array(bytes.buffer, bytes.byteOffset, bytes.length / 4);
+  const columnOf = (name: string): number => {
+    const column = index.columns.indexOf(name);
+    if (column < 0) throw new Error(`index.json: no column ${name}`);
+    return column;
+  };
+  const poses = { head: columnOf('head.px'), leftHand: columnOf('leftHand.px'), rightHand: columnOf('rightHand.px') };
+  const truths = truthJoints.map((joint) => columnOf(`truth.${joint}.x`));
+  return Array.from({ length: clip.frames }, (_, row) => {
+    const at = (column: number): number => numbers[row * width + column] ?? Number.NaN;
+    const point = (column: number): Vec3 => vec3(at(column), at(column + 1), at(column + 2));
+    const pose = (column: number): TrackedPose => ({
+      position: point(column),
+      orientation: unit(at(column + 3), at(column + 4), at(column + 5), at(column + 6)),
+      tracking: 'tracked',
+    });
+    return {
+      frame: {
+        time: row / index.rateHz,
+        head: pose(poses.head),
+        leftHand: pose(poses.leftHand),
+        rightHand: pose(poses.rightHand),
+      },
+      truth: Object.fromEntries(truthJoints.map((joint, i) => [joint, point(truths[i] ?? 0)])) as Record<
+        TruthJoint,
+        Vec3
+      >,
+    };
+  });
+}
+
+/** Single precision leaves quaternions a little off their length. */
+function unit(x: number, y: number, z: number, w: number): Quat {
+  const l = Math.hypot(x, y, z, w);
+  return { x: x / l, y: y / l, z: z / l, w: w / l };
+}

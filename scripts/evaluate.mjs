@@ -1,0 +1,52 @@
+// npm run evaluate -- --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,135] [--models DIR]:
+// the shipping path on recorded motion. Python prepares the recordings with their truth, TypeScript drives them.
+import { mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join, resolve } from 'node:path';
+import { parseArgs } from 'node:util';
+import { ensureInstalled } from './installation.mjs';
+import { pythonEnvironment } from './python-environment.mjs';
+import { main, root, run, SetupError } from './run-command.mjs';
+
+const usage =
+  'npm run evaluate -- --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,135] [--models DIR]\n' +
+  'DIR holds .asf and .amc or .bvh files; docs/evaluation.md says the rest.';
+const twoHours = 2 * 3600;
+
+function options() {
+  const text = { type: 'string' };
+  try {
+    const { values } = parseArgs({ options: { mocap: text, skeleton: text, json: text, people: text, models: text } });
+    if (!values.mocap) throw new Error('--mocap is needed');
+    return values;
+  } catch (error) {
+    throw new SetupError(`evaluate: ${error.message}\n${usage}`);
+  }
+}
+
+await main(async () => {
+  const given = options();
+  // Paths on the command line mean what they mean to the person who typed them.
+  const path = (name) => resolve(process.env.INIT_CWD ?? process.cwd(), name);
+  await ensureInstalled();
+  const python = await pythonEnvironment();
+  const recordings = mkdtempSync(join(tmpdir(), 'threepoint-recordings-'));
+  try {
+    const prepare = ['-m', 'threepoint_training.recordings', '--mocap', path(given.mocap), '--out', recordings];
+    if (given.skeleton) prepare.push('--skeleton', path(given.skeleton));
+    if (given.people) prepare.push('--people', given.people);
+    const prepared = await run(python, prepare, {
+      cwd: root,
+      env: { PYTHONPATH: `${root}/training`, PYTHONUNBUFFERED: '1' },
+      limitSeconds: twoHours,
+    });
+    if (prepared.code !== 0) return prepared.code;
+    const drive = ['--import', 'tsx', 'bench/evaluate/main.ts', '--recordings', recordings];
+    drive.push('--models', given.models ? path(given.models) : join(root, 'public/models'));
+    if (given.json) drive.push('--json', path(given.json));
+    const { code } = await run(process.execPath, drive, { cwd: root, limitSeconds: twoHours });
+    return code;
+  } finally {
+    rmSync(recordings, { recursive: true, force: true });
+  }
+});
