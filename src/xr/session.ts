@@ -1,19 +1,19 @@
 /** What the browser offers; `sentence` tells the user why not, or null. */
 export interface XrSupport {
-  readonly available: boolean;
+  readonly kind: 'device' | 'none';
   readonly sentence: string | null;
 }
 
 /** Asks the browser once; never rejects. */
 export async function describeXrSupport(): Promise<XrSupport> {
-  const no = (sentence: string): XrSupport => ({ available: false, sentence });
+  const no = (sentence: string): XrSupport => ({ kind: 'none', sentence });
   if (!window.isSecureContext) {
     return no('VR needs a secure page: open it by https:// or on localhost (docs/running-on-a-headset.md).');
   }
   if (!navigator.xr) return no('This browser has no WebXR.');
   try {
     const supported = await navigator.xr.isSessionSupported('immersive-vr');
-    return supported ? { available: true, sentence: null } : no('No headset is connected to this browser.');
+    return supported ? { kind: 'device', sentence: null } : no('No headset is connected to this browser.');
   } catch (error) {
     return no(`WebXR is not allowed here (${error instanceof Error ? error.message : error}).`);
   }

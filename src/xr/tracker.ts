@@ -22,12 +22,12 @@ export interface Tracker {
 
 /**
  * Reads by handedness, never by index, so that swapped and returning controllers stay where they belong. `onSpace` hears of the
- * reference space that drawing must use too, at once and after each `recentre`.
+ * reference space that drawing must use too, after each `recentre`.
  */
 export function createTracker(
   session: XRSession,
   floor: XRReferenceSpace,
-  onSpace: (space: XRReferenceSpace) => void = () => {},
+  onSpace?: (space: XRReferenceSpace) => void,
 ): Tracker {
   let space = floor;
   let lastHead: Pose<'floor'> | null = null;
@@ -79,7 +79,7 @@ export function createTracker(
       const origin = { ...lastHead.position, y: 0 };
       // The new space's origin in the old one: under the head, turned as it looks.
       space = space.getOffsetReferenceSpace(new XRRigidTransform({ ...origin, w: 1 }, turned));
-      onSpace(space);
+      onSpace?.(space);
       const toNew = conjugate(turned);
       const position = rotate(toNew, scale(origin, -1));
       lastHead = { position: { ...position, y: lastHead.position.y }, orientation: fromAxisAngle(up, 0) };
