@@ -1,0 +1,132 @@
+import { writeFileSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
+import { parseArgs } from 'node:util';
+import { type Browser, chromium } from '@playwright/test';
+import { findChromium } from '../scripts/chromium.mjs';
+import { createPageHandler } from '../server/page';
+import { serve, type WebServer } from '../server/web-server';
+import type { PageResult } from './page/main';
+
+/** Bytes of the first visit, as sent and as unpacked. */
+type Bytes = Record<'app' | 'wasm' | 'models' | 'avatars', number>;
+
+const { values: options } = parseArgs({ options: { json: { type: 'string' } } });
+const built = (folder: string) => fileURLToPath(new URL(`../${folder}`, import.meta.url));
+
+/** Finer clocks need isolation: without it performance.now() moves in steps of 0.1 ms. */
+function serveIsolated(folder: string): Promise<WebServer> {
+  const page = createPageHandler(folder);
+  return serve(
+    (request, response) => {
+      response.setHeader('Cross-Origin-Opener-Policy', 'same-origin');
+      response.setHeader('Cross-Origin-Embedder-Policy', 'require-corp');
+      page(request, response);
+    },
+    { host: '127.0.0.1', port: 0 },
+  );
+}
+
+async function measureFrames(browser: Browser): Promise<PageResult> {
+  const server = await serveIsolated(built('.cache/bench'));
+  const page = await browser.newPage({ viewport: { width: 480, height: 270 } });
+  try {
+    await page.goto(`http://127.0.0.1:${server.port}/`);
+    await page.waitForFunction(() => window.benchResult ?? window.benchError, null, { timeout: 540_000 });
+    const { result, error } = await page.evaluate(() => ({ result: window.benchResult, error: window.benchError }));
+    if (!result) throw new Error(`the bench page failed: ${error}`);
+    return result;
+  } finally {
+    await page.close();
+    await server.close();
+  }
+}
+
+/** Opens the real page afresh: when the first body is on the screen, and what had to travel for it. */
+async function measureVisit(browser: Browser): Promise<{ readonly firstBodyMs: number; readonly bytes: Bytes }> {
+  const server = await serve(createPageHandler(built('dist')), { host: '127.0.0.1', port: 0 });
+  const times: number[] = [];
+  let bytes: Bytes = { app: 0, wasm: 0, models: 0, avatars: 0 };
+  try {
+    for (let visit = 0; visit < 3; visit++) {
+      const context = await browser.newContext({ viewport: { width: 960, height: 600 } });
+      const page = await context.newPage();
+      const arrived: Bytes = { app: 0, wasm: 0, models: 0, avatars: 0 };
+      const bodies: Promise<void>[] = [];
+      page.on('response', (response) => {
+        const path = new URL(response.url()).pathname;
+        const kind = path.endsWith('.wasm')
+          ? 'wasm'
+          : path.startsWith('/models/')
+            ? 'models'
+            : path.startsWith('/avatars/')
+              ? 'avatars'
+              : 'app';
+        bodies.push(
+          response.body().then((body) => {
+            arrived[kind] += body.length;
+          }),
+        );
+      });
+      await page.goto(`http://127.0.0.1:${server.port}/?actor=on`);
+      await page.waitForFunction(() => window.threepoint?.probe().ready, null, { timeout: 60_000 });
+      times.push(await page.evaluate(() => window.threepoint?.probe().loading.firstBody ?? Number.NaN));
+      await Promise.all(bodies);
+      bytes = arrived;
+      await context.close();
+    }
+  } finally {
+    await server.close();
+  }
+  return { firstBodyMs: times.sort((a, b) => a - b)[1] ?? Number.NaN, bytes };
+}
+
+const executablePath = await findChromium();
+const browser = await chromium.launch({
+  ...(executablePath && { executablePath }),
+  args: [
+    '--no-sandbox',
+    '--use-angle=swiftshader',
+    '--enable-unsafe-swiftshader',
+    '--disable-quic',
+    '--disable-background-networking',
+    '--disable-component-update',
+    '--disable-sync',
+  ],
+});
+try {
+  const visit = await measureVisit(browser);
+  const frames = await measureFrames(browser);
+  const result = { ...frames, ...visit };
+  const row = (label: string, cells: readonly (string | number)[]) =>
+    console.log(`  ${label.padEnd(14)}${cells.map((cell) => String(cell).padStart(12)).join('')}`);
+  for (const [title, table] of [
+    ['In the frame: prepare and estimate [ms]', frames.inFrameMs],
+    ['Whole frame on this thread [ms]', frames.frameMs],
+  ] as const) {
+    console.log(`\n${title}, ${frames.frames} frames each`);
+    row('', ['p50', 'p95', 'p99']);
+    for (const [name, { p50, p95, p99 }] of Object.entries(table))
+      row(name, [p50.toFixed(3), p95.toFixed(3), p99.toFixed(3)]);
+  }
+  console.log('\nStages, median [ms]');
+  const stageNames = Object.keys(Object.values(frames.stagesMs)[0] ?? {});
+  row('', stageNames);
+  for (const [name, stages] of Object.entries(frames.stagesMs))
+    row(
+      name,
+      stageNames.map((stage) => (stages[stage] ?? 0).toFixed(3)),
+    );
+  const whole = (values: Readonly<Record<string, number>>) =>
+    Object.entries(values)
+      .map(([name, value]) => `${name} ${value.toFixed(0)}`)
+      .join(', ');
+  console.log(
+    `\nSession creation [ms]: ${whole(frames.sessionCreateMs)}; first inference [ms]: ${whole(frames.firstInferenceMs)}`,
+  );
+  console.log(`First body on the screen: ${visit.firstBodyMs} ms after opening the page (median of 3)`);
+  const kilobytes = Object.entries(visit.bytes).map(([kind, size]) => `${kind} ${(size / 1000).toFixed(0)} kB`);
+  console.log(`First visit, unpacked: ${kilobytes.join(', ')}`);
+  if (options.json) writeFileSync(options.json, `${JSON.stringify(result, null, 2)}\n`);
+} finally {
+  await browser.close();
+}

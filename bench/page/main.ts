@@ -1,0 +1,182 @@
+import { PerspectiveCamera } from 'three';
+import { createAvatar } from '../../src/avatar/avatar';
+import { loadAvatar } from '../../src/avatar/load-avatar';
+import { createMirror } from '../../src/avatar/mirror';
+import { defaultCalibration } from '../../src/core/body/calibration';
+import { skeletonFromCalibration } from '../../src/core/body/skeleton';
+import { createEstimator, needsRegressor } from '../../src/core/estimation/estimators';
+import { estimatorNames, type PoseEstimator } from '../../src/core/estimation/pose-estimator';
+import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
+import { nextRandom } from '../../src/core/math/random';
+import { actorFrame } from '../../src/core/tracking/actor-motion';
+import { createFrameLoop, withTiming } from '../../src/frame-loop';
+import { createFrameTiming, stageNames } from '../../src/frame-timing';
+import { loadRegressor, parseContract } from '../../src/inference/load-regressor';
+import { createSession } from '../../src/inference/session';
+import { createArena } from '../../src/scene/arena';
+import { createRenderer } from '../../src/scene/renderer';
+import { createCcdBody } from './ccd-body';
+
+/** Blocks of one method alternate in a seeded order, so that whatever else the machine does meets all of them. */
+const blockFrames = 120;
+const rounds = 8;
+const settleFrames = 20;
+
+const methods = [...estimatorNames, 'ccdik'] as const;
+type Method = (typeof methods)[number];
+
+interface Quantiles {
+  readonly p50: number;
+  readonly p95: number;
+  readonly p99: number;
+}
+
+export interface PageResult {
+  readonly inFrameMs: Readonly<Record<Method, Quantiles>>;
+  readonly frameMs: Readonly<Record<Method, Quantiles>>;
+  readonly stagesMs: Readonly<Record<string, Readonly<Record<string, number>>>>;
+  readonly sessionCreateMs: Readonly<Record<string, number>>;
+  readonly firstInferenceMs: Readonly<Record<string, number>>;
+  readonly frames: number;
+}
+
+function quantiles(values: readonly number[]): Quantiles {
+  const sorted = Float64Array.from(values).sort();
+  const at = (q: number) =>
+    Number((sorted[Math.min(sorted.length - 1, Math.floor(q * sorted.length))] ?? Number.NaN).toFixed(4));
+  return { p50: at(0.5), p95: at(0.95), p99: at(0.99) };
+}
+
+/** What opening a model costs, apart from its download. */
+async function openingCost(name: string): Promise<{ readonly create: number; readonly first: number }> {
+  const contract = parseContract(name, await (await fetch(`/models/${name}.json`)).text());
+  const model = new Uint8Array(await (await fetch(`/models/${contract.file}`)).arrayBuffer());
+  const started = performance.now();
+  const session = await createSession(model, 'wasm');
+  const created = performance.now();
+  const input = contract.inputs[0];
+  const output = contract.outputs[0];
+  if (!input || !output) throw new Error(`${name}.json: no tensors`);
+  await session.run(input, new Float32Array(input.shape.reduce((a, b) => a * b, 1)), output.name);
+  const ran = performance.now();
+  await session.release();
+  return { create: created - started, first: ran - created };
+}
+
+async function measure(): Promise<PageResult> {
+  const costs = { learned: await openingCost('learned'), paper: await openingCost('paper') };
+  const canvas = document.querySelector('canvas');
+  if (!canvas) throw new Error('no canvas');
+  const renderer = createRenderer(canvas, 'low');
+  renderer.setSize(480, 270, false);
+  const arena = createArena(renderer, 'low');
+  const mirror = createMirror();
+  const avatar = createAvatar(await loadAvatar('/avatars/mannequin.vrm'));
+  arena.scene.add(mirror.object, avatar.object);
+  avatar.fitTo(defaultCalibration);
+  const camera = new PerspectiveCamera(42, 480 / 270, 0.05, 90);
+  camera.position.set(1.9, 1.5, 2.75);
+  camera.lookAt(0, 1, -0.4);
+
+  const timing = createFrameTiming(() => performance.now());
+  const regressors: Partial<Record<Method, PoseRegressor>> = {};
+  for (const name of estimatorNames.filter(needsRegressor)) {
+    regressors[name] = withTiming(await loadRegressor(`/models/${name}.json`), timing);
+  }
+  const estimators = Object.fromEntries(
+    estimatorNames.map((name) => [name, createEstimator(name, defaultCalibration, regressors[name] ?? null)]),
+  ) as Record<(typeof estimatorNames)[number], PoseEstimator>;
+  const ccd = createCcdBody(skeletonFromCalibration(defaultCalibration));
+
+  const inFrame = Object.fromEntries(methods.map((name) => [name, [] as number[]])) as Record<Method, number[]>;
+  const whole = Object.fromEntries(methods.map((name) => [name, [] as number[]])) as Record<Method, number[]>;
+  const stages: Record<string, Record<string, number>> = {};
+  let method: (typeof estimatorNames)[number] = 'ik';
+  let estimating = 0;
+
+  let inFrameNow = 0;
+  let failure: unknown = null;
+  const loop = createFrameLoop<never>(
+    {
+      track: (timeMs) => actorFrame(timeMs / 1000, defaultCalibration),
+      observe() {
+        estimating = performance.now();
+      },
+      estimator: () => estimators[method],
+      inferenceSettlesInFrame: () => true,
+      skin(pose, frame) {
+        inFrameNow = performance.now() - estimating;
+        avatar.apply(pose, frame.time);
+      },
+      render: () => renderer.render(arena.scene, camera),
+      fail(error) {
+        failure = error;
+      },
+    },
+    timing,
+  );
+
+  const nextFrame = () => new Promise<number>((resolve) => requestAnimationFrame(resolve));
+  async function runBlock(name: Method): Promise<void> {
+    if (name !== 'ccdik') method = name;
+    for (const estimator of Object.values(estimators)) estimator.reset();
+    timing.reset();
+    for (let i = 0; i < settleFrames + blockFrames; i++) {
+      const time = await nextFrame();
+      const started = performance.now();
+      if (name === 'ccdik') {
+        const frame = actorFrame(time / 1000, defaultCalibration);
+        const solving = performance.now();
+        ccd.solve(frame);
+        inFrameNow = performance.now() - solving;
+        renderer.render(arena.scene, camera);
+      } else await loop(time);
+      if (failure) throw failure;
+      if (i < settleFrames) continue;
+      inFrame[name].push(inFrameNow);
+      whole[name].push(performance.now() - started);
+    }
+    const summary = timing.summary();
+    if (name !== 'ccdik') {
+      stages[name] = Object.fromEntries(
+        stageNames.map((stage) => [stage, Number(summary.stages[stage].p50Ms.toFixed(4))]),
+      );
+    }
+  }
+
+  let random = { seed: 20230213 };
+  for (let round = 0; round < rounds; round++) {
+    const order = methods.map((name) => {
+      const { value, state } = nextRandom(random);
+      random = state;
+      return { name, value };
+    });
+    for (const { name } of order.sort((a, b) => a.value - b.value)) await runBlock(name);
+  }
+  const told = (values: Record<Method, number[]>) =>
+    Object.fromEntries(methods.map((name) => [name, quantiles(values[name])])) as Record<Method, Quantiles>;
+  return {
+    inFrameMs: told(inFrame),
+    frameMs: told(whole),
+    stagesMs: stages,
+    sessionCreateMs: { learned: costs.learned.create, paper: costs.paper.create },
+    firstInferenceMs: { learned: costs.learned.first, paper: costs.paper.first },
+    frames: rounds * blockFrames,
+  };
+}
+
+declare global {
+  interface Window {
+    benchResult?: PageResult;
+    benchError?: string;
+  }
+}
+
+measure().then(
+  (result) => {
+    window.benchResult = result;
+  },
+  (error: unknown) => {
+    window.benchError = error instanceof Error ? (error.stack ?? error.message) : String(error);
+  },
+);

@@ -1,0 +1,10 @@
+import { fileURLToPath } from 'node:url';
+import { defineConfig } from 'vite';
+
+const path = (relative: string) => fileURLToPath(new URL(relative, import.meta.url));
+
+export default defineConfig({
+  root: path('./page'),
+  publicDir: path('../public'),
+  build: { outDir: path('../.cache/bench'), emptyOutDir: true, target: 'es2022' },
+});
