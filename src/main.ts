@@ -26,7 +26,7 @@ import { exposeProbe } from './probe';
 import { createRecorder } from './recorder';
 import { createArena } from './scene/arena';
 import { createDesktopView, type ViewName, viewNames } from './scene/desktop-view';
-import { affordableQuality, createRenderer, fitToWindow } from './scene/renderer';
+import { affordableQuality, createRenderer, easeEmulatedPicture, fitToWindow } from './scene/renderer';
 import { type CalibrationStep, createCalibrationDialog } from './ui/calibration-dialog';
 import { createCalibrationGuide } from './ui/calibration-guide';
 import { offerDownload } from './ui/downloads';
@@ -120,7 +120,7 @@ async function start(): Promise<void> {
   const view = createDesktopView(canvas);
   const mirror = createMirror({
     distance: mirrorDistance,
-    ...(quality === 'low' && { resolution: 512, samples: 0 }),
+    ...(quality === 'low' && { resolution: 400, samples: 0 }),
   });
   const skeletonLines = createDebugSkeleton();
   arena.scene.add(mirror.object, skeletonLines.object);
@@ -503,6 +503,7 @@ async function start(): Promise<void> {
       await renderer.xr.setSession(xrSession);
       const space = renderer.xr.getReferenceSpace();
       if (!space) throw new Error('the headset offers no floor to stand on (local-floor)');
+      if (emulator) easeEmulatedPicture(renderer, quality);
       recorder.stop();
       const tracker = createTracker(xrSession, space, (moved) => renderer.xr.setReferenceSpace(moved));
       session = { xr: xrSession, tracker, settledSince: null };

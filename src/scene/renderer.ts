@@ -34,9 +34,20 @@ export function createRenderer(canvas: HTMLCanvasElement, quality: Quality): Web
   return renderer;
 }
 
+/** Share of the window's pixels, in each direction, that are drawn in low quality. */
+const lowPixelShare = 0.66;
+
+/** An emulated headset draws into the whole window, whatever it costs: in low quality it gets fewer pixels. Call it in a session. */
+export function easeEmulatedPicture(renderer: WebGLRenderer, quality: Quality): void {
+  if (quality === 'high') return;
+  const { domElement } = renderer;
+  domElement.width = Math.round(window.innerWidth * lowPixelShare);
+  domElement.height = Math.round(window.innerHeight * lowPixelShare);
+}
+
 /** Fits the drawing buffer to the window; a headset's own buffer is none of its business. */
 export function fitToWindow(renderer: WebGLRenderer, quality: Quality): void {
   if (renderer.xr.isPresenting) return;
-  renderer.setPixelRatio(quality === 'high' ? Math.min(window.devicePixelRatio, 2) : 0.66);
+  renderer.setPixelRatio(quality === 'high' ? Math.min(window.devicePixelRatio, 2) : lowPixelShare);
   renderer.setSize(window.innerWidth, window.innerHeight, false);
 }
