@@ -30,6 +30,7 @@ export async function installEmulator(): Promise<Emulator> {
   const { XRDevice: Device, metaQuest3 } = await import('iwer');
   const device = new Device(metaQuest3, { stereoEnabled: false });
   device.installRuntime({ forceInstall: true });
+  markAsTracked(device);
   device.position.set(rest.head.x, rest.head.y, rest.head.z);
   const config = metaQuest3.controllerConfig;
   const profiles = config ? [config.profileId, ...config.fallbackProfileIds] : [];
@@ -109,6 +110,23 @@ export async function installEmulator(): Promise<Emulator> {
       if (container) container.hidden = !panelWanted;
     },
   };
+}
+
+/** iwer calls every position a guess (`emulatedPosition`) unless told otherwise, under a symbol; its controllers are seen. */
+function markAsTracked(device: XRDevice): void {
+  const inputs = [...Object.values(device.controllers), ...Object.values(device.hands)];
+  const spaces: (object | undefined)[] = [device.viewerSpace, ...Object.values(device.viewSpaces)];
+  for (const input of inputs) {
+    if (!input) continue;
+    const { inputSource } = input;
+    spaces.push(inputSource.targetRaySpace, inputSource.gripSpace, ...(inputSource.hand?.values() ?? []));
+  }
+  for (const space of spaces) {
+    if (!space) continue;
+    const key = Object.getOwnPropertySymbols(space).find(({ description }) => description === '@iwer/xr-space');
+    if (!key) throw new Error('iwer: expected a space to keep its state under the symbol @iwer/xr-space');
+    (space as Record<symbol, { emulated: boolean }>)[key]!.emulated = false;
+  }
 }
 
 interface Setter3 {
