@@ -1,4 +1,4 @@
-import { enterVr, expect, joint, keepPicture, open, openWithHeadset, probe, test } from './page-fixture';
+import { expect, joint, keepPicture, open, openWithHeadset, probe, test } from './page-fixture';
 
 test('a newcomer sees a moving body within seconds, without touching anything', async ({ page }) => {
   await open(page, 'quality=low');
@@ -59,21 +59,3 @@ test('the overlay names the stages of a frame, the estimator and where it runs',
   await expect(overlay).toContainText(/wasm/i);
   await expect(overlay).toContainText(/missed at/);
 });
-
-for (const estimator of ['hands-only', 'ik', 'paper', 'learned'] as const) {
-  test(`${estimator}: pictures of third person, front and the mirror in VR`, async ({ page }) => {
-    const headset = await openWithHeadset(page, `estimator=${estimator}&panel=off`);
-    await headset.place({
-      head: { position: [0, 1.6, 0], orientation: [0, 0, 0, 1] },
-      left: { position: [-0.32, 1.25, -0.35], orientation: [0, -0.1305262, 0, 0.9914449] },
-      right: { position: [0.3, 1.0, -0.25], orientation: [0, 0.1305262, 0, 0.9914449] },
-    });
-    await expect.poll(async () => Math.abs((await joint(page, 'head'))[1] - 1.52)).toBeLessThan(0.1);
-    await keepPicture(page, `third-person-${estimator}`);
-    await page.keyboard.press('v');
-    await keepPicture(page, `front-${estimator}`);
-    await enterVr(page);
-    await keepPicture(page, `mirror-${estimator}`);
-    expect((await probe(page)).estimator).toBe(estimator);
-  });
-}

@@ -1,5 +1,5 @@
-import type { Page } from '@playwright/test';
-import { type EmulatedHeadset, frames, type Placement, type Point, type Rotation, type Side } from './emulated-headset';
+import { frames, type Placement } from './emulated-headset';
+import { expectHandsOnControllers, wristName } from './hands-on-controllers';
 import { distance, enterVr, expect, joint, openWithHeadset, probe, test } from './page-fixture';
 
 /** Placements within reach of a standing person, turned and not; the orientation is that of the target ray. */
@@ -22,41 +22,6 @@ const placements: readonly Placement[] = [
     right: { position: [-0.2, 1.2, 0.12], orientation: [0.258819, 0.9659258, 0, 0] },
   },
 ];
-
-/** v rotated by q. */
-function rotated([x, y, z, w]: Rotation, [vx, vy, vz]: Point): Point {
-  const [tx, ty, tz] = [2 * (y * vz - z * vy), 2 * (z * vx - x * vz), 2 * (x * vy - y * vx)];
-  return [vx + w * tx + (y * tz - z * ty), vy + w * ty + (z * tx - x * tz), vz + w * tz + (x * ty - y * tx)];
-}
-
-/**
- * The wrist in the frame of the emulated controller's grip (Touch Plus) [m]: the middle of the fist lies 8 cm ahead of the wrist
- * and 2.5 cm towards the palm, and the handle leans 45° towards the fingers.
- */
-const wristInGrip = {
-  left: [-0.025, 0.08 * Math.SQRT1_2, 0.08 * Math.SQRT1_2],
-  right: [0.025, 0.08 * Math.SQRT1_2, 0.08 * Math.SQRT1_2],
-} as const;
-
-const wristName = { left: 'leftHand', right: 'rightHand' } as const;
-
-/** Where the wrist must be: the grip as iwer has it, and how a hand holds it. */
-async function wristByGrip(headset: EmulatedHeadset, side: Side): Promise<Point> {
-  const { position, orientation } = await headset.grip(side);
-  const [x, y, z] = rotated(orientation, wristInGrip[side]);
-  return [position[0] + x, position[1] + y, position[2] + z];
-}
-
-async function expectHandsOnControllers(page: Page, headset: EmulatedHeadset): Promise<void> {
-  for (const side of ['left', 'right'] as const) {
-    const wanted = await wristByGrip(headset, side);
-    await expect
-      .poll(async () => 1000 * distance(await joint(page, wristName[side]), wanted), {
-        message: `the ${side} wrist lies within 1 mm of where the ${side} controller is held`,
-      })
-      .toBeLessThan(1);
-  }
-}
 
 for (const estimator of ['hands-only', 'ik', 'paper', 'learned'] as const) {
   test(`${estimator}: the hands land on the controllers within 1 mm`, async ({ page }) => {
