@@ -1,7 +1,7 @@
 """Which joint of a file is which joint of ours: built in for CMU's ASF and common BVH skeletons, else read from JSON."""
 
 import json
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -111,11 +111,12 @@ def read_skeleton_map(path: Path) -> SkeletonMap:
 
 
 def find_skeleton_map(names: tuple[str, ...], file_name: str) -> SkeletonMap:
-    """The built-in map whose joints this file has; none raises MocapError."""
+    """The built-in map that fits best: with all needed joints and most of the others; none raises MocapError."""
     known = set(names)
-    for candidate in BUILT_IN:
-        if all(candidate.joints[joint] in known for joint in REQUIRED_JOINTS):
-            return candidate
-    raise MocapError(
-        f"{file_name}: a skeleton that is not known here (it has {', '.join(names[:8])}, …); give a map with --skeleton MAP.json"
-    )
+    fitting = [candidate for candidate in BUILT_IN if all(candidate.joints[joint] in known for joint in REQUIRED_JOINTS)]
+    if not fitting:
+        raise MocapError(
+            f"{file_name}: a skeleton that is not known here (it has {', '.join(names[:8])}, …); give a map with --skeleton MAP.json"
+        )
+    best = max(fitting, key=lambda candidate: sum(theirs in known for theirs in candidate.joints.values()))
+    return replace(best, joints={ours: theirs for ours, theirs in best.joints.items() if theirs in known})

@@ -1,0 +1,144 @@
+"""Facts about parsers: known rotations give known joints, and bad input gets a sentence that names file and line."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from threepoint_training import quaternion
+from threepoint_training.mocap_asf_amc import parse_amc, parse_asf
+from threepoint_training.mocap_bvh import parse_bvh
+from threepoint_training.motion import MocapError
+
+ASF = """:version 1.10
+:units
+  length 1.0
+  angle deg
+:root
+   order TX TY TZ RX RY RZ
+   axis XYZ
+   position 0 0 0
+   orientation 0 0 0
+:bonedata
+  begin
+     id 1
+     name upper
+     direction 0 1 0
+     length 2
+     axis 0 0 30 XYZ
+     dof rx rz
+  end
+  begin
+     id 2
+     name lower
+     direction 1 0 0
+     length 3
+     axis 0 0 0 XYZ
+     dof ry
+  end
+:hierarchy
+  begin
+    root upper
+    upper lower
+  end
+"""
+
+BVH = """HIERARCHY
+ROOT Hips
+{
+  OFFSET 0 0 0
+  CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation
+  JOINT Spine
+  {
+    OFFSET 0 2 0
+    CHANNELS 3 Zrotation Xrotation Yrotation
+    End Site
+    {
+      OFFSET 0 3 0
+    }
+  }
+}
+MOTION
+Frames: 2
+Frame Time: 0.008333
+0 1 0 0 0 0 0 0 0
+0 1 0 90 0 0 0 90 0
+"""
+
+
+def write(folder: Path, name: str, text: str) -> Path:
+    path = folder / name
+    path.write_text(text)
+    return path
+
+
+def amc(*frames: str) -> str:
+    return ":FULLY-SPECIFIED\n:DEGREES\n" + "".join(f"{number}\n{frame}\n" for number, frame in enumerate(frames, start=1))
+
+
+def test_a_bone_turns_about_its_own_axes(tmp_path: Path) -> None:
+    skeleton = parse_asf(write(tmp_path, "01.asf", ASF))
+    motion = parse_amc(
+        write(tmp_path, "01_01.amc", amc("root 1 2 3 0 0 0\nupper 0 0\nlower 0", "root 0 0 0 0 90 0\nupper 0 90\nlower 90")),
+        skeleton,
+    )
+    at = {name: motion.positions[:, motion.index(name)] for name in ("root", "upper:end", "lower:end")}
+    # At rest: two up, three along X.
+    np.testing.assert_allclose(at["upper:end"][0], [1, 4, 3], atol=1e-9)
+    np.testing.assert_allclose(at["lower:end"][0], [4, 4, 3], atol=1e-9)
+    # The root a quarter about Y; upper a quarter about its Z, which its axis leaves where it is: up becomes −X, which the root takes to +Z.
+    np.testing.assert_allclose(at["upper:end"][1], [0, 0, 2], atol=1e-9)
+
+
+def test_rx_is_about_the_bones_tilted_axis(tmp_path: Path) -> None:
+    skeleton = parse_asf(write(tmp_path, "01.asf", ASF))
+    motion = parse_amc(write(tmp_path, "01_01.amc", amc("root 0 0 0 0 0 0\nupper 180 0\nlower 0")), skeleton)
+    axis = np.array([np.cos(np.radians(30)), np.sin(np.radians(30)), 0])
+    expected = quaternion.rotate(quaternion.from_axis_angle(axis, np.array(np.pi)), np.array([0.0, 2.0, 0.0]))
+    np.testing.assert_allclose(motion.positions[0, motion.index("upper:end")], expected, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("frame", "sentence"),
+    [
+        ("root 0 0 0 0 0\nupper 0 0\nlower 0", "bad.amc, line 4: root has 5 numbers, its skeleton says 6"),
+        ("root 0 0 0 0 0 0\nupper 0 0\nlower x", "bad.amc, line 6: “lower x” has something that is no number"),
+        ("root 0 0 0 0 0 0\nelbow 0", "bad.amc, line 5: “elbow” is no bone with freedom in 01.asf"),
+        ("root 0 0 0 0 0 0\nupper 0 0", "bad.amc, line 5: frame 1 ends without “lower”"),
+        ("root 0 0 0 0 0 0\nupper nan 0\nlower 0", "bad.amc: frame 1 has a number that is not finite"),
+    ],
+)
+def test_bad_motion_names_file_and_line(tmp_path: Path, frame: str, sentence: str) -> None:
+    skeleton = parse_asf(write(tmp_path, "01.asf", ASF))
+    with pytest.raises(MocapError) as error:
+        parse_amc(write(tmp_path, "bad.amc", amc(frame)), skeleton)
+    assert str(error.value) == sentence
+
+
+def test_a_skeleton_without_bones_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(MocapError, match="no :bonedata with bones"):
+        parse_asf(write(tmp_path, "empty.asf", ":version 1.10\n"))
+
+
+def test_bvh_rotations_apply_in_the_order_of_the_channels(tmp_path: Path) -> None:
+    motion = parse_bvh(write(tmp_path, "clip.bvh", BVH))
+    assert motion.frame_rate == pytest.approx(120, abs=0.01)
+    np.testing.assert_allclose(motion.positions[0, motion.index("Spine:end")], [0, 6, 0], atol=1e-9)
+    # The root turns up to −X; the spine then turns about the X that the root has turned.
+    np.testing.assert_allclose(motion.positions[1, motion.index("Spine")], [-2, 1, 0], atol=1e-9)
+    np.testing.assert_allclose(motion.positions[1, motion.index("Spine:end")], [-2, 1, 3], atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (("0 1 0 90 0 0 0 90 0", "0 1 0 90"), "clip.bvh, line 20: a frame has 4 numbers, the hierarchy has 9 channels"),
+        (("Frames: 2", "Frames: 3"), "clip.bvh: “Frames: 3”, but 2 follow"),
+        (("Frame Time: 0.008333", "Frame Time: 0"), "clip.bvh: frame rate unknown; a line “Frame Time: seconds” is needed"),
+        (("CHANNELS 3 Z", "CHANNELS 4 Z"), "clip.bvh, line 9: CHANNELS should be a count and as many names, is “4 Zrotation Xrotation Yrotation”"),
+    ],
+)
+def test_bad_bvh_names_file_and_line(tmp_path: Path, change: tuple[str, str], sentence: str) -> None:
+    with pytest.raises(MocapError) as error:
+        parse_bvh(write(tmp_path, "clip.bvh", BVH.replace(*change)))
+    assert str(error.value) == sentence
