@@ -374,7 +374,7 @@ export function createPanel(region: HTMLElement, options: PanelOptions, actions:
       }
       showNumber(height.input, state.heightCm);
       showNumber(armSpan.input, state.armSpanCm);
-      eyeHeight.textContent = `Eyes at ${Math.round(state.eyeHeightCm)} cm · ${state.calibrationSource}`;
+      eyeHeight.textContent = `Without shoes, fingertip to fingertip. Eyes at ${Math.round(state.eyeHeightCm)} cm, ${state.calibrationSource}.`;
       mirror.input.checked = state.mirror;
       upperBody.input.checked = state.upperBodyOnly;
       skeleton.input.checked = state.debugSkeleton;

@@ -54,8 +54,8 @@ function sampleOf({ head, leftHand, rightHand }: TrackingFrame): Sample {
   };
 }
 
-// A frame or two of a measuring that lasts two seconds say nothing.
-const FEWEST_SAMPLES = 20;
+// A frame or two of a measuring that lasts two seconds say nothing; four a second, on a slow machine, do.
+const FEWEST_SAMPLES = 8;
 /** [m] that a head at rest sways at most. */
 const HEAD_SWAY = 0.06;
 /** [m] that a hand at rest wanders at most, as the mean distance from its middle. */
