@@ -18,9 +18,9 @@ import { createRenderer } from '../../src/scene/renderer';
 import { createCcdBody } from './ccd-body';
 
 /** Blocks of one method alternate in a seeded order, so that whatever else the machine does meets all of them. */
-const blockFrames = 120;
-const rounds = 8;
-const settleFrames = 20;
+const blockFrames = 80;
+const rounds = 6;
+const settleFrames = 10;
 
 const methods = [...estimatorNames, 'ccdik'] as const;
 type Method = (typeof methods)[number];
