@@ -5,7 +5,7 @@ const executablePath = (await findChromium()) ?? undefined;
 
 export default defineConfig({
   testDir: 'e2e',
-  outputDir: 'artifacts/e2e',
+  outputDir: process.env.E2E_OUTPUT ?? 'artifacts/e2e',
   // One headset at a time: software rendering needs both cores for a steady frame rate.
   workers: 1,
   fullyParallel: false,

@@ -34,6 +34,7 @@ interface TrackedInput {
   position: { set(...xyz: Point): void };
   quaternion: { set(...xyzw: Rotation): void };
   connected: boolean;
+  updateTargetRaySpace(): void;
   readonly inputSource: {
     readonly targetRaySpace: object;
     readonly gripSpace: object;
@@ -114,7 +115,10 @@ export async function emulatedHeadset(page: Page): Promise<EmulatedHeadset> {
       ([side, name]) => {
         type Space = { offsetMatrix: ArrayLike<number>; parentSpace?: object };
         const { controllers, hands } = window.emulatedDevice;
-        const source = (name === 'wrist' ? hands : controllers)[side].inputSource;
+        const input = (name === 'wrist' ? hands : controllers)[side];
+        // A session does this in every frame; outside of one nobody does.
+        input.updateTargetRaySpace();
+        const source = input.inputSource;
         const own = (space: object) => {
           const key = Object.getOwnPropertySymbols(space).find(({ description }) => description === '@iwer/xr-space');
           if (!key) throw new Error('this iwer keeps its spaces differently: expected the symbol @iwer/xr-space');

@@ -49,7 +49,7 @@ const stages = {
   python: { runner: 'pytest', commands: (report) => pytest({ extras: [], marker: 'not training', report }) },
   e2e: {
     runner: 'playwright',
-    limitSeconds: 900,
+    limitSeconds: 1200,
     commands: async (report) => {
       process.env.CHROMIUM_PATH = await ensureChromium();
       process.env.PLAYWRIGHT_JSON_OUTPUT_NAME = report;
