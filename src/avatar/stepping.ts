@@ -55,6 +55,8 @@ const strideShare = 0.17;
 const turnLimit = 0.6;
 /** Farther than this, in leg lengths, nobody steps: the person was moved. */
 const jumpShare = 1.3;
+/** Only who runs lifts a foot before the other is down. */
+const overlapUrgency = 4;
 const slowStep = 0.34;
 const fastStep = 0.16;
 const velocityHalfLife = 0.08;
@@ -136,7 +138,7 @@ export function createStepping(): Stepping {
       for (const side of [first, first === 'left' ? 'right' : 'left'] as const) {
         const foot = feet[side];
         const other = feet[side === 'left' ? 'right' : 'left'];
-        const mayLift = other.step === null || (other.step.progress > 0.75 && urgency[side] > 1.8);
+        const mayLift = other.step === null || (other.step.progress > 0.75 && urgency[side] > overlapUrgency);
         if (foot.step === null && urgency[side] > 1 && mayLift) {
           const hurry = smoothstep(1, 3, urgency[side]);
           foot.step = {

@@ -1,0 +1,246 @@
+import { readFileSync } from 'node:fs';
+import { Matrix4, type Object3D, Quaternion, SkinnedMesh, Vector3 } from 'three';
+import { beforeAll, describe, expect, test } from 'vitest';
+import { type Avatar, createAvatar } from '../../src/avatar/avatar';
+import { type LoadedAvatar, parseAvatar } from '../../src/avatar/load-avatar';
+import { type Calibration, defaultCalibration } from '../../src/core/body/calibration';
+import { forwardKinematics } from '../../src/core/body/forward-kinematics';
+import { jointNames } from '../../src/core/body/joints';
+import { skeletonFromCalibration } from '../../src/core/body/skeleton';
+import { createIk } from '../../src/core/estimation/ik';
+import { angleBetween, fromAxisAngle, multiply } from '../../src/core/math/quat';
+import { distance, up, type Vec3 } from '../../src/core/math/vec3';
+import { actorFrame } from '../../src/core/tracking/actor-motion';
+import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
+
+const bytes = readFileSync(new URL('../../public/avatars/mannequin.vrm', import.meta.url));
+const mannequin = (): ArrayBuffer => bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength);
+
+/** The mannequin's file with its JSON changed: other proportions, another VRM version, bones left out. */
+function changed(change: (json: GltfJson) => void): ArrayBuffer {
+  const length = bytes.readUInt32LE(12);
+  const json = JSON.parse(bytes.toString('utf8', 20, 20 + length)) as GltfJson;
+  change(json);
+  const text = Buffer.from(JSON.stringify(json));
+  const padded = Buffer.concat([text, Buffer.alloc((4 - (text.length % 4)) % 4, ' ')]);
+  const header = Buffer.from(bytes.subarray(0, 20));
+  header.writeUInt32LE(bytes.length - length + padded.length, 8);
+  header.writeUInt32LE(padded.length, 12);
+  const file = Buffer.concat([header, padded, bytes.subarray(20 + length)]);
+  return file.buffer.slice(file.byteOffset, file.byteOffset + file.byteLength) as ArrayBuffer;
+}
+
+interface GltfJson {
+  nodes: { name: string; translation?: number[]; rotation?: number[]; children?: number[] }[];
+  extensionsUsed: string[];
+  extensions: { VRMC_vrm?: { humanoid: { humanBones: Record<string, { node: number }> } }; VRM?: unknown };
+}
+
+/** Long arms and short legs: proportions of nobody. It stands on the floor all the same. */
+const monster = changed((json) => {
+  let shortened = 0;
+  for (const node of json.nodes) {
+    if (/LowerArm$|Hand$/.test(node.name)) node.translation = node.translation?.map((v) => v * 1.6) ?? [];
+    if (/LowerLeg$|Foot$/.test(node.name)) {
+      shortened += node.name.startsWith('left') ? -0.4 * (node.translation?.[1] ?? 0) : 0;
+      node.translation = node.translation?.map((v) => v * 0.6) ?? [];
+    }
+  }
+  const hips = json.nodes.find(({ name }) => name === 'hips')?.translation;
+  if (hips) hips[1] = (hips[1] ?? 0) - shortened;
+});
+
+/** Without the bones that VRM leaves optional. */
+const plain = changed((json) => {
+  const bones = json.extensions.VRMC_vrm?.humanoid.humanBones;
+  for (const name of ['upperChest', 'chest', 'neck', 'leftShoulder', 'rightShoulder']) delete bones?.[name];
+});
+
+/** VRM 0.x: faces −Z at rest, bones in a list. */
+const old = changed((json) => {
+  const bones = json.extensions.VRMC_vrm?.humanoid.humanBones ?? {};
+  delete json.extensions.VRMC_vrm;
+  json.extensionsUsed = ['VRM'];
+  json.extensions.VRM = {
+    specVersion: '0.0',
+    meta: { title: 'old', licenseName: 'CC0' },
+    humanoid: {
+      humanBones: Object.entries(bones)
+        .filter(([name]) => !name.includes('Thumb'))
+        .map(([bone, { node }]) => ({ bone, node })),
+    },
+    firstPerson: { meshAnnotations: [] },
+    blendShapeMaster: { blendShapeGroups: [] },
+    secondaryAnimation: { boneGroups: [], colliderGroups: [] },
+    materialProperties: [],
+  };
+  for (const node of json.nodes) {
+    if (node.translation)
+      node.translation = [-(node.translation[0] ?? 0), node.translation[1] ?? 0, -(node.translation[2] ?? 0)];
+  }
+});
+
+const avatars: readonly (readonly [string, () => ArrayBuffer])[] = [
+  ['our mannequin', mannequin],
+  ['a monster with long arms', () => monster],
+  ['a rig without optional bones', () => plain],
+  ['a VRM 0.x', () => old],
+];
+
+const bodies: readonly Calibration[] = [
+  defaultCalibration,
+  { eyeHeight: 1.05, armSpan: 0.95 },
+  { eyeHeight: 2.05, armSpan: 2.0 },
+];
+
+/** The bone itself, as three would skin with it. */
+function worldOf(
+  loaded: LoadedAvatar,
+  avatar: Avatar,
+  name: string,
+): { readonly position: Vec3; readonly rotation: Quaternion } {
+  avatar.object.updateMatrixWorld(true);
+  const node = loaded.vrm.humanoid.getRawBoneNode(name as never) as Object3D;
+  const position = new Vector3();
+  node.matrixWorld.decompose(position, new Quaternion(), new Vector3());
+  return {
+    position,
+    rotation: new Quaternion().setFromRotationMatrix(new Matrix4().extractRotation(node.matrixWorld)),
+  };
+}
+
+/** Plays some seconds of the actor and calls `look` after each frame. */
+async function play(
+  avatar: Avatar,
+  body: Calibration,
+  look: (frame: TrackingFrame) => void,
+  seconds = 37,
+  rateHz = 6,
+): Promise<void> {
+  const ik = createIk(body);
+  for (let i = 0; i < seconds * rateHz; i++) {
+    const frame = actorFrame(i / rateHz, body);
+    await ik.prepare(frame);
+    avatar.apply(ik.estimate(frame), frame.time);
+    look(frame);
+  }
+}
+
+describe.each(avatars)('%s', (_, file) => {
+  let loaded: LoadedAvatar;
+  let avatar: Avatar;
+  beforeAll(async () => {
+    loaded = await parseAvatar(file(), 'test.vrm');
+    avatar = createAvatar(loaded);
+  });
+
+  test.each(bodies)('its wrists lie on the tracked ones within 1 mm for eyes at $eyeHeight m', async (body) => {
+    avatar.fitTo(body);
+    await play(avatar, body, ({ leftHand, rightHand }) => {
+      for (const [name, hand] of [
+        ['leftHand', leftHand],
+        ['rightHand', rightHand],
+      ] as const) {
+        if (hand) expect(distance(worldOf(loaded, avatar, name).position, hand.position)).toBeLessThan(1e-3);
+      }
+    });
+  });
+
+  test('its joints are those of the pose, and left is left', () => {
+    avatar.fitTo(defaultCalibration);
+    const skeleton = skeletonFromCalibration(defaultCalibration);
+    const frame = actorFrame(11.5, defaultCalibration);
+    const { body } = createIk(defaultCalibration).estimate(frame);
+    if (!body) throw new Error('IK draws a body');
+    avatar.apply(createIk(defaultCalibration).estimate(frame), 0);
+    const joints = forwardKinematics(skeleton, body);
+    for (const name of jointNames) {
+      if (!loaded.vrm.humanoid.getRawBoneNode(name)) continue;
+      expect(distance(worldOf(loaded, avatar, name).position, joints[name].position), name).toBeLessThan(1e-4);
+    }
+  });
+
+  test('its feet stay on the floor and nothing is NaN', async () => {
+    avatar.fitTo(defaultCalibration);
+    await play(avatar, defaultCalibration, () => {
+      const joints = Object.entries(avatar.jointPositions());
+      expect(joints.length).toBeGreaterThan(9);
+      for (const [name, { x, y, z }] of joints) {
+        expect(Number.isFinite(x + y + z), name).toBe(true);
+        if (name.endsWith('Foot')) expect(y).toBeLessThan(0.35);
+      }
+    });
+  });
+});
+
+describe('our mannequin', () => {
+  test('turns its hands as the tracked ones are turned', async () => {
+    const loaded = await parseAvatar(mannequin(), 'mannequin.vrm');
+    const avatar = createAvatar(loaded);
+    avatar.fitTo(defaultCalibration);
+    const frame = actorFrame(5.2, defaultCalibration);
+    avatar.apply(createIk(defaultCalibration).estimate(frame), 0);
+    for (const [name, sign] of [
+      ['leftHand', 1],
+      ['rightHand', -1],
+    ] as const) {
+      const wanted = multiply(
+        frame[name]?.orientation ?? fromAxisAngle(up, 0),
+        fromAxisAngle(up, (-sign * Math.PI) / 2),
+      );
+      const { x, y, z, w } = worldOf(loaded, avatar, name).rotation;
+      // The bone's own rest faces the other way.
+      expect(angleBetween(multiply({ x, y, z, w }, fromAxisAngle(up, Math.PI)), wanted)).toBeLessThan(0.02);
+    }
+  });
+
+  test('fitted twice it is where it was fitted once', async () => {
+    const loaded = await parseAvatar(mannequin(), 'mannequin.vrm');
+    const avatar = createAvatar(loaded);
+    const frame = actorFrame(3, defaultCalibration);
+    const bodyAfter = (fits: readonly Calibration[]) => {
+      for (const fit of fits) avatar.fitTo(fit);
+      avatar.apply(createIk(defaultCalibration).estimate(frame), 0);
+      return worldOf(loaded, avatar, 'leftFoot').position;
+    };
+    const once = { ...bodyAfter([defaultCalibration]) };
+    const again = bodyAfter([{ eyeHeight: 2, armSpan: 1.9 }, defaultCalibration, defaultCalibration]);
+    expect(distance(once, again)).toBeLessThan(1e-6);
+  });
+
+  test('shows its upper body, or head and hands, alone', async () => {
+    const loaded = await parseAvatar(mannequin(), 'mannequin.vrm');
+    const avatar = createAvatar(loaded);
+    const triangles = () => {
+      let count = 0;
+      loaded.vrm.scene.traverse((node) => {
+        if (node instanceof SkinnedMesh && node.visible)
+          count += Math.min(node.geometry.drawRange.count, node.geometry.index?.count ?? 0) / 3;
+      });
+      return count;
+    };
+    const frame = actorFrame(1, defaultCalibration);
+    avatar.apply(createIk(defaultCalibration).estimate(frame), 0);
+    const whole = triangles();
+    avatar.setUpperBodyOnly(true);
+    const upper = triangles();
+    avatar.apply({ ...frame, body: null }, 0.1);
+    const handsAndHead = triangles();
+    expect(handsAndHead).toBeGreaterThan(1000);
+    expect(upper).toBeGreaterThan(handsAndHead);
+    expect(whole).toBeGreaterThan(upper);
+  });
+});
+
+describe('files that are no avatar', () => {
+  test('get a sentence', async () => {
+    await expect(parseAvatar(new TextEncoder().encode('hello').buffer, 'notes.txt')).rejects.toThrow(
+      /^notes\.txt: no VRM or GLB file/,
+    );
+    const dog = changed((json) => {
+      json.extensions = {};
+      json.extensionsUsed = [];
+    });
+    await expect(parseAvatar(dog, 'dog.glb')).rejects.toThrow(/^dog\.glb: no humanoid in it/);
+  });
+});

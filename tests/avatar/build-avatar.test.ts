@@ -1,0 +1,101 @@
+import { readFileSync } from 'node:fs';
+import { NodeIO, type Primitive } from '@gltf-transform/core';
+import { validateBytes } from 'gltf-validator';
+import { beforeAll, describe, expect, test } from 'vitest';
+import { buildMannequin } from '../../scripts/build-avatar/mannequin';
+import { bones } from '../../scripts/build-avatar/rig';
+
+const file = readFileSync(new URL('../../public/avatars/mannequin.vrm', import.meta.url));
+
+interface Vertex {
+  readonly position: readonly number[];
+  readonly weights: readonly number[];
+}
+
+/** All triangles of all primitives, each corner by a key of its position: seams between materials close again. */
+let corners: string[] = [];
+let vertices: Vertex[] = [];
+
+beforeAll(async () => {
+  const document = await new NodeIO().readBinary(file);
+  const primitives: Primitive[] = document
+    .getRoot()
+    .listMeshes()
+    .flatMap((mesh) => mesh.listPrimitives());
+  corners = [];
+  vertices = [];
+  for (const primitive of primitives) {
+    const positions = primitive.getAttribute('POSITION');
+    const weights = primitive.getAttribute('WEIGHTS_0');
+    const indices = primitive.getIndices();
+    if (!positions || !weights || !indices) throw new Error('a primitive without positions, weights or indices');
+    const own: Vertex[] = [];
+    for (let i = 0; i < positions.getCount(); i++) {
+      own.push({ position: positions.getElement(i, []), weights: weights.getElement(i, []) });
+    }
+    vertices.push(...own);
+    for (let i = 0; i < indices.getCount(); i++) {
+      corners.push((own[indices.getScalar(i)]?.position ?? []).map((value) => value.toFixed(6)).join());
+    }
+  }
+});
+
+describe('the mannequin', () => {
+  test('is a VRM 1.0 file that the Khronos validator finds nothing wrong with', async () => {
+    const report = await validateBytes(new Uint8Array(file), { ignoredIssues: ['UNSUPPORTED_EXTENSION'] });
+    expect(report.issues.messages.filter(({ severity }) => severity === 0)).toEqual([]);
+    expect(report.info.extensionsUsed).toContain('VRMC_vrm');
+  });
+
+  test('has 5,000 to 15,000 triangles in less than a megabyte', () => {
+    expect(corners.length / 3).toBeGreaterThan(5000);
+    expect(corners.length / 3).toBeLessThan(15_000);
+    expect(file.byteLength).toBeLessThan(1e6);
+  });
+
+  test('is one closed surface: every edge is passed as often one way as the other, all triangles hang together', () => {
+    const edges = new Map<string, number>();
+    const group = new Map<string, string>();
+    const root = (key: string): string => {
+      let at = key;
+      while (group.get(at) !== undefined && group.get(at) !== at) at = group.get(at) as string;
+      return at;
+    };
+    for (let t = 0; t < corners.length; t += 3) {
+      const triangle = corners.slice(t, t + 3);
+      for (let e = 0; e < 3; e++) {
+        const [a = '', b = ''] = [triangle[e], triangle[(e + 1) % 3]];
+        const edge = a < b ? `${a}|${b}` : `${b}|${a}`;
+        edges.set(edge, (edges.get(edge) ?? 0) + (a < b ? 1 : -1));
+        group.set(root(a), root(b));
+      }
+    }
+    expect([...edges.values()].filter((balance) => balance !== 0)).toHaveLength(0);
+    expect(new Set(corners.map(root)).size).toBe(1);
+  });
+
+  test('stands on the floor, 1.70 m tall, as wide to the left as to the right', () => {
+    const of = (axis: number) => vertices.map(({ position }) => position[axis] ?? Number.NaN);
+    expect(Math.min(...of(1))).toBeGreaterThan(-0.004);
+    expect(Math.min(...of(1))).toBeLessThan(0.004);
+    expect(Math.max(...of(1))).toBeCloseTo(1.7, 1);
+    expect(Math.max(...of(0)) + Math.min(...of(0))).toBeCloseTo(0, 2);
+  });
+
+  test('gives every vertex weights that sum to 1', () => {
+    for (const { weights } of vertices) expect(weights.reduce((sum, weight) => sum + weight, 0)).toBeCloseTo(1, 5);
+  });
+
+  test('has every bone of the humanoid, fingers included', () => {
+    const json = JSON.parse(new TextDecoder().decode(file.subarray(20, 20 + file.readUInt32LE(12))));
+    const { humanBones } = json.extensions.VRMC_vrm.humanoid;
+    expect(Object.keys(humanBones).sort()).toEqual(bones.map(({ name }) => name).sort());
+    for (const [name, { node }] of Object.entries<{ node: number }>(humanBones))
+      expect(json.nodes[node].name).toBe(name);
+    expect(bones).toHaveLength(6 + 2 * (4 + 15 + 4));
+  });
+
+  test('comes out of its script byte by byte', { timeout: 240_000 }, async () => {
+    expect(Buffer.from(await buildMannequin()).equals(file)).toBe(true);
+  });
+});
