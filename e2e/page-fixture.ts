@@ -16,11 +16,11 @@ export function probe(page: Page): Promise<Probe> {
   });
 }
 
-/** Where a joint is now [m], floor frame. */
+/** Where a joint is now [m], floor frame; an avatar that has only just been opened is waited for. */
 export async function joint(page: Page, name: string): Promise<Point> {
-  const { avatar } = await probe(page);
-  const position = avatar.joints[name];
-  if (!position) throw new Error(`the probe shows no ${name}; it shows ${Object.keys(avatar.joints).join(', ')}`);
+  const shown = await page.waitForFunction((name) => window.threepoint?.probe().avatar.joints[name], name);
+  const position = await shown.jsonValue();
+  if (!position) throw new Error(`the probe shows no ${name}`);
   return position;
 }
 
