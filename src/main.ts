@@ -88,7 +88,7 @@ async function start(): Promise<void> {
   };
   mark('script');
 
-  const notices = createNotices(pageElement('notices', HTMLDivElement));
+  const notices = createNotices(pageElement('notices', HTMLElement));
   const { switches, complaints } = readSwitches(location.search);
   const store = createPreferenceStore(browserStorage());
   for (const complaint of [...complaints, store.complaint]) if (complaint) notices.show('warning', complaint);

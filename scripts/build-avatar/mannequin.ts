@@ -1,5 +1,5 @@
 import { body } from './anatomy';
-import { armJoints } from './rig';
+import { armJoints, hipLine } from './rig';
 import { compact, cutAlong, decimate, mesh, normalsOf, projectOnto, type Surface } from './surface';
 import { skinWeights } from './weights';
 import { type MaterialName, writeVrm } from './write-vrm';
@@ -40,6 +40,8 @@ const seams: readonly {
   { material: 'Accent', value: (_, y, z) => y - 0.13 - 0.12 * z },
   { material: 'Accent', value: (x, y, z) => yoke(x, y, z) },
   { material: 'Head', value: (_, y, z) => collar(z) - y },
+  // No change of colour: a clean edge for those who show the upper body alone.
+  { material: 'Suit', value: (_, y) => y - hipLine },
 ];
 
 /** Height [m] of the collar, where the head's mesh begins: under the chin, a little higher at the nape. */
@@ -58,14 +60,14 @@ function materialAt(x: number, y: number, z: number): MaterialName {
 }
 
 /** The mannequin as a VRM 1.0 file; the same bytes every time. */
-export async function buildMannequin(report: (what: string) => void = () => {}): Promise<Uint8Array> {
+export async function buildMannequin(report?: (what: string) => void): Promise<Uint8Array> {
   const fine = projectOnto(body, mesh(body, [-0.92, -0.02, -0.2], [0.92, 1.74, 0.24], cell), 2);
-  report(`${fine.indices.length / 3} triangles of ${cell * 1000} mm`);
+  report?.(`${fine.indices.length / 3} triangles of ${cell * 1000} mm`);
   const coarse = await decimate(fine, normalsOf(body, fine.positions), importance(fine), triangleBudget);
   let surface = projectOnto(body, coarse);
   for (const { value } of seams) surface = cutAlong(surface, value);
   surface = compact(surface);
-  report(`${surface.indices.length / 3} triangles`);
+  report?.(`${surface.indices.length / 3} triangles`);
   const normals = normalsOf(body, surface.positions);
   const skin = skinWeights(surface);
   const materials: MaterialName[] = [];

@@ -110,6 +110,9 @@ export function fingerPoint(finger: Finger, index: number): Point {
   ];
 }
 
+/** Height of the hip joints [m]: where the upper body ends. */
+export const hipLine = 0.93;
+
 const leftSide: Bone[] = [
   ...(['leftShoulder', 'leftUpperArm', 'leftLowerArm', 'leftHand'] as const).map((name) => ({
     name,
@@ -123,7 +126,7 @@ const leftSide: Bone[] = [
       joint: fingerPoint(finger, index),
     })),
   ),
-  { name: 'leftUpperLeg', parent: 'hips', joint: [0.09, 0.93, -0.004] },
+  { name: 'leftUpperLeg', parent: 'hips', joint: [0.09, hipLine, -0.004] },
   { name: 'leftLowerLeg', parent: 'leftUpperLeg', joint: [0.096, 0.505, 0.004] },
   { name: 'leftFoot', parent: 'leftLowerLeg', joint: [0.098, 0.082, -0.022] },
   { name: 'leftToes', parent: 'leftFoot', joint: [0.104, 0.026, 0.108] },

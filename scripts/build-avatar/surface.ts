@@ -171,17 +171,17 @@ export function compact({ positions, indices }: Surface): Surface {
 export function cutAlong(surface: Surface, value: (x: number, y: number, z: number) => number): Surface {
   const positions = Array.from(surface.positions);
   const values: number[] = [];
-  const valueOf = (v: number): number =>
+  const valueAt = (v: number): number =>
     (values[v] ??= value(positions[3 * v]!, positions[3 * v + 1]!, positions[3 * v + 2]!));
   // Vertices nearly on the line are taken to lie on it: no slivers.
   const on = 4e-4;
-  const side = (v: number): number => (Math.abs(valueOf(v)) < on ? 0 : Math.sign(valueOf(v)));
+  const side = (v: number): number => (Math.abs(valueAt(v)) < on ? 0 : Math.sign(valueAt(v)));
   const between = new Map<string, number>();
   const crossing = (a: number, b: number): number => {
     const key = a < b ? `${a},${b}` : `${b},${a}`;
     let vertex = between.get(key);
     if (vertex === undefined) {
-      const t = valueOf(a) / (valueOf(a) - valueOf(b));
+      const t = valueAt(a) / (valueAt(a) - valueAt(b));
       vertex = positions.length / 3;
       for (let axis = 0; axis < 3; axis++) {
         positions.push(positions[3 * a + axis]! * (1 - t) + positions[3 * b + axis]! * t);

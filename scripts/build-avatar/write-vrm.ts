@@ -75,9 +75,9 @@ export async function writeVrm(
         const size = whole.getElementSize();
         const array = whole.getArray()!;
         const own = new (array.constructor as Float32ArrayConstructor)(renumbered.length * size);
-        renumbered.forEach((vertex, i) =>
-          own.set(array.subarray(vertex * size, (vertex + 1) * size) as Float32Array, i * size),
-        );
+        for (const [i, vertex] of renumbered.entries()) {
+          own.set(array.subarray(vertex * size, (vertex + 1) * size) as Float32Array, i * size);
+        }
         primitive.setAttribute(semantic, accessor(whole.getType() as 'VEC3', own, whole.getNormalized()));
       }
       primitive.setIndices(

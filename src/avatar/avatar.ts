@@ -473,18 +473,22 @@ interface AvatarMesh {
 }
 
 function readMeshes(vrm: VRM, bones: Map<AvatarJoint, RigBone>): AvatarMesh[] {
-  const partByNode = new Map<Object3D, SkinPart>();
+  const partByNode = new Map<Object3D, SkinPart | 'hips'>();
+  const hipLine = bones.get('leftUpperLeg')?.restPosition.y ?? 0;
   for (const [name, { node }] of bones) {
-    const part: SkinPart = name.endsWith('Hand')
-      ? 'hands'
-      : name === 'head'
-        ? 'head'
-        : /Leg$|Foot$/.test(name)
-          ? 'legs'
-          : 'trunk';
+    const part: SkinPart | 'hips' =
+      name === 'hips'
+        ? 'hips'
+        : name.endsWith('Hand')
+          ? 'hands'
+          : name === 'head'
+            ? 'head'
+            : /Leg$|Foot$/.test(name)
+              ? 'legs'
+              : 'trunk';
     partByNode.set(node, part);
   }
-  const partOfBone = (node: Object3D): SkinPart => {
+  const partOfBone = (node: Object3D): SkinPart | 'hips' => {
     for (let above: Object3D | null = node; above; above = above.parent) {
       const part = partByNode.get(above);
       if (part) return part;
@@ -503,7 +507,7 @@ function readMeshes(vrm: VRM, bones: Map<AvatarJoint, RigBone>): AvatarMesh[] {
       : mesh.layers.isEnabled(firstPersonOnlyLayer)
         ? 'self'
         : 'others';
-    const ends = mesh instanceof SkinnedMesh ? sortByPart(mesh, partOfBone) : null;
+    const ends = mesh instanceof SkinnedMesh ? sortByPart(mesh, partOfBone, hipLine) : null;
     result.push({ mesh, audience, ends });
   });
   return result;

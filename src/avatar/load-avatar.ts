@@ -27,13 +27,10 @@ export interface LoadedAvatar {
  * Loads a VRM from our own server, another address or a local file; onProgress gets the share [0, 1] that has arrived.
  * Rejects with a sentence that names the file.
  */
-export async function loadAvatar(
-  source: string | File,
-  onProgress: (share: number) => void = () => {},
-): Promise<LoadedAvatar> {
+export async function loadAvatar(source: string | File, onProgress?: (share: number) => void): Promise<LoadedAvatar> {
   const name = typeof source === 'string' ? (source.split(/[?#]/)[0]?.split('/').at(-1) ?? source) : source.name;
   const bytes = typeof source === 'string' ? await download(source, name, onProgress) : await source.arrayBuffer();
-  onProgress(1);
+  onProgress?.(1);
   return parseAvatar(bytes, name);
 }
 
@@ -57,7 +54,7 @@ export async function parseAvatar(bytes: ArrayBuffer, name: string): Promise<Loa
   return { name, vrm };
 }
 
-async function download(url: string, name: string, onProgress: (share: number) => void): Promise<ArrayBuffer> {
+async function download(url: string, name: string, onProgress?: (share: number) => void): Promise<ArrayBuffer> {
   const response = await fetch(url).catch((error: unknown) => {
     throw new Error(`${name}: could not be fetched (${error instanceof Error ? error.message : error})`);
   });
@@ -76,7 +73,7 @@ async function download(url: string, name: string, onProgress: (share: number) =
       await reader.cancel();
       throw new Error(`${name}: more than ${largestFileMegabytes} MB`);
     }
-    if (total > 0) onProgress(Math.min(1, received / total));
+    if (total > 0) onProgress?.(Math.min(1, received / total));
   }
   const whole = new Uint8Array(received);
   let offset = 0;

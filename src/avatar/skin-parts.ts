@@ -1,24 +1,41 @@
-import { BufferAttribute, type Object3D, type SkinnedMesh } from 'three';
+import { BufferAttribute, type Object3D, type SkinnedMesh, Vector3 } from 'three';
 
 /** What a triangle of skin belongs to, in the order in which parts are kept: a prefix of them can be drawn alone. */
 export const skinParts = ['hands', 'head', 'trunk', 'legs'] as const;
 export type SkinPart = (typeof skinParts)[number];
 
-/** Sorts a skinned mesh's triangles by part and returns how many indices end after each part. */
-export function sortByPart(mesh: SkinnedMesh, partOfBone: (bone: Object3D) => SkinPart): Record<SkinPart, number> {
+/**
+ * Sorts a skinned mesh's triangles by part and returns how many indices end after each part. The skin about the hips is
+ * divided at the height [m] `hipLine` of the rest pose, so that trunk and legs part along a line and not along triangles.
+ */
+export function sortByPart(
+  mesh: SkinnedMesh,
+  partOfBone: (bone: Object3D) => SkinPart | 'hips',
+  hipLine: number,
+): Record<SkinPart, number> {
   const { geometry, skeleton } = mesh;
   const joints = geometry.getAttribute('skinIndex');
   const weights = geometry.getAttribute('skinWeight');
   const source = geometry.index ?? sequence(geometry.getAttribute('position').count);
-  const parts = skeleton.bones.map((bone) => skinParts.indexOf(partOfBone(bone)));
+  const hips = skinParts.length;
+  const parts = skeleton.bones.map((bone) => {
+    const part = partOfBone(bone);
+    return part === 'hips' ? hips : skinParts.indexOf(part);
+  });
+  const place = new Vector3();
+  const positions = geometry.getAttribute('position');
+  const height = (vertex: number): number =>
+    place.fromBufferAttribute(positions, vertex).applyMatrix4(mesh.matrixWorld).y;
   const vertexPart = (vertex: number): number => {
-    const sums = [0, 0, 0, 0];
+    const sums = [0, 0, 0, 0, 0];
     for (let slot = 0; slot < 4; slot++) {
       const part = parts[joints.getComponent(vertex, slot)] ?? 2;
       sums[part] = (sums[part] ?? 0) + weights.getComponent(vertex, slot);
     }
     return sums.indexOf(Math.max(...sums));
   };
+  const trunk = skinParts.indexOf('trunk');
+  const legs = skinParts.indexOf('legs');
   const known = new Map<number, number>();
   const partOf = (vertex: number): number => {
     let part = known.get(vertex);
@@ -33,7 +50,11 @@ export function sortByPart(mesh: SkinnedMesh, partOfBone: (bone: Object3D) => Sk
     const triangle = [source.getX(i), source.getX(i + 1), source.getX(i + 2)];
     const [a = 2, b = 2, c = 2] = triangle.map(partOf);
     // Two of three decide; three different ones: the middle part, so that borders lie on the trunk's side.
-    sorted[a === b || a === c ? a : b === c ? b : 2]?.push(...triangle);
+    let part = a === b || a === c ? a : b === c ? b : 2;
+    if (part === hips || part === legs) {
+      part = triangle.reduce((sum, vertex) => sum + height(vertex), 0) / 3 < hipLine ? legs : trunk;
+    }
+    sorted[part]?.push(...triangle);
   }
   const indices = sorted.flat();
   const wide = geometry.getAttribute('position').count > 65535;

@@ -157,7 +157,7 @@ const named = (file: string, error: unknown): Error => {
 };
 
 /** The whole body of a response; anything but success throws a sentence. */
-async function download(url: string, onProgress: (share: number) => void = () => {}): Promise<Uint8Array> {
+async function download(url: string, onProgress?: (share: number) => void): Promise<Uint8Array> {
   const file = fileName(url);
   let response: Response;
   try {
@@ -177,9 +177,9 @@ async function download(url: string, onProgress: (share: number) => void = () =>
     pieces.push(value);
     received += value.length;
     // A compressed body is longer than its header says.
-    if (total > 0) onProgress(Math.min(1, received / total));
+    if (total > 0) onProgress?.(Math.min(1, received / total));
   }
-  onProgress(1);
+  onProgress?.(1);
   const whole = new Uint8Array(received);
   let offset = 0;
   for (const piece of pieces) {
