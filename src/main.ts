@@ -640,6 +640,7 @@ async function start(): Promise<void> {
         joints: Object.fromEntries(Object.entries(joints).map(([name, at]) => [name, triple(at)])),
       },
       tracking: newestFrame && {
+        time: newestFrame.time,
         head: triple(newestFrame.head.position),
         leftHand: newestFrame.leftHand && triple(newestFrame.leftHand.position),
         rightHand: newestFrame.rightHand && triple(newestFrame.rightHand.position),

@@ -20,6 +20,8 @@ export interface Probe {
   readonly avatar: { readonly name: string; readonly joints: Readonly<Record<string, Triple>> };
   /** What was tracked in the newest frame, floor frame [m]; null: not seen. */
   readonly tracking: {
+    /** The frame's own time [s]: what estimators and filters go by. */
+    readonly time: number;
     readonly head: Triple;
     readonly leftHand: Triple | null;
     readonly rightHand: Triple | null;
