@@ -38,3 +38,15 @@ test('without WebAssembly IK takes over and the page says so', async ({ page, co
   await expect.poll(async () => (await probe(page)).estimator).toBe('ik');
   await expect(page.getByRole('alert').filter({ hasText: /IK|inverse kinematics/i })).toBeVisible();
 });
+
+test('WebGPU asked for and not there: WASM takes over, the network stays, and the page says so', async ({
+  page,
+  complaints,
+}) => {
+  complaints.allow(/webgpu/i);
+  await page.addInitScript(() => Object.defineProperty(Navigator.prototype, 'gpu', { get: () => undefined }));
+  await openWithHeadset(page, 'estimator=learned&ep=webgpu');
+  await expect.poll(async () => (await probe(page)).provider).toBe('wasm');
+  expect((await probe(page)).estimator).toBe('learned');
+  await expect(page.getByRole('alert').filter({ hasText: /WebGPU/i })).toBeVisible();
+});
