@@ -6,6 +6,7 @@ import type { TrackingFrame } from '../tracking/tracking-frame';
 import type { JointPositions } from './joint-positions';
 import type { EstimatorName, PoseEstimator } from './pose-estimator';
 import { emptyMemory, reconstructOrientations } from './reconstruct-orientations';
+import { createSteadyJoints } from './steady-joints';
 
 /** Where a method's six joints come from; everything else is the same for all of them. */
 export interface JointSource {
@@ -24,11 +25,12 @@ export interface JointSource {
 /** A gap longer than this [s] is no motion: filters and memories begin anew. */
 const longestGapSeconds = 0.5;
 
-/** Lost hands continued, six joints estimated, rotations reconstructed. */
+/** Lost hands continued, six joints estimated and steadied, rotations reconstructed. */
 export function createBodyEstimator(name: EstimatorName, calibration: Calibration, source: JointSource): PoseEstimator {
   let current = calibration;
   let skeleton: Skeleton = skeletonFromCalibration(calibration);
   const continuity = createHandContinuity(() => current);
+  const steady = createSteadyJoints();
   let memory = emptyMemory();
   let lastTime: number | null = null;
   let followed: { readonly frame: TrackingFrame; readonly continued: ContinuedFrame } | null = null;
@@ -36,6 +38,7 @@ export function createBodyEstimator(name: EstimatorName, calibration: Calibratio
   function reset(): void {
     continuity.reset();
     source.reset();
+    steady.reset();
     memory = emptyMemory();
     lastTime = null;
     followed = null;
@@ -62,7 +65,8 @@ export function createBodyEstimator(name: EstimatorName, calibration: Calibratio
       const continued = follow(frame);
       const deltaSeconds = lastTime === null ? 0 : frame.time - lastTime;
       lastTime = frame.time;
-      const joints = source.joints(continued, deltaSeconds);
+      const estimated = source.joints(continued, deltaSeconds);
+      const joints = steady.follow(estimated, continued.head.position, deltaSeconds);
       const body = reconstructOrientations({ ...continued, joints }, skeleton, memory, deltaSeconds);
       return { head: frame.head, leftHand: frame.leftHand, rightHand: frame.rightHand, body };
     },
