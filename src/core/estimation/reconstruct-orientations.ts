@@ -59,12 +59,18 @@ export interface ReconstructionMemory {
 
 export const emptyMemory = (): ReconstructionMemory => ({ left: null, right: null });
 
-/** How far the collarbone swings from rest [rad]: 35°. */
-const clavicleLimit = 0.61;
+interface TrunkLimits {
+  /** How far the collarbone swings from rest [rad]. */
+  readonly clavicle: number;
+  /** How far the neck bends from its rest against the thorax [rad]. */
+  readonly neck: number;
+}
+/** 35° and 60°. */
+const anatomy: TrunkLimits = { clavicle: 0.61, neck: 1.05 };
+/** For the one frame in fifty thousand whose wrist lies further away than that: the hand on the controller comes first. */
+const extreme: TrunkLimits = { clavicle: 1.2, neck: 1.8 };
 /** How far a wrist bends against the forearm [rad]: 90°, the extreme of flexion. */
 const wristLimit = Math.PI / 2;
-/** How far the neck bends from its rest against the thorax [rad]: 60°. */
-const neckLimit = 1.05;
 /** An elbow circles the line from shoulder to wrist at most this fast [rad/s]; a punch's elbow does 10. */
 const swivelSpeed = 14;
 /** Elbow estimates nearer to the arm's line than this [m] say little about the side it points to. */
@@ -104,9 +110,10 @@ export function reconstructOrientations(
 
   // The trunk leans and turns after hands that the arms alone cannot reach. Overshoot: collarbone and neck take part of the way.
   let shoulderTargets = { left: estimate.joints.leftUpperArm, right: estimate.joints.rightUpperArm };
-  let torso = placeTorso(head, headJoint, shoulderTargets, estimate.joints, skeleton);
-  let shoulders = placeShoulders(torso, shoulderTargets, skeleton);
+  let torso = placeTorso(head, headJoint, shoulderTargets, estimate.joints, skeleton, anatomy);
+  let shoulders = placeShoulders(torso, shoulderTargets, skeleton, anatomy);
   for (let pass = 0; pass < reachPasses; pass++) {
+    const limits = pass < anatomicalPasses ? anatomy : extreme;
     const pull = (side: Side): Vec3 | null => {
       const toWrist = subtract(wristOf(estimate, side).position, shoulders[side].position);
       const missing = length(toWrist) - reach;
@@ -119,8 +126,8 @@ export function reconstructOrientations(
       left: left ? add(shoulderTargets.left, left) : shoulderTargets.left,
       right: rightPull ? add(shoulderTargets.right, rightPull) : shoulderTargets.right,
     };
-    torso = placeTorso(head, headJoint, shoulderTargets, estimate.joints, skeleton);
-    shoulders = placeShoulders(torso, shoulderTargets, skeleton);
+    torso = placeTorso(head, headJoint, shoulderTargets, estimate.joints, skeleton, limits);
+    shoulders = placeShoulders(torso, shoulderTargets, skeleton, limits);
   }
 
   const leftArm = placeArm('left', estimate, torso, shoulders.left, skeleton, memory, deltaSeconds);
@@ -146,7 +153,8 @@ export function reconstructOrientations(
   return { hipsPosition: torso.hips, localRotations };
 }
 
-const reachPasses = 8;
+const reachPasses = 20;
+const anatomicalPasses = 8;
 
 const wristOf = (estimate: Estimate, side: Side): Pose<'floor'> =>
   side === 'left' ? estimate.leftHand : estimate.rightHand;
@@ -162,6 +170,7 @@ function placeTorso(
   shoulderTargets: { readonly left: Vec3; readonly right: Vec3 },
   joints: JointPositions,
   { restOffsets }: Skeleton,
+  limits: TrunkLimits,
 ): Torso {
   const headingRight = rotate(headingOf(head.orientation), right);
   const middle = lerp(shoulderTargets.left, shoulderTargets.right, 0.5);
@@ -184,7 +193,7 @@ function placeTorso(
   );
   const impliedNeck = subtract(middle, rotate(roughChest, shouldersFromNeck));
   const neckRest = rotate(roughChest, restOffsets.head);
-  const neckBend = limitAngle(between(neckRest, subtract(headJoint, impliedNeck)), neckLimit);
+  const neckBend = limitAngle(between(neckRest, subtract(headJoint, impliedNeck)), limits.neck);
   const neck = subtract(headJoint, rotate(neckBend, neckRest));
 
   // Chest joint and hips follow half of what the neck was moved by.
@@ -230,6 +239,7 @@ function placeShoulders(
   torso: Torso,
   targets: { readonly left: Vec3; readonly right: Vec3 },
   skeleton: Skeleton,
+  limits: TrunkLimits,
 ): Record<Side, Pose<'floor'>> {
   const place = (side: Side): Pose<'floor'> => {
     const { upperChest } = torso.rotations;
@@ -242,7 +252,7 @@ function placeShoulders(
       ),
     );
     const rest = rotate(upperChest, side === 'left' ? offsets.leftUpperArm : offsets.rightUpperArm);
-    const swing = limitAngle(between(rest, subtract(targets[side], root)), clavicleLimit);
+    const swing = limitAngle(between(rest, subtract(targets[side], root)), limits.clavicle);
     return { position: add(root, rotate(swing, rest)), orientation: multiply(swing, upperChest) };
   };
   return { left: place('left'), right: place('right') };
