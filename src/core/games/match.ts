@@ -52,12 +52,11 @@ export function createMatch<State, Action, Event, Options>(
       const inTick = Math.min(Math.max(now - tick * rules.tickSeconds, 0), rules.tickSeconds * (1 - 1e-9));
       const events: Event[] = [];
       const { delayed } = hooks;
-      const early = tick < stepped;
-      waiting.push(...actions.map((action) => (delayed ? delayed(action, early ? 0 : inTick) : action)));
+      const placed = (delay: number) => (delayed ? actions.map((action) => delayed(action, delay)) : actions);
+      if (tick < stepped) waiting.push(...placed(0));
       while (stepped <= tick) {
-        // Ticks that the frame skipped over have nothing to do but to pass.
-        const due = stepped === tick ? waiting : [];
-        if (stepped === tick) waiting = [];
+        const due = stepped === tick ? [...waiting, ...placed(inTick)] : waiting;
+        waiting = [];
         hooks.onTick?.(due);
         const done = rules.step(state, due);
         state = done.state;

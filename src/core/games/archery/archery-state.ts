@@ -77,7 +77,7 @@ export interface ArcheryState {
 
 export type ArcheryAction =
   | { readonly type: 'start' }
-  /** Where the archer's head is; ignored unless finite. */
+  /** Where the archer's head is; ignored unless finite and within 50 m. */
   | { readonly type: 'stand'; readonly head: Vec3 }
   | {
       readonly type: 'release';

@@ -64,6 +64,9 @@ const groundClearance = 0.1;
 /** A nock is in the archer's hand: at most this far from the head [m]. */
 export const reach = 1.2;
 
+/** Further from the origin than this there are no heads [m]. */
+const farthestHead = 50;
+
 /** Seconds between two releases at least. */
 export const releaseInterval = 0.5;
 
@@ -138,7 +141,7 @@ function begin(state: ArcheryState): Step {
 }
 
 function stand(state: ArcheryState, head: Vec3): Step {
-  if (!isFiniteVec3(head)) return nothing(state);
+  if (!(isFiniteVec3(head) && length(head) <= farthestHead)) return nothing(state);
   const inZone = isAbove(head, state.inZone ? 0 : zoneMargin);
   return {
     state: { ...state, head, inZone },
@@ -159,7 +162,7 @@ function release(state: ArcheryState, action: Extract<ArcheryAction, { type: 're
     delay < tickSeconds;
   if (!possible || state.phase === 'over' || state.arrowsLeft === 0) return nothing(state);
   const along = normalise(direction);
-  if (distance(addScaled(position, along, -arrowLength), state.head) > reach) return nothing(state);
+  if (!(distance(addScaled(position, along, -arrowLength), state.head) <= reach)) return nothing(state);
   const time = matchTime(state) + delay;
   const last = state.arrows.at(-1);
   if (time >= state.options.seconds || (last && time - last.release.time < releaseInterval)) return nothing(state);
