@@ -18,7 +18,7 @@ import type { TrackedPose, TrackingFrame } from '../../tracking/tracking-frame';
 import type { ArcheryAction, BowView } from './archery-state';
 import { arrowLength, braceHeight, maximumDraw, minimumDraw } from './bow';
 import { arrowRestOf, bowInHand, fistOf, otherSide, type Side, turnBow } from './bow-hand';
-import { allReleased, type Button, type Buttons, createButtonPresses, releasedBelow } from './button-presses';
+import { type Button, type Buttons, createButtonPresses, pressureOf, releasedBelow } from './button-presses';
 
 /** What the archer, the menu and the round decide; asked for in every frame, so that all of it can change during play. */
 export interface ArcheryGestureSettings {
@@ -121,6 +121,8 @@ const creakNotch = 0.06;
 /** An arrow on the string. */
 interface Nocked {
   readonly button: Button;
+  /** Whose button it is. */
+  readonly side: Side;
   stage: Exclude<BowView['stage'], 'empty'>;
   draw: number;
   drawSpeed: number;
@@ -166,8 +168,8 @@ export function createArcheryGestures(settings: () => ArcheryGestureSettings): A
 
     const hands = { left: seenHand(frame.leftHand), right: seenHand(frame.rightHand) };
     const pressed = {
-      left: presses.follow('left', buttons.left ?? allReleased, hands.left !== null),
-      right: presses.follow('right', buttons.right ?? allReleased, hands.right !== null),
+      left: presses.follow('left', buttons.left, hands.left !== null),
+      right: presses.follow('right', buttons.right, hands.right !== null),
     };
 
     const cue = (type: BowCue['type'], side: Side, position: Vec3) =>
@@ -199,8 +201,9 @@ export function createArcheryGestures(settings: () => ArcheryGestureSettings): A
     if (!held) return { bow: null, actions, haptics, cues };
     const inHand = held.bow;
 
-    // Whoever stops watching for that long, or has no arrows left, does not shoot when it goes on.
-    if (delta > holdSeconds || !armed) cancel(stringSide);
+    // Whoever stops watching for that long, has no arrows left, or puts the controller away, does not shoot when it goes on.
+    const anotherHand = nocked && nocked.side !== stringSide;
+    if (delta > holdSeconds || !armed || anotherHand || presses.changedKind(stringSide)) cancel(stringSide);
 
     const string = stringAtRest(inHand);
     if (nocked) drawOrRelease(nocked);
@@ -225,6 +228,7 @@ export function createArcheryGestures(settings: () => ArcheryGestureSettings): A
         }
         bowSide = taker;
         held = null;
+        wasNear = true;
         cue('taken', taker, fist);
         pulse(taker, 0.5, 0.04);
         // The same press shall not also nock.
@@ -243,6 +247,7 @@ export function createArcheryGestures(settings: () => ArcheryGestureSettings): A
       if (!button) return;
       nocked = {
         button,
+        side: stringSide,
         stage: 'nocked',
         draw: 0,
         drawSpeed: 0,
@@ -259,7 +264,7 @@ export function createArcheryGestures(settings: () => ArcheryGestureSettings): A
     }
 
     function drawOrRelease(arrow: Nocked): void {
-      const value = (buttons[stringSide] ?? allReleased)[arrow.button];
+      const value = pressureOf(buttons[stringSide], arrow.button);
       if (!bowHand || !stringHand) {
         // The button of a hand that nobody sees says nothing: many devices let go of it when they lose the hand.
         arrow.opened = false;
