@@ -1,4 +1,5 @@
-import { type ArcherBody, createArcher } from '../../../../src/core/games/archery/archer-motion';
+import { createArcher } from '../../../../src/core/games/archery/archer-motion';
+import type { ArcherBody } from '../../../../src/core/games/archery/archer-postures';
 import type {
   ArcheryAction,
   ArcheryEvent,
