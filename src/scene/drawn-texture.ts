@@ -1,4 +1,5 @@
 import { CanvasTexture, LinearMipmapLinearFilter, SRGBColorSpace } from 'three';
+import { anisotropyOf, type Quality } from './renderer';
 
 /** A texture whose picture is a 2D canvas. */
 export interface DrawnTexture {
@@ -8,7 +9,7 @@ export interface DrawnTexture {
 }
 
 /** Width and height in pixels. Throws where the browser offers no 2D canvas. */
-export function createDrawnTexture(width: number, height: number): DrawnTexture {
+export function createDrawnTexture(width: number, height: number, quality: Quality): DrawnTexture {
   const canvas = document.createElement('canvas');
   canvas.width = width;
   canvas.height = height;
@@ -17,7 +18,7 @@ export function createDrawnTexture(width: number, height: number): DrawnTexture 
   const texture = new CanvasTexture(canvas);
   texture.colorSpace = SRGBColorSpace;
   texture.minFilter = LinearMipmapLinearFilter;
-  texture.anisotropy = 8;
+  texture.anisotropy = anisotropyOf(quality);
   return {
     texture,
     draw(paint) {

@@ -1,7 +1,6 @@
 import type { Arrow } from '../../core/games/archery/archery-state';
+import { positionAt, velocityAt } from '../../core/games/archery/flight';
 import { addScaled, cross, normalise, scale, up, type Vec3, vec3 } from '../../core/math/vec3';
-
-const gravity = 9.81;
 
 /** Where an arrow is drawn: its tip and the unit direction it points in; arena frame. */
 export interface ArrowPose {
@@ -19,9 +18,7 @@ const wobble = { halfLife: 0.09, frequency: 15, angle: 0.055 };
 export function arrowPose({ id, release, landing }: Arrow, time: number): ArrowPose {
   if (!landing || time < landing.time) {
     const after = Math.max(0, time - release.time);
-    const tip = addScaled(release.position, release.velocity, after);
-    const velocity = vec3(release.velocity.x, release.velocity.y - gravity * after, release.velocity.z);
-    return { tip: { ...tip, y: tip.y - 0.5 * gravity * after * after }, direction: normalise(velocity) };
+    return { tip: positionAt(release, after), direction: normalise(velocityAt(release, after)) };
   }
   const since = time - landing.time;
   const swing = wobble.angle * 0.5 ** (since / wobble.halfLife) * Math.sin(2 * Math.PI * wobble.frequency * since);

@@ -9,6 +9,7 @@ import {
 } from 'three';
 import { createDrawnTexture } from '../../scene/drawn-texture';
 import { merged, painted } from '../../scene/painted-geometry';
+import type { Quality } from '../../scene/renderer';
 import { field } from './field';
 import { signFont } from './lettering';
 import { woodColor } from './wood';
@@ -68,10 +69,10 @@ function faces(distances: readonly number[], x: number): BufferGeometry {
   return geometry;
 }
 
-/** A sign by the rope and a white line across the field at each distance [m] from the archer. Arena frame. */
-export function createDistanceSigns(distances: readonly number[]): Group {
+/** A sign by the rope at each distance [m] from the archer. Arena frame. */
+export function createDistanceSigns(distances: readonly number[], quality: Quality): Group {
   const x = field.halfWidth - 0.45;
-  const { texture, draw } = createDrawnTexture(cell.width, cell.height * distances.length);
+  const { texture, draw } = createDrawnTexture(cell.width, cell.height * distances.length, quality);
   draw((context) => paintLabels(context, distances.map(distanceLabel)));
   const boards = distances.flatMap((distance) => {
     const angle = -Math.atan2(x, distance + 3);
@@ -81,12 +82,9 @@ export function createDistanceSigns(distances: readonly number[]): Group {
     const stake = new BoxGeometry(0.05, 0.62, 0.03).rotateY(angle).translate(x, 0.3, -distance - 0.02);
     return [painted(board, woodColor(distance)), painted(stake, woodColor(distance + 1))];
   });
-  const lines = distances.map((distance) =>
-    painted(new BoxGeometry(2 * field.halfWidth - 0.3, 0.004, 0.035).translate(0, 0.004, -distance), '#e9edda'),
-  );
   const signs = new Group();
   signs.name = 'distance signs';
-  const solid = new Mesh(merged([...boards, ...lines]), new MeshLambertMaterial({ vertexColors: true }));
+  const solid = new Mesh(merged(boards), new MeshLambertMaterial({ vertexColors: true }));
   solid.castShadow = true;
   solid.receiveShadow = true;
   signs.add(solid, new Mesh(faces(distances, x), new MeshBasicMaterial({ map: texture })));

@@ -1,4 +1,5 @@
 import { DataTexture, LinearFilter, LinearMipmapLinearFilter, RepeatWrapping, RGBAFormat } from 'three';
+import { anisotropyOf, type Quality } from '../../scene/renderer';
 
 /** Four noises that repeat without a seam: r wide, g fine (both sums of octaves), b grass blades, a one fine octave. */
 const side = 256;
@@ -62,7 +63,7 @@ function grassBlades(): Float32Array {
 }
 
 /** Built once for whoever draws ground and clouds; linear values, not colours. */
-export function createNoiseTexture(): DataTexture {
+export function createNoiseTexture(quality: Quality): DataTexture {
   const pixels = new Uint8Array(side * side * 4);
   const blades = grassBlades();
   for (let y = 0; y < side; y++) {
@@ -81,7 +82,7 @@ export function createNoiseTexture(): DataTexture {
   texture.magFilter = LinearFilter;
   texture.minFilter = LinearMipmapLinearFilter;
   texture.generateMipmaps = true;
-  texture.anisotropy = 8;
+  texture.anisotropy = anisotropyOf(quality);
   texture.needsUpdate = true;
   return texture;
 }

@@ -77,18 +77,18 @@ export function createRange(
   object.position.copy(floorFromArena.position);
   object.quaternion.copy(floorFromArena.orientation);
   const inFloor = (x: number, y: number, z: number) => new Vector3(x, y, z).applyQuaternion(object.quaternion);
-  const noise = createNoiseTexture();
+  const noise = createNoiseTexture(quality);
   const zone = createZone();
   object.add(
-    createSky(noise, towardsSun),
-    createGround(noise),
+    createSky(noise, towardsSun, quality),
+    createGround(noise, distances, quality),
     createLandscape(quality),
-    createBackstop(),
-    createDistanceSigns(distances),
+    createBackstop(quality),
+    createDistanceSigns(distances, quality),
     zone.object,
   );
   const sun = inFloor(...towardsSun.toArray());
-  const middle = inFloor(0, 0, -4.8).add(object.position);
+  const middle = inFloor(0, 0, -5).add(object.position);
   return {
     object,
     lighting: {

@@ -2,6 +2,7 @@ import { Group, Matrix4, Mesh, MeshBasicMaterial, PlaneGeometry, Vector3 } from 
 import type { ArcheryState } from '../../core/games/archery/archery-state';
 import { disposeTree } from '../../scene/dispose-tree';
 import { createDrawnTexture } from '../../scene/drawn-texture';
+import type { Quality } from '../../scene/renderer';
 import { paintResult, restartButton, resultSize } from './scoreboard-drawing';
 
 interface Point {
@@ -33,11 +34,11 @@ export function onRestartButton(x: number, y: number): boolean {
   return px >= 0 && px <= restartButton.width && py >= 0 && py <= restartButton.height;
 }
 
-export function createResultPanel(): ResultPanel {
+export function createResultPanel(quality: Quality): ResultPanel {
   const object = new Group();
   object.name = 'result panel';
   object.position.set(0, 1.42, -2.1);
-  const { texture, draw } = createDrawnTexture(resultSize.width, resultSize.height);
+  const { texture, draw } = createDrawnTexture(resultSize.width, resultSize.height, quality);
   const sheet = new Mesh(
     new PlaneGeometry(width, height),
     new MeshBasicMaterial({ map: texture, transparent: true, fog: false, toneMapped: false }),

@@ -2,6 +2,7 @@ import { Group, Sprite, SpriteMaterial } from 'three';
 import type { ArcheryState, Landing } from '../../core/games/archery/archery-state';
 import { distance, type Vec3 } from '../../core/math/vec3';
 import { createDrawnTexture } from '../../scene/drawn-texture';
+import type { Quality } from '../../scene/renderer';
 import { ink, signFont } from './lettering';
 
 /** Points that rise from a target for a moment when it is hit; arena frame. */
@@ -17,8 +18,8 @@ const seconds = 1.5;
 const apparentSize = 0.055;
 const atOnce = 2;
 
-function createPop() {
-  const { texture, draw } = createDrawnTexture(256, 128);
+function createPop(quality: Quality) {
+  const { texture, draw } = createDrawnTexture(256, 128, quality);
   const material = new SpriteMaterial({
     map: texture,
     transparent: true,
@@ -59,10 +60,10 @@ function createPop() {
   };
 }
 
-export function createScorePops(): ScorePops {
+export function createScorePops(quality: Quality): ScorePops {
   const object = new Group();
   object.name = 'score pops';
-  const pops = Array.from({ length: atOnce }, createPop);
+  const pops = Array.from({ length: atOnce }, () => createPop(quality));
   object.add(...pops.map(({ sprite }) => sprite));
   return {
     object,

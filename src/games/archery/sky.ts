@@ -1,11 +1,12 @@
 import { BackSide, Color, Mesh, ShaderMaterial, SphereGeometry, type Texture, type Vector3 } from 'three';
+import type { Quality } from '../../scene/renderer';
 
 /** What the horizon fades into; the fog has the same colour. */
 export const hazeColor = '#dfe9ec';
 export const zenithColor = '#3f7fc4';
 
 /** A summer morning: blue overhead, haze at the horizon, a soft sun with its glow, thin clouds. Drawn behind everything. */
-export function createSky(noise: Texture, towardsSun: Vector3): Mesh<SphereGeometry, ShaderMaterial> {
+export function createSky(noise: Texture, towardsSun: Vector3, quality: Quality): Mesh<SphereGeometry, ShaderMaterial> {
   const material = new ShaderMaterial({
     side: BackSide,
     depthWrite: false,
@@ -37,7 +38,7 @@ export function createSky(noise: Texture, towardsSun: Vector3): Mesh<SphereGeome
         // Clouds lie on a plane overhead and vanish in the haze.
         vec2 onCeiling = gaze.xz / (height + 0.12);
         float wide = texture2D(noise, onCeiling * 0.055 + vec2(0.31, 0.12)).r;
-        float fine = texture2D(noise, onCeiling * 0.16 + vec2(0.7, 0.4)).r;
+        float fine = ${quality === 'high' ? 'texture2D(noise, onCeiling * 0.16 + vec2(0.7, 0.4)).r' : 'wide'};
         float cloud = smoothstep(0.47, 0.72, wide * 0.68 + fine * 0.32) * smoothstep(0.05, 0.26, height);
         color = mix(color, vec3(1.0, 0.992, 0.975), cloud * 0.8);
         float facing = max(dot(gaze, towardsSun), 0.0);

@@ -1,4 +1,5 @@
 import { Color, DataTexture, LinearFilter, LinearMipmapLinearFilter, SRGBColorSpace } from 'three';
+import { anisotropyOf, type Quality } from '../../scene/renderer';
 
 /**
  * The rings of a target from the outside in, each a share of its radius. Neighbours differ in brightness, not in hue alone, and a
@@ -30,7 +31,7 @@ const side = 512;
 const samples = 3;
 
 /** The face of a target, its square filled by the disc. */
-export function createRingTexture(): DataTexture {
+export function createRingTexture(quality: Quality): DataTexture {
   const pixels = new Uint8Array(side * side * 4);
   const paint = new Color();
   const table = Array.from({ length: 2048 }, (_, i) =>
@@ -63,7 +64,7 @@ export function createRingTexture(): DataTexture {
   texture.magFilter = LinearFilter;
   texture.minFilter = LinearMipmapLinearFilter;
   texture.generateMipmaps = true;
-  texture.anisotropy = 8;
+  texture.anisotropy = anisotropyOf(quality);
   texture.needsUpdate = true;
   return texture;
 }

@@ -19,6 +19,7 @@ import type { ArcheryState, Target } from '../../core/games/archery/archery-stat
 import { disposeTree } from '../../scene/dispose-tree';
 import { createDrawnTexture } from '../../scene/drawn-texture';
 import { merged, painted } from '../../scene/painted-geometry';
+import type { Quality } from '../../scene/renderer';
 import { createContactShadows } from './contact-shadows';
 import { ink, signFont } from './lettering';
 import { createRingTexture } from './target-rings';
@@ -97,10 +98,10 @@ function standGeometry(target: Target, index: number): BufferGeometry[] {
     binding,
     back,
     board,
-    beam(foot(-spread, 0.16), at(-0.05, top, behind), 0.046, index),
-    beam(foot(spread, 0.16), at(0.05, top, behind), 0.046, index + 1),
-    beam(foot(0, -0.75), at(0, top - 0.06, behind - 0.02), 0.046, index + 2),
-    beam(at(-spread * 0.83, -radius - 0.025, -0.04), at(spread * 0.83, -radius - 0.025, -0.04), 0.05, index + 3),
+    beam(foot(-spread, -0.13), at(-0.06, top, behind), 0.046, index),
+    beam(foot(spread, -0.13), at(0.06, top, behind), 0.046, index + 1),
+    beam(foot(0, -0.95), at(0, top - 0.06, behind - 0.04), 0.046, index + 2),
+    beam(at(-spread * 0.72, -radius - 0.03, -0.075), at(spread * 0.72, -radius - 0.03, -0.075), 0.06, index + 3),
   ];
 }
 
@@ -183,13 +184,13 @@ const lit = new Color('#ffe9a6');
 const untouched = new Color('#ffffff');
 const done = new Color('#8f8f8f');
 
-export function createTargetStands(): TargetStands {
+export function createTargetStands(quality: Quality): TargetStands {
   const object = new Group();
   object.name = 'targets';
   const wood = new MeshLambertMaterial({ vertexColors: true });
-  const face = new MeshLambertMaterial({ map: createRingTexture() });
+  const face = new MeshLambertMaterial({ map: createRingTexture(quality) });
   const glow = new MeshBasicMaterial({ color: '#ffffff' });
-  const plates = createDrawnTexture(cell.width, cell.height * 4);
+  const plates = createDrawnTexture(cell.width, cell.height * 4, quality);
   const plateMaterial = new MeshBasicMaterial({ map: plates.texture });
 
   let built: readonly Target[] = [];

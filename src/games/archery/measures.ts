@@ -1,2 +1,0 @@
-export const arrowLength = 0.88;
-export const braceHeight = 0.16;
