@@ -22,6 +22,8 @@ export interface ArcherySettings {
   readonly bowSide: Side;
   readonly oneHanded: boolean;
   readonly everyHitCounts: boolean;
+  /** Until the bell; absent: as the game has it. */
+  readonly seconds?: number;
 }
 
 /** What one frame of play brought: to be seen, heard and felt. */
@@ -122,11 +124,15 @@ export function createArcheryPlay(
   }));
 
   function restart(person: Calibration): void {
-    const { bowSide, everyHitCounts } = settings();
+    const { bowSide, everyHitCounts, seconds } = settings();
     const { eyeHeight } = person;
-    match = createMatch(archeryRules, archeryRules.start(['archer'], seed(), { eyeHeight, everyHitCounts }), {
-      delayed,
-    });
+    match = createMatch(
+      archeryRules,
+      archeryRules.start(['archer'], seed(), { eyeHeight, everyHitCounts, ...(seconds && { seconds }) }),
+      {
+        delayed,
+      },
+    );
     const body = { bowSide, eyeHeight, armLength: chestSpaceBody(person).arm };
     archer = createArcher(body);
     steered = createSteeredArcher(body);

@@ -27,6 +27,7 @@ import { createEstimatorChoice, reasonOf } from './estimator-choice';
 import { createFrameLoop, withTiming } from './frame-loop';
 import { createFrameTiming, stageNames } from './frame-timing';
 import type { ArcheryView } from './games/archery/archery-view';
+import { eventHaptics } from './games/archery/haptics';
 import { exposeProbe } from './probe';
 import { createRecorder } from './recorder';
 import { createArena } from './scene/arena';
@@ -69,7 +70,7 @@ const settleSeconds = 0.7;
 /** What the mannequin's mirror and the menu are placed by: the user stands at the origin and looks along −Z. */
 const mirrorDistance = 1.5;
 /** Beside the range the mirror stands out of the arrows' way, on the side the archer's chest faces [m, rad]. */
-const mirrorByTheRange = { x: 1.75, z: -0.35, turned: -1.3 };
+const mirrorByTheRange = { x: 1.95, z: -0.1, turned: -1.3 };
 /** The room's floor is the range's: its zone lies about the origin, the targets ahead. */
 const floorFromArena = { position: zero, orientation: identity };
 const nothingPressed: Buttons = { left: allReleased, right: allReleased };
@@ -154,6 +155,7 @@ async function start(): Promise<void> {
     bowSide: store.preferences.bowSide ?? ('left' as const),
     oneHanded: store.preferences.oneHanded ?? false,
     everyHitCounts: store.preferences.everyHitCounts ?? false,
+    ...(switches.seconds && { seconds: switches.seconds }),
     sound: store.preferences.sound ?? true,
     calibration: store.preferences.calibration ?? defaultCalibration,
     calibrationSource: store.preferences.calibration ? 'remembered' : 'not calibrated yet',
@@ -245,12 +247,20 @@ async function start(): Promise<void> {
       settings.sound = on;
       store.remember({ sound: on });
       archery?.view.sound.setMuted(!on);
-      if (on) void archery?.view.sound.unlock().catch(silent);
+      if (archery) wakeSound(archery.view);
       show();
     },
   });
 
   const silent = (error: unknown) => notices.show('info', `There is no sound: ${firstLine(reasonOf(error))}`);
+
+  /** Browsers let a page sound only once somebody has touched it. */
+  function wakeSound(of: ArcheryView): void {
+    if (!settings.sound) return;
+    const wake = () => void of.sound.unlock().catch(silent);
+    if (navigator.userActivation?.hasBeenActive) wake();
+    else for (const event of ['pointerdown', 'keydown']) window.addEventListener(event, wake, { once: true });
+  }
 
   /** A change of hands or rules; a round under way goes on unless it is counted differently. */
   function rule(change: Partial<Pick<typeof settings, 'bowSide' | 'oneHanded' | 'everyHitCounts'>>): void {
@@ -306,7 +316,7 @@ async function start(): Promise<void> {
           onCaption: (text) => playBar.caption(text),
         });
         view.sound.setMuted(!settings.sound);
-        void view.sound.unlock().catch(silent);
+        wakeSound(view);
         arena.setSurroundings(view.range);
         arena.scene.add(view.bow);
         archery = { play, view };
@@ -316,7 +326,9 @@ async function start(): Promise<void> {
       arriving = false;
     }
     recorder.stop();
+    if (archery) panel.setOpen(false);
     view.setScene(archery ? 'range' : 'studio');
+    document.body.classList.toggle('on-the-range', archery !== null);
     arena.setMarkVisible(archery === null);
     placeMirror();
     steerByMouse();
@@ -722,7 +734,7 @@ async function start(): Promise<void> {
     const { events, cues, haptics } = archery.play.follow(frame, buttons);
     archery.view.hear(events, cues);
     const bowSide = archery.play.newest?.bow?.bowSide ?? settings.bowSide;
-    if (session) buzz(session.xr, [...haptics, ...archery.view.feel(events, bowSide)]);
+    if (session) buzz(session.xr, [...haptics, ...eventHaptics(events, bowSide)]);
     if (events.length > 0) show();
   }
 

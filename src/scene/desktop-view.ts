@@ -50,19 +50,24 @@ const followHalfLife = 0.35;
 /** Radians a press of an arrow key turns the camera. */
 const keyStep = Math.PI / 36;
 
-const start: Record<SceneName, Record<Exclude<ViewName, 'first-person'>, { offset: Vector3; fov: number }>> = {
+/** Where the camera begins and what it looks at, both from the pelvis [m]. */
+interface Outlook {
+  readonly offset: Vector3;
+  readonly aim: Vector3;
+  readonly fov: number;
+}
+
+const start: Record<SceneName, Record<Exclude<ViewName, 'first-person'>, Outlook>> = {
   studio: {
-    'third-person': { offset: new Vector3(1.95, 0.5, 2.95), fov: 42 },
-    front: { offset: new Vector3(-0.55, 0.25, -3.2), fov: 42 },
+    'third-person': { offset: new Vector3(1.95, 0.5, 2.95), aim: new Vector3(), fov: 42 },
+    front: { offset: new Vector3(-0.55, 0.25, -3.2), aim: new Vector3(), fov: 42 },
   },
   range: {
-    'third-person': { offset: new Vector3(-1.5, 0.85, 3.1), fov: 46 },
-    front: { offset: new Vector3(1.6, 0.35, -2.7), fov: 46 },
+    'third-person': { offset: new Vector3(-1.35, 0.95, 3.3), aim: new Vector3(0.15, -0.2, -2), fov: 46 },
+    front: { offset: new Vector3(1.6, 0.35, -2.7), aim: new Vector3(), fov: 46 },
   },
 };
 const firstPersonFov = 78;
-/** How far above the pelvis the camera aims [m]. */
-const aimAbovePelvis = 0;
 
 /** Orbit by mouse, touch and arrow keys around the body, a front view, and the view through the body's own eyes. */
 export function createDesktopView(canvas: HTMLCanvasElement): DesktopView {
@@ -83,7 +88,7 @@ export function createDesktopView(canvas: HTMLCanvasElement): DesktopView {
 
   function place(): void {
     if (view === 'first-person') return;
-    const { offset: wide, fov } = start[scene][view];
+    const { offset: wide, aim, fov } = start[scene][view];
     const free = Math.max(1, window.innerWidth - insets.left - insets.right) / window.innerHeight;
     // A narrow window shows the mirror only where it stands behind the body.
     const offset = wide.clone();
@@ -92,7 +97,7 @@ export function createDesktopView(canvas: HTMLCanvasElement): DesktopView {
     const distance = Math.max(1, Math.min(1.35, 1 / Math.max(free, 0.1)));
     camera.fov = fov;
     camera.up.set(0, 1, 0);
-    controls.target.copy(target);
+    controls.target.copy(target).add(aim);
     camera.position.copy(target).addScaledVector(offset, distance);
     controls.update();
   }
@@ -163,10 +168,10 @@ export function createDesktopView(canvas: HTMLCanvasElement): DesktopView {
       const part = 1 - 0.5 ** (elapsed / followHalfLife);
       const before = target.clone();
       target.x += (pelvis.x - target.x) * part;
-      target.y += (pelvis.y + aimAbovePelvis - target.y) * part;
+      target.y += (pelvis.y - target.y) * part;
       target.z += (pelvis.z - target.z) * part;
       camera.position.add(target).sub(before);
-      controls.target.copy(target);
+      controls.target.add(target).sub(before);
       controls.update();
     },
   };

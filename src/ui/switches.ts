@@ -19,6 +19,8 @@ export interface Switches {
   readonly play: ActivityName;
   /** Of the first round's layout; null: another one with each visit. */
   readonly seed: number | null;
+  /** Of a round, until the bell [s]; null: as the game has it. */
+  readonly seconds: number | null;
 }
 
 const onOff = v.optional(v.picklist(['on', 'off']), 'on');
@@ -32,6 +34,7 @@ const schema = v.object({
   replay: v.optional(v.pipe(v.string(), v.minLength(1))),
   view: v.optional(v.picklist(viewNames)),
   play: v.optional(v.picklist(activityNames), 'studio'),
+  seconds: v.optional(v.pipe(v.string(), v.regex(/^\d{1,4}$/), v.transform(Number), v.minValue(1))),
   seed: v.optional(v.pipe(v.string(), v.regex(/^\d{1,9}$/), v.transform(Number))),
 });
 
@@ -64,6 +67,7 @@ export function readSwitches(query: string): { readonly switches: Switches; read
       view: output.view ?? null,
       play: output.play,
       seed: output.seed ?? null,
+      seconds: output.seconds ?? null,
     },
   };
 }
