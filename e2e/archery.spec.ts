@@ -1,11 +1,10 @@
 import type { ArcheryProbe } from '../src/archery-play';
-import type { EmulatedHeadset, Point } from './emulated-headset';
+import type { EmulatedHeadset, Rotation } from './emulated-headset';
 import { emulatedHeadset, frames } from './emulated-headset';
-import { expectHandsOnControllers } from './hands-on-controllers';
 import { enterVr, expect, joint, keepPicture, open, probe, test } from './page-fixture';
 
 // What is played does not depend on how many pixels show it.
-test.use({ viewport: { width: 560, height: 350 } });
+test.use({ viewport: { width: 800, height: 500 } });
 
 type Page = Parameters<typeof open>[0];
 
@@ -43,16 +42,47 @@ for (const estimator of ['learned', 'ik', 'paper', 'hands-only'] as const) {
   });
 }
 
-const bowAt: Point = [-0.1, 1.35, -0.6];
-const stringAt: Point = [-0.1, 1.4, -0.42];
-
-/** Stands upright with the bow before the chest and the string hand at the string. */
-async function stand(headset: EmulatedHeadset, x = 0): Promise<void> {
+/** Stands upright with the bow at arm's length and the string hand beside it. */
+async function stand(
+  headset: EmulatedHeadset,
+  x = 0,
+  thumbsUp: { left: Rotation; right: Rotation } = asHeld,
+): Promise<void> {
   await headset.place({
     head: { position: [x, 1.6, 0], orientation: [0, 0, 0, 1] },
-    left: { position: [bowAt[0] + x, bowAt[1], bowAt[2]], orientation: [0, 0, 0.7071068, 0.7071068] },
-    right: { position: [stringAt[0] + x, stringAt[1], stringAt[2]], orientation: [0, 0, -0.7071068, 0.7071068] },
+    left: { position: [x - 0.1, 1.35, -0.6], orientation: thumbsUp.left },
+    right: { position: [x - 0.1, 1.35, -0.4], orientation: thumbsUp.right },
   });
+}
+
+/** Controllers are held with the thumbs up; bare hands lie palm down until they are turned. */
+const asHeld: { left: Rotation; right: Rotation } = { left: [0, 0, 0, 1], right: [0, 0, 0, 1] };
+const turned: { left: Rotation; right: Rotation } = {
+  left: [0, 0, Math.SQRT1_2, Math.SQRT1_2],
+  right: [0, 0, -Math.SQRT1_2, Math.SQRT1_2],
+};
+
+/** Moves the string hand to where the string is, and `behind` [m] further back. */
+async function reachForString(page: Page, headset: EmulatedHeadset, behind = 0): Promise<void> {
+  await frames(page, 4);
+  const { nockPoint } = await round(page);
+  if (!nockPoint) throw new Error('nobody holds the bow');
+  const wrist = await joint(page, 'rightHand');
+  const ray = await page.evaluate(() => {
+    const { controllers, hands, primaryInputMode } = window.emulatedDevice;
+    const { x, y, z } = (primaryInputMode === 'hand' ? hands : controllers).right.position;
+    return [x, y, z] as const;
+  });
+  await headset.place({
+    right: {
+      position: [
+        ray[0] + nockPoint[0] - wrist[0],
+        ray[1] + nockPoint[1] - wrist[1],
+        ray[2] + nockPoint[2] - wrist[2] + behind,
+      ],
+    },
+  });
+  await frames(page, 4);
 }
 
 const press = (page: Page, side: 'left' | 'right', value: number) =>
@@ -64,9 +94,8 @@ const press = (page: Page, side: 'left' | 'right', value: number) =>
 /** Puts the string hand to where the page draws the string, so that a press nocks. */
 async function nock(page: Page, headset: EmulatedHeadset): Promise<void> {
   await stand(headset);
-  await expectHandsOnControllers(page, headset);
   await press(page, 'right', 0);
-  await frames(page, 3);
+  await reachForString(page, headset);
   await press(page, 'right', 1);
   await expect.poll(async () => (await round(page)).stage).not.toBe('empty');
 }
@@ -85,7 +114,7 @@ test('whoever leaves the zone is warned, and coming back is noticed', async ({ p
 test('a controller lost with the string drawn never shoots; the arrow goes back to the quiver', async ({ page }) => {
   const headset = await enterTheRange(page, '&actor=off');
   await nock(page, headset);
-  await headset.place({ right: { position: [stringAt[0], stringAt[1], stringAt[2] + 0.4] } });
+  await reachForString(page, headset, 0.4);
   await expect.poll(async () => (await round(page)).draw).toBeGreaterThan(0.2);
   await headset.setConnected('right', false);
   await expect.poll(async () => (await round(page)).stage).toBe('empty');
@@ -108,20 +137,14 @@ test('hands are changed in the menu of the page, and remembered', async ({ page 
 test('bare hands: a pinch at the string nocks, opening it at full draw shoots', async ({ page }) => {
   const headset = await enterTheRange(page, '&actor=off');
   await headset.useInput('hand');
-  await stand(headset);
+  await stand(headset, 0, turned);
   const pinch = (value: number) =>
     page.evaluate((value) => window.emulatedDevice.hands.right.updatePinchValue(value), value);
   await pinch(0);
-  await frames(page, 10);
-  // Where the string is depends on the bow hand as tracked: the other hand looks for it.
-  await expect(async () => {
-    const bow = await joint(page, 'leftHand');
-    const string = await joint(page, 'rightHand');
-    expect(Math.hypot(bow[0] - string[0], bow[1] - string[1], bow[2] - string[2])).toBeLessThan(0.4);
-  }).toPass();
+  await reachForString(page, headset);
   await pinch(1);
   await expect.poll(async () => (await round(page)).stage).not.toBe('empty');
-  await headset.place({ right: { position: [stringAt[0], stringAt[1], stringAt[2] + 0.45] } });
+  await reachForString(page, headset, 0.4);
   await expect.poll(async () => (await round(page)).draw).toBeGreaterThan(0.2);
   await pinch(0);
   await expect.poll(async () => (await round(page)).arrowsLeft).toBe(4);
@@ -130,7 +153,7 @@ test('bare hands: a pinch at the string nocks, opening it at full draw shoots', 
 test('a round whose time runs out ends with the bell', async ({ page }) => {
   const headset = await enterTheRange(page, '&actor=off&seconds=4');
   await nock(page, headset);
-  await headset.place({ right: { position: [stringAt[0], stringAt[1], stringAt[2] + 0.4] } });
+  await reachForString(page, headset, 0.4);
   await expect.poll(async () => (await round(page)).draw).toBeGreaterThan(0.2);
   await press(page, 'right', 0);
   await expect.poll(async () => (await round(page)).phase).toBe('running');

@@ -31,7 +31,7 @@ interface Device {
 }
 
 interface TrackedInput {
-  position: { set(...xyz: Point): void };
+  position: { set(...xyz: Point): void; readonly x: number; readonly y: number; readonly z: number };
   quaternion: { set(...xyzw: Rotation): void };
   connected: boolean;
   updateTargetRaySpace(): void;

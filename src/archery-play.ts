@@ -76,6 +76,8 @@ export interface ArcheryProbe {
   readonly bowSide: Side | null;
   readonly stage: BowView['stage'] | null;
   readonly draw: number;
+  /** Where the middle of the string is, floor frame [m]; null: nobody holds the bow. */
+  readonly nockPoint: readonly [number, number, number] | null;
   readonly hits: readonly (number | null)[];
 }
 
@@ -91,6 +93,7 @@ export function probeOf({ state, bow }: ArcheryFrame): ArcheryProbe {
     bowSide: bow?.bowSide ?? null,
     stage: bow?.stage ?? null,
     draw: bow?.draw ?? 0,
+    nockPoint: bow && [bow.nockPoint.x, bow.nockPoint.y, bow.nockPoint.z],
     hits: state.arrows.map(({ landing }) => landing?.target ?? null),
   };
 }
