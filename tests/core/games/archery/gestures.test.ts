@@ -453,7 +453,7 @@ describe('any hands at all', () => {
     { nil: null },
   );
   const pressure = fc.oneof(fc.constantFrom(0, 1), number(0, 1));
-  const pressures = fc.record({ trigger: pressure, grip: fc.constant(0), pinch: fc.constant(0) });
+  const pressures = fc.record({ trigger: pressure, grip: fc.constant<number>(0), pinch: fc.constant<number>(0) });
   /** Mostly somebody who nocks, draws and lets go in some order, with everything that can go wrong in between. */
   const moment = fc.record({
     seconds: fc.oneof({ weight: 8, arbitrary: number(0.005, 0.03) }, { weight: 1, arbitrary: number(-0.1, 1) }),
