@@ -189,7 +189,7 @@ describe('its movements', () => {
     );
     expect(anchored.length).toBeGreaterThan(100);
     for (const { bow, head } of anchored) {
-      expect(distance(bow.nockPoint, head.position)).toBeLessThan(0.16);
+      expect(distance(bow.nockPoint, head.position)).toBeLessThan(0.3 * (body.armLength ?? 0.36 * body.eyeHeight));
       expect(bow.nockPoint.y).toBeLessThan(head.position.y);
       expect(rotate(bow.bow.orientation, up).y).toBeGreaterThan(0.95);
       expect(bow.draw).toBeGreaterThan(0.25);
