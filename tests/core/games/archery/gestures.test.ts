@@ -61,6 +61,13 @@ describe('a shot', () => {
     expect(archer.releases).toEqual([]);
   });
 
+  test('says once that the string is near, even to a hand that trembles at the edge', () => {
+    const archer = bowman();
+    archer.hold({ draw: 0.4 }, 0.1);
+    archer.move((share) => ({ draw: 0.18 + 0.01 * Math.sin(100 * share) }), 1, 0);
+    expect(archer.said).toEqual(['near-string']);
+  });
+
   test('needs an arrow', () => {
     const archer = bowman({ armed: false });
     archer.drawTo(0.5).hold({ draw: 0.5 }, 0.2);
@@ -308,6 +315,20 @@ describe('the aim', () => {
       expect(distance(bow!.nockPoint, addScaled(rest, ahead, -braceHeight - bow!.draw))).toBeLessThan(1e-9);
       if (bow!.arrow) expect(distance(bow!.arrow.direction, ahead)).toBeLessThan(1e-9);
     }
+  });
+
+  test('leaves the bow as it pointed: it turns back to the hand within a moment, without a jump', () => {
+    const knuckles = normalise(vec3(-0.4, 0.3, -1));
+    const archer = bowman();
+    archer.drawTo(0.5, { knuckles }).forget();
+    archer.hold({ draw: 0.5, knuckles }, 0.1, 1).hold({ draw: 0.5, knuckles }, 1, 0);
+    expect(archer.said).toEqual(['released']);
+    const ways = archer.frames.map(({ bow }) => rotate(bow!.bow.orientation, vec3(0, 0, -1)));
+    ways.slice(1).forEach((way, i) => {
+      expect(degrees(Math.acos(Math.min(1, dot(way, ways[i]!))))).toBeLessThan(4);
+    });
+    expect(degrees(Math.acos(dot(ways[0]!, knuckles)))).toBeGreaterThan(20);
+    expect(distance(ways.at(-1)!, knuckles)).toBeLessThan(1e-9);
   });
 
   test('is told in the arena wherever the floor lies in it', () => {
