@@ -51,7 +51,7 @@ describe('the built-in archer', () => {
           }
         },
       ),
-      { seed, numRuns: 40 },
+      { seed, numRuns: 24 },
     );
   });
 
@@ -83,7 +83,7 @@ describe('the built-in archer', () => {
         const { state } = playRound({ archer: { bowSide: 'right', eyeHeight: 1.7 }, times: irregular() });
         expect(state.score).toBe(50);
       }),
-      { seed, numRuns: 10 },
+      { seed, numRuns: 5 },
     );
   });
 
@@ -154,7 +154,7 @@ describe('its movements', () => {
   test.each(bodies)(
     '$bowSide, eyes at $eyeHeight m: hands at human speed, within reach, never through the head',
     (body) => {
-      const rate = 120;
+      const rate = 90;
       const { frames } = playRound({ archer: body, times: steady(rate) });
       const arm = body.armLength ?? 0.36 * body.eyeHeight;
       for (const side of sides) {
@@ -165,15 +165,16 @@ describe('its movements', () => {
         expect(Math.max(...accelerations)).toBeLessThan(40);
         const turns = hands.slice(1).map((hand, i) => angleBetween(hand.orientation, hands[i]!.orientation) * rate);
         expect(Math.max(...turns)).toBeLessThan(9);
-        for (const [i, hand] of hands.entries()) {
+        // The neck lies below and behind the eyes; both shoulders within their own half width of it.
+        const reaches = hands.map(({ position }, i) =>
+          distance(position, add(frames[i]!.head.position, vec3(0, -0.35 * arm, 0))),
+        );
+        expect(Math.max(...reaches)).toBeLessThan(arm * (1 + 0.32 + 0.19));
+        const toSkull = hands.map((hand, i) => {
           const { head } = frames[i]!;
-          // The neck lies below and behind the eyes; both shoulders within their own half width of it.
-          const neck = add(head.position, vec3(0, -0.35 * arm, 0));
-          expect(distance(hand.position, neck)).toBeLessThan(arm * (1 + 0.32 + 0.19));
-          expect(
-            distance(fistOf(hand), add(head.position, rotate(head.orientation, vec3(0, 0.02, 0.08)))),
-          ).toBeGreaterThan(0.1);
-        }
+          return distance(fistOf(hand), add(head.position, rotate(head.orientation, vec3(0, 0.02, 0.08))));
+        });
+        expect(Math.min(...toSkull)).toBeGreaterThan(0.1);
       }
       const gazes = frames
         .slice(1)

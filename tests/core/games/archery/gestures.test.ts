@@ -3,6 +3,7 @@ import { describe, expect, test } from 'vitest';
 import { arrowLength, arrowRestHeight, braceHeight, maximumDraw } from '../../../../src/core/games/archery/bow';
 import { otherSide, type Side, wristAround } from '../../../../src/core/games/archery/bow-hand';
 import { allReleased, type Button, createButtonPresses } from '../../../../src/core/games/archery/button-presses';
+import { releaseTowards } from '../../../../src/core/games/archery/flight';
 import {
   createArcheryGestures,
   defaultArcheryGestureSettings,
@@ -13,7 +14,18 @@ import {
 import { archeryRules } from '../../../../src/core/games/archery/rules';
 import type { Transform } from '../../../../src/core/math/pose';
 import { fromAxisAngle, rotate } from '../../../../src/core/math/quat';
-import { add, addScaled, cross, distance, dot, length, normalise, up, vec3 } from '../../../../src/core/math/vec3';
+import {
+  add,
+  addScaled,
+  cross,
+  distance,
+  dot,
+  length,
+  normalise,
+  reject,
+  up,
+  vec3,
+} from '../../../../src/core/math/vec3';
 import { number, rotation, seed, vector } from '../../arbitraries';
 import { bowAt, bowman, posed } from './bowman';
 
@@ -435,6 +447,24 @@ describe('one hand', () => {
     },
   );
 
+  test.each(sides)('%s: is enough for 50 of 50', (bowSide) => {
+    const archer = bowman({ bowSide, oneHanded: true });
+    let state = archeryRules.start(['archer'], 4);
+    const at = vec3(bowSide === 'left' ? -0.1 : 0.1, 1.4, -0.5);
+    for (const { centre } of state.targets) {
+      // Where the knuckles must point depends a little on where the nock lies, and that on where they point.
+      let knuckles = vec3(0, 0, -1);
+      for (let round = 0; round < 6; round++) {
+        const rest = addScaled(at, normalise(reject(up, knuckles)), arrowRestHeight);
+        knuckles = releaseTowards(centre, addScaled(rest, knuckles, -braceHeight - oneHandedDraw), oneHandedDraw)!;
+      }
+      const pose = { bowAt: at, knuckles, lost: [otherSide(bowSide)] };
+      archer.forget().hold(pose, 0.1, 0).hold(pose, 2, 1).hold(pose, 1, 0);
+      for (const { actions } of archer.frames) state = archeryRules.step(state, actions).state;
+    }
+    expect(state).toMatchObject({ score: 50, end: 'targets' });
+  });
+
   test('another button puts the arrow back', () => {
     const archer = bowman({ oneHanded: true });
     archer.hold({}, 0.1).hold({}, 1, 1);
@@ -563,10 +593,10 @@ describe('any hands at all', () => {
           }
         }
       }),
-      { seed, numRuns: 150 },
+      { seed, numRuns: 60 },
     );
-    expect(shots).toBeGreaterThan(50);
-    expect(cancelled).toBeGreaterThan(50);
+    expect(shots).toBeGreaterThan(30);
+    expect(cancelled).toBeGreaterThan(30);
   });
 });
 
