@@ -127,6 +127,11 @@ describe('the built-in archer', () => {
     const b = archer.follow(3.5, state).frame;
     expect(distance(a.leftHand!.position, b.leftHand!.position)).toBeLessThan(0.01);
     expect(a.rightHand!.position.y).toBeLessThan(1);
+    // And plays again when there is something to play.
+    const again = archeryRules.start(['archer'], 2);
+    const pressures = Array.from({ length: 40 }, (_, i) => archer.follow(20 + i / 10, again).buttons.right.trigger);
+    expect(pressures[0]).toBe(0);
+    expect(Math.max(...pressures)).toBe(1);
   });
 
   test('shoots where the range lies in the room', () => {
