@@ -70,14 +70,14 @@ interface Posture {
   readonly onString: number;
 }
 
-/** A movement from one posture to another, at rest at both ends, then a pause; the button's pressure goes along. */
+/** A movement to a posture, at rest at both ends; the button's pressure goes along. */
 interface Movement {
   readonly to: Posture;
   readonly seconds: number;
   readonly pressure: number;
   /** How far the string hand swings outward on its way [m]. */
   readonly arc?: number;
-  /** false: the next movement waits until no arrow flies. */
+  /** true: lasts until no arrow flies. */
   readonly waits?: boolean;
 }
 

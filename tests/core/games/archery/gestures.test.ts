@@ -1,7 +1,7 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import { arrowLength, arrowRestHeight, braceHeight, maximumDraw } from '../../../../src/core/games/archery/bow';
-import { otherSide, type Side, wristAround } from '../../../../src/core/games/archery/bow-hand';
+import { fistOf, otherSide, type Side, wristAround } from '../../../../src/core/games/archery/bow-hand';
 import { allReleased, type Button, createButtonPresses } from '../../../../src/core/games/archery/button-presses';
 import { releaseTowards } from '../../../../src/core/games/archery/flight';
 import {
@@ -141,6 +141,10 @@ describe('pressing', () => {
     expect(presses.follow('left', allReleased, true)).toEqual([]);
     expect(presses.follow('left', down, true)).toEqual(['trigger']);
     expect(presses.follow('left', down, false)).toEqual([]);
+    expect(presses.follow('left', down, true)).toEqual([]);
+    // Half pressed may be the end of a press that nobody saw.
+    expect(presses.follow('left', down, false)).toEqual([]);
+    expect(presses.follow('left', { ...allReleased, trigger: 0.5 }, true)).toEqual([]);
     expect(presses.follow('left', down, true)).toEqual([]);
   });
 
@@ -288,9 +292,13 @@ describe('a hand that is lost', () => {
 describe('the aim', () => {
   test('is the line from the string hand to the bow, not the way the knuckles point', () => {
     const direction = normalise(vec3(0.2, 0.1, -1));
+    const pose = { direction, knuckles: normalise(vec3(-0.3, 0.4, -1)) };
     const archer = bowman();
-    archer.drawTo(0.5, { direction, knuckles: normalise(vec3(-0.3, 0.4, -1)) });
-    expect(degrees(Math.acos(dot(archer.bow!.arrow!.direction, direction)))).toBeLessThan(1);
+    archer.drawTo(0.5, pose);
+    const { nock, direction: aim } = archer.bow!.arrow!;
+    expect(degrees(Math.acos(dot(aim, direction)))).toBeLessThan(1);
+    // From the string hand over the arrow rest of the bow as it is seen.
+    expect(distance(nock, fistOf(posed(0, { ...pose, draw: 0.5 }).rightHand!))).toBeLessThan(1e-3);
   });
 
   test('goes half the way to a new direction in 50 ms, at any frame rate', () => {
@@ -412,6 +420,26 @@ describe('hands', () => {
     archer.set({ bowSide: 'right' });
     archer.hold({}, 0.1);
     expect(archer.bow).toMatchObject({ bowSide: 'right' });
+  });
+
+  test('that grip between string and bow nock when they are nearer to the string', () => {
+    const archer = bowman();
+    const between = { draw: -0.07 };
+    archer.hold(between, 0.1).hold(between, 0.1, 1, 'grip');
+    expect(archer.bow).toMatchObject({ bowSide: 'left', stage: 'nocked' });
+  });
+
+  test('that only help in one-handed play do not take the bow', () => {
+    const archer = bowman({ oneHanded: true });
+    archer.hold({ draw: -braceHeight }, 0.1);
+    archer.frame({ draw: -braceHeight }, { right: { grip: 1 } });
+    expect(archer.bow).toMatchObject({ bowSide: 'left' });
+  });
+
+  test('do not draw with the press that took the bow', () => {
+    const archer = bowman({ oneHanded: true, bowSide: null, rest: bowAt });
+    archer.hold({}, 0.1).hold({}, 0.3, 1, 'grip');
+    expect(archer.bow).toMatchObject({ bowSide: 'left', stage: 'empty' });
   });
 
   test('take the bow from its rest, left or right', () => {
