@@ -5,14 +5,14 @@ import { type ArcherBody, createArcherPostures, minimumJerk, mix, type Posture, 
 import type { ArcheryState, Target } from './archery-state';
 import type { Buttons } from './button-presses';
 
-/** A movement from one posture to another, at rest at both ends, then a pause; the button's pressure goes along. */
+/** A movement to a posture, at rest at both ends; the button's pressure goes along. */
 interface Movement {
   readonly to: Posture;
   readonly seconds: number;
   readonly pressure: number;
   /** How far the string hand swings outward on its way [m]. */
   readonly arc?: number;
-  /** false: the next movement waits until no arrow flies. */
+  /** true: lasts until no arrow flies. */
   readonly waits?: boolean;
 }
 
@@ -52,7 +52,7 @@ export function createArcher(body: ArcherBody): Archer {
     };
     const after = followedThrough(full);
     return [
-      { to: taking, seconds: 0.75, pressure: 0, arc: 0.04 },
+      { to: taking, seconds: 0.9, pressure: 0, arc: 0.04 },
       { to: nocking, seconds: 0.7, pressure: 0, arc: 0.1 },
       { to: nocking, seconds: 0.2, pressure: 1 },
       { to: raised, seconds: 0.7, pressure: 1 },

@@ -46,6 +46,9 @@ const shoulderBehind = 0.19;
 const readyTurn = 0.45;
 const drawnTurn = 1.05;
 
+/** Roll of the string hand [rad]: 0 thumb up and elbow low, a quarter turn: palm down and elbow high. */
+const elbowLift = 0.95;
+
 /** A bow and the hand on its string at one moment, relative to the eyes, arena axes. */
 export interface Hold {
   /** Where the arrow passes the bow. */
@@ -135,6 +138,9 @@ export function createArcherPostures(body: ArcherBody): ArcherPostures {
   const facing = (yaw: number, outward: number, upward: number, ahead: number): Vec3 =>
     rotate(fromAxisAngle(up, yaw), vec3(aside * outward, upward, -ahead));
 
+  /** The thumb of the hand on the string: leaning inward, as it does with an elbow behind the arrow rather than under it. */
+  const hooked = (direction: Vec3): Vec3 => facing(yawOf(direction), -Math.sin(elbowLift), Math.cos(elbowLift), 0);
+
   /** A shoulder from the eyes: the trunk turns under a neck that lies behind the eyes along the gaze's yaw. */
   function shoulderOf(side: Side, gaze: Quat, trunkYaw: number): Vec3 {
     const neck = facing(yawOf(rotate(gaze, vec3(0, 0, -1))), 0, -shoulderDrop * arm, -shoulderBehind * arm);
@@ -187,13 +193,13 @@ export function createArcherPostures(body: ArcherBody): ArcherPostures {
     };
   }
 
-  /** Full draw at a target: the nock under the chin, the bow arm nearly straight, the arrow where it must point to hit. */
+  /** Full draw at a target: the nock beside the chin, the bow arm nearly straight, the arrow where it must point to hit. */
   function drawn(target: Vec3): Posture {
     const to = subtract(target, eyes);
     const yaw = yawOf(to);
     const gaze = lookAlong(to);
     const trunkYaw = yaw - aside * drawnTurn;
-    const nock = facing(yaw, 0.05 * arm, -0.17 * arm, 0.04 * arm);
+    const nock = facing(yaw, 0.14 * arm, -0.17 * arm, 0.16 * arm);
     const shoulder = shoulderOf(bowSide, gaze, trunkYaw);
     let draw = 0.4;
     let direction = normalise(to);
@@ -212,7 +218,7 @@ export function createArcherPostures(body: ArcherBody): ArcherPostures {
       gaze,
       trunkYaw,
       hold: { arrowRest: addScaled(nock, direction, braceHeight + draw), direction, draw },
-      free: { fist: nock, knuckles: direction, thumb: up },
+      free: { fist: nock, knuckles: direction, thumb: hooked(direction) },
       onString: 1,
     };
   }
@@ -224,7 +230,7 @@ export function createArcherPostures(body: ArcherBody): ArcherPostures {
     const back = rotate(fromAxisAngle(up, 0.5 * aside), scale(direction, -1));
     return {
       ...shot,
-      free: { fist: addScaled(nock, back, 0.16 * arm), knuckles: direction, thumb: up },
+      free: { fist: addScaled(nock, back, 0.12 * arm), knuckles: direction, thumb: hooked(direction) },
       onString: 0,
     };
   }
@@ -256,7 +262,7 @@ export function createArcherPostures(body: ArcherBody): ArcherPostures {
         stringSide,
         add(lerp(now.free.fist, nock, now.onString), facing(now.trunkYaw, swing, 0, 0)),
         lerp(now.free.knuckles, direction, now.onString),
-        lerp(now.free.thumb, up, now.onString),
+        lerp(now.free.thumb, hooked(direction), now.onString),
       );
       const atHead = (wrist: Pose<'arena'>): TrackedPose =>
         inFloor({ position: add(head, wrist.position), orientation: wrist.orientation });

@@ -1,4 +1,4 @@
-import { addScaled, dot, length, normalise, subtract, type Vec3, vec3 } from '../../math/vec3';
+import { addScaled, dot, length, normalise, scale, subtract, type Vec3, vec3 } from '../../math/vec3';
 import type { Target } from './archery-state';
 import { arrowLength, arrowSpeed } from './bow';
 
@@ -10,6 +10,12 @@ export interface Launch {
   readonly position: Vec3;
   readonly velocity: Vec3;
 }
+
+/** The launch of an arrow let go at this draw [m], its nock here, along a unit direction. */
+export const launchOf = (nock: Vec3, direction: Vec3, draw: number): Launch => ({
+  position: addScaled(nock, direction, arrowLength),
+  velocity: scale(direction, arrowSpeed(draw)),
+});
 
 /** Where the tip is after `seconds` of flight. */
 export const positionAt = ({ position, velocity }: Launch, seconds: number): Vec3 => {

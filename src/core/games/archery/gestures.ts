@@ -88,8 +88,9 @@ export interface ArcheryGestures {
   follow(frame: TrackingFrame, buttons: Buttons): GestureFrame;
 }
 
-/** A press nocks when the fist is this near to the nocking point [m]. */
+/** A press nocks when the fist is this near to the nocking point [m]; it stays near until it is a little further away. */
 export const nockReach = 0.18;
+const nearMargin = 0.03;
 /** A press takes the bow when the fist is this near to its grip in the other hand, or to the bow on its rest [m]. */
 export const takeReach = 0.1;
 export const restReach = 0.25;
@@ -100,12 +101,16 @@ export const oneHandedAimHalfLife = 0.08;
 /** One-handed: growth of the draw [m/s] and where it ends [m]. */
 export const oneHandedDrawSpeed = 0.5;
 export const oneHandedDraw = 0.6;
+/** Without its arrow the bow turns half the way back to how the hand holds it in this time [s]. */
+export const settleHalfLife = 0.08;
 /** A hand may be lost for this long with the string drawn [s]; then the arrow goes back to the quiver. */
 export const holdSeconds = 0.5;
 
 /** Below the first the bow's hand aims, above the second both hands do, between them some of each [m of draw]. */
 const handAims = 0.03;
 const lineAims = 0.15;
+/** Cosine of the angle at which a bow that turns back is back: a quarter of a degree. */
+const settled = Math.cos(Math.PI / 720);
 /** The string leaves the stage `nocked` at this draw [m]. */
 const drawingFrom = 0.05;
 /** Anchored: at least this draw [m], changing more slowly than this [m/s] for this long [s]; until it changes by this much [m]. */
@@ -155,6 +160,8 @@ export function createArcheryGestures(settings: () => ArcheryGestureSettings): A
   /** As the hand held it last, before the arrow turned it, and when that was. */
   let held: { readonly bow: Pose<'floor'>; readonly time: number } | null = null;
   let nocked: Nocked | null = null;
+  /** Where a bow points that is turning back after its arrow has gone, unit; null: with the hand. */
+  let settling: Vec3 | null = null;
   let wasNear = false;
   let lastTime: number | null = null;
 
@@ -178,6 +185,7 @@ export function createArcheryGestures(settings: () => ArcheryGestureSettings): A
     const cancel = (side: Side) => {
       if (!nocked) return;
       cue('cancelled', side, held ? held.bow.position : frame.head.position);
+      settling = nocked.direction;
       nocked = null;
     };
 
@@ -187,6 +195,7 @@ export function createArcheryGestures(settings: () => ArcheryGestureSettings): A
         if (bowSide) cancel(bowSide);
         bowSide = wanted;
         held = null;
+        settling = null;
       }
     }
     takeBow();
@@ -205,9 +214,14 @@ export function createArcheryGestures(settings: () => ArcheryGestureSettings): A
     const anotherHand = nocked && nocked.side !== stringSide;
     if (delta > holdSeconds || !armed || anotherHand || presses.changedKind(stringSide)) cancel(stringSide);
 
-    const string = stringAtRest(inHand);
+    if (settling) {
+      settling = turnTowards(settling, forwardOf(inHand), dampedShare(settleHalfLife, delta));
+      if (dot(settling, forwardOf(inHand)) > settled) settling = null;
+    }
+    const empty = settling ? turnBow(inHand, settling) : inHand;
+    const string = stringAtRest(empty);
     if (nocked) drawOrRelease(nocked);
-    else if (bowHand && stringHand && armed) nock(bowHand, stringHand);
+    else if (bowHand && stringHand && armed) nock(stringHand);
     return { bow: viewed(), actions, haptics, cues };
 
     /** A free hand takes the bow from its rest, or out of the other hand when no arrow is on the string. */
@@ -228,6 +242,7 @@ export function createArcheryGestures(settings: () => ArcheryGestureSettings): A
         }
         bowSide = taker;
         held = null;
+        settling = null;
         wasNear = true;
         cue('taken', taker, fist);
         pulse(taker, 0.5, 0.04);
@@ -236,8 +251,8 @@ export function createArcheryGestures(settings: () => ArcheryGestureSettings): A
       }
     }
 
-    function nock(bow: TrackedPose, hand: TrackedPose): void {
-      const near = oneHanded || distance(fistOf(hand), string) <= nockReach;
+    function nock(hand: TrackedPose): void {
+      const near = oneHanded || distance(fistOf(hand), string) <= nockReach + (wasNear ? nearMargin : 0);
       const button = near ? pressed[stringSide][0] : undefined;
       if (near && !wasNear && !button && !oneHanded) {
         cue('near-string', stringSide, string);
@@ -251,7 +266,7 @@ export function createArcheryGestures(settings: () => ArcheryGestureSettings): A
         stage: 'nocked',
         draw: 0,
         drawSpeed: 0,
-        direction: forwardOf(bowInHand(side, bow)),
+        direction: forwardOf(empty),
         steady: 0,
         anchoredAt: 0,
         lostAt: null,
@@ -360,8 +375,8 @@ export function createArcheryGestures(settings: () => ArcheryGestureSettings): A
       cue('released', side, inHand.position);
       pulse(side, 0.4 + 0.6 * (arrow.draw / maximumDraw), 0.06);
       if (stringSide !== side) pulse(stringSide, 0.3, 0.02);
+      settling = arrow.direction;
       nocked = null;
-      wasNear = true;
     }
 
     /** Where the nock is: behind the arrow rest, so that the arrow always passes the bow where it lies on it. */
@@ -370,7 +385,11 @@ export function createArcheryGestures(settings: () => ArcheryGestureSettings): A
     }
 
     function viewed(): BowView {
-      if (!nocked) return { bowSide: side, bow: inHand, nockPoint: string, draw: 0, stage: 'empty', arrow: null };
+      if (!nocked) {
+        // An arrow that has just gone leaves the bow as it pointed.
+        const bow = settling ? turnBow(inHand, settling) : inHand;
+        return { bowSide: side, bow, nockPoint: stringAtRest(bow), draw: 0, stage: 'empty', arrow: null };
+      }
       const nockPoint = nockOf(nocked);
       return {
         bowSide: side,

@@ -14,6 +14,7 @@ import {
   firstHit,
   gravity,
   type Launch,
+  launchOf,
   launchTowards,
   positionAt,
   reachesGround,
@@ -241,7 +242,8 @@ describe('aiming', () => {
       fc.property(fc.record(within), number(0.25, maximumDraw), number(0.5, 1.9), (target, draw, height) => {
         const nock = vec3(0.1, height, 0.1);
         const way = releaseTowards(target, nock, draw)!;
-        const shot: Launch = { position: addScaled(nock, way, arrowLength), velocity: scale(way, arrowSpeed(draw)) };
+        const shot = launchOf(nock, way, draw);
+        expect(distance(shot.position, nock)).toBeCloseTo(arrowLength, 9);
         const time =
           Math.hypot(target.x - shot.position.x, target.z - shot.position.z) /
           Math.hypot(shot.velocity.x, shot.velocity.z);

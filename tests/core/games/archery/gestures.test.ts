@@ -1,8 +1,9 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import { arrowLength, arrowRestHeight, braceHeight, maximumDraw } from '../../../../src/core/games/archery/bow';
-import { otherSide, type Side, wristAround } from '../../../../src/core/games/archery/bow-hand';
+import { fistOf, otherSide, type Side, wristAround } from '../../../../src/core/games/archery/bow-hand';
 import { allReleased, type Button, createButtonPresses } from '../../../../src/core/games/archery/button-presses';
+import { releaseTowards } from '../../../../src/core/games/archery/flight';
 import {
   createArcheryGestures,
   defaultArcheryGestureSettings,
@@ -13,7 +14,18 @@ import {
 import { archeryRules } from '../../../../src/core/games/archery/rules';
 import type { Transform } from '../../../../src/core/math/pose';
 import { fromAxisAngle, rotate } from '../../../../src/core/math/quat';
-import { add, addScaled, cross, distance, dot, length, normalise, up, vec3 } from '../../../../src/core/math/vec3';
+import {
+  add,
+  addScaled,
+  cross,
+  distance,
+  dot,
+  length,
+  normalise,
+  reject,
+  up,
+  vec3,
+} from '../../../../src/core/math/vec3';
 import { number, rotation, seed, vector } from '../../arbitraries';
 import { bowAt, bowman, posed } from './bowman';
 
@@ -59,6 +71,13 @@ describe('a shot', () => {
       .hold({ draw: 0.5 }, 0.2, 0);
     expect(archer.said).toEqual(['near-string']);
     expect(archer.releases).toEqual([]);
+  });
+
+  test('says once that the string is near, even to a hand that trembles at the edge', () => {
+    const archer = bowman();
+    archer.hold({ draw: 0.4 }, 0.1);
+    archer.move((share) => ({ draw: 0.18 + 0.01 * Math.sin(100 * share) }), 1, 0);
+    expect(archer.said).toEqual(['near-string']);
   });
 
   test('needs an arrow', () => {
@@ -122,6 +141,10 @@ describe('pressing', () => {
     expect(presses.follow('left', allReleased, true)).toEqual([]);
     expect(presses.follow('left', down, true)).toEqual(['trigger']);
     expect(presses.follow('left', down, false)).toEqual([]);
+    expect(presses.follow('left', down, true)).toEqual([]);
+    // Half pressed may be the end of a press that nobody saw.
+    expect(presses.follow('left', down, false)).toEqual([]);
+    expect(presses.follow('left', { ...allReleased, trigger: 0.5 }, true)).toEqual([]);
     expect(presses.follow('left', down, true)).toEqual([]);
   });
 
@@ -269,9 +292,13 @@ describe('a hand that is lost', () => {
 describe('the aim', () => {
   test('is the line from the string hand to the bow, not the way the knuckles point', () => {
     const direction = normalise(vec3(0.2, 0.1, -1));
+    const pose = { direction, knuckles: normalise(vec3(-0.3, 0.4, -1)) };
     const archer = bowman();
-    archer.drawTo(0.5, { direction, knuckles: normalise(vec3(-0.3, 0.4, -1)) });
-    expect(degrees(Math.acos(dot(archer.bow!.arrow!.direction, direction)))).toBeLessThan(1);
+    archer.drawTo(0.5, pose);
+    const { nock, direction: aim } = archer.bow!.arrow!;
+    expect(degrees(Math.acos(dot(aim, direction)))).toBeLessThan(1);
+    // From the string hand over the arrow rest of the bow as it is seen.
+    expect(distance(nock, fistOf(posed(0, { ...pose, draw: 0.5 }).rightHand!))).toBeLessThan(1e-3);
   });
 
   test('goes half the way to a new direction in 50 ms, at any frame rate', () => {
@@ -308,6 +335,20 @@ describe('the aim', () => {
       expect(distance(bow!.nockPoint, addScaled(rest, ahead, -braceHeight - bow!.draw))).toBeLessThan(1e-9);
       if (bow!.arrow) expect(distance(bow!.arrow.direction, ahead)).toBeLessThan(1e-9);
     }
+  });
+
+  test('leaves the bow as it pointed: it turns back to the hand within a moment, without a jump', () => {
+    const knuckles = normalise(vec3(-0.4, 0.3, -1));
+    const archer = bowman();
+    archer.drawTo(0.5, { knuckles }).forget();
+    archer.hold({ draw: 0.5, knuckles }, 0.1, 1).hold({ draw: 0.5, knuckles }, 1, 0);
+    expect(archer.said).toEqual(['released']);
+    const ways = archer.frames.map(({ bow }) => rotate(bow!.bow.orientation, vec3(0, 0, -1)));
+    ways.slice(1).forEach((way, i) => {
+      expect(degrees(Math.acos(Math.min(1, dot(way, ways[i]!))))).toBeLessThan(4);
+    });
+    expect(degrees(Math.acos(dot(ways[0]!, knuckles)))).toBeGreaterThan(20);
+    expect(distance(ways.at(-1)!, knuckles)).toBeLessThan(1e-9);
   });
 
   test('is told in the arena wherever the floor lies in it', () => {
@@ -381,6 +422,26 @@ describe('hands', () => {
     expect(archer.bow).toMatchObject({ bowSide: 'right' });
   });
 
+  test('that grip between string and bow nock when they are nearer to the string', () => {
+    const archer = bowman();
+    const between = { draw: -0.07 };
+    archer.hold(between, 0.1).hold(between, 0.1, 1, 'grip');
+    expect(archer.bow).toMatchObject({ bowSide: 'left', stage: 'nocked' });
+  });
+
+  test('that only help in one-handed play do not take the bow', () => {
+    const archer = bowman({ oneHanded: true });
+    archer.hold({ draw: -braceHeight }, 0.1);
+    archer.frame({ draw: -braceHeight }, { right: { grip: 1 } });
+    expect(archer.bow).toMatchObject({ bowSide: 'left' });
+  });
+
+  test('do not draw with the press that took the bow', () => {
+    const archer = bowman({ oneHanded: true, bowSide: null, rest: bowAt });
+    archer.hold({}, 0.1).hold({}, 0.3, 1, 'grip');
+    expect(archer.bow).toMatchObject({ bowSide: 'left', stage: 'empty' });
+  });
+
   test('take the bow from its rest, left or right', () => {
     for (const side of sides) {
       const archer = bowman({ bowSide: null, rest: vec3(0.1, 1, -0.5) });
@@ -413,6 +474,24 @@ describe('one hand', () => {
       expect(distance(archer.releases[0]!.direction, pose.knuckles)).toBeLessThan(1e-3);
     },
   );
+
+  test.each(sides)('%s: is enough for 50 of 50', (bowSide) => {
+    const archer = bowman({ bowSide, oneHanded: true });
+    let state = archeryRules.start(['archer'], 4);
+    const at = vec3(bowSide === 'left' ? -0.1 : 0.1, 1.4, -0.5);
+    for (const { centre } of state.targets) {
+      // Where the knuckles must point depends a little on where the nock lies, and that on where they point.
+      let knuckles = vec3(0, 0, -1);
+      for (let round = 0; round < 6; round++) {
+        const rest = addScaled(at, normalise(reject(up, knuckles)), arrowRestHeight);
+        knuckles = releaseTowards(centre, addScaled(rest, knuckles, -braceHeight - oneHandedDraw), oneHandedDraw)!;
+      }
+      const pose = { bowAt: at, knuckles, lost: [otherSide(bowSide)] };
+      archer.forget().hold(pose, 0.1, 0).hold(pose, 2, 1).hold(pose, 1, 0);
+      for (const { actions } of archer.frames) state = archeryRules.step(state, actions).state;
+    }
+    expect(state).toMatchObject({ score: 50, end: 'targets' });
+  });
 
   test('another button puts the arrow back', () => {
     const archer = bowman({ oneHanded: true });
@@ -453,7 +532,7 @@ describe('any hands at all', () => {
     { nil: null },
   );
   const pressure = fc.oneof(fc.constantFrom(0, 1), number(0, 1));
-  const pressures = fc.record({ trigger: pressure, grip: fc.constant(0), pinch: fc.constant(0) });
+  const pressures = fc.record({ trigger: pressure, grip: fc.constant<number>(0), pinch: fc.constant<number>(0) });
   /** Mostly somebody who nocks, draws and lets go in some order, with everything that can go wrong in between. */
   const moment = fc.record({
     seconds: fc.oneof({ weight: 8, arbitrary: number(0.005, 0.03) }, { weight: 1, arbitrary: number(-0.1, 1) }),
@@ -542,10 +621,10 @@ describe('any hands at all', () => {
           }
         }
       }),
-      { seed, numRuns: 150 },
+      { seed, numRuns: 60 },
     );
-    expect(shots).toBeGreaterThan(50);
-    expect(cancelled).toBeGreaterThan(50);
+    expect(shots).toBeGreaterThan(30);
+    expect(cancelled).toBeGreaterThan(30);
   });
 });
 
