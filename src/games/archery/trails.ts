@@ -17,7 +17,7 @@ const memory = 0.32;
 const points = 20;
 /** No archer has more arrows in the air. */
 const most = 4;
-const width = 0.024;
+const width = 0.034;
 
 /** arrowLength [m]: the ribbon begins at the nock. */
 export function createTrails(arrowLength: number): Trails {
@@ -46,7 +46,7 @@ export function createTrails(arrowLength: number): Trails {
         gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
       }`,
     fragmentShader: `varying float alpha;
-      void main() { gl_FragColor = vec4(1.0, 0.985, 0.93, alpha * alpha * 0.62); }`,
+      void main() { gl_FragColor = vec4(1.0, 0.985, 0.93, alpha * alpha * 0.8); }`,
   });
   const object = new Mesh(geometry, material);
   object.name = 'trails';
