@@ -18,22 +18,27 @@ function tuftGeometry(): BufferGeometry {
   const positions: number[] = [];
   const normals: number[] = [];
   const colors: number[] = [];
-  const foot = new Color('#5d7d35');
-  const tip = new Color('#a9bd62');
+  const foot = new Color('#6f8f40');
+  const tip = new Color('#b3c16a');
   for (let blade = 0; blade < 6; blade++) {
     const turn = (blade / 6) * 2 * Math.PI + random(-0.4, 0.4);
-    const height = random(0.09, 0.19);
+    const height = random(0.07, 0.16);
     const lean = random(0.02, 0.09);
-    const across = { x: Math.cos(turn) * 0.007, z: Math.sin(turn) * 0.007 };
+    const across = { x: Math.cos(turn) * 0.008, z: Math.sin(turn) * 0.008 };
     const out = { x: -Math.sin(turn), z: Math.cos(turn) };
     const root = random(0, 0.03);
-    for (const end of [-1, 1]) {
+    const corner = (end: number) => {
       positions.push(out.x * root + end * across.x, 0, out.z * root + end * across.z);
       colors.push(...foot.toArray());
+    };
+    // Both sides by two triangles: a double-sided material would turn the normals down on one of them.
+    for (const side of [-1, 1]) {
+      corner(-side);
+      corner(side);
+      positions.push(out.x * (root + lean), height, out.z * (root + lean));
+      colors.push(...tip.toArray());
+      for (let i = 0; i < 3; i++) normals.push(0, 1, 0);
     }
-    positions.push(out.x * (root + lean), height, out.z * (root + lean));
-    colors.push(...tip.toArray());
-    for (let i = 0; i < 3; i++) normals.push(0, 1, 0);
   }
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new Float32BufferAttribute(positions, 3));
@@ -71,11 +76,7 @@ export function createTufts(): InstancedMesh {
   for (let i = 0; i < 420; i++) {
     spots.push({ x: random(-side, side), z: field.back + random(-0.35, 0.1), size: random(0.6, 1.4) });
   }
-  const tufts = new InstancedMesh(
-    tuftGeometry(),
-    new MeshLambertMaterial({ vertexColors: true, side: 2 }),
-    spots.length,
-  );
+  const tufts = new InstancedMesh(tuftGeometry(), new MeshLambertMaterial({ vertexColors: true }), spots.length);
   tufts.name = 'tufts';
   tufts.receiveShadow = true;
   const matrix = new Matrix4();
