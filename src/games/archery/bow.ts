@@ -10,6 +10,7 @@ import {
   MeshLambertMaterial,
   MeshStandardMaterial,
   Quaternion,
+  ShaderMaterial,
   Vector3,
 } from 'three';
 import type { BowView } from '../../core/games/archery/archery-state';
@@ -33,7 +34,6 @@ export interface Bow {
 
 /** Corners of a cross-section. */
 const sides = 10;
-const stringRadius = 0.0021;
 
 /** A rounded rectangle of half-extents 1: its corners and outward normals. */
 const profile = Array.from({ length: sides }, (_, i) => {
@@ -103,13 +103,13 @@ function sweepIndex(count: number, offset: number, down: boolean): number[] {
 
 function sweepColors(sections: readonly Section[]): number[] {
   return sections.flatMap(({ belly, back }) =>
-    profile.flatMap(({ nz }) => (nz > 0.35 ? belly : nz < -0.35 ? back : back.clone().lerp(belly, 0.5)).toArray()),
+    profile.flatMap(({ nz }) => (nz > 0.45 ? belly : nz < -0.45 ? back : maple).toArray()),
   );
 }
 
 const maple = new Color('#d8a866');
-const walnut = new Color('#6b3f22');
-const darkWalnut = new Color('#4a2a17');
+const walnut = new Color('#935c35');
+const darkWalnut = new Color('#744525');
 const horn = new Color('#efe6d2');
 const leather = new Color('#2c2320');
 const stitching = new Color('#c98f4a');
@@ -175,15 +175,36 @@ function sweptGeometry(bodies: readonly { sections: readonly Section[]; down: bo
 
 const limbSections = (bend: number): Section[] => limbLine(bend).map(limbSection);
 
+/** A cord along +Y that is never thinner than a pixel or so, near or far, yet no bar before the eyes. */
+function createStringMaterial(color: string, thickness: number): ShaderMaterial {
+  return new ShaderMaterial({
+    uniforms: { color: { value: new Color(color) } },
+    vertexShader: `varying float lit;
+      void main() {
+        vec4 middle = modelViewMatrix * vec4(0.0, position.y, 0.0, 1.0);
+        vec3 outward = (modelViewMatrix * vec4(position.x, 0.0, position.z, 0.0)).xyz;
+        float radius = clamp(-middle.z * 0.0009, 0.0006, 0.004) * ${thickness.toFixed(2)};
+        vec3 up = (viewMatrix * vec4(0.35, 0.8, 0.5, 0.0)).xyz;
+        lit = 0.72 + 0.28 * dot(outward, up);
+        gl_Position = projectionMatrix * (middle + vec4(outward * radius, 0.0));
+      }`,
+    fragmentShader: `varying float lit; uniform vec3 color;
+      void main() {
+        gl_FragColor = vec4(color * lit, 1.0);
+        #include <colorspace_fragment>
+      }`,
+  });
+}
+
 const yAxis = new Vector3(0, 1, 0);
 
 /** Lays a unit cylinder along +Y between two points. */
-function stretch(mesh: Mesh, from: Vec3, to: Vec3, radius: number): void {
+function stretch(mesh: Mesh, from: Vec3, to: Vec3): void {
   const along = new Vector3(to.x - from.x, to.y - from.y, to.z - from.z);
   const length = along.length();
   mesh.position.set((from.x + to.x) / 2, (from.y + to.y) / 2, (from.z + to.z) / 2);
   mesh.quaternion.copy(new Quaternion().setFromUnitVectors(yAxis, along.normalize()));
-  mesh.scale.set(radius, length, radius);
+  mesh.scale.set(1, length, 1);
 }
 
 /** A recurve bow of walnut, maple and horn. braceHeight [m]: from the grip to the string at rest. */
@@ -193,7 +214,7 @@ export function createBow(quality: Quality, braceHeight: number): Bow {
     quality === 'high'
       ? new MeshStandardMaterial({ vertexColors: true, roughness: 0.42, metalness: 0 })
       : new MeshLambertMaterial({ vertexColors: true });
-  const fibre = new MeshLambertMaterial({ color: '#f3efe4' });
+  const fibre = createStringMaterial('#f3efe4', 1);
   const riser = new Mesh(sweptGeometry([{ sections: riserSections(), down: false }]), material);
   const atRest = limbSections(0);
   const limbGeometry = sweptGeometry([
@@ -204,12 +225,12 @@ export function createBow(quality: Quality, braceHeight: number): Bow {
   const cylinder = new CylinderGeometry(1, 1, 1, 6, 1, true);
   const upperString = new Mesh(cylinder, fibre);
   const lowerString = new Mesh(cylinder, fibre);
-  const serving = new Mesh(cylinder, new MeshLambertMaterial({ color: '#3a2f2a' }));
+  const serving = new Mesh(cylinder, createStringMaterial('#3a2f2a', 1.6));
   const object = new Group();
   object.name = 'bow';
   object.add(riser, limbs, upperString, lowerString, serving);
   for (const mesh of object.children) {
-    mesh.castShadow = true;
+    mesh.castShadow = mesh === riser || mesh === limbs;
     mesh.frustumCulled = false;
   }
   object.visible = false;
@@ -241,8 +262,8 @@ export function createBow(quality: Quality, braceHeight: number): Bow {
       const nock = rotate(conjugate(orientation), subtract(view.nockPoint, position));
       bendLimbs(strung.bendFor(nock));
       const { upper, lower } = strung.tips(bend);
-      stretch(upperString, upper, nock, stringRadius);
-      stretch(lowerString, lower, nock, stringRadius);
+      stretch(upperString, upper, nock);
+      stretch(lowerString, lower, nock);
       // The serving is wound round the string where the arrow sits; it follows the upper half of the bent string.
       const nearby = (tip: Vec3) => {
         const share = 0.035 / Math.hypot(tip.x - nock.x, tip.y - nock.y, tip.z - nock.z);
@@ -252,7 +273,7 @@ export function createBow(quality: Quality, braceHeight: number): Bow {
           nock.z + (tip.z - nock.z) * share,
         );
       };
-      stretch(serving, nearby(upper), nock, stringRadius * 1.7);
+      stretch(serving, nearby(upper), nock);
       const outward = (at: Vec3): Vec3 => {
         const turned = rotate(orientation, at);
         return vec3(position.x + turned.x, position.y + turned.y, position.z + turned.z);

@@ -1,16 +1,16 @@
 import {
   BoxGeometry,
-  BufferGeometry,
-  Float32BufferAttribute,
+  type BufferGeometry,
   Group,
   Mesh,
   MeshBasicMaterial,
   MeshLambertMaterial,
+  PlaneGeometry,
 } from 'three';
+import { mergeGeometries } from 'three/examples/jsm/utils/BufferGeometryUtils.js';
 import { createDrawnTexture } from '../../scene/drawn-texture';
 import { merged, painted } from '../../scene/painted-geometry';
 import type { Quality } from '../../scene/renderer';
-import { field } from './field';
 import { signFont } from './lettering';
 import { woodColor } from './wood';
 
@@ -37,56 +37,57 @@ function paintLabels(context: CanvasRenderingContext2D, labels: readonly string[
   });
 }
 
-/** One quad for each sign, each with its part of the texture; all turned a little towards the archer. */
-function faces(distances: readonly number[], x: number): BufferGeometry {
-  const positions: number[] = [];
-  const uvs: number[] = [];
-  distances.forEach((distance, row) => {
-    const angle = -Math.atan2(x, distance + 3);
-    const right = { x: Math.cos(angle), z: -Math.sin(angle) };
-    const low = 0.52;
-    const corner = (u: number, v: number) => {
-      positions.push(
-        x + right.x * (u - 0.5) * signWidth + Math.sin(angle) * 0.016,
-        low + v * signHeight,
-        -distance + right.z * (u - 0.5) * signWidth + Math.cos(angle) * 0.016,
-      );
-      uvs.push(u, 1 - (row + 1 - v) / distances.length);
-    };
-    for (const [u, v] of [
-      [0, 0],
-      [1, 0],
-      [1, 1],
-      [0, 0],
-      [1, 1],
-      [0, 1],
-    ] as const)
-      corner(u, v);
-  });
-  const geometry = new BufferGeometry();
-  geometry.setAttribute('position', new Float32BufferAttribute(positions, 3));
-  geometry.setAttribute('uv', new Float32BufferAttribute(uvs, 2));
-  return geometry;
+/** Beyond the ropes and above them, where at most a few of them hide behind targets [m]. */
+const aside = 4.5;
+const middle = 1.08;
+
+/** Where a sign stands and how it is turned to the archer. */
+interface Place {
+  readonly x: number;
+  readonly z: number;
+  readonly turn: number;
+  /** Row of its label. */
+  readonly row: number;
 }
 
-/** A sign by the rope at each distance [m] from the archer. Arena frame. */
+function placesOf(distances: readonly number[]): Place[] {
+  return [-1, 1].flatMap((side) =>
+    distances.map((distance, row) => ({
+      x: side * aside,
+      z: -distance,
+      turn: -Math.atan2(side * aside, distance + 3),
+      row,
+    })),
+  );
+}
+
+/** One quad for each sign, each with its part of the texture. */
+function faces(places: readonly Place[], rows: number): BufferGeometry {
+  return mergeGeometries(
+    places.map(({ x, z, turn, row }) => {
+      const face = new PlaneGeometry(signWidth, signHeight);
+      const uv = face.getAttribute('uv');
+      for (let i = 0; i < uv.count; i++) uv.setY(i, 1 - (row + 1 - uv.getY(i)) / rows);
+      return face.translate(0, 0, 0.016).rotateY(turn).translate(x, middle, z);
+    }),
+  );
+}
+
+/** Signs on both sides of the field at each distance [m] from the archer. Arena frame. */
 export function createDistanceSigns(distances: readonly number[], quality: Quality): Group {
-  const x = field.halfWidth - 0.45;
   const { texture, draw } = createDrawnTexture(cell.width, cell.height * distances.length, quality);
   draw((context) => paintLabels(context, distances.map(distanceLabel)));
-  const boards = distances.flatMap((distance) => {
-    const angle = -Math.atan2(x, distance + 3);
-    const board = new BoxGeometry(signWidth + 0.03, signHeight + 0.03, 0.024)
-      .rotateY(angle)
-      .translate(x, 0.66, -distance);
-    const stake = new BoxGeometry(0.05, 0.62, 0.03).rotateY(angle).translate(x, 0.3, -distance - 0.02);
-    return [painted(board, woodColor(distance)), painted(stake, woodColor(distance + 1))];
+  const places = placesOf(distances);
+  const boards = places.flatMap(({ x, z, turn, row }) => {
+    const board = new BoxGeometry(signWidth + 0.03, signHeight + 0.03, 0.024).rotateY(turn).translate(x, middle, z);
+    const stake = new BoxGeometry(0.05, middle, 0.03).rotateY(turn).translate(x, middle / 2, z - 0.02);
+    return [painted(board, woodColor(row)), painted(stake, woodColor(row + 1))];
   });
   const signs = new Group();
   signs.name = 'distance signs';
   const solid = new Mesh(merged(boards), new MeshLambertMaterial({ vertexColors: true }));
   solid.castShadow = true;
   solid.receiveShadow = true;
-  signs.add(solid, new Mesh(faces(distances, x), new MeshBasicMaterial({ map: texture })));
+  signs.add(solid, new Mesh(faces(places, distances.length), new MeshBasicMaterial({ map: texture })));
   return signs;
 }

@@ -13,9 +13,9 @@ export function createGround(
   const material = new MeshLambertMaterial({ color: '#ffffff' });
   const uniforms = {
     noise: { value: noise },
-    lightStripe: { value: new Color('#86b04a') },
-    darkStripe: { value: new Color('#6b9a3d') },
-    meadow: { value: new Color('#7f9c4c') },
+    lightStripe: { value: new Color('#80a548') },
+    darkStripe: { value: new Color('#658c3b') },
+    meadow: { value: new Color('#7b944a') },
     straw: { value: new Color('#b3ab62') },
   };
   material.onBeforeCompile = (shader) => {
@@ -29,11 +29,7 @@ export function createGround(
         `#include <common>
         varying vec2 onGround;
         uniform sampler2D noise;
-        uniform vec3 lightStripe; uniform vec3 darkStripe; uniform vec3 meadow; uniform vec3 straw;
-        float chalkLine(float off, float spread) {
-          float half_ = max(0.024, spread * 0.6);
-          return (1.0 - smoothstep(half_ - spread * 0.5, half_ + spread * 0.5, abs(off))) * min(1.0, 0.024 / half_ + 0.15);
-        }`,
+        uniform vec3 lightStripe; uniform vec3 darkStripe; uniform vec3 meadow; uniform vec3 straw;`,
       )
       .replace(
         '#include <map_fragment>',
@@ -53,9 +49,11 @@ export function createGround(
         float blades = near.b - 0.42;
         grass *= 1.0 + blades * mix(0.62, 0.95, border);
         // Chalk: never thinner than a pixel, only fainter.
-        float chalk = 0.0;
+        float off = 1e3;
+        ${distances.map((distance) => `off = min(off, abs(onGround.y + ${distance.toFixed(3)}));`).join('\n        ')}
         float spread = fwidth(onGround.y);
-        ${distances.map((distance) => `chalk = max(chalk, chalkLine(onGround.y + ${distance.toFixed(3)}, spread));`).join('\n        ')}
+        float reach = max(0.024, spread * 0.6);
+        float chalk = (1.0 - smoothstep(reach - spread * 0.5, reach + spread * 0.5, off)) * min(1.0, 0.024 / reach + 0.15);
         chalk *= step(abs(onGround.x), ${(field.halfWidth - 0.25).toFixed(2)}) * (0.75 + 0.6 * blades);
         diffuseColor.rgb *= mix(grass, vec3(0.9, 0.92, 0.84), clamp(chalk, 0.0, 0.85));`,
       );

@@ -91,12 +91,21 @@ function lump(radius: number, detail: number, random: () => number): BufferGeome
     corner.fromBufferAttribute(position, i);
     const key = corner
       .toArray()
-      .map((value) => value.toFixed(3))
+      .map((value) => Math.round(value * 1000))
       .join();
     const push = pushed.get(key) ?? 0.84 + 0.32 * random();
     pushed.set(key, push);
     corner.multiplyScalar(push);
     position.setXYZ(i, corner.x, corner.y * 0.92, corner.z);
+  }
+  // Between a crystal, which is a face's own normal, and a balloon, which is that of a ball.
+  geometry.computeVertexNormals();
+  const normal = geometry.getAttribute('normal');
+  const blended = new Vector3();
+  for (let i = 0; i < position.count; i++) {
+    corner.fromBufferAttribute(position, i).normalize();
+    blended.fromBufferAttribute(normal, i).lerp(corner, 0.6).normalize();
+    normal.setXYZ(i, blended.x, blended.y, blended.z);
   }
   return geometry;
 }
@@ -113,7 +122,7 @@ function tree(
     random() < 0.3 ? '#9b8f80' : '#6d5542',
   );
   if (random() < 0.3) {
-    const color = new Color().setHSL(random(0.33, 0.39), random(0.24, 0.34), random(0.24, 0.31));
+    const color = new Color().setHSL(random(0.34, 0.4), random(0.26, 0.36), random(0.2, 0.27));
     return [
       trunk,
       ...[0, 1, 2].map((layer) => {
@@ -124,7 +133,7 @@ function tree(
       }),
     ];
   }
-  const color = new Color().setHSL(random(0.2, 0.29), random(0.34, 0.46), random(0.27, 0.36));
+  const color = new Color().setHSL(random(0.225, 0.32), random(0.4, 0.52), random(0.25, 0.33));
   const lumps = Array.from({ length: 3 + Math.floor(random(0, 2)) }, (_, i) => {
     const radius = height * random(0.17, 0.25) * (i === 0 ? 1.3 : 1);
     const angle = random(0, 2 * Math.PI);
@@ -143,11 +152,12 @@ function treeGeometry(quality: Quality): BufferGeometry {
   const random = createScatter(20231);
   const detail = quality === 'high' ? 2 : 1;
   const parts: BufferGeometry[] = [];
-  const plant = (x: number, z: number, height: number) => parts.push(...tree(x, z, height, random, detail));
+  const plant = (x: number, z: number, height: number, fine = detail) =>
+    parts.push(...tree(x, z, height, random, fine));
   const inWood = quality === 'high' ? 34 : 22;
   for (let i = 0; i < inWood; i++) {
     const x = -27 + (54 * (i + random(0.1, 0.9))) / inWood;
-    plant(x, -random(24, 33) + Math.abs(x) * 0.22, random(4, 7));
+    plant(x, -random(24, 33) + Math.abs(x) * 0.22, random(4, 7), detail - 1);
   }
   for (const side of [-1, 1]) {
     const count = quality === 'high' ? 9 : 6;
@@ -155,17 +165,18 @@ function treeGeometry(quality: Quality): BufferGeometry {
       plant(side * random(11, 19), -17 + (36 * (i + random(0.1, 0.9))) / count, random(3.6, 6.4));
     }
   }
-  for (let i = 0; i < 9; i++) plant(-18 + 36 * ((i + random(0.2, 0.8)) / 9), random(17, 27), random(4.2, 6.8));
+  for (let i = 0; i < 9; i++)
+    plant(-18 + 36 * ((i + random(0.2, 0.8)) / 9), random(17, 27), random(4.2, 6.8), detail - 1);
   for (let i = 0; i < (quality === 'high' ? 46 : 18); i++) {
     // Bushes.
     const side = random() < 0.5 ? -1 : 1;
     const radius = random(0.35, 0.9);
-    const x = side * random(6.2, 13);
+    const x = side * random(7.4, 13);
     const z = random(-19, 7);
-    const color = new Color().setHSL(random(0.2, 0.3), random(0.3, 0.42), random(0.25, 0.34));
+    const color = new Color().setHSL(random(0.25, 0.33), random(0.4, 0.52), random(0.22, 0.3));
     parts.push(
       foliage(
-        lump(radius, 1, random)
+        lump(radius, detail, random)
           .scale(1.25, 0.8, 1.1)
           .translate(x, radius * 0.35, z),
         color,
@@ -186,7 +197,7 @@ export function createLandscape(quality: Quality): Group {
     new MeshBasicMaterial({ vertexColors: true, side: 2, fog: false, toneMapped: false }),
   );
   hills.renderOrder = -1;
-  const trees = new Mesh(treeGeometry(quality), new MeshLambertMaterial({ vertexColors: true, flatShading: true }));
+  const trees = new Mesh(treeGeometry(quality), new MeshLambertMaterial({ vertexColors: true }));
   landscape.add(hills, trees);
   return landscape;
 }

@@ -20,6 +20,7 @@ import { createGround } from './ground';
 import { createLandscape } from './landscape';
 import { createNoiseTexture } from './noise-texture';
 import { createSky, hazeColor } from './sky';
+import { createTufts } from './tufts';
 import { createZone } from './zone';
 
 /** The place where archery is played; stands in for the studio (`arena.setSurroundings`). Its object is in the arena frame, placed in the floor frame. */
@@ -87,6 +88,7 @@ export function createRange(
     createDistanceSigns(distances, quality),
     zone.object,
   );
+  if (quality === 'high') object.add(createTufts());
   const sun = inFloor(...towardsSun.toArray());
   const middle = inFloor(0, 0, -5).add(object.position);
   return {

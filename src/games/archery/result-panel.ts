@@ -37,7 +37,7 @@ export function onRestartButton(x: number, y: number): boolean {
 export function createResultPanel(quality: Quality): ResultPanel {
   const object = new Group();
   object.name = 'result panel';
-  object.position.set(0, 1.42, -2.1);
+  object.position.z = -2.1;
   const { texture, draw } = createDrawnTexture(resultSize.width, resultSize.height, quality);
   const sheet = new Mesh(
     new PlaneGeometry(width, height),
@@ -66,6 +66,8 @@ export function createResultPanel(quality: Quality): ResultPanel {
     object,
     show(state) {
       shown = state.phase === 'over' ? state : null;
+      // A little below the eyes, standing or seated.
+      object.position.y = state.options.eyeHeight - 0.18;
       object.visible = shown !== null;
       redraw();
     },

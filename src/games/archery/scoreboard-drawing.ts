@@ -81,18 +81,17 @@ function pip(context: CanvasRenderingContext2D, x: number, y: number, height: nu
   context.fillStyle = left ? ink.accent : 'transparent';
   context.beginPath();
   context.moveTo(0, height);
-  context.lineTo(0, 22);
-  context.moveTo(-13, height);
-  context.lineTo(0, height - 18);
-  context.lineTo(13, height);
-  context.moveTo(-13, height - 20);
-  context.lineTo(0, height - 38);
-  context.lineTo(13, height - 20);
+  context.lineTo(0, 26);
+  for (const y of [height - 2, height - 16]) {
+    context.moveTo(-12, y + 6);
+    context.lineTo(0, y - 8);
+    context.lineTo(12, y + 6);
+  }
   context.stroke();
   context.beginPath();
-  context.moveTo(0, 0);
-  context.lineTo(13, 28);
-  context.lineTo(-13, 28);
+  context.moveTo(0, -4);
+  context.lineTo(11, 28);
+  context.lineTo(-11, 28);
   context.closePath();
   context.fill();
   context.stroke();

@@ -18,7 +18,7 @@ export interface Scoreboard {
 const place = { x: -4.9, z: -9 };
 const width = 3;
 const height = (width * boardSize.height) / boardSize.width;
-const middle = 3.3;
+const middle = 3.6;
 
 export function createScoreboard(quality: Quality): Scoreboard {
   const object = new Group();

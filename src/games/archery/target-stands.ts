@@ -182,7 +182,7 @@ function paintPlate(context: CanvasRenderingContext2D, row: number, points: numb
 const unlit = new Color('#6b4f35');
 const lit = new Color('#ffe9a6');
 const untouched = new Color('#ffffff');
-const done = new Color('#8f8f8f');
+const done = new Color('#b0b0b0');
 
 export function createTargetStands(quality: Quality): TargetStands {
   const object = new Group();
@@ -212,7 +212,11 @@ export function createTargetStands(quality: Quality): TargetStands {
     stands.castShadow = stands.receiveShadow = true;
     faces = new InstancedMesh(new CircleGeometry(1, 56), face, targets.length);
     faces.receiveShadow = true;
-    rims = new InstancedMesh(new TorusGeometry(1.012, 0.021, 10, 64), glow, targets.length);
+    rims = new InstancedMesh(
+      new TorusGeometry(1.012, 0.021, quality === 'high' ? 10 : 4, quality === 'high' ? 64 : 36),
+      glow,
+      targets.length,
+    );
     const shadows = createContactShadows(
       targets.map(({ centre, normal, radius }) => ({
         x: centre.x - normal.x * 0.25,

@@ -1,6 +1,7 @@
 import { BufferAttribute, BufferGeometry, DoubleSide, DynamicDrawUsage, Mesh, ShaderMaterial } from 'three';
 import type { Arrow } from '../../core/games/archery/archery-state';
-import { add, addScaled, cross, normalise, scale, subtract, up, type Vec3 } from '../../core/math/vec3';
+import { smoothstep } from '../../core/math/damper';
+import { add, addScaled, cross, distance, normalise, scale, subtract, up, type Vec3 } from '../../core/math/vec3';
 import { disposeTree } from '../../scene/dispose-tree';
 import { arrowPose } from './arrow-pose';
 
@@ -17,7 +18,7 @@ const memory = 0.32;
 const points = 20;
 /** No archer has more arrows in the air. */
 const most = 4;
-const width = 0.024;
+const width = 0.034;
 
 /** arrowLength [m]: the ribbon begins at the nock. */
 export function createTrails(arrowLength: number): Trails {
@@ -46,7 +47,7 @@ export function createTrails(arrowLength: number): Trails {
         gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
       }`,
     fragmentShader: `varying float alpha;
-      void main() { gl_FragColor = vec4(1.0, 0.985, 0.93, alpha * alpha * 0.62); }`,
+      void main() { gl_FragColor = vec4(1.0, 0.985, 0.93, alpha * alpha * 0.8); }`,
   });
   const object = new Mesh(geometry, material);
   object.name = 'trails';
@@ -67,8 +68,10 @@ export function createTrails(arrowLength: number): Trails {
       const right = subtract(middle, aside);
       positions.setXYZ(at, left.x, left.y, left.z);
       positions.setXYZ(at + 1, right.x, right.y, right.z);
-      strengths.setX(at, 1 - share);
-      strengths.setX(at + 1, 1 - share);
+      // Right before the eyes a ribbon would be a veil.
+      const strength = (1 - share) * smoothstep(0.9, 3, distance(middle, head));
+      strengths.setX(at, strength);
+      strengths.setX(at + 1, strength);
     }
   }
 
