@@ -3,6 +3,7 @@ import {
   Color,
   ConeGeometry,
   CylinderGeometry,
+  DoubleSide,
   Float32BufferAttribute,
   Group,
   IcosahedronGeometry,
@@ -192,10 +193,15 @@ function treeGeometry(quality: Quality): BufferGeometry {
 export function createLandscape(quality: Quality): Group {
   const landscape = new Group();
   landscape.name = 'landscape';
-  const hills = new Mesh(
-    merged(ridges.map((ridge, index) => ridgeGeometry(ridge, 31 + index))),
-    new MeshBasicMaterial({ vertexColors: true, side: 2, fog: false, toneMapped: false }),
-  );
+  const far = new MeshBasicMaterial({ vertexColors: true, side: DoubleSide, fog: false, toneMapped: false });
+  far.onBeforeCompile = (shader) => {
+    // A mirror's tilted near plane tilts its far plane too: what is far away must not be cut off by it.
+    shader.vertexShader = shader.vertexShader.replace(
+      '#include <project_vertex>',
+      '#include <project_vertex>\ngl_Position.z = min(gl_Position.z, 0.9999 * gl_Position.w);',
+    );
+  };
+  const hills = new Mesh(merged(ridges.map((ridge, index) => ridgeGeometry(ridge, 31 + index))), far);
   hills.renderOrder = -1;
   const trees = new Mesh(treeGeometry(quality), new MeshLambertMaterial({ vertexColors: true }));
   landscape.add(hills, trees);

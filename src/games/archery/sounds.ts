@@ -2,6 +2,7 @@ import type { ArcheryEvent, ArcheryState, Arrow } from '../../core/games/archery
 import { maximumDraw } from '../../core/games/archery/bow';
 import { positionAt } from '../../core/games/archery/flight';
 import type { BowCue } from '../../core/games/archery/gestures';
+import { clamp } from '../../core/math/damper';
 import { invertTransform, type Pose, type Transform, transformPoint, transformPose } from '../../core/math/pose';
 import { rotate } from '../../core/math/quat';
 import { length, type Vec3, vec3 } from '../../core/math/vec3';
@@ -34,6 +35,26 @@ const fadeSeconds = 0.03;
 /** Steps of the draw for which creak and twang are rendered. */
 const drawSteps = 8;
 
+type Recipe = (rate: number) => Float32Array<ArrayBuffer>;
+
+const creakName = (share: number): string => `creak ${share}`;
+const twangName = (share: number): string => `twang ${share}`;
+/** There is a chime for each target of the game; other scores have that of the nearest. */
+const chimeName = (points: number): string => `chime ${clamp(5 * Math.round(points / 5), 5, 20)}`;
+
+/** All that is played, by name. */
+const recipes: ReadonlyMap<string, Recipe> = new Map<string, Recipe>([
+  ...Object.entries({ bell, click, earth, rattle, thud, warning, whoosh }),
+  ...Array.from({ length: drawSteps + 1 }, (_, step): [string, Recipe][] => {
+    const share = step / drawSteps;
+    return [
+      [creakName(share), (rate) => creak(rate, share)],
+      [twangName(share), (rate) => twang(rate, share)],
+    ];
+  }).flat(),
+  ...[5, 10, 15, 20].map((points): [string, Recipe] => [chimeName(points), (rate) => chime(rate, points)]),
+]);
+
 function createPlayer(context: AudioContext) {
   const master = context.createGain();
   const limiter = context.createDynamicsCompressor();
@@ -41,20 +62,30 @@ function createPlayer(context: AudioContext) {
   const buffers = new Map<string, AudioBuffer>();
 
   /** Rendered once, at the context's own rate. */
-  function buffer(name: string, make: (rate: number) => Float32Array<ArrayBuffer>): AudioBuffer {
+  function buffer(name: string): AudioBuffer {
     const known = buffers.get(name);
     if (known) return known;
-    const samples = make(context.sampleRate);
+    const recipe = recipes.get(name);
+    if (!recipe) throw new Error(`games/archery/sounds: there is no sound ${name}`);
+    const samples = recipe(context.sampleRate);
     const made = context.createBuffer(1, samples.length, context.sampleRate);
     made.copyToChannel(samples, 0);
     buffers.set(name, made);
     return made;
   }
 
+  /** Renders everything, one sound at a time with the page's own work between, so that no frame of the match has to. */
+  async function warm(): Promise<void> {
+    for (const name of recipes.keys()) {
+      buffer(name);
+      await new Promise((resolve) => setTimeout(resolve));
+    }
+  }
+
   /** Starts a sound at a point of the floor frame; the panner goes when the sound has ended. */
-  function play(sound: AudioBuffer, at: Vec3, delay = 0): { source: AudioBufferSourceNode; panner: PannerNode } {
+  function play(name: string, at: Vec3, delay = 0): { source: AudioBufferSourceNode; panner: PannerNode } {
     const source = context.createBufferSource();
-    source.buffer = sound;
+    source.buffer = buffer(name);
     const panner = context.createPanner();
     panner.panningModel = 'HRTF';
     panner.distanceModel = 'inverse';
@@ -68,7 +99,7 @@ function createPlayer(context: AudioContext) {
     source.start(context.currentTime + delay);
     return { source, panner };
   }
-  return { context, master, buffer, play };
+  return { context, master, warm, play };
 }
 
 type Player = ReturnType<typeof createPlayer>;
@@ -116,11 +147,11 @@ export function createSounds({
     if (player) player.master.gain.setTargetAtTime(muted ? 0 : volume, player.context.currentTime, fadeSeconds);
   };
 
-  const drawShare = (draw: number) => Math.round((draw / maximumDraw) * drawSteps) / drawSteps;
+  const drawShare = (draw: number) => Math.round(clamp(draw / maximumDraw, 0, 1) * drawSteps) / drawSteps;
 
   /** A whoosh that goes along with the arrow. */
-  function follow({ id, release }: Arrow, { context, buffer, play }: Player): void {
-    const { source, panner } = play(buffer('whoosh', whoosh), inFloor(release.position));
+  function follow({ id, release }: Arrow, { context, play }: Player): void {
+    const { source, panner } = play('whoosh', inFloor(release.position));
     const speed = length(release.velocity);
     for (let step = 1; step <= 4; step++) {
       const after = (step / 4) * Math.min(0.7, 14 / speed);
@@ -134,45 +165,32 @@ export function createSounds({
   }
 
   function playEvent(event: ArcheryEvent, playing: Player): void {
-    const { buffer, play } = playing;
+    const { play } = playing;
     if (event.type === 'released') follow(event.arrow, playing);
     else if (event.type === 'landed') {
       flying.get(event.arrow.id)?.stop();
       const { on, points, position } = event.landing;
       const at = inFloor(position);
-      if (on === 'target') play(buffer('thud', thud), at);
-      else if (on === 'ground') play(buffer('earth', earth), at);
-      else play(buffer('rattle', rattle), at);
+      if (on === 'target') play('thud', at);
+      else if (on === 'ground') play('earth', at);
+      else play('rattle', at);
       // The chime is for the archer: it rings half way.
       const near = {
         x: (at.x + head.position.x) / 2,
         y: (at.y + head.position.y) / 2,
         z: (at.z + head.position.z) / 2,
       };
-      if (points > 0)
-        play(
-          buffer(`chime ${points}`, (rate) => chime(rate, points)),
-          near,
-          0.12,
-        );
-    } else if (event.type === 'ended') play(buffer('bell', bell), inFloor(vec3(-2, 2.4, -4)), 0.35);
-    else if (event.type === 'left-zone') play(buffer('warning', warning), inFloor(vec3(0, 0.3, 0)));
+      if (points > 0) play(chimeName(points), near, 0.12);
+    } else if (event.type === 'ended') play('bell', inFloor(vec3(-2, 2.4, -4)), 0.35);
+    else if (event.type === 'left-zone') play('warning', inFloor(vec3(0, 0.3, 0)));
   }
 
-  function playCue({ type, position, draw }: BowCue, { buffer, play }: Player): void {
+  function playCue({ type, position, draw }: BowCue, { play }: Player): void {
     const share = drawShare(draw);
-    if (type === 'creak')
-      play(
-        buffer(`creak ${share}`, (rate) => creak(rate, share)),
-        position,
-      );
-    else if (type === 'released')
-      play(
-        buffer(`twang ${share}`, (rate) => twang(rate, share)),
-        position,
-      );
-    else if (type === 'nocked' || type === 'taken' || type === 'cancelled') play(buffer('click', click), position);
-    else if (type === 'lost') play(buffer('warning', warning), position);
+    if (type === 'creak') play(creakName(share), position);
+    else if (type === 'released') play(twangName(share), position);
+    else if (type === 'nocked' || type === 'taken' || type === 'cancelled') play('click', position);
+    else if (type === 'lost') play('warning', position);
   }
 
   /** A bow creaks many times in a draw; it is said once. */
@@ -191,6 +209,7 @@ export function createSounds({
         player.master.gain.value = muted ? 0 : volume;
       }
       if (player.context.state !== 'running') await player.context.resume();
+      await player.warm();
     },
     hear(state, events, cues) {
       // A context that rests would keep all of it and play it at once later.
