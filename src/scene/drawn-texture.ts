@@ -18,7 +18,8 @@ export function createDrawnTexture(width: number, height: number, quality: Quali
   const texture = new CanvasTexture(canvas);
   texture.colorSpace = SRGBColorSpace;
   texture.minFilter = LinearMipmapLinearFilter;
-  texture.anisotropy = anisotropyOf(quality);
+  // Writing is seen on few pixels and has to stay readable from the side.
+  texture.anisotropy = Math.max(4, anisotropyOf(quality));
   return {
     texture,
     draw(paint) {

@@ -105,28 +105,37 @@ function bank(): BufferGeometry {
 }
 
 /** A rope that sags a little between two points. */
-function rope(from: Vector3, to: Vector3, sag: number, radius: number): BufferGeometry {
+function rope(from: Vector3, to: Vector3, sag: number, radius: number, quality: Quality): BufferGeometry {
   const middle = from.clone().lerp(to, 0.5);
   middle.y -= sag;
-  return painted(new TubeGeometry(new CatmullRomCurve3([from, middle, to]), 10, radius, 5), '#e9dfc4');
+  return painted(
+    new TubeGeometry(
+      new CatmullRomCurve3([from, middle, to]),
+      quality === 'high' ? 10 : 5,
+      radius,
+      quality === 'high' ? 5 : 3,
+    ),
+    '#e9dfc4',
+  );
 }
 
-const post = (x: number, z: number, height: number, radius: number) =>
+const post = (x: number, z: number, height: number, radius: number, sides: number) =>
   merged([
-    painted(new CylinderGeometry(radius, radius * 1.08, height, 10).translate(x, height / 2, z), woodColor(x + z)),
-    painted(new CylinderGeometry(radius * 1.05, radius * 1.05, 0.03, 10).translate(x, height + 0.01, z), '#e8e2d2'),
+    painted(new CylinderGeometry(radius, radius * 1.08, height, sides).translate(x, height / 2, z), woodColor(x + z)),
+    painted(new CylinderGeometry(radius * 1.05, radius * 1.05, 0.03, sides).translate(x, height + 0.01, z), '#e8e2d2'),
   ]);
 
-function ropesAndPosts(): BufferGeometry {
+function ropesAndPosts(quality: Quality): BufferGeometry {
   const parts: BufferGeometry[] = [];
+  const sides = quality === 'high' ? 10 : 6;
   const stations = [1.6, -2.2, -6, -9.8, -13.4];
   for (const side of [-1, 1]) {
     const x = side * field.halfWidth;
     stations.forEach((z, i) => {
-      parts.push(post(x, z, 0.86, 0.035));
+      parts.push(post(x, z, 0.86, 0.035, sides));
       const next = stations[i + 1];
       if (next !== undefined) {
-        parts.push(rope(new Vector3(x, 0.79, z), new Vector3(x, 0.79, next), 0.13, 0.013));
+        parts.push(rope(new Vector3(x, 0.79, z), new Vector3(x, 0.79, next), 0.13, 0.013, quality));
       }
     });
   }
@@ -140,11 +149,11 @@ function ropesAndPosts(): BufferGeometry {
     for (let i = 0; i <= count; i++) {
       const foot = place(i, 0);
       // Corners belong to both walls; one of them plants their posts.
-      if (axis === 'z' || (i > 0 && i < count)) parts.push(post(foot.x, foot.z, height + 0.05, 0.045));
+      if (axis === 'z' || (i > 0 && i < count)) parts.push(post(foot.x, foot.z, height + 0.05, 0.045, sides));
       if (i === count) continue;
-      parts.push(rope(place(i, height - 0.03), place(i + 1, height - 0.03), 0.05, 0.012));
+      parts.push(rope(place(i, height - 0.03), place(i + 1, height - 0.03), 0.05, 0.012, quality));
       if (axis === 'z' && at > 0) continue;
-      parts.push(rope(place(i, netLift), place(i + 1, netLift), 0.015, 0.009));
+      parts.push(rope(place(i, netLift), place(i + 1, netLift), 0.015, 0.009, quality));
     }
   }
   return merged(parts);
@@ -154,7 +163,7 @@ function ropesAndPosts(): BufferGeometry {
 export function createBackstop(quality: Quality): Group {
   const backstop = new Group();
   backstop.name = 'backstop';
-  const solid = new Mesh(merged([bank(), ropesAndPosts()]), new MeshLambertMaterial({ vertexColors: true }));
+  const solid = new Mesh(merged([bank(), ropesAndPosts(quality)]), new MeshLambertMaterial({ vertexColors: true }));
   solid.receiveShadow = true;
   backstop.add(solid, createNets(quality));
   return backstop;

@@ -1,15 +1,10 @@
 import { Color, Mesh, MeshLambertMaterial, PlaneGeometry, type Texture } from 'three';
-import type { Quality } from '../../scene/renderer';
 import { field } from './field';
 
 const half = 85;
 
 /** Mown stripes on the field, a chalk line across it at each distance [m], a rougher meadow around it; y = 0 of the arena frame. */
-export function createGround(
-  noise: Texture,
-  distances: readonly number[],
-  quality: Quality,
-): Mesh<PlaneGeometry, MeshLambertMaterial> {
+export function createGround(noise: Texture, distances: readonly number[]): Mesh<PlaneGeometry, MeshLambertMaterial> {
   const material = new MeshLambertMaterial({ color: '#ffffff' });
   const uniforms = {
     noise: { value: noise },
@@ -34,7 +29,7 @@ export function createGround(
       .replace(
         '#include <map_fragment>',
         `vec4 near = texture2D(noise, onGround * 0.83);
-        vec4 wide = ${quality === 'high' ? 'texture2D(noise, onGround * 0.031)' : 'near'};
+        vec4 wide = texture2D(noise, onGround * 0.031);
         // A mower's stripes along the shooting direction; their edges are a little ragged and never alias.
         float across = onGround.x / ${field.stripe.toFixed(3)} + (near.g - 0.5) * 0.06;
         float edge = max(fwidth(across), 0.02);

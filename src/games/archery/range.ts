@@ -82,7 +82,7 @@ export function createRange(
   const zone = createZone();
   object.add(
     createSky(noise, towardsSun, quality),
-    createGround(noise, distances, quality),
+    createGround(noise, distances),
     createLandscape(quality),
     createBackstop(quality),
     createDistanceSigns(distances, quality),

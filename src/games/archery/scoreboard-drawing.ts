@@ -32,17 +32,17 @@ export function arrowResult(state: ArcheryState, index: number): string {
 /** The last sentence of the board at a time of the match [s]. */
 function lineOf(state: ArcheryState, time: number): string {
   if (!state.inZone) return 'Step back onto the deck';
-  if (state.phase === 'ready') return 'The clock starts with your first arrow';
+  if (state.phase === 'ready') return 'First arrow starts the clock';
   const landed = state.arrows.filter(({ landing }) => landing && landing.time <= time);
   const last = landed.reduce<(typeof landed)[number] | null>(
     (latest, arrow) => (!latest || (arrow.landing?.time ?? 0) >= (latest.landing?.time ?? 0) ? arrow : latest),
     null,
   );
-  if (!last?.landing) return 'Four targets, each counts once';
+  if (!last?.landing) return state.options.everyHitCounts ? 'Every hit counts' : 'Each target counts once';
   const { target, points, on } = last.landing;
   const distance = target === null ? undefined : state.targets[target]?.distance;
   if (distance !== undefined) {
-    return points > 0 ? `Target at ${distance} m: +${points}` : `Target at ${distance} m had scored before`;
+    return points > 0 ? `Target at ${distance} m: +${points}` : `Target at ${distance} m: again`;
   }
   return on === 'wall' ? 'Into the net' : 'Into the grass';
 }
@@ -105,9 +105,9 @@ export function paintBoard(context: CanvasRenderingContext2D, text: BoardText): 
   context.textBaseline = 'alphabetic';
   context.textAlign = 'left';
   context.fillStyle = ink.soft;
-  context.font = `700 40px ${signFont}`;
-  context.fillText('SCORE', 64, 92);
-  context.fillText('TIME', 664, 92);
+  context.font = `700 54px ${signFont}`;
+  context.fillText('SCORE', 64, 96);
+  context.fillText('TIME', 664, 96);
   context.fillStyle = ink.text;
   context.font = `800 220px ${signFont}`;
   context.fillText(String(text.score), 54, 282);
@@ -137,13 +137,14 @@ export function paintBoard(context: CanvasRenderingContext2D, text: BoardText): 
   context.stroke();
 
   context.fillStyle = ink.soft;
-  context.font = `700 40px ${signFont}`;
-  context.fillText('ARROWS', 64, 436);
-  for (let i = 0; i < text.arrows; i++) pip(context, 300 + i * 66, 376, 100, i < text.arrowsLeft);
+  context.font = `700 54px ${signFont}`;
+  context.fillText('ARROWS', 64, 444);
+  for (let i = 0; i < text.arrows; i++)
+    pip(context, 370 + i * Math.min(66, 330 / text.arrows), 378, 100, i < text.arrowsLeft);
   context.textAlign = 'right';
   context.fillStyle = ink.text;
-  context.font = `800 64px ${signFont}`;
-  context.fillText(`${text.arrowsLeft} of ${text.arrows}`, width - 64, 444);
+  context.font = `800 76px ${signFont}`;
+  context.fillText(`${text.arrowsLeft} of ${text.arrows}`, width - 64, 452);
   context.textAlign = 'left';
 
   if (!text.inZone) {
@@ -151,8 +152,8 @@ export function paintBoard(context: CanvasRenderingContext2D, text: BoardText): 
     context.fillRect(0, 516, width, height - 516);
   }
   context.fillStyle = text.inZone ? ink.text : ink.accentInk;
-  context.font = `600 52px ${signFont}`;
-  context.fillText(`${text.inZone ? '' : '⚠ '}${text.line}`, 64, 594, width - 128);
+  context.font = `700 64px ${signFont}`;
+  context.fillText(`${text.inZone ? '' : '⚠ '}${text.line}`, 64, 598, width - 128);
 }
 
 export const resultSize = { width: 1024, height: 768 } as const;

@@ -193,14 +193,16 @@ export function createSounds({
       if (player.context.state !== 'running') await player.context.resume();
     },
     hear(state, events, cues) {
+      // A context that rests would keep all of it and play it at once later.
+      const playing = player?.context.state === 'running' ? player : null;
       const headInArena = transformPose(arenaFromFloor, head);
       for (const cue of cues) {
         captionCue(cue);
-        if (player) playCue(cue, player);
+        if (playing) playCue(cue, playing);
       }
       for (const event of events) {
         onCaption(eventCaption(event, { targets: state.targets, seconds: state.options.seconds, head: headInArena }));
-        if (player) playEvent(event, player);
+        if (playing) playEvent(event, playing);
       }
     },
     listen(next) {

@@ -16,6 +16,7 @@ import {
   Vector3,
 } from 'three';
 import type { ArcheryState, Target } from '../../core/games/archery/archery-state';
+import { clamp } from '../../core/math/damper';
 import { disposeTree } from '../../scene/dispose-tree';
 import { createDrawnTexture } from '../../scene/drawn-texture';
 import { merged, painted } from '../../scene/painted-geometry';
@@ -34,7 +35,13 @@ export interface TargetStands {
 }
 
 const discThickness = 0.1;
-const plate = { width: 0.34, height: 0.2, gap: 0.05 };
+const gap = 0.05;
+
+/** Size of a target's plate [m]: larger further away, so that all are read as easily. */
+const plateOf = ({ distance }: Target): { readonly width: number; readonly height: number } => {
+  const width = 0.34 * clamp(distance / 6.5, 0.85, 1.5);
+  return { width, height: (width * cell.height) / cell.width };
+};
 const cell = { width: 256, height: 150 };
 /** Seconds in which the rim of a disc that was hit swells and calms. */
 const pulseSeconds = 0.7;
@@ -63,8 +70,9 @@ function beam(from: Vector3, to: Vector3, thickness: number, seed: number): Buff
 function standGeometry(target: Target, index: number): BufferGeometry[] {
   const place = placeOf(target);
   const { radius } = target;
+  const plate = plateOf(target);
   const at = (x: number, y: number, z: number) => new Vector3(x, y, z).applyMatrix4(place);
-  const top = plate.height + plate.gap + radius + 0.03;
+  const top = plate.height + gap + radius + 0.03;
   const foot = (x: number, z: number) => {
     const point = at(x, 0, z);
     return point.setY(-0.02);
@@ -87,7 +95,7 @@ function standGeometry(target: Target, index: number): BufferGeometry[] {
   const board = painted(
     new BoxGeometry(plate.width + 0.03, plate.height + 0.03, 0.022).translate(
       0,
-      radius + plate.gap + plate.height / 2,
+      radius + gap + plate.height / 2,
       -0.03,
     ),
     '#5b4230',
@@ -107,7 +115,8 @@ function standGeometry(target: Target, index: number): BufferGeometry[] {
 
 /** A plate's quad, before its board, with its row of the texture. */
 function plateGeometry(target: Target, row: number, rows: number): BufferGeometry {
-  const low = target.radius + plate.gap;
+  const plate = plateOf(target);
+  const low = target.radius + gap;
   const corners = [
     [-1, 0],
     [1, 0],
@@ -194,6 +203,7 @@ export function createTargetStands(quality: Quality): TargetStands {
   const plateMaterial = new MeshBasicMaterial({ map: plates.texture });
 
   let built: readonly Target[] = [];
+  let builtAs = '';
   let shownPlates = '';
   let faces: InstancedMesh | null = null;
   let rims: InstancedMesh | null = null;
@@ -204,7 +214,6 @@ export function createTargetStands(quality: Quality): TargetStands {
       if (child instanceof Mesh) child.geometry.dispose();
       if (child instanceof InstancedMesh) child.dispose();
     }
-    built = targets;
     shownPlates = '';
     faces = rims = null;
     if (targets.length === 0) return;
@@ -238,7 +247,13 @@ export function createTargetStands(quality: Quality): TargetStands {
   return {
     object,
     show(state, time) {
-      if (state.targets !== built) build(state.targets);
+      if (state.targets !== built) {
+        // A state that travelled or was replayed has other objects for the same targets.
+        built = state.targets;
+        const key = JSON.stringify(built);
+        if (key !== builtAs) build(built);
+        builtAs = key;
+      }
       if (!faces || !rims) return;
       const scores = state.targets.map((_, index) => scoredBy(state, index, time));
       for (const [index, target] of state.targets.entries()) {

@@ -47,7 +47,10 @@ export function createTrails(arrowLength: number): Trails {
         gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
       }`,
     fragmentShader: `varying float alpha;
-      void main() { gl_FragColor = vec4(1.0, 0.985, 0.93, alpha * alpha * 0.8); }`,
+      void main() {
+        gl_FragColor = vec4(1.0, 0.97, 0.85, alpha * alpha * 0.8);
+        #include <colorspace_fragment>
+      }`,
   });
   const object = new Mesh(geometry, material);
   object.name = 'trails';

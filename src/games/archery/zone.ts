@@ -1,6 +1,7 @@
 import {
   BoxGeometry,
   type BufferGeometry,
+  Color,
   DoubleSide,
   Group,
   Mesh,
@@ -65,21 +66,26 @@ function createFence(): Mesh<BufferGeometry, ShaderMaterial> {
     depthWrite: false,
     side: DoubleSide,
     fog: false,
-    uniforms: { pulse: { value: 1 } },
+    uniforms: {
+      pulse: { value: 1 },
+      bright: { value: new Color('#ff9e1a') },
+      dark: { value: new Color('#170f05') },
+    },
     vertexShader: `varying vec3 at;
       void main() {
         at = position;
         gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
       }`,
-    fragmentShader: `varying vec3 at; uniform float pulse;
+    fragmentShader: `varying vec3 at; uniform float pulse; uniform vec3 bright; uniform vec3 dark;
       void main() {
         float along = (at.x - at.z + at.y) * 9.0;
         float edge = fwidth(along);
         float wave = abs(fract(along * 0.5) - 0.5) * 2.0;
         float stripe = smoothstep(0.5 - edge, 0.5 + edge, wave);
         float fade = 1.0 - at.y / ${fenceHeight.toFixed(3)};
-        vec3 color = mix(vec3(0.09, 0.06, 0.02), vec3(1.0, 0.62, 0.1), stripe);
+        vec3 color = mix(dark, bright, stripe);
         gl_FragColor = vec4(color, fade * mix(0.35, 0.85, stripe) * pulse);
+        #include <colorspace_fragment>
       }`,
   });
   const fence = new Mesh(walls, material);
