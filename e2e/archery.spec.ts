@@ -8,10 +8,10 @@ test.use({ viewport: { width: 800, height: 500 } });
 
 type Page = Parameters<typeof open>[0];
 
+/** The round as it stands; between two rounds there is none for a frame. */
 async function round(page: Page): Promise<ArcheryProbe> {
-  const { game } = await probe(page);
-  if (!game) throw new Error('no round is being played');
-  return game;
+  const shown = await page.waitForFunction(() => window.threepoint?.probe().game);
+  return (await shown.jsonValue()) as ArcheryProbe;
 }
 
 /** The range with the emulated headset on, nobody in it yet. */
@@ -131,7 +131,7 @@ test('hands are changed in the menu of the page, and remembered', async ({ page 
   await page.getByRole('switch', { name: 'Bow in the right hand' }).check();
   await expect.poll(async () => (await round(page)).bowSide).toBe('right');
   await page.reload();
-  await expect.poll(async () => (await probe(page)).game?.bowSide, { timeout: 60_000 }).toBe('right');
+  await expect.poll(async () => (await round(page)).bowSide, { timeout: 60_000 }).toBe('right');
 });
 
 test('bare hands: a pinch at the string nocks, opening it at full draw shoots', async ({ page }) => {

@@ -60,8 +60,8 @@ export interface ArcheryPlay {
   act(time: number): Performance;
   /** The same of an archer who aims along a ray (arena frame; unit direction) as somebody at a desk tells it. */
   steer(time: number, ray: Ray, wish: { readonly pressed: boolean; readonly cancelled: boolean }): Performance;
-  /** Another round, for somebody with these measures. */
-  restart(calibration: Calibration): void;
+  /** Another round, for somebody with these measures whose eyes are this high now [m], standing or seated. */
+  restart(calibration: Calibration, eyeHeight?: number): void;
 }
 
 /** What tools may know of a round. */
@@ -126,9 +126,8 @@ export function createArcheryPlay(
     armed: match.state.phase !== 'over' && match.state.arrowsLeft > 0,
   }));
 
-  function restart(person: Calibration): void {
+  function restart(person: Calibration, eyeHeight = person.eyeHeight): void {
     const { bowSide, everyHitCounts, seconds } = settings();
-    const { eyeHeight } = person;
     match = createMatch(
       archeryRules,
       archeryRules.start(['archer'], seed(), { eyeHeight, everyHitCounts, ...(seconds && { seconds }) }),

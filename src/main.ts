@@ -273,7 +273,8 @@ async function start(): Promise<void> {
 
   function restartRound(): void {
     seed += 1;
-    archery?.play.restart(bodyNow());
+    // Whoever plays seated shoots at targets as high for the eyes as everybody's.
+    archery?.play.restart(bodyNow(), session ? newestFrame?.head.position.y : undefined);
     playBar.caption('');
     show();
   }
@@ -732,6 +733,12 @@ async function start(): Promise<void> {
   function playRound(frame: TrackingFrame): void {
     if (!archery) return;
     const { events, cues, haptics } = archery.play.follow(frame, buttons);
+    const taken = cues.findLast(({ type }) => type === 'taken');
+    if (taken) {
+      settings.bowSide = taken.side;
+      store.remember({ bowSide: taken.side });
+      placeMirror();
+    }
     archery.view.hear(events, cues);
     const bowSide = archery.play.newest?.bow?.bowSide ?? settings.bowSide;
     if (session) buzz(session.xr, [...haptics, ...eventHaptics(events, bowSide)]);

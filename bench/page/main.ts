@@ -16,6 +16,7 @@ import { loadRegressor, parseContract } from '../../src/inference/load-regressor
 import { createSession } from '../../src/inference/session';
 import { createArena } from '../../src/scene/arena';
 import { createRenderer } from '../../src/scene/renderer';
+import { measureArchery, type RoundTimes } from './archery';
 import { createCcdBody } from './ccd-body';
 
 /** Blocks of one method alternate in a seeded order, so that whatever else the machine does meets all of them. */
@@ -42,6 +43,8 @@ export interface PageResult {
   readonly sessionCreateMs: Readonly<Record<string, number>>;
   readonly firstInferenceMs: Readonly<Record<string, number>>;
   readonly frames: number;
+  /** A whole round of archery with each estimator. */
+  readonly archery: Readonly<Record<string, RoundTimes>>;
 }
 
 function quantiles(values: readonly number[]): Quantiles {
@@ -171,6 +174,7 @@ async function measure(): Promise<PageResult> {
     });
     for (const { name } of order.sort((a, b) => a.value - b.value)) await runBlock(name, round);
   }
+  const archery = await measureArchery({ renderer, arena, avatar, mirror, camera, estimators });
   const told = (values: Record<Method, number[]>) =>
     Object.fromEntries(methods.map((name) => [name, quantiles(values[name])])) as Record<Method, Quantiles>;
   return {
@@ -181,6 +185,7 @@ async function measure(): Promise<PageResult> {
     sessionCreateMs: { learned: costs.learned.create, paper: costs.paper.create },
     firstInferenceMs: { learned: costs.learned.first, paper: costs.paper.first },
     frames: rounds * blockFrames,
+    archery,
   };
 }
 

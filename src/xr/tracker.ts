@@ -99,6 +99,10 @@ export function createTracker(
         if (pose && (hands[side] === null || pose.tracking === 'tracked')) hands[side] = pose;
         buttons[side] = more(buttons[side], source.hand ? pinched(frame, source.hand) : pressed(source.gamepad));
       }
+      for (const side of ['left', 'right'] as const) {
+        const kind = kinds[side];
+        if (kind !== 'none') buttons[side] = { ...buttons[side], kind };
+      }
       const head = viewer && toTrackedPose(viewer);
       if (!head) return null;
       lastHead = head;

@@ -105,6 +105,8 @@ export const oneHandedDraw = 0.6;
 export const settleHalfLife = 0.08;
 /** A hand may be lost for this long with the string drawn [s]; then the arrow goes back to the quiver. */
 export const holdSeconds = 0.5;
+/** Longer without a frame is a pause, not a slow device [s]. */
+export const pauseSeconds = 1;
 
 /** Below the first the bow's hand aims, above the second both hands do, between them some of each [m of draw]. */
 const handAims = 0.03;
@@ -212,7 +214,7 @@ export function createArcheryGestures(settings: () => ArcheryGestureSettings): A
 
     // Whoever stops watching for that long, has no arrows left, or puts the controller away, does not shoot when it goes on.
     const anotherHand = nocked && nocked.side !== stringSide;
-    if (delta > holdSeconds || !armed || anotherHand || presses.changedKind(stringSide)) cancel(stringSide);
+    if (delta > pauseSeconds || !armed || anotherHand || presses.changedKind(stringSide)) cancel(stringSide);
 
     if (settling) {
       settling = turnTowards(settling, forwardOf(inHand), dampedShare(settleHalfLife, delta));

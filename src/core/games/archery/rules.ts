@@ -22,7 +22,7 @@ import type {
   RoundEnd,
   Target,
 } from './archery-state';
-import { arrowLength, arrowSpeed, maximumDraw, minimumDraw } from './bow';
+import { arrowLength, arrowSpeed, minimumDraw } from './bow';
 import { firstHit, positionAt, velocityAt, type Wall } from './flight';
 
 /** Where the archer stands: a rectangle on the floor about the origin [m]. */
@@ -170,7 +170,7 @@ function release(state: ArcheryState, action: Extract<ArcheryAction, { type: 're
   const begun = begin(state);
   const arrow: Arrow = {
     id: state.arrows.length,
-    release: { time, position, velocity: scale(along, arrowSpeed(Math.min(draw, maximumDraw))) },
+    release: { time, position, velocity: scale(along, arrowSpeed(draw)) },
     landing: null,
   };
   return {

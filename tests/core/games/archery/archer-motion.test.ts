@@ -3,6 +3,7 @@ import { describe, expect, test } from 'vitest';
 import { createArcher } from '../../../../src/core/games/archery/archer-motion';
 import type { ArcherBody } from '../../../../src/core/games/archery/archer-postures';
 import type { ArcheryState } from '../../../../src/core/games/archery/archery-state';
+import { arrowSpeed } from '../../../../src/core/games/archery/bow';
 import { fistOf, type Side } from '../../../../src/core/games/archery/bow-hand';
 import type { Button } from '../../../../src/core/games/archery/button-presses';
 import { archeryRules } from '../../../../src/core/games/archery/rules';
@@ -133,6 +134,30 @@ describe('the built-in archer', () => {
     const pressures = Array.from({ length: 40 }, (_, i) => archer.follow(20 + i / 10, again).buttons.right.trigger);
     expect(pressures[0]).toBe(0);
     expect(Math.max(...pressures)).toBe(1);
+  });
+
+  test('waits in its follow-through for an arrow that still flies', () => {
+    const state = archeryRules.start(['archer'], 1);
+    const flying: ArcheryState = {
+      ...state,
+      arrows: [{ id: 0, release: { time: 4, position: vec3(0, 1.5, -1), velocity: vec3(0, 50, -1) }, landing: null }],
+    };
+    const archer = createArcher({ bowSide: 'left', eyeHeight: 1.6 });
+    const hand = (time: number, at: ArcheryState) => archer.follow(time, at).frame.rightHand!.position;
+    for (let time = 0; time < 4.5; time += 0.01) hand(time, state);
+    const then = hand(6, flying);
+    expect(distance(hand(9, flying), then)).toBeLessThan(0.02);
+    hand(9.1, state);
+    expect(distance(hand(10, state), then)).toBeGreaterThan(0.2);
+  });
+
+  test.each([
+    [1.2, 0.29],
+    [1.6, 0.41],
+    [1.9, 0.5],
+  ])('with eyes at %d m draws %d m: as far as a nearly straight bow arm lets it', (eyeHeight, draw) => {
+    const { state } = playRound({ archer: { bowSide: 'left', eyeHeight }, times: steady(72, 6) });
+    expect(Math.abs(length(state.arrows[0]!.release.velocity) - arrowSpeed(draw))).toBeLessThan(1);
   });
 
   test('shoots where the range lies in the room', () => {

@@ -116,6 +116,7 @@ describe('a target', () => {
     const fromBehind: Launch = { position: vec3(0, 1.5, -10), velocity: vec3(0, 1, 20) };
     expect(reachesTarget(fromBehind, upright(-8))).toBeNull();
     expect(reachesTarget({ position: vec3(0, 1.5, 0), velocity: vec3(0, 0, 20) }, upright(-8))).toBeNull();
+    expect(reachesTarget({ position: vec3(0, 1.5, -8.2), velocity: vec3(0, 0, -20) }, upright(-8))).toBeNull();
   });
 
   test('is never tunnelled: stepping finely finds the same crossing', () => {

@@ -6,14 +6,15 @@ import type {
   ArcheryOptions,
   ArcheryState,
 } from '../../../../src/core/games/archery/archery-state';
-import { arrowLength, maximumDraw, minimumDraw } from '../../../../src/core/games/archery/bow';
-import { releaseTowards } from '../../../../src/core/games/archery/flight';
+import { arrowLength, arrowSpeed, maximumDraw, minimumDraw } from '../../../../src/core/games/archery/bow';
+import { firstHit, releaseTowards } from '../../../../src/core/games/archery/flight';
 import {
   archeryRules,
   delayed,
   matchTime,
   releaseInterval,
   secondsLeft,
+  walls,
   zone,
 } from '../../../../src/core/games/archery/rules';
 import { createMatch } from '../../../../src/core/games/match';
@@ -24,6 +25,7 @@ import {
   dot,
   length,
   normalise,
+  scale,
   subtract,
   type Vec3,
   vec3,
@@ -46,6 +48,13 @@ function shotAt(state: ArcheryState, target: number, miss = vec3(0, 0, 0), draw 
 
 /** Past everything, into the net. */
 const wideOf = (state: ArcheryState): ArcheryAction => shotAt(state, 0, vec3(0, 0.8, 0));
+
+/** Up into the sky: 9 s of flight. */
+function highShot(state: ArcheryState): ArcheryAction {
+  const direction = normalise(vec3(0, 1, -0.05));
+  const position = addScaled(nockOf(state), direction, arrowLength);
+  return { type: 'release', position, direction, draw: 0.6, delay: 0 };
+}
 
 /** Every number somewhere in a state. */
 const numbersIn = (value: unknown): number[] =>
@@ -192,6 +201,29 @@ describe('the score', () => {
     expect(match.state).toMatchObject({ score: 70, phase: 'over', end: 'arrows' });
   });
 
+  test('of two arrows that land in one tick, the first to land comes first, whichever was shot first', () => {
+    const match = told(start());
+    match.step(highShot(match.state));
+    const [high] = match.state.arrows;
+    const down = high!.release.time + firstHit(high!.release, match.state.targets, walls).after;
+    const flat = shotAt(match.state, 0) as Extract<ArcheryAction, { type: 'release' }>;
+    const { after } = firstHit(
+      { position: flat.position, velocity: scale(flat.direction, arrowSpeed(0.5)) },
+      match.state.targets,
+      walls,
+    );
+    // Into the tick in which the other one lands, but before it.
+    const tick = Math.floor(down / tickSeconds);
+    const released = (tick * tickSeconds + down) / 2 - after;
+    const releaseTick = Math.floor(released / tickSeconds);
+    while (match.state.tick < releaseTick) match.step();
+    match.step(delayed(flat, released - releaseTick * tickSeconds));
+    while (match.state.tick < tick) match.step();
+    expect(match.happened('landed')).toEqual([]);
+    match.step();
+    expect(match.happened('landed').map(({ arrow }) => arrow.id)).toEqual([1, 0]);
+  });
+
   test('an arrow at the edge hits, one just beyond flies on', () => {
     const edge = told(start());
     edge.step(shotAt(edge.state, 2, vec3(0.44, 0, 0)));
@@ -238,11 +270,21 @@ describe('the end of a round', () => {
     match.pass(6 * tickSeconds);
     expect(match.state).toMatchObject({ phase: 'running', score: 0 });
     expect(secondsLeft(match.state)).toBe(0);
-    // After the bell nobody shoots any more.
-    match.step(shotAt(match.state, 0));
-    expect(match.state.arrowsLeft).toBe(4);
     match.pass(1);
     expect(match.state).toMatchObject({ phase: 'over', end: 'time', score: 20 });
+  });
+
+  test('is the last moment to shoot, even while an arrow flies', () => {
+    const match = told(start({ seconds: 10 }));
+    match.step({ type: 'start' });
+    match.pass(9.5);
+    match.step(highShot(match.state));
+    match.pass(1);
+    expect(match.state.phase).toBe('running');
+    match.step(shotAt(match.state, 0));
+    expect(match.state.arrowsLeft).toBe(4);
+    match.pass(10);
+    expect(match.state).toMatchObject({ phase: 'over', end: 'time', score: 0 });
   });
 
   test('stands: nothing moves, shoots or starts any more', () => {
@@ -320,9 +362,7 @@ describe('what no archer can do', () => {
     const match = told(start());
     for (let i = 0; i < 4; i++) match.shoot(0);
     // The fifth is shot so high that it still flies.
-    const nock = nockOf(match.state);
-    const high = normalise(vec3(0, 1, -0.05));
-    match.step({ type: 'release', position: addScaled(nock, high, arrowLength), direction: high, draw: 0.6, delay: 0 });
+    match.step(highShot(match.state));
     match.pass(1);
     match.step(shotAt(match.state, 1));
     expect(match.state.arrows).toHaveLength(5);
@@ -386,8 +426,8 @@ describe('the zone', () => {
 
   test('warns before and after the round too, and ignores heads that are nowhere', () => {
     const match = told(start());
-    match.step({ type: 'stand', head: vec3(Number.NaN, 0, 0) });
-    expect(match.state.inZone).toBe(true);
+    match.step({ type: 'stand', head: vec3(Number.NaN, 0, 0) }, at(60, 0));
+    expect(match.state).toMatchObject({ inZone: true, head: vec3(0, 1.6, 0) });
     match.step(at(2, 0));
     expect(match.happened('left-zone')).toHaveLength(1);
     expect(match.state.phase).toBe('ready');

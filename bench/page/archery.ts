@@ -1,0 +1,132 @@
+import type { PerspectiveCamera, WebGLRenderer } from 'three';
+import { createArcheryPlay } from '../../src/archery-play';
+import type { Avatar } from '../../src/avatar/avatar';
+import type { Mirror } from '../../src/avatar/mirror';
+import { defaultCalibration } from '../../src/core/body/calibration';
+import { type EstimatorName, estimatorNames, type PoseEstimator } from '../../src/core/estimation/pose-estimator';
+import { identity } from '../../src/core/math/quat';
+import { zero } from '../../src/core/math/vec3';
+import { createArcheryView } from '../../src/games/archery/archery-view';
+import type { Arena } from '../../src/scene/arena';
+
+/** Frame times of a whole round as in the paper's table 5 [ms], and more; missed: share of frames too late for that rate. */
+export interface RoundTimes {
+  readonly min: number;
+  readonly mean: number;
+  readonly p50: number;
+  readonly p95: number;
+  readonly max: number;
+  /** On the page's own thread, at 72 and 90 Hz: what a headset with graphics of its own would miss. */
+  readonly missed72: number;
+  readonly missed90: number;
+  /** The same until the picture is drawn, in software. */
+  readonly drawnP50: number;
+  readonly drawnP95: number;
+  readonly drawnMissed72: number;
+  readonly frames: number;
+  /** The round's result: all play the same one to its end. */
+  readonly score: number;
+}
+
+export interface ArcheryStage {
+  readonly renderer: WebGLRenderer;
+  readonly arena: Arena;
+  readonly avatar: Avatar;
+  readonly mirror: Mirror;
+  readonly camera: PerspectiveCamera;
+  readonly estimators: Readonly<Record<EstimatorName, PoseEstimator>>;
+}
+
+/** Frames of one estimator in a row before the next takes its turn. */
+const blockFrames = 60;
+const settleFrames = 8;
+/** The headset whose round it is. */
+const rateHz = 72;
+const longestRound = 40;
+
+/** The built-in archer plays one round with each estimator, block by block in turns. */
+export async function measureArchery(stage: ArcheryStage): Promise<Record<EstimatorName, RoundTimes>> {
+  const { renderer, arena, avatar, mirror, camera, estimators } = stage;
+  const settings = { bowSide: 'left', oneHanded: false, everyHitCounts: false } as const;
+  const rounds = estimatorNames.map((name) => {
+    const play = createArcheryPlay(
+      defaultCalibration,
+      () => settings,
+      () => 7,
+    );
+    return { name, play, frame: 0, thread: [] as number[], drawn: [] as number[] };
+  });
+  const view = createArcheryView({
+    quality: 'low',
+    floorFromArena: { position: zero, orientation: identity },
+    distances: (rounds[0]?.play.targets ?? []).map(({ distance }) => distance),
+    onCaption: () => undefined,
+  });
+  arena.setSurroundings(view.range);
+  arena.scene.add(view.bow);
+  mirror.place(1.95, -0.1, -1.3);
+  camera.position.set(-1.35, 1.85, 3.3);
+  camera.lookAt(0.15, 0.8, -2);
+
+  const gl = renderer.getContext();
+  const pixel = new Uint8Array(4);
+  const nextFrame = () => new Promise<number>((resolve) => requestAnimationFrame(resolve));
+  const running = () =>
+    rounds.filter(({ play, frame }) => play.newest?.state.phase !== 'over' && frame < longestRound * rateHz);
+  while (running().length > 0) {
+    for (const round of running()) {
+      const estimator = estimators[round.name];
+      estimator.reset();
+      for (let i = 0; i < blockFrames && round.play.newest?.state.phase !== 'over'; i++) {
+        await nextFrame();
+        const started = performance.now();
+        const { frame, buttons } = round.play.act(round.frame / rateHz);
+        const { state, bow, time, events, cues } = round.play.follow(frame, buttons);
+        view.hear(events, cues);
+        await estimator.prepare(frame);
+        avatar.apply(estimator.estimate(frame), frame.time);
+        view.show(state, bow, time, frame.head);
+        renderer.render(arena.scene, camera);
+        const ended = performance.now();
+        gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+        round.frame += 1;
+        if (i < settleFrames) continue;
+        round.thread.push(ended - started);
+        round.drawn.push(performance.now() - started);
+      }
+    }
+  }
+  view.bow.removeFromParent();
+  view.dispose();
+  arena.setSurroundings(null);
+  return Object.fromEntries(
+    rounds.map(({ name, play, frame, thread, drawn }) => [
+      name,
+      told(thread, drawn, frame, play.newest?.state.score ?? 0),
+    ]),
+  ) as Record<EstimatorName, RoundTimes>;
+}
+
+function told(thread: readonly number[], drawn: readonly number[], frames: number, score: number): RoundTimes {
+  const sorted = Float64Array.from(thread).sort();
+  const sortedDrawn = Float64Array.from(drawn).sort();
+  const at = (values: Float64Array, q: number) =>
+    values[Math.min(values.length - 1, Math.floor(q * values.length))] ?? Number.NaN;
+  const missed = (values: readonly number[], hz: number) =>
+    values.filter((ms) => ms > 1000 / hz).length / values.length;
+  const round = (value: number) => Number(value.toFixed(4));
+  return {
+    min: round(at(sorted, 0)),
+    mean: round(thread.reduce((sum, ms) => sum + ms, 0) / thread.length),
+    p50: round(at(sorted, 0.5)),
+    p95: round(at(sorted, 0.95)),
+    max: round(at(sorted, 1)),
+    missed72: round(missed(thread, 72)),
+    missed90: round(missed(thread, 90)),
+    drawnP50: round(at(sortedDrawn, 0.5)),
+    drawnP95: round(at(sortedDrawn, 0.95)),
+    drawnMissed72: round(missed(drawn, 72)),
+    frames,
+    score,
+  };
+}
