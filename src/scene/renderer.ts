@@ -1,10 +1,22 @@
-import { LinearToneMapping, PCFShadowMap, SRGBColorSpace, WebGLRenderer } from 'three';
+import {
+  LinearMipmapLinearFilter,
+  LinearMipmapNearestFilter,
+  LinearToneMapping,
+  type MinificationTextureFilter,
+  PCFShadowMap,
+  SRGBColorSpace,
+  WebGLRenderer,
+} from 'three';
 
 /** high: antialiasing, shadow map, device pixels. low: for software rendering; blob shadows, fewer pixels. */
 export type Quality = 'high' | 'low';
 
 /** How finely a texture seen at a glancing angle is sampled: each sample costs as much as a pixel where software draws. */
 export const anisotropyOf = (quality: Quality): number => (quality === 'high' ? 8 : 1);
+
+/** How a texture seen from afar is sampled: between two of its sizes, or from the nearer one at half the cost. */
+export const minFilterOf = (quality: Quality): MinificationTextureFilter =>
+  quality === 'high' ? LinearMipmapLinearFilter : LinearMipmapNearestFilter;
 
 /** Whether this browser draws in software, where a headset's picture quality costs a second per frame. */
 function drawsInSoftware(context: WebGLRenderingContext | WebGL2RenderingContext): boolean {

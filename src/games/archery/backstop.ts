@@ -7,7 +7,6 @@ import {
   DoubleSide,
   Group,
   LinearFilter,
-  LinearMipmapLinearFilter,
   Mesh,
   MeshBasicMaterial,
   MeshLambertMaterial,
@@ -19,7 +18,7 @@ import {
 } from 'three';
 import { walls } from '../../core/games/archery/rules';
 import { merged, painted } from '../../scene/painted-geometry';
-import { anisotropyOf, type Quality } from '../../scene/renderer';
+import { anisotropyOf, minFilterOf, type Quality } from '../../scene/renderer';
 import { field } from './field';
 import { woodColor } from './wood';
 
@@ -38,7 +37,7 @@ function netTexture(quality: Quality): DataTexture {
   const texture = new DataTexture(pixels, side, side);
   texture.wrapS = texture.wrapT = RepeatWrapping;
   texture.magFilter = LinearFilter;
-  texture.minFilter = LinearMipmapLinearFilter;
+  texture.minFilter = minFilterOf(quality);
   texture.generateMipmaps = true;
   texture.anisotropy = anisotropyOf(quality);
   texture.needsUpdate = true;

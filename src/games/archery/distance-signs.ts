@@ -33,7 +33,7 @@ function paintLabels(context: CanvasRenderingContext2D, labels: readonly string[
     context.strokeRect(9, y + 9, cell.width - 18, cell.height - 18);
     context.fillStyle = '#14202a';
     context.font = `700 74px ${signFont}`;
-    context.fillText(label, cell.width / 2, y + cell.height / 2 + 5);
+    context.fillText(label, cell.width / 2, y + cell.height / 2 + 5, cell.width - 46);
   });
 }
 

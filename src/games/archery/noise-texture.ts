@@ -1,5 +1,5 @@
-import { DataTexture, LinearFilter, LinearMipmapLinearFilter, RepeatWrapping, RGBAFormat } from 'three';
-import { anisotropyOf, type Quality } from '../../scene/renderer';
+import { DataTexture, LinearFilter, RepeatWrapping, RGBAFormat } from 'three';
+import { anisotropyOf, minFilterOf, type Quality } from '../../scene/renderer';
 
 /** Four noises that repeat without a seam: r wide, g fine (both sums of octaves), b grass blades, a one fine octave. */
 const side = 256;
@@ -80,7 +80,7 @@ export function createNoiseTexture(quality: Quality): DataTexture {
   const texture = new DataTexture(pixels, side, side, RGBAFormat);
   texture.wrapS = texture.wrapT = RepeatWrapping;
   texture.magFilter = LinearFilter;
-  texture.minFilter = LinearMipmapLinearFilter;
+  texture.minFilter = minFilterOf(quality);
   texture.generateMipmaps = true;
   texture.anisotropy = anisotropyOf(quality);
   texture.needsUpdate = true;

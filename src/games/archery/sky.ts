@@ -49,7 +49,8 @@ export function createSky(noise: Texture, towardsSun: Vector3, quality: Quality)
         #include <colorspace_fragment>
       }`,
   });
-  const sky = new Mesh(new SphereGeometry(40, 32, 20), material);
+  // What lies further below the horizon is ground.
+  const sky = new Mesh(new SphereGeometry(40, 32, 12, 0, 2 * Math.PI, 0, 0.56 * Math.PI), material);
   sky.name = 'sky';
   sky.renderOrder = -2;
   return sky;

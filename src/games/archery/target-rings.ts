@@ -1,5 +1,5 @@
-import { Color, DataTexture, LinearFilter, LinearMipmapLinearFilter, SRGBColorSpace } from 'three';
-import { anisotropyOf, type Quality } from '../../scene/renderer';
+import { Color, DataTexture, LinearFilter, SRGBColorSpace } from 'three';
+import { anisotropyOf, minFilterOf, type Quality } from '../../scene/renderer';
 
 /**
  * The rings of a target from the outside in, each a share of its radius. Neighbours differ in brightness, not in hue alone, and a
@@ -62,7 +62,7 @@ export function createRingTexture(quality: Quality): DataTexture {
   const texture = new DataTexture(pixels, side, side);
   texture.colorSpace = SRGBColorSpace;
   texture.magFilter = LinearFilter;
-  texture.minFilter = LinearMipmapLinearFilter;
+  texture.minFilter = minFilterOf(quality);
   texture.generateMipmaps = true;
   texture.anisotropy = anisotropyOf(quality);
   texture.needsUpdate = true;
