@@ -5,12 +5,22 @@ import { needsRegressor } from '../../src/core/estimation/estimators';
 import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
 import { parseContract, startRegressor } from '../../src/inference/load-regressor';
 import { drive, type MeasuredMethod, measuredMethods } from './drive';
-import { addClip, emptyMeasures, type Measures, merge, type Report, report, reportNames } from './measures';
+import { addFigures, emptyCollection, figuresOf } from './figures';
+import {
+  addClip,
+  emptyMeasures,
+  type MeasuredFrame,
+  type Measures,
+  merge,
+  type Report,
+  report,
+  reportNames,
+} from './measures';
 import { calibrationOf, readClip, readIndex } from './recordings';
 import { chooseClips, measureRobustness, robustnessText } from './robustness';
 
 /** Robustness drives forty variants of each clip: beyond so many frames, a selection stands for the rest. */
-const robustnessFrames = 24_000;
+const robustnessFrames = 12_000;
 
 const { values: options } = parseArgs({
   options: {
@@ -18,8 +28,22 @@ const { values: options } = parseArgs({
     models: { type: 'string' },
     json: { type: 'string' },
     robustness: { type: 'boolean' },
+    figures: { type: 'string' },
+    fp32: { type: 'string' },
   },
 });
+
+type Exact = Partial<Record<MeasuredMethod, Report>>;
+
+/** The networks of a folder with their contracts. */
+async function startRegressors(folder: string): Promise<Map<MeasuredMethod, PoseRegressor>> {
+  const started = new Map<MeasuredMethod, PoseRegressor>();
+  for (const name of measuredMethods.filter(needsRegressor)) {
+    const contract = parseContract(`${name}.json`, readFileSync(join(folder, `${name}.json`), 'utf8'));
+    started.set(name, await startRegressor(contract, readFileSync(join(folder, contract.file))));
+  }
+  return started;
+}
 
 /** The share of the work that is done, on a terminal only; nothing remains of it at the end. */
 function progress(share: number, what = 'robustness'): void {
@@ -28,17 +52,19 @@ function progress(share: number, what = 'robustness'): void {
 }
 
 async function main(): Promise<void> {
-  const { recordings, models, json, robustness } = options;
+  const { recordings, models, json, robustness, figures, fp32 } = options;
   if (!recordings || !models)
     throw new Error('evaluate: --recordings and --models are needed; `npm run evaluate` gives them');
   const index = readIndex(recordings);
-  const regressors = new Map<MeasuredMethod, PoseRegressor>();
-  const seen = new Set<string>();
-  for (const name of measuredMethods.filter(needsRegressor)) {
-    const contract = parseContract(`${name}.json`, readFileSync(join(models, `${name}.json`), 'utf8'));
-    regressors.set(name, await startRegressor(contract, readFileSync(join(models, contract.file))));
-    for (const person of contract.trainedOn.people) seen.add(person);
-  }
+  const regressors = await startRegressors(models);
+  const seen = new Set([...regressors.values()].flatMap(({ contract }) => contract.trainedOn.people));
+  const exactRegressors = fp32 ? await startRegressors(fp32) : null;
+  const exact = new Map<MeasuredMethod, Measures>();
+  const listed = [...new Set(index.clips.map(({ person }) => person))].sort();
+  const unseen = listed.filter((person) => !seen.has(person));
+  // What is shown and compared is what nobody was trained on, as long as there is such a person.
+  const judged = new Set(unseen.length > 0 ? unseen : listed);
+  const collection = emptyCollection();
 
   const byPerson = new Map<string, Record<MeasuredMethod, Measures>>();
   let done = 0;
@@ -52,19 +78,28 @@ async function main(): Promise<void> {
     };
     byPerson.set(clip.person, person);
     const frames = readClip(recordings, index, clip);
+    const driven = {} as Record<MeasuredMethod, MeasuredFrame[]>;
     for (const name of measuredMethods) {
-      addClip(person[name], await drive(name, calibration, regressors.get(name) ?? null, frames), index.rateHz);
+      driven[name] = await drive(name, calibration, regressors.get(name) ?? null, frames);
+      addClip(person[name], driven[name], index.rateHz);
+    }
+    if (judged.has(clip.person)) {
+      if (figures) addFigures(collection, clip.name, driven, index.rateHz);
+      for (const [name, regressor] of exactRegressors ?? []) {
+        const measures = exact.get(name) ?? emptyMeasures();
+        addClip(measures, await drive(name, calibration, regressor, frames), index.rateHz);
+        exact.set(name, measures);
+      }
     }
     done += clip.frames;
     progress(done / total, clip.name);
   }
 
-  const people = [...byPerson.keys()].sort();
+  const people = listed;
   const over = (who: readonly string[]): Record<MeasuredMethod, Report> =>
     Object.fromEntries(
       measuredMethods.map((name) => [name, report(merge(who.flatMap((person) => byPerson.get(person)?.[name] ?? [])))]),
     ) as Record<MeasuredMethod, Report>;
-  const unseen = people.filter((person) => !seen.has(person));
   const result = {
     corpus: {
       clips: index.clips.length,
@@ -77,6 +112,9 @@ async function main(): Promise<void> {
       ? { unseen: over(unseen), seen: over(people.filter((person) => seen.has(person))) }
       : {}),
     people: Object.fromEntries(people.map((person) => [person, { seen: seen.has(person), ...over([person]) }])),
+    ...(exact.size > 0
+      ? { fp32: Object.fromEntries([...exact].map(([name, measures]) => [name, report(measures)])) as Exact }
+      : {}),
     problems: index.problems,
   };
 
@@ -95,11 +133,19 @@ async function main(): Promise<void> {
       console.log(`  ${person}${own.seen ? ' (seen)' : ''}: MPJPE [cm]  ${row}`);
     }
   }
+  for (const [name, { mpjpeCm, jerkRatio }] of Object.entries(result.fp32 ?? {}) as [MeasuredMethod, Report][]) {
+    const int8 = (result.unseen ?? result.estimators)[name];
+    console.log(
+      `  ${name}: int8 ${int8.mpjpeCm.mean.toFixed(3)} cm, jerk ${int8.jerkRatio.toFixed(3)} ×; ` +
+        `fp32 ${mpjpeCm.mean.toFixed(3)} cm, ${jerkRatio.toFixed(3)} ×`,
+    );
+  }
+  if (figures) writeFileSync(figures, `${JSON.stringify(figuresOf(collection, index.rateHz))}\n`);
   const disturbed = robustness
     ? await measureRobustness(
         measuredMethods,
         chooseClips(
-          unseen.length > 0 ? index.clips.filter(({ person }) => unseen.includes(person)) : index.clips,
+          index.clips.filter(({ person }) => judged.has(person)),
           robustnessFrames,
         ),
         (clip) => ({
