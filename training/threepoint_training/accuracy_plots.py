@@ -90,7 +90,7 @@ def right_shoulder(trace: Json, folder: Path) -> None:
         errors = np.array(trace["rightShoulderCm"][method])
         times = np.arange(len(errors)) / trace["rateHz"]
         axes.plot(times, errors, color=colour, linewidth=1.6, linestyle={"paper": (0, (4, 1.5))}.get(method, "-"))
-        ends[method] = (float(errors[-1]), f"{NAMES[method]}\n∅ {errors.mean():.1f} cm", colour)
+        ends[method] = (float(errors[-1]), f"{NAMES[method]}\nmean {errors.mean():.1f}", colour)
     axes.set(xlabel="time [s]", ylabel="error [cm]", ylim=(0, None), xlim=(0, times[-1]))
     label_ends(axes, ends, 0.17 * axes.get_ylim()[1])
     axes.set_title(f"Right shoulder in the clip of median error, {trace['clip']}")
@@ -100,10 +100,10 @@ def right_shoulder(trace: Json, folder: Path) -> None:
 def by_joint(evaluation: Json, folder: Path) -> None:
     """Median and 95th percentile by joint."""
     figures = held_out(evaluation)
-    figure, axes = plt.subplots(figsize=(WIDTH, 4.0), layout="constrained")
+    figure, axes = plt.subplots(figsize=(WIDTH, 4.5), layout="constrained")
     rows = np.arange(len(JOINTS))[::-1]
     for number, (method, colour) in enumerate(COLOURS.items()):
-        y = rows + 0.24 * (1 - number)
+        y = rows + 0.27 * (1 - number)
         median = np.array([figures[method]["joints"][joint]["median"] for joint in JOINTS])
         p95 = np.array([figures[method]["joints"][joint]["p95"] for joint in JOINTS])
         axes.hlines(y, median, p95, color=colour, linewidth=2, alpha=0.55)
@@ -135,7 +135,8 @@ def train_and_test(evaluation: Json, folder: Path) -> bool:
         axes.set_yticks(rows, JOINTS.values())
         axes.grid(axis="y", visible=False)
         axes.set_title(NAMES[method], color=colour)
-        axes.set_xlim(0, None)
+    largest = max(evaluation[side][method]["jointMseCm2"][joint] for side in ("seen", "unseen") for method in COLOURS for joint in JOINTS)
+    panels[0].set_xlim(0, 1.07 * largest)
     figure.supxlabel("MSE per coordinate [cm²]: hollow = people trained on, filled = people held out", fontsize=10)
     save(figure, folder, "train-and-test")
     return True
@@ -240,14 +241,29 @@ def _seen_from(point: list[float], turn: float) -> tuple[float, float]:
 def poses(pictures: list[Json], folder: Path) -> None:
     """The paper's figure 7: six motions, the truth and what each method makes of it."""
     columns = ["truth", *COLOURS]
+    half_width, head_height, head_radius = 0.66, 0.08, 0.095
+
+    def turn_of(picture: Json) -> float:
+        """The side that moves is turned to the beholder."""
+        return np.radians(40 if picture["motion"].startswith("left") else -40)
+
+    def points(picture: Json) -> np.ndarray:
+        return np.array([_seen_from(point, turn_of(picture)) for body in picture["bodies"].values() for point in body.values()])
+
+    # Each row as high as its poses need, at one scale.
+    bottoms = [points(picture)[:, 1].min() - 0.06 for picture in pictures]
+    tops = [max(points(picture)[:, 1].max(), max(body["head"][1] for body in picture["bodies"].values()) + 0.18) + 0.06 for picture in pictures]
+    heights = [top - bottom for top, bottom in zip(tops, bottoms, strict=True)]
+    inches_per_metre = WIDTH / len(columns) / (2 * half_width) * 0.93
     figure, panels = plt.subplots(
-        len(columns), len(pictures), figsize=(WIDTH, 8.2), sharex=True, sharey="row", squeeze=False, layout="constrained"
-    )
-    turn = np.radians(30)
-    low = min(min(_seen_from(p, turn)[1] for body in picture["bodies"].values() for p in body.values()) for picture in pictures)
-    for column, picture in enumerate(pictures):
-        centre = np.mean([_seen_from(p, turn)[0] for p in picture["bodies"]["truth"].values()])
-        for row, method in enumerate(columns):
+        len(pictures), len(columns), figsize=(WIDTH, inches_per_metre * sum(heights) * 1.04 + 0.4), squeeze=False,
+        gridspec_kw={"height_ratios": heights, "wspace": 0, "hspace": 0.02, "left": 0.06, "right": 0.995, "top": 0.965, "bottom": 0.005},
+    )  # fmt: skip
+    for row, picture in enumerate(pictures):
+        turn = turn_of(picture)
+        x_of_all = points(picture)[:, 0]
+        centre = (x_of_all.min() + x_of_all.max()) / 2
+        for column, method in enumerate(columns):
             axes = panels[row, column]
             for of in dict.fromkeys(("truth", method)):
                 body = picture["bodies"][of]
@@ -255,22 +271,18 @@ def poses(pictures: list[Json], folder: Path) -> None:
                 colour = TRUTH if method == "truth" else "#b8b8b8" if faint else COLOURS[method]
                 for bone in BONES:
                     x, y = np.transpose([_seen_from(body[joint], turn) for joint in bone])
-                    axes.plot(x - centre, y, color=colour, linewidth=3.2 if faint else 2.2, solid_capstyle="round", solid_joinstyle="round")
+                    axes.plot(x - centre, y, color=colour, linewidth=4 if faint else 2.4, solid_capstyle="round", solid_joinstyle="round")
                     if not faint:
-                        axes.plot(x - centre, y, ".", color=colour, markersize=6)
-                head = _seen_from(body["head"], turn)
-                axes.add_patch(plt.Circle((head[0] - centre, head[1] + 0.08), 0.095, fill=False, color=colour, linewidth=2.4 if faint else 2))
+                        axes.plot(x - centre, y, ".", color=colour, markersize=7)
+                x, y = _seen_from(body["head"], turn)
+                axes.add_patch(plt.Circle((x - centre, y + head_height), head_radius, fill=False, color=colour, linewidth=3 if faint else 2.2))
             axes.set_aspect("equal")
-            axes.set(xlim=(-0.62, 0.62), xticks=[], yticks=[])
+            axes.set(xlim=(-half_width, half_width), ylim=(bottoms[row], tops[row]), xticks=[], yticks=[])
             axes.grid(visible=False)
             for spine in axes.spines.values():
                 spine.set_visible(False)
             if row == 0:
-                axes.set_title(picture["motion"], fontsize=9, loc="center")
+                axes.set_title(NAMES.get(method, "truth"), color=TRUTH if method == "truth" else COLOURS[method], loc="center", fontsize=11)
             if column == 0:
-                colour = TRUTH if method == "truth" else COLOURS[method]
-                axes.set_ylabel(NAMES.get(method, "truth"), color=colour, fontweight="bold")
-    top = max(max(_seen_from(p, turn)[1] for body in picture["bodies"].values() for p in body.values()) for picture in pictures)
-    for row in panels:
-        row[0].set_ylim(low - 0.05, top + 0.12)
+                axes.set_ylabel(picture["motion"].replace(" hand ", " hand\n"), fontsize=9.5, fontweight="bold")
     save(figure, folder, "six-motions")
