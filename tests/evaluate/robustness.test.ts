@@ -90,7 +90,7 @@ describe('a whole run', () => {
     const learned = await openShippedModel('learned');
     result = await measureRobustness(['ik', 'learned'], clips, load, new Map([['learned', learned]]), 60);
     await learned.dispose();
-  });
+  }, 60_000);
 
   test('has every row for every method, all of them finite', () => {
     for (const method of Object.values(result.estimators)) {
@@ -112,5 +112,5 @@ describe('a whole run', () => {
   test('is the same twice', async () => {
     const again = await measureRobustness(['ik'], clips, load, new Map(), 60);
     expect(again.estimators.ik).toEqual(result.estimators.ik);
-  });
+  }, 60_000);
 });
