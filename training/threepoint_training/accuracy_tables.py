@@ -24,7 +24,7 @@ def held_out(evaluation: Json) -> Json:
 def people_held_out(evaluation: Json) -> list[str]:
     """Their names; everybody's where all have been seen."""
     names = [name for name, person in evaluation["people"].items() if not person["seen"]]
-    return names or list(evaluation["people"])
+    return sorted(names or evaluation["people"])
 
 
 def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
@@ -202,17 +202,18 @@ def aims(evaluation: Json, contracts: dict[str, Json]) -> str:
     def elbows(of: Json) -> float:
         return (of["joints"]["leftElbow"]["mean"] + of["joints"]["rightElbow"]["mean"]) / 2
 
-    ratio = ours["mpjpeCm"]["mean"] / ik["mpjpeCm"]["mean"]
-    elbow = elbows(ours) / elbows(ik)
-    offset = max(o["mpjpeCm"] for o in robust["offsets"]) - robust["mpjpeCm"]
-    height = max(h["mpjpeCm"] for h in robust["heights"]) - robust["mpjpeCm"]
+    ratio = round(ours["mpjpeCm"]["mean"] / ik["mpjpeCm"]["mean"], 3)
+    elbow = round(elbows(ours) / elbows(ik), 3)
+    offset = round(max(o["mpjpeCm"] for o in robust["offsets"]) - robust["mpjpeCm"], 2)
+    height = round(max(h["mpjpeCm"] for h in robust["heights"]) - robust["mpjpeCm"], 2)
     long = robust["losses"][-1]["during"]
     jump = max(loss[when]["excessCm"] for loss in robust["losses"] for when in ("atLoss", "atReturn"))
-    lost_all, lost_elbow = long["allCm"] / long["allSeenCm"], long["elbowCm"] / long["elbowSeenCm"]
+    lost_all, lost_elbow = round(long["allCm"] / long["allSeenCm"], 2), round(long["elbowCm"] / long["elbowSeenCm"], 2)
     errors = contracts["learned"]["errors"]
     held = ", ".join(people_held_out(evaluation))
 
     def row(what: str, aim: str, measured: str, met: bool | None) -> list[str]:
+        """What is printed is what is judged: callers round first."""
         return [what, aim, measured, {True: "met", False: "missed", None: "not measured"}[met]]
 
     rows = [
@@ -221,8 +222,8 @@ def aims(evaluation: Json, contracts: dict[str, Json]) -> str:
     ]
     for protocol, own in errors.items():
         if protocol.startswith("learned, fold B") and (other := errors.get(protocol.replace("learned", "IK", 1))):
-            second = own["mean"] / other["mean"]
-            second_elbows = (own["left elbow"] + own["right elbow"]) / (other["left elbow"] + other["right elbow"])
+            second = round(own["mean"] / other["mean"], 3)
+            second_elbows = round((own["left elbow"] + own["right elbow"]) / (other["left elbow"] + other["right elbow"]), 3)
             fold = protocol.removeprefix("learned, ")
             rows.append(row(f"MPJPE relative to IK, {fold}, network alone", "≤ 0.85", f"{second:.3f}", second <= 0.85))
             rows.append(row(f"elbows relative to IK, {fold}, network alone", "≤ 0.85", f"{second_elbows:.3f}", second_elbows <= 0.85))
@@ -252,7 +253,7 @@ def aims(evaluation: Json, contracts: dict[str, Json]) -> str:
         row("bone-length variation", "0 mm", f"{bones:.3f} mm", bones < 0.05),
         row("size of the network", "≤ 300 kB", f"{size:.0f} kB", size <= 300),
     ]
-    return table(["", "aim", "measured", ""], rows)
+    return table(["", "aim", "measured", "verdict"], rows)
 
 
 def renew(page: str, sections: dict[str, str | None]) -> str:
