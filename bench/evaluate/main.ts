@@ -1,14 +1,11 @@
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { parseArgs } from 'node:util';
-import type { Calibration } from '../../src/core/body/calibration';
-import { forwardKinematics } from '../../src/core/body/forward-kinematics';
-import { skeletonFromCalibration } from '../../src/core/body/skeleton';
-import { createEstimator, needsRegressor } from '../../src/core/estimation/estimators';
-import type { EstimatorName } from '../../src/core/estimation/pose-estimator';
+import { needsRegressor } from '../../src/core/estimation/estimators';
 import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
-import type { Vec3 } from '../../src/core/math/vec3';
 import { parseContract, startRegressor } from '../../src/inference/load-regressor';
+import { drive, type MeasuredMethod, measuredMethods } from './drive';
+import { addFigures, emptyCollection, figuresOf } from './figures';
 import {
   addClip,
   emptyMeasures,
@@ -19,61 +16,57 @@ import {
   report,
   reportNames,
 } from './measures';
-import { calibrationOf, type RecordedFrame, readClip, readIndex } from './recordings';
+import { calibrationOf, readClip, readIndex } from './recordings';
+import { chooseClips, measureRobustness, robustnessText } from './robustness';
 
-/** Methods that have a body to measure; hands-only has none. */
-const measured = ['ik', 'paper', 'learned'] as const satisfies readonly EstimatorName[];
-type Measured = (typeof measured)[number];
+/** Robustness drives forty variants of each clip: beyond so many frames, a selection stands for the rest. */
+const robustnessFrames = 12_000;
 
 const { values: options } = parseArgs({
   options: {
     recordings: { type: 'string' },
     models: { type: 'string' },
     json: { type: 'string' },
+    robustness: { type: 'boolean' },
+    figures: { type: 'string' },
+    fp32: { type: 'string' },
   },
 });
 
-/** Drives the shipping path over one clip, frame by frame as the page would. */
-async function drive(
-  name: Measured,
-  calibration: Calibration,
-  regressor: PoseRegressor | null,
-  frames: readonly RecordedFrame[],
-): Promise<MeasuredFrame[]> {
-  const estimator = createEstimator(name, calibration, regressor);
-  const skeleton = skeletonFromCalibration(calibration);
-  const result: MeasuredFrame[] = [];
-  for (const { frame, truth } of frames) {
-    await estimator.prepare(frame);
-    const { body } = estimator.estimate(frame);
-    if (estimator.fault()) throw new Error(`${name}: ${estimator.fault()}`);
-    if (!body || !frame.leftHand || !frame.rightHand) throw new Error(`${name} drew no body`);
-    const joints: Record<string, Vec3> = {};
-    for (const [joint, { position }] of Object.entries(forwardKinematics(skeleton, body))) joints[joint] = position;
-    result.push({
-      joints,
-      truth,
-      raw: estimator.rawJoints(),
-      wrists: { left: frame.leftHand.position, right: frame.rightHand.position },
-    });
+type Exact = Partial<Record<MeasuredMethod, Report>>;
+
+/** The networks of a folder with their contracts. */
+async function startRegressors(folder: string): Promise<Map<MeasuredMethod, PoseRegressor>> {
+  const started = new Map<MeasuredMethod, PoseRegressor>();
+  for (const name of measuredMethods.filter(needsRegressor)) {
+    const contract = parseContract(`${name}.json`, readFileSync(join(folder, `${name}.json`), 'utf8'));
+    started.set(name, await startRegressor(contract, readFileSync(join(folder, contract.file))));
   }
-  return result;
+  return started;
+}
+
+/** The share of the work that is done, on a terminal only; nothing remains of it at the end. */
+function progress(share: number, what = 'robustness'): void {
+  if (!process.stderr.isTTY) return;
+  process.stderr.write(share < 1 ? `\r  ${what} ${Math.round(100 * share)} %   ` : '\r\x1b[K');
 }
 
 async function main(): Promise<void> {
-  const { recordings, models, json } = options;
+  const { recordings, models, json, robustness, figures, fp32 } = options;
   if (!recordings || !models)
     throw new Error('evaluate: --recordings and --models are needed; `npm run evaluate` gives them');
   const index = readIndex(recordings);
-  const regressors = new Map<Measured, PoseRegressor>();
-  const seen = new Set<string>();
-  for (const name of measured.filter(needsRegressor)) {
-    const contract = parseContract(`${name}.json`, readFileSync(join(models, `${name}.json`), 'utf8'));
-    regressors.set(name, await startRegressor(contract, readFileSync(join(models, contract.file))));
-    for (const person of contract.trainedOn.people) seen.add(person);
-  }
+  const regressors = await startRegressors(models);
+  const seen = new Set([...regressors.values()].flatMap(({ contract }) => contract.trainedOn.people));
+  const exactRegressors = fp32 ? await startRegressors(fp32) : null;
+  const exact = new Map<MeasuredMethod, Measures>();
+  const listed = [...new Set(index.clips.map(({ person }) => person))].sort();
+  const unseen = listed.filter((person) => !seen.has(person));
+  // What is shown and compared is what nobody was trained on, as long as there is such a person.
+  const judged = new Set(unseen.length > 0 ? unseen : listed);
+  const collection = emptyCollection();
 
-  const byPerson = new Map<string, Record<Measured, Measures>>();
+  const byPerson = new Map<string, Record<MeasuredMethod, Measures>>();
   let done = 0;
   const total = index.clips.reduce((sum, clip) => sum + clip.frames, 0);
   for (const clip of index.clips) {
@@ -85,20 +78,28 @@ async function main(): Promise<void> {
     };
     byPerson.set(clip.person, person);
     const frames = readClip(recordings, index, clip);
-    for (const name of measured) {
-      addClip(person[name], await drive(name, calibration, regressors.get(name) ?? null, frames), index.rateHz);
+    const driven = {} as Record<MeasuredMethod, MeasuredFrame[]>;
+    for (const name of measuredMethods) {
+      driven[name] = await drive(name, calibration, regressors.get(name) ?? null, frames);
+      addClip(person[name], driven[name], index.rateHz);
+    }
+    if (judged.has(clip.person)) {
+      if (figures) addFigures(collection, clip.name, driven, index.rateHz);
+      for (const [name, regressor] of exactRegressors ?? []) {
+        const measures = exact.get(name) ?? emptyMeasures();
+        addClip(measures, await drive(name, calibration, regressor, frames), index.rateHz);
+        exact.set(name, measures);
+      }
     }
     done += clip.frames;
-    if (process.stderr.isTTY) process.stderr.write(`\r  ${clip.name} ${Math.round((100 * done) / total)} %   `);
+    progress(done / total, clip.name);
   }
-  if (process.stderr.isTTY) process.stderr.write('\r\x1b[K');
 
-  const people = [...byPerson.keys()].sort();
-  const over = (who: readonly string[]): Record<Measured, Report> =>
+  const people = listed;
+  const over = (who: readonly string[]): Record<MeasuredMethod, Report> =>
     Object.fromEntries(
-      measured.map((name) => [name, report(merge(who.flatMap((person) => byPerson.get(person)?.[name] ?? [])))]),
-    ) as Record<Measured, Report>;
-  const unseen = people.filter((person) => !seen.has(person));
+      measuredMethods.map((name) => [name, report(merge(who.flatMap((person) => byPerson.get(person)?.[name] ?? [])))]),
+    ) as Record<MeasuredMethod, Report>;
   const result = {
     corpus: {
       clips: index.clips.length,
@@ -107,8 +108,13 @@ async function main(): Promise<void> {
       seconds: Number((total / index.rateHz).toFixed(1)),
     },
     estimators: over(people),
-    ...(unseen.length > 0 && unseen.length < people.length ? { unseen: over(unseen) } : {}),
+    ...(unseen.length > 0 && unseen.length < people.length
+      ? { unseen: over(unseen), seen: over(people.filter((person) => seen.has(person))) }
+      : {}),
     people: Object.fromEntries(people.map((person) => [person, { seen: seen.has(person), ...over([person]) }])),
+    ...(exact.size > 0
+      ? { fp32: Object.fromEntries([...exact].map(([name, measures]) => [name, report(measures)])) as Exact }
+      : {}),
     problems: index.problems,
   };
 
@@ -123,21 +129,48 @@ async function main(): Promise<void> {
   for (const person of people) {
     const own = result.people[person];
     if (own && people.length > 1) {
-      const row = measured.map((name) => `${name} ${own[name].mpjpeCm.mean.toFixed(2)}`).join('   ');
+      const row = measuredMethods.map((name) => `${name} ${own[name].mpjpeCm.mean.toFixed(2)}`).join('   ');
       console.log(`  ${person}${own.seen ? ' (seen)' : ''}: MPJPE [cm]  ${row}`);
     }
   }
-  if (json) writeFileSync(json, `${JSON.stringify(result, null, 2)}\n`);
+  for (const [name, { mpjpeCm, jerkRatio }] of Object.entries(result.fp32 ?? {}) as [MeasuredMethod, Report][]) {
+    const int8 = (result.unseen ?? result.estimators)[name];
+    console.log(
+      `  ${name}: int8 ${int8.mpjpeCm.mean.toFixed(3)} cm, jerk ${int8.jerkRatio.toFixed(3)} ×; ` +
+        `fp32 ${mpjpeCm.mean.toFixed(3)} cm, ${jerkRatio.toFixed(3)} ×`,
+    );
+  }
+  if (figures) writeFileSync(figures, `${JSON.stringify(figuresOf(collection, index.rateHz))}\n`);
+  const disturbed = robustness
+    ? await measureRobustness(
+        measuredMethods,
+        chooseClips(
+          index.clips.filter(({ person }) => judged.has(person)),
+          robustnessFrames,
+        ),
+        (clip) => ({
+          name: clip.name,
+          calibration: calibrationOf(index, clip.person),
+          frames: readClip(recordings, index, clip),
+        }),
+        regressors,
+        index.rateHz,
+        progress,
+      )
+    : null;
+  if (disturbed) console.log(robustnessText(disturbed, index.rateHz));
+  const complete = { ...result, ...(disturbed ? { robustness: disturbed } : {}) };
+  if (json) writeFileSync(json, `${JSON.stringify(complete, null, 2)}\n`);
 }
 
-function print(title: string, reports: Record<Measured, Report>): void {
+function print(title: string, reports: Record<MeasuredMethod, Report>): void {
   console.log(`\n${title}`);
   const row = (label: string, cells: readonly string[]) =>
     console.log(`  ${label.padEnd(34)}${cells.map((cell) => cell.padStart(22)).join('')}`);
-  row('', [...measured]);
+  row('', [...measuredMethods]);
   const spreadCell = ({ mean, median, p95 }: Report['mpjpeCm']) =>
     `${mean.toFixed(2)} / ${median.toFixed(2)} / ${p95.toFixed(2)}`;
-  const each = (cell: (r: Report) => string) => measured.map((name) => cell(reports[name]));
+  const each = (cell: (r: Report) => string) => measuredMethods.map((name) => cell(reports[name]));
   row(
     'MPJPE mean / median / p95 [cm]',
     each((r) => spreadCell(r.mpjpeCm)),

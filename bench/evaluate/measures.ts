@@ -7,6 +7,8 @@ import type { TruthJoint } from './recordings';
 /** Names of the six joints in every report. */
 export const reportNames = ['leftElbow', 'rightElbow', 'leftShoulder', 'rightShoulder', 'spine', 'pelvis'] as const;
 
+export type ByJoint<Figure> = Readonly<Record<(typeof reportNames)[number], Figure>>;
+
 export interface Spread {
   readonly mean: number;
   readonly median: number;
@@ -15,9 +17,12 @@ export interface Spread {
 
 export interface Report {
   readonly mpjpeCm: Spread;
-  readonly joints: Readonly<Record<(typeof reportNames)[number], Spread>>;
+  readonly joints: ByJoint<Spread>;
+  /** Per coordinate, over all joints and by joint. */
   readonly mseCm2: number;
   readonly maeCm: number;
+  readonly jointMseCm2: ByJoint<number>;
+  readonly jointMaeCm: ByJoint<number>;
   readonly swivelDeg: number;
   readonly jerkRatio: number;
   readonly boneVariationMm: number;
@@ -33,9 +38,9 @@ const straightArm = 0.03;
 /** What one estimator did with some clips; add clip by clip, merge people, then report. */
 export interface Measures {
   readonly errors: number[][];
-  squares: number;
-  absolutes: number;
-  coordinates: number;
+  /** Sums over frames and coordinates by joint [cm², cm]. */
+  readonly squares: number[];
+  readonly absolutes: number[];
   swivels: number[];
   jerk: number;
   truthJerk: number;
@@ -49,9 +54,8 @@ export interface Measures {
 
 export const emptyMeasures = (): Measures => ({
   errors: estimatedJoints.map(() => []),
-  squares: 0,
-  absolutes: 0,
-  coordinates: 0,
+  squares: estimatedJoints.map(() => 0),
+  absolutes: estimatedJoints.map(() => 0),
   swivels: [],
   jerk: 0,
   truthJerk: 0,
@@ -68,7 +72,8 @@ export interface MeasuredFrame {
   readonly joints: Readonly<Record<string, Vec3>>;
   readonly raw: JointPositions | null;
   readonly truth: Readonly<Record<TruthJoint, Vec3>>;
-  readonly wrists: { readonly left: Vec3; readonly right: Vec3 };
+  /** Where the trackers saw the wrists; null: unseen. */
+  readonly wrists: { readonly left: Vec3 | null; readonly right: Vec3 | null };
 }
 
 /** Pairs of joints whose distance must not change. */
@@ -102,9 +107,8 @@ export function addClip(measures: Measures, frames: readonly MeasuredFrame[], ra
       measures.errors[index]?.push(distance(estimated, actual) * 100);
       for (const axis of ['x', 'y', 'z'] as const) {
         const difference = (estimated[axis] - actual[axis]) * 100;
-        measures.squares += difference * difference;
-        measures.absolutes += Math.abs(difference);
-        measures.coordinates += 1;
+        measures.squares[index] = (measures.squares[index] ?? 0) + difference * difference;
+        measures.absolutes[index] = (measures.absolutes[index] ?? 0) + Math.abs(difference);
       }
       if (raw) {
         measures.rawError += distance(raw[name], actual) * 100;
@@ -112,14 +116,17 @@ export function addClip(measures: Measures, frames: readonly MeasuredFrame[], ra
       }
     });
     for (const side of ['left', 'right'] as const) {
-      const miss = distance(jointOf(joints, `${side}Hand`), wrists[side]) * 1000;
-      measures.handError += miss;
-      measures.handErrorMax = Math.max(measures.handErrorMax, miss);
-      measures.hands += 1;
-      const [shoulder, elbow, wrist] = [truth[`${side}UpperArm`], truth[`${side}LowerArm`], truth[`${side}Hand`]];
-      const bend = reject(subtract(elbow, shoulder), normalise(subtract(wrist, shoulder)));
+      const wrist = wrists[side];
+      if (wrist) {
+        const miss = distance(jointOf(joints, `${side}Hand`), wrist) * 1000;
+        measures.handError += miss;
+        measures.handErrorMax = Math.max(measures.handErrorMax, miss);
+        measures.hands += 1;
+      }
+      const [shoulder, elbow, hand] = [truth[`${side}UpperArm`], truth[`${side}LowerArm`], truth[`${side}Hand`]];
+      const bend = reject(subtract(elbow, shoulder), normalise(subtract(hand, shoulder)));
       if (Math.hypot(bend.x, bend.y, bend.z) > straightArm) {
-        const angle = swivelAngle(shoulder, wrist, elbow, jointOf(joints, `${side}LowerArm`));
+        const angle = swivelAngle(shoulder, hand, elbow, jointOf(joints, `${side}LowerArm`));
         measures.swivels.push((Math.abs(angle) * 180) / Math.PI);
       }
     }
@@ -156,17 +163,12 @@ export function merge(parts: readonly Measures[]): Measures {
       for (const error of errors) whole.errors[index]?.push(error);
     });
     for (const swivel of part.swivels) whole.swivels.push(swivel);
-    for (const key of [
-      'squares',
-      'absolutes',
-      'coordinates',
-      'jerk',
-      'truthJerk',
-      'handError',
-      'hands',
-      'rawError',
-      'rawCount',
-    ] as const) {
+    for (const key of ['squares', 'absolutes'] as const) {
+      part[key].forEach((sum, index) => {
+        whole[key][index] = (whole[key][index] ?? 0) + sum;
+      });
+    }
+    for (const key of ['jerk', 'truthJerk', 'handError', 'hands', 'rawError', 'rawCount'] as const) {
       whole[key] += part[key];
     }
     whole.boneVariation = Math.max(whole.boneVariation, part.boneVariation);
@@ -175,7 +177,7 @@ export function merge(parts: readonly Measures[]): Measures {
   return whole;
 }
 
-const rounded = (value: number, digits: number): number => Number(value.toFixed(digits));
+export const rounded = (value: number, digits: number): number => Number(value.toFixed(digits));
 const mean = (values: Float64Array): number => values.reduce((sum, value) => sum + value, 0) / values.length;
 
 function spread(values: readonly number[]): Spread {
@@ -184,14 +186,21 @@ function spread(values: readonly number[]): Spread {
   return { mean: rounded(mean(sorted), 3), median: rounded(quantile(0.5), 3), p95: rounded(quantile(0.95), 3) };
 }
 
+const sum = (values: readonly number[]): number => values.reduce((total, value) => total + value, 0);
+const byJoint = <Figure>(figure: (index: number) => Figure): ByJoint<Figure> =>
+  Object.fromEntries(reportNames.map((name, index) => [name, figure(index)])) as ByJoint<Figure>;
+
 export function report(measures: Measures): Report {
+  /** Coordinates of one joint. */
+  const coordinates = (index: number): number => 3 * (measures.errors[index]?.length ?? 0);
+  const all = sum(reportNames.map((_, index) => coordinates(index)));
   return {
     mpjpeCm: spread(measures.errors.flat()),
-    joints: Object.fromEntries(
-      reportNames.map((name, index) => [name, spread(measures.errors[index] ?? [])]),
-    ) as Report['joints'],
-    mseCm2: rounded(measures.squares / measures.coordinates, 3),
-    maeCm: rounded(measures.absolutes / measures.coordinates, 3),
+    joints: byJoint((index) => spread(measures.errors[index] ?? [])),
+    mseCm2: rounded(sum(measures.squares) / all, 3),
+    maeCm: rounded(sum(measures.absolutes) / all, 3),
+    jointMseCm2: byJoint((index) => rounded((measures.squares[index] ?? 0) / coordinates(index), 3)),
+    jointMaeCm: byJoint((index) => rounded((measures.absolutes[index] ?? 0) / coordinates(index), 3)),
     swivelDeg: rounded(mean(Float64Array.from(measures.swivels)), 2),
     jerkRatio: rounded(measures.jerk / measures.truthJerk, 3),
     boneVariationMm: rounded(measures.boneVariation, 4),

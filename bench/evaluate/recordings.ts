@@ -22,7 +22,7 @@ export type RecordingIndex = v.InferOutput<typeof indexSchema>;
 export const readIndex = (folder: string): RecordingIndex =>
   v.parse(indexSchema, JSON.parse(readFileSync(join(folder, 'index.json'), 'utf8')));
 
-/** Joints of the truth that the measures use. */
+/** Joints of the truth that the measures and figures use. */
 export const truthJoints = [
   'leftLowerArm',
   'rightLowerArm',
@@ -32,6 +32,8 @@ export const truthJoints = [
   'hips',
   'leftHand',
   'rightHand',
+  'neck',
+  'head',
 ] as const;
 export type TruthJoint = (typeof truthJoints)[number];
 

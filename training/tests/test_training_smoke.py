@@ -28,6 +28,7 @@ def config(tmp_path_factory):
     from threepoint_training import __main__ as pipeline
 
     base = pipeline.quick(pipeline.TrainConfig(mocap=None, folds=("A",), seed=SEED, out=tmp_path_factory.mktemp("models")))
+    base = replace(base, fp32_out=tmp_path_factory.mktemp("fp32"))
     return replace(base, learned=replace(base.learned, steps=60, batch=256, seed=SEED), paper=replace(base.paper, seed=SEED))
 
 
@@ -62,6 +63,42 @@ def test_the_pipeline_writes_a_model_that_keeps_its_contract(config, run, name):
     (output,) = session.run([stated["outputs"][0]["name"]], {stated["inputs"][0]["name"]: given})
     assert list(output.shape) == stated["outputs"][0]["shape"]
     assert np.isfinite(output).all()
+
+
+def test_the_paper_s_contract_carries_its_learning_curve(config, run):
+    curve = contract(config.out, "paper")["learningCurve"]
+    assert curve["epochs"] == sorted(curve["epochs"])
+    assert curve["epochs"][-1] == config.paper.epochs
+    assert len(curve["epochs"]) == len(curve["train"]) == len(curve["test"]) == 4 * config.paper.epochs
+    assert curve["train"][-1] < curve["train"][0]
+    assert "learningCurve" not in contract(config.out, "learned")
+
+
+def test_watching_the_network_learn_changes_no_weight(config, corpus):
+    from threepoint_training import train_paper
+
+    frames = train_paper.frames_of(corpus, ("001", "002"), SEED)
+    chosen = np.arange(len(frames.inputs))
+
+    def weights(watch):
+        network = train_paper.train(frames, chosen, config.paper, watch=watch)
+        return np.concatenate([value.numpy().ravel() for value in network.state_dict().values()])
+
+    curve, watch = train_paper.follow_learning(frames, frames)
+    np.testing.assert_array_equal(weights(watch), weights(lambda *_: None))
+    assert len(curve.test) == 4
+
+
+@pytest.mark.parametrize("name", ["paper", "learned"])
+def test_the_32_bit_network_is_the_same_one_unquantised(config, run, name):
+    stated, exact = contract(config.out, name), contract(config.fp32_out, name)
+    assert exact["bytes"] == (config.fp32_out / exact["file"]).stat().st_size > 2 * stated["bytes"]
+    given = np.random.default_rng(1).normal(size=stated["inputs"][0]["shape"]).astype(np.float32)
+    outputs = [
+        onnxruntime.InferenceSession(folder / f"{name}.onnx").run(None, {stated["inputs"][0]["name"]: given})[0]
+        for folder in (config.out, config.fp32_out)
+    ]
+    assert 0 < np.abs(outputs[0] - outputs[1]).max() < 0.1 * np.abs(outputs[1]).max()
 
 
 def test_the_table_has_a_row_per_estimator_and_protocol(run):

@@ -7,7 +7,8 @@ import argparse
 import json
 import re
 import sys
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,7 @@ from rich.table import Table
 from . import export, fit_body, fit_ik, golden, ik, people, prepare, skeleton, train_learned, train_paper
 from .features import paper_input
 from .generated_motion import generate_corpus
+from .model import PaperNetwork
 from .motion import MocapError
 from .prepared_corpus import PreparedCorpus
 
@@ -34,6 +36,8 @@ class TrainConfig:
 
     mocap: Path | None
     out: Path = REPOSITORY / "public/models"
+    # The same networks with 32-bit weights go there, for the evaluation to compare with; None: they are not written.
+    fp32_out: Path | None = None
     cache: Path = REPOSITORY / ".cache/mocap"
     skeleton_map: Path | None = None
     folds: tuple[str, ...] = ("A", "B")
@@ -79,6 +83,7 @@ def main(config: TrainConfig, console: Console | None = None) -> dict[str, dict[
         shipped = folds[0] if folds else None
 
         networks: dict[str, torch.nn.Module] = {}
+        curve: train_paper.LearningCurve | None = None
         for fold in folds or [None]:
             training = people.training_people(fold, everybody) if fold else everybody
             unseen = tuple(person for person in people.FOLDS[fold] if person in everybody) if fold else everybody
@@ -88,8 +93,9 @@ def main(config: TrainConfig, console: Console | None = None) -> dict[str, dict[
                 rows[f"IK, {label} ({', '.join(unseen)})"] = by_joint(train_learned.ik_errors_cm(test))
                 trained: dict[str, torch.nn.Module] = {}
                 if "paper" in config.networks:
-                    trained["paper"] = _train_paper(config, corpus, training, label, progress)
                     frames = train_paper.frames_of(corpus, unseen, config.seed)
+                    trained["paper"], followed = _train_paper(config, corpus, training, frames, label, progress)
+                    curve = followed if fold == shipped else curve
                     rows[f"paper, {label} ({', '.join(unseen)})"] = by_joint(
                         train_paper.joint_errors_cm(train_paper.predict(trained["paper"], frames.inputs), frames.targets)
                     )
@@ -104,7 +110,7 @@ def main(config: TrainConfig, console: Console | None = None) -> dict[str, dict[
             rows["paper, frame-random 80/20"] = by_joint(_paper_frame_random(config, corpus, progress))
 
         training = people.training_people(shipped, everybody) if shipped else everybody
-        _export(config, corpus, training, networks, rows)
+        _export(config, corpus, training, networks, rows, curve)
     if config.out.resolve() == (REPOSITORY / "public/models").resolve():
         golden.main(config.out)
     _print_table(rows, console)
@@ -153,19 +159,29 @@ class _kinematics:  # noqa: N801 - reads as a verb where it is used
         skeleton.load_proportions, ik.load_parameters = self.saved
 
 
-def _train_paper(config: TrainConfig, corpus: PreparedCorpus, training: tuple[str, ...], label: str, progress: Progress) -> torch.nn.Module:
+def _train_paper(
+    config: TrainConfig, corpus: PreparedCorpus, training: tuple[str, ...], test: train_paper.PaperFrames, label: str, progress: Progress
+) -> tuple[torch.nn.Module, train_paper.LearningCurve]:
     frames = train_paper.frames_of(corpus, training, config.seed)
-    return _fit_paper(config, frames, np.arange(len(frames.inputs)), f"paper {label}", progress)
+    curve, watch = train_paper.follow_learning(frames, test)
+    return _fit_paper(config, frames, np.arange(len(frames.inputs)), f"paper {label}", progress, watch), curve
 
 
-def _fit_paper(config: TrainConfig, frames: train_paper.PaperFrames, chosen: np.ndarray, label: str, progress: Progress) -> torch.nn.Module:
+def _fit_paper(
+    config: TrainConfig,
+    frames: train_paper.PaperFrames,
+    chosen: np.ndarray,
+    label: str,
+    progress: Progress,
+    watch: Callable[[float, PaperNetwork], None] = lambda *_: None,
+) -> torch.nn.Module:
     task = progress.add_task(label, total=config.paper.epochs * 100)
     batches = max(1, 2 * len(chosen) // config.paper.batch)
 
     def report(epoch: int, iteration: int, loss: float) -> None:
         progress.update(task, completed=100 * epoch + 100 * iteration / batches, description=f"{label} {loss:.4f}")
 
-    network = train_paper.train(frames, chosen, config.paper, report)
+    network = train_paper.train(frames, chosen, config.paper, report, watch)
     progress.remove_task(task)
     return network
 
@@ -189,7 +205,7 @@ def _train_learned(config: TrainConfig, corpus: PreparedCorpus, training: tuple[
     return network
 
 
-def _export(config: TrainConfig, corpus: PreparedCorpus, training: tuple[str, ...], networks: dict[str, torch.nn.Module], rows: dict[str, dict[str, float]]) -> None:
+def _export(config: TrainConfig, corpus: PreparedCorpus, training: tuple[str, ...], networks: dict[str, torch.nn.Module], rows: dict[str, dict[str, float]], curve: train_paper.LearningCurve | None) -> None:
     source = "generated motion" if config.mocap is None else "CMU Graphics Lab Motion Capture Database and like files"
     examples = train_learned.held_out(corpus, training[:1], config.learned.window_seconds).inputs[::97]
     first = corpus.clip_slice(0)
@@ -209,6 +225,7 @@ def _export(config: TrainConfig, corpus: PreparedCorpus, training: tuple[str, ..
             name, networks[name], batch, config.out, VERSION,
             (0.0,) if name == "paper" else config.learned.window_seconds, provenance,
             None if name == "paper" else config.correction_half_life,
+            asdict(curve) if name == "paper" and curve else None, config.fp32_out,
         )  # fmt: skip
 
 
@@ -229,6 +246,7 @@ def _arguments() -> TrainConfig:
     source.add_argument("--generated", action="store_true", help="generated motion instead, to try the pipeline")
     parser.add_argument("--skeleton", type=Path, help="a skeleton map (docs/evaluation.md)")
     parser.add_argument("--out", type=Path, default=TrainConfig.out)
+    parser.add_argument("--fp32", type=Path, help="also writes the networks with 32-bit weights there, to compare with")
     parser.add_argument("--seed", type=int, default=TrainConfig.seed)
     parser.add_argument("--threads", type=int, default=TrainConfig.threads, help="more are faster with large cores; weights differ in the last digits")
     parser.add_argument("--folds", default=",".join(TrainConfig.folds), help="A and B; the first is shipped (default: A,B)")
@@ -240,6 +258,7 @@ def _arguments() -> TrainConfig:
     config = TrainConfig(
         mocap=given.mocap,
         out=given.out,
+        fp32_out=given.fp32,
         skeleton_map=given.skeleton,
         folds=tuple(given.folds.split(",")),
         networks=tuple(given.networks.split(",")),

@@ -71,8 +71,13 @@ def write(
     window_seconds: tuple[float, ...],
     provenance: Provenance,
     correction_half_life: float | None = None,
+    learning_curve: dict[str, list[float]] | None = None,
+    fp32_out: Path | None = None,
 ) -> dict[str, Any]:
-    """Writes `name`.onnx and `name`.json into `out`; examples, real inputs, measure what the 8 bits cost."""
+    """Writes `name`.onnx and `name`.json into `out`; examples, real inputs, measure what the 8 bits cost.
+
+    With `fp32_out` the same network goes there with its 32-bit weights, so that the evaluation can compare the two.
+    """
     input_name, output_name = ("three_points", "joints") if name == "paper" else ("features", "joints")
     exact = to_onnx(network, examples[:1], input_name, output_name)
     quantised = quantise_weights(exact)
@@ -104,8 +109,24 @@ def write(
         "seed": provenance.seed,
         "errors": {protocol: {joint: round(value, 2) for joint, value in row.items()} for protocol, row in provenance.errors.items()},
     }
-    (out / f"{name}.json").write_text(json.dumps(contract, indent=2, ensure_ascii=False) + "\n")
+    if learning_curve is not None:
+        contract["learningCurve"] = {"unit": "cm² per coordinate, network alone"} | learning_curve
+    (out / f"{name}.json").write_text(_contract_text(contract))
+    if fp32_out is not None:
+        fp32_out.mkdir(parents=True, exist_ok=True)
+        content = exact.SerializeToString()
+        (fp32_out / f"{name}.onnx").write_bytes(content)
+        unquantised = contract | {
+            "bytes": len(content),
+            "sha256": hashlib.sha256(content).hexdigest(),
+            "quantisation": {"scheme": "none: fp32", "maxAbsoluteDifference": 0, "runtimeTolerance": RUNTIME_TOLERANCE},
+        }
+        (fp32_out / f"{name}.json").write_text(_contract_text(unquantised))
     return contract
+
+
+def _contract_text(contract: dict[str, Any]) -> str:
+    return json.dumps(contract, indent=2, ensure_ascii=False) + "\n"
 
 
 def _paper_input() -> dict[str, Any]:

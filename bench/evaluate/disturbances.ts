@@ -1,0 +1,127 @@
+import type { Side } from '../../src/core/body/joints';
+import { rotate, slerp } from '../../src/core/math/quat';
+import { nextRandom } from '../../src/core/math/random';
+import { add, lerp, type Vec3 } from '../../src/core/math/vec3';
+import type { TrackedPose, TrackingFrame } from '../../src/core/tracking/tracking-frame';
+import type { MeasuredFrame } from './measures';
+import { type RecordedFrame, type TruthJoint, truthJoints } from './recordings';
+
+/** One hand unseen in the frames [start, end). */
+export interface Loss {
+  readonly side: Side;
+  readonly start: number;
+  readonly end: number;
+}
+
+/** So much follows a loss [s] before the clip ends or the next one begins. */
+export const aftermathSeconds = 0.5;
+const [earliestSeconds, startSpreadSeconds] = [0.5, 1];
+const [restSeconds, restSpreadSeconds] = [1.5, 1.5];
+
+/** A seed of a text: the same clip meets the same losses in any selection of clips (FNV-1a). */
+export function seedOf(text: string): number {
+  let hash = 0x811c9dc5;
+  for (const byte of new TextEncoder().encode(text)) hash = Math.imul(hash ^ byte, 0x01000193);
+  return hash | 0;
+}
+
+/** Losses of `seconds` at seeded times, of either hand; none where the clip is too short for one and its aftermath. */
+export function scheduleLosses(frames: number, rateHz: number, seconds: number, seed: number): Loss[] {
+  let state = { seed };
+  const random = (): number => {
+    const next = nextRandom(state);
+    state = next.state;
+    return next.value;
+  };
+  const losses: Loss[] = [];
+  const length = Math.max(1, Math.round(seconds * rateHz));
+  let start = Math.round((earliestSeconds + startSpreadSeconds * random()) * rateHz);
+  while (start + length + aftermathSeconds * rateHz <= frames) {
+    const side = random() < 0.5 ? 'left' : 'right';
+    losses.push({ side, start, end: start + length });
+    start += length + Math.round((restSeconds + restSpreadSeconds * random()) * rateHz);
+  }
+  return losses;
+}
+
+/** The same frames without the lost hands; the truth stays. */
+export function loseHands(frames: readonly RecordedFrame[], losses: readonly Loss[]): RecordedFrame[] {
+  const lossy = [...frames];
+  for (const { side, start, end } of losses) {
+    for (let row = start; row < end; row++) {
+      const before = lossy[row];
+      if (before) lossy[row] = { ...before, frame: { ...before.frame, [`${side}Hand`]: null } };
+    }
+  }
+  return lossy;
+}
+
+export const trackers = ['headset', 'grips'] as const;
+export type Tracker = (typeof trackers)[number];
+
+/**
+ * The same frames with the headset or both grips mounted `offset` [m] away, along the device's own axes (+x right, +y up or out of
+ * the back of the hand, −z forward); the left hand's x is mirrored, so that +x is one side of the body for neither.
+ */
+export function offsetTrackers(frames: readonly RecordedFrame[], tracker: Tracker, offset: Vec3): RecordedFrame[] {
+  const moved = <P extends TrackedPose | null>(pose: P, by: Vec3): P =>
+    pose && { ...pose, position: add(pose.position, rotate(pose.orientation, by)) };
+  return frames.map(({ frame, truth }) => ({
+    truth,
+    frame:
+      tracker === 'headset'
+        ? { ...frame, head: moved(frame.head, offset) }
+        : {
+            ...frame,
+            leftHand: moved(frame.leftHand, { ...offset, x: -offset.x }),
+            rightHand: moved(frame.rightHand, offset),
+          },
+  }));
+}
+
+/** Source rows on either side of each row at another rate, and how far between them. */
+function rowsAtRate(rows: number, fromHz: number, toHz: number): { before: number; after: number; share: number }[] {
+  // The tolerance keeps the last row where the rates divide and rounding does not.
+  const count = rows === 0 ? 0 : Math.floor(((rows - 1) * toHz) / fromHz + 1e-9) + 1;
+  return Array.from({ length: count }, (_, row) => {
+    const at = (row * fromHz) / toHz;
+    const before = Math.min(rows - 1, Math.floor(at + 1e-9));
+    return { before, after: Math.min(rows - 1, before + 1), share: Math.max(0, at - before) };
+  });
+}
+
+const lerpTruth = (a: RecordedFrame['truth'], b: RecordedFrame['truth'], share: number): RecordedFrame['truth'] =>
+  Object.fromEntries(truthJoints.map((joint) => [joint, lerp(a[joint], b[joint], share)])) as Record<TruthJoint, Vec3>;
+
+/** The recording as a device of another rate would have it: positions linear, rotations along the shorter arc; a hand seen on both sides only. */
+export function resampleFrames(frames: readonly RecordedFrame[], fromHz: number, toHz: number): RecordedFrame[] {
+  const pose = <P extends TrackedPose | null>(a: P, b: P, share: number): P | null =>
+    a &&
+    b && {
+      ...a,
+      position: lerp(a.position, b.position, share),
+      orientation: slerp(a.orientation, b.orientation, share),
+    };
+  const first = frames[0]?.frame.time ?? 0;
+  return rowsAtRate(frames.length, fromHz, toHz).map(({ before, after, share }, row) => {
+    const [a, b] = [frames[before] as RecordedFrame, frames[after] as RecordedFrame];
+    const frame: TrackingFrame = {
+      time: first + row / toHz,
+      head: pose(a.frame.head, b.frame.head, share) ?? a.frame.head,
+      leftHand: pose(a.frame.leftHand, b.frame.leftHand, share),
+      rightHand: pose(a.frame.rightHand, b.frame.rightHand, share),
+    };
+    return { frame, truth: lerpTruth(a.truth, b.truth, share) };
+  });
+}
+
+/** Estimates at another rate, joints and truth alike, so that their jerk compares; what the network alone said is left out. */
+export function resampleEstimates(frames: readonly MeasuredFrame[], fromHz: number, toHz: number): MeasuredFrame[] {
+  return rowsAtRate(frames.length, fromHz, toHz).map(({ before, after, share }) => {
+    const [a, b] = [frames[before] as MeasuredFrame, frames[after] as MeasuredFrame];
+    const joints = Object.fromEntries(
+      Object.entries(a.joints).map(([name, position]) => [name, lerp(position, b.joints[name] ?? position, share)]),
+    );
+    return { joints, truth: lerpTruth(a.truth, b.truth, share), raw: null, wrists: { left: null, right: null } };
+  });
+}

@@ -1,0 +1,173 @@
+import {
+  add,
+  cross,
+  distance,
+  dot,
+  length,
+  normalise,
+  scale,
+  subtract,
+  up,
+  type Vec3,
+  vec3,
+} from '../../src/core/math/vec3';
+import { type MeasuredMethod, measuredMethods } from './drive';
+import { type MeasuredFrame, rounded } from './measures';
+import { type TruthJoint, truthJoints } from './recordings';
+
+/** The six motions of the paper's figure 7. */
+export const motions = ['left block', 'right block', 'sway', 'lift', 'right hand in front', 'folded arms'] as const;
+export type Motion = (typeof motions)[number];
+
+type Truth = MeasuredFrame['truth'];
+type Points = Readonly<Record<TruthJoint, readonly [number, number, number]>>;
+
+/** Axes of somebody's shoulders, origin half-way between them; right-handed, −z forward, floor frame [m]. */
+interface ShoulderFrame {
+  readonly origin: Vec3;
+  readonly right: Vec3;
+  readonly forward: Vec3;
+}
+
+function shoulderFrame(truth: Truth): ShoulderFrame {
+  const across = subtract(truth.rightUpperArm, truth.leftUpperArm);
+  const right = normalise({ ...across, y: 0 }, vec3(1, 0, 0));
+  return {
+    origin: scale(add(truth.leftUpperArm, truth.rightUpperArm), 0.5),
+    right,
+    forward: cross(up, right),
+  };
+}
+
+/** Right, up and forward of a point from the shoulders' middle [m]. */
+function fromShoulders({ origin, right, forward }: ShoulderFrame, point: Vec3): Vec3 {
+  const from = subtract(point, origin);
+  return vec3(dot(from, right), from.y, dot(from, forward));
+}
+
+/** Where the wrists are in a motion: right, up, forward of the shoulders' middle, in arm lengths. */
+const wristsOf: Readonly<Record<Exclude<Motion, 'sway'>, { readonly left: Vec3; readonly right: Vec3 }>> = {
+  'left block': { left: vec3(-0.05, 0.25, 0.5), right: vec3(0.3, -0.5, 0.2) },
+  'right block': { left: vec3(-0.3, -0.5, 0.2), right: vec3(0.05, 0.25, 0.5) },
+  lift: { left: vec3(-0.25, 0.75, 0.35), right: vec3(0.25, 0.75, 0.35) },
+  'right hand in front': { left: vec3(-0.35, -0.8, 0.1), right: vec3(0.2, 0, 0.9) },
+  'folded arms': { left: vec3(0.2, -0.4, 0.35), right: vec3(-0.2, -0.4, 0.35) },
+};
+
+/** How unlike the motion a pose is: 0 is the motion itself. Only people on their feet are asked. */
+export function unlikeness(motion: Motion, truth: Truth): number {
+  const frame = shoulderFrame(truth);
+  const trunk = subtract(frame.origin, truth.hips);
+  const sideways = dot(trunk, frame.right) / length(trunk);
+  const forward = dot(trunk, frame.forward) / length(trunk);
+  if (motion === 'sway') return Math.abs(Math.abs(sideways) - 0.35) * 3 + Math.abs(forward) + (trunk.y < 0 ? 9 : 0);
+  const arm =
+    (distance(truth.leftUpperArm, truth.leftLowerArm) +
+      distance(truth.leftLowerArm, truth.leftHand) +
+      distance(truth.rightUpperArm, truth.rightLowerArm) +
+      distance(truth.rightLowerArm, truth.rightHand)) /
+    2;
+  const wanted = wristsOf[motion];
+  const miss = (side: 'left' | 'right') =>
+    distance(scale(fromShoulders(frame, truth[`${side}Hand`]), 1 / arm), wanted[side]);
+  return miss('left') + miss('right') + 0.5 * (Math.abs(sideways) + Math.abs(forward));
+}
+
+/** One pose as every method shows it: right, up, backward of the true hips' point on the floor, facing −z [m]. */
+export interface PictureOfMotion {
+  readonly motion: Motion;
+  readonly clip: string;
+  readonly seconds: number;
+  readonly unlikeness: number;
+  readonly bodies: Readonly<Record<MeasuredMethod | 'truth', Points>>;
+}
+
+/** Error of the right shoulder [cm] over a clip: the one whose error is the median of all. */
+export interface Trace {
+  readonly clip: string;
+  readonly rateHz: number;
+  readonly rightShoulderCm: Readonly<Record<MeasuredMethod, readonly number[]>>;
+}
+
+export interface Figures {
+  readonly trace: Trace | null;
+  readonly poses: readonly PictureOfMotion[];
+}
+
+/** Collects what the figures of docs/accuracy.md show; add clip by clip. */
+export interface FigureCollection {
+  readonly traces: { readonly clip: string; readonly errors: Record<MeasuredMethod, number[]> }[];
+  readonly poses: Map<Motion, PictureOfMotion>;
+}
+
+export const emptyCollection = (): FigureCollection => ({ traces: [], poses: new Map() });
+
+type Driven = Readonly<Record<MeasuredMethod, readonly MeasuredFrame[]>>;
+
+export function addFigures(collection: FigureCollection, clip: string, driven: Driven, rateHz: number): void {
+  const errors = (name: MeasuredMethod): number[] =>
+    driven[name].map(({ joints, truth }) =>
+      rounded(distance(pointOf(joints, 'rightUpperArm'), truth.rightUpperArm) * 100, 2),
+    );
+  collection.traces.push({
+    clip,
+    errors: Object.fromEntries(measuredMethods.map((name) => [name, errors(name)])) as Record<MeasuredMethod, number[]>,
+  });
+  for (const motion of motions) {
+    let least = collection.poses.get(motion)?.unlikeness ?? Number.POSITIVE_INFINITY;
+    let best: number | null = null;
+    driven.ik.forEach(({ truth }, row) => {
+      const now = unlikeness(motion, truth);
+      if (now < least) {
+        least = now;
+        best = row;
+      }
+    });
+    if (best !== null) collection.poses.set(motion, picture(motion, clip, driven, best, rateHz, least));
+  }
+}
+
+function pointOf(joints: Readonly<Record<string, Vec3>>, name: string): Vec3 {
+  const point = joints[name];
+  if (!point) throw new Error(`the estimator gave no ${name}`);
+  return point;
+}
+
+function picture(
+  motion: Motion,
+  clip: string,
+  driven: Driven,
+  row: number,
+  rateHz: number,
+  unlike: number,
+): PictureOfMotion {
+  const { truth } = driven.ik[row] as MeasuredFrame;
+  const { right, forward } = shoulderFrame(truth);
+  const seen = (joints: Readonly<Record<string, Vec3>>): Points =>
+    Object.fromEntries(
+      truthJoints.map((name) => {
+        const from = subtract(pointOf(joints, name), { ...truth.hips, y: 0 });
+        return [name, [dot(from, right), from.y, -dot(from, forward)].map((value) => rounded(value, 4))];
+      }),
+    ) as unknown as Points;
+  const bodies = {
+    truth: seen(truth),
+    ...Object.fromEntries(measuredMethods.map((name) => [name, seen((driven[name][row] as MeasuredFrame).joints)])),
+  } as PictureOfMotion['bodies'];
+  return { motion, clip, seconds: rounded(row / rateHz, 2), unlikeness: rounded(unlike, 3), bodies };
+}
+
+const mean = (values: readonly number[]): number => values.reduce((sum, value) => sum + value, 0) / values.length;
+
+export function figuresOf({ traces, poses }: FigureCollection, rateHz: number): Figures {
+  // Short clips tell little of how an error goes over time.
+  const long = traces.filter(({ errors }) => errors.learned.length >= 5 * rateHz);
+  const sorted = [...(long.length > 0 ? long : traces)].sort(
+    (a, b) => mean(a.errors.learned) - mean(b.errors.learned) || (a.clip < b.clip ? -1 : 1),
+  );
+  const median = sorted[Math.floor((sorted.length - 1) / 2)];
+  return {
+    trace: median ? { clip: median.clip, rateHz, rightShoulderCm: median.errors } : null,
+    poses: motions.flatMap((motion) => poses.get(motion) ?? []),
+  };
+}

@@ -1,0 +1,431 @@
+import type { Calibration } from '../../src/core/body/calibration';
+import { estimatedJoints } from '../../src/core/body/joints';
+import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
+import { nextRandom } from '../../src/core/math/random';
+import { distance, vec3 } from '../../src/core/math/vec3';
+import {
+  aftermathSeconds,
+  type Loss,
+  loseHands,
+  offsetTrackers,
+  resampleEstimates,
+  resampleFrames,
+  scheduleLosses,
+  seedOf,
+  type Tracker,
+  trackers,
+} from './disturbances';
+import { drive, type MeasuredMethod } from './drive';
+import { addClip, emptyMeasures, type MeasuredFrame, type Measures, report, rounded } from './measures';
+import type { RecordedFrame } from './recordings';
+
+/** One clip with what its person calibrated. */
+export interface RobustnessClip {
+  readonly name: string;
+  readonly calibration: Calibration;
+  readonly frames: readonly RecordedFrame[];
+}
+
+export const lossSeconds = [0.1, 0.5, 2] as const;
+export const offsetsCm = [-3, -1, 1, 3] as const;
+const axes = ['x', 'y', 'z'] as const;
+export const heightPercents = [-5, -2, 2, 5] as const;
+export const spanPercents = [-5, 5] as const;
+export const ratesHz = [72, 90, 120] as const;
+
+/** Errors [cm] in some frames, with the hand lost and, in the same frames, seen. */
+export interface LossErrors {
+  readonly allCm: number;
+  readonly allSeenCm: number;
+  readonly elbowCm: number;
+  readonly elbowSeenCm: number;
+}
+
+/** How far a shown joint moves in one frame. */
+export interface LongestStep {
+  readonly stepCm: number;
+  readonly joint: string;
+  /** The largest part of a step that the same joint does not make in the same frame with the hand seen. */
+  readonly excessCm: number;
+  readonly excessJoint: string;
+  /** Losses with an excess over 5 cm. */
+  readonly over5Cm: number;
+}
+
+export interface LossReport {
+  readonly milliseconds: number;
+  readonly losses: number;
+  readonly during: LossErrors;
+  /** The half second after the return. */
+  readonly after: LossErrors;
+  readonly atLoss: LongestStep;
+  readonly atReturn: LongestStep;
+}
+
+export interface MethodRobustness {
+  readonly mpjpeCm: number;
+  readonly jerkRatio: number;
+  readonly losses: readonly LossReport[];
+  readonly offsets: readonly {
+    readonly tracker: Tracker;
+    readonly axis: (typeof axes)[number];
+    readonly offsetCm: number;
+    readonly mpjpeCm: number;
+  }[];
+  readonly heights: readonly { readonly percent: number; readonly mpjpeCm: number }[];
+  readonly spans: readonly { readonly percent: number; readonly mpjpeCm: number }[];
+  readonly rates: readonly { readonly hz: number; readonly mpjpeCm: number; readonly jerkRatio: number }[];
+}
+
+export interface RobustnessReport<Method extends MeasuredMethod = MeasuredMethod> {
+  readonly people: readonly string[];
+  readonly clips: number;
+  readonly frames: number;
+  readonly estimators: Readonly<Record<Method, MethodRobustness>>;
+}
+
+/** Clips in a seeded order as long as they fit into `limit` frames, one at least: the same choice for the same corpus. */
+export function chooseClips<Clip extends { readonly name: string; readonly frames: number }>(
+  clips: readonly Clip[],
+  limit: number,
+): Clip[] {
+  const drawn = clips.map((clip) => ({ clip, key: nextRandom({ seed: seedOf(clip.name) }).value }));
+  drawn.sort((a, b) => a.key - b.key || (a.clip.name < b.clip.name ? -1 : 1));
+  const chosen: Clip[] = [];
+  let frames = 0;
+  for (const { clip } of drawn) {
+    if (chosen.length > 0 && frames + clip.frames > limit) continue;
+    chosen.push(clip);
+    frames += clip.frames;
+  }
+  return chosen;
+}
+
+interface Sums {
+  all: number;
+  allSeen: number;
+  joints: number;
+  elbow: number;
+  elbowSeen: number;
+  elbows: number;
+}
+const noSums = (): Sums => ({ all: 0, allSeen: 0, joints: 0, elbow: 0, elbowSeen: 0, elbows: 0 });
+
+interface StepTally {
+  step: number;
+  joint: string;
+  excess: number;
+  excessJoint: string;
+  over: number;
+}
+const noSteps = (): StepTally => ({ step: 0, joint: '', excess: 0, excessJoint: '', over: 0 });
+
+/** What losses of one length did; add clip by clip, then report. */
+export interface LossTally {
+  losses: number;
+  readonly during: Sums;
+  readonly after: Sums;
+  readonly atLoss: StepTally;
+  readonly atReturn: StepTally;
+}
+export const emptyLossTally = (): LossTally => ({
+  losses: 0,
+  during: noSums(),
+  after: noSums(),
+  atLoss: noSteps(),
+  atReturn: noSteps(),
+});
+
+/** Adds one clip: the same frames estimated with losses and with both hands seen. */
+export function addLosses(
+  tally: LossTally,
+  lossy: readonly MeasuredFrame[],
+  seen: readonly MeasuredFrame[],
+  losses: readonly Loss[],
+  rateHz: number,
+): void {
+  const aftermath = Math.round(aftermathSeconds * rateHz);
+  for (const { side, start, end } of losses) {
+    tally.losses += 1;
+    addErrors(tally.during, lossy, seen, side, start, end);
+    addErrors(tally.after, lossy, seen, side, end, end + aftermath);
+    addSteps(tally.atLoss, lossy, seen, start, Math.min(end, start + 2 * aftermath), rateHz);
+    addSteps(tally.atReturn, lossy, seen, end, Math.min(end + 2 * aftermath, lossy.length), rateHz);
+  }
+}
+
+function addErrors(
+  sums: Sums,
+  lossy: readonly MeasuredFrame[],
+  seen: readonly MeasuredFrame[],
+  side: Loss['side'],
+  from: number,
+  to: number,
+): void {
+  for (let row = from; row < Math.min(to, lossy.length); row++) {
+    for (const joint of estimatedJoints) {
+      const [a, b] = [errorOf(lossy[row], joint), errorOf(seen[row], joint)];
+      sums.all += a;
+      sums.allSeen += b;
+      sums.joints += 1;
+      if (joint === `${side}LowerArm`) {
+        sums.elbow += a;
+        sums.elbowSeen += b;
+        sums.elbows += 1;
+      }
+    }
+  }
+}
+
+function errorOf(frame: MeasuredFrame | undefined, joint: (typeof estimatedJoints)[number]): number {
+  const estimated = frame?.joints[joint];
+  if (!frame || !estimated) throw new Error(`the estimator gave no ${joint}`);
+  return distance(estimated, frame.truth[joint]) * 100;
+}
+
+/** Steps into the frames [from, to), in centimetres per 1/60 s whatever the rate. */
+function addSteps(
+  tally: StepTally,
+  lossy: readonly MeasuredFrame[],
+  seen: readonly MeasuredFrame[],
+  from: number,
+  to: number,
+  rateHz: number,
+): void {
+  const step = (frames: readonly MeasuredFrame[], row: number, joint: string): number => {
+    const [before, now] = [frames[row - 1]?.joints[joint], frames[row]?.joints[joint]];
+    if (!before || !now) throw new Error(`the estimator gave no ${joint}`);
+    return (distance(before, now) * 100 * rateHz) / 60;
+  };
+  let worst = 0;
+  for (let row = Math.max(1, from); row < to; row++) {
+    for (const joint of Object.keys(lossy[row]?.joints ?? {})) {
+      const moved = step(lossy, row, joint);
+      const excess = moved - step(seen, row, joint);
+      worst = Math.max(worst, excess);
+      if (moved > tally.step) Object.assign(tally, { step: moved, joint });
+      if (excess > tally.excess) Object.assign(tally, { excess, excessJoint: joint });
+    }
+  }
+  if (worst > 5) tally.over += 1;
+}
+
+const lossErrors = ({ all, allSeen, joints, elbow, elbowSeen, elbows }: Sums): LossErrors => ({
+  allCm: rounded(all / joints, 3),
+  allSeenCm: rounded(allSeen / joints, 3),
+  elbowCm: rounded(elbow / elbows, 3),
+  elbowSeenCm: rounded(elbowSeen / elbows, 3),
+});
+const longestStep = ({ step, joint, excess, excessJoint, over }: StepTally): LongestStep => ({
+  stepCm: rounded(step, 2),
+  joint,
+  excessCm: rounded(excess, 2),
+  excessJoint,
+  over5Cm: over,
+});
+
+export function reportLosses(seconds: number, tally: LossTally): LossReport {
+  return {
+    milliseconds: Math.round(seconds * 1000),
+    losses: tally.losses,
+    during: lossErrors(tally.during),
+    after: lossErrors(tally.after),
+    atLoss: longestStep(tally.atLoss),
+    atReturn: longestStep(tally.atReturn),
+  };
+}
+
+/** One disturbance of trackers, calibration or rate, and what became of the error under it. */
+interface Condition {
+  readonly rateHz: number;
+  readonly frames: (clip: RobustnessClip, rateHz: number) => readonly RecordedFrame[];
+  readonly calibration: (calibration: Calibration) => Calibration;
+}
+
+/** All conditions but losses, in the order of the report. */
+function conditions(rateHz: number) {
+  const same: Condition = { rateHz, frames: (clip) => clip.frames, calibration: (calibration) => calibration };
+  const offsets = trackers.flatMap((tracker) =>
+    axes.flatMap((axis) =>
+      offsetsCm.map((offsetCm) => ({
+        tracker,
+        axis,
+        offsetCm,
+        condition: {
+          ...same,
+          frames: (clip: RobustnessClip) =>
+            offsetTrackers(clip.frames, tracker, { ...vec3(0, 0, 0), [axis]: offsetCm / 100 }),
+        },
+      })),
+    ),
+  );
+  const scaled = (key: keyof Calibration, percents: readonly number[]) =>
+    percents.map((percent) => ({
+      percent,
+      condition: {
+        ...same,
+        calibration: (given: Calibration): Calibration => ({ ...given, [key]: given[key] * (1 + percent / 100) }),
+      },
+    }));
+  const rates = ratesHz.map((hz) => ({
+    hz,
+    condition: {
+      ...same,
+      rateHz: hz,
+      frames: (clip: RobustnessClip) => resampleFrames(clip.frames, rateHz, hz),
+    },
+  }));
+  return {
+    clean: same,
+    offsets,
+    heights: scaled('eyeHeight', heightPercents),
+    spans: scaled('armSpan', spanPercents),
+    rates,
+  };
+}
+
+/**
+ * How each method bears what devices and people do: hands that vanish, trackers mounted elsewhere, a wrong height or span, other
+ * rates. `load` is asked for each clip once; `told` hears the share of the work that is done.
+ */
+export async function measureRobustness<
+  Method extends MeasuredMethod,
+  Listed extends { readonly person: string; readonly frames: number },
+>(
+  methods: readonly Method[],
+  clips: readonly Listed[],
+  load: (clip: Listed) => RobustnessClip,
+  regressors: ReadonlyMap<MeasuredMethod, PoseRegressor>,
+  rateHz: number,
+  told: (share: number) => void = () => undefined,
+): Promise<RobustnessReport<Method>> {
+  const all = conditions(rateHz);
+  const listed: readonly Condition[] = [
+    all.clean,
+    ...[...all.offsets, ...all.heights, ...all.spans, ...all.rates].map(({ condition }) => condition),
+  ];
+  const measures = methods.map(() => new Map<Condition, Measures>(listed.map((c) => [c, emptyMeasures()])));
+  const tallies = methods.map(() => lossSeconds.map(emptyLossTally));
+  const total = clips.reduce((sum, clip) => sum + clip.frames, 0);
+  let done = 0;
+  for (const listedClip of clips) {
+    const clip = load(listedClip);
+    for (const [number, name] of methods.entries()) {
+      const regressor = regressors.get(name) ?? null;
+      let seen: readonly MeasuredFrame[] = [];
+      for (const condition of listed) {
+        const frames = condition.frames(clip, rateHz);
+        const driven = await drive(name, condition.calibration(clip.calibration), regressor, frames);
+        if (condition === all.clean) seen = driven;
+        const of = measures[number]?.get(condition) ?? emptyMeasures();
+        // Errors as the device would show them; jerk at the recording's rate, or rates would not compare.
+        addErrorsAndJerk(of, driven, condition.rateHz, rateHz);
+      }
+      for (const [which, seconds] of lossSeconds.entries()) {
+        const losses = scheduleLosses(clip.frames.length, rateHz, seconds, seedOf(`${clip.name} ${seconds}`));
+        if (losses.length === 0) continue;
+        const lossy = await drive(name, clip.calibration, regressor, loseHands(clip.frames, losses));
+        addLosses(tallies[number]?.[which] ?? emptyLossTally(), lossy, seen, losses, rateHz);
+      }
+    }
+    done += listedClip.frames;
+    told(done / total);
+  }
+  const rows = methods.map((name, number): [Method, MethodRobustness] => {
+    const figures = ({ condition }: { readonly condition: Condition }) => {
+      const { mpjpeCm, jerkRatio } = report(measures[number]?.get(condition) ?? emptyMeasures());
+      return { mpjpeCm: mpjpeCm.mean, jerkRatio };
+    };
+    const error = (row: { readonly condition: Condition }) => figures(row).mpjpeCm;
+    return [
+      name,
+      {
+        ...figures({ condition: all.clean }),
+        losses: lossSeconds.map((seconds, which) =>
+          reportLosses(seconds, tallies[number]?.[which] ?? emptyLossTally()),
+        ),
+        offsets: all.offsets.map((row) => ({
+          tracker: row.tracker,
+          axis: row.axis,
+          offsetCm: row.offsetCm,
+          mpjpeCm: error(row),
+        })),
+        heights: all.heights.map((row) => ({ percent: row.percent, mpjpeCm: error(row) })),
+        spans: all.spans.map((row) => ({ percent: row.percent, mpjpeCm: error(row) })),
+        rates: all.rates.map((row) => ({ hz: row.hz, ...figures(row) })),
+      },
+    ];
+  });
+  return {
+    people: [...new Set(clips.map(({ person }) => person))].sort(),
+    clips: clips.length,
+    frames: total,
+    estimators: Object.fromEntries(rows) as Record<Method, MethodRobustness>,
+  };
+}
+
+function addErrorsAndJerk(measures: Measures, driven: readonly MeasuredFrame[], atHz: number, jerkHz: number): void {
+  if (atHz === jerkHz) {
+    addClip(measures, driven, jerkHz);
+    return;
+  }
+  const resampled = emptyMeasures();
+  addClip(resampled, resampleEstimates(driven, atHz, jerkHz), jerkHz);
+  const own = emptyMeasures();
+  addClip(own, driven, atHz);
+  own.errors.forEach((errors, index) => {
+    for (const error of errors) measures.errors[index]?.push(error);
+  });
+  measures.jerk += resampled.jerk;
+  measures.truthJerk += resampled.truthJerk;
+}
+
+/** The table that `--robustness` prints. */
+export function robustnessText<Method extends MeasuredMethod>(
+  { people, clips, frames, estimators }: RobustnessReport<Method>,
+  rateHz: number,
+): string {
+  const methods = Object.keys(estimators) as Method[];
+  const lines = [
+    '',
+    `Robustness: ${people.join(', ')}; ${clips} clips, ${(frames / rateHz / 60).toFixed(1)} minutes; MPJPE [cm]`,
+  ];
+  const row = (label: string, cell: (method: MethodRobustness) => string) =>
+    lines.push(`  ${label.padEnd(34)}${methods.map((name) => cell(estimators[name]).padStart(22)).join('')}`.trimEnd());
+  const added = (cm: number, clean: number) =>
+    `${cm.toFixed(2)} (${cm < clean ? '−' : '+'}${Math.abs(cm - clean).toFixed(2)})`;
+  lines.push(`  ${''.padEnd(34)}${methods.map((name) => name.padStart(22)).join('')}`);
+  row('undisturbed', (m) => m.mpjpeCm.toFixed(2));
+  lossSeconds.forEach((seconds, index) => {
+    const of = (m: MethodRobustness) => m.losses[index] as LossReport;
+    const times = (a: number, b: number) => `${a.toFixed(2)} (${(a / b).toFixed(2)} ×)`;
+    const milliseconds = Math.round(seconds * 1000);
+    row(`hand lost ${milliseconds} ms: all joints`, (m) => times(of(m).during.allCm, of(m).during.allSeenCm));
+    row('  its elbow', (m) => times(of(m).during.elbowCm, of(m).during.elbowSeenCm));
+    row('  0.5 s after: all joints', (m) => times(of(m).after.allCm, of(m).after.allSeenCm));
+    row('  0.5 s after: its elbow', (m) => times(of(m).after.elbowCm, of(m).after.elbowSeenCm));
+    const step = ({ stepCm, excessCm }: LongestStep) => `${stepCm.toFixed(1)} / ${excessCm.toFixed(1)}`;
+    row('  longest step / excess, loss [cm]', (m) => step(of(m).atLoss));
+    row('  the same at return [cm]', (m) => step(of(m).atReturn));
+  });
+  for (const tracker of trackers) {
+    for (const size of [1, 3]) {
+      const of = (m: MethodRobustness) =>
+        m.offsets.filter((o) => o.tracker === tracker && Math.abs(o.offsetCm) === size).map(({ mpjpeCm }) => mpjpeCm);
+      row(`${tracker} ±${size} cm: worst`, (m) => added(Math.max(...of(m)), m.mpjpeCm));
+      row('  mean', (m) => added(of(m).reduce((sum, cm) => sum + cm, 0) / of(m).length, m.mpjpeCm));
+    }
+  }
+  const signed = (percent: number) => `${percent < 0 ? '−' : '+'}${Math.abs(percent)} %`;
+  heightPercents.forEach((percent, i) => {
+    row(`eye height ${signed(percent)}`, (m) => added(m.heights[i]?.mpjpeCm ?? Number.NaN, m.mpjpeCm));
+  });
+  spanPercents.forEach((percent, i) => {
+    row(`arm span ${signed(percent)}`, (m) => added(m.spans[i]?.mpjpeCm ?? Number.NaN, m.mpjpeCm));
+  });
+  row(`${rateHz} Hz: MPJPE / jerk`, (m) => `${m.mpjpeCm.toFixed(2)} / ${m.jerkRatio.toFixed(2)} ×`);
+  ratesHz.forEach((hz, i) => {
+    row(`${hz} Hz`, (m) => `${m.rates[i]?.mpjpeCm.toFixed(2)} / ${m.rates[i]?.jerkRatio.toFixed(2)} ×`);
+  });
+  return lines.join('\n');
+}

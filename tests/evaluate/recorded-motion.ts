@@ -1,0 +1,25 @@
+import { type RecordedFrame, type TruthJoint, truthJoints } from '../../bench/evaluate/recordings';
+import type { Calibration } from '../../src/core/body/calibration';
+import { forwardKinematics } from '../../src/core/body/forward-kinematics';
+import { skeletonFromCalibration } from '../../src/core/body/skeleton';
+import { createIk } from '../../src/core/estimation/ik';
+import type { Vec3 } from '../../src/core/math/vec3';
+import { movingPerson } from '../core/estimation/moving-person';
+
+export const person: Calibration = { eyeHeight: 1.6, armSpan: 1.5 };
+
+/** Generated motion with a truth that a body could have: where IK for another body of nearly this size puts the joints. */
+export function recordedMotion(seed: number, frames: number, rateHz = 60): RecordedFrame[] {
+  const other: Calibration = { eyeHeight: person.eyeHeight * 0.98, armSpan: person.armSpan * 1.03 };
+  const at = movingPerson(seed, person, { x: 0.3, z: -0.2, yaw: 2 });
+  const ik = createIk(other);
+  const skeleton = skeletonFromCalibration(other);
+  return Array.from({ length: frames }, (_, row) => {
+    const frame = at(row / rateHz);
+    const { body } = ik.estimate(frame);
+    if (!body) throw new Error('IK drew no body');
+    const joints = forwardKinematics(skeleton, body);
+    const truth = Object.fromEntries(truthJoints.map((joint) => [joint, joints[joint].position]));
+    return { frame, truth: truth as Record<TruthJoint, Vec3> };
+  });
+}

@@ -1,0 +1,123 @@
+"""What docs/accuracy.md says: verdicts by the figures, tables that keep their place."""
+
+from pathlib import Path
+
+import pytest
+
+from threepoint_training import accuracy_page, accuracy_tables
+
+JOINTS = tuple(accuracy_tables.JOINTS)
+
+
+def report(scale):
+    spread = {"mean": 5.0 * scale, "median": 4.0 * scale, "p95": 12.0 * scale}
+    return {
+        "mpjpeCm": spread,
+        "joints": {joint: spread for joint in JOINTS},
+        "mseCm2": 20.0 * scale**2,
+        "maeCm": 3.0 * scale,
+        "jointMseCm2": {joint: 20.0 * scale**2 for joint in JOINTS},
+        "jointMaeCm": {joint: 3.0 * scale for joint in JOINTS},
+        "swivelDeg": 25.0,
+        "jerkRatio": 1.05,
+        "boneVariationMm": 0.0,
+        "handErrorMm": 0.0,
+        "handErrorMaxMm": 0.0,
+    }
+
+
+def robustness(clean):
+    errors = {"allCm": 1.2 * clean, "allSeenCm": clean, "elbowCm": 2 * clean, "elbowSeenCm": clean}
+    step = {"stepCm": 8.0, "joint": "leftHand", "excessCm": 4.0, "excessJoint": "leftHand", "over5Cm": 0}
+    return {
+        "mpjpeCm": clean,
+        "jerkRatio": 1.05,
+        "losses": [
+            {"milliseconds": ms, "losses": 7, "during": errors, "after": errors, "atLoss": step, "atReturn": step} for ms in (100, 500, 2000)
+        ],
+        "offsets": [
+            {"tracker": tracker, "axis": axis, "offsetCm": cm, "mpjpeCm": clean + abs(cm) / 10}
+            for tracker in ("headset", "grips")
+            for axis in "xyz"
+            for cm in (-3, -1, 1, 3)
+        ],
+        "heights": [{"percent": p, "mpjpeCm": clean + 0.25} for p in (-5, -2, 2, 5)],
+        "spans": [{"percent": p, "mpjpeCm": clean - 0.04} for p in (-5, 5)],
+        "rates": [{"hz": hz, "mpjpeCm": clean, "jerkRatio": 1.0} for hz in (72, 90, 120)],
+    }
+
+
+def evaluation():
+    methods = {"ik": report(1.0), "paper": report(1.2), "learned": report(0.8)}
+    return {
+        "corpus": {"clips": 3, "people": 2, "frames": 3600, "seconds": 60.0},
+        "estimators": methods,
+        "seen": methods,
+        "unseen": methods,
+        "people": {"001": {"seen": True} | methods, "005": {"seen": False} | methods},
+        "fp32": {"learned": report(0.8), "paper": report(1.2)},
+        "robustness": {
+            "people": ["005"],
+            "clips": 2,
+            "frames": 2400,
+            "estimators": {name: robustness(clean) for name, clean in (("ik", 5.0), ("paper", 6.0), ("learned", 4.0))},
+        },
+    }
+
+
+CONTRACTS = {
+    "paper": {"errors": {}, "bytes": 1},
+    "learned": {
+        "bytes": 42544,
+        "errors": {
+            "IK, fold B (014)": {"mean": 6.0, "left elbow": 5.0, "right elbow": 5.0},
+            "learned, fold B (014)": {"mean": 5.4, "left elbow": 4.0, "right elbow": 4.0},
+        },
+    },
+}
+
+
+def verdict(text, start):
+    (row,) = [line for line in text.splitlines() if line.startswith(f"| {start}")]
+    return [cell.strip() for cell in row.strip("|").split("|")][1:]
+
+
+def test_every_table_has_as_many_cells_in_each_row_as_in_its_head():
+    for name, content in accuracy_page.sections(evaluation(), CONTRACTS).items():
+        rows = [line for line in content.splitlines() if line.startswith("|")]
+        assert len({row.count("|") for row in rows}) <= 1, name
+
+
+def test_aims_are_met_or_missed_by_the_figures():
+    text = accuracy_tables.aims(evaluation(), CONTRACTS)
+    assert verdict(text, "MPJPE relative to IK, 005") == ["≤ 0.85", "0.800", "met"]
+    assert verdict(text, "MPJPE relative to IK, fold B") == ["≤ 0.85", "0.900", "missed"]
+    assert verdict(text, "elbows relative to IK, fold B") == ["≤ 0.85", "0.800", "met"]
+    assert verdict(text, "eye height") == ["≤ +0.2 cm", "+0.25 cm", "missed"]
+    assert verdict(text, "tracker mounted")[1] == "+0.30 cm"
+    assert verdict(text, "a hand lost for 2 s: its elbow") == ["≤ 1.8 ×", "2.00 ×", "missed"]
+    assert verdict(text, "the paper's network") == ["≤ 0.9 cm", "–", "not measured"]
+    assert verdict(text, "size") == ["≤ 300 kB", "43 kB", "met"]
+
+
+def test_people_held_out_come_first():
+    assert accuracy_tables.people(evaluation()).splitlines()[2].startswith("| 005 |")
+
+
+def test_without_fp32_its_table_stays_as_it_was():
+    without = evaluation()
+    del without["fp32"]
+    page = "<!-- precision -->\nas before\n<!-- /precision -->\n"
+    assert accuracy_tables.renew(page, {"precision": accuracy_tables.precision(without)}) == page
+    assert "as before" not in accuracy_tables.renew(page, {"precision": accuracy_tables.precision(evaluation())})
+
+
+def test_a_page_renewed_twice_is_the_page_renewed_once():
+    page = (Path(accuracy_page.REPOSITORY) / "docs/accuracy.md").read_text()
+    once = accuracy_tables.renew(page, accuracy_page.sections(evaluation(), CONTRACTS))
+    assert accuracy_tables.renew(once, accuracy_page.sections(evaluation(), CONTRACTS)) == once
+
+
+def test_a_page_without_the_place_of_a_table_is_refused():
+    with pytest.raises(ValueError, match="no place for loss"):
+        accuracy_tables.renew("<!-- aims -->\n<!-- /aims -->", {"loss": "text"})

@@ -1,0 +1,76 @@
+"""Renews docs/accuracy.md: tables between its marks, figures beside it. `npm run report` measures and calls this."""
+
+import argparse
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from . import accuracy_tables as tables
+
+REPOSITORY = Path(__file__).parents[2]
+
+
+@dataclass(frozen=True)
+class AccuracyPageConfig:
+    """What was measured, the models it was measured with, and the page."""
+
+    evaluation: Path
+    figures: Path
+    models: Path = REPOSITORY / "public/models"
+    page: Path = REPOSITORY / "docs/accuracy.md"
+    images: Path = REPOSITORY / "docs/images/accuracy"
+
+
+def sections(evaluation: dict[str, Any], contracts: dict[str, Any]) -> dict[str, str | None]:
+    """The page's tables by their marks."""
+    corpus, robustness = evaluation["corpus"], evaluation["robustness"]
+    motions = f"{corpus['clips']} clips of {corpus['people']} people, {corpus['seconds'] / 60:.0f} minutes"
+    disturbed = f"{', '.join(robustness['people'])}: {robustness['clips']} clips, {robustness['frames'] / 3600:.1f} minutes."
+    return {
+        "corpus": f"Evaluated: {motions}; held out: {', '.join(tables.people_held_out(evaluation))}.",
+        "aims": tables.aims(evaluation, contracts),
+        "summary": tables.summary(evaluation),
+        "people": tables.people(evaluation),
+        "joints": tables.joints(evaluation),
+        "train-test": tables.train_test(evaluation),
+        "against-ik": tables.against_ik(evaluation),
+        "disturbed": f"Clips, a seeded choice of the people held out, {disturbed}",
+        "loss": tables.loss(evaluation),
+        "offsets": tables.offsets(evaluation),
+        "measures": tables.measures(evaluation),
+        "rates": tables.rates(evaluation),
+        "precision": tables.precision(evaluation),
+    }
+
+
+def main(config: AccuracyPageConfig) -> None:
+    """Writes the page and its figures."""
+    # Only drawing needs matplotlib; the tables and their tests do without.
+    from . import accuracy_plots as plots
+
+    evaluation, figures = json.loads(config.evaluation.read_text()), json.loads(config.figures.read_text())
+    contracts = {name: json.loads((config.models / f"{name}.json").read_text()) for name in ("paper", "learned")}
+    config.page.write_text(tables.renew(config.page.read_text(), sections(evaluation, contracts)))
+    config.images.mkdir(parents=True, exist_ok=True)
+    with plots.plt.rc_context(plots.STYLE):
+        if not plots.learning_curve(contracts["paper"], config.images):
+            print("paper.json has no learning curve: its figure stays as it is")
+        if not plots.train_and_test(evaluation, config.images):
+            print("nobody, or everybody, was trained on: the figure of both stays as it is")
+        if figures["trace"] is not None:
+            plots.right_shoulder(figures["trace"], config.images)
+        plots.by_joint(evaluation, config.images)
+        plots.losses(evaluation, config.images)
+        plots.offsets(evaluation, config.images)
+        plots.wrong_measures(evaluation, config.images)
+        if figures["poses"]:
+            plots.poses(figures["poses"], config.images)
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description="Tables and figures of docs/accuracy.md from an evaluation.")
+    parser.add_argument("--evaluation", type=Path, required=True)
+    parser.add_argument("--figures", type=Path, required=True)
+    given = parser.parse_args()
+    main(AccuracyPageConfig(given.evaluation, given.figures))

@@ -1,0 +1,288 @@
+"""The figures of docs/accuracy.md: drawn from what `npm run evaluate` measured, the same bytes for the same measurements."""
+
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+
+matplotlib.use("agg")
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from .accuracy_tables import JOINTS, held_out
+
+Json = dict[str, Any]
+# Colours of Okabe and Ito, told apart with any kind of colour vision; marks differ as well.
+COLOURS = {"ik": "#D55E00", "paper": "#009E73", "learned": "#0072B2"}
+MARKS = {"ik": "s", "paper": "^", "learned": "o"}
+NAMES = {"ik": "IK", "paper": "paper", "learned": "learned"}
+TRUTH, FAINT = "#222222", "#999999"
+WIDTH = 8.6
+
+STYLE = {
+    "font.family": "DejaVu Sans",
+    "font.size": 10,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.edgecolor": "#555555",
+    "axes.titlesize": 10.5,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "grid.color": "#e4e4e4",
+    "grid.linewidth": 0.8,
+    "lines.linewidth": 1.8,
+    "lines.markersize": 5.5,
+    "legend.frameon": False,
+    "savefig.facecolor": "white",
+    # Paths look alike everywhere; the salt keeps the names inside the file from changing.
+    "svg.fonttype": "path",
+    "svg.hashsalt": "threepoint",
+}
+
+
+def save(figure: Figure, folder: Path, name: str) -> None:
+    figure.savefig(folder / f"{name}.svg", metadata={"Date": None, "Creator": None})
+    plt.close(figure)
+
+
+def label_ends(axes: Axes, ends: dict[str, tuple[float, str, str]], least: float) -> None:
+    """Names at the right ends of lines, {key: (y, text, colour)}, pushed apart to `least` in units of y."""
+    placed: list[float] = []
+    for _, (y, text, colour) in sorted(ends.items(), key=lambda item: item[1][0]):
+        at = max(y, placed[-1] + least) if placed else y
+        placed.append(at)
+        axes.annotate(
+            text, (1, at), xycoords=("axes fraction", "data"), xytext=(6, 0), textcoords="offset points",
+            va="center", color=colour, fontweight="bold", annotation_clip=False,
+        )  # fmt: skip
+
+
+def learning_curve(contract: Json, folder: Path) -> bool:
+    """The paper's figure 4, by epoch; False where the contract has no curve."""
+    curve = contract.get("learningCurve")
+    if curve is None:
+        return False
+    figure, axes = plt.subplots(figsize=(WIDTH, 3.4), layout="constrained")
+    epochs = curve["epochs"]
+    axes.plot(epochs, curve["test"], color=COLOURS["ik"], marker="s")
+    axes.plot(epochs, curve["train"], color=COLOURS["learned"], marker="o")
+    top = max(curve["test"])
+    label_ends(
+        axes,
+        {"test": (curve["test"][-1], "people\nheld out", COLOURS["ik"]), "train": (curve["train"][-1], "people\ntrained on", COLOURS["learned"])},
+        0.15 * top,
+    )
+    axes.set(xlabel="epochs", ylabel="MSE per coordinate [cm²]", ylim=(0, None), xlim=(0, max(epochs)))
+    axes.set_title("The paper's network while it learns")
+    save(figure, folder, "learning-curve")
+    return True
+
+
+def right_shoulder(trace: Json, folder: Path) -> None:
+    """The paper's figure 5: the error of the right shoulder over time in one clip."""
+    figure, axes = plt.subplots(figsize=(WIDTH, 3.4), layout="constrained")
+    ends = {}
+    for method, colour in COLOURS.items():
+        errors = np.array(trace["rightShoulderCm"][method])
+        times = np.arange(len(errors)) / trace["rateHz"]
+        axes.plot(times, errors, color=colour, linewidth=1.6, linestyle={"paper": (0, (4, 1.5))}.get(method, "-"))
+        ends[method] = (float(errors[-1]), f"{NAMES[method]}\nmean {errors.mean():.1f}", colour)
+    axes.set(xlabel="time [s]", ylabel="error [cm]", ylim=(0, None), xlim=(0, times[-1]))
+    label_ends(axes, ends, 0.17 * axes.get_ylim()[1])
+    axes.set_title(f"Right shoulder in the clip of median error, {trace['clip']}")
+    save(figure, folder, "right-shoulder")
+
+
+def by_joint(evaluation: Json, folder: Path) -> None:
+    """Median and 95th percentile by joint."""
+    figures = held_out(evaluation)
+    figure, axes = plt.subplots(figsize=(WIDTH, 4.5), layout="constrained")
+    rows = np.arange(len(JOINTS))[::-1]
+    for number, (method, colour) in enumerate(COLOURS.items()):
+        y = rows + 0.27 * (1 - number)
+        median = np.array([figures[method]["joints"][joint]["median"] for joint in JOINTS])
+        p95 = np.array([figures[method]["joints"][joint]["p95"] for joint in JOINTS])
+        axes.hlines(y, median, p95, color=colour, linewidth=2, alpha=0.55)
+        axes.plot(median, y, MARKS[method], color=colour)
+        axes.plot(p95, y, "|", color=colour, markersize=9, markeredgewidth=2)
+        axes.annotate(
+            NAMES[method], (p95[-1], y[-1]), xytext=(8, 0), textcoords="offset points", va="center", color=colour, fontweight="bold", fontsize=9
+        )
+    axes.set_yticks(rows, JOINTS.values())
+    axes.set(xlabel="error [cm]: mark = median, end of the line = 95th percentile", xlim=(0, None))
+    axes.margins(x=0.09)
+    axes.set_xlim(0, axes.get_xlim()[1])
+    axes.grid(axis="y", visible=False)
+    axes.set_title("Error by joint, people held out")
+    save(figure, folder, "by-joint")
+
+
+def train_and_test(evaluation: Json, folder: Path) -> bool:
+    """The paper's table 1 as a figure: MSE by joint on people trained on and held out."""
+    if "seen" not in evaluation:
+        return False
+    figure, panels = plt.subplots(1, 3, figsize=(WIDTH, 3.3), sharex=True, sharey=True, layout="constrained")
+    rows = np.arange(len(JOINTS))[::-1]
+    for axes, (method, colour) in zip(panels, COLOURS.items(), strict=True):
+        seen, unseen = (np.array([evaluation[side][method]["jointMseCm2"][joint] for joint in JOINTS]) for side in ("seen", "unseen"))
+        axes.hlines(rows, seen, unseen, color=colour, linewidth=2, alpha=0.4)
+        axes.plot(seen, rows, MARKS[method], color=colour, markerfacecolor="white", markeredgewidth=1.6)
+        axes.plot(unseen, rows, MARKS[method], color=colour)
+        axes.set_yticks(rows, JOINTS.values())
+        axes.grid(axis="y", visible=False)
+        axes.set_title(NAMES[method], color=colour)
+    largest = max(evaluation[side][method]["jointMseCm2"][joint] for side in ("seen", "unseen") for method in COLOURS for joint in JOINTS)
+    panels[0].set_xlim(0, 1.07 * largest)
+    figure.supxlabel("MSE per coordinate [cm²]: hollow = people trained on, filled = people held out", fontsize=10)
+    save(figure, folder, "train-and-test")
+    return True
+
+
+def losses(evaluation: Json, folder: Path) -> None:
+    """Error while a hand is not seen, relative to the same frames with it seen."""
+    estimators = evaluation["robustness"]["estimators"]
+    figure, panels = plt.subplots(1, 2, figsize=(WIDTH, 3.3), layout="constrained")
+    durations = [0] + [loss["milliseconds"] for loss in estimators["ik"]["losses"]]
+    at = np.arange(len(durations))
+    for axes, figure_name, title, aim in ((panels[0], "all", "All joints", 1.3), (panels[1], "elbow", "The elbow of that arm", 1.8)):
+        ends = {}
+        for method, colour in COLOURS.items():
+            ratios = [1.0] + [loss["during"][f"{figure_name}Cm"] / loss["during"][f"{figure_name}SeenCm"] for loss in estimators[method]["losses"]]
+            axes.plot(at, ratios, color=colour, marker=MARKS[method])
+            ends[method] = (ratios[-1], NAMES[method], colour)
+        axes.axhline(aim, color=FAINT, linestyle=(0, (2, 2)), linewidth=1.2, zorder=1)
+        axes.annotate(f"aim for 2 s: {aim} ×", (0, aim), xytext=(0, 4), textcoords="offset points", color="#666666", fontsize=9)
+        axes.set_xticks(at, [f"{ms} ms" if ms < 1000 else f"{ms // 1000} s" for ms in durations])
+        low, high = axes.get_ylim()
+        axes.set(ylim=(min(low, 0.97), high + 0.04 * (high - low)), xlabel="hand not seen for")
+        label_ends(axes, ends, 0.065 * (high - low))
+        axes.set_title(title)
+    panels[0].set_ylabel("error relative to the hand seen")
+    save(figure, folder, "lost-hand")
+
+
+def offsets(evaluation: Json, folder: Path) -> None:
+    """What a tracker mounted elsewhere adds to the error, by axis."""
+    estimators = evaluation["robustness"]["estimators"]
+    figure, panels = plt.subplots(2, 3, figsize=(WIDTH, 5.0), sharex=True, sharey=True, layout="constrained")
+    directions = {
+        "headset": ("x: to the right", "y: up", "z: backwards"),
+        "grips": ("x: to the outside of the hand", "y: out of the back of the hand", "z: towards the forearm"),
+    }
+    for row, (tracker, titles) in enumerate(directions.items()):
+        for column, axis in enumerate("xyz"):
+            axes = panels[row, column]
+            axes.axhspan(0.3, 10, color="#f0f0f0", zorder=0)
+            axes.axhline(0, color="#555555", linewidth=0.8)
+            for method, colour in COLOURS.items():
+                clean = estimators[method]["mpjpeCm"]
+                points = sorted(
+                    [(o["offsetCm"], o["mpjpeCm"] - clean) for o in estimators[method]["offsets"] if o["tracker"] == tracker and o["axis"] == axis]
+                    + [(0, 0.0)]
+                )
+                axes.plot(*zip(*points, strict=True), color=colour, marker=MARKS[method], label=NAMES[method])
+            axes.set_title(f"{tracker}, {titles[column]}", fontsize=8.6)
+            axes.set_xticks([-3, -1, 0, 1, 3], ["−3", "−1", "0", "1", "3"])
+    lines = [line for axes in panels.flat for line in axes.get_lines()]
+    values = np.concatenate([np.asarray(line.get_ydata(), dtype=float) for line in lines])
+    panels[0, 0].set_ylim(values.min() - 0.06, max(0.4, values.max() + 0.08))
+    figure.supxlabel("offset [cm]; grey: more than the aim allows at ±3 cm", fontsize=10)
+    figure.supylabel("added to the MPJPE [cm]", fontsize=10)
+    handles, labels = panels[0, 0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper right", ncols=3, labelcolor=list(COLOURS.values()))
+    save(figure, folder, "tracker-offset")
+
+
+def wrong_measures(evaluation: Json, folder: Path) -> None:
+    """What a wrong calibration adds to the error."""
+    estimators = evaluation["robustness"]["estimators"]
+    figure, panels = plt.subplots(1, 2, figsize=(WIDTH, 3.2), sharey=True, layout="constrained")
+    for axes, key, title in ((panels[0], "heights", "Eye height wrong by"), (panels[1], "spans", "Arm span wrong by")):
+        if key == "heights":
+            axes.axhspan(0.2, 10, color="#f0f0f0", zorder=0)
+        axes.axhline(0, color="#555555", linewidth=0.8)
+        ends = {}
+        for method, colour in COLOURS.items():
+            clean = estimators[method]["mpjpeCm"]
+            points = sorted([(h["percent"], h["mpjpeCm"] - clean) for h in estimators[method][key]] + [(0, 0.0)])
+            axes.plot(*zip(*points, strict=True), color=colour, marker=MARKS[method])
+            ends[method] = (points[-1][1], NAMES[method], colour)
+        ticks = [percent for percent, _ in points]
+        axes.set_xticks(ticks, [f"{'−' if percent < 0 else ''}{abs(percent)} %" for percent in ticks])
+        axes.set_title(title)
+        axes.ends = ends
+    values = [h["mpjpeCm"] - estimators[m]["mpjpeCm"] for m in COLOURS for key in ("heights", "spans") for h in estimators[m][key]]
+    low, high = min([*values, 0]) - 0.06, max([*values, 0.25]) + 0.06
+    panels[0].set_ylim(low, high)
+    for axes in panels:
+        label_ends(axes, axes.ends, 0.065 * (high - low))
+    panels[0].set_ylabel("added to the MPJPE [cm]")
+    panels[0].annotate("more than the aim allows", (0, high), xytext=(0, -11), textcoords="offset points", ha="center", color="#666666", fontsize=9)
+    save(figure, folder, "wrong-measures")
+
+
+BONES = (
+    ("hips", "chest", "neck", "head"),
+    ("neck", "leftUpperArm", "leftLowerArm", "leftHand"),
+    ("neck", "rightUpperArm", "rightLowerArm", "rightHand"),
+)
+
+
+def _seen_from(point: list[float], turn: float) -> tuple[float, float]:
+    """Somebody who faces the beholder, turned by `turn` [rad]: to the right of the page, up."""
+    right, height, back = point
+    return -(right * np.cos(turn) + back * np.sin(turn)), height
+
+
+def poses(pictures: list[Json], folder: Path) -> None:
+    """The paper's figure 7: six motions, the truth and what each method makes of it."""
+    columns = ["truth", *COLOURS]
+    half_width, head_height, head_radius = 0.66, 0.08, 0.095
+
+    def turn_of(picture: Json) -> float:
+        """The side that moves is turned to the beholder."""
+        return np.radians(40 if picture["motion"].startswith("left") else -40)
+
+    def points(picture: Json) -> np.ndarray:
+        return np.array([_seen_from(point, turn_of(picture)) for body in picture["bodies"].values() for point in body.values()])
+
+    # Each row as high as its poses need, at one scale.
+    bottoms = [points(picture)[:, 1].min() - 0.06 for picture in pictures]
+    tops = [max(points(picture)[:, 1].max(), max(body["head"][1] for body in picture["bodies"].values()) + 0.18) + 0.06 for picture in pictures]
+    heights = [top - bottom for top, bottom in zip(tops, bottoms, strict=True)]
+    inches_per_metre = WIDTH / len(columns) / (2 * half_width) * 0.93
+    figure, panels = plt.subplots(
+        len(pictures), len(columns), figsize=(WIDTH, inches_per_metre * sum(heights) * 1.04 + 0.4), squeeze=False,
+        gridspec_kw={"height_ratios": heights, "wspace": 0, "hspace": 0.02, "left": 0.06, "right": 0.995, "top": 0.965, "bottom": 0.005},
+    )  # fmt: skip
+    for row, picture in enumerate(pictures):
+        turn = turn_of(picture)
+        x_of_all = points(picture)[:, 0]
+        centre = (x_of_all.min() + x_of_all.max()) / 2
+        for column, method in enumerate(columns):
+            axes = panels[row, column]
+            for of in dict.fromkeys(("truth", method)):
+                body = picture["bodies"][of]
+                faint = of != method
+                colour = TRUTH if method == "truth" else "#b8b8b8" if faint else COLOURS[method]
+                for bone in BONES:
+                    x, y = np.transpose([_seen_from(body[joint], turn) for joint in bone])
+                    axes.plot(x - centre, y, color=colour, linewidth=4 if faint else 2.4, solid_capstyle="round", solid_joinstyle="round")
+                    if not faint:
+                        axes.plot(x - centre, y, ".", color=colour, markersize=7)
+                x, y = _seen_from(body["head"], turn)
+                axes.add_patch(plt.Circle((x - centre, y + head_height), head_radius, fill=False, color=colour, linewidth=3 if faint else 2.2))
+            axes.set_aspect("equal")
+            axes.set(xlim=(-half_width, half_width), ylim=(bottoms[row], tops[row]), xticks=[], yticks=[])
+            axes.grid(visible=False)
+            for spine in axes.spines.values():
+                spine.set_visible(False)
+            if row == 0:
+                axes.set_title(NAMES.get(method, "truth"), color=TRUTH if method == "truth" else COLOURS[method], loc="center", fontsize=11)
+            if column == 0:
+                axes.set_ylabel(picture["motion"].replace(" hand ", " hand\n"), fontsize=9.5, fontweight="bold")
+    save(figure, folder, "six-motions")

@@ -1,0 +1,267 @@
+"""The tables of docs/accuracy.md from what `npm run evaluate` measured; each is Markdown between two marks of the page."""
+
+import re
+from collections.abc import Callable, Iterable
+from typing import Any
+
+METHODS = {"ik": "IK", "paper": "the paper's network", "learned": "learned"}
+JOINTS = {
+    "leftElbow": "left elbow",
+    "rightElbow": "right elbow",
+    "leftShoulder": "left shoulder",
+    "rightShoulder": "right shoulder",
+    "spine": "spine",
+    "pelvis": "pelvis",
+}
+Json = dict[str, Any]
+
+
+def held_out(evaluation: Json) -> Json:
+    """The figures that count: of people no network has seen, where there are any."""
+    return evaluation.get("unseen", evaluation["estimators"])
+
+
+def people_held_out(evaluation: Json) -> list[str]:
+    """Their names; everybody's where all have been seen."""
+    names = [name for name, person in evaluation["people"].items() if not person["seen"]]
+    return sorted(names or evaluation["people"])
+
+
+def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
+    """Markdown, the first column to the left, the others to the right."""
+    head = list(head)
+    lines = [head, ["---", *["---:"] * (len(head) - 1)], *(list(row) for row in rows)]
+    return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
+
+
+def signed(value: float, digits: int = 2) -> str:
+    """+0.12, −0.05."""
+    return f"{'−' if round(value, digits) < 0 else '+'}{abs(value):.{digits}f}"
+
+
+def summary(evaluation: Json) -> str:
+    figures = held_out(evaluation)
+    ik = figures["ik"]["mpjpeCm"]["mean"]
+
+    def row(label: str, cell: Callable[[Json], str]) -> list[str]:
+        return [label, *(cell(figures[method]) for method in METHODS)]
+
+    return table(
+        [", ".join(people_held_out(evaluation)), *METHODS.values()],
+        [
+            row("MPJPE, six joints: mean [cm]", lambda f: f"{f['mpjpeCm']['mean']:.2f}"),
+            row("median / p95 [cm]", lambda f: f"{f['mpjpeCm']['median']:.2f} / {f['mpjpeCm']['p95']:.2f}"),
+            row("relative to IK", lambda f: f"{f['mpjpeCm']['mean'] / ik:.3f}"),
+            row("network alone, before kinematics [cm]", lambda f: f"{f['rawMpjpeCm']:.2f}" if "rawMpjpeCm" in f else "–"),
+            row("elbow swivel error", lambda f: f"{f['swivelDeg']:.1f}°"),
+            row("jerk relative to the true motion", lambda f: f"{f['jerkRatio']:.2f}"),
+            row("bone-length variation [mm]", lambda f: f"{f['boneVariationMm']:.3f}"),
+            row("wrist from its tracker: mean / largest [mm]", lambda f: f"{f['handErrorMm']:.3f} / {f['handErrorMaxMm']:.1f}"),
+        ],
+    )
+
+
+def people(evaluation: Json) -> str:
+    return table(
+        ["MPJPE [cm]", *METHODS.values(), "learned / IK"],
+        [
+            [
+                f"{name} (trained on)" if person["seen"] else name,
+                *(f"{person[method]['mpjpeCm']['mean']:.2f}" for method in METHODS),
+                f"{person['learned']['mpjpeCm']['mean'] / person['ik']['mpjpeCm']['mean']:.2f}",
+            ]
+            for name, person in sorted(evaluation["people"].items(), key=lambda item: (item[1]["seen"], item[0]))
+        ],
+    )
+
+
+def joints(evaluation: Json) -> str:
+    figures = held_out(evaluation)
+    cell = "{median:.1f} / {p95:.1f}"
+    return table(
+        ["median / p95 [cm]", *METHODS.values()],
+        [[label, *(cell.format(**figures[method]["joints"][joint]) for method in METHODS)] for joint, label in JOINTS.items()],
+    )
+
+
+def _by_joint(groups: list[tuple[str, Json]], joint_figure: str, figure: str, digits: int) -> list[list[str]]:
+    return [
+        [label, *(f"{group[joint_figure][joint]:.{digits}f}" for _, group in groups)] for joint, label in JOINTS.items()
+    ] + [["all", *(f"{group[figure]:.{digits}f}" for _, group in groups)]]
+
+
+def train_test(evaluation: Json) -> str:
+    """The paper's table 1: mean squared error by joint, people trained on beside people held out."""
+    if "seen" not in evaluation:
+        return "Only people of one kind, trained on or held out, were evaluated."
+    groups = [
+        (f"{name}, {label}", evaluation[side][method])
+        for method, name in METHODS.items()
+        for side, label in (("seen", "trained on"), ("unseen", "held out"))
+    ]
+    return table(["MSE [cm²]", *(label for label, _ in groups)], _by_joint(groups, "jointMseCm2", "mseCm2", 1))
+
+
+def against_ik(evaluation: Json) -> str:
+    """The paper's tables 2 to 4: MSE, MAE and MPJPE on people held out."""
+    figures = held_out(evaluation)
+    groups = [(name, figures[method]) for method, name in METHODS.items()]
+    mse, mae = _by_joint(groups, "jointMseCm2", "mseCm2", 1), _by_joint(groups, "jointMaeCm", "maeCm", 2)
+    mpjpe = [[f"{figures[method]['joints'][joint]['mean']:.2f}" for method in METHODS] for joint in JOINTS]
+    mpjpe.append([f"{figures[method]['mpjpeCm']['mean']:.2f}" for method in METHODS])
+    head = ["", *(f"{measure}: {name}" for measure in ("MSE [cm²]", "MAE [cm]", "MPJPE [cm]") for name in METHODS.values())]
+    return table(head, [[*a, *b[1:], *c] for a, b, c in zip(mse, mae, mpjpe, strict=True)])
+
+
+def _losses(evaluation: Json) -> list[tuple[int, dict[str, Json]]]:
+    estimators = evaluation["robustness"]["estimators"]
+    durations = [loss["milliseconds"] for loss in estimators["ik"]["losses"]]
+    return [(ms, {method: estimators[method]["losses"][i] for method in METHODS}) for i, ms in enumerate(durations)]
+
+
+def loss(evaluation: Json) -> str:
+    def ratio(cm: float, seen: float) -> str:
+        return f"{cm:.2f} ({cm / seen:.2f} ×)"
+
+    rows = [["0 ms", "all joints", *(f"{evaluation['robustness']['estimators'][m]['mpjpeCm']:.2f}" for m in METHODS)]]
+    for milliseconds, by_method in _losses(evaluation):
+        lines: list[tuple[str, Callable[[Json], str]]] = [
+            ("all joints", lambda f: ratio(f["during"]["allCm"], f["during"]["allSeenCm"])),
+            ("its elbow", lambda f: ratio(f["during"]["elbowCm"], f["during"]["elbowSeenCm"])),
+            ("all joints, 0.5 s after", lambda f: ratio(f["after"]["allCm"], f["after"]["allSeenCm"])),
+            ("its elbow, 0.5 s after", lambda f: ratio(f["after"]["elbowCm"], f["after"]["elbowSeenCm"])),
+            ("longest step at the loss", lambda f: f"{f['atLoss']['stepCm']:.1f} ({signed(f['atLoss']['excessCm'], 1)})"),
+            ("longest step at the return", lambda f: f"{f['atReturn']['stepCm']:.1f} ({signed(f['atReturn']['excessCm'], 1)})"),
+        ]
+        for number, (label, cell) in enumerate(lines):
+            count = by_method["ik"]["losses"]
+            name = f"{milliseconds} ms, {count} losses" if number == 0 else ""
+            rows.append([name, label, *(cell(by_method[method]) for method in METHODS)])
+    return re.sub(r"(?m)^\| --- \| ---:", "| --- | ---", table(["hand lost for", "cm", *METHODS.values()], rows))
+
+
+def offsets(evaluation: Json) -> str:
+    estimators = evaluation["robustness"]["estimators"]
+    rows = []
+    for tracker in ("headset", "grips"):
+        for size in (1, 3):
+            for label, of in (("mean", lambda v: sum(v) / len(v)), ("worst", max)):
+                cells = []
+                for method in METHODS:
+                    values = [
+                        o["mpjpeCm"] for o in estimators[method]["offsets"] if o["tracker"] == tracker and abs(o["offsetCm"]) == size
+                    ]
+                    cells.append(signed(of(values) - estimators[method]["mpjpeCm"]))
+                rows.append([f"{tracker} ±{size} cm, {label}", *cells])
+    return table(["added to the MPJPE [cm]", *METHODS.values()], rows)
+
+
+def measures(evaluation: Json) -> str:
+    """Wrong calibrations: eye height and arm span."""
+    estimators = evaluation["robustness"]["estimators"]
+    rows = []
+    for key, label in (("heights", "eye height"), ("spans", "arm span")):
+        for i, entry in enumerate(estimators["ik"][key]):
+            cells = [signed(estimators[m][key][i]["mpjpeCm"] - estimators[m]["mpjpeCm"]) for m in METHODS]
+            rows.append([f"{label} {signed(entry['percent'], 0)} %", *cells])
+    return table(["added to the MPJPE [cm]", *METHODS.values()], rows)
+
+
+def rates(evaluation: Json) -> str:
+    estimators = evaluation["robustness"]["estimators"]
+    rows = [["60 Hz", *(f"{estimators[m]['mpjpeCm']:.2f} / {estimators[m]['jerkRatio']:.2f}" for m in METHODS)]]
+    for i, entry in enumerate(estimators["ik"]["rates"]):
+        of = [estimators[m]["rates"][i] for m in METHODS]
+        rows.append([f"{entry['hz']} Hz", *(f"{f['mpjpeCm']:.2f} / {f['jerkRatio']:.2f}" for f in of)])
+    return table(["MPJPE [cm] / jerk relative to the truth", *METHODS.values()], rows)
+
+
+def precision(evaluation: Json) -> str | None:
+    """8-bit weights against 32-bit ones; None where those were not measured."""
+    if "fp32" not in evaluation:
+        return None
+    int8 = held_out(evaluation)
+    rows = [
+        [
+            METHODS[method],
+            f"{int8[method]['mpjpeCm']['mean']:.3f}",
+            f"{fp32['mpjpeCm']['mean']:.3f}",
+            f"{int8[method]['jerkRatio']:.3f}",
+            f"{fp32['jerkRatio']:.3f}",
+        ]
+        for method, fp32 in evaluation["fp32"].items()
+    ]
+    return table(["", "MPJPE int8 [cm]", "MPJPE fp32 [cm]", "jerk int8", "jerk fp32"], rows)
+
+
+def aims(evaluation: Json, contracts: dict[str, Json]) -> str:
+    """What was aimed at, what was measured, and whether that is enough."""
+    figures, robust = held_out(evaluation), evaluation["robustness"]["estimators"]["learned"]
+    ours, ik = figures["learned"], figures["ik"]
+
+    def elbows(of: Json) -> float:
+        return (of["joints"]["leftElbow"]["mean"] + of["joints"]["rightElbow"]["mean"]) / 2
+
+    ratio = round(ours["mpjpeCm"]["mean"] / ik["mpjpeCm"]["mean"], 3)
+    elbow = round(elbows(ours) / elbows(ik), 3)
+    offset = round(max(o["mpjpeCm"] for o in robust["offsets"]) - robust["mpjpeCm"], 2)
+    height = round(max(h["mpjpeCm"] for h in robust["heights"]) - robust["mpjpeCm"], 2)
+    long = robust["losses"][-1]["during"]
+    jump = max(loss[when]["excessCm"] for loss in robust["losses"] for when in ("atLoss", "atReturn"))
+    lost_all, lost_elbow = round(long["allCm"] / long["allSeenCm"], 2), round(long["elbowCm"] / long["elbowSeenCm"], 2)
+    errors = contracts["learned"]["errors"]
+    held = ", ".join(people_held_out(evaluation))
+
+    def row(what: str, aim: str, measured: str, met: bool | None) -> list[str]:
+        """What is printed is what is judged: callers round first."""
+        return [what, aim, measured, {True: "met", False: "missed", None: "not measured"}[met]]
+
+    rows = [
+        row(f"MPJPE relative to IK, {held}", "≤ 0.85", f"{ratio:.3f}", ratio <= 0.85),
+        row(f"elbows relative to IK, {held}", "≤ 0.85", f"{elbow:.3f}", elbow <= 0.85),
+    ]
+    for protocol, own in errors.items():
+        if protocol.startswith("learned, fold B") and (other := errors.get(protocol.replace("learned", "IK", 1))):
+            second = round(own["mean"] / other["mean"], 3)
+            second_elbows = round((own["left elbow"] + own["right elbow"]) / (other["left elbow"] + other["right elbow"]), 3)
+            fold = protocol.removeprefix("learned, ")
+            rows.append(row(f"MPJPE relative to IK, {fold}, network alone", "≤ 0.85", f"{second:.3f}", second <= 0.85))
+            rows.append(row(f"elbows relative to IK, {fold}, network alone", "≤ 0.85", f"{second_elbows:.3f}", second_elbows <= 0.85))
+    random = contracts["paper"]["errors"].get("paper, frame-random 80/20")
+    rows += [
+        row(
+            "the paper's network and protocol (frame-random)",
+            "≤ 0.9 cm",
+            f"{random['mean']:.2f} cm" if random else "–",
+            random["mean"] <= 0.9 if random else None,
+        ),
+        row("jerk relative to the true motion", "≤ 1.1", f"{ours['jerkRatio']:.2f}", ours["jerkRatio"] <= 1.1),
+    ]
+    if exact := evaluation.get("fp32", {}).get("learned"):
+        more, rougher = ours["mpjpeCm"]["mean"] - exact["mpjpeCm"]["mean"], ours["jerkRatio"] / exact["jerkRatio"]
+        rows.append(row("int8 against fp32: MPJPE", "≤ +0.05 cm", f"{signed(more, 3)} cm", more <= 0.05))
+        rows.append(row("int8 against fp32: jerk", "≤ 1.05 ×", f"{rougher:.3f} ×", rougher <= 1.05))
+    size = contracts["learned"]["bytes"] / 1000
+    hands, bones = ours["handErrorMaxMm"], ours["boneVariationMm"]
+    rows += [
+        row("tracker mounted ±3 cm elsewhere, worst axis", "≤ +0.3 cm", f"{signed(offset)} cm", offset <= 0.3),
+        row("eye height wrong by ±5 %", "≤ +0.2 cm", f"{signed(height)} cm", height <= 0.2),
+        row("a hand lost for 2 s: all joints", "≤ 1.3 ×", f"{lost_all:.2f} ×", lost_all <= 1.3),
+        row("a hand lost for 2 s: its elbow", "≤ 1.8 ×", f"{lost_elbow:.2f} ×", lost_elbow <= 1.8),
+        row("jump of any joint at loss or return, in a frame", "≤ 5 cm", f"{jump:.1f} cm", jump <= 5),
+        row("hands on the controllers: largest distance", "0 mm", f"{hands:.1f} mm", hands < 0.05),
+        row("bone-length variation", "0 mm", f"{bones:.3f} mm", bones < 0.05),
+        row("size of the network", "≤ 300 kB", f"{size:.0f} kB", size <= 300),
+    ]
+    return table(["", "aim", "measured", "verdict"], rows)
+
+
+def renew(page: str, sections: dict[str, str | None]) -> str:
+    """The page with what stands between `<!-- NAME -->` and `<!-- /NAME -->` replaced; None leaves a section as it is."""
+    for name, content in sections.items():
+        pattern = re.compile(rf"(<!-- {re.escape(name)} -->\n).*?(<!-- /{re.escape(name)} -->)", re.DOTALL)
+        if len(pattern.findall(page)) != 1:
+            raise ValueError(f"the page has no place for {name}: expected <!-- {name} --> … <!-- /{name} --> once")
+        if content is not None:
+            page = pattern.sub(lambda found, text=content: f"{found[1]}\n{text}\n\n{found[2]}", page)
+    return page
