@@ -35,6 +35,10 @@ interface TrackedInput {
   quaternion: { set(...xyzw: Rotation): void };
   connected: boolean;
   updateTargetRaySpace(): void;
+  /** Of a controller. */
+  updateButtonValue(id: 'trigger' | 'squeeze', value: number): void;
+  /** Of a hand. */
+  updatePinchValue(value: number): void;
   readonly inputSource: {
     readonly targetRaySpace: object;
     readonly gripSpace: object;

@@ -1,4 +1,5 @@
-import { PerspectiveCamera } from 'three';
+import { PerspectiveCamera, Raycaster, Vector2 } from 'three';
+import { createArcheryPlay, probeOf, roundOf } from './archery-play';
 import { type Avatar, createAvatar } from './avatar/avatar';
 import { createDebugSkeleton } from './avatar/debug-skeleton';
 import { loadAvatar } from './avatar/load-avatar';
@@ -18,10 +19,15 @@ import {
 } from './core/body/calibration';
 import { createEstimator } from './core/estimation/estimators';
 import type { EstimatorName } from './core/estimation/pose-estimator';
+import { allReleased, type Buttons } from './core/games/archery/button-presses';
+import { identity } from './core/math/quat';
+import { zero } from './core/math/vec3';
 import type { TrackingFrame } from './core/tracking/tracking-frame';
 import { createEstimatorChoice, reasonOf } from './estimator-choice';
 import { createFrameLoop, withTiming } from './frame-loop';
 import { createFrameTiming, stageNames } from './frame-timing';
+import type { ArcheryView } from './games/archery/archery-view';
+import { eventHaptics } from './games/archery/haptics';
 import { exposeProbe } from './probe';
 import { createRecorder } from './recorder';
 import { createArena } from './scene/arena';
@@ -34,9 +40,11 @@ import { acceptDroppedFiles } from './ui/dropped-files';
 import { pageElement } from './ui/element';
 import { createEnterButton } from './ui/enter-button';
 import { estimatorOrder, estimatorTexts } from './ui/estimator-texts';
+import { createMouseAim } from './ui/mouse-aim';
 import { createNotices } from './ui/notices';
 import { createOverlay, type FrameReport } from './ui/overlay';
 import { createPanel } from './ui/panel';
+import { type ActivityName, createPlayBar } from './ui/play-bar';
 import { browserStorage, createPreferenceStore } from './ui/preferences';
 import { createProgress } from './ui/progress';
 import { listenToShortcuts } from './ui/shortcuts';
@@ -45,6 +53,7 @@ import { createVrMenu } from './ui/vr-menu';
 import { createVrPointers } from './ui/vr-pointers';
 import { createActor } from './xr/actor';
 import { type Emulator, installEmulator } from './xr/emulator';
+import { buzz } from './xr/haptics';
 import { describeXrSupport, requestVrSession } from './xr/session';
 import { createTracker, type Tracker } from './xr/tracker';
 
@@ -60,6 +69,11 @@ const windowRateHz = 60;
 const settleSeconds = 0.7;
 /** What the mannequin's mirror and the menu are placed by: the user stands at the origin and looks along −Z. */
 const mirrorDistance = 1.5;
+/** Beside the range the mirror stands out of the arrows' way, on the side the archer's chest faces [m, rad]. */
+const mirrorByTheRange = { x: 1.95, z: -0.1, turned: -1.3 };
+/** The room's floor is the range's: its zone lies about the origin, the targets ahead. */
+const floorFromArena = { position: zero, orientation: identity };
+const nothingPressed: Buttons = { left: allReleased, right: allReleased };
 
 type Triple = readonly [number, number, number];
 const triple = ({ x, y, z }: { readonly x: number; readonly y: number; readonly z: number }): Triple => [x, y, z];
@@ -135,7 +149,14 @@ async function start(): Promise<void> {
     vrOverlay: false,
     palette: store.preferences.palette ?? 'porcelain',
     actor: switches.actor,
+    /** On the range, without a headset: the mouse shoots instead of the archer. */
+    mouse: false,
     emulatorPanel: true,
+    bowSide: store.preferences.bowSide ?? ('left' as const),
+    oneHanded: store.preferences.oneHanded ?? false,
+    everyHitCounts: store.preferences.everyHitCounts ?? false,
+    ...(switches.seconds && { seconds: switches.seconds }),
+    sound: store.preferences.sound ?? true,
     calibration: store.preferences.calibration ?? defaultCalibration,
     calibrationSource: store.preferences.calibration ? 'remembered' : 'not calibrated yet',
   };
@@ -167,21 +188,154 @@ async function start(): Promise<void> {
   let session: ActiveSession | null = null;
   let replayedBody: Calibration | null = null;
 
+  const mouse = createMouseAim(canvas);
+  const pointing = new Raycaster();
+  /** What the hands of the newest frame press. */
+  let buttons: Buttons = nothingPressed;
+
+  /** Somebody who needs nobody: the actor in the studio, the archer on the range. */
+  function perform(time: number): { readonly frame: TrackingFrame; readonly buttons: Buttons } {
+    if (!archery) return { frame: actor.frameAt(time), buttons: nothingPressed };
+    if (!settings.mouse || session) return archery.play.act(time);
+    pointing.setFromCamera(new Vector2(mouse.x, mouse.y), view.camera);
+    const { origin, direction } = pointing.ray;
+    return archery.play.steer(time, { origin: { ...origin }, direction: { ...direction } }, mouse);
+  }
+
   function track(timeMs: number, deviceFrame: XRFrame | undefined): TrackingFrame | null {
     const time = timeMs / 1000;
+    buttons = nothingPressed;
     if (session) {
-      // What the actor does now is seen with the next frame: the device froze this one before it called.
-      if (emulator && settings.actor) emulator.drive(actor.frameAt(time));
-      return deviceFrame ? session.tracker.read(deviceFrame, time) : null;
+      if (emulator && settings.actor) {
+        // What the actor does now is seen with the next frame: the device froze this one before it called.
+        const performed = perform(time);
+        emulator.drive(performed.frame, performed.buttons);
+      }
+      const tracked = deviceFrame ? session.tracker.read(deviceFrame, time) : null;
+      buttons = session.tracker.buttons;
+      return tracked;
     }
     const replayed = recorder.sample(time);
     if (replayed) return replayed;
-    if (settings.actor || !emulator) return actor.frameAt(time);
-    return emulator.read(time);
+    if (!settings.actor && emulator) return emulator.read(time);
+    const performed = perform(time);
+    buttons = performed.buttons;
+    return performed.frame;
   }
 
   /** The body that fits whoever moves: a recording brings its own person along. */
   const bodyNow = () => (recorder.mode === 'replaying' && replayedBody) || settings.calibration;
+
+  // Archery: loaded when somebody first goes there; null in the studio.
+  let archery: { readonly play: ReturnType<typeof createArcheryPlay>; readonly view: ArcheryView } | null = null;
+  let arriving = false;
+  let seed = switches.seed ?? Math.floor(performance.timeOrigin % 2 ** 31);
+
+  const playBar = createPlayBar(pageElement('play', HTMLElement), {
+    goTo: (activity) => void goTo(activity),
+    restart: () => restartRound(),
+    chooseShooter(shooter) {
+      settings.actor = true;
+      settings.mouse = shooter === 'mouse';
+      steerByMouse();
+      restartRound();
+    },
+    setBowSide: (side) => rule({ bowSide: side }),
+    setOneHanded: (on) => rule({ oneHanded: on }),
+    setEveryHitCounts: (on) => rule({ everyHitCounts: on }),
+    setSound(on) {
+      settings.sound = on;
+      store.remember({ sound: on });
+      archery?.view.sound.setMuted(!on);
+      if (archery) wakeSound(archery.view);
+      show();
+    },
+  });
+
+  const silent = (error: unknown) => notices.show('info', `There is no sound: ${firstLine(reasonOf(error))}`);
+
+  /** Browsers let a page sound only once somebody has touched it. */
+  function wakeSound(of: ArcheryView): void {
+    if (!settings.sound) return;
+    const wake = () => void of.sound.unlock().catch(silent);
+    if (navigator.userActivation?.hasBeenActive) wake();
+    else for (const event of ['pointerdown', 'keydown']) window.addEventListener(event, wake, { once: true });
+  }
+
+  /** A change of hands or rules; a round under way goes on unless it is counted differently. */
+  function rule(change: Partial<Pick<typeof settings, 'bowSide' | 'oneHanded' | 'everyHitCounts'>>): void {
+    Object.assign(settings, change);
+    store.remember(change);
+    placeMirror();
+    if (change.everyHitCounts !== undefined || settings.actor) restartRound();
+    show();
+  }
+
+  function restartRound(): void {
+    seed += 1;
+    archery?.play.restart(bodyNow());
+    playBar.caption('');
+    show();
+  }
+
+  /** A mouse that aims does not turn the camera. */
+  function steerByMouse(): void {
+    const steering = archery !== null && settings.mouse && !session;
+    mouse.setEnabled(steering);
+    view.setOrbit(!steering);
+  }
+
+  function placeMirror(): void {
+    const { x, z, turned } = mirrorByTheRange;
+    const side = settings.bowSide === 'left' ? 1 : -1;
+    if (archery) mirror.place(side * x, z, side * turned);
+    else mirror.place(0, -mirrorDistance, 0);
+  }
+
+  async function goTo(activity: ActivityName): Promise<void> {
+    if (arriving || (activity === 'archery') === (archery !== null)) return;
+    if (activity === 'studio') {
+      archery?.view.bow.removeFromParent();
+      archery?.view.dispose();
+      archery = null;
+      arena.setSurroundings(null);
+    } else {
+      arriving = true;
+      show();
+      try {
+        const { createArcheryView } = await import('./games/archery/archery-view');
+        const play = createArcheryPlay(
+          bodyNow(),
+          () => settings,
+          () => seed,
+        );
+        const view = createArcheryView({
+          quality,
+          floorFromArena,
+          distances: play.targets.map(({ distance }) => distance),
+          onCaption: (text) => playBar.caption(text),
+        });
+        view.sound.setMuted(!settings.sound);
+        wakeSound(view);
+        arena.setSurroundings(view.range);
+        arena.scene.add(view.bow);
+        archery = { play, view };
+      } catch (error) {
+        notices.show('error', `The archery range could not be opened: ${firstLine(reasonOf(error))}`);
+      }
+      arriving = false;
+    }
+    recorder.stop();
+    if (archery) panel.setOpen(false);
+    view.setScene(archery ? 'range' : 'studio');
+    document.body.classList.toggle('on-the-range', archery !== null);
+    arena.setMarkVisible(archery === null);
+    placeMirror();
+    steerByMouse();
+    choice.reset();
+    timing.reset();
+    show();
+  }
 
   function fit(): void {
     const calibration = bodyNow();
@@ -390,6 +544,9 @@ async function start(): Promise<void> {
       settings.vrOverlay = on;
       showInHeadset();
     },
+    goTo: (activity) => void goTo(activity),
+    setBowSide: (side) => rule({ bowSide: side }),
+    restart: restartRound,
     exit: () => void session?.xr.end(),
   });
   pointers.objects.visible = false;
@@ -401,6 +558,9 @@ async function start(): Promise<void> {
       unavailable: choice.unavailable,
       calibration: calibrationStep,
       overlay: settings.vrOverlay,
+      activity: archery ? 'archery' : 'studio',
+      bowSide: settings.bowSide,
+      roundOver: archery?.play.newest?.state.phase === 'over',
       notice: notices.current().at(-1)?.text ?? null,
     });
   }
@@ -440,7 +600,24 @@ async function start(): Promise<void> {
       inSession: session !== null,
       recorder,
     });
+    showPlay();
     showInHeadset();
+  }
+
+  /** Score and settings of the round, beside the picture. */
+  function showPlay(): void {
+    const round = archery?.play.newest;
+    playBar.show({
+      activity: archery ? 'archery' : 'studio',
+      arriving,
+      round: round ? roundOf(round) : null,
+      shooter: session || (!settings.actor && emulator) ? 'headset' : settings.mouse ? 'mouse' : 'actor',
+      bowSide: settings.bowSide,
+      oneHanded: settings.oneHanded,
+      everyHitCounts: settings.everyHitCounts,
+      sound: settings.sound,
+      inSession: session !== null,
+    });
   }
 
   listenToShortcuts(
@@ -474,6 +651,7 @@ async function start(): Promise<void> {
     overlay.show(report);
     menu.showReport(report);
     if (recorder.mode !== 'idle') show();
+    else if (archery) showPlay();
   }, reportEveryMs);
 
   // Entering and leaving.
@@ -550,6 +728,32 @@ async function start(): Promise<void> {
     calibrate(provisionalCalibration(frame.head.position.y), 'from the headset’s height', false);
   }
 
+  /** The frame as play: seen with the picture, heard and felt at once. */
+  function playRound(frame: TrackingFrame): void {
+    if (!archery) return;
+    const { events, cues, haptics } = archery.play.follow(frame, buttons);
+    archery.view.hear(events, cues);
+    const bowSide = archery.play.newest?.bow?.bowSide ?? settings.bowSide;
+    if (session) buzz(session.xr, [...haptics, ...eventHaptics(events, bowSide)]);
+    if (events.length > 0) show();
+  }
+
+  /** How far a hand is closed: as its buttons say; round the bow it always is. */
+  function gripOf(side: 'left' | 'right'): number {
+    if (archery?.play.newest?.bow?.bowSide === side) return 1;
+    const { trigger, grip, pinch } = buttons[side];
+    return Math.max(trigger, grip, pinch);
+  }
+
+  // A click on the result's button is another round.
+  canvas.addEventListener('click', ({ clientX, clientY }) => {
+    if (!archery || session) return;
+    const { width, height } = canvas.getBoundingClientRect();
+    pointing.setFromCamera(new Vector2((2 * clientX) / width - 1, 1 - (2 * clientY) / height), view.camera);
+    const { origin, direction } = pointing.ray;
+    if (archery.view.result.restartAt(origin, direction) !== null) restartRound();
+  });
+
   let frameCount = 0;
   let newestFrame: TrackingFrame | null = null;
   let lastTime = 0;
@@ -563,13 +767,12 @@ async function start(): Promise<void> {
         recorder.observe(frame);
         guide.observe(frame);
         settle(frame);
+        playRound(frame);
       },
       estimator: () => choice.current,
       inferenceSettlesInFrame: () => choice.regressor?.resolvesInFrame ?? false,
       skin(pose, frame) {
-        if (session) {
-          for (const side of ['left', 'right'] as const) avatar?.setGrip(side, session.tracker.squeezed[side]);
-        }
+        for (const side of ['left', 'right'] as const) avatar?.setGrip(side, gripOf(side));
         avatar?.apply(pose, frame.time);
       },
       render(timeMs, frame) {
@@ -581,14 +784,18 @@ async function start(): Promise<void> {
         const { hips } = joints;
         if (hips) arena.follow(hips.x, hips.z);
         if (session) {
-          if (session.xr.visibilityState === 'visible') menu.point(pointers.take());
+          if (session.xr.visibilityState === 'visible') point();
         } else if (frame) {
           view.update(hips ?? { ...frame.head.position, y: frame.head.position.y * 0.58 }, frame.head, elapsed);
         }
+        const played = archery?.play.newest;
+        if (archery && played && frame) archery.view.show(played.state, played.bow, played.time, frame.head);
         const inside = session !== null || view.view === 'first-person';
         avatar?.setFirstPerson(inside);
         // Whoever looks from behind the mirror wants to see the body, not its back.
-        mirror.setVisible(settings.mirror && (inside || view.camera.position.z > 0.1 - mirrorDistance));
+        mirror.setVisible(
+          settings.mirror && (inside || archery !== null || view.camera.position.z > 0.1 - mirrorDistance),
+        );
         renderer.render(arena.scene, session ? headsetCamera : view.camera);
       },
       fail(error) {
@@ -652,9 +859,24 @@ async function start(): Promise<void> {
       notices: notices.current(),
       loading: { ...marks },
       players: [],
-      game: null,
+      game: archery?.play.newest ? probeOf(archery.play.newest) : null,
     };
   });
+
+  /** Rays and finger tips: the menu first, then the result of a round. */
+  function point(): void {
+    const hands = pointers.take();
+    menu.point(hands);
+    let hovered = false;
+    for (const { origin, direction, pressed, showRay } of hands) {
+      const distance = archery?.view.result.restartAt(origin, direction) ?? null;
+      if (distance === null) continue;
+      hovered = true;
+      showRay(distance);
+      if (pressed) restartRound();
+    }
+    archery?.view.result.setHovered(hovered);
+  }
 
   // The way to the first body: the chosen network loads beside the avatar, and IK draws until it is there.
   panel.setOpen(switches.panel && window.innerWidth > 760);
@@ -686,7 +908,7 @@ async function start(): Promise<void> {
       }),
     );
   }
-  await Promise.all([chosen, sessionsPrepared]);
+  await Promise.all([chosen, sessionsPrepared, goTo(switches.play)]);
   mark('estimator');
   progress.finish();
   ready = true;

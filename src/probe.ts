@@ -1,3 +1,4 @@
+import type { ArcheryProbe } from './archery-play';
 import type { Calibration } from './core/body/calibration';
 import type { EstimatorName } from './core/estimation/pose-estimator';
 import type { FrameSummary } from './frame-timing';
@@ -34,7 +35,8 @@ export interface Probe {
   /** Milliseconds from opening the page to each mark of loading. */
   readonly loading: Readonly<Record<string, number>>;
   readonly players: readonly never[];
-  readonly game: null;
+  /** The round being played; null in the studio. */
+  readonly game: ArcheryProbe | null;
 }
 
 declare global {

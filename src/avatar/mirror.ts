@@ -17,6 +17,8 @@ export interface MirrorOptions {
 export interface Mirror {
   readonly object: Object3D;
   setVisible(visible: boolean): void;
+  /** Stands it with its middle at (x, z) [m], floor frame; turned 0 it faces +Z, positive to +X [rad]. */
+  place(x: number, z: number, turned: number): void;
   dispose(): void;
 }
 
@@ -81,6 +83,10 @@ export function createMirror({
 
   return {
     object,
+    place(x, z, turned) {
+      object.position.set(x, object.position.y, z);
+      object.rotation.y = turned;
+    },
     setVisible(visible) {
       object.visible = visible;
     },

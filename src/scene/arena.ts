@@ -19,6 +19,7 @@ import {
   type WebGLRenderer,
 } from 'three';
 import type { Quality } from './renderer';
+import type { DistantLight, Lighting, Surroundings } from './surroundings';
 
 const horizon = new Color('#3a475d');
 const zenith = new Color('#121722');
@@ -34,8 +35,10 @@ export interface Arena {
   readonly scene: Scene;
   /** Moves shadow and light along with whoever stands at (x, z) [m], floor frame. */
   follow(x: number, z: number): void;
-  /** Shows or hides the mark on the floor where to stand. */
+  /** Shows or hides the mark on the floor of the studio where to stand. */
   setMarkVisible(visible: boolean): void;
+  /** Puts another place, with its own light and fog, where the studio is; null brings the studio back. */
+  setSurroundings(surroundings: Surroundings | null): void;
   /** Builds again what a lost context took with it. */
   restore(): void;
 }
@@ -122,7 +125,7 @@ function createMark(): Group {
 }
 
 /** A soft dark disc under the body: the cheap shadow that says the feet are on the ground. */
-function createBlobShadow(strength: number): Mesh {
+function createBlobShadow(): Mesh<PlaneGeometry, MeshBasicMaterial> {
   const size = 128;
   const canvas = document.createElement('canvas');
   canvas.width = size;
@@ -130,8 +133,8 @@ function createBlobShadow(strength: number): Mesh {
   const context = canvas.getContext('2d');
   if (!context) throw new Error('scene/arena: this browser offers no 2D canvas');
   const gradient = context.createRadialGradient(size / 2, size / 2, 0, size / 2, size / 2, size / 2);
-  gradient.addColorStop(0, `rgba(6, 9, 14, ${strength})`);
-  gradient.addColorStop(0.45, `rgba(6, 9, 14, ${strength * 0.5})`);
+  gradient.addColorStop(0, 'rgba(6, 9, 14, 1)');
+  gradient.addColorStop(0.45, 'rgba(6, 9, 14, 0.5)');
   gradient.addColorStop(1, 'rgba(6, 9, 14, 0)');
   context.fillStyle = gradient;
   context.fillRect(0, 0, size, size);
@@ -165,45 +168,88 @@ function createLightRoom(): Scene {
   return room;
 }
 
+const studioLighting = (quality: Quality): Lighting => ({
+  key: { color: '#fff1e0', intensity: quality === 'high' ? 2.6 : 2.8, from: [1.6, 4.2, 1.9] },
+  rim: { color: '#b4caff', intensity: 1, from: [-2.4, 2.6, -2.8] },
+  front: { color: '#eef2ff', intensity: 0.7, from: [-1.2, 1.8, -2.5] },
+  fill: { sky: '#cfdcf5', ground: '#3a4354', intensity: quality === 'high' ? 0.35 : 1.1 },
+  shadow: { halfSize: 1.7, resolution: 1024, softness: 5, centre: null },
+  fog: { color: '#3a475d', near: 3, far: floorRadius - 6 },
+  reflected: createLightRoom,
+  reflectedIntensity: 0.38,
+  contactShadow: quality === 'high' ? 0.45 : 0.7,
+});
+
 /** Builds the studio: floor, sky, light and shadow, all made here, nothing loaded. */
 export function createArena(renderer: WebGLRenderer, quality: Quality): Arena {
   const scene = new Scene();
   scene.background = null;
-  scene.fog = new Fog(horizon, 3, floorRadius - 6);
+  const fog = new Fog(horizon);
+  scene.fog = fog;
+  const key = new DirectionalLight();
+  const rim = new DirectionalLight();
+  const front = new DirectionalLight();
+  const fill = new HemisphereLight();
+  key.castShadow = quality === 'high';
+  key.shadow.bias = -0.0006;
+  key.shadow.normalBias = 0.015;
 
-  const key = new DirectionalLight('#fff1e0', quality === 'high' ? 2.6 : 2.8);
-  const keyOffset = { x: 1.6, y: 4.2, z: 1.9 };
-  key.position.set(keyOffset.x, keyOffset.y, keyOffset.z);
-  if (quality === 'high') {
-    key.castShadow = true;
-    key.shadow.mapSize.set(1024, 1024);
-    key.shadow.radius = 5;
-    key.shadow.bias = -0.0006;
-    key.shadow.normalBias = 0.015;
-    const { camera } = key.shadow;
-    camera.left = camera.bottom = -1.7;
-    camera.right = camera.top = 1.7;
-    camera.near = 1;
-    camera.far = 9;
-  }
-  const rim = new DirectionalLight('#b4caff', 1.0);
-  rim.position.set(-2.4, 2.6, -2.8);
-  const front = new DirectionalLight('#eef2ff', 0.7);
-  front.position.set(-1.2, 1.8, -2.5);
-  const fill = new HemisphereLight('#cfdcf5', '#3a4354', quality === 'high' ? 0.35 : 1.1);
-
-  const blob = createBlobShadow(quality === 'high' ? 0.45 : 0.7);
+  const blob = createBlobShadow();
   const mark = createMark();
-  scene.add(createSky(), createFloor(), createGrid(), blob, mark, key, key.target, rim, front, fill);
+  const studio = new Group();
+  studio.add(createSky(), createFloor(), createGrid(), mark);
+  scene.add(studio, blob, key, key.target, rim, front, fill);
+  const studioPlace: Surroundings = { object: studio, lighting: studioLighting(quality) };
+  let place = studioPlace;
+  const stand = { x: 0, z: 0 };
 
-  const light = () => {
+  function aimKey(): void {
+    const { from } = place.lighting.key;
+    const { x, z } = place.lighting.shadow.centre ?? stand;
+    key.target.position.set(x, 0.9, z);
+    key.position.set(x + from[0], from[1], z + from[2]);
+  }
+
+  const setLight = (light: DirectionalLight, { color, intensity, from }: DistantLight) => {
+    light.color.set(color);
+    light.intensity = intensity;
+    light.position.set(...from);
+  };
+
+  function light(): void {
+    const { lighting } = place;
+    setLight(key, lighting.key);
+    setLight(rim, lighting.rim);
+    setLight(front, lighting.front);
+    fill.color.set(lighting.fill.sky);
+    fill.groundColor.set(lighting.fill.ground);
+    fill.intensity = lighting.fill.intensity;
+    fog.color.set(lighting.fog.color);
+    fog.near = lighting.fog.near;
+    fog.far = lighting.fog.far;
+    blob.material.opacity = lighting.contactShadow;
+    aimKey();
     if (quality === 'low') return;
+    const { halfSize, resolution, softness } = lighting.shadow;
+    const { camera, mapSize } = key.shadow;
+    camera.left = camera.bottom = -halfSize;
+    camera.right = camera.top = halfSize;
+    camera.near = 1;
+    camera.far = 2 * Math.hypot(...lighting.key.from);
+    camera.updateProjectionMatrix();
+    key.shadow.radius = softness;
+    if (mapSize.width !== resolution) {
+      mapSize.set(resolution, resolution);
+      // The map of the other size is built again with the next picture.
+      key.shadow.map?.dispose();
+      key.shadow.map = null;
+    }
     const generator = new PMREMGenerator(renderer);
     scene.environment?.dispose();
-    scene.environment = generator.fromScene(createLightRoom(), 0.03).texture;
-    scene.environmentIntensity = 0.38;
+    scene.environment = generator.fromScene(lighting.reflected(), 0.03).texture;
+    scene.environmentIntensity = lighting.reflectedIntensity;
     generator.dispose();
-  };
+  }
   light();
 
   return {
@@ -211,11 +257,20 @@ export function createArena(renderer: WebGLRenderer, quality: Quality): Arena {
     follow(x, z) {
       blob.position.x = x;
       blob.position.z = z;
-      key.position.set(x + keyOffset.x, keyOffset.y, z + keyOffset.z);
-      key.target.position.set(x, 0.9, z);
+      stand.x = x;
+      stand.z = z;
+      aimKey();
     },
     setMarkVisible(visible) {
       mark.visible = visible;
+    },
+    setSurroundings(surroundings) {
+      const next = surroundings ?? studioPlace;
+      if (next === place) return;
+      scene.remove(place.object);
+      scene.add(next.object);
+      place = next;
+      light();
     },
     restore: light,
   };

@@ -5,6 +5,9 @@ export const viewNames = ['third-person', 'front', 'first-person'] as const;
 /** third-person: orbits the body from behind. front: from where the mirror hangs. first-person: through the eyes. */
 export type ViewName = (typeof viewNames)[number];
 
+/** studio: mirror and body. range: past the archer to the targets. */
+export type SceneName = 'studio' | 'range';
+
 interface Point {
   readonly x: number;
   readonly y: number;
@@ -29,6 +32,10 @@ export interface DesktopView {
   readonly camera: PerspectiveCamera;
   readonly view: ViewName;
   setView(view: ViewName): void;
+  /** Where the body stands: it decides from where it is seen best. */
+  setScene(scene: SceneName): void;
+  /** Whether mouse and touch turn the camera; arrow keys always do. */
+  setOrbit(on: boolean): void;
   setInsets(insets: Insets): void;
   /** The window changed its size. */
   resize(): void;
@@ -43,13 +50,24 @@ const followHalfLife = 0.35;
 /** Radians a press of an arrow key turns the camera. */
 const keyStep = Math.PI / 36;
 
-const start: Record<Exclude<ViewName, 'first-person'>, { offset: Vector3; fov: number }> = {
-  'third-person': { offset: new Vector3(1.95, 0.5, 2.95), fov: 42 },
-  front: { offset: new Vector3(-0.55, 0.25, -3.2), fov: 42 },
+/** Where the camera begins and what it looks at, both from the pelvis [m]. */
+interface Outlook {
+  readonly offset: Vector3;
+  readonly aim: Vector3;
+  readonly fov: number;
+}
+
+const start: Record<SceneName, Record<Exclude<ViewName, 'first-person'>, Outlook>> = {
+  studio: {
+    'third-person': { offset: new Vector3(1.95, 0.5, 2.95), aim: new Vector3(), fov: 42 },
+    front: { offset: new Vector3(-0.55, 0.25, -3.2), aim: new Vector3(), fov: 42 },
+  },
+  range: {
+    'third-person': { offset: new Vector3(-1.35, 0.95, 3.3), aim: new Vector3(0.15, -0.2, -2), fov: 46 },
+    front: { offset: new Vector3(1.6, 0.35, -2.7), aim: new Vector3(), fov: 46 },
+  },
 };
 const firstPersonFov = 78;
-/** How far above the pelvis the camera aims [m]. */
-const aimAbovePelvis = 0;
 
 /** Orbit by mouse, touch and arrow keys around the body, a front view, and the view through the body's own eyes. */
 export function createDesktopView(canvas: HTMLCanvasElement): DesktopView {
@@ -64,11 +82,13 @@ export function createDesktopView(canvas: HTMLCanvasElement): DesktopView {
   controls.maxPolarAngle = Math.PI / 2 + 0.12;
   const target = new Vector3(0, 1, 0);
   let view: ViewName = 'third-person';
+  let scene: SceneName = 'studio';
+  let orbit = true;
   let insets: Insets = { left: 0, right: 0, bottom: 0 };
 
   function place(): void {
     if (view === 'first-person') return;
-    const { offset: wide, fov } = start[view];
+    const { offset: wide, aim, fov } = start[scene][view];
     const free = Math.max(1, window.innerWidth - insets.left - insets.right) / window.innerHeight;
     // A narrow window shows the mirror only where it stands behind the body.
     const offset = wide.clone();
@@ -77,7 +97,7 @@ export function createDesktopView(canvas: HTMLCanvasElement): DesktopView {
     const distance = Math.max(1, Math.min(1.35, 1 / Math.max(free, 0.1)));
     camera.fov = fov;
     camera.up.set(0, 1, 0);
-    controls.target.copy(target);
+    controls.target.copy(target).add(aim);
     camera.position.copy(target).addScaledVector(offset, distance);
     controls.update();
   }
@@ -119,10 +139,19 @@ export function createDesktopView(canvas: HTMLCanvasElement): DesktopView {
     },
     setView(next) {
       view = next;
-      controls.enabled = view !== 'first-person';
+      controls.enabled = orbit && view !== 'first-person';
       if (view === 'first-person') camera.fov = firstPersonFov;
       place();
       project();
+    },
+    setScene(next) {
+      scene = next;
+      place();
+      project();
+    },
+    setOrbit(on) {
+      orbit = on;
+      controls.enabled = orbit && view !== 'first-person';
     },
     setInsets(next) {
       insets = next;
@@ -139,10 +168,10 @@ export function createDesktopView(canvas: HTMLCanvasElement): DesktopView {
       const part = 1 - 0.5 ** (elapsed / followHalfLife);
       const before = target.clone();
       target.x += (pelvis.x - target.x) * part;
-      target.y += (pelvis.y + aimAbovePelvis - target.y) * part;
+      target.y += (pelvis.y - target.y) * part;
       target.z += (pelvis.z - target.z) * part;
       camera.position.add(target).sub(before);
-      controls.target.copy(target);
+      controls.target.add(target).sub(before);
       controls.update();
     },
   };

@@ -3,6 +3,9 @@ import { LinearToneMapping, PCFShadowMap, SRGBColorSpace, WebGLRenderer } from '
 /** high: antialiasing, shadow map, device pixels. low: for software rendering; blob shadows, fewer pixels. */
 export type Quality = 'high' | 'low';
 
+/** How finely a texture seen at a glancing angle is sampled: each sample costs as much as a pixel where software draws. */
+export const anisotropyOf = (quality: Quality): number => (quality === 'high' ? 8 : 1);
+
 /** Whether this browser draws in software, where a headset's picture quality costs a second per frame. */
 function drawsInSoftware(context: WebGLRenderingContext | WebGL2RenderingContext): boolean {
   const debug = context.getExtension('WEBGL_debug_renderer_info');

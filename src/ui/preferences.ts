@@ -15,6 +15,10 @@ const schema = v.object({
   mirror: v.optional(v.boolean()),
   overlay: v.optional(v.boolean()),
   panel: v.optional(v.boolean()),
+  bowSide: v.optional(v.picklist(['left', 'right'])),
+  oneHanded: v.optional(v.boolean()),
+  everyHitCounts: v.optional(v.boolean()),
+  sound: v.optional(v.boolean()),
 });
 
 /** What the page remembers from one visit to the next, on this device only. */

@@ -2,6 +2,7 @@ import * as v from 'valibot';
 import { type EstimatorName, estimatorNames } from '../core/estimation/pose-estimator';
 import { type ViewName, viewNames } from '../scene/desktop-view';
 import type { Quality } from '../scene/renderer';
+import { type ActivityName, activityNames } from './play-bar';
 
 /** What the address asks for; null: nothing asked, the page decides. Listed in docs/page.md. */
 export interface Switches {
@@ -14,6 +15,12 @@ export interface Switches {
   readonly replay: string | null;
   readonly view: ViewName | null;
   readonly panel: boolean;
+  /** What the page opens with. */
+  readonly play: ActivityName;
+  /** Of the first round's layout; null: another one with each visit. */
+  readonly seed: number | null;
+  /** Of a round, until the bell [s]; null: as the game has it. */
+  readonly seconds: number | null;
 }
 
 const onOff = v.optional(v.picklist(['on', 'off']), 'on');
@@ -26,6 +33,9 @@ const schema = v.object({
   quality: v.optional(v.picklist(['high', 'low'])),
   replay: v.optional(v.pipe(v.string(), v.minLength(1))),
   view: v.optional(v.picklist(viewNames)),
+  play: v.optional(v.picklist(activityNames), 'studio'),
+  seconds: v.optional(v.pipe(v.string(), v.regex(/^\d{1,4}$/), v.transform(Number), v.minValue(1))),
+  seed: v.optional(v.pipe(v.string(), v.regex(/^\d{1,9}$/), v.transform(Number))),
 });
 
 /** Reads the query of the address. A value nobody knows counts as not given and yields a sentence. */
@@ -55,6 +65,9 @@ export function readSwitches(query: string): { readonly switches: Switches; read
       quality: output.quality ?? null,
       replay: output.replay ?? null,
       view: output.view ?? null,
+      play: output.play,
+      seed: output.seed ?? null,
+      seconds: output.seconds ?? null,
     },
   };
 }

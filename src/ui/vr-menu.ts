@@ -3,6 +3,7 @@ import type { EstimatorName } from '../core/estimation/pose-estimator';
 import { type CalibrationStep, calibrationHeadline, calibrationInstruction } from './calibration-dialog';
 import { estimatorOrder, estimatorTexts } from './estimator-texts';
 import { type FrameReport, milliseconds, missedFrames } from './overlay';
+import type { ActivityName } from './play-bar';
 import { createVrPanel, fillRounded, vrColors, vrFont } from './vr-panel';
 import type { Pointer } from './vr-pointers';
 
@@ -12,6 +13,9 @@ export interface VrMenuState {
   readonly unavailable: Partial<Readonly<Record<EstimatorName, string>>>;
   readonly calibration: CalibrationStep | null;
   readonly overlay: boolean;
+  readonly activity: ActivityName;
+  readonly bowSide: 'left' | 'right';
+  readonly roundOver: boolean;
   /** A sentence to be read in the headset; null: none. */
   readonly notice: string | null;
 }
@@ -22,6 +26,9 @@ export interface VrMenuActions {
   cancelCalibration(): void;
   recentre(): void;
   setOverlay(on: boolean): void;
+  goTo(activity: ActivityName): void;
+  setBowSide(side: 'left' | 'right'): void;
+  restart(): void;
   exit(): void;
 }
 
@@ -43,7 +50,7 @@ interface MenuButton {
 }
 
 const width = 640;
-const height = 880;
+const height = 1000;
 const margin = 36;
 /** A finger tip that comes from this far before the sheet [m] to behind it touches. */
 const touchDepth = 0.015;
@@ -107,11 +114,23 @@ export function createVrMenu(actions: VrMenuActions): VrMenu {
         act: () => actions.chooseEstimator(name),
       };
     });
-    const rest: readonly (readonly [string, string, () => void])[] = [
+    type Row = readonly [id: string, label: string, act: () => void];
+    const other = shown.bowSide === 'left' ? 'right' : 'left';
+    const play: readonly Row[] =
+      shown.activity === 'studio'
+        ? [['archery', 'Archery', () => actions.goTo('archery')]]
+        : [
+            ['studio', 'To the mirror', () => actions.goTo('studio')],
+            shown.roundOver
+              ? ['restart', 'New round', actions.restart]
+              : ['bow', `Bow: ${shown.bowSide} hand`, () => actions.setBowSide(other)],
+          ];
+    const rest: readonly Row[] = [
       ['calibrate', 'Calibrate', actions.calibrate],
       ['recentre', 'Recentre', actions.recentre],
       ['overlay', shown.overlay ? 'Hide frame times' : 'Frame times', () => actions.setOverlay(!shown.overlay)],
       ['exit', 'Exit VR', actions.exit],
+      ...play,
     ];
     return [
       ...choices,
@@ -167,7 +186,7 @@ export function createVrMenu(actions: VrMenuActions): VrMenu {
       context.fillStyle = vrColors.inkSoft;
       context.font = `400 22px ${vrFont}`;
       const lines = wrap(context, shown.notice, width - 2 * margin).slice(0, 3);
-      for (const [index, line] of lines.entries()) context.fillText(line, margin, 796 + index * 28);
+      for (const [index, line] of lines.entries()) context.fillText(line, margin, 908 + index * 28);
     }
   }
 

@@ -1,5 +1,6 @@
 import type { XRDevice } from 'iwer';
 import type { Side } from '../core/body/joints';
+import { allReleased, type Buttons } from '../core/games/archery/button-presses';
 import { composeTransforms, invertTransform, type Pose } from '../core/math/pose';
 import { fromAxes } from '../core/math/quat';
 import { vec3 } from '../core/math/vec3';
@@ -11,8 +12,8 @@ export interface Emulator {
   readonly device: XRDevice;
   /** Head and wrists as the emulator has them now, outside of any session. */
   read(time: number): TrackingFrame;
-  /** Puts headset and controllers where this frame's head and wrists are, to within 0.1 mm. */
-  drive(frame: TrackingFrame): void;
+  /** Puts headset and controllers where this frame's head and wrists are, to within 0.1 mm, and presses these buttons. */
+  drive(frame: TrackingFrame, buttons?: Buttons): void;
   /** Lets whoever steers the panel move headset and controllers again. */
   release(): void;
   /** Shows or hides the developer's panel; it is loaded when first shown. */
@@ -79,7 +80,7 @@ export async function installEmulator(): Promise<Emulator> {
       leftHand: readHand('left'),
       rightHand: readHand('right'),
     }),
-    drive(frame) {
+    drive(frame, buttons) {
       // Else the panel puts everything back where its mouse left it, in every frame.
       device.controlMode = 'programmatic';
       place(device, frame.head);
@@ -88,6 +89,9 @@ export async function installEmulator(): Promise<Emulator> {
         const controller = device.controllers[side];
         if (!controller) continue;
         controller.connected = wrist !== null;
+        const { trigger, grip: squeeze } = buttons?.[side] ?? allReleased;
+        controller.updateButtonValue('trigger', trigger);
+        controller.updateButtonValue('squeeze', squeeze);
         if (!wrist) continue;
         const grip = gripFromWrist<'floor'>(wrist, side, fit);
         place(

@@ -1,10 +1,29 @@
 import type { Side } from '../core/body/joints';
+import { allReleased, type HandButtons } from '../core/games/archery/button-presses';
+import { smoothstep } from '../core/math/damper';
 import type { Pose } from '../core/math/pose';
 import { conjugate, fromAxisAngle, rotate } from '../core/math/quat';
-import { scale, up } from '../core/math/vec3';
+import { distance, scale, up } from '../core/math/vec3';
 import { headingOf } from '../core/tracking/heading';
 import type { TrackedPose, TrackingFrame } from '../core/tracking/tracking-frame';
 import { handleFit, wristFromGrip } from './grip-offsets';
+
+/** Tips of thumb and index finger this near are a full pinch, this far are none [m]. */
+const closedPinch = 0.012;
+const openPinch = 0.05;
+
+/** WebXR's standard mapping: the first button is the trigger, the second the squeeze. */
+const pressed = (gamepad: Gamepad | undefined): HandButtons => ({
+  ...allReleased,
+  trigger: gamepad?.buttons[0]?.value ?? 0,
+  grip: gamepad?.buttons[1]?.value ?? 0,
+});
+
+const more = (a: HandButtons, b: HandButtons): HandButtons => ({
+  trigger: Math.max(a.trigger, b.trigger),
+  grip: Math.max(a.grip, b.grip),
+  pinch: Math.max(a.pinch, b.pinch),
+});
 
 /** How a side is tracked at the moment. */
 export type InputKind = 'controller' | 'hand' | 'none';
@@ -14,8 +33,8 @@ export interface Tracker {
   /** Head and wrists of this frame, floor frame; null while the head is not seen. Call it before any await of the frame. */
   read(frame: XRFrame, time: number): TrackingFrame | null;
   readonly kinds: Readonly<Record<Side, InputKind>>;
-  /** How far trigger or grip button are pressed, 0 to 1; pinching hands have none. */
-  readonly squeezed: Readonly<Record<Side, number>>;
+  /** How far the buttons of each side are pressed; a bare hand has a pinch and nothing else. */
+  readonly buttons: Readonly<Record<Side, HandButtons>>;
   /** Moves the floor's origin under the head, its −Z to where the head looks, as of the last frame read. */
   recentre(): void;
 }
@@ -32,7 +51,20 @@ export function createTracker(
   let space = floor;
   let lastHead: Pose<'floor'> | null = null;
   const kinds: Record<Side, InputKind> = { left: 'none', right: 'none' };
-  const squeezed: Record<Side, number> = { left: 0, right: 0 };
+  const buttons: Record<Side, HandButtons> = { left: allReleased, right: allReleased };
+
+  /** Thumb against index finger; the gamepad of a hand would only say so once it is over. */
+  function pinched(frame: XRFrame, hand: XRHand): HandButtons {
+    const tip = (name: 'thumb-tip' | 'index-finger-tip') => {
+      const joint = hand.get(name);
+      return joint && frame.getJointPose?.(joint, space)?.transform.position;
+    };
+    const thumb = tip('thumb-tip');
+    const index = tip('index-finger-tip');
+    if (!thumb || !index) return allReleased;
+    const gap = distance(thumb, index);
+    return { ...allReleased, pinch: Number.isFinite(gap) ? 1 - smoothstep(closedPinch, openPinch, gap) : 0 };
+  }
 
   function readHand(frame: XRFrame, source: XRInputSource, side: Side): TrackedPose | null {
     const wrist = source.hand?.get('wrist');
@@ -51,13 +83,13 @@ export function createTracker(
 
   return {
     kinds,
-    squeezed,
+    buttons,
     read(frame, time) {
       const viewer = frame.getViewerPose(space);
       const hands: Record<Side, TrackedPose | null> = { left: null, right: null };
       for (const side of ['left', 'right'] as const) {
         kinds[side] = 'none';
-        squeezed[side] = 0;
+        buttons[side] = allReleased;
       }
       for (const source of session.inputSources) {
         const side = source.handedness;
@@ -65,8 +97,7 @@ export function createTracker(
         const pose = readHand(frame, source, side);
         // A device may list a controller that lies on the table beside the hand that left it: what is seen wins.
         if (pose && (hands[side] === null || pose.tracking === 'tracked')) hands[side] = pose;
-        const buttons = source.gamepad?.buttons;
-        if (buttons) squeezed[side] = Math.max(squeezed[side], buttons[0]?.value ?? 0, buttons[1]?.value ?? 0);
+        buttons[side] = more(buttons[side], source.hand ? pinched(frame, source.hand) : pressed(source.gamepad));
       }
       const head = viewer && toTrackedPose(viewer);
       if (!head) return null;

@@ -69,13 +69,15 @@ export interface ArcheryState {
   readonly targets: readonly Target[];
   /** Arrows shot, in order. */
   readonly arrows: readonly Arrow[];
-  /** Whether the archer's head is above the zone. */
+  /** Where the archer's head was last, arena frame; before the first word of it: over the origin. */
+  readonly head: Vec3;
+  /** Whether the archer's head is above the zone. Coming back counts a little inside its edge, so that the edge does not flicker. */
   readonly inZone: boolean;
 }
 
 export type ArcheryAction =
   | { readonly type: 'start' }
-  /** Where the archer's head is; ignored unless finite. */
+  /** Where the archer's head is; ignored unless finite and within 50 m. */
   | { readonly type: 'stand'; readonly head: Vec3 }
   | {
       readonly type: 'release';

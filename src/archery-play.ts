@@ -1,0 +1,164 @@
+import type { Calibration } from './core/body/calibration';
+import type { Side } from './core/body/joints';
+import { chestSpaceBody } from './core/body/skeleton';
+import { aimPoint } from './core/games/archery/aim-point';
+import { type Archer, createArcher } from './core/games/archery/archer-motion';
+import type { ArcheryAction, ArcheryEvent, ArcheryState, BowView } from './core/games/archery/archery-state';
+import type { Buttons } from './core/games/archery/button-presses';
+import {
+  type BowCue,
+  createArcheryGestures,
+  defaultArcheryGestureSettings,
+  type HapticPulse,
+} from './core/games/archery/gestures';
+import { archeryRules, delayed, matchTime, secondsLeft } from './core/games/archery/rules';
+import { createSteeredArcher, type SteeredArcher } from './core/games/archery/steered-archer';
+import { createMatch, type Match } from './core/games/match';
+import type { Vec3 } from './core/math/vec3';
+import type { TrackingFrame } from './core/tracking/tracking-frame';
+
+/** What whoever plays may choose; asked for in every frame. */
+export interface ArcherySettings {
+  readonly bowSide: Side;
+  readonly oneHanded: boolean;
+  readonly everyHitCounts: boolean;
+  /** Until the bell; absent: as the game has it. */
+  readonly seconds?: number;
+}
+
+/** What one frame of play brought: to be seen, heard and felt. */
+export interface ArcheryFrame {
+  readonly state: ArcheryState;
+  /** Seconds of the match at this frame. */
+  readonly time: number;
+  readonly bow: BowView | null;
+  readonly events: readonly ArcheryEvent[];
+  readonly cues: readonly BowCue[];
+  readonly haptics: readonly HapticPulse[];
+}
+
+/** Head, hands and buttons of somebody who plays. */
+export interface Performance {
+  readonly frame: TrackingFrame;
+  readonly buttons: Buttons;
+}
+
+interface Ray {
+  readonly origin: Vec3;
+  readonly direction: Vec3;
+}
+
+/** A round and who plays it, apart from everything that is seen of it. */
+export interface ArcheryPlay {
+  /** Where they stand in this round. */
+  readonly targets: ArcheryState['targets'];
+  /** The newest frame; null before the first. */
+  readonly newest: ArcheryFrame | null;
+  /** The tracked frame and its buttons become play. */
+  follow(frame: TrackingFrame, buttons: Buttons): ArcheryFrame;
+  /** Head, hands and buttons of the built-in archer at `time` [s]. */
+  act(time: number): Performance;
+  /** The same of an archer who aims along a ray (arena frame; unit direction) as somebody at a desk tells it. */
+  steer(time: number, ray: Ray, wish: { readonly pressed: boolean; readonly cancelled: boolean }): Performance;
+  /** Another round, for somebody with these measures. */
+  restart(calibration: Calibration): void;
+}
+
+/** What tools may know of a round. */
+export interface ArcheryProbe {
+  readonly name: 'archery';
+  readonly phase: ArcheryState['phase'];
+  readonly end: ArcheryState['end'];
+  readonly score: number;
+  readonly arrowsLeft: number;
+  readonly secondsLeft: number;
+  readonly inZone: boolean;
+  readonly bowSide: Side | null;
+  readonly stage: BowView['stage'] | null;
+  readonly draw: number;
+  readonly hits: readonly (number | null)[];
+}
+
+export function probeOf({ state, bow }: ArcheryFrame): ArcheryProbe {
+  return {
+    name: 'archery',
+    phase: state.phase,
+    end: state.end,
+    score: state.score,
+    arrowsLeft: state.arrowsLeft,
+    secondsLeft: secondsLeft(state),
+    inZone: state.inZone,
+    bowSide: bow?.bowSide ?? null,
+    stage: bow?.stage ?? null,
+    draw: bow?.draw ?? 0,
+    hits: state.arrows.map(({ landing }) => landing?.target ?? null),
+  };
+}
+
+/** The round in the numbers of a scoreboard. */
+export function roundOf({ state }: ArcheryFrame) {
+  return {
+    score: state.score,
+    of: state.targets.reduce((sum, { points }) => sum + points, 0),
+    arrowsLeft: state.arrowsLeft,
+    secondsLeft: secondsLeft(state),
+    over: state.phase === 'over',
+  };
+}
+
+/** `seed` gives each round its own layout. */
+export function createArcheryPlay(
+  calibration: Calibration,
+  settings: () => ArcherySettings,
+  seed: () => number,
+): ArcheryPlay {
+  let match: Match<ArcheryState, ArcheryAction, ArcheryEvent>;
+  let archer: Archer;
+  let steered: SteeredArcher;
+  let newest: ArcheryFrame | null = null;
+  const gestures = createArcheryGestures(() => ({
+    ...defaultArcheryGestureSettings,
+    bowSide: settings().bowSide,
+    oneHanded: settings().oneHanded,
+    armed: match.state.phase !== 'over' && match.state.arrowsLeft > 0,
+  }));
+
+  function restart(person: Calibration): void {
+    const { bowSide, everyHitCounts, seconds } = settings();
+    const { eyeHeight } = person;
+    match = createMatch(
+      archeryRules,
+      archeryRules.start(['archer'], seed(), { eyeHeight, everyHitCounts, ...(seconds && { seconds }) }),
+      {
+        delayed,
+      },
+    );
+    const body = { bowSide, eyeHeight, armLength: chestSpaceBody(person).arm };
+    archer = createArcher(body);
+    steered = createSteeredArcher(body);
+    newest = null;
+  }
+  restart(calibration);
+
+  return {
+    get targets() {
+      return match.state.targets;
+    },
+    get newest() {
+      return newest;
+    },
+    follow(frame, buttons) {
+      const { bow, actions, cues, haptics } = gestures.follow(frame, buttons);
+      const events = match.advance(frame.time, actions);
+      const { state } = match;
+      newest = { state, time: Math.max(0, matchTime(state) + match.lead), bow, events, cues, haptics };
+      return newest;
+    },
+    act: (time) => archer.follow(time, match.state),
+    steer(time, { origin, direction }, wish) {
+      const target = aimPoint(origin, direction, match.state.targets);
+      return steered.follow(time, { target, ...wish });
+    },
+    restart,
+  };
+}

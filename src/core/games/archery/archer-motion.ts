@@ -1,0 +1,108 @@
+import { clamp } from '../../math/damper';
+import { addScaled, subtract } from '../../math/vec3';
+import type { TrackingFrame } from '../../tracking/tracking-frame';
+import { type ArcherBody, createArcherPostures, minimumJerk, mix, type Posture, yawOf } from './archer-postures';
+import type { ArcheryState, Target } from './archery-state';
+import type { Buttons } from './button-presses';
+
+/** A movement from one posture to another, at rest at both ends, then a pause; the button's pressure goes along. */
+interface Movement {
+  readonly to: Posture;
+  readonly seconds: number;
+  readonly pressure: number;
+  /** How far the string hand swings outward on its way [m]. */
+  readonly arc?: number;
+  /** false: the next movement waits until no arrow flies. */
+  readonly waits?: boolean;
+}
+
+/** An archer who needs nobody: hands and buttons for a whole round. */
+export interface Archer {
+  /** Head, hands (floor frame) and buttons at `time` [s, never falling], seeing the match as it stands then. */
+  follow(time: number, state: ArcheryState): { readonly frame: TrackingFrame; readonly buttons: Buttons };
+}
+
+/** Stands at the zone's middle, shoots at every target that has not scored, nearest first, then rests. Deterministic. */
+export function createArcher(body: ArcherBody): Archer {
+  const { eyes, resting, ready, drawn, followedThrough, seen } = createArcherPostures(body);
+
+  /** Nearest first; with nothing left to score that counts once, the one worth most. */
+  function chosen(state: ArcheryState): Target | null {
+    if (state.phase === 'over' || state.arrowsLeft === 0) return null;
+    const scored = (index: number) => state.arrows.some(({ landing }) => landing?.target === index);
+    const open = state.targets.filter((_, index) => !scored(index)).sort((a, b) => a.distance - b.distance);
+    const best = [...state.targets].sort((a, b) => b.points - a.points);
+    return open[0] ?? (state.options.everyHitCounts ? (best[0] ?? null) : null);
+  }
+
+  /** A whole shot: take an arrow, nock, raise and begin to draw, draw, aim, let go, follow through. */
+  function shotAt(target: Target): Movement[] {
+    const yaw = yawOf(subtract(target.centre, eyes));
+    const full = drawn(target.centre);
+    const taking = ready(yaw);
+    const nocking: Posture = { ...taking, onString: 1 };
+    const raised: Posture = {
+      ...full,
+      hold: {
+        ...full.hold,
+        arrowRest: addScaled(full.hold.arrowRest, full.hold.direction, -0.3 * full.hold.draw),
+        draw: 0.12 * full.hold.draw,
+      },
+      trunkYaw: (taking.trunkYaw + full.trunkYaw) / 2,
+    };
+    const after = followedThrough(full);
+    return [
+      { to: taking, seconds: 0.75, pressure: 0, arc: 0.04 },
+      { to: nocking, seconds: 0.7, pressure: 0, arc: 0.1 },
+      { to: nocking, seconds: 0.2, pressure: 1 },
+      { to: raised, seconds: 0.7, pressure: 1 },
+      { to: full, seconds: 0.75, pressure: 1 },
+      { to: full, seconds: 0.75, pressure: 1 },
+      { to: full, seconds: 0.08, pressure: 0 },
+      { to: after, seconds: 0.22, pressure: 0 },
+      { to: after, seconds: 0.35, pressure: 0, waits: true },
+    ];
+  }
+
+  let from: Posture = resting(0);
+  let fromPressure = 0;
+  let began = 0;
+  let plan: Movement[] = [];
+  /** On the way to rest, or there. */
+  let idle = true;
+
+  /** Ends the movements that are over by `time` and plans the next. */
+  function proceed(time: number, state: ArcheryState): void {
+    for (;;) {
+      const current = plan[0];
+      if (!current) {
+        const target = chosen(state);
+        if (!target && idle) return;
+        if (idle) began = time;
+        idle = target === null;
+        plan = target ? shotAt(target) : [{ to: resting(0), seconds: 1.2, pressure: 0, arc: 0.04 }];
+        continue;
+      }
+      if (time - began < current.seconds) return;
+      if (current.waits && state.arrows.some(({ landing }) => landing === null)) return;
+      from = current.to;
+      fromPressure = current.pressure;
+      // A wait ends when it is seen to end; everything else exactly on time, at any frame rate.
+      began = current.waits ? time : began + current.seconds;
+      plan = plan.slice(1);
+    }
+  }
+
+  return {
+    follow(time, state) {
+      proceed(time, state);
+      const current = plan[0];
+      const share = current ? minimumJerk(clamp((time - began) / current.seconds, 0, 1)) : 0;
+      const now = current ? mix(from, current.to, share) : from;
+      const pressure = current ? fromPressure + (current.pressure - fromPressure) * share : fromPressure;
+
+      const swing = (current?.arc ?? 0) * Math.sin(Math.PI * share) ** 2;
+      return seen(now, time, pressure, swing);
+    },
+  };
+}

@@ -1,0 +1,287 @@
+import { clamp } from '../../math/damper';
+import { nextRandom, type RandomState } from '../../math/random';
+import {
+  addScaled,
+  distance,
+  isFiniteVec3,
+  length,
+  normalise,
+  scale,
+  subtract,
+  type Vec3,
+  vec3,
+} from '../../math/vec3';
+import type { GameRules } from '../game-rules';
+import type {
+  ArcheryAction,
+  ArcheryEvent,
+  ArcheryOptions,
+  ArcheryState,
+  Arrow,
+  Landing,
+  RoundEnd,
+  Target,
+} from './archery-state';
+import { arrowLength, arrowSpeed, maximumDraw, minimumDraw } from './bow';
+import { firstHit, positionAt, velocityAt, type Wall } from './flight';
+
+/** Where the archer stands: a rectangle on the floor about the origin [m]. */
+export const zone = { width: 1.1, depth: 1 } as const;
+
+/** The head is back above the zone when it is this far inside the edge [m]. */
+const zoneMargin = 0.02;
+
+/** The nets round the range, 5 m high. What flies over them comes down outside. */
+export const walls: readonly Wall[] = [
+  { axis: 'z', at: -14, inward: 1, height: 5 },
+  { axis: 'z', at: 4, inward: -1, height: 5 },
+  { axis: 'x', at: -6, inward: 1, height: 5 },
+  { axis: 'x', at: 6, inward: -1, height: 5 },
+];
+
+/** Of every target [m]. */
+export const targetRadius = 0.45;
+
+const radians = (degrees: number): number => (degrees * Math.PI) / 180;
+
+/**
+ * What the range is built of. Bearing: from −Z to the right, as seen from the origin. Elevation: of the centre, as seen by eyes
+ * above the origin. The bearings keep every target in sight of every place in the zone.
+ */
+const layout = [
+  { distance: 4.5, points: 5, bearing: radians(-25), elevation: radians(-4.5) },
+  { distance: 6.5, points: 10, bearing: radians(18), elevation: radians(-2.5) },
+  { distance: 8.5, points: 15, bearing: radians(-8), elevation: radians(-1.2) },
+  { distance: 10.5, points: 20, bearing: radians(5), elevation: radians(-0.3) },
+] as const;
+
+/** A match's bearings differ from the layout's by this much at most [rad], and left and right may change places. */
+const bearingSpread = radians(1.5);
+
+/** No disc hangs lower than this above the ground [m], however low the eyes. */
+const groundClearance = 0.1;
+
+/** A nock is in the archer's hand: at most this far from the head [m]. */
+export const reach = 1.2;
+
+/** Further from the origin than this there are no heads [m]. */
+const farthestHead = 50;
+
+/** Seconds between two releases at least. */
+export const releaseInterval = 0.5;
+
+/** The paper's game: five arrows, 70 s, every target once. */
+export const defaultArcheryOptions: ArcheryOptions = {
+  arrows: 5,
+  seconds: 70,
+  everyHitCounts: false,
+  eyeHeight: 1.6,
+};
+
+/** Eyes lower or higher than these are no archer's [m]; the targets are placed for the nearer of them. */
+export const eyeHeightLimits = { min: 0.6, max: 2.4 } as const;
+
+function placeTargets(eyeHeight: number, random: RandomState): { targets: Target[]; random: RandomState } {
+  let state = random;
+  const chance = (): number => {
+    const { value, state: after } = nextRandom(state);
+    state = after;
+    return value;
+  };
+  const mirrored = chance() < 0.5 ? -1 : 1;
+  const eyes = vec3(0, eyeHeight, 0);
+  const targets = layout.map((place): Target => {
+    const bearing = mirrored * place.bearing + (2 * chance() - 1) * bearingSpread;
+    const centre = vec3(
+      place.distance * Math.sin(bearing),
+      Math.max(eyeHeight + place.distance * Math.tan(place.elevation), targetRadius + groundClearance),
+      -place.distance * Math.cos(bearing),
+    );
+    return {
+      centre,
+      normal: normalise(subtract(eyes, centre)),
+      radius: targetRadius,
+      distance: place.distance,
+      points: place.points,
+    };
+  });
+  return { targets, random: state };
+}
+
+function checkedOptions(options: Partial<ArcheryOptions>): ArcheryOptions {
+  const { arrows, seconds, everyHitCounts, eyeHeight } = { ...defaultArcheryOptions, ...options };
+  if (!(Number.isInteger(arrows) && arrows > 0)) throw new Error(`archery: arrows must be 1 or more, is ${arrows}`);
+  if (!(seconds > 0 && Number.isFinite(seconds))) throw new Error(`archery: seconds must be above 0, is ${seconds}`);
+  if (!Number.isFinite(eyeHeight)) throw new Error(`archery: eyeHeight must be a height in metres, is ${eyeHeight}`);
+  return { arrows, seconds, everyHitCounts, eyeHeight: clamp(eyeHeight, eyeHeightLimits.min, eyeHeightLimits.max) };
+}
+
+const tickSeconds = 1 / 90;
+
+/** Seconds of the match that have passed. */
+export const matchTime = (state: ArcheryState): number => state.tick * tickSeconds;
+
+/** Seconds until the bell; 0 when it has rung. */
+export const secondsLeft = (state: ArcheryState): number => Math.max(0, state.options.seconds - matchTime(state));
+
+const isAbove = ({ x, z }: Vec3, margin: number): boolean =>
+  Math.abs(x) <= zone.width / 2 - margin && Math.abs(z) <= zone.depth / 2 - margin;
+
+/** The action, `delay` [s] into its tick; only releases care. */
+export const delayed = (action: ArcheryAction, delay: number): ArcheryAction =>
+  action.type === 'release' ? { ...action, delay } : action;
+
+type Step = { readonly state: ArcheryState; readonly events: readonly ArcheryEvent[] };
+
+const nothing = (state: ArcheryState): Step => ({ state, events: [] });
+
+function begin(state: ArcheryState): Step {
+  if (state.phase !== 'ready') return nothing(state);
+  return { state: { ...state, phase: 'running' }, events: [{ type: 'started' }] };
+}
+
+function stand(state: ArcheryState, head: Vec3): Step {
+  if (!(isFiniteVec3(head) && length(head) <= farthestHead)) return nothing(state);
+  const inZone = isAbove(head, state.inZone ? 0 : zoneMargin);
+  return {
+    state: { ...state, head, inZone },
+    events: inZone === state.inZone ? [] : [{ type: inZone ? 'entered-zone' : 'left-zone' }],
+  };
+}
+
+/** Shoots, and starts a match that was ready; whatever no archer can have done changes nothing. */
+function release(state: ArcheryState, action: Extract<ArcheryAction, { type: 'release' }>): Step {
+  const { position, direction, draw, delay } = action;
+  const possible =
+    isFiniteVec3(position) &&
+    isFiniteVec3(direction) &&
+    Math.abs(length(direction) - 1) < 1e-3 &&
+    Number.isFinite(draw) &&
+    draw >= minimumDraw &&
+    delay >= 0 &&
+    delay < tickSeconds;
+  if (!possible || state.phase === 'over' || state.arrowsLeft === 0) return nothing(state);
+  const along = normalise(direction);
+  if (!(distance(addScaled(position, along, -arrowLength), state.head) <= reach)) return nothing(state);
+  const time = matchTime(state) + delay;
+  const last = state.arrows.at(-1);
+  if (time >= state.options.seconds || (last && time - last.release.time < releaseInterval)) return nothing(state);
+
+  const begun = begin(state);
+  const arrow: Arrow = {
+    id: state.arrows.length,
+    release: { time, position, velocity: scale(along, arrowSpeed(Math.min(draw, maximumDraw))) },
+    landing: null,
+  };
+  return {
+    state: { ...begun.state, arrowsLeft: state.arrowsLeft - 1, arrows: [...state.arrows, arrow] },
+    events: [...begun.events, { type: 'released', arrow }],
+  };
+}
+
+function act(state: ArcheryState, action: ArcheryAction): Step {
+  switch (action.type) {
+    case 'start':
+      return begin(state);
+    case 'stand':
+      return stand(state, action.head);
+    case 'release':
+      return release(state, action);
+    default:
+      return nothing(state);
+  }
+}
+
+const hasScored = (state: ArcheryState, target: number): boolean =>
+  state.arrows.some(({ landing }) => landing?.target === target);
+
+/** The arrows that come down before `time` [s], in the order in which they do. */
+function land(state: ArcheryState, time: number): Step {
+  const due = state.arrows
+    .filter(({ landing }) => landing === null)
+    .map((arrow) => {
+      const hit = firstHit(arrow.release, state.targets, walls);
+      return { arrow, hit, time: arrow.release.time + hit.after };
+    })
+    .filter((flight) => flight.time < time)
+    .sort((a, b) => a.time - b.time);
+
+  let next = state;
+  const events: ArcheryEvent[] = [];
+  for (const { arrow, hit, time: landed } of due) {
+    const target = hit.target === null ? undefined : next.targets[hit.target];
+    const counts = target && (state.options.everyHitCounts || !hasScored(next, hit.target ?? -1));
+    const landing: Landing = {
+      time: landed,
+      position: positionAt(arrow.release, hit.after),
+      direction: normalise(velocityAt(arrow.release, hit.after)),
+      on: hit.on,
+      target: hit.target,
+      points: counts ? target.points : 0,
+    };
+    const stuck: Arrow = { ...arrow, landing };
+    next = {
+      ...next,
+      score: next.score + landing.points,
+      arrows: next.arrows.map((other) => (other.id === arrow.id ? stuck : other)),
+    };
+    events.push({ type: 'landed', arrow: stuck, landing });
+  }
+  return { state: next, events };
+}
+
+/** Why the round is over; null: it goes on. While an arrow flies it does. */
+function roundEnd(state: ArcheryState, time: number): RoundEnd | null {
+  if (state.arrows.some(({ landing }) => landing === null)) return null;
+  if (!state.options.everyHitCounts && state.targets.every((_, index) => hasScored(state, index))) return 'targets';
+  if (state.arrowsLeft === 0) return 'arrows';
+  return time >= state.options.seconds ? 'time' : null;
+}
+
+/**
+ * One archer's round (docs/archery.md): four targets, a few arrows, a bell. Tick 1/90 s, arena frame. The first release or
+ * `start` starts the clock. With `everyHitCounts` the round does not end before arrows or time do.
+ */
+export const archeryRules: GameRules<ArcheryState, ArcheryAction, ArcheryEvent, ArcheryOptions> = {
+  tickSeconds,
+
+  start(_players, seed, options = {}) {
+    const checked = checkedOptions(options);
+    const { targets, random } = placeTargets(checked.eyeHeight, { seed });
+    return {
+      options: checked,
+      random,
+      tick: 0,
+      phase: 'ready',
+      end: null,
+      score: 0,
+      arrowsLeft: checked.arrows,
+      targets,
+      arrows: [],
+      head: vec3(0, checked.eyeHeight, 0),
+      inZone: true,
+    };
+  },
+
+  step(state, actions) {
+    let next = state;
+    const events: ArcheryEvent[] = [];
+    for (const action of actions) {
+      const done = act(next, action);
+      next = done.state;
+      events.push(...done.events);
+    }
+    if (next.phase !== 'running') return { state: next, events };
+
+    const time = (next.tick + 1) * tickSeconds;
+    const landed = land(next, time);
+    next = { ...landed.state, tick: next.tick + 1 };
+    events.push(...landed.events);
+    const end = roundEnd(next, time);
+    if (end) {
+      next = { ...next, phase: 'over', end };
+      events.push({ type: 'ended', end, score: next.score });
+    }
+    return { state: next, events };
+  },
+};

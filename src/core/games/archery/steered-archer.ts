@@ -1,0 +1,104 @@
+import { clamp, dampVec3 } from '../../math/damper';
+import { subtract, type Vec3 } from '../../math/vec3';
+import type { TrackingFrame } from '../../tracking/tracking-frame';
+import { type ArcherBody, createArcherPostures, minimumJerk, mix, type Posture, yawOf } from './archer-postures';
+import type { Buttons } from './button-presses';
+
+/** What somebody at a desk wants of an archer. */
+export interface Steering {
+  /** The point of the arena to hit. */
+  readonly target: Vec3;
+  /** true: nock and draw; let go to shoot. */
+  readonly pressed: boolean;
+  /** true: put the arrow back. */
+  readonly cancelled: boolean;
+}
+
+/** An archer who aims and draws as told: a mouse in the place of two hands. */
+export interface SteeredArcher {
+  /** Head, hands (floor frame) and buttons at `time` [s, never falling]. */
+  follow(time: number, steering: Steering): { readonly frame: TrackingFrame; readonly buttons: Buttons };
+}
+
+/** Half-life [s] of the aim: a mouse jumps, arms do not. */
+const aimHalfLife = 0.06;
+const nockSeconds = 0.4;
+const grabSeconds = 0.12;
+const drawSeconds = 0.9;
+const looseSeconds = 0.1;
+const followSeconds = 0.25;
+const returnSeconds = 0.45;
+
+type Phase = 'ready' | 'nocking' | 'grabbing' | 'drawing' | 'loosing' | 'following' | 'returning' | 'lowering';
+
+/** Stands at the zone's middle; every posture is that of the built-in archer, so the gestures see no difference. */
+export function createSteeredArcher(body: ArcherBody): SteeredArcher {
+  const { eyes, ready, drawn, followedThrough, seen } = createArcherPostures(body);
+  let phase: Phase = 'ready';
+  let began = 0;
+  let last: number | null = null;
+  let aim: Vec3 | null = null;
+  /** How much of the draw there was when the string went, or the arrow began to be put back. */
+  let share = 0;
+  /** What the hands return from. */
+  let left: Posture | null = null;
+
+  function enter(next: Phase, time: number): void {
+    phase = next;
+    began = time;
+  }
+
+  return {
+    follow(time, { target, pressed, cancelled }) {
+      aim = aim === null || last === null ? target : dampVec3(aim, target, aimHalfLife, time - last);
+      last = time;
+      const taking = ready(yawOf(subtract(aim, eyes)));
+      const nocking: Posture = { ...taking, onString: 1 };
+      const full = drawn(aim);
+      const done = (seconds: number): number => minimumJerk(clamp((time - began) / seconds, 0, 1));
+      const over = (seconds: number): boolean => time - began >= seconds;
+
+      if (phase === 'ready' && pressed) enter('nocking', time);
+      else if (phase === 'nocking' && !pressed) {
+        left = mix(taking, nocking, done(nockSeconds));
+        enter('returning', time);
+      } else if (phase === 'nocking' && over(nockSeconds)) enter('grabbing', time);
+      else if (phase === 'grabbing' && over(grabSeconds)) {
+        share = 0;
+        enter('drawing', time);
+      } else if (phase === 'drawing') {
+        share = done(drawSeconds);
+        if (cancelled) enter('lowering', time);
+        else if (!pressed) enter('loosing', time);
+      } else if (phase === 'lowering' && over(returnSeconds)) {
+        left = nocking;
+        enter('returning', time);
+      } else if (phase === 'loosing' && over(looseSeconds)) enter('following', time);
+      else if (phase === 'following' && over(followSeconds)) {
+        left = followedThrough(mix(nocking, full, share));
+        enter('returning', time);
+        // A new shot begins with a new press.
+      } else if (phase === 'returning' && over(returnSeconds) && !pressed) enter('ready', time);
+
+      const bent = mix(nocking, full, share);
+      switch (phase) {
+        case 'nocking':
+          return seen(mix(taking, nocking, done(nockSeconds)), time, 0, 0);
+        case 'grabbing':
+          return seen(nocking, time, done(grabSeconds), 0);
+        case 'drawing':
+          return seen(bent, time, 1, 0);
+        case 'lowering':
+          return seen(mix(nocking, full, share * (1 - done(returnSeconds))), time, 1, 0);
+        case 'loosing':
+          return seen(bent, time, 1 - done(looseSeconds), 0);
+        case 'following':
+          return seen(mix(bent, followedThrough(bent), done(followSeconds)), time, 0, 0);
+        case 'returning':
+          return seen(mix(left ?? taking, taking, done(returnSeconds)), time, 0, 0);
+        default:
+          return seen(taking, time, 0, 0);
+      }
+    },
+  };
+}

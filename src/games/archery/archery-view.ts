@@ -1,0 +1,91 @@
+import type { Group } from 'three';
+import type { ArcheryEvent, ArcheryState, BowView } from '../../core/games/archery/archery-state';
+import { arrowLength, braceHeight } from '../../core/games/archery/bow';
+import type { BowCue } from '../../core/games/archery/gestures';
+import { invertTransform, type Pose, type Transform, transformPoint } from '../../core/math/pose';
+import { rotate } from '../../core/math/quat';
+import { addScaled } from '../../core/math/vec3';
+import type { Quality } from '../../scene/renderer';
+import { createArrows } from './arrows';
+import { createBow } from './bow';
+import { createRange, type Range } from './range';
+import { createResultPanel, type ResultPanel } from './result-panel';
+import { createScorePops } from './score-pops';
+import { createScoreboard } from './scoreboard';
+import { createSounds, type Sounds } from './sounds';
+import { createTargetStands } from './target-stands';
+import { createTrails } from './trails';
+
+/** Everything that is seen of archery. */
+export interface ArcheryView {
+  /** The place to give to the arena; holds all of the view but the bow and what is nocked on it. */
+  readonly range: Range;
+  /** The bow; in the floor frame, to be added to the scene beside the avatar. */
+  readonly bow: Group;
+  readonly result: Pick<ResultPanel, 'restartAt' | 'setHovered'>;
+  /** Draws a state at a time of the match [s]; the bow and head as tracked now, floor frame. */
+  show(state: ArcheryState, bow: BowView | null, matchTime: number, head: Pose<'floor'>): void;
+  /** Plays and captions what happened since the last frame; cues of the bow are in the floor frame. */
+  hear(events: readonly ArcheryEvent[], cues: readonly BowCue[]): void;
+  readonly sound: Pick<Sounds, 'unlock' | 'setVolume' | 'setMuted'>;
+  dispose(): void;
+}
+
+export interface ArcheryViewOptions {
+  readonly quality: Quality;
+  /** Puts the range into the room; must be level. */
+  readonly floorFromArena: Transform<'floor', 'arena'>;
+  /** Of the targets along the floor [m], for the signs. */
+  readonly distances: readonly number[];
+  /** Every sound in words, with its direction. */
+  readonly onCaption: (text: string) => void;
+}
+
+export function createArcheryView({ quality, floorFromArena, distances, onCaption }: ArcheryViewOptions): ArcheryView {
+  const arenaFromFloor = invertTransform(floorFromArena);
+  const range = createRange(quality, floorFromArena, distances);
+  const stands = createTargetStands(quality);
+  const arrows = createArrows(arrowLength);
+  const trails = createTrails(arrowLength);
+  const scoreboard = createScoreboard(quality);
+  const pops = createScorePops(quality);
+  const result = createResultPanel(quality);
+  const sounds = createSounds({ floorFromArena, onCaption });
+  let shown: ArcheryState | null = null;
+  const bow = createBow(quality, braceHeight);
+  range.object.add(stands.object, arrows.object, trails.object, scoreboard.object, pops.object, result.object);
+  return {
+    range,
+    bow: bow.object,
+    result,
+    sound: sounds,
+    show(state, bowView, matchTime, head) {
+      shown = state;
+      sounds.listen(head);
+      const nocked = bowView?.arrow;
+      const direction = nocked && rotate(arenaFromFloor.orientation, nocked.direction);
+      const nock = nocked && transformPoint(arenaFromFloor, nocked.nock);
+      const eyes = transformPoint(arenaFromFloor, head.position);
+      stands.show(state, matchTime);
+      const shot = state.arrows.filter(({ release }) => release.time <= matchTime);
+      arrows.show(
+        shot,
+        matchTime,
+        nock && direction ? { tip: addScaled(nock, direction, arrowLength), direction } : null,
+      );
+      trails.show(shot, matchTime, eyes);
+      pops.show(state, matchTime, eyes);
+      scoreboard.show(state, matchTime);
+      result.show(state);
+      bow.show(bowView);
+      range.setZoneWarning(!state.inZone);
+      range.animate(matchTime);
+    },
+    hear(events, cues) {
+      if (shown) sounds.hear(shown, events, cues);
+    },
+    dispose() {
+      for (const part of [sounds, stands, arrows, trails, scoreboard, pops, result, bow, range]) part.dispose();
+    },
+  };
+}

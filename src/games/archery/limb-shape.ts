@@ -1,0 +1,90 @@
+import { distance, type Vec3, vec3 } from '../../core/math/vec3';
+
+/**
+ * The shape of a recurve bow in its own frame: grip at the origin, +Y along the upper limb, −Z to the target, so that the string
+ * runs on the side of +Z. A limb lies in the plane x = 0: a point of its centre line and its direction there.
+ */
+export interface LimbPoint {
+  readonly y: number;
+  readonly z: number;
+  /** Angle of the centre line from +Y towards +Z [rad]. */
+  readonly angle: number;
+}
+
+/** Where the limbs leave the riser: y [m] above and below the grip. */
+export const limbRoot = 0.23;
+export const limbLength = 0.53;
+/** Points along a limb, root and tip included. */
+export const limbPoints = 17;
+
+const smooth = (from: number, to: number, value: number): number => {
+  const t = Math.max(0, Math.min(1, (value - from) / (to - from)));
+  return t * t * (3 - 2 * t);
+};
+
+/** The centre line of the upper limb; `bend` [rad] is how much its tip has turned towards the archer. The lower limb is its mirror image. */
+export function limbLine(bend: number): readonly LimbPoint[] {
+  const points: LimbPoint[] = [];
+  let y = limbRoot;
+  let z = 0;
+  const step = limbLength / (limbPoints - 1);
+  for (let i = 0; i < limbPoints; i++) {
+    const along = i / (limbPoints - 1);
+    // Unbent the limb leans back and curls away again at its end; it bends most near its root.
+    const angle = 0.08 + 0.5 * along - 1.05 * smooth(0.5, 1, along) + bend * along * (1.55 - 0.55 * along);
+    points.push({ y, z, angle });
+    y += Math.cos(angle) * step;
+    z += Math.sin(angle) * step;
+  }
+  return points;
+}
+
+/** Where the string is tied to the upper limb. */
+const tipOf = (bend: number): Vec3 => {
+  const tip = limbLine(bend)[limbPoints - 1] as LimbPoint;
+  return vec3(0, tip.y, tip.z);
+};
+
+/** Halves an interval until it is narrower than a thousandth of a degree: `tooFar` says on which side the wanted value lies. */
+function bisect(low: number, high: number, tooFar: (value: number) => boolean): number {
+  let from = low;
+  let to = high;
+  for (let i = 0; i < 20; i++) {
+    const middle = (from + to) / 2;
+    if (tooFar(middle)) to = middle;
+    else from = middle;
+  }
+  return (from + to) / 2;
+}
+
+const leastBend = -0.5;
+const mostBend = 2.2;
+
+/** A strung bow: how far its limbs bend for wherever the middle of the string is held. */
+export interface StrungBow {
+  /** Of the whole string [m]. */
+  readonly stringLength: number;
+  /** Bend [rad] at which the string of this length reaches from tip to `nock` to tip; a string too short even for the most bend: the most bend. */
+  bendFor(nock: Vec3): number;
+  /** The tips at a bend. */
+  tips(bend: number): { readonly upper: Vec3; readonly lower: Vec3 };
+}
+
+/** Strings a bow so that at rest its string is a straight line `braceHeight` [m] before the grip. */
+export function stringBow(braceHeight: number): StrungBow {
+  const atRest = bisect(leastBend, mostBend, (bend) => tipOf(bend).z > braceHeight);
+  const stringLength = 2 * tipOf(atRest).y;
+  const tips = (bend: number) => {
+    const upper = tipOf(bend);
+    return { upper, lower: vec3(0, -upper.y, upper.z) };
+  };
+  return {
+    stringLength,
+    tips,
+    bendFor: (nock) =>
+      bisect(leastBend, mostBend, (bend) => {
+        const { upper, lower } = tips(bend);
+        return distance(upper, nock) + distance(lower, nock) < stringLength;
+      }),
+  };
+}

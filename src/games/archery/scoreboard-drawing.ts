@@ -1,0 +1,259 @@
+import type { ArcheryState } from '../../core/games/archery/archery-state';
+import { ink, signFont } from './lettering';
+
+/** What the board says; equal boards are drawn once. */
+export interface BoardText {
+  readonly score: number;
+  readonly maximum: number;
+  readonly arrows: number;
+  readonly arrowsLeft: number;
+  /** Whole seconds left, rounded up as a clock that ends at 0. */
+  readonly seconds: number;
+  readonly phase: ArcheryState['phase'];
+  readonly inZone: boolean;
+  /** The last sentence: what the last arrow did, or what to do. */
+  readonly line: string;
+}
+
+/** Points of all targets together: a full score where each counts once. */
+export const maximumScore = (state: ArcheryState): number => state.targets.reduce((sum, { points }) => sum + points, 0);
+
+/** How an arrow's end reads on a board. */
+export function arrowResult(state: ArcheryState, index: number): string {
+  const arrow = state.arrows[index];
+  if (!arrow) return 'not shot';
+  if (!arrow.landing) return 'in flight';
+  const { on, target, points } = arrow.landing;
+  const hit = target === null ? undefined : state.targets[target];
+  if (hit) return points > 0 ? `+${points}` : 'hit before';
+  return on === 'wall' ? 'net' : 'grass';
+}
+
+/** The last sentence of the board at a time of the match [s]. */
+function lineOf(state: ArcheryState, time: number): string {
+  if (!state.inZone) return 'Step back onto the deck';
+  if (state.phase === 'ready') return 'The clock starts with your first arrow';
+  const landed = state.arrows.filter(({ landing }) => landing && landing.time <= time);
+  const last = landed.reduce<(typeof landed)[number] | null>(
+    (latest, arrow) => (!latest || (arrow.landing?.time ?? 0) >= (latest.landing?.time ?? 0) ? arrow : latest),
+    null,
+  );
+  if (!last?.landing) return 'Four targets, each counts once';
+  const { target, points, on } = last.landing;
+  const distance = target === null ? undefined : state.targets[target]?.distance;
+  if (distance !== undefined) {
+    return points > 0 ? `Target at ${distance} m: +${points}` : `Target at ${distance} m had scored before`;
+  }
+  return on === 'wall' ? 'Into the net' : 'Into the grass';
+}
+
+export function boardText(state: ArcheryState, time: number): BoardText {
+  const left = Math.max(0, state.options.seconds - (state.phase === 'ready' ? 0 : time));
+  return {
+    score: state.score,
+    maximum: maximumScore(state),
+    arrows: state.options.arrows,
+    arrowsLeft: state.arrowsLeft,
+    seconds: state.phase === 'over' && state.end === 'time' ? 0 : Math.ceil(left),
+    phase: state.phase,
+    inZone: state.inZone,
+    line: lineOf(state, time),
+  };
+}
+
+export const boardSize = { width: 1024, height: 640 } as const;
+
+function panel(context: CanvasRenderingContext2D, width: number, height: number): void {
+  const gradient = context.createLinearGradient(0, 0, 0, height);
+  gradient.addColorStop(0, ink.boardLift);
+  gradient.addColorStop(1, ink.board);
+  context.fillStyle = gradient;
+  context.fillRect(0, 0, width, height);
+}
+
+/** An arrow as a mark, pointing up: full where it is left, an outline where it was shot. */
+function pip(context: CanvasRenderingContext2D, x: number, y: number, height: number, left: boolean): void {
+  context.save();
+  context.translate(x, y);
+  context.lineWidth = 7;
+  context.lineCap = context.lineJoin = 'round';
+  context.strokeStyle = left ? ink.accent : ink.line;
+  context.fillStyle = left ? ink.accent : 'transparent';
+  context.beginPath();
+  context.moveTo(0, height);
+  context.lineTo(0, 22);
+  context.moveTo(-13, height);
+  context.lineTo(0, height - 18);
+  context.lineTo(13, height);
+  context.moveTo(-13, height - 20);
+  context.lineTo(0, height - 38);
+  context.lineTo(13, height - 20);
+  context.stroke();
+  context.beginPath();
+  context.moveTo(0, 0);
+  context.lineTo(13, 28);
+  context.lineTo(-13, 28);
+  context.closePath();
+  context.fill();
+  context.stroke();
+  context.restore();
+}
+
+/** Score, arrows, time and the last sentence, on boardSize. */
+export function paintBoard(context: CanvasRenderingContext2D, text: BoardText): void {
+  const { width, height } = boardSize;
+  panel(context, width, height);
+  context.textBaseline = 'alphabetic';
+  context.textAlign = 'left';
+  context.fillStyle = ink.soft;
+  context.font = `700 40px ${signFont}`;
+  context.fillText('SCORE', 64, 92);
+  context.fillText('TIME', 664, 92);
+  context.fillStyle = ink.text;
+  context.font = `800 220px ${signFont}`;
+  context.fillText(String(text.score), 54, 282);
+  const wide = context.measureText(String(text.score)).width;
+  context.fillStyle = ink.soft;
+  context.font = `700 84px ${signFont}`;
+  context.fillText(`/ ${text.maximum}`, 78 + wide, 282);
+  const late = text.phase === 'running' && text.seconds <= 10;
+  if (late) {
+    context.fillStyle = ink.warning;
+    context.beginPath();
+    context.roundRect(640, 116, 330, 190, 22);
+    context.fill();
+  }
+  context.fillStyle = late ? ink.accentInk : ink.text;
+  context.font = `800 170px ${signFont}`;
+  context.fillText(`${text.seconds}`, 660, 270);
+  const clock = context.measureText(`${text.seconds}`).width;
+  context.font = `700 64px ${signFont}`;
+  context.fillText('s', 672 + clock, 270);
+
+  context.strokeStyle = ink.line;
+  context.lineWidth = 3;
+  context.beginPath();
+  context.moveTo(64, 344);
+  context.lineTo(width - 64, 344);
+  context.stroke();
+
+  context.fillStyle = ink.soft;
+  context.font = `700 40px ${signFont}`;
+  context.fillText('ARROWS', 64, 436);
+  for (let i = 0; i < text.arrows; i++) pip(context, 300 + i * 66, 376, 100, i < text.arrowsLeft);
+  context.textAlign = 'right';
+  context.fillStyle = ink.text;
+  context.font = `800 64px ${signFont}`;
+  context.fillText(`${text.arrowsLeft} of ${text.arrows}`, width - 64, 444);
+  context.textAlign = 'left';
+
+  if (!text.inZone) {
+    context.fillStyle = ink.warning;
+    context.fillRect(0, 516, width, height - 516);
+  }
+  context.fillStyle = text.inZone ? ink.text : ink.accentInk;
+  context.font = `600 52px ${signFont}`;
+  context.fillText(`${text.inZone ? '' : '⚠ '}${text.line}`, 64, 594, width - 128);
+}
+
+export const resultSize = { width: 1024, height: 768 } as const;
+
+/** Where the restart button is on resultSize [pixels]. */
+export const restartButton = { x: 312, y: 600, width: 400, height: 116 } as const;
+
+const headline: Record<NonNullable<ArcheryState['end']>, string> = {
+  targets: 'Every target scored',
+  arrows: 'All arrows shot',
+  time: 'Time is up',
+};
+
+/** What a round came to: score, percentage, each arrow, and the way to another round. */
+export function paintResult(context: CanvasRenderingContext2D, state: ArcheryState, hovered: boolean): void {
+  const { width, height } = resultSize;
+  context.save();
+  context.beginPath();
+  context.roundRect(4, 4, width - 8, height - 8, 44);
+  context.clip();
+  panel(context, width, height);
+  context.restore();
+  context.strokeStyle = ink.line;
+  context.lineWidth = 5;
+  context.beginPath();
+  context.roundRect(4, 4, width - 8, height - 8, 44);
+  context.stroke();
+
+  const maximum = maximumScore(state);
+  const percent = maximum > 0 ? Math.round((100 * state.score) / maximum) : 0;
+  context.textBaseline = 'alphabetic';
+  context.textAlign = 'center';
+  context.fillStyle = ink.soft;
+  context.font = `700 44px ${signFont}`;
+  context.fillText(state.end ? headline[state.end] : '', width / 2, 92);
+
+  context.textAlign = 'left';
+  context.fillStyle = ink.text;
+  context.font = `800 210px ${signFont}`;
+  const score = String(state.score);
+  const scoreWidth = context.measureText(score).width;
+  context.font = `700 80px ${signFont}`;
+  const rest = `/ ${maximum}`;
+  const share = `${percent} %`;
+  const restWidth = context.measureText(rest).width;
+  context.font = `800 80px ${signFont}`;
+  const shareWidth = context.measureText(share).width + 64;
+  const whole = scoreWidth + 26 + restWidth + 56 + shareWidth;
+  let x = (width - whole) / 2;
+  context.font = `800 210px ${signFont}`;
+  context.fillText(score, x, 296);
+  x += scoreWidth + 26;
+  context.fillStyle = ink.soft;
+  context.font = `700 80px ${signFont}`;
+  context.fillText(rest, x, 296);
+  x += restWidth + 56;
+  context.fillStyle = ink.accent;
+  context.beginPath();
+  context.roundRect(x, 196, shareWidth, 112, 56);
+  context.fill();
+  context.fillStyle = ink.accentInk;
+  context.font = `800 80px ${signFont}`;
+  context.fillText(share, x + 32, 281);
+
+  const count = Math.max(1, state.options.arrows);
+  const gap = 16;
+  const card = (width - 128 - gap * (count - 1)) / count;
+  for (let i = 0; i < count; i++) {
+    const left = 64 + i * (card + gap);
+    const result = arrowResult(state, i);
+    const scored = result.startsWith('+');
+    context.fillStyle = scored ? 'rgba(143, 227, 192, 0.16)' : 'rgba(200, 216, 236, 0.08)';
+    context.strokeStyle = scored ? ink.good : ink.line;
+    context.lineWidth = scored ? 5 : 3;
+    context.beginPath();
+    context.roundRect(left, 366, card, 176, 20);
+    context.fill();
+    context.stroke();
+    context.textAlign = 'center';
+    context.fillStyle = ink.soft;
+    context.font = `700 32px ${signFont}`;
+    context.fillText(`Arrow ${i + 1}`, left + card / 2, 418, card - 12);
+    context.fillStyle = scored ? ink.text : ink.soft;
+    context.font = scored ? `800 84px ${signFont}` : `600 40px ${signFont}`;
+    context.fillText(result, left + card / 2, scored ? 510 : 490, card - 16);
+  }
+
+  const { x: buttonX, y, width: buttonWidth, height: buttonHeight } = restartButton;
+  context.fillStyle = hovered ? '#ffe0a0' : ink.accent;
+  context.beginPath();
+  context.roundRect(buttonX, y, buttonWidth, buttonHeight, buttonHeight / 2);
+  context.fill();
+  if (hovered) {
+    context.strokeStyle = ink.text;
+    context.lineWidth = 7;
+    context.stroke();
+  }
+  context.fillStyle = ink.accentInk;
+  context.textAlign = 'center';
+  context.textBaseline = 'middle';
+  context.font = `800 56px ${signFont}`;
+  context.fillText('Restart', buttonX + buttonWidth / 2, y + buttonHeight / 2 + 4);
+}

@@ -1,0 +1,30 @@
+import { CanvasTexture, LinearMipmapLinearFilter, SRGBColorSpace } from 'three';
+import { anisotropyOf, type Quality } from './renderer';
+
+/** A texture whose picture is a 2D canvas. */
+export interface DrawnTexture {
+  readonly texture: CanvasTexture;
+  /** Draws anew on a cleared canvas; call it only when something changed. */
+  draw(paint: (context: CanvasRenderingContext2D) => void): void;
+}
+
+/** Width and height in pixels. Throws where the browser offers no 2D canvas. */
+export function createDrawnTexture(width: number, height: number, quality: Quality): DrawnTexture {
+  const canvas = document.createElement('canvas');
+  canvas.width = width;
+  canvas.height = height;
+  const context = canvas.getContext('2d');
+  if (!context) throw new Error('scene/drawn-texture: this browser offers no 2D canvas');
+  const texture = new CanvasTexture(canvas);
+  texture.colorSpace = SRGBColorSpace;
+  texture.minFilter = LinearMipmapLinearFilter;
+  texture.anisotropy = anisotropyOf(quality);
+  return {
+    texture,
+    draw(paint) {
+      context.clearRect(0, 0, width, height);
+      paint(context);
+      texture.needsUpdate = true;
+    },
+  };
+}

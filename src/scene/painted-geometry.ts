@@ -1,0 +1,28 @@
+import { type BufferGeometry, Color, Float32BufferAttribute } from 'three';
+import { mergeGeometries } from 'three/examples/jsm/utils/BufferGeometryUtils.js';
+
+/** Gives every vertex one colour, or a colour by its position; the geometry loses its index and texture coordinates so that any two can be merged. */
+export function painted(
+  geometry: BufferGeometry,
+  color: string | ((x: number, y: number, z: number, paint: Color) => void),
+): BufferGeometry {
+  const flat = geometry.index ? geometry.toNonIndexed() : geometry;
+  flat.deleteAttribute('uv');
+  const position = flat.getAttribute('position');
+  const colors = new Float32Array(position.count * 3);
+  const paint = new Color();
+  if (typeof color === 'string') paint.set(color);
+  for (let i = 0; i < position.count; i++) {
+    if (typeof color === 'function') color(position.getX(i), position.getY(i), position.getZ(i), paint);
+    paint.toArray(colors, i * 3);
+  }
+  flat.setAttribute('color', new Float32BufferAttribute(colors, 3));
+  return flat;
+}
+
+/** One geometry, one draw call. */
+export function merged(geometries: readonly BufferGeometry[]): BufferGeometry {
+  const whole = mergeGeometries([...geometries]);
+  for (const geometry of geometries) geometry.dispose();
+  return whole;
+}

@@ -1,0 +1,43 @@
+import type { Object3D, Scene } from 'three';
+
+type Triple = readonly [number, number, number];
+
+/** A light from far away. */
+export interface DistantLight {
+  readonly color: string;
+  readonly intensity: number;
+  /** Where it comes from, seen from the floor under who is lit [m], floor frame. */
+  readonly from: Triple;
+}
+
+/** How people and things are lit. The number of lights never changes, or every material would be compiled again. */
+export interface Lighting {
+  /** The one light that throws shadows. */
+  readonly key: DistantLight;
+  readonly rim: DistantLight;
+  readonly front: DistantLight;
+  readonly fill: { readonly sky: string; readonly ground: string; readonly intensity: number };
+  readonly shadow: {
+    /** Half the side of the square that gets shadows [m]. */
+    readonly halfSize: number;
+    /** Texels along that side. */
+    readonly resolution: number;
+    /** Penumbra [texels]. */
+    readonly softness: number;
+    /** Its middle on the floor [m]; null: it goes with whoever stands there. */
+    readonly centre: { readonly x: number; readonly z: number } | null;
+  };
+  readonly fog: { readonly color: string; readonly near: number; readonly far: number };
+  /** What shining surfaces reflect, built anew at each call; never shown itself. */
+  readonly reflected: () => Scene;
+  readonly reflectedIntensity: number;
+  /** How dark the soft disc under a body is, 0 to 1. */
+  readonly contactShadow: number;
+}
+
+/** A place that people stand in. */
+export interface Surroundings {
+  /** Floor frame. */
+  readonly object: Object3D;
+  readonly lighting: Lighting;
+}

@@ -1,0 +1,63 @@
+/** What mouse, pen or finger want of an archer: where they point in the window, and whether they hold. */
+export interface MouseAim {
+  /** From −1 to 1, right and up. */
+  readonly x: number;
+  readonly y: number;
+  readonly pressed: boolean;
+  /** Escape, or the other button, since the press began. */
+  readonly cancelled: boolean;
+  setEnabled(on: boolean): void;
+}
+
+/** Listens on the canvas while enabled. */
+export function createMouseAim(canvas: HTMLCanvasElement): MouseAim {
+  const aim = { x: 0, y: 0.1, pressed: false, cancelled: false };
+  let enabled = false;
+  const move = ({ clientX, clientY }: PointerEvent) => {
+    const { width, height } = canvas.getBoundingClientRect();
+    aim.x = (2 * clientX) / width - 1;
+    aim.y = 1 - (2 * clientY) / height;
+  };
+  canvas.addEventListener('pointermove', move);
+  canvas.addEventListener('pointerdown', (event) => {
+    if (!enabled) return;
+    move(event);
+    if (event.button !== 0) {
+      aim.cancelled = true;
+      return;
+    }
+    canvas.setPointerCapture(event.pointerId);
+    aim.pressed = true;
+    aim.cancelled = false;
+  });
+  for (const end of ['pointerup', 'pointercancel'] as const) {
+    canvas.addEventListener(end, ({ button }) => {
+      if (end === 'pointercancel') aim.cancelled = true;
+      if (button <= 0) aim.pressed = false;
+    });
+  }
+  window.addEventListener('keydown', ({ key }) => {
+    if (key === 'Escape') aim.cancelled = true;
+  });
+  canvas.addEventListener('contextmenu', (event) => {
+    if (enabled) event.preventDefault();
+  });
+  return {
+    get x() {
+      return aim.x;
+    },
+    get y() {
+      return aim.y;
+    },
+    get pressed() {
+      return enabled && aim.pressed;
+    },
+    get cancelled() {
+      return aim.cancelled;
+    },
+    setEnabled(on) {
+      enabled = on;
+      if (!on) aim.pressed = false;
+    },
+  };
+}

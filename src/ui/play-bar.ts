@@ -1,0 +1,127 @@
+import { button, element } from './element';
+
+/** What people do here: look at themselves in the studio, or play. */
+export const activityNames = ['studio', 'archery'] as const;
+export type ActivityName = (typeof activityNames)[number];
+
+/** Who shoots on the desktop: the built-in archer, the mouse, or whoever holds the (emulated) headset. */
+export type Shooter = 'actor' | 'mouse' | 'headset';
+
+/** A round as the bar shows it. */
+export interface RoundState {
+  readonly score: number;
+  readonly of: number;
+  readonly arrowsLeft: number;
+  readonly secondsLeft: number;
+  readonly over: boolean;
+}
+
+export interface PlayState {
+  readonly activity: ActivityName;
+  /** Loading the range. */
+  readonly arriving: boolean;
+  readonly round: RoundState | null;
+  readonly shooter: Shooter;
+  readonly bowSide: 'left' | 'right';
+  readonly oneHanded: boolean;
+  readonly everyHitCounts: boolean;
+  readonly sound: boolean;
+  readonly inSession: boolean;
+}
+
+export interface PlayActions {
+  goTo(activity: ActivityName): void;
+  restart(): void;
+  chooseShooter(shooter: Shooter): void;
+  setBowSide(side: 'left' | 'right'): void;
+  setOneHanded(on: boolean): void;
+  setEveryHitCounts(on: boolean): void;
+  setSound(on: boolean): void;
+}
+
+export interface PlayBar {
+  show(state: PlayState): void;
+  /** What is heard, in words; stays until the next one, and is announced. */
+  caption(text: string): void;
+}
+
+const activityTexts: Readonly<Record<ActivityName, string>> = { studio: 'Mirror', archery: 'Archery' };
+
+/** The choice of what to do, and in a game its score and settings; below the masthead. */
+export function createPlayBar(region: HTMLElement, actions: PlayActions): PlayBar {
+  const activities = activityNames.map((name) => ({
+    name,
+    node: button(activityTexts[name], () => actions.goTo(name), { 'aria-pressed': 'false' }),
+  }));
+  const score = element('output', { class: 'score', 'aria-label': 'Score' });
+  const arrows = element('span', { class: 'arrows' });
+  const time = element('span', { class: 'time' });
+  const restart = button('New round', actions.restart);
+  const shoot = button('Shoot with the mouse', () => actions.chooseShooter('mouse'), { class: 'primary' });
+  const watch = button('Watch', () => actions.chooseShooter('actor'));
+  const check = (label: string, onChange: (on: boolean) => void) => {
+    const input = element('input', { type: 'checkbox', role: 'switch' });
+    input.addEventListener('change', () => onChange(input.checked));
+    return { input, node: element('label', { class: 'toggle' }, element('span', {}, label), input) };
+  };
+  const leftBow = check('Bow in the right hand', (on) => actions.setBowSide(on ? 'right' : 'left'));
+  const oneHanded = check('One hand: hold to draw', actions.setOneHanded);
+  const everyHit = check('Every hit counts', actions.setEveryHitCounts);
+  const sound = check('Sound', actions.setSound);
+  const hint = element('p', { class: 'hint' });
+  const settings = element(
+    'details',
+    {},
+    element('summary', {}, 'Rules and hands'),
+    leftBow.node,
+    oneHanded.node,
+    everyHit.node,
+    sound.node,
+  );
+  const game = element(
+    'div',
+    { class: 'round' },
+    element('div', { class: 'row board' }, score, arrows, time),
+    element('div', { class: 'row' }, shoot, watch, restart),
+    hint,
+    settings,
+  );
+  const captions = element('p', { class: 'caption', role: 'status', 'aria-live': 'polite' });
+  region.append(
+    element(
+      'div',
+      { class: 'segments', role: 'group', 'aria-label': 'What to do' },
+      ...activities.map(({ node }) => node),
+    ),
+    game,
+    captions,
+  );
+
+  return {
+    show(state) {
+      for (const { name, node } of activities) {
+        node.setAttribute('aria-pressed', String(name === state.activity));
+        node.disabled = state.arriving;
+      }
+      const { round } = state;
+      game.hidden = round === null;
+      captions.hidden = round === null;
+      if (!round) return;
+      score.textContent = `${round.score} / ${round.of}`;
+      arrows.textContent = `${round.arrowsLeft} ${round.arrowsLeft === 1 ? 'arrow' : 'arrows'}`;
+      time.textContent = `${Math.ceil(round.secondsLeft)} s`;
+      restart.classList.toggle('primary', round.over);
+      shoot.hidden = state.inSession || state.shooter === 'mouse';
+      watch.hidden = state.shooter === 'actor';
+      hint.hidden = state.shooter !== 'mouse' || state.inSession;
+      hint.textContent = 'Aim with the mouse, hold its button to draw, let go to shoot. Esc puts the arrow back.';
+      leftBow.input.checked = state.bowSide === 'right';
+      oneHanded.input.checked = state.oneHanded;
+      everyHit.input.checked = state.everyHitCounts;
+      sound.input.checked = state.sound;
+    },
+    caption(text) {
+      captions.textContent = text;
+    },
+  };
+}

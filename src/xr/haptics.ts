@@ -1,0 +1,24 @@
+import type { Side } from '../core/body/joints';
+
+/** A buzz for one hand: strength 0 to 1, seconds. */
+export interface Pulse {
+  readonly side: Side;
+  readonly strength: number;
+  readonly seconds: number;
+}
+
+/** Buzzes whatever the hands hold; what cannot buzz stays silent. */
+export function buzz(session: XRSession, pulses: readonly Pulse[]): void {
+  for (const { side, strength, seconds } of pulses) {
+    for (const { handedness, gamepad } of session.inputSources) {
+      if (handedness !== side) continue;
+      // Quest and Vive offer `pulse` on the first actuator, which no type knows yet.
+      const [actuator] = (gamepad as { hapticActuators?: readonly HapticPulser[] } | undefined)?.hapticActuators ?? [];
+      void actuator?.pulse?.(Math.min(1, Math.max(0, strength)), 1000 * seconds);
+    }
+  }
+}
+
+interface HapticPulser {
+  pulse?(strength: number, milliseconds: number): Promise<boolean>;
+}

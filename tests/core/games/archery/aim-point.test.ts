@@ -1,0 +1,30 @@
+import { expect, test } from 'vitest';
+import { aimPoint } from '../../../../src/core/games/archery/aim-point';
+import { archeryRules } from '../../../../src/core/games/archery/rules';
+import { distance, length, normalise, subtract, vec3 } from '../../../../src/core/math/vec3';
+
+const { targets } = archeryRules.start(['archer'], 1);
+const eyes = vec3(-1.2, 2, 3);
+
+test('pointing at a target is aiming at it, from wherever one looks', () => {
+  for (const { centre } of targets) {
+    const hit = aimPoint(eyes, normalise(subtract(centre, eyes)), targets);
+    expect(targets.some((target) => distance(target.centre, hit) <= target.radius)).toBe(true);
+    expect(distance(hit, centre)).toBeLessThan(1e-9);
+  }
+});
+
+test('pointing at the grass is aiming at the grass', () => {
+  expect(aimPoint(eyes, normalise(vec3(0.1, -1, 0)), targets).y).toBeCloseTo(0, 9);
+});
+
+test('pointing at the sky is aiming far away, not at infinity', () => {
+  const up = aimPoint(eyes, vec3(0, 1, 0), targets);
+  expect(length(subtract(up, eyes))).toBeCloseTo(14, 9);
+});
+
+test('a target is not aimed at from behind', () => {
+  const behind = vec3(0, 1.5, -13.9);
+  const hit = aimPoint(behind, normalise(vec3(0, -0.001, 1)), targets);
+  expect(targets.some(({ centre, radius }) => distance(centre, hit) < radius)).toBe(false);
+});

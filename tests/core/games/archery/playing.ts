@@ -1,0 +1,74 @@
+import { createArcher } from '../../../../src/core/games/archery/archer-motion';
+import type { ArcherBody } from '../../../../src/core/games/archery/archer-postures';
+import type {
+  ArcheryAction,
+  ArcheryEvent,
+  ArcheryOptions,
+  ArcheryState,
+} from '../../../../src/core/games/archery/archery-state';
+import type { Buttons } from '../../../../src/core/games/archery/button-presses';
+import {
+  type BowCue,
+  createArcheryGestures,
+  defaultArcheryGestureSettings,
+  type GestureFrame,
+} from '../../../../src/core/games/archery/gestures';
+import { archeryRules, delayed } from '../../../../src/core/games/archery/rules';
+import { createMatch } from '../../../../src/core/games/match';
+import type { TrackingFrame } from '../../../../src/core/tracking/tracking-frame';
+
+/** What happened in a round that somebody played. */
+export interface Round {
+  readonly state: ArcheryState;
+  readonly events: readonly ArcheryEvent[];
+  readonly cues: readonly BowCue[];
+  readonly frames: readonly TrackingFrame[];
+  readonly gestures: readonly GestureFrame[];
+  /** The actions of each tick. */
+  readonly ticks: readonly (readonly ArcheryAction[])[];
+}
+
+export interface RoundPlan {
+  readonly archer: ArcherBody;
+  readonly seed?: number;
+  readonly options?: Partial<ArcheryOptions>;
+  /** Time of each frame [s]. */
+  readonly times: Iterable<number>;
+  /** What devices do to frames before the gestures see them. */
+  readonly spoil?: (frame: TrackingFrame, buttons: Buttons) => { frame: TrackingFrame; buttons: Buttons };
+}
+
+/** Frame times at a rate, for this long, from a start that is not 0. */
+export function* steady(rateHz: number, seconds = 70, start = 12.345): Generator<number> {
+  for (let i = 0; i < seconds * rateHz; i++) yield start + i / rateHz;
+}
+
+/** The built-in archer plays a round through gestures, match and rules, until it is over or the times end. */
+export function playRound({ archer: body, seed = 1, options = {}, times, spoil }: RoundPlan): Round {
+  const start = archeryRules.start(['archer'], seed, { eyeHeight: body.eyeHeight, ...options });
+  const ticks: (readonly ArcheryAction[])[] = [];
+  const match = createMatch(archeryRules, start, { delayed, onTick: (actions) => ticks.push(actions) });
+  const archer = createArcher(body);
+  const gestures = createArcheryGestures(() => ({
+    ...defaultArcheryGestureSettings,
+    bowSide: body.bowSide,
+    armed: match.state.phase !== 'over' && match.state.arrowsLeft > 0,
+  }));
+  const round = { events: [], cues: [], frames: [], gestures: [] } as {
+    events: ArcheryEvent[];
+    cues: BowCue[];
+    frames: TrackingFrame[];
+    gestures: GestureFrame[];
+  };
+  for (const time of times) {
+    const played = archer.follow(time, match.state);
+    const { frame, buttons } = spoil ? spoil(played.frame, played.buttons) : played;
+    const gesture = gestures.follow(frame, buttons);
+    round.frames.push(frame);
+    round.gestures.push(gesture);
+    round.cues.push(...gesture.cues);
+    round.events.push(...match.advance(time, gesture.actions));
+    if (match.state.phase === 'over') break;
+  }
+  return { ...round, state: match.state, ticks };
+}
