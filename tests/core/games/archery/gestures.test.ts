@@ -1,8 +1,6 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import { arrowLength, arrowRestHeight, braceHeight, maximumDraw } from '../../../../src/core/games/archery/bow';
-import { otherSide, type Side, wristAround } from '../../../../src/core/games/archery/bow-hand';
-import { allReleased, type Button, createButtonPresses } from '../../../../src/core/games/archery/button-presses';
 import {
   createArcheryGestures,
   defaultArcheryGestureSettings,
@@ -11,6 +9,8 @@ import {
   oneHandedDrawSpeed,
 } from '../../../../src/core/games/archery/gestures';
 import { archeryRules } from '../../../../src/core/games/archery/rules';
+import { allReleased, type Button, createButtonPresses } from '../../../../src/core/games/button-presses';
+import { otherSide, type Side, wristAround } from '../../../../src/core/games/fist';
 import type { Transform } from '../../../../src/core/math/pose';
 import { fromAxisAngle, rotate } from '../../../../src/core/math/quat';
 import { add, addScaled, cross, distance, dot, length, normalise, up, vec3 } from '../../../../src/core/math/vec3';
