@@ -33,10 +33,10 @@ export function roots(a: number, b: number, c: number): readonly number[] {
   return found.sort((first, second) => first - second);
 }
 
-/** Seconds until it comes down through this height [m]; 0 where it starts below. */
+/** Seconds until it comes down through this height [m]; 0 where it starts below, or there and does not rise. */
 export function fallsTo({ position, velocity }: Launch, height: number): number {
   const above = position.y - height;
-  if (above <= 0) return 0;
+  if (above < 0 || (above === 0 && velocity.y <= 0)) return 0;
   const root = Math.sqrt(velocity.y * velocity.y + 2 * gravity * above);
   return velocity.y < 0 ? (2 * above) / (root - velocity.y) : (velocity.y + root) / gravity;
 }

@@ -33,7 +33,7 @@ export function reachesTarget(launch: Launch, { centre, normal, radius }: Target
 }
 
 /** Seconds until the tip is at y = 0; 0 where it starts in the ground. */
-export const reachesGround = (launch: Launch): number => fallsTo(launch, 0);
+export const reachesGround = (launch: Launch): number => (launch.position.y <= 0 ? 0 : fallsTo(launch, 0));
 
 /** Seconds until the tip goes through the net from the inside; null: it flies over, along or away from it. */
 export function reachesWall(launch: Launch, { axis, at, inward, height }: Wall): number | null {
