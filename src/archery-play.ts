@@ -4,7 +4,6 @@ import { chestSpaceBody } from './core/body/skeleton';
 import { aimPoint } from './core/games/archery/aim-point';
 import { type Archer, createArcher } from './core/games/archery/archer-motion';
 import type { ArcheryAction, ArcheryEvent, ArcheryState, BowView } from './core/games/archery/archery-state';
-import type { Buttons } from './core/games/archery/button-presses';
 import {
   type BowCue,
   createArcheryGestures,
@@ -13,6 +12,7 @@ import {
 } from './core/games/archery/gestures';
 import { archeryRules, delayed, matchTime, secondsLeft } from './core/games/archery/rules';
 import { createSteeredArcher, type SteeredArcher } from './core/games/archery/steered-archer';
+import type { Buttons } from './core/games/button-presses';
 import { createMatch, type Match } from './core/games/match';
 import type { Vec3 } from './core/math/vec3';
 import type { TrackingFrame } from './core/tracking/tracking-frame';

@@ -19,7 +19,7 @@ import {
 } from './core/body/calibration';
 import { createEstimator } from './core/estimation/estimators';
 import type { EstimatorName } from './core/estimation/pose-estimator';
-import { allReleased, type Buttons } from './core/games/archery/button-presses';
+import { allReleased, type Buttons } from './core/games/button-presses';
 import { identity } from './core/math/quat';
 import { zero } from './core/math/vec3';
 import type { TrackingFrame } from './core/tracking/tracking-frame';

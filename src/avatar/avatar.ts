@@ -16,7 +16,7 @@ import type { Calibration } from '../core/body/calibration';
 import { forwardKinematics } from '../core/body/forward-kinematics';
 import { type JointName, jointNames, type Side } from '../core/body/joints';
 import { type Skeleton, sideSign, skeletonFromCalibration } from '../core/body/skeleton';
-import { solveTwoBones } from '../core/estimation/two-bone-ik';
+import { solveTwoBones } from '../core/body/two-bone-ik';
 import type { Pose } from '../core/math/pose';
 import { fromAxisAngle, multiply, type Quat, rotate } from '../core/math/quat';
 import { add, distance, normalise, scale, subtract, up, type Vec3, vec3 } from '../core/math/vec3';

@@ -1,6 +1,6 @@
 import type { XRDevice } from 'iwer';
 import type { Side } from '../core/body/joints';
-import { allReleased, type Buttons } from '../core/games/archery/button-presses';
+import { allReleased, type Buttons } from '../core/games/button-presses';
 import { composeTransforms, invertTransform, type Pose } from '../core/math/pose';
 import { fromAxes } from '../core/math/quat';
 import { vec3 } from '../core/math/vec3';

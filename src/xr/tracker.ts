@@ -1,5 +1,5 @@
 import type { Side } from '../core/body/joints';
-import { allReleased, type HandButtons } from '../core/games/archery/button-presses';
+import { allReleased, type HandButtons } from '../core/games/button-presses';
 import { smoothstep } from '../core/math/damper';
 import type { Pose } from '../core/math/pose';
 import { conjugate, fromAxisAngle, rotate } from '../core/math/quat';

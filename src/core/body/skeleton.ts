@@ -1,4 +1,5 @@
-import { add, length, type Vec3, vec3 } from '../math/vec3';
+import { fromAxisAngle, type Quat } from '../math/quat';
+import { add, length, up, type Vec3, vec3 } from '../math/vec3';
 import proportions from './body-proportions.json';
 import type { Calibration } from './calibration';
 import type { JointName, Side } from './joints';
@@ -14,6 +15,12 @@ export interface Skeleton {
 
 /** σ of docs/estimation.md: −1 left, +1 right. */
 export const sideSign = (side: Side): -1 | 1 => (side === 'left' ? -1 : 1);
+
+/** The wrist's frame as the hand bone rests in T-pose (knuckles sideways, palm down): handBone = wrist · wristFromHandBone. */
+export const wristFromHandBone: Readonly<Record<Side, Quat>> = {
+  left: fromAxisAngle(up, -Math.PI / 2),
+  right: fromAxisAngle(up, Math.PI / 2),
+};
 
 /** Shoulder to wrist [m], at least 0.15 eye heights however small the span. */
 export function armLength({ eyeHeight, armSpan }: Calibration): number {

@@ -1,6 +1,7 @@
 import type { UpperBodyPose } from '../body/avatar-pose';
 import type { JointName, Side } from '../body/joints';
-import { type Skeleton, sideSign } from '../body/skeleton';
+import { type Skeleton, sideSign, wristFromHandBone } from '../body/skeleton';
+import { solveTwoBones } from '../body/two-bone-ik';
 import { clamp, smoothstep } from '../math/damper';
 import type { Pose } from '../math/pose';
 import {
@@ -35,7 +36,6 @@ import {
 } from '../math/vec3';
 import { headingOf } from '../tracking/heading';
 import type { JointPositions } from './joint-positions';
-import { solveTwoBones } from './two-bone-ik';
 
 /** What is known of one frame, floor frame: head and hands as they are, the six joints as somebody estimates them. */
 export interface Estimate {
@@ -78,12 +78,6 @@ const unsurePole = 0.04;
 /** The trunk as an ellipse across [share of the thorax's length]: half width and half depth, skin and elbow included. */
 const trunkHalfWidth = 1.2;
 const trunkHalfDepth = 0.85;
-
-/** The wrist's frame as the hand bone rests in T-pose: knuckles sideways, palm down. */
-const wristFromHandBone: Readonly<Record<Side, Quat>> = {
-  left: fromAxisAngle(up, -Math.PI / 2),
-  right: fromAxisAngle(up, Math.PI / 2),
-};
 
 interface Torso {
   readonly hips: Vec3;

@@ -1,5 +1,6 @@
 import type { Side } from '../body/joints';
 import { type ChestSpaceBody, sideSign } from '../body/skeleton';
+import { solveTwoBones } from '../body/two-bone-ik';
 import { clamp } from '../math/damper';
 import type { Pose } from '../math/pose';
 import { conjugate, fromAxes, fromAxisAngle, rotate } from '../math/quat';
@@ -19,7 +20,6 @@ import {
 } from '../math/vec3';
 import parameters from './ik-parameters.json';
 import type { JointPositions } from './joint-positions';
-import { solveTwoBones } from './two-bone-ik';
 
 /** Head and wrists in the heading frame. */
 export interface ThreePoints {

@@ -1,5 +1,5 @@
 import type { Arrow } from '../../core/games/archery/archery-state';
-import { positionAt, velocityAt } from '../../core/games/archery/flight';
+import { positionAt, velocityAt } from '../../core/games/ballistics';
 import { addScaled, cross, normalise, scale, up, type Vec3, vec3 } from '../../core/math/vec3';
 
 /** Where an arrow is drawn: its tip and the unit direction it points in; arena frame. */

@@ -1,7 +1,7 @@
 import type { ArcheryEvent, ArcheryState, Arrow } from '../../core/games/archery/archery-state';
 import { maximumDraw } from '../../core/games/archery/bow';
-import { positionAt } from '../../core/games/archery/flight';
 import type { BowCue } from '../../core/games/archery/gestures';
+import { positionAt } from '../../core/games/ballistics';
 import { clamp } from '../../core/math/damper';
 import { invertTransform, type Pose, type Transform, transformPoint, transformPose } from '../../core/math/pose';
 import { rotate } from '../../core/math/quat';

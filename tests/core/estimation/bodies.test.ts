@@ -4,10 +4,10 @@ import type { Calibration } from '../../../src/core/body/calibration';
 import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
 import { estimatedJoints, type JointName, type Side } from '../../../src/core/body/joints';
 import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
+import { swivelAngle } from '../../../src/core/body/two-bone-ik';
 import { createEstimator } from '../../../src/core/estimation/estimators';
 import type { JointPositions } from '../../../src/core/estimation/joint-positions';
 import { emptyMemory, reconstructOrientations } from '../../../src/core/estimation/reconstruct-orientations';
-import { swivelAngle } from '../../../src/core/estimation/two-bone-ik';
 import type { Pose } from '../../../src/core/math/pose';
 import {
   angleBetween,

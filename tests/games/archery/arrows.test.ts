@@ -1,7 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import type { Arrow, Landing } from '../../../src/core/games/archery/archery-state';
 import { arrowLength } from '../../../src/core/games/archery/bow';
-import { positionAt, velocityAt } from '../../../src/core/games/archery/flight';
+import { positionAt, velocityAt } from '../../../src/core/games/ballistics';
 import { addScaled, distance, dot, normalise, reject, subtract, vec3 } from '../../../src/core/math/vec3';
 import { arrowPose } from '../../../src/games/archery/arrow-pose';
 import { arrowGeometry, createArrows } from '../../../src/games/archery/arrows';

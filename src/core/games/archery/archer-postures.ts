@@ -17,9 +17,9 @@ import {
   zero,
 } from '../../math/vec3';
 import type { TrackedPose, TrackingFrame } from '../../tracking/tracking-frame';
+import { allReleased, type Button, type Buttons, type HandButtons } from '../button-presses';
+import { otherSide, type Side, wristAround } from '../fist';
 import { arrowRestHeight, braceHeight, maximumDraw } from './bow';
-import { otherSide, type Side, wristAround } from './bow-hand';
-import { allReleased, type Button, type Buttons, type HandButtons } from './button-presses';
 import { releaseTowards } from './flight';
 
 /** Who shoots. */

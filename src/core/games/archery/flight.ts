@@ -1,32 +1,12 @@
-import { addScaled, dot, length, normalise, scale, subtract, type Vec3, vec3 } from '../../math/vec3';
+import { addScaled, dot, length, scale, subtract, type Vec3 } from '../../math/vec3';
+import { fallsTo, gravity, type Launch, launchTowards, positionAt, roots } from '../ballistics';
 import type { Target } from './archery-state';
 import { arrowLength, arrowSpeed } from './bow';
-
-/** Downward [m/s²]. Nothing else acts on an arrow: no drag, no wind. */
-export const gravity = 9.81;
-
-/** How a tip sets off: position [m] and velocity [m/s], arena frame. */
-export interface Launch {
-  readonly position: Vec3;
-  readonly velocity: Vec3;
-}
 
 /** The launch of an arrow let go at this draw [m], its nock here, along a unit direction. */
 export const launchOf = (nock: Vec3, direction: Vec3, draw: number): Launch => ({
   position: addScaled(nock, direction, arrowLength),
   velocity: scale(direction, arrowSpeed(draw)),
-});
-
-/** Where the tip is after `seconds` of flight. */
-export const positionAt = ({ position, velocity }: Launch, seconds: number): Vec3 => {
-  const straight = addScaled(position, velocity, seconds);
-  return { ...straight, y: straight.y - 0.5 * gravity * seconds * seconds };
-};
-
-/** How fast the tip is after `seconds` of flight [m/s]. */
-export const velocityAt = ({ velocity }: Launch, seconds: number): Vec3 => ({
-  ...velocity,
-  y: velocity.y - gravity * seconds,
 });
 
 /** A net across the range: upright, from the ground to `height`. Stops what comes from the inside. */
@@ -48,18 +28,6 @@ export interface Hit {
   readonly target: number | null;
 }
 
-/** Real roots of a·t² + b·t + c, ascending, without cancellation; a line where a vanishes, none where nothing crosses. */
-function roots(a: number, b: number, c: number): readonly number[] {
-  const discriminant = b * b - 4 * a * c;
-  if (discriminant < 0) return [];
-  const q = -0.5 * (b + (b < 0 ? -1 : 1) * Math.sqrt(discriminant));
-  const found: number[] = [];
-  if (q !== 0) found.push(c / q);
-  // A coefficient this small is the rounding of an upright disc's normal: its root lies beyond every flight.
-  if (Math.abs(a) > 1e-12) found.push(q / a);
-  return found.sort((first, second) => first - second);
-}
-
 /** Seconds until the tip first goes through the disc from its painted side; null: it never does. */
 export function reachesTarget(launch: Launch, { centre, normal, radius }: Target): number | null {
   const towards = dot(normal, launch.velocity);
@@ -71,11 +39,7 @@ export function reachesTarget(launch: Launch, { centre, normal, radius }: Target
 }
 
 /** Seconds until the tip is at y = 0; 0 where it starts in the ground. */
-export function reachesGround({ position, velocity }: Launch): number {
-  if (position.y <= 0) return 0;
-  const root = Math.sqrt(velocity.y * velocity.y + 2 * gravity * position.y);
-  return velocity.y < 0 ? (2 * position.y) / (root - velocity.y) : (velocity.y + root) / gravity;
-}
+export const reachesGround = (launch: Launch): number => (launch.position.y <= 0 ? 0 : fallsTo(launch, 0));
 
 /** Seconds until the tip goes through the net from the inside; null: it flies over, along or away from it. */
 export function reachesWall(launch: Launch, { axis, at, inward, height }: Wall): number | null {
@@ -98,24 +62,6 @@ export function firstHit(launch: Launch, targets: readonly Target[], walls: read
     if (after !== null && after < first.after) first = { after, on: 'target', target: index };
   });
   return first;
-}
-
-/**
- * The unit direction in which a tip at `from` must leave with `speed` [m/s] to pass through `target`: the flatter of the two
- * parabolas. null: out of reach at this speed.
- */
-export function launchTowards(target: Vec3, from: Vec3, speed: number): Vec3 | null {
-  const to = subtract(target, from);
-  const along = Math.hypot(to.x, to.z);
-  const squared = speed * speed;
-  if (along < 1e-9) {
-    return Math.abs(to.y) < 1e-9 || to.y < squared / (2 * gravity) ? vec3(0, to.y < 0 ? -1 : 1, 0) : null;
-  }
-  const discriminant = squared * squared - gravity * (gravity * along * along + 2 * to.y * squared);
-  if (discriminant < 0) return null;
-  // tan of the elevation, in the form that does not cancel for fast arrows.
-  const slope = (gravity * along * along + 2 * to.y * squared) / (along * (squared + Math.sqrt(discriminant)));
-  return normalise(vec3(to.x, slope * along, to.z));
 }
 
 /**

@@ -15,10 +15,11 @@ import {
   zero,
 } from '../../math/vec3';
 import type { TrackedPose, TrackingFrame } from '../../tracking/tracking-frame';
+import { type Button, type Buttons, createButtonPresses, pressureOf, releasedBelow } from '../button-presses';
+import { fistOf, otherSide, type Side } from '../fist';
 import type { ArcheryAction, BowView } from './archery-state';
 import { arrowLength, braceHeight, maximumDraw, minimumDraw } from './bow';
-import { arrowRestOf, bowInHand, fistOf, otherSide, type Side, turnBow } from './bow-hand';
-import { type Button, type Buttons, createButtonPresses, pressureOf, releasedBelow } from './button-presses';
+import { arrowRestOf, bowInHand, turnBow } from './bow-hand';
 
 /** What the archer, the menu and the round decide; asked for in every frame, so that all of it can change during play. */
 export interface ArcheryGestureSettings {

@@ -11,6 +11,7 @@ import {
   type Vec3,
   vec3,
 } from '../../math/vec3';
+import { positionAt, velocityAt } from '../ballistics';
 import type { GameRules } from '../game-rules';
 import type {
   ArcheryAction,
@@ -23,7 +24,7 @@ import type {
   Target,
 } from './archery-state';
 import { arrowLength, arrowSpeed, minimumDraw } from './bow';
-import { firstHit, positionAt, velocityAt, type Wall } from './flight';
+import { firstHit, type Wall } from './flight';
 
 /** Where the archer stands: a rectangle on the floor about the origin [m]. */
 export const zone = { width: 1.1, depth: 1 } as const;

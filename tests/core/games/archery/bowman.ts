@@ -1,18 +1,13 @@
 import type { BowView } from '../../../../src/core/games/archery/archery-state';
 import { arrowRestHeight, braceHeight } from '../../../../src/core/games/archery/bow';
-import { otherSide, type Side, wristAround } from '../../../../src/core/games/archery/bow-hand';
-import {
-  allReleased,
-  type Button,
-  type Buttons,
-  type HandButtons,
-} from '../../../../src/core/games/archery/button-presses';
 import {
   type ArcheryGestureSettings,
   createArcheryGestures,
   defaultArcheryGestureSettings,
   type GestureFrame,
 } from '../../../../src/core/games/archery/gestures';
+import { allReleased, type Button, type Buttons, type HandButtons } from '../../../../src/core/games/button-presses';
+import { otherSide, type Side, wristAround } from '../../../../src/core/games/fist';
 import { identity } from '../../../../src/core/math/quat';
 import { add, addScaled, cross, normalise, reject, up, type Vec3, vec3 } from '../../../../src/core/math/vec3';
 import type { TrackedPose, TrackingFrame } from '../../../../src/core/tracking/tracking-frame';

@@ -12,18 +12,14 @@ import {
 } from '../../../../src/core/games/archery/bow';
 import {
   firstHit,
-  gravity,
-  type Launch,
   launchOf,
-  launchTowards,
-  positionAt,
   reachesGround,
   reachesTarget,
   reachesWall,
   releaseTowards,
-  velocityAt,
 } from '../../../../src/core/games/archery/flight';
 import { walls } from '../../../../src/core/games/archery/rules';
+import { gravity, type Launch, launchTowards, positionAt, velocityAt } from '../../../../src/core/games/ballistics';
 import { addScaled, distance, dot, length, normalise, scale, subtract, vec3 } from '../../../../src/core/math/vec3';
 import { direction, number, seed } from '../../arbitraries';
 

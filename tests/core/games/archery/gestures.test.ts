@@ -1,8 +1,6 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import { arrowLength, arrowRestHeight, braceHeight, maximumDraw } from '../../../../src/core/games/archery/bow';
-import { fistOf, otherSide, type Side, wristAround } from '../../../../src/core/games/archery/bow-hand';
-import { allReleased, type Button, createButtonPresses } from '../../../../src/core/games/archery/button-presses';
 import { releaseTowards } from '../../../../src/core/games/archery/flight';
 import {
   createArcheryGestures,
@@ -12,6 +10,8 @@ import {
   oneHandedDrawSpeed,
 } from '../../../../src/core/games/archery/gestures';
 import { archeryRules } from '../../../../src/core/games/archery/rules';
+import { allReleased, type Button, createButtonPresses } from '../../../../src/core/games/button-presses';
+import { fistOf, otherSide, type Side, wristAround } from '../../../../src/core/games/fist';
 import type { Transform } from '../../../../src/core/math/pose';
 import { fromAxisAngle, rotate } from '../../../../src/core/math/quat';
 import {

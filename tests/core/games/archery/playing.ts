@@ -6,7 +6,6 @@ import type {
   ArcheryOptions,
   ArcheryState,
 } from '../../../../src/core/games/archery/archery-state';
-import type { Buttons } from '../../../../src/core/games/archery/button-presses';
 import {
   type BowCue,
   createArcheryGestures,
@@ -14,6 +13,7 @@ import {
   type GestureFrame,
 } from '../../../../src/core/games/archery/gestures';
 import { archeryRules, delayed } from '../../../../src/core/games/archery/rules';
+import type { Buttons } from '../../../../src/core/games/button-presses';
 import { createMatch } from '../../../../src/core/games/match';
 import type { TrackingFrame } from '../../../../src/core/tracking/tracking-frame';
 

@@ -1,0 +1,40 @@
+import type { Transform } from '../../math/pose';
+import { fromAxisAngle, identity } from '../../math/quat';
+import { up, type Vec3, vec3 } from '../../math/vec3';
+import { ballRadius } from './flight';
+
+/** From each thrower to the basket holder, along the floor [m]. */
+export const throwingDistance = 5;
+
+const aside = 0.8;
+const ahead = Math.sqrt(throwingDistance * throwingDistance - aside * aside);
+
+/** Where the floor of each seat lies in the arena: the throwers look along −Z, the holder looks back at them. */
+export const stations: readonly Transform<'arena', 'floor'>[] = [
+  { position: vec3(-aside, 0, 0), orientation: identity },
+  { position: vec3(aside, 0, 0), orientation: identity },
+  { position: vec3(0, 0, -ahead), orientation: fromAxisAngle(up, Math.PI) },
+];
+
+/** The station of the basket holder. */
+export const holderStation = 2;
+
+/** Everybody stays this near to their own station [m]. */
+export const zoneRadius = 1.2;
+
+const rackHeight = 0.85;
+const spacing = 0.17;
+const columns = 2;
+
+/**
+ * Where a ball lies in its rack, arena frame: beside the thrower, towards the other one, so that both can reach the nearer balls
+ * of both racks.
+ */
+export function rackPosition(ball: number, balls: number): Vec3 {
+  const perRack = Math.ceil(balls / 2);
+  const side = ball < perRack ? -1 : 1;
+  const slot = ball % perRack;
+  const column = slot % columns;
+  const row = Math.floor(slot / columns);
+  return vec3(side * (aside - 0.34 - column * spacing), rackHeight + ballRadius, 0.2 - row * spacing);
+}

@@ -1,0 +1,244 @@
+import fc from 'fast-check';
+import { describe, expect, test } from 'vitest';
+import type { BallAction, BallState } from '../../../../src/core/games/ball/ball-state';
+import { createBallGestures, holdSeconds } from '../../../../src/core/games/ball/gestures';
+import { createHandSpeed, throwWindow } from '../../../../src/core/games/ball/hand-speed';
+import { ballRules } from '../../../../src/core/games/ball/rules';
+import { rackPosition, stations } from '../../../../src/core/games/ball/stations';
+import { allReleased, type Button, type HandButtons } from '../../../../src/core/games/button-presses';
+import { fistOf, wristAround } from '../../../../src/core/games/fist';
+import { invertTransform, transformPoint, transformPose } from '../../../../src/core/math/pose';
+import { fromAxisAngle, identity } from '../../../../src/core/math/quat';
+import { add, addScaled, distance, scale, up, type Vec3, vec3 } from '../../../../src/core/math/vec3';
+import type { TrackedPose, TrackingFrame } from '../../../../src/core/tracking/tracking-frame';
+import { number, seed, vector } from '../../arbitraries';
+import { holder, leftThrower, told } from './playing';
+
+const arenaFromFloor = stations[leftThrower]!;
+const floorFromArena = invertTransform(arenaFromFloor);
+const other = { left: 'right', right: 'left' } as const;
+type Side = 'left' | 'right';
+
+/** Somebody whose one fist is told, in the arena; the other hangs. */
+function throwing(options: { side?: Side; button?: Button; state?: BallState; player?: number } = {}) {
+  const { side = 'right', button = 'trigger', player = leftThrower } = options;
+  const match = told();
+  let time = 100;
+  const settings = { player, matchAhead: -100, arenaFromFloor, state: options.state ?? match.state };
+  const gestures = createBallGestures(() => settings);
+  const tracked = (fist: Vec3, hand: Side): TrackedPose => ({
+    ...transformPose(floorFromArena, wristAround<'arena'>(hand, fist, vec3(0, 0, -1), vec3(0, 1, 0))),
+    tracking: 'tracked',
+  });
+  const frame = (fist: Vec3 | null, pressed: number, kind?: HandButtons['kind'], seconds = 1 / 90) => {
+    time += seconds;
+    const hanging = transformPoint(arenaFromFloor, vec3(side === 'right' ? -0.25 : 0.25, 0.8, 0));
+    const hands = {
+      [`${side}Hand`]: fist && tracked(fist, side),
+      [`${other[side]}Hand`]: tracked(hanging, other[side]),
+    } as unknown as Pick<TrackingFrame, 'leftHand' | 'rightHand'>;
+    const head: TrackedPose = { position: vec3(0, 1.6, 0), orientation: identity, tracking: 'tracked' };
+    const buttons = { [side]: { ...allReleased, [button]: pressed, ...(kind ? { kind } : {}) } } as Record<
+      Side,
+      HandButtons
+    >;
+    const done = gestures.follow(
+      { time, head, ...hands },
+      { ...{ left: allReleased, right: allReleased }, ...buttons },
+    );
+    settings.state = ballRules.step(settings.state, done.actions).state;
+    return done;
+  };
+  const deeds = (done: { readonly actions: readonly BallAction[] }) =>
+    done.actions.filter(({ type }) => type !== 'pose');
+  return { frame, deeds, gestures, settings, ball: rackPosition(0, 20), now: () => time - 100 };
+}
+
+const ahead = transformPoint(arenaFromFloor, vec3(0.2, 1.5, -0.3));
+
+/** Takes ball 0 and carries it ahead. */
+function carrying(options: Parameters<typeof throwing>[0] = {}) {
+  const somebody = throwing(options);
+  somebody.frame(somebody.ball, 0);
+  const taken = somebody.frame(somebody.ball, 1);
+  for (let i = 0; i < 10; i++) somebody.frame(ahead, 1);
+  return { ...somebody, taken };
+}
+
+describe('a hand', () => {
+  test.each([
+    ['left', 'trigger'],
+    ['right', 'grip'],
+    ['left', 'pinch'],
+  ] as const)('takes and throws: the %s one with its %s', (side, button) => {
+    const { frame, deeds, taken, settings, now } = carrying({ side, button });
+    expect(deeds(taken)).toEqual([{ type: 'grab', player: leftThrower, sequence: 1, side, ball: 0 }]);
+    expect(settings.state.balls[0]).toEqual({ on: 'hand', player: leftThrower, side });
+    const velocity = vec3(0.5, 3, -4);
+    const fist = (i: number) => addScaled(ahead, velocity, i / 90);
+    for (let i = 1; i < 12; i++) frame(fist(i), 1);
+    let done = frame(fist(12), 0);
+    if (button === 'pinch') done = frame(fist(13), 0);
+    const [thrown] = deeds(done);
+    if (thrown?.type !== 'throw') throw new Error('nothing thrown');
+    expect(distance(thrown.velocity, velocity)).toBeLessThan(1e-9);
+    expect(distance(thrown.position, fist(12))).toBeLessThan(1e-9);
+    expect(thrown.at).toBeCloseTo(button === 'pinch' ? now() - 1 / 90 : now(), 9);
+    expect(settings.state.balls[0]?.on).toBe('air');
+    expect(done.held).toEqual({ left: null, right: null });
+  });
+
+  test('feels the ball that a press would take, and takes nothing from far away', () => {
+    const { frame, deeds, ball } = throwing();
+    expect(frame(add(ball, vec3(0, 0.5, 0)), 0).near.right).toBeNull();
+    const near = frame(add(ball, vec3(0, 0.1, 0)), 0);
+    expect(near.near.right).toBe(0);
+    expect(near.haptics.length).toBe(1);
+    expect(frame(add(ball, vec3(0, 0.1, 0)), 0).haptics.length).toBe(0);
+    frame(add(ball, vec3(0, 0.5, 0)), 0);
+    expect(deeds(frame(add(ball, vec3(0, 0.5, 0)), 1))).toEqual([]);
+    // Coming near with the button down is no press.
+    expect(deeds(frame(ball, 1))).toEqual([]);
+  });
+
+  test('that lets go at rest puts the ball back', () => {
+    const { frame, deeds, settings } = carrying();
+    for (let i = 0; i < 10; i++) frame(ahead, 1);
+    expect(deeds(frame(ahead, 0))).toEqual([{ type: 'drop', player: leftThrower, sequence: 2, side: 'right' }]);
+    expect(settings.state.balls[0]).toEqual({ on: 'rack' });
+  });
+
+  test('that is lost for a moment keeps its ball, for longer puts it back, and never throws', () => {
+    const { frame, deeds, gestures } = carrying();
+    for (let i = 0; i < 20; i++) expect(deeds(frame(null, 0))).toEqual([]);
+    expect(deeds(frame(ahead, 1))).toEqual([]);
+    const dropped = Array.from({ length: Math.ceil(90 * holdSeconds) + 3 }, () => deeds(frame(null, 0))).flat();
+    expect(dropped).toEqual([{ type: 'drop', player: leftThrower, sequence: 2, side: 'right' }]);
+    expect(gestures.sequence).toBe(2);
+  });
+
+  test('that returns with its button released has not thrown', () => {
+    const { frame, deeds } = carrying();
+    frame(null, 1);
+    expect(deeds(frame(addScaled(ahead, vec3(0, 1, -1), 0.3), 0)).map(({ type }) => type)).toEqual(['drop']);
+  });
+
+  test('whose device changes lets go', () => {
+    const somebody = throwing();
+    somebody.frame(somebody.ball, 0, 'controller');
+    somebody.frame(somebody.ball, 1, 'controller');
+    somebody.frame(ahead, 1, 'controller');
+    expect(somebody.deeds(somebody.frame(ahead, 1, 'hand')).map(({ type }) => type)).toEqual(['drop']);
+  });
+
+  test('lets go in a pause: nobody throws across a menu', () => {
+    const { frame, deeds } = carrying();
+    expect(deeds(frame(addScaled(ahead, vec3(0, 0, -1), 0.5), 0, undefined, 2)).map(({ type }) => type)).toEqual([
+      'drop',
+    ]);
+  });
+
+  test('whose grab was refused is empty, and says so', () => {
+    const { frame, gestures } = carrying();
+    gestures.hear([{ type: 'refused', player: leftThrower, sequence: 1, reason: 'taken' }]);
+    const done = frame(ahead, 1);
+    expect(done.held.right).toBeNull();
+    expect(done.cues.map(({ type }) => type)).toEqual(['slipped']);
+  });
+
+  test('of the basket holder takes no balls but tells where it is', () => {
+    const { frame, ball, deeds, settings } = throwing({ player: holder });
+    frame(ball, 0);
+    const done = frame(ball, 1);
+    expect(deeds(done)).toEqual([]);
+    const pose = done.actions[0];
+    if (pose?.type !== 'pose') throw new Error('no pose');
+    expect(pose.at).toBeCloseTo(2 / 90, 9);
+    expect(distance(fistOf(pose.right!), ball)).toBeLessThan(1e-9);
+    expect(settings.state.players[holder]?.at).toBeCloseTo(2 / 90, 3);
+  });
+});
+
+describe('the speed of a hand', () => {
+  const follow = (path: (time: number) => Vec3, times: readonly number[]): Vec3 => {
+    const speed = createHandSpeed();
+    for (const time of times) speed.follow(time, path(time));
+    return speed.velocity();
+  };
+  const times = (hz: number, seconds = 0.3) => Array.from({ length: Math.round(seconds * hz) + 1 }, (_, i) => i / hz);
+
+  test('of an even pull is the same at every frame rate, with frames dropped and times that jitter', () => {
+    fc.assert(
+      fc.property(
+        vector(10),
+        fc.constantFrom(60, 72, 80, 90, 120),
+        fc.array(fc.record({ kept: fc.integer({ min: 0, max: 9 }), jitter: number(-0.3, 0.3) }), {
+          minLength: 40,
+          maxLength: 40,
+        }),
+        (velocity, hz, luck) => {
+          const kept = times(hz).flatMap((time, i) =>
+            luck[i]!.kept < 7 || i === 0 ? [time + luck[i]!.jitter / hz] : [],
+          );
+          fc.pre(kept.length > 2);
+          expect(
+            distance(
+              follow((time) => scale(velocity, time), kept),
+              velocity,
+            ),
+          ).toBeLessThan(1e-6);
+        },
+      ),
+      { seed },
+    );
+  });
+
+  test('of an overhand throw lands within 10 cm of the same place at every frame rate, 30 % of the frames dropped', () => {
+    // An arm of 65 cm about the shoulder, 9 rad/s and faster.
+    const path = (time: number): Vec3 => {
+      const angle = 9 * time + 4 * time * time - 2.2;
+      return vec3(0.1 * time, 1.4 + 0.65 * Math.cos(angle), -0.65 * Math.sin(angle));
+    };
+    const reference = follow(path, times(1000));
+    expect(distance(reference, vec3(0, 0, 0))).toBeGreaterThan(4);
+    let worst = 0;
+    for (const hz of [72, 80, 90, 120]) {
+      for (let dropped = 0; dropped < 10; dropped++) {
+        const kept = times(hz).filter((time, i) => (i * 7 + dropped) % 10 > 2 || time >= 0.3 - 1e-9 || i === 0);
+        const last = kept.at(-1)!;
+        const velocity = follow(path, kept);
+        const same = follow(path, times(1000, last));
+        // After one second of flight.
+        worst = Math.max(worst, distance(velocity, same));
+      }
+    }
+    console.log(
+      `ball game: a throw of ${distance(reference, vec3(0, 0, 0)).toFixed(1)} m/s differs by ${(100 * worst).toFixed(1)} cm/s at most`,
+    );
+    expect(worst).toBeLessThan(0.1);
+  });
+
+  test('looks back 80 ms and no further', () => {
+    const turned = (time: number) => (time < 0.2 ? vec3(5 * time, 0, 0) : vec3(1, 0, -4 * (time - 0.2)));
+    expect(distance(follow(turned, times(1000, 0.2 + throwWindow)), vec3(0, 0, -4))).toBeLessThan(1e-6);
+  });
+
+  test('is none of a hand that has just come, or of times that do not rise', () => {
+    expect(follow(() => vec3(1, 1, 1), [])).toEqual(vec3(0, 0, 0));
+    expect(follow((time) => vec3(time, 1, 1), [1])).toEqual(vec3(0, 0, 0));
+    expect(follow((time) => vec3(time, 1, 1), [1, 1, 0.5])).toEqual(vec3(0, 0, 0));
+    expect(follow((time) => vec3(time, 1, 1), [1, 1.5])).toEqual(vec3(0, 0, 0));
+  });
+
+  test('turns with the person', () => {
+    fc.assert(
+      fc.property(vector(5), number(-Math.PI, Math.PI), (velocity, yaw) => {
+        const turn = { position: vec3(1, 0, 2), orientation: fromAxisAngle(up, yaw) };
+        const there = (time: number) => transformPoint(turn, scale(velocity, time));
+        const turned = transformPoint({ ...turn, position: vec3(0, 0, 0) }, velocity);
+        expect(distance(follow(there, times(90)), turned)).toBeLessThan(1e-9);
+      }),
+      { seed },
+    );
+  });
+});

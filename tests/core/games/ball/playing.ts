@@ -1,0 +1,105 @@
+import type {
+  BallAction,
+  BallDeed,
+  BallEvent,
+  BallOptions,
+  BallState,
+} from '../../../../src/core/games/ball/ball-state';
+import { ballRules } from '../../../../src/core/games/ball/rules';
+import { rackPosition, stations } from '../../../../src/core/games/ball/stations';
+import { gravity } from '../../../../src/core/games/ballistics';
+import { wristAround } from '../../../../src/core/games/fist';
+import type { Pose } from '../../../../src/core/math/pose';
+import { add, addScaled, normalise, scale, subtract, type Vec3, vec3 } from '../../../../src/core/math/vec3';
+
+export const { tickSeconds } = ballRules;
+
+/** Where the two throwers and the holder sit among the players, roles not rotated. */
+export const [leftThrower, rightThrower, holder] = [0, 1, 2] as const;
+
+export const headOf = (player: number): Vec3 => add(stations[player]!.position, vec3(0, 1.6, 0));
+
+/** A thrower who stands at the station with both fists there. */
+export const stand = (player: number, at: number, left: Vec3, right = left): BallAction => ({
+  type: 'pose',
+  player,
+  at,
+  head: headOf(player),
+  left: wristAround('left', left, vec3(0, 0, -1), vec3(0, 1, 0)),
+  right: wristAround('right', right, vec3(0, 0, -1), vec3(0, 1, 0)),
+});
+
+/** The holder's hands round a basket whose opening is there and looks that way. */
+export function hold(at: number, opening: Vec3, normal = vec3(0, 1, 0)): BallAction {
+  const across = normalise(subtract(vec3(-1, 0, 0), scale(normal, -normal.x)));
+  const hand = (side: 'left' | 'right'): Pose<'arena'> =>
+    wristAround(side, addScaled(opening, across, side === 'left' ? -0.22 : 0.22), vec3(0, 0, 1), normal);
+  return { type: 'pose', player: holder, at, head: headOf(holder), left: hand('left'), right: hand('right') };
+}
+
+/** In front of the holder, at the height of the belly. */
+export const inFront = add(stations[holder]!.position, vec3(0, 1.1, 0.45));
+
+/** The velocity that brings a ball from one place to another in this time [s]. */
+export const velocityTo = (from: Vec3, to: Vec3, seconds: number): Vec3 =>
+  addScaled(scale(subtract(to, from), 1 / seconds), vec3(0, 1, 0), 0.5 * gravity * seconds);
+
+/** A match told tick by tick, everybody there and ready unless told. */
+export function told(options: Partial<BallOptions> = {}, ready = true) {
+  const events: BallEvent[] = [];
+  const log: (readonly BallAction[])[] = [];
+  let state: BallState = ballRules.start(['ann', 'ben', 'cal'], 1, options);
+  const sequence = [0, 0, 0];
+  const step = (...actions: BallAction[]) => {
+    log.push(actions);
+    const done = ballRules.step(state, actions);
+    state = done.state;
+    events.push(...done.events);
+    return done.events;
+  };
+  const now = () => state.tick * tickSeconds;
+  const pass = (seconds: number) => {
+    for (let i = 0; i < Math.round(seconds / tickSeconds); i++) step(hold(now(), inFront));
+  };
+  type Unnumbered = BallDeed extends infer D ? (D extends BallDeed ? Omit<D, 'sequence'> : never) : never;
+  const deed = (player: number, what: Unnumbered): BallAction => {
+    sequence[player]! += 1;
+    return { ...what, player, sequence: sequence[player]! } as BallAction;
+  };
+  const release = (player: number): Vec3 => addScaled(headOf(player), vec3(0, 0, -1), 0.5);
+  const take = (player: number, ball: number, side: 'left' | 'right' = 'right') =>
+    step(
+      hold(now(), inFront),
+      stand(player, now(), rackPosition(ball, state.options.balls)),
+      deed(player, { type: 'grab', side, ball }),
+    );
+  const toss = (player: number, ball: number, to: Vec3, seconds = 1, side: 'left' | 'right' = 'right') => {
+    const from = release(player);
+    return step(
+      hold(now(), inFront),
+      stand(player, now(), from),
+      deed(player, { type: 'throw', side, ball, at: now(), position: from, velocity: velocityTo(from, to, seconds) }),
+    );
+  };
+  if (ready) {
+    step(...[0, 1, 2].map((player): BallAction => ({ type: 'join', player })));
+    step(hold(0, inFront), ...[0, 1, 2].map((player): BallAction => ({ type: 'ready', player, ready: true })));
+  }
+  return {
+    get state() {
+      return state;
+    },
+    now,
+    events,
+    log,
+    step,
+    pass,
+    deed,
+    release,
+    take,
+    toss,
+    happened: <T extends BallEvent['type']>(type: T) =>
+      events.filter((event): event is Extract<BallEvent, { type: T }> => event.type === type),
+    refusals: () => events.flatMap((event) => (event.type === 'refused' ? [event.reason] : [])),
+  };
+}

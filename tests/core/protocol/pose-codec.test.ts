@@ -1,0 +1,354 @@
+import fc from 'fast-check';
+import { afterAll, beforeAll, describe, expect, test } from 'vitest';
+import { defaultCalibration } from '../../../src/core/body/calibration';
+import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
+import { jointNames, parentOf } from '../../../src/core/body/joints';
+import { skeletonFromCalibration, wristFromHandBone } from '../../../src/core/body/skeleton';
+import { createEstimator } from '../../../src/core/estimation/estimators';
+import type { PoseRegressor } from '../../../src/core/estimation/pose-regressor';
+import { angleBetween, identity, multiply } from '../../../src/core/math/quat';
+import { nextRandom } from '../../../src/core/math/random';
+import { distance, vec3 } from '../../../src/core/math/vec3';
+import {
+  decodePoints,
+  decodePose,
+  encodePose,
+  longestPose,
+  type PosePacket,
+  poseVersion,
+} from '../../../src/core/protocol/pose-codec';
+import { isNightly } from '../../nightly';
+import { seed } from '../arbitraries';
+import { openShippedModel } from '../estimation/shipped-models';
+import { packetOf, someoneSent } from './sent-bodies';
+
+const degrees = 180 / Math.PI;
+const sides = ['left', 'right'] as const;
+
+/** The largest of many numbers of each kind. */
+function worstOf() {
+  const worst = new Map<string, number>();
+  return {
+    take: (what: string, value: number) => worst.set(what, Math.max(worst.get(what) ?? 0, value)),
+    of: (what: string): number => worst.get(what) ?? Number.NaN,
+    told: () => [...worst].map(([what, value]) => `${what} ${value.toFixed(2)}`).join(', '),
+  };
+}
+
+const everyNumber = (value: unknown): number[] =>
+  typeof value === 'number'
+    ? [value]
+    : typeof value === 'object' && value !== null
+      ? Object.values(value).flatMap(everyNumber)
+      : [];
+
+/** What the receiver may be off by, for anybody in any movement, hands seen, lost, guessed, coming back, out of reach or wrung. */
+async function measure(
+  worst: ReturnType<typeof worstOf>,
+  create: Parameters<typeof packetOf>[1] | undefined,
+  numRuns: number,
+): Promise<void> {
+  await fc.assert(
+    fc.asyncProperty(someoneSent, async (someone) => {
+      const { packet, skeleton } = await packetOf(someone, create);
+      const bytes = encodePose(packet, skeleton)!;
+      worst.take('bytes', bytes.length);
+      const back = decodePose(bytes, skeleton)!;
+      expect(back.timeMs).toBe(packet.timeMs);
+      expect(back.jump).toBe(packet.jump);
+      for (const name of ['head', 'leftHand', 'rightHand'] as const) {
+        const [sent, shown] = [packet.pose[name], back.pose[name]];
+        expect(shown?.tracking).toBe(sent?.tracking);
+        if (!sent || !shown) continue;
+        worst.take('head and hands [mm]', 1000 * distance(sent.position, shown.position));
+        worst.take('head and hands [°]', degrees * angleBetween(sent.orientation, shown.orientation));
+      }
+      const sent = forwardKinematics(skeleton, packet.pose.body!);
+      const shown = forwardKinematics(skeleton, back.pose.body!);
+      for (const side of sides) {
+        expect(Math.abs(back.grips[side] - packet.grips[side])).toBeLessThanOrEqual(1 / 30 + 1e-9);
+        const [curl, shownCurl] = [packet.curls[side], back.curls[side]];
+        const hand = packet.pose[`${side}Hand`];
+        const wrist = sent[`${side}Hand`];
+        const caught = hand !== null && distance(hand.position, wrist.position) < 0.002;
+        const turned = hand && angleBetween(multiply(hand.orientation, wristFromHandBone[side]), wrist.orientation);
+        if (caught && turned! < 0.01) {
+          worst.take('wrists at their hands [mm]', 1000 * distance(wrist.position, shown[`${side}Hand`].position));
+          expect(shownCurl === null).toBe(curl === null);
+        }
+        for (const [i, finger] of (shownCurl ?? []).entries()) {
+          expect(Math.abs(finger - curl![i]!)).toBeLessThanOrEqual(1 / 14 + 1e-9);
+        }
+      }
+      for (const joint of jointNames) {
+        worst.take('joints [mm]', 1000 * distance(sent[joint].position, shown[joint].position));
+        worst.take('joints [°]', degrees * angleBetween(sent[joint].orientation, shown[joint].orientation));
+      }
+    }),
+    { seed, numRuns },
+  );
+}
+
+describe('a body on the wire', () => {
+  const learned: { regressor?: PoseRegressor } = {};
+  beforeAll(async () => {
+    learned.regressor = await openShippedModel('learned');
+  });
+  afterAll(() => learned.regressor?.dispose());
+
+  test.each([
+    ['ik', undefined, isNightly ? 20_000 : 1500],
+    ['learned', 'learned', isNightly ? 3000 : 150],
+  ] as const)('of %s: 1 mm and 0.5° at head and hands, 1 cm at any joint, 64 bytes', async (_, name, runs) => {
+    const worst = worstOf();
+    const create =
+      name && ((calibration: typeof defaultCalibration) => createEstimator(name, calibration, learned.regressor));
+    await measure(worst, create, runs);
+    console.log(`pose codec, ${name ?? 'ik'}, ${runs} bodies, worst: ${worst.told()}`);
+    expect(worst.of('bytes')).toBeLessThanOrEqual(longestPose);
+    expect(worst.of('head and hands [mm]')).toBeLessThan(1);
+    expect(worst.of('head and hands [°]')).toBeLessThan(0.5);
+    expect(worst.of('wrists at their hands [mm]')).toBeLessThan(1);
+    expect(worst.of('joints [mm]')).toBeLessThan(10);
+    expect(worst.of('joints [°]')).toBeLessThan(4);
+  });
+
+  test('keeps the lengths of its bones', async () => {
+    await fc.assert(
+      fc.asyncProperty(someoneSent, async (someone) => {
+        const { packet, skeleton } = await packetOf(someone);
+        const joints = forwardKinematics(skeleton, decodePose(encodePose(packet, skeleton)!, skeleton)!.pose.body!);
+        for (const joint of jointNames) {
+          const parent = parentOf[joint];
+          if (!parent) continue;
+          const { x, y, z } = skeleton.restOffsets[joint];
+          expect(distance(joints[joint].position, joints[parent].position)).toBeCloseTo(Math.hypot(x, y, z), 9);
+        }
+      }),
+      { seed, numRuns: 100 },
+    );
+  });
+
+  test('costs 57 bytes while a controller holds each hand: 1.7 kB/s at 30 Hz', async () => {
+    await fc.assert(
+      fc.asyncProperty(someoneSent, async (someone) => {
+        const { packet, skeleton } = await packetOf({
+          ...someone,
+          actor: true,
+          fates: { left: 'seen', right: 'seen' },
+          curls: { left: null, right: null },
+        });
+        expect(encodePose(packet, skeleton)!.length).toBeLessThanOrEqual(57);
+      }),
+      { seed, numRuns: 100 },
+    );
+  });
+
+  test('that is sent again as it was received arrives within the same bounds', async () => {
+    await fc.assert(
+      fc.asyncProperty(someoneSent, async (someone) => {
+        const { packet, skeleton } = await packetOf(someone);
+        const once = decodePose(encodePose(packet, skeleton)!, skeleton)!;
+        const twice = decodePose(encodePose(once, skeleton)!, skeleton)!;
+        expect(distance(once.pose.head.position, twice.pose.head.position)).toBeLessThan(1e-9);
+        const sent = forwardKinematics(skeleton, once.pose.body!);
+        const shown = forwardKinematics(skeleton, twice.pose.body!);
+        for (const joint of jointNames) {
+          expect(distance(sent[joint].position, shown[joint].position)).toBeLessThan(0.01);
+        }
+      }),
+      { seed, numRuns: 100 },
+    );
+  });
+});
+
+const skeleton = skeletonFromCalibration(defaultCalibration);
+
+/** Somebody who shows no body: the head at rest, the left hand lost, the right one guessed. */
+const handsOnly: PosePacket = {
+  timeMs: 0x1234,
+  jump: false,
+  pose: {
+    head: { position: vec3(0.001, 1.6, -2), orientation: identity, tracking: 'tracked' },
+    leftHand: null,
+    rightHand: {
+      position: vec3(0.201, 1.1, -2.5),
+      orientation: { x: 0, y: Math.SQRT1_2, z: 0, w: Math.SQRT1_2 },
+      tracking: 'emulated',
+    },
+    body: null,
+  },
+  grips: { left: 0, right: 1 },
+  curls: { left: null, right: null },
+};
+
+const bytesOf = (bits: readonly string[]): number[] =>
+  bits
+    .join('')
+    .padEnd(Math.ceil(bits.join('').length / 8) * 8, '0')
+    .match(/.{8}/g)!
+    .map((byte) => Number.parseInt(byte, 2));
+
+const binary = (value: number, bits: number): string => value.toString(2).padStart(bits, '0');
+
+describe('bytes', () => {
+  test('are those of docs/protocol.md, bit by bit', () => {
+    const expected = bytesOf([
+      '0001', // version 1
+      '0', // no jump
+      '0', // no body
+      '1', // head tracked
+      '00', // no curls
+      '00', // no free arms
+      '00', // left hand lost
+      '01', // right hand emulated
+      '0001001000110100', // 0x1234 ms
+      binary(32767 + 2, 16), // head x: 2 half millimetres
+      binary(4095 + (1600 - (-1000 + 4095 / 2)) * 2, 13), // head y from the middle of its range
+      binary(32767 - 4000, 16), // head z
+      '11', // w is largest
+      ...[1023, 1023, 1023].map((zero) => binary(zero, 11)),
+      '0000', // left grip open
+      '1111', // right grip closed
+      binary(4095 + 400, 13), // right hand from the head: 0.2 m
+      binary(4095 - 1000, 13), // -0.5 m
+      binary(4095 - 1000, 13), // -0.5 m
+      '11', // w, which is as large as y
+      ...[1023, 2046, 1023].map((part) => binary(part, 11)),
+    ]);
+    expect([...encodePose(handsOnly, skeleton)!]).toEqual(expected);
+    expect(expected.length).toBe(25);
+    const back = decodePose(Uint8Array.from(expected), skeleton)!;
+    expect(distance(back.pose.head.position, handsOnly.pose.head.position)).toBeLessThan(1e-9);
+    expect(distance(back.pose.rightHand!.position, handsOnly.pose.rightHand!.position)).toBeLessThan(1e-9);
+    expect(back.pose.leftHand).toBeNull();
+    expect(back.pose.rightHand!.orientation).toBeSameRotationAs(handsOnly.pose.rightHand!.orientation, 1e-4);
+    expect(back.pose.body).toBeNull();
+    expect(back.grips).toEqual({ left: 0, right: 1 });
+  });
+
+  test('of a T-pose are these, until the version changes', () => {
+    const localRotations = Object.fromEntries(jointNames.map((joint) => [joint, identity])) as Record<
+      (typeof jointNames)[number],
+      typeof identity
+    >;
+    const body = { hipsPosition: skeleton.restOffsets.hips, localRotations };
+    const head = forwardKinematics(skeleton, body).head.position;
+    const eyes = vec3(head.x, head.y + skeleton.eyesInHead.y, head.z + skeleton.eyesInHead.z);
+    const packet: PosePacket = {
+      ...handsOnly,
+      timeMs: 0,
+      pose: { head: { ...handsOnly.pose.head, position: eyes }, leftHand: null, rightHand: null, body },
+    };
+    const hex = [...encodePose(packet, skeleton)!].map((byte) => byte.toString(16).padStart(2, '0')).join('');
+    expect(hex).toBe(
+      '16000000ffff43d7ef0dffbff7fe0a1f73a43637ffff9fffd77dce90d8dff8007ffbfeffbffbfeffbffbfeffbfefdfbfdff5a7deff7fa91f78',
+    );
+    const shown = forwardKinematics(skeleton, decodePose(encodePose(packet, skeleton)!, skeleton)!.pose.body!);
+    const sent = forwardKinematics(skeleton, body);
+    for (const joint of jointNames) {
+      expect(distance(shown[joint].position, sent[joint].position)).toBeLessThan(0.002);
+    }
+  });
+
+  test('of another version are nobody', () => {
+    const bytes = encodePose(handsOnly, skeleton)!;
+    for (let version = 0; version < 16; version++) {
+      const other = Uint8Array.from(bytes);
+      other[0] = (version << 4) | (other[0]! & 0xf);
+      expect(decodePose(other, skeleton) !== null).toBe(version === poseVersion);
+    }
+  });
+
+  test('that are too few, too many or not filled up with zeros are nobody', () => {
+    const bytes = encodePose(handsOnly, skeleton)!;
+    for (let length = 0; length < bytes.length; length++) {
+      expect(decodePose(bytes.slice(0, length), skeleton)).toBeNull();
+    }
+    expect(decodePose(Uint8Array.from([...bytes, 0]), skeleton)).toBeNull();
+    const unclean = Uint8Array.from(bytes);
+    unclean[24]! |= 1;
+    expect(decodePose(unclean, skeleton)).toBeNull();
+  });
+
+  test('that say what cannot be are nobody: a third kind of tracking, fingers of a lost hand, a free arm without a body', () => {
+    const bytes = encodePose(handsOnly, skeleton)!;
+    const withBits = (...bits: number[]) => {
+      const changed = Uint8Array.from(bytes);
+      for (const bit of bits) changed[bit >> 3]! ^= 0x80 >> (bit & 7);
+      return decodePose(changed, skeleton);
+    };
+    expect(withBits()).not.toBeNull();
+    expect(withBits(13)).toBeNull();
+    expect(withBits(7)).toBeNull();
+    expect(withBits(10)).toBeNull();
+  });
+
+  test('are none at all for somebody who is not a number', () => {
+    const { head } = handsOnly.pose;
+    const nowhere = { ...head, position: vec3(Number.NaN, 1, 0) };
+    expect(encodePose({ ...handsOnly, pose: { ...handsOnly.pose, head: nowhere } }, skeleton)).toBeNull();
+    const unturned = { ...head, orientation: { ...identity, x: Number.POSITIVE_INFINITY } };
+    expect(encodePose({ ...handsOnly, pose: { ...handsOnly.pose, rightHand: unturned } }, skeleton)).toBeNull();
+    expect(encodePose({ ...handsOnly, timeMs: Number.NaN }, skeleton)).toBeNull();
+  });
+
+  test('hold positions out of range at the edge of it', () => {
+    const { head } = handsOnly.pose;
+    const far = { ...head, position: vec3(100, 9, -100) };
+    const back = decodePose(encodePose({ ...handsOnly, pose: { ...handsOnly.pose, head: far } }, skeleton)!, skeleton)!;
+    expect(back.pose.head.position.x).toBeCloseTo(16.3835, 9);
+    expect(back.pose.head.position.y).toBeCloseTo(3.095, 9);
+    expect(back.pose.head.position.z).toBeCloseTo(-16.3835, 9);
+  });
+});
+
+test('100,000 bad packets (a million at night) decode to null or to somebody finite, and throw nothing', async () => {
+  const cases = isNightly ? 1_000_000 : 100_000;
+  let random = { seed };
+  const chance = (): number => {
+    const next = nextRandom(random);
+    random = next.state;
+    return next.value;
+  };
+  const below = (end: number): number => Math.floor(chance() * end);
+  const good: Uint8Array[] = [];
+  for (const someone of fc.sample(someoneSent, { seed, numRuns: 60 })) {
+    const { packet, skeleton: own } = await packetOf(someone);
+    good.push(encodePose(packet, own)!);
+  }
+  good.push(encodePose(handsOnly, skeleton)!);
+  const noise = (length: number): Uint8Array => Uint8Array.from({ length }, () => below(256));
+  const bad = (): Uint8Array => {
+    const sort = chance();
+    if (sort < 0.1) return noise(below(80));
+    if (sort < 0.4) {
+      const bytes = noise(25 + below(40));
+      bytes[0] = (poseVersion << 4) | (bytes[0]! & 0xf);
+      return bytes;
+    }
+    const bytes = Uint8Array.from(good[below(good.length)]!);
+    if (sort < 0.5) return bytes.slice(0, below(bytes.length));
+    if (sort < 0.6) return Uint8Array.from([...bytes, ...noise(1 + below(8))]);
+    for (let flips = 1 + below(12); flips > 0; flips--) bytes[below(bytes.length)]! ^= 1 << below(8);
+    return bytes;
+  };
+  let accepted = 0;
+  for (let i = 0; i < cases; i++) {
+    const bytes = bad();
+    const pose = decodePose(bytes, skeleton);
+    const points = decodePoints(bytes);
+    if ((pose === null) !== (points === null)) throw new Error(`two opinions on ${bytes}`);
+    if (pose === null) continue;
+    accepted += 1;
+    const finite = everyNumber(pose).every(Number.isFinite);
+    const turns = [pose.pose.head, pose.pose.leftHand, pose.pose.rightHand]
+      .flatMap((hand) => (hand ? [hand.orientation] : []))
+      .concat(Object.values(pose.pose.body?.localRotations ?? {}));
+    const unit = turns.every(({ x, y, z, w }) => Math.abs(Math.hypot(x, y, z, w) - 1) < 1e-6);
+    if (!finite || !unit) throw new Error(`nobody's pose from ${bytes}`);
+  }
+  console.log(`pose codec: ${cases} fuzzed packets, ${accepted} decoded to somebody, 0 thrown`);
+  expect(accepted).toBeGreaterThan(cases / 20);
+  expect(accepted).toBeLessThan(cases);
+});

@@ -1,0 +1,99 @@
+import fc from 'fast-check';
+import type { Calibration } from '../../../src/core/body/calibration';
+import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
+import { createIk } from '../../../src/core/estimation/ik';
+import type { PoseEstimator } from '../../../src/core/estimation/pose-estimator';
+import { fromAxisAngle, multiply } from '../../../src/core/math/quat';
+import { up, vec3 } from '../../../src/core/math/vec3';
+import type { FingerCurl, PosePacket } from '../../../src/core/protocol/pose-codec';
+import { actorFrame } from '../../../src/core/tracking/actor-motion';
+import type { TrackedPose, TrackingFrame } from '../../../src/core/tracking/tracking-frame';
+import { number, rotation, standpoint, vector } from '../arbitraries';
+import { movingPerson, transformFrame, withHand } from '../estimation/moving-person';
+
+export const calibrationOf = fc
+  .tuple(number(0.95, 2.1), number(0.82, 1.05))
+  .map(([eyeHeight, ratio]): Calibration => ({ eyeHeight, armSpan: eyeHeight * ratio }));
+
+/** What happens to a hand on the way to the frame that is sent. */
+type Fate = 'seen' | 'lost' | 'emulated' | 'returning' | 'too far' | 'wrung';
+
+const fate = fc.constantFrom<Fate>('seen', 'seen', 'seen', 'lost', 'emulated', 'returning', 'too far', 'wrung');
+
+const rate = 1 / 60;
+/** Frames before the one that is sent: an arm is on its way to rest, or back. */
+const framesBefore = 18;
+
+const curl = fc.option(
+  fc.tuple(number(0, 1), number(0, 1), number(0, 1), number(0, 1), number(0, 1)) as fc.Arbitrary<FingerCurl>,
+  { nil: null },
+);
+
+/** Somebody of any size anywhere, turned anyhow, in the middle of an actor's or a random movement, both hands with a fate. */
+export const someoneSent = fc.record({
+  calibration: calibrationOf,
+  motion: fc.integer({ min: 1 }),
+  actor: fc.boolean(),
+  standpoint,
+  start: number(0, 100),
+  fates: fc.record({ left: fate, right: fate }),
+  away: vector(0.9),
+  turned: rotation,
+  jump: fc.boolean(),
+  headEmulated: fc.boolean(),
+  grips: fc.record({ left: number(0, 1), right: number(0, 1) }),
+  curls: fc.record({ left: curl, right: curl }),
+});
+
+export type Someone = typeof someoneSent extends fc.Arbitrary<infer T> ? T : never;
+
+/** The frames up to the one that is sent. */
+export function framesOf(someone: Someone): readonly TrackingFrame[] {
+  const { calibration, motion, actor, standpoint: at, start, fates, away, turned } = someone;
+  const person = movingPerson(motion, calibration, at);
+  const place = { position: vec3(at.x, 0, at.z), orientation: fromAxisAngle(up, at.yaw) };
+  const frameAt = (time: number): TrackingFrame =>
+    actor ? transformFrame(place, actorFrame(time, calibration)) : person(time);
+  return Array.from({ length: framesBefore + 1 }, (_, i) => {
+    let frame = frameAt(start + i * rate);
+    for (const side of ['left', 'right'] as const) {
+      const hand = frame[`${side}Hand`] as TrackedPose;
+      const changed = {
+        seen: hand,
+        lost: i > 4 ? null : hand,
+        emulated: i > 4 ? { ...hand, tracking: 'emulated' as const } : hand,
+        returning: i > 1 && i < framesBefore - 5 ? null : hand,
+        'too far': {
+          ...hand,
+          position: vec3(hand.position.x + away.x, hand.position.y + away.y, hand.position.z + away.z),
+        },
+        wrung: { ...hand, orientation: multiply(hand.orientation, turned) },
+      }[fates[side]];
+      frame = withHand(frame, side, changed);
+    }
+    return someone.headEmulated ? { ...frame, head: { ...frame.head, tracking: 'emulated' as const } } : frame;
+  });
+}
+
+/** What somebody sends whose body this estimator solves (IK unless told). */
+export async function packetOf(
+  someone: Someone,
+  create: (calibration: Calibration) => PoseEstimator = createIk,
+): Promise<{ packet: PosePacket; skeleton: ReturnType<typeof skeletonFromCalibration> }> {
+  const estimator = create(someone.calibration);
+  let pose: PosePacket['pose'] | null = null;
+  for (const frame of framesOf(someone)) {
+    await estimator.prepare(frame);
+    pose = estimator.estimate(frame);
+  }
+  return {
+    packet: {
+      timeMs: Math.round(someone.start * 1000) % 65536,
+      jump: someone.jump,
+      pose: pose!,
+      grips: someone.grips,
+      curls: someone.curls,
+    },
+    skeleton: skeletonFromCalibration(someone.calibration),
+  };
+}
