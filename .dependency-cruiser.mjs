@@ -114,6 +114,14 @@ export default {
       to: { path: packagePath('socket\\.io[^/]*', '@socket\\.io/[^/]+') },
     },
     {
+      name: 'sqlite-stores',
+      comment:
+        'The database stands behind StudyStore, so that another one (or the Node module, once we need no Node 20) is one file.',
+      severity: 'error',
+      from: { path: '^(src|server)/', pathNot: '^server/study-store\\.ts$' },
+      to: { path: packagePath('@photostructure/sqlite') },
+    },
+    {
       name: 'server-knows-core-alone',
       comment: 'The server shares the rules with the page, not the page: nothing that draws belongs in it.',
       severity: 'error',

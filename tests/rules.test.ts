@@ -97,6 +97,7 @@ describe('the import rules', () => {
     ['and its VRM loader', 'three-draws', { 'src/study/a.ts': "import '@pixiv/three-vrm';" }],
     ['the runtime stays behind inference', 'onnxruntime-infers', { 'src/main.ts': "import 'onnxruntime-web/wasm';" }],
     ['sockets stay in net and server', 'socket-io-connects', { 'src/ui/a.ts': "import 'socket.io-client';" }],
+    ['the database stays in one file', 'sqlite-stores', { 'server/a.ts': "import '@photostructure/sqlite';" }],
     [
       'the server draws nothing',
       'server-knows-core-alone',
