@@ -49,8 +49,25 @@ export default {
         'core runs in the page, in the server and in tests alike: no package, no Node module and no adapter, so that it ' +
         'can neither draw nor wait nor ask the time.',
       severity: 'error',
-      from: { path: '^src/core/' },
+      from: { path: '^src/core/', pathNot: '^src/core/study/' },
       to: { pathNot: '^src/core/' },
+    },
+    {
+      name: 'core-study-is-pure',
+      comment:
+        'As core-is-pure, with two exceptions, both of them functions of their arguments alone: valibot, because study files and ' +
+        'records arrive from outside and errors must name the field; and, in statistics.ts, the distribution functions of ' +
+        'stdlib, because p-values belong to a library that agrees with R.',
+      severity: 'error',
+      from: { path: '^src/core/study/', pathNot: '^src/core/study/statistics\\.ts$' },
+      to: { pathNot: ['^src/core/', packagePath('valibot')] },
+    },
+    {
+      name: 'core-statistics-is-pure',
+      comment: 'See core-study-is-pure.',
+      severity: 'error',
+      from: { path: '^src/core/study/statistics\\.ts$' },
+      to: { pathNot: ['^src/core/', packagePath('@stdlib/stats-base-dists-[^/]+')] },
     },
     {
       name: 'adapters-are-strangers',
@@ -95,6 +112,14 @@ export default {
       severity: 'error',
       from: { path: '^(src|server)/', pathNot: '^(src/net|server)/' },
       to: { path: packagePath('socket\\.io[^/]*', '@socket\\.io/[^/]+') },
+    },
+    {
+      name: 'sqlite-stores',
+      comment:
+        'The database stands behind StudyStore, so that another one (or the Node module, once we need no Node 20) is one file.',
+      severity: 'error',
+      from: { path: '^(src|server)/', pathNot: '^server/study-store\\.ts$' },
+      to: { path: packagePath('@photostructure/sqlite') },
     },
     {
       name: 'server-knows-core-alone',

@@ -72,6 +72,14 @@ describe('the import rules', () => {
       { 'src/core/math/a.ts': "import '../../scene/b';", 'src/scene/b.ts': empty },
     ],
     ['core imports no package', 'core-is-pure', { 'src/core/math/a.ts': "import 'valibot';" }],
+    ['validation stays in the study', 'core-is-pure', { 'src/core/games/a.ts': "import 'valibot';" }],
+    ['the study draws nothing', 'core-study-is-pure', { 'src/core/study/a.ts': "import 'three';" }],
+    [
+      'p-values come from one file',
+      'core-study-is-pure',
+      { 'src/core/study/plan.ts': "import '@stdlib/stats-base-dists-t-cdf';" },
+    ],
+    ['which needs nothing else', 'core-statistics-is-pure', { 'src/core/study/statistics.ts': "import 'valibot';" }],
     ['core imports no Node', 'core-is-pure', { 'src/core/math/a.ts': "import 'node:fs';" }],
     ['adapters do not meet', 'adapters-are-strangers', { 'src/ui/a.ts': "import '../xr/b';", 'src/xr/b.ts': empty }],
     ['main is the top', 'nobody-imports-main', { 'src/frame-loop.ts': "import './main';", 'src/main.ts': empty }],
@@ -89,6 +97,7 @@ describe('the import rules', () => {
     ['and its VRM loader', 'three-draws', { 'src/study/a.ts': "import '@pixiv/three-vrm';" }],
     ['the runtime stays behind inference', 'onnxruntime-infers', { 'src/main.ts': "import 'onnxruntime-web/wasm';" }],
     ['sockets stay in net and server', 'socket-io-connects', { 'src/ui/a.ts': "import 'socket.io-client';" }],
+    ['the database stays in one file', 'sqlite-stores', { 'server/a.ts': "import '@photostructure/sqlite';" }],
     [
       'the server draws nothing',
       'server-knows-core-alone',
@@ -118,6 +127,8 @@ describe('the import rules', () => {
       'src/core/body/skeleton.ts': "import '../math/vec3';",
       'src/core/estimation/ik.ts':
         "import '../math/vec3';\nimport '../body/skeleton';\nimport '../tracking/tracking-frame';",
+      'src/core/study/plan.ts': "import 'valibot';",
+      'src/core/study/statistics.ts': "import '@stdlib/stats-base-dists-t-cdf';",
       'src/scene/renderer.ts': "import 'three';",
       'src/avatar/mirror.ts':
         "import 'three';\nimport '@pixiv/three-vrm';\nimport '../scene/renderer';\nimport '../core/body/skeleton';",

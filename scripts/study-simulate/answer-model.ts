@@ -1,0 +1,59 @@
+import type { Answers, Questionnaire } from '../../src/core/study/questionnaires';
+import type { RandomSource } from './random-source';
+
+/**
+ * How a simulated participant answers: a leaning [scale points], the person's own, the question's, the condition's, the place's
+ * in the order, and chance, rounded to the scale. Stated, not fitted: nobody's answers are imitated.
+ */
+export interface AnswerModel {
+  /** Where answers lie without any effect, per question; others: `elsewhere`. */
+  readonly base: Readonly<Record<string, number>>;
+  readonly elsewhere: number;
+  /** Standard deviation between persons, alike in all of their answers. */
+  readonly personDeviation: number;
+  /** Standard deviation of one answer about its leaning. */
+  readonly answerDeviation: number;
+  /** Added under a condition to a question: effects[condition][question]; "*" is every question not named. */
+  readonly effects: Readonly<Record<string, Readonly<Record<string, number>>>>;
+  /** Added in the second and later blocks: practice, or weariness. */
+  readonly orderEffect: number;
+}
+
+/** No condition differs from another. */
+export const nullAnswerModel: AnswerModel = {
+  base: {},
+  elsewhere: 3.4,
+  personDeviation: 0.5,
+  answerDeviation: 0.8,
+  effects: {},
+  orderEffect: 0,
+};
+
+/** All questions better under one condition by this many points of the scale before rounding. */
+export const plantedAnswerModel = (condition: string, effect: number): AnswerModel => ({
+  ...nullAnswerModel,
+  effects: { [condition]: { '*': effect } },
+});
+
+/** How this person leans, drawn once. */
+export const drawPerson = (model: AnswerModel, random: RandomSource): number => model.personDeviation * random.normal();
+
+/** All answers of a questionnaire. */
+export function drawAnswers(
+  model: AnswerModel,
+  questionnaire: Questionnaire,
+  { person, condition, block }: { readonly person: number; readonly condition: string; readonly block: number },
+  random: RandomSource,
+): Answers {
+  const effects = model.effects[condition] ?? {};
+  return Object.fromEntries(
+    questionnaire.questions.map(({ id }) => {
+      const leaning =
+        (model.base[id] ?? model.elsewhere) +
+        person +
+        (effects[id] ?? effects['*'] ?? 0) +
+        (block > 1 ? model.orderEffect : 0);
+      return [id, Math.min(5, Math.max(1, Math.round(leaning + model.answerDeviation * random.normal())))];
+    }),
+  );
+}

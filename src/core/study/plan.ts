@@ -1,0 +1,301 @@
+import * as v from 'valibot';
+import { type EstimatorName, estimatorNames } from '../estimation/pose-estimator';
+import { type QuestionnaireId, questionnaireIds } from './questionnaires';
+import { randomFor, shuffle } from './shuffle';
+import { checked, identifier, integerBetween, numberBetween, text, ValidationError } from './validation';
+
+export const planFormat = 'threepoint-study';
+export const planVersion = 1;
+
+const estimator = v.picklist(estimatorNames, `expected one of ${estimatorNames.join(', ')}`);
+const seconds = (max: number) => numberBetween(0, max);
+
+const conditionSchema = v.strictObject({
+  id: identifier,
+  /** For the experimenter and the results; participants never see it. */
+  label: text(60),
+  estimator,
+});
+
+const taskSchema = v.strictObject({
+  id: identifier,
+  title: text(60),
+  game: v.picklist(['archery', 'ball'], 'expected archery or ball'),
+  /** How many play together; they share the order of conditions. */
+  groupSize: integerBetween(1, 6),
+  /** Trials of one block, all under its condition. */
+  repetitions: integerBetween(1, 20),
+  /** Time limit of one trial. */
+  trialSeconds: numberBetween(1, 3600),
+  tutorial: v.strictObject({
+    estimator,
+    /** once: before the first block; each: before every block; never. */
+    when: v.picklist(['never', 'once', 'each'], 'expected never, once or each'),
+    seconds: numberBetween(1, 3600),
+    restSeconds: seconds(3600),
+  }),
+  calibrateBeforeBlock: v.boolean('expected true or false'),
+  /** Between the last trial of a block and its questionnaire. */
+  restSeconds: seconds(3600),
+  questionnaire: v.picklist(questionnaireIds, `expected one of ${questionnaireIds.join(', ')}`),
+  /** Time to answer; who needs longer may finish, and it is recorded. */
+  questionnaireSeconds: numberBetween(10, 7200),
+});
+
+const planSchema = v.strictObject({
+  format: v.literal(planFormat, `expected "${planFormat}": this is no study file`),
+  version: v.literal(planVersion, `expected ${planVersion}, the version that this program reads`),
+  id: identifier,
+  title: text(120),
+  /** Decides groups and orders: the same seed gives the same study. */
+  seed: integerBetween(0, 2 ** 31 - 1),
+  participants: integerBetween(1, 999),
+  /** all: every order of the conditions; williams: as many rows as conditions (twice that if odd), each after each equally often. */
+  orders: v.picklist(['all', 'williams'], 'expected all or williams'),
+  conditions: v.pipe(
+    v.array(conditionSchema, 'expected a list'),
+    v.minLength(2, 'expected at least two conditions to compare'),
+    v.maxLength(8, 'expected at most eight conditions'),
+  ),
+  tasks: v.pipe(
+    v.array(taskSchema, 'expected a list'),
+    v.minLength(1, 'expected at least one task'),
+    v.maxLength(8, 'expected at most eight tasks'),
+  ),
+  consent: v.strictObject({
+    /** Changes with every change of the text. */
+    version: text(40),
+    title: text(120),
+    paragraphs: v.pipe(
+      v.array(text(2000), 'expected a list of paragraphs'),
+      v.minLength(1, 'expected at least one paragraph'),
+      v.maxLength(40, 'expected at most forty paragraphs'),
+    ),
+    /** Asked apart: whether tracked frames may be kept; null: this study never records them. */
+    motion: v.nullable(text(1000)),
+  }),
+  /** After this many days the server deletes what was recorded. */
+  retentionDays: integerBetween(1, 36_500),
+});
+
+/** A study as its file says it. */
+export type StudyPlan = v.InferOutput<typeof planSchema>;
+export type StudyTask = StudyPlan['tasks'][number];
+export type StudyCondition = StudyPlan['conditions'][number];
+
+const mostOrdersListed = 4;
+
+function refuseRepeated(names: readonly string[], fieldOf: (index: number) => string): void {
+  names.forEach((name, index) => {
+    const first = names.indexOf(name);
+    if (first !== index) throw new ValidationError(fieldOf(index), `"${name}" is the name of ${fieldOf(first)} too`);
+  });
+}
+
+/** A study from parsed JSON; throws a ValidationError that names the field. */
+export function checkedPlan(value: unknown): StudyPlan {
+  const plan = checked(planSchema, value);
+  refuseRepeated(
+    plan.conditions.map(({ id }) => id),
+    (index) => `conditions[${index}].id`,
+  );
+  refuseRepeated(
+    plan.tasks.map(({ id }) => id),
+    (index) => `tasks[${index}].id`,
+  );
+  if (plan.orders === 'all' && plan.conditions.length > mostOrdersListed) {
+    throw new ValidationError(
+      'orders',
+      `all orders of ${plan.conditions.length} conditions are more than anybody can run: expected williams`,
+    );
+  }
+  plan.tasks.forEach(({ groupSize }, index) => {
+    if (plan.participants % groupSize !== 0) {
+      throw new ValidationError(
+        `tasks[${index}].groupSize`,
+        `${plan.participants} participants cannot be divided into groups of ${groupSize}`,
+      );
+    }
+  });
+  return plan;
+}
+
+/** A study from the text of its file; throws an Error that names the file and, where there is one, the field. */
+export function parsePlan(json: string, file: string): StudyPlan {
+  try {
+    return checkedPlan(JSON.parse(json));
+  } catch (error) {
+    if (error instanceof ValidationError) throw new ValidationError(error.field, error.complaint, file);
+    if (error instanceof SyntaxError) throw new ValidationError('', `this is no JSON: ${error.message}`, file);
+    throw error;
+  }
+}
+
+/** P01, P02 … in the order of the plan. */
+export function participantsOf(plan: Pick<StudyPlan, 'participants'>): readonly string[] {
+  const digits = plan.participants > 99 ? 3 : 2;
+  return Array.from({ length: plan.participants }, (_, index) => `P${String(index + 1).padStart(digits, '0')}`);
+}
+
+/** Every order of the items, in the order of the items. */
+function permutations<T>(items: readonly T[]): readonly (readonly T[])[] {
+  if (items.length < 2) return [items];
+  return items.flatMap((first, index) =>
+    permutations(items.filter((_, other) => other !== index)).map((rest) => [first, ...rest]),
+  );
+}
+
+/**
+ * Williams' Latin square (Australian Journal of Scientific Research 2, 1949): each item at each place equally often and each
+ * directly after each other equally often. An odd number needs the mirrored square too.
+ */
+function williams<T>(items: readonly T[]): readonly (readonly T[])[] {
+  const count = items.length;
+  const first = Array.from({ length: count }, (_, place) =>
+    place % 2 === 0 ? (count - place / 2) % count : (place + 1) / 2,
+  );
+  const rows = items.map((_, shift) => first.map((index) => items[(index + shift) % count] as T));
+  return count % 2 === 0 ? rows : [...rows, ...rows.map((row) => row.toReversed())];
+}
+
+/** The orders of conditions among which participants and groups are divided. */
+export function ordersOf(plan: Pick<StudyPlan, 'orders' | 'conditions'>): readonly (readonly StudyCondition[])[] {
+  return plan.orders === 'all' ? permutations(plan.conditions) : williams(plan.conditions);
+}
+
+/** Who plays a task together: groups drawn by the seed, alike for all tasks of the same size; alone: one each, in order. */
+export function groupsOf(plan: StudyPlan, groupSize: number): readonly (readonly string[])[] {
+  const participants = participantsOf(plan);
+  if (groupSize === 1) return participants.map((participant) => [participant]);
+  const drawn = shuffle(participants, randomFor(plan.seed, `groups of ${groupSize}`)).items;
+  return Array.from({ length: drawn.length / groupSize }, (_, index) =>
+    drawn.slice(index * groupSize, (index + 1) * groupSize).toSorted(),
+  );
+}
+
+/**
+ * The order of conditions for each group of a task. Orders are drawn in rounds, each round every order once in random
+ * sequence: at any number of groups the counts of two orders differ by at most one, and by none after a whole round.
+ */
+export function ordersByGroup(plan: StudyPlan, task: StudyTask): readonly (readonly StudyCondition[])[] {
+  const orders = ordersOf(plan);
+  const groups = plan.participants / task.groupSize;
+  const drawn: (readonly StudyCondition[])[] = [];
+  let random = randomFor(plan.seed, `orders of ${task.id}`);
+  while (drawn.length < groups) {
+    const round = shuffle(orders, random);
+    random = round.random;
+    drawn.push(...round.items);
+  }
+  return drawn.slice(0, groups);
+}
+
+interface StepOf<Kind extends string> {
+  readonly kind: Kind;
+  /** Unique in the schedule: "archery/2/trial-1". */
+  readonly id: string;
+}
+
+/** A step that belongs to a block: one condition of one task. */
+interface BlockStep {
+  readonly task: string;
+  /** From 1, in the order in which the participant meets the conditions. The tutorial before them all belongs to block 1. */
+  readonly block: number;
+}
+
+/** One thing that a participant does. */
+export type StudyStep =
+  | StepOf<'consent'>
+  | StepOf<'demographics'>
+  | (StepOf<'calibration'> & BlockStep)
+  | (StepOf<'tutorial'> & BlockStep & { readonly estimator: EstimatorName; readonly seconds: number })
+  | (StepOf<'trial'> &
+      BlockStep & {
+        readonly condition: string;
+        readonly estimator: EstimatorName;
+        /** From 1. */
+        readonly repetition: number;
+        readonly seconds: number;
+      })
+  | (StepOf<'rest'> & BlockStep & { readonly seconds: number })
+  | (StepOf<'questionnaire'> &
+      BlockStep & { readonly condition: string; readonly questionnaire: QuestionnaireId; readonly seconds: number })
+  | StepOf<'end'>;
+
+/** What one participant does, from consent to the end. */
+export interface Schedule {
+  readonly study: string;
+  readonly participant: string;
+  readonly consentVersion: string;
+  /** Per task: with whom, and the group's number from 1 (for tasks alone: the participant's). */
+  readonly groups: Readonly<Record<string, { readonly number: number; readonly members: readonly string[] }>>;
+  readonly steps: readonly StudyStep[];
+}
+
+/** What a participant may read instead of a condition's name. */
+export const blindLabel = (step: { readonly block: number }): string => `Round ${step.block}`;
+
+/** The steps of one participant; throws where the plan has no such participant. */
+export function scheduleFor(plan: StudyPlan, participant: string): Schedule {
+  if (!participantsOf(plan).includes(participant)) {
+    throw new ValidationError(
+      'participant',
+      `the study "${plan.id}" has the participants P01 to ${participantsOf(plan).at(-1)}, not ${participant}`,
+    );
+  }
+  const groups: Record<string, { number: number; members: readonly string[] }> = {};
+  const steps: StudyStep[] = [
+    { kind: 'consent', id: 'consent' },
+    { kind: 'demographics', id: 'demographics' },
+  ];
+  for (const task of plan.tasks) {
+    const all = groupsOf(plan, task.groupSize);
+    const index = all.findIndex((members) => members.includes(participant));
+    groups[task.id] = { number: index + 1, members: all[index] as readonly string[] };
+    const order = ordersByGroup(plan, task)[index] as readonly StudyCondition[];
+    steps.push(...order.flatMap((condition, place) => blockSteps(task, condition, place + 1)));
+  }
+  steps.push({ kind: 'end', id: 'end' });
+  return { study: plan.id, participant, consentVersion: plan.consent.version, groups, steps };
+}
+
+function blockSteps(task: StudyTask, condition: StudyCondition, block: number): readonly StudyStep[] {
+  const where = { task: task.id, block };
+  const id = (name: string) => `${task.id}/${block}/${name}`;
+  const steps: StudyStep[] = [];
+  if (task.calibrateBeforeBlock || block === 1) steps.push({ kind: 'calibration', id: id('calibration'), ...where });
+  const { tutorial } = task;
+  if (tutorial.when === 'each' || (tutorial.when === 'once' && block === 1)) {
+    steps.push({
+      kind: 'tutorial',
+      id: id('tutorial'),
+      ...where,
+      estimator: tutorial.estimator,
+      seconds: tutorial.seconds,
+    });
+    if (tutorial.restSeconds > 0) {
+      steps.push({ kind: 'rest', id: id('rest-after-tutorial'), ...where, seconds: tutorial.restSeconds });
+    }
+  }
+  for (let repetition = 1; repetition <= task.repetitions; repetition++) {
+    steps.push({
+      kind: 'trial',
+      id: id(`trial-${repetition}`),
+      ...where,
+      condition: condition.id,
+      estimator: condition.estimator,
+      repetition,
+      seconds: task.trialSeconds,
+    });
+  }
+  if (task.restSeconds > 0) steps.push({ kind: 'rest', id: id('rest'), ...where, seconds: task.restSeconds });
+  steps.push({
+    kind: 'questionnaire',
+    id: id('questionnaire'),
+    ...where,
+    condition: condition.id,
+    questionnaire: task.questionnaire,
+    seconds: task.questionnaireSeconds,
+  });
+  return steps;
+}

@@ -1,0 +1,349 @@
+import { type Questionnaire, questionnaires } from './questionnaires';
+import type { Place, StudyRecord } from './study-record';
+import type { Cell, Column, Table } from './tidy-csv';
+
+const text = (name: string, description: string): Column => ({ name, type: 'text', unit: '', description });
+const number = (name: string, unit: string, description: string): Column => ({
+  name,
+  type: 'number',
+  unit,
+  description,
+});
+const boolean = (name: string, description: string): Column => ({ name, type: 'boolean', unit: '', description });
+
+const who = [
+  text('study', 'Id of the study.'),
+  text('participant', 'Code of the participant.'),
+  boolean('simulated', 'TRUE: made by a program. Never analyse together with people.'),
+];
+const where = [
+  text('task', 'Id of the task.'),
+  number('block', '', 'Place of the condition in the order of this participant, from 1.'),
+  number('run', '', 'From 1; a block that was voided and repeated runs again.'),
+];
+const conditionColumns = [
+  text('condition', 'Id of the condition; empty: tutorial.'),
+  text('estimator', 'Method that drew the body.'),
+];
+const excluded = text('excluded', 'Why the row counts for nothing: "voided: reason" or "tutorial"; empty: it counts.');
+const time = number('at', 's', 'When, in seconds since 1970-01-01 UTC, by the clock of the device.');
+
+const participantColumns = [
+  ...who,
+  text('consent_version', 'Version of the text consented to.'),
+  boolean('motion_consent', 'Whether tracked frames may be kept.'),
+  text('gender', 'woman, man, non-binary, other, not-said.'),
+  number('age', 'years', 'As told.'),
+  text('major', 'Field of study or work, as typed.'),
+  text('vr_experience', 'none, once-or-twice, several-times, monthly, weekly.'),
+  text('vr_systems', 'Systems used before, as typed.'),
+  text('handedness', 'right, left, both.'),
+  text('vision', 'normal, corrected, impaired.'),
+];
+
+const answerColumns = [
+  ...who,
+  ...where,
+  ...conditionColumns,
+  text('questionnaire', 'archery (Q1 to Q7) or ball (Q8 to Q12).'),
+  text('question', 'Id of the question; its words are in questions.csv.'),
+  number('answer', '', '1 very poor, 2 poor, 3 fair, 4 good, 5 excellent.'),
+  number('seconds', 's', 'From the first question shown to handing in the whole questionnaire, pauses left out.'),
+  boolean('overtime', 'Whether that took longer than the plan gives.'),
+  time,
+  excluded,
+];
+
+const attempt = number('attempt', '', 'From 1; a trial lost by a crash or reload is tried again.');
+
+const trialColumns = [
+  ...who,
+  ...where,
+  attempt,
+  ...conditionColumns,
+  number('repetition', '', 'Trial of the block, from 1.'),
+  number('group', '', 'Number of the group; tasks played alone: of the participant.'),
+  text('ended', 'arrows, targets, balls, time, or stopped (early).'),
+  number('score', 'points', "In a group the group's."),
+  number('maximum', 'points', 'The most that can be had.'),
+  number('percent', '%', '100 score / maximum.'),
+  number('shots', '', 'Arrows or balls sent off by this participant.'),
+  number('hits', '', 'How many of them counted.'),
+  number('seconds', 's', 'From the start signal to the end.'),
+  number('frames', '', 'Frames drawn.'),
+  number('missed_frames', '', 'Frames shown later than the device wanted.'),
+  text('device', 'Name of the headset or browser.'),
+  number('refresh_rate', 'Hz', 'Frames per second that the device wants; empty: unknown.'),
+  text('input', 'controllers, hands, mixed, emulated, simulated.'),
+  number('eye_height', 'm', 'Calibration: height of the eyes above the floor.'),
+  number('arm_span', 'm', 'Calibration: from wrist to wrist, arms sideways.'),
+  number('head_losses', '', 'How often the head was not tracked.'),
+  number('head_lost', 's', 'For how long.'),
+  number('left_hand_losses', '', 'How often the left hand was not tracked.'),
+  number('left_hand_lost', 's', 'For how long.'),
+  number('right_hand_losses', '', 'How often the right hand was not tracked.'),
+  number('right_hand_lost', 's', 'For how long.'),
+  text('assists', 'Aids that were on, divided by semicolons.'),
+  number('motion_frames', '', 'Tracked frames recorded beside this.'),
+  time,
+  excluded,
+];
+
+const frameTimeColumns = [
+  ...who,
+  ...where,
+  attempt,
+  ...conditionColumns,
+  number('repetition', '', 'Trial of the block, from 1.'),
+  text('stage', 'Stage of the frame; "frame" is all of its work.'),
+  number('count', '', 'Frames measured.'),
+  number('min', 'ms', 'Shortest.'),
+  number('max', 'ms', 'Longest.'),
+  number('mean', 'ms', 'Mean.'),
+  number('p50', 'ms', 'Median.'),
+  number('p95', 'ms', '95th percentile.'),
+  excluded,
+];
+
+const hitColumns = [
+  ...who,
+  ...where,
+  attempt,
+  ...conditionColumns,
+  number('repetition', '', 'Trial of the block, from 1.'),
+  number('time', 's', 'Second of the trial.'),
+  text('type', 'hit, miss, catch.'),
+  number('points', 'points', 'What it scored.'),
+  excluded,
+];
+
+const eventColumns = [
+  ...who,
+  text('event', 'void-block, interrupted, pause, resume, remark, reload, finished.'),
+  text('task', 'Where it concerns one; empty: no particular one.'),
+  number('block', '', 'Where it concerns one.'),
+  number('run', '', 'Where it concerns one.'),
+  text('text', 'Remark or reason, as typed.'),
+  time,
+];
+
+const questionColumns = [
+  text('questionnaire', 'archery or ball.'),
+  text('question', 'Id.'),
+  text('about', 'What it asks about.'),
+  text('text', 'The words, those of the paper.'),
+];
+
+/** Why what was recorded in this block counts for nothing; empty: it counts. */
+type Exclusion = (participant: string, place: Place) => string;
+
+function exclusionsOf(records: readonly StudyRecord[]): Exclusion {
+  const key = (participant: string, { task, block, run }: Pick<Place, 'task' | 'block' | 'run'>) =>
+    `${participant} ${task}/${block}@${run}`;
+  const voided = new Map<string, string>();
+  for (const record of records) {
+    if (record.kind === 'event' && record.body.type === 'void-block') {
+      voided.set(key(record.participant, record.body), `voided: ${record.body.reason}`);
+    }
+  }
+  return (participant, place) => voided.get(key(participant, place)) ?? '';
+}
+
+const identity = ({ study, participant, simulated }: StudyRecord) => ({ study, participant, simulated });
+const placed = ({ task, block, run }: Place) => ({ task, block, run });
+
+/** Answers to each question, one per row. */
+export interface AnswerRow {
+  readonly participant: string;
+  readonly simulated: boolean;
+  readonly task: string;
+  readonly block: number;
+  readonly run: number;
+  readonly condition: string;
+  readonly question: string;
+  readonly answer: number;
+  /** Empty: it counts. */
+  readonly excluded: string;
+}
+
+function answerRows(records: readonly StudyRecord[], exclusion: Exclusion) {
+  return records.flatMap((record) => {
+    if (record.kind !== 'answers') return [];
+    const { place, condition, estimator, questionnaire, answers, seconds, overtime } = record.body;
+    const excluded = exclusion(record.participant, place);
+    return (questionnaires[questionnaire] as Questionnaire).questions.map(({ id }) => ({
+      ...identity(record),
+      ...placed(place),
+      condition,
+      estimator,
+      questionnaire,
+      question: id,
+      answer: answers[id] as number,
+      seconds,
+      overtime,
+      at: record.at,
+      excluded,
+    }));
+  });
+}
+
+/** The answers of these records, voided ones marked. */
+export const answersIn = (records: readonly StudyRecord[]): readonly AnswerRow[] =>
+  answerRows(records, exclusionsOf(records));
+
+function trialRows(records: readonly StudyRecord[], exclusion: Exclusion) {
+  return records.flatMap((record) => {
+    if (record.kind !== 'trial') return [];
+    const { place, condition, estimator, repetition, group, outcome } = record.body;
+    const excluded = exclusion(record.participant, place) || (condition === null ? 'tutorial' : '');
+    const common = {
+      ...identity(record),
+      ...placed(place),
+      attempt: place.attempt,
+      condition,
+      estimator,
+      repetition,
+      excluded,
+    };
+    return [{ common, group, at: record.at, outcome }];
+  });
+}
+
+/** Trials with their scores, voided ones and tutorials marked. */
+export interface TrialRow {
+  readonly participant: string;
+  readonly simulated: boolean;
+  readonly task: string;
+  readonly condition: string | null;
+  readonly repetition: number;
+  readonly group: number;
+  readonly score: number;
+  readonly maximum: number;
+  /** Empty: it counts. */
+  readonly excluded: string;
+}
+
+export const trialsIn = (records: readonly StudyRecord[]): readonly TrialRow[] =>
+  trialRows(records, exclusionsOf(records)).map(({ common, group, outcome }) => ({
+    ...common,
+    group,
+    score: outcome.score,
+    maximum: outcome.maximum,
+  }));
+
+function participantRows(records: readonly StudyRecord[]) {
+  const rows = new Map<string, Record<string, Cell>>();
+  for (const record of records) {
+    let row = rows.get(record.participant);
+    if (!row) {
+      row = Object.fromEntries(participantColumns.map(({ name }) => [name, null]));
+      Object.assign(row, identity(record));
+      rows.set(record.participant, row);
+    }
+    if (record.kind === 'consent') {
+      Object.assign(row, { consent_version: record.body.version, motion_consent: record.body.motion });
+    } else if (record.kind === 'demographics') {
+      const { vrExperience, vrSystems, ...rest } = record.body;
+      Object.assign(row, { ...rest, vr_experience: vrExperience, vr_systems: vrSystems });
+    }
+  }
+  return [...rows.values()];
+}
+
+function eventRows(records: readonly StudyRecord[]) {
+  return records.flatMap((record) => {
+    if (record.kind !== 'event') return [];
+    const { body } = record;
+    const place = body.type === 'interrupted' ? body.place : body.type === 'void-block' ? body : null;
+    const said = body.type === 'remark' ? body.text : body.type === 'void-block' ? body.reason : '';
+    return [
+      {
+        ...identity(record),
+        event: body.type,
+        task: place?.task ?? null,
+        block: place?.block ?? null,
+        run: place?.run ?? null,
+        text: said,
+        at: record.at,
+      },
+    ];
+  });
+}
+
+/** Simulated records are never put into one table with those of people: throws where both are given. */
+export function refuseMixture(records: readonly { readonly simulated: boolean }[]): void {
+  if (records.some(({ simulated }) => simulated) && records.some(({ simulated }) => !simulated)) {
+    throw new Error('simulated records and records of people must not be mixed');
+  }
+}
+
+/** The tables of an export. Throws where simulated records and records of people are mixed. */
+export function studyTables(records: readonly StudyRecord[]): readonly Table[] {
+  refuseMixture(records);
+  const exclusion = exclusionsOf(records);
+  const trials = trialRows(records, exclusion);
+  return [
+    { name: 'participants', columns: participantColumns, rows: participantRows(records) },
+    { name: 'answers', columns: answerColumns, rows: answerRows(records, exclusion) },
+    {
+      name: 'questions',
+      columns: questionColumns,
+      rows: Object.values(questionnaires).flatMap(({ id: questionnaire, questions }) =>
+        questions.map(({ id, about, text: words }) => ({ questionnaire, question: id, about, text: words })),
+      ),
+    },
+    {
+      name: 'trials',
+      columns: trialColumns,
+      rows: trials.map(({ common, group, at, outcome }) => ({
+        ...common,
+        group,
+        ended: outcome.ended,
+        score: outcome.score,
+        maximum: outcome.maximum,
+        percent: (100 * outcome.score) / outcome.maximum,
+        shots: outcome.shots,
+        hits: outcome.hits,
+        seconds: outcome.seconds,
+        frames: outcome.frames.count,
+        missed_frames: outcome.frames.missed,
+        device: outcome.device.name,
+        refresh_rate: outcome.device.refreshRateHz,
+        input: outcome.device.input,
+        eye_height: outcome.calibration?.eyeHeight ?? null,
+        arm_span: outcome.calibration?.armSpan ?? null,
+        head_losses: outcome.tracking.head.losses,
+        head_lost: outcome.tracking.head.seconds,
+        left_hand_losses: outcome.tracking.leftHand.losses,
+        left_hand_lost: outcome.tracking.leftHand.seconds,
+        right_hand_losses: outcome.tracking.rightHand.losses,
+        right_hand_lost: outcome.tracking.rightHand.seconds,
+        assists: outcome.assists.join('; '),
+        motion_frames: outcome.motionFrames,
+        at,
+      })),
+    },
+    {
+      name: 'frame-times',
+      columns: frameTimeColumns,
+      rows: trials.flatMap(({ common, outcome }) =>
+        Object.entries(outcome.frames.stages).map(([stage, { count, minMs, maxMs, meanMs, p50Ms, p95Ms }]) => ({
+          ...common,
+          stage,
+          count,
+          min: minMs,
+          max: maxMs,
+          mean: meanMs,
+          p50: p50Ms,
+          p95: p95Ms,
+        })),
+      ),
+    },
+    {
+      name: 'hits',
+      columns: hitColumns,
+      rows: trials.flatMap(({ common, outcome }) => outcome.events.map((event) => ({ ...common, ...event }))),
+    },
+    { name: 'events', columns: eventColumns, rows: eventRows(records) },
+  ];
+}

@@ -1,0 +1,71 @@
+import * as v from 'valibot';
+
+/** What came in is not what it should be; the message names the field: "paper.json: tasks[1].seconds: expected a number". */
+export class ValidationError extends Error {
+  /** Empty: the whole. */
+  readonly field: string;
+  readonly complaint: string;
+
+  constructor(field: string, complaint: string, file?: string) {
+    super([file, field, complaint].filter(Boolean).join(': '));
+    this.field = field;
+    this.complaint = complaint;
+  }
+}
+
+/** The way to a value as one writes it in code: tasks[1].seconds. */
+function fieldOf(issue: v.BaseIssue<unknown>): string {
+  return (issue.path ?? []).reduce((way, { key }) => {
+    if (typeof key === 'number') return `${way}[${key}]`;
+    return way ? `${way}.${String(key)}` : String(key);
+  }, '');
+}
+
+/** The value as the schema knows it; throws a ValidationError that names the first field that is wrong. */
+export function checked<Schema extends v.GenericSchema>(schema: Schema, value: unknown): v.InferOutput<Schema> {
+  const result = v.safeParse(schema, value, { abortEarly: true });
+  if (result.success) return result.output;
+  const [issue] = result.issues;
+  throw new ValidationError(fieldOf(issue), issue.message);
+}
+
+/** Names that go into addresses, file names and tables. */
+export const identifier = v.pipe(
+  v.string(),
+  v.regex(
+    /^[a-z0-9][a-z0-9-]{0,47}$/,
+    'expected small letters, digits and hyphens, at most 48, a letter or digit first',
+  ),
+);
+
+/** P01 to P999: the number is the place in the plan. */
+export const participantId = v.pipe(v.string(), v.regex(/^P\d{2,3}$/, 'expected P and two or three digits, as P01'));
+
+/** Text for people: not empty, bounded. */
+export const text = (maxLength: number) =>
+  v.pipe(
+    v.string('expected text'),
+    v.trim(),
+    v.minLength(1, 'expected text, found none'),
+    v.maxLength(maxLength, `expected at most ${maxLength} characters`),
+  );
+
+const between = (min: number, max: number) => `expected a number from ${min} to ${max}`;
+
+export const numberBetween = (min: number, max: number) =>
+  v.pipe(
+    v.number(between(min, max)),
+    v.finite(between(min, max)),
+    v.minValue(min, between(min, max)),
+    v.maxValue(max, between(min, max)),
+  );
+
+const wholeBetween = (min: number, max: number) => `expected a whole number from ${min} to ${max}`;
+
+export const integerBetween = (min: number, max: number) =>
+  v.pipe(
+    v.number(wholeBetween(min, max)),
+    v.integer(wholeBetween(min, max)),
+    v.minValue(min, wholeBetween(min, max)),
+    v.maxValue(max, wholeBetween(min, max)),
+  );

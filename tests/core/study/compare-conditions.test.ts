@@ -1,0 +1,147 @@
+import { describe, expect, test } from 'vitest';
+import {
+  type AnswerModel,
+  drawAnswers,
+  drawPerson,
+  nullAnswerModel,
+  plantedAnswerModel,
+} from '../../../scripts/study-simulate/answer-model';
+import { randomSource } from '../../../scripts/study-simulate/random-source';
+import { compareAnswers, compareScores } from '../../../src/core/study/compare-conditions';
+import { ordersByGroup, type StudyTask } from '../../../src/core/study/plan';
+import { questionnaires } from '../../../src/core/study/questionnaires';
+import type { AnswerRow, TrialRow } from '../../../src/core/study/study-tables';
+import { paperPlan } from './studies';
+
+const conditions = ['learned', 'ik'] as const;
+
+/** The answers of fifteen participants to all twelve questions, under both conditions in counterbalanced order. */
+function simulatedAnswers(model: AnswerModel, study: number): AnswerRow[] {
+  const plan = paperPlan({ seed: study });
+  const orders = ordersByGroup(plan, plan.tasks[0] as StudyTask);
+  const random = randomSource(study, 'answers');
+  return orders.flatMap((order, index) => {
+    const person = drawPerson(model, random);
+    return order.flatMap(({ id: condition }, place) =>
+      Object.values(questionnaires).flatMap((questionnaire) =>
+        Object.entries(drawAnswers(model, questionnaire, { person, condition, block: place + 1 }, random)).map(
+          ([question, answer]) => ({
+            participant: `P${String(index + 1).padStart(2, '0')}`,
+            simulated: true,
+            task: questionnaire.id,
+            block: place + 1,
+            run: 1,
+            condition,
+            question,
+            answer,
+            excluded: '',
+          }),
+        ),
+      ),
+    );
+  });
+}
+
+describe('an analysis of simulated studies', () => {
+  const findings = (model: AnswerModel, study: number, p: 'holmP' | 'signedRankHolmP') =>
+    compareAnswers(simulatedAnswers(model, study), [...conditions]).comparisons.filter(
+      (comparison) => (comparison[p] ?? 1) < 0.05,
+    ).length;
+
+  test('finds nothing in at least 95 of 100 studies in which there is nothing', () => {
+    for (const p of ['holmP', 'signedRankHolmP'] as const) {
+      const silent = Array.from({ length: 100 }, (_, study) => findings(nullAnswerModel, study, p)).filter(
+        (found) => found === 0,
+      ).length;
+      expect(silent, p).toBeGreaterThanOrEqual(95);
+    }
+  });
+
+  test('finds an effect of 1.5 points in most questions of every study, and in the direction put in', () => {
+    for (let study = 0; study < 20; study++) {
+      const { comparisons } = compareAnswers(simulatedAnswers(plantedAnswerModel('learned', 1.5), study), [
+        ...conditions,
+      ]);
+      const found = comparisons.filter(({ holmP }) => (holmP ?? 1) < 0.05);
+      expect(found.length).toBeGreaterThan(6);
+      for (const { test: tested } of found) expect(tested?.t).toBeGreaterThan(0);
+    }
+  });
+
+  test('finds an effect in the one question that has it', () => {
+    const model = { ...nullAnswerModel, effects: { learned: { Q9: 2 } } };
+    for (let study = 0; study < 20; study++) {
+      const { comparisons } = compareAnswers(simulatedAnswers(model, study), [...conditions]);
+      const strongest = comparisons.toSorted((a, b) => (a.test?.p ?? 1) - (b.test?.p ?? 1))[0];
+      expect(strongest?.of).toBe('Q9');
+      expect(strongest?.holmP).toBeLessThan(0.05);
+    }
+  });
+});
+
+describe('what is compared', () => {
+  const answer = (participant: string, condition: string, value: number, excluded = ''): AnswerRow => ({
+    participant,
+    simulated: false,
+    task: 'archery',
+    block: 1,
+    run: 1,
+    condition,
+    question: 'Q1',
+    answer: value,
+    excluded,
+  });
+
+  test('are those who answered under both conditions; the others are named with the reason', () => {
+    const { comparisons, excluded } = compareAnswers(
+      [
+        answer('P01', 'learned', 5),
+        answer('P01', 'ik', 3),
+        answer('P02', 'learned', 4),
+        answer('P03', 'learned', 4),
+        answer('P03', 'ik', 1, 'voided: battery'),
+        answer('P04', 'learned', 4),
+        answer('P04', 'ik', 4),
+      ],
+      [...conditions],
+    );
+    expect(comparisons[0]?.pairs.map(({ who }) => who)).toEqual(['P01', 'P04']);
+    expect(excluded).toEqual([
+      { participant: 'P03', of: 'Q1', reason: 'voided: battery' },
+      { participant: 'P02', of: 'Q1', reason: 'no valid value under "ik"' },
+      { participant: 'P03', of: 'Q1', reason: 'no valid value under "ik"' },
+    ]);
+  });
+
+  test('is never people with simulated people', () => {
+    expect(() =>
+      compareAnswers([answer('P01', 'ik', 3), { ...answer('P02', 'ik', 3), simulated: true }], [...conditions]),
+    ).toThrow('must not be mixed');
+  });
+
+  test("is a group's score once, though each member reports it", () => {
+    const trial = (participant: string, group: number, condition: string, score: number): TrialRow => ({
+      participant,
+      simulated: false,
+      task: 'ball',
+      condition,
+      repetition: 1,
+      group,
+      score,
+      maximum: 20,
+      excluded: '',
+    });
+    const rows = [1, 2, 3, 4, 5].flatMap((group) =>
+      ['a', 'b', 'c'].flatMap((member) => [
+        trial(`${member}${group}`, group, 'learned', 14 + group),
+        trial(`${member}${group}`, group, 'ik', 13 + (group % 3)),
+      ]),
+    );
+    const { points, percent } = compareScores(rows, [...conditions]);
+    expect(points.comparisons[0]?.pairs).toHaveLength(5);
+    expect(points.comparisons[0]?.test?.df).toBe(4);
+    expect(points.comparisons[0]?.first?.mean).toBe(17);
+    expect(percent.comparisons[0]?.first?.mean).toBeCloseTo(85, 9);
+    expect(percent.comparisons[0]?.test?.t).toBeCloseTo(points.comparisons[0]?.test?.t as number, 9);
+  });
+});

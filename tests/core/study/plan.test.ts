@@ -1,0 +1,279 @@
+import fc from 'fast-check';
+import { describe, expect, test } from 'vitest';
+import {
+  blindLabel,
+  checkedPlan,
+  groupsOf,
+  ordersByGroup,
+  ordersOf,
+  parsePlan,
+  participantsOf,
+  type StudyPlan,
+  type StudyTask,
+  scheduleFor,
+} from '../../../src/core/study/plan';
+import { seed } from '../arbitraries';
+import { paperFile, paperPlan } from './studies';
+
+const orderNames = (plan: StudyPlan, task: StudyTask) =>
+  ordersByGroup(plan, task).map((order) => order.map(({ id }) => id).join(' '));
+
+function counts(names: readonly string[]): Record<string, number> {
+  const found: Record<string, number> = {};
+  for (const name of names) found[name] = (found[name] ?? 0) + 1;
+  return found;
+}
+
+const conditionsOf = (count: number): StudyPlan['conditions'] =>
+  Array.from({ length: count }, (_, index) => ({ id: `c${index}`, label: `Condition ${index}`, estimator: 'ik' }));
+
+describe('the shipped study', () => {
+  test('is the one of the paper', () => {
+    const plan = parsePlan(paperFile, 'paper.json');
+    expect(plan.participants).toBe(15);
+    expect(plan.conditions.map(({ estimator }) => estimator)).toEqual(['ik', 'learned']);
+    const [archery, ball] = plan.tasks as [StudyTask, StudyTask];
+    expect([archery.trialSeconds, archery.restSeconds, archery.questionnaireSeconds]).toEqual([70, 60, 420]);
+    expect([ball.trialSeconds, ball.restSeconds, ball.questionnaireSeconds]).toEqual([90, 60, 420]);
+    expect(groupsOf(plan, ball.groupSize)).toHaveLength(5);
+    for (const { tutorial } of plan.tasks) expect(tutorial.estimator).toBe('hands-only');
+  });
+
+  test('takes a participant from consent through both games to the end', () => {
+    expect(scheduleFor(paperPlan(), 'P01').steps.map(({ id }) => id)).toEqual([
+      'consent',
+      'demographics',
+      'archery/1/calibration',
+      'archery/1/tutorial',
+      'archery/1/trial-1',
+      'archery/1/rest',
+      'archery/1/questionnaire',
+      'archery/2/calibration',
+      'archery/2/trial-1',
+      'archery/2/rest',
+      'archery/2/questionnaire',
+      'ball/1/calibration',
+      'ball/1/tutorial',
+      'ball/1/rest-after-tutorial',
+      'ball/1/trial-1',
+      'ball/1/rest',
+      'ball/1/questionnaire',
+      'ball/2/calibration',
+      'ball/2/trial-1',
+      'ball/2/rest',
+      'ball/2/questionnaire',
+      'end',
+    ]);
+  });
+
+  test('gives three observations per participant and game: 45 each, as the paper counts', () => {
+    const plan = paperPlan();
+    const steps = participantsOf(plan).flatMap((participant) => scheduleFor(plan, participant).steps);
+    const played = (task: string) =>
+      steps.filter((step) => (step.kind === 'trial' || step.kind === 'tutorial') && step.task === task).length;
+    expect(played('archery')).toBe(45);
+    expect(played('ball')).toBe(45);
+  });
+});
+
+describe('the order of conditions', () => {
+  test('of fifteen participants, the two orders come eight and seven times; of five groups, three and two', () => {
+    const plan = paperPlan();
+    const [archery, ball] = plan.tasks as [StudyTask, StudyTask];
+    expect(Object.values(counts(orderNames(plan, archery))).toSorted()).toEqual([7, 8]);
+    expect(Object.values(counts(orderNames(plan, ball))).toSorted()).toEqual([2, 3]);
+  });
+
+  test('comes equally often, every order, whatever the seed', () => {
+    fc.assert(
+      fc.property(
+        fc.nat(2 ** 31 - 1),
+        fc.constantFrom(2, 3, 4),
+        fc.integer({ min: 1, max: 4 }),
+        (planSeed, count, rounds) => {
+          const orders = ordersOf({ orders: 'all', conditions: conditionsOf(count) });
+          const plan = checkedPlan(
+            paperPlan({
+              seed: planSeed,
+              conditions: conditionsOf(count),
+              participants: orders.length * rounds,
+              tasks: [{ ...(paperPlan().tasks[0] as StudyTask), groupSize: 1 }],
+            }),
+          );
+          const found = Object.values(counts(orderNames(plan, plan.tasks[0] as StudyTask)));
+          expect(found).toEqual(new Array(orders.length).fill(rounds));
+        },
+      ),
+      { seed },
+    );
+  });
+
+  test('is never ahead by more than one, after however many participants', () => {
+    fc.assert(
+      fc.property(fc.nat(2 ** 31 - 1), fc.integer({ min: 1, max: 40 }), (planSeed, participants) => {
+        const task = { ...(paperPlan().tasks[0] as StudyTask), groupSize: 1 };
+        const plan = checkedPlan(
+          paperPlan({ seed: planSeed, conditions: conditionsOf(3), participants, tasks: [task] }),
+        );
+        const found = counts(orderNames(plan, task));
+        const all = ordersOf(plan).map((order) => found[order.map(({ id }) => id).join(' ')] ?? 0);
+        expect(Math.max(...all) - Math.min(...all)).toBeLessThanOrEqual(1);
+      }),
+      { seed },
+    );
+  });
+
+  test('is drawn by the seed: the same again, and another for some other seed', () => {
+    const [archery] = paperPlan().tasks as [StudyTask];
+    expect(orderNames(paperPlan(), archery)).toEqual(orderNames(paperPlan(), archery));
+    const drawn = new Set(
+      Array.from({ length: 20 }, (_, other) => orderNames(paperPlan({ seed: other }), archery).join()),
+    );
+    expect(drawn.size).toBeGreaterThan(10);
+  });
+
+  test.each([4, 5, 6, 7])(
+    'of %i conditions as Williams: each at each place and after each other equally often',
+    (count) => {
+      const orders = ordersOf({ orders: 'williams', conditions: conditionsOf(count) });
+      expect(orders).toHaveLength(count % 2 === 0 ? count : 2 * count);
+      const places = counts(orders.flatMap((order) => order.map(({ id }, place) => `${id} at ${place}`)));
+      const pairs = counts(
+        orders.flatMap((order) => order.slice(1).map(({ id }, index) => `${order[index]?.id} then ${id}`)),
+      );
+      expect(new Set(Object.values(places)).size).toBe(1);
+      expect(Object.keys(places)).toHaveLength(count * count);
+      expect(new Set(Object.values(pairs)).size).toBe(1);
+      expect(Object.keys(pairs)).toHaveLength(count * (count - 1));
+    },
+  );
+
+  test('is shared by those who play together, and nobody plays twice', () => {
+    const plan = paperPlan();
+    const groups = groupsOf(plan, 3);
+    expect(groups.flat().toSorted()).toEqual(participantsOf(plan));
+    for (const members of groups) {
+      const orders = members.map((member) =>
+        scheduleFor(plan, member)
+          .steps.flatMap((step) => (step.kind === 'trial' && step.task === 'ball' ? [step.condition] : []))
+          .join(),
+      );
+      expect(new Set(orders).size).toBe(1);
+    }
+  });
+
+  test('is not told to the participant', () => {
+    const plan = paperPlan();
+    for (const step of scheduleFor(plan, 'P01').steps) {
+      if (!('block' in step)) continue;
+      for (const { id, label, estimator } of plan.conditions) {
+        expect(blindLabel(step)).not.toContain(id);
+        expect(blindLabel(step)).not.toContain(label);
+        expect(blindLabel(step)).not.toContain(estimator);
+        expect(step.id).not.toContain(id);
+      }
+    }
+  });
+});
+
+describe('a study file with a mistake', () => {
+  const broken = (change: (plan: Record<string, never>) => void) => {
+    const plan = JSON.parse(paperFile);
+    change(plan);
+    return () => parsePlan(JSON.stringify(plan), 'mine.json');
+  };
+
+  // biome-ignore lint/suspicious/noExplicitAny: reason: a file from outside may hold anything.
+  type Anything = any;
+
+  test.each<[string, (plan: Anything) => void, string]>([
+    ['a missing field', (plan) => delete plan.seed, 'mine.json: seed: '],
+    [
+      'an unknown method',
+      (plan) => {
+        plan.conditions[1].estimator = 'magic';
+      },
+      'mine.json: conditions[1].estimator: expected one of',
+    ],
+    [
+      'a number in quotes',
+      (plan) => {
+        plan.tasks[0].trialSeconds = '70';
+      },
+      'mine.json: tasks[0].trialSeconds: expected a number from 1 to 3600',
+    ],
+    [
+      'half a repetition',
+      (plan) => {
+        plan.tasks[1].repetitions = 1.5;
+      },
+      'mine.json: tasks[1].repetitions: expected a whole number',
+    ],
+    [
+      'a field that nobody reads',
+      (plan) => {
+        plan.tasks[0].restSecond = 60;
+      },
+      'mine.json: tasks[0].restSecond: ',
+    ],
+    [
+      'two conditions of one name',
+      (plan) => {
+        plan.conditions[1].id = 'ik';
+      },
+      'mine.json: conditions[1].id: "ik" is the name of conditions[0].id too',
+    ],
+    [
+      'one condition',
+      (plan) => {
+        plan.conditions.pop();
+      },
+      'mine.json: conditions: expected at least two',
+    ],
+    [
+      'groups that do not come out even',
+      (plan) => {
+        plan.participants = 16;
+      },
+      'mine.json: tasks[1].groupSize: 16 participants cannot be divided into groups of 3',
+    ],
+    [
+      'an empty consent',
+      (plan) => {
+        plan.consent.paragraphs = [''];
+      },
+      'mine.json: consent.paragraphs[0]: expected text, found none',
+    ],
+    [
+      'a newer version',
+      (plan) => {
+        plan.version = 2;
+      },
+      'mine.json: version: expected 1',
+    ],
+    [
+      'another file',
+      (plan) => {
+        plan.format = 'recording';
+      },
+      'mine.json: format: expected "threepoint-study"',
+    ],
+    [
+      'too many orders',
+      (plan) => {
+        plan.conditions = conditionsOf(5);
+      },
+      'mine.json: orders: all orders of 5 conditions',
+    ],
+  ])('%s: the message names file and field', (_, change, message) => {
+    expect(broken(change)).toThrow(message);
+  });
+
+  test('that is no JSON says so', () => {
+    expect(() => parsePlan('{', 'mine.json')).toThrow('mine.json: this is no JSON');
+  });
+
+  test('and somebody who is not in it has no schedule', () => {
+    expect(() => scheduleFor(paperPlan(), 'P16')).toThrow('P01 to P15, not P16');
+  });
+});

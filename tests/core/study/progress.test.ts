@@ -1,0 +1,273 @@
+import fc from 'fast-check';
+import { describe, expect, test } from 'vitest';
+import { scheduleFor } from '../../../src/core/study/plan';
+import { begin, elapsedSeconds, type ProgressEvent, remainingSeconds, resumed } from '../../../src/core/study/progress';
+import { checkedRecord } from '../../../src/core/study/study-record';
+import { seed } from '../arbitraries';
+import { outcomeOf, paperPlan, session, somebody } from './studies';
+
+const schedule = scheduleFor(paperPlan(), 'P02');
+
+describe('a session', () => {
+  test('runs from consent to the end and leaves what was asked for', () => {
+    const one = session(schedule);
+    one.doUntil(({ kind }) => kind === 'end');
+    const kinds = one.records.map(({ kind }) => kind);
+    expect(kinds.filter((kind) => kind === 'trial')).toHaveLength(6);
+    expect(kinds.filter((kind) => kind === 'answers')).toHaveLength(4);
+    expect(kinds.filter((kind) => kind === 'calibration')).toHaveLength(4);
+    expect(kinds[0]).toBe('consent');
+    expect(one.records.at(-1)).toMatchObject({ kind: 'event', body: { type: 'finished' } });
+    expect(new Set(one.records.map(({ id }) => id)).size).toBe(one.records.length);
+  });
+
+  test('makes records that the store takes', () => {
+    const one = session(schedule);
+    one.doUntil(({ kind }) => kind === 'end');
+    for (const record of one.records) expect(checkedRecord(JSON.parse(JSON.stringify(record)))).toEqual(record);
+  });
+
+  test('records nothing before consent', () => {
+    const one = session(schedule);
+    expect(one.tell({ type: 'demographics', demographics: somebody })).not.toBeNull();
+    expect(one.tell({ type: 'pause' })).toBeNull();
+    expect(one.tell({ type: 'resume' })).toBeNull();
+    expect(one.tell({ type: 'reload' })).toBeNull();
+    expect(one.tell({ type: 'remark', text: 'looks tired' })).toBe('nothing is recorded before consent');
+    expect(one.records).toEqual([]);
+  });
+
+  test('does not take consent to another text', () => {
+    const one = session(schedule);
+    expect(one.tell({ type: 'consent', version: 'old', motion: false })).toContain('version');
+    expect(one.step.kind).toBe('consent');
+  });
+
+  test('takes no event out of place', () => {
+    const one = session(schedule);
+    one.doUntil(({ kind }) => kind === 'trial');
+    const before = one.progress;
+    const outOfPlace: ProgressEvent[] = [
+      { type: 'submit' },
+      { type: 'answer', question: 'Q1', value: 3 },
+      { type: 'trial-finished', outcome: outcomeOf() },
+      { type: 'resume' },
+      { type: 'calibrated', calibration: { eyeHeight: 1.6, armSpan: 1.5 } },
+    ];
+    for (const event of outOfPlace) expect(one.tell(event)).not.toBeNull();
+    expect(one.progress).toEqual(before);
+  });
+
+  test('marks what a program made', () => {
+    const one = session(schedule, true);
+    one.doUntil(({ kind }) => kind === 'end');
+    expect(one.records.every(({ simulated }) => simulated)).toBe(true);
+  });
+});
+
+describe('a rest', () => {
+  const resting = () => {
+    const one = session(schedule);
+    one.doUntil(({ kind }) => kind === 'rest');
+    return one;
+  };
+
+  test('takes sixty seconds, not one less', () => {
+    const one = resting();
+    expect(remainingSeconds(schedule, one.progress, one.now)).toBe(60);
+    one.wait(59.9);
+    one.tell({ type: 'tick' });
+    expect(one.step.kind).toBe('rest');
+    one.wait(0.1);
+    one.tell({ type: 'tick' });
+    expect(one.step.kind).toBe('questionnaire');
+  });
+
+  test('goes on while the page is loaded again', () => {
+    const one = resting();
+    one.wait(30);
+    const stored = JSON.stringify(one.progress);
+    one.wait(20);
+    one.progress = resumed(schedule, stored);
+    one.tell({ type: 'reload' });
+    expect(remainingSeconds(schedule, one.progress, one.now)).toBeCloseTo(10, 6);
+  });
+
+  test('stands while the experimenter pauses', () => {
+    const one = resting();
+    one.wait(10);
+    one.tell({ type: 'pause' });
+    one.wait(3600);
+    one.tell({ type: 'tick' });
+    expect(one.step.kind).toBe('rest');
+    expect(remainingSeconds(schedule, one.progress, one.now)).toBeCloseTo(50, 6);
+    one.tell({ type: 'resume' });
+    one.wait(50);
+    one.tell({ type: 'tick' });
+    expect(one.step.kind).toBe('questionnaire');
+  });
+
+  test('does not end sooner because the clock was set back', () => {
+    const one = resting();
+    one.wait(-7200);
+    expect(elapsedSeconds(one.progress, one.now)).toBe(0);
+    expect(remainingSeconds(schedule, one.progress, one.now)).toBe(60);
+  });
+});
+
+describe('a questionnaire', () => {
+  const asked = () => {
+    const one = session(schedule);
+    one.doUntil(({ kind }) => kind === 'questionnaire');
+    return one;
+  };
+
+  test('goes on after a reload with the answers given so far', () => {
+    const one = asked();
+    one.tell({ type: 'answer', question: 'Q1', value: 5 });
+    one.tell({ type: 'answer', question: 'Q2', value: 2 });
+    one.progress = resumed(schedule, JSON.stringify(one.progress));
+    one.tell({ type: 'reload' });
+    expect(one.step.kind).toBe('questionnaire');
+    expect(one.progress.draft).toEqual({ Q1: 5, Q2: 2 });
+  });
+
+  test('lets an answer be changed and hands in the last one', () => {
+    const one = asked();
+    one.tell({ type: 'answer', question: 'Q1', value: 5 });
+    one.tell({ type: 'answer', question: 'Q1', value: 1 });
+    for (const id of ['Q2', 'Q3', 'Q4', 'Q5', 'Q6', 'Q7']) one.tell({ type: 'answer', question: id, value: 3 });
+    expect(one.tell({ type: 'submit' })).toBeNull();
+    expect(one.records.at(-1)).toMatchObject({ kind: 'answers', body: { answers: { Q1: 1, Q7: 3 }, overtime: false } });
+  });
+
+  test('is not handed in with a question open', () => {
+    const one = asked();
+    one.tell({ type: 'answer', question: 'Q1', value: 5 });
+    expect(one.tell({ type: 'submit' })).toBe('Q2: this question has no answer');
+    expect(one.step.kind).toBe('questionnaire');
+  });
+
+  test('may take longer than seven minutes, and that is recorded', () => {
+    const one = asked();
+    one.wait(421);
+    expect(remainingSeconds(schedule, one.progress, one.now)).toBe(0);
+    one.doStep();
+    expect(one.records.at(-1)).toMatchObject({ kind: 'answers', body: { overtime: true } });
+  });
+});
+
+describe('a trial', () => {
+  const playing = () => {
+    const one = session(schedule);
+    one.doUntil(({ kind }) => kind === 'trial');
+    one.tell({ type: 'start' });
+    return one;
+  };
+
+  test('that a reload interrupts is noted and tried again', () => {
+    const one = playing();
+    one.progress = resumed(schedule, JSON.stringify(one.progress));
+    one.tell({ type: 'reload' });
+    expect(one.records.at(-1)).toMatchObject({
+      body: { type: 'interrupted', step: 'archery/1/trial-1', place: { attempt: 1 } },
+    });
+    expect(one.progress.running).toBe(false);
+    one.doStep();
+    expect(one.records.at(-1)).toMatchObject({ kind: 'trial', body: { place: { attempt: 2 } } });
+  });
+
+  test('knows its condition, order, group and attempt', () => {
+    const one = playing();
+    one.tell({ type: 'trial-finished', outcome: outcomeOf(35) });
+    const trial = schedule.steps.find(({ kind }) => kind === 'trial');
+    expect(one.records.at(-1)).toMatchObject({
+      kind: 'trial',
+      body: {
+        place: { task: 'archery', block: 1, run: 1, attempt: 1 },
+        condition: trial?.kind === 'trial' && trial.condition,
+        group: 2,
+        outcome: { score: 35 },
+      },
+    });
+  });
+
+  test('that ends while paused leaves a rest whose clock stands', () => {
+    const one = playing();
+    one.tell({ type: 'pause' });
+    expect(one.tell({ type: 'trial-finished', outcome: outcomeOf() })).toBeNull();
+    one.wait(600);
+    expect(remainingSeconds(schedule, one.progress, one.now)).toBe(60);
+  });
+});
+
+describe('a voided block', () => {
+  test('starts again with its calibration, under a new run, and the first run is named', () => {
+    const one = session(schedule);
+    one.doUntil(({ id }) => id === 'archery/2/questionnaire');
+    expect(one.tell({ type: 'void-block', reason: 'controller died', repeat: true })).toBeNull();
+    expect(one.records.at(-1)).toMatchObject({
+      body: { type: 'void-block', task: 'archery', block: 2, run: 1, reason: 'controller died' },
+    });
+    expect(one.step.id).toBe('archery/2/calibration');
+    one.doUntil(({ kind }) => kind === 'end');
+    const runs = one.records.flatMap((record) =>
+      record.kind === 'trial' && record.body.place.task === 'archery' && record.body.place.block === 2
+        ? [record.body.place.run]
+        : [],
+    );
+    expect(runs).toEqual([1, 2]);
+    expect(new Set(one.records.map(({ id }) => id)).size).toBe(one.records.length);
+  });
+
+  test('or is left behind', () => {
+    const one = session(schedule);
+    one.doUntil(({ id }) => id === 'archery/1/trial-1');
+    one.tell({ type: 'void-block', reason: 'unwell', repeat: false });
+    expect(one.step.id).toBe('archery/2/calibration');
+  });
+
+  test('needs a reason', () => {
+    const one = session(schedule);
+    one.doUntil(({ id }) => id === 'archery/1/trial-1');
+    expect(one.tell({ type: 'void-block', reason: ' ', repeat: true })).toContain('expected text');
+  });
+});
+
+describe('a stored session', () => {
+  test('is whole again after a crash at any step', () => {
+    fc.assert(
+      fc.property(fc.integer({ min: 0, max: 21 }), fc.boolean(), (steps, started) => {
+        const straight = session(schedule);
+        const crashed = session(schedule);
+        for (let i = 0; i < steps; i++) {
+          straight.doStep();
+          crashed.doStep();
+        }
+        if (started) crashed.tell({ type: 'start' });
+        crashed.progress = resumed(schedule, JSON.stringify(crashed.progress));
+        crashed.tell({ type: 'reload' });
+        expect(crashed.step).toEqual(straight.step);
+        for (const one of [straight, crashed]) one.doUntil(({ kind }) => kind === 'end');
+        const asked = (one: typeof straight) =>
+          one.records.filter(({ kind }) => kind !== 'event').map(({ id }) => id.replace(/\.\d+:/, ':'));
+        expect(asked(crashed)).toEqual(asked(straight));
+      }),
+      { seed },
+    );
+  });
+
+  test.each<[string, object, string]>([
+    ['of somebody else', { participant: 'P03' }, 'participant: the stored session is of P03, not of P02'],
+    ['of another study', { study: 'other' }, 'study: the stored session is of other, not of paper'],
+    ['at a step that is none', { step: 'archery/9/trial-1' }, 'step: the schedule of P02 has no step'],
+    ['of a later program', { version: 2 }, 'version: expected 1'],
+    ['with a broken clock', { since: 'noon' }, 'since: '],
+  ])('%s is refused', (_, change, message) => {
+    expect(() => resumed(schedule, JSON.stringify({ ...begin(schedule), ...change }))).toThrow(message);
+  });
+
+  test('that is no JSON is refused', () => {
+    expect(() => resumed(schedule, '{"version":1')).toThrow('the stored session is no JSON');
+  });
+});

@@ -1,0 +1,103 @@
+import { readFileSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
+import { parsePlan, type Schedule, type StudyPlan, type StudyStep } from '../../../src/core/study/plan';
+import { advance, begin, currentStep, type Progress, type ProgressEvent } from '../../../src/core/study/progress';
+import { questionnaires } from '../../../src/core/study/questionnaires';
+import type { StudyRecord } from '../../../src/core/study/study-record';
+import { createTrialLog, type TrialOutcome } from '../../../src/core/study/trial-log';
+
+export const paperFile = readFileSync(
+  fileURLToPath(new URL('../../../public/studies/paper.json', import.meta.url)),
+  'utf8',
+);
+
+/** The shipped study, with changes. */
+export const paperPlan = (changes: Partial<StudyPlan> = {}): StudyPlan => ({
+  ...parsePlan(paperFile, 'paper.json'),
+  ...changes,
+});
+
+export const somebody = {
+  gender: 'woman',
+  age: 26,
+  major: 'Computer science',
+  vrExperience: 'once-or-twice',
+  vrSystems: '',
+  handedness: 'right',
+  vision: 'corrected',
+} as const;
+
+export function outcomeOf(score = 40): TrialOutcome {
+  const log = createTrialLog({ name: 'Test headset', refreshRateHz: 72, input: 'controllers' }, null);
+  log.frame({ frame: 6.5, inference: 0.4 }, false);
+  log.shot();
+  log.event({ time: 3.5, type: 'hit', points: 10 });
+  return log.finish({ seconds: 42, ended: 'arrows', score, maximum: 50, motionFrames: 0 });
+}
+
+/** A session that is driven by events, with a clock that the test sets. */
+export function session(schedule: Schedule, simulated = false) {
+  let progress = begin(schedule, simulated);
+  let now = 1_800_000_000;
+  const records: StudyRecord[] = [];
+  return {
+    get progress() {
+      return progress;
+    },
+    set progress(restored: Progress) {
+      progress = restored;
+    },
+    get step(): StudyStep {
+      return currentStep(schedule, progress);
+    },
+    get now() {
+      return now;
+    },
+    records,
+    wait(seconds: number) {
+      now += seconds;
+    },
+    /** The refusal; null: taken. */
+    tell(event: ProgressEvent): string | null {
+      const next = advance(schedule, progress, event, now);
+      progress = next.progress;
+      records.push(...next.records);
+      return next.refusal;
+    },
+    /** Does what the present step asks for, each questionnaire with the same answer throughout. */
+    doStep(answer = 4, score = 40): void {
+      const step = currentStep(schedule, progress);
+      const tell = (event: ProgressEvent) => {
+        const refusal = this.tell(event);
+        if (refusal) throw new Error(`${step.id}: ${refusal}`);
+      };
+      now += 1;
+      if (step.kind === 'consent') tell({ type: 'consent', version: schedule.consentVersion, motion: false });
+      else if (step.kind === 'demographics') tell({ type: 'demographics', demographics: somebody });
+      else if (step.kind === 'calibration') tell({ type: 'calibrated', calibration: { eyeHeight: 1.6, armSpan: 1.5 } });
+      else if (step.kind === 'tutorial' || step.kind === 'trial') {
+        tell({ type: 'start' });
+        now += 42;
+        tell({ type: 'trial-finished', outcome: outcomeOf(score) });
+      } else if (step.kind === 'rest') {
+        now += step.seconds;
+        tell({ type: 'tick' });
+      } else if (step.kind === 'questionnaire') {
+        for (const { id } of questionnaires[step.questionnaire].questions) {
+          now += 5;
+          tell({ type: 'answer', question: id, value: answer });
+        }
+        tell({ type: 'submit' });
+      }
+    },
+    doUntil(found: (step: StudyStep) => boolean): void {
+      for (let steps = 0; steps < 200; steps++) {
+        const step = currentStep(schedule, progress);
+        if (found(step)) return;
+        if (step.kind === 'end') throw new Error('the study ended before that');
+        this.doStep();
+      }
+      throw new Error('the study does not end');
+    },
+  };
+}

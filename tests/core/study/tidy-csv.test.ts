@@ -1,0 +1,101 @@
+import fc from 'fast-check';
+import { describe, expect, test } from 'vitest';
+import { codebookOf, type Table, tidyCsv } from '../../../src/core/study/tidy-csv';
+import { seed } from '../arbitraries';
+
+const tableOf = (...cells: Table['rows'][number][string][]): Table => ({
+  name: 'remarks',
+  columns: [{ name: 'remark', type: 'text', unit: '', description: 'What was said.' }],
+  rows: cells.map((remark) => ({ remark })),
+});
+
+/** A reader as RFC 4180 describes it, so that what we write is read by somebody else's rules. */
+function readCsv(csv: string): string[][] {
+  const rows: string[][] = [];
+  let row: string[] = [];
+  let cell = '';
+  let quoted = false;
+  for (let i = 0; i < csv.length; i++) {
+    const character = csv[i] as string;
+    if (quoted) {
+      if (character !== '"') cell += character;
+      else if (csv[i + 1] === '"') {
+        cell += '"';
+        i += 1;
+      } else quoted = false;
+    } else if (character === '"') quoted = true;
+    else if (character === ',') {
+      row.push(cell);
+      cell = '';
+    } else if (character === '\r' && csv[i + 1] === '\n') {
+      rows.push([...row, cell]);
+      row = [];
+      cell = '';
+      i += 1;
+    } else cell += character;
+  }
+  return rows;
+}
+
+const onlyCell = (csv: string) => readCsv(csv)[1]?.[0];
+
+describe('a table as CSV', () => {
+  test.each([
+    '=HYPERLINK("http://example.org","click")',
+    '+1+1',
+    '-2+3',
+    '@SUM(A1:A9)',
+    '\t=1+1',
+    '\r=1+1',
+    '  =1+1',
+    '\u200b=1+1',
+    '＝1+1',
+    '|calc',
+    '%0A=1',
+  ])('makes text of the formula %j', (formula) => {
+    expect(onlyCell(tidyCsv(tableOf(formula)))).toBe(`'${formula}`);
+  });
+
+  test.each(['well done', 'a=b', '5-1', 'he said "no"', 'one, two', 'two\nlines', 'ünï 😀', ' spaced '])(
+    'leaves %j as it is',
+    (text) => {
+      expect(onlyCell(tidyCsv(tableOf(text)))).toBe(text);
+    },
+  );
+
+  test('keeps negative numbers numbers', () => {
+    expect(tidyCsv(tableOf(-1.5, 0, 1e-9, true, false, null))).toBe(
+      'remark\r\n-1.5\r\n0\r\n1e-9\r\nTRUE\r\nFALSE\r\n\r\n',
+    );
+  });
+
+  test('has no value where a number is none', () => {
+    expect(tidyCsv(tableOf(Number.NaN, Number.POSITIVE_INFINITY))).toBe('remark\r\n\r\n\r\n');
+  });
+
+  test('gives back every text, at most with an apostrophe in front, and no cell that begins like a formula', () => {
+    fc.assert(
+      fc.property(fc.array(fc.string({ unit: 'binary', maxLength: 30 }), { minLength: 1, maxLength: 5 }), (texts) => {
+        const rows = readCsv(tidyCsv(tableOf(...texts))).slice(1);
+        expect(rows).toHaveLength(texts.length);
+        texts.forEach((text, index) => {
+          const cell = rows[index]?.[0] as string;
+          expect([text, `'${text}`]).toContain(cell);
+          expect(cell).not.toMatch(/^\s*[=+\-@]/);
+        });
+      }),
+      { seed },
+    );
+  });
+
+  test('refuses a row that lacks a column', () => {
+    const table = { ...tableOf('x'), rows: [{ other: 'x' }] };
+    expect(() => tidyCsv(table)).toThrow('table "remarks": a row has no "remark"');
+  });
+});
+
+test('the codebook has a line for every column', () => {
+  expect(codebookOf([tableOf()]).rows).toEqual([
+    { table: 'remarks', column: 'remark', type: 'text', unit: '', description: 'What was said.' },
+  ]);
+});

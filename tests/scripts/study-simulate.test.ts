@@ -1,0 +1,134 @@
+import { spawnSync } from 'node:child_process';
+import { readdirSync, readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { strFromU8, unzipSync } from 'fflate';
+import { describe, expect, test } from 'vitest';
+import { nullAnswerModel, plantedAnswerModel } from '../../scripts/study-simulate/answer-model';
+import { statedPerformanceModel } from '../../scripts/study-simulate/performance-model';
+import { randomSource } from '../../scripts/study-simulate/random-source';
+import { simulatedPlan, simulateStudy } from '../../scripts/study-simulate/simulate-study';
+import { compareAnswers, compareScores } from '../../src/core/study/compare-conditions';
+import { groupsOf } from '../../src/core/study/plan';
+import { checkedRecord } from '../../src/core/study/study-record';
+import { answersIn, trialsIn } from '../../src/core/study/study-tables';
+import { paperPlan } from '../core/study/studies';
+import { directoryWith } from '../temporary-directory';
+
+const root = fileURLToPath(new URL('../..', import.meta.url));
+const plan = simulatedPlan(paperPlan());
+const start = 1_767_600_000;
+const models = { answers: nullAnswerModel, performance: statedPerformanceModel };
+const simulate = (changes: Partial<typeof models> = {}, seed = 1) =>
+  simulateStudy(plan, { ...models, ...changes }, seed, start).flatMap(({ records }) => records);
+
+describe('a simulated study', () => {
+  test('is the same for the same seed, and another for another', () => {
+    expect(simulate()).toEqual(simulate());
+    expect(simulate({}, 2)).not.toEqual(simulate());
+  });
+
+  test('is marked in every record and by its name', () => {
+    expect(plan.id).toBe('paper-simulated');
+    expect(plan.title).toMatch(/^SIMULATED: /);
+    for (const record of simulate()) {
+      expect(record.simulated).toBe(true);
+      expect(record.study).toBe('paper-simulated');
+    }
+  });
+
+  test('holds what the store takes from people: complete answers, trials within their limits', () => {
+    const records = simulate();
+    for (const record of records) expect(checkedRecord(JSON.parse(JSON.stringify(record)))).toEqual(record);
+    const valid = trialsIn(records).filter(({ excluded }) => !excluded);
+    expect(valid).toHaveLength(15 * 4);
+    expect(answersIn(records).filter(({ excluded }) => !excluded)).toHaveLength(15 * 24);
+    for (const { score, maximum } of valid) expect(score).toBeLessThanOrEqual(maximum);
+  });
+
+  test('goes through mishaps as people do: what was interrupted is tried again, what was voided does not count', () => {
+    const performance = { ...statedPerformanceModel, mishaps: { reload: 0.3, voided: 0.3 } };
+    const records = simulate({ performance });
+    const types = new Set(records.flatMap((record) => (record.kind === 'event' ? [record.body.type] : [])));
+    expect([...types].toSorted()).toEqual(['finished', 'interrupted', 'void-block']);
+    const trials = trialsIn(records);
+    expect(trials.filter(({ excluded }) => excluded.startsWith('voided')).length).toBeGreaterThan(0);
+    expect(trials.filter(({ excluded }) => !excluded)).toHaveLength(15 * 4);
+  });
+
+  test('gives the three of a group the same score, and their throws add up to no more than twenty', () => {
+    const ball = simulate().flatMap((record) =>
+      record.kind === 'trial' && record.body.place.task === 'ball' ? [record] : [],
+    );
+    for (const members of groupsOf(plan, 3)) {
+      for (const block of [1, 2]) {
+        const trials = ball.filter(
+          ({ participant, body }) => members.includes(participant) && body.place.block === block && body.condition,
+        );
+        expect(trials).toHaveLength(3);
+        expect(new Set(trials.map(({ body }) => body.outcome.score)).size).toBe(1);
+        expect(trials.reduce((sum, { body }) => sum + body.outcome.shots, 0)).toBeLessThanOrEqual(20);
+        expect(trials.reduce((sum, { body }) => sum + body.outcome.hits, 0)).toBe(trials[0]?.body.outcome.score);
+      }
+    }
+  });
+
+  test('shows the analysis what was put in: answers and scores', () => {
+    const performance = { ...statedPerformanceModel, hitChance: [0.6, 0.5, 0.4, 0.3], effects: { learned: 0.5 } };
+    const records = simulate({ answers: plantedAnswerModel('learned', 1.5), performance });
+    const answers = compareAnswers(answersIn(records), ['learned', 'ik']);
+    expect(answers.simulated).toBe(true);
+    expect(answers.comparisons.filter(({ holmP }) => (holmP ?? 1) < 0.05).length).toBeGreaterThan(6);
+    const [archery] = compareScores(trialsIn(records), ['learned', 'ik']).points.comparisons;
+    expect(archery?.test?.t).toBeGreaterThan(0);
+    expect(archery?.test?.p).toBeLessThan(0.05);
+  });
+});
+
+test('the source of chance is standard normal', () => {
+  const random = randomSource(3, 'normal');
+  const drawn = Array.from({ length: 20_000 }, () => random.normal());
+  const mean = drawn.reduce((sum, value) => sum + value, 0) / drawn.length;
+  const variance = drawn.reduce((sum, value) => sum + (value - mean) ** 2, 0) / drawn.length;
+  expect(Math.abs(mean)).toBeLessThan(0.03);
+  expect(Math.abs(variance - 1)).toBeLessThan(0.05);
+});
+
+describe('npm run study:simulate', () => {
+  const simulateInto = (out: string, ...args: string[]) =>
+    spawnSync(process.execPath, ['scripts/study-simulate.mjs', '--out', out, ...args], { cwd: root, encoding: 'utf8' });
+
+  test('writes exports that say SIMULATED, and reads back as one study', { timeout: 60_000 }, () => {
+    const out = join(directoryWith(), 'new');
+    const { status, stdout, stderr } = simulateInto(out, '--participants', '6');
+    expect(stderr).toBe('');
+    expect(status).toBe(0);
+    expect(stdout).toContain('SIMULATED study of 6 participants');
+    expect(readdirSync(out).toSorted()).toEqual([
+      'SIMULATED-models.json',
+      'SIMULATED-paper-simulated',
+      'SIMULATED-paper-simulated.zip',
+      'SIMULATED-results.json',
+      'SIMULATED-studies.db',
+      'participants',
+    ]);
+    const zip = unzipSync(readFileSync(join(out, 'SIMULATED-paper-simulated.zip')));
+    for (const [path, bytes] of Object.entries(zip)) {
+      expect(readFileSync(join(out, path), 'utf8')).toBe(strFromU8(bytes));
+    }
+    expect(readdirSync(join(out, 'participants'))).toHaveLength(6);
+    expect(simulateInto(out).stderr).toContain('is not empty');
+  });
+
+  test.each<[string[], string]>([
+    [['--participants', '16'], 'cannot be divided into groups of 3'],
+    [['--participants', 'many'], '--participants: expected a whole number'],
+    [['--plan', 'none.json'], 'there is no file'],
+    [['--speed', '9'], '--speed'],
+  ])('with %j says what is wrong', (args, message) => {
+    const { status, stderr } = simulateInto(join(directoryWith(), 'new'), ...args);
+    expect(status).toBe(1);
+    expect(stderr).toContain(message);
+    expect(stderr).not.toContain('    at ');
+  });
+});

@@ -1,0 +1,342 @@
+import { createServer } from 'node:http';
+import type { AddressInfo } from 'node:net';
+import { join } from 'node:path';
+import { strFromU8, unzipSync } from 'fflate';
+import { describe, expect, onTestFinished, test } from 'vitest';
+import { bodyLimits, createStudyRoutes } from '../../server/study-routes';
+import { openStudyStore } from '../../server/study-store';
+import { scheduleFor } from '../../src/core/study/plan';
+import { begin } from '../../src/core/study/progress';
+import type { StudyRecord } from '../../src/core/study/study-record';
+import { writeRecording } from '../../src/core/tracking/recording';
+import { paperPlan, session } from '../core/study/studies';
+import { directoryWith } from '../temporary-directory';
+
+const experimenter = 'an-experimenter-token-of-length';
+const now = 1_800_000_000;
+
+// biome-ignore lint/suspicious/noExplicitAny: reason: what arrives over HTTP has no type; each test says what it expects.
+type Anything = any;
+
+async function served({ experimenterToken = experimenter as string | null } = {}) {
+  const store = openStudyStore(join(directoryWith(), 'studies.db'));
+  const faults: unknown[] = [];
+  const routes = createStudyRoutes({
+    store,
+    experimenterToken,
+    now: () => now,
+    onFault: (error) => faults.push(error),
+  });
+  const server = createServer((request, response) => {
+    if (routes(request, response)) return;
+    response.writeHead(418);
+    response.end();
+  });
+  await new Promise<void>((resolve) => server.listen(0, '127.0.0.1', resolve));
+  onTestFinished(async () => {
+    server.closeAllConnections();
+    await new Promise((resolve) => server.close(resolve));
+    store.close();
+    expect(faults).toEqual([]);
+  });
+  const origin = `http://127.0.0.1:${(server.address() as AddressInfo).port}`;
+  async function ask(
+    method: string,
+    path: string,
+    { token, json, raw }: { token?: string; json?: unknown; raw?: RequestInit } = {},
+  ) {
+    const response = await fetch(`${origin}${path}`, {
+      method,
+      headers: {
+        ...(json !== undefined && { 'content-type': 'application/json' }),
+        ...(token && { authorization: `Bearer ${token}` }),
+      },
+      ...(json !== undefined && { body: JSON.stringify(json) }),
+      ...raw,
+    });
+    const body = Buffer.from(await response.arrayBuffer());
+    const isJson = response.headers.get('content-type')?.startsWith('application/json');
+    return {
+      status: response.status,
+      headers: response.headers,
+      body,
+      json: (isJson ? JSON.parse(body.toString()) : null) as Anything,
+    };
+  }
+  return { ask, store, origin };
+}
+
+async function withPaperStudy() {
+  const server = await served();
+  const added = await server.ask('POST', '/api/studies', {
+    token: experimenter,
+    json: { plan: paperPlan(), simulated: false },
+  });
+  expect(added.status).toBe(201);
+  const claim = async (participant: string): Promise<string> =>
+    (await server.ask('POST', `/api/studies/paper/participants/${participant}/claim`)).json.token;
+  return { ...server, claim };
+}
+
+function completed(participant: string, motion = false): StudyRecord[] {
+  const schedule = scheduleFor(paperPlan(), participant);
+  const one = session(schedule);
+  one.tell({ type: 'consent', version: schedule.consentVersion, motion });
+  one.doUntil(({ kind }) => kind === 'end');
+  return one.records;
+}
+
+const own = (participant: string, rest = '') => `/api/studies/paper/participants/${participant}${rest}`;
+
+describe('a participant', () => {
+  test('claims a place, sends records, and is told which are safe', async () => {
+    const { ask, store } = await withPaperStudy();
+    const claimed = await ask('POST', own('P01', '/claim'));
+    expect(claimed.status).toBe(201);
+    expect(claimed.json.withdrawalCode).toMatch(/^(\w{4}-){3}\w{4}$/);
+    expect(claimed.json.plan).toEqual(paperPlan());
+    const records = completed('P01');
+    const sent = await ask('POST', own('P01', '/records'), { token: claimed.json.token, json: { records } });
+    expect(sent.json.acknowledged).toEqual(records.map(({ id }) => id));
+    expect(store.records('paper', 'P01')).toEqual(records);
+  });
+
+  test('goes on on another device where the first one was', async () => {
+    const { ask, claim } = await withPaperStudy();
+    const token = await claim('P01');
+    const progress = {
+      ...begin(scheduleFor(paperPlan(), 'P01')),
+      step: 'archery/1/questionnaire',
+      draft: { Q1: 4 },
+      motion: false,
+    };
+    expect((await ask('PUT', own('P01', '/progress'), { token, json: progress })).status).toBe(204);
+    expect((await ask('POST', own('P01', '/claim'))).status).toBe(409);
+    expect((await ask('POST', own('P01', '/release'), { token: experimenter })).status).toBe(204);
+    const second = await ask('POST', own('P01', '/claim'));
+    expect(second.json.progress).toEqual(progress);
+    expect((await ask('GET', own('P01', '/progress'), { token })).status).toBe(401);
+  });
+
+  test('cannot read, write or delete what is of others', async () => {
+    const { ask, claim, store } = await withPaperStudy();
+    const token = await claim('P01');
+    const other = await claim('P02');
+    const records = completed('P02');
+    await ask('POST', own('P02', '/records'), { token: other, json: { records } });
+    const attempts: [string, string, unknown?][] = [
+      ['GET', own('P02', '/records')],
+      ['GET', own('P02', '/progress')],
+      ['GET', own('P02', '/commands')],
+      ['GET', own('P02', '/export')],
+      ['POST', own('P02', '/records'), { records }],
+      ['PUT', own('P02', '/progress'), {}],
+      ['PUT', own('P02', '/motion?trial=a'), {}],
+      ['DELETE', own('P02')],
+      ['DELETE', own('P01')],
+      ['POST', own('P01', '/release')],
+      ['POST', own('P01', '/commands'), { type: 'start' }],
+      ['POST', own('P01', '/remarks'), { text: 'well done' }],
+      ['GET', '/api/studies'],
+      ['GET', '/api/studies/paper/participants'],
+      ['GET', '/api/studies/paper/records'],
+      ['GET', '/api/studies/paper/export'],
+      ['GET', '/api/studies/paper/receipts'],
+    ];
+    for (const [method, path, json] of attempts) {
+      for (const sent of [token, undefined]) {
+        const { status, body } = await ask(method, path, {
+          ...(sent && { token: sent }),
+          ...(json !== undefined && { json }),
+        });
+        expect(status, `${method} ${path}`).toBe(401);
+        expect(body.toString()).not.toContain('Computer science');
+      }
+    }
+    expect(store.records('paper', 'P02')).toEqual(records);
+  });
+
+  test('cannot put records under the code of another', async () => {
+    const { ask, claim, store } = await withPaperStudy();
+    const token = await claim('P01');
+    const answer = await ask('POST', own('P01', '/records'), { token, json: { records: completed('P02') } });
+    expect(answer.status).toBe(403);
+    expect(store.records('paper')).toEqual([]);
+  });
+
+  test('learns nothing of the conditions before the place is theirs', async () => {
+    const { ask } = await withPaperStudy();
+    const { json } = await ask('GET', '/api/studies/paper');
+    expect(Object.keys(json).toSorted()).toEqual(['consent', 'id', 'simulated', 'title']);
+  });
+
+  test('withdraws with the code alone, and gets a receipt', async () => {
+    const { ask, store } = await withPaperStudy();
+    const { token, withdrawalCode } = (await ask('POST', own('P01', '/claim'))).json;
+    await ask('POST', own('P01', '/records'), { token, json: { records: completed('P01') } });
+    expect((await ask('POST', '/api/studies/paper/withdraw', { json: { code: 'AAAA-AAAA-AAAA-AAAA' } })).status).toBe(
+      404,
+    );
+    const { json } = await ask('POST', '/api/studies/paper/withdraw', { json: { code: withdrawalCode } });
+    expect(json).toMatchObject({ participant: 'P01', reason: 'withdrawn', records: completed('P01').length });
+    expect(store.records('paper')).toEqual([]);
+    expect((await ask('POST', own('P01', '/records'), { token, json: { records: completed('P01') } })).status).toBe(
+      401,
+    );
+  });
+
+  test('sends tracked frames that are a recording, with consent to them', async () => {
+    const { ask, claim, store } = await withPaperStudy();
+    const token = await claim('P01');
+    await ask('POST', own('P01', '/records'), { token, json: { records: completed('P01', true) } });
+    const head = {
+      position: { x: 0, y: 1.6, z: 0 },
+      orientation: { x: 0, y: 0, z: 0, w: 1 },
+      tracking: 'tracked',
+    } as const;
+    const frames = [{ time: 0, head, leftHand: null, rightHand: null }];
+    const recording = writeRecording({ device: 'Test headset', rateHz: 72, calibration: null, frames });
+    const headers = { 'content-type': 'application/json', authorization: `Bearer ${token}` };
+    const put = (body: string) =>
+      ask('PUT', own('P01', '/motion?trial=archery/1/trial-1@1.1:trial'), { raw: { headers, body } });
+    expect((await put('{}')).status).toBe(400);
+    expect((await put(recording)).status).toBe(204);
+    expect(store.motion('paper', 'P01')).toEqual([
+      { participant: 'P01', trial: 'archery/1/trial-1@1.1:trial', text: recording },
+    ]);
+  });
+});
+
+describe('the experimenter', () => {
+  test('sees where everybody is and steers', async () => {
+    const { ask, claim } = await withPaperStudy();
+    const token = await claim('P01');
+    const { json } = await ask('GET', '/api/studies/paper/participants', { token: experimenter });
+    expect(json.participants).toHaveLength(15);
+    const command = { type: 'void-block', reason: 'controller died', repeat: true };
+    const { status, json: sent } = await ask('POST', own('P01', '/commands'), { token: experimenter, json: command });
+    expect(status).toBe(201);
+    expect((await ask('GET', own('P01', '/commands?after=0'), { token })).json.commands).toEqual([
+      { number: sent.number, at: now, command },
+    ]);
+    expect((await ask('GET', own('P01', `/commands?after=${sent.number}`), { token })).json.commands).toEqual([]);
+  });
+
+  test('notes remarks, which are exported', async () => {
+    const { ask, claim } = await withPaperStudy();
+    const token = await claim('P01');
+    await ask('POST', own('P01', '/records'), { token, json: { records: completed('P01') } });
+    expect(
+      (await ask('POST', own('P01', '/remarks'), { token: experimenter, json: { text: 'left-handed bow' } })).status,
+    ).toBe(201);
+    const { body } = await ask('GET', own('P01', '/export'), { token: experimenter });
+    expect(strFromU8(unzipSync(body)['paper-P01/events.csv'] as Uint8Array)).toContain('left-handed bow');
+  });
+
+  test('exports, deletes, exports', async () => {
+    const { ask, claim } = await withPaperStudy();
+    for (const participant of ['P01', 'P02']) {
+      const token = await claim(participant);
+      await ask('POST', own(participant, '/records'), { token, json: { records: completed(participant) } });
+    }
+    const rows = async () => {
+      const { headers, body } = await ask('GET', '/api/studies/paper/export', { token: experimenter });
+      expect(headers.get('content-type')).toBe('application/zip');
+      expect(headers.get('content-disposition')).toBe('attachment; filename="paper.zip"');
+      return (
+        strFromU8(unzipSync(body)['paper/answers.csv'] as Uint8Array)
+          .trimEnd()
+          .split('\r\n').length - 1
+      );
+    };
+    expect(await rows()).toBe(48);
+    const { json } = await ask('DELETE', own('P01'), { token: experimenter });
+    expect(json).toMatchObject({ number: 1, participant: 'P01', records: completed('P01').length });
+    expect(await rows()).toBe(24);
+    expect((await ask('GET', '/api/studies/paper/receipts', { token: experimenter })).json.receipts).toEqual([json]);
+  });
+
+  test('is nobody where no token was set', async () => {
+    const { ask } = await served({ experimenterToken: null });
+    expect((await ask('GET', '/api/studies', { token: experimenter })).status).toBe(401);
+  });
+
+  test('cannot have a token that is guessed', () => {
+    const store = openStudyStore(':memory:');
+    onTestFinished(() => store.close());
+    const options = { store, experimenterToken: 'secret', now: () => now, onFault: () => undefined };
+    expect(() => createStudyRoutes(options)).toThrow('at least 16 characters');
+  });
+});
+
+describe('what is wrong', () => {
+  test('in a plan is named by field', async () => {
+    const { ask } = await served();
+    const plan = { ...paperPlan(), seed: -1 };
+    const { status, json } = await ask('POST', '/api/studies', {
+      token: experimenter,
+      json: { plan, simulated: false },
+    });
+    expect(status).toBe(400);
+    expect(json).toEqual({ error: 'seed: expected a whole number from 0 to 2147483647', field: 'seed' });
+  });
+
+  test('in a record is named by field, and nothing of the batch is stored', async () => {
+    const { ask, claim, store } = await withPaperStudy();
+    const token = await claim('P01');
+    const records = completed('P01').map((record) =>
+      record.kind === 'demographics' ? { ...record, body: { ...record.body, age: 7 } } : record,
+    );
+    const { status, json } = await ask('POST', own('P01', '/records'), { token, json: { records } });
+    expect(status).toBe(400);
+    expect(json.field).toBe('records[1].body.age');
+    expect(store.records('paper')).toEqual([]);
+  });
+
+  test('answers with the status that says what', async () => {
+    const { ask, claim } = await withPaperStudy();
+    const token = await claim('P01');
+    const send = async (raw: RequestInit) =>
+      (
+        await ask('POST', own('P01', '/records'), {
+          raw: { ...raw, headers: { authorization: `Bearer ${token}`, ...raw.headers } },
+        })
+      ).status;
+    const asJson = { 'content-type': 'application/json' };
+    expect(await send({ body: '{', headers: asJson })).toBe(400);
+    expect(await send({ body: '{"records":[]}', headers: asJson })).toBe(400);
+    expect(await send({ body: '{}', headers: { 'content-type': 'text/plain' } })).toBe(415);
+    expect(await send({ body: `"${'x'.repeat(bodyLimits.json)}"`, headers: asJson })).toBe(413);
+    expect((await ask('GET', '/api/studies/none')).status).toBe(404);
+    expect((await ask('POST', own('P16', '/claim'))).status).toBe(404);
+    expect((await ask('POST', own('Anna', '/claim'))).status).toBe(400);
+    expect((await ask('GET', '/api/studies/paper/nothing', { token: experimenter })).status).toBe(404);
+    expect((await ask('PUT', '/api/studies/paper')).status).toBe(405);
+    expect((await ask('GET', own('P01', '/commands?after=soon'), { token })).status).toBe(400);
+  });
+
+  test('a body that grows past its limit while it arrives is cut off', async () => {
+    const { ask, claim, store } = await withPaperStudy();
+    const token = await claim('P01');
+    const endless = new ReadableStream({
+      pull: (controller) => controller.enqueue(new Uint8Array(65_536).fill(0x20)),
+    });
+    const raw = {
+      body: endless,
+      duplex: 'half',
+      headers: { 'content-type': 'application/json', authorization: `Bearer ${token}` },
+    } as RequestInit;
+    const outcome = await ask('POST', own('P01', '/records'), { raw }).then(
+      ({ status }) => status,
+      () => 'cut off',
+    );
+    expect([413, 'cut off']).toContain(outcome);
+    expect(store.records('paper')).toEqual([]);
+  });
+
+  test('other addresses are left to others', async () => {
+    const { ask } = await served();
+    for (const path of ['/', '/api/studies-of-others', '/index.html'])
+      expect((await ask('GET', path)).status).toBe(418);
+  });
+});
