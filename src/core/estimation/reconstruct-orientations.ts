@@ -40,10 +40,13 @@ import type { JointPositions } from './joint-positions';
 /** What is known of one frame, floor frame: head and hands as they are, the six joints as somebody estimates them. */
 export interface Estimate {
   readonly head: Pose<'floor'>;
-  readonly leftHand: Pose<'floor'>;
-  readonly rightHand: Pose<'floor'>;
+  readonly leftHand: EstimatedHand;
+  readonly rightHand: EstimatedHand;
   readonly joints: JointPositions;
 }
+
+/** A wrist, floor frame. trust in [0, 1]: how far the trunk goes after it where the arm alone is too short; left out: all the way. */
+export type EstimatedHand = Pose<'floor'> & { readonly trust?: number };
 
 /** What one avatar's arms remember from frame to frame, so that no elbow flips. Chest frame. */
 export interface ArmMemory {
@@ -106,11 +109,17 @@ export function reconstructOrientations(
   let shoulderTargets = { left: estimate.joints.leftUpperArm, right: estimate.joints.rightUpperArm };
   let torso = placeTorso(head, headJoint, shoulderTargets, estimate.joints, skeleton, anatomy);
   let shoulders = placeShoulders(torso, shoulderTargets, skeleton, anatomy);
+  // A guessed hand does not bend the trunk: what it is out of reach by at first stays so, as far as the hand is not trusted.
+  const outOfReach = (side: Side): number => {
+    const { position, trust = 1 } = wristOf(estimate, side);
+    return (1 - trust) * Math.max(distance(position, shoulders[side].position) - reach, 0);
+  };
+  const given = { left: outOfReach('left'), right: outOfReach('right') };
   for (let pass = 0; pass < reachPasses; pass++) {
     const limits = pass < anatomicalPasses ? anatomy : extreme;
     const pull = (side: Side): Vec3 | null => {
       const toWrist = subtract(wristOf(estimate, side).position, shoulders[side].position);
-      const missing = length(toWrist) - reach;
+      const missing = length(toWrist) - reach - given[side];
       return missing > 1e-5 ? scale(normalise(toWrist), missing * 1.3) : null;
     };
     const left = pull('left');
@@ -150,7 +159,7 @@ export function reconstructOrientations(
 const reachPasses = 20;
 const anatomicalPasses = 8;
 
-const wristOf = (estimate: Estimate, side: Side): Pose<'floor'> =>
+const wristOf = (estimate: Estimate, side: Side): EstimatedHand =>
   side === 'left' ? estimate.leftHand : estimate.rightHand;
 
 /** Shoulder to wrist of a straight arm [m], a hair less, so that the elbow keeps a side. */
