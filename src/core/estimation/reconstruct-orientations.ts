@@ -2,7 +2,7 @@ import type { UpperBodyPose } from '../body/avatar-pose';
 import type { JointName, Side } from '../body/joints';
 import { type Skeleton, sideSign, wristFromHandBone } from '../body/skeleton';
 import { solveTwoBones } from '../body/two-bone-ik';
-import { clamp, smoothstep } from '../math/damper';
+import { clamp, dampedShare, smoothstep } from '../math/damper';
 import type { Pose } from '../math/pose';
 import {
   alignDirections,
@@ -45,8 +45,11 @@ export interface Estimate {
   readonly joints: JointPositions;
 }
 
-/** A wrist, floor frame. trust in [0, 1]: how far the trunk goes after it where the arm alone is too short; left out: all the way. */
-export type EstimatedHand = Pose<'floor'> & { readonly trust?: number };
+/**
+ * A wrist, floor frame. trust in [0, 1]: how far the trunk goes after it where the arm alone is too short; left out: all the way. Not
+ * seen: no further than it went before the hand was lost.
+ */
+export type EstimatedHand = Pose<'floor'> & { readonly trust?: number; readonly seen?: boolean };
 
 /** What one avatar's arms remember from frame to frame, so that no elbow flips. Chest frame. */
 export interface ArmMemory {
@@ -58,9 +61,18 @@ export interface ArmMemory {
 export interface ReconstructionMemory {
   left: ArmMemory | null;
   right: ArmMemory | null;
+  /** From the left to the right shoulder, unit, floor frame. */
+  shoulderLine: Vec3 | null;
+  /** By how much [m] the hands were out of reach when they were last seen. */
+  readonly missing: Record<Side, number>;
 }
 
-export const emptyMemory = (): ReconstructionMemory => ({ left: null, right: null });
+export const emptyMemory = (): ReconstructionMemory => ({
+  left: null,
+  right: null,
+  shoulderLine: null,
+  missing: { left: 0, right: 0 },
+});
 
 interface TrunkLimits {
   /** How far the collarbone swings from rest [rad]. */
@@ -82,7 +94,18 @@ const unsurePole = 0.04;
 const trunkHalfWidth = 1.2;
 const trunkHalfDepth = 0.85;
 
+/** Shoulders turn at most this fast [rad/s]; a pirouette's do 12. */
+const trunkSpeed = 12;
+/** Longest half-life [s] of the way that the shoulders' line follows, where their estimates lie so close that it says little. */
+const vagueLineHalfLife = 0.15;
+/** Shoulders nearer to each other than this say nothing, further apart than that all [share of their distance at rest]. */
+const [vagueShoulders, sureShoulders] = [0.2, 0.7];
+
+/** The shoulders' line of this frame from the way between their targets. */
+type LineFollower = (between: Vec3, fallback: Vec3) => Vec3;
+
 interface Torso {
+  readonly shoulderLine: Vec3;
   readonly hips: Vec3;
   readonly chest: Vec3;
   readonly neck: Vec3;
@@ -104,15 +127,19 @@ export function reconstructOrientations(
   const { head } = estimate;
   const headJoint = subtract(head.position, rotate(head.orientation, skeleton.eyesInHead));
   const reach = reachOf(skeleton);
+  const followLine = lineFollower(skeleton, memory.shoulderLine, deltaSeconds);
 
   // The trunk leans and turns after hands that the arms alone cannot reach. Overshoot: collarbone and neck take part of the way.
   let shoulderTargets = { left: estimate.joints.leftUpperArm, right: estimate.joints.rightUpperArm };
-  let torso = placeTorso(head, headJoint, shoulderTargets, estimate.joints, skeleton, anatomy);
+  let torso = placeTorso(head, headJoint, shoulderTargets, estimate.joints, skeleton, anatomy, followLine);
   let shoulders = placeShoulders(torso, shoulderTargets, skeleton, anatomy);
-  // A guessed hand does not bend the trunk: what it is out of reach by at first stays so, as far as the hand is not trusted.
+  // A guessed hand does not bend the trunk: what it is out of reach by stays so, as far as the hand is not trusted.
   const outOfReach = (side: Side): number => {
-    const { position, trust = 1 } = wristOf(estimate, side);
-    return (1 - trust) * Math.max(distance(position, shoulders[side].position) - reach, 0);
+    const { position, trust = 1, seen = true } = wristOf(estimate, side);
+    const missing = Math.max(distance(position, shoulders[side].position) - reach, 0);
+    if (!seen) return Math.max(missing - trust * memory.missing[side], 0);
+    memory.missing[side] = trust * missing;
+    return (1 - trust) * missing;
   };
   const given = { left: outOfReach('left'), right: outOfReach('right') };
   for (let pass = 0; pass < reachPasses; pass++) {
@@ -129,9 +156,11 @@ export function reconstructOrientations(
       left: left ? add(shoulderTargets.left, left) : shoulderTargets.left,
       right: rightPull ? add(shoulderTargets.right, rightPull) : shoulderTargets.right,
     };
-    torso = placeTorso(head, headJoint, shoulderTargets, estimate.joints, skeleton, limits);
+    torso = placeTorso(head, headJoint, shoulderTargets, estimate.joints, skeleton, limits, followLine);
     shoulders = placeShoulders(torso, shoulderTargets, skeleton, limits);
   }
+
+  memory.shoulderLine = torso.shoulderLine;
 
   const leftArm = placeArm('left', estimate, torso, shoulders.left, skeleton, memory, deltaSeconds);
   const rightArm = placeArm('right', estimate, torso, shoulders.right, skeleton, memory, deltaSeconds);
@@ -166,6 +195,24 @@ const wristOf = (estimate: Estimate, side: Side): EstimatedHand =>
 const reachOf = ({ restOffsets }: Skeleton): number =>
   (length(restOffsets.rightLowerArm) + length(restOffsets.rightHand)) * (1 - 1e-5);
 
+/** Follows the shoulders' line: never faster than `trunkSpeed`, and slowly where the shoulders are estimated close together. */
+function lineFollower({ restOffsets }: Skeleton, before: Vec3 | null, deltaSeconds: number): LineFollower {
+  const width = 2 * (restOffsets.rightShoulder.x + restOffsets.rightUpperArm.x);
+  return (between, fallback) => {
+    const wanted = normalise(between, before ?? fallback);
+    if (!before) return wanted;
+    const sure = smoothstep(vagueShoulders, sureShoulders, length(between) / width);
+    const angle = Math.atan2(length(cross(before, wanted)), dot(before, wanted));
+    const way = Math.min(
+      angle * dampedShare(vagueLineHalfLife * (1 - sure), deltaSeconds),
+      trunkSpeed * Math.max(deltaSeconds, 0),
+    );
+    if (angle - way < 1e-9) return wanted;
+    const aside = normalise(cross(cross(before, wanted), before), fallback);
+    return normalise(addScaled(scale(before, Math.cos(way)), aside, Math.sin(way)));
+  };
+}
+
 /** Neck, chest joint and hips on their bones' lengths below the head, and how each vertebra turns. */
 function placeTorso(
   head: Pose<'floor'>,
@@ -174,10 +221,11 @@ function placeTorso(
   joints: JointPositions,
   { restOffsets }: Skeleton,
   limits: TrunkLimits,
+  followLine: LineFollower,
 ): Torso {
   const headingRight = rotate(headingOf(head.orientation), right);
   const middle = lerp(shoulderTargets.left, shoulderTargets.right, 0.5);
-  const shoulderLine = normalise(subtract(shoulderTargets.right, shoulderTargets.left), headingRight);
+  const shoulderLine = followLine(subtract(shoulderTargets.right, shoulderTargets.left), headingRight);
   const thoraxRest = add(restOffsets.upperChest, restOffsets.neck);
   const thoraxLength = length(thoraxRest);
 
@@ -211,6 +259,7 @@ function placeTorso(
   const pelvisLine = normalise(lerp(shoulderLine, headingRight, 0.35), shoulderLine);
   const headRight = rotate(head.orientation, right);
   return {
+    shoulderLine,
     hips,
     chest,
     neck,

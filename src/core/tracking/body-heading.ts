@@ -6,11 +6,11 @@ import { headingOf } from './heading';
 /** As far [rad] as people turn their head without their body: 40°. Beyond it the body comes along. */
 const headTurn = 0.7;
 /** Half-life [s] of what the heading is beyond that from the body's. */
-const followHalfLife = 0.08;
+const followHalfLife = 0.04;
 /** Half-life [s] of what it is within: who keeps looking to one side stands that way. */
-const settleHalfLife = 1.5;
-/** A body turns at most this fast [rad/s]; a pirouette does 12, nobody's arms hang meanwhile. */
-const turnSpeed = 5;
+const settleHalfLife = 0.6;
+/** A body turns at most this fast [rad/s]; a pirouette does 12. */
+const turnSpeed = 14;
 /** The horizontal part of the head's right axis where its heading begins to mean something, and where it is sure. */
 const [vague, sure] = [0.35, 0.7];
 /** Followed in steps of at most this [s], so that every frame rate gives the same. */
