@@ -109,7 +109,10 @@ export function solveIk(points: ThreePoints, body: ChestSpaceBody): JointPositio
     // 6. Shoulder girdle: the collarbone swings with the hand.
     const restShoulder = add(body.clavicleRoot, body.clavicle);
     const q = scale(subtract(inChest(subtract(wrist.position, neck)), restShoulder), 1 / body.arm);
-    const shift = limitLength(scale(affine(parameters.girdle, [1, q.x, q.y, q.z]), e), girdleShift * body.clavicleLength);
+    const shift = limitLength(
+      scale(affine(parameters.girdle, [1, q.x, q.y, q.z]), e),
+      girdleShift * body.clavicleLength,
+    );
     const clavicle = scale(normalise(add(body.clavicle, shift), right), body.clavicleLength);
     const shoulder = add(neck, rotate(chest, mirrored(add(body.clavicleRoot, clavicle), sigma)));
 

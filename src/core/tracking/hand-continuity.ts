@@ -48,7 +48,8 @@ interface HandMemory {
   /** What the return has to bridge, from where the hand is seen to where it was shown at `time`; null when bridged. */
   bridge: {
     readonly arc: DirectionArc;
-    readonly further: number; readonly off: Vec3;
+    readonly further: number;
+    readonly off: Vec3;
     readonly turn: Quat;
     readonly trust: number;
     readonly seconds: number;
@@ -133,7 +134,11 @@ export function createHandContinuity(calibration: () => Calibration): HandContin
           off: subtract(scale(memory.shown.direction, memory.shown.distance), scale(now.direction, now.distance)),
           turn: multiply(conjugate(now.orientation), memory.shown.orientation),
           trust: memory.trust,
-          seconds: Math.max(blendSeconds, length(subtract(scale(memory.shown.direction, memory.shown.distance), scale(now.direction, now.distance))) / easeSpeed),
+          seconds: Math.max(
+            blendSeconds,
+            length(subtract(scale(memory.shown.direction, memory.shown.distance), scale(now.direction, now.distance))) /
+              easeSpeed,
+          ),
           time,
         };
         memory.lost = null;
@@ -146,7 +151,10 @@ export function createHandContinuity(calibration: () => Calibration): HandContin
         if (missing <= 0) memory.bridge = null;
         memory.trust = 1 + (bridge.trust - 1) * missing;
         memory.shown = {
-          ...(() => { const q = add(scale(now.direction, now.distance), scale(bridge.off, missing)); return { direction: normalise(q), distance: length(q) }; })(),
+          ...(() => {
+            const q = add(scale(now.direction, now.distance), scale(bridge.off, missing));
+            return { direction: normalise(q), distance: length(q) };
+          })(),
           orientation: multiply(now.orientation, slerp(identity, bridge.turn, missing)),
         };
       }

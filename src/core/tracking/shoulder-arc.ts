@@ -32,4 +32,3 @@ export function alongArc({ first, second, share }: DirectionArc, progress: numbe
   if (progress <= share) return share > 0 ? slerp(identity, first, progress / share) : identity;
   return multiply(slerp(identity, second, (progress - share) / (1 - share)), first);
 }
-
