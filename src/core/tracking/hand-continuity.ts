@@ -1,12 +1,12 @@
 import type { Calibration } from '../body/calibration';
 import type { Side } from '../body/joints';
 import { type ChestSpaceBody, chestSpaceBody, sideSign } from '../body/skeleton';
-import { evenStep } from '../math/damper';
+import { clamp, evenStep } from '../math/damper';
 import { invertTransform, type Pose, type Transform, transformPose } from '../math/pose';
 import { conjugate, fromAxes, identity, multiply, type Quat, rotate, slerp } from '../math/quat';
-import { add, addScaled, length, normalise, scale, subtract, type Vec3, vec3 } from '../math/vec3';
+import { add, addScaled, dot, length, lerp, normalise, scale, subtract, type Vec3, vec3 } from '../math/vec3';
 import { type BodyHeading, createBodyHeading } from './body-heading';
-import { alongArc, type DirectionArc, directionArc } from './shoulder-arc';
+import { alongArc, directionArc } from './shoulder-arc';
 import type { TrackedPose, TrackingFrame } from './tracking-frame';
 
 /** Where a hand is taken to be: always somewhere, whether the device sees it or not. */
@@ -45,11 +45,11 @@ interface HandMemory {
   trust: number;
   /** Where the loss began and when; null while seen. */
   lost: { readonly from: Reach; readonly trust: number; readonly time: number } | null;
-  /** What the return has to bridge, from where the hand is seen to where it was shown at `time`; null when bridged. */
+  /** What the return has to bridge: shown = seen + offset at `time`, floor frame, so that turning about does not fling it; null when bridged. */
   bridge: {
-    readonly arc: DirectionArc;
-    readonly further: number;
-    readonly off: Vec3;
+    readonly offset: Vec3;
+    /** How far half-way it goes round the shoulder. */
+    readonly detour: Vec3;
     readonly turn: Quat;
     readonly trust: number;
     readonly seconds: number;
@@ -90,9 +90,18 @@ export function restingHand(side: Side, headJoint: number, calibration: Calibrat
   };
 }
 
-/** How long a hand takes for its way about the shoulder. */
-const seconds = (shortest: number, arc: DirectionArc, from: number, to: number): number =>
-  Math.max(shortest, (arc.angle * Math.max(from, to) + Math.abs(from - to)) / easeSpeed);
+/** Nearer to its shoulder than this [arm lengths] a hand that passes by would whirl its elbow round. */
+const clearOfShoulder = 0.5;
+
+/** What to add half-way to a straight way between two places about the shoulder, so that it passes at a distance where both ends keep one. */
+function detourAround(from: Vec3, to: Vec3, arm: number, outside: Vec3): Vec3 {
+  const way = subtract(to, from);
+  const share = clamp(-dot(from, way) / Math.max(dot(way, way), 1e-9), 0, 1);
+  const nearest = lerp(from, to, share);
+  const wanted = Math.min(clearOfShoulder * arm, length(from), length(to));
+  const missing = Math.max(wanted - length(nearest), 0);
+  return scale(normalise(addScaled(nearest, outside, 0.2 * missing), outside), missing);
+}
 
 /** One per avatar; frames in order of time. Before a hand was ever seen it rests. */
 export function createHandContinuity(calibration: () => Calibration): HandContinuity {
@@ -114,6 +123,7 @@ export function createHandContinuity(calibration: () => Calibration): HandContin
       const way = subtract(position, shoulder);
       return { direction: normalise(way, vec3(0, -1, 0)), distance: length(way), orientation };
     };
+    const placeOf = ({ direction, distance }: Reach): Vec3 => scale(direction, distance);
     const rest = reachOf(restingHand(side, headJoint, calibration()));
     const seen = tracked !== null && tracked.tracking === 'tracked';
     const memory = memories[side] ?? {
@@ -125,20 +135,18 @@ export function createHandContinuity(calibration: () => Calibration): HandContin
     memories[side] = memory;
 
     if (seen) {
-      const now = reachOf(transformPose(invertTransform(floorFromBody), tracked));
+      const seenInBody = transformPose(invertTransform(floorFromBody), tracked);
+      const now = reachOf(seenInBody);
       if (memory.lost) {
-        const arc = directionArc(now.direction, memory.shown.direction, outside);
+        const [place, shownPlace] = [placeOf(now), placeOf(memory.shown)];
+        const offset = subtract(shownPlace, place);
+        const detour = detourAround(place, shownPlace, body.arm, outside);
         memory.bridge = {
-          arc,
-          further: memory.shown.distance - now.distance,
-          off: subtract(scale(memory.shown.direction, memory.shown.distance), scale(now.direction, now.distance)),
+          offset: rotate(floorFromBody.orientation, offset),
+          detour: rotate(floorFromBody.orientation, detour),
           turn: multiply(conjugate(now.orientation), memory.shown.orientation),
           trust: memory.trust,
-          seconds: Math.max(
-            blendSeconds,
-            length(subtract(scale(memory.shown.direction, memory.shown.distance), scale(now.direction, now.distance))) /
-              easeSpeed,
-          ),
+          seconds: Math.max(blendSeconds, (length(offset) + 3 * length(detour)) / easeSpeed),
           time,
         };
         memory.lost = null;
@@ -146,17 +154,15 @@ export function createHandContinuity(calibration: () => Calibration): HandContin
       memory.shown = now;
       memory.trust = 1;
       if (memory.bridge) {
-        const { bridge } = memory;
-        const missing = 1 - evenStep(0, bridge.seconds, time - bridge.time);
+        const { offset, detour, turn, trust, seconds, time: since } = memory.bridge;
+        const missing = 1 - evenStep(0, seconds, time - since);
         if (missing <= 0) memory.bridge = null;
-        memory.trust = 1 + (bridge.trust - 1) * missing;
-        memory.shown = {
-          ...(() => {
-            const q = add(scale(now.direction, now.distance), scale(bridge.off, missing));
-            return { direction: normalise(q), distance: length(q) };
-          })(),
-          orientation: multiply(now.orientation, slerp(identity, bridge.turn, missing)),
-        };
+        memory.trust = 1 + (trust - 1) * missing;
+        const aside = addScaled(scale(offset, missing), detour, 4 * missing * (1 - missing));
+        memory.shown = reachOf({
+          position: add(seenInBody.position, rotate(conjugate(floorFromBody.orientation), aside)),
+          orientation: multiply(now.orientation, slerp(identity, turn, missing)),
+        });
       }
       if (!memory.bridge) return { position: tracked.position, orientation: tracked.orientation, seen, trust: 1 };
     } else {
@@ -164,7 +170,8 @@ export function createHandContinuity(calibration: () => Calibration): HandContin
       memory.lost ??= { from: memory.shown, trust: memory.trust, time };
       const { from, trust, time: since } = memory.lost;
       const arc = directionArc(from.direction, rest.direction, outside);
-      const duration = seconds(easeSeconds, arc, from.distance, rest.distance);
+      const way = arc.angle * Math.max(from.distance, rest.distance) + Math.abs(from.distance - rest.distance);
+      const duration = Math.max(easeSeconds, way / easeSpeed);
       const share = evenStep(holdSeconds, holdSeconds + duration, Math.min(time - since, 1e6));
       memory.trust = trust * (1 - share);
       memory.shown = {
@@ -173,8 +180,8 @@ export function createHandContinuity(calibration: () => Calibration): HandContin
         orientation: slerp(from.orientation, rest.orientation, share),
       };
     }
-    const { direction, distance, orientation } = memory.shown;
-    const pose = transformPose(floorFromBody, { position: addScaled(shoulder, direction, distance), orientation });
+    const { orientation } = memory.shown;
+    const pose = transformPose(floorFromBody, { position: add(shoulder, placeOf(memory.shown)), orientation });
     return { ...pose, seen, trust: memory.trust };
   }
 
