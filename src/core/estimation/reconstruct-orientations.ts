@@ -92,7 +92,7 @@ const extreme: TrunkLimits = { clavicle: 1.2, neck: 1.8 };
 /** How far a wrist bends against the forearm [rad]: 90°, the extreme of flexion. */
 const wristLimit = Math.PI / 2;
 /** An elbow circles the line from shoulder to wrist at most this fast [rad/s]; a punch's elbow does 10. */
-const swivelSpeed = 14;
+const swivelSpeed = 12;
 /** The same where the hand is a guess. */
 const guessedSwivelSpeed = 5;
 /** Longest half-life [s] of the way that an elbow follows, where its estimate says little about the side it points to. */

@@ -30,7 +30,7 @@ const holdSeconds = 0.1;
 const easeSeconds = 0.3;
 const blendSeconds = 0.2;
 /** Mean speed [m/s] of a returning or sinking hand on long ways; a quarter faster at most: 3.9 cm in a frame at 60 Hz. */
-const easeSpeed = 1.9;
+const easeSpeed = 1.8;
 
 /** A hand about its shoulder, body frame: which way, how far [m], and how it is turned. */
 interface Reach {
