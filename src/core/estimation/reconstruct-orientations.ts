@@ -261,8 +261,10 @@ function placeTorso(
   const neckBend = limitAngle(between(neckRest, subtract(headJoint, impliedNeck)), limits.neck);
   const neck = subtract(headJoint, rotate(neckBend, neckRest));
 
-  // Chest joint and hips follow half of what the neck was moved by.
-  const moved = scale(subtract(neck, impliedNeck), 0.5);
+  // Chest joint and hips follow half of what the neck was moved by; a hand far out of reach does not throw them about.
+  const shift = subtract(neck, impliedNeck);
+  const furthest = length(restOffsets.head);
+  const moved = scale(shift, 0.5 * Math.min(1, furthest / Math.max(length(shift), 1e-9)));
   const thoraxUp = normalise(subtract(neck, add(joints.chest, moved)), roughUp);
   const chest = addScaled(neck, thoraxUp, -thoraxLength);
   const lowerBackRest = add(restOffsets.spine, restOffsets.chest);
