@@ -96,7 +96,7 @@ const swivelSpeed = 12;
 /** The same where the hand is a guess. */
 const guessedSwivelSpeed = 5;
 /** Longest half-life [s] of the way that an elbow follows, where its estimate says little about the side it points to. */
-const unsureHalfLife = 0.12;
+const unsureHalfLife = 0.35;
 /** An estimated elbow nearer to the arm's line than this [m] says little: the arm is nearly straight. */
 const unsurePole = 0.04;
 /** A hand nearer to the shoulder than the first says nothing about the line between them, further than the second all [arm lengths]. */

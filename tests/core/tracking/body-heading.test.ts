@@ -42,7 +42,10 @@ describe('a body under a head', () => {
 
   test('does not turn about when the head on its side changes its mind', () => {
     const tilted = (yaw: number) => multiply(turned(yaw), fromEulerYxz(vec3(0, 0, 1.45)));
-    expect(yawAfter(1, (time) => (time === 0 ? turned(0) : tilted(Math.round(time * 60) % 2 ? 3 : -3)))).toBeCloseTo(0, 9);
+    expect(yawAfter(1, (time) => (time === 0 ? turned(0) : tilted(Math.round(time * 60) % 2 ? 3 : -3)))).toBeCloseTo(
+      0,
+      9,
+    );
   });
 
   test('never turns faster than a pirouette, whatever the head does', () => {

@@ -170,7 +170,9 @@ describe('a hand that comes back far from where it rests', () => {
         for (let i = 1; i < 180; i++) {
           const now = continuity.follow(at(i / 60, i < 60 ? null : back)).rightHand.position;
           // What the turning person does is no step of the hand's own.
-          const own = distance(now, before) - Math.abs(turning / 60) * Math.max(Math.hypot(now.x, now.z), Math.hypot(before.x, before.z));
+          const own =
+            distance(now, before) -
+            Math.abs(turning / 60) * Math.max(Math.hypot(now.x, now.z), Math.hypot(before.x, before.z));
           expect(own).toBeLessThan(0.05);
           before = now;
         }
