@@ -202,7 +202,9 @@ export function paintLobby(context: CanvasRenderingContext2D, standing: Standing
       240,
     );
   }
-  byStation(standing).forEach((player, row) => paintRow(context, standing, player, rowTop + row * rowHeight));
+  for (const [row, player] of byStation(standing).entries()) {
+    paintRow(context, standing, player, rowTop + row * rowHeight);
+  }
   const buttons = lobbyButtons(standing);
   for (const button of buttons) {
     const hover = hovered === button.id;
