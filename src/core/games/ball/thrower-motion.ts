@@ -20,6 +20,8 @@ import { rackPosition, stations } from './stations';
 export interface BotSight {
   readonly state: BallState;
   readonly player: number;
+  /** The middle of the basket's opening where it is seen, arena frame; absent: where the state has it. */
+  readonly basket?: Vec3;
 }
 
 /** A player who needs nobody: hands and buttons for a whole match. */
@@ -66,6 +68,8 @@ export function createThrower(body: PlayerBody, seed: number): BallBot {
     return 2 * next.value - 1;
   };
 
+  const basketOf = ({ state, basket }: BotSight): Vec3 => inFloor(basket ?? state.basket.position);
+
   const resting = (at: Vec3): PlayerPosture => ({
     eyes,
     gaze: postures.looking(eyes, at),
@@ -98,10 +102,10 @@ export function createThrower(body: PlayerBody, seed: number): BallBot {
   }
 
   /** Take, bring before the chest, wait for a turn, swing back, throw, follow through. */
-  function throwOf(ball: number, side: Side, state: BallState): Movement[] {
+  function throwOf(ball: number, side: Side, sight: BotSight): Movement[] {
     const outward = side === 'left' ? -1 : 1;
-    const at = inFloor(rackPosition(ball, state.options.balls));
-    const basket = inFloor(state.basket.position);
+    const at = inFloor(rackPosition(ball, sight.state.options.balls));
+    const basket = basketOf(sight);
     const target = add(basket, vec3(scatter * chance(), 0, scatter * chance()));
     const reach = reaching(side, at);
     const shoulder = postures.shoulder(side, eyes);
@@ -201,7 +205,7 @@ export function createThrower(body: PlayerBody, seed: number): BallBot {
   let throwing: Side = 'right';
 
   function proceed(time: number, sight: BotSight): void {
-    const basket = inFloor(sight.state.basket.position);
+    const basket = basketOf(sight);
     from ??= resting(basket);
     for (;;) {
       const current = plan[0];
@@ -214,7 +218,7 @@ export function createThrower(body: PlayerBody, seed: number): BallBot {
         else {
           const at = inFloor(rackPosition(ball, sight.state.options.balls));
           throwing = at.x < 0 ? 'left' : 'right';
-          plan = throwOf(ball, throwing, sight.state);
+          plan = throwOf(ball, throwing, sight);
         }
         continue;
       }
