@@ -14,7 +14,7 @@ import {
 } from './core/games/ball/gestures';
 import { createHolder } from './core/games/ball/holder-motion';
 import type { Performed } from './core/games/ball/player-postures';
-import { ballMatchTime, ballSecondsLeft, ballsLeft } from './core/games/ball/rules';
+import { ballSecondsLeft, ballsLeft } from './core/games/ball/rules';
 import { holderStation, stations } from './core/games/ball/stations';
 import { type BallBot, createThrower } from './core/games/ball/thrower-motion';
 import type { Buttons } from './core/games/button-presses';
@@ -147,7 +147,6 @@ const botPeople: readonly { readonly name: string; readonly calibration: Calibra
   { name: 'Kim', calibration: { eyeHeight: 1.6, armSpan: 1.51 } },
 ];
 
-const sides = ['left', 'right'] as const;
 const nowhere: Transform<'floor', 'arena'> = { position: zero, orientation: identity };
 /** Seconds between two looks for free seats. */
 const seatsEvery = 0.4;
@@ -163,7 +162,7 @@ function actorFor(station: number, calibration: Calibration, seed: number): Ball
   const body = {
     eyeHeight: calibration.eyeHeight,
     armLength: chestSpaceBody(calibration).arm,
-    arenaFromFloor: stations[station] ?? nowhere,
+    arenaFromFloor: stations[station] ?? { position: zero, orientation: identity },
   };
   return station === holderStation ? createHolder(body) : createThrower(body, seed + 31 * station);
 }
