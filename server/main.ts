@@ -3,6 +3,8 @@ import { certificateFor } from './certificate';
 import { ConfigurationError, configurationFrom, usage } from './configuration';
 import { lanAddresses } from './lan-addresses';
 import { createPageHandler } from './page';
+import { createRelay, type Relay, secretIn } from './relay';
+import { relayConfigurationFrom, relayEnvironment } from './relay-configuration';
 import { serve } from './web-server';
 import { welcome } from './welcome';
 
@@ -11,20 +13,29 @@ const pathInRepository = (path: string) => fileURLToPath(new URL(`../${path}`, i
 async function main(): Promise<void> {
   const configuration = configurationFrom(process.argv.slice(2), process.env);
   if (configuration === 'help') {
-    console.log(usage);
+    console.log(`${usage}\n\n${relayEnvironment}`);
     return;
   }
+  const relaying = relayConfigurationFrom(process.env);
   const addresses = configuration.lan ? lanAddresses() : null;
-  const server = await serve(createPageHandler(pathInRepository('dist')), {
-    host: addresses ? '0.0.0.0' : '127.0.0.1',
-    port: configuration.port,
-    ...(addresses && { credentials: await certificateFor(addresses, pathInRepository('.cache'), new Date()) }),
-  });
+  const page = createPageHandler(pathInRepository('dist'));
+  let relay: Relay | null = null;
+  const server = await serve(
+    (request, response) => {
+      if (!relay?.handle(request, response)) page(request, response);
+    },
+    {
+      host: addresses ? '0.0.0.0' : '127.0.0.1',
+      port: configuration.port,
+      ...(addresses && { credentials: await certificateFor(addresses, pathInRepository('.cache'), new Date()) }),
+    },
+  );
+  relay = createRelay(server.requests, relaying, relaying.secret ?? secretIn(pathInRepository('.cache/relay-secret')));
   console.log(welcome({ port: server.port, requestedPort: configuration.port, addresses }));
   for (const signal of ['SIGINT', 'SIGTERM'] as const) {
     process.once(signal, () => {
       console.log('Stopping.');
-      void server.close();
+      void Promise.resolve(relay?.close()).then(() => server.close());
     });
   }
 }

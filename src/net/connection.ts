@@ -13,7 +13,7 @@ export interface ConnectionStatus {
   /** Seconds until the next attempt; null: one is under way, or none will be made. */
   readonly retryIn: number | null;
   /** Why it ended, or why the last attempt failed; null: nothing to tell. */
-  readonly reason: Farewell | 'unreachable' | 'refused' | 'old-page' | null;
+  readonly reason: Farewell | 'unreachable' | 'refused' | null;
 }
 
 /** The room as it is known here. */

@@ -114,35 +114,38 @@ export function createRoomSession(visitor: Visitor, wire: Wire, knowsClock = fal
   function hear(message: RoomMessage, at: number): void {
     now = Math.max(now, at);
     view = null;
-    if (message.type === 'welcome') return welcomed(message);
-    if (message.type === 'pong') return clock.hear(message.sent, message.time, at);
-    if (!known) return;
+    if (message.type === 'welcome') welcomed(message);
+    else if (message.type === 'pong') clock.hear(message.sent, message.time, at);
+    else if (known) hearChange(known, message);
+  }
+
+  function hearChange(room: Known, message: Exclude<RoomMessage, { type: 'welcome' | 'pong' }>): void {
     switch (message.type) {
       case 'seat':
         setRow(message.seat, unpackRow(message.row));
         news.push('seats');
         return;
       case 'seated':
-        known = { ...known, seat: message.seat };
+        known = { ...room, seat: message.seat };
         wishes = { spectate: message.seat === null, seat: message.seat };
         pending = [];
         news.push('seats');
         return;
       case 'about':
-        known = { ...known, spectators: message.spectators, rotate: message.rotate };
+        known = { ...room, spectators: message.spectators, rotate: message.rotate };
         return;
       case 'zero':
-        known = { ...known, zero: message.zero };
+        known = { ...room, zero: message.zero };
         return;
       case 'match':
-        known = { ...known, zero: message.zero };
+        known = { ...room, zero: message.zero };
         confirmed = unpackBall(message.match);
         pending = [];
         news.push('match');
         return;
       case 'events':
         for (const event of message.events) {
-          const { seat } = known;
+          const { seat } = room;
           if (confirmed) confirmed = followBallEvent(confirmed, event);
           if (seat !== null) pending = pending.filter((deed) => !answersDeed(event, seat, deed));
           events.push(event);
