@@ -1,12 +1,11 @@
 import { createRemoteAvatars } from './avatar/remote-avatars';
 import { type BallPlay, type BallProbe, createBallPlay } from './ball-play';
 import type { AvatarPose } from './core/body/avatar-pose';
-import type { Calibration } from './core/body/calibration';
-import type { Buttons } from './core/games/button-presses';
-import type { Side } from './core/games/fist';
 import type { BallPulse } from './core/games/ball/gestures';
 import type { Performed } from './core/games/ball/player-postures';
 import { ballSecondsLeft, ballsLeft, defaultBallOptions } from './core/games/ball/rules';
+import type { Buttons } from './core/games/button-presses';
+import type { Side } from './core/games/fist';
 import { type Pose, transformPose } from './core/math/pose';
 import type { Vec3 } from './core/math/vec3';
 import type { TrackingFrame } from './core/tracking/tracking-frame';
@@ -44,7 +43,12 @@ export interface BallRound {
   readonly ready: boolean;
   readonly rotate: boolean;
   readonly spectators: number;
-  readonly people: readonly { readonly seat: number; readonly name: string; readonly role: string; readonly free: boolean }[];
+  readonly people: readonly {
+    readonly seat: number;
+    readonly name: string;
+    readonly role: string;
+    readonly free: boolean;
+  }[];
 }
 
 /** Somebody whom the tools may know of. */
@@ -135,7 +139,8 @@ export function createBallActivity(options: BallActivityOptions): BallActivity {
       play.begin(time);
       place();
       const times = play.room?.voided ?? 0;
-      if (times > voided) notice = { text: 'The server was restarted: this round does not count. A new one can begin.', until: time + 8 };
+      if (times > voided)
+        notice = { text: 'The server was restarted: this round does not count. A new one can begin.', until: time + 8 };
       voided = times;
     },
     act: play.act,

@@ -48,9 +48,7 @@ const schema = v.object({
   room: v.optional(v.pipe(v.string(), v.regex(/^[a-z0-9][a-z0-9-]{0,31}$/))),
   bots: v.optional(v.picklist(['on', 'off'])),
   name: v.optional(v.pipe(v.string(), v.minLength(1), v.maxLength(40))),
-  balls: v.optional(
-    v.pipe(v.string(), v.regex(/^\d{1,2}$/), v.transform(Number), v.minValue(1), v.maxValue(20)),
-  ),
+  balls: v.optional(v.pipe(v.string(), v.regex(/^\d{1,2}$/), v.transform(Number), v.minValue(1), v.maxValue(20))),
   seed: v.optional(v.pipe(v.string(), v.regex(/^\d{1,9}$/), v.transform(Number))),
 });
 

@@ -132,12 +132,12 @@ export function createVrMenu(actions: VrMenuActions): VrMenu {
                 ? []
                 : ([['ready', shown.ready ? 'Wait for me' : 'Ready', () => actions.ready(!shown.ready)]] as const)),
             ]
-        : [
-            ['studio', 'To the mirror', () => actions.goTo('studio')],
-            shown.roundOver
-              ? ['restart', 'New round', actions.restart]
-              : ['bow', `Bow: ${shown.bowSide} hand`, () => actions.setBowSide(other)],
-          ];
+          : [
+              ['studio', 'To the mirror', () => actions.goTo('studio')],
+              shown.roundOver
+                ? ['restart', 'New round', actions.restart]
+                : ['bow', `Bow: ${shown.bowSide} hand`, () => actions.setBowSide(other)],
+            ];
     const rest: readonly Row[] = [
       ['calibrate', 'Calibrate', actions.calibrate],
       ['recentre', 'Recentre', actions.recentre],
