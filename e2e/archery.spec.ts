@@ -24,18 +24,28 @@ async function enterTheRange(page: Page, query = ''): Promise<EmulatedHeadset> {
 
 const patience = { timeout: 60_000 };
 
+/** The first frame that shows this: what lasts a moment is not missed between two looks. */
+const untilFrame = (page: Page, shows: Partial<ArcheryProbe>) =>
+  page.waitForFunction(
+    (shows) => {
+      const game = window.threepoint?.probe().game;
+      return game?.name === 'archery' && Object.entries(shows).every(([key, value]) => game[key as 'score'] === value);
+    },
+    shows,
+    patience,
+  );
+
 for (const estimator of ['learned', 'ik', 'paper', 'hands-only'] as const) {
   test(`${estimator}: the archer in the emulated headset wins 50 of 50`, async ({ page }) => {
     test.setTimeout(240_000);
     await enterTheRange(page, `&estimator=${estimator}`);
     await expect.poll(async () => (await probe(page)).estimator).toBe(estimator);
     if (estimator === 'learned') {
-      // In the page, frame by frame: what lasts a moment is not missed between two looks.
-      await page.waitForFunction(() => window.threepoint?.probe().game?.stage === 'drawing', undefined, patience);
+      await untilFrame(page, { stage: 'drawing' });
       await keepPicture(page, 'archery-drawing');
-      await page.waitForFunction(() => (window.threepoint?.probe().game?.arrowsLeft ?? 5) < 5, undefined, patience);
+      await untilFrame(page, { arrowsLeft: 4 });
       await keepPicture(page, 'archery-flight');
-      await page.waitForFunction(() => (window.threepoint?.probe().game?.score ?? 0) > 0, undefined, patience);
+      await untilFrame(page, { score: 5 });
       await keepPicture(page, 'archery-hit');
     }
     await expect.poll(async () => (await round(page)).phase, { timeout: 200_000, intervals: [1000] }).toBe('over');
