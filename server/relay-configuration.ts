@@ -21,6 +21,8 @@ export interface RelayConfiguration {
   readonly trustProxy: boolean;
   /** Of the lobby that several processes share; null: this process is alone. */
   readonly redisUrl: string | null;
+  /** The address to listen on; null: this machine alone, or with --lan all of its own. */
+  readonly host: string | null;
   readonly logLevel: (typeof logLevels)[number];
 }
 
@@ -41,6 +43,7 @@ export const relayEnvironment = `Environment of the relay (docs/relay.md):
   THREEPOINT_BALL_SECONDS       length of a round of the ball game; default 90
   THREEPOINT_TRUST_PROXY        1: a proxy stands in front and tells the clients' addresses; default 0
   THREEPOINT_REDIS_URL          redis://HOST:PORT of the lobby that several processes share
+  THREEPOINT_HOST               address to listen on behind a proxy, as 0.0.0.0; default 127.0.0.1
   THREEPOINT_LOG_LEVEL          ${logLevels.join(', ')}; default warn`;
 
 function numberFrom(environment: Environment, name: string, fallback: number, min: number, max: number): number {
@@ -112,6 +115,7 @@ export function relayConfigurationFrom(environment: Environment): RelayConfigura
     ballSeconds: number('THREEPOINT_BALL_SECONDS', 90, 1, 3600),
     trustProxy: whole('THREEPOINT_TRUST_PROXY', 0, 0, 1) === 1,
     redisUrl,
+    host: environment.THREEPOINT_HOST || null,
     logLevel,
   };
 }

@@ -1,7 +1,8 @@
 import { randomBytes } from 'node:crypto';
 import type { IncomingMessage, ServerResponse } from 'node:http';
+import type { Redis } from 'ioredis';
 import type { Logger } from 'pino';
-import { RateLimiterMemory, RateLimiterRes } from 'rate-limiter-flexible';
+import { type RateLimiterAbstract, RateLimiterMemory, RateLimiterRedis, RateLimiterRes } from 'rate-limiter-flexible';
 import * as v from 'valibot';
 import { roomKinds } from '../src/core/protocol/messages';
 import { clientAddress, isLoopback } from './client-address';
@@ -19,6 +20,8 @@ export interface RelayRoutesOptions {
   readonly host: SocketHost;
   readonly metrics: RelayMetrics;
   readonly log: Logger;
+  /** Where a fleet counts who joins from where; null: this process is alone. */
+  readonly redis: Redis | null;
 }
 
 const longestBody = 4096;
@@ -76,12 +79,16 @@ export function createRelayRoutes(
   options: RelayRoutesOptions,
 ): (request: IncomingMessage, response: ServerResponse) => boolean {
   const { configuration, tokens, lobby, host, metrics, log } = options;
-  const joins = new RateLimiterMemory({ points: configuration.joinsPerMinute, duration: 60, keyPrefix: 'address' });
-  const joinsHere = new RateLimiterMemory({
-    points: Math.max(joinsPerMinuteHere, configuration.joinsPerMinute),
-    duration: 60,
-    keyPrefix: 'here',
-  });
+  const limiter = (points: number, keyPrefix: string): RateLimiterAbstract => {
+    const alone = new RateLimiterMemory({ points, duration: 60, keyPrefix });
+    const { redis: storeClient } = options;
+    // Without Redis each process counts for itself.
+    return storeClient
+      ? new RateLimiterRedis({ storeClient, points, duration: 60, keyPrefix, insuranceLimiter: alone })
+      : alone;
+  };
+  const joins = limiter(configuration.joinsPerMinute, 'threepoint:joins');
+  const joinsHere = limiter(Math.max(joinsPerMinuteHere, configuration.joinsPerMinute), 'threepoint:joins-here');
 
   async function spendJoin(request: IncomingMessage): Promise<void> {
     const address = clientAddress(request, configuration.trustProxy);
