@@ -129,7 +129,7 @@ async function play(load: Load): Promise<Heard> {
     rooms.push(room);
     for (let seat = 0; seat < load.room; seat++) {
       const token = load.tokens[r * load.room + seat] ?? '';
-      room.push(await connect(room, `open-${r}`, seat, token));
+      room.push(await connect(room, `room-${r}`, seat, token));
     }
   }
   const clients = rooms.flat();

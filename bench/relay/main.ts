@@ -76,6 +76,7 @@ async function cpuOf(relay: ChildProcess): Promise<number> {
 
 /** One load on a fresh relay. */
 async function trial(sort: RelaySort, room: number, rooms: number, hz: number): Promise<Row> {
+  // Rooms of three are those of the ball game, whose rules our relay runs.
   const relay = start(sort === 'ours' ? './our-relay.ts' : './plain-relay.ts');
   const clients = start('./clients.ts');
   try {
@@ -85,7 +86,9 @@ async function trial(sort: RelaySort, room: number, rooms: number, hz: number): 
     const tokens =
       sort === 'ours'
         ? await Promise.all(
-            Array.from({ length: room * rooms }, (_, i) => issued.issue(`open-${Math.floor(i / room)}`, 'open')),
+            Array.from({ length: room * rooms }, (_, i) =>
+              issued.issue(`room-${Math.floor(i / room)}`, room === 3 ? 'ball' : 'open'),
+            ),
           )
         : [];
     const load: Load = { relay: sort, port: hello.port, room, rooms, hz, warmUpSeconds: 2, seconds, tokens };
