@@ -23,6 +23,8 @@ export interface RelayConfiguration {
   readonly redisUrl: string | null;
   /** The address to listen on; null: this machine alone, or with --lan all of its own. */
   readonly host: string | null;
+  /** Whoever sends this as "Authorization: Bearer …" may end rooms; null: nobody. */
+  readonly adminToken: string | null;
   readonly logLevel: (typeof logLevels)[number];
 }
 
@@ -43,6 +45,7 @@ export const relayEnvironment = `Environment of the relay (docs/relay.md):
   THREEPOINT_BALL_SECONDS       length of a round of the ball game; default 90
   THREEPOINT_TRUST_PROXY        1: a proxy stands in front and tells the clients' addresses; default 0
   THREEPOINT_REDIS_URL          redis://HOST:PORT of the lobby that several processes share
+  THREEPOINT_ADMIN_TOKEN        lets whoever has it end rooms; 16 characters or more
   THREEPOINT_HOST               address to listen on behind a proxy, as 0.0.0.0; default 127.0.0.1
   THREEPOINT_LOG_LEVEL          ${logLevels.join(', ')}; default warn`;
 
@@ -82,6 +85,12 @@ export function relayConfigurationFrom(environment: Environment): RelayConfigura
       `The environment variable THREEPOINT_SECRET must have at least ${shortestSecret} characters, has ${secret.length}.`,
     );
   }
+  const adminToken = environment.THREEPOINT_ADMIN_TOKEN || null;
+  if (adminToken !== null && !/^\S{16,256}$/.test(adminToken)) {
+    throw new ConfigurationError(
+      `The environment variable THREEPOINT_ADMIN_TOKEN must have 16 to 256 characters and no spaces, has ${adminToken.length}.`,
+    );
+  }
   const redisUrl = environment.THREEPOINT_REDIS_URL || null;
   if (redisUrl !== null && !/^rediss?:\/\/\S+$/.test(redisUrl)) {
     throw new ConfigurationError(
@@ -116,6 +125,7 @@ export function relayConfigurationFrom(environment: Environment): RelayConfigura
     trustProxy: whole('THREEPOINT_TRUST_PROXY', 0, 0, 1) === 1,
     redisUrl,
     host: environment.THREEPOINT_HOST || null,
+    adminToken,
     logLevel,
   };
 }

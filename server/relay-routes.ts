@@ -1,4 +1,4 @@
-import { randomBytes } from 'node:crypto';
+import { createHash, randomBytes, timingSafeEqual } from 'node:crypto';
 import type { IncomingMessage, ServerResponse } from 'node:http';
 import type { Redis } from 'ioredis';
 import type { Logger } from 'pino';
@@ -20,6 +20,8 @@ export interface RelayRoutesOptions {
   readonly host: SocketHost;
   readonly metrics: RelayMetrics;
   readonly log: Logger;
+  /** Ends a room in whichever process it is. */
+  readonly endRoom: (room: string) => void;
   /** Where a fleet counts who joins from where; null: this process is alone. */
   readonly redis: Redis | null;
 }
@@ -33,6 +35,7 @@ const tokenRequest = v.strictObject({
   /** A token from before, by which the same person goes on. */
   token: v.optional(v.pipe(v.string(), v.maxLength(1024))),
 });
+const endRequest = v.strictObject({ room: v.pipe(v.string(), v.regex(roomName)) });
 const roomRequest = v.strictObject({ kind: v.picklist(roomKinds) });
 
 class RequestError extends Error {
@@ -121,6 +124,18 @@ export function createRelayRoutes(
     return { room: best?.room ?? newRoomName(), found: best !== undefined };
   }
 
+  async function end(request: IncomingMessage): Promise<unknown> {
+    const digest = (text: string) => createHash('sha256').update(text).digest();
+    const given = /^Bearer (\S{1,256})$/.exec(request.headers.authorization ?? '')?.[1] ?? '';
+    const { adminToken } = configuration;
+    if (adminToken === null || !timingSafeEqual(digest(given), digest(adminToken))) {
+      throw new RequestError(403, 'this needs the token of THREEPOINT_ADMIN_TOKEN');
+    }
+    const { room } = await bodyOf(request, endRequest);
+    options.endRoom(room);
+    return { room };
+  }
+
   async function answerMetrics(request: IncomingMessage, response: ServerResponse): Promise<void> {
     // For whoever runs the server: asked for on the machine itself, not through the proxy.
     if (!isLoopback(request.socket.remoteAddress ?? '') || request.headers['x-forwarded-for'] !== undefined) {
@@ -149,6 +164,7 @@ export function createRelayRoutes(
         return { room: newRoomName() };
       },
     },
+    '/api/rooms/end': { method: 'POST', answer: end },
     '/api/rooms/token': { method: 'POST', answer: token },
   };
 

@@ -22,6 +22,8 @@ export interface Relay {
 }
 
 const lobbyEveryMs = 1000;
+/** What the processes of a fleet tell each other: that a room is to end. */
+const endEvent = 'end-room';
 
 /** A secret kept in a file, so that tokens outlive a restart. */
 export function secretIn(path: string): string {
@@ -67,6 +69,14 @@ export function createRelay(server: HttpServer, configuration: RelayConfiguratio
     socket.onAny(() => socket.disconnect(true));
   });
 
+  hall.on(endEvent, (room: string) => void host.end(room));
+  /** Alone, or with Redis out of reach, this process is all there is. */
+  const reachesAll = (): boolean => connections?.told.status === 'ready';
+  const endRoom = (room: string): void => {
+    host.end(room);
+    if (reachesAll()) hall.serverSideEmit(endEvent, room);
+  };
+
   let told = '';
   const timer = setInterval(() => {
     const rooms: readonly RoomListing[] = host.rooms;
@@ -75,8 +85,7 @@ export function createRelay(server: HttpServer, configuration: RelayConfiguratio
     if (text === told) return;
     told = text;
     // What nobody can be told now is told with the next change: without Redis nothing piles up.
-    const all = !connections || connections.told.status === 'ready';
-    (all ? hall : hall.local).emit('node', { node, rooms });
+    (reachesAll() ? hall : hall.local).emit('node', { node, rooms });
   }, lobbyEveryMs);
 
   const handle = createRelayRoutes({
@@ -86,6 +95,7 @@ export function createRelay(server: HttpServer, configuration: RelayConfiguratio
     host,
     metrics,
     log,
+    endRoom,
     redis: connections?.own ?? null,
   });
   return {

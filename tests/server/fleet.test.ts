@@ -54,6 +54,8 @@ const startRedis = async (port: number): Promise<ChildProcess> => {
   return redis;
 };
 
+const adminToken = 'whoever-runs-the-tests';
+
 interface Lobby {
   readonly rooms: readonly { readonly room: string; readonly players: number; readonly free: number }[];
   readonly complete: boolean;
@@ -86,6 +88,7 @@ describe.skipIf(missing)(
         THREEPOINT_REDIS_URL: `redis://127.0.0.1:${redisPort}`,
         THREEPOINT_TRUST_PROXY: '1',
         THREEPOINT_JOINS_PER_MINUTE: '1000',
+        THREEPOINT_ADMIN_TOKEN: adminToken,
       };
       relays = [await forkRelay(environment), await forkRelay(environment)];
       proxies = await Promise.all(
@@ -147,6 +150,25 @@ describe.skipIf(missing)(
         });
         expect(await response.json()).toEqual({ room: 'grove', found: true });
       }
+    });
+
+    test('who may end a room ends it wherever it is; others do not', async () => {
+      const end = (room: string, token: string) =>
+        fetch(`${relays[0]!.url}/api/rooms/end`, {
+          method: 'POST',
+          headers: { 'content-type': 'application/json', authorization: `Bearer ${token}` },
+          body: JSON.stringify({ room }),
+        });
+      // More than one, so that some are in the process that is not asked.
+      const guests = ['heath', 'island', 'jetty', 'knoll'].map((room) => ({
+        room,
+        person: arrive(proxies[0]!.url, room, 'Eve'),
+      }));
+      await until('all in', () => guests.every(({ person }) => person.seat >= 0));
+      expect((await end('heath', 'guessed')).status).toBe(403);
+      for (const { room } of guests) expect((await end(room, adminToken)).status).toBe(200);
+      await until('all out', () => guests.every(({ person }) => person.connection.status.reason === 'closed'));
+      for (const { person } of guests) person.stop();
     });
 
     test('without Redis no room misses a frame, and the lobby says that it is not complete', async () => {

@@ -1,3 +1,5 @@
+import { setFlagsFromString } from 'node:v8';
+import { runInNewContext } from 'node:vm';
 import { afterEach, describe, expect, test } from 'vitest';
 import { WebSocket } from 'ws';
 import { createRoomTokens } from '../../server/room-tokens';
@@ -313,6 +315,9 @@ describe('abuse', () => {
 test('twenty rooms that fill and empty again leave no timer, socket or listener behind', async () => {
   const server = await relayHere({ THREEPOINT_EVENTS_PER_SECOND: '100' });
   const rounds = isNightly ? 60 : 3;
+  setFlagsFromString('--expose-gc');
+  const collect = runInNewContext('gc') as () => void;
+  const heaps: number[] = [];
   const counts: number[] = [];
   const handles = () => process.getActiveResourcesInfo().length;
   const tokens = createRoomTokens(testSecret, () => Date.now() / 1000);
@@ -327,8 +332,10 @@ test('twenty rooms that fill and empty again leave no timer, socket or listener 
     for (const guest of guests) guest.say({ type: 'leave' });
     await until('everybody gone', () => server.relay.host.census.sockets === 0);
     await until('every connection closed', () => guests.every(({ closedAt }) => closedAt !== null));
-    await pause(1.2);
+    await pause(1);
     counts.push(handles());
+    collect();
+    heaps.push(process.memoryUsage().heapUsed / 2 ** 20);
   }
   await until('every room closed', () => server.relay.host.census.rooms === 0, 20);
   const engine = server.relay.host.io.engine as { readonly clientsCount: number };
@@ -337,7 +344,9 @@ test('twenty rooms that fill and empty again leave no timer, socket or listener 
     'handles first': counts[0] ?? 0,
     'handles last': counts.at(-1) ?? 0,
     connections: engine.clientsCount,
+    'heap from the first round to the last [MB]': (heaps.at(-1) ?? 0) - (heaps[0] ?? 0),
   });
   expect(engine.clientsCount).toBe(0);
+  expect((heaps.at(-1) ?? 0) - (heaps[0] ?? 0)).toBeLessThan(10);
   expect(counts.at(-1)).toBeLessThanOrEqual((counts[0] ?? 0) + 3);
 });
