@@ -203,7 +203,7 @@ async function start(): Promise<void> {
 
   /** Somebody who needs nobody: the actor in the studio, the archer on the range. */
   function perform(time: number): { readonly frame: TrackingFrame; readonly buttons: Buttons } {
-    const player = ball?.act(time);
+    const player = ball?.act(time, session === null);
     if (player) return player;
     if (!archery) return { frame: actor.frameAt(time), buttons: nothingPressed };
     if (!settings.mouse || session) return archery.play.act(time);
