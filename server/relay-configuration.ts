@@ -32,7 +32,7 @@ type Environment = Readonly<Record<string, string | undefined>>;
 export const relayEnvironment = `Environment of the relay (docs/relay.md):
   THREEPOINT_SECRET             signs room tokens; at least ${shortestSecret} characters, the same in every process of a fleet
   THREEPOINT_ORIGINS            origins of pages that may connect, with commas between; default: the server's own
-  THREEPOINT_TICK_HZ            how often a room's poses are passed on a second, 20 to 120; default 72
+  THREEPOINT_TICK_HZ            how often a room's poses are passed on a second, 20 to 120; default 90
   THREEPOINT_POSES_PER_SECOND   budget of each client; default 40
   THREEPOINT_EVENTS_PER_SECOND  budget of each client; default 10
   THREEPOINT_JOINS_PER_MINUTE   budget of new people of each address; default 5, on this machine itself 120
@@ -103,7 +103,7 @@ export function relayConfigurationFrom(environment: Environment): RelayConfigura
   return {
     secret,
     origins: originsFrom(environment.THREEPOINT_ORIGINS),
-    tickHz: number('THREEPOINT_TICK_HZ', 72, 20, 120),
+    tickHz: number('THREEPOINT_TICK_HZ', 90, 20, 120),
     posesPerSecond: whole('THREEPOINT_POSES_PER_SECOND', 40, 1, 200),
     eventsPerSecond: whole('THREEPOINT_EVENTS_PER_SECOND', 10, 1, 1000),
     joinsPerMinute: whole('THREEPOINT_JOINS_PER_MINUTE', 5, 1, 100_000),

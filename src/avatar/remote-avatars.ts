@@ -112,7 +112,7 @@ export function createRemoteAvatars(bytes: ArrayBuffer, name: string): RemoteAva
     if (failed) throw failed;
     if (!making) {
       making = true;
-      make().then(
+      void make().then(
         () => {
           making = false;
         },
