@@ -292,7 +292,8 @@ async function start(): Promise<void> {
       },
       follow(seat) {
         settings.following = seat;
-        view.recentre();
+        placeCamera();
+        show();
       },
     },
   });
@@ -430,7 +431,9 @@ async function start(): Promise<void> {
   }
 
   function placeCamera(): void {
-    view.setScene(archery ? 'range' : ball ? (watching() ? 'stands' : 'court') : 'studio');
+    view.setScene(
+      archery ? 'range' : ball ? (watching() && settings.following === null ? 'stands' : 'court') : 'studio',
+    );
   }
 
   function fit(): void {
