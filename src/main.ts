@@ -33,6 +33,7 @@ import { createRecorder } from './recorder';
 import { createArena } from './scene/arena';
 import { createDesktopView, type ViewName, viewNames } from './scene/desktop-view';
 import { affordableQuality, createRenderer, easeEmulatedPicture, fitToWindow } from './scene/renderer';
+import type { StudyRun } from './study-run';
 import { type CalibrationStep, createCalibrationDialog } from './ui/calibration-dialog';
 import { createCalibrationGuide } from './ui/calibration-guide';
 import { offerDownload } from './ui/downloads';
@@ -195,7 +196,7 @@ async function start(): Promise<void> {
 
   /** Somebody who needs nobody: the actor in the studio, the archer on the range. */
   function perform(time: number): { readonly frame: TrackingFrame; readonly buttons: Buttons } {
-    if (!archery) return { frame: actor.frameAt(time), buttons: nothingPressed };
+    if (!archery || study?.idle) return { frame: actor.frameAt(time), buttons: nothingPressed };
     if (!settings.mouse || session) return archery.play.act(time);
     pointing.setFromCamera(new Vector2(mouse.x, mouse.y), view.camera);
     const { origin, direction } = pointing.ray;
@@ -206,7 +207,7 @@ async function start(): Promise<void> {
     const time = timeMs / 1000;
     buttons = nothingPressed;
     if (session) {
-      if (emulator && settings.actor) {
+      if (emulator && settings.actor && !study?.idle) {
         // What the actor does now is seen with the next frame: the device froze this one before it called.
         const performed = perform(time);
         emulator.drive(performed.frame, performed.buttons);
@@ -229,6 +230,8 @@ async function start(): Promise<void> {
   // Archery: loaded when somebody first goes there; null in the studio.
   let archery: { readonly play: ReturnType<typeof createArcheryPlay>; readonly view: ArcheryView } | null = null;
   let arriving = false;
+  /** A study that the address asks for; it decides what is played and with which body. */
+  let study: StudyRun | null = null;
   let seed = switches.seed ?? Math.floor(performance.timeOrigin % 2 ** 31);
 
   const playBar = createPlayBar(pageElement('play', HTMLElement), {
@@ -272,7 +275,13 @@ async function start(): Promise<void> {
   }
 
   function restartRound(): void {
+    // In a study rounds are the study's.
+    if (study) return;
     seed += 1;
+    restartPlay();
+  }
+
+  function restartPlay(): void {
     // Whoever plays seated shoots at targets as high for the eyes as everybody's.
     archery?.play.restart(bodyNow(), session ? newestFrame?.head.position.y : undefined);
     playBar.caption('');
@@ -566,6 +575,42 @@ async function start(): Promise<void> {
     });
   }
 
+  async function joinStudy(asked: NonNullable<typeof switches.study>): Promise<StudyRun> {
+    const { createStudyRun } = await import('./study-run');
+    const run = createStudyRun(asked, {
+      enterVr: enter,
+      inSession: () => session !== null,
+      calibration: () => settings.calibration,
+      setCalibration: (calibration) => calibrate(calibration, 'measured', false),
+      chooseEstimator: (name) => choice.choose(name),
+      estimator: () => choice.current.name,
+      setActor(on) {
+        settings.actor = on && switches.actor;
+      },
+      setBowSide(side) {
+        settings.bowSide = side;
+        placeMirror();
+      },
+      goToArchery: () => goTo('archery'),
+      startRound(layout, seconds) {
+        Object.assign(settings, { seconds, everyHitCounts: false });
+        seed = layout;
+        restartPlay();
+        archery?.play.signal();
+      },
+      resetRound: restartPlay,
+      assists: () => (settings.oneHanded ? ['one hand'] : []),
+      device: () => ({
+        name: (emulator ? `emulated headset in ${navigator.userAgent}` : navigator.userAgent).slice(0, 160),
+        refreshRateHz: session?.xr.frameRate ?? (emulator ? windowRateHz : null),
+        input: settings.actor ? 'simulated' : emulator ? 'emulated' : (session?.tracker.input ?? 'controllers'),
+      }),
+      listenToFrames: (listener) => timing.listen(listener),
+    });
+    arena.scene.add(run.object);
+    return run;
+  }
+
   const enterButton = createEnterButton(pageElement('enter', HTMLDivElement), () => void enter());
 
   /** Controls cover a part of the window: the body stands in the middle of the rest. */
@@ -633,7 +678,7 @@ async function start(): Promise<void> {
       o: () => toggle('overlay', !settings.overlay),
       p: () => panel.setOpen(!panel.open),
     },
-    () => session === null && !dialog.visible,
+    () => session === null && !dialog.visible && study === null,
   );
   acceptDroppedFiles(openFile);
 
@@ -691,7 +736,7 @@ async function start(): Promise<void> {
       space.addEventListener('reset', () => choice.reset());
       timing.setRate(emulator ? windowRateHz : (xrSession.frameRate ?? 72));
       if (!settings.actor) emulator?.release();
-      menu.setVisible(true);
+      menu.setVisible(study === null);
       pointers.objects.visible = true;
       document.body.classList.add('in-session');
       panelOpenBefore = panel.open;
@@ -703,6 +748,7 @@ async function start(): Promise<void> {
     choice.reset();
     fit();
     show();
+    study?.sessionChanged();
   }
 
   function leave(): void {
@@ -718,11 +764,12 @@ async function start(): Promise<void> {
     view.setView(view.view);
     layOut();
     show();
+    study?.sessionChanged();
   }
 
   /** Somebody who never calibrated is as tall as their headset hangs high, once it hangs there calmly. */
   function settle(frame: TrackingFrame): void {
-    if (!session || calibrated() || session.settledSince === 'done') return;
+    if (!session || calibrated() || study?.measured || session.settledSince === 'done') return;
     session.settledSince ??= frame.time;
     if (frame.time - session.settledSince < settleSeconds) return;
     session.settledSince = 'done';
@@ -732,7 +779,9 @@ async function start(): Promise<void> {
   /** The frame as play: seen with the picture, heard and felt at once. */
   function playRound(frame: TrackingFrame): void {
     if (!archery) return;
-    const { events, cues, haptics } = archery.play.follow(frame, buttons);
+    if (study?.paused) return;
+    const { events, cues, haptics } = archery.play.follow(frame, study?.idle ? nothingPressed : buttons);
+    if (archery.play.newest) study?.played(archery.play.newest);
     const taken = cues.findLast(({ type }) => type === 'taken');
     if (taken) {
       settings.bowSide = taken.side;
@@ -754,7 +803,7 @@ async function start(): Promise<void> {
 
   // A click on the result's button is another round.
   canvas.addEventListener('click', ({ clientX, clientY }) => {
-    if (!archery || session) return;
+    if (!archery || session || study) return;
     const { width, height } = canvas.getBoundingClientRect();
     pointing.setFromCamera(new Vector2((2 * clientX) / width - 1, 1 - (2 * clientY) / height), view.camera);
     const { origin, direction } = pointing.ray;
@@ -790,6 +839,7 @@ async function start(): Promise<void> {
         skeletonLines.show(joints);
         const { hips } = joints;
         if (hips) arena.follow(hips.x, hips.z);
+        study?.frame(timeMs / 1000, frame);
         if (session) {
           if (session.xr.visibilityState === 'visible') point();
         } else if (frame) {
@@ -867,12 +917,17 @@ async function start(): Promise<void> {
       loading: { ...marks },
       players: [],
       game: archery?.play.newest ? probeOf(archery.play.newest) : null,
+      study: study?.probe() ?? null,
     };
   });
 
   /** Rays and finger tips: the menu first, then the result of a round. */
   function point(): void {
     const hands = pointers.take();
+    if (study) {
+      study.point(hands);
+      return;
+    }
     menu.point(hands);
     let hovered = false;
     for (const { origin, direction, pressed, showRay } of hands) {
@@ -916,6 +971,7 @@ async function start(): Promise<void> {
     );
   }
   await Promise.all([chosen, sessionsPrepared, goTo(switches.play)]);
+  if (switches.study) study = await joinStudy(switches.study);
   mark('estimator');
   progress.finish();
   ready = true;

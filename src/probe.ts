@@ -2,6 +2,7 @@ import type { ArcheryProbe } from './archery-play';
 import type { Calibration } from './core/body/calibration';
 import type { EstimatorName } from './core/estimation/pose-estimator';
 import type { FrameSummary } from './frame-timing';
+import type { StudyProbe } from './study-run';
 
 type Triple = readonly [number, number, number];
 
@@ -37,6 +38,8 @@ export interface Probe {
   readonly players: readonly never[];
   /** The round being played; null in the studio. */
   readonly game: ArcheryProbe | null;
+  /** Where a study stands; null: there is none. */
+  readonly study: StudyProbe | null;
 }
 
 declare global {

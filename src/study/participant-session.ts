@@ -1,6 +1,14 @@
+import type { Calibration } from '../core/body/calibration';
 import type { Side } from '../core/body/joints';
 import { type Schedule, type StudyStep, scheduleFor } from '../core/study/plan';
-import { advance, begin, currentStep, type Progress, type ProgressEvent, remainingSeconds } from '../core/study/progress';
+import {
+  advance,
+  begin,
+  currentStep,
+  type Progress,
+  type ProgressEvent,
+  remainingSeconds,
+} from '../core/study/progress';
 import type { Claim, NumberedCommand } from '../core/study/study-api';
 import type { StudyRecord } from '../core/study/study-record';
 import { type ParticipantClient, ServerRefusal, ServerUnreachable } from './study-client';
@@ -30,6 +38,8 @@ export interface ParticipantSession {
   /** null once it has been noted. */
   readonly withdrawalCode: string | null;
   readonly preferredHand: Side | null;
+  /** The newest measures of the body; null: not measured yet. */
+  readonly calibration: Calibration | null;
   readonly safekeeping: Safekeeping;
   /** Seconds left of this step; null: it has no limit. */
   remaining(): number | null;
@@ -70,6 +80,7 @@ export function startSession(claim: Claim, study: string, participant: string): 
     progress: claim.progress ?? begin(schedule, claim.simulated),
     commandsSeen: 0,
     preferredHand: null,
+    calibration: null,
   };
 }
 
@@ -139,6 +150,7 @@ export function createParticipantSession(
         progress,
         commandsSeen,
         ...(hand && { preferredHand: hand === 'left' ? 'left' : 'right' }),
+        ...(event.type === 'calibrated' && { calibration: event.calibration }),
       },
       records,
     );
@@ -210,7 +222,10 @@ export function createParticipantSession(
     const no = apply(event, number);
     // The experimenter learns from the records why a command changed nothing.
     if (no !== null && session.progress.motion !== null) {
-      apply({ type: 'remark', text: `The command "${command.type}" changed nothing at ${step}${running ? ', running' : ''}: ${no}` });
+      apply({
+        type: 'remark',
+        text: `The command "${command.type}" changed nothing at ${step}${running ? ', running' : ''}: ${no}`,
+      });
     }
   }
 
@@ -257,6 +272,9 @@ export function createParticipantSession(
     },
     get preferredHand() {
       return session.preferredHand;
+    },
+    get calibration() {
+      return session.calibration;
     },
     get safekeeping() {
       const memoryAlone = vault ? unsaved.length + unsavedMotion.size : outbox.size + motionOutbox.size;

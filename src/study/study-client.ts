@@ -56,7 +56,9 @@ async function ask(path: string, { method = 'GET', token, body, text }: Asked): 
   if (response.ok) return response;
   const said: unknown = await response.json().catch(() => null);
   const sentence =
-    typeof said === 'object' && said !== null && 'error' in said ? String(said.error) : `the server says ${response.status}`;
+    typeof said === 'object' && said !== null && 'error' in said
+      ? String(said.error)
+      : `the server says ${response.status}`;
   // Proxies say these while the server is away; the server itself means 5xx as "nothing was acknowledged".
   if (response.status >= 500 && response.status !== 507) throw new ServerUnreachable(sentence);
   throw new ServerRefusal(response.status, sentence);

@@ -1,4 +1,5 @@
 import { type DBSchema, type IDBPDatabase, openDB } from 'idb';
+import type { Calibration } from '../core/body/calibration';
 import type { Side } from '../core/body/joints';
 import type { StudyPlan } from '../core/study/plan';
 import type { Progress } from '../core/study/progress';
@@ -18,6 +19,8 @@ export interface KeptSession {
   readonly commandsSeen: number;
   /** The hand they prefer, once told: the bow goes into the other one. */
   readonly preferredHand: Side | null;
+  /** The newest measures of the body; null: not measured yet. */
+  readonly calibration: Calibration | null;
 }
 
 /** Tracked frames of a trial on their way to the server. */
@@ -28,7 +31,10 @@ export interface KeptMotion {
 
 interface Schema extends DBSchema {
   sessions: { key: [string, string]; value: KeptSession };
-  records: { key: [string, string, string]; value: { study: string; participant: string; id: string; record: StudyRecord } };
+  records: {
+    key: [string, string, string];
+    value: { study: string; participant: string; id: string; record: StudyRecord };
+  };
   motion: { key: [string, string, string]; value: KeptMotion & { study: string; participant: string } };
 }
 
@@ -66,7 +72,9 @@ export async function openStudyVault(name = 'threepoint-studies'): Promise<Study
       const { study, participant } = session;
       await Promise.all([
         transaction.objectStore('sessions').put(session),
-        ...records.map((record) => transaction.objectStore('records').put({ study, participant, id: record.id, record })),
+        ...records.map((record) =>
+          transaction.objectStore('records').put({ study, participant, id: record.id, record }),
+        ),
         transaction.done,
       ]);
     },

@@ -21,6 +21,8 @@ export interface Switches {
   readonly seed: number | null;
   /** Of a round, until the bell [s]; null: as the game has it. */
   readonly seconds: number | null;
+  /** A study and who takes part in it (null: to be asked); null: no study. */
+  readonly study: { readonly study: string; readonly participant: string | null } | null;
 }
 
 const onOff = v.optional(v.picklist(['on', 'off']), 'on');
@@ -36,6 +38,8 @@ const schema = v.object({
   play: v.optional(v.picklist(activityNames), 'studio'),
   seconds: v.optional(v.pipe(v.string(), v.regex(/^\d{1,4}$/), v.transform(Number), v.minValue(1))),
   seed: v.optional(v.pipe(v.string(), v.regex(/^\d{1,9}$/), v.transform(Number))),
+  study: v.optional(v.pipe(v.string(), v.regex(/^[a-z0-9][a-z0-9-]{0,47}$/))),
+  participant: v.optional(v.pipe(v.string(), v.regex(/^P\d{2,3}$/))),
 });
 
 /** Reads the query of the address. A value nobody knows counts as not given and yields a sentence. */
@@ -68,6 +72,7 @@ export function readSwitches(query: string): { readonly switches: Switches; read
       play: output.play,
       seed: output.seed ?? null,
       seconds: output.seconds ?? null,
+      study: output.study === undefined ? null : { study: output.study, participant: output.participant ?? null },
     },
   };
 }

@@ -10,7 +10,10 @@ export interface VrStudyPanel {
   /** null hides it. */
   show(screen: StudyScreen | null): void;
   /** Puts the sheet where somebody with this head (floor frame) looks; call it with every frame. */
-  follow(head: { readonly position: { x: number; y: number; z: number }; readonly forward: { x: number; z: number } }): void;
+  follow(head: {
+    readonly position: { x: number; y: number; z: number };
+    readonly forward: { x: number; z: number };
+  }): void;
   point(pointers: readonly Pointer[]): void;
   /** Where the middle of each target is, in the world [m]. */
   targets(): readonly { readonly id: string; readonly at: readonly [number, number, number] }[];
@@ -124,7 +127,8 @@ export function createVrStudyPanel(): VrStudyPanel {
       }
       if (shown.part !== null) {
         fillRounded(context, [margin, 632, inner, 22], 11, vrColors.lift);
-        if (shown.part > 0) fillRounded(context, [margin, 632, Math.max(22, inner * shown.part), 22], 11, vrColors.accent);
+        if (shown.part > 0)
+          fillRounded(context, [margin, 632, Math.max(22, inner * shown.part), 22], 11, vrColors.accent);
       }
     }
 
@@ -202,11 +206,7 @@ export function createVrStudyPanel(): VrStudyPanel {
       const stepped = Math.hypot(stood.x - position.x, stood.z - position.z);
       if (placed && turned < mostTurn && stepped < mostStep) return;
       object.rotation.y = yaw;
-      object.position.set(
-        position.x - reach * Math.sin(yaw),
-        position.y - below,
-        position.z - reach * Math.cos(yaw),
-      );
+      object.position.set(position.x - reach * Math.sin(yaw), position.y - below, position.z - reach * Math.cos(yaw));
       placed = true;
       object.visible = true;
     },

@@ -1,0 +1,28 @@
+import type { TrialEvent, TrialOutcome } from '../core/study/trial-log';
+
+/** What happened in a task: something sent off, or what became of it. */
+export type TaskEvent = { readonly type: 'shot' } | TrialEvent;
+
+export interface TaskEnd {
+  /** From the start signal [s]. */
+  readonly seconds: number;
+  readonly ended: TrialOutcome['ended'];
+  readonly score: number;
+  readonly maximum: number;
+}
+
+/** A game as the study plays it, trial by trial. */
+export interface TaskRunner {
+  /** Loads it and brings the participant to it; resolves when a trial can start. Rejects with a sentence. */
+  prepare(): Promise<void>;
+  /** The start signal. `seed` lays the trial out; the time limit is in seconds. */
+  start(trial: { readonly seed: number; readonly seconds: number }): void;
+  /** What happened since it was last asked. */
+  take(): readonly TaskEvent[];
+  /** null: no trial, or one that goes on. */
+  readonly end: TaskEnd | null;
+  /** Ends a trial that counts for nothing. */
+  abort(): void;
+  /** Aids that are on. */
+  assists(): readonly string[];
+}
