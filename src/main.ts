@@ -796,7 +796,7 @@ async function start(): Promise<void> {
 
   /** How far a hand is closed: as its buttons say; round the bow it always is. */
   function gripOf(side: 'left' | 'right'): number {
-    if (archery?.play.newest?.bow?.bowSide === side) return 1;
+    if (!study?.idle && archery?.play.newest?.bow?.bowSide === side) return 1;
     const { trigger, grip, pinch } = buttons[side];
     return Math.max(trigger, grip, pinch);
   }
@@ -846,7 +846,9 @@ async function start(): Promise<void> {
           view.update(hips ?? { ...frame.head.position, y: frame.head.position.y * 0.58 }, frame.head, elapsed);
         }
         const played = archery?.play.newest;
-        if (archery && played && frame) archery.view.show(played.state, played.bow, played.time, frame.head);
+        if (archery && played && frame) {
+          archery.view.show(played.state, study?.idle ? null : played.bow, played.time, frame.head);
+        }
         const inside = session !== null || view.view === 'first-person';
         avatar?.setFirstPerson(inside);
         // Whoever looks from behind the mirror wants to see the body, not its back.

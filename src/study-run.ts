@@ -74,6 +74,7 @@ export interface StudyProbe {
   readonly unsaved: number;
   readonly online: boolean;
   /** What can be pressed on the sheet in the headset, and where its middle is [m]. */
+  readonly pointedAt: string | null;
   readonly targets: readonly { readonly id: string; readonly at: readonly [number, number, number] }[];
 }
 
@@ -212,6 +213,7 @@ export function createStudyRun(
     if (!end) return;
     host.listenToFrames(null);
     trial = null;
+    runner.abort();
     const recorded = done.frames && done.frames.length > 0 ? done.frames : null;
     const outcome = done.log.finish({ ...end, motionFrames: recorded?.length ?? 0 });
     const place = placeOf(running.schedule, running.progress);
@@ -574,6 +576,7 @@ export function createStudyRun(
       unsent: session?.safekeeping.unsent ?? 0,
       unsaved: session?.safekeeping.unsaved ?? 0,
       online: session?.safekeeping.online ?? true,
+      pointedAt: sheet.pointedAt,
       targets: sheet.targets(),
     }),
   };

@@ -21,7 +21,7 @@ export interface TaskRunner {
   take(): readonly TaskEvent[];
   /** null: no trial, or one that goes on. */
   readonly end: TaskEnd | null;
-  /** Ends a trial that counts for nothing. */
+  /** Puts the game away: after its end, or before it, when the trial counts for nothing. */
   abort(): void;
   /** Aids that are on. */
   assists(): readonly string[];

@@ -213,6 +213,12 @@ function fieldNode(field: DemographicField): { readonly node: HTMLElement; value
 export function demographicsForm(done: (answers: Record<string, unknown>) => string | null): readonly Node[] {
   const complaint = complaintLine();
   const fields = demographicFields.map((field) => ({ field, ...fieldNode(field) }));
+  for (const { node } of fields) {
+    node.addEventListener('input', () => {
+      node.classList.remove('missing');
+      if (!fields.some((other) => other.node.classList.contains('missing'))) complaint.node.hidden = true;
+    });
+  }
   const go = button(
     'Continue',
     () => {

@@ -15,6 +15,8 @@ export interface VrStudyPanel {
     readonly forward: { x: number; z: number };
   }): void;
   point(pointers: readonly Pointer[]): void;
+  /** What a hand points at; null: nothing that can be pressed. */
+  readonly pointedAt: string | null;
   /** Where the middle of each target is, in the world [m]. */
   targets(): readonly { readonly id: string; readonly at: readonly [number, number, number] }[];
 }
@@ -27,7 +29,7 @@ const inner = width - 2 * margin;
 const reach = 1.25;
 const below = 0.12;
 /** Whoever turns away further than this [rad] or steps away further than this [m] gets the sheet anew. */
-const mostTurn = 1.1;
+const mostTurn = 0.7;
 const mostStep = 0.8;
 
 interface Target extends PanelTarget {
@@ -223,6 +225,9 @@ export function createVrStudyPanel(): VrStudyPanel {
       // One press, one action: the first may have changed the screen.
       pressed[0]?.act();
       redraw();
+    },
+    get pointedAt() {
+      return hovered;
     },
     targets() {
       if (!object.visible) return [];

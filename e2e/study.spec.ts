@@ -1,0 +1,185 @@
+import type { Page } from '@playwright/test';
+import type { StudyRecord } from '../src/core/study/study-record';
+import type { StudyProbe } from '../src/study-run';
+import { type EmulatedHeadset, emulatedHeadset, frames, type Point } from './emulated-headset';
+import { expect, keepPicture, test as pageTest } from './page-fixture';
+import { experimenter, serveStudies, shortStudy } from './study-server';
+
+// What is answered does not depend on how many pixels show it.
+pageTest.use({ viewport: { width: 760, height: 500 } });
+
+const test = pageTest.extend<object, { origin: string }>({
+  origin: [
+    // biome-ignore lint/correctness/noEmptyPattern: Playwright reads the fixture's needs from this pattern
+    async ({}, use) => {
+      const server = await serveStudies();
+      await use(server.origin);
+      await server.close();
+    },
+    { scope: 'worker' },
+  ],
+});
+
+const study = (page: Page): Promise<StudyProbe> =>
+  page
+    .waitForFunction(() => window.threepoint?.probe().study)
+    .then((shown) => shown.jsonValue() as Promise<StudyProbe>);
+
+const screen = async (page: Page) => (await study(page)).screen;
+const reaches = (page: Page, id: string, timeout = 20_000) =>
+  expect.poll(() => screen(page), { timeout, intervals: [100] }).toBe(id);
+
+const upright = [0, 0, 0, 1] as const;
+const stretched = {
+  head: { position: [0, 1.7, 0], orientation: upright },
+  left: { position: [-0.19, 1.4, -0.6], orientation: upright },
+  right: { position: [0.19, 1.4, -0.6], orientation: upright },
+} as const;
+
+const trigger = (page: Page, value: number) =>
+  page.evaluate((value) => window.emulatedDevice.controllers.right.updateButtonValue('trigger', value), value);
+
+/** Points the right controller's ray at a target of the sheet and pulls the trigger. */
+async function press(page: Page, headset: EmulatedHeadset, id: string): Promise<void> {
+  const found = await page.waitForFunction(
+    (id) => window.threepoint?.probe().study?.targets.find((target) => target.id === id)?.at,
+    id,
+  );
+  const [x, y, z] = (await found.jsonValue()) as Point;
+  await headset.place({ ...stretched, right: { position: [x, y, z + 0.35], orientation: upright } });
+  await expect.poll(async () => (await study(page)).pointedAt, { intervals: [50] }).toBe(id);
+  await trigger(page, 1);
+  await frames(page, 3);
+  await trigger(page, 0);
+  await frames(page, 3);
+}
+
+async function takePart(page: Page, id: string, participant: string): Promise<EmulatedHeadset> {
+  await page.goto(`/?study=${id}&participant=${participant}&emulate&quality=low`);
+  await page.waitForFunction(() => window.threepoint?.probe().ready === true, undefined, { timeout: 60_000 });
+  return emulatedHeadset(page);
+}
+
+async function enter(page: Page): Promise<void> {
+  await page.getByRole('button', { name: 'Enter VR' }).click();
+  await page.waitForFunction(() => Boolean(window.emulatedDevice?.activeSession));
+  await frames(page, 5);
+}
+
+async function calibrate(page: Page, headset: EmulatedHeadset): Promise<void> {
+  await reaches(page, 'calibration');
+  await press(page, headset, 'calibrate');
+  await headset.place(stretched);
+  await expect.poll(() => screen(page), { timeout: 30_000 }).toMatch(/-ready$/);
+}
+
+const recordsOf = async (origin: string, id: string): Promise<readonly StudyRecord[]> =>
+  ((await (await experimenter(origin).ask(`/${id}/records`)).json()) as { records: StudyRecord[] }).records;
+
+test('a participant from consent to the end, with a reload in a questionnaire', async ({ page, origin }) => {
+  test.setTimeout(240_000);
+  await experimenter(origin).begin(shortStudy('short'), true);
+  let headset = await takePart(page, 'short', 'P01');
+
+  await expect(page.getByRole('heading', { name: /Taking part/ })).toBeVisible();
+  await expect(page.getByRole('button', { name: 'I agree' })).toBeDisabled();
+  await keepPicture(page, 'study-consent');
+  expect(await recordsOf(origin, 'short')).toEqual([]);
+  await page.getByLabel(/I have read this/).check();
+  await page.getByRole('button', { name: 'I agree' }).click();
+
+  await expect(page.getByText('write this down')).toBeVisible();
+  await keepPicture(page, 'study-code');
+  await page.getByRole('button', { name: 'I have noted it' }).click();
+
+  await page.getByRole('button', { name: 'Continue' }).click();
+  await expect(page.getByRole('alert').filter({ hasText: 'still needs an answer' })).toBeVisible();
+  await page.getByLabel('I prefer not to say').check();
+  await page.getByLabel(/Age/).fill('26');
+  await page.getByLabel(/Field of study/).fill('Computer science');
+  await page.getByLabel('Once or twice').check();
+  await page.getByLabel('Right', { exact: true }).check();
+  await page.getByLabel('Well without correction').check();
+  await keepPicture(page, 'study-demographics');
+  await page.getByRole('button', { name: 'Continue' }).click();
+
+  await enter(page);
+  await headset.place(stretched);
+  await reaches(page, 'calibration');
+  await keepPicture(page, 'study-calibration');
+  await calibrate(page, headset);
+  await reaches(page, 'tutorial-ready');
+  await expect.poll(() => screen(page)).toBe('tutorial-ready');
+  await press(page, headset, 'start');
+  await reaches(page, 'trial-ready', 30_000);
+  await keepPicture(page, 'study-ready');
+
+  for (const block of [1, 2]) {
+    if (block === 2) {
+      await enter(page);
+      await headset.place(stretched);
+      await calibrate(page, headset);
+      await reaches(page, 'trial-ready');
+    }
+    await press(page, headset, 'start');
+    await expect.poll(async () => (await study(page)).running).toBe(true);
+    if (block === 1) await keepPicture(page, 'study-playing');
+    await reaches(page, 'rest', 40_000);
+    await reaches(page, 'question-Q1');
+    await press(page, headset, 'answer-4');
+    if (block === 1) await keepPicture(page, 'study-question');
+    await press(page, headset, 'next');
+    await press(page, headset, 'answer-5');
+    await press(page, headset, 'back');
+    await reaches(page, 'question-Q1');
+    await press(page, headset, 'answer-3');
+    if (block === 1) {
+      // Half of it in the headset, the rest at the desk after a reload.
+      await expect.poll(async () => (await study(page)).unsent).toBe(0);
+      headset = await takePart(page, 'short', 'P01');
+      await reaches(page, 'question-Q3');
+      await expect(page.getByRole('button', { name: 'Question 2, answered' })).toBeVisible();
+      await page.getByRole('button', { name: 'Question 7, needs an answer' }).click();
+      await page.getByRole('button', { name: 'Hand in' }).click();
+      await reaches(page, 'question-Q3');
+      await expect(page.getByText('* This question still needs an answer.')).toBeVisible();
+      await keepPicture(page, 'study-question-desktop');
+      for (const value of [4, 4, 5, 3]) {
+        await page.getByRole('radio', { name: String(value) }).check();
+        await page.getByRole('button', { name: 'Next' }).click();
+      }
+      await page.getByRole('radio', { name: '5' }).check();
+      await page.getByRole('button', { name: 'Hand in' }).click();
+      await reaches(page, 'calibration-enter');
+      continue;
+    }
+    for (const id of ['Q1', 'Q2', 'Q3', 'Q4', 'Q5', 'Q6', 'Q7']) {
+      await reaches(page, `question-${id}`);
+      await press(page, headset, 'answer-4');
+      await press(page, headset, id === 'Q7' ? 'submit' : 'next');
+    }
+  }
+
+  await reaches(page, 'end');
+  await expect.poll(async () => (await study(page)).unsent).toBe(0);
+  await keepPicture(page, 'study-end');
+
+  const records = await recordsOf(origin, 'short');
+  expect(records.every(({ simulated }) => simulated)).toBe(true);
+  const answers = records.filter((record) => record.kind === 'answers');
+  expect(answers.map(({ body }) => body.answers)).toEqual([
+    { Q1: 3, Q2: 5, Q3: 4, Q4: 4, Q5: 5, Q6: 3, Q7: 5 },
+    { Q1: 4, Q2: 4, Q3: 4, Q4: 4, Q5: 4, Q6: 4, Q7: 4 },
+  ]);
+  const trials = records.filter((record) => record.kind === 'trial');
+  expect(trials.map(({ body }) => body.condition === null)).toEqual([true, false, false]);
+  for (const { body } of trials) {
+    expect(body.outcome.ended).toBe('time');
+    expect(body.outcome.frames.count).toBeGreaterThan(20);
+    expect(Object.keys(body.outcome.frames.stages)).toContain('frame');
+    expect(body.outcome.device.input).toBe('simulated');
+    expect(body.outcome.calibration?.eyeHeight).toBeCloseTo(1.7, 1);
+  }
+  expect(new Set(trials.slice(1).map(({ body }) => body.condition))).toEqual(new Set(['ik', 'learned']));
+  for (const { body } of trials.slice(1)) expect(body.estimator).toBe(body.condition);
+});
