@@ -25,6 +25,8 @@ let notice = '';
 let complaint = '';
 let online = true;
 let shownKey = '';
+/** A button must not go away between press and release. */
+let pressing = false;
 
 async function attempt(action: () => Promise<string | null>): Promise<void> {
   try {
@@ -365,7 +367,7 @@ function render(): void {
   const second = Math.floor(Date.now() / 1000);
   const key = JSON.stringify([listed, plan?.id, states, receipts, notice, complaint, online, second]);
   // A list that somebody has open, or a field that they type in, is not taken away from under them.
-  if (key === shownKey || document.activeElement instanceof HTMLSelectElement) return;
+  if (key === shownKey || pressing || document.activeElement instanceof HTMLSelectElement) return;
   shownKey = key;
   const focused = document.activeElement?.closest('tr')?.rowIndex;
   const label = document.activeElement?.textContent;
@@ -417,6 +419,17 @@ function render(): void {
 }
 
 async function start(): Promise<void> {
+  document.addEventListener('pointerdown', () => {
+    pressing = true;
+  });
+  for (const event of ['pointerup', 'pointercancel']) {
+    document.addEventListener(event, () => {
+      // The click follows the release.
+      setTimeout(() => {
+        pressing = false;
+      }, 0);
+    });
+  }
   render();
   const token = keptToken();
   if (token && (await signIn(token)) === null) await open(new URLSearchParams(location.search).get('study') ?? '');

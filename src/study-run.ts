@@ -1,5 +1,4 @@
 import './styles/study.css';
-import type { Group } from 'three';
 import type { ArcheryFrame } from './archery-play';
 import type { Calibration } from './core/body/calibration';
 import type { Side } from './core/body/joints';
@@ -16,7 +15,7 @@ import type { TrackingFrame } from './core/tracking/tracking-frame';
 import { reasonOf } from './estimator-choice';
 import type { FrameListener } from './frame-timing';
 import { createParticipantSession, type ParticipantSession, startSession } from './study/participant-session';
-import { participantClient, ServerRefusal } from './study/study-client';
+import { createParticipantClient, ServerRefusal } from './study/study-client';
 import { openStudyVault, type StudyVault } from './study/study-vault';
 import type { TaskEvent, TaskRunner } from './study/task-runner';
 import { type ArcheryHost, createArcheryRunner } from './study-archery';
@@ -27,7 +26,7 @@ import { element } from './ui/element';
 import { consentForm, createStudyCard, demographicsForm, participantForm } from './ui/study-card';
 import type { StudyScreen } from './ui/study-screen';
 import type { Pointer } from './ui/vr-pointers';
-import { createVrStudyPanel } from './ui/vr-study-panel';
+import { createVrStudyPanel, type VrStudyPanel } from './ui/vr-study-panel';
 
 /** What the study needs of the page; the page decides how. */
 export interface StudyHost extends ArcheryHost {
@@ -48,7 +47,7 @@ export interface StudyHost extends ArcheryHost {
 /** The study on the page, as its frame loop sees it. */
 export interface StudyRun {
   /** For the scene. */
-  readonly object: Group;
+  readonly object: VrStudyPanel['object'];
   /** Nobody plays now: hands that point at the sheet draw no bow. */
   readonly idle: boolean;
   /** Whether the participant's body has been measured: no guess may take its place. */
@@ -112,6 +111,7 @@ export function createStudyRun(
   host: StudyHost,
 ): StudyRun {
   document.body.classList.add('in-study');
+  const client = createParticipantClient();
   const card = createStudyCard();
   const sheet = createVrStudyPanel();
   const archery = createArcheryRunner(host);
@@ -437,7 +437,7 @@ export function createStudyRun(
       throw new Error(`${participant} is open in another tab of this browser. Go on there, or close it.`);
     const vault = await openVault();
     const kept = (await vault?.session(asked.study, participant)) ?? null;
-    const options = { client: participantClient, vault, now: nowSeconds, onChange: () => show() };
+    const options = { client, vault, now: nowSeconds, onChange: () => show() };
     if (kept && vault) {
       const [records, motion] = await Promise.all([
         vault.records(asked.study, participant),
@@ -448,7 +448,7 @@ export function createStudyRun(
       begin(opened);
       return;
     }
-    const study = await participantClient.study(asked.study);
+    const study = await client.study(asked.study);
     screenId = 'consent';
     card.form(
       'consent',
@@ -459,7 +459,7 @@ export function createStudyRun(
           {
             async agree(motion) {
               try {
-                const claim = await participantClient.claim(asked.study, participant);
+                const claim = await client.claim(asked.study, participant);
                 const opened = createParticipantSession(
                   startSession(claim, asked.study, participant),
                   { records: [], motion: [] },

@@ -36,11 +36,11 @@ interface Asked {
 /** Milliseconds after which an answer no longer comes. */
 const patienceMs = 15_000;
 
-async function ask(path: string, { method = 'GET', token, body, text }: Asked): Promise<Response> {
+async function ask(origin: string, path: string, { method = 'GET', token, body, text }: Asked): Promise<Response> {
   const content = text ?? (body === undefined ? undefined : JSON.stringify(body));
   let response: Response;
   try {
-    response = await fetch(`/api/studies${path}`, {
+    response = await fetch(`${origin}/api/studies${path}`, {
       method,
       headers: {
         ...(token && { authorization: `Bearer ${token}` }),
@@ -64,14 +64,16 @@ async function ask(path: string, { method = 'GET', token, body, text }: Asked): 
   throw new ServerRefusal(response.status, sentence);
 }
 
-async function answer<T>(path: string, asked: Asked = {}): Promise<T> {
-  const response = await ask(path, asked);
-  try {
-    return (response.status === 204 ? null : await response.json()) as T;
-  } catch (error) {
-    throw new ServerUnreachable(`the answer broke off (${error instanceof Error ? error.message : error})`);
-  }
-}
+/** Asks a server for JSON; the origin is empty for the page's own server. */
+const answersOf = (origin: string) =>
+  async function answer<T>(path: string, asked: Asked = {}): Promise<T> {
+    const response = await ask(origin, path, asked);
+    try {
+      return (response.status === 204 ? null : await response.json()) as T;
+    } catch (error) {
+      throw new ServerUnreachable(`the answer broke off (${error instanceof Error ? error.message : error})`);
+    }
+  };
 
 const of = (study: string, participant?: string) =>
   `/${encodeURIComponent(study)}${participant === undefined ? '' : `/participants/${encodeURIComponent(participant)}`}`;
@@ -89,29 +91,33 @@ export interface ParticipantClient {
   sendMotion(study: string, participant: string, token: string, trial: string, recording: string): Promise<void>;
 }
 
-export const participantClient: ParticipantClient = {
-  study: (study) => answer(of(study)),
-  claim: (study, participant) => answer(`${of(study, participant)}/claim`, { method: 'POST' }),
-  async send(study, participant, token, records) {
-    const path = `${of(study, participant)}/records`;
-    return (await answer<{ acknowledged: string[] }>(path, { method: 'POST', token, body: { records } })).acknowledged;
-  },
-  async progress(study, participant, token) {
-    return (await answer<{ progress: Progress | null }>(`${of(study, participant)}/progress`, { token })).progress;
-  },
-  saveProgress: (study, participant, token, progress) =>
-    answer(`${of(study, participant)}/progress`, { method: 'PUT', token, body: progress }),
-  async commands(study, participant, token, after) {
-    const path = `${of(study, participant)}/commands?after=${after}`;
-    return (await answer<{ commands: NumberedCommand[] }>(path, { token })).commands;
-  },
-  sendMotion: (study, participant, token, trial, recording) =>
-    answer(`${of(study, participant)}/motion?trial=${encodeURIComponent(trial)}`, {
-      method: 'PUT',
-      token,
-      text: recording,
-    }),
-};
+export function createParticipantClient(origin = ''): ParticipantClient {
+  const answer = answersOf(origin);
+  return {
+    study: (study) => answer(of(study)),
+    claim: (study, participant) => answer(`${of(study, participant)}/claim`, { method: 'POST' }),
+    async send(study, participant, token, records) {
+      const path = `${of(study, participant)}/records`;
+      return (await answer<{ acknowledged: string[] }>(path, { method: 'POST', token, body: { records } }))
+        .acknowledged;
+    },
+    async progress(study, participant, token) {
+      return (await answer<{ progress: Progress | null }>(`${of(study, participant)}/progress`, { token })).progress;
+    },
+    saveProgress: (study, participant, token, progress) =>
+      answer(`${of(study, participant)}/progress`, { method: 'PUT', token, body: progress }),
+    async commands(study, participant, token, after) {
+      const path = `${of(study, participant)}/commands?after=${after}`;
+      return (await answer<{ commands: NumberedCommand[] }>(path, { token })).commands;
+    },
+    sendMotion: (study, participant, token, trial, recording) =>
+      answer(`${of(study, participant)}/motion?trial=${encodeURIComponent(trial)}`, {
+        method: 'PUT',
+        token,
+        text: recording,
+      }),
+  };
+}
 
 /** What the experimenter's pages ask of the server. */
 export interface ExperimenterClient {
@@ -128,7 +134,8 @@ export interface ExperimenterClient {
   delete(study: string, participant: string): Promise<Receipt>;
 }
 
-export function createExperimenterClient(token: string): ExperimenterClient {
+export function createExperimenterClient(token: string, origin = ''): ExperimenterClient {
+  const answer = answersOf(origin);
   return {
     studies: async () => (await answer<{ studies: StudyListing[] }>('', { token })).studies,
     addStudy: (plan, simulated) => answer('', { method: 'POST', token, body: { plan, simulated } }),
@@ -144,7 +151,7 @@ export function createExperimenterClient(token: string): ExperimenterClient {
     },
     release: (study, participant) => answer(`${of(study, participant)}/release`, { method: 'POST', token }),
     async export(study, participant) {
-      const response = await ask(`${of(study, participant)}/export`, { token });
+      const response = await ask(origin, `${of(study, participant)}/export`, { token });
       const name = /filename="([^"]+)"/.exec(response.headers.get('content-disposition') ?? '')?.[1];
       return { name: name ?? `${study}.zip`, zip: await response.blob() };
     },
