@@ -49,7 +49,7 @@ export function shortStudy(id: string): StudyPlan {
       .filter(({ game }) => game === 'archery')
       .map((task) => ({
         ...task,
-        trialSeconds: 6,
+        trialSeconds: 5,
         tutorial: { ...task.tutorial, seconds: 2, restSeconds: 0 },
         restSeconds: 1,
       })),

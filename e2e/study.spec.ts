@@ -1,9 +1,15 @@
+import { readFileSync } from 'node:fs';
 import type { Page } from '@playwright/test';
+import { strFromU8, unzipSync } from 'fflate';
+import { plantedAnswerModel } from '../scripts/study-simulate/answer-model';
+import { statedPerformanceModel } from '../scripts/study-simulate/performance-model';
+import { simulatedPlan, simulateStudy } from '../scripts/study-simulate/simulate-study';
+import { parsePlan, type StudyPlan } from '../src/core/study/plan';
 import type { StudyRecord } from '../src/core/study/study-record';
 import type { StudyProbe } from '../src/study-run';
 import { type EmulatedHeadset, emulatedHeadset, frames, type Point } from './emulated-headset';
 import { expect, keepPicture, test as pageTest } from './page-fixture';
-import { experimenter, serveStudies, shortStudy } from './study-server';
+import { experimenter, experimenterToken, serveStudies, shortStudy } from './study-server';
 
 // What is answered does not depend on how many pixels show it.
 pageTest.use({ viewport: { width: 760, height: 500 } });
@@ -124,7 +130,8 @@ test('a participant from consent to the end, with a reload in a questionnaire', 
     await press(page, headset, 'start');
     await expect.poll(async () => (await study(page)).running).toBe(true);
     if (block === 1) await keepPicture(page, 'study-playing');
-    await reaches(page, 'rest', 40_000);
+    // The rest of a second may be over between two looks.
+    await expect.poll(() => screen(page), { timeout: 40_000, intervals: [100] }).toMatch(/^(rest|question-Q1)$/);
     await reaches(page, 'question-Q1');
     await press(page, headset, 'answer-4');
     if (block === 1) await keepPicture(page, 'study-question');
@@ -182,4 +189,83 @@ test('a participant from consent to the end, with a reload in a questionnaire', 
   }
   expect(new Set(trials.slice(1).map(({ body }) => body.condition))).toEqual(new Set(['ik', 'learned']));
   for (const { body } of trials.slice(1)) expect(body.estimator).toBe(body.condition);
+
+  await openResults(page, 'short');
+  await expect(page.getByText('SIMULATED: a program made these data')).toBeVisible();
+  await expect(page.getByRole('row', { name: /^Q1 presence 1 / })).toBeVisible();
+  await expect(page.getByRole('img', { name: /Archery: mean scores/ })).toBeVisible();
+});
+
+async function signIn(page: Page): Promise<void> {
+  await page.getByLabel('Token').fill(experimenterToken);
+  await page.getByRole('button', { name: 'Open' }).click();
+}
+
+async function openResults(page: Page, id: string): Promise<void> {
+  await page.goto('/results');
+  await signIn(page);
+  await page.getByRole('combobox', { name: 'Study' }).selectOption(id);
+}
+
+/** A whole simulated study on the server, as `npm run study:simulate` makes it. */
+async function simulateOn(origin: string): Promise<StudyPlan> {
+  const plan = simulatedPlan(parsePlan(readFileSync('public/studies/paper.json', 'utf8'), 'paper.json'));
+  const experimenting = experimenter(origin);
+  await experimenting.begin(plan, true);
+  const models = { answers: plantedAnswerModel('learned', 0.8), performance: statedPerformanceModel };
+  for (const { participant, records } of simulateStudy(plan, models, 3, 1_767_600_000)) {
+    const path = `/${plan.id}/participants/${participant}`;
+    await experimenting.ask(`${path}/claim`, 'POST', {});
+    for (let at = 0; at < records.length; at += 100) {
+      const sent = await experimenting.ask(`${path}/records`, 'POST', { records: records.slice(at, at + 100) });
+      if (!sent.ok) throw new Error(await sent.text());
+    }
+  }
+  return plan;
+}
+
+test('results of fifteen simulated participants; export, delete, export', async ({ page, origin }) => {
+  const plan = await simulateOn(origin);
+  await openResults(page, plan.id);
+  await expect(page.getByText('SIMULATED: a program made these data')).toBeVisible();
+  for (const name of [/Archery: questionnaire, means/, /Ball game: questionnaire, means/, /Archery: mean scores/]) {
+    const figure = page.getByRole('img', { name });
+    await expect(figure).toBeVisible();
+    await expect(figure.getByText('SIMULATED')).toBeVisible();
+  }
+  for (const id of ['Q1', 'Q12'])
+    await expect(page.getByRole('row', { name: new RegExp(`^${id} \\w+ 15 `) })).toBeVisible();
+  await expect(page.getByRole('row', { name: /^Q1 presence 4.80.*no: p = 0.0004/ })).toBeVisible();
+  await expect(page.getByRole('row', { name: /^Q11 manipulation 4.73.*no: p = 0.037/ })).toBeVisible();
+  await page.screenshot({ path: 'artifacts/screenshots/study-results.png', fullPage: true });
+
+  const saved = async (action: Promise<void>) => {
+    const [download] = await Promise.all([page.waitForEvent('download'), action]);
+    return { name: download.suggestedFilename(), content: readFileSync(await download.path()) };
+  };
+  const csv = await saved(page.getByRole('button', { name: 'CSV' }).first().click());
+  expect(csv.name).toBe(`SIMULATED-${plan.id}-answers-compared.csv`);
+  expect(csv.content.toString()).toContain('TRUE,Q12,preference');
+  const png = await saved(page.getByRole('button', { name: 'PNG' }).first().click());
+  expect(png.name).toMatch(/^SIMULATED-.*\.png$/);
+  expect(png.content.subarray(1, 4).toString()).toBe('PNG');
+
+  await page.goto(`/experimenter?study=${plan.id}`);
+  const row = page.getByRole('row', { name: /^P02 / });
+  await expect(row).toBeVisible();
+  await page.screenshot({ path: 'artifacts/screenshots/study-experimenter.png', fullPage: true });
+  const before = await saved(row.getByRole('button', { name: 'Export' }).click());
+  const recordsIn = (zip: Buffer) => {
+    const files = unzipSync(zip);
+    const path = Object.keys(files).find((name) => name.endsWith('records.json')) as string;
+    return (JSON.parse(strFromU8(files[path] as Uint8Array)) as { records: unknown[] }).records.length;
+  };
+  expect(recordsIn(before.content)).toBeGreaterThan(8);
+  await row.getByRole('button', { name: 'Delete' }).click();
+  await page.getByRole('textbox').fill('P02');
+  await page.getByRole('dialog').getByRole('button', { name: 'Delete' }).click();
+  await expect(page.getByText(/P02 is deleted\. Receipt 1/)).toBeVisible();
+  await expect(row.getByRole('button', { name: 'Export' })).toBeDisabled();
+  const after = await experimenter(origin).ask(`/${plan.id}/participants/P02/export`);
+  expect(recordsIn(Buffer.from(await after.arrayBuffer()))).toBe(0);
 });
