@@ -5,8 +5,8 @@ import type { Side } from './core/body/joints';
 import type { EstimatorName } from './core/estimation/pose-estimator';
 import { rotate } from './core/math/quat';
 import { vec3 } from './core/math/vec3';
-import type { StudyStep } from './core/study/plan';
-import { placeOf } from './core/study/progress';
+import { type StudyStep, scheduleFor } from './core/study/plan';
+import { type Progress, placeOf } from './core/study/progress';
 import { randomFor } from './core/study/shuffle';
 import type { PublicStudy } from './core/study/study-api';
 import { createTrialLog, type TrialLog, type TrialOutcome } from './core/study/trial-log';
@@ -14,12 +14,12 @@ import { writeRecording } from './core/tracking/recording';
 import type { TrackingFrame } from './core/tracking/tracking-frame';
 import { reasonOf } from './estimator-choice';
 import type { FrameListener } from './frame-timing';
-import { createParticipantSession, type ParticipantSession, startSession } from './study/participant-session';
-import { createParticipantClient, ServerRefusal } from './study/study-client';
-import { openStudyVault, type StudyVault } from './study/study-vault';
+import { createParticipantSession, isLater, type ParticipantSession, startSession } from './study/participant-session';
+import { createParticipantClient, ServerRefusal, ServerUnreachable } from './study/study-client';
+import { type KeptSession, openStudyVault, type StudyVault } from './study/study-vault';
 import type { TaskEvent, TaskRunner } from './study/task-runner';
 import { type ArcheryHost, createArcheryRunner } from './study-archery';
-import { type StudySituation, screenOf, screenQuestions } from './study-screens';
+import { lockedOutScreen, type StudySituation, screenOf, screenQuestions } from './study-screens';
 import type { CalibrationStep } from './ui/calibration-dialog';
 import { type CalibrationGuide, createCalibrationGuide } from './ui/calibration-guide';
 import { element } from './ui/element';
@@ -336,6 +336,13 @@ export function createStudyRun(
     }
     const running = session;
     if (!running) return;
+    if (running.safekeeping.lockedOut) {
+      screenId = 'locked-out';
+      dropTrial();
+      card.form('locked-out', () => lockedOutNodes(running));
+      sheet.show(host.inSession() ? lockedOutScreen(running) : null);
+      return;
+    }
     settle();
     if (running.withdrawalCode !== null) {
       screenId = 'code';
@@ -432,6 +439,46 @@ export function createStudyRun(
     });
   }
 
+  /** What the server knows of a session; null: nothing, or it does not answer now. */
+  async function reportedProgress({ study, participant, token }: KeptSession): Promise<Progress | null> {
+    try {
+      return await client.progress(study, participant, token);
+    } catch (error) {
+      if (error instanceof ServerUnreachable || error instanceof ServerRefusal) return null;
+      throw error;
+    }
+  }
+
+  /** This device is no longer the participant's: whoever sits here may begin anew. */
+  function lockedOutNodes(running: ParticipantSession): readonly Node[] {
+    const { unsent } = running.safekeeping;
+    const anew = element('button', { type: 'button' }, 'Forget it here and begin anew');
+    anew.addEventListener('click', () => {
+      void openVault()
+        .then((vault) => vault?.forget(asked.study, running.progress.participant))
+        .then(() => location.reload());
+    });
+    return [
+      element('p', { class: 'kicker trouble' }, 'Study'),
+      element('h1', {}, 'Please call the experimenter'),
+      element(
+        'p',
+        {},
+        `${running.progress.participant} was released for another device, or what was recorded was deleted. This device sends nothing more.`,
+      ),
+      ...(unsent > 0
+        ? [
+            element(
+              'p',
+              { class: 'hint' },
+              `${unsent} records were never sent. Beginning anew deletes them from this device.`,
+            ),
+          ]
+        : []),
+      element('div', { class: 'row' }, anew),
+    ];
+  }
+
   async function open(participant: string): Promise<void> {
     if (!(await alone(participant)))
       throw new Error(`${participant} is open in another tab of this browser. Go on there, or close it.`);
@@ -443,7 +490,12 @@ export function createStudyRun(
         vault.records(asked.study, participant),
         vault.motion(asked.study, participant),
       ]);
-      const opened = createParticipantSession(kept, { records, motion }, options);
+      const known = await reportedProgress(kept);
+      const current =
+        known && isLater(scheduleFor(kept.plan, participant), known, kept.progress)
+          ? { ...kept, progress: known }
+          : kept;
+      const opened = createParticipantSession(current, { records, motion }, options);
       opened.apply({ type: 'reload' });
       begin(opened);
       return;

@@ -76,6 +76,21 @@ function kickerOf(session: ParticipantSession, step: StudyStep): string {
   return `${title} · ${blindLabel(step)}`;
 }
 
+/** In the headset, when the place is no longer this device's; the page has more to say. */
+export const lockedOutScreen = (session: ParticipantSession): StudyScreen => ({
+  id: 'locked-out',
+  kicker: session.plan.title,
+  title: 'Please call the experimenter',
+  text: ['Your place was released for another device. Take the headset off, please.'],
+  figure: null,
+  part: null,
+  question: null,
+  hint: null,
+  buttons: [],
+  footnote: 'This device sends nothing more.',
+  trouble: true,
+});
+
 /** The screen of the step at hand; null while the participant plays. */
 export function screenOf(situation: StudySituation, actions: ScreenActions): StudyScreen | null {
   const { session, inSession, calibration, prepared, refusal, playing } = situation;

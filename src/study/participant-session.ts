@@ -26,6 +26,8 @@ export interface Safekeeping {
   readonly online: boolean;
   /** What the server will not take, however often it is sent; null: nothing. */
   readonly refusal: string | null;
+  /** The place is no longer this device's: the experimenter released it or deleted what was recorded. */
+  readonly lockedOut: boolean;
 }
 
 /** One participant on this device: the steps, and the way of every record from here to the server. */
@@ -84,6 +86,21 @@ export function startSession(claim: Claim, study: string, participant: string): 
   };
 }
 
+/**
+ * Whether the server knows a later state of a session than this device: a device whose storage was full when the page went tells
+ * an old story. Blocks that run again count first, then the step, then its attempt.
+ */
+export function isLater(schedule: Schedule, known: Progress, here: Progress): boolean {
+  const order = ({ runs, step, attempt }: Progress) => [
+    Object.values(runs).reduce((sum, run) => sum + run, 0),
+    schedule.steps.findIndex(({ id }) => id === step),
+    attempt,
+  ];
+  const [there, local] = [order(known), order(here)];
+  const differing = there.findIndex((value, index) => value !== local[index]);
+  return differing >= 0 && (there[differing] as number) > (local[differing] as number);
+}
+
 const sentence = (error: unknown) => (error instanceof Error ? error.message : String(error));
 
 /** `unsent`: what an earlier visit of this page left in the vault. */
@@ -103,6 +120,7 @@ export function createParticipantSession(
   let storageFault: string | null = vault ? null : 'this browser offers no storage';
   let online = true;
   let refusal: string | null = null;
+  let lockedOut = false;
   let saving: Promise<void> = Promise.resolve();
   let saved: KeptSession | null = kept;
   let reported: Progress | null = null;
@@ -251,8 +269,10 @@ export function createParticipantSession(
       online = true;
     } catch (error) {
       if (error instanceof ServerUnreachable) online = false;
-      else if (error instanceof ServerRefusal) refusal = error.message;
-      else storageFault = sentence(error);
+      else if (error instanceof ServerRefusal) {
+        refusal = error.message;
+        lockedOut = error.status === 401;
+      } else storageFault = sentence(error);
     }
     onChange();
   }
@@ -278,7 +298,14 @@ export function createParticipantSession(
     },
     get safekeeping() {
       const memoryAlone = vault ? unsaved.length + unsavedMotion.size : outbox.size + motionOutbox.size;
-      return { unsent: outbox.size + motionOutbox.size, unsaved: memoryAlone, storageFault, online, refusal };
+      return {
+        unsent: outbox.size + motionOutbox.size,
+        unsaved: memoryAlone,
+        storageFault,
+        online,
+        refusal,
+        lockedOut,
+      };
     },
     remaining: () => remainingSeconds(schedule, session.progress, now()),
     apply: (event) => apply(event),

@@ -49,6 +49,8 @@ export interface StudyVault {
   saveMotion(study: string, participant: string, motion: KeptMotion): Promise<void>;
   motion(study: string, participant: string): Promise<readonly KeptMotion[]>;
   removeMotion(study: string, participant: string, trial: string): Promise<void>;
+  /** Everything of this participant leaves the device. */
+  forget(study: string, participant: string): Promise<void>;
   close(): void;
 }
 
@@ -93,6 +95,15 @@ export async function openStudyVault(name = 'threepoint-studies'): Promise<Study
     },
     motion: (study, participant) => database.getAll('motion', everyOf(study, participant)),
     removeMotion: (study, participant, trial) => database.delete('motion', [study, participant, trial]),
+    async forget(study, participant) {
+      const transaction = database.transaction(['sessions', 'records', 'motion'], 'readwrite');
+      await Promise.all([
+        transaction.objectStore('sessions').delete([study, participant]),
+        transaction.objectStore('records').delete(everyOf(study, participant)),
+        transaction.objectStore('motion').delete(everyOf(study, participant)),
+        transaction.done,
+      ]);
+    },
     close: () => database.close(),
   };
 }

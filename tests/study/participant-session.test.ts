@@ -7,7 +7,12 @@ import { createStudyRoutes } from '../../server/study-routes';
 import { openStudyStore } from '../../server/study-store';
 import { writeRecording } from '../../src/core/tracking/recording';
 import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
-import { createParticipantSession, type ParticipantSession, startSession } from '../../src/study/participant-session';
+import {
+  createParticipantSession,
+  isLater,
+  type ParticipantSession,
+  startSession,
+} from '../../src/study/participant-session';
 import { createExperimenterClient, createParticipantClient } from '../../src/study/study-client';
 import { openStudyVault, type StudyVault } from '../../src/study/study-vault';
 import { outcomeOf, paperPlan, somebody } from '../core/study/studies';
@@ -132,7 +137,14 @@ test('what the server has acknowledged leaves the device, and nothing before', a
     'trial',
   ]);
   expect(await vault.records('paper', 'P01')).toEqual([]);
-  expect(first.safekeeping).toEqual({ unsent: 0, unsaved: 0, storageFault: null, online: true, refusal: null });
+  expect(first.safekeeping).toEqual({
+    unsent: 0,
+    unsaved: 0,
+    storageFault: null,
+    online: true,
+    refusal: null,
+    lockedOut: false,
+  });
   expect(store.progress('paper', 'P01')?.step).toBe(first.step.id);
 });
 
@@ -259,6 +271,34 @@ test('tracked frames reach the server with consent to them, and leave the device
     ['archery/1/trial-1@1.1:trial', recording],
   ]);
   expect(await vault.motion('paper', 'P01')).toEqual([]);
+});
+
+test('a device whose place was released stops, and can forget', async () => {
+  const { origin } = await studyServer();
+  const { first, vault } = await device(origin);
+  toTheFirstQuestion(first);
+  await first.exchange();
+  expect(first.safekeeping.lockedOut).toBe(false);
+  await createExperimenterClient(token, origin).release('paper', 'P01');
+  await first.exchange();
+  expect(first.safekeeping.lockedOut).toBe(true);
+  await vault.forget('paper', 'P01');
+  expect(await vault.session('paper', 'P01')).toBe(null);
+});
+
+test('what the server knows later than a device with full storage is where the session goes on', async () => {
+  const { origin, store } = await studyServer();
+  const { first } = await device(origin);
+  const early = first.progress;
+  toTheFirstQuestion(first);
+  await first.exchange();
+  const known = store.progress('paper', 'P01');
+  if (!known) throw new Error('nothing was reported');
+  expect(isLater(first.schedule, known, early)).toBe(true);
+  expect(isLater(first.schedule, early, known)).toBe(false);
+  expect(isLater(first.schedule, known, known)).toBe(false);
+  first.apply({ type: 'void-block', reason: 'the phone rang', repeat: true });
+  expect(isLater(first.schedule, first.progress, known)).toBe(true);
 });
 
 test('a record that the server refuses is reported and kept, and does not hold up the others', async () => {
