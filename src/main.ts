@@ -5,6 +5,7 @@ import { createDebugSkeleton } from './avatar/debug-skeleton';
 import { loadAvatar } from './avatar/load-avatar';
 import { createMirror } from './avatar/mirror';
 import { palettes } from './avatar/palettes';
+import type { BallActivity } from './ball-activity';
 import {
   armSpanFromFingertipSpan,
   armSpanRange,
@@ -20,6 +21,7 @@ import {
 import { createEstimator } from './core/estimation/estimators';
 import type { EstimatorName } from './core/estimation/pose-estimator';
 import { allReleased, type Buttons } from './core/games/button-presses';
+import type { Pose } from './core/math/pose';
 import { identity } from './core/math/quat';
 import { zero } from './core/math/vec3';
 import type { TrackingFrame } from './core/tracking/tracking-frame';
@@ -74,6 +76,8 @@ const mirrorDistance = 1.5;
 const mirrorByTheRange = { x: 1.95, z: -0.1, turned: -1.3 };
 /** The room's floor is the range's: its zone lies about the origin, the targets ahead. */
 const floorFromArena = { position: zero, orientation: identity };
+/** Parts of the court's middle, from where a spectator looks at first, arena frame. */
+const courtMiddle = { x: 0, y: 1, z: -2.4 };
 const nothingPressed: Buttons = { left: allReleased, right: allReleased };
 
 type Triple = readonly [number, number, number];
@@ -158,6 +162,10 @@ async function start(): Promise<void> {
     everyHitCounts: store.preferences.everyHitCounts ?? false,
     ...(switches.seconds && { seconds: switches.seconds }),
     sound: store.preferences.sound ?? true,
+    bots: switches.bots ?? (switches.room ? false : (store.preferences.bots ?? true)),
+    name: switches.name ?? store.preferences.name ?? '',
+    /** Whom a spectator's camera follows: a seat, or null: free. */
+    following: null as number | null,
     calibration: store.preferences.calibration ?? defaultCalibration,
     calibrationSource: store.preferences.calibration ? 'remembered' : 'not calibrated yet',
   };
@@ -196,6 +204,8 @@ async function start(): Promise<void> {
 
   /** Somebody who needs nobody: the actor in the studio, the archer on the range. */
   function perform(time: number): { readonly frame: TrackingFrame; readonly buttons: Buttons } {
+    const player = study?.idle ? null : ball?.act(time);
+    if (player) return player;
     if (!archery || study?.idle) return { frame: actor.frameAt(time), buttons: nothingPressed };
     if (!settings.mouse || session) return archery.play.act(time);
     pointing.setFromCamera(new Vector2(mouse.x, mouse.y), view.camera);
@@ -206,6 +216,7 @@ async function start(): Promise<void> {
   function track(timeMs: number, deviceFrame: XRFrame | undefined): TrackingFrame | null {
     const time = timeMs / 1000;
     buttons = nothingPressed;
+    ball?.begin(time);
     if (session) {
       if (emulator && settings.actor && !study?.idle) {
         // What the actor does now is seen with the next frame: the device froze this one before it called.
@@ -218,6 +229,7 @@ async function start(): Promise<void> {
     }
     const replayed = recorder.sample(time);
     if (replayed) return replayed;
+    if (watching()) return null;
     if (!settings.actor && emulator) return emulator.read(time);
     const performed = perform(time);
     buttons = performed.buttons;
@@ -229,11 +241,17 @@ async function start(): Promise<void> {
 
   // Archery: loaded when somebody first goes there; null in the studio.
   let archery: { readonly play: ReturnType<typeof createArcheryPlay>; readonly view: ArcheryView } | null = null;
+  /** The ball game, likewise. */
+  let ball: BallActivity | null = null;
+  const activity = (): ActivityName => (archery ? 'archery' : ball ? 'ball' : 'studio');
+  /** Without a seat and without a headset there is no body of one's own. */
+  const watching = () => ball !== null && !session && ball.play.newest !== null && ball.play.newest.me === null;
   let arriving = false;
   /** A study that the address asks for; it decides what is played and with which body. */
   let study: StudyRun | null = null;
   let seed = switches.seed ?? Math.floor(performance.timeOrigin % 2 ** 31);
 
+  const banner = pageElement('banner', HTMLElement);
   const playBar = createPlayBar(pageElement('play', HTMLElement), {
     goTo: (activity) => void goTo(activity),
     restart: () => restartRound(),
@@ -250,15 +268,42 @@ async function start(): Promise<void> {
       settings.sound = on;
       store.remember({ sound: on });
       archery?.view.sound.setMuted(!on);
+      ball?.sound.setMuted(!on);
       if (archery) wakeSound(archery.view);
+      if (ball) wakeSound(ball);
       show();
+    },
+    ball: {
+      ready: (on) => ball?.play.ready(on),
+      rotate: (on) => ball?.play.rotate(on),
+      sit: (seat) => ball?.play.sit(seat),
+      setBots(on) {
+        settings.bots = on;
+        store.remember({ bots: on });
+      },
+      setName(name) {
+        settings.name = name;
+        store.remember({ name });
+        notices.show('info', 'The others see your new name when you join the next time.');
+      },
+      openRoom() {
+        const letters = Array.from(
+          crypto.getRandomValues(new Uint8Array(6)),
+          (byte) => 'abcdefghjkmnpqrstuvwxyz'[byte % 23],
+        );
+        location.search = `?play=ball&room=${letters.join('')}`;
+      },
+      follow(seat) {
+        settings.following = seat;
+        view.recentre();
+      },
     },
   });
 
   const silent = (error: unknown) => notices.show('info', `There is no sound: ${firstLine(reasonOf(error))}`);
 
   /** Browsers let a page sound only once somebody has touched it. */
-  function wakeSound(of: ArcheryView): void {
+  function wakeSound(of: Pick<ArcheryView, 'sound'>): void {
     if (!settings.sound) return;
     const wake = () => void of.sound.unlock().catch(silent);
     if (navigator.userActivation?.hasBeenActive) wake();
@@ -302,55 +347,106 @@ async function start(): Promise<void> {
     else mirror.place(0, -mirrorDistance, 0);
   }
 
-  async function goTo(activity: ActivityName): Promise<void> {
-    if (arriving || (activity === 'archery') === (archery !== null)) return;
-    if (activity === 'studio') {
-      archery?.view.bow.removeFromParent();
-      archery?.view.dispose();
-      archery = null;
-      arena.setSurroundings(null);
-    } else {
+  /** Leaves the range or the court for the studio. */
+  function goBack(): void {
+    archery?.view.bow.removeFromParent();
+    archery?.view.dispose();
+    archery = null;
+    ball?.dispose();
+    ball = null;
+    arena.setSurroundings(null);
+    if (avatar && ownAvatarShown) avatar.setPalette(settings.palette);
+  }
+
+  async function openRange(): Promise<void> {
+    const { createArcheryView } = await import('./games/archery/archery-view');
+    const play = createArcheryPlay(
+      bodyNow(),
+      () => settings,
+      () => seed,
+    );
+    const view = createArcheryView({
+      quality,
+      floorFromArena,
+      distances: play.targets.map(({ distance }) => distance),
+      onCaption: (text) => playBar.caption(text),
+    });
+    view.sound.setMuted(!settings.sound);
+    wakeSound(view);
+    arena.setSurroundings(view.range);
+    arena.scene.add(view.bow);
+    archery = { play, view };
+  }
+
+  async function openCourt(): Promise<void> {
+    const [{ createBallActivity }, { connectionsFor }, mannequin] = await Promise.all([
+      import('./ball-activity'),
+      import('./ball-connections'),
+      fetch(ownAvatarAt).then((response) => {
+        if (!response.ok) throw new Error(`the server answers ${response.status} to ${ownAvatarAt}`);
+        return response.arrayBuffer();
+      }),
+    ]);
+    ball = createBallActivity({
+      quality,
+      arena,
+      mannequin,
+      connect: await connectionsFor(switches.room, {
+        seed,
+        ...(switches.seconds && { seconds: switches.seconds }),
+        ...(switches.balls && { balls: switches.balls }),
+      }),
+      visitor: {
+        name: settings.name || (settings.actor && !session ? 'Demo' : 'Player'),
+        calibration: bodyNow(),
+        ...(switches.spectate && { spectate: true }),
+      },
+      bots: () => settings.bots,
+      acting: () => settings.actor && (session === null || emulator !== null),
+      seed,
+      onCaption: (text) => playBar.caption(text),
+    });
+    ball.sound.setMuted(!settings.sound);
+    wakeSound(ball);
+  }
+
+  async function goTo(next: ActivityName): Promise<void> {
+    if (arriving || next === activity()) return;
+    goBack();
+    if (next !== 'studio') {
       arriving = true;
       show();
       try {
-        const { createArcheryView } = await import('./games/archery/archery-view');
-        const play = createArcheryPlay(
-          bodyNow(),
-          () => settings,
-          () => seed,
-        );
-        const view = createArcheryView({
-          quality,
-          floorFromArena,
-          distances: play.targets.map(({ distance }) => distance),
-          onCaption: (text) => playBar.caption(text),
-        });
-        view.sound.setMuted(!settings.sound);
-        wakeSound(view);
-        arena.setSurroundings(view.range);
-        arena.scene.add(view.bow);
-        archery = { play, view };
+        await (next === 'archery' ? openRange() : openCourt());
       } catch (error) {
-        notices.show('error', `The archery range could not be opened: ${firstLine(reasonOf(error))}`);
+        const place = next === 'archery' ? 'The archery range' : 'The ball court';
+        notices.show('error', `${place} could not be opened: ${firstLine(reasonOf(error))}`);
       }
       arriving = false;
     }
     recorder.stop();
-    if (archery) panel.setOpen(false);
-    view.setScene(archery ? 'range' : 'studio');
-    document.body.classList.toggle('on-the-range', archery !== null);
-    arena.setMarkVisible(archery === null);
+    if (activity() !== 'studio') panel.setOpen(false);
+    settings.following = null;
+    placeCamera();
+    document.body.classList.toggle('on-the-range', activity() !== 'studio');
+    arena.setMarkVisible(activity() === 'studio');
     placeMirror();
     steerByMouse();
+    playBar.caption('');
     choice.reset();
     timing.reset();
     show();
+  }
+
+  function placeCamera(): void {
+    view.setScene(archery ? 'range' : ball ? (watching() ? 'stands' : 'court') : 'studio');
   }
 
   function fit(): void {
     const calibration = bodyNow();
     choice.calibrate(calibration);
     actor.calibrate(calibration);
+    ball?.play.calibrate(calibration);
     avatar?.fitTo(calibration);
   }
 
@@ -432,6 +528,7 @@ async function start(): Promise<void> {
   function recentre(): void {
     if (session) session.tracker.recentre();
     else view.recentre();
+    ball?.play.jumped();
     choice.reset();
   }
 
@@ -557,21 +654,24 @@ async function start(): Promise<void> {
     goTo: (activity) => void goTo(activity),
     setBowSide: (side) => rule({ bowSide: side }),
     restart: restartRound,
+    ready: (on) => ball?.play.ready(on),
     exit: () => void session?.xr.end(),
   });
   pointers.objects.visible = false;
   arena.scene.add(menu.object, pointers.objects);
 
   function showInHeadset(): void {
+    const ballRound = ball?.round() ?? null;
     menu.show({
       estimator: choice.current.name,
       unavailable: choice.unavailable,
       calibration: calibrationStep,
       overlay: settings.vrOverlay,
-      activity: archery ? 'archery' : 'studio',
+      activity: activity(),
       bowSide: settings.bowSide,
       roundOver: archery?.play.newest?.state.phase === 'over',
-      notice: notices.current().at(-1)?.text ?? null,
+      ready: ballRound && ballRound.seat !== null && ballRound.phase !== 'running' ? ballRound.ready : null,
+      notice: ball?.banner() ?? notices.current().at(-1)?.text ?? null,
     });
   }
 
@@ -654,8 +754,16 @@ async function start(): Promise<void> {
   function showPlay(): void {
     const round = archery?.play.newest;
     playBar.show({
-      activity: archery ? 'archery' : 'studio',
+      activity: activity(),
       arriving,
+      ball: ball && {
+        round: ball.round(),
+        room: switches.room,
+        bots: settings.bots,
+        acting: settings.actor && !session,
+        name: settings.name,
+        following: settings.following,
+      },
       round: round ? roundOf(round) : null,
       shooter: session || (!settings.actor && emulator) ? 'headset' : settings.mouse ? 'mouse' : 'actor',
       bowSide: settings.bowSide,
@@ -697,7 +805,9 @@ async function start(): Promise<void> {
     overlay.show(report);
     menu.showReport(report);
     if (recorder.mode !== 'idle') show();
-    else if (archery) showPlay();
+    else if (archery || ball) showPlay();
+    if (ball) showInHeadset();
+    showBanner();
   }, reportEveryMs);
 
   // Entering and leaving.
@@ -732,8 +842,14 @@ async function start(): Promise<void> {
       const tracker = createTracker(xrSession, space, (moved) => renderer.xr.setReferenceSpace(moved));
       session = { xr: xrSession, tracker, settledSince: null };
       xrSession.addEventListener('end', leave);
-      xrSession.addEventListener('visibilitychange', () => timing.reset());
-      space.addEventListener('reset', () => choice.reset());
+      xrSession.addEventListener('visibilitychange', () => {
+        timing.reset();
+        ball?.play.away(xrSession.visibilityState === 'hidden');
+      });
+      space.addEventListener('reset', () => {
+        choice.reset();
+        ball?.play.jumped();
+      });
       timing.setRate(emulator ? windowRateHz : (xrSession.frameRate ?? 72));
       if (!settings.actor) emulator?.release();
       menu.setVisible(study === null);
@@ -794,21 +910,66 @@ async function start(): Promise<void> {
     if (events.length > 0) show();
   }
 
+  /** The same of the ball game. */
+  function playBall(frame: TrackingFrame): void {
+    if (!ball) return;
+    const pulses = ball.follow(frame, buttons);
+    if (session) buzz(session.xr, pulses);
+  }
+
+  /** What a person should know of the connection to others. */
+  function showBanner(): void {
+    const text = ball?.banner() ?? '';
+    if (banner.textContent === text) return;
+    banner.textContent = text;
+    banner.hidden = text === '';
+  }
+
+  /** Whom the camera of somebody without a body looks at. */
+  function lookedAt(): { readonly pelvis: { x: number; y: number; z: number }; readonly eyes: Pose<'floor'> } {
+    const followed = settings.following === null ? null : ball?.bodyOf(settings.following);
+    if (followed) return followed;
+    const { position, quaternion } = view.camera;
+    return { pelvis: courtMiddle, eyes: { position: { ...position }, orientation: { ...quaternion } } };
+  }
+
   /** How far a hand is closed: as its buttons say; round the bow it always is. */
   function gripOf(side: 'left' | 'right'): number {
     if (!study?.idle && archery?.play.newest?.bow?.bowSide === side) return 1;
+    // Hands that carry a basket lie round its rim.
+    if (ball?.play.newest?.role === 'holder') return 0.8;
     const { trigger, grip, pinch } = buttons[side];
     return Math.max(trigger, grip, pinch);
   }
 
   // A click on the result's button is another round.
   canvas.addEventListener('click', ({ clientX, clientY }) => {
-    if (!archery || session || study) return;
+    if ((!archery && !ball) || session || study) return;
     const { width, height } = canvas.getBoundingClientRect();
     pointing.setFromCamera(new Vector2((2 * clientX) / width - 1, 1 - (2 * clientY) / height), view.camera);
     const { origin, direction } = pointing.ray;
-    if (archery.view.result.restartAt(origin, direction) !== null) restartRound();
+    if (archery && archery.view.result.restartAt(origin, direction) !== null) restartRound();
+    ball?.point({ origin: { ...origin }, direction: { ...direction } }, true);
   });
+
+  let scene = '';
+  let palette: string | null = null;
+  /** The match as it stands in this frame, and the own body in its seat's colours. */
+  function showCourt(time: number, frame: TrackingFrame | null): void {
+    if (!ball) return;
+    const { position, quaternion } = view.camera;
+    const camera = { position: { ...position }, orientation: { ...quaternion } };
+    const eyes = watching() ? camera : (frame ?? newestFrame)?.head;
+    ball.show(time, eyes ?? camera, frame !== null);
+    if (palette !== ball.palette) {
+      palette = ball.palette;
+      if (ownAvatarShown) avatar?.setPalette(palette ?? settings.palette);
+    }
+    const now = watching() ? 'stands' : 'court';
+    if (now === scene) return;
+    scene = now;
+    placeCamera();
+  }
 
   let frameCount = 0;
   let newestFrame: TrackingFrame | null = null;
@@ -824,12 +985,14 @@ async function start(): Promise<void> {
         guide.observe(frame);
         settle(frame);
         playRound(frame);
+        playBall(frame);
       },
       estimator: () => choice.current,
       inferenceSettlesInFrame: () => choice.regressor?.resolvesInFrame ?? false,
       skin(pose, frame) {
         for (const side of ['left', 'right'] as const) avatar?.setGrip(side, gripOf(side));
         avatar?.apply(pose, frame.time);
+        ball?.send(frame, pose, { left: gripOf('left'), right: gripOf('right') });
       },
       render(timeMs, frame) {
         const elapsed = Math.min(0.1, Math.max(0, (timeMs - lastTime) / 1000));
@@ -838,10 +1001,14 @@ async function start(): Promise<void> {
         const joints = avatar?.jointPositions() ?? {};
         skeletonLines.show(joints);
         const { hips } = joints;
-        if (hips) arena.follow(hips.x, hips.z);
         study?.frame(timeMs / 1000, frame);
+        if (hips && !watching()) arena.follow(hips.x, hips.z);
+        else if (watching()) arena.follow(courtMiddle.x, 100);
         if (session) {
           if (session.xr.visibilityState === 'visible') point();
+        } else if (watching()) {
+          const { pelvis, eyes } = lookedAt();
+          view.update(pelvis, eyes, elapsed);
         } else if (frame) {
           view.update(hips ?? { ...frame.head.position, y: frame.head.position.y * 0.58 }, frame.head, elapsed);
         }
@@ -849,11 +1016,15 @@ async function start(): Promise<void> {
         if (archery && played && frame) {
           archery.view.show(played.state, study?.idle ? null : played.bow, played.time, frame.head);
         }
+        if (ball) showCourt(timeMs / 1000, frame);
+        if (avatar) avatar.object.visible = !watching();
         const inside = session !== null || view.view === 'first-person';
         avatar?.setFirstPerson(inside);
         // Whoever looks from behind the mirror wants to see the body, not its back.
         mirror.setVisible(
-          settings.mirror && (inside || archery !== null || view.camera.position.z > 0.1 - mirrorDistance),
+          settings.mirror &&
+            ball === null &&
+            (inside || archery !== null || view.camera.position.z > 0.1 - mirrorDistance),
         );
         renderer.render(arena.scene, session ? headsetCamera : view.camera);
       },
@@ -889,7 +1060,10 @@ async function start(): Promise<void> {
     timing.reset();
     notices.show('info', 'The graphics device is back.');
   });
-  document.addEventListener('visibilitychange', () => timing.reset());
+  document.addEventListener('visibilitychange', () => {
+    timing.reset();
+    ball?.play.away(document.hidden);
+  });
 
   let ready = false;
   exposeProbe(() => {
@@ -917,8 +1091,8 @@ async function start(): Promise<void> {
       recorder: { mode: recorder.mode, frames: recorder.frameCount, seconds: recorder.seconds },
       notices: notices.current(),
       loading: { ...marks },
-      players: [],
-      game: archery?.play.newest ? probeOf(archery.play.newest) : null,
+      players: ball?.players() ?? [],
+      game: archery?.play.newest ? probeOf(archery.play.newest) : (ball?.probe() ?? null),
       study: study?.probe() ?? null,
     };
   });
@@ -940,6 +1114,13 @@ async function start(): Promise<void> {
       if (pressed) restartRound();
     }
     archery?.view.result.setHovered(hovered);
+    for (const { origin, direction, pressed, showRay } of hands) {
+      const distance = ball?.point({ origin: { ...origin }, direction: { ...direction } }, pressed) ?? null;
+      if (distance === null) continue;
+      showRay(distance);
+      // One hand's ray is lit; the other's would put the light out again.
+      break;
+    }
   }
 
   // The way to the first body: the chosen network loads beside the avatar, and IK draws until it is there.

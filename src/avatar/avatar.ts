@@ -52,6 +52,8 @@ export interface Avatar {
   setUpperBodyOnly(on: boolean): void;
   /** Recolours the materials of our mannequin; other avatars keep their own. Unknown names change nothing. */
   setPalette(name: string): void;
+  /** 1: solid. Less: a ghost that things behind it shine through. */
+  setOpacity(opacity: number): void;
   /** How far each hand's fingers are closed, 0 open to 1 a fist. */
   setGrip(side: Side, closed: number): void;
   /** Where the joints of the bones are drawn, floor frame [m]; only bones that the rig has. */
@@ -349,6 +351,19 @@ export function createAvatar({ vrm }: LoadedAvatar): Avatar {
           const color = colors[material.name];
           if (color && material instanceof MeshStandardMaterial) material.color = new Color(color);
         }
+      }
+    },
+    setOpacity(opacity) {
+      for (const { mesh } of meshes) {
+        for (const material of materialsOf(mesh)) {
+          const ghost = opacity < 1;
+          if (material.transparent !== ghost) {
+            material.transparent = ghost;
+            material.needsUpdate = true;
+          }
+          material.opacity = opacity;
+        }
+        mesh.castShadow = opacity > 0.5;
       }
     },
     setGrip(side, closed) {

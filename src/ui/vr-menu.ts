@@ -17,6 +17,8 @@ export interface VrMenuState {
   readonly activity: ActivityName;
   readonly bowSide: 'left' | 'right';
   readonly roundOver: boolean;
+  /** In the ball game, before and after a match: whether one is ready; null: not asked. */
+  readonly ready: boolean | null;
   /** A sentence to be read in the headset; null: none. */
   readonly notice: string | null;
 }
@@ -30,6 +32,7 @@ export interface VrMenuActions {
   goTo(activity: ActivityName): void;
   setBowSide(side: 'left' | 'right'): void;
   restart(): void;
+  ready(on: boolean): void;
   exit(): void;
 }
 
@@ -101,13 +104,23 @@ export function createVrMenu(actions: VrMenuActions): VrMenu {
     const other = shown.bowSide === 'left' ? 'right' : 'left';
     const play: readonly Row[] =
       shown.activity === 'studio'
-        ? [['archery', 'Archery', () => actions.goTo('archery')]]
-        : [
-            ['studio', 'To the mirror', () => actions.goTo('studio')],
-            shown.roundOver
-              ? ['restart', 'New round', actions.restart]
-              : ['bow', `Bow: ${shown.bowSide} hand`, () => actions.setBowSide(other)],
-          ];
+        ? [
+            ['archery', 'Archery', () => actions.goTo('archery')],
+            ['ball', 'Ball game', () => actions.goTo('ball')],
+          ]
+        : shown.activity === 'ball'
+          ? [
+              ['studio', 'To the mirror', () => actions.goTo('studio')],
+              ...(shown.ready === null
+                ? []
+                : ([['ready', shown.ready ? 'Wait for me' : 'Ready', () => actions.ready(!shown.ready)]] as const)),
+            ]
+          : [
+              ['studio', 'To the mirror', () => actions.goTo('studio')],
+              shown.roundOver
+                ? ['restart', 'New round', actions.restart]
+                : ['bow', `Bow: ${shown.bowSide} hand`, () => actions.setBowSide(other)],
+            ];
     const rest: readonly Row[] = [
       ['calibrate', 'Calibrate', actions.calibrate],
       ['recentre', 'Recentre', actions.recentre],
