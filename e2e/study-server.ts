@@ -4,6 +4,8 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { createPageHandler } from '../server/page';
+import { createRelay, type Relay } from '../server/relay';
+import { relayConfigurationFrom } from '../server/relay-configuration';
 import { openStudyService } from '../server/study-service';
 import { serve } from '../server/web-server';
 import { parsePlan, type StudyPlan } from '../src/core/study/plan';
@@ -22,15 +24,22 @@ export async function serveStudies() {
     log: (line) => console.error(line),
   });
   const page = createPageHandler(atRoot('dist'));
+  let relay: Relay | null = null;
   const server = await serve(
     (request: IncomingMessage, response: ServerResponse) => {
-      if (!service.handle(request, response)) page(request, response);
+      if (!relay?.handle(request, response) && !service.handle(request, response)) page(request, response);
     },
     { host: '127.0.0.1', port: 0 },
+  );
+  relay = createRelay(
+    server.requests,
+    relayConfigurationFrom({ THREEPOINT_LOG_LEVEL: 'silent' }),
+    'a-secret-for-tests-alone-of-a-length',
   );
   return {
     origin: `http://localhost:${server.port}`,
     async close() {
+      await relay?.close();
       await server.close();
       service.close();
       rmSync(directory, { recursive: true, force: true });
@@ -51,6 +60,24 @@ export function shortStudy(id: string): StudyPlan {
         ...task,
         trialSeconds: 5,
         tutorial: { ...task.tutorial, seconds: 2, restSeconds: 0 },
+        restSeconds: 1,
+      })),
+  };
+}
+
+/** The ball game alone, for one group of three, cut short, without practice and questionnaire time. */
+export function shortBallStudy(id: string): StudyPlan {
+  const paper = parsePlan(readFileSync(atRoot('public/studies/paper.json'), 'utf8'), 'paper.json');
+  return {
+    ...paper,
+    id,
+    participants: 3,
+    tasks: paper.tasks
+      .filter(({ game }) => game === 'ball')
+      .map((task) => ({
+        ...task,
+        trialSeconds: 10,
+        tutorial: { ...task.tutorial, when: 'never' },
         restSeconds: 1,
       })),
   };

@@ -9,7 +9,7 @@ import type { StudyRecord } from '../src/core/study/study-record';
 import type { StudyProbe } from '../src/study-run';
 import { type EmulatedHeadset, emulatedHeadset, frames, type Point } from './emulated-headset';
 import { expect, keepPicture, test as pageTest } from './page-fixture';
-import { experimenter, experimenterToken, serveStudies, shortStudy } from './study-server';
+import { experimenter, experimenterToken, serveStudies, shortBallStudy, shortStudy } from './study-server';
 
 // What is answered does not depend on how many pixels show it.
 pageTest.use({ viewport: { width: 760, height: 500 } });
@@ -223,6 +223,56 @@ async function simulateOn(origin: string): Promise<StudyPlan> {
   }
   return plan;
 }
+
+test('three participants play the ball game together, each in a headset of their own', async ({ browser, origin }) => {
+  test.setTimeout(300_000);
+  await experimenter(origin).begin(shortBallStudy('trio'), true);
+  const people = ['P01', 'P02', 'P03'];
+  const pages = await Promise.all(
+    people.map(async () => (await browser.newContext({ viewport: { width: 320, height: 220 } })).newPage()),
+  );
+  const everybody = <T>(act: (page: Page, index: number) => Promise<T>) => Promise.all(pages.map(act));
+  // One after the other: three pages that load at once keep each other waiting.
+  const headsets: EmulatedHeadset[] = [];
+  for (const [index, page] of pages.entries()) {
+    await page.goto(`${origin}/?study=trio&participant=${people[index]}&emulate&quality=low`);
+    await page.waitForFunction(() => window.threepoint?.probe().ready === true, undefined, { timeout: 90_000 });
+    headsets.push(await emulatedHeadset(page));
+    await page.getByLabel(/I have read this/).check();
+    await page.getByRole('button', { name: 'I agree' }).click();
+    await page.getByRole('button', { name: 'I have noted it' }).click();
+    for (const answer of ['I prefer not to say', 'Once or twice', 'Well without correction'])
+      await page.getByLabel(answer).check();
+    await page.getByLabel('Right', { exact: true }).check();
+    await page.getByLabel(/Age/).fill('26');
+    await page.getByLabel(/Field of study/).fill('Computer science');
+    await page.getByRole('button', { name: 'Continue' }).click();
+    await enter(page);
+    await headsets[index]?.place(stretched);
+    await calibrate(page, headsets[index] as EmulatedHeadset);
+  }
+  const [first, second, third] = pages as [Page, Page, Page];
+  await press(first, headsets[0] as EmulatedHeadset, 'start');
+  await reaches(first, 'waiting', 60_000);
+  await press(second, headsets[1] as EmulatedHeadset, 'start');
+  await press(third, headsets[2] as EmulatedHeadset, 'start');
+  await expect
+    .poll(async () => (await everybody(study)).every(({ running }) => running), { timeout: 60_000 })
+    .toBe(true);
+  await everybody((page) => expect.poll(() => screen(page), { timeout: 90_000 }).toMatch(/^(rest|question-Q8)$/));
+  await everybody((page) => expect.poll(async () => (await study(page)).unsent).toBe(0));
+
+  const trials = (await recordsOf(origin, 'trio')).filter((record) => record.kind === 'trial');
+  expect(trials.map(({ participant }) => participant)).toEqual(people);
+  // One group, one condition.
+  expect(new Set(trials.map(({ body }) => body.condition)).size).toBe(1);
+  expect(new Set(trials.map(({ body }) => body.group))).toEqual(new Set([1]));
+  for (const { body } of trials) {
+    expect(body.outcome.maximum).toBe(20);
+    expect(body.outcome.ended).toBe('time');
+  }
+  await everybody((page) => page.context().close());
+});
 
 test('results of fifteen simulated participants; export, delete, export', async ({ page, origin }) => {
   const plan = await simulateOn(origin);

@@ -35,6 +35,7 @@ import { createRecorder } from './recorder';
 import { createArena } from './scene/arena';
 import { createDesktopView, type ViewName, viewNames } from './scene/desktop-view';
 import { affordableQuality, createRenderer, easeEmulatedPicture, fitToWindow } from './scene/renderer';
+import type { TaskPlace } from './study/task-runner';
 import type { StudyRun } from './study-run';
 import { type CalibrationStep, createCalibrationDialog } from './ui/calibration-dialog';
 import { createCalibrationGuide } from './ui/calibration-guide';
@@ -378,7 +379,11 @@ async function start(): Promise<void> {
     archery = { play, view };
   }
 
+  /** Where a study plays the ball game; null: where the address says. */
+  let studyPlace: TaskPlace | null = null;
+
   async function openCourt(): Promise<void> {
+    const place = studyPlace;
     const [{ createBallActivity }, { connectionsFor }, mannequin] = await Promise.all([
       import('./ball-activity'),
       import('./ball-connections'),
@@ -391,18 +396,19 @@ async function start(): Promise<void> {
       quality,
       arena,
       mannequin,
-      connect: await connectionsFor(switches.room, {
+      connect: await connectionsFor(place?.room ?? switches.room, {
         seed,
         ...(switches.seconds && { seconds: switches.seconds }),
         ...(switches.balls && { balls: switches.balls }),
       }),
       visitor: {
-        name: settings.name || (settings.actor && !session ? 'Demo' : 'Player'),
+        name: place?.participant || settings.name || (settings.actor && !session ? 'Demo' : 'Player'),
         calibration: bodyNow(),
+        ...(place && { seat: place.members.indexOf(place.participant) }),
         ...(switches.spectate && { spectate: true }),
       },
-      bots: () => settings.bots,
-      acting: () => settings.actor && (session === null || emulator !== null),
+      bots: () => settings.bots && place === null,
+      acting: () => place === null && settings.actor && (session === null || emulator !== null),
       seed,
       onCaption: (text) => playBar.caption(text),
     });
@@ -691,7 +697,18 @@ async function start(): Promise<void> {
         settings.bowSide = side;
         placeMirror();
       },
-      goToArchery: () => goTo('archery'),
+      async goToArchery() {
+        await goTo('archery');
+        if (!archery) throw new Error('The archery range could not be opened.');
+      },
+      async goToBall(place) {
+        if (ball) await goTo('studio');
+        studyPlace = place;
+        await goTo('ball');
+        if (!ball) throw new Error('The ball court could not be opened.');
+      },
+      ball: () => ball?.play ?? null,
+      leaveBall: () => void goTo('studio'),
       startRound(layout, seconds) {
         Object.assign(settings, { seconds, everyHitCounts: false });
         seed = layout;
@@ -913,7 +930,8 @@ async function start(): Promise<void> {
   /** The same of the ball game. */
   function playBall(frame: TrackingFrame): void {
     if (!ball) return;
-    const pulses = ball.follow(frame, buttons);
+    const pulses = ball.follow(frame, study?.idle ? nothingPressed : buttons);
+    if (ball.play.newest) study?.playedBall(ball.play.newest);
     if (session) buzz(session.xr, pulses);
   }
 

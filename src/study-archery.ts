@@ -49,6 +49,7 @@ export function createArcheryRunner(host: ArcheryHost): ArcheryRunner {
       happened = [];
       return taken;
     },
+    waitingFor: null,
     get end() {
       return end;
     },

@@ -1,5 +1,6 @@
 import './styles/study.css';
 import type { ArcheryFrame } from './archery-play';
+import type { BallFrame } from './ball-play';
 import type { Calibration } from './core/body/calibration';
 import type { Side } from './core/body/joints';
 import type { EstimatorName } from './core/estimation/pose-estimator';
@@ -17,8 +18,9 @@ import type { FrameListener } from './frame-timing';
 import { createParticipantSession, isLater, type ParticipantSession, startSession } from './study/participant-session';
 import { createParticipantClient, ServerRefusal, ServerUnreachable } from './study/study-client';
 import { type KeptSession, openStudyVault, type StudyVault } from './study/study-vault';
-import type { TaskEvent, TaskRunner } from './study/task-runner';
+import type { TaskEvent, TaskPlace, TaskRunner } from './study/task-runner';
 import { type ArcheryHost, createArcheryRunner } from './study-archery';
+import { type BallHost, createBallRunner } from './study-ball';
 import { lockedOutScreen, type StudySituation, screenOf, screenQuestions } from './study-screens';
 import type { CalibrationStep } from './ui/calibration-dialog';
 import { type CalibrationGuide, createCalibrationGuide } from './ui/calibration-guide';
@@ -29,7 +31,7 @@ import type { Pointer } from './ui/vr-pointers';
 import { createVrStudyPanel, type VrStudyPanel } from './ui/vr-study-panel';
 
 /** What the study needs of the page; the page decides how. */
-export interface StudyHost extends ArcheryHost {
+export interface StudyHost extends ArcheryHost, BallHost {
   enterVr(): Promise<void>;
   inSession(): boolean;
   calibration(): Calibration;
@@ -58,6 +60,8 @@ export interface StudyRun {
   frame(time: number, frame: TrackingFrame | null): void;
   /** Every frame of the round on the page. */
   played(frame: ArcheryFrame): void;
+  /** Every frame of the match on the page. */
+  playedBall(frame: BallFrame): void;
   point(pointers: readonly Pointer[]): void;
   sessionChanged(): void;
   probe(): StudyProbe;
@@ -115,7 +119,8 @@ export function createStudyRun(
   const card = createStudyCard();
   const sheet = createVrStudyPanel();
   const archery = createArcheryRunner(host);
-  const runners: Partial<Record<string, TaskRunner>> = { archery };
+  const ball = createBallRunner(host);
+  const runners: Partial<Record<string, TaskRunner>> = { archery, ball };
 
   let session: ParticipantSession | null = null;
   let screen: StudyScreen | null = null;
@@ -151,6 +156,25 @@ export function createStudyRun(
 
   const played = (step: StudyStep): step is PlayedStep => step.kind === 'trial' || step.kind === 'tutorial';
 
+  /** Where a group meets: a room of its own for every trial of every run, which nobody can guess from another study. */
+  function placeFor(step: PlayedStep): TaskPlace {
+    const running = session as ParticipantSession;
+    const group = running.schedule.groups[step.task];
+    const run = running.progress.runs[`${step.task}/${step.block}`] ?? 1;
+    const name = `${running.plan.id} ${step.id} ${run} ${group?.number}`;
+    const [first, second] = ['room', 'again'].map((purpose) =>
+      (randomFor(running.plan.seed, `${purpose} ${name}`).seed >>> 0).toString(36),
+    );
+    return {
+      room: `study-${first}${second}`,
+      participant: running.progress.participant,
+      members: group?.members ?? [],
+    };
+  }
+
+  /** Whether a trial has been started that cannot begin yet. */
+  const waiting = () => trial !== null && (runnerOf(trial.step)?.waitingFor ?? null) !== null;
+
   /** Loads the game and the body of the step at hand, before anybody can start it. */
   async function prepare(step: PlayedStep): Promise<void> {
     const attempt = { step: step.id, state: 'loading' as 'loading' | 'ready' | 'failed', reason: '' };
@@ -158,7 +182,7 @@ export function createStudyRun(
     try {
       const runner = runnerOf(step);
       if (!runner) throw new Error('This page cannot play the game of this task.');
-      await Promise.all([runner.prepare(), host.chooseEstimator(step.estimator)]);
+      await Promise.all([runner.prepare(placeFor(step)), host.chooseEstimator(step.estimator)]);
       if (prepared !== attempt) return;
       if (host.estimator() !== step.estimator) throw new Error('The body of this round could not be loaded.');
       attempt.state = 'ready';
@@ -192,7 +216,7 @@ export function createStudyRun(
     for (const name of runner.assists()) trial.log.assist(name);
     const { log } = trial;
     host.listenToFrames((spent, late) => {
-      if (session && !session.progress.paused && trial?.endedAt === null) log.frame(spent, late);
+      if (session && !session.progress.paused && trial?.endedAt === null && !waiting()) log.frame(spent, late);
     });
     // The same round for everybody's first, second … trial: what differs between conditions is not the layout.
     const repetition = step.kind === 'trial' ? step.repetition : 0;
@@ -281,6 +305,7 @@ export function createStudyRun(
       prepared: prepared && prepared.step === running.step.id ? prepared : null,
       refusal,
       playing: trial !== null,
+      waitingFor: trial ? (runnerOf(trial.step)?.waitingFor ?? null) : null,
     };
   }
 
@@ -572,7 +597,7 @@ export function createStudyRun(
   return {
     object: sheet.object,
     get idle() {
-      return trial === null;
+      return trial === null || waiting();
     },
     get measured() {
       return session?.calibration != null;
@@ -589,7 +614,7 @@ export function createStudyRun(
       const running = session;
       if (!trial || !running || running.progress.paused) return;
       const runner = runnerOf(trial.step);
-      if (!runner) return;
+      if (!runner || runner.waitingFor !== null) return;
       if (trial.startTime === null) {
         trial.startTime = time;
         const eyes = frame?.head.position.y ?? host.calibration().eyeHeight;
@@ -610,6 +635,7 @@ export function createStudyRun(
       } else if (time - trial.endedAt > afterglow) finishTrial(running, trial, runner);
     },
     played: (frame) => archery.played(frame),
+    playedBall: (frame) => ball.played(frame),
     point: (pointers) => sheet.point(pointers),
     sessionChanged() {
       // Whoever takes the headset off in the middle of a round has not played it.
@@ -624,7 +650,7 @@ export function createStudyRun(
       screen: screenId,
       step: session?.step.id ?? null,
       simulated: session?.simulated ?? false,
-      running: trial !== null,
+      running: trial !== null && !waiting(),
       unsent: session?.safekeeping.unsent ?? 0,
       unsaved: session?.safekeeping.unsaved ?? 0,
       online: session?.safekeeping.online ?? true,

@@ -20,6 +20,8 @@ export interface StudySituation {
   /** Why the last wish changed nothing; null: it did. */
   readonly refusal: string | null;
   readonly playing: boolean;
+  /** Others without whom a trial that was started cannot begin; null: nobody. */
+  readonly waitingFor: string | null;
 }
 
 export interface ScreenActions {
@@ -161,6 +163,17 @@ export function screenOf(situation: StudySituation, actions: ScreenActions): Stu
     }
     case 'tutorial':
     case 'trial': {
+      if (playing && inSession && situation.waitingFor !== null) {
+        return {
+          ...base,
+          id: 'waiting',
+          title: 'You are ready',
+          text: [
+            `It begins as soon as ${situation.waitingFor} ${/,| and /.test(situation.waitingFor) ? 'are' : 'is'} ready too.`,
+          ],
+          buttons: [pause],
+        };
+      }
       if (playing && inSession) return null;
       if (!inSession) {
         return {
@@ -186,7 +199,7 @@ export function screenOf(situation: StudySituation, actions: ScreenActions): Stu
       const ready = prepared?.state === 'ready' && !progress.running;
       const rules =
         task?.game === 'ball'
-          ? 'Throw the balls into the basket that your partner holds.'
+          ? 'Two of you throw balls, the third catches them with the basket. Every ball in the basket is a point for all three.'
           : 'Shoot up to five arrows at the four targets. Each target counts once; the farther, the more points.';
       const again = progress.attempt > 1 ? ['The last attempt was interrupted and does not count.'] : [];
       return {
