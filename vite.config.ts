@@ -1,6 +1,14 @@
+import { fileURLToPath } from 'node:url';
 import { defineConfig } from 'vite';
 
 export default defineConfig({
+  resolve: {
+    alias: {
+      '@stdlib/assert-has-generator-support': fileURLToPath(
+        new URL('scripts/has-generator-support.cjs', import.meta.url),
+      ),
+    },
+  },
   // Studies are kept by `npm start`; the pages under development talk to it.
   server: { host: '127.0.0.1', port: 5173, proxy: { '/api': 'http://127.0.0.1:3333' } },
   preview: { host: '127.0.0.1', port: 4173 },

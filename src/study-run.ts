@@ -146,7 +146,8 @@ export function createStudyRun(
       guide.cancel();
       session?.apply({ type: 'calibrated', calibration });
     },
-    closesItself: () => true,
+    // What went wrong stays to be read until somebody measures again.
+    closesItself: () => false,
   });
 
   const runnerOf = (step: { readonly task: string }): TaskRunner | null => {
