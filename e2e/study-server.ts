@@ -1,47 +1,38 @@
+import { spawn } from 'node:child_process';
+import { once } from 'node:events';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
-import type { IncomingMessage, ServerResponse } from 'node:http';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { createPageHandler } from '../server/page';
-import { createRelay, type Relay } from '../server/relay';
-import { relayConfigurationFrom } from '../server/relay-configuration';
-import { openStudyService } from '../server/study-service';
-import { serve } from '../server/web-server';
 import { parsePlan, type StudyPlan } from '../src/core/study/plan';
 
 export const experimenterToken = 'a-token-for-tests-alone';
 
 const atRoot = (path: string) => fileURLToPath(new URL(`../${path}`, import.meta.url));
 
-/** The built page and its studies, as `npm start` serves them; what is recorded is gone when it closes. */
+/** The server as `npm start` runs it, on a port of its own; what is recorded is gone when it closes. */
 export async function serveStudies() {
   const directory = mkdtempSync(join(tmpdir(), 'threepoint-studies-'));
-  const service = openStudyService({
-    directory,
-    token: experimenterToken,
-    now: () => Date.now() / 1000,
-    log: (line) => console.error(line),
+  const child = spawn(process.execPath, ['--import', 'tsx', 'server/main.ts', '--port', '0', '--studies', directory], {
+    cwd: atRoot('.'),
+    env: { ...process.env, EXPERIMENTER_TOKEN: experimenterToken, THREEPOINT_LOG_LEVEL: 'error' },
+    stdio: ['ignore', 'pipe', 'inherit'],
   });
-  const page = createPageHandler(atRoot('dist'));
-  let relay: Relay | null = null;
-  const server = await serve(
-    (request: IncomingMessage, response: ServerResponse) => {
-      if (!relay?.handle(request, response) && !service.handle(request, response)) page(request, response);
-    },
-    { host: '127.0.0.1', port: 0 },
-  );
-  relay = createRelay(
-    server.requests,
-    relayConfigurationFrom({ THREEPOINT_LOG_LEVEL: 'silent' }),
-    'a-secret-for-tests-alone-of-a-length',
-  );
+  let said = '';
+  const port = await new Promise<string>((resolve, reject) => {
+    child.stdout.setEncoding('utf8').on('data', (text: string) => {
+      said += text;
+      const found = /http:\/\/localhost:(\d+)/.exec(said)?.[1];
+      if (found) resolve(found);
+    });
+    child.once('exit', (code) => reject(new Error(`the server ended with ${code} before it listened: ${said}`)));
+  });
   return {
-    origin: `http://localhost:${server.port}`,
+    origin: `http://localhost:${port}`,
     async close() {
-      await relay?.close();
-      await server.close();
-      service.close();
+      const gone = once(child, 'exit');
+      child.kill('SIGTERM');
+      await gone;
       rmSync(directory, { recursive: true, force: true });
     },
   };

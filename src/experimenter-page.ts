@@ -134,20 +134,16 @@ function placeText(schedule: Schedule, id: string): string {
   return `${step.task}, block ${step.block}${of}: ${step.kind}`;
 }
 
-function orderText(schedule: Schedule, of: StudyPlan): string {
-  return of.tasks
-    .map(({ id, groupSize }) => {
-      const blocks = schedule.steps.flatMap((step) =>
-        step.kind === 'trial' && step.task === id && step.repetition === 1 ? [step.condition] : [],
-      );
-      const group = schedule.groups[id];
-      const together =
-        groupSize > 1 && group
-          ? ` with ${group.members.filter((name) => name !== schedule.participant).join(', ')}`
-          : '';
-      return `${id}: ${blocks.join(' → ')}${together}`;
-    })
-    .join('; ');
+function orderTexts(schedule: Schedule, of: StudyPlan): readonly string[] {
+  return of.tasks.map(({ id, groupSize }) => {
+    const blocks = schedule.steps.flatMap((step) =>
+      step.kind === 'trial' && step.task === id && step.repetition === 1 ? [step.condition] : [],
+    );
+    const group = schedule.groups[id];
+    const together =
+      groupSize > 1 && group ? ` with ${group.members.filter((name) => name !== schedule.participant).join(', ')}` : '';
+    return `${id}: ${blocks.join(' → ')}${together}`;
+  });
 }
 
 function stateBadge({ session, claimed, withdrawn }: ParticipantState): HTMLElement {
@@ -196,7 +192,7 @@ function rowOf(state: ParticipantState, of: StudyPlan) {
         small('Export', () => void exportZip(of, participant), records === 0),
         small('Delete …', () => void remove(of, participant), !claimed && records === 0, 'danger'),
       ),
-      element('span', { title: orderText(schedule, of) }, orderText(schedule, of)),
+      element('div', { class: 'soft' }, ...orderTexts(schedule, of).map((line) => element('div', {}, line))),
       element('a', { href: address, target: '_blank', rel: 'noopener' }, 'open'),
     ],
   };

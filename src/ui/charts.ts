@@ -38,16 +38,17 @@ function headed(
 ): SVGSVGElement {
   if (!(plot instanceof SVGSVGElement)) throw new Error('ui/charts: expected a plain SVG from the plot');
   const width = Number(plot.getAttribute('width'));
-  const text = { 'font-family': 'Inter, "Segoe UI", system-ui, sans-serif', fill: ink };
+  // Plots stand their labels in the middle unless told otherwise.
+  const text = { 'font-family': 'Inter, "Segoe UI", system-ui, sans-serif', fill: ink, 'text-anchor': 'start' };
   plot.prepend(svgNode('rect', { width: '100%', height: '100%', fill: 'white' }));
   plot.append(svgNode('text', { ...text, x: 12, y: 24, 'font-size': 16, 'font-weight': 650 }, title));
   let x = 12;
   for (const side of sides) {
     plot.append(svgNode('rect', { x, y: 38, width: 12, height: 12, rx: 2, fill: colours[side] }));
     plot.append(svgNode('text', { ...text, x: x + 18, y: 48.5, 'font-size': 13 }, labels[side]));
-    x += 34 + labels[side].length * 7;
+    x += 38 + labels[side].length * 7.4;
   }
-  plot.append(svgNode('text', { ...text, x, y: 48.5, 'font-size': 12, fill: '#5b6776' }, note));
+  plot.append(svgNode('text', { ...text, x: 12, y: 66, 'font-size': 12, fill: '#5b6776' }, note));
   if (simulated) {
     const mark = {
       ...text,
@@ -64,13 +65,13 @@ function headed(
 }
 
 const shared = {
-  marginTop: 74,
+  marginTop: 92,
   marginLeft: 52,
   marginBottom: 40,
   style: { fontSize: '13px', color: ink, background: 'white', fontFamily: 'Inter, "Segoe UI", system-ui, sans-serif' },
 } as const;
 
-const widthFor = (count: number) => Math.max(360, 90 + count * 100);
+const widthFor = (count: number) => Math.max(400, 90 + count * 100);
 
 /** Means as bars with their 95 % confidence intervals: the paper's figures 11 to 14. */
 export function barChart(comparisons: readonly Comparison[], options: ChartOptions): SVGSVGElement {
@@ -95,7 +96,7 @@ export function barChart(comparisons: readonly Comparison[], options: ChartOptio
   const plot = Plot.plot({
     ...shared,
     width: widthFor(comparisons.length),
-    height: 340,
+    height: 360,
     x: { axis: null, domain: [...sides], padding: 0.12 },
     fx: { label: null, domain: comparisons.map(options.nameOf), padding: 0.25 },
     y: { label: options.axis, domain: [low, high], grid: true, nice: false },
@@ -153,7 +154,7 @@ export function pairedChart(comparisons: readonly Comparison[], options: ChartOp
   const plot = Plot.plot({
     ...shared,
     width: widthFor(comparisons.length),
-    height: 340,
+    height: 360,
     x: { axis: null, domain: ['second', 'first'], padding: 0.5 },
     fx: { label: null, domain: comparisons.map(options.nameOf), padding: 0.2 },
     y: { label: options.axis, domain: [...options.domain], grid: true, nice: false },
