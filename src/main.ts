@@ -943,12 +943,18 @@ async function start(): Promise<void> {
     banner.hidden = text === '';
   }
 
+  /** From where and whereto the window's camera looks. */
+  function cameraPose(): Pose<'floor'> {
+    const { position, quaternion } = view.camera;
+    const { x, y, z, w } = quaternion;
+    return { position: { x: position.x, y: position.y, z: position.z }, orientation: { x, y, z, w } };
+  }
+
   /** Whom the camera of somebody without a body looks at. */
   function lookedAt(): { readonly pelvis: { x: number; y: number; z: number }; readonly eyes: Pose<'floor'> } {
     const followed = settings.following === null ? null : ball?.bodyOf(settings.following);
     if (followed) return followed;
-    const { position, quaternion } = view.camera;
-    return { pelvis: courtMiddle, eyes: { position: { ...position }, orientation: { ...quaternion } } };
+    return { pelvis: courtMiddle, eyes: cameraPose() };
   }
 
   /** How far a hand is closed: as its buttons say; round the bow it always is. */
@@ -975,8 +981,7 @@ async function start(): Promise<void> {
   /** The match as it stands in this frame, and the own body in its seat's colours. */
   function showCourt(time: number, frame: TrackingFrame | null): void {
     if (!ball) return;
-    const { position, quaternion } = view.camera;
-    const camera = { position: { ...position }, orientation: { ...quaternion } };
+    const camera = cameraPose();
     const eyes = watching() ? camera : (frame ?? newestFrame)?.head;
     ball.show(time, eyes ?? camera, frame !== null);
     if (palette !== ball.palette) {
