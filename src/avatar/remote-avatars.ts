@@ -70,7 +70,7 @@ export function createRemoteAvatars(bytes: ArrayBuffer, name: string): RemoteAva
   const object = new Group();
   object.name = 'other people';
   const bodies: Body[] = [];
-  let making: Promise<void> | null = null;
+  let making = false;
   let disposed = false;
   let failed: unknown = null;
 
@@ -110,14 +110,17 @@ export function createRemoteAvatars(bytes: ArrayBuffer, name: string): RemoteAva
       return free;
     }
     if (failed) throw failed;
-    making ??= make().then(
-      () => {
-        making = null;
-      },
-      (error: unknown) => {
-        failed = error;
-      },
-    );
+    if (!making) {
+      making = true;
+      void make().then(
+        () => {
+          making = false;
+        },
+        (error: unknown) => {
+          failed = error;
+        },
+      );
+    }
     return null;
   }
 

@@ -15,6 +15,14 @@ describe('the address of the page', () => {
         quality: null,
         replay: null,
         view: null,
+        play: 'studio',
+        seed: null,
+        seconds: null,
+        room: null,
+        name: null,
+        bots: null,
+        balls: null,
+        spectate: false,
       },
     });
   });

@@ -30,7 +30,8 @@ function encodePacket(packet: SocketPacket, bytesEvent: string): string | Uint8A
   const [event, payload] = Array.isArray(data) ? data : [];
   // A cluster's adapter turns events with bytes into another type of packet.
   if (nsp === '/' && event === bytesEvent && isBytes(payload)) return payload;
-  return `${type}${JSON.stringify(id === undefined ? [nsp, data] : [nsp, data, id])}`;
+  const parts = id !== undefined ? [nsp, data, id] : data !== undefined ? [nsp, data] : [nsp];
+  return `${type}${JSON.stringify(parts)}`;
 }
 
 function decodeText(text: string): SocketPacket {
