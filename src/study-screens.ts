@@ -300,6 +300,7 @@ function questionScreen(
     },
     buttons: [
       { id: 'back', label: 'Back', look: at === 0 ? 'off' : 'plain', act: () => actions.goTo(at - 1) },
+      { id: 'pause', label: 'Pause', look: 'plain', act: () => actions.apply({ type: 'pause' }) },
       last
         ? { id: 'submit', label: 'Hand in', look: 'primary', act: actions.submit }
         : { id: 'next', label: 'Next', look: 'primary', act: () => actions.goTo(at + 1) },
