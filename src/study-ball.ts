@@ -19,6 +19,9 @@ export interface BallRunner extends TaskRunner {
 const listed = (names: readonly string[]): string =>
   names.length < 2 ? (names[0] ?? '') : `${names.slice(0, -1).join(', ')} and ${names.at(-1)}`;
 
+/** How much later than here the room's bell may be heard [s]. */
+const bellDelay = 4;
+
 export function createBallRunner(host: BallHost): BallRunner {
   let place: TaskPlace | null = null;
   let wanted: { readonly seconds: number } | null = null;
@@ -60,7 +63,9 @@ export function createBallRunner(host: BallHost): BallRunner {
           happened.push({ type: event.player === me ? 'hit' : 'catch', time: at, points: 1 });
       }
       const over = state.phase === 'over';
-      if (!over && at < wanted.seconds) return;
+      // Where the room's own bell rings no later, its word is the last one: a ball may still be in the air.
+      const limit = state.options.seconds <= wanted.seconds ? wanted.seconds + bellDelay : wanted.seconds;
+      if (!over && at < limit) return;
       end = { seconds: at, ended: (over && state.end) || 'time', score: state.score, maximum: state.options.balls };
       wanted = null;
     },

@@ -200,7 +200,9 @@ export function studyResults(study: ShownStudy, conditions: readonly [string, st
   const scoreParts = scores.percent.comparisons.map((comparison) => {
     const name = titleOf(comparison.of);
     const domain = { nameOf: () => name, axis: 'score in per cent of the maximum', domain: [0, 100] as const };
-    const paperFigure = plan.tasks.find(({ id }) => id === comparison.of)?.game === 'ball' ? 14 : 12;
+    const task = plan.tasks.find(({ id }) => id === comparison.of);
+    const paperFigure = task?.game === 'ball' ? 14 : 12;
+    const alone = (task?.groupSize ?? 1) === 1;
     return element(
       'div',
       { class: 'figures' },
@@ -211,7 +213,7 @@ export function studyResults(study: ShownStudy, conditions: readonly [string, st
       ),
       figure(
         pairedChart([comparison], chartOptions(`${name}: scores, pairs`, domain)),
-        `${name}: every ${comparison.pairs[0]?.who.startsWith('group') ? 'group' : 'participant'}`,
+        `${name}: every ${alone ? 'participant' : 'group'}`,
         fileOf(`${comparison.of}-scores-pairs`),
       ),
     );
