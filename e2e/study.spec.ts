@@ -12,7 +12,7 @@ import { expect, keepPicture, test as pageTest } from './page-fixture';
 import { experimenter, experimenterToken, serveStudies, shortBallStudy, shortStudy } from './study-server';
 
 // What is answered does not depend on how many pixels show it.
-pageTest.use({ viewport: { width: 760, height: 500 } });
+pageTest.use({ viewport: { width: 560, height: 380 } });
 
 const test = pageTest.extend<object, { origin: string }>({
   origin: [
@@ -46,7 +46,7 @@ const trigger = (page: Page, value: number) =>
   page.evaluate((value) => window.emulatedDevice.controllers.right.updateButtonValue('trigger', value), value);
 
 /** Points the right controller's ray at a target of the sheet and pulls the trigger. */
-async function press(page: Page, headset: EmulatedHeadset, id: string): Promise<void> {
+async function aim(page: Page, headset: EmulatedHeadset, id: string): Promise<void> {
   const found = await page.waitForFunction(
     (id) => window.threepoint?.probe().study?.targets.find((target) => target.id === id)?.at,
     id,
@@ -54,6 +54,10 @@ async function press(page: Page, headset: EmulatedHeadset, id: string): Promise<
   const [x, y, z] = (await found.jsonValue()) as Point;
   await headset.place({ ...stretched, right: { position: [x, y, z + 0.35], orientation: upright } });
   await expect.poll(async () => (await study(page)).pointedAt, { intervals: [50] }).toBe(id);
+}
+
+async function press(page: Page, headset: EmulatedHeadset, id: string): Promise<void> {
+  await aim(page, headset, id);
   await trigger(page, 1);
   await frames(page, 3);
   await trigger(page, 0);
@@ -76,8 +80,11 @@ async function calibrate(page: Page, headset: EmulatedHeadset): Promise<void> {
   await reaches(page, 'calibration');
   // A machine that draws too few frames in two seconds measures nobody: then once more, as a person would.
   await expect(async () => {
-    await press(page, headset, 'calibrate');
+    await aim(page, headset, 'calibrate');
+    await trigger(page, 1);
+    await expect.poll(() => screen(page), { intervals: [50] }).toMatch(/countdown|measuring/);
     await headset.place(stretched);
+    await trigger(page, 0);
     await expect.poll(() => screen(page), { timeout: 12_000 }).toMatch(/-(ready|failed)$/);
     expect(await screen(page)).toMatch(/-ready$/);
   }).toPass({ timeout: 60_000 });

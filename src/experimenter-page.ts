@@ -156,6 +156,13 @@ function stateBadge({ session, claimed, withdrawn }: ParticipantState): HTMLElem
   return badge(session.running ? 'running' : 'waiting', 'live');
 }
 
+const heardText = (seconds: number) =>
+  seconds < 120
+    ? `${Math.max(0, Math.round(seconds))} s ago`
+    : seconds < 7200
+      ? `${Math.round(seconds / 60)} min ago`
+      : `${Math.round(seconds / 3600)} h ago`;
+
 function rowOf(state: ParticipantState, of: StudyPlan) {
   const { participant, session, claimed, withdrawn, records } = state;
   const schedule = scheduleFor(of, participant);
@@ -177,7 +184,7 @@ function rowOf(state: ParticipantState, of: StudyPlan) {
       stateBadge(state),
       session ? placeText(schedule, session.step) : '',
       session?.remainingSeconds != null && session.kind !== 'end' ? clock(session.remainingSeconds) : '',
-      session ? `${Math.max(0, Math.round(Date.now() / 1000 - session.reportedAt))} s ago` : '',
+      session ? heardText(Date.now() / 1000 - session.reportedAt) : '',
       String(records),
       element(
         'div',

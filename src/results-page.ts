@@ -76,7 +76,7 @@ function sourceBar(): HTMLElement {
       element(
         'option',
         { value: id, selected: shown?.plan.id === id },
-        `${simulated ? 'SIMULATED: ' : ''}${title} (${id})`,
+        `${simulated && !title.startsWith('SIMULATED') ? 'SIMULATED: ' : ''}${title} (${id})`,
       ),
     ),
   );

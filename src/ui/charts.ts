@@ -71,7 +71,11 @@ const shared = {
   style: { fontSize: '13px', color: ink, background: 'white', fontFamily: 'Inter, "Segoe UI", system-ui, sans-serif' },
 } as const;
 
-const widthFor = (count: number) => Math.max(400, 90 + count * 100);
+/** Answers are whole; other scales choose for themselves. */
+const ticksOf = ({ domain: [low, high] }: ChartOptions) =>
+  high - low < 10 ? Array.from({ length: high - low + 1 }, (_, index) => low + index) : 5;
+
+const widthFor = (count: number) => Math.max(520, 90 + count * 100);
 
 /** Means as bars with their 95 % confidence intervals: the paper's figures 11 to 14. */
 export function barChart(comparisons: readonly Comparison[], options: ChartOptions): SVGSVGElement {
@@ -99,7 +103,7 @@ export function barChart(comparisons: readonly Comparison[], options: ChartOptio
     height: 360,
     x: { axis: null, domain: [...sides], padding: 0.12 },
     fx: { label: null, domain: comparisons.map(options.nameOf), padding: 0.25 },
-    y: { label: options.axis, domain: [low, high], grid: true, nice: false },
+    y: { label: null, domain: [low, high], grid: true, ticks: ticksOf(options) },
     color: { domain: [...sides], range: [colours.first, colours.second] },
     marks: [
       Plot.barY(bars, { fx: 'of', x: 'side', y1: low, y2: 'mean', fill: 'side' }),
@@ -118,7 +122,7 @@ export function barChart(comparisons: readonly Comparison[], options: ChartOptio
       Plot.ruleY([low]),
     ],
   });
-  return headed(plot as SVGSVGElement, options, 'mean, 95 % confidence interval');
+  return headed(plot as SVGSVGElement, options, `${options.axis}; mean and 95 % confidence interval`);
 }
 
 /** Every participant (or group) as a line from one condition to the other; alike ones make the line thicker. */
@@ -157,7 +161,7 @@ export function pairedChart(comparisons: readonly Comparison[], options: ChartOp
     height: 360,
     x: { axis: null, domain: ['second', 'first'], padding: 0.5 },
     fx: { label: null, domain: comparisons.map(options.nameOf), padding: 0.2 },
-    y: { label: options.axis, domain: [...options.domain], grid: true, nice: false },
+    y: { label: null, domain: [...options.domain], grid: true, ticks: ticksOf(options) },
     color: {
       domain: ['up', 'same', 'down', 'first', 'second'],
       range: [colours.first, '#8a95a3', colours.second, colours.first, colours.second],
@@ -179,7 +183,7 @@ export function pairedChart(comparisons: readonly Comparison[], options: ChartOp
   return headed(
     plot as SVGSVGElement,
     options,
-    `left ${options.labels.second}, right ${options.labels.first}; dots: means`,
+    `${options.axis}; left ${options.labels.second}, right ${options.labels.first}`,
   );
 }
 

@@ -27,13 +27,14 @@ export interface ShownStudy {
 }
 
 const none = '–';
-const fixed = (value: number | null | undefined, digits: number) => (value == null ? none : value.toFixed(digits));
+const fixed = (value: number | null | undefined, digits: number) =>
+  value == null ? none : value.toFixed(digits).replace('-', '−');
 const pText = (p: number | null | undefined) =>
   p == null ? none : p < 0.0005 ? '< .001' : p.toFixed(3).replace(/^0/, '');
 const interval = (between: Interval | null | undefined, digits: number) =>
-  between ? `[${between.low.toFixed(digits)}, ${between.high.toFixed(digits)}]` : '';
-const meanText = (mean: number | undefined, between: Interval | null | undefined, digits: number) =>
-  mean === undefined ? none : `${mean.toFixed(digits)} ${interval(between, digits)}`;
+  between ? `[${fixed(between.low, digits)}, ${fixed(between.high, digits)}]` : '';
+const meanCell = (mean: number | undefined, between: Interval | null | undefined, digits: number): Node =>
+  element('div', {}, fixed(mean, digits), element('div', { class: 'soft interval' }, interval(between, digits)));
 
 const significance = 0.05;
 
@@ -73,9 +74,9 @@ function comparisonRows(comparisons: readonly Comparison[], digits: number, name
       cells: [
         nameOf(one),
         String(one.pairs.length),
-        meanText(one.first?.mean, one.first?.interval, digits),
-        meanText(one.second?.mean, one.second?.interval, digits),
-        meanText(test?.meanDifference, test?.interval, digits),
+        meanCell(one.first?.mean, one.first?.interval, digits),
+        meanCell(one.second?.mean, one.second?.interval, digits),
+        meanCell(test?.meanDifference, test?.interval, digits),
         fixed(test?.t, 3),
         test ? String(test.df) : none,
         pText(test?.p),
@@ -92,9 +93,9 @@ function comparisonRows(comparisons: readonly Comparison[], digits: number, name
 const comparisonHeads = (unit: string, first: string, second: string) => [
   { text: unit },
   { text: 'n', title: 'Pairs', numeric: true },
-  { text: `${first}: mean [95 % CI]`, numeric: true },
-  { text: `${second}: mean [95 % CI]`, numeric: true },
-  { text: 'difference [95 % CI]', numeric: true },
+  { text: first, numeric: true },
+  { text: second, numeric: true },
+  { text: 'difference', numeric: true },
   { text: 't', title: 'Paired t-test', numeric: true },
   { text: 'df', numeric: true },
   { text: 'p', title: 'Two-sided, of the t-test', numeric: true },
@@ -129,7 +130,7 @@ function demographicsText(records: readonly StudyRecord[]): string {
   const count = (test: (one: (typeof people)[number]) => boolean) => people.filter(test).length;
   return (
     `${people.length} people, ${mean.toFixed(1)} years old on average (SD ${deviation.toFixed(1)}): ` +
-    `${count(({ gender }) => gender === 'woman')} women, ${count(({ gender }) => gender === 'man')} men; ` +
+    `${count(({ gender }) => gender === 'woman')} women, ${count(({ gender }) => gender === 'man')} men, ${count(({ gender }) => gender !== 'woman' && gender !== 'man')} others or not said; ` +
     `${count(({ handedness }) => handedness === 'right')} right-handed; ` +
     `${count(({ vision }) => vision !== 'normal')} with corrected or impaired vision; ` +
     `${count(({ vrExperience }) => vrExperience === 'none')} new to virtual reality.`
@@ -255,7 +256,7 @@ export function studyResults(study: ShownStudy, conditions: readonly [string, st
     element('h2', {}, 'Questionnaires'),
     ...questionnaireParts,
     tableNode(
-      'Paired comparisons of the answers (the paper’s tables 9 and 10)',
+      'Paired comparisons of the answers: means with 95 % confidence intervals, and tests (the paper’s tables 9 and 10)',
       comparisonHeads('Question', labels.first, labels.second),
       comparisonRows(answers.comparisons, 2, ({ of }) => `${of} ${aboutOf(of)?.about ?? ''}`),
     ),
@@ -263,7 +264,7 @@ export function studyResults(study: ShownStudy, conditions: readonly [string, st
     element('h2', {}, 'Scores'),
     ...scoreParts,
     tableNode(
-      'Paired comparisons of the scores, the mean of a block’s trials',
+      'Paired comparisons of the scores: means of the blocks’ trials with 95 % confidence intervals, and tests',
       comparisonHeads('Task', labels.first, labels.second),
       [
         ...comparisonRows(scores.points.comparisons, 2, ({ of }) => `${titleOf(of)}, points`),
