@@ -42,6 +42,8 @@ interface Row {
   /** Payload that each avatar sends, and that each client receives for each avatar it sees [bytes/s]. */
   readonly bytesUp: number;
   readonly bytesDown: number;
+  /** Memory of the relay's process [MB]. */
+  readonly rssMb: number;
   /** Share of the poses sent that reached the others: the newest of each tick do. */
   readonly delivered: number;
   /** Share of a core that the clients took: near 1, they are what was measured. */
@@ -70,11 +72,11 @@ const heard = <Message>(child: ChildProcess): Promise<Message> =>
     });
   });
 
-async function cpuOf(relay: ChildProcess): Promise<number> {
+async function usageOf(relay: ChildProcess): Promise<Extract<RelayAnswer, { cpuMicroseconds: number }>> {
   relay.send('cpu');
   const answer = await heard<RelayAnswer>(relay);
   if (!('cpuMicroseconds' in answer)) throw new Error('bench/relay: the relay answered something else');
-  return answer.cpuMicroseconds;
+  return answer;
 }
 
 /** One load on a fresh relay. */
@@ -97,9 +99,10 @@ async function trial(sort: RelaySort, room: number, rooms: number, hz: number): 
     const load: Load = { relay: sort, port: hello.port, room, rooms, hz, warmUpSeconds: 2, seconds, tokens };
     clients.send(load);
     await heard(clients);
-    const before = await cpuOf(relay);
+    const before = await usageOf(relay);
     const result = await heard<Heard>(clients);
-    const used = (await cpuOf(relay)) - before;
+    const after = await usageOf(relay);
+    const used = after.cpuMicroseconds - before.cpuMicroseconds;
     const count = room * rooms;
     return {
       relay: sort,
@@ -112,6 +115,7 @@ async function trial(sort: RelaySort, room: number, rooms: number, hz: number): 
       cpu: used / (result.seconds * 1e6),
       bytesUp: result.bytesUp / count / result.seconds,
       bytesDown: result.bytesDown / count / (room - 1) / result.seconds,
+      rssMb: after.rssBytes / 2 ** 20,
       delivered: result.delivered / (result.sent * (room - 1)),
       clientLoad: result.clientLoad,
     };
@@ -200,6 +204,7 @@ const columns = [
   'B/s up',
   'B/s down',
   'arrive',
+  'MB',
 ];
 console.log(columns.map((name) => name.padStart(9)).join(''));
 for (const row of rows) {
@@ -215,6 +220,7 @@ for (const row of rows) {
     row.bytesUp.toFixed(0),
     row.bytesDown.toFixed(0),
     `${(100 * row.delivered).toFixed(0)} %`,
+    row.rssMb.toFixed(0),
   ];
   console.log(cells.map((cell) => String(cell).padStart(9)).join(''));
 }
