@@ -159,7 +159,7 @@ test('three browsers play over the relay, a fourth watches, a late one sees ever
       [watcher, [0, 1, 2]],
     ] as const) {
       await expect
-        .poll(async () => (await probe(page)).players.map(({ seat }) => seat), { timeout: 60_000 })
+        .poll(async () => (await probe(page)).players.map(({ seat }) => seat).sort(), { timeout: 60_000 })
         .toEqual(others);
     }
     // The sender solves, so an elbow moves on the receiver's picture as it does on the sender's own.
