@@ -3,6 +3,7 @@ import { createServer } from 'node:net';
 import { fileURLToPath } from 'node:url';
 import type { Browser } from '@playwright/test';
 import type { BallProbe } from '../src/ball-play';
+import { emulatedHeadset } from './emulated-headset';
 import { distance, enterVr, expect, keepPicture, open, probe, test } from './page-fixture';
 
 // What is played does not depend on how many pixels show it.
@@ -49,6 +50,7 @@ test('one person with two bots plays a short match to its end, and again', async
 test('in the emulated headset the built-in player throws with its tracked hands', async ({ page }) => {
   test.setTimeout(180_000);
   await open(page, 'emulate&play=ball&panel=off&quality=low&estimator=ik&seed=5&balls=4&seconds=40');
+  await emulatedHeadset(page);
   await enterVr(page);
   await until(page, ({ phase, held }) => phase === 'running' && (held.left !== null || held.right !== null), 90_000);
   await keepPicture(page, 'ball-headset');
@@ -157,7 +159,7 @@ test('three browsers play over the relay, a fourth watches, a late one sees ever
       [watcher, [0, 1, 2]],
     ] as const) {
       await expect
-        .poll(async () => (await probe(page)).players.map(({ seat }) => seat), { timeout: 60_000 })
+        .poll(async () => (await probe(page)).players.map(({ seat }) => seat).sort(), { timeout: 60_000 })
         .toEqual(others);
     }
     // The sender solves, so an elbow moves on the receiver's picture as it does on the sender's own.
