@@ -1,9 +1,7 @@
+import { spawn } from 'node:child_process';
+import { createServer } from 'node:net';
 import { fileURLToPath } from 'node:url';
 import type { Browser } from '@playwright/test';
-import { createPageHandler } from '../server/page';
-import { createRelay, type Relay } from '../server/relay';
-import { relayConfigurationFrom } from '../server/relay-configuration';
-import { serve, type WebServer } from '../server/web-server';
 import type { BallProbe } from '../src/ball-play';
 import { distance, enterVr, expect, keepPicture, open, probe, test } from './page-fixture';
 
@@ -73,23 +71,40 @@ test('a spectator sees three bots and follows one of them', async ({ page }) => 
   await expect(page.getByRole('button', { name: 'Kim', pressed: true })).toBeVisible();
 });
 
-/** Page and relay on one port, as `npm start` has them; the relay can be taken away and come back. */
-async function startServer(seconds: number, port = 0): Promise<{ server: WebServer; close(): Promise<void> }> {
-  const page = createPageHandler(fileURLToPath(new URL('../dist', import.meta.url)));
-  let relay: Relay | null = null;
-  const server = await serve(
-    (request, response) => {
-      if (!relay?.handle(request, response)) page(request, response);
-    },
-    { host: '127.0.0.1', port },
-  );
-  const configuration = relayConfigurationFrom({ THREEPOINT_BALL_SECONDS: String(seconds) });
-  relay = createRelay(server.requests, configuration, 'a secret for the tests of the ball game only');
+/** A port of this machine that nobody listens on. */
+async function freePort(): Promise<number> {
+  const probing = createServer();
+  await new Promise<void>((resolve) => probing.listen(0, '127.0.0.1', resolve));
+  const address = probing.address();
+  await new Promise((resolve) => probing.close(resolve));
+  if (address === null || typeof address === 'string') throw new Error('no port was given');
+  return address.port;
+}
+
+/** The server as `npm start` runs it, page and relay on one port; it can be killed and started again. */
+async function startServer(seconds: number, port: number): Promise<{ kill(): Promise<void> }> {
+  const root = fileURLToPath(new URL('..', import.meta.url));
+  const server = spawn(process.execPath, ['--import', 'tsx', 'server/main.ts', '--port', String(port)], {
+    cwd: root,
+    env: { ...process.env, THREEPOINT_BALL_SECONDS: String(seconds) },
+    stdio: ['ignore', 'inherit', 'inherit'],
+  });
+  await expect
+    .poll(
+      () =>
+        fetch(`http://127.0.0.1:${port}/healthz`).then(
+          ({ ok }) => ok,
+          () => false,
+        ),
+      { timeout: 30_000 },
+    )
+    .toBe(true);
   return {
-    server,
-    async close() {
-      await relay?.close();
-      await server.close();
+    async kill() {
+      if (server.exitCode !== null || server.signalCode !== null) return;
+      const ended = new Promise((resolve) => server.once('exit', resolve));
+      server.kill('SIGKILL');
+      await ended;
     },
   };
 }
@@ -127,12 +142,13 @@ async function elbowTravel(page: Page, seat: number): Promise<number> {
 
 test('three browsers play over the relay, a fourth watches, a late one sees everything', async ({ browser }) => {
   test.setTimeout(420_000);
-  const { server, close } = await startServer(45);
+  const port = await freePort();
+  const server = await startServer(45, port);
   try {
     const people: Page[] = [];
-    for (const name of ['ann', 'ben', 'cal']) people.push(await join(browser, server.port, 'three', `name=${name}`));
+    for (const name of ['ann', 'ben', 'cal']) people.push(await join(browser, port, 'three', `name=${name}`));
     const [ann, ben, cal] = people as [Page, Page, Page];
-    const watcher = await join(browser, server.port, 'three', 'spectate&name=dora');
+    const watcher = await join(browser, port, 'three', 'spectate&name=dora');
     await until(ann, ({ phase }) => phase === 'running', 90_000);
     for (const [page, others] of [
       [ann, [1, 2]],
@@ -149,7 +165,7 @@ test('three browsers play over the relay, a fourth watches, a late one sees ever
     await elbowTravel(ann, 2);
     await elbowTravel(watcher, 1);
     await until(ann, ({ score }) => score > 0, 120_000);
-    const late = await join(browser, server.port, 'three', 'spectate&name=eve');
+    const late = await join(browser, port, 'three', 'spectate&name=eve');
     const seen = await match(late);
     expect(seen?.people.map((person) => person?.name)).toEqual(['ann', 'ben', 'cal']);
     expect(seen?.score).toBeGreaterThan(0);
@@ -161,7 +177,7 @@ test('three browsers play over the relay, a fourth watches, a late one sees ever
     await keepPicture(watcher, 'ball-watched');
     for (const page of [...people, watcher, late]) await page.context().close();
   } finally {
-    await close();
+    await server.kill();
   }
 });
 
@@ -169,12 +185,12 @@ test('the relay is killed and started again in the middle of a match: a banner, 
   browser,
 }) => {
   test.setTimeout(300_000);
-  let running = await startServer(60);
-  const { port } = running.server;
+  const port = await freePort();
+  let running = await startServer(60, port);
   try {
     const page = await join(browser, port, 'again', 'name=ann&bots=on');
     await until(page, ({ phase, ballsLeft }) => phase === 'running' && ballsLeft < 20, 90_000);
-    await running.close();
+    await running.kill();
     await expect(page.locator('#banner')).toBeVisible();
     await keepPicture(page, 'ball-banner');
     running = await startServer(60, port);
@@ -184,6 +200,6 @@ test('the relay is killed and started again in the middle of a match: a banner, 
     await until(page, ({ phase, people }) => phase === 'running' && people.every(Boolean), 60_000);
     await page.context().close();
   } finally {
-    await running.close();
+    await running.kill();
   }
 });

@@ -36,7 +36,7 @@ async function main(): Promise<void> {
       if (!relay?.handle(request, response) && !studies.handle(request, response)) page(request, response);
     },
     {
-      host: addresses ? '0.0.0.0' : '127.0.0.1',
+      host: relaying.host ?? (addresses ? '0.0.0.0' : '127.0.0.1'),
       port: configuration.port,
       ...(addresses && { credentials: await certificateFor(addresses, pathInRepository('.cache'), new Date()) }),
     },

@@ -417,7 +417,7 @@ export function createSocketHost(server: HttpServer, options: SocketHostOptions)
       const hosted = rooms.get(name);
       if (!hosted) return false;
       rooms.delete(name);
-      for (const guest of hosted.guests.values()) dismiss(guest, 'left');
+      for (const guest of hosted.guests.values()) dismiss(guest, 'closed');
       return true;
     },
     async close() {

@@ -205,7 +205,7 @@ async function start(): Promise<void> {
 
   /** Somebody who needs nobody: the actor in the studio, the archer on the range. */
   function perform(time: number): { readonly frame: TrackingFrame; readonly buttons: Buttons } {
-    const player = study?.idle ? null : ball?.act(time);
+    const player = study?.idle ? null : ball?.act(time, session === null);
     if (player) return player;
     if (!archery || study?.idle) return { frame: actor.frameAt(time), buttons: nothingPressed };
     if (!settings.mouse || session) return archery.play.act(time);
@@ -296,7 +296,8 @@ async function start(): Promise<void> {
       },
       follow(seat) {
         settings.following = seat;
-        view.recentre();
+        placeCamera();
+        show();
       },
     },
   });
@@ -445,7 +446,9 @@ async function start(): Promise<void> {
   }
 
   function placeCamera(): void {
-    view.setScene(archery ? 'range' : ball ? (watching() ? 'stands' : 'court') : 'studio');
+    view.setScene(
+      archery ? 'range' : ball ? (watching() && settings.following === null ? 'stands' : 'court') : 'studio',
+    );
   }
 
   function fit(): void {
