@@ -82,6 +82,7 @@ export function createStudyCard(): StudyCard {
       if (key !== shownKey) {
         shownKey = key;
         const focused = document.activeElement?.getAttribute('data-id');
+        const another = card.dataset.screen !== screen.id;
         card.dataset.screen = screen.id;
         content.replaceChildren(
           ...(question ? questionNodes(question) : [element('h1', {}, title), ...paragraphs(text)]),
@@ -98,7 +99,8 @@ export function createStudyCard(): StudyCard {
         card.replaceChildren(kicker, content, figure, bar, hint, row, footnote);
         // A card built anew keeps whoever uses the keyboard where they were.
         const again = focused && card.querySelector<HTMLElement>(`[data-id="${focused}"]`);
-        if (again) again.focus();
+        if (again) again.focus({ preventScroll: true });
+        if (another) card.scrollTop = 0;
       }
       put(kicker, screen.kicker);
       kicker.classList.toggle('trouble', screen.trouble);
