@@ -5,6 +5,7 @@ import { createDebugSkeleton } from './avatar/debug-skeleton';
 import { loadAvatar } from './avatar/load-avatar';
 import { createMirror } from './avatar/mirror';
 import { palettes } from './avatar/palettes';
+import { validateInWorker } from './avatar/validate-in-worker';
 import type { BallActivity } from './ball-activity';
 import {
   armSpanFromFingertipSpan,
@@ -124,7 +125,10 @@ async function start(): Promise<void> {
   ]);
 
   // Everything that travels starts at once; only then is anything built.
-  const avatarArrives = loadAvatar(switches.avatar ?? ownAvatarAt, (part) => progress.report('the avatar', part));
+  const avatarArrives = loadAvatar(switches.avatar ?? ownAvatarAt, {
+    onProgress: (part) => progress.report('the avatar', part),
+    ...(switches.avatar && { validate: validateInWorker }),
+  });
   avatarArrives.catch(() => undefined);
   const inferenceArrives = import('./inference/load-regressor');
   inferenceArrives.catch(() => undefined);
@@ -487,7 +491,7 @@ async function start(): Promise<void> {
 
   async function openAvatar(source: string | File, name: string, own = false): Promise<void> {
     try {
-      showAvatar(createAvatar(await loadAvatar(source)), name, own);
+      showAvatar(createAvatar(await loadAvatar(source, own ? {} : { validate: validateInWorker })), name, own);
       if (!own) notices.show('info', `${name} is your avatar now.`);
     } catch (error) {
       notices.show('error', `${name} could not be shown: ${firstLine(reasonOf(error))}`);
