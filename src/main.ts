@@ -2,9 +2,11 @@ import { PerspectiveCamera, Raycaster, Vector2 } from 'three';
 import { createArcheryPlay, probeOf, roundOf } from './archery-play';
 import { type Avatar, createAvatar } from './avatar/avatar';
 import { createDebugSkeleton } from './avatar/debug-skeleton';
+import { createHeadLoss } from './avatar/head-loss';
 import { loadAvatar } from './avatar/load-avatar';
 import { createMirror } from './avatar/mirror';
 import { palettes } from './avatar/palettes';
+import { validateInWorker } from './avatar/validate-in-worker';
 import type { BallActivity } from './ball-activity';
 import {
   armSpanFromFingertipSpan,
@@ -35,6 +37,7 @@ import { createRecorder } from './recorder';
 import { createArena } from './scene/arena';
 import { createDesktopView, type ViewName, viewNames } from './scene/desktop-view';
 import { affordableQuality, createRenderer, easeEmulatedPicture, fitToWindow } from './scene/renderer';
+import { createVignette } from './scene/vignette';
 import type { TaskPlace } from './study/task-runner';
 import type { StudyRun } from './study-run';
 import { type CalibrationStep, createCalibrationDialog } from './ui/calibration-dialog';
@@ -79,6 +82,8 @@ const mirrorByTheRange = { x: 1.95, z: -0.1, turned: -1.3 };
 const floorFromArena = { position: zero, orientation: identity };
 /** Parts of the court's middle, from where a spectator looks at first, arena frame. */
 const courtMiddle = { x: 0, y: 1, z: -2.4 };
+/** How far one push of a stick turns [rad]. */
+const snapAngle = Math.PI / 6;
 const nothingPressed: Buttons = { left: allReleased, right: allReleased };
 
 type Triple = readonly [number, number, number];
@@ -126,7 +131,10 @@ async function start(): Promise<void> {
   ]);
 
   // Everything that travels starts at once; only then is anything built.
-  const avatarArrives = loadAvatar(switches.avatar ?? ownAvatarAt, (part) => progress.report('the avatar', part));
+  const avatarArrives = loadAvatar(switches.avatar ?? ownAvatarAt, {
+    onProgress: (part) => progress.report('the avatar', part),
+    ...(switches.avatar && { validate: validateInWorker }),
+  });
   avatarArrives.catch(() => undefined);
   const inferenceArrives = import('./inference/load-regressor');
   inferenceArrives.catch(() => undefined);
@@ -143,7 +151,9 @@ async function start(): Promise<void> {
     ...(quality === 'low' && { resolution: 400, samples: 0 }),
   });
   const skeletonLines = createDebugSkeleton();
-  arena.scene.add(mirror.object, skeletonLines.object);
+  const headLoss = createHeadLoss();
+  const vignette = createVignette();
+  arena.scene.add(mirror.object, skeletonLines.object, vignette.object);
   mark('scene');
 
   // What the user set; `show` brings it on the screen.
@@ -505,7 +515,7 @@ async function start(): Promise<void> {
 
   async function openAvatar(source: string | File, name: string, own = false): Promise<void> {
     try {
-      showAvatar(createAvatar(await loadAvatar(source)), name, own);
+      showAvatar(createAvatar(await loadAvatar(source, own ? {} : { validate: validateInWorker })), name, own);
       if (!own) notices.show('info', `${name} is your avatar now.`);
     } catch (error) {
       notices.show('error', `${name} could not be shown: ${firstLine(reasonOf(error))}`);
@@ -534,11 +544,25 @@ async function start(): Promise<void> {
     else void openAvatar(file, file.name);
   }
 
+  /** The floor lies elsewhere from one frame to the next: nothing may be drawn on the way. */
+  function jumped(): void {
+    ball?.play.jumped();
+    choice.reset();
+  }
+
   function recentre(): void {
     if (session) session.tracker.recentre();
     else view.recentre();
-    ball?.play.jumped();
-    choice.reset();
+    jumped();
+  }
+
+  /** A push of a stick turns whoever stands there, behind a vignette. */
+  function turnByStick(time: number): void {
+    const way = session?.tracker.takeTurn() ?? 0;
+    if (way === 0) return;
+    session?.tracker.turn(way * snapAngle);
+    vignette.close(time);
+    jumped();
   }
 
   function toggle(name: 'mirror' | 'upperBodyOnly' | 'overlay', on: boolean): void {
@@ -866,10 +890,7 @@ async function start(): Promise<void> {
         timing.reset();
         ball?.play.away(xrSession.visibilityState === 'hidden');
       });
-      space.addEventListener('reset', () => {
-        choice.reset();
-        ball?.play.jumped();
-      });
+      space.addEventListener('reset', jumped);
       timing.setRate(emulator ? windowRateHz : (xrSession.frameRate ?? 72));
       if (!settings.actor) emulator?.release();
       menu.setVisible(study === null);
@@ -1032,6 +1053,7 @@ async function start(): Promise<void> {
         else if (watching()) arena.follow(courtMiddle.x, 100);
         if (session) {
           if (session.xr.visibilityState === 'visible') point();
+          turnByStick(timeMs / 1000);
         } else if (watching()) {
           const { pelvis, eyes } = lookedAt();
           view.update(pelvis, eyes, elapsed);
@@ -1044,6 +1066,8 @@ async function start(): Promise<void> {
         }
         if (ball) showCourt(timeMs / 1000, frame);
         if (avatar) avatar.object.visible = !watching();
+        avatar?.setOpacity(headLoss.follow(timeMs / 1000, frame !== null));
+        vignette.show(timeMs / 1000, session && frame ? frame.head : null);
         const inside = session !== null || view.view === 'first-person';
         avatar?.setFirstPerson(inside);
         // Whoever looks from behind the mirror wants to see the body, not its back.
@@ -1075,12 +1099,16 @@ async function start(): Promise<void> {
     if (switches.emulate || !settings.actor) await ensureEmulator();
   }
 
-  canvas.addEventListener('webglcontextlost', () =>
+  canvas.addEventListener('webglcontextlost', () => {
     notices.show(
       'warning',
-      'The graphics device was lost. The picture comes back as soon as the browser gives it back.',
-    ),
-  );
+      session
+        ? 'The graphics device was lost, and VR with it. Your game goes on: enter VR again.'
+        : 'The graphics device was lost. The picture comes back as soon as the browser gives it back.',
+    );
+    // What the headset shows was drawn by the lost device; a session cannot be given another one.
+    void session?.xr.end();
+  });
   canvas.addEventListener('webglcontextrestored', () => {
     arena.restore();
     timing.reset();
@@ -1117,6 +1145,7 @@ async function start(): Promise<void> {
       recorder: { mode: recorder.mode, frames: recorder.frameCount, seconds: recorder.seconds },
       notices: notices.current(),
       loading: { ...marks },
+      drawing: { ...renderer.info.memory, programs: renderer.info.programs?.length ?? 0, darkness: vignette.darkness },
       players: ball?.players() ?? [],
       game: archery?.play.newest ? probeOf(archery.play.newest) : (ball?.probe() ?? null),
       study: study?.probe() ?? null,

@@ -37,6 +37,13 @@ export interface Probe {
   readonly notices: readonly { readonly level: string; readonly text: string }[];
   /** Milliseconds from opening the page to each mark of loading. */
   readonly loading: Readonly<Record<string, number>>;
+  /** What the graphics device holds for us, and how dark the edges of the picture are (0 to 1). */
+  readonly drawing: {
+    readonly geometries: number;
+    readonly textures: number;
+    readonly programs: number;
+    readonly darkness: number;
+  };
   /** The others as they are drawn here. */
   readonly players: readonly PlayerProbe[];
   /** The round being played; null in the studio. */
