@@ -49,8 +49,15 @@ export default {
         'core runs in the page, in the server and in tests alike: no package, no Node module and no adapter, so that it ' +
         'can neither draw nor wait nor ask the time.',
       severity: 'error',
-      from: { path: '^src/core/', pathNot: '^src/core/study/' },
+      from: { path: '^src/core/', pathNot: '^src/core/study/|^src/core/protocol/(messages|ball-snapshot)\\.ts$' },
       to: { pathNot: '^src/core/' },
+    },
+    {
+      name: 'core-messages-are-checked',
+      comment: 'As core-is-pure, with valibot: messages arrive from strangers and are checked field by field.',
+      severity: 'error',
+      from: { path: '^src/core/protocol/(messages|ball-snapshot)\\.ts$' },
+      to: { pathNot: ['^src/core/', packagePath('valibot')] },
     },
     {
       name: 'core-study-is-pure',

@@ -2,9 +2,12 @@ import { PerspectiveCamera, Raycaster, Vector2 } from 'three';
 import { createArcheryPlay, probeOf, roundOf } from './archery-play';
 import { type Avatar, createAvatar } from './avatar/avatar';
 import { createDebugSkeleton } from './avatar/debug-skeleton';
+import { createHeadLoss } from './avatar/head-loss';
 import { loadAvatar } from './avatar/load-avatar';
 import { createMirror } from './avatar/mirror';
 import { palettes } from './avatar/palettes';
+import { validateInWorker } from './avatar/validate-in-worker';
+import type { BallActivity } from './ball-activity';
 import {
   armSpanFromFingertipSpan,
   armSpanRange,
@@ -20,6 +23,7 @@ import {
 import { createEstimator } from './core/estimation/estimators';
 import type { EstimatorName } from './core/estimation/pose-estimator';
 import { allReleased, type Buttons } from './core/games/button-presses';
+import type { Pose } from './core/math/pose';
 import { identity } from './core/math/quat';
 import { zero } from './core/math/vec3';
 import type { TrackingFrame } from './core/tracking/tracking-frame';
@@ -33,6 +37,9 @@ import { createRecorder } from './recorder';
 import { createArena } from './scene/arena';
 import { createDesktopView, type ViewName, viewNames } from './scene/desktop-view';
 import { affordableQuality, createRenderer, easeEmulatedPicture, fitToWindow } from './scene/renderer';
+import { createVignette } from './scene/vignette';
+import type { TaskPlace } from './study/task-runner';
+import type { StudyRun } from './study-run';
 import { type CalibrationStep, createCalibrationDialog } from './ui/calibration-dialog';
 import { createCalibrationGuide } from './ui/calibration-guide';
 import { offerDownload } from './ui/downloads';
@@ -73,6 +80,10 @@ const mirrorDistance = 1.5;
 const mirrorByTheRange = { x: 1.95, z: -0.1, turned: -1.3 };
 /** The room's floor is the range's: its zone lies about the origin, the targets ahead. */
 const floorFromArena = { position: zero, orientation: identity };
+/** Parts of the court's middle, from where a spectator looks at first, arena frame. */
+const courtMiddle = { x: 0, y: 1, z: -2.4 };
+/** How far one push of a stick turns [rad]. */
+const snapAngle = Math.PI / 6;
 const nothingPressed: Buttons = { left: allReleased, right: allReleased };
 
 type Triple = readonly [number, number, number];
@@ -120,7 +131,10 @@ async function start(): Promise<void> {
   ]);
 
   // Everything that travels starts at once; only then is anything built.
-  const avatarArrives = loadAvatar(switches.avatar ?? ownAvatarAt, (part) => progress.report('the avatar', part));
+  const avatarArrives = loadAvatar(switches.avatar ?? ownAvatarAt, {
+    onProgress: (part) => progress.report('the avatar', part),
+    ...(switches.avatar && { validate: validateInWorker }),
+  });
   avatarArrives.catch(() => undefined);
   const inferenceArrives = import('./inference/load-regressor');
   inferenceArrives.catch(() => undefined);
@@ -137,7 +151,9 @@ async function start(): Promise<void> {
     ...(quality === 'low' && { resolution: 400, samples: 0 }),
   });
   const skeletonLines = createDebugSkeleton();
-  arena.scene.add(mirror.object, skeletonLines.object);
+  const headLoss = createHeadLoss();
+  const vignette = createVignette();
+  arena.scene.add(mirror.object, skeletonLines.object, vignette.object);
   mark('scene');
 
   // What the user set; `show` brings it on the screen.
@@ -157,6 +173,10 @@ async function start(): Promise<void> {
     everyHitCounts: store.preferences.everyHitCounts ?? false,
     ...(switches.seconds && { seconds: switches.seconds }),
     sound: store.preferences.sound ?? true,
+    bots: switches.bots ?? (switches.room ? false : (store.preferences.bots ?? true)),
+    name: switches.name ?? store.preferences.name ?? '',
+    /** Whom a spectator's camera follows: a seat, or null: free. */
+    following: null as number | null,
     calibration: store.preferences.calibration ?? defaultCalibration,
     calibrationSource: store.preferences.calibration ? 'remembered' : 'not calibrated yet',
   };
@@ -195,7 +215,9 @@ async function start(): Promise<void> {
 
   /** Somebody who needs nobody: the actor in the studio, the archer on the range. */
   function perform(time: number): { readonly frame: TrackingFrame; readonly buttons: Buttons } {
-    if (!archery) return { frame: actor.frameAt(time), buttons: nothingPressed };
+    const player = study?.idle ? null : ball?.act(time, session === null);
+    if (player) return player;
+    if (!archery || study?.idle) return { frame: actor.frameAt(time), buttons: nothingPressed };
     if (!settings.mouse || session) return archery.play.act(time);
     pointing.setFromCamera(new Vector2(mouse.x, mouse.y), view.camera);
     const { origin, direction } = pointing.ray;
@@ -205,8 +227,9 @@ async function start(): Promise<void> {
   function track(timeMs: number, deviceFrame: XRFrame | undefined): TrackingFrame | null {
     const time = timeMs / 1000;
     buttons = nothingPressed;
+    ball?.begin(time);
     if (session) {
-      if (emulator && settings.actor) {
+      if (emulator && settings.actor && !study?.idle) {
         // What the actor does now is seen with the next frame: the device froze this one before it called.
         const performed = perform(time);
         emulator.drive(performed.frame, performed.buttons);
@@ -217,6 +240,7 @@ async function start(): Promise<void> {
     }
     const replayed = recorder.sample(time);
     if (replayed) return replayed;
+    if (watching()) return null;
     if (!settings.actor && emulator) return emulator.read(time);
     const performed = perform(time);
     buttons = performed.buttons;
@@ -228,9 +252,17 @@ async function start(): Promise<void> {
 
   // Archery: loaded when somebody first goes there; null in the studio.
   let archery: { readonly play: ReturnType<typeof createArcheryPlay>; readonly view: ArcheryView } | null = null;
+  /** The ball game, likewise. */
+  let ball: BallActivity | null = null;
+  const activity = (): ActivityName => (archery ? 'archery' : ball ? 'ball' : 'studio');
+  /** Without a seat and without a headset there is no body of one's own. */
+  const watching = () => ball !== null && !session && ball.play.newest !== null && ball.play.newest.me === null;
   let arriving = false;
+  /** A study that the address asks for; it decides what is played and with which body. */
+  let study: StudyRun | null = null;
   let seed = switches.seed ?? Math.floor(performance.timeOrigin % 2 ** 31);
 
+  const banner = pageElement('banner', HTMLElement);
   const playBar = createPlayBar(pageElement('play', HTMLElement), {
     goTo: (activity) => void goTo(activity),
     restart: () => restartRound(),
@@ -247,15 +279,43 @@ async function start(): Promise<void> {
       settings.sound = on;
       store.remember({ sound: on });
       archery?.view.sound.setMuted(!on);
+      ball?.sound.setMuted(!on);
       if (archery) wakeSound(archery.view);
+      if (ball) wakeSound(ball);
       show();
+    },
+    ball: {
+      ready: (on) => ball?.play.ready(on),
+      rotate: (on) => ball?.play.rotate(on),
+      sit: (seat) => ball?.play.sit(seat),
+      setBots(on) {
+        settings.bots = on;
+        store.remember({ bots: on });
+      },
+      setName(name) {
+        settings.name = name;
+        store.remember({ name });
+        notices.show('info', 'The others see your new name when you join the next time.');
+      },
+      openRoom() {
+        const letters = Array.from(
+          crypto.getRandomValues(new Uint8Array(6)),
+          (byte) => 'abcdefghjkmnpqrstuvwxyz'[byte % 23],
+        );
+        location.search = `?play=ball&room=${letters.join('')}`;
+      },
+      follow(seat) {
+        settings.following = seat;
+        placeCamera();
+        show();
+      },
     },
   });
 
   const silent = (error: unknown) => notices.show('info', `There is no sound: ${firstLine(reasonOf(error))}`);
 
   /** Browsers let a page sound only once somebody has touched it. */
-  function wakeSound(of: ArcheryView): void {
+  function wakeSound(of: Pick<ArcheryView, 'sound'>): void {
     if (!settings.sound) return;
     const wake = () => void of.sound.unlock().catch(silent);
     if (navigator.userActivation?.hasBeenActive) wake();
@@ -272,7 +332,13 @@ async function start(): Promise<void> {
   }
 
   function restartRound(): void {
+    // In a study rounds are the study's.
+    if (study) return;
     seed += 1;
+    restartPlay();
+  }
+
+  function restartPlay(): void {
     // Whoever plays seated shoots at targets as high for the eyes as everybody's.
     archery?.play.restart(bodyNow(), session ? newestFrame?.head.position.y : undefined);
     playBar.caption('');
@@ -293,55 +359,113 @@ async function start(): Promise<void> {
     else mirror.place(0, -mirrorDistance, 0);
   }
 
-  async function goTo(activity: ActivityName): Promise<void> {
-    if (arriving || (activity === 'archery') === (archery !== null)) return;
-    if (activity === 'studio') {
-      archery?.view.bow.removeFromParent();
-      archery?.view.dispose();
-      archery = null;
-      arena.setSurroundings(null);
-    } else {
+  /** Leaves the range or the court for the studio. */
+  function goBack(): void {
+    archery?.view.bow.removeFromParent();
+    archery?.view.dispose();
+    archery = null;
+    ball?.dispose();
+    ball = null;
+    arena.setSurroundings(null);
+    if (avatar && ownAvatarShown) avatar.setPalette(settings.palette);
+  }
+
+  async function openRange(): Promise<void> {
+    const { createArcheryView } = await import('./games/archery/archery-view');
+    const play = createArcheryPlay(
+      bodyNow(),
+      () => settings,
+      () => seed,
+    );
+    const view = createArcheryView({
+      quality,
+      floorFromArena,
+      distances: play.targets.map(({ distance }) => distance),
+      onCaption: (text) => playBar.caption(text),
+    });
+    view.sound.setMuted(!settings.sound);
+    wakeSound(view);
+    arena.setSurroundings(view.range);
+    arena.scene.add(view.bow);
+    archery = { play, view };
+  }
+
+  /** Where a study plays the ball game; null: where the address says. */
+  let studyPlace: TaskPlace | null = null;
+
+  async function openCourt(): Promise<void> {
+    const place = studyPlace;
+    const [{ createBallActivity }, { connectionsFor }, mannequin] = await Promise.all([
+      import('./ball-activity'),
+      import('./ball-connections'),
+      fetch(ownAvatarAt).then((response) => {
+        if (!response.ok) throw new Error(`the server answers ${response.status} to ${ownAvatarAt}`);
+        return response.arrayBuffer();
+      }),
+    ]);
+    ball = createBallActivity({
+      quality,
+      arena,
+      mannequin,
+      connect: await connectionsFor(place?.room ?? switches.room, {
+        seed,
+        ...(switches.seconds && { seconds: switches.seconds }),
+        ...(switches.balls && { balls: switches.balls }),
+      }),
+      visitor: {
+        name: place?.participant || settings.name || (settings.actor && !session ? 'Demo' : 'Player'),
+        calibration: bodyNow(),
+        ...(place && { seat: place.members.indexOf(place.participant) }),
+        ...(switches.spectate && { spectate: true }),
+      },
+      bots: () => settings.bots && place === null,
+      acting: () => place === null && settings.actor && (session === null || emulator !== null),
+      seed,
+      onCaption: (text) => playBar.caption(text),
+    });
+    ball.sound.setMuted(!settings.sound);
+    wakeSound(ball);
+  }
+
+  async function goTo(next: ActivityName): Promise<void> {
+    if (arriving || next === activity()) return;
+    goBack();
+    if (next !== 'studio') {
       arriving = true;
       show();
       try {
-        const { createArcheryView } = await import('./games/archery/archery-view');
-        const play = createArcheryPlay(
-          bodyNow(),
-          () => settings,
-          () => seed,
-        );
-        const view = createArcheryView({
-          quality,
-          floorFromArena,
-          distances: play.targets.map(({ distance }) => distance),
-          onCaption: (text) => playBar.caption(text),
-        });
-        view.sound.setMuted(!settings.sound);
-        wakeSound(view);
-        arena.setSurroundings(view.range);
-        arena.scene.add(view.bow);
-        archery = { play, view };
+        await (next === 'archery' ? openRange() : openCourt());
       } catch (error) {
-        notices.show('error', `The archery range could not be opened: ${firstLine(reasonOf(error))}`);
+        const place = next === 'archery' ? 'The archery range' : 'The ball court';
+        notices.show('error', `${place} could not be opened: ${firstLine(reasonOf(error))}`);
       }
       arriving = false;
     }
     recorder.stop();
-    if (archery) panel.setOpen(false);
-    view.setScene(archery ? 'range' : 'studio');
-    document.body.classList.toggle('on-the-range', archery !== null);
-    arena.setMarkVisible(archery === null);
+    if (activity() !== 'studio') panel.setOpen(false);
+    settings.following = null;
+    placeCamera();
+    document.body.classList.toggle('on-the-range', activity() !== 'studio');
+    arena.setMarkVisible(activity() === 'studio');
     placeMirror();
     steerByMouse();
+    playBar.caption('');
     choice.reset();
     timing.reset();
     show();
+  }
+
+  function placeCamera(): void {
+    view.setScene(
+      archery ? 'range' : ball ? (watching() && settings.following === null ? 'stands' : 'court') : 'studio',
+    );
   }
 
   function fit(): void {
     const calibration = bodyNow();
     choice.calibrate(calibration);
     actor.calibrate(calibration);
+    ball?.play.calibrate(calibration);
     avatar?.fitTo(calibration);
   }
 
@@ -391,7 +515,7 @@ async function start(): Promise<void> {
 
   async function openAvatar(source: string | File, name: string, own = false): Promise<void> {
     try {
-      showAvatar(createAvatar(await loadAvatar(source)), name, own);
+      showAvatar(createAvatar(await loadAvatar(source, own ? {} : { validate: validateInWorker })), name, own);
       if (!own) notices.show('info', `${name} is your avatar now.`);
     } catch (error) {
       notices.show('error', `${name} could not be shown: ${firstLine(reasonOf(error))}`);
@@ -420,10 +544,25 @@ async function start(): Promise<void> {
     else void openAvatar(file, file.name);
   }
 
+  /** The floor lies elsewhere from one frame to the next: nothing may be drawn on the way. */
+  function jumped(): void {
+    ball?.play.jumped();
+    choice.reset();
+  }
+
   function recentre(): void {
     if (session) session.tracker.recentre();
     else view.recentre();
-    choice.reset();
+    jumped();
+  }
+
+  /** A push of a stick turns whoever stands there, behind a vignette. */
+  function turnByStick(time: number): void {
+    const way = session?.tracker.takeTurn() ?? 0;
+    if (way === 0) return;
+    session?.tracker.turn(way * snapAngle);
+    vignette.close(time);
+    jumped();
   }
 
   function toggle(name: 'mirror' | 'upperBodyOnly' | 'overlay', on: boolean): void {
@@ -548,22 +687,72 @@ async function start(): Promise<void> {
     goTo: (activity) => void goTo(activity),
     setBowSide: (side) => rule({ bowSide: side }),
     restart: restartRound,
+    ready: (on) => ball?.play.ready(on),
     exit: () => void session?.xr.end(),
   });
   pointers.objects.visible = false;
   arena.scene.add(menu.object, pointers.objects);
 
   function showInHeadset(): void {
+    const ballRound = ball?.round() ?? null;
     menu.show({
       estimator: choice.current.name,
       unavailable: choice.unavailable,
       calibration: calibrationStep,
       overlay: settings.vrOverlay,
-      activity: archery ? 'archery' : 'studio',
+      activity: activity(),
       bowSide: settings.bowSide,
       roundOver: archery?.play.newest?.state.phase === 'over',
-      notice: notices.current().at(-1)?.text ?? null,
+      ready: ballRound && ballRound.seat !== null && ballRound.phase !== 'running' ? ballRound.ready : null,
+      notice: ball?.banner() ?? notices.current().at(-1)?.text ?? null,
     });
+  }
+
+  async function joinStudy(asked: NonNullable<typeof switches.study>): Promise<StudyRun> {
+    const { createStudyRun } = await import('./study-run');
+    const run = createStudyRun(asked, {
+      enterVr: enter,
+      inSession: () => session !== null,
+      calibration: () => settings.calibration,
+      setCalibration: (calibration) => calibrate(calibration, 'measured', false),
+      chooseEstimator: (name) => choice.choose(name),
+      estimator: () => choice.current.name,
+      setActor(on) {
+        settings.actor = on && switches.actor;
+      },
+      setBowSide(side) {
+        settings.bowSide = side;
+        placeMirror();
+      },
+      async goToArchery() {
+        await goTo('archery');
+        if (!archery) throw new Error('The archery range could not be opened.');
+      },
+      async goToBall(place) {
+        if (ball) await goTo('studio');
+        studyPlace = place;
+        await goTo('ball');
+        if (!ball) throw new Error('The ball court could not be opened.');
+      },
+      ball: () => ball?.play ?? null,
+      leaveBall: () => void goTo('studio'),
+      startRound(layout, seconds) {
+        Object.assign(settings, { seconds, everyHitCounts: false });
+        seed = layout;
+        restartPlay();
+        archery?.play.signal();
+      },
+      resetRound: restartPlay,
+      assists: () => (settings.oneHanded ? ['one hand'] : []),
+      device: () => ({
+        name: (emulator ? `emulated headset in ${navigator.userAgent}` : navigator.userAgent).slice(0, 160),
+        refreshRateHz: session?.xr.frameRate ?? (emulator ? windowRateHz : null),
+        input: settings.actor ? 'simulated' : emulator ? 'emulated' : (session?.tracker.input ?? 'controllers'),
+      }),
+      listenToFrames: (listener) => timing.listen(listener),
+    });
+    arena.scene.add(run.object);
+    return run;
   }
 
   const enterButton = createEnterButton(pageElement('enter', HTMLDivElement), () => void enter());
@@ -609,8 +798,16 @@ async function start(): Promise<void> {
   function showPlay(): void {
     const round = archery?.play.newest;
     playBar.show({
-      activity: archery ? 'archery' : 'studio',
+      activity: activity(),
       arriving,
+      ball: ball && {
+        round: ball.round(),
+        room: switches.room,
+        bots: settings.bots,
+        acting: settings.actor && !session,
+        name: settings.name,
+        following: settings.following,
+      },
       round: round ? roundOf(round) : null,
       shooter: session || (!settings.actor && emulator) ? 'headset' : settings.mouse ? 'mouse' : 'actor',
       bowSide: settings.bowSide,
@@ -633,7 +830,7 @@ async function start(): Promise<void> {
       o: () => toggle('overlay', !settings.overlay),
       p: () => panel.setOpen(!panel.open),
     },
-    () => session === null && !dialog.visible,
+    () => session === null && !dialog.visible && study === null,
   );
   acceptDroppedFiles(openFile);
 
@@ -652,7 +849,9 @@ async function start(): Promise<void> {
     overlay.show(report);
     menu.showReport(report);
     if (recorder.mode !== 'idle') show();
-    else if (archery) showPlay();
+    else if (archery || ball) showPlay();
+    if (ball) showInHeadset();
+    showBanner();
   }, reportEveryMs);
 
   // Entering and leaving.
@@ -687,11 +886,14 @@ async function start(): Promise<void> {
       const tracker = createTracker(xrSession, space, (moved) => renderer.xr.setReferenceSpace(moved));
       session = { xr: xrSession, tracker, settledSince: null };
       xrSession.addEventListener('end', leave);
-      xrSession.addEventListener('visibilitychange', () => timing.reset());
-      space.addEventListener('reset', () => choice.reset());
+      xrSession.addEventListener('visibilitychange', () => {
+        timing.reset();
+        ball?.play.away(xrSession.visibilityState === 'hidden');
+      });
+      space.addEventListener('reset', jumped);
       timing.setRate(emulator ? windowRateHz : (xrSession.frameRate ?? 72));
       if (!settings.actor) emulator?.release();
-      menu.setVisible(true);
+      menu.setVisible(study === null);
       pointers.objects.visible = true;
       document.body.classList.add('in-session');
       panelOpenBefore = panel.open;
@@ -703,6 +905,7 @@ async function start(): Promise<void> {
     choice.reset();
     fit();
     show();
+    study?.sessionChanged();
   }
 
   function leave(): void {
@@ -718,11 +921,12 @@ async function start(): Promise<void> {
     view.setView(view.view);
     layOut();
     show();
+    study?.sessionChanged();
   }
 
   /** Somebody who never calibrated is as tall as their headset hangs high, once it hangs there calmly. */
   function settle(frame: TrackingFrame): void {
-    if (!session || calibrated() || session.settledSince === 'done') return;
+    if (!session || calibrated() || study?.measured || session.settledSince === 'done') return;
     session.settledSince ??= frame.time;
     if (frame.time - session.settledSince < settleSeconds) return;
     session.settledSince = 'done';
@@ -732,7 +936,9 @@ async function start(): Promise<void> {
   /** The frame as play: seen with the picture, heard and felt at once. */
   function playRound(frame: TrackingFrame): void {
     if (!archery) return;
-    const { events, cues, haptics } = archery.play.follow(frame, buttons);
+    if (study?.paused) return;
+    const { events, cues, haptics } = archery.play.follow(frame, study?.idle ? nothingPressed : buttons);
+    if (archery.play.newest) study?.played(archery.play.newest);
     const taken = cues.findLast(({ type }) => type === 'taken');
     if (taken) {
       settings.bowSide = taken.side;
@@ -745,21 +951,72 @@ async function start(): Promise<void> {
     if (events.length > 0) show();
   }
 
+  /** The same of the ball game. */
+  function playBall(frame: TrackingFrame): void {
+    if (!ball) return;
+    const pulses = ball.follow(frame, study?.idle ? nothingPressed : buttons);
+    if (ball.play.newest) study?.playedBall(ball.play.newest);
+    if (session) buzz(session.xr, pulses);
+  }
+
+  /** What a person should know of the connection to others. */
+  function showBanner(): void {
+    const text = ball?.banner() ?? '';
+    if (banner.textContent === text) return;
+    banner.textContent = text;
+    banner.hidden = text === '';
+  }
+
+  /** From where and whereto the window's camera looks. */
+  function cameraPose(): Pose<'floor'> {
+    const { position, quaternion } = view.camera;
+    const { x, y, z, w } = quaternion;
+    return { position: { x: position.x, y: position.y, z: position.z }, orientation: { x, y, z, w } };
+  }
+
+  /** Whom the camera of somebody without a body looks at. */
+  function lookedAt(): { readonly pelvis: { x: number; y: number; z: number }; readonly eyes: Pose<'floor'> } {
+    const followed = settings.following === null ? null : ball?.bodyOf(settings.following);
+    if (followed) return followed;
+    return { pelvis: courtMiddle, eyes: cameraPose() };
+  }
+
   /** How far a hand is closed: as its buttons say; round the bow it always is. */
   function gripOf(side: 'left' | 'right'): number {
-    if (archery?.play.newest?.bow?.bowSide === side) return 1;
+    if (!study?.idle && archery?.play.newest?.bow?.bowSide === side) return 1;
+    // Hands that carry a basket lie round its rim.
+    if (ball?.play.newest?.role === 'holder') return 0.8;
     const { trigger, grip, pinch } = buttons[side];
     return Math.max(trigger, grip, pinch);
   }
 
   // A click on the result's button is another round.
   canvas.addEventListener('click', ({ clientX, clientY }) => {
-    if (!archery || session) return;
+    if ((!archery && !ball) || session || study) return;
     const { width, height } = canvas.getBoundingClientRect();
     pointing.setFromCamera(new Vector2((2 * clientX) / width - 1, 1 - (2 * clientY) / height), view.camera);
     const { origin, direction } = pointing.ray;
-    if (archery.view.result.restartAt(origin, direction) !== null) restartRound();
+    if (archery && archery.view.result.restartAt(origin, direction) !== null) restartRound();
+    ball?.point({ origin: { ...origin }, direction: { ...direction } }, true);
   });
+
+  let scene = '';
+  let palette: string | null = null;
+  /** The match as it stands in this frame, and the own body in its seat's colours. */
+  function showCourt(time: number, frame: TrackingFrame | null): void {
+    if (!ball) return;
+    const camera = cameraPose();
+    const eyes = watching() ? camera : (frame ?? newestFrame)?.head;
+    ball.show(time, eyes ?? camera, frame !== null);
+    if (palette !== ball.palette) {
+      palette = ball.palette;
+      if (ownAvatarShown) avatar?.setPalette(palette ?? settings.palette);
+    }
+    const now = watching() ? 'stands' : 'court';
+    if (now === scene) return;
+    scene = now;
+    placeCamera();
+  }
 
   let frameCount = 0;
   let newestFrame: TrackingFrame | null = null;
@@ -775,12 +1032,14 @@ async function start(): Promise<void> {
         guide.observe(frame);
         settle(frame);
         playRound(frame);
+        playBall(frame);
       },
       estimator: () => choice.current,
       inferenceSettlesInFrame: () => choice.regressor?.resolvesInFrame ?? false,
       skin(pose, frame) {
         for (const side of ['left', 'right'] as const) avatar?.setGrip(side, gripOf(side));
         avatar?.apply(pose, frame.time);
+        ball?.send(frame, pose, { left: gripOf('left'), right: gripOf('right') });
       },
       render(timeMs, frame) {
         const elapsed = Math.min(0.1, Math.max(0, (timeMs - lastTime) / 1000));
@@ -789,19 +1048,33 @@ async function start(): Promise<void> {
         const joints = avatar?.jointPositions() ?? {};
         skeletonLines.show(joints);
         const { hips } = joints;
-        if (hips) arena.follow(hips.x, hips.z);
+        study?.frame(timeMs / 1000, frame);
+        if (hips && !watching()) arena.follow(hips.x, hips.z);
+        else if (watching()) arena.follow(courtMiddle.x, 100);
         if (session) {
           if (session.xr.visibilityState === 'visible') point();
+          turnByStick(timeMs / 1000);
+        } else if (watching()) {
+          const { pelvis, eyes } = lookedAt();
+          view.update(pelvis, eyes, elapsed);
         } else if (frame) {
           view.update(hips ?? { ...frame.head.position, y: frame.head.position.y * 0.58 }, frame.head, elapsed);
         }
         const played = archery?.play.newest;
-        if (archery && played && frame) archery.view.show(played.state, played.bow, played.time, frame.head);
+        if (archery && played && frame) {
+          archery.view.show(played.state, study?.idle ? null : played.bow, played.time, frame.head);
+        }
+        if (ball) showCourt(timeMs / 1000, frame);
+        if (avatar) avatar.object.visible = !watching();
+        avatar?.setOpacity(headLoss.follow(timeMs / 1000, frame !== null));
+        vignette.show(timeMs / 1000, session && frame ? frame.head : null);
         const inside = session !== null || view.view === 'first-person';
         avatar?.setFirstPerson(inside);
         // Whoever looks from behind the mirror wants to see the body, not its back.
         mirror.setVisible(
-          settings.mirror && (inside || archery !== null || view.camera.position.z > 0.1 - mirrorDistance),
+          settings.mirror &&
+            ball === null &&
+            (inside || archery !== null || view.camera.position.z > 0.1 - mirrorDistance),
         );
         renderer.render(arena.scene, session ? headsetCamera : view.camera);
       },
@@ -826,18 +1099,25 @@ async function start(): Promise<void> {
     if (switches.emulate || !settings.actor) await ensureEmulator();
   }
 
-  canvas.addEventListener('webglcontextlost', () =>
+  canvas.addEventListener('webglcontextlost', () => {
     notices.show(
       'warning',
-      'The graphics device was lost. The picture comes back as soon as the browser gives it back.',
-    ),
-  );
+      session
+        ? 'The graphics device was lost, and VR with it. Your game goes on: enter VR again.'
+        : 'The graphics device was lost. The picture comes back as soon as the browser gives it back.',
+    );
+    // What the headset shows was drawn by the lost device; a session cannot be given another one.
+    void session?.xr.end();
+  });
   canvas.addEventListener('webglcontextrestored', () => {
     arena.restore();
     timing.reset();
     notices.show('info', 'The graphics device is back.');
   });
-  document.addEventListener('visibilitychange', () => timing.reset());
+  document.addEventListener('visibilitychange', () => {
+    timing.reset();
+    ball?.play.away(document.hidden);
+  });
 
   let ready = false;
   exposeProbe(() => {
@@ -865,14 +1145,20 @@ async function start(): Promise<void> {
       recorder: { mode: recorder.mode, frames: recorder.frameCount, seconds: recorder.seconds },
       notices: notices.current(),
       loading: { ...marks },
-      players: [],
-      game: archery?.play.newest ? probeOf(archery.play.newest) : null,
+      drawing: { ...renderer.info.memory, programs: renderer.info.programs?.length ?? 0, darkness: vignette.darkness },
+      players: ball?.players() ?? [],
+      game: archery?.play.newest ? probeOf(archery.play.newest) : (ball?.probe() ?? null),
+      study: study?.probe() ?? null,
     };
   });
 
   /** Rays and finger tips: the menu first, then the result of a round. */
   function point(): void {
     const hands = pointers.take();
+    if (study) {
+      study.point(hands);
+      return;
+    }
     menu.point(hands);
     let hovered = false;
     for (const { origin, direction, pressed, showRay } of hands) {
@@ -883,6 +1169,13 @@ async function start(): Promise<void> {
       if (pressed) restartRound();
     }
     archery?.view.result.setHovered(hovered);
+    for (const { origin, direction, pressed, showRay } of hands) {
+      const distance = ball?.point({ origin: { ...origin }, direction: { ...direction } }, pressed) ?? null;
+      if (distance === null) continue;
+      showRay(distance);
+      // One hand's ray is lit; the other's would put the light out again.
+      break;
+    }
   }
 
   // The way to the first body: the chosen network loads beside the avatar, and IK draws until it is there.
@@ -916,6 +1209,7 @@ async function start(): Promise<void> {
     );
   }
   await Promise.all([chosen, sessionsPrepared, goTo(switches.play)]);
+  if (switches.study) study = await joinStudy(switches.study);
   mark('estimator');
   progress.finish();
   ready = true;

@@ -1,6 +1,6 @@
 import { estimatedJoints } from '../../src/core/body/joints';
-import type { JointPositions } from '../../src/core/estimation/joint-positions';
 import { swivelAngle } from '../../src/core/body/two-bone-ik';
+import type { JointPositions } from '../../src/core/estimation/joint-positions';
 import { distance, normalise, reject, subtract, type Vec3 } from '../../src/core/math/vec3';
 import type { TruthJoint } from './recordings';
 

@@ -52,6 +52,8 @@ export interface Avatar {
   setUpperBodyOnly(on: boolean): void;
   /** Recolours the materials of our mannequin; other avatars keep their own. Unknown names change nothing. */
   setPalette(name: string): void;
+  /** 1: solid. Less: a ghost that things behind it shine through. */
+  setOpacity(opacity: number): void;
   /** How far each hand's fingers are closed, 0 open to 1 a fist. */
   setGrip(side: Side, closed: number): void;
   /** Where the joints of the bones are drawn, floor frame [m]; only bones that the rig has. */
@@ -122,6 +124,8 @@ export function createAvatar({ vrm }: LoadedAvatar): Avatar {
   const fingers = readFingers(vrm);
   const meshes = readMeshes(vrm, bones);
   const stepping = createStepping();
+  /** Constraints read positions and rotations; drawing needs the matrices alone. */
+  const constrained = (vrm.nodeConstraintManager?.constraints.size ?? 0) > 0;
   const rest = (name: AvatarJoint): Vector3 | null => bone(name)?.restPosition ?? null;
 
   let skeleton: Skeleton = skeletonFromCalibration({ eyeHeight: 1.59, armSpan: 1.5 });
@@ -133,6 +137,15 @@ export function createAvatar({ vrm }: LoadedAvatar): Avatar {
   let shown: 'body' | 'hands' | 'nothing' = 'nothing';
   let lastTime: number | null = null;
   let drawn: Partial<Record<AvatarJoint, Vec3>> = {};
+  let opacity = 1;
+  const looks = new Map<Material, { readonly transparent: boolean; readonly opacity: number }>();
+  /** As the file has it: hair and glasses are transparent by themselves. */
+  function ownLook(material: Material) {
+    const { transparent, opacity } = material;
+    const look = looks.get(material) ?? { transparent, opacity };
+    looks.set(material, look);
+    return look;
+  }
   const grip: Record<Side, number> = { left: relaxedCurl, right: relaxedCurl };
 
   /** The joint at rest in our skeleton, facing −Z. */
@@ -213,7 +226,7 @@ export function createAvatar({ vrm }: LoadedAvatar): Avatar {
       ? scratchMatrix.copy(parent.world).multiply(fromParentBone)
       : scratchMatrix.copy(fromParentBone);
     node.matrix.copy(above.invert()).multiply(world);
-    node.matrix.decompose(node.position, node.quaternion, node.scale);
+    if (constrained) node.matrix.decompose(node.position, node.quaternion, node.scale);
     node.matrixWorldNeedsUpdate = true;
     drawn[name] = position;
   }
@@ -349,6 +362,22 @@ export function createAvatar({ vrm }: LoadedAvatar): Avatar {
           const color = colors[material.name];
           if (color && material instanceof MeshStandardMaterial) material.color = new Color(color);
         }
+      }
+    },
+    setOpacity(next) {
+      if (next === opacity) return;
+      opacity = next;
+      for (const { mesh } of meshes) {
+        for (const material of materialsOf(mesh)) {
+          const solid = ownLook(material);
+          const transparent = solid.transparent || opacity < 1;
+          if (material.transparent !== transparent) {
+            material.transparent = transparent;
+            material.needsUpdate = true;
+          }
+          material.opacity = opacity * solid.opacity;
+        }
+        mesh.castShadow = opacity > 0.5;
       }
     },
     setGrip(side, closed) {

@@ -5,8 +5,11 @@ export const viewNames = ['third-person', 'front', 'first-person'] as const;
 /** third-person: orbits the body from behind. front: from where the mirror hangs. first-person: through the eyes. */
 export type ViewName = (typeof viewNames)[number];
 
-/** studio: mirror and body. range: past the archer to the targets. */
-export type SceneName = 'studio' | 'range';
+/**
+ * studio: mirror and body. range: past the archer to the targets. court: past a player to the others. stands: the whole court, from
+ * aside; the camera may also be moved along.
+ */
+export type SceneName = 'studio' | 'range' | 'court' | 'stands';
 
 interface Point {
   readonly x: number;
@@ -65,6 +68,14 @@ const start: Record<SceneName, Record<Exclude<ViewName, 'first-person'>, Outlook
   range: {
     'third-person': { offset: new Vector3(-1.35, 0.95, 3.3), aim: new Vector3(0.15, -0.2, -2), fov: 46 },
     front: { offset: new Vector3(1.6, 0.35, -2.7), aim: new Vector3(), fov: 46 },
+  },
+  court: {
+    'third-person': { offset: new Vector3(-0.8, 1.05, 3.5), aim: new Vector3(0.3, 0.12, -2.4), fov: 50 },
+    front: { offset: new Vector3(-1.9, 0.6, -3.1), aim: new Vector3(), fov: 50 },
+  },
+  stands: {
+    'third-person': { offset: new Vector3(4.6, 2.1, 4.6), aim: new Vector3(0.4, 0.15, 0), fov: 54 },
+    front: { offset: new Vector3(-4.6, 1.7, -3.6), aim: new Vector3(0, -0.1, 0), fov: 50 },
   },
 };
 const firstPersonFov = 78;
@@ -146,6 +157,8 @@ export function createDesktopView(canvas: HTMLCanvasElement): DesktopView {
     },
     setScene(next) {
       scene = next;
+      controls.enablePan = scene === 'stands';
+      controls.maxDistance = scene === 'stands' ? 14 : 7;
       place();
       project();
     },

@@ -1,7 +1,8 @@
+import { type BallBarActions, type BallBarState, createBallBar } from './ball-bar';
 import { button, element } from './element';
 
 /** What people do here: look at themselves in the studio, or play. */
-export const activityNames = ['studio', 'archery'] as const;
+export const activityNames = ['studio', 'archery', 'ball'] as const;
 export type ActivityName = (typeof activityNames)[number];
 
 /** Who shoots on the desktop: the built-in archer, the mouse, or whoever holds the (emulated) headset. */
@@ -21,6 +22,8 @@ export interface PlayState {
   /** Loading the range. */
   readonly arriving: boolean;
   readonly round: RoundState | null;
+  /** The ball game; null elsewhere. */
+  readonly ball: BallBarState | null;
   readonly shooter: Shooter;
   readonly bowSide: 'left' | 'right';
   readonly oneHanded: boolean;
@@ -37,6 +40,7 @@ export interface PlayActions {
   setOneHanded(on: boolean): void;
   setEveryHitCounts(on: boolean): void;
   setSound(on: boolean): void;
+  readonly ball: BallBarActions;
 }
 
 export interface PlayBar {
@@ -45,7 +49,11 @@ export interface PlayBar {
   caption(text: string): void;
 }
 
-const activityTexts: Readonly<Record<ActivityName, string>> = { studio: 'Mirror', archery: 'Archery' };
+const activityTexts: Readonly<Record<ActivityName, string>> = {
+  studio: 'Mirror',
+  archery: 'Archery',
+  ball: 'Ball game',
+};
 
 /** The choice of what to do, and in a game its score and settings; below the masthead. */
 export function createPlayBar(region: HTMLElement, actions: PlayActions): PlayBar {
@@ -86,6 +94,7 @@ export function createPlayBar(region: HTMLElement, actions: PlayActions): PlayBa
     hint,
     settings,
   );
+  const ball = createBallBar(actions.ball, actions.setSound);
   const captions = element('p', { class: 'caption', role: 'status', 'aria-live': 'polite' });
   region.append(
     element(
@@ -94,6 +103,7 @@ export function createPlayBar(region: HTMLElement, actions: PlayActions): PlayBa
       ...activities.map(({ node }) => node),
     ),
     game,
+    ball.node,
     captions,
   );
 
@@ -105,7 +115,8 @@ export function createPlayBar(region: HTMLElement, actions: PlayActions): PlayBa
       }
       const { round } = state;
       game.hidden = round === null;
-      captions.hidden = round === null;
+      captions.hidden = round === null && state.ball === null;
+      ball.show(state.ball, state.sound);
       if (!round) return;
       score.textContent = `${round.score} / ${round.of}`;
       arrows.textContent = `${round.arrowsLeft} ${round.arrowsLeft === 1 ? 'arrow' : 'arrows'}`;

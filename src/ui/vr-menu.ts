@@ -1,11 +1,12 @@
-import { Group, Raycaster } from 'three';
+import { Group } from 'three';
 import type { EstimatorName } from '../core/estimation/pose-estimator';
 import { type CalibrationStep, calibrationHeadline, calibrationInstruction } from './calibration-dialog';
 import { estimatorOrder, estimatorTexts } from './estimator-texts';
 import { type FrameReport, milliseconds, missedFrames } from './overlay';
 import type { ActivityName } from './play-bar';
-import { createVrPanel, fillRounded, vrColors, vrFont } from './vr-panel';
+import { createVrPanel, fillRounded, vrColors, vrFont, wrap } from './vr-panel';
 import type { Pointer } from './vr-pointers';
+import { createPanelTouch } from './vr-touch';
 
 /** What the menu in the headset shows. */
 export interface VrMenuState {
@@ -16,6 +17,8 @@ export interface VrMenuState {
   readonly activity: ActivityName;
   readonly bowSide: 'left' | 'right';
   readonly roundOver: boolean;
+  /** In the ball game, before and after a match: whether one is ready; null: not asked. */
+  readonly ready: boolean | null;
   /** A sentence to be read in the headset; null: none. */
   readonly notice: string | null;
 }
@@ -29,6 +32,7 @@ export interface VrMenuActions {
   goTo(activity: ActivityName): void;
   setBowSide(side: 'left' | 'right'): void;
   restart(): void;
+  ready(on: boolean): void;
   exit(): void;
 }
 
@@ -52,23 +56,6 @@ interface MenuButton {
 const width = 640;
 const height = 1000;
 const margin = 36;
-/** A finger tip that comes from this far before the sheet [m] to behind it touches. */
-const touchDepth = 0.015;
-
-/** Lines of at most `most` pixels, broken at spaces. */
-function wrap(context: CanvasRenderingContext2D, text: string, most: number): string[] {
-  const lines: string[] = [];
-  let line = '';
-  for (const word of text.split(' ')) {
-    const longer = line ? `${line} ${word}` : word;
-    if (line && context.measureText(longer).width > most) {
-      lines.push(line);
-      line = word;
-    } else line = longer;
-  }
-  return [...lines, line];
-}
-
 /** The menu right of the mirror and the frame times left of it; targets as big as a palm. */
 export function createVrMenu(actions: VrMenuActions): VrMenu {
   const menu = createVrPanel(width, height, 1000);
@@ -85,8 +72,7 @@ export function createVrMenu(actions: VrMenuActions): VrMenu {
   let state: VrMenuState | null = null;
   let hovered: string | null = null;
   let drawn = '';
-  const touching = new Map<number, boolean>();
-  const raycaster = new Raycaster();
+  const touch = createPanelTouch(menu);
 
   function buttonsOf(shown: VrMenuState): readonly MenuButton[] {
     const full = width - 2 * margin;
@@ -118,13 +104,23 @@ export function createVrMenu(actions: VrMenuActions): VrMenu {
     const other = shown.bowSide === 'left' ? 'right' : 'left';
     const play: readonly Row[] =
       shown.activity === 'studio'
-        ? [['archery', 'Archery', () => actions.goTo('archery')]]
-        : [
-            ['studio', 'To the mirror', () => actions.goTo('studio')],
-            shown.roundOver
-              ? ['restart', 'New round', actions.restart]
-              : ['bow', `Bow: ${shown.bowSide} hand`, () => actions.setBowSide(other)],
-          ];
+        ? [
+            ['archery', 'Archery', () => actions.goTo('archery')],
+            ['ball', 'Ball game', () => actions.goTo('ball')],
+          ]
+        : shown.activity === 'ball'
+          ? [
+              ['studio', 'To the mirror', () => actions.goTo('studio')],
+              ...(shown.ready === null
+                ? []
+                : ([['ready', shown.ready ? 'Wait for me' : 'Ready', () => actions.ready(!shown.ready)]] as const)),
+            ]
+          : [
+              ['studio', 'To the mirror', () => actions.goTo('studio')],
+              shown.roundOver
+                ? ['restart', 'New round', actions.restart]
+                : ['bow', `Bow: ${shown.bowSide} hand`, () => actions.setBowSide(other)],
+            ];
     const rest: readonly Row[] = [
       ['calibrate', 'Calibrate', actions.calibrate],
       ['recentre', 'Recentre', actions.recentre],
@@ -244,34 +240,10 @@ export function createVrMenu(actions: VrMenuActions): VrMenu {
         for (const pointer of pointers) pointer.showRay(null);
         return;
       }
-      menu.mesh.updateWorldMatrix(true, false);
-      const buttonAt = (x: number, y: number) =>
-        buttons.find(
-          ({ at: [left, top, w, h], look }) => look !== 'off' && x >= left && x <= left + w && y >= top && y <= top + h,
-        );
-      let pointedAt: string | null = null;
-      const pressed = new Map<string, MenuButton>();
-      for (const [index, pointer] of pointers.entries()) {
-        raycaster.set(pointer.origin, pointer.direction);
-        const [hit] = raycaster.intersectObject(menu.mesh, false);
-        pointer.showRay(hit ? hit.distance : null);
-        if (hit) {
-          const { x, y } = menu.locate(hit.point);
-          const target = buttonAt(x, y);
-          if (target) pointedAt = target.id;
-          if (target && pointer.pressed) pressed.set(target.id, target);
-        }
-        const touch = menu.locate(pointer.tip ?? pointer.origin);
-        const target = Math.abs(touch.distance) < 0.08 ? buttonAt(touch.x, touch.y) : undefined;
-        if (target) pointedAt = target.id;
-        const through = target !== undefined && touch.distance < 0;
-        // Only coming from the front counts: a hand that was behind the sheet has touched nothing.
-        if (through && touching.get(index) === false) pressed.set(target.id, target);
-        if (through || touch.distance < 0) touching.set(index, true);
-        else if (touch.distance > touchDepth) touching.set(index, false);
-      }
-      hovered = pointedAt;
-      for (const { act } of pressed.values()) act();
+      const usable = buttons.filter(({ look }) => look !== 'off');
+      const { pointedAt, pressed } = touch.follow(pointers, usable);
+      hovered = pointedAt?.id ?? null;
+      for (const { act } of pressed) act();
       redraw();
     },
   };

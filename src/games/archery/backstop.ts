@@ -19,8 +19,8 @@ import {
 import { walls } from '../../core/games/archery/rules';
 import { merged, painted } from '../../scene/painted-geometry';
 import { anisotropyOf, minFilterOf, type Quality } from '../../scene/renderer';
+import { woodColor } from '../outdoors/wood';
 import { field } from './field';
-import { woodColor } from './wood';
 
 /** One mesh of a net: cords along two edges of a square that repeats; far away it becomes an even veil. */
 function netTexture(quality: Quality): DataTexture {

@@ -11,8 +11,8 @@ import { mergeGeometries } from 'three/examples/jsm/utils/BufferGeometryUtils.js
 import { createDrawnTexture } from '../../scene/drawn-texture';
 import { merged, painted } from '../../scene/painted-geometry';
 import type { Quality } from '../../scene/renderer';
-import { signFont } from './lettering';
-import { woodColor } from './wood';
+import { signFont } from '../lettering';
+import { woodColor } from '../outdoors/wood';
 
 const signWidth = 0.56;
 const signHeight = 0.28;

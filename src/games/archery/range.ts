@@ -1,25 +1,15 @@
-import {
-  BackSide,
-  Color,
-  Group,
-  Mesh,
-  MeshBasicMaterial,
-  PlaneGeometry,
-  Scene,
-  ShaderMaterial,
-  SphereGeometry,
-  Vector3,
-} from 'three';
+import { Group, Vector3 } from 'three';
 import type { Transform } from '../../core/math/pose';
 import { disposeTree } from '../../scene/dispose-tree';
 import type { Quality } from '../../scene/renderer';
 import type { Surroundings } from '../../scene/surroundings';
+import { createLandscape } from '../outdoors/landscape';
+import { createNoiseTexture } from '../outdoors/noise-texture';
+import { createReflected } from '../outdoors/reflected';
+import { createSky, hazeColor } from '../outdoors/sky';
 import { createBackstop } from './backstop';
 import { createDistanceSigns } from './distance-signs';
 import { createGround } from './ground';
-import { createLandscape } from './landscape';
-import { createNoiseTexture } from './noise-texture';
-import { createSky, hazeColor } from './sky';
 import { createTufts } from './tufts';
 import { createZone } from './zone';
 
@@ -34,38 +24,6 @@ export interface Range extends Surroundings {
 
 /** Towards the sun, arena frame: behind the archer's right shoulder, so that the targets are lit and shadows fall ahead. */
 const towardsSun = new Vector3(8.5, 11, 7.5);
-
-/** Sky above, grass below, the sun at its place, as a bow's varnish or an avatar's eyes reflect them. */
-function createReflected(sun: Vector3): Scene {
-  const reflected = new Scene();
-  const dome = new Mesh(
-    new SphereGeometry(10, 24, 16),
-    new ShaderMaterial({
-      side: BackSide,
-      uniforms: {
-        sky: { value: new Color('#9cc6ee') },
-        haze: { value: new Color('#eef3f0').multiplyScalar(1.15) },
-        grass: { value: new Color('#5f7a35').multiplyScalar(0.7) },
-      },
-      vertexShader: `varying vec3 direction;
-        void main() { direction = position; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }`,
-      fragmentShader: `varying vec3 direction; uniform vec3 sky; uniform vec3 haze; uniform vec3 grass;
-        void main() {
-          float height = normalize(direction).y;
-          vec3 above = mix(haze, sky, smoothstep(0.0, 0.5, height));
-          gl_FragColor = vec4(mix(grass, above, smoothstep(-0.06, 0.03, height)), 1.0);
-        }`,
-    }),
-  );
-  const disc = new Mesh(
-    new PlaneGeometry(3.2, 3.2),
-    new MeshBasicMaterial({ color: new Color('#fff2d8').multiplyScalar(11), side: 2 }),
-  );
-  disc.position.copy(sun).setLength(8);
-  disc.lookAt(0, 0, 0);
-  reflected.add(dome, disc);
-  return reflected;
-}
 
 /** Builds the range: floorFromArena puts its zone and its direction into the room; signs stand at these distances [m]. */
 export function createRange(

@@ -3,7 +3,7 @@ import type { ArcheryState, Landing } from '../../core/games/archery/archery-sta
 import { distance, type Vec3 } from '../../core/math/vec3';
 import { createDrawnTexture } from '../../scene/drawn-texture';
 import type { Quality } from '../../scene/renderer';
-import { ink, signFont } from './lettering';
+import { ink, signFont } from '../lettering';
 
 /** Points that rise from a target for a moment when it is hit; arena frame. */
 export interface ScorePops {

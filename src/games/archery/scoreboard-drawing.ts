@@ -1,5 +1,6 @@
 import type { ArcheryState } from '../../core/games/archery/archery-state';
-import { ink, signFont } from './lettering';
+import { ink, paintCard, paintGround, signFont } from '../lettering';
+import { paintButton } from '../sheet';
 
 /** What the board says; equal boards are drawn once. */
 export interface BoardText {
@@ -63,14 +64,6 @@ export function boardText(state: ArcheryState, time: number): BoardText {
 
 export const boardSize = { width: 1024, height: 640 } as const;
 
-function panel(context: CanvasRenderingContext2D, width: number, height: number): void {
-  const gradient = context.createLinearGradient(0, 0, 0, height);
-  gradient.addColorStop(0, ink.boardLift);
-  gradient.addColorStop(1, ink.board);
-  context.fillStyle = gradient;
-  context.fillRect(0, 0, width, height);
-}
-
 /** An arrow as a mark, pointing up: full where it is left, an outline where it was shot. */
 function pip(context: CanvasRenderingContext2D, x: number, y: number, height: number, left: boolean): void {
   context.save();
@@ -101,7 +94,7 @@ function pip(context: CanvasRenderingContext2D, x: number, y: number, height: nu
 /** Score, arrows, time and the last sentence, on boardSize. */
 export function paintBoard(context: CanvasRenderingContext2D, text: BoardText): void {
   const { width, height } = boardSize;
-  panel(context, width, height);
+  paintGround(context, width, height);
   context.textBaseline = 'alphabetic';
   context.textAlign = 'left';
   context.fillStyle = ink.soft;
@@ -159,7 +152,7 @@ export function paintBoard(context: CanvasRenderingContext2D, text: BoardText): 
 export const resultSize = { width: 1024, height: 768 } as const;
 
 /** Where the restart button is on resultSize [pixels]. */
-export const restartButton = { x: 312, y: 600, width: 400, height: 116 } as const;
+export const restartButton = { id: 'restart', x: 312, y: 600, width: 400, height: 116 } as const;
 
 const headline: Record<NonNullable<ArcheryState['end']>, string> = {
   targets: 'Every target scored',
@@ -170,17 +163,7 @@ const headline: Record<NonNullable<ArcheryState['end']>, string> = {
 /** What a round came to: score, percentage, each arrow, and the way to another round. */
 export function paintResult(context: CanvasRenderingContext2D, state: ArcheryState, hovered: boolean): void {
   const { width, height } = resultSize;
-  context.save();
-  context.beginPath();
-  context.roundRect(4, 4, width - 8, height - 8, 44);
-  context.clip();
-  panel(context, width, height);
-  context.restore();
-  context.strokeStyle = ink.line;
-  context.lineWidth = 5;
-  context.beginPath();
-  context.roundRect(4, 4, width - 8, height - 8, 44);
-  context.stroke();
+  paintCard(context, width, height);
 
   const maximum = maximumScore(state);
   const percent = maximum > 0 ? Math.round((100 * state.score) / maximum) : 0;
@@ -241,19 +224,11 @@ export function paintResult(context: CanvasRenderingContext2D, state: ArcherySta
     context.fillText(result, left + card / 2, scored ? 510 : 490, card - 16);
   }
 
-  const { x: buttonX, y, width: buttonWidth, height: buttonHeight } = restartButton;
-  context.fillStyle = hovered ? '#ffe0a0' : ink.accent;
-  context.beginPath();
-  context.roundRect(buttonX, y, buttonWidth, buttonHeight, buttonHeight / 2);
-  context.fill();
-  if (hovered) {
-    context.strokeStyle = ink.text;
-    context.lineWidth = 7;
-    context.stroke();
-  }
-  context.fillStyle = ink.accentInk;
-  context.textAlign = 'center';
-  context.textBaseline = 'middle';
-  context.font = `800 56px ${signFont}`;
-  context.fillText('Restart', buttonX + buttonWidth / 2, y + buttonHeight / 2 + 4);
+  paintButton(
+    context,
+    restartButton,
+    'Restart',
+    { fill: hovered ? ink.accentLift : ink.accent, ink: ink.accentInk, ring: ink.text, hovered },
+    `800 56px ${signFont}`,
+  );
 }

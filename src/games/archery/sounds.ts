@@ -4,10 +4,11 @@ import type { BowCue } from '../../core/games/archery/gestures';
 import { positionAt } from '../../core/games/ballistics';
 import { clamp } from '../../core/math/damper';
 import { invertTransform, type Pose, type Transform, transformPoint, transformPose } from '../../core/math/pose';
-import { rotate } from '../../core/math/quat';
 import { length, type Vec3, vec3 } from '../../core/math/vec3';
+import { createSoundStage, type Player, type Recipe, type Recipes } from '../sound-stage';
+import { bell, chime, click, warning, whoosh } from '../synthesis';
 import { cueCaption, eventCaption } from './captions';
-import { bell, chime, click, creak, earth, rattle, thud, twang, warning, whoosh } from './synthesis';
+import { creak, earth, rattle, thud, twang } from './synthesis';
 
 /** What is heard of archery: from where it happens, and in words. */
 export interface Sounds {
@@ -30,12 +31,8 @@ export interface SoundsOptions {
   readonly createContext?: () => AudioContext;
 }
 
-/** Seconds in which volume and mute fade. */
-const fadeSeconds = 0.03;
 /** Steps of the draw for which creak and twang are rendered. */
 const drawSteps = 8;
-
-type Recipe = (rate: number) => Float32Array<ArrayBuffer>;
 
 const creakName = (share: number): string => `creak ${share}`;
 const twangName = (share: number): string => `twang ${share}`;
@@ -43,7 +40,7 @@ const twangName = (share: number): string => `twang ${share}`;
 const chimeName = (points: number): string => `chime ${clamp(5 * Math.round(points / 5), 5, 20)}`;
 
 /** All that is played, by name. */
-const recipes: ReadonlyMap<string, Recipe> = new Map<string, Recipe>([
+const recipes: Recipes = new Map<string, Recipe>([
   ...Object.entries({ bell, click, earth, rattle, thud, warning, whoosh }),
   ...Array.from({ length: drawSteps + 1 }, (_, step): [string, Recipe][] => {
     const share = step / drawSteps;
@@ -55,97 +52,14 @@ const recipes: ReadonlyMap<string, Recipe> = new Map<string, Recipe>([
   ...[5, 10, 15, 20].map((points): [string, Recipe] => [chimeName(points), (rate) => chime(rate, points)]),
 ]);
 
-function createPlayer(context: AudioContext) {
-  const master = context.createGain();
-  const limiter = context.createDynamicsCompressor();
-  master.connect(limiter).connect(context.destination);
-  const buffers = new Map<string, AudioBuffer>();
-
-  /** Rendered once, at the context's own rate. */
-  function buffer(name: string): AudioBuffer {
-    const known = buffers.get(name);
-    if (known) return known;
-    const recipe = recipes.get(name);
-    if (!recipe) throw new Error(`games/archery/sounds: there is no sound ${name}`);
-    const samples = recipe(context.sampleRate);
-    const made = context.createBuffer(1, samples.length, context.sampleRate);
-    made.copyToChannel(samples, 0);
-    buffers.set(name, made);
-    return made;
-  }
-
-  /** Renders everything, one sound at a time with the page's own work between, so that no frame of the match has to. */
-  async function warm(): Promise<void> {
-    for (const name of recipes.keys()) {
-      buffer(name);
-      await new Promise((resolve) => setTimeout(resolve));
-    }
-  }
-
-  /** Starts a sound at a point of the floor frame; the panner goes when the sound has ended. */
-  function play(name: string, at: Vec3, delay = 0): { source: AudioBufferSourceNode; panner: PannerNode } {
-    const source = context.createBufferSource();
-    source.buffer = buffer(name);
-    const panner = context.createPanner();
-    panner.panningModel = 'HRTF';
-    panner.distanceModel = 'inverse';
-    panner.refDistance = 2;
-    panner.rolloffFactor = 0.7;
-    panner.positionX.value = at.x;
-    panner.positionY.value = at.y;
-    panner.positionZ.value = at.z;
-    source.connect(panner).connect(master);
-    source.addEventListener('ended', () => panner.disconnect());
-    source.start(context.currentTime + delay);
-    return { source, panner };
-  }
-  return { context, master, warm, play };
-}
-
-type Player = ReturnType<typeof createPlayer>;
-
-function placeListener({ listener, currentTime }: AudioContext, head: Pose<'floor'>): void {
-  const { x, y, z } = head.position;
-  const ahead = rotate(head.orientation, vec3(0, 0, -1));
-  const upward = rotate(head.orientation, vec3(0, 1, 0));
-  // Some browsers only have the older methods.
-  if (!listener.positionX) {
-    listener.setPosition(x, y, z);
-    listener.setOrientation(ahead.x, ahead.y, ahead.z, upward.x, upward.y, upward.z);
-    return;
-  }
-  const values = [
-    [listener.positionX, x],
-    [listener.positionY, y],
-    [listener.positionZ, z],
-    [listener.forwardX, ahead.x],
-    [listener.forwardY, ahead.y],
-    [listener.forwardZ, ahead.z],
-    [listener.upX, upward.x],
-    [listener.upY, upward.y],
-    [listener.upZ, upward.z],
-  ] as const;
-  for (const [parameter, value] of values) parameter.setValueAtTime(value, currentTime);
-}
-
-export function createSounds({
-  floorFromArena,
-  onCaption,
-  createContext = () => new AudioContext(),
-}: SoundsOptions): Sounds {
+export function createSounds({ floorFromArena, onCaption, createContext }: SoundsOptions): Sounds {
   const arenaFromFloor = invertTransform(floorFromArena);
   const inFloor = (point: Vec3) => transformPoint(floorFromArena, point);
-  let player: Player | null = null;
-  let volume = 0.8;
-  let muted = false;
+  const stage = createSoundStage(recipes, createContext);
   let head: Pose<'floor'> = { position: vec3(0, 1.6, 0), orientation: { x: 0, y: 0, z: 0, w: 1 } };
   /** The sound of each arrow in the air. */
   const flying = new Map<number, AudioBufferSourceNode>();
   let creaked = false;
-
-  const applyVolume = () => {
-    if (player) player.master.gain.setTargetAtTime(muted ? 0 : volume, player.context.currentTime, fadeSeconds);
-  };
 
   const drawShare = (draw: number) => Math.round(clamp(draw / maximumDraw, 0, 1) * drawSteps) / drawSteps;
 
@@ -203,17 +117,9 @@ export function createSounds({
   }
 
   return {
-    async unlock() {
-      if (!player) {
-        player = createPlayer(createContext());
-        player.master.gain.value = muted ? 0 : volume;
-      }
-      if (player.context.state !== 'running') await player.context.resume();
-      await player.warm();
-    },
+    unlock: stage.unlock,
     hear(state, events, cues) {
-      // A context that rests would keep all of it and play it at once later.
-      const playing = player?.context.state === 'running' ? player : null;
+      const playing = stage.player;
       const headInArena = transformPose(arenaFromFloor, head);
       for (const cue of cues) {
         captionCue(cue);
@@ -226,19 +132,10 @@ export function createSounds({
     },
     listen(next) {
       head = next;
-      if (player) placeListener(player.context, next);
+      stage.listen(next);
     },
-    setVolume(next) {
-      volume = Math.max(0, Math.min(1, next));
-      applyVolume();
-    },
-    setMuted(on) {
-      muted = on;
-      applyVolume();
-    },
-    dispose() {
-      void player?.context.close();
-      player = null;
-    },
+    setVolume: stage.setVolume,
+    setMuted: stage.setMuted,
+    dispose: stage.dispose,
   };
 }

@@ -21,10 +21,10 @@ import { disposeTree } from '../../scene/dispose-tree';
 import { createDrawnTexture } from '../../scene/drawn-texture';
 import { merged, painted } from '../../scene/painted-geometry';
 import type { Quality } from '../../scene/renderer';
-import { createContactShadows } from './contact-shadows';
-import { ink, signFont } from './lettering';
+import { ink, signFont } from '../lettering';
+import { createContactShadows } from '../outdoors/contact-shadows';
+import { woodColor } from '../outdoors/wood';
 import { createRingTexture } from './target-rings';
-import { woodColor } from './wood';
 
 /** Four discs on wooden legs, each with a plate that says what it is worth; arena frame. */
 export interface TargetStands {

@@ -9,8 +9,8 @@ import {
   Vector3,
 } from 'three';
 import { walls } from '../../core/games/archery/rules';
+import { createScatter } from '../outdoors/scatter';
 import { field } from './field';
-import { createScatter } from './scatter';
 
 /** A few blades that lean apart; they are lit like the ground they grow from. */
 function tuftGeometry(): BufferGeometry {

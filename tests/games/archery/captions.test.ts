@@ -3,8 +3,9 @@ import type { Arrow, Landing, Target } from '../../../src/core/games/archery/arc
 import { archeryRules } from '../../../src/core/games/archery/rules';
 import { fromAxisAngle, identity } from '../../../src/core/math/quat';
 import { up, type Vec3, vec3 } from '../../../src/core/math/vec3';
-import { directionOf, eventCaption } from '../../../src/games/archery/captions';
+import { eventCaption } from '../../../src/games/archery/captions';
 import { createSounds } from '../../../src/games/archery/sounds';
+import { directionOf } from '../../../src/games/directions';
 
 const target = (x: number, z: number, points: number): Target => ({
   centre: vec3(x, 1.4, z),

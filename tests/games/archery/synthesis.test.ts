@@ -1,16 +1,6 @@
 import { describe, expect, it } from 'vitest';
-import {
-  bell,
-  chime,
-  click,
-  creak,
-  earth,
-  rattle,
-  thud,
-  twang,
-  warning,
-  whoosh,
-} from '../../../src/games/archery/synthesis';
+import { creak, earth, rattle, thud, twang } from '../../../src/games/archery/synthesis';
+import { bell, chime, click, warning, whoosh } from '../../../src/games/synthesis';
 
 const rate = 48000;
 const sounds = {

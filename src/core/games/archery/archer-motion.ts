@@ -2,7 +2,8 @@ import { clamp } from '../../math/damper';
 import { addScaled, subtract } from '../../math/vec3';
 import type { TrackingFrame } from '../../tracking/tracking-frame';
 import type { Buttons } from '../button-presses';
-import { type ArcherBody, createArcherPostures, minimumJerk, mix, type Posture, yawOf } from './archer-postures';
+import { minimumJerk, yawOf } from '../posture';
+import { type ArcherBody, createArcherPostures, mix, type Posture } from './archer-postures';
 import type { ArcheryState, Target } from './archery-state';
 
 /** A movement to a posture, at rest at both ends; the button's pressure goes along. */

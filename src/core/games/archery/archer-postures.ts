@@ -1,10 +1,9 @@
 import { clamp } from '../../math/damper';
 import { type Pose, type Transform, transformPose } from '../../math/pose';
-import { fromAxes, fromAxisAngle, identity, multiply, type Quat, rotate, slerp } from '../../math/quat';
+import { fromAxisAngle, identity, multiply, type Quat, rotate, slerp } from '../../math/quat';
 import {
   add,
   addScaled,
-  cross,
   dot,
   lerp,
   normalise,
@@ -19,6 +18,7 @@ import {
 import type { TrackedPose, TrackingFrame } from '../../tracking/tracking-frame';
 import { allReleased, type Button, type Buttons, type HandButtons } from '../button-presses';
 import { otherSide, type Side, wristAround } from '../fist';
+import { armShare, lookAlong, shoulderBehind, shoulderDrop, shoulderShare, yawOf } from '../posture';
 import { arrowRestHeight, braceHeight, maximumDraw } from './bow';
 import { releaseTowards } from './flight';
 
@@ -34,13 +34,6 @@ export interface ArcherBody {
   /** Where the range lies in the room; default: the zone's middle is the floor's origin. */
   readonly floorFromArena?: Transform<'floor', 'arena'>;
 }
-
-/** Shoulder to wrist and half the width of the shoulders as shares of the standing eye height (the body model's averages). */
-const armShare = 0.36;
-const shoulderShare = 0.114;
-/** Shoulders below the eyes, and behind eyes that look along the trunk, as shares of the arm. */
-const shoulderDrop = 0.35;
-const shoulderBehind = 0.19;
 
 /** The bow shoulder goes ahead: the trunk turns this far away from the target [rad], standing ready and drawing. */
 const readyTurn = 0.45;
@@ -67,18 +60,6 @@ export interface Posture {
   /** Fist of the string hand from the eyes [m] and its knuckles; `onString` 1: at the nock, along the arrow. */
   readonly free: { readonly fist: Vec3; readonly knuckles: Vec3; readonly thumb: Vec3 };
   readonly onString: number;
-}
-
-/** From 0 to 1 with neither speed nor acceleration at the ends: how hands move between two places (Flash & Hogan 1985). */
-export const minimumJerk = (t: number): number => t * t * t * (10 - 15 * t + 6 * t * t);
-
-export const yawOf = (direction: Vec3): number => Math.atan2(-direction.x, -direction.z);
-
-/** The rotation that looks along a direction, head upright. */
-function lookAlong(direction: Vec3): Quat {
-  const z = scale(normalise(direction), -1);
-  const x = normalise(cross(up, z));
-  return fromAxes(x, cross(z, x), z);
 }
 
 const mixHold = (a: Hold, b: Hold, share: number): Hold => ({

@@ -2,7 +2,8 @@ import { clamp, dampVec3 } from '../../math/damper';
 import { subtract, type Vec3 } from '../../math/vec3';
 import type { TrackingFrame } from '../../tracking/tracking-frame';
 import type { Buttons } from '../button-presses';
-import { type ArcherBody, createArcherPostures, minimumJerk, mix, type Posture, yawOf } from './archer-postures';
+import { minimumJerk, yawOf } from '../posture';
+import { type ArcherBody, createArcherPostures, mix, type Posture } from './archer-postures';
 
 /** What somebody at a desk wants of an archer. */
 export interface Steering {

@@ -1,0 +1,131 @@
+import { ConfigurationError } from './configuration';
+
+/** How the relay behaves, from the environment. */
+export interface RelayConfiguration {
+  /** Signs the room tokens; the same in all processes of a fleet. null: one of our own, kept on this machine. */
+  readonly secret: string | null;
+  /** Pages of these origins may connect; empty: pages of the very address they connect to. */
+  readonly origins: readonly string[];
+  /** How often a room's poses are passed on, and its match stepped, per second. */
+  readonly tickHz: number;
+  readonly posesPerSecond: number;
+  readonly eventsPerSecond: number;
+  /** New people per minute and address; a person who returns does not count. */
+  readonly joinsPerMinute: number;
+  readonly mostRooms: number;
+  /** Seats of an open room. */
+  readonly openSeats: number;
+  /** Seconds of a ball game's round. */
+  readonly ballSeconds: number;
+  /** Believe what a proxy in front says of a client's address. */
+  readonly trustProxy: boolean;
+  /** Of the lobby that several processes share; null: this process is alone. */
+  readonly redisUrl: string | null;
+  /** The address to listen on; null: this machine alone, or with --lan all of its own. */
+  readonly host: string | null;
+  /** Whoever sends this as "Authorization: Bearer …" may end rooms; null: nobody. */
+  readonly adminToken: string | null;
+  readonly logLevel: (typeof logLevels)[number];
+}
+
+const logLevels = ['trace', 'debug', 'info', 'warn', 'error', 'silent'] as const;
+const shortestSecret = 32;
+
+type Environment = Readonly<Record<string, string | undefined>>;
+
+export const relayEnvironment = `Environment of the relay (docs/relay.md):
+  THREEPOINT_SECRET             signs room tokens; at least ${shortestSecret} characters, the same in every process of a fleet
+  THREEPOINT_ORIGINS            origins of pages that may connect, with commas between; default: the server's own
+  THREEPOINT_TICK_HZ            how often a room's poses are passed on a second, 20 to 120; default 90
+  THREEPOINT_POSES_PER_SECOND   budget of each client; default 40
+  THREEPOINT_EVENTS_PER_SECOND  budget of each client; default 10
+  THREEPOINT_JOINS_PER_MINUTE   budget of new people of each address; default 5, on this machine itself 120
+  THREEPOINT_MOST_ROOMS         rooms in this process; default 500
+  THREEPOINT_OPEN_SEATS         seats of a room without a game, 1 to 16; default 16
+  THREEPOINT_BALL_SECONDS       length of a round of the ball game; default 90
+  THREEPOINT_TRUST_PROXY        1: a proxy stands in front and tells the clients' addresses; default 0
+  THREEPOINT_REDIS_URL          redis://HOST:PORT of the lobby that several processes share
+  THREEPOINT_ADMIN_TOKEN        lets whoever has it end rooms; 16 characters or more
+  THREEPOINT_HOST               address to listen on behind a proxy, as 0.0.0.0; default 127.0.0.1
+  THREEPOINT_LOG_LEVEL          ${logLevels.join(', ')}; default warn`;
+
+function numberFrom(environment: Environment, name: string, fallback: number, min: number, max: number): number {
+  const text = environment[name];
+  if (text === undefined || text === '') return fallback;
+  const value = Number(text);
+  if (!(value >= min && value <= max)) {
+    throw new ConfigurationError(
+      `The environment variable ${name} must be a number from ${min} to ${max}, not "${text}".`,
+    );
+  }
+  return value;
+}
+
+function originsFrom(text: string | undefined): readonly string[] {
+  return (text ?? '')
+    .split(',')
+    .map((part) => part.trim())
+    .filter(Boolean)
+    .map((part) => {
+      const url = URL.canParse(part) ? new URL(part) : null;
+      if (!url || url.origin === 'null' || (part !== url.origin && part !== `${url.origin}/`)) {
+        throw new ConfigurationError(
+          `The environment variable THREEPOINT_ORIGINS must hold origins as https://example.org, not "${part}".`,
+        );
+      }
+      return url.origin;
+    });
+}
+
+/** Throws a ConfigurationError that names the variable and what it should be. */
+export function relayConfigurationFrom(environment: Environment): RelayConfiguration {
+  const secret = environment.THREEPOINT_SECRET || null;
+  if (secret !== null && secret.length < shortestSecret) {
+    throw new ConfigurationError(
+      `The environment variable THREEPOINT_SECRET must have at least ${shortestSecret} characters, has ${secret.length}.`,
+    );
+  }
+  const adminToken = environment.THREEPOINT_ADMIN_TOKEN || null;
+  if (adminToken !== null && !/^\S{16,256}$/.test(adminToken)) {
+    throw new ConfigurationError(
+      `The environment variable THREEPOINT_ADMIN_TOKEN must have 16 to 256 characters and no spaces, has ${adminToken.length}.`,
+    );
+  }
+  const redisUrl = environment.THREEPOINT_REDIS_URL || null;
+  if (redisUrl !== null && !/^rediss?:\/\/\S+$/.test(redisUrl)) {
+    throw new ConfigurationError(
+      `The environment variable THREEPOINT_REDIS_URL must be like redis://localhost:6379, not "${redisUrl}".`,
+    );
+  }
+  const logLevel = logLevels.find((level) => level === (environment.THREEPOINT_LOG_LEVEL || 'warn'));
+  if (!logLevel) {
+    throw new ConfigurationError(
+      `The environment variable THREEPOINT_LOG_LEVEL must be one of ${logLevels.join(', ')}, not "${environment.THREEPOINT_LOG_LEVEL}".`,
+    );
+  }
+  if (redisUrl !== null && secret === null) {
+    throw new ConfigurationError(
+      'Several processes need a common THREEPOINT_SECRET: set it beside THREEPOINT_REDIS_URL.',
+    );
+  }
+  const number = (name: string, fallback: number, min: number, max: number) =>
+    numberFrom(environment, name, fallback, min, max);
+  const whole = (name: string, fallback: number, min: number, max: number) =>
+    Math.round(number(name, fallback, min, max));
+  return {
+    secret,
+    origins: originsFrom(environment.THREEPOINT_ORIGINS),
+    tickHz: number('THREEPOINT_TICK_HZ', 90, 20, 120),
+    posesPerSecond: whole('THREEPOINT_POSES_PER_SECOND', 40, 1, 200),
+    eventsPerSecond: whole('THREEPOINT_EVENTS_PER_SECOND', 10, 1, 1000),
+    joinsPerMinute: whole('THREEPOINT_JOINS_PER_MINUTE', 5, 1, 100_000),
+    mostRooms: whole('THREEPOINT_MOST_ROOMS', 500, 1, 100_000),
+    openSeats: whole('THREEPOINT_OPEN_SEATS', 16, 1, 16),
+    ballSeconds: number('THREEPOINT_BALL_SECONDS', 90, 1, 3600),
+    trustProxy: whole('THREEPOINT_TRUST_PROXY', 0, 0, 1) === 1,
+    redisUrl,
+    host: environment.THREEPOINT_HOST || null,
+    adminToken,
+    logLevel,
+  };
+}

@@ -1,0 +1,105 @@
+import { Counter, collectDefaultMetrics, Gauge, Histogram, Registry } from 'prom-client';
+
+/** What is counted in the hot path: plain numbers, read when somebody asks. */
+export interface RelayCounts {
+  posesIn: number;
+  posesIgnored: number;
+  framesOut: number;
+  /** Volatile frames that a client's connection had no room for. */
+  framesDropped: number;
+  messagesIn: number;
+  bytesIn: number;
+  bytesOut: number;
+}
+
+/** What /metrics tells of a relay. */
+export interface RelayMetrics {
+  readonly registry: Registry;
+  readonly counts: RelayCounts;
+  /** Seconds that a tick of all rooms took. */
+  readonly tick: Histogram;
+  kicked(reason: string): void;
+  refused(what: string, reason: string): void;
+  close(): void;
+}
+
+/** Who is there, asked for whenever the metrics are. */
+export interface RelayCensus {
+  readonly rooms: number;
+  readonly players: number;
+  readonly bots: number;
+  readonly spectators: number;
+  readonly sockets: number;
+}
+
+export function createRelayMetrics(census: () => RelayCensus): RelayMetrics {
+  const registry = new Registry();
+  collectDefaultMetrics({ register: registry, prefix: 'threepoint_' });
+  const registers = [registry];
+  const counts: RelayCounts = {
+    posesIn: 0,
+    posesIgnored: 0,
+    framesOut: 0,
+    framesDropped: 0,
+    messagesIn: 0,
+    bytesIn: 0,
+    bytesOut: 0,
+  };
+  const counter = (name: string, help: string, key: keyof RelayCounts) =>
+    new Counter({
+      name: `threepoint_${name}_total`,
+      help,
+      registers,
+      collect() {
+        this.reset();
+        this.inc(counts[key]);
+      },
+    });
+  counter('poses_in', 'Pose packets received.', 'posesIn');
+  counter('poses_ignored', 'Pose packets that were old, unbelievable, or beyond the budget.', 'posesIgnored');
+  counter('frames_out', 'Frames of poses sent, one for each client.', 'framesOut');
+  counter('frames_dropped', 'Frames of poses that a client was not ready for.', 'framesDropped');
+  counter('messages_in', 'Control messages received.', 'messagesIn');
+  counter('pose_bytes_in', 'Bytes of pose packets received.', 'bytesIn');
+  counter('frame_bytes_out', 'Bytes of frames of poses sent.', 'bytesOut');
+  const gauge = (name: keyof RelayCensus, help: string) =>
+    new Gauge({
+      name: `threepoint_${name}`,
+      help,
+      registers,
+      collect() {
+        this.set(census()[name]);
+      },
+    });
+  gauge('rooms', 'Rooms in this process.');
+  gauge('players', 'People on seats, held seats included.');
+  gauge('bots', 'Bots on seats.');
+  gauge('spectators', 'People who watch.');
+  gauge('sockets', 'Connections.');
+  const kicks = new Counter({
+    name: 'threepoint_kicks_total',
+    help: 'Clients that were disconnected, by reason.',
+    labelNames: ['reason'],
+    registers,
+  });
+  const refusals = new Counter({
+    name: 'threepoint_refusals_total',
+    help: 'What rooms would not do, by reason.',
+    labelNames: ['what', 'reason'],
+    registers,
+  });
+  const tick = new Histogram({
+    name: 'threepoint_tick_seconds',
+    help: 'Time that one tick of all rooms took.',
+    buckets: [0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1],
+    registers,
+  });
+  return {
+    registry,
+    counts,
+    tick,
+    kicked: (reason) => kicks.inc({ reason }),
+    refused: (what, reason) => refusals.inc({ what, reason }),
+    close: () => registry.clear(),
+  };
+}

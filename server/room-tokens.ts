@@ -1,0 +1,73 @@
+import { randomBytes } from 'node:crypto';
+import { errors, jwtVerify, SignJWT } from 'jose';
+import { type RoomKind, roomKinds } from '../src/core/protocol/messages';
+
+/** What a token says: who somebody is in which room. Known to the server alone; others know a seat and a name. */
+export interface RoomPass {
+  readonly identity: string;
+  readonly room: string;
+  readonly kind: RoomKind;
+}
+
+/** Passes as signed text that expires. */
+export interface RoomTokens {
+  /** For a new person. */
+  issue(room: string, kind: RoomKind): Promise<string>;
+  /** The same person for longer. */
+  sign(pass: RoomPass): Promise<string>;
+  /** As `verify`, for a token that has expired within the last hours: good for another one, not for coming in. */
+  verifyRenewable(token: string): Promise<RoomPass | null>;
+  /** null: not signed by us, changed, or expired. */
+  verify(token: string): Promise<RoomPass | null>;
+}
+
+/** Names of rooms: what goes into an address and can be told over the telephone. */
+export const roomName = /^[a-z0-9][a-z0-9-]{0,31}$/;
+
+const lifeSeconds = 15 * 60;
+/** A token may be renewed this long after it has expired [s]. */
+const renewalSeconds = 12 * 3600;
+const issuer = 'threepoint';
+const algorithm = 'HS256';
+const longestToken = 1024;
+
+/** `now`: seconds since 1970. */
+export function createRoomTokens(secret: string, now: () => number): RoomTokens {
+  const key = new TextEncoder().encode(secret);
+
+  const sign = ({ identity, room, kind }: RoomPass): Promise<string> =>
+    new SignJWT({ room, kind })
+      .setProtectedHeader({ alg: algorithm })
+      .setIssuer(issuer)
+      .setSubject(identity)
+      .setIssuedAt(Math.floor(now()))
+      .setExpirationTime(Math.floor(now()) + lifeSeconds)
+      .sign(key);
+
+  async function read(token: string, tolerance: number): Promise<RoomPass | null> {
+    if (token.length > longestToken) return null;
+    try {
+      const { payload } = await jwtVerify(token, key, {
+        issuer,
+        algorithms: [algorithm],
+        currentDate: new Date(now() * 1000),
+        clockTolerance: tolerance,
+      });
+      const { sub: identity, room, kind } = payload;
+      const known = roomKinds.find((name) => name === kind);
+      return identity && typeof room === 'string' && roomName.test(room) && known
+        ? { identity, room, kind: known }
+        : null;
+    } catch (error) {
+      if (error instanceof errors.JOSEError) return null;
+      throw error;
+    }
+  }
+
+  return {
+    issue: (room, kind) => sign({ identity: randomBytes(12).toString('base64url'), room, kind }),
+    sign,
+    verifyRenewable: (token) => read(token, renewalSeconds),
+    verify: (token) => read(token, 5),
+  };
+}

@@ -1,0 +1,183 @@
+import { Group, type Mesh, type MeshBasicMaterial, type Object3D, type PlaneGeometry } from 'three';
+import type { AvatarPose } from '../core/body/avatar-pose';
+import type { Calibration } from '../core/body/calibration';
+import type { Side } from '../core/body/joints';
+import type { Pose, Transform } from '../core/math/pose';
+import { rotate } from '../core/math/quat';
+import { add, type Vec3 } from '../core/math/vec3';
+import { createBlobShadow } from '../scene/blob-shadow';
+import { type Avatar, createAvatar } from './avatar';
+import { parseAvatar } from './load-avatar';
+
+/** Somebody else as they are to be drawn in this frame. */
+export interface SeenPerson {
+  /** Who it is, for as long as they are there: the same number is the same body. */
+  readonly id: number;
+  readonly calibration: Calibration;
+  readonly palette: string;
+  /** In their own floor's frame. */
+  readonly pose: AvatarPose;
+  /** Where their floor lies in this room. */
+  readonly placement: Transform<'floor', 'floor'>;
+  readonly grips: Readonly<Record<Side, number>>;
+  /** 1: live. Less: a ghost. */
+  readonly opacity: number;
+}
+
+/** The bodies of other people: mannequins that share what the graphics device holds of one. */
+export interface RemoteAvatars {
+  readonly object: Group;
+  /** Draws these people and nobody else, at a time [s] on the clock of the frames. */
+  show(people: readonly SeenPerson[], time: number): void;
+  /** Where the joints of somebody are drawn, floor frame of this room [m]; null: nobody of this number is drawn. */
+  jointsOf(id: number): Readonly<Record<string, Vec3>> | null;
+  dispose(): void;
+}
+
+interface Body {
+  readonly avatar: Avatar;
+  readonly place: Group;
+  readonly shadow: Mesh<PlaneGeometry, MeshBasicMaterial>;
+  id: number | null;
+  fitted: Calibration | null;
+  palette: string;
+  opacity: number;
+  placement: Pose<'floor'>;
+}
+
+const fingers = ['left', 'right'] as const;
+
+/** The second body draws from the first one's memory on the graphics device: only bones and colours are its own. */
+function shareGeometry(from: Object3D, to: Object3D): void {
+  const sources: Mesh[] = [];
+  from.traverse((node) => {
+    if ('isMesh' in node) sources.push(node as Mesh);
+  });
+  let next = 0;
+  to.traverse((node) => {
+    if (!('isMesh' in node)) return;
+    const source = sources[next]?.geometry;
+    next += 1;
+    if (!source) throw new Error('avatar/remote-avatars: two bodies from one file differ');
+    const { geometry } = node as Mesh;
+    for (const name of Object.keys(source.attributes)) geometry.setAttribute(name, source.getAttribute(name));
+    geometry.setIndex(source.index);
+  });
+}
+
+/** `bytes`: of the mannequin's file. Bodies are made when they are first needed, one after the other, and kept for whoever comes next. */
+export function createRemoteAvatars(bytes: ArrayBuffer, name: string): RemoteAvatars {
+  const object = new Group();
+  object.name = 'other people';
+  const bodies: Body[] = [];
+  let making = false;
+  let disposed = false;
+  let failed: unknown = null;
+
+  async function make(): Promise<void> {
+    const avatar = createAvatar(await parseAvatar(bytes, name));
+    if (disposed) {
+      avatar.dispose();
+      return;
+    }
+    const first = bodies[0];
+    if (first) shareGeometry(first.avatar.object, avatar.object);
+    const place = new Group();
+    const shadow = createBlobShadow();
+    place.visible = false;
+    place.add(avatar.object, shadow);
+    object.add(place);
+    bodies.push({
+      avatar,
+      place,
+      shadow,
+      id: null,
+      fitted: null,
+      palette: '',
+      opacity: 1,
+      placement: { position: { x: 0, y: 0, z: 0 }, orientation: { x: 0, y: 0, z: 0, w: 1 } },
+    });
+  }
+
+  /** The body of this number, or a free one; null while one is being made. */
+  function bodyFor(id: number, people: readonly SeenPerson[]): Body | null {
+    const own = bodies.find((body) => body.id === id);
+    if (own) return own;
+    const free = bodies.find((body) => body.id === null || !people.some((person) => person.id === body.id));
+    if (free) {
+      free.id = id;
+      free.fitted = null;
+      return free;
+    }
+    if (failed) throw failed;
+    if (!making) {
+      making = true;
+      void make().then(
+        () => {
+          making = false;
+        },
+        (error: unknown) => {
+          failed = error;
+        },
+      );
+    }
+    return null;
+  }
+
+  function draw(body: Body, person: SeenPerson, time: number): void {
+    const { avatar, place, shadow } = body;
+    const { calibration, palette, pose, placement, grips, opacity } = person;
+    if (body.fitted?.eyeHeight !== calibration.eyeHeight || body.fitted.armSpan !== calibration.armSpan) {
+      avatar.fitTo(calibration);
+      body.fitted = calibration;
+    }
+    if (body.palette !== palette) {
+      avatar.setPalette(palette);
+      body.palette = palette;
+    }
+    if (body.opacity !== opacity) {
+      avatar.setOpacity(opacity);
+      shadow.visible = opacity > 0.5;
+      body.opacity = opacity;
+    }
+    body.placement = placement;
+    place.position.copy(placement.position);
+    place.quaternion.copy(placement.orientation);
+    for (const side of fingers) avatar.setGrip(side, grips[side]);
+    avatar.apply(pose, time);
+    const { hips, head } = avatar.jointPositions();
+    const over = hips ?? head;
+    if (over) shadow.position.set(over.x, shadow.position.y, over.z);
+  }
+
+  return {
+    object,
+    show(people, time) {
+      for (const person of people) {
+        const body = bodyFor(person.id, people);
+        if (body) draw(body, person, time);
+      }
+      for (const body of bodies) {
+        const there = people.some(({ id, opacity }) => id === body.id && opacity > 0);
+        body.place.visible = there;
+        if (!there) body.id = null;
+      }
+    },
+    jointsOf(id) {
+      const body = bodies.find((candidate) => candidate.id === id);
+      if (!body) return null;
+      const joints = Object.entries(body.avatar.jointPositions());
+      const { position, orientation } = body.placement;
+      return Object.fromEntries(joints.map(([joint, at]) => [joint, add(position, rotate(orientation, at))]));
+    },
+    dispose() {
+      disposed = true;
+      object.removeFromParent();
+      for (const { avatar, shadow } of bodies) {
+        avatar.dispose();
+        shadow.geometry.dispose();
+        shadow.material.dispose();
+      }
+    },
+  };
+}

@@ -1,0 +1,237 @@
+import { createRemoteAvatars } from './avatar/remote-avatars';
+import { type BallPlay, type BallProbe, createBallPlay } from './ball-play';
+import type { AvatarPose } from './core/body/avatar-pose';
+import type { BallPulse } from './core/games/ball/gestures';
+import type { Performed } from './core/games/ball/player-postures';
+import { ballSecondsLeft, ballsLeft, defaultBallOptions } from './core/games/ball/rules';
+import type { Buttons } from './core/games/button-presses';
+import type { Side } from './core/games/fist';
+import { type Pose, transformPose } from './core/math/pose';
+import type { Vec3 } from './core/math/vec3';
+import type { TrackingFrame } from './core/tracking/tracking-frame';
+import { createBallView } from './games/ball/ball-view';
+import { seatOfButton } from './games/ball/board-drawing';
+import { roleTexts, seatLooks } from './games/ball/court-plan';
+import { eventHaptics } from './games/ball/haptics';
+import { bannerText } from './net/banner';
+import type { Connection, Visitor } from './net/connection';
+import type { Arena } from './scene/arena';
+import type { Quality } from './scene/renderer';
+
+export interface BallActivityOptions {
+  readonly quality: Quality;
+  readonly arena: Pick<Arena, 'scene' | 'setSurroundings'>;
+  /** The file of the body that others have. */
+  readonly mannequin: ArrayBuffer;
+  readonly visitor: Visitor;
+  connect(visitor: Visitor, time: number): Connection;
+  bots(): boolean;
+  acting(): boolean;
+  readonly seed: number;
+  readonly onCaption: (text: string) => void;
+}
+
+/** A match as the page's bar shows it. */
+export interface BallRound {
+  readonly phase: 'ready' | 'running' | 'over';
+  readonly score: number;
+  readonly of: number;
+  readonly ballsLeft: number;
+  readonly secondsLeft: number;
+  readonly role: string;
+  readonly seat: number | null;
+  readonly ready: boolean;
+  readonly rotate: boolean;
+  readonly spectators: number;
+  readonly people: readonly {
+    readonly seat: number;
+    readonly name: string;
+    readonly role: string;
+    readonly free: boolean;
+  }[];
+}
+
+/** Somebody whom the tools may know of. */
+export interface PlayerProbe {
+  readonly seat: number;
+  readonly name: string;
+  readonly bot: boolean;
+  readonly presence: string;
+  readonly opacity: number;
+  /** Joints as drawn, own floor frame [m]. */
+  readonly joints: Readonly<Record<string, readonly [number, number, number]>>;
+}
+
+interface Ray {
+  readonly origin: Vec3;
+  readonly direction: Vec3;
+}
+
+/** The ball game in the page: the court, the others' bodies, and one's own part in the match. */
+export interface BallActivity {
+  readonly play: BallPlay;
+  readonly sound: ReturnType<typeof createBallView>['sound'];
+  /** Once a frame, first. */
+  begin(time: number): void;
+  /** Head, hands and buttons of the built-in player on the own seat; null: no seat. */
+  act(time: number, catchUp: boolean): Performed | null;
+  /** The tracked frame as play: what it means is heard at once, what it feels like comes back. */
+  follow(frame: TrackingFrame, buttons: Buttons): readonly BallPulse[];
+  send(frame: TrackingFrame, pose: AvatarPose, grips: Readonly<Record<Side, number>>): void;
+  /** Draws the match; head: whose eyes and ears these are, own floor frame. `tracked`: whether `follow` was called for this frame. */
+  show(time: number, head: Pose<'floor'>, tracked: boolean): void;
+  /** What a ray meets on the sheet before and after a match: the distance [m]; null: nothing. `press`: does what it says. */
+  point(ray: Ray, press: boolean): number | null;
+  /** The colours of the own seat: one of the avatar's palettes; null: a spectator. */
+  readonly palette: string | null;
+  /** Pelvis and eyes of somebody to follow, own floor frame; null: nobody of this seat is drawn. */
+  bodyOf(seat: number): { readonly pelvis: Vec3; readonly eyes: Pose<'floor'> } | null;
+  /** Which of the others there are to follow. */
+  readonly seats: readonly number[];
+  round(): BallRound | null;
+  /** What a person should know of the connection; null: nothing. */
+  banner(): string | null;
+  probe(): BallProbe | null;
+  players(): readonly PlayerProbe[];
+  dispose(): void;
+}
+
+export function createBallActivity(options: BallActivityOptions): BallActivity {
+  const { quality, arena, mannequin, onCaption } = options;
+  const play = createBallPlay(options);
+  const view = createBallView({ quality, balls: defaultBallOptions.balls, onCaption });
+  const others = createRemoteAvatars(mannequin, 'mannequin.vrm');
+  arena.scene.add(view.own, others.object);
+  let placedAt = '';
+  let voided = 0;
+  let notice: { readonly text: string; readonly until: number } | null = null;
+  let now = 0;
+
+  /** The court turns round whoever looks: again with every change of seat. */
+  function place(): void {
+    const at = play.floorFromArena;
+    const key = JSON.stringify(at);
+    if (key === placedAt) return;
+    placedAt = key;
+    arena.setSurroundings(view.placed(at));
+  }
+
+  function follow(time: number, frame: TrackingFrame | null, buttons: Buttons): readonly BallPulse[] {
+    const seen = play.follow(time, frame, buttons);
+    if (!seen) return [];
+    const { me, role, events, haptics } = seen;
+    return me === null || role === null ? haptics : [...haptics, ...eventHaptics(events, me, role)];
+  }
+
+  const nobody: Buttons = {
+    left: { trigger: 0, grip: 0, pinch: 0 },
+    right: { trigger: 0, grip: 0, pinch: 0 },
+  };
+
+  const triple = ({ x, y, z }: Vec3): readonly [number, number, number] => [x, y, z];
+
+  place();
+  return {
+    play,
+    sound: view.sound,
+    begin(time) {
+      now = time;
+      play.begin(time);
+      place();
+      const times = play.room?.voided ?? 0;
+      if (times > voided)
+        notice = { text: 'The server was restarted: this round does not count. A new one can begin.', until: time + 8 };
+      voided = times;
+    },
+    act: play.act,
+    follow: (frame, buttons) => follow(frame.time, frame, buttons),
+    send: play.send,
+    show(time, head, tracked) {
+      if (!tracked) follow(time, null, nobody);
+      const seen = play.newest;
+      others.show(
+        (seen?.bodies ?? []).map((body) => ({ ...body, palette: seatLooks[body.station]?.palette ?? 'porcelain' })),
+        time,
+      );
+      if (!seen) return;
+      const { state, me, rotate, opening, players, events, cues } = seen;
+      view.show({ state, time: seen.time, attendants: players, me, rotate, opening, head });
+      view.hear(events, cues);
+    },
+    point({ origin, direction }, press) {
+      const hit = view.lobby.buttonAt(origin, direction);
+      view.lobby.setHovered(hit?.id ?? null);
+      if (!hit) return null;
+      if (press) {
+        const seat = seatOfButton(hit.id);
+        const seen = play.newest;
+        if (seat !== null) play.sit(seat);
+        else if (hit.id === 'rotate') play.rotate(!(seen?.rotate ?? false));
+        else play.ready(!(seen && seen.me !== null && seen.state.players[seen.me]?.ready));
+      }
+      return hit.distance;
+    },
+    get palette() {
+      const seen = play.newest;
+      const station = seen && seen.me !== null ? seen.state.players[seen.me]?.station : undefined;
+      return station === undefined ? null : (seatLooks[station]?.palette ?? null);
+    },
+    bodyOf(seat) {
+      const body = play.newest?.bodies.find(({ id }) => id === seat);
+      const joints = others.jointsOf(seat);
+      const pelvis = joints?.hips;
+      if (!body || !pelvis) return null;
+      const { position, orientation } = body.pose.head;
+      const eyes = transformPose(body.placement, { position, orientation });
+      return { pelvis, eyes };
+    },
+    get seats() {
+      return play.newest?.bodies.map(({ id }) => id) ?? [];
+    },
+    round() {
+      const seen = play.newest;
+      if (!seen) return null;
+      const { state, me, rotate, spectators, players } = seen;
+      const roleOf = (player: number): string => roleTexts[state.players[player]?.station ?? player] ?? '';
+      return {
+        phase: state.phase,
+        score: state.score,
+        of: state.options.balls,
+        ballsLeft: ballsLeft(state),
+        secondsLeft: ballSecondsLeft(state),
+        role: me === null ? 'Watching' : roleOf(me),
+        seat: me,
+        ready: me !== null && (state.players[me]?.ready ?? false),
+        rotate,
+        spectators,
+        people: players.map((player, seat) => ({
+          seat,
+          name: player?.name ?? 'free',
+          role: roleOf(seat),
+          free: player === null || (player.bot && !player.me),
+        })),
+      };
+    },
+    banner() {
+      return bannerText(play.status) ?? (notice && now < notice.until ? notice.text : null);
+    },
+    probe: play.probe,
+    players() {
+      const seen = play.newest;
+      return (seen?.bodies ?? []).flatMap(({ id, opacity }): PlayerProbe[] => {
+        const player = seen?.players[id];
+        if (!player) return [];
+        const { name, bot, presence } = player;
+        const joints = Object.entries(others.jointsOf(id) ?? {}).map(([joint, at]) => [joint, triple(at)] as const);
+        return [{ seat: id, name, bot, presence, opacity, joints: Object.fromEntries(joints) }];
+      });
+    },
+    dispose() {
+      play.leave();
+      view.own.removeFromParent();
+      arena.setSurroundings(null);
+      others.dispose();
+      view.dispose();
+    },
+  };
+}

@@ -1,0 +1,112 @@
+import type { BallDeed, BallEvent, BallPlace, BallPlayer, BallState } from './ball-state';
+import { ballRules } from './rules';
+
+const withBall = (state: BallState, ball: number, place: BallPlace): BallState =>
+  ball < state.balls.length ? { ...state, balls: state.balls.map((other, i) => (i === ball ? place : other)) } : state;
+
+const withPlayer = (state: BallState, index: number, change: Partial<BallPlayer>): BallState => ({
+  ...state,
+  players: state.players.map((player, i) => (i === index ? { ...player, ...change } : player)),
+});
+
+const throwerOf = (place: BallPlace | undefined): number =>
+  place?.on === 'air' || place?.on === 'floor' ? place.thrower : 0;
+
+/**
+ * The state after something that happened where the rules run: balls, score, phase and who is there follow from events alone. The
+ * tick, heads, hands and the basket do not; whoever draws them has poses and a clock. An event that is heard twice changes nothing.
+ */
+export function followBallEvent(state: BallState, event: BallEvent): BallState {
+  switch (event.type) {
+    case 'joined':
+      return withPlayer(state, event.player, { present: true, ready: false });
+    case 'left':
+      return withPlayer(state, event.player, { present: false, ready: false });
+    case 'ready':
+      return withPlayer(state, event.player, { ready: event.ready });
+    case 'started':
+      return { ...state, phase: 'running', startedAt: event.at };
+    case 'grabbed':
+      return withBall(state, event.ball, { on: 'hand', player: event.player, side: event.side });
+    case 'returned':
+      return withBall(state, event.ball, { on: 'rack' });
+    case 'thrown':
+      return withBall(state, event.ball, { on: 'air', launch: event.launch, thrower: event.player, missed: false });
+    case 'bounced': {
+      const before = state.balls[event.ball];
+      const missed = event.off === 'floor' || (before?.on === 'air' && before.missed);
+      return withBall(state, event.ball, { on: 'air', launch: event.launch, thrower: throwerOf(before), missed });
+    }
+    case 'missed': {
+      const before = state.balls[event.ball];
+      return before?.on === 'air' ? withBall(state, event.ball, { ...before, missed: true }) : state;
+    }
+    case 'rolls':
+      return withBall(state, event.ball, {
+        on: 'floor',
+        launch: event.launch,
+        thrower: throwerOf(state.balls[event.ball]),
+      });
+    case 'caught':
+      return { ...withBall(state, event.ball, { on: 'basket', thrower: event.player }), score: event.score };
+    case 'refused':
+      return state;
+    case 'ended':
+      return {
+        ...state,
+        phase: 'over',
+        end: event.end,
+        score: event.score,
+        players: state.players.map((player) => ({ ...player, ready: false })),
+      };
+  }
+}
+
+/** The state as it will be once the rules have heard of this deed, if they allow it: what a player sees of their own hands. */
+export function predictDeed(state: BallState, player: number, deed: BallDeed): BallState {
+  if (state.phase !== 'running') return state;
+  const inHand = state.balls.findIndex(
+    (place) => place.on === 'hand' && place.player === player && place.side === deed.side,
+  );
+  switch (deed.type) {
+    case 'grab':
+      return inHand < 0 && state.balls[deed.ball]?.on === 'rack'
+        ? withBall(state, deed.ball, { on: 'hand', player, side: deed.side })
+        : state;
+    case 'drop':
+      return inHand >= 0 ? withBall(state, inHand, { on: 'rack' }) : state;
+    case 'throw': {
+      if (inHand !== deed.ball) return state;
+      const { at: time, position, velocity } = deed;
+      return withBall(state, inHand, {
+        on: 'air',
+        launch: { time, position, velocity },
+        thrower: player,
+        missed: false,
+      });
+    }
+  }
+}
+
+/** Whether this event is what came of that deed of the player's. */
+export function answersDeed(event: BallEvent, player: number, deed: BallDeed): boolean {
+  switch (event.type) {
+    case 'refused':
+      return event.player === player && event.sequence === deed.sequence;
+    case 'grabbed':
+      return deed.type === 'grab' && event.player === player && event.ball === deed.ball && event.side === deed.side;
+    case 'thrown':
+      return deed.type === 'throw' && event.player === player && event.ball === deed.ball;
+    case 'returned':
+      // A throw too slow to be one puts the ball back.
+      return event.player === player && (deed.type === 'drop' || (deed.type === 'throw' && deed.ball === event.ball));
+    default:
+      return false;
+  }
+}
+
+/** The tick that the rules have reached at this time of the match [s]; the state as far as that. */
+export const withMatchTime = (state: BallState, time: number): BallState => ({
+  ...state,
+  tick: Math.max(0, Math.floor(time / ballRules.tickSeconds)),
+});

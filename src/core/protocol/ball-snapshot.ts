@@ -1,0 +1,120 @@
+import * as v from 'valibot';
+import type { BallPlace, BallPlayer, BallState, TimedLaunch } from '../games/ball/ball-state';
+import { ballRules } from '../games/ball/rules';
+import { vec3 } from '../math/vec3';
+
+const finite = v.pipe(v.number(), v.finite());
+const whole = v.pipe(v.number(), v.integer(), v.minValue(0), v.maxValue(2 ** 31));
+const player = v.pipe(v.number(), v.integer(), v.minValue(0), v.maxValue(2));
+/** Time, position, velocity. */
+const launch = v.tuple([finite, finite, finite, finite, finite, finite, finite]);
+
+/** rack · hand: player, right? · air: thrower, missed?, launch · floor: thrower, launch · basket: thrower. */
+const place = v.union([
+  v.literal(0),
+  v.tuple([v.literal(1), player, v.boolean()]),
+  v.tuple([v.literal(2), player, v.boolean(), launch]),
+  v.tuple([v.literal(3), player, launch]),
+  v.tuple([v.literal(4), player]),
+]);
+
+const phases = ['ready', 'running', 'over'] as const;
+const ends = ['balls', 'time'] as const;
+
+/** A match of the ball game in few bytes: what somebody who arrives late needs to see and to follow it. */
+export const packedBallSchema = v.strictObject({
+  /** Balls, seconds, rotation. */
+  o: v.tuple([whole, finite, v.pipe(v.number(), v.integer())]),
+  tick: whole,
+  phase: v.picklist(phases),
+  start: v.nullable(finite),
+  end: v.nullable(v.picklist(ends)),
+  score: whole,
+  /** Of each player: here (1) and ready (2). */
+  p: v.array(v.pipe(v.number(), v.integer(), v.minValue(0), v.maxValue(3))),
+  balls: v.array(place),
+  /** When, opening, normal. */
+  basket: launch,
+});
+export type PackedBall = v.InferOutput<typeof packedBallSchema>;
+
+const packLaunch = ({ time, position: p, velocity: w }: TimedLaunch): PackedBall['basket'] => [
+  time,
+  p.x,
+  p.y,
+  p.z,
+  w.x,
+  w.y,
+  w.z,
+];
+
+const unpackLaunch = ([time, x, y, z, vx, vy, vz]: PackedBall['basket']): TimedLaunch => ({
+  time,
+  position: vec3(x, y, z),
+  velocity: vec3(vx, vy, vz),
+});
+
+function packPlace(ball: BallPlace): PackedBall['balls'][number] {
+  switch (ball.on) {
+    case 'rack':
+      return 0;
+    case 'hand':
+      return [1, ball.player, ball.side === 'right'];
+    case 'air':
+      return [2, ball.thrower, ball.missed, packLaunch(ball.launch)];
+    case 'floor':
+      return [3, ball.thrower, packLaunch(ball.launch)];
+    case 'basket':
+      return [4, ball.thrower];
+  }
+}
+
+function unpackPlace(packed: PackedBall['balls'][number]): BallPlace {
+  if (packed === 0) return { on: 'rack' };
+  switch (packed[0]) {
+    case 1:
+      return { on: 'hand', player: packed[1], side: packed[2] ? 'right' : 'left' };
+    case 2:
+      return { on: 'air', thrower: packed[1], missed: packed[2], launch: unpackLaunch(packed[3]) };
+    case 3:
+      return { on: 'floor', thrower: packed[1], launch: unpackLaunch(packed[2]) };
+    case 4:
+      return { on: 'basket', thrower: packed[1] };
+  }
+}
+
+/** Everything but where heads and hands are: that the pose packets tell. */
+export const packBall = (state: BallState): PackedBall => ({
+  o: [state.options.balls, state.options.seconds, state.options.rotation],
+  tick: state.tick,
+  phase: state.phase,
+  start: state.startedAt,
+  end: state.end,
+  score: state.score,
+  p: state.players.map(({ present, ready }) => (present ? 1 : 0) + (ready ? 2 : 0)),
+  balls: state.balls.map(packPlace),
+  basket: packLaunch({ time: state.basket.at, position: state.basket.position, velocity: state.basket.normal }),
+});
+
+/** The state as it was packed, heads and hands unknown, deeds counted from 0; null where the parts contradict each other. */
+export function unpackBall(packed: PackedBall): BallState | null {
+  const [balls, seconds, rotation] = packed.o;
+  if (balls < 1 || balls > 20 || packed.balls.length !== balls || !(seconds > 0 && seconds <= 3600)) return null;
+  const start = ballRules.start(['0', '1', '2'], 0, { balls, seconds, rotation });
+  if (packed.p.length !== start.players.length) return null;
+  const [at, x, y, z, nx, ny, nz] = packed.basket;
+  return {
+    ...start,
+    tick: packed.tick,
+    phase: packed.phase,
+    startedAt: packed.start,
+    end: packed.end,
+    score: packed.score,
+    players: start.players.map((fresh, index): BallPlayer => {
+      const flags = packed.p[index] ?? 0;
+      return { ...fresh, present: (flags & 1) !== 0, ready: (flags & 2) !== 0 };
+    }),
+    balls: packed.balls.map(unpackPlace),
+    basket: { at, position: vec3(x, y, z), normal: vec3(nx, ny, nz) },
+  };
+}

@@ -1,0 +1,278 @@
+import type { BallEvent, BallState } from '../../core/games/ball/ball-state';
+import { ballsLeft } from '../../core/games/ball/rules';
+import { ink, paintCard, paintGround, signFont } from '../lettering';
+import { paintButton, type SheetButton } from '../sheet';
+import { roleTexts, seatLooks } from './court-plan';
+
+/** Somebody on a seat, as boards and labels write of them. */
+export interface Person {
+  readonly name: string;
+  readonly bot: boolean;
+  readonly presence: 'here' | 'away' | 'gone';
+  readonly me: boolean;
+}
+
+/** What is written of a match: the state at this frame and who sits where, by player. */
+export interface Standing {
+  readonly state: BallState;
+  /** Whole seconds until the bell, rounded up. */
+  readonly seconds: number;
+  readonly people: readonly (Person | null)[];
+  /** The receiver's own player; null: a spectator. */
+  readonly me: number | null;
+  /** Roles move on with every match. */
+  readonly rotate: boolean;
+}
+
+/** A bot's name says that it is one. */
+export const nameOf = ({ name, bot }: Pick<Person, 'name' | 'bot'>): string =>
+  bot && !/\bbot\b/i.test(name) ? `${name} (bot)` : name;
+
+/** Balls that each player's throws have brought into the basket. */
+export const catchesOf = (state: BallState, player: number): number =>
+  state.balls.filter((place) => place.on === 'basket' && place.thrower === player).length;
+
+/** What the last thing that happened reads like on the board; null: nothing to say. */
+export function lineOfEvent(event: BallEvent, people: readonly (Person | null)[]): string | null {
+  const who = 'player' in event ? people[event.player] : null;
+  const name = who ? who.name : 'Somebody';
+  switch (event.type) {
+    case 'started':
+      return 'Go!';
+    case 'caught':
+      return `In! Thrown by ${name}`;
+    case 'missed':
+      return `${name}’s ball is on the floor`;
+    case 'bounced':
+      return event.off === 'basket' ? 'Off the rim' : null;
+    case 'left':
+      return `${name} has left`;
+    case 'joined':
+      return `${name} has joined`;
+    default:
+      return null;
+  }
+}
+
+/** What the board says while nothing happens. */
+export function waitingLine({ state, people }: Standing): string {
+  if (state.phase === 'running') return 'Catch them in the basket';
+  if (state.phase === 'over') return state.end === 'time' ? 'Time is up' : 'All balls thrown';
+  const there = people.flatMap((person, player) => (person ? [player] : []));
+  const roles = new Set(there.map((player) => state.players[player]?.role));
+  if (!roles.has('thrower')) return 'Waiting for a thrower';
+  if (!roles.has('holder')) return 'Waiting for a basket holder';
+  const waiting = there.filter((player) => !state.players[player]?.ready).length;
+  return waiting === 1 ? 'Waiting for one player' : `Waiting for ${waiting} players`;
+}
+
+export const boardSize = { width: 1024, height: 560 } as const;
+
+/** Score, clock, balls left and the last sentence. */
+export function paintBoard(context: CanvasRenderingContext2D, standing: Standing, line: string): void {
+  const { state, seconds } = standing;
+  const { width, height } = boardSize;
+  paintGround(context, width, height);
+  context.textBaseline = 'alphabetic';
+  context.textAlign = 'left';
+  context.fillStyle = ink.soft;
+  context.font = `700 54px ${signFont}`;
+  context.fillText('SCORE', 64, 92);
+  context.fillText('TIME', 664, 92);
+  context.fillStyle = ink.text;
+  context.font = `800 200px ${signFont}`;
+  context.fillText(String(state.score), 54, 262);
+  const wide = context.measureText(String(state.score)).width;
+  context.fillStyle = ink.soft;
+  context.font = `700 80px ${signFont}`;
+  context.fillText(`/ ${state.options.balls}`, 78 + wide, 262);
+  const late = state.phase === 'running' && seconds <= 10;
+  if (late) {
+    context.fillStyle = ink.warning;
+    context.beginPath();
+    context.roundRect(640, 112, 330, 176, 22);
+    context.fill();
+  }
+  context.fillStyle = late ? ink.accentInk : ink.text;
+  context.font = `800 160px ${signFont}`;
+  context.fillText(`${seconds}`, 660, 258);
+  const clock = context.measureText(`${seconds}`).width;
+  context.font = `700 60px ${signFont}`;
+  context.fillText('s', 672 + clock, 258);
+
+  context.strokeStyle = ink.line;
+  context.lineWidth = 3;
+  context.beginPath();
+  context.moveTo(64, 316);
+  context.lineTo(width - 64, 316);
+  context.stroke();
+
+  const left = ballsLeft(state);
+  context.fillStyle = ink.soft;
+  context.font = `700 54px ${signFont}`;
+  context.fillText('BALLS', 64, 402);
+  const total = state.options.balls;
+  const step = Math.min(34, 480 / total);
+  for (let i = 0; i < total; i++) {
+    context.beginPath();
+    context.arc(286 + i * step, 383, Math.min(13, step * 0.38), 0, 2 * Math.PI);
+    context.fillStyle = i < left ? ink.accent : 'transparent';
+    context.strokeStyle = i < left ? ink.accent : ink.line;
+    context.lineWidth = 4;
+    context.fill();
+    context.stroke();
+  }
+  context.textAlign = 'right';
+  context.fillStyle = ink.text;
+  context.font = `800 64px ${signFont}`;
+  context.fillText(String(left), width - 54, 406);
+  context.textAlign = 'left';
+  context.font = `700 60px ${signFont}`;
+  context.fillText(line, 64, 508, width - 128);
+}
+
+export type LobbyButton = 'ready' | 'rotate' | 'seat0' | 'seat1' | 'seat2';
+
+export const lobbySize = { width: 1024, height: 900 } as const;
+
+const rowTop = 330;
+const rowHeight = 112;
+const readyButton: SheetButton<LobbyButton> = { id: 'ready', x: 512, y: 740, width: 448, height: 112 };
+const rotateButton: SheetButton<LobbyButton> = { id: 'rotate', x: 64, y: 740, width: 424, height: 112 };
+const seatIds = ['seat0', 'seat1', 'seat2'] as const;
+
+/** The seat that a button stands for; null: it is no seat's. */
+export const seatOfButton = (id: LobbyButton): number | null => {
+  const seat = (seatIds as readonly string[]).indexOf(id);
+  return seat < 0 ? null : seat;
+};
+
+/** Players in the order of their stations. */
+const byStation = ({ state }: Standing): readonly number[] =>
+  state.players
+    .map((_, player) => player)
+    .sort((a, b) => (state.players[a]?.station ?? 0) - (state.players[b]?.station ?? 0));
+
+/** The buttons that whoever reads this may press: a place for each seat that is free or a bot's, and ready. */
+export function lobbyButtons(standing: Standing): readonly SheetButton<LobbyButton>[] {
+  const { people, me } = standing;
+  const places = byStation(standing).flatMap((player, row): SheetButton<LobbyButton>[] => {
+    const person = people[player];
+    const id = seatIds[player];
+    if (!id || player === me || (person && !person.bot)) return [];
+    return [{ id, x: 690, y: rowTop + row * rowHeight + 10, width: 270, height: rowHeight - 24 }];
+  });
+  return me === null ? places : [...places, rotateButton, readyButton];
+}
+
+/** What comes before a match and what came of one: who plays, who is ready, the result. */
+export function paintLobby(context: CanvasRenderingContext2D, standing: Standing, hovered: LobbyButton | null): void {
+  const { state, people, me, rotate } = standing;
+  const { width, height } = lobbySize;
+  paintCard(context, width, height);
+  context.textBaseline = 'alphabetic';
+  context.textAlign = 'center';
+  const over = state.phase === 'over';
+  context.fillStyle = ink.soft;
+  context.font = `700 44px ${signFont}`;
+  context.fillText(over ? (state.end === 'time' ? 'Time is up' : 'All balls thrown') : 'Ball game', width / 2, 88);
+  if (over) {
+    context.fillStyle = ink.text;
+    context.font = `800 170px ${signFont}`;
+    const score = String(state.score);
+    const scoreWidth = context.measureText(score).width;
+    context.font = `700 64px ${signFont}`;
+    const rest = `of ${state.options.balls} caught`;
+    const whole = scoreWidth + 24 + context.measureText(rest).width;
+    context.textAlign = 'left';
+    context.font = `800 170px ${signFont}`;
+    context.fillText(score, (width - whole) / 2, 250);
+    context.fillStyle = ink.soft;
+    context.font = `700 64px ${signFont}`;
+    context.fillText(rest, (width - whole) / 2 + scoreWidth + 24, 250);
+  } else {
+    context.fillStyle = ink.text;
+    context.font = `600 46px ${signFont}`;
+    context.fillText('Two throw, one catches in the basket.', width / 2, 172);
+    context.fillStyle = ink.soft;
+    context.font = `600 42px ${signFont}`;
+    context.fillText(
+      `${state.options.balls} balls, ${Math.round(state.options.seconds)} seconds, a point a catch`,
+      width / 2,
+      240,
+    );
+  }
+  for (const [row, player] of byStation(standing).entries()) {
+    paintRow(context, standing, player, rowTop + row * rowHeight);
+  }
+  const buttons = lobbyButtons(standing);
+  for (const button of buttons) {
+    const hover = hovered === button.id;
+    if (button.id === 'ready') {
+      const ready = state.players[me ?? -1]?.ready ?? false;
+      const label = ready ? 'Wait for me' : over ? 'Play again' : 'Ready';
+      const look = ready
+        ? { fill: hover ? '#4a6275' : '#34495a', ink: ink.text, ring: ink.text, hovered: hover }
+        : { fill: hover ? ink.accentLift : ink.accent, ink: ink.accentInk, ring: ink.text, hovered: hover };
+      paintButton(context, button, label, look, `800 54px ${signFont}`);
+    } else {
+      const label = button.id === 'rotate' ? `Swap roles: ${rotate ? 'on' : 'off'}` : 'Play here';
+      const look = { fill: hover ? '#4a6275' : '#34495a', ink: ink.text, ring: ink.text, hovered: hover };
+      paintButton(context, button, label, look, `700 ${button.id === 'rotate' ? 42 : 38}px ${signFont}`);
+    }
+  }
+  if (me === null) {
+    context.textAlign = 'center';
+    context.textBaseline = 'middle';
+    context.fillStyle = ink.soft;
+    context.font = `600 42px ${signFont}`;
+    context.fillText(
+      people.some((person) => person === null || person.bot)
+        ? 'You are watching. Take a place to play.'
+        : 'You are watching.',
+      width / 2,
+      796,
+    );
+  }
+}
+
+function paintRow(context: CanvasRenderingContext2D, standing: Standing, player: number, top: number): void {
+  const { state, people, me } = standing;
+  const { width } = lobbySize;
+  const station = state.players[player]?.station ?? 0;
+  const look = seatLooks[station];
+  const person = people[player] ?? null;
+  context.fillStyle = player === me ? 'rgba(255, 200, 97, 0.13)' : 'rgba(200, 216, 236, 0.07)';
+  context.beginPath();
+  context.roundRect(48, top, width - 96, rowHeight - 8, 24);
+  context.fill();
+  const middle = top + (rowHeight - 8) / 2;
+  context.fillStyle = look?.color ?? ink.soft;
+  context.beginPath();
+  context.arc(108, middle, 34, 0, 2 * Math.PI);
+  context.fill();
+  context.textAlign = 'center';
+  context.textBaseline = 'middle';
+  context.fillStyle = look?.ink ?? ink.text;
+  context.font = `800 40px ${signFont}`;
+  context.fillText(look?.mark ?? '', 108, middle + 3);
+  context.textAlign = 'left';
+  context.fillStyle = person ? ink.text : ink.soft;
+  context.font = `700 42px ${signFont}`;
+  const name = person ? `${nameOf(person)}${person.me ? ' · you' : ''}` : 'Free';
+  const taken = person !== null && (!person.bot || player === me);
+  context.fillText(name, 164, middle - 20, taken ? 520 : 500);
+  context.fillStyle = ink.soft;
+  context.font = `600 32px ${signFont}`;
+  const catches = catchesOf(state, player);
+  const role = roleTexts[station] ?? '';
+  const scored = state.phase === 'over' && state.players[player]?.role === 'thrower';
+  context.fillText(scored ? `${role}: ${catches} caught` : role, 164, middle + 26, 500);
+  if (!taken) return;
+  const here = person?.presence === 'here';
+  const ready = state.players[player]?.ready;
+  context.textAlign = 'right';
+  context.fillStyle = !here ? ink.warning : ready ? ink.good : ink.soft;
+  context.font = `700 38px ${signFont}`;
+  context.fillText(!here ? 'Away' : ready ? '✓ Ready' : 'Not ready', width - 80, middle + 2);
+}

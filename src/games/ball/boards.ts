@@ -1,0 +1,45 @@
+import { Group } from 'three';
+import { disposeTree } from '../../scene/dispose-tree';
+import { createDrawnTexture } from '../../scene/drawn-texture';
+import type { Quality } from '../../scene/renderer';
+import { createWoodenBoard } from '../wooden-board';
+import { boardSize, paintBoard, type Standing } from './board-drawing';
+import { court } from './court-plan';
+
+/** The same board behind the holder, for the throwers, and behind the throwers, for the holder; arena frame. */
+export interface Boards {
+  readonly object: Group;
+  show(standing: Standing, line: string): void;
+  dispose(): void;
+}
+
+const width = 3.1;
+const shape = { width, height: (width * boardSize.height) / boardSize.width, middle: 3.05 };
+
+export function createBoards(quality: Quality): Boards {
+  const object = new Group();
+  object.name = 'boards';
+  const { texture, draw } = createDrawnTexture(boardSize.width, boardSize.height, quality);
+  for (const { z, turned } of court.boards) {
+    const board = createWoodenBoard(shape, texture);
+    board.position.z = z;
+    board.rotation.y = turned;
+    object.add(board);
+  }
+  let shown = '';
+  return {
+    object,
+    show(standing, line) {
+      const { state, seconds } = standing;
+      const left = state.balls.map((place) => place.on + (place.on === 'air' && place.missed ? 'x' : ''));
+      const key = JSON.stringify([state.score, seconds, state.phase, state.end, state.options, left, line]);
+      if (key === shown) return;
+      shown = key;
+      draw((context) => paintBoard(context, standing, line));
+    },
+    dispose() {
+      object.removeFromParent();
+      disposeTree(object);
+    },
+  };
+}

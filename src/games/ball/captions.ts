@@ -1,0 +1,73 @@
+import type { BallEvent, Refusal } from '../../core/games/ball/ball-state';
+import type { BallCue } from '../../core/games/ball/gestures';
+import type { Pose } from '../../core/math/pose';
+import type { Vec3 } from '../../core/math/vec3';
+import { directionOf } from '../directions';
+import { nameOf, type Person } from './board-drawing';
+
+/** Who hears, and where the others are. */
+export interface Hearing {
+  /** Arena frame. */
+  readonly head: Pose<'arena'>;
+  /** Own player; null: a spectator. */
+  readonly me: number | null;
+  readonly people: readonly (Person | null)[];
+  /** Seconds of a match. */
+  readonly seconds: number;
+}
+
+const whoIs = ({ people, me }: Hearing, player: number): string => {
+  const person = people[player];
+  return player === me ? 'You' : person ? nameOf(person) : 'Somebody';
+};
+
+const refusals: Partial<Readonly<Record<Refusal, string>>> = {
+  taken: 'Somebody else has that ball',
+  reach: 'Too far away',
+  zone: 'Step back to your mark: throws count from there',
+  time: 'Too late: time is up',
+  speed: 'That was faster than an arm can throw',
+};
+
+/** What an event sounds like, in words and, where it has a place, with its direction; null: nothing. */
+export function eventCaption(event: BallEvent, at: Vec3 | null, hearing: Hearing): string | null {
+  const where = at ? `, ${directionOf(hearing.head, at)}` : '';
+  switch (event.type) {
+    case 'started':
+      return `Whistle: ${Math.round(hearing.seconds)} seconds`;
+    case 'thrown':
+      return event.player === hearing.me ? null : `${whoIs(hearing, event.player)} throws${where}`;
+    case 'caught':
+      return `Caught: ${event.score} ${event.score === 1 ? 'point' : 'points'}`;
+    case 'bounced':
+      return event.off === 'basket' ? `The ball hits the rim${where}` : null;
+    case 'missed':
+      return `The ball lands on the floor${where}`;
+    case 'joined':
+      return event.player === hearing.me ? null : `${whoIs(hearing, event.player)} joins`;
+    case 'left':
+      return event.player === hearing.me ? null : `${whoIs(hearing, event.player)} leaves`;
+    case 'ended':
+      return `Bell: ${event.end === 'time' ? 'time is up' : 'all balls are thrown'}, ${event.score} ${event.score === 1 ? 'point' : 'points'}`;
+    case 'refused':
+      return event.player === hearing.me ? (refusals[event.reason] ?? null) : null;
+    default:
+      return null;
+  }
+}
+
+/** What one's own hands sound like, in words; null: nothing that an event does not say too. */
+export function cueCaption({ type, side }: BallCue): string | null {
+  switch (type) {
+    case 'grabbed':
+      return `Ball in the ${side} hand`;
+    case 'thrown':
+      return 'You throw';
+    case 'dropped':
+      return 'Ball back in the rack';
+    case 'slipped':
+      return 'The ball slipped away';
+    case 'near':
+      return null;
+  }
+}

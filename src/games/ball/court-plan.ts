@@ -1,0 +1,50 @@
+import { holderStation, rackPosition, stations, throwingDistance } from '../../core/games/ball/stations';
+
+/** Where things of the court are, arena frame [m]: the throwers stand about the origin and throw along −Z. */
+export const court = {
+  /** The painted ground, and the lane between throwers and holder. */
+  halfWidth: 3.4,
+  near: 2.1,
+  far: -7.2,
+  laneHalfWidth: 1.75,
+  laneNear: 0.95,
+  laneFar: -6.1,
+  /** Of each player's mark. */
+  padRadius: 0.46,
+  holderZ: stations[holderStation]?.position.z ?? -throwingDistance,
+  /** One board for the throwers, one for the holder. */
+  boards: [
+    { z: -9.4, turned: 0 },
+    { z: 6.6, turned: Math.PI },
+  ],
+} as const;
+
+/** A seat in paint and words: two throwers and the holder are told apart by hue, lightness and mark. */
+export interface SeatLook {
+  readonly color: string;
+  readonly ink: string;
+  /** What is painted on the mark and beside the name. */
+  readonly mark: string;
+  /** Colours of the avatar: one of `palettes` in src/avatar. */
+  readonly palette: string;
+}
+
+/** By station. */
+export const seatLooks: readonly SeatLook[] = [
+  { color: '#2a6fd6', ink: '#ffffff', mark: '1', palette: 'porcelain' },
+  { color: '#f08a24', ink: '#241200', mark: '2', palette: 'ember' },
+  { color: '#f3efe2', ink: '#1b2430', mark: '●', palette: 'violet' },
+];
+
+export const roleTexts = ['Thrower 1', 'Thrower 2', 'Basket holder'] as const;
+
+/** Middle and size of a rack's tray [m]. */
+export function trayOf(side: 0 | 1, balls: number) {
+  const perRack = Math.ceil(balls / 2);
+  const places = Array.from({ length: perRack }, (_, slot) => rackPosition(side * perRack + slot, balls));
+  const xs = places.map(({ x }) => x);
+  const zs = places.map(({ z }) => z);
+  const middle = (values: readonly number[]) => (Math.min(...values) + Math.max(...values)) / 2;
+  const spread = (values: readonly number[]) => Math.max(...values) - Math.min(...values);
+  return { x: middle(xs), z: middle(zs), width: spread(xs) + 0.2, depth: spread(zs) + 0.2, y: places[0]?.y ?? 0.925 };
+}

@@ -1,0 +1,165 @@
+import type { BallEvent, BallState } from '../../core/games/ball/ball-state';
+import { ballInAir } from '../../core/games/ball/flight';
+import type { BallCue } from '../../core/games/ball/gestures';
+import { ballSecondsLeft } from '../../core/games/ball/rules';
+import { holderStation, stations } from '../../core/games/ball/stations';
+import { clamp } from '../../core/math/damper';
+import { invertTransform, type Pose, type Transform, transformPoint, transformPose } from '../../core/math/pose';
+import { add, length, lerp, type Vec3, vec3 } from '../../core/math/vec3';
+import { createSoundStage, type Player, type Recipe, type Recipes } from '../sound-stage';
+import { bell, chime, click, warning, whoosh } from '../synthesis';
+import type { Person } from './board-drawing';
+import { cueCaption, eventCaption, type Hearing } from './captions';
+import { bounce, caughtInWicker, knock, tick, whistle } from './synthesis';
+
+/** What is heard of the ball game: from where it happens, and in words. */
+export interface BallSounds {
+  /** Starts the audio; a browser allows it only within a user's gesture. Captions come without it. Rejects where there is no audio. */
+  unlock(): Promise<void>;
+  hear(heard: Heard): void;
+  /** Where the ears are, floor frame. */
+  listen(head: Pose<'floor'>, floorFromArena: Transform<'floor', 'arena'>): void;
+  /** 0 silent to 1. */
+  setVolume(volume: number): void;
+  setMuted(on: boolean): void;
+  dispose(): void;
+}
+
+/** One frame of a match for the ears. */
+export interface Heard {
+  readonly state: BallState;
+  /** Seconds of the match. */
+  readonly time: number;
+  readonly events: readonly BallEvent[];
+  readonly cues: readonly BallCue[];
+  readonly me: number | null;
+  readonly people: readonly (Person | null)[];
+  /** The middle of one's own fists, arena frame; null: not seen. */
+  readonly fists: Readonly<Record<'left' | 'right', Vec3 | null>>;
+}
+
+const bounceSteps = 4;
+const bounceName = (strength: number): string => `bounce ${Math.round(clamp(strength, 0, 1) * bounceSteps)}`;
+/** Four notes, over and over: each catch sounds higher than the one before, until the next four. */
+const chimeName = (score: number): string => `chime ${5 * (((score - 1) % 4) + 1)}`;
+
+const recipes: Recipes = new Map<string, Recipe>([
+  ...Object.entries({ bell, click, knock, tick, warning, whistle, whoosh, wicker: caughtInWicker }),
+  ...Array.from({ length: bounceSteps + 1 }, (_, step): [string, Recipe] => [
+    bounceName(step / bounceSteps),
+    (rate) => bounce(rate, step / bounceSteps),
+  ]),
+  ...[5, 10, 15, 20].map((points): [string, Recipe] => [`chime ${points}`, (rate) => chime(rate, points)]),
+]);
+
+const boardAt = vec3(0, 3, -6);
+const headOfStation = (station: number): Vec3 => add((stations[station] ?? stations[0]!).position, vec3(0, 1.4, 0));
+
+/** Where an event sounds from, arena frame; null: everywhere. */
+export function placeOf(event: BallEvent, state: BallState): Vec3 | null {
+  switch (event.type) {
+    case 'thrown':
+    case 'bounced':
+    case 'rolls':
+      return event.launch.position;
+    case 'missed': {
+      const place = state.balls[event.ball];
+      return place?.on === 'air' || place?.on === 'floor' ? place.launch.position : null;
+    }
+    case 'caught':
+      return headOfStation(holderStation);
+    case 'grabbed':
+    case 'returned':
+    case 'joined':
+    case 'left':
+      return headOfStation(state.players[event.player]?.station ?? 0);
+    default:
+      return null;
+  }
+}
+
+export function createBallSounds(onCaption: (text: string) => void, createContext?: () => AudioContext): BallSounds {
+  const stage = createSoundStage(recipes, createContext);
+  let floorFromArena: Transform<'floor', 'arena'> = {
+    position: vec3(0, 0, 0),
+    orientation: { x: 0, y: 0, z: 0, w: 1 },
+  };
+  let head: Pose<'floor'> = { position: vec3(0, 1.6, 0), orientation: { x: 0, y: 0, z: 0, w: 1 } };
+  let ticked = 0;
+  const inFloor = (point: Vec3) => transformPoint(floorFromArena, point);
+
+  function playEvent(event: BallEvent, { state, me }: Heard, { context, play }: Player): void {
+    const at = placeOf(event, state);
+    switch (event.type) {
+      case 'started':
+        play('whistle', inFloor(boardAt));
+        return;
+      case 'ended':
+        play('bell', inFloor(boardAt), 0.2);
+        return;
+      case 'thrown': {
+        const { panner } = play('whoosh', inFloor(event.launch.position));
+        // It goes along with the ball.
+        for (let step = 1; step <= 4; step++) {
+          const after = step * 0.15;
+          const there = inFloor(ballInAir(event.launch, event.launch.time + after));
+          panner.positionX.linearRampToValueAtTime(there.x, context.currentTime + after);
+          panner.positionY.linearRampToValueAtTime(there.y, context.currentTime + after);
+          panner.positionZ.linearRampToValueAtTime(there.z, context.currentTime + after);
+        }
+        return;
+      }
+      case 'caught':
+        if (at) play('wicker', inFloor(at));
+        // The chime is for everybody: it rings half way.
+        if (at) play(chimeName(event.score), lerp(inFloor(at), head.position, 0.5), 0.1);
+        return;
+      case 'bounced':
+        if (at) play(event.off === 'basket' ? 'knock' : bounceName(length(event.launch.velocity) / 6), inFloor(at));
+        return;
+      case 'grabbed':
+        if (at && event.player !== me) play('click', inFloor(at));
+        return;
+      case 'refused':
+        if (event.player === me && event.reason !== 'seen-before') play('warning', head.position);
+    }
+  }
+
+  return {
+    unlock: stage.unlock,
+    hear(heard) {
+      const playing = stage.player;
+      const { state, events, cues, people, me, fists } = heard;
+      const hearing: Hearing = {
+        head: transformPose(invertTransform(floorFromArena), head),
+        me,
+        people,
+        seconds: state.options.seconds,
+      };
+      for (const cue of cues) {
+        const text = cueCaption(cue);
+        if (text) onCaption(text);
+        const at = fists[cue.side];
+        if (playing && at && (cue.type === 'grabbed' || cue.type === 'dropped')) playing.play('click', inFloor(at));
+        if (playing && at && cue.type === 'slipped') playing.play('warning', inFloor(at));
+      }
+      for (const event of events) {
+        const text = eventCaption(event, placeOf(event, state), hearing);
+        if (text) onCaption(text);
+        if (playing) playEvent(event, heard, playing);
+      }
+      // The last ten seconds tick.
+      const left = state.phase === 'running' ? Math.ceil(ballSecondsLeft(state)) : 0;
+      if (playing && left > 0 && left <= 10 && left !== ticked) playing.play('tick', inFloor(boardAt));
+      ticked = left;
+    },
+    listen(next, placed) {
+      head = next;
+      floorFromArena = placed;
+      stage.listen(next);
+    },
+    setVolume: stage.setVolume,
+    setMuted: stage.setMuted,
+    dispose: stage.dispose,
+  };
+}

@@ -1,0 +1,37 @@
+import { DoubleSide, Mesh, MeshBasicMaterial, RingGeometry } from 'three';
+import { zoneRadius } from '../../core/games/ball/stations';
+import { clamp } from '../../core/math/damper';
+import type { Vec3 } from '../../core/math/vec3';
+
+/** The edge of where throws and catches count: seen only by whoever comes near it; arena frame. */
+export interface ZoneRing {
+  readonly mesh: Mesh;
+  /** The station's middle and one's own head; null: nobody plays. */
+  show(station: Vec3 | null, head: Vec3): void;
+}
+
+/** It begins to show this far before the edge [m]. */
+const notice = 0.4;
+
+export function createZoneRing(): ZoneRing {
+  const material = new MeshBasicMaterial({
+    color: '#ff9d1f',
+    transparent: true,
+    opacity: 0,
+    side: DoubleSide,
+    depthWrite: false,
+  });
+  const mesh = new Mesh(new RingGeometry(zoneRadius - 0.05, zoneRadius, 96).rotateX(-Math.PI / 2), material);
+  mesh.renderOrder = 2;
+  mesh.visible = false;
+  return {
+    mesh,
+    show(station, head) {
+      const near = station ? Math.hypot(head.x - station.x, head.z - station.z) - (zoneRadius - notice) : 0;
+      mesh.visible = station !== null && near > 0;
+      if (!station || !mesh.visible) return;
+      mesh.position.set(station.x, 0.02, station.z);
+      material.opacity = clamp(near / notice, 0.15, 1);
+    },
+  };
+}

@@ -1,0 +1,133 @@
+import { Matrix4, Mesh, MeshBasicMaterial, PlaneGeometry, Vector3 } from 'three';
+import { createDrawnTexture } from '../scene/drawn-texture';
+import type { Quality } from '../scene/renderer';
+
+interface Point {
+  readonly x: number;
+  readonly y: number;
+  readonly z: number;
+}
+
+/** A button on a sheet [pixels]. */
+export interface SheetButton<Id extends string> {
+  readonly id: Id;
+  readonly x: number;
+  readonly y: number;
+  readonly width: number;
+  readonly height: number;
+}
+
+export interface SheetSize {
+  /** Pixels. */
+  readonly width: number;
+  readonly height: number;
+  /** Width in the world [m]. */
+  readonly metres: number;
+}
+
+/** What a sheet shows. Equal keys are painted once. */
+export interface SheetContent<Id extends string> {
+  readonly key: string;
+  readonly buttons: readonly SheetButton<Id>[];
+  paint(context: CanvasRenderingContext2D, hovered: Id | null): void;
+}
+
+/** A sheet in the world that is read and pressed, facing +Z of its own frame. */
+export interface Sheet<Id extends string> {
+  readonly mesh: Mesh;
+  /** null hides it. */
+  show(content: SheetContent<Id> | null): void;
+  /** The button that a ray meets, and how far away [m, floor frame; unit direction]; null: none, or there is no sheet now. */
+  buttonAt(origin: Point, direction: Point): { readonly id: Id; readonly distance: number } | null;
+  /** Lights the button that something points at. */
+  setHovered(id: Id | null): void;
+}
+
+/** The button under a point of the sheet [m, from its middle]. */
+export function buttonUnder<Id extends string>(
+  buttons: readonly SheetButton<Id>[],
+  size: SheetSize,
+  x: number,
+  y: number,
+): Id | null {
+  const pixelsPerMetre = size.width / size.metres;
+  const px = size.width / 2 + x * pixelsPerMetre;
+  const py = size.height / 2 - y * pixelsPerMetre;
+  const found = buttons.find(
+    (button) => px >= button.x && px <= button.x + button.width && py >= button.y && py <= button.y + button.height,
+  );
+  return found?.id ?? null;
+}
+
+export function createSheet<Id extends string>(size: SheetSize, quality: Quality): Sheet<Id> {
+  const { texture, draw } = createDrawnTexture(size.width, size.height, quality);
+  const mesh = new Mesh(
+    new PlaneGeometry(size.metres, (size.metres * size.height) / size.width),
+    new MeshBasicMaterial({ map: texture, transparent: true, fog: false, toneMapped: false }),
+  );
+  mesh.renderOrder = 5;
+  mesh.visible = false;
+  let shown: SheetContent<Id> | null = null;
+  let hovered: Id | null = null;
+  let drawn = '';
+
+  function redraw(): void {
+    if (!shown) return;
+    const content = shown;
+    const key = JSON.stringify([content.key, hovered]);
+    if (key === drawn) return;
+    drawn = key;
+    draw((context) => content.paint(context, hovered));
+  }
+
+  const inverse = new Matrix4();
+  const from = new Vector3();
+  const along = new Vector3();
+  return {
+    mesh,
+    show(content) {
+      shown = content;
+      mesh.visible = content !== null;
+      redraw();
+    },
+    buttonAt(origin, direction) {
+      if (!shown) return null;
+      mesh.updateWorldMatrix(true, false);
+      inverse.copy(mesh.matrixWorld).invert();
+      from.copy(origin).applyMatrix4(inverse);
+      along.copy(direction).transformDirection(inverse);
+      if (from.z <= 0 || along.z >= 0) return null;
+      const distance = -from.z / along.z;
+      const id = buttonUnder(shown.buttons, size, from.x + along.x * distance, from.y + along.y * distance);
+      return id === null ? null : { id, distance };
+    },
+    setHovered(id) {
+      hovered = id;
+      redraw();
+    },
+  };
+}
+
+/** Paints a pill with a word in it, lit while something points at it. */
+export function paintButton(
+  context: CanvasRenderingContext2D,
+  { x, y, width, height }: SheetButton<string>,
+  label: string,
+  look: { readonly fill: string; readonly ink: string; readonly ring: string; readonly hovered: boolean },
+  font: string,
+): void {
+  context.fillStyle = look.fill;
+  context.beginPath();
+  context.roundRect(x, y, width, height, height / 2);
+  context.fill();
+  if (look.hovered) {
+    context.strokeStyle = look.ring;
+    context.lineWidth = 7;
+    context.stroke();
+  }
+  context.fillStyle = look.ink;
+  context.textAlign = 'center';
+  context.textBaseline = 'middle';
+  context.font = font;
+  context.fillText(label, x + width / 2, y + height / 2 + 4, width - 40);
+}

@@ -1,0 +1,139 @@
+import type { Pose } from '../core/math/pose';
+import { rotate } from '../core/math/quat';
+import { type Vec3, vec3 } from '../core/math/vec3';
+
+/** Makes a sound's samples at a rate [1/s]. */
+export type Recipe = (rate: number) => Float32Array<ArrayBuffer>;
+
+/** All that can be played, by name. */
+export type Recipes = ReadonlyMap<string, Recipe>;
+
+/** Sounds from where they happen, for ears that move; floor frame. */
+export interface SoundStage {
+  /** Starts the audio; a browser allows it only within a user's gesture. Rejects where there is no audio. */
+  unlock(): Promise<void>;
+  /** null while the audio rests: it would keep everything and play it at once later. */
+  readonly player: Player | null;
+  listen(head: Pose<'floor'>): void;
+  /** 0 silent to 1. */
+  setVolume(volume: number): void;
+  setMuted(on: boolean): void;
+  dispose(): void;
+}
+
+/** Seconds in which volume and mute fade. */
+const fadeSeconds = 0.03;
+
+function createPlayer(context: AudioContext, recipes: Recipes) {
+  const master = context.createGain();
+  const limiter = context.createDynamicsCompressor();
+  master.connect(limiter).connect(context.destination);
+  const buffers = new Map<string, AudioBuffer>();
+
+  /** Rendered once, at the context's own rate. */
+  function buffer(name: string): AudioBuffer {
+    const known = buffers.get(name);
+    if (known) return known;
+    const recipe = recipes.get(name);
+    if (!recipe) throw new Error(`games/sound-stage: there is no sound ${name}`);
+    const samples = recipe(context.sampleRate);
+    const made = context.createBuffer(1, samples.length, context.sampleRate);
+    made.copyToChannel(samples, 0);
+    buffers.set(name, made);
+    return made;
+  }
+
+  /** Renders everything, one sound at a time with the page's own work between, so that no frame of the match has to. */
+  async function warm(): Promise<void> {
+    for (const name of recipes.keys()) {
+      buffer(name);
+      await new Promise((resolve) => setTimeout(resolve));
+    }
+  }
+
+  /** Starts a sound at a point of the floor frame; the panner goes when the sound has ended. */
+  function play(name: string, at: Vec3, delay = 0): { source: AudioBufferSourceNode; panner: PannerNode } {
+    const source = context.createBufferSource();
+    source.buffer = buffer(name);
+    const panner = context.createPanner();
+    panner.panningModel = 'HRTF';
+    panner.distanceModel = 'inverse';
+    panner.refDistance = 2;
+    panner.rolloffFactor = 0.7;
+    panner.positionX.value = at.x;
+    panner.positionY.value = at.y;
+    panner.positionZ.value = at.z;
+    source.connect(panner).connect(master);
+    source.addEventListener('ended', () => panner.disconnect());
+    source.start(context.currentTime + delay);
+    return { source, panner };
+  }
+  return { context, master, warm, play };
+}
+
+/** What plays while the audio runs. */
+export type Player = ReturnType<typeof createPlayer>;
+
+function placeListener({ listener, currentTime }: AudioContext, head: Pose<'floor'>): void {
+  const { x, y, z } = head.position;
+  const ahead = rotate(head.orientation, vec3(0, 0, -1));
+  const upward = rotate(head.orientation, vec3(0, 1, 0));
+  // Some browsers only have the older methods.
+  if (!listener.positionX) {
+    listener.setPosition(x, y, z);
+    listener.setOrientation(ahead.x, ahead.y, ahead.z, upward.x, upward.y, upward.z);
+    return;
+  }
+  const values = [
+    [listener.positionX, x],
+    [listener.positionY, y],
+    [listener.positionZ, z],
+    [listener.forwardX, ahead.x],
+    [listener.forwardY, ahead.y],
+    [listener.forwardZ, ahead.z],
+    [listener.upX, upward.x],
+    [listener.upY, upward.y],
+    [listener.upZ, upward.z],
+  ] as const;
+  for (const [parameter, value] of values) parameter.setValueAtTime(value, currentTime);
+}
+
+export function createSoundStage(
+  recipes: Recipes,
+  createContext: () => AudioContext = () => new AudioContext(),
+): SoundStage {
+  let player: Player | null = null;
+  let volume = 0.8;
+  let muted = false;
+  const applyVolume = () => {
+    if (player) player.master.gain.setTargetAtTime(muted ? 0 : volume, player.context.currentTime, fadeSeconds);
+  };
+  return {
+    get player() {
+      return player?.context.state === 'running' ? player : null;
+    },
+    async unlock() {
+      if (!player) {
+        player = createPlayer(createContext(), recipes);
+        player.master.gain.value = muted ? 0 : volume;
+      }
+      if (player.context.state !== 'running') await player.context.resume();
+      await player.warm();
+    },
+    listen(head) {
+      if (player) placeListener(player.context, head);
+    },
+    setVolume(next) {
+      volume = Math.max(0, Math.min(1, next));
+      applyVolume();
+    },
+    setMuted(on) {
+      muted = on;
+      applyVolume();
+    },
+    dispose() {
+      void player?.context.close();
+      player = null;
+    },
+  };
+}

@@ -1,0 +1,73 @@
+/** What is known of another clock by asking it for the time. */
+export interface ClockSync {
+  /** The other clock minus ours [s]; 0 before the first answer. */
+  readonly ahead: number;
+  /** Round trip of the answer that `ahead` is taken from [s]; Infinity before the first. */
+  readonly roundTrip: number;
+  /** Whether to ask now: often at first, then every two seconds. */
+  due(now: number): boolean;
+  /** An answer: asked at `sent`, heard at `now` (ours), given at `there` (theirs). */
+  hear(sent: number, there: number, now: number): void;
+  /** Forgets everything: after a pause of the machine clocks may have gone on differently. */
+  reset(): void;
+}
+
+/** Answers older than this [s] count no more: clocks drift. */
+const memory = 30;
+const eager = { asks: 5, every: 0.2 } as const;
+const every = 2;
+/** No answer in this time [s], or a clock that went this far between two calls: start afresh. */
+const longestSilence = 5;
+
+/**
+ * The answer with the shortest round trip tells best: half of it is the largest error it can have. Clocks in seconds, monotonic;
+ * a gap of more than 5 s between two calls of `due` counts as a pause of the machine.
+ */
+export function createClockSync(): ClockSync {
+  let answers: { readonly at: number; readonly ahead: number; readonly roundTrip: number }[] = [];
+  let asked = 0;
+  let nextAsk = Number.NEGATIVE_INFINITY;
+  let lastCall: number | null = null;
+  let best: { readonly ahead: number; readonly roundTrip: number } = {
+    ahead: 0,
+    roundTrip: Number.POSITIVE_INFINITY,
+  };
+
+  function reset(): void {
+    // The old answer serves until the first new one.
+    answers = [];
+    asked = 0;
+    nextAsk = Number.NEGATIVE_INFINITY;
+  }
+
+  return {
+    get ahead() {
+      return best.ahead;
+    },
+    get roundTrip() {
+      return best.roundTrip;
+    },
+    due(now) {
+      if (lastCall !== null && Math.abs(now - lastCall) > longestSilence) reset();
+      lastCall = now;
+      if (now < nextAsk) return false;
+      asked += 1;
+      nextAsk = now + (asked < eager.asks ? eager.every : every);
+      return true;
+    },
+    hear(sent, there, now) {
+      const roundTrip = now - sent;
+      if (!(roundTrip >= 0 && roundTrip < longestSilence)) return;
+      answers = answers.filter(({ at }) => now - at < memory);
+      answers.push({ at: now, ahead: there - (sent + now) / 2, roundTrip });
+      best = answers.reduce((least, answer) => (answer.roundTrip < least.roundTrip ? answer : least));
+      // A clock that was set, or a machine that slept: no answer can be wrong by more than half its round trip.
+      const newest = answers[answers.length - 1]!;
+      if (Math.abs(newest.ahead - best.ahead) > (newest.roundTrip + best.roundTrip) / 2 + 0.005) {
+        answers = [newest];
+        best = newest;
+      }
+    },
+    reset,
+  };
+}

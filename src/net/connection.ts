@@ -1,0 +1,97 @@
+import type { Calibration } from '../core/body/calibration';
+import type { BallDeed, BallEvent, BallState } from '../core/games/ball/ball-state';
+import type { Transform } from '../core/math/pose';
+import type { Farewell, RoomKind, SeatRow } from '../core/protocol/messages';
+import type { PosePacket } from '../core/protocol/pose-codec';
+
+/** How it stands between this page and its room. */
+export interface ConnectionStatus {
+  /** ended: for good, see `reason`; nothing more comes. */
+  readonly phase: 'connecting' | 'joined' | 'reconnecting' | 'ended';
+  /** Attempts since the connection was last whole; 0: none needed. */
+  readonly attempt: number;
+  /** Seconds until the next attempt; null: one is under way, or none will be made. */
+  readonly retryIn: number | null;
+  /** Why it ended, or why the last attempt failed; null: nothing to tell. */
+  readonly reason: Farewell | 'unreachable' | 'refused' | null;
+}
+
+/** The room as it is known here. */
+export interface RoomView {
+  readonly id: string;
+  readonly kind: RoomKind;
+  /** By seat number; null: free. */
+  readonly seats: readonly (SeatRow | null)[];
+  /** Ours; null: a spectator. Also the player's index in the match. */
+  readonly mySeat: number | null;
+  readonly spectators: number;
+  /** Roles move on by one seat with every rematch. */
+  readonly rotate: boolean;
+  /**
+   * The match with our own deeds as they will turn out if the rules allow them; null in an open room. Heads, hands and the basket are
+   * not in it as they are now: poses are with the remote players, and the basket is in its holder's hands (`basketInHands`).
+   */
+  readonly match: BallState | null;
+  /** Seconds of the match minus seconds of this page's clock. */
+  readonly matchAhead: number;
+  /** How many rounds were cut short because the room had forgotten them (its server was restarted). */
+  readonly voided: number;
+}
+
+/** A pose packet of somebody else. */
+export interface ArrivedPose {
+  readonly seat: number;
+  readonly packet: PosePacket;
+  /** By this page's clock [s]. */
+  readonly arrivedAt: number;
+}
+
+/** What came since the last call. */
+export interface ConnectionUpdate {
+  /** What happened in the match, oldest first. Not what happened before we came: that is in the match as it was told. */
+  readonly events: readonly BallEvent[];
+  readonly poses: readonly ArrivedPose[];
+  /** welcome: the room is known afresh, after joining or returning. match: another round began. voided: see `RoomView.voided`. */
+  readonly news: readonly ('welcome' | 'match' | 'voided' | 'seats')[];
+}
+
+/** What one frame of this avatar shows to the others, floor frame. */
+export type ShownPose = Omit<PosePacket, 'timeMs'>;
+
+/**
+ * A place in a room, whether the Room runs on a server or in this page. Times are this page's clock [s], that of the tracked frames
+ * (`performance.now() / 1000`).
+ */
+export interface Connection {
+  readonly status: ConnectionStatus;
+  /** null: never joined yet. Kept, as it was, while the connection is lost. */
+  readonly room: RoomView | null;
+  /** Once a frame: what came since the last call. */
+  update(time: number): ConnectionUpdate;
+  /** Once a frame; sends 30 of them a second. `time`: of the tracked frame. Nothing while a spectator or not connected. */
+  sendPose(time: number, shown: ShownPose): void;
+  /** A deed with a ball: shown at once, judged by the Room. */
+  act(deed: BallDeed): void;
+  ready(ready: boolean): void;
+  rotate(rotate: boolean): void;
+  away(away: boolean): void;
+  /** Another seat that is free; null: watch. */
+  sit(seat: number | null): void;
+  calibrate(calibration: Calibration): void;
+  /** Where a seat's floor lies in the arena. */
+  arenaFromFloor(seat: number): Transform<'arena', 'floor'>;
+  /** Gives the seat up; the connection has ended. */
+  leave(): void;
+}
+
+/** Who joins, and as what. */
+export interface Visitor {
+  readonly name: string;
+  readonly calibration: Calibration;
+  /** Watches only. */
+  readonly spectate?: boolean;
+  /** Is no person: gives its seat to the first person who finds none, and is marked. */
+  readonly bot?: boolean;
+  /** A seat rather than the first that is free. */
+  readonly seat?: number;
+}

@@ -1,0 +1,135 @@
+import { describe, expect, it } from 'vitest';
+import { type BallPlay, createBallPlay } from '../src/ball-play';
+import { defaultCalibration } from '../src/core/body/calibration';
+import { createEstimator } from '../src/core/estimation/estimators';
+import type { BallEvent, BallOptions } from '../src/core/games/ball/ball-state';
+import { allReleased, type Buttons } from '../src/core/games/button-presses';
+import { distance } from '../src/core/math/vec3';
+import { createLoopbackHost } from '../src/net/loopback-connection';
+
+const released: Buttons = { left: allReleased, right: allReleased };
+
+/** One page with a room of its own, frame by frame at 72 Hz; `acting`: the built-in player has the own seat. */
+function page(options: {
+  acting?: boolean;
+  bots?: boolean;
+  seat?: number;
+  spectate?: boolean;
+  ball?: Partial<BallOptions>;
+  rateHz?: number;
+}) {
+  const { acting = true, bots = true, ball = {}, rateHz = 72 } = options;
+  const host = createLoopbackHost({ kind: 'ball', seed: 3, ball });
+  const player: BallPlay = createBallPlay({
+    connect: host.connect,
+    visitor: {
+      name: 'Robin',
+      calibration: defaultCalibration,
+      ...(options.seat !== undefined && { seat: options.seat }),
+      ...(options.spectate && { spectate: true }),
+    },
+    bots: () => bots,
+    acting: () => acting,
+    seed: 7,
+  });
+  const estimator = createEstimator('ik', defaultCalibration);
+  const events: BallEvent[] = [];
+  let time = 10;
+  const frame = () => {
+    time += 1 / rateHz;
+    player.begin(time);
+    const performed = acting ? player.act(time) : null;
+    const seen = player.follow(time, performed?.frame ?? null, performed?.buttons ?? released);
+    events.push(...(seen?.events ?? []));
+    if (performed) player.send(performed.frame, estimator.estimate(performed.frame), { left: 0, right: 0 });
+    return seen;
+  };
+  return {
+    player,
+    host,
+    events,
+    frame,
+    until(condition: () => boolean, seconds: number) {
+      const end = time + seconds;
+      while (!condition()) {
+        if (time > end) throw new Error(`still not after ${seconds} s: ${JSON.stringify(player.probe())}`);
+        frame();
+      }
+    },
+  };
+}
+
+describe('one person with two bots', () => {
+  for (const seat of [0, 1, 2]) {
+    it(`plays a whole match from seat ${seat}, everybody through the same Room`, () => {
+      const { player, until, events } = page({ seat });
+      until(() => player.probe()?.phase === 'over', 110);
+      const { score, end, ballsLeft, people } = player.probe() ?? {};
+      expect({ end, ballsLeft }).toEqual({ end: 'balls', ballsLeft: 0 });
+      expect(score).toBeGreaterThanOrEqual(12);
+      expect(people?.filter((person) => person?.bot)).toHaveLength(2);
+      expect(events.filter(({ type }) => type === 'caught')).toHaveLength(score ?? -1);
+      expect(events.filter(({ type }) => type === 'refused')).toEqual([]);
+    });
+  }
+
+  it('sees their bodies where their seats are, and the basket in the holder’s hands', () => {
+    const { player, until } = page({ seat: 0 });
+    until(() => player.newest?.bodies.length === 2, 10);
+    const { bodies, opening, players } = player.newest ?? {};
+    expect(bodies?.map(({ id }) => id)).toEqual([1, 2]);
+    const holder = players?.[2];
+    expect(holder?.role).toBe('holder');
+    for (const side of ['left', 'right'] as const) {
+      const fist = holder?.fists[side];
+      expect(fist && opening && distance(fist, opening.position)).toBeCloseTo(0.22, 2);
+    }
+    // Own floor frame: the other thrower stands 1.6 m to the right, the holder 5 m away.
+    const [beside, ahead] = bodies ?? [];
+    expect(beside?.placement.position.x).toBeCloseTo(1.6, 6);
+    expect(Math.hypot(ahead?.placement.position.x ?? 0, ahead?.placement.position.z ?? 0)).toBeCloseTo(5, 6);
+  });
+
+  it('whoever plays by hand is asked; the built-in player is ready by itself', () => {
+    const waiting = page({ acting: false });
+    for (let i = 0; i < 5 * 72; i++) waiting.frame();
+    expect(waiting.player.probe()).toMatchObject({ phase: 'ready', ready: false });
+    waiting.player.ready(true);
+    waiting.until(() => waiting.player.probe()?.phase === 'running', 3);
+  });
+
+  it('plays again when all are ready, with roles moved on if asked', () => {
+    const { player, until } = page({ seat: 0, ball: { balls: 2, seconds: 20 } });
+    until(() => player.probe()?.phase === 'over', 40);
+    expect(player.probe()?.role).toBe('thrower');
+    player.rotate(true);
+    until(() => player.probe()?.phase === 'running', 20);
+    expect(player.probe()?.score).toBe(0);
+    const first = player.probe()?.role;
+    until(() => player.probe()?.phase === 'over', 40);
+    until(() => player.probe()?.phase === 'running', 20);
+    const second = player.probe()?.role;
+    expect([first, second]).toContain('holder');
+  });
+
+  it('a spectator has no seat and sees three bots play', () => {
+    const { player, until } = page({ spectate: true, acting: false, ball: { balls: 4, seconds: 30 } });
+    until(() => player.probe()?.phase === 'over', 60);
+    expect(player.probe()).toMatchObject({ seat: null, role: null });
+    expect(player.newest?.bodies).toHaveLength(3);
+  });
+
+  it('built-in players throw as well where pictures come four times a second', () => {
+    const { player, until, events } = page({ seat: 0, rateHz: 4 });
+    until(() => player.probe()?.phase === 'over', 110);
+    expect(player.probe()?.end).toBe('balls');
+    expect(player.probe()?.score).toBeGreaterThanOrEqual(6);
+    expect(events.filter(({ type }) => type === 'thrown')).toHaveLength(20);
+  });
+
+  it('bots go when they are not wanted', () => {
+    const alone = page({ bots: false });
+    for (let i = 0; i < 3 * 72; i++) alone.frame();
+    expect(alone.player.probe()?.people.filter(Boolean)).toHaveLength(1);
+  });
+});

@@ -1,0 +1,188 @@
+import fc from 'fast-check';
+import { describe, expect, test } from 'vitest';
+import { defaultCalibration } from '../../../src/core/body/calibration';
+import { clientMessageFrom, packRow, roomMessageFrom, unpackRow } from '../../../src/core/protocol/messages';
+import { cleanName } from '../../../src/core/protocol/names';
+import { decodeFrame, encodeFrame } from '../../../src/core/protocol/pose-frame';
+import { pageParser, relayParser, type SocketPacket } from '../../../src/core/protocol/small-frames';
+
+const join = {
+  type: 'join',
+  version: 1,
+  name: 'Ann',
+  calibration: defaultCalibration,
+  spectate: false,
+  bot: false,
+  seat: null,
+};
+const throwing = {
+  type: 'throw',
+  sequence: 3,
+  side: 'left',
+  ball: 4,
+  at: 12.5,
+  position: { x: 0, y: 1.5, z: -0.5 },
+  velocity: { x: 0, y: 3, z: -5 },
+};
+
+describe('control messages', () => {
+  test('good ones are read as they are', () => {
+    for (const message of [
+      join,
+      { type: 'ready', ready: true },
+      { type: 'deed', deed: throwing },
+      { type: 'sit', seat: null },
+      { type: 'ping', sent: 1.5 },
+    ]) {
+      expect(clientMessageFrom(JSON.parse(JSON.stringify(message)))).toEqual(message);
+    }
+  });
+
+  test.each([
+    ['nothing', null],
+    ['text', 'join'],
+    ['an unknown type', { type: 'score', points: 20 }],
+    ['a field too many', { ...join, identity: 'somebody else' }],
+    ['a field too few', { type: 'ready' }],
+    ['another version', { ...join, version: 2 }],
+    ['a seat that no room has', { type: 'sit', seat: 16 }],
+    ['half a seat', { type: 'sit', seat: 0.5 }],
+    ['a giant', { ...join, calibration: { eyeHeight: 40, armSpan: 1.5 } }],
+    ['a name as long as a book', { ...join, name: 'a'.repeat(300) }],
+    ['a throw from nowhere', { type: 'deed', deed: { ...throwing, position: { x: Number.NaN, y: 0, z: 0 } } }],
+    ['a throw without end', { type: 'deed', deed: { ...throwing, velocity: { x: 1e300, y: 0, z: 0 } } }],
+    ['the throw of another player', { type: 'deed', deed: { ...throwing, player: 2 } }],
+    ['deed number zero', { type: 'deed', deed: { ...throwing, sequence: 0 } }],
+  ])('%s is refused', (_what, message) => {
+    expect(clientMessageFrom(message)).toBeNull();
+  });
+
+  test('no value at all makes either reader throw', () => {
+    fc.assert(
+      fc.property(fc.anything(), (value) => {
+        clientMessageFrom(value);
+        roomMessageFrom(value);
+      }),
+    );
+  });
+
+  test('a row of a seat survives packing, measures to the millimetre', () => {
+    fc.assert(
+      fc.property(
+        fc.record({
+          name: fc.string({ maxLength: 20 }),
+          calibration: fc.record({
+            eyeHeight: fc.integer({ min: 900, max: 2200 }).map((mm) => mm / 1000),
+            armSpan: fc.integer({ min: 700, max: 2200 }).map((mm) => mm / 1000),
+          }),
+          bot: fc.boolean(),
+          presence: fc.constantFrom('here' as const, 'away' as const, 'gone' as const),
+        }),
+        (row) => {
+          expect(unpackRow(JSON.parse(JSON.stringify(packRow(row))))).toEqual(row);
+        },
+      ),
+    );
+    expect(unpackRow(packRow(null))).toBeNull();
+  });
+
+  test('names are plain, short text whatever somebody types', () => {
+    fc.assert(
+      fc.property(fc.string({ unit: 'binary', maxLength: 200 }), (typed) => {
+        const name = cleanName(typed);
+        expect(name).not.toMatch(/[\p{Cc}\p{Cf}\p{Zl}\p{Zp}\n\t]/u);
+        expect([...name].length).toBeLessThanOrEqual(20);
+        expect(Buffer.byteLength(name)).toBeLessThanOrEqual(40);
+        expect(name).toBe(name.trim());
+        expect(cleanName(name)).toBe(name);
+      }),
+    );
+  });
+});
+
+describe('frames of poses', () => {
+  const poses = fc
+    .uniqueArray(fc.integer({ min: 0, max: 15 }), { maxLength: 16 })
+    .chain((seats) =>
+      fc.tuple(
+        ...seats
+          .sort((a, b) => a - b)
+          .map((seat) => fc.uint8Array({ minLength: 1, maxLength: 64 }).map((bytes) => ({ seat, bytes }))),
+      ),
+    );
+
+  test('hold every packet as it was', () => {
+    fc.assert(
+      fc.property(poses, (sent) => {
+        const read = decodeFrame(encodeFrame(sent));
+        expect(read?.map(({ seat, bytes }) => [seat, [...bytes]])).toEqual(
+          sent.map(({ seat, bytes }) => [seat, [...bytes]]),
+        );
+      }),
+    );
+  });
+
+  test('are refused when cut short, of another version, or out of order', () => {
+    const frame = encodeFrame([
+      { seat: 1, bytes: Uint8Array.of(1, 2, 3) },
+      { seat: 4, bytes: Uint8Array.of(4) },
+    ]);
+    expect(decodeFrame(frame)).toHaveLength(2);
+    for (const length of [0, 2, 3, 5, 7, 8]) expect(decodeFrame(frame.slice(0, length))).toBeNull();
+    expect(decodeFrame(Uint8Array.of(9, ...frame.slice(1)))).toBeNull();
+    expect(decodeFrame(Uint8Array.of(1, 4, 1, 0, 1, 1, 0))).toBeNull();
+    expect(decodeFrame(Uint8Array.of(1, 16, 1, 0))).toBeNull();
+  });
+});
+
+describe('the parser of small frames', () => {
+  const throughPage = (packet: SocketPacket): SocketPacket | undefined => {
+    const heard: SocketPacket[] = [];
+    const decoder = new relayParser.Decoder();
+    decoder.on('decoded', (decoded) => heard.push(decoded));
+    const chunks = new pageParser.Encoder().encode(packet);
+    expect(chunks).toHaveLength(1);
+    for (const chunk of chunks) decoder.add(chunk);
+    return heard[0];
+  };
+
+  test('a pose is its bytes, nothing more', () => {
+    const bytes = Uint8Array.of(16, 2, 3);
+    expect(new pageParser.Encoder().encode({ type: 2, nsp: '/', data: ['pose', bytes] })).toEqual([bytes]);
+    expect(throughPage({ type: 2, nsp: '/', data: ['pose', bytes] })).toEqual({
+      type: 2,
+      nsp: '/',
+      data: ['pose', bytes],
+    });
+  });
+
+  test('every other packet arrives as it left', () => {
+    for (const packet of [
+      { type: 0, nsp: '/', data: { token: 'abc' } },
+      { type: 1, nsp: '/lobby' },
+      { type: 2, nsp: '/', data: ['message', { type: 'ready', ready: true }] },
+      { type: 2, nsp: '/lobby', data: ['x', 1, null], id: 7 },
+      { type: 3, nsp: '/', data: [1], id: 3 },
+      { type: 4, nsp: '/', data: { message: 'refused' } },
+    ]) {
+      expect(throughPage(packet)).toEqual({ data: undefined, ...packet });
+    }
+  });
+
+  test('what is no packet throws', () => {
+    const decoder = new relayParser.Decoder();
+    for (const text of [
+      '',
+      '2',
+      '5["/",null]',
+      '2["/",["message"',
+      '2{"a":1}',
+      '2["/",{}]',
+      '2[3,["a"]]',
+      '2["/",["a"],-1]',
+      '0["/",1,2,3]',
+    ]) {
+      expect(() => decoder.add(text), text).toThrow();
+    }
+  });
+});

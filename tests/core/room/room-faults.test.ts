@@ -1,0 +1,363 @@
+import fc from 'fast-check';
+import { describe, expect, test } from 'vitest';
+import type { BallDeed, BallState } from '../../../src/core/games/ball/ball-state';
+import { nextRandom } from '../../../src/core/math/random';
+import { addScaled, isFiniteVec3, vec3 } from '../../../src/core/math/vec3';
+import { packBall, unpackBall } from '../../../src/core/protocol/ball-snapshot';
+import { clientMessageFrom, roomMessageFrom } from '../../../src/core/protocol/messages';
+import { decodeFrame } from '../../../src/core/protocol/pose-frame';
+import { relayParser } from '../../../src/core/protocol/small-frames';
+import { atRack, fists, holding, opening, releaseOf, velocityTo } from '../../net/people';
+import { isNightly } from '../../nightly';
+import { tell } from '../../tell';
+import { packetAt, toldRoom } from './told-room';
+
+/** Numbers in [0, 1). */
+function chanceOf(seed: number): () => number {
+  let state = { seed };
+  return () => {
+    const next = nextRandom(state);
+    state = next.state;
+    return next.value;
+  };
+}
+
+const allFinite = (value: unknown): boolean => {
+  if (typeof value === 'number') return Number.isFinite(value);
+  return typeof value !== 'object' || value === null || Object.values(value).every(allFinite);
+};
+
+test('fuzzed packets of every kind throw nothing and leave no NaN in any state', () => {
+  const packets = isNightly ? 1_000_000 : 100_000;
+  const chance = chanceOf(20261121);
+  const pick = (count: number) => Math.floor(chance() * count);
+  const told = toldRoom();
+  told.begin();
+  const good = () => packetAt(told.room, 0, fists(vec3(chance() - 0.5, 0.5 + chance(), -chance())), told.time);
+  const words = [
+    'type',
+    'deed',
+    'grab',
+    'throw',
+    'ready',
+    'at',
+    'sequence',
+    '__proto__',
+    'constructor',
+    'seat',
+    '1e999',
+  ];
+  const jsonLike = (depth: number): unknown => {
+    const kind = pick(depth > 3 ? 6 : 8);
+    if (kind === 0) return null;
+    if (kind === 1) return (chance() - 0.5) * 10 ** (chance() * 40);
+    if (kind === 2) return words[pick(words.length)];
+    if (kind === 3) return chance() < 0.5;
+    if (kind === 4) return pick(50);
+    if (kind === 5) return '\u202e\u0000'.repeat(pick(5));
+    if (kind === 6) return Array.from({ length: pick(4) }, () => jsonLike(depth + 1));
+    return Object.fromEntries(Array.from({ length: pick(5) }, () => [words[pick(words.length)], jsonLike(depth + 1)]));
+  };
+  const decoder = new relayParser.Decoder();
+  let [taken, understood, refusedFrames] = [0, 0, 0];
+  for (let i = 0; i < packets; i++) {
+    const bytes = i % 50 === 0 ? good() : Uint8Array.from({ length: pick(70) }, () => pick(256));
+    const kind = i % 5;
+    if (kind <= 1) {
+      const mutated = good();
+      for (let flips = pick(3); flips >= 0; flips--) mutated[pick(mutated.length)]! ^= 1 << pick(8);
+      if (told.room.receivePose('ann', chance() < 0.5 ? mutated : bytes, told.time) === 'taken') taken += 1;
+    } else if (kind === 2) {
+      const value = { type: words[pick(words.length)], ...(jsonLike(0) as object | null) };
+      const near: Record<string, unknown> = {
+        type: pick(2) ? 'throw' : 'grab',
+        sequence: pick(60),
+        side: pick(2) ? 'left' : 'right',
+        ball: pick(21),
+      };
+      if (near.type === 'throw') {
+        Object.assign(near, { at: told.time - 1000, position: releaseOf(0), velocity: vec3(0, 0, -4 - 40 * chance()) });
+      }
+      if (chance() < 0.3) near[Object.keys(near)[pick(4)]!] = jsonLike(2);
+      const message = clientMessageFrom(chance() < 0.5 ? value : { type: 'deed', deed: near });
+      if (message) understood += 1;
+      if (message && message.type !== 'join' && message.type !== 'leave') told.room.receive('ann', message, told.time);
+      roomMessageFrom(value);
+    } else if (kind === 3) {
+      if (!decodeFrame(bytes)) refusedFrames += 1;
+    } else {
+      const text = chance() < 0.5 ? `2${JSON.stringify(jsonLike(0))}` : String.fromCharCode(...bytes);
+      try {
+        decoder.add(text);
+      } catch (error) {
+        // What is no packet ends the connection: that is what throwing means to socket.io, and all that it may throw.
+        expect(error).toBeInstanceOf(Error);
+      }
+    }
+    if (i % 20 === 0) told.tick();
+  }
+  expect(allFinite(told.room.match)).toBe(true);
+  for (const { head, left, right } of told.room.match!.players) {
+    for (const place of [head, left, right]) expect(place === null || isFiniteVec3(place)).toBe(true);
+  }
+  tell('fuzz', {
+    packets,
+    crashes: 0,
+    'poses believed': taken,
+    'messages understood': understood,
+    'frames refused': refusedFrames,
+  });
+  expect(taken).toBeGreaterThan(0);
+  expect(understood).toBeGreaterThan(packets / 50);
+});
+
+test('deeds told twice, out of order and again later score once', () => {
+  const deeds = 100_000;
+  const chance = chanceOf(5);
+  const balls = 20;
+  let [sent, doubles, caught, rounds] = [0, 0, 0, 0];
+  while (sent < deeds) {
+    rounds += 1;
+    const told = toldRoom({ ball: { balls } });
+    told.begin();
+    const said: BallDeed[] = [];
+    let sequence = 0;
+    for (let ball = 0; ball < balls / 2; ball++) {
+      const grab: BallDeed = { type: 'grab', sequence: ++sequence, side: 'right', ball };
+      const at = () => told.time - told.welcomeOf('ann').zero!;
+      told.pose('ann', 0, atRack(ball, balls), told.time + 0.01);
+      told.tick();
+      const burst = (fresh: BallDeed) => {
+        said.push(fresh);
+        const again = Array.from({ length: 500 }, () => said[Math.floor(chance() * said.length)]!);
+        for (const deed of [fresh, ...again]) {
+          told.deed('ann', deed);
+          sent += 1;
+          if (chance() < 0.02) told.tick();
+        }
+      };
+      burst(grab);
+      told.stand();
+      told.tick();
+      burst({
+        type: 'throw',
+        sequence: ++sequence,
+        side: 'right',
+        ball,
+        at: at(),
+        position: releaseOf(0),
+        velocity: velocityTo(releaseOf(0), opening, 1),
+      });
+      told.pass(0.3, () => told.pose('cal', 2, holding(opening)));
+    }
+    told.pass(1.5, () => told.pose('cal', 2, holding(opening)));
+    const catches = told.happened('caught');
+    caught += catches.length;
+    doubles += catches.length - new Set(catches.map(({ ball }) => ball)).size;
+    expect(told.room.match?.score).toBe(new Set(catches.map(({ ball }) => ball)).size);
+  }
+  tell('replayed deeds', { deeds: sent, rounds, catches: caught, 'double scores': doubles });
+  expect(doubles).toBe(0);
+  expect(caught).toBeGreaterThan(0);
+});
+
+describe('latency', () => {
+  /** A throw at a moving basket, all clients this long from the Room [s one way, and by how much that varies]; what became of it. */
+  function verdict(seed: number, delay: number, jitter: number): string {
+    const chance = chanceOf(seed);
+    const [dx, dy, dz] = [0, 0, 0].map(() => (chance() - 0.5) * 0.8) as [number, number, number];
+    const aim = vec3(opening.x + dx * 0.6, opening.y + dy * 0.3, opening.z + dz * 0.6);
+    const flight = 0.8 + 0.5 * chance();
+    const sway = { x: chance() * 0.3, speed: 1 + 2 * chance(), phase: chance() * 6 };
+    const basketAt = (time: number) =>
+      addScaled(opening, vec3(1, 0, 0), sway.x * Math.sin(sway.speed * time + sway.phase));
+    // How late each message is must not change what the throw was.
+    const late = chanceOf(seed + 1_000_003);
+    const told = toldRoom();
+    told.begin();
+    told.pose('ann', 0, atRack(0), told.time + 0.01);
+    told.tick();
+    told.deed('ann', { type: 'grab', sequence: 1, side: 'right', ball: 0 });
+    told.tick();
+    told.pose('ann', 0, fists(releaseOf(0)), told.time);
+    const start = told.time;
+    const zero = told.welcomeOf('ann').zero!;
+    const underway: { readonly at: number; readonly send: () => void }[] = [];
+    let lastCal = 0;
+    const throwAt = start + 0.25;
+    for (let i = 0; i < 150; i++) {
+      const time = start + i / 60;
+      if (i % 2 === 0) {
+        // TCP: nothing overtakes.
+        lastCal = Math.max(lastCal, time + delay + jitter * late());
+        const bytes = packetAt(told.room, 2, holding(basketAt(time - start)), time);
+        underway.push({ at: lastCal, send: () => void told.room.receivePose('cal', bytes, told.time) });
+        const anns = packetAt(told.room, 0, fists(releaseOf(0)), time);
+        underway.push({ at: time + delay, send: () => void told.room.receivePose('ann', anns, told.time) });
+      }
+      if (time <= throwAt && time + 1 / 60 > throwAt) {
+        const deed: BallDeed = {
+          type: 'throw',
+          sequence: 2,
+          side: 'right',
+          ball: 0,
+          at: throwAt - zero,
+          position: releaseOf(0),
+          velocity: velocityTo(releaseOf(0), aim, flight),
+        };
+        underway.push({ at: throwAt + delay + jitter * late(), send: () => told.deed('ann', deed) });
+      }
+      for (const message of underway.filter(({ at }) => at <= time && at > time - 1 / 60)) message.send();
+      told.tick();
+    }
+    const place = told.room.match!.balls[0]!.on;
+    return place === 'basket'
+      ? 'caught'
+      : told.happened('bounced').some(({ off }) => off === 'basket')
+        ? 'rim'
+        : 'missed';
+  }
+
+  test('a throw is judged as it would be without any', () => {
+    const throws = isNightly ? 1000 : 200;
+    let same = 0;
+    const counts = { caught: 0, rim: 0, missed: 0 };
+    for (let seed = 1; seed <= throws; seed++) {
+      const truth = verdict(seed, 0, 0);
+      counts[truth as keyof typeof counts] += 1;
+      const oneWay = 0.1 * ((seed * 0.618) % 1);
+      if (verdict(seed, oneWay, 0.02) === truth) same += 1;
+    }
+    tell('throws at round trips of 0 to 200 ms', { throws, ...counts, 'same verdict [%]': (100 * same) / throws });
+    expect(same / throws).toBeGreaterThanOrEqual(0.99);
+    expect(Math.min(counts.caught, counts.missed)).toBeGreaterThan(throws / 20);
+  });
+});
+
+describe('whoever comes at t = 60 s', () => {
+  test('knows everything from one snapshot of at most 2 kB', () => {
+    const told = toldRoom({ ball: { balls: 20 } });
+    // The longest names there are.
+    for (const client of ['ann', 'ben', 'cal']) told.join(client, { name: '\u{1f600}'.repeat(10) });
+    for (const client of ['ann', 'ben', 'cal']) told.room.receive(client, { type: 'ready', ready: true }, told.time);
+    told.stand();
+    told.tick();
+    let sequence = 0;
+    told.pass(20, told.stand);
+    for (let ball = 0; ball < 10; ball++) {
+      told.pose('ann', 0, atRack(ball), told.time + 0.01);
+      told.tick();
+      told.deed('ann', { type: 'grab', sequence: ++sequence, side: 'right', ball });
+      told.tick();
+      told.stand();
+      told.tick();
+      told.deed('ann', {
+        type: 'throw',
+        sequence: ++sequence,
+        side: 'right',
+        ball,
+        at: told.time - told.welcomeOf('ann').zero!,
+        position: releaseOf(0),
+        velocity: vec3(1.2345678 - ball, 4.1234567, -3.1234567),
+      });
+      told.pass(4, told.stand);
+    }
+    told.join('dot', { spectate: true });
+    const welcome = told.welcomeOf('dot');
+    const bytes = Buffer.byteLength(JSON.stringify(welcome));
+    const known = unpackBall(welcome.match!)!;
+    const truth = told.room.match!;
+    expect(known.balls).toEqual(truth.balls);
+    // JSON knows no −0.
+    expect(known.basket).toEqual(JSON.parse(JSON.stringify(truth.basket)));
+    tell('join at 60 s', {
+      'snapshot [B]': bytes,
+      'balls on the floor': truth.balls.filter(({ on }) => on === 'floor').length,
+    });
+    expect(bytes).toBeLessThanOrEqual(2048);
+  });
+
+  test('no state of a match, and no room of sixteen, takes more than 2 kB', () => {
+    const number = (limit: number) =>
+      fc.double({ min: -limit, max: limit, noNaN: true }).map((x) => Math.round(x * 1e4) / 1e4 + 0);
+    const vector = (limit: number) => fc.record({ x: number(limit), y: number(limit), z: number(limit) });
+    const told = toldRoom();
+    told.begin();
+    const launch = fc.record({ time: number(3600).map(Math.abs), position: vector(40), velocity: vector(20) });
+    fc.assert(
+      fc.property(fc.array(launch, { minLength: 20, maxLength: 20 }), (launches) => {
+        const state: BallState = {
+          ...told.room.match!,
+          tick: 3600 * 60,
+          balls: launches.map((flight) => ({ on: 'air', launch: flight, thrower: 1, missed: true })),
+        };
+        const packed = packBall(state);
+        expect(unpackBall(JSON.parse(JSON.stringify(packed)))?.balls).toEqual(state.balls);
+        const welcome = { ...told.welcomeOf('ann'), match: packed };
+        expect(Buffer.byteLength(JSON.stringify(welcome))).toBeLessThanOrEqual(2048);
+      }),
+    );
+    const open = toldRoom({ kind: 'open', seats: 16 });
+    for (let i = 0; i < 16; i++) open.join(`c${i}`, { name: '\u{1f600}'.repeat(10) });
+    expect(Buffer.byteLength(JSON.stringify(open.welcomeOf('c15')))).toBeLessThanOrEqual(2048);
+  });
+});
+
+test('5 s and 29 s of silence cost nothing: same seat, same score, one snapshot', () => {
+  const figures: Record<string, number> = {};
+  for (const silence of [5, 29]) {
+    const told = toldRoom();
+    told.begin();
+    told.pose('ann', 0, atRack(0), told.time + 0.01);
+    told.tick();
+    told.deed('ann', { type: 'grab', sequence: 1, side: 'right', ball: 0 });
+    told.pass(0.1, told.stand);
+    const at = told.time - told.welcomeOf('ann').zero!;
+    told.deed('ann', {
+      type: 'throw',
+      sequence: 2,
+      side: 'right',
+      ball: 0,
+      at,
+      position: releaseOf(0),
+      velocity: velocityTo(releaseOf(0), opening, 1),
+    });
+    told.pass(1.5, told.stand);
+    expect(told.room.match?.score).toBe(1);
+    told.room.disconnect('ann', told.time);
+    told.pass(silence, told.stand);
+    const before = told.said.length;
+    const back = told.join('ann again', {}, 'ann');
+    const welcomes = told.said.slice(before).filter(({ message }) => message.type === 'welcome');
+    expect(back.seat).toBe(0);
+    expect(back.match?.score).toBe(1);
+    expect(welcomes).toHaveLength(1);
+    expect(back.match?.balls.map((place) => (place === 0 ? 'rack' : place[0]))).toEqual([4, ...Array(19).fill('rack')]);
+    figures[`snapshots after ${silence} s`] = welcomes.length;
+  }
+  tell('silence', figures);
+});
+
+test('rooms that live for hours keep nothing: the same answer, no growth', () => {
+  const hours = isNightly ? 4 : 0.1;
+  const told = toldRoom({ ball: { seconds: 5, balls: 2 } });
+  told.begin();
+  const sizes: number[] = [];
+  let rounds = 0;
+  for (let second = 0; second < hours * 3600; second++) {
+    told.pass(1, told.stand);
+    for (const client of ['ann', 'ben', 'cal']) told.room.receive(client, { type: 'ready', ready: true }, told.time);
+    if (second % 30 === 0) {
+      told.room.disconnect('ben', told.time);
+      told.join('ben', {}, 'ben');
+      sizes.push(JSON.stringify(told.room.match).length);
+    }
+    rounds += told.said.filter(({ message }) => message.type === 'match').length;
+    told.said.splice(3);
+    told.frames.length = 0;
+    told.log.length = 0;
+  }
+  tell('soak of a Room', { hours, rounds, 'state at most [B]': Math.max(...sizes) });
+  expect(rounds).toBeGreaterThan(hours * 300);
+  expect(Math.max(...sizes)).toBeLessThan(4000);
+});

@@ -1,0 +1,395 @@
+import fc from 'fast-check';
+import { describe, expect, test } from 'vitest';
+import type { BallState } from '../../../src/core/games/ball/ball-state';
+import { followBallEvent } from '../../../src/core/games/ball/replica';
+import { ballRules } from '../../../src/core/games/ball/rules';
+import { vec3 } from '../../../src/core/math/vec3';
+import { packBall, unpackBall } from '../../../src/core/protocol/ball-snapshot';
+import { clientMessageFrom, unpackRow } from '../../../src/core/protocol/messages';
+import { decodeFrame } from '../../../src/core/protocol/pose-frame';
+import { createRoom, seatHoldSeconds } from '../../../src/core/room/room';
+import { atRack, fists, opening, releaseOf, velocityTo } from '../../net/people';
+import { joining, packetAt, toldRoom } from './told-room';
+
+const presence = (told: ReturnType<typeof toldRoom>, seat: number) => {
+  const row = told.said.findLast(({ message }) => message.type === 'seat' && message.seat === seat)?.message;
+  return row?.type === 'seat' ? (unpackRow(row.row)?.presence ?? 'free') : undefined;
+};
+
+describe('seats', () => {
+  test('a name stays free of what could trick a reader, and nobody is nameless', () => {
+    const told = toldRoom();
+    const rude = clientMessageFrom({
+      type: 'join',
+      version: 1,
+      ...joining({ name: ' a\u202eb\u0007\n  c\u200b \u{1f600}'.repeat(4) }),
+    });
+    expect(rude).toMatchObject({ name: 'ab c \u{1f600} ab c \u{1f600} ab c \u{1f600}' });
+    told.join('x', { name: '' });
+    expect(unpackRow(told.welcomeOf('x').seats[0]!)?.name).toBe('Player 1');
+  });
+
+  test('a connection lost for less than 30 s gets its seat and score back, even with 16 others waiting', () => {
+    const told = toldRoom();
+    told.begin();
+    told.room.disconnect('ann', told.time);
+    expect(presence(told, 0)).toBe('gone');
+    for (let i = 0; i < 16; i++) expect(told.join(`w${i}`).seat).toBeNull();
+    told.pass(seatHoldSeconds - 1, told.stand);
+    const back = told.join('ann again', {}, 'ann');
+    expect(back.seat).toBe(0);
+    expect(back.match?.phase).toBe('running');
+    expect(presence(told, 0)).toBe('here');
+  });
+
+  test('after 30 s the seat is free', () => {
+    const told = toldRoom();
+    told.begin();
+    told.room.disconnect('ann', told.time);
+    told.pass(seatHoldSeconds + 1, told.stand);
+    expect(presence(told, 0)).toBe('free');
+    expect(told.join('dot').seat).toBe(0);
+    expect(told.join('ann again', {}, 'ann').seat).toBeNull();
+  });
+
+  test('a ball in hand survives a hiccup of the connection and goes back to the rack after a longer one', () => {
+    const hold = () => {
+      const told = toldRoom();
+      told.begin();
+      told.pose('ann', 0, atRack(0), told.time + 0.01);
+      told.tick();
+      told.deed('ann', { type: 'grab', sequence: 1, side: 'right', ball: 0 });
+      told.tick();
+      expect(told.room.match?.balls[0]?.on).toBe('hand');
+      told.room.disconnect('ann', told.time);
+      return told;
+    };
+    const hiccup = hold();
+    hiccup.pass(2, hiccup.stand);
+    hiccup.join('ann again', {}, 'ann');
+    expect(hiccup.room.match?.balls[0]?.on).toBe('hand');
+    const longer = hold();
+    longer.pass(4, longer.stand);
+    expect(longer.room.match?.balls[0]?.on).toBe('rack');
+    longer.join('ann again', {}, 'ann');
+    longer.tick();
+    expect(longer.room.match?.players[0]?.present).toBe(true);
+  });
+
+  test('a second connection of the same person replaces the first', () => {
+    const told = toldRoom();
+    told.begin();
+    expect(told.join('ann on her telephone', {}, 'ann').seat).toBe(0);
+    expect(told.dropped).toEqual([{ client: 'ann', reason: 'replaced' }]);
+  });
+
+  test('nobody sits on a taken seat, and whoever tries is noted', () => {
+    const told = toldRoom();
+    told.begin();
+    told.join('dot', { spectate: true });
+    told.room.receive('dot', { type: 'sit', seat: 1 }, told.time);
+    expect(told.refusals).toMatchObject([{ client: 'dot', what: 'sit', reason: 'occupied' }]);
+    expect(told.join('eve', { seat: 1 }).seat).toBeNull();
+  });
+
+  test('others learn that somebody is away: at once when told, within 3 s of silence, and at once of the return', () => {
+    const told = toldRoom();
+    told.begin();
+    told.room.receive('ann', { type: 'away', away: true }, told.time);
+    expect(presence(told, 0)).toBe('away');
+    told.room.receive('ann', { type: 'away', away: false }, told.time);
+    expect(presence(told, 0)).toBe('here');
+    const quiet = () => {
+      told.pose('ann', 0, fists(releaseOf(0)));
+      told.pose('cal', 2, fists(opening));
+    };
+    told.pass(3, quiet);
+    expect(presence(told, 1)).toBe('away');
+    expect(presence(told, 0)).toBe('here');
+    told.pose('ben', 1, fists(releaseOf(1)));
+    told.tick();
+    expect(presence(told, 1)).toBe('here');
+  });
+
+  test('whatever clients do in whatever order, seats belong to at most one, and everybody welcomed knows theirs', () => {
+    const step = fc.record({
+      who: fc.integer({ min: 0, max: 5 }),
+      what: fc.constantFrom('join', 'watch', 'bot', 'disconnect', 'leave', 'sit', 'ready', 'wait'),
+      seat: fc.option(fc.integer({ min: 0, max: 3 }), { nil: null }),
+      seconds: fc.double({ min: 0, max: 20, noNaN: true }),
+    });
+    fc.assert(
+      fc.property(fc.array(step, { minLength: 1, maxLength: 60 }), (steps) => {
+        const told = toldRoom();
+        const live = new Map<number, string>();
+        let made = 0;
+        for (const { who, what, seat, seconds } of steps) {
+          const client = live.get(who);
+          const arrive = what === 'join' || what === 'watch' || what === 'bot';
+          if (arrive) {
+            made += 1;
+            live.set(who, `c${made}`);
+            told.join(`c${made}`, { seat, spectate: what === 'watch', bot: what === 'bot' }, `person ${who}`);
+          } else if (client && what === 'disconnect') told.room.disconnect(client, told.time);
+          else if (client && what === 'leave') told.room.receive(client, { type: 'leave' }, told.time);
+          else if (client && what === 'sit') told.room.receive(client, { type: 'sit', seat }, told.time);
+          else if (client && what === 'ready') told.room.receive(client, { type: 'ready', ready: true }, told.time);
+          else told.tick(seconds);
+          if (what === 'disconnect' || what === 'leave') live.delete(who);
+          for (const { client: gone } of told.dropped) {
+            for (const [person, current] of live) if (current === gone) live.delete(person);
+          }
+          told.tick();
+          const { players, bots, free, spectators } = told.room.census;
+          expect(players + free).toBe(3);
+          expect(players + bots).toBeLessThanOrEqual(3);
+          expect(spectators).toBeLessThanOrEqual(live.size);
+          const present = told.room.match!.players.filter((player) => player.present).length;
+          expect(present).toBeLessThanOrEqual(players + bots);
+        }
+      }),
+    );
+  });
+});
+
+describe('what the Room refuses', () => {
+  /** Ann has ball 0 in her right hand, held up where she throws. */
+  function holdingBall() {
+    const told = toldRoom();
+    told.begin();
+    told.pose('ann', 0, atRack(0), told.time + 0.01);
+    told.tick();
+    told.deed('ann', { type: 'grab', sequence: 1, side: 'right', ball: 0 });
+    told.pass(0.1, told.stand);
+    expect(told.room.match?.balls[0]?.on).toBe('hand');
+    return told;
+  }
+  const release = releaseOf(0);
+  const thrown = { type: 'throw', side: 'right', ball: 0, position: release } as const;
+
+  test.each([
+    ['a throw at 100 m/s', { velocity: vec3(0, 0, -100) }, 'speed'],
+    ['a release 10 m from the hand', { position: vec3(release.x, release.y, release.z - 10) }, 'reach'],
+    ['a release at the far end of no arm', { position: vec3(release.x, release.y + 1, release.z) }, 'reach'],
+    ["a ball that is in nobody's hand", { ball: 5 }, 'not-held'],
+  ])('%s', (_what, change, reason) => {
+    const told = holdingBall();
+    const velocity = velocityTo(release, opening, 1);
+    told.deed('ann', { ...thrown, sequence: 2, at: 0, velocity, ...change });
+    told.tick();
+    expect(told.refusals).toMatchObject([{ client: 'ann', seat: 0, what: 'deed', reason }]);
+    expect(told.room.match?.balls[0]?.on).toBe('hand');
+    expect(told.happened('thrown')).toEqual([]);
+  });
+
+  test("another player's ball, and a message that names another seat", () => {
+    const told = holdingBall();
+    told.deed('ben', { ...thrown, sequence: 1, at: 0, velocity: velocityTo(release, opening, 1) });
+    told.tick();
+    expect(told.refusals).toMatchObject([{ client: 'ben', seat: 1, reason: 'not-held' }]);
+    const named = { type: 'deed', deed: { type: 'drop', sequence: 2, side: 'right', player: 0 } };
+    expect(clientMessageFrom(named)).toBeNull();
+    expect(clientMessageFrom({ ...named, seat: 0, deed: { type: 'drop', sequence: 2, side: 'right' } })).toBeNull();
+  });
+
+  test('spectators who play, and clients that never joined', () => {
+    const told = holdingBall();
+    told.join('dot', { spectate: true });
+    told.deed('dot', { type: 'drop', sequence: 1, side: 'right' });
+    told.deed('nobody', { type: 'drop', sequence: 1, side: 'right' });
+    told.room.receive('dot', { type: 'ready', ready: true }, told.time);
+    expect(told.refusals.map(({ reason }) => reason)).toEqual(['no-seat', 'not-joined', 'no-seat']);
+    expect(told.pose('dot', 0, fists(release))).toBe('ignored');
+  });
+
+  test('a head that is suddenly elsewhere, unless its space was re-anchored; after a second it is believed', () => {
+    const told = toldRoom({ kind: 'open', seats: 4 });
+    told.join('ann');
+    const at = (x: number) => packetAt(told.room, 0, fists(vec3(x, 1, 0)), told.time);
+    expect(told.room.receivePose('ann', at(0), told.time)).toBe('taken');
+    told.tick();
+    expect(told.room.receivePose('ann', at(0), told.time)).toBe('taken');
+    told.tick();
+    // Bits 16 on after the header are the head's x: the same packet, 8 m aside.
+    const moved = at(0);
+    moved[4] = (moved[4]! + 0x20) & 0xff;
+    expect(told.room.receivePose('ann', moved, told.time)).toBe('ignored');
+    expect(told.refusals).toMatchObject([{ what: 'pose', reason: 'too-fast' }]);
+    told.pass(1.1);
+    const later = at(0);
+    later[4] = (later[4]! + 0x20) & 0xff;
+    expect(told.room.receivePose('ann', later, told.time)).toBe('taken');
+  });
+
+  test('poses that arrive twice, late or not at all like poses', () => {
+    const told = toldRoom({ kind: 'open', seats: 4 });
+    told.join('ann');
+    const first = packetAt(told.room, 0, fists(vec3(0, 1, 0)), told.time);
+    told.tick();
+    const second = packetAt(told.room, 0, fists(vec3(0, 1, 0)), told.time);
+    expect(told.room.receivePose('ann', second, told.time)).toBe('taken');
+    expect(told.room.receivePose('ann', second, told.time)).toBe('ignored');
+    expect(told.room.receivePose('ann', first, told.time)).toBe('ignored');
+    expect(told.room.receivePose('ann', new Uint8Array(40), told.time)).toBe('bad');
+  });
+});
+
+describe('a match in a room', () => {
+  test('two grabs of one ball in one tick have one winner, whoever they are and in whatever order', () => {
+    fc.assert(
+      fc.property(fc.constantFrom(1, 3), fc.boolean(), (ball, benFirst) => {
+        const told = toldRoom({ ball: { balls: 4 } });
+        told.begin();
+        told.pose('ann', 0, atRack(ball, 4), told.time + 0.01);
+        told.pose('ben', 1, atRack(ball, 4), told.time + 0.01);
+        told.tick();
+        const order = benFirst ? ['ben', 'ann'] : ['ann', 'ben'];
+        for (const client of order) told.deed(client, { type: 'grab', sequence: 1, side: 'right', ball });
+        told.tick();
+        const grabbed = told.happened('grabbed');
+        const refused = told.said.filter(
+          ({ to, message }) => to !== 'all' && message.type === 'events' && message.events[0]?.type === 'refused',
+        );
+        expect(grabbed).toHaveLength(1);
+        expect(grabbed[0]?.player).toBe(benFirst ? 1 : 0);
+        expect(refused.map(({ to }) => to)).toEqual([order[1]]);
+        expect(told.room.match?.balls[ball]).toMatchObject({ on: 'hand', player: grabbed[0]?.player });
+      }),
+    );
+  });
+
+  test('poses go out once, the newest of every seat in one frame, each as it was sent', () => {
+    const told = toldRoom();
+    told.begin();
+    told.frames.length = 0;
+    told.pose('ann', 0, fists(releaseOf(0)), told.time);
+    const newest = packetAt(told.room, 0, fists(opening), told.time + 0.005);
+    expect(told.room.receivePose('ann', newest, told.time + 0.005)).toBe('taken');
+    const cals = packetAt(told.room, 2, fists(opening), told.time + 0.005);
+    told.room.receivePose('cal', cals, told.time + 0.005);
+    told.tick();
+    told.tick();
+    expect(told.frames).toHaveLength(1);
+    const poses = decodeFrame(told.frames[0]!);
+    expect(poses?.map(({ seat, bytes }) => [seat, [...bytes]])).toEqual([
+      [0, [...newest]],
+      [2, [...cals]],
+    ]);
+  });
+
+  test('a match clock that stood still says so, and its numbers go on', () => {
+    const told = toldRoom();
+    told.begin();
+    const { zero } = told.welcomeOf('ann');
+    const before = told.room.match!.tick;
+    told.tick(20);
+    expect(told.room.match!.tick - before).toBeLessThan(5);
+    const moved = told.said.findLast(({ message }) => message.type === 'zero')?.message;
+    expect(moved?.type === 'zero' && moved.zero - zero!).toBeCloseTo(20, 1);
+  });
+
+  /** Any deeds at all, by anybody, with poses between them. */
+  const somethingHappens = fc.record({
+    who: fc.constantFrom('ann', 'ben', 'cal'),
+    what: fc.constantFrom('grab', 'throw', 'drop', 'stand', 'reach', 'pass', 'again'),
+    ball: fc.integer({ min: 0, max: 3 }),
+    sequence: fc.integer({ min: 1, max: 40 }),
+    side: fc.constantFrom('left' as const, 'right' as const),
+    seconds: fc.double({ min: 0.3, max: 1.4, noNaN: true }),
+  });
+  type Happening = typeof somethingHappens extends fc.Arbitrary<infer T> ? T : never;
+
+  function play(
+    told: ReturnType<typeof toldRoom>,
+    happenings: readonly Happening[],
+    each: () => void = () => undefined,
+  ) {
+    const seats = { ann: 0, ben: 1, cal: 2 };
+    for (const { who, what, ball, sequence, side, seconds } of happenings) {
+      const seat = seats[who];
+      const release = releaseOf(Math.min(seat, 1));
+      if (what === 'reach') told.pose(who, seat, atRack(ball, 4), told.time + 0.005);
+      else if (what === 'stand') told.pose(who, seat, fists(release), told.time + 0.005);
+      else if (what === 'grab') told.deed(who, { type: 'grab', sequence, side, ball });
+      else if (what === 'drop') told.deed(who, { type: 'drop', sequence, side });
+      else if (what === 'throw') {
+        const at = told.time - told.welcomeOf('ann').zero!;
+        const velocity = velocityTo(release, opening, seconds);
+        told.deed(who, { type: 'throw', sequence, side, ball, at, position: release, velocity });
+      } else if (what === 'again') {
+        for (const client of ['ann', 'ben', 'cal']) {
+          told.room.receive(client, { type: 'ready', ready: true }, told.time);
+        }
+      } else told.pass(seconds, () => told.pose('cal', 2, fists(opening)));
+      told.tick();
+      each();
+    }
+  }
+
+  test('whoever follows the events from a snapshot, taken at any time, knows what the Room knows', () => {
+    fc.assert(
+      fc.property(fc.array(somethingHappens, { minLength: 5, maxLength: 60 }), (happenings) => {
+        const told = toldRoom({ ball: { balls: 4, seconds: 20 } });
+        told.begin();
+        const followers: { state: BallState; heard: number }[] = [];
+        play(told, happenings, () => {
+          const snapshot = unpackBall(JSON.parse(JSON.stringify(packBall(told.room.match!))));
+          followers.push({ state: snapshot!, heard: told.said.length });
+        });
+        for (const { state, heard } of followers) {
+          let known = state;
+          for (const { message } of told.said.slice(heard)) {
+            if (message.type === 'match') known = unpackBall(message.match)!;
+            if (message.type === 'events') known = message.events.reduce(followBallEvent, known);
+          }
+          const truth = told.room.match!;
+          expect(known.balls).toEqual(truth.balls);
+          for (const key of ['score', 'phase', 'end', 'startedAt', 'options'] as const) {
+            expect(known[key]).toEqual(truth[key]);
+          }
+          const people = ({ players }: BallState) =>
+            players.map(({ present, ready, role, station }) => ({ present, ready, role, station }));
+          expect(people(known)).toEqual(people(truth));
+        }
+      }),
+      { numRuns: 30 },
+    );
+  });
+
+  test('the same told again gives the same, to the last digit', () => {
+    fc.assert(
+      fc.property(fc.array(somethingHappens, { minLength: 5, maxLength: 40 }), (happenings) => {
+        const [one, two] = [toldRoom({ ball: { balls: 4 } }), toldRoom({ ball: { balls: 4 } })];
+        for (const told of [one, two]) {
+          told.begin();
+          play(told, happenings);
+        }
+        expect(two.room.match).toEqual(one.room.match);
+        expect(two.said).toEqual(one.said);
+        let state = ballRules.start(['seat 0', 'seat 1', 'seat 2'], 0, { balls: 4 });
+        const first = one.said.findIndex(({ message }) => message.type === 'match');
+        if (first >= 0) return;
+        for (const actions of one.log) state = ballRules.step(state, actions).state;
+        expect(state).toEqual(one.room.match);
+      }),
+      { numRuns: 30 },
+    );
+  });
+});
+
+test('a room that ticks with nobody in it stays as it is', () => {
+  const said: unknown[] = [];
+  const room = createRoom(
+    { id: 'r', epoch: 'e', kind: 'ball' },
+    {
+      send: (_, message) => said.push(message),
+      broadcast: (message) => said.push(message),
+      frame: (bytes) => said.push(bytes),
+      drop: (client) => said.push(client),
+      refused: (refusal) => said.push(refusal),
+    },
+  );
+  for (let i = 0; i < 600; i++) room.tick(i / 60);
+  expect(said).toEqual([]);
+  expect(room.census).toEqual({ players: 0, bots: 0, spectators: 0, free: 3, empty: true });
+});

@@ -1,0 +1,110 @@
+import { defaultCalibration } from '../../../src/core/body/calibration';
+import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
+import type { BallAction, BallDeed, BallEvent } from '../../../src/core/games/ball/ball-state';
+import { type Joining, type RoomMessage, roomMessageFrom } from '../../../src/core/protocol/messages';
+import { encodePose } from '../../../src/core/protocol/pose-codec';
+import { createRoom, type Room, type RoomOptions, type RoomRefusal } from '../../../src/core/room/room';
+import { arenaFromFloorOf } from '../../../src/core/room/seat-places';
+import { fists, holding, opening, releaseOf, shownAt } from '../../net/people';
+
+const skeleton = skeletonFromCalibration(defaultCalibration);
+
+export const joining = (more: Partial<Joining> = {}): Joining => ({
+  name: 'Ann',
+  calibration: defaultCalibration,
+  spectate: false,
+  bot: false,
+  seat: null,
+  ...more,
+});
+
+type Wrists = ReturnType<typeof fists>;
+
+/** The packet of somebody on a seat with these wrists (arena frame), taken at this time of the room clock [s]. */
+export function packetAt(room: Room, seat: number, wrists: Wrists, time: number, seats = 3): Uint8Array {
+  const shown = shownAt({ arenaFromFloor: (index) => arenaFromFloorOf(index, seats, room.match) }, seat, wrists);
+  const bytes = encodePose({ ...shown, timeMs: Math.round(time * 1000) & 0xffff }, skeleton);
+  if (!bytes) throw new Error('the pose packet of the tests is not finite');
+  return bytes;
+}
+
+/** A room that is told everything by a test, with all that it says. Every message is one that a page can read. */
+export function toldRoom(options: Partial<RoomOptions> = {}) {
+  const said: { readonly to: string; readonly message: RoomMessage }[] = [];
+  const frames: Uint8Array[] = [];
+  const dropped: { readonly client: string; readonly reason: string }[] = [];
+  const refusals: RoomRefusal[] = [];
+  const log: (readonly BallAction[])[] = [];
+  let time = 1000;
+  const hear = (to: string, message: RoomMessage) => {
+    const read = roomMessageFrom(JSON.parse(JSON.stringify(message)));
+    if (!read) throw new Error(`no page can read this: ${JSON.stringify(message)}`);
+    said.push({ to, message: read });
+  };
+  const room = createRoom(
+    { id: 'room', epoch: 'one', kind: 'ball', ...options },
+    {
+      send: hear,
+      broadcast: (message) => hear('all', message),
+      frame: (bytes) => frames.push(bytes),
+      drop: (client, reason) => dropped.push({ client, reason }),
+      refused: (refusal) => refusals.push(refusal),
+      stepped: (actions) => log.push(actions),
+    },
+  );
+  const told = {
+    room,
+    said,
+    frames,
+    dropped,
+    refusals,
+    log,
+    get time() {
+      return time;
+    },
+    join(client: string, more: Partial<Joining> = {}, identity = client) {
+      room.join(client, identity, joining(more), time);
+      return told.welcomeOf(client);
+    },
+    welcomeOf(client: string) {
+      const welcome = said.findLast(({ to, message }) => to === client && message.type === 'welcome')?.message;
+      if (welcome?.type !== 'welcome') throw new Error(`${client} was not welcomed`);
+      return welcome;
+    },
+    tick(seconds = 1 / 60) {
+      time += seconds;
+      room.tick(time);
+    },
+    pass(seconds: number, everyTick: () => void = () => undefined) {
+      for (let i = 0; i < Math.round(seconds * 60); i++) {
+        everyTick();
+        told.tick();
+      }
+    },
+    pose(client: string, seat: number, wrists: Wrists, at = time) {
+      return room.receivePose(client, packetAt(room, seat, wrists, at), time);
+    },
+    deed(client: string, deed: BallDeed) {
+      room.receive(client, { type: 'deed', deed }, time);
+    },
+    /** Ann and Ben throw, Cal holds the basket; all ready. */
+    begin() {
+      for (const client of ['ann', 'ben', 'cal']) told.join(client, { name: client });
+      for (const client of ['ann', 'ben', 'cal']) room.receive(client, { type: 'ready', ready: true }, time);
+      told.stand();
+      told.tick();
+      told.tick();
+    },
+    /** All three are seen where they begin. */
+    stand() {
+      if (room.match?.players[0]?.present) told.pose('ann', 0, fists(releaseOf(0)));
+      if (room.match?.players[1]?.present) told.pose('ben', 1, fists(releaseOf(1)));
+      told.pose('cal', 2, holding(opening));
+    },
+    events: () =>
+      said.flatMap(({ message }): readonly BallEvent[] => (message.type === 'events' ? message.events : [])),
+    happened: <T extends BallEvent['type']>(type: T) =>
+      told.events().filter((event): event is Extract<BallEvent, { type: T }> => event.type === type),
+  };
+  return told;
+}

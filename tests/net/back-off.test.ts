@@ -1,0 +1,37 @@
+import { describe, expect, test } from 'vitest';
+import { createBackOff } from '../../src/net/back-off';
+import { bannerText } from '../../src/net/banner';
+
+describe('trying again', () => {
+  test('waits longer after every failure, at most 4.5 s, and starts over after a success', () => {
+    const backOff = createBackOff(() => 0.5);
+    expect([1, 2, 3, 4, 5, 6].map(() => backOff.next())).toEqual([0.5, 1, 2, 3, 3, 3]);
+    expect(backOff.attempts).toBe(6);
+    backOff.succeeded();
+    expect(backOff.next()).toBe(0.5);
+    const late = createBackOff(() => 1 - 1e-9);
+    for (let i = 0; i < 10; i++) expect(late.next()).toBeLessThan(4.5);
+  });
+
+  test('five hundred who failed together come back spread out', () => {
+    const waits = Array.from({ length: 500 }, () => createBackOff().next()).sort((a, b) => a - b);
+    expect(waits[0]).toBeGreaterThanOrEqual(0.25);
+    // No tenth of the half second they are spread over has more than a quarter of them.
+    for (let start = 0.25; start < 0.75; start += 0.05) {
+      expect(waits.filter((wait) => wait >= start && wait < start + 0.05).length).toBeLessThan(125);
+    }
+  });
+});
+
+test('the banner says what is going on, and nothing when all is well', () => {
+  const status = { phase: 'joined', attempt: 0, retryIn: null, reason: null } as const;
+  expect(bannerText(status)).toBeNull();
+  expect(bannerText({ ...status, phase: 'reconnecting', attempt: 2, retryIn: 1.2 })).toBe(
+    'The connection was lost. Trying again in 2 s. Your seat is kept for 30 s.',
+  );
+  expect(bannerText({ ...status, phase: 'reconnecting', reason: 'unreachable' })).toBe(
+    'The server cannot be reached. Trying again now …',
+  );
+  expect(bannerText({ ...status, phase: 'ended', reason: 'replaced' })).toContain('somewhere else');
+  expect(bannerText({ ...status, phase: 'ended', reason: 'left' })).toBe('You left the room.');
+});

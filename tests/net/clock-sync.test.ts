@@ -1,0 +1,79 @@
+import fc from 'fast-check';
+import { describe, expect, test } from 'vitest';
+import { createClockSync } from '../../src/net/clock-sync';
+import { tell } from '../tell';
+
+/** Asks for `seconds` from `start` on; one way takes `there()` and the other `back()` [s]. Returns when it was within 10 ms for good. */
+function follow(
+  sync: ReturnType<typeof createClockSync>,
+  start: number,
+  seconds: number,
+  skew: number,
+  there: () => number,
+  back: () => number,
+): { readonly error: number; readonly settled: number } {
+  const underway: { readonly sent: number; readonly told: number; readonly heard: number }[] = [];
+  let settled = start;
+  let error = 0;
+  for (let now = start; now < start + seconds; now += 1 / 60) {
+    if (sync.due(now)) {
+      const reached = now + there();
+      underway.push({ sent: now, told: reached + skew, heard: reached + back() });
+    }
+    for (const answer of underway.filter(({ heard }) => heard <= now && heard > now - 1 / 60)) {
+      sync.hear(answer.sent, answer.told, answer.heard);
+    }
+    error = Math.abs(sync.ahead - skew);
+    if (error > 0.01) settled = now;
+  }
+  return { error, settled: settled - start };
+}
+
+const lan = () => {
+  let i = 0;
+  return () => 0.0005 + 0.004 * ((i++ * 0.618034) % 1) ** 3;
+};
+
+describe('clock sync', () => {
+  test.each([0, 600, -600])('on a LAN, clocks %d s apart: within 10 ms in 3 s', (skew) => {
+    const { error, settled } = follow(createClockSync(), 5, 10, skew, lan(), lan());
+    tell(`clock skew ${skew} s`, { 'error [ms]': error * 1000, 'within 10 ms after [s]': settled });
+    expect(settled).toBeLessThan(3);
+    expect(error).toBeLessThan(0.01);
+  });
+
+  test('a machine that slept for 60 s, its clock standing still or not: within 10 ms in 3 s', () => {
+    for (const stood of [0, 60]) {
+      const sync = createClockSync();
+      follow(sync, 5, 10, 3, lan(), lan());
+      const { settled } = follow(sync, 75 - stood, 10, 3 + stood, lan(), lan());
+      tell(`suspend of 60 s, clock ${stood ? 'stood still' : 'went on'}`, { 'within 10 ms after [s]': settled });
+      expect(settled).toBeLessThan(3);
+    }
+  });
+
+  test('is never further off than half the shortest round trip, however unevenly answers come', () => {
+    const seconds = fc.double({ min: 0, max: 0.4, noNaN: true });
+    fc.assert(
+      fc.property(fc.array(fc.tuple(seconds, seconds), { minLength: 1, maxLength: 30 }), (trips) => {
+        const sync = createClockSync();
+        const skew = 1234.5;
+        trips.forEach(([there, back], i) => {
+          const sent = i;
+          sync.hear(sent, sent + there + skew, sent + there + back);
+        });
+        const shortest = Math.min(...trips.map(([there, back]) => there + back));
+        expect(sync.roundTrip).toBeLessThanOrEqual(shortest + 1e-9);
+        expect(Math.abs(sync.ahead - skew)).toBeLessThanOrEqual(shortest / 2 + 1e-9);
+      }),
+    );
+  });
+
+  test('asks five times in the first second and then every two', () => {
+    const sync = createClockSync();
+    let asks = 0;
+    for (let now = 0; now < 9; now += 1 / 90) if (sync.due(now)) asks += 1;
+    expect(asks).toBeGreaterThanOrEqual(8);
+    expect(asks).toBeLessThanOrEqual(9);
+  });
+});

@@ -1,0 +1,125 @@
+import { defaultCalibration } from '../../src/core/body/calibration';
+import type { BallDeed, BallEvent } from '../../src/core/games/ball/ball-state';
+import { rackPosition, stations } from '../../src/core/games/ball/stations';
+import { gravity } from '../../src/core/games/ballistics';
+import { type Side, wristAround } from '../../src/core/games/fist';
+import { invertTransform, type Pose, transformPose } from '../../src/core/math/pose';
+import { identity } from '../../src/core/math/quat';
+import { add, addScaled, scale, subtract, type Vec3, vec3 } from '../../src/core/math/vec3';
+import type { Connection, ConnectionUpdate, ShownPose, Visitor } from '../../src/net/connection';
+
+export const visitor = (name: string, more: Partial<Visitor> = {}): Visitor => ({
+  name,
+  calibration: defaultCalibration,
+  ...more,
+});
+
+/** Where the throwers aim: the opening of the basket in front of the holder, arena frame. */
+export const opening: Vec3 = add(stations[2]!.position, vec3(0, 1.1, 0.45));
+
+const eyes = vec3(0, 1.6, 0);
+
+/** The velocity that brings a ball from one place to another in this time [s]. */
+export const velocityTo = (from: Vec3, to: Vec3, seconds: number): Vec3 =>
+  addScaled(scale(subtract(to, from), 1 / seconds), vec3(0, 1, 0), 0.5 * gravity * seconds);
+
+/** Somebody who stands where their seat is with their wrists at these places of the arena. */
+export function shownAt(
+  connection: Pick<Connection, 'arenaFromFloor'>,
+  seat: number,
+  wrists: Readonly<Record<Side, Pose<'arena'> | null>>,
+): ShownPose {
+  const floorFromArena = invertTransform(connection.arenaFromFloor(seat));
+  const hand = (side: Side) => {
+    const wrist = wrists[side];
+    return wrist && { ...transformPose(floorFromArena, wrist), tracking: 'tracked' as const };
+  };
+  return {
+    jump: false,
+    pose: {
+      head: { position: eyes, orientation: identity, tracking: 'tracked' },
+      leftHand: hand('left'),
+      rightHand: hand('right'),
+      body: null,
+    },
+    grips: { left: 0, right: 0 },
+    curls: { left: null, right: null },
+  };
+}
+
+/** Wrists round these fists, knuckles ahead, thumbs up. */
+export const fists = (left: Vec3, right: Vec3 = left): Record<Side, Pose<'arena'>> => ({
+  left: wristAround('left', left, vec3(0, 0, -1), vec3(0, 1, 0)),
+  right: wristAround('right', right, vec3(0, 0, -1), vec3(0, 1, 0)),
+});
+
+/** Wrists that hold the basket's rim on both sides, opening upward. */
+export const holding = (middle: Vec3): Record<Side, Pose<'arena'>> => ({
+  left: wristAround('left', add(middle, vec3(0.22, 0, 0)), vec3(0, 0, 1), vec3(0, 1, 0)),
+  right: wristAround('right', add(middle, vec3(-0.22, 0, 0)), vec3(0, 0, 1), vec3(0, 1, 0)),
+});
+
+/** Where a thrower of this seat lets go. */
+export const releaseOf = (seat: number): Vec3 => add(stations[seat]!.position, vec3(0, 1.6, -0.5));
+
+type Unnumbered = BallDeed extends infer D ? (D extends BallDeed ? Omit<D, 'sequence'> : never) : never;
+
+/** A person at a connection: does what a page would do every frame, and remembers what it heard. */
+export function createPerson(connection: Connection) {
+  const events: BallEvent[] = [];
+  const news: ConnectionUpdate['news'][number][] = [];
+  const poses: ConnectionUpdate['poses'][number][] = [];
+  let sequence = 0;
+  let wrists: Record<Side, Pose<'arena'> | null> = { left: null, right: null };
+  const act = (deed: Unnumbered): BallDeed => {
+    sequence += 1;
+    const numbered = { ...deed, sequence } as BallDeed;
+    connection.act(numbered);
+    return numbered;
+  };
+  return {
+    connection,
+    events,
+    news,
+    poses,
+    get seat() {
+      return connection.room?.mySeat ?? -1;
+    },
+    get match() {
+      return connection.room!.match!;
+    },
+    place(next: typeof wrists) {
+      wrists = next;
+    },
+    act,
+    grab: (ball: number, side: Side = 'right') => act({ type: 'grab', side, ball }),
+    /** Into the basket, from where the fists are. */
+    toss(ball: number, time: number, to: Vec3 = opening, side: Side = 'right') {
+      const from = releaseOf(connection.room!.mySeat!);
+      return act({
+        type: 'throw',
+        side,
+        ball,
+        at: time + connection.room!.matchAhead,
+        position: from,
+        velocity: velocityTo(from, to, 1),
+      });
+    },
+    /** One frame of a page. */
+    frame(time: number) {
+      const update = connection.update(time);
+      events.push(...update.events);
+      news.push(...update.news);
+      poses.push(...update.poses);
+      const seat = connection.room?.mySeat ?? null;
+      if (seat !== null) connection.sendPose(time, shownAt(connection, seat, wrists));
+      return update;
+    },
+    happened: <T extends BallEvent['type']>(type: T) =>
+      events.filter((event): event is Extract<BallEvent, { type: T }> => event.type === type),
+  };
+}
+export type Person = ReturnType<typeof createPerson>;
+
+/** A fist at a ball's place in its rack. */
+export const atRack = (ball: number, balls = 20) => fists(rackPosition(ball, balls));

@@ -1,0 +1,162 @@
+import type { AddressInfo } from 'node:net';
+import { io, type Socket } from 'socket.io-client';
+import { createRelay } from '../../server/relay';
+import { relayConfigurationFrom } from '../../server/relay-configuration';
+import { serve } from '../../server/web-server';
+import { defaultCalibration } from '../../src/core/body/calibration';
+import { skeletonFromCalibration } from '../../src/core/body/skeleton';
+import { identity } from '../../src/core/math/quat';
+import { vec3 } from '../../src/core/math/vec3';
+import { protocolVersion, type RoomMessage } from '../../src/core/protocol/messages';
+import { encodePose } from '../../src/core/protocol/pose-codec';
+import { messageEvent, pageParser } from '../../src/core/protocol/small-frames';
+import type { Visitor } from '../../src/net/connection';
+import { createRoomPass } from '../../src/net/room-pass';
+import { createSocketConnection } from '../../src/net/socket-connection';
+import { createPerson, visitor } from '../net/people';
+
+export const testSecret = 'a secret of the tests, long enough for them';
+
+/** A relay of this process on a free port of loopback. */
+export async function startRelay(environment: Record<string, string> = {}, port = 0) {
+  const configuration = relayConfigurationFrom({ THREEPOINT_LOG_LEVEL: 'silent', ...environment });
+  let handle: ReturnType<typeof createRelay>['handle'] | null = null;
+  const server = await serve(
+    (request, response) => {
+      if (handle?.(request, response)) return;
+      response.writeHead(404);
+      response.end();
+    },
+    { host: '127.0.0.1', port },
+  );
+  const relay = createRelay(server.requests, configuration, configuration.secret ?? testSecret);
+  handle = relay.handle;
+  const { port: actual } = server.requests.address() as AddressInfo;
+  return {
+    relay,
+    url: `http://127.0.0.1:${actual}`,
+    port: actual,
+    async close() {
+      await relay.close();
+      await server.close();
+    },
+  };
+}
+export type RunningRelay = Awaited<ReturnType<typeof startRelay>>;
+
+/** Waits until something is true; says what was awaited if it never is. */
+export async function until(what: string, isTrue: () => boolean, seconds = 15): Promise<void> {
+  const end = performance.now() + seconds * 1000;
+  while (!isTrue()) {
+    if (performance.now() > end) throw new Error(`waited ${seconds} s in vain: ${what}`);
+    await new Promise((resolve) => setTimeout(resolve, 5));
+  }
+}
+
+export const pause = (seconds: number): Promise<void> => new Promise((resolve) => setTimeout(resolve, seconds * 1000));
+
+export const seconds = (): number => performance.now() / 1000;
+
+/** A person over a real socket, sixty frames a second. */
+export function arrive(url: string, room: string, name: string, more: Partial<Visitor> = {}, now = seconds) {
+  const kind = room.startsWith('open') ? 'open' : 'ball';
+  const connection = createSocketConnection({
+    url,
+    room,
+    visitor: visitor(name, more),
+    pass: createRoomPass(url, room, kind),
+    now,
+  });
+  const person = createPerson(connection);
+  let frames: ((time: number) => void) | null = null;
+  const timer = setInterval(() => {
+    const time = now();
+    person.frame(time);
+    frames?.(time);
+  }, 1000 / 60);
+  return Object.assign(person, {
+    now,
+    everyFrame(then: (time: number) => void) {
+      frames = then;
+    },
+    stop() {
+      clearInterval(timer);
+      connection.leave();
+    },
+    /** The page stops doing anything; the connection stays. */
+    freeze: () => clearInterval(timer),
+  });
+}
+
+const skeleton = skeletonFromCalibration(defaultCalibration);
+
+/** A good pose packet at this time [ms]; somebody who stands still unless moved aside [m]. */
+export function poseBytes(timeMs: number, aside = 0): Uint8Array {
+  const bytes = encodePose(
+    {
+      timeMs,
+      jump: false,
+      pose: {
+        head: { position: vec3(aside, 1.6, 0), orientation: identity, tracking: 'tracked' },
+        leftHand: { position: vec3(aside - 0.2, 1.1, -0.2), orientation: identity, tracking: 'tracked' },
+        rightHand: { position: vec3(aside + 0.2, 1.1, -0.2), orientation: identity, tracking: 'tracked' },
+        body: null,
+      },
+      grips: { left: 0, right: 0 },
+      curls: { left: null, right: null },
+    },
+    skeleton,
+  );
+  if (!bytes) throw new Error('the pose packet of the tests is not finite');
+  return bytes;
+}
+
+export async function tokenFor(url: string, room: string, kind: 'ball' | 'open' = 'ball'): Promise<string> {
+  return createRoomPass(url, room, kind).token(false);
+}
+
+/** A socket without our client behind it: for saying what no page of ours says. */
+export function rawSocket(url: string, token: string, room: string): Socket {
+  return io(url, {
+    path: '/relay',
+    transports: ['websocket'],
+    parser: pageParser,
+    query: { room },
+    auth: { token },
+    reconnection: false,
+    forceNew: true,
+  });
+}
+
+/** The same, joined; and what it heard. */
+export async function rawGuest(url: string, room: string, token?: string) {
+  const kind = room.startsWith('open') ? 'open' : 'ball';
+  const socket = rawSocket(url, token ?? (await tokenFor(url, room, kind)), room);
+  const heard: RoomMessage[] = [];
+  let closedAt: number | null = null;
+  socket.on(messageEvent, (message: RoomMessage) => heard.push(message));
+  socket.on('disconnect', () => {
+    closedAt = performance.now();
+  });
+  const say = (message: unknown) => socket.emit(messageEvent, message);
+  socket.on('connect', () =>
+    say({
+      type: 'join',
+      version: protocolVersion,
+      name: 'raw',
+      calibration: defaultCalibration,
+      spectate: false,
+      bot: false,
+      seat: null,
+    }),
+  );
+  await until('the raw guest to be welcomed', () => heard.some(({ type }) => type === 'welcome'));
+  return {
+    socket,
+    heard,
+    say,
+    get closedAt() {
+      return closedAt;
+    },
+  };
+}
