@@ -10,6 +10,8 @@ export default defineConfig({
   workers: 1,
   fullyParallel: false,
   forbidOnly: Boolean(process.env.CI),
+  // What takes minutes, or a browser of its own, is looked at by night (npm run nightly).
+  ...(process.env.THREEPOINT_NIGHTLY ? {} : { grepInvert: /@nightly/ }),
   timeout: 90_000,
   expect: { timeout: 20_000 },
   reporter: [['list']],

@@ -81,6 +81,18 @@ const stages = {
       ];
     },
   },
+  'nightly-e2e': {
+    runner: 'playwright',
+    limitSeconds: 5400,
+    byName: true,
+    commands: async (report) => {
+      process.env.CHROMIUM_PATH = await ensureChromium();
+      process.env.PLAYWRIGHT_JSON_OUTPUT_NAME = report;
+      process.env.THREEPOINT_NIGHTLY = '1';
+      await buildWhenStale();
+      return [node('@playwright/test/cli.js', 'test', '--grep', '@nightly', '--reporter=list,json')];
+    },
+  },
 };
 
 const seconds = (start) => `${((performance.now() - start) / 1000).toFixed(1)} s`;

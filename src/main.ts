@@ -2,9 +2,11 @@ import { PerspectiveCamera, Raycaster, Vector2 } from 'three';
 import { createArcheryPlay, probeOf, roundOf } from './archery-play';
 import { type Avatar, createAvatar } from './avatar/avatar';
 import { createDebugSkeleton } from './avatar/debug-skeleton';
+import { createHeadLoss } from './avatar/head-loss';
 import { loadAvatar } from './avatar/load-avatar';
 import { createMirror } from './avatar/mirror';
 import { palettes } from './avatar/palettes';
+import { validateInWorker } from './avatar/validate-in-worker';
 import type { BallActivity } from './ball-activity';
 import {
   armSpanFromFingertipSpan,
@@ -35,6 +37,9 @@ import { createRecorder } from './recorder';
 import { createArena } from './scene/arena';
 import { createDesktopView, type ViewName, viewNames } from './scene/desktop-view';
 import { affordableQuality, createRenderer, easeEmulatedPicture, fitToWindow } from './scene/renderer';
+import { createVignette } from './scene/vignette';
+import type { TaskPlace } from './study/task-runner';
+import type { StudyRun } from './study-run';
 import { type CalibrationStep, createCalibrationDialog } from './ui/calibration-dialog';
 import { createCalibrationGuide } from './ui/calibration-guide';
 import { offerDownload } from './ui/downloads';
@@ -77,6 +82,8 @@ const mirrorByTheRange = { x: 1.95, z: -0.1, turned: -1.3 };
 const floorFromArena = { position: zero, orientation: identity };
 /** Parts of the court's middle, from where a spectator looks at first, arena frame. */
 const courtMiddle = { x: 0, y: 1, z: -2.4 };
+/** How far one push of a stick turns [rad]. */
+const snapAngle = Math.PI / 6;
 const nothingPressed: Buttons = { left: allReleased, right: allReleased };
 
 type Triple = readonly [number, number, number];
@@ -124,7 +131,10 @@ async function start(): Promise<void> {
   ]);
 
   // Everything that travels starts at once; only then is anything built.
-  const avatarArrives = loadAvatar(switches.avatar ?? ownAvatarAt, (part) => progress.report('the avatar', part));
+  const avatarArrives = loadAvatar(switches.avatar ?? ownAvatarAt, {
+    onProgress: (part) => progress.report('the avatar', part),
+    ...(switches.avatar && { validate: validateInWorker }),
+  });
   avatarArrives.catch(() => undefined);
   const inferenceArrives = import('./inference/load-regressor');
   inferenceArrives.catch(() => undefined);
@@ -141,7 +151,9 @@ async function start(): Promise<void> {
     ...(quality === 'low' && { resolution: 400, samples: 0 }),
   });
   const skeletonLines = createDebugSkeleton();
-  arena.scene.add(mirror.object, skeletonLines.object);
+  const headLoss = createHeadLoss();
+  const vignette = createVignette();
+  arena.scene.add(mirror.object, skeletonLines.object, vignette.object);
   mark('scene');
 
   // What the user set; `show` brings it on the screen.
@@ -203,9 +215,9 @@ async function start(): Promise<void> {
 
   /** Somebody who needs nobody: the actor in the studio, the archer on the range. */
   function perform(time: number): { readonly frame: TrackingFrame; readonly buttons: Buttons } {
-    const player = ball?.act(time);
+    const player = study?.idle ? null : ball?.act(time, session === null);
     if (player) return player;
-    if (!archery) return { frame: actor.frameAt(time), buttons: nothingPressed };
+    if (!archery || study?.idle) return { frame: actor.frameAt(time), buttons: nothingPressed };
     if (!settings.mouse || session) return archery.play.act(time);
     pointing.setFromCamera(new Vector2(mouse.x, mouse.y), view.camera);
     const { origin, direction } = pointing.ray;
@@ -217,7 +229,7 @@ async function start(): Promise<void> {
     buttons = nothingPressed;
     ball?.begin(time);
     if (session) {
-      if (emulator && settings.actor) {
+      if (emulator && settings.actor && !study?.idle) {
         // What the actor does now is seen with the next frame: the device froze this one before it called.
         const performed = perform(time);
         emulator.drive(performed.frame, performed.buttons);
@@ -246,6 +258,8 @@ async function start(): Promise<void> {
   /** Without a seat and without a headset there is no body of one's own. */
   const watching = () => ball !== null && !session && ball.play.newest !== null && ball.play.newest.me === null;
   let arriving = false;
+  /** A study that the address asks for; it decides what is played and with which body. */
+  let study: StudyRun | null = null;
   let seed = switches.seed ?? Math.floor(performance.timeOrigin % 2 ** 31);
 
   const banner = pageElement('banner', HTMLElement);
@@ -292,7 +306,8 @@ async function start(): Promise<void> {
       },
       follow(seat) {
         settings.following = seat;
-        view.recentre();
+        placeCamera();
+        show();
       },
     },
   });
@@ -317,7 +332,13 @@ async function start(): Promise<void> {
   }
 
   function restartRound(): void {
+    // In a study rounds are the study's.
+    if (study) return;
     seed += 1;
+    restartPlay();
+  }
+
+  function restartPlay(): void {
     // Whoever plays seated shoots at targets as high for the eyes as everybody's.
     archery?.play.restart(bodyNow(), session ? newestFrame?.head.position.y : undefined);
     playBar.caption('');
@@ -369,7 +390,11 @@ async function start(): Promise<void> {
     archery = { play, view };
   }
 
+  /** Where a study plays the ball game; null: where the address says. */
+  let studyPlace: TaskPlace | null = null;
+
   async function openCourt(): Promise<void> {
+    const place = studyPlace;
     const [{ createBallActivity }, { connectionsFor }, mannequin] = await Promise.all([
       import('./ball-activity'),
       import('./ball-connections'),
@@ -382,18 +407,19 @@ async function start(): Promise<void> {
       quality,
       arena,
       mannequin,
-      connect: await connectionsFor(switches.room, {
+      connect: await connectionsFor(place?.room ?? switches.room, {
         seed,
         ...(switches.seconds && { seconds: switches.seconds }),
         ...(switches.balls && { balls: switches.balls }),
       }),
       visitor: {
-        name: settings.name || (settings.actor && !session ? 'Demo' : 'Player'),
+        name: place?.participant || settings.name || (settings.actor && !session ? 'Demo' : 'Player'),
         calibration: bodyNow(),
+        ...(place && { seat: place.members.indexOf(place.participant) }),
         ...(switches.spectate && { spectate: true }),
       },
-      bots: () => settings.bots,
-      acting: () => settings.actor && (session === null || emulator !== null),
+      bots: () => settings.bots && place === null,
+      acting: () => place === null && settings.actor && (session === null || emulator !== null),
       seed,
       onCaption: (text) => playBar.caption(text),
     });
@@ -430,7 +456,9 @@ async function start(): Promise<void> {
   }
 
   function placeCamera(): void {
-    view.setScene(archery ? 'range' : ball ? (watching() ? 'stands' : 'court') : 'studio');
+    view.setScene(
+      archery ? 'range' : ball ? (watching() && settings.following === null ? 'stands' : 'court') : 'studio',
+    );
   }
 
   function fit(): void {
@@ -487,7 +515,7 @@ async function start(): Promise<void> {
 
   async function openAvatar(source: string | File, name: string, own = false): Promise<void> {
     try {
-      showAvatar(createAvatar(await loadAvatar(source)), name, own);
+      showAvatar(createAvatar(await loadAvatar(source, own ? {} : { validate: validateInWorker })), name, own);
       if (!own) notices.show('info', `${name} is your avatar now.`);
     } catch (error) {
       notices.show('error', `${name} could not be shown: ${firstLine(reasonOf(error))}`);
@@ -516,11 +544,25 @@ async function start(): Promise<void> {
     else void openAvatar(file, file.name);
   }
 
+  /** The floor lies elsewhere from one frame to the next: nothing may be drawn on the way. */
+  function jumped(): void {
+    ball?.play.jumped();
+    choice.reset();
+  }
+
   function recentre(): void {
     if (session) session.tracker.recentre();
     else view.recentre();
-    ball?.play.jumped();
-    choice.reset();
+    jumped();
+  }
+
+  /** A push of a stick turns whoever stands there, behind a vignette. */
+  function turnByStick(time: number): void {
+    const way = session?.tracker.takeTurn() ?? 0;
+    if (way === 0) return;
+    session?.tracker.turn(way * snapAngle);
+    vignette.close(time);
+    jumped();
   }
 
   function toggle(name: 'mirror' | 'upperBodyOnly' | 'overlay', on: boolean): void {
@@ -666,6 +708,53 @@ async function start(): Promise<void> {
     });
   }
 
+  async function joinStudy(asked: NonNullable<typeof switches.study>): Promise<StudyRun> {
+    const { createStudyRun } = await import('./study-run');
+    const run = createStudyRun(asked, {
+      enterVr: enter,
+      inSession: () => session !== null,
+      calibration: () => settings.calibration,
+      setCalibration: (calibration) => calibrate(calibration, 'measured', false),
+      chooseEstimator: (name) => choice.choose(name),
+      estimator: () => choice.current.name,
+      setActor(on) {
+        settings.actor = on && switches.actor;
+      },
+      setBowSide(side) {
+        settings.bowSide = side;
+        placeMirror();
+      },
+      async goToArchery() {
+        await goTo('archery');
+        if (!archery) throw new Error('The archery range could not be opened.');
+      },
+      async goToBall(place) {
+        if (ball) await goTo('studio');
+        studyPlace = place;
+        await goTo('ball');
+        if (!ball) throw new Error('The ball court could not be opened.');
+      },
+      ball: () => ball?.play ?? null,
+      leaveBall: () => void goTo('studio'),
+      startRound(layout, seconds) {
+        Object.assign(settings, { seconds, everyHitCounts: false });
+        seed = layout;
+        restartPlay();
+        archery?.play.signal();
+      },
+      resetRound: restartPlay,
+      assists: () => (settings.oneHanded ? ['one hand'] : []),
+      device: () => ({
+        name: (emulator ? `emulated headset in ${navigator.userAgent}` : navigator.userAgent).slice(0, 160),
+        refreshRateHz: session?.xr.frameRate ?? (emulator ? windowRateHz : null),
+        input: settings.actor ? 'simulated' : emulator ? 'emulated' : (session?.tracker.input ?? 'controllers'),
+      }),
+      listenToFrames: (listener) => timing.listen(listener),
+    });
+    arena.scene.add(run.object);
+    return run;
+  }
+
   const enterButton = createEnterButton(pageElement('enter', HTMLDivElement), () => void enter());
 
   /** Controls cover a part of the window: the body stands in the middle of the rest. */
@@ -741,7 +830,7 @@ async function start(): Promise<void> {
       o: () => toggle('overlay', !settings.overlay),
       p: () => panel.setOpen(!panel.open),
     },
-    () => session === null && !dialog.visible,
+    () => session === null && !dialog.visible && study === null,
   );
   acceptDroppedFiles(openFile);
 
@@ -801,13 +890,10 @@ async function start(): Promise<void> {
         timing.reset();
         ball?.play.away(xrSession.visibilityState === 'hidden');
       });
-      space.addEventListener('reset', () => {
-        choice.reset();
-        ball?.play.jumped();
-      });
+      space.addEventListener('reset', jumped);
       timing.setRate(emulator ? windowRateHz : (xrSession.frameRate ?? 72));
       if (!settings.actor) emulator?.release();
-      menu.setVisible(true);
+      menu.setVisible(study === null);
       pointers.objects.visible = true;
       document.body.classList.add('in-session');
       panelOpenBefore = panel.open;
@@ -819,6 +905,7 @@ async function start(): Promise<void> {
     choice.reset();
     fit();
     show();
+    study?.sessionChanged();
   }
 
   function leave(): void {
@@ -834,11 +921,12 @@ async function start(): Promise<void> {
     view.setView(view.view);
     layOut();
     show();
+    study?.sessionChanged();
   }
 
   /** Somebody who never calibrated is as tall as their headset hangs high, once it hangs there calmly. */
   function settle(frame: TrackingFrame): void {
-    if (!session || calibrated() || session.settledSince === 'done') return;
+    if (!session || calibrated() || study?.measured || session.settledSince === 'done') return;
     session.settledSince ??= frame.time;
     if (frame.time - session.settledSince < settleSeconds) return;
     session.settledSince = 'done';
@@ -848,7 +936,9 @@ async function start(): Promise<void> {
   /** The frame as play: seen with the picture, heard and felt at once. */
   function playRound(frame: TrackingFrame): void {
     if (!archery) return;
-    const { events, cues, haptics } = archery.play.follow(frame, buttons);
+    if (study?.paused) return;
+    const { events, cues, haptics } = archery.play.follow(frame, study?.idle ? nothingPressed : buttons);
+    if (archery.play.newest) study?.played(archery.play.newest);
     const taken = cues.findLast(({ type }) => type === 'taken');
     if (taken) {
       settings.bowSide = taken.side;
@@ -864,7 +954,8 @@ async function start(): Promise<void> {
   /** The same of the ball game. */
   function playBall(frame: TrackingFrame): void {
     if (!ball) return;
-    const pulses = ball.follow(frame, buttons);
+    const pulses = ball.follow(frame, study?.idle ? nothingPressed : buttons);
+    if (ball.play.newest) study?.playedBall(ball.play.newest);
     if (session) buzz(session.xr, pulses);
   }
 
@@ -876,17 +967,23 @@ async function start(): Promise<void> {
     banner.hidden = text === '';
   }
 
+  /** From where and whereto the window's camera looks. */
+  function cameraPose(): Pose<'floor'> {
+    const { position, quaternion } = view.camera;
+    const { x, y, z, w } = quaternion;
+    return { position: { x: position.x, y: position.y, z: position.z }, orientation: { x, y, z, w } };
+  }
+
   /** Whom the camera of somebody without a body looks at. */
   function lookedAt(): { readonly pelvis: { x: number; y: number; z: number }; readonly eyes: Pose<'floor'> } {
     const followed = settings.following === null ? null : ball?.bodyOf(settings.following);
     if (followed) return followed;
-    const { position, quaternion } = view.camera;
-    return { pelvis: courtMiddle, eyes: { position: { ...position }, orientation: { ...quaternion } } };
+    return { pelvis: courtMiddle, eyes: cameraPose() };
   }
 
   /** How far a hand is closed: as its buttons say; round the bow it always is. */
   function gripOf(side: 'left' | 'right'): number {
-    if (archery?.play.newest?.bow?.bowSide === side) return 1;
+    if (!study?.idle && archery?.play.newest?.bow?.bowSide === side) return 1;
     // Hands that carry a basket lie round its rim.
     if (ball?.play.newest?.role === 'holder') return 0.8;
     const { trigger, grip, pinch } = buttons[side];
@@ -895,7 +992,7 @@ async function start(): Promise<void> {
 
   // A click on the result's button is another round.
   canvas.addEventListener('click', ({ clientX, clientY }) => {
-    if ((!archery && !ball) || session) return;
+    if ((!archery && !ball) || session || study) return;
     const { width, height } = canvas.getBoundingClientRect();
     pointing.setFromCamera(new Vector2((2 * clientX) / width - 1, 1 - (2 * clientY) / height), view.camera);
     const { origin, direction } = pointing.ray;
@@ -908,8 +1005,7 @@ async function start(): Promise<void> {
   /** The match as it stands in this frame, and the own body in its seat's colours. */
   function showCourt(time: number, frame: TrackingFrame | null): void {
     if (!ball) return;
-    const { position, quaternion } = view.camera;
-    const camera = { position: { ...position }, orientation: { ...quaternion } };
+    const camera = cameraPose();
     const eyes = watching() ? camera : (frame ?? newestFrame)?.head;
     ball.show(time, eyes ?? camera, frame !== null);
     if (palette !== ball.palette) {
@@ -952,10 +1048,12 @@ async function start(): Promise<void> {
         const joints = avatar?.jointPositions() ?? {};
         skeletonLines.show(joints);
         const { hips } = joints;
+        study?.frame(timeMs / 1000, frame);
         if (hips && !watching()) arena.follow(hips.x, hips.z);
         else if (watching()) arena.follow(courtMiddle.x, 100);
         if (session) {
           if (session.xr.visibilityState === 'visible') point();
+          turnByStick(timeMs / 1000);
         } else if (watching()) {
           const { pelvis, eyes } = lookedAt();
           view.update(pelvis, eyes, elapsed);
@@ -963,9 +1061,13 @@ async function start(): Promise<void> {
           view.update(hips ?? { ...frame.head.position, y: frame.head.position.y * 0.58 }, frame.head, elapsed);
         }
         const played = archery?.play.newest;
-        if (archery && played && frame) archery.view.show(played.state, played.bow, played.time, frame.head);
+        if (archery && played && frame) {
+          archery.view.show(played.state, study?.idle ? null : played.bow, played.time, frame.head);
+        }
         if (ball) showCourt(timeMs / 1000, frame);
         if (avatar) avatar.object.visible = !watching();
+        avatar?.setOpacity(headLoss.follow(timeMs / 1000, frame !== null));
+        vignette.show(timeMs / 1000, session && frame ? frame.head : null);
         const inside = session !== null || view.view === 'first-person';
         avatar?.setFirstPerson(inside);
         // Whoever looks from behind the mirror wants to see the body, not its back.
@@ -997,12 +1099,16 @@ async function start(): Promise<void> {
     if (switches.emulate || !settings.actor) await ensureEmulator();
   }
 
-  canvas.addEventListener('webglcontextlost', () =>
+  canvas.addEventListener('webglcontextlost', () => {
     notices.show(
       'warning',
-      'The graphics device was lost. The picture comes back as soon as the browser gives it back.',
-    ),
-  );
+      session
+        ? 'The graphics device was lost, and VR with it. Your game goes on: enter VR again.'
+        : 'The graphics device was lost. The picture comes back as soon as the browser gives it back.',
+    );
+    // What the headset shows was drawn by the lost device; a session cannot be given another one.
+    void session?.xr.end();
+  });
   canvas.addEventListener('webglcontextrestored', () => {
     arena.restore();
     timing.reset();
@@ -1039,14 +1145,20 @@ async function start(): Promise<void> {
       recorder: { mode: recorder.mode, frames: recorder.frameCount, seconds: recorder.seconds },
       notices: notices.current(),
       loading: { ...marks },
+      drawing: { ...renderer.info.memory, programs: renderer.info.programs?.length ?? 0, darkness: vignette.darkness },
       players: ball?.players() ?? [],
       game: archery?.play.newest ? probeOf(archery.play.newest) : (ball?.probe() ?? null),
+      study: study?.probe() ?? null,
     };
   });
 
   /** Rays and finger tips: the menu first, then the result of a round. */
   function point(): void {
     const hands = pointers.take();
+    if (study) {
+      study.point(hands);
+      return;
+    }
     menu.point(hands);
     let hovered = false;
     for (const { origin, direction, pressed, showRay } of hands) {
@@ -1097,6 +1209,7 @@ async function start(): Promise<void> {
     );
   }
   await Promise.all([chosen, sessionsPrepared, goTo(switches.play)]);
+  if (switches.study) study = await joinStudy(switches.study);
   mark('estimator');
   progress.finish();
   ready = true;

@@ -4,6 +4,7 @@ import type { BallProbe } from './ball-play';
 import type { Calibration } from './core/body/calibration';
 import type { EstimatorName } from './core/estimation/pose-estimator';
 import type { FrameSummary } from './frame-timing';
+import type { StudyProbe } from './study-run';
 
 type Triple = readonly [number, number, number];
 
@@ -36,10 +37,19 @@ export interface Probe {
   readonly notices: readonly { readonly level: string; readonly text: string }[];
   /** Milliseconds from opening the page to each mark of loading. */
   readonly loading: Readonly<Record<string, number>>;
+  /** What the graphics device holds for us, and how dark the edges of the picture are (0 to 1). */
+  readonly drawing: {
+    readonly geometries: number;
+    readonly textures: number;
+    readonly programs: number;
+    readonly darkness: number;
+  };
   /** The others as they are drawn here. */
   readonly players: readonly PlayerProbe[];
   /** The round being played; null in the studio. */
   readonly game: ArcheryProbe | BallProbe | null;
+  /** Where a study stands; null: there is none. */
+  readonly study: StudyProbe | null;
 }
 
 declare global {

@@ -124,6 +124,8 @@ export function createAvatar({ vrm }: LoadedAvatar): Avatar {
   const fingers = readFingers(vrm);
   const meshes = readMeshes(vrm, bones);
   const stepping = createStepping();
+  /** Constraints read positions and rotations; drawing needs the matrices alone. */
+  const constrained = (vrm.nodeConstraintManager?.constraints.size ?? 0) > 0;
   const rest = (name: AvatarJoint): Vector3 | null => bone(name)?.restPosition ?? null;
 
   let skeleton: Skeleton = skeletonFromCalibration({ eyeHeight: 1.59, armSpan: 1.5 });
@@ -135,6 +137,15 @@ export function createAvatar({ vrm }: LoadedAvatar): Avatar {
   let shown: 'body' | 'hands' | 'nothing' = 'nothing';
   let lastTime: number | null = null;
   let drawn: Partial<Record<AvatarJoint, Vec3>> = {};
+  let opacity = 1;
+  const looks = new Map<Material, { readonly transparent: boolean; readonly opacity: number }>();
+  /** As the file has it: hair and glasses are transparent by themselves. */
+  function ownLook(material: Material) {
+    const { transparent, opacity } = material;
+    const look = looks.get(material) ?? { transparent, opacity };
+    looks.set(material, look);
+    return look;
+  }
   const grip: Record<Side, number> = { left: relaxedCurl, right: relaxedCurl };
 
   /** The joint at rest in our skeleton, facing −Z. */
@@ -215,7 +226,7 @@ export function createAvatar({ vrm }: LoadedAvatar): Avatar {
       ? scratchMatrix.copy(parent.world).multiply(fromParentBone)
       : scratchMatrix.copy(fromParentBone);
     node.matrix.copy(above.invert()).multiply(world);
-    node.matrix.decompose(node.position, node.quaternion, node.scale);
+    if (constrained) node.matrix.decompose(node.position, node.quaternion, node.scale);
     node.matrixWorldNeedsUpdate = true;
     drawn[name] = position;
   }
@@ -353,15 +364,18 @@ export function createAvatar({ vrm }: LoadedAvatar): Avatar {
         }
       }
     },
-    setOpacity(opacity) {
+    setOpacity(next) {
+      if (next === opacity) return;
+      opacity = next;
       for (const { mesh } of meshes) {
         for (const material of materialsOf(mesh)) {
-          const ghost = opacity < 1;
-          if (material.transparent !== ghost) {
-            material.transparent = ghost;
+          const solid = ownLook(material);
+          const transparent = solid.transparent || opacity < 1;
+          if (material.transparent !== transparent) {
+            material.transparent = transparent;
             material.needsUpdate = true;
           }
-          material.opacity = opacity;
+          material.opacity = opacity * solid.opacity;
         }
         mesh.castShadow = opacity > 0.5;
       }

@@ -1,8 +1,6 @@
 import { type VRM, VRMLoaderPlugin, VRMUtils } from '@pixiv/three-vrm';
 import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
-
-/** Larger files would stall a headset for seconds; avatars made for it have 5 to 20 MB. */
-const largestFileMegabytes = 60;
+import { avatarLimits, inspectAvatar } from './inspect-avatar';
 
 /** Bones without which there is no upper body to move. */
 const neededBones = [
@@ -23,23 +21,39 @@ export interface LoadedAvatar {
   readonly vrm: VRM;
 }
 
+export interface LoadAvatarOptions {
+  /** Gets the share [0, 1] that has arrived. */
+  readonly onProgress?: (share: number) => void;
+  /** Finds faults in a file that is not our own. */
+  readonly validate?: (bytes: Uint8Array) => Promise<readonly string[]>;
+}
+
 /**
- * Loads a VRM from our own server, another address or a local file; onProgress gets the share [0, 1] that has arrived.
- * Rejects with a sentence that names the file.
+ * Loads a VRM from our own server, another address or a local file, within `avatarLimits`. Rejects with a sentence that names the
+ * file.
  */
-export async function loadAvatar(source: string | File, onProgress?: (share: number) => void): Promise<LoadedAvatar> {
+export async function loadAvatar(
+  source: string | File,
+  { onProgress, validate }: LoadAvatarOptions = {},
+): Promise<LoadedAvatar> {
   const name = typeof source === 'string' ? (source.split(/[?#]/)[0]?.split('/').at(-1) ?? source) : source.name;
+  if (typeof source !== 'string' && source.size > avatarLimits.megabytes * 2 ** 20) throw tooLarge(name);
   const bytes = typeof source === 'string' ? await download(source, name, onProgress) : await source.arrayBuffer();
   onProgress?.(1);
+  const file = new Uint8Array(bytes);
+  inspectAvatar(file, name);
+  if (validate) {
+    const faults = await validate(file).catch((error: unknown) => {
+      throw new Error(`${name}: ${error instanceof Error ? error.message : error}`);
+    });
+    if (faults.length > 0) throw new Error(`${name}: not valid glTF (${faults[0]})`);
+  }
   return parseAvatar(bytes, name);
 }
 
 /** The same from bytes already here. */
 export async function parseAvatar(bytes: ArrayBuffer, name: string): Promise<LoadedAvatar> {
-  const megabytes = bytes.byteLength / 2 ** 20;
-  if (megabytes > largestFileMegabytes) {
-    throw new Error(`${name}: ${megabytes.toFixed(0)} MB; an avatar may have ${largestFileMegabytes} MB at most`);
-  }
+  inspectAvatar(new Uint8Array(bytes), name);
   const loader = new GLTFLoader();
   loader.register((parser) => new VRMLoaderPlugin(parser));
   const gltf = await loader.parseAsync(bytes, '').catch((error: unknown) => {
@@ -53,6 +67,9 @@ export async function parseAvatar(bytes: ArrayBuffer, name: string): Promise<Loa
   VRMUtils.rotateVRM0(vrm);
   return { name, vrm };
 }
+
+const tooLarge = (name: string): Error =>
+  new Error(`${name}: more than ${avatarLimits.megabytes} MB; an avatar may have that at most`);
 
 async function download(url: string, name: string, onProgress?: (share: number) => void): Promise<ArrayBuffer> {
   const response = await fetch(url).catch((error: unknown) => {
@@ -69,9 +86,9 @@ async function download(url: string, name: string, onProgress?: (share: number) 
     if (done) break;
     pieces.push(value);
     received += value.length;
-    if (received > largestFileMegabytes * 2 ** 20) {
+    if (received > avatarLimits.megabytes * 2 ** 20) {
       await reader.cancel();
-      throw new Error(`${name}: more than ${largestFileMegabytes} MB`);
+      throw tooLarge(name);
     }
     if (total > 0) onProgress?.(Math.min(1, received / total));
   }

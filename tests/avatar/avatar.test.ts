@@ -1,4 +1,3 @@
-import { readFileSync } from 'node:fs';
 import { Matrix4, type Object3D, Quaternion, SkinnedMesh, Vector3 } from 'three';
 import { beforeAll, describe, expect, test } from 'vitest';
 import { type Avatar, createAvatar } from '../../src/avatar/avatar';
@@ -12,29 +11,7 @@ import { angleBetween, fromAxisAngle, multiply } from '../../src/core/math/quat'
 import { distance, up, type Vec3 } from '../../src/core/math/vec3';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
 import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
-
-const bytes = readFileSync(new URL('../../public/avatars/mannequin.vrm', import.meta.url));
-const mannequin = (): ArrayBuffer => bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength);
-
-/** The mannequin's file with its JSON changed: other proportions, another VRM version, bones left out. */
-function changed(change: (json: GltfJson) => void): ArrayBuffer {
-  const length = bytes.readUInt32LE(12);
-  const json = JSON.parse(bytes.toString('utf8', 20, 20 + length)) as GltfJson;
-  change(json);
-  const text = Buffer.from(JSON.stringify(json));
-  const padded = Buffer.concat([text, Buffer.alloc((4 - (text.length % 4)) % 4, ' ')]);
-  const header = Buffer.from(bytes.subarray(0, 20));
-  header.writeUInt32LE(bytes.length - length + padded.length, 8);
-  header.writeUInt32LE(padded.length, 12);
-  const file = Buffer.concat([header, padded, bytes.subarray(20 + length)]);
-  return file.buffer.slice(file.byteOffset, file.byteOffset + file.byteLength) as ArrayBuffer;
-}
-
-interface GltfJson {
-  nodes: { name: string; translation?: number[]; rotation?: number[]; children?: number[] }[];
-  extensionsUsed: string[];
-  extensions: { VRMC_vrm?: { humanoid: { humanBones: Record<string, { node: number }> } }; VRM?: unknown };
-}
+import { changed, mannequin } from './glb';
 
 /** Long arms and short legs: proportions of nobody. It stands on the floor all the same. */
 const monster = changed((json) => {

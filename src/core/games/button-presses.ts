@@ -7,6 +7,8 @@ export interface HandButtons {
   readonly pinch: number;
   /** What they belong to, where that is known. A hand that turns from one into the other lets go of everything. */
   readonly kind?: 'controller' | 'hand';
+  /** Which device of all that there ever were; absent where nobody tells them apart. */
+  readonly device?: number;
 }
 
 export type Buttons = Readonly<Record<Side, HandButtons>>;
@@ -34,21 +36,30 @@ export interface ButtonPresses {
    * first time, or when it has become another kind of hand, was not pressed then.
    */
   follow(side: Side, buttons: HandButtons, seen: boolean): readonly Button[];
-  /** Whether the last frame's hand was of another kind than the frame's before. */
+  /**
+   * Whether the last frame's hand was of another kind than the one seen before, or in this very frame became another device, as when
+   * two controllers change sides: what it held is not held by this one.
+   */
   changedKind(side: Side): boolean;
 }
 
 export function createButtonPresses(): ButtonPresses {
   const down: Record<Side, Record<Button, boolean> | null> = { left: null, right: null };
   const kinds: Record<Side, HandButtons['kind']> = { left: undefined, right: undefined };
+  const devices: Record<Side, number | undefined> = { left: undefined, right: undefined };
   const changed: Record<Side, boolean> = { left: false, right: false };
   return {
     changedKind: (side) => changed[side],
     follow(side, buttons, seen) {
       // While nobody sees a hand, nobody knows what it is either.
       const kind = seen ? buttons.kind : undefined;
-      changed[side] = kind !== undefined && kinds[side] !== undefined && kinds[side] !== kind;
+      const device = seen ? buttons.device : undefined;
+      const otherKind = kind !== undefined && kinds[side] !== undefined && kinds[side] !== kind;
+      // A controller that was off comes back as another device, to what it held: that alone is no change.
+      const otherDevice = device !== undefined && devices[side] !== undefined && devices[side] !== device;
+      changed[side] = otherKind || otherDevice;
       kinds[side] = kind ?? kinds[side];
+      devices[side] = device;
       const before = changed[side] ? null : down[side];
       if (!seen) {
         down[side] = null;

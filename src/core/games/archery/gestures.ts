@@ -15,7 +15,14 @@ import {
   zero,
 } from '../../math/vec3';
 import type { TrackedPose, TrackingFrame } from '../../tracking/tracking-frame';
-import { type Button, type Buttons, createButtonPresses, pressureOf, releasedBelow } from '../button-presses';
+import {
+  allReleased,
+  type Button,
+  type Buttons,
+  createButtonPresses,
+  pressureOf,
+  releasedBelow,
+} from '../button-presses';
 import { fistOf, otherSide, type Side } from '../fist';
 import type { ArcheryAction, BowView } from './archery-state';
 import { arrowLength, braceHeight, maximumDraw, minimumDraw } from './bow';
@@ -167,8 +174,36 @@ export function createArcheryGestures(settings: () => ArcheryGestureSettings): A
   let settling: Vec3 | null = null;
   let wasNear = false;
   let lastTime: number | null = null;
+  /** The bow as it was seen last. */
+  let shown: BowView | null = null;
+
+  /** Another thing is before the page: an arrow on the string waits for the hands to come back. */
+  function wait(frame: TrackingFrame): GestureFrame {
+    lastTime = frame.time;
+    for (const side of ['left', 'right'] as const) presses.follow(side, allReleased, false);
+    if (nocked) {
+      nocked.lostAt = frame.time;
+      nocked.opened = false;
+      nocked.stage = 'held';
+    }
+    if (held) held = { ...held, time: frame.time };
+    const { arenaFromFloor } = settings();
+    return {
+      bow: shown && (nocked ? { ...shown, stage: 'held' } : shown),
+      actions: [{ type: 'stand', head: transformPoint(arenaFromFloor, frame.head.position) }],
+      haptics: [],
+      cues: [],
+    };
+  }
 
   function follow(frame: TrackingFrame, buttons: Buttons): GestureFrame {
+    if (frame.suspended) return wait(frame);
+    const followed = play(frame, buttons);
+    shown = followed.bow;
+    return followed;
+  }
+
+  function play(frame: TrackingFrame, buttons: Buttons): GestureFrame {
     const { bowSide: wanted, rest, oneHanded, armed, arenaFromFloor } = settings();
     const actions: ArcheryAction[] = [{ type: 'stand', head: transformPoint(arenaFromFloor, frame.head.position) }];
     const haptics: HapticPulse[] = [];

@@ -94,7 +94,33 @@ export function createBallGestures(settings: () => BallGestureSettings, firstSeq
   let sequence = firstSequence;
   let lastTime: number | null = null;
 
+  const inHand = (side: Side) => holding[side]?.ball ?? null;
+
+  /** Another thing is before the page: what is held is held until the hands come back. */
+  function wait(frame: TrackingFrame): BallGestureFrame {
+    const { player, arenaFromFloor, matchAhead } = settings();
+    lastTime = frame.time;
+    for (const side of sides) {
+      presses.follow(side, allReleased, false);
+      speeds[side].reset();
+      wasNear[side] = null;
+      const held = holding[side];
+      if (!held) continue;
+      held.lostAt = frame.time;
+      held.opened = null;
+    }
+    const head = transformPoint(arenaFromFloor, frame.head.position);
+    return {
+      actions: [{ type: 'pose', player, at: frame.time + matchAhead, head, left: null, right: null }],
+      haptics: [],
+      cues: [],
+      held: { left: inHand('left'), right: inHand('right') },
+      near: { ...wasNear },
+    };
+  }
+
   function follow(frame: TrackingFrame, buttons: Buttons): BallGestureFrame {
+    if (frame.suspended) return wait(frame);
     const { player, state, arenaFromFloor, matchAhead } = settings();
     const cues = slipped;
     slipped = [];
@@ -139,7 +165,6 @@ export function createBallGestures(settings: () => BallGestureSettings, firstSeq
       }
     }
 
-    const inHand = (side: Side) => holding[side]?.ball ?? null;
     return {
       actions,
       haptics,

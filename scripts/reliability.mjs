@@ -1,0 +1,19 @@
+// npm run reliability [-- --unit | --long | --redraw]: runs the tests of every row of tests/reliability/rows.ts and writes what they
+// measured into docs/reliability.md. --unit: without a browser. --long: also twenty minutes of play. --redraw: from what was measured last.
+import { buildWhenStale } from './build.mjs';
+import { ensureChromium } from './chromium.mjs';
+import { ensureInstalled } from './installation.mjs';
+import { main, run } from './run-command.mjs';
+
+await main(async () => {
+  const options = process.argv.slice(2);
+  await ensureInstalled();
+  if (!options.includes('--unit') && !options.includes('--redraw')) {
+    process.env.CHROMIUM_PATH = await ensureChromium();
+    await buildWhenStale();
+  }
+  const { code } = await run(process.execPath, ['--import', 'tsx', 'scripts/reliability/main.ts', ...options], {
+    limitSeconds: 7200,
+  });
+  return code;
+});

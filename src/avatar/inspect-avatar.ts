@@ -1,0 +1,132 @@
+import * as v from 'valibot';
+import { imageSize } from './image-size';
+
+/** What a body from a file may cost: several times what avatars made for headsets have, far below what stalls one. */
+export const avatarLimits = {
+  megabytes: 60,
+  triangles: 250_000,
+  /** Pictures, the length of their longer side, and all their pixels together. */
+  textures: 64,
+  texturePixels: 4096,
+  millionPixels: 96,
+  bones: 600,
+  nodes: 4000,
+  /** Morph targets of all primitives together. */
+  morphTargets: 4000,
+  /** Numbers in all accessors together, unpacked. */
+  millionNumbers: 40,
+} as const;
+
+const index = v.pipe(v.number(), v.integer(), v.minValue(0));
+const list = <Item extends v.GenericSchema>(item: Item) => v.optional(v.array(item), []);
+const primitive = v.object({
+  attributes: v.record(v.string(), index),
+  indices: v.optional(index),
+  mode: v.optional(index, 4),
+  targets: list(v.record(v.string(), index)),
+});
+const gltf = v.object({
+  nodes: list(v.object({ mesh: v.optional(index), children: list(index) })),
+  meshes: list(v.object({ primitives: v.array(primitive) })),
+  accessors: list(v.object({ count: index, type: v.optional(v.string(), 'SCALAR') })),
+  skins: list(v.object({ joints: v.array(index) })),
+  bufferViews: list(v.object({ buffer: index, byteOffset: v.optional(index, 0), byteLength: index })),
+  buffers: list(v.object({ byteLength: index, uri: v.optional(v.string()) })),
+  images: list(v.object({ uri: v.optional(v.string()), bufferView: v.optional(index) })),
+});
+
+const numbersOf: Readonly<Record<string, number>> = {
+  SCALAR: 1,
+  VEC2: 2,
+  VEC3: 3,
+  VEC4: 4,
+  MAT2: 4,
+  MAT3: 9,
+  MAT4: 16,
+};
+const glbMagic = 0x46546c67;
+const jsonChunk = 0x4e4f534a;
+const binaryChunk = 0x004e4942;
+const mostJsonMegabytes = 16;
+
+/** The two chunks of a GLB file; null: it is none, or cut short. */
+function chunksOf(bytes: Uint8Array): { readonly json: string; readonly binary: Uint8Array } | null {
+  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  if (bytes.length < 20 || view.getUint32(0, true) !== glbMagic || view.getUint32(4, true) !== 2) return null;
+  const jsonLength = view.getUint32(12, true);
+  if (view.getUint32(16, true) !== jsonChunk || 20 + jsonLength > bytes.length) return null;
+  const json = new TextDecoder().decode(bytes.subarray(20, 20 + jsonLength));
+  const at = 20 + jsonLength;
+  if (at + 8 > bytes.length || view.getUint32(at + 4, true) !== binaryChunk) return { json, binary: new Uint8Array() };
+  return { json, binary: bytes.subarray(at + 8, at + 8 + view.getUint32(at, true)) };
+}
+
+/** Every address in the file: whatever is called `uri`, at any depth, extensions included. */
+function urisIn(value: unknown): string[] {
+  if (Array.isArray(value)) return value.flatMap(urisIn);
+  if (value === null || typeof value !== 'object') return [];
+  return Object.entries(value).flatMap(([key, inner]) =>
+    key === 'uri' && typeof inner === 'string' ? [inner] : urisIn(inner),
+  );
+}
+
+/**
+ * Throws a sentence that names the file and the limit where a body would cost too much or reach outside itself. Looks at headers
+ * alone: nothing is decoded, allocated or fetched.
+ */
+export function inspectAvatar(bytes: Uint8Array, name: string): void {
+  const limit = (what: string, has: number, may: number) => {
+    if (!(has <= may)) throw new Error(`${name}: ${told(has)} ${what}; an avatar may have ${told(may)} at most`);
+  };
+  limit('MB', bytes.length / 2 ** 20, avatarLimits.megabytes);
+  const chunks = chunksOf(bytes);
+  if (!chunks) throw new Error(`${name}: no VRM or GLB file (it does not begin as one, or is cut short)`);
+  limit('MB of description', chunks.json.length / 2 ** 20, mostJsonMegabytes);
+  let json: unknown;
+  try {
+    json = JSON.parse(chunks.json);
+  } catch (error) {
+    throw new Error(`${name}: no VRM or GLB file (${error instanceof Error ? error.message : error})`);
+  }
+  for (const uri of urisIn(json)) {
+    const shown = uri.slice(0, 60);
+    throw new Error(`${name}: refers to something outside the file (${shown}); an avatar must hold everything itself`);
+  }
+  const parsed = v.safeParse(gltf, json);
+  if (!parsed.success) {
+    const [issue] = parsed.issues;
+    throw new Error(`${name}: no VRM or GLB file (${v.getDotPath(issue) ?? 'the whole'}: ${issue.message})`);
+  }
+  const { nodes, meshes, accessors, skins, images, bufferViews } = parsed.output;
+  limit('nodes', nodes.length, avatarLimits.nodes);
+  limit('bones', new Set(skins.flatMap(({ joints }) => joints)).size, avatarLimits.bones);
+
+  const primitives = meshes.flatMap((mesh) => mesh.primitives);
+  const targets = primitives.reduce((sum, { targets }) => sum + targets.length, 0);
+  limit('morph targets', targets, avatarLimits.morphTargets);
+  const numbers = accessors.reduce((sum, { count, type }) => sum + count * (numbersOf[type] ?? 16), 0);
+  limit('million numbers', numbers / 1e6, avatarLimits.millionNumbers);
+  const corners = (mesh: number) =>
+    (meshes[mesh]?.primitives ?? []).reduce((sum, { attributes, indices, mode }) => {
+      const count = accessors[indices ?? attributes.POSITION ?? -1]?.count ?? 0;
+      // Strips and fans have a triangle for each corner but two, lists for each three.
+      return sum + (mode === 4 ? count / 3 : count);
+    }, 0);
+  // A mesh that hangs from many nodes is drawn as often.
+  const triangles = nodes.reduce((sum, { mesh }) => sum + (mesh === undefined ? 0 : corners(mesh)), 0);
+  limit('triangles', triangles, avatarLimits.triangles);
+
+  limit('textures', images.length, avatarLimits.textures);
+  let pixels = 0;
+  images.forEach(({ bufferView }, i) => {
+    const where = bufferView === undefined ? undefined : bufferViews[bufferView];
+    const start = where?.byteOffset ?? 0;
+    const size = where && imageSize(chunks.binary.subarray(start, start + where.byteLength));
+    if (!size) throw new Error(`${name}: picture ${i} is no PNG, JPEG, WebP or KTX2`);
+    limit(`pixels across picture ${i}`, Math.max(size.width, size.height), avatarLimits.texturePixels);
+    pixels += size.width * size.height;
+  });
+  limit('million pixels', pixels / 1e6, avatarLimits.millionPixels);
+}
+
+const told = (value: number): string => (value < 100 ? String(Number(value.toFixed(1))) : String(Math.round(value)));

@@ -1,0 +1,12 @@
+import { gltfFaults } from './validate-gltf';
+
+/** What comes back for a file: its faults, or why it could not be looked at. */
+export type ValidatorAnswer = { readonly faults: readonly string[] } | { readonly broken: string };
+
+self.addEventListener('message', ({ data: bytes }: MessageEvent<Uint8Array>) => {
+  gltfFaults(bytes).then(
+    (faults) => self.postMessage({ faults } satisfies ValidatorAnswer),
+    (error: unknown) =>
+      self.postMessage({ broken: error instanceof Error ? error.message : String(error) } satisfies ValidatorAnswer),
+  );
+});

@@ -1,0 +1,68 @@
+import { BackSide, Mesh, ShaderMaterial, SphereGeometry } from 'three';
+import { smoothstep } from '../core/math/damper';
+import type { Pose } from '../core/math/pose';
+
+/** Seconds until the picture is whole again after a turn. */
+const openingSeconds = 0.4;
+
+/** Dark edges of the picture for a moment: eyes that see the room jump only in their middle do not tell the stomach. */
+export interface Vignette {
+  readonly object: Mesh;
+  /** Dark at this time [s]. */
+  close(time: number): void;
+  /** Round these eyes, floor frame; null: not seen. */
+  show(time: number, eyes: Pose<'floor'> | null): void;
+  /** How dark the edges are, 0 to 1. */
+  readonly darkness: number;
+  dispose(): void;
+}
+
+export function createVignette(): Vignette {
+  const material = new ShaderMaterial({
+    side: BackSide,
+    transparent: true,
+    depthTest: false,
+    depthWrite: false,
+    fog: false,
+    uniforms: { darkness: { value: 0 } },
+    vertexShader: `varying vec3 direction;
+      void main() {
+        direction = position;
+        gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+      }`,
+    // Clear within 18 degrees of the gaze, dark from 38 on.
+    fragmentShader: `uniform float darkness;
+      varying vec3 direction;
+      void main() {
+        float middle = -normalize(direction).z;
+        gl_FragColor = vec4(0.0, 0.0, 0.0, darkness * (1.0 - smoothstep(0.788, 0.951, middle)));
+      }`,
+  });
+  const object = new Mesh(new SphereGeometry(0.4, 24, 16), material);
+  object.name = 'vignette';
+  object.renderOrder = 10_000;
+  object.frustumCulled = false;
+  object.visible = false;
+  let closedAt = Number.NEGATIVE_INFINITY;
+  return {
+    object,
+    close(time) {
+      closedAt = time;
+    },
+    show(time, eyes) {
+      const darkness = 1 - smoothstep(0, openingSeconds, time - closedAt);
+      material.uniforms.darkness!.value = darkness;
+      object.visible = eyes !== null && darkness > 0;
+      if (!eyes) return;
+      object.position.copy(eyes.position);
+      object.quaternion.copy(eyes.orientation);
+    },
+    get darkness() {
+      return material.uniforms.darkness!.value as number;
+    },
+    dispose() {
+      object.geometry.dispose();
+      material.dispose();
+    },
+  };
+}

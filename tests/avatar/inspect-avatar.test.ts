@@ -1,0 +1,245 @@
+import { afterAll, describe, expect, test } from 'vitest';
+import { imageSize } from '../../src/avatar/image-size';
+import { avatarLimits, inspectAvatar } from '../../src/avatar/inspect-avatar';
+import { loadAvatar } from '../../src/avatar/load-avatar';
+import { gltfFaults } from '../../src/avatar/validate-gltf';
+import { measured } from '../reliability/measured';
+import { changed, type GltfJson, mannequin } from './glb';
+
+const look = (bytes: ArrayBuffer) => inspectAvatar(new Uint8Array(bytes), 'somebody.vrm');
+
+/** The first bytes of a PNG of this size. */
+function png(width: number, height: number): Uint8Array {
+  const bytes = Buffer.alloc(64);
+  bytes.write('\x89PNG\r\n\x1a\n', 0, 'latin1');
+  bytes.writeUInt32BE(13, 8);
+  bytes.write('IHDR', 12, 'latin1');
+  bytes.writeUInt32BE(width, 16);
+  bytes.writeUInt32BE(height, 20);
+  return bytes;
+}
+
+/** A body with so many pictures, all of them these bytes. */
+const withPictures = (count: number, picture: Uint8Array): ArrayBuffer =>
+  changed((json, binaryLength) => {
+    json.bufferViews.push({ buffer: 0, byteOffset: binaryLength, byteLength: picture.length });
+    json.images = Array.from({ length: count }, () => ({
+      bufferView: json.bufferViews.length - 1,
+      mimeType: 'image/png',
+    }));
+  }, picture);
+
+const first = <Item>(items: readonly Item[]): Item => items[0] as Item;
+
+/** What somebody may try, and the sentence for it. */
+const attempts: readonly (readonly [string, () => ArrayBuffer, RegExp])[] = [
+  ['more bytes than a headset takes', () => new ArrayBuffer(61 * 2 ** 20), /61 MB; an avatar may have 60 at most/],
+  [
+    'triangles without end',
+    () =>
+      changed((json) => {
+        const { indices } = first(first(json.meshes).primitives);
+        (json.accessors[indices ?? 0] as { count: number }).count = 3_000_000;
+      }),
+    /triangles; an avatar may have 250000 at most/,
+  ],
+  [
+    'one mesh hung up a hundred times',
+    () =>
+      changed((json) => {
+        for (let i = 0; i < 100; i++) json.nodes.push({ name: `again ${i}`, mesh: 0 });
+      }),
+    /triangles; an avatar may have 250000 at most/,
+  ],
+  [
+    'accessors of zeros that need no bytes in the file',
+    () =>
+      changed((json) => {
+        json.accessors.push({ count: 2 ** 30, type: 'VEC4', componentType: 5126 });
+      }),
+    /million numbers; an avatar may have 40 at most/,
+  ],
+  [
+    'bones without end',
+    () =>
+      changed((json) => {
+        first(json.skins).joints = Array.from({ length: 601 }, (_, i) => i);
+      }),
+    /601 bones; an avatar may have 600 at most/,
+  ],
+  [
+    'nodes without end',
+    () =>
+      changed((json) => {
+        for (let i = 0; i < 4000; i++) json.nodes.push({ name: `${i}` });
+      }),
+    /nodes; an avatar may have 4000 at most/,
+  ],
+  [
+    'morph targets without end',
+    () =>
+      changed((json) => {
+        first(first(json.meshes).primitives).targets = Array.from({ length: 4001 }, () => ({ POSITION: 0 }));
+      }),
+    /4001 morph targets; an avatar may have 4000 at most/,
+  ],
+  ['textures without end', () => withPictures(65, png(64, 64)), /65 textures; an avatar may have 64 at most/],
+  ['a picture larger than a texture can be', () => withPictures(1, png(16_384, 16)), /16384 pixels across picture 0/],
+  ['many large pictures', () => withPictures(7, png(4096, 4096)), /million pixels; an avatar may have 96 at most/],
+  ['a picture that is none', () => withPictures(1, Buffer.from('<svg onload="alert(1)"/>')), /picture 0 is no PNG/],
+  [
+    'a picture on a server',
+    () =>
+      changed((json) => {
+        json.images = [{ uri: 'https://elsewhere.example/x.png' }];
+      }),
+    /outside the file/,
+  ],
+  [
+    'a picture beside the page',
+    () =>
+      changed((json) => {
+        json.images = [{ uri: '../../healthz' }];
+      }),
+    /outside the file/,
+  ],
+  [
+    'a picture in its own text',
+    () =>
+      changed((json) => {
+        json.images = [{ uri: 'data:image/png;base64,AAAA' }];
+      }),
+    /outside the file/,
+  ],
+  [
+    'bytes on a server',
+    () =>
+      changed((json) => {
+        first(json.buffers).uri = '//elsewhere.example/x.bin';
+      }),
+    /outside the file/,
+  ],
+  [
+    'an address inside an extension',
+    () =>
+      changed((json) => {
+        json.extensions.EXT_of_tomorrow = { sources: [{ deep: { uri: 'file:///etc/passwd' } }] };
+      }),
+    /outside the file \(file:\/\/\/etc\/passwd\)/,
+  ],
+  ['a file that is cut short', () => mannequin().slice(0, 3000), /cut short/],
+  [
+    'JSON that is none',
+    () =>
+      changed((json) => {
+        json.nodes = 'everything' as never;
+      }),
+    /no VRM or GLB file/,
+  ],
+  [
+    'a negative count',
+    () =>
+      changed((json) => {
+        first(json.accessors).count = -1;
+      }),
+    /no VRM or GLB file/,
+  ],
+];
+
+let refused = 0;
+afterAll(() =>
+  measured('avatars', {
+    'files refused': `${refused} of ${attempts.length + broken.length}`,
+    limits: `${avatarLimits.megabytes} MB, ${avatarLimits.triangles / 1000} k triangles, ${avatarLimits.textures} textures of ${avatarLimits.texturePixels} pixels, ${avatarLimits.bones} bones`,
+  }),
+);
+
+describe('an avatar from a file', () => {
+  test.each(attempts)('with %s is refused, by name and limit', (_, file, sentence) => {
+    expect(() => look(file())).toThrow(/^somebody\.vrm: /);
+    expect(() => look(file())).toThrow(sentence);
+  });
+
+  test('like ours passes', () => {
+    expect(() => look(mannequin())).not.toThrow();
+    expect(() => look(withPictures(20, png(2048, 1024)))).not.toThrow();
+  });
+
+  test('is looked at in milliseconds, whatever it says it holds', () => {
+    const file = first(attempts.filter(([name]) => name.startsWith('accessors')))[1]();
+    const before = process.memoryUsage().arrayBuffers;
+    expect(() => look(file)).toThrow();
+    expect(process.memoryUsage().arrayBuffers - before).toBeLessThan(50e6);
+  });
+});
+
+/** As the page opens files, with the validator that its worker runs. */
+const opened = (bytes: ArrayBuffer) => loadAvatar(new File([bytes], 'somebody.vrm'), { validate: gltfFaults });
+
+/** Well within every limit, and wrong all the same. */
+const broken: readonly (readonly [string, (json: GltfJson) => void])[] = [
+  [
+    'indices beyond its corners',
+    (json) => {
+      first(first(json.meshes).primitives).attributes.POSITION = 9999;
+    },
+  ],
+  [
+    'an accessor that reads past its bytes',
+    (json) => {
+      const accessor = json.accessors.find(({ bufferView }) => bufferView !== undefined);
+      if (accessor) accessor.count += 10;
+    },
+  ],
+  [
+    'a bone that is its own grandchild',
+    (json) => {
+      const child = json.nodes[first(json.nodes).children?.[0] ?? 1];
+      if (child) child.children = [0];
+    },
+  ],
+];
+
+describe('the Khronos validator', () => {
+  test.each(broken)('refuses %s', async (_, change) => {
+    await expect(opened(changed(change))).rejects.toThrow(/^somebody\.vrm: not valid glTF \(/);
+    refused += 1;
+  });
+
+  test('takes ours', async () => {
+    expect(await gltfFaults(new Uint8Array(mannequin()))).toEqual([]);
+    expect((await opened(mannequin())).name).toBe('somebody.vrm');
+  });
+
+  test('is not asked what the limits have refused', async () => {
+    let asked = 0;
+    const validate = async () => {
+      asked += 1;
+      return [];
+    };
+    for (const [, file] of attempts) {
+      await expect(loadAvatar(new File([file()], 'somebody.vrm'), { validate })).rejects.toThrow('somebody.vrm');
+      refused += 1;
+    }
+    expect(asked).toBe(0);
+  });
+});
+
+describe('the size of a picture', () => {
+  test('is read from the header of a PNG, JPEG and WebP', () => {
+    expect(imageSize(png(300, 200))).toEqual({ width: 300, height: 200 });
+    const jpeg = [0xff, 0xd8, 0xff, 0xe0, 0, 4, 0, 0, 0xff, 0xc2, 0, 11, 8, 1, 44, 0, 200, 1, 0, 0, 0];
+    expect(imageSize(Uint8Array.from(jpeg))).toEqual({ width: 200, height: 300 });
+    const webp = Buffer.alloc(30);
+    webp.write('RIFF....WEBPVP8X', 0, 'latin1');
+    webp.writeUIntLE(299, 24, 3);
+    webp.writeUIntLE(199, 27, 3);
+    expect(imageSize(webp)).toEqual({ width: 300, height: 200 });
+  });
+
+  test('of anything else, or of one cut short, is none', () => {
+    for (const text of ['', 'GIF89a', '<svg/>', '\x89PNG', 'RIFF....WEBP'])
+      expect(imageSize(Buffer.from(text, 'latin1'))).toBeNull();
+    expect(imageSize(Uint8Array.from([0xff, 0xd8, 0xff, 0xe0, 0, 4]))).toBeNull();
+  });
+});

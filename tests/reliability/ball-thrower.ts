@@ -1,0 +1,86 @@
+import { createBallGestures } from '../../src/core/games/ball/gestures';
+import { ballRules } from '../../src/core/games/ball/rules';
+import { rackPosition, stations } from '../../src/core/games/ball/stations';
+import { allReleased, type HandButtons } from '../../src/core/games/button-presses';
+import { wristAround } from '../../src/core/games/fist';
+import { invertTransform, transformPoint, transformPose } from '../../src/core/math/pose';
+import { identity } from '../../src/core/math/quat';
+import { type Vec3, vec3 } from '../../src/core/math/vec3';
+import type { TrackedPose, TrackingFrame } from '../../src/core/tracking/tracking-frame';
+import { leftThrower, told } from '../core/games/ball/playing';
+
+type Side = 'left' | 'right';
+type Hand = {
+  readonly fist: Vec3;
+  readonly trigger: number;
+  readonly device?: number;
+  readonly kind?: HandButtons['kind'];
+};
+
+/** A thrower whose hands are told frame by frame (arena frame; null: lost), in a match that is running. */
+export function ballThrower(rateHz = 90) {
+  const arenaFromFloor = stations[leftThrower]!;
+  const floorFromArena = invertTransform(arenaFromFloor);
+  let { state } = told();
+  const gestures = createBallGestures(() => ({ player: leftThrower, matchAhead: -100, arenaFromFloor, state }));
+  const deeds: string[] = [];
+  let time = 100;
+  let held: Readonly<Record<Side, number | null>> = { left: null, right: null };
+  const tracked = (side: Side, hand: Hand | null): TrackedPose | null =>
+    hand && {
+      ...transformPose(floorFromArena, wristAround<'arena'>(side, hand.fist, vec3(0, 0, -1), vec3(0, 1, 0))),
+      tracking: 'tracked',
+    };
+  const buttonsOf = (hand: Hand | null): HandButtons => ({
+    ...allReleased,
+    ...(hand && { trigger: hand.trigger }),
+    ...(hand?.kind && { kind: hand.kind }),
+    ...(hand?.device !== undefined && { device: hand.device }),
+  });
+  const self = {
+    /** In the arena: ball 0 in its rack, and a place before the chest. */
+    ball: rackPosition(0, 20),
+    chest: transformPoint(arenaFromFloor, vec3(0.2, 1.4, -0.3)),
+    side: transformPoint(arenaFromFloor, vec3(-0.3, 1.2, -0.3)),
+    frame(left: Hand | null, right: Hand | null, suspended = false) {
+      time += 1 / rateHz;
+      const head: TrackedPose = { position: vec3(0, 1.6, 0), orientation: identity, tracking: 'tracked' };
+      const frame: TrackingFrame = {
+        time,
+        head,
+        leftHand: tracked('left', left),
+        rightHand: tracked('right', right),
+        ...(suspended && { suspended }),
+      };
+      const done = gestures.follow(frame, { left: buttonsOf(left), right: buttonsOf(right) });
+      for (const action of done.actions) if (action.type !== 'pose') deeds.push(action.type);
+      const stepped = ballRules.step(state, done.actions);
+      state = stepped.state;
+      gestures.hear(stepped.events);
+      held = done.held;
+      return self;
+    },
+    hold(left: Hand | null, right: Hand | null, seconds: number, suspended = false) {
+      for (let i = 0; i < seconds * rateHz; i++) self.frame(left, right, suspended);
+      return self;
+    },
+    /** Takes ball 0 with the right hand and carries it before the chest. */
+    carry(device?: number) {
+      const more = device === undefined ? {} : { device };
+      const left = { fist: self.side, trigger: 0, ...(device === undefined ? {} : { device: device + 1 }) };
+      self.frame(left, { fist: self.ball, trigger: 0, ...more });
+      self.frame(left, { fist: self.ball, trigger: 1, ...more });
+      return self.hold(left, { fist: self.chest, trigger: 1, ...more }, 0.3);
+    },
+    get held() {
+      return held;
+    },
+    get deeds() {
+      return deeds;
+    },
+    get state() {
+      return state;
+    },
+  };
+  return self;
+}

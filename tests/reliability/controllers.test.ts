@@ -1,0 +1,76 @@
+import { expect, test } from 'vitest';
+import { bowman } from '../core/games/archery/bowman';
+import { ballThrower } from './ball-thrower';
+import { measured } from './measured';
+
+test('a controller that holds a ball goes off: back to the rack; on again: the hand is empty', () => {
+  const thrower = ballThrower().carry(1);
+  thrower.hold({ fist: thrower.side, trigger: 0, device: 2 }, null, 1);
+  expect(thrower.held.right).toBeNull();
+  thrower.hold({ fist: thrower.side, trigger: 0, device: 2 }, { fist: thrower.chest, trigger: 1, device: 3 }, 0.5);
+  expect(thrower.held.right).toBeNull();
+  expect(thrower.state.balls[0]).toEqual({ on: 'rack' });
+  expect(thrower.deeds).toEqual(['grab', 'drop']);
+});
+
+test('off for a moment and on again as another device of the same hand: what it held is held', () => {
+  const thrower = ballThrower().carry(1);
+  thrower.hold({ fist: thrower.side, trigger: 0, device: 2 }, null, 0.2);
+  thrower.hold({ fist: thrower.side, trigger: 0, device: 2 }, { fist: thrower.chest, trigger: 1, device: 3 }, 0.5);
+  expect(thrower.held.right).toBe(0);
+});
+
+test('both off: nothing stays in a hand that nobody has', () => {
+  const thrower = ballThrower().carry(1).hold(null, null, 1);
+  expect(thrower.held).toEqual({ left: null, right: null });
+  expect(thrower.state.balls[0]).toEqual({ on: 'rack' });
+});
+
+test('the two change sides while one holds a ball: it is let go of, never thrown, wherever the hands are', () => {
+  let thrown = 0;
+  let stuck = 0;
+  for (const distance of [0.05, 0.2, 0.5, 1]) {
+    for (const trigger of [0, 1]) {
+      const thrower = ballThrower().carry(1);
+      const there = { ...thrower.chest, x: thrower.chest.x + distance };
+      // Each side is another device at once, at the other's place, with the other's trigger.
+      thrower.hold({ fist: thrower.chest, trigger: 1, device: 4 }, { fist: there, trigger, device: 3 }, 0.5);
+      thrown += thrower.deeds.filter((deed) => deed === 'throw').length;
+      stuck += thrower.held.right === null && thrower.held.left === null ? 0 : 1;
+      expect(thrower.state.balls[0]).toEqual({ on: 'rack' });
+    }
+  }
+  expect({ thrown, stuck }).toEqual({ thrown: 0, stuck: 0 });
+  measured('controllers', { 'balls stuck': `${stuck} of 8`, 'balls thrown': `${thrown} of 8` });
+});
+
+test('a drawn bow: the string hand becomes another device, the arrow goes back, the bow stays by handedness', () => {
+  for (const bowSide of ['left', 'right'] as const) {
+    const archer = bowman({ bowSide });
+    const string = bowSide === 'left' ? 'right' : 'left';
+    archer.frame({}, { [string]: { device: 1 } });
+    archer.frame({}, { [string]: { device: 1, trigger: 1 } });
+    for (let k = 1; k <= 20; k++) archer.frame({ draw: 0.025 * k }, { [string]: { device: 1, trigger: 1 } });
+    expect(archer.bow?.stage).not.toBe('empty');
+    for (let k = 0; k < 10; k++) archer.frame({ draw: 0.5 }, { [string]: { device: 2, trigger: 0 } });
+    expect(archer.bow).toMatchObject({ stage: 'empty', bowSide });
+    expect(archer.releases).toEqual([]);
+  }
+});
+
+test('controllers become hands and controllers again, ten times while drawing: ten arrows go back, none flies', () => {
+  const archer = bowman();
+  for (let i = 0; i < 10; i++) {
+    const [before, after] = i % 2 ? (['hand', 'controller'] as const) : (['controller', 'hand'] as const);
+    const button = before === 'hand' ? 'pinch' : 'trigger';
+    archer.frame({}, { right: { kind: before } });
+    archer.frame({}, { right: { kind: before, [button]: 1 } });
+    for (let k = 1; k <= 20; k++) archer.frame({ draw: 0.025 * k }, { right: { kind: before, [button]: 1 } });
+    for (let k = 0; k < 5; k++) archer.frame({ draw: 0.5 }, { right: { kind: after } });
+    expect(archer.bow?.stage).toBe('empty');
+  }
+  const cancelled = archer.said.filter((type) => type === 'cancelled').length;
+  expect(cancelled).toBe(10);
+  expect(archer.releases).toEqual([]);
+  measured('changing-hands', { 'draws cancelled': `${cancelled} of 10`, shots: archer.releases.length });
+});

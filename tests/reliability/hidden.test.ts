@@ -1,0 +1,69 @@
+import { expect, test } from 'vitest';
+import { createBallPlay } from '../../src/ball-play';
+import { defaultCalibration } from '../../src/core/body/calibration';
+import { createEstimator } from '../../src/core/estimation/estimators';
+import { allReleased } from '../../src/core/games/button-presses';
+import { createLoopbackHost } from '../../src/net/loopback-connection';
+import { measured } from './measured';
+
+const released = { left: allReleased, right: allReleased };
+
+/** One of two people in a room of this page; who wears a headset that is taken off draws no frames at all. */
+function person(host: ReturnType<typeof createLoopbackHost>, name: string, seat: number) {
+  const play = createBallPlay({
+    connect: host.connect,
+    visitor: { name, calibration: defaultCalibration, seat },
+    bots: () => false,
+    acting: () => true,
+    seed: 3,
+  });
+  const estimator = createEstimator('ik', defaultCalibration);
+  return {
+    play,
+    frame(time: number) {
+      play.begin(time);
+      const performed = play.act(time);
+      const seen = play.follow(time, performed?.frame ?? null, performed?.buttons ?? released);
+      if (performed) play.send(performed.frame, estimator.estimate(performed.frame), { left: 0, right: 0 });
+      return seen;
+    },
+  };
+}
+
+test('a headset taken off for 20 s: others see “away” at once when told, within 3 s when not; back, play resumes', () => {
+  const rows: Record<string, string> = {};
+  for (const told of [true, false]) {
+    const host = createLoopbackHost({ kind: 'ball', seed: 5 });
+    const ann = person(host, 'Ann', 0);
+    const cal = person(host, 'Cal', 2);
+    let time = 50;
+    const pass = (seconds: number, both: boolean, until: () => boolean = () => false): number => {
+      const start = time;
+      while (time - start < seconds && !until()) {
+        time += 1 / 72;
+        if (both) ann.frame(time);
+        cal.frame(time);
+      }
+      return time - start;
+    };
+    const presence = () => cal.play.probe()?.people[0]?.presence;
+    pass(8, true, () => cal.play.probe()?.phase === 'running');
+    expect(cal.play.probe()?.phase).toBe('running');
+    if (told) ann.play.away(true);
+    const away = pass(5, false, () => presence() === 'away');
+    expect(away).toBeLessThan(3);
+    pass(20 - away, false);
+    const { score = 0 } = cal.play.probe() ?? {};
+    if (told) ann.play.away(false);
+    const back = pass(5, true, () => presence() === 'here' && ann.play.newest !== null);
+    expect(back).toBeLessThan(1);
+    expect(ann.play.probe()).toMatchObject({ seat: 0, role: 'thrower', connection: 'joined' });
+    expect(ann.play.probe()?.score).toBeGreaterThanOrEqual(score);
+    const before = cal.play.probe()?.balls.rack ?? 0;
+    pass(10, true, () => (cal.play.probe()?.balls.rack ?? 0) < before);
+    expect(cal.play.probe()?.balls.rack, 'Ann throws again').toBeLessThan(before);
+    rows[told ? '“away” when the page says so' : '“away” when nobody says so'] =
+      `after ${away.toFixed(2)} s, back after ${back.toFixed(2)} s`;
+  }
+  measured('hidden', rows);
+});

@@ -1,0 +1,77 @@
+import { expect, test } from 'vitest';
+import { defaultCalibration } from '../../src/core/body/calibration';
+import { forwardKinematics } from '../../src/core/body/forward-kinematics';
+import { skeletonFromCalibration } from '../../src/core/body/skeleton';
+import { createEstimator } from '../../src/core/estimation/estimators';
+import { distance, type Vec3, vec3 } from '../../src/core/math/vec3';
+import { decodePose, encodePose } from '../../src/core/protocol/pose-codec';
+import { actorFrame } from '../../src/core/tracking/actor-motion';
+import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
+import { openShippedModel } from '../core/estimation/shipped-models';
+import { measured } from './measured';
+
+const skeleton = skeletonFromCalibration(defaultCalibration);
+
+/** Somebody who stands still, whose hands are lost or guessed for this long and then seen again. */
+function spoiled(
+  time: number,
+  which: 'left' | 'right' | 'both',
+  how: 'null' | 'emulated',
+  seconds: number,
+): TrackingFrame {
+  const whole = { ...actorFrame(11.5, defaultCalibration), time };
+  if (time < 0.5 || time >= 0.5 + seconds) return whole;
+  const spoil = (hand: TrackingFrame['leftHand']) =>
+    how === 'null' ? null : hand && ({ ...hand, position: vec3(0, 0.3, 0), tracking: 'emulated' } as const);
+  return {
+    ...whole,
+    ...(which !== 'right' && { leftHand: spoil(whole.leftHand) }),
+    ...(which !== 'left' && { rightHand: spoil(whole.rightHand) }),
+  };
+}
+
+test('a wrist goes to rest and comes back without a jump, whichever hand, however lost, by each method that draws a body', async () => {
+  let worst = 0;
+  let cases = 0;
+  for (const name of ['ik', 'learned', 'paper'] as const) {
+    const network = name === 'ik' ? undefined : await openShippedModel(name);
+    for (const which of ['left', 'right', 'both'] as const) {
+      for (const how of ['null', 'emulated'] as const) {
+        for (const seconds of [0.15, 0.35, 1.2]) {
+          const estimator = network
+            ? createEstimator(name, defaultCalibration, network)
+            : createEstimator(name, defaultCalibration);
+          let before: Record<'left' | 'right', Vec3> | null = null;
+          for (let i = 0; i < (1.7 + seconds) * 60; i++) {
+            const frame = spoiled(i / 60, which, how, seconds);
+            await estimator.prepare(frame);
+            const { body } = estimator.estimate(frame);
+            if (!body) throw new Error(`${name} draws a body`);
+            const joints = forwardKinematics(skeleton, body);
+            const now = { left: joints.leftHand.position, right: joints.rightHand.position };
+            if (before) worst = Math.max(worst, distance(now.left, before.left), distance(now.right, before.right));
+            before = now;
+          }
+          cases += 1;
+        }
+      }
+    }
+  }
+  expect(worst).toBeLessThan(0.05);
+  measured('hand-lost', {
+    'longest step of a wrist': `${(100 * worst).toFixed(1)} cm in a frame of 60 Hz (${cases} cases)`,
+  });
+});
+
+test('others learn of it: null and emulated arrive as they are', () => {
+  for (const how of ['null', 'emulated'] as const) {
+    const frame = spoiled(0.6, 'left', how, 1);
+    const pose = createEstimator('ik', defaultCalibration).estimate(frame);
+    const packet = { timeMs: 1, jump: false, pose, grips: { left: 0, right: 0 }, curls: { left: null, right: null } };
+    const bytes = encodePose(packet, skeleton);
+    const arrived = bytes && decodePose(bytes, skeleton);
+    expect(arrived?.pose.leftHand?.tracking ?? null).toBe(how === 'null' ? null : 'emulated');
+    expect(arrived?.pose.rightHand?.tracking).toBe('tracked');
+  }
+  measured('hand-lost', { 'flags that reach others': 'null, emulated' });
+});

@@ -1,0 +1,186 @@
+/** What must survive, and what is promised: one row each of docs/reliability.md. */
+export interface Row {
+  /** What is done to the page, the headset or the server. */
+  readonly inject: string;
+  /** What whoever plays must see then. */
+  readonly sees: string;
+  readonly target: string;
+  /** The tests that try it; each tells its figures to this row. */
+  readonly tests: readonly string[];
+  /** What no test can see without a headset, step by step. */
+  readonly manual?: readonly string[];
+}
+
+/** Faults of tracking and device. */
+export const faultRows = {
+  'head-lost': {
+    inject: 'The pose of the head is null for 3 s',
+    sees: 'The body freezes and fades; nothing is NaN',
+    target: 'no exception; whole again within 2 frames',
+    tests: ['tests/avatar/head-loss.test.ts', 'e2e/faults.spec.ts'],
+    manual: [
+      'Walk out of the guardian, or cover every camera for three seconds: the world stays, the body fades and returns.',
+    ],
+  },
+  'hand-lost': {
+    inject: 'One or both hands null or emulated',
+    sees: 'The arm eases to rest in 300 ms; the flag travels to others',
+    target: 'no jump over 5 cm per frame (60 Hz), 200 ms blend',
+    tests: ['tests/reliability/lost-hands.test.ts', 'tests/core/tracking/hand-continuity.test.ts', 'e2e/hands.spec.ts'],
+    manual: [
+      'Put one controller behind your back for two seconds and bring it back: the arm sinks and returns smoothly.',
+    ],
+  },
+  blurred: {
+    inject: '`visible-blurred` for 10 s: a menu of the system lies before the page',
+    sees: 'Drawing goes on, hands rest, input is ignored, nothing is dropped',
+    target: 'no exception; 0 throws and shots released',
+    tests: ['tests/reliability/blurred.test.ts', 'tests/xr/tracker.test.ts'],
+    manual: ['Draw the bow, open the system menu, press the trigger in it, close it: no arrow has flown.'],
+  },
+  hidden: {
+    inject: 'Hidden for 20 s, the headset taken off',
+    sees: 'Others see “away” within 3 s; play resumes',
+    target: 'within 1 s of the return',
+    tests: ['tests/reliability/hidden.test.ts', 'tests/core/room/room.test.ts', 'e2e/entering-vr.spec.ts'],
+    manual: [
+      'Take the headset off for twenty seconds in a ball game with somebody else: they see “away”; put it on: they see you.',
+    ],
+  },
+  controllers: {
+    inject: 'A controller off and on, both off, their handedness swapped while holding',
+    sees: 'Ball and bow are let go of or taken over by handedness',
+    target: '0 stuck in a hand, 0 thrown or shot',
+    tests: ['tests/reliability/controllers.test.ts', 'tests/xr/tracker.test.ts', 'e2e/archery.spec.ts'],
+    manual: ['Take a battery out of the controller that holds a ball: the ball goes back to the rack.'],
+  },
+  'changing-hands': {
+    inject: 'Controllers → hands → controllers, ten times while drawing',
+    sees: 'The right kind each time, the draw cancelled',
+    target: '10 of 10 cancelled, 0 shots, 0 leaks',
+    tests: ['tests/reliability/controllers.test.ts', 'tests/xr/tracker.test.ts', 'e2e/hands.spec.ts'],
+    manual: ['Lay the controllers down and take them up again while drawing.'],
+  },
+  'space-reset': {
+    inject: 'The reference space is reset: 90° and 1 m',
+    sees: 'The world is re-anchored, the temporal window cleared; others see a jump and no streak',
+    target: '0 poses between the two places',
+    tests: ['tests/reliability/space-reset.test.ts', 'tests/net/remote-players.test.ts', 'tests/xr/tracker.test.ts'],
+    manual: ['Hold the system button to recentre, turned by a quarter: the range lies ahead at once.'],
+  },
+  rates: {
+    inject: '72, 80, 90 and 120 Hz, 30 % of the frames dropped',
+    sees: 'The same arrows, balls and bodies',
+    target: 'trajectories within 1 mm; throws of a hand within 10 cm/s',
+    tests: ['tests/reliability/rates.test.ts'],
+    manual: ['Change the headset’s rate in its settings: the score of the built-in archer stays 50.'],
+  },
+  people: {
+    inject: 'Heights of 1.10 to 2.20 m, seated, crouching, a floor that is off by 0.5 m',
+    sees: 'Two seconds of calibration, and the body fits',
+    target: 'wrists 0 mm off the hands within reach; the pelvis never below the floor',
+    tests: ['tests/reliability/people.test.ts'],
+    manual: ['Sit down, calibrate, and shoot a round; stand on a step and do the same.'],
+  },
+  flows: {
+    inject: 'Left-handed, one-handed, seated, small, tall',
+    sees: 'Every round of both games can be finished',
+    target: '100 %',
+    tests: ['tests/reliability/flows.test.ts'],
+    manual: ['Play archery with one hand (Rules and hands) and hold the basket with one hand.'],
+  },
+  comfort: {
+    inject: 'Turning by the stick, small text, no sound, colour-blind eyes, reduced motion',
+    sees: 'Snap turns behind a vignette, text that grows, captions, rings told apart by brightness, no movement of the page',
+    target: 'a turn turns about the head: 0 mm; contrast 4.5 : 1',
+    tests: [
+      'tests/reliability/comfort.test.ts',
+      'tests/games/archery/boards.test.ts',
+      'tests/games/archery/captions.test.ts',
+    ],
+    manual: ['Push a stick to the side: one step of 30°, dark edges for a moment, no nausea.'],
+  },
+  'no-headset': {
+    inject: 'No WebXR, no HTTPS, a session refused',
+    sees: 'A sentence that says why, and the desktop mode',
+    target: 'within 1 s',
+    tests: ['tests/xr/session.test.ts', 'e2e/faults.spec.ts'],
+  },
+  'graphics-lost': {
+    inject: 'The WebGL context is lost and restored, in the mirror, in archery and in the ball game',
+    sees: 'Everything is uploaded again; the game goes on where it was',
+    target: 'a picture within 3 s',
+    tests: ['e2e/faults.spec.ts'],
+    manual: [
+      'In a session a headset’s own layer is lost too: the page leaves VR with a sentence; enter again, the score is still there.',
+    ],
+  },
+  'no-wasm': {
+    inject: 'WASM missing, blocked by the policy, not compiling',
+    sees: 'IK takes over, a notice says so',
+    target: 'the avatar moves within 2 s',
+    tests: ['e2e/models.spec.ts'],
+  },
+  'bad-model': {
+    inject: 'A model missing, truncated, of the wrong hash or shape, or answering NaN',
+    sees: 'IK takes over, the page says so',
+    target: '0 bones NaN; 1 frame',
+    tests: ['tests/reliability/models.test.ts', 'tests/inference/load-regressor.test.ts', 'e2e/models.spec.ts'],
+  },
+  'webgpu-lost': {
+    inject: 'The WebGPU device is lost',
+    sees: 'WASM takes over, else IK',
+    target: '500 ms',
+    tests: ['e2e/webgpu.spec.ts', 'e2e/models.spec.ts'],
+  },
+  'long-run': {
+    inject: 'Twenty minutes of archery rounds by the actor (nightly)',
+    sees: 'Nothing grows after the first round',
+    target: 'textures, geometries, programs, listeners, workers +0; heap +10 % at most',
+    tests: ['e2e/long-run.spec.ts'],
+    manual: ['The same in the headset, its memory read with the browser’s remote inspector.'],
+  },
+} as const satisfies Readonly<Record<string, Row>>;
+
+/** Promises 4 to 8: of the page, of names, of avatars and of what is kept. */
+export const promiseRows = {
+  policy: {
+    inject: 'Promise 4: scripts of other origins, inline scripts, `eval`, `new Function`',
+    sees: 'Nothing of it runs; every asset is our own',
+    target: '0 run; 0 requests elsewhere',
+    tests: ['tests/server/page.test.ts', 'e2e/faults.spec.ts'],
+  },
+  isolation: {
+    inject: 'Promise 5: Permissions-Policy; the page with and without cross-origin isolation',
+    sees: 'WebXR for the page alone; the same page either way',
+    target: 'both load, same estimator and provider',
+    tests: ['tests/server/page.test.ts', 'e2e/faults.spec.ts'],
+  },
+  text: {
+    inject: 'Promise 6: names, captions and comments that are markup, control characters or formulas',
+    sees: 'Text, and nothing else',
+    target: '0 elements made; 0 formulas in a CSV',
+    tests: [
+      'tests/reliability/text.test.ts',
+      'tests/core/protocol/messages.test.ts',
+      'tests/core/study/tidy-csv.test.ts',
+    ],
+  },
+  avatars: {
+    inject:
+      'Promise 7: avatar files too large, with too many triangles, textures or bones, with URIs, invalid, made to exhaust',
+    sees: 'A sentence that says which limit; our own body stays',
+    target: '100 % refused; 0 requests; ours and VRM 0.x accepted',
+    tests: ['tests/avatar/inspect-avatar.test.ts', 'e2e/avatar.spec.ts'],
+  },
+  privacy: {
+    inject: 'Promise 8: a game and a study played, then the server’s files and memory read',
+    sees: 'No motion kept without consent; none older than 2 s in a room',
+    target: '0 bytes of motion on disk; 0 poses older than 2 s',
+    tests: ['tests/server/privacy.test.ts', 'tests/server/study-store.test.ts'],
+  },
+} as const satisfies Readonly<Record<string, Row>>;
+
+export type RowName = keyof typeof faultRows | keyof typeof promiseRows;
+
+export const rows: Readonly<Record<RowName, Row>> = { ...faultRows, ...promiseRows };

@@ -1,0 +1,60 @@
+import { expect, test } from 'vitest';
+import { defaultCalibration } from '../../src/core/body/calibration';
+import { forwardKinematics } from '../../src/core/body/forward-kinematics';
+import { jointNames } from '../../src/core/body/joints';
+import { skeletonFromCalibration } from '../../src/core/body/skeleton';
+import { createEstimator } from '../../src/core/estimation/estimators';
+import { estimatorNames } from '../../src/core/estimation/pose-estimator';
+import { type Transform, transformPose } from '../../src/core/math/pose';
+import { fromAxisAngle } from '../../src/core/math/quat';
+import { distance, up, vec3 } from '../../src/core/math/vec3';
+import { actorFrame } from '../../src/core/tracking/actor-motion';
+import type { TrackedPose, TrackingFrame } from '../../src/core/tracking/tracking-frame';
+import { openShippedModel } from '../core/estimation/shipped-models';
+import { measured } from './measured';
+
+/** A quarter turn and a metre: where the floor lies after the device has recentred. */
+const newFromOld: Transform<'floor', 'floor'> = {
+  position: vec3(1, 0, 0),
+  orientation: fromAxisAngle(up, Math.PI / 2),
+};
+const moved = (pose: TrackedPose): TrackedPose => ({ ...transformPose(newFromOld, pose), tracking: pose.tracking });
+const recentred = (frame: TrackingFrame): TrackingFrame => ({
+  time: frame.time,
+  head: moved(frame.head),
+  leftHand: frame.leftHand && moved(frame.leftHand),
+  rightHand: frame.rightHand && moved(frame.rightHand),
+});
+
+test('a space that is reset leaves no body on the way: the first frame is drawn as by somebody who has just come', async () => {
+  const skeleton = skeletonFromCalibration(defaultCalibration);
+  let worst = 0;
+  let between = 0;
+  for (const name of estimatorNames) {
+    const network = name === 'learned' || name === 'paper' ? await openShippedModel(name) : undefined;
+    const make = () =>
+      network ? createEstimator(name, defaultCalibration, network) : createEstimator(name, defaultCalibration);
+    const [estimator, fresh] = [make(), make()];
+    for (let i = 0; i < 90; i++) {
+      const frame = actorFrame(4 + i / 72, defaultCalibration);
+      await estimator.prepare(frame);
+      estimator.estimate(frame);
+    }
+    estimator.reset();
+    for (let i = 90; i < 110; i++) {
+      const frame = recentred(actorFrame(4 + i / 72, defaultCalibration));
+      await Promise.all([estimator.prepare(frame), fresh.prepare(frame)]);
+      const [pose, expected] = [estimator.estimate(frame), fresh.estimate(frame)];
+      if (!pose.body || !expected.body) continue;
+      const [joints, same] = [forwardKinematics(skeleton, pose.body), forwardKinematics(skeleton, expected.body)];
+      const off = Math.max(...jointNames.map((joint) => distance(joints[joint].position, same[joint].position)));
+      worst = Math.max(worst, off);
+      if (off > 1e-6) between += 1;
+    }
+  }
+  expect(between).toBe(0);
+  measured('space-reset', {
+    'bodies between the two places': `${between} of ${20 * (estimatorNames.length - 1)}`,
+    'difference from a new body': `${(1000 * worst).toFixed(3)} mm`,
+  });
+});

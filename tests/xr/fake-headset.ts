@@ -1,0 +1,96 @@
+import { vi } from 'vitest';
+import type { Side } from '../../src/core/body/joints';
+import { composeTransforms, invertTransform, type Pose, transformPose } from '../../src/core/math/pose';
+import { identity } from '../../src/core/math/quat';
+import { zero } from '../../src/core/math/vec3';
+
+type Place = Pose<'floor'>;
+type Seen = (Place & { readonly emulated?: boolean }) | null;
+
+/** A space of a device that is told where everything is: its origin in the room. */
+class Space extends EventTarget {
+  constructor(public roomFromSpace: Place) {
+    super();
+  }
+  getOffsetReferenceSpace(origin: { readonly place: Place }): Space {
+    return new Space(composeTransforms<'floor', 'floor', 'floor'>(this.roomFromSpace, origin.place));
+  }
+}
+
+class RigidTransform {
+  readonly place: Place;
+  constructor(
+    { x, y, z }: { x: number; y: number; z: number },
+    { x: a, y: b, z: c, w }: { x: number; y: number; z: number; w: number },
+  ) {
+    this.place = { position: { x, y, z }, orientation: { x: a, y: b, z: c, w } };
+  }
+}
+
+interface Input {
+  readonly handedness: XRHandedness;
+  readonly profiles: readonly string[];
+  readonly gripSpace: { at: Seen };
+  readonly hand?: Map<string, { at: Seen }>;
+  readonly gamepad: { readonly buttons: { value: number }[]; readonly axes: number[] };
+}
+
+/** A headset as WebXR shows it, for tests: every pose is told, and may be null, emulated or no number. */
+export function fakeHeadset() {
+  vi.stubGlobal('XRRigidTransform', RigidTransform);
+  const floor = new Space({ position: zero, orientation: identity });
+  const session = { inputSources: [] as Input[], visibilityState: 'visible' as XRVisibilityState };
+  let head: Seen = { position: { x: 0, y: 1.6, z: 0 }, orientation: identity };
+  const poseIn = (space: Space, at: Seen) => {
+    if (!at) return null;
+    const transform = transformPose<'floor', 'floor'>(invertTransform<'floor', 'floor'>(space.roomFromSpace), at);
+    return { transform, emulatedPosition: at.emulated ?? false };
+  };
+  const frame = {
+    getViewerPose: (space: Space) => poseIn(space, head),
+    getPose: (of: { at: Seen }, space: Space) => poseIn(space, of.at),
+    getJointPose: (of: { at: Seen }, space: Space) => poseIn(space, of.at),
+  };
+  return {
+    session: session as unknown as XRSession,
+    floor: floor as unknown as XRReferenceSpace,
+    frame: frame as unknown as XRFrame,
+    setHead(at: Seen) {
+      head = at;
+    },
+    setVisibility(state: XRVisibilityState) {
+      session.visibilityState = state;
+    },
+    setInputs(...inputs: Input[]) {
+      session.inputSources = inputs;
+    },
+    /** The device recentres: the room lies elsewhere in the floor's space from now on. */
+    reset(roomFromFloor: Place) {
+      floor.roomFromSpace = roomFromFloor;
+      floor.dispatchEvent(new Event('reset'));
+    },
+  };
+}
+
+export function controller(handedness: Side, at: Seen, trigger = 0): Input {
+  return {
+    handedness,
+    profiles: ['meta-quest-touch-plus'],
+    gripSpace: { at },
+    gamepad: { buttons: [{ value: trigger }, { value: 0 }], axes: [0, 0, 0, 0] },
+  };
+}
+
+export function bareHand(handedness: Side, at: Seen, gap = 0.08): Input {
+  const tip = (offset: number): { at: Seen } => ({
+    at: at && { ...at, position: { ...at.position, y: at.position.y + offset } },
+  });
+  return {
+    ...controller(handedness, at),
+    hand: new Map([
+      ['wrist', { at }],
+      ['thumb-tip', tip(0)],
+      ['index-finger-tip', tip(gap)],
+    ]),
+  };
+}

@@ -1,0 +1,43 @@
+import { afterEach, describe, expect, test, vi } from 'vitest';
+import { describeXrSupport, requestVrSession } from '../../src/xr/session';
+import { measured } from '../reliability/measured';
+
+/** A browser with this much of WebXR. */
+function browser({ secure = true, xr }: { secure?: boolean; xr?: Partial<XRSystem> }) {
+  vi.stubGlobal('window', { isSecureContext: secure });
+  vi.stubGlobal('navigator', { xr });
+}
+const failing = (name: string) => (): Promise<never> => Promise.reject(new DOMException('the browser says no', name));
+
+afterEach(() => vi.unstubAllGlobals());
+
+describe('why there is no VR', () => {
+  test.each([
+    ['no HTTPS', { secure: false }, /secure page: open it by https/],
+    ['no WebXR', {}, /This browser has no WebXR/],
+    ['no headset', { xr: { isSessionSupported: () => Promise.resolve(false) } }, /No headset is connected/],
+    ['a policy', { xr: { isSessionSupported: failing('SecurityError') } }, /WebXR is not allowed here/],
+  ] as const)('%s: a sentence', async (_, there, sentence) => {
+    browser(there as Parameters<typeof browser>[0]);
+    const support = await describeXrSupport();
+    expect(support.kind).toBe('none');
+    expect(support.sentence).toMatch(sentence);
+    expect(support.sentence).toMatch(/\.$/);
+  });
+
+  test('with a headset there is nothing to say', async () => {
+    browser({ xr: { isSessionSupported: () => Promise.resolve(true) } });
+    expect(await describeXrSupport()).toEqual({ kind: 'device', sentence: null });
+    measured('no-headset', { sentences: 'no HTTPS, no WebXR, no headset, policy, refused, no floor' });
+  });
+
+  test.each([
+    ['NotAllowedError', 'the headset refused the session'],
+    ['SecurityError', 'the headset refused the session'],
+    ['NotSupportedError', 'the headset offers no floor'],
+    ['AbortError', 'the browser says no'],
+  ])('a session refused with %s is a sentence', async (name, sentence) => {
+    browser({ xr: { requestSession: failing(name) as unknown as XRSystem['requestSession'] } });
+    await expect(requestVrSession()).rejects.toThrow(sentence);
+  });
+});

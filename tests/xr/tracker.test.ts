@@ -1,0 +1,164 @@
+import { afterEach, describe, expect, test, vi } from 'vitest';
+import type { Pose } from '../../src/core/math/pose';
+import { angleBetween, fromAxisAngle, identity } from '../../src/core/math/quat';
+import { distance, up, vec3 } from '../../src/core/math/vec3';
+import { createTracker } from '../../src/xr/tracker';
+import { measured } from '../reliability/measured';
+import { bareHand, controller, fakeHeadset } from './fake-headset';
+
+const at = (x: number, y: number, z: number): Pose<'floor'> => ({ position: vec3(x, y, z), orientation: identity });
+const left = at(-0.25, 1.1, -0.35);
+const right = at(0.25, 1.1, -0.35);
+
+function tracked() {
+  const headset = fakeHeadset();
+  const spaces: XRReferenceSpace[] = [];
+  const tracker = createTracker(headset.session, headset.floor, (space) => spaces.push(space));
+  let time = 1;
+  return {
+    ...headset,
+    tracker,
+    spaces,
+    read() {
+      time += 1 / 72;
+      return tracker.read(headset.frame, time);
+    },
+  };
+}
+
+afterEach(() => vi.unstubAllGlobals());
+
+describe('poses', () => {
+  test('of a head that is not seen, or not a number: no frame, and the next one is whole', () => {
+    const { read, setHead, setInputs } = tracked();
+    setInputs(controller('left', left), controller('right', right));
+    const before = read();
+    setHead(null);
+    expect(read()).toBeNull();
+    setHead(at(Number.NaN, 1.6, 0));
+    expect(read()).toBeNull();
+    setHead(at(0, 1.6, 0));
+    expect({ ...read(), time: 0 }).toEqual({ ...before, time: 0 });
+  });
+
+  test('of hands: null is not seen, emulated says so, what is no number is not seen', () => {
+    const { read, setInputs } = tracked();
+    setInputs(controller('left', null), controller('right', { ...right, emulated: true }));
+    expect(read()).toMatchObject({ leftHand: null, rightHand: { tracking: 'emulated' } });
+    setInputs(controller('left', at(0, Number.POSITIVE_INFINITY, 0)), bareHand('right', right));
+    expect(read()).toMatchObject({ leftHand: null, rightHand: { tracking: 'tracked' } });
+  });
+
+  test('are copies: what the device does with its own objects later changes nothing', () => {
+    const { read, setInputs } = tracked();
+    const source = controller('right', right);
+    setInputs(source);
+    const frame = read();
+    source.gripSpace.at = left;
+    expect(frame?.rightHand?.position.x).toBeGreaterThan(0);
+  });
+});
+
+describe('behind a menu of the device', () => {
+  test.each(['visible-blurred', 'hidden'] as const)('(%s) the head goes on, no hand and no button is read', (state) => {
+    const { read, setInputs, setVisibility, tracker } = tracked();
+    setInputs(controller('left', left, 1), controller('right', right, 1));
+    expect(read()?.suspended).toBeUndefined();
+    setVisibility(state);
+    expect(read()).toMatchObject({ suspended: true, leftHand: null, rightHand: null });
+    expect(tracker.buttons.right.trigger).toBe(0);
+    setVisibility('visible');
+    expect(read()).toMatchObject({ leftHand: { tracking: 'tracked' } });
+    expect(tracker.buttons.right.trigger).toBe(1);
+  });
+});
+
+describe('which hand it is', () => {
+  test('is told by handedness, whatever the order, and a swap is another device on each side', () => {
+    const { read, setInputs, tracker } = tracked();
+    setInputs(controller('right', right), controller('left', left));
+    expect(read()).toMatchObject({ leftHand: {}, rightHand: {} });
+    expect(read()?.leftHand?.position.x).toBeLessThan(0);
+    const before = { left: tracker.buttons.left.device, right: tracker.buttons.right.device };
+    // WebXR makes new input sources where handedness changes.
+    setInputs(controller('left', right), controller('right', left));
+    expect(read()?.leftHand?.position.x).toBeGreaterThan(0);
+    expect(tracker.buttons.left.device).not.toBe(before.left);
+    expect(tracker.buttons.right.device).not.toBe(before.right);
+  });
+
+  test('and of which kind, through ten changes between controllers and hands, nothing kept of the other', () => {
+    const { read, setInputs, tracker } = tracked();
+    let correct = 0;
+    for (let i = 0; i < 10; i++) {
+      setInputs(controller('left', left, 1), controller('right', right, 1));
+      read();
+      if (tracker.kinds.left === 'controller' && tracker.buttons.left.pinch === 0) correct += 1;
+      setInputs(bareHand('left', left, 0.005), bareHand('right', right, 0.005));
+      read();
+      const { trigger, grip, pinch } = tracker.buttons.left;
+      if (tracker.kinds.left === 'hand' && trigger === 0 && grip === 0 && pinch === 1) correct += 1;
+    }
+    setInputs();
+    expect(read()).toMatchObject({ leftHand: null, rightHand: null });
+    expect(tracker.kinds).toEqual({ left: 'none', right: 'none' });
+    expect(correct).toBe(20);
+    measured('changing-hands', { 'right kind': `${correct} of 20` });
+  });
+});
+
+describe('where the floor is', () => {
+  test('after recentring lies under the head, and the hands keep their distances', () => {
+    const { read, setHead, setInputs, tracker, spaces } = tracked();
+    setHead({ position: vec3(1, 1.6, 2), orientation: fromAxisAngle(up, 2) });
+    setInputs(controller('right', right));
+    const before = read();
+    tracker.recentre();
+    const after = read();
+    expect(distance(after!.head.position, vec3(0, 1.6, 0))).toBeLessThan(1e-9);
+    expect(angleBetween(after!.head.orientation, identity)).toBeLessThan(1e-9);
+    expect(distance(after!.head.position, after!.rightHand!.position)).toBeCloseTo(
+      distance(before!.head.position, before!.rightHand!.position),
+      9,
+    );
+    expect(spaces).toHaveLength(1);
+  });
+
+  test('turns about the head, which stays: thirty degrees a push, one turn for one push', () => {
+    const { read, setHead, setInputs, tracker } = tracked();
+    setHead({ position: vec3(1, 1.6, 2), orientation: fromAxisAngle(up, 0.4) });
+    const source = controller('right', right);
+    setInputs(source);
+    const before = read()!;
+    source.gamepad.axes[2] = 0.9;
+    read();
+    expect(tracker.takeTurn()).toBe(-1);
+    read();
+    expect(tracker.takeTurn(), 'the stick is still there').toBe(0);
+    tracker.turn(-Math.PI / 6);
+    const after = read()!;
+    const off = 1000 * distance(after.head.position, before.head.position);
+    expect(off).toBeLessThan(1e-6);
+    expect(angleBetween(after.head.orientation, fromAxisAngle(up, 0.4 - Math.PI / 6))).toBeLessThan(1e-6);
+    source.gamepad.axes[2] = 0;
+    read();
+    source.gamepad.axes[2] = -0.9;
+    read();
+    expect(tracker.takeTurn()).toBe(1);
+    measured('comfort', { 'a turn moves the head by': `${off.toFixed(3)} mm` });
+  });
+
+  test('when the device recentres, is where the device says: what was turned here before is forgotten', () => {
+    const { read, setHead, setInputs, tracker, reset, spaces, floor } = tracked();
+    setInputs(controller('right', right));
+    read();
+    tracker.turn(1);
+    setHead({ position: vec3(1, 1.6, 0), orientation: fromAxisAngle(up, Math.PI / 2) });
+    // The device puts the origin a metre to the side and turns it by a quarter: under the head, as it looks.
+    reset({ position: vec3(1, 0, 0), orientation: fromAxisAngle(up, Math.PI / 2) });
+    expect(spaces.at(-1)).toBe(floor);
+    const { head } = read()!;
+    expect(distance(head.position, vec3(0, 1.6, 0))).toBeLessThan(1e-9);
+    expect(angleBetween(head.orientation, identity)).toBeLessThan(1e-9);
+  });
+});
