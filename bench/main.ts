@@ -131,6 +131,37 @@ try {
       score,
     ]);
   }
+  console.log("\nThe ball court, frame on the page's own thread [ms]; each other avatar's part of it");
+  row('', [
+    'avatars',
+    'min',
+    'mean',
+    'p50',
+    'p95',
+    'max',
+    '72 Hz',
+    '90 Hz',
+    'drawn p50',
+    'drawn p95',
+    'each p50',
+    'p95',
+  ]);
+  for (const [name, crowds] of Object.entries(frames.ball)) {
+    for (const times of crowds) {
+      const { avatars, min, mean, p50, p95, max, missed72, missed90, drawnP50, drawnP95 } = times;
+      const share = (value: number) => `${(100 * value).toFixed(1)} %`;
+      row(name, [
+        avatars,
+        ...[min, mean, p50, p95, max].map((ms) => ms.toFixed(2)),
+        share(missed72),
+        share(missed90),
+        drawnP50.toFixed(1),
+        drawnP95.toFixed(1),
+        times.perRemoteMs?.toFixed(3) ?? '–',
+        times.perRemoteP95Ms?.toFixed(3) ?? '–',
+      ]);
+    }
+  }
   const whole = (values: Readonly<Record<string, number>>) =>
     Object.entries(values)
       .map(([name, value]) => `${name} ${value.toFixed(0)}`)

@@ -63,7 +63,7 @@ test('a lost graphics device comes back with the game as it was: mirror, archery
   expect(archeryAfter.score).toBeGreaterThanOrEqual(archeryBefore.score);
   expect(archeryAfter.hits.slice(0, archeryBefore.hits.length - 1)).toEqual(archeryBefore.hits.slice(0, -1));
 
-  await page.getByRole('button', { name: 'Ball', exact: false }).first().click();
+  await page.getByRole('button', { name: 'Ball game' }).first().press('Enter');
   await page.waitForFunction(
     () => {
       const game = window.threepoint?.probe().game;
@@ -79,7 +79,7 @@ test('a lost graphics device comes back with the game as it was: mirror, archery
   expect(ballAfter.score).toBeGreaterThanOrEqual(ballBefore.score);
   expect(Object.values(ballAfter.balls).reduce((sum, count) => sum + count, 0)).toBe(20);
 
-  await page.getByRole('button', { name: 'Mirror' }).first().click();
+  await page.getByRole('button', { name: 'Mirror' }).first().press('Enter');
   await expect.poll(async () => (await probe(page)).game).toBeNull();
   figures.mirror = `${Math.round(await loseGraphics(page))} ms`;
   await expect(page.getByText('The graphics device is back.').first()).toBeVisible();

@@ -5,7 +5,7 @@ import { ensureInstalled } from './installation.mjs';
 import { main, root, run } from './run-command.mjs';
 
 await main(async () => {
-  const names = ['json', 'rooms', 'hz', 'seconds'];
+  const names = ['json', 'rooms', 'hz', 'seconds', 'count'];
   const { values } = parseArgs({ options: Object.fromEntries(names.map((name) => [name, { type: 'string' }])) });
   await ensureInstalled();
   const measure = ['--import', 'tsx', 'bench/relay/main.ts'];

@@ -9,6 +9,8 @@ import { main, root, run, SetupError } from './run-command.mjs';
 /** Everything the built page depends on. */
 const sources = [
   'index.html',
+  'results.html',
+  'experimenter.html',
   'vite.config.ts',
   'tsconfig.json',
   'package-lock.json',

@@ -6,12 +6,18 @@ export interface Configuration {
   readonly port: number;
   /** Serve HTTPS to the whole network instead of HTTP to this machine alone. */
   readonly lan: boolean;
+  /** Where studies are kept; null: beside the program. */
+  readonly studyDirectory: string | null;
+  /** What the experimenter's page asks for; null: the server draws one and keeps it with the studies. */
+  readonly experimenterToken: string | null;
 }
 
 export const usage = `Usage: npm start -- [options]
   --port NUMBER  port to serve on (or the environment variable PORT); default 3333, the next free one if it is taken
   --lan          HTTPS for every device on the network, with a certificate of our own
-  --help         this text`;
+  --studies DIR  where studies are kept (or the environment variable STUDIES); default study-data
+  --help         this text
+The environment variable EXPERIMENTER_TOKEN (16 characters or more) replaces the token that the server draws for itself.`;
 
 /** What was asked for cannot be done; the message is for the person at the terminal. */
 export class ConfigurationError extends Error {}
@@ -29,8 +35,13 @@ export function configurationFrom(
   args: readonly string[],
   environment: Readonly<Record<string, string | undefined>>,
 ): Configuration | 'help' {
-  const options = { port: { type: 'string' }, lan: { type: 'boolean' }, help: { type: 'boolean' } } as const;
-  let values: { port?: string; lan?: boolean; help?: boolean };
+  const options = {
+    port: { type: 'string' },
+    lan: { type: 'boolean' },
+    studies: { type: 'string' },
+    help: { type: 'boolean' },
+  } as const;
+  let values: { port?: string; lan?: boolean; studies?: string; help?: boolean };
   try {
     ({ values } = parseArgs({ args: [...args], options, allowPositionals: false }));
   } catch (error) {
@@ -43,5 +54,13 @@ export function configurationFrom(
       : environment.PORT
         ? portFrom(environment.PORT, 'The environment variable PORT')
         : 3333;
-  return { port, lan: values.lan ?? false };
+  const experimenterToken = environment.EXPERIMENTER_TOKEN || null;
+  if (experimenterToken !== null && !/^[\w~+/.-]{16,256}$/.test(experimenterToken)) {
+    throw new ConfigurationError(
+      'The environment variable EXPERIMENTER_TOKEN must have 16 to 256 characters: letters, digits and - _ ~ + / .',
+    );
+  }
+  const studyDirectory = values.studies ?? (environment.STUDIES || null);
+  if (studyDirectory === '') throw new ConfigurationError('--studies needs the name of a directory.');
+  return { port, lan: values.lan ?? false, studyDirectory, experimenterToken };
 }

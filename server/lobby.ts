@@ -28,14 +28,27 @@ const prefix = 'threepoint:lobby:';
 const beliefSeconds = 5;
 const commandTimeoutMs = 1000;
 
+const retryStrategy = (attempt: number): number => Math.min(200 * attempt, 2000);
+
 /** A connection that never makes anybody wait: without Redis its commands fail at once, and it comes back by itself. */
 export function connectRedis(url: string, log: Logger): Redis {
-  const redis = new Redis(url, {
-    enableOfflineQueue: false,
-    maxRetriesPerRequest: 1,
-    commandTimeout: commandTimeoutMs,
-    retryStrategy: (attempt) => Math.min(200 * attempt, 2000),
-  });
+  return watched(
+    new Redis(url, {
+      enableOfflineQueue: false,
+      maxRetriesPerRequest: 1,
+      commandTimeout: commandTimeoutMs,
+      retryStrategy,
+    }),
+    log,
+  );
+}
+
+/** One whose commands wait until Redis is there, however long: nobody is told of a failure, as socket.io's adapter wants it. */
+export function connectRedisPatiently(url: string, log: Logger): Redis {
+  return watched(new Redis(url, { maxRetriesPerRequest: null, retryStrategy }), log);
+}
+
+function watched(redis: Redis, log: Logger): Redis {
   let down = false;
   redis.on('error', (error: Error) => {
     if (!down)

@@ -130,7 +130,8 @@ export function createPageHandler(directory: string): (request: IncomingMessage,
       answer(response, 200, 'ok');
       return;
     }
-    const file = files.get(path);
+    // Pages are asked for by their name alone: /results is results.html.
+    const file = files.get(path) ?? files.get(`${path}.html`);
     if (!file) {
       answer(response, 404, 'Not found.');
       return;

@@ -21,6 +21,10 @@ export interface RelayConfiguration {
   readonly trustProxy: boolean;
   /** Of the lobby that several processes share; null: this process is alone. */
   readonly redisUrl: string | null;
+  /** The address to listen on; null: this machine alone, or with --lan all of its own. */
+  readonly host: string | null;
+  /** Whoever sends this as "Authorization: Bearer …" may end rooms; null: nobody. */
+  readonly adminToken: string | null;
   readonly logLevel: (typeof logLevels)[number];
 }
 
@@ -32,7 +36,7 @@ type Environment = Readonly<Record<string, string | undefined>>;
 export const relayEnvironment = `Environment of the relay (docs/relay.md):
   THREEPOINT_SECRET             signs room tokens; at least ${shortestSecret} characters, the same in every process of a fleet
   THREEPOINT_ORIGINS            origins of pages that may connect, with commas between; default: the server's own
-  THREEPOINT_TICK_HZ            how often a room's poses are passed on a second, 20 to 120; default 72
+  THREEPOINT_TICK_HZ            how often a room's poses are passed on a second, 20 to 120; default 90
   THREEPOINT_POSES_PER_SECOND   budget of each client; default 40
   THREEPOINT_EVENTS_PER_SECOND  budget of each client; default 10
   THREEPOINT_JOINS_PER_MINUTE   budget of new people of each address; default 5, on this machine itself 120
@@ -41,6 +45,8 @@ export const relayEnvironment = `Environment of the relay (docs/relay.md):
   THREEPOINT_BALL_SECONDS       length of a round of the ball game; default 90
   THREEPOINT_TRUST_PROXY        1: a proxy stands in front and tells the clients' addresses; default 0
   THREEPOINT_REDIS_URL          redis://HOST:PORT of the lobby that several processes share
+  THREEPOINT_ADMIN_TOKEN        lets whoever has it end rooms; 16 characters or more
+  THREEPOINT_HOST               address to listen on behind a proxy, as 0.0.0.0; default 127.0.0.1
   THREEPOINT_LOG_LEVEL          ${logLevels.join(', ')}; default warn`;
 
 function numberFrom(environment: Environment, name: string, fallback: number, min: number, max: number): number {
@@ -79,6 +85,12 @@ export function relayConfigurationFrom(environment: Environment): RelayConfigura
       `The environment variable THREEPOINT_SECRET must have at least ${shortestSecret} characters, has ${secret.length}.`,
     );
   }
+  const adminToken = environment.THREEPOINT_ADMIN_TOKEN || null;
+  if (adminToken !== null && !/^\S{16,256}$/.test(adminToken)) {
+    throw new ConfigurationError(
+      `The environment variable THREEPOINT_ADMIN_TOKEN must have 16 to 256 characters and no spaces, has ${adminToken.length}.`,
+    );
+  }
   const redisUrl = environment.THREEPOINT_REDIS_URL || null;
   if (redisUrl !== null && !/^rediss?:\/\/\S+$/.test(redisUrl)) {
     throw new ConfigurationError(
@@ -103,7 +115,7 @@ export function relayConfigurationFrom(environment: Environment): RelayConfigura
   return {
     secret,
     origins: originsFrom(environment.THREEPOINT_ORIGINS),
-    tickHz: number('THREEPOINT_TICK_HZ', 72, 20, 120),
+    tickHz: number('THREEPOINT_TICK_HZ', 90, 20, 120),
     posesPerSecond: whole('THREEPOINT_POSES_PER_SECOND', 40, 1, 200),
     eventsPerSecond: whole('THREEPOINT_EVENTS_PER_SECOND', 10, 1, 1000),
     joinsPerMinute: whole('THREEPOINT_JOINS_PER_MINUTE', 5, 1, 100_000),
@@ -112,6 +124,8 @@ export function relayConfigurationFrom(environment: Environment): RelayConfigura
     ballSeconds: number('THREEPOINT_BALL_SECONDS', 90, 1, 3600),
     trustProxy: whole('THREEPOINT_TRUST_PROXY', 0, 0, 1) === 1,
     redisUrl,
+    host: environment.THREEPOINT_HOST || null,
+    adminToken,
     logLevel,
   };
 }

@@ -1,7 +1,8 @@
-import { randomBytes } from 'node:crypto';
+import { createHash, randomBytes, timingSafeEqual } from 'node:crypto';
 import type { IncomingMessage, ServerResponse } from 'node:http';
+import type { Redis } from 'ioredis';
 import type { Logger } from 'pino';
-import { RateLimiterMemory, RateLimiterRes } from 'rate-limiter-flexible';
+import { type RateLimiterAbstract, RateLimiterMemory, RateLimiterRedis, RateLimiterRes } from 'rate-limiter-flexible';
 import * as v from 'valibot';
 import { roomKinds } from '../src/core/protocol/messages';
 import { clientAddress, isLoopback } from './client-address';
@@ -19,6 +20,10 @@ export interface RelayRoutesOptions {
   readonly host: SocketHost;
   readonly metrics: RelayMetrics;
   readonly log: Logger;
+  /** Ends a room in whichever process it is. */
+  readonly endRoom: (room: string) => void;
+  /** Where a fleet counts who joins from where; null: this process is alone. */
+  readonly redis: Redis | null;
 }
 
 const longestBody = 4096;
@@ -30,6 +35,7 @@ const tokenRequest = v.strictObject({
   /** A token from before, by which the same person goes on. */
   token: v.optional(v.pipe(v.string(), v.maxLength(1024))),
 });
+const endRequest = v.strictObject({ room: v.pipe(v.string(), v.regex(roomName)) });
 const roomRequest = v.strictObject({ kind: v.picklist(roomKinds) });
 
 class RequestError extends Error {
@@ -76,12 +82,16 @@ export function createRelayRoutes(
   options: RelayRoutesOptions,
 ): (request: IncomingMessage, response: ServerResponse) => boolean {
   const { configuration, tokens, lobby, host, metrics, log } = options;
-  const joins = new RateLimiterMemory({ points: configuration.joinsPerMinute, duration: 60, keyPrefix: 'address' });
-  const joinsHere = new RateLimiterMemory({
-    points: Math.max(joinsPerMinuteHere, configuration.joinsPerMinute),
-    duration: 60,
-    keyPrefix: 'here',
-  });
+  const limiter = (points: number, keyPrefix: string): RateLimiterAbstract => {
+    const alone = new RateLimiterMemory({ points, duration: 60, keyPrefix });
+    const { redis: storeClient } = options;
+    // Without Redis each process counts for itself.
+    return storeClient
+      ? new RateLimiterRedis({ storeClient, points, duration: 60, keyPrefix, insuranceLimiter: alone })
+      : alone;
+  };
+  const joins = limiter(configuration.joinsPerMinute, 'threepoint:joins');
+  const joinsHere = limiter(Math.max(joinsPerMinuteHere, configuration.joinsPerMinute), 'threepoint:joins-here');
 
   async function spendJoin(request: IncomingMessage): Promise<void> {
     const address = clientAddress(request, configuration.trustProxy);
@@ -114,6 +124,18 @@ export function createRelayRoutes(
     return { room: best?.room ?? newRoomName(), found: best !== undefined };
   }
 
+  async function end(request: IncomingMessage): Promise<unknown> {
+    const digest = (text: string) => createHash('sha256').update(text).digest();
+    const given = /^Bearer (\S{1,256})$/.exec(request.headers.authorization ?? '')?.[1] ?? '';
+    const { adminToken } = configuration;
+    if (adminToken === null || !timingSafeEqual(digest(given), digest(adminToken))) {
+      throw new RequestError(403, 'this needs the token of THREEPOINT_ADMIN_TOKEN');
+    }
+    const { room } = await bodyOf(request, endRequest);
+    options.endRoom(room);
+    return { room };
+  }
+
   async function answerMetrics(request: IncomingMessage, response: ServerResponse): Promise<void> {
     // For whoever runs the server: asked for on the machine itself, not through the proxy.
     if (!isLoopback(request.socket.remoteAddress ?? '') || request.headers['x-forwarded-for'] !== undefined) {
@@ -142,6 +164,7 @@ export function createRelayRoutes(
         return { room: newRoomName() };
       },
     },
+    '/api/rooms/end': { method: 'POST', answer: end },
     '/api/rooms/token': { method: 'POST', answer: token },
   };
 

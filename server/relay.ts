@@ -5,7 +5,7 @@ import { dirname } from 'node:path';
 import { createAdapter } from '@socket.io/redis-adapter';
 import { pino } from 'pino';
 import { Adapter } from 'socket.io-adapter';
-import { connectRedis, createOwnLobby, createRedisLobby } from './lobby';
+import { connectRedis, connectRedisPatiently, createOwnLobby, createRedisLobby } from './lobby';
 import type { RelayConfiguration } from './relay-configuration';
 import { createRelayMetrics } from './relay-metrics';
 import { createRelayRoutes } from './relay-routes';
@@ -22,6 +22,8 @@ export interface Relay {
 }
 
 const lobbyEveryMs = 1000;
+/** What the processes of a fleet tell each other: that a room is to end. */
+const endEvent = 'end-room';
 
 /** A secret kept in a file, so that tokens outlive a restart. */
 export function secretIn(path: string): string {
@@ -44,21 +46,36 @@ export function createRelay(server: HttpServer, configuration: RelayConfiguratio
   const metrics = createRelayMetrics(() => host.census);
   const host = createSocketHost(server, { configuration, tokens, log, metrics, now });
   const connections = configuration.redisUrl
-    ? { own: connectRedis(configuration.redisUrl, log), heard: connectRedis(configuration.redisUrl, log) }
+    ? {
+        own: connectRedis(configuration.redisUrl, log),
+        told: connectRedisPatiently(configuration.redisUrl, log),
+        heard: connectRedisPatiently(configuration.redisUrl, log),
+      }
     : null;
   const lobby = connections ? createRedisLobby(connections.own, node, log) : createOwnLobby();
 
   // Poses stay in the process that has the room; what Redis carries is the lobby alone.
   if (connections) {
-    const shared = createAdapter(connections.own, connections.heard);
-    host.io.adapter(((namespace: ConstructorParameters<typeof Adapter>[0]) =>
-      namespace.name === lobbyNamespace ? shared(namespace) : new Adapter(namespace)) as never);
+    const shared = createAdapter(connections.told, connections.heard);
+    // socket.io calls it with new, and takes what it returns.
+    const adapterFor = function adapterFor(namespace: ConstructorParameters<typeof Adapter>[0]) {
+      return namespace.name === lobbyNamespace ? shared(namespace) : new Adapter(namespace);
+    };
+    host.io.adapter(adapterFor as never);
   }
   const hall = host.io.of(lobbyNamespace);
   hall.on('connection', (socket) => {
     void lobby.list().then((all) => socket.emit('rooms', all));
     socket.onAny(() => socket.disconnect(true));
   });
+
+  hall.on(endEvent, (room: string) => void host.end(room));
+  /** Alone, or with Redis out of reach, this process is all there is. */
+  const reachesAll = (): boolean => connections?.told.status === 'ready';
+  const endRoom = (room: string): void => {
+    host.end(room);
+    if (reachesAll()) hall.serverSideEmit(endEvent, room);
+  };
 
   let told = '';
   const timer = setInterval(() => {
@@ -67,10 +84,20 @@ export function createRelay(server: HttpServer, configuration: RelayConfiguratio
     const text = JSON.stringify(rooms);
     if (text === told) return;
     told = text;
-    hall.emit('node', { node, rooms });
+    // What nobody can be told now is told with the next change: without Redis nothing piles up.
+    (reachesAll() ? hall : hall.local).emit('node', { node, rooms });
   }, lobbyEveryMs);
 
-  const handle = createRelayRoutes({ configuration, tokens, lobby, host, metrics, log });
+  const handle = createRelayRoutes({
+    configuration,
+    tokens,
+    lobby,
+    host,
+    metrics,
+    log,
+    endRoom,
+    redis: connections?.own ?? null,
+  });
   return {
     host,
     handle,
@@ -78,6 +105,7 @@ export function createRelay(server: HttpServer, configuration: RelayConfiguratio
       clearInterval(timer);
       await host.close();
       await lobby.close();
+      connections?.told.disconnect();
       connections?.heard.disconnect();
       metrics.close();
     },

@@ -378,8 +378,12 @@ export function createSocketHost(server: HttpServer, options: SocketHostOptions)
   const period = 1 / configuration.tickHz;
   let next = now() + period;
   let swept = now();
-  let timer = setTimeout(tick, period * 1000);
+  let closed = false;
+  // What has arrived meanwhile is read first: a timer fires before that, and poses would wait for the tick after.
+  const soon = (): NodeJS.Immediate => setImmediate(tick);
+  let timer = setTimeout(soon, period * 1000);
   function tick(): void {
+    if (closed) return;
     const started = now();
     for (const { room } of rooms.values()) room.tick(now());
     if (started - swept > 1) {
@@ -390,7 +394,7 @@ export function createSocketHost(server: HttpServer, options: SocketHostOptions)
     metrics.tick.observe(ended - started);
     // Whole milliseconds are all a timer knows: what it was late is made up for, what was missed altogether is not.
     next = Math.max(next + period, ended);
-    timer = setTimeout(tick, Math.max(0, Math.floor((next - ended) * 1000)));
+    timer = setTimeout(soon, Math.max(0, Math.floor((next - ended) * 1000)));
   }
 
   return {
@@ -417,10 +421,11 @@ export function createSocketHost(server: HttpServer, options: SocketHostOptions)
       const hosted = rooms.get(name);
       if (!hosted) return false;
       rooms.delete(name);
-      for (const guest of hosted.guests.values()) dismiss(guest, 'left');
+      for (const guest of hosted.guests.values()) dismiss(guest, 'closed');
       return true;
     },
     async close() {
+      closed = true;
       clearTimeout(timer);
       for (const guest of guests) dismiss(guest, 'stopping');
       rooms.clear();

@@ -29,7 +29,7 @@ export interface StudyRoutesOptions {
 /** Longest bodies [bytes]. */
 export const bodyLimits = { json: 512 * 1024, motion: 16 * 2 ** 20 } as const;
 export const mostRecordsAtOnce = 200;
-const shortestExperimenterToken = 16;
+export const shortestExperimenterToken = 16;
 
 const prefix = '/api/studies';
 

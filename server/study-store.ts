@@ -3,6 +3,7 @@ import { gunzipSync, gzipSync } from 'node:zlib';
 import { DatabaseSync, type DatabaseSyncInstance } from '@photostructure/sqlite';
 import { checkedPlan, participantsOf, type StudyPlan, scheduleFor } from '../src/core/study/plan';
 import { currentStep, type Progress, remainingSeconds, resumed } from '../src/core/study/progress';
+import type { ParticipantState, Receipt, StudyCommand, StudyInfo } from '../src/core/study/study-api';
 import { recordVersion, type StudyRecord } from '../src/core/study/study-record';
 import type { MotionFile } from './study-export';
 
@@ -14,51 +15,6 @@ export class StoreRefusal extends Error {
     super(message);
     this.reason = reason;
   }
-}
-
-/** What an experimenter asks of a participant's page. */
-export type StudyCommand =
-  | { readonly type: 'start' }
-  | { readonly type: 'pause' }
-  | { readonly type: 'resume' }
-  | { readonly type: 'void-block'; readonly reason: string; readonly repeat: boolean };
-
-/** Proof that something was deleted; it holds nothing of what was. */
-export interface Receipt {
-  readonly number: number;
-  readonly study: string;
-  readonly participant: string;
-  readonly reason: 'withdrawn' | 'experimenter' | 'retention';
-  readonly records: number;
-  readonly motionFiles: number;
-  /** Seconds since 1970. */
-  readonly at: number;
-}
-
-/** What the experimenter sees of a participant. */
-export interface ParticipantState {
-  readonly participant: string;
-  readonly claimed: boolean;
-  readonly withdrawn: boolean;
-  readonly records: number;
-  /** Where the session is; null: it has not begun. */
-  readonly session: {
-    readonly step: string;
-    readonly kind: string;
-    readonly running: boolean;
-    readonly paused: boolean;
-    /** null: the step has no time limit. */
-    readonly remainingSeconds: number | null;
-    /** When the page last reported, in seconds since 1970. */
-    readonly reportedAt: number;
-  } | null;
-}
-
-export interface StudyInfo {
-  readonly plan: StudyPlan;
-  readonly simulated: boolean;
-  readonly createdAt: number;
-  readonly retentionUntil: number;
 }
 
 /**

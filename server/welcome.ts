@@ -3,11 +3,14 @@ export function welcome({
   port,
   requestedPort,
   addresses,
+  tokenFile = null,
 }: {
   port: number;
   requestedPort: number;
   /** The machine's addresses when it serves the network, null when it serves itself alone. */
   addresses: readonly string[] | null;
+  /** Where the experimenter's token lies; null: it was given, or there are no studies. */
+  tokenFile?: string | null;
 }): string {
   const lines = [''];
   if (requestedPort !== 0 && port !== requestedPort) lines.push(`  Port ${requestedPort} is taken; using ${port}.`, '');
@@ -31,6 +34,11 @@ export function welcome({
       '  The certificate is our own, so the browser warns once: Advanced, then Proceed.',
     );
   }
+  lines.push(
+    '',
+    `  Studies       /experimenter and /results on the same address${tokenFile ? '; their token is in' : ''}`,
+  );
+  if (tokenFile) lines.push(`                ${tokenFile}`);
   lines.push(
     '',
     '  docs/running-on-a-headset.md has the steps and what to do when it does not open. Ctrl-C stops.',

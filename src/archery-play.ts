@@ -62,6 +62,8 @@ export interface ArcheryPlay {
   steer(time: number, ray: Ray, wish: { readonly pressed: boolean; readonly cancelled: boolean }): Performance;
   /** Another round, for somebody with these measures whose eyes are this high now [m], standing or seated. */
   restart(calibration: Calibration, eyeHeight?: number): void;
+  /** The start signal: the clock of a round that waits runs from the next frame on, not from the first arrow. */
+  signal(): void;
 }
 
 /** What tools may know of a round. */
@@ -119,6 +121,7 @@ export function createArcheryPlay(
   let archer: Archer;
   let steered: SteeredArcher;
   let newest: ArcheryFrame | null = null;
+  let signalled = false;
   const gestures = createArcheryGestures(() => ({
     ...defaultArcheryGestureSettings,
     bowSide: settings().bowSide,
@@ -139,6 +142,7 @@ export function createArcheryPlay(
     archer = createArcher(body);
     steered = createSteeredArcher(body);
     newest = null;
+    signalled = false;
   }
   restart(calibration);
 
@@ -151,7 +155,9 @@ export function createArcheryPlay(
     },
     follow(frame, buttons) {
       const { bow, actions, cues, haptics } = gestures.follow(frame, buttons);
-      const events = match.advance(frame.time, actions);
+      const signals: readonly ArcheryAction[] = signalled ? [{ type: 'start' }] : [];
+      signalled = false;
+      const events = match.advance(frame.time, [...signals, ...actions]);
       const { state } = match;
       newest = { state, time: Math.max(0, matchTime(state) + match.lead), bow, events, cues, haptics };
       return newest;
@@ -162,5 +168,8 @@ export function createArcheryPlay(
       return steered.follow(time, { target, ...wish });
     },
     restart,
+    signal() {
+      signalled = true;
+    },
   };
 }

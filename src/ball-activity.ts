@@ -74,7 +74,7 @@ export interface BallActivity {
   /** Once a frame, first. */
   begin(time: number): void;
   /** Head, hands and buttons of the built-in player on the own seat; null: no seat. */
-  act(time: number): Performed | null;
+  act(time: number, catchUp: boolean): Performed | null;
   /** The tracked frame as play: what it means is heard at once, what it feels like comes back. */
   follow(frame: TrackingFrame, buttons: Buttons): readonly BallPulse[];
   send(frame: TrackingFrame, pose: AvatarPose, grips: Readonly<Record<Side, number>>): void;

@@ -104,8 +104,11 @@ export interface BallPlay {
   readonly newest: BallFrame | null;
   /** Once a frame, before anything else of it: hears the room and moves the bots. */
   begin(time: number): void;
-  /** Head, hands and buttons of a built-in player on the own seat at `time` [s]; null: there is no seat yet. */
-  act(time: number): Performed | null;
+  /**
+   * Head, hands and buttons of a built-in player on the own seat at `time` [s]; null: there is no seat yet. catchUp: what it does
+   * between two slow frames is played as well, as no device could.
+   */
+  act(time: number, catchUp?: boolean): Performed | null;
   /** The tracked frame and its buttons become play; null frame: nobody is seen, or a spectator. */
   follow(time: number, frame: TrackingFrame | null, buttons: Buttons): BallFrame | null;
   /** The solved body of this frame, for the others. */
@@ -138,6 +141,7 @@ interface Bot {
   gestures: BallGestures | null;
   actor: { readonly key: string; readonly bot: BallBot } | null;
   readonly since: number;
+  movedAt: number | null;
 }
 
 /** Bots of different build; they say that they are bots. */
@@ -153,6 +157,19 @@ const seatsEvery = 0.4;
 /** A built-in player is ready after this long [s], and after a result that somebody may want to read. */
 const readyAfter = 1;
 const rematchAfter = 7;
+
+/** A built-in player moves at least this often, however slowly pictures come: a throw is over in a fifth of a second. */
+const movesPerSecond = 60;
+/** After a longer pause than this [s] nothing is made up for. */
+const longestCatchUp = 1;
+
+/** The moments since the last one at which a built-in player moves; the last is now. */
+function momentsUntil(time: number, last: number | null): readonly number[] {
+  const passed = last === null ? 0 : time - last;
+  if (passed > longestCatchUp) return [time];
+  const count = Math.max(1, Math.floor(passed * movesPerSecond));
+  return Array.from({ length: count }, (_, i) => time - (passed * (count - 1 - i)) / count);
+}
 
 const isDeed = (action: BallAction): action is Extract<BallAction, { type: 'grab' | 'drop' | 'throw' }> =>
   action.type === 'grab' || action.type === 'drop' || action.type === 'throw';
@@ -185,6 +202,10 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
   let gestures: BallGestures | null = null;
   let own: { readonly key: string; readonly bot: BallBot } | null = null;
   let jump = false;
+  /** For the moments of the own built-in player that no picture shows. */
+  const between = createEstimator('ik', calibration);
+  let actedAt: number | null = null;
+  let missed: { readonly cues: readonly BallCue[]; readonly haptics: readonly BallPulse[] } = { cues: [], haptics: [] };
   /** Since when the match has been waiting for somebody to be ready [s]. */
   let waitingSince: { readonly phase: string; readonly at: number } | null = null;
   let seating = '';
@@ -225,6 +246,27 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
     return seen.match?.players[seat]?.station ?? seat;
   }
 
+  /** One moment of a built-in player: deeds, and the solved body to the others. */
+  function moveOnce(
+    line: Connection,
+    with_: BallGestures,
+    actor: BallBot,
+    estimator: PoseEstimator,
+    moment: number,
+  ): BallGestureFrame | null {
+    const seen = line.room;
+    if (!seen?.match || seen.mySeat === null) return null;
+    const { frame, buttons } = actor.follow(moment, {
+      state: seen.match,
+      player: seen.mySeat,
+      ...(opening && { basket: opening.position }),
+    });
+    void estimator.prepare(frame);
+    const pose = estimator.estimate(frame);
+    line.sendPose(moment, { jump: false, pose, grips: gripsOf(buttons), curls: { left: null, right: null } });
+    return play(line, with_, frame, buttons);
+  }
+
   function moveBot(bot: Bot, time: number): void {
     const { connection: line, estimator } = bot;
     const update = line.update(time);
@@ -239,20 +281,10 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
     if (bot.actor?.key !== key && (bot.actor === null || seen.match.phase !== 'running')) {
       bot.actor = { key, bot: actorFor(station, bot.calibration, options.seed + seat) };
     }
-    const performed = (bot.actor as NonNullable<Bot['actor']>).bot.follow(time, {
-      state: seen.match,
-      player: seat,
-      ...(opening && { basket: opening.position }),
-    });
-    play(line, bot.gestures, performed.frame, performed.buttons);
-    void estimator.prepare(performed.frame);
-    const pose = estimator.estimate(performed.frame);
-    line.sendPose(time, {
-      jump: false,
-      pose,
-      grips: gripsOf(performed.buttons),
-      curls: { left: null, right: null },
-    });
+    for (const moment of momentsUntil(time, bot.movedAt)) {
+      moveOnce(line, bot.gestures, (bot.actor as NonNullable<Bot['actor']>).bot, estimator, moment);
+    }
+    bot.movedAt = time;
     const me = seen.match.players[seat];
     if (me && !me.ready && seen.match.phase !== 'running' && time - bot.since > readyAfter) line.ready(true);
   }
@@ -280,6 +312,7 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
         gestures: null,
         actor: null,
         since: time,
+        movedAt: null,
       });
     }
   }
@@ -390,11 +423,12 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
       bodies,
       opening,
       events,
-      cues: played?.cues ?? [],
-      haptics: played?.haptics ?? [],
+      cues: [...missed.cues, ...(played?.cues ?? [])],
+      haptics: [...missed.haptics, ...(played?.haptics ?? [])],
       held: played?.held ?? { left: null, right: null },
     };
     events = [];
+    missed = { cues: [], haptics: [] };
     return newest;
   }
 
@@ -412,7 +446,7 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
       return newest;
     },
     begin,
-    act(time) {
+    act(time, catchUp = true) {
       const seen = room();
       if (!seen?.match || seen.mySeat === null) return null;
       const station = stationOf(seen, seen.mySeat);
@@ -420,8 +454,18 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
       if (own?.key !== key && (own === null || seen.match.phase !== 'running')) {
         own = { key, bot: actorFor(station, calibration, options.seed + seen.mySeat) };
       }
-      return (own as NonNullable<typeof own>).bot.follow(time, {
-        state: seen.match,
+      const { bot } = own as NonNullable<typeof own>;
+      // What lies between two slow pictures is played too; the last moment is the picture's own.
+      if (catchUp && connection) {
+        gestures ??= gesturesOf(connection);
+        for (const moment of momentsUntil(time, actedAt).slice(0, -1)) {
+          const done = moveOnce(connection, gestures, bot, between, moment);
+          if (done) missed = { cues: [...missed.cues, ...done.cues], haptics: [...missed.haptics, ...done.haptics] };
+        }
+        actedAt = time;
+      }
+      return bot.follow(time, {
+        state: connection?.room?.match ?? seen.match,
         player: seen.mySeat,
         ...(opening && { basket: opening.position }),
       });
@@ -441,6 +485,7 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
     away: (on) => connection?.away(on),
     calibrate(next) {
       calibration = next;
+      between.calibrate(next);
       own = null;
       connection?.calibrate(next);
     },

@@ -46,7 +46,12 @@ export interface FrameTiming {
   /** Forgets what was: after a pause, a hidden page or another kind of frame nothing before is comparable. */
   reset(): void;
   summary(): FrameSummary;
+  /** Tells every frame from now on: what each stage and the whole ("frame") took [ms], and whether it came late; null: nobody listens. */
+  listen(listener: FrameListener | null): void;
 }
+
+/** The object is the same in every frame: copy what must stay. */
+export type FrameListener = (spentMs: Readonly<Record<StageName | 'frame', number>>, late: boolean) => void;
 
 /** now: milliseconds on a monotonic clock. */
 export function createFrameTiming(now: () => number): FrameTiming {
@@ -59,8 +64,13 @@ export function createFrameTiming(now: () => number): FrameTiming {
   let lastTimestamp = Number.NaN;
   let started = 0;
   let marked = 0;
+  let late = false;
+  let listener: FrameListener | null = null;
+  const told = { ...spent, frame: 0 };
+  const latestMs = () => (lateAfterIntervals * 1000) / rateHz;
   return {
     begin(timestampMs) {
+      late = timestampMs - lastTimestamp > latestMs();
       if (Number.isFinite(lastTimestamp)) push(intervals, timestampMs - lastTimestamp);
       lastTimestamp = timestampMs;
       for (const name of stageNames) spent[name] = 0;
@@ -74,7 +84,12 @@ export function createFrameTiming(now: () => number): FrameTiming {
     },
     end() {
       for (const name of stageNames) push(rings[name], spent[name]);
-      push(total, now() - started);
+      const whole = now() - started;
+      push(total, whole);
+      if (!listener) return;
+      Object.assign(told, spent);
+      told.frame = whole;
+      listener(told, late);
     },
     setRate(rate) {
       rateHz = rate;
@@ -92,9 +107,12 @@ export function createFrameTiming(now: () => number): FrameTiming {
         }),
       ) as Record<StageName, { p50Ms: number; p95Ms: number }>;
       const frames = Math.min(intervals.count, length);
-      const late = (lateAfterIntervals * 1000) / rateHz;
-      const missed = intervals.values.slice(0, frames).filter((interval) => interval > late).length;
+      const latest = latestMs();
+      const missed = intervals.values.slice(0, frames).filter((interval) => interval > latest).length;
       return { p50Ms, p95Ms, stages, missed, frames, rateHz };
+    },
+    listen(next) {
+      listener = next;
     },
   };
 }

@@ -38,6 +38,8 @@ import { createArena } from './scene/arena';
 import { createDesktopView, type ViewName, viewNames } from './scene/desktop-view';
 import { affordableQuality, createRenderer, easeEmulatedPicture, fitToWindow } from './scene/renderer';
 import { createVignette } from './scene/vignette';
+import type { TaskPlace } from './study/task-runner';
+import type { StudyRun } from './study-run';
 import { type CalibrationStep, createCalibrationDialog } from './ui/calibration-dialog';
 import { createCalibrationGuide } from './ui/calibration-guide';
 import { offerDownload } from './ui/downloads';
@@ -213,9 +215,9 @@ async function start(): Promise<void> {
 
   /** Somebody who needs nobody: the actor in the studio, the archer on the range. */
   function perform(time: number): { readonly frame: TrackingFrame; readonly buttons: Buttons } {
-    const player = ball?.act(time);
+    const player = study?.idle ? null : ball?.act(time, session === null);
     if (player) return player;
-    if (!archery) return { frame: actor.frameAt(time), buttons: nothingPressed };
+    if (!archery || study?.idle) return { frame: actor.frameAt(time), buttons: nothingPressed };
     if (!settings.mouse || session) return archery.play.act(time);
     pointing.setFromCamera(new Vector2(mouse.x, mouse.y), view.camera);
     const { origin, direction } = pointing.ray;
@@ -227,7 +229,7 @@ async function start(): Promise<void> {
     buttons = nothingPressed;
     ball?.begin(time);
     if (session) {
-      if (emulator && settings.actor) {
+      if (emulator && settings.actor && !study?.idle) {
         // What the actor does now is seen with the next frame: the device froze this one before it called.
         const performed = perform(time);
         emulator.drive(performed.frame, performed.buttons);
@@ -256,6 +258,8 @@ async function start(): Promise<void> {
   /** Without a seat and without a headset there is no body of one's own. */
   const watching = () => ball !== null && !session && ball.play.newest !== null && ball.play.newest.me === null;
   let arriving = false;
+  /** A study that the address asks for; it decides what is played and with which body. */
+  let study: StudyRun | null = null;
   let seed = switches.seed ?? Math.floor(performance.timeOrigin % 2 ** 31);
 
   const banner = pageElement('banner', HTMLElement);
@@ -302,7 +306,8 @@ async function start(): Promise<void> {
       },
       follow(seat) {
         settings.following = seat;
-        view.recentre();
+        placeCamera();
+        show();
       },
     },
   });
@@ -327,7 +332,13 @@ async function start(): Promise<void> {
   }
 
   function restartRound(): void {
+    // In a study rounds are the study's.
+    if (study) return;
     seed += 1;
+    restartPlay();
+  }
+
+  function restartPlay(): void {
     // Whoever plays seated shoots at targets as high for the eyes as everybody's.
     archery?.play.restart(bodyNow(), session ? newestFrame?.head.position.y : undefined);
     playBar.caption('');
@@ -379,7 +390,11 @@ async function start(): Promise<void> {
     archery = { play, view };
   }
 
+  /** Where a study plays the ball game; null: where the address says. */
+  let studyPlace: TaskPlace | null = null;
+
   async function openCourt(): Promise<void> {
+    const place = studyPlace;
     const [{ createBallActivity }, { connectionsFor }, mannequin] = await Promise.all([
       import('./ball-activity'),
       import('./ball-connections'),
@@ -392,18 +407,19 @@ async function start(): Promise<void> {
       quality,
       arena,
       mannequin,
-      connect: await connectionsFor(switches.room, {
+      connect: await connectionsFor(place?.room ?? switches.room, {
         seed,
         ...(switches.seconds && { seconds: switches.seconds }),
         ...(switches.balls && { balls: switches.balls }),
       }),
       visitor: {
-        name: settings.name || (settings.actor && !session ? 'Demo' : 'Player'),
+        name: place?.participant || settings.name || (settings.actor && !session ? 'Demo' : 'Player'),
         calibration: bodyNow(),
+        ...(place && { seat: place.members.indexOf(place.participant) }),
         ...(switches.spectate && { spectate: true }),
       },
-      bots: () => settings.bots,
-      acting: () => settings.actor && (session === null || emulator !== null),
+      bots: () => settings.bots && place === null,
+      acting: () => place === null && settings.actor && (session === null || emulator !== null),
       seed,
       onCaption: (text) => playBar.caption(text),
     });
@@ -440,7 +456,9 @@ async function start(): Promise<void> {
   }
 
   function placeCamera(): void {
-    view.setScene(archery ? 'range' : ball ? (watching() ? 'stands' : 'court') : 'studio');
+    view.setScene(
+      archery ? 'range' : ball ? (watching() && settings.following === null ? 'stands' : 'court') : 'studio',
+    );
   }
 
   function fit(): void {
@@ -690,6 +708,53 @@ async function start(): Promise<void> {
     });
   }
 
+  async function joinStudy(asked: NonNullable<typeof switches.study>): Promise<StudyRun> {
+    const { createStudyRun } = await import('./study-run');
+    const run = createStudyRun(asked, {
+      enterVr: enter,
+      inSession: () => session !== null,
+      calibration: () => settings.calibration,
+      setCalibration: (calibration) => calibrate(calibration, 'measured', false),
+      chooseEstimator: (name) => choice.choose(name),
+      estimator: () => choice.current.name,
+      setActor(on) {
+        settings.actor = on && switches.actor;
+      },
+      setBowSide(side) {
+        settings.bowSide = side;
+        placeMirror();
+      },
+      async goToArchery() {
+        await goTo('archery');
+        if (!archery) throw new Error('The archery range could not be opened.');
+      },
+      async goToBall(place) {
+        if (ball) await goTo('studio');
+        studyPlace = place;
+        await goTo('ball');
+        if (!ball) throw new Error('The ball court could not be opened.');
+      },
+      ball: () => ball?.play ?? null,
+      leaveBall: () => void goTo('studio'),
+      startRound(layout, seconds) {
+        Object.assign(settings, { seconds, everyHitCounts: false });
+        seed = layout;
+        restartPlay();
+        archery?.play.signal();
+      },
+      resetRound: restartPlay,
+      assists: () => (settings.oneHanded ? ['one hand'] : []),
+      device: () => ({
+        name: (emulator ? `emulated headset in ${navigator.userAgent}` : navigator.userAgent).slice(0, 160),
+        refreshRateHz: session?.xr.frameRate ?? (emulator ? windowRateHz : null),
+        input: settings.actor ? 'simulated' : emulator ? 'emulated' : (session?.tracker.input ?? 'controllers'),
+      }),
+      listenToFrames: (listener) => timing.listen(listener),
+    });
+    arena.scene.add(run.object);
+    return run;
+  }
+
   const enterButton = createEnterButton(pageElement('enter', HTMLDivElement), () => void enter());
 
   /** Controls cover a part of the window: the body stands in the middle of the rest. */
@@ -765,7 +830,7 @@ async function start(): Promise<void> {
       o: () => toggle('overlay', !settings.overlay),
       p: () => panel.setOpen(!panel.open),
     },
-    () => session === null && !dialog.visible,
+    () => session === null && !dialog.visible && study === null,
   );
   acceptDroppedFiles(openFile);
 
@@ -828,7 +893,7 @@ async function start(): Promise<void> {
       space.addEventListener('reset', jumped);
       timing.setRate(emulator ? windowRateHz : (xrSession.frameRate ?? 72));
       if (!settings.actor) emulator?.release();
-      menu.setVisible(true);
+      menu.setVisible(study === null);
       pointers.objects.visible = true;
       document.body.classList.add('in-session');
       panelOpenBefore = panel.open;
@@ -840,6 +905,7 @@ async function start(): Promise<void> {
     choice.reset();
     fit();
     show();
+    study?.sessionChanged();
   }
 
   function leave(): void {
@@ -855,11 +921,12 @@ async function start(): Promise<void> {
     view.setView(view.view);
     layOut();
     show();
+    study?.sessionChanged();
   }
 
   /** Somebody who never calibrated is as tall as their headset hangs high, once it hangs there calmly. */
   function settle(frame: TrackingFrame): void {
-    if (!session || calibrated() || session.settledSince === 'done') return;
+    if (!session || calibrated() || study?.measured || session.settledSince === 'done') return;
     session.settledSince ??= frame.time;
     if (frame.time - session.settledSince < settleSeconds) return;
     session.settledSince = 'done';
@@ -869,7 +936,9 @@ async function start(): Promise<void> {
   /** The frame as play: seen with the picture, heard and felt at once. */
   function playRound(frame: TrackingFrame): void {
     if (!archery) return;
-    const { events, cues, haptics } = archery.play.follow(frame, buttons);
+    if (study?.paused) return;
+    const { events, cues, haptics } = archery.play.follow(frame, study?.idle ? nothingPressed : buttons);
+    if (archery.play.newest) study?.played(archery.play.newest);
     const taken = cues.findLast(({ type }) => type === 'taken');
     if (taken) {
       settings.bowSide = taken.side;
@@ -885,7 +954,8 @@ async function start(): Promise<void> {
   /** The same of the ball game. */
   function playBall(frame: TrackingFrame): void {
     if (!ball) return;
-    const pulses = ball.follow(frame, buttons);
+    const pulses = ball.follow(frame, study?.idle ? nothingPressed : buttons);
+    if (ball.play.newest) study?.playedBall(ball.play.newest);
     if (session) buzz(session.xr, pulses);
   }
 
@@ -897,17 +967,23 @@ async function start(): Promise<void> {
     banner.hidden = text === '';
   }
 
+  /** From where and whereto the window's camera looks. */
+  function cameraPose(): Pose<'floor'> {
+    const { position, quaternion } = view.camera;
+    const { x, y, z, w } = quaternion;
+    return { position: { x: position.x, y: position.y, z: position.z }, orientation: { x, y, z, w } };
+  }
+
   /** Whom the camera of somebody without a body looks at. */
   function lookedAt(): { readonly pelvis: { x: number; y: number; z: number }; readonly eyes: Pose<'floor'> } {
     const followed = settings.following === null ? null : ball?.bodyOf(settings.following);
     if (followed) return followed;
-    const { position, quaternion } = view.camera;
-    return { pelvis: courtMiddle, eyes: { position: { ...position }, orientation: { ...quaternion } } };
+    return { pelvis: courtMiddle, eyes: cameraPose() };
   }
 
   /** How far a hand is closed: as its buttons say; round the bow it always is. */
   function gripOf(side: 'left' | 'right'): number {
-    if (archery?.play.newest?.bow?.bowSide === side) return 1;
+    if (!study?.idle && archery?.play.newest?.bow?.bowSide === side) return 1;
     // Hands that carry a basket lie round its rim.
     if (ball?.play.newest?.role === 'holder') return 0.8;
     const { trigger, grip, pinch } = buttons[side];
@@ -916,7 +992,7 @@ async function start(): Promise<void> {
 
   // A click on the result's button is another round.
   canvas.addEventListener('click', ({ clientX, clientY }) => {
-    if ((!archery && !ball) || session) return;
+    if ((!archery && !ball) || session || study) return;
     const { width, height } = canvas.getBoundingClientRect();
     pointing.setFromCamera(new Vector2((2 * clientX) / width - 1, 1 - (2 * clientY) / height), view.camera);
     const { origin, direction } = pointing.ray;
@@ -929,8 +1005,7 @@ async function start(): Promise<void> {
   /** The match as it stands in this frame, and the own body in its seat's colours. */
   function showCourt(time: number, frame: TrackingFrame | null): void {
     if (!ball) return;
-    const { position, quaternion } = view.camera;
-    const camera = { position: { ...position }, orientation: { ...quaternion } };
+    const camera = cameraPose();
     const eyes = watching() ? camera : (frame ?? newestFrame)?.head;
     ball.show(time, eyes ?? camera, frame !== null);
     if (palette !== ball.palette) {
@@ -973,6 +1048,7 @@ async function start(): Promise<void> {
         const joints = avatar?.jointPositions() ?? {};
         skeletonLines.show(joints);
         const { hips } = joints;
+        study?.frame(timeMs / 1000, frame);
         if (hips && !watching()) arena.follow(hips.x, hips.z);
         else if (watching()) arena.follow(courtMiddle.x, 100);
         if (session) {
@@ -985,7 +1061,9 @@ async function start(): Promise<void> {
           view.update(hips ?? { ...frame.head.position, y: frame.head.position.y * 0.58 }, frame.head, elapsed);
         }
         const played = archery?.play.newest;
-        if (archery && played && frame) archery.view.show(played.state, played.bow, played.time, frame.head);
+        if (archery && played && frame) {
+          archery.view.show(played.state, study?.idle ? null : played.bow, played.time, frame.head);
+        }
         if (ball) showCourt(timeMs / 1000, frame);
         if (avatar) avatar.object.visible = !watching();
         avatar?.setOpacity(headLoss.follow(timeMs / 1000, frame !== null));
@@ -1070,12 +1148,17 @@ async function start(): Promise<void> {
       drawing: { ...renderer.info.memory, programs: renderer.info.programs?.length ?? 0, darkness: vignette.darkness },
       players: ball?.players() ?? [],
       game: archery?.play.newest ? probeOf(archery.play.newest) : (ball?.probe() ?? null),
+      study: study?.probe() ?? null,
     };
   });
 
   /** Rays and finger tips: the menu first, then the result of a round. */
   function point(): void {
     const hands = pointers.take();
+    if (study) {
+      study.point(hands);
+      return;
+    }
     menu.point(hands);
     let hovered = false;
     for (const { origin, direction, pressed, showRay } of hands) {
@@ -1126,6 +1209,7 @@ async function start(): Promise<void> {
     );
   }
   await Promise.all([chosen, sessionsPrepared, goTo(switches.play)]);
+  if (switches.study) study = await joinStudy(switches.study);
   mark('estimator');
   progress.finish();
   ready = true;

@@ -4,6 +4,7 @@ import type { BallProbe } from './ball-play';
 import type { Calibration } from './core/body/calibration';
 import type { EstimatorName } from './core/estimation/pose-estimator';
 import type { FrameSummary } from './frame-timing';
+import type { StudyProbe } from './study-run';
 
 type Triple = readonly [number, number, number];
 
@@ -47,6 +48,8 @@ export interface Probe {
   readonly players: readonly PlayerProbe[];
   /** The round being played; null in the studio. */
   readonly game: ArcheryProbe | BallProbe | null;
+  /** Where a study stands; null: there is none. */
+  readonly study: StudyProbe | null;
 }
 
 declare global {

@@ -16,8 +16,9 @@ function page(options: {
   seat?: number;
   spectate?: boolean;
   ball?: Partial<BallOptions>;
+  rateHz?: number;
 }) {
-  const { acting = true, bots = true, ball = {} } = options;
+  const { acting = true, bots = true, ball = {}, rateHz = 72 } = options;
   const host = createLoopbackHost({ kind: 'ball', seed: 3, ball });
   const player: BallPlay = createBallPlay({
     connect: host.connect,
@@ -35,7 +36,7 @@ function page(options: {
   const events: BallEvent[] = [];
   let time = 10;
   const frame = () => {
-    time += 1 / 72;
+    time += 1 / rateHz;
     player.begin(time);
     const performed = acting ? player.act(time) : null;
     const seen = player.follow(time, performed?.frame ?? null, performed?.buttons ?? released);
@@ -116,6 +117,14 @@ describe('one person with two bots', () => {
     until(() => player.probe()?.phase === 'over', 60);
     expect(player.probe()).toMatchObject({ seat: null, role: null });
     expect(player.newest?.bodies).toHaveLength(3);
+  });
+
+  it('built-in players throw as well where pictures come four times a second', () => {
+    const { player, until, events } = page({ seat: 0, rateHz: 4 });
+    until(() => player.probe()?.phase === 'over', 110);
+    expect(player.probe()?.end).toBe('balls');
+    expect(player.probe()?.score).toBeGreaterThanOrEqual(6);
+    expect(events.filter(({ type }) => type === 'thrown')).toHaveLength(20);
   });
 
   it('bots go when they are not wanted', () => {

@@ -8,23 +8,10 @@ import { identity } from '../../src/core/math/quat';
 import { zero } from '../../src/core/math/vec3';
 import { createArcheryView } from '../../src/games/archery/archery-view';
 import type { Arena } from '../../src/scene/arena';
+import { type FrameTimes, frameTimes } from './frame-times';
 
-/** Frame times of a whole round as in the paper's table 5 [ms], and more; missed: share of frames too late for that rate. */
-export interface RoundTimes {
-  readonly min: number;
-  readonly mean: number;
-  readonly p50: number;
-  readonly p95: number;
-  readonly max: number;
-  /** On the page's own thread, at 72 and 90 Hz: what a headset with graphics of its own would miss. */
-  readonly missed72: number;
-  readonly missed90: number;
-  /** The same until the picture is drawn, in software. */
-  readonly drawnP50: number;
-  readonly drawnP95: number;
-  readonly drawnMissed72: number;
-  readonly frames: number;
-  /** The round's result: all play the same one to its end. */
+/** Frame times of a whole round as in the paper's table 5, and its result: all play the same one to its end. */
+export interface RoundTimes extends FrameTimes {
   readonly score: number;
 }
 
@@ -102,31 +89,7 @@ export async function measureArchery(stage: ArcheryStage): Promise<Record<Estima
   return Object.fromEntries(
     rounds.map(({ name, play, frame, thread, drawn }) => [
       name,
-      told(thread, drawn, frame, play.newest?.state.score ?? 0),
+      { ...frameTimes(thread, drawn, frame), score: play.newest?.state.score ?? 0 },
     ]),
   ) as Record<EstimatorName, RoundTimes>;
-}
-
-function told(thread: readonly number[], drawn: readonly number[], frames: number, score: number): RoundTimes {
-  const sorted = Float64Array.from(thread).sort();
-  const sortedDrawn = Float64Array.from(drawn).sort();
-  const at = (values: Float64Array, q: number) =>
-    values[Math.min(values.length - 1, Math.floor(q * values.length))] ?? Number.NaN;
-  const missed = (values: readonly number[], hz: number) =>
-    values.filter((ms) => ms > 1000 / hz).length / values.length;
-  const round = (value: number) => Number(value.toFixed(4));
-  return {
-    min: round(at(sorted, 0)),
-    mean: round(thread.reduce((sum, ms) => sum + ms, 0) / thread.length),
-    p50: round(at(sorted, 0.5)),
-    p95: round(at(sorted, 0.95)),
-    max: round(at(sorted, 1)),
-    missed72: round(missed(thread, 72)),
-    missed90: round(missed(thread, 90)),
-    drawnP50: round(at(sortedDrawn, 0.5)),
-    drawnP95: round(at(sortedDrawn, 0.95)),
-    drawnMissed72: round(missed(drawn, 72)),
-    frames,
-    score,
-  };
 }

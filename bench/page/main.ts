@@ -17,6 +17,7 @@ import { createSession } from '../../src/inference/session';
 import { createArena } from '../../src/scene/arena';
 import { createRenderer } from '../../src/scene/renderer';
 import { measureArchery, type RoundTimes } from './archery';
+import { type CourtTimes, measureCourt } from './ball';
 import { createCcdBody } from './ccd-body';
 
 /** Blocks of one method alternate in a seeded order, so that whatever else the machine does meets all of them. */
@@ -45,6 +46,8 @@ export interface PageResult {
   readonly frames: number;
   /** A whole round of archery with each estimator. */
   readonly archery: Readonly<Record<string, RoundTimes>>;
+  /** The ball court with 1, 3, 8 and 16 avatars, with each estimator. */
+  readonly ball: Readonly<Record<string, readonly CourtTimes[]>>;
 }
 
 function quantiles(values: readonly number[]): Quantiles {
@@ -175,6 +178,8 @@ async function measure(): Promise<PageResult> {
     for (const { name } of order.sort((a, b) => a.value - b.value)) await runBlock(name, round);
   }
   const archery = await measureArchery({ renderer, arena, avatar, mirror, camera, estimators });
+  const mannequin = await (await fetch('/avatars/mannequin.vrm')).arrayBuffer();
+  const ball = await measureCourt({ renderer, arena, avatar, mirror, camera, estimators, mannequin });
   const told = (values: Record<Method, number[]>) =>
     Object.fromEntries(methods.map((name) => [name, quantiles(values[name])])) as Record<Method, Quantiles>;
   return {
@@ -186,6 +191,7 @@ async function measure(): Promise<PageResult> {
     firstInferenceMs: { learned: costs.learned.first, paper: costs.paper.first },
     frames: rounds * blockFrames,
     archery,
+    ball,
   };
 }
 

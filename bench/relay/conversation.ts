@@ -19,7 +19,7 @@ export interface Load {
 
 /** Of the measured seconds alone. */
 export interface Heard {
-  /** From a pose's sending to its arrival at one of the others [ms]. */
+  /** From a pose's sending to its arrival at one of the others [ms]: the median over the seconds of the measurement. */
   readonly p50Ms: number;
   readonly p99Ms: number;
   readonly sent: number;

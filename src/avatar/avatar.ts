@@ -124,6 +124,8 @@ export function createAvatar({ vrm }: LoadedAvatar): Avatar {
   const fingers = readFingers(vrm);
   const meshes = readMeshes(vrm, bones);
   const stepping = createStepping();
+  /** Constraints read positions and rotations; drawing needs the matrices alone. */
+  const constrained = (vrm.nodeConstraintManager?.constraints.size ?? 0) > 0;
   const rest = (name: AvatarJoint): Vector3 | null => bone(name)?.restPosition ?? null;
 
   let skeleton: Skeleton = skeletonFromCalibration({ eyeHeight: 1.59, armSpan: 1.5 });
@@ -224,7 +226,7 @@ export function createAvatar({ vrm }: LoadedAvatar): Avatar {
       ? scratchMatrix.copy(parent.world).multiply(fromParentBone)
       : scratchMatrix.copy(fromParentBone);
     node.matrix.copy(above.invert()).multiply(world);
-    node.matrix.decompose(node.position, node.quaternion, node.scale);
+    if (constrained) node.matrix.decompose(node.position, node.quaternion, node.scale);
     node.matrixWorldNeedsUpdate = true;
     drawn[name] = position;
   }

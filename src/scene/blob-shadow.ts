@@ -1,22 +1,26 @@
-import { CanvasTexture, Mesh, MeshBasicMaterial, PlaneGeometry } from 'three';
+import { DataTexture, LinearFilter, LinearMipmapLinearFilter, Mesh, MeshBasicMaterial, PlaneGeometry } from 'three';
+
+/** Opacity at a distance from the middle, 0 to 1: dark half way out, then soft. */
+const darkness = (out: number): number => (out < 0.45 ? 1 - (0.5 * out) / 0.45 : Math.max(0, (0.5 * (1 - out)) / 0.55));
 
 /** A soft dark disc under the body: the cheap shadow that says the feet are on the ground. */
 export function createBlobShadow(): Mesh<PlaneGeometry, MeshBasicMaterial> {
   const size = 128;
-  const canvas = document.createElement('canvas');
-  canvas.width = size;
-  canvas.height = size;
-  const context = canvas.getContext('2d');
-  if (!context) throw new Error('scene/blob-shadow: this browser offers no 2D canvas');
-  const gradient = context.createRadialGradient(size / 2, size / 2, 0, size / 2, size / 2, size / 2);
-  gradient.addColorStop(0, 'rgba(6, 9, 14, 1)');
-  gradient.addColorStop(0.45, 'rgba(6, 9, 14, 0.5)');
-  gradient.addColorStop(1, 'rgba(6, 9, 14, 0)');
-  context.fillStyle = gradient;
-  context.fillRect(0, 0, size, size);
+  const pixels = new Uint8Array(size * size * 4);
+  for (let y = 0; y < size; y++) {
+    for (let x = 0; x < size; x++) {
+      const out = Math.hypot((x + 0.5) / size - 0.5, (y + 0.5) / size - 0.5) * 2;
+      pixels.set([6, 9, 14, 255 * darkness(out)], (y * size + x) * 4);
+    }
+  }
+  const texture = new DataTexture(pixels, size, size);
+  texture.magFilter = LinearFilter;
+  texture.minFilter = LinearMipmapLinearFilter;
+  texture.generateMipmaps = true;
+  texture.needsUpdate = true;
   const blob = new Mesh(
     new PlaneGeometry(1.1, 1.1).rotateX(-Math.PI / 2),
-    new MeshBasicMaterial({ map: new CanvasTexture(canvas), transparent: true, depthWrite: false, toneMapped: false }),
+    new MeshBasicMaterial({ map: texture, transparent: true, depthWrite: false, toneMapped: false }),
   );
   blob.position.y = 0.006;
   blob.renderOrder = 1;

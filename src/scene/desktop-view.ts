@@ -70,11 +70,11 @@ const start: Record<SceneName, Record<Exclude<ViewName, 'first-person'>, Outlook
     front: { offset: new Vector3(1.6, 0.35, -2.7), aim: new Vector3(), fov: 46 },
   },
   court: {
-    'third-person': { offset: new Vector3(-0.75, 1.0, 3.1), aim: new Vector3(0.25, -0.25, -2.4), fov: 48 },
-    front: { offset: new Vector3(-1.5, 0.5, -2.8), aim: new Vector3(), fov: 46 },
+    'third-person': { offset: new Vector3(-0.8, 1.05, 3.5), aim: new Vector3(0.3, 0.12, -2.4), fov: 50 },
+    front: { offset: new Vector3(-1.9, 0.6, -3.1), aim: new Vector3(), fov: 50 },
   },
   stands: {
-    'third-person': { offset: new Vector3(4.7, 1.9, 3.3), aim: new Vector3(0, -0.1, 0), fov: 50 },
+    'third-person': { offset: new Vector3(4.6, 2.1, 4.6), aim: new Vector3(0.4, 0.15, 0), fov: 54 },
     front: { offset: new Vector3(-4.6, 1.7, -3.6), aim: new Vector3(0, -0.1, 0), fov: 50 },
   },
 };

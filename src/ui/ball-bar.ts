@@ -100,7 +100,9 @@ export function createBallBar(actions: BallBarActions, setSound: (on: boolean) =
       left.textContent = round ? `${round.ballsLeft} ${round.ballsLeft === 1 ? 'ball' : 'balls'}` : '';
       time.textContent = round ? `${Math.ceil(round.secondsLeft)} s` : '';
       const place = state.room ? `Room “${state.room}”` : 'Your own room';
-      const watching = round && round.spectators > 0 ? ` · ${round.spectators} watching` : '';
+      // Whoever watches knows that already.
+      const watchers = round ? round.spectators - (round.seat === null ? 1 : 0) : 0;
+      const watching = watchers > 0 ? ` · ${watchers} ${round?.seat === null ? 'more ' : ''}watching` : '';
       where.textContent = round ? `${place} · ${round.role}${watching}` : `${place} · joining …`;
       isReady = round?.ready ?? false;
       ready.hidden = !round || round.seat === null || round.phase === 'running' || state.acting;

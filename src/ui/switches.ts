@@ -21,6 +21,8 @@ export interface Switches {
   readonly seed: number | null;
   /** Of a round, until the bell [s]; null: as the game has it. */
   readonly seconds: number | null;
+  /** A study and who takes part in it (null: to be asked); null: no study. */
+  readonly study: { readonly study: string; readonly participant: string | null } | null;
   /** Where others play too; null: a room in this page. */
   readonly room: string | null;
   /** Watches, from a camera of its own. */
@@ -50,6 +52,8 @@ const schema = v.object({
   name: v.optional(v.pipe(v.string(), v.minLength(1), v.maxLength(40))),
   balls: v.optional(v.pipe(v.string(), v.regex(/^\d{1,2}$/), v.transform(Number), v.minValue(1), v.maxValue(20))),
   seed: v.optional(v.pipe(v.string(), v.regex(/^\d{1,9}$/), v.transform(Number))),
+  study: v.optional(v.pipe(v.string(), v.regex(/^[a-z0-9][a-z0-9-]{0,47}$/))),
+  participant: v.optional(v.pipe(v.string(), v.regex(/^P\d{2,3}$/))),
 });
 
 /** Reads the query of the address. A value nobody knows counts as not given and yields a sentence. */
@@ -82,6 +86,7 @@ export function readSwitches(query: string): { readonly switches: Switches; read
       play: output.play,
       seed: output.seed ?? null,
       seconds: output.seconds ?? null,
+      study: output.study === undefined ? null : { study: output.study, participant: output.participant ?? null },
       room: output.room ?? null,
       spectate: 'spectate' in given && given.spectate !== 'off',
       bots: output.bots ? output.bots === 'on' : null,

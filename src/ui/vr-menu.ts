@@ -1,11 +1,12 @@
-import { Group, Raycaster } from 'three';
+import { Group } from 'three';
 import type { EstimatorName } from '../core/estimation/pose-estimator';
 import { type CalibrationStep, calibrationHeadline, calibrationInstruction } from './calibration-dialog';
 import { estimatorOrder, estimatorTexts } from './estimator-texts';
 import { type FrameReport, milliseconds, missedFrames } from './overlay';
 import type { ActivityName } from './play-bar';
-import { createVrPanel, fillRounded, vrColors, vrFont } from './vr-panel';
+import { createVrPanel, fillRounded, vrColors, vrFont, wrap } from './vr-panel';
 import type { Pointer } from './vr-pointers';
+import { createPanelTouch } from './vr-touch';
 
 /** What the menu in the headset shows. */
 export interface VrMenuState {
@@ -55,23 +56,6 @@ interface MenuButton {
 const width = 640;
 const height = 1000;
 const margin = 36;
-/** A finger tip that comes from this far before the sheet [m] to behind it touches. */
-const touchDepth = 0.015;
-
-/** Lines of at most `most` pixels, broken at spaces. */
-function wrap(context: CanvasRenderingContext2D, text: string, most: number): string[] {
-  const lines: string[] = [];
-  let line = '';
-  for (const word of text.split(' ')) {
-    const longer = line ? `${line} ${word}` : word;
-    if (line && context.measureText(longer).width > most) {
-      lines.push(line);
-      line = word;
-    } else line = longer;
-  }
-  return [...lines, line];
-}
-
 /** The menu right of the mirror and the frame times left of it; targets as big as a palm. */
 export function createVrMenu(actions: VrMenuActions): VrMenu {
   const menu = createVrPanel(width, height, 1000);
@@ -88,8 +72,7 @@ export function createVrMenu(actions: VrMenuActions): VrMenu {
   let state: VrMenuState | null = null;
   let hovered: string | null = null;
   let drawn = '';
-  const touching = new Map<number, boolean>();
-  const raycaster = new Raycaster();
+  const touch = createPanelTouch(menu);
 
   function buttonsOf(shown: VrMenuState): readonly MenuButton[] {
     const full = width - 2 * margin;
@@ -257,34 +240,10 @@ export function createVrMenu(actions: VrMenuActions): VrMenu {
         for (const pointer of pointers) pointer.showRay(null);
         return;
       }
-      menu.mesh.updateWorldMatrix(true, false);
-      const buttonAt = (x: number, y: number) =>
-        buttons.find(
-          ({ at: [left, top, w, h], look }) => look !== 'off' && x >= left && x <= left + w && y >= top && y <= top + h,
-        );
-      let pointedAt: string | null = null;
-      const pressed = new Map<string, MenuButton>();
-      for (const [index, pointer] of pointers.entries()) {
-        raycaster.set(pointer.origin, pointer.direction);
-        const [hit] = raycaster.intersectObject(menu.mesh, false);
-        pointer.showRay(hit ? hit.distance : null);
-        if (hit) {
-          const { x, y } = menu.locate(hit.point);
-          const target = buttonAt(x, y);
-          if (target) pointedAt = target.id;
-          if (target && pointer.pressed) pressed.set(target.id, target);
-        }
-        const touch = menu.locate(pointer.tip ?? pointer.origin);
-        const target = Math.abs(touch.distance) < 0.08 ? buttonAt(touch.x, touch.y) : undefined;
-        if (target) pointedAt = target.id;
-        const through = target !== undefined && touch.distance < 0;
-        // Only coming from the front counts: a hand that was behind the sheet has touched nothing.
-        if (through && touching.get(index) === false) pressed.set(target.id, target);
-        if (through || touch.distance < 0) touching.set(index, true);
-        else if (touch.distance > touchDepth) touching.set(index, false);
-      }
-      hovered = pointedAt;
-      for (const { act } of pressed.values()) act();
+      const usable = buttons.filter(({ look }) => look !== 'off');
+      const { pointedAt, pressed } = touch.follow(pointers, usable);
+      hovered = pointedAt?.id ?? null;
+      for (const { act } of pressed) act();
       redraw();
     },
   };

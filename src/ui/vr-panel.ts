@@ -82,3 +82,17 @@ export function fillRounded(
     context.stroke();
   }
 }
+
+/** Lines of at most `most` pixels, broken at spaces. */
+export function wrap(context: CanvasRenderingContext2D, text: string, most: number): string[] {
+  const lines: string[] = [];
+  let line = '';
+  for (const word of text.split(' ')) {
+    const longer = line ? `${line} ${word}` : word;
+    if (line && context.measureText(longer).width > most) {
+      lines.push(line);
+      line = word;
+    } else line = longer;
+  }
+  return [...lines, line];
+}

@@ -33,6 +33,8 @@ export interface Tracker {
   /** Head and wrists of this frame, floor frame; null while the head is not seen. Call it before any await of the frame. */
   read(frame: XRFrame, time: number): TrackingFrame | null;
   readonly kinds: Readonly<Record<Side, InputKind>>;
+  /** What both sides held until now, since the session began: mixed where it changed or differed. */
+  readonly input: 'controllers' | 'hands' | 'mixed';
   /** How far the buttons of each side are pressed; a bare hand has a pinch and nothing else. */
   readonly buttons: Readonly<Record<Side, HandButtons>>;
   /** Moves the floor's origin under the head, its −Z to where the head looks, as of the last frame read. */
@@ -93,6 +95,7 @@ export function createTracker(
   }
   const kinds: Record<Side, InputKind> = { left: 'none', right: 'none' };
   const buttons: Record<Side, HandButtons> = { left: allReleased, right: allReleased };
+  const held = { controller: false, hand: false };
 
   /** Thumb against index finger; the gamepad of a hand would only say so once it is over. */
   function pinched(frame: XRFrame, hand: XRHand): HandButtons {
@@ -125,6 +128,10 @@ export function createTracker(
   return {
     kinds,
     buttons,
+    get input() {
+      if (held.controller && held.hand) return 'mixed';
+      return held.hand ? 'hands' : 'controllers';
+    },
     read(frame, time) {
       const viewer = frame.getViewerPose(space);
       const hands: Record<Side, TrackedPose | null> = { left: null, right: null };
@@ -146,7 +153,9 @@ export function createTracker(
       }
       for (const side of ['left', 'right'] as const) {
         const kind = kinds[side];
-        if (kind !== 'none') buttons[side] = { ...buttons[side], kind };
+        if (kind === 'none') continue;
+        held[kind] = true;
+        buttons[side] = { ...buttons[side], kind };
       }
       const head = viewer && toTrackedPose(viewer);
       if (!head) return null;

@@ -53,7 +53,7 @@ function calibrated(body: Calibration, lower: number): { readonly calibration: C
 }
 
 /** How far the drawn wrists are from the tracked ones, and how low the pelvis gets, while somebody of this body plays about. */
-function fit(body: Calibration, calibration: Calibration, lower: number) {
+function wear(body: Calibration, calibration: Calibration, lower: number) {
   const estimator = createEstimator('ik', calibration);
   const skeleton = skeletonFromCalibration(calibration);
   let off = 0;
@@ -86,7 +86,7 @@ test.each([
       const body = bodyOf(stature);
       const found = calibrated(body, lower(body));
       guided += found.guided ? 1 : 0;
-      const seen = fit(body, found.calibration, lower(body));
+      const seen = wear(body, found.calibration, lower(body));
       off = Math.max(off, seen.off);
       pelvis = Math.min(pelvis, seen.pelvis);
     }

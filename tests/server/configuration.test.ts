@@ -2,21 +2,34 @@ import { describe, expect, test } from 'vitest';
 import { ConfigurationError, configurationFrom } from '../../server/configuration';
 import { welcome } from '../../server/welcome';
 
+const noStudies = { studyDirectory: null, experimenterToken: null };
+
 describe('the configuration', () => {
+  test('studies lie where the command line says, else where the environment does; the token is never an argument', () => {
+    const environment = { STUDIES: '/var/studies', EXPERIMENTER_TOKEN: 'a-token-of-sixteen+' };
+    expect(configurationFrom([], environment)).toMatchObject({
+      studyDirectory: '/var/studies',
+      experimenterToken: 'a-token-of-sixteen+',
+    });
+    expect(configurationFrom(['--studies', 'here'], environment)).toMatchObject({ studyDirectory: 'here' });
+  });
+
   test('with nothing said: this machine alone, port 3333', () => {
-    expect(configurationFrom([], {})).toEqual({ port: 3333, lan: false });
+    expect(configurationFrom([], {})).toEqual({ port: 3333, lan: false, ...noStudies });
   });
 
   test('the command line goes before the environment', () => {
-    expect(configurationFrom([], { PORT: '8080' })).toEqual({ port: 8080, lan: false });
-    expect(configurationFrom(['--port', '9000', '--lan'], { PORT: '8080' })).toEqual({ port: 9000, lan: true });
-    expect(configurationFrom(['--port=0'], {})).toEqual({ port: 0, lan: false });
+    expect(configurationFrom([], { PORT: '8080' })).toMatchObject({ port: 8080, lan: false });
+    expect(configurationFrom(['--port', '9000', '--lan'], { PORT: '8080' })).toMatchObject({ port: 9000, lan: true });
+    expect(configurationFrom(['--port=0'], {})).toMatchObject({ port: 0, lan: false });
   });
 
   test.each([
     [['--port', 'many'], {}, /--port must be a port number from 0 to 65535, not "many"/],
     [['--port', '70000'], {}, /not "70000"/],
     [[], { PORT: '-1' }, /environment variable PORT must be a port number.*"-1"/],
+    [[], { EXPERIMENTER_TOKEN: 'short' }, /EXPERIMENTER_TOKEN must have 16/],
+    [['--studies='], {}, /--studies needs/],
     [['--lam'], {}, /--lam[\s\S]*Usage: npm start/],
     [['--port'], {}, /--port[\s\S]*Usage/],
     [['lan'], {}, /lan[\s\S]*Usage/],

@@ -15,6 +15,15 @@ describe('the address of the page', () => {
         quality: null,
         replay: null,
         view: null,
+        play: 'studio',
+        seed: null,
+        seconds: null,
+        room: null,
+        name: null,
+        bots: null,
+        balls: null,
+        spectate: false,
+        study: null,
       },
     });
   });
@@ -32,6 +41,13 @@ describe('the address of the page', () => {
       avatar: '/a.vrm',
       quality: 'low',
     });
+  });
+
+  test('names a study and who takes part; a participant alone is none', () => {
+    expect(readSwitches('?study=paper&participant=P07').switches.study).toEqual({ study: 'paper', participant: 'P07' });
+    expect(readSwitches('?study=paper').switches.study).toEqual({ study: 'paper', participant: null });
+    expect(readSwitches('?participant=P07').switches.study).toBe(null);
+    expect(readSwitches('?study=Paper%2F..&participant=P07').complaints).toHaveLength(1);
   });
 
   test('a value nobody knows is said in a sentence and counts as not given, the others count', () => {

@@ -154,7 +154,16 @@ const ballEvent = v.variant('type', [
 ]);
 
 /** Why the Room will have somebody no longer: another connection of the same person, a person for a bot's seat, asked to. */
-export const farewells = ['replaced', 'yielded', 'left', 'misbehaved', 'slow', 'stopping', 'old-page'] as const;
+export const farewells = [
+  'replaced',
+  'yielded',
+  'left',
+  'misbehaved',
+  'slow',
+  'stopping',
+  'closed',
+  'old-page',
+] as const;
 export type Farewell = (typeof farewells)[number];
 
 const roomMessage = v.variant('type', [

@@ -137,7 +137,8 @@ const questionColumns = [
 /** Why what was recorded in this block counts for nothing; empty: it counts. */
 type Exclusion = (participant: string, place: Place) => string;
 
-function exclusionsOf(records: readonly StudyRecord[]): Exclusion {
+/** Says why what was recorded at a place counts for nothing: "voided: reason"; empty: it counts. */
+export function voidedBlocks(records: readonly StudyRecord[]): Exclusion {
   const key = (participant: string, { task, block, run }: Pick<Place, 'task' | 'block' | 'run'>) =>
     `${participant} ${task}/${block}@${run}`;
   const voided = new Map<string, string>();
@@ -189,7 +190,7 @@ function answerRows(records: readonly StudyRecord[], exclusion: Exclusion) {
 
 /** The answers of these records, voided ones marked. */
 export const answersIn = (records: readonly StudyRecord[]): readonly AnswerRow[] =>
-  answerRows(records, exclusionsOf(records));
+  answerRows(records, voidedBlocks(records));
 
 function trialRows(records: readonly StudyRecord[], exclusion: Exclusion) {
   return records.flatMap((record) => {
@@ -224,7 +225,7 @@ export interface TrialRow {
 }
 
 export const trialsIn = (records: readonly StudyRecord[]): readonly TrialRow[] =>
-  trialRows(records, exclusionsOf(records)).map(({ common, group, outcome }) => ({
+  trialRows(records, voidedBlocks(records)).map(({ common, group, outcome }) => ({
     ...common,
     group,
     score: outcome.score,
@@ -280,7 +281,7 @@ export function refuseMixture(records: readonly { readonly simulated: boolean }[
 /** The tables of an export. Throws where simulated records and records of people are mixed. */
 export function studyTables(records: readonly StudyRecord[]): readonly Table[] {
   refuseMixture(records);
-  const exclusion = exclusionsOf(records);
+  const exclusion = voidedBlocks(records);
   const trials = trialRows(records, exclusion);
   return [
     { name: 'participants', columns: participantColumns, rows: participantRows(records) },

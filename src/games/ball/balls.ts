@@ -12,9 +12,9 @@ import {
 } from 'three';
 import type { BallState } from '../../core/games/ball/ball-state';
 import type { Opening } from '../../core/games/ball/basket';
-import { ballRadius, basketDepth } from '../../core/games/ball/flight';
+import { ballRadius, basketDepth, basketRadius } from '../../core/games/ball/flight';
 import { ballPosition } from '../../core/games/ball/rules';
-import { length, type Vec3 } from '../../core/math/vec3';
+import { addScaled, dot, length, reject, subtract, type Vec3 } from '../../core/math/vec3';
 import { disposeTree } from '../../scene/dispose-tree';
 import { painted } from '../../scene/painted-geometry';
 import type { Quality } from '../../scene/renderer';
@@ -54,6 +54,16 @@ function placeInBasket(index: number): readonly [number, number, number] {
   const angle = (slot / 5) * 2 * Math.PI + layer * 0.6;
   const out = 0.122;
   return [Math.cos(angle) * out, -basketDepth + ballRadius + 0.01 + layer * 0.085, Math.sin(angle) * out];
+}
+
+/** What has gone down through the opening goes no further than the basket's bottom. */
+function stoppedBy(opening: Opening | null, position: Vec3): Vec3 {
+  if (!opening) return position;
+  const from = subtract(position, opening.position);
+  const height = dot(from, opening.normal);
+  const deepest = ballRadius - basketDepth;
+  if (height > deepest || height < -1.2 || length(reject(from, opening.normal)) > basketRadius) return position;
+  return addScaled(position, opening.normal, deepest - height);
 }
 
 export function createBalls(count: number, quality: Quality): Balls {
@@ -114,6 +124,8 @@ export function createBalls(count: number, quality: Quality): Balls {
           at.set(x, y, z).applyQuaternion(basketTurn).add(held.position);
           position = { x: at.x, y: at.y, z: at.z };
         }
+        // A catch is told a moment later: until then the ball lies where it fell.
+        if (place.on === 'air' && !place.missed && position) position = stoppedBy(opening, position);
         // A full basket shows three layers of balls: those below them nobody sees.
         if (!position || (place.on === 'basket' && caught > 15)) {
           mesh.setMatrixAt(index, gone);

@@ -143,7 +143,7 @@ const seatIds = ['seat0', 'seat1', 'seat2'] as const;
 
 /** The seat that a button stands for; null: it is no seat's. */
 export const seatOfButton = (id: LobbyButton): number | null => {
-  const seat = seatIds.findIndex((name) => name === id);
+  const seat = (seatIds as readonly string[]).indexOf(id);
   return seat < 0 ? null : seat;
 };
 

@@ -14,7 +14,7 @@ export interface Boards {
 }
 
 const width = 3.1;
-const shape = { width, height: (width * boardSize.height) / boardSize.width, middle: 3.35 };
+const shape = { width, height: (width * boardSize.height) / boardSize.width, middle: 3.05 };
 
 export function createBoards(quality: Quality): Boards {
   const object = new Group();

@@ -69,7 +69,12 @@ function planter(x: number, z: number, random: (low?: number, high?: number) => 
     const push = 0.93 + 0.12 * Math.sin(17 * position.getX(i) + 23 * position.getY(i) + 29 * position.getZ(i));
     position.setXYZ(i, position.getX(i) * push, position.getY(i) * push, position.getZ(i) * push);
   }
-  shrub.computeVertexNormals();
+  // Soft as a ball, whatever its corners.
+  const normal = shrub.getAttribute('normal');
+  for (let i = 0; i < position.count; i++) {
+    const length = Math.hypot(position.getX(i), position.getY(i), position.getZ(i));
+    normal.setXYZ(i, position.getX(i) / length, position.getY(i) / length, position.getZ(i) / length);
+  }
   const green = 0.3 + random(-0.03, 0.03);
   return [
     painted(new CylinderGeometry(0.27, 0.21, 0.42, 20).translate(x, 0.21, z), '#c9c3b6'),

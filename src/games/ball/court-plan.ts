@@ -14,8 +14,8 @@ export const court = {
   holderZ: stations[holderStation]?.position.z ?? -throwingDistance,
   /** One board for the throwers, one for the holder. */
   boards: [
-    { z: -9, turned: 0 },
-    { z: 4.4, turned: Math.PI },
+    { z: -9.4, turned: 0 },
+    { z: 6.6, turned: Math.PI },
   ],
 } as const;
 

@@ -1,10 +1,11 @@
+import { clamp } from '../../math/damper';
 import { invertTransform, type Pose, type Transform, transformPoint } from '../../math/pose';
-import { type Quat, slerp } from '../../math/quat';
-import { add, lerp, normalise, subtract, type Vec3, vec3 } from '../../math/vec3';
+import { fromAxisAngle, multiply, type Quat, slerp } from '../../math/quat';
+import { add, lerp, normalise, subtract, up, type Vec3, vec3 } from '../../math/vec3';
 import type { TrackedPose, TrackingFrame } from '../../tracking/tracking-frame';
 import { allReleased, type Button, type Buttons } from '../button-presses';
 import { type Side, wristAround } from '../fist';
-import { armShare, lookAlong, shoulderBehind, shoulderDrop, shoulderShare } from '../posture';
+import { armShare, shoulderBehind, shoulderDrop, shoulderShare, yawOf } from '../posture';
 
 /** Who plays, and where. */
 export interface PlayerBody {
@@ -37,6 +38,10 @@ export interface Performed {
   readonly frame: TrackingFrame;
   readonly buttons: Buttons;
 }
+
+/** A head turns and nods this far [rad]. */
+const mostYaw = 0.8;
+const mostPitch = 0.6;
 
 const mixGrasp = (a: Grasp, b: Grasp, share: number): Grasp => ({
   fist: lerp(a.fist, b.fist, share),
@@ -87,7 +92,13 @@ export function createPlayerPostures({
     eyes: vec3(0, eyeHeight, 0),
     inFloor: (point) => transformPoint(floorFromArena, point),
     shoulder,
-    looking: (eyes, at) => lookAlong(normalise(subtract(at, eyes), vec3(0, 0, -1))),
+    looking(eyes, at) {
+      const { x, y, z } = subtract(at, eyes);
+      // Eyes do the rest: nobody turns the head over the shoulder to find a ball that lies beside them.
+      const yaw = clamp(yawOf(vec3(x, 0, z)), -mostYaw, mostYaw);
+      const pitch = clamp(Math.atan2(y, Math.hypot(x, z)), -mostPitch, mostPitch);
+      return multiply(fromAxisAngle(up, yaw), fromAxisAngle(vec3(1, 0, 0), pitch));
+    },
     hanging: (side, eyes) => ({
       fist: add(shoulder(side, eyes), vec3(sigma(side) * 0.22 * arm, -1.02 * arm, -0.2 * arm)),
       knuckles: normalise(vec3(0, -1, -0.25)),

@@ -1,12 +1,14 @@
 import fc from 'fast-check';
 import { describe, expect, it } from 'vitest';
+import { createIk } from '../../../../src/core/estimation/ik';
 import type { BallAction, BallEvent, BallState } from '../../../../src/core/games/ball/ball-state';
 import { type BallGestures, createBallGestures } from '../../../../src/core/games/ball/gestures';
 import { createHolder } from '../../../../src/core/games/ball/holder-motion';
 import { ballRules } from '../../../../src/core/games/ball/rules';
 import { stations, zoneRadius } from '../../../../src/core/games/ball/stations';
 import { type BallBot, createThrower } from '../../../../src/core/games/ball/thrower-motion';
-import { distance, length, subtract } from '../../../../src/core/math/vec3';
+import { rotate } from '../../../../src/core/math/quat';
+import { distance, length, subtract, vec3 } from '../../../../src/core/math/vec3';
 import type { TrackingFrame } from '../../../../src/core/tracking/tracking-frame';
 
 interface Match {
@@ -91,6 +93,19 @@ describe('bots', () => {
       ),
       { numRuns: 12, seed: 5 },
     );
+  });
+
+  it('stand upright however they reach: the solved pelvis stays well below the head, and ahead is ahead', () => {
+    const { frames } = play({});
+    const estimators = [0, 1, 2].map(() => createIk({ eyeHeight: 1.6, armSpan: 1.5 }));
+    frames.forEach((now, index) => {
+      if (index % 3 !== 0) return;
+      now.forEach((frame, player) => {
+        const { body } = estimators[player]?.estimate(frame) ?? {};
+        expect(body && frame.head.position.y - body.hipsPosition.y).toBeGreaterThan(0.45);
+        expect(rotate(frame.head.orientation, vec3(0, 0, -1)).z).toBeLessThan(-0.4);
+      });
+    });
   });
 
   it('move as a body can: hands within reach of the head, never faster than a throw, feet near the mark', () => {

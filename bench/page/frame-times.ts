@@ -1,0 +1,39 @@
+/** Frame times [ms]; missed: share of frames too late for that rate. */
+export interface FrameTimes {
+  readonly min: number;
+  readonly mean: number;
+  readonly p50: number;
+  readonly p95: number;
+  readonly max: number;
+  /** On the page's own thread, at 72 and 90 Hz: what a headset with graphics of its own would miss. */
+  readonly missed72: number;
+  readonly missed90: number;
+  /** The same until the picture is drawn, in software. */
+  readonly drawnP50: number;
+  readonly drawnP95: number;
+  readonly drawnMissed72: number;
+  readonly frames: number;
+}
+
+export function frameTimes(thread: readonly number[], drawn: readonly number[], frames: number): FrameTimes {
+  const sorted = Float64Array.from(thread).sort();
+  const sortedDrawn = Float64Array.from(drawn).sort();
+  const at = (values: Float64Array, q: number) =>
+    values[Math.min(values.length - 1, Math.floor(q * values.length))] ?? Number.NaN;
+  const missed = (values: readonly number[], hz: number) =>
+    values.filter((ms) => ms > 1000 / hz).length / values.length;
+  const round = (value: number) => Number(value.toFixed(4));
+  return {
+    min: round(at(sorted, 0)),
+    mean: round(thread.reduce((sum, ms) => sum + ms, 0) / thread.length),
+    p50: round(at(sorted, 0.5)),
+    p95: round(at(sorted, 0.95)),
+    max: round(at(sorted, 1)),
+    missed72: round(missed(thread, 72)),
+    missed90: round(missed(thread, 90)),
+    drawnP50: round(at(sortedDrawn, 0.5)),
+    drawnP95: round(at(sortedDrawn, 0.95)),
+    drawnMissed72: round(missed(drawn, 72)),
+    frames,
+  };
+}

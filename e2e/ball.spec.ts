@@ -1,0 +1,207 @@
+import { spawn } from 'node:child_process';
+import { createServer } from 'node:net';
+import { fileURLToPath } from 'node:url';
+import type { Browser } from '@playwright/test';
+import type { BallProbe } from '../src/ball-play';
+import { emulatedHeadset } from './emulated-headset';
+import { distance, enterVr, expect, keepPicture, open, probe, test } from './page-fixture';
+
+// What is played does not depend on how many pixels show it.
+test.use({ viewport: { width: 480, height: 300 } });
+
+type Page = Parameters<typeof open>[0];
+
+async function match(page: Page): Promise<BallProbe | null> {
+  const { game } = await probe(page);
+  return game?.name === 'ball' ? game : null;
+}
+
+/** Waits until the match is as asked; fails with how it is. */
+async function until(page: Page, what: (game: BallProbe) => boolean, timeout = 60_000): Promise<BallProbe> {
+  let last: BallProbe | null = null;
+  await expect
+    .poll(
+      async () => {
+        last = await match(page);
+        return last !== null && what(last);
+      },
+      { timeout, message: () => `the match: ${JSON.stringify(last)}` } as { timeout: number },
+    )
+    .toBe(true);
+  return last as unknown as BallProbe;
+}
+
+test('one person with two bots plays a short match to its end, and again', async ({ page }) => {
+  test.setTimeout(180_000);
+  await open(page, 'play=ball&panel=off&quality=low&estimator=ik&seed=5&balls=4&seconds=30');
+  await until(page, ({ phase }) => phase === 'running');
+  const { players } = await probe(page);
+  expect(players.map(({ bot }) => bot)).toEqual([true, true]);
+  await keepPicture(page, 'ball-running');
+  const over = await until(page, ({ phase }) => phase === 'over', 90_000);
+  expect(over.end).toBe('balls');
+  expect(over.balls.basket).toBe(over.score);
+  expect(over.score).toBeGreaterThanOrEqual(1);
+  await keepPicture(page, 'ball-result');
+  const again = await until(page, ({ phase }) => phase === 'running', 60_000);
+  expect(again.score).toBeLessThanOrEqual(over.score);
+});
+
+test('in the emulated headset the built-in player throws with its tracked hands', async ({ page }) => {
+  test.setTimeout(180_000);
+  await open(page, 'emulate&play=ball&panel=off&quality=low&estimator=ik&seed=5&balls=4&seconds=40');
+  await emulatedHeadset(page);
+  await enterVr(page);
+  await until(page, ({ phase, held }) => phase === 'running' && (held.left !== null || held.right !== null), 90_000);
+  await keepPicture(page, 'ball-headset');
+  const over = await until(page, ({ phase }) => phase === 'over', 120_000);
+  expect(over.balls.hand).toBe(0);
+});
+
+test('whoever plays by hand is asked before a match begins, and can wait', async ({ page }) => {
+  await open(page, 'play=ball&panel=off&quality=low&estimator=ik&actor=off&emulate');
+  await page.getByRole('button', { name: 'Ready', exact: true }).click();
+  await until(page, ({ phase }) => phase === 'running');
+});
+
+test('a spectator sees three bots and follows one of them', async ({ page }) => {
+  await open(page, 'play=ball&spectate&bots=on&panel=off&quality=low&estimator=ik&seconds=60');
+  await until(page, ({ phase }) => phase === 'running');
+  expect((await match(page))?.seat).toBe(null);
+  await expect.poll(async () => (await probe(page)).players.length).toBe(3);
+  await page.getByRole('group', { name: 'Camera' }).getByRole('button', { name: 'Kim' }).click();
+  await expect(page.getByRole('button', { name: 'Kim', pressed: true })).toBeVisible();
+});
+
+/** A port of this machine that nobody listens on. */
+async function freePort(): Promise<number> {
+  const probing = createServer();
+  await new Promise<void>((resolve) => probing.listen(0, '127.0.0.1', resolve));
+  const address = probing.address();
+  await new Promise((resolve) => probing.close(resolve));
+  if (address === null || typeof address === 'string') throw new Error('no port was given');
+  return address.port;
+}
+
+/** The server as `npm start` runs it, page and relay on one port; it can be killed and started again. */
+async function startServer(seconds: number, port: number): Promise<{ kill(): Promise<void> }> {
+  const root = fileURLToPath(new URL('..', import.meta.url));
+  const server = spawn(process.execPath, ['--import', 'tsx', 'server/main.ts', '--port', String(port)], {
+    cwd: root,
+    env: { ...process.env, THREEPOINT_BALL_SECONDS: String(seconds) },
+    stdio: ['ignore', 'inherit', 'inherit'],
+  });
+  await expect
+    .poll(
+      () =>
+        fetch(`http://127.0.0.1:${port}/healthz`).then(
+          ({ ok }) => ok,
+          () => false,
+        ),
+      { timeout: 30_000 },
+    )
+    .toBe(true);
+  return {
+    async kill() {
+      if (server.exitCode !== null || server.signalCode !== null) return;
+      const ended = new Promise((resolve) => server.once('exit', resolve));
+      server.kill('SIGKILL');
+      await ended;
+    },
+  };
+}
+
+/** Another person's browser in this room. */
+async function join(browser: Browser, port: number, room: string, query: string): Promise<Page> {
+  const context = await browser.newContext({ viewport: { width: 320, height: 200 } });
+  const page = await context.newPage();
+  await page.goto(
+    `http://localhost:${port}/?play=ball&room=${room}&panel=off&quality=low&estimator=ik&overlay=off&${query}`,
+  );
+  await page.waitForFunction(() => window.threepoint?.probe().ready === true, undefined, { timeout: 90_000 });
+  return page;
+}
+
+/** How far somebody's elbow goes on this page's picture within a moment [m]. */
+async function elbowTravel(page: Page, seat: number): Promise<number> {
+  const elbow = async () =>
+    (await probe(page)).players.find((player) => player.seat === seat)?.joints.rightLowerArm ?? null;
+  let travelled = 0;
+  let before = await elbow();
+  await expect
+    .poll(
+      async () => {
+        const now = await elbow();
+        if (before && now) travelled += distance(before, now);
+        before = now ?? before;
+        return travelled;
+      },
+      { timeout: 60_000 },
+    )
+    .toBeGreaterThan(0.2);
+  return travelled;
+}
+
+test('three browsers play over the relay, a fourth watches, a late one sees everything', async ({ browser }) => {
+  test.setTimeout(420_000);
+  const port = await freePort();
+  const server = await startServer(45, port);
+  try {
+    const people: Page[] = [];
+    for (const name of ['ann', 'ben', 'cal']) people.push(await join(browser, port, 'three', `name=${name}`));
+    const [ann, ben, cal] = people as [Page, Page, Page];
+    const watcher = await join(browser, port, 'three', 'spectate&name=dora');
+    await until(ann, ({ phase }) => phase === 'running', 90_000);
+    for (const [page, others] of [
+      [ann, [1, 2]],
+      [ben, [0, 2]],
+      [cal, [0, 1]],
+      [watcher, [0, 1, 2]],
+    ] as const) {
+      await expect
+        .poll(async () => (await probe(page)).players.map(({ seat }) => seat).sort(), { timeout: 60_000 })
+        .toEqual(others);
+    }
+    // The sender solves, so an elbow moves on the receiver's picture as it does on the sender's own.
+    await elbowTravel(cal, 0);
+    await elbowTravel(ann, 2);
+    await elbowTravel(watcher, 1);
+    await until(ann, ({ score }) => score > 0, 120_000);
+    const late = await join(browser, port, 'three', 'spectate&name=eve');
+    const seen = await match(late);
+    expect(seen?.people.map((person) => person?.name)).toEqual(['ann', 'ben', 'cal']);
+    expect(seen?.score).toBeGreaterThan(0);
+    const ended = await until(ann, ({ phase }) => phase === 'over', 150_000);
+    for (const page of [ben, cal, watcher, late]) {
+      const same = await until(page, ({ phase, score }) => phase === 'over' && score === ended.score, 5000);
+      expect(same.balls.basket).toBe(ended.balls.basket);
+    }
+    await keepPicture(watcher, 'ball-watched');
+    for (const page of [...people, watcher, late]) await page.context().close();
+  } finally {
+    await server.kill();
+  }
+});
+
+test('the relay is killed and started again in the middle of a match: a banner, everybody is back, the round is void', async ({
+  browser,
+}) => {
+  test.setTimeout(300_000);
+  const port = await freePort();
+  let running = await startServer(60, port);
+  try {
+    const page = await join(browser, port, 'again', 'name=ann&bots=on');
+    await until(page, ({ phase, ballsLeft }) => phase === 'running' && ballsLeft < 20, 90_000);
+    await running.kill();
+    await expect(page.locator('#banner')).toBeVisible();
+    await keepPicture(page, 'ball-banner');
+    running = await startServer(60, port);
+    const back = Date.now();
+    await until(page, ({ connection, voided }) => connection === 'joined' && voided === 1, 30_000);
+    console.log(`back in the room ${((Date.now() - back) / 1000).toFixed(1)} s after the restart`);
+    await until(page, ({ phase, people }) => phase === 'running' && people.every(Boolean), 60_000);
+    await page.context().close();
+  } finally {
+    await running.kill();
+  }
+});

@@ -1,0 +1,92 @@
+import { spawn } from 'node:child_process';
+import { once } from 'node:events';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { parsePlan, type StudyPlan } from '../src/core/study/plan';
+
+export const experimenterToken = 'a-token-for-tests-alone';
+
+const atRoot = (path: string) => fileURLToPath(new URL(`../${path}`, import.meta.url));
+
+/** The server as `npm start` runs it, on a port of its own; what is recorded is gone when it closes. */
+export async function serveStudies() {
+  const directory = mkdtempSync(join(tmpdir(), 'threepoint-studies-'));
+  const child = spawn(process.execPath, ['--import', 'tsx', 'server/main.ts', '--port', '0', '--studies', directory], {
+    cwd: atRoot('.'),
+    env: { ...process.env, EXPERIMENTER_TOKEN: experimenterToken, THREEPOINT_LOG_LEVEL: 'error' },
+    stdio: ['ignore', 'pipe', 'inherit'],
+  });
+  let said = '';
+  const port = await new Promise<string>((resolve, reject) => {
+    child.stdout.setEncoding('utf8').on('data', (text: string) => {
+      said += text;
+      const found = /http:\/\/localhost:(\d+)/.exec(said)?.[1];
+      if (found) resolve(found);
+    });
+    child.once('exit', (code) => reject(new Error(`the server ended with ${code} before it listened: ${said}`)));
+  });
+  return {
+    origin: `http://localhost:${port}`,
+    async close() {
+      const gone = once(child, 'exit');
+      child.kill('SIGTERM');
+      await gone;
+      rmSync(directory, { recursive: true, force: true });
+    },
+  };
+}
+
+/** The paper's study with its times cut short, archery alone. */
+export function shortStudy(id: string): StudyPlan {
+  const paper = parsePlan(readFileSync(atRoot('public/studies/paper.json'), 'utf8'), 'paper.json');
+  return {
+    ...paper,
+    id,
+    participants: 4,
+    tasks: paper.tasks
+      .filter(({ game }) => game === 'archery')
+      .map((task) => ({
+        ...task,
+        trialSeconds: 5,
+        tutorial: { ...task.tutorial, seconds: 2, restSeconds: 0 },
+        restSeconds: 1,
+      })),
+  };
+}
+
+/** The ball game alone, for one group of three, cut short, without practice and questionnaire time. */
+export function shortBallStudy(id: string): StudyPlan {
+  const paper = parsePlan(readFileSync(atRoot('public/studies/paper.json'), 'utf8'), 'paper.json');
+  return {
+    ...paper,
+    id,
+    participants: 3,
+    tasks: paper.tasks
+      .filter(({ game }) => game === 'ball')
+      .map((task) => ({
+        ...task,
+        trialSeconds: 10,
+        tutorial: { ...task.tutorial, when: 'never' },
+        restSeconds: 1,
+      })),
+  };
+}
+
+/** Speaks to the experimenter's side of a server. */
+export function experimenter(origin: string) {
+  const ask = (path: string, method = 'GET', body?: unknown) =>
+    fetch(`${origin}/api/studies${path}`, {
+      method,
+      headers: { authorization: `Bearer ${experimenterToken}`, 'content-type': 'application/json' },
+      ...(body !== undefined && { body: JSON.stringify(body) }),
+    });
+  return {
+    ask,
+    async begin(plan: StudyPlan, simulated: boolean): Promise<void> {
+      const response = await ask('', 'POST', { plan, simulated });
+      if (!response.ok) throw new Error(`the study "${plan.id}" was not begun: ${await response.text()}`);
+    },
+  };
+}

@@ -1,0 +1,57 @@
+import type { StudyRecord, TrialRecord } from './study-record';
+import { refuseMixture, voidedBlocks } from './study-tables';
+
+/** Work per frame of one stage, over all trials of a task under a condition: as tables 5 and 6 of the paper. */
+export interface FrameTimeRow {
+  readonly task: string;
+  readonly condition: string;
+  /** "frame" is the whole of a frame's work. */
+  readonly stage: string;
+  readonly trials: number;
+  readonly frames: number;
+  readonly minMs: number;
+  readonly maxMs: number;
+  /** Of all frames, so that a long trial weighs more than a short one. */
+  readonly meanMs: number;
+  /** The largest of the trials' 95th percentiles: percentiles of trials cannot be pooled. */
+  readonly worstP95Ms: number;
+  /** Frames shown late, of `frames`; the same for every stage. */
+  readonly missed: number;
+}
+
+/** Frame times of the trials that count, the whole frame first. Throws where simulated records and records of people are mixed. */
+export function frameTimes(records: readonly StudyRecord[]): readonly FrameTimeRow[] {
+  refuseMixture(records);
+  const excluded = voidedBlocks(records);
+  const groups = new Map<string, { task: string; condition: string; stage: string; trials: TrialRecord[] }>();
+  for (const record of records) {
+    if (record.kind !== 'trial') continue;
+    const { condition, place, outcome } = record.body;
+    if (condition === null || excluded(record.participant, place) !== '') continue;
+    for (const stage of Object.keys(outcome.frames.stages)) {
+      const key = `${place.task} ${condition} ${stage}`;
+      const group = groups.get(key) ?? { task: place.task, condition, stage, trials: [] };
+      group.trials.push(record);
+      groups.set(key, group);
+    }
+  }
+  const rank = ({ stage }: { readonly stage: string }) => (stage === 'frame' ? 0 : 1);
+  return [...groups.values()]
+    .toSorted((a, b) => rank(a) - rank(b))
+    .map(({ task, condition, stage, trials }) => {
+      const parts = trials.flatMap(({ body }) => body.outcome.frames.stages[stage] ?? []);
+      const frames = parts.reduce((sum, { count }) => sum + count, 0);
+      return {
+        task,
+        condition,
+        stage,
+        trials: parts.length,
+        frames,
+        minMs: Math.min(...parts.map(({ minMs }) => minMs)),
+        maxMs: Math.max(...parts.map(({ maxMs }) => maxMs)),
+        meanMs: parts.reduce((sum, { count, meanMs }) => sum + count * meanMs, 0) / frames,
+        worstP95Ms: Math.max(...parts.map(({ p95Ms }) => p95Ms)),
+        missed: trials.reduce((sum, { body }) => sum + body.outcome.frames.missed, 0),
+      };
+    });
+}

@@ -1,0 +1,83 @@
+import type { StudyPlan } from './plan';
+import type { Progress } from './progress';
+import type { StudyRecord } from './study-record';
+
+/** What an experimenter asks of a participant's page. */
+export type StudyCommand =
+  | { readonly type: 'start' }
+  | { readonly type: 'pause' }
+  | { readonly type: 'resume' }
+  | { readonly type: 'void-block'; readonly reason: string; readonly repeat: boolean };
+
+/** Proof that something was deleted; it holds nothing of what was. */
+export interface Receipt {
+  readonly number: number;
+  readonly study: string;
+  readonly participant: string;
+  readonly reason: 'withdrawn' | 'experimenter' | 'retention';
+  readonly records: number;
+  readonly motionFiles: number;
+  /** Seconds since 1970. */
+  readonly at: number;
+}
+
+/** What the experimenter sees of a participant. */
+export interface ParticipantState {
+  readonly participant: string;
+  readonly claimed: boolean;
+  readonly withdrawn: boolean;
+  readonly records: number;
+  /** Where the session is; null: it has not begun. */
+  readonly session: {
+    readonly step: string;
+    readonly kind: string;
+    readonly running: boolean;
+    readonly paused: boolean;
+    /** null: the step has no time limit. */
+    readonly remainingSeconds: number | null;
+    /** When the page last reported, in seconds since 1970. */
+    readonly reportedAt: number;
+  } | null;
+}
+
+export interface StudyInfo {
+  readonly plan: StudyPlan;
+  readonly simulated: boolean;
+  readonly createdAt: number;
+  readonly retentionUntil: number;
+}
+
+/** What anybody may know of a study before taking part. */
+export interface PublicStudy extends Pick<StudyPlan, 'id' | 'title' | 'consent'> {
+  readonly simulated: boolean;
+}
+
+/** What whoever takes a participant's place is given. */
+export interface Claim {
+  readonly token: string;
+  /** With the first claim alone; null later. */
+  readonly withdrawalCode: string | null;
+  readonly plan: StudyPlan;
+  readonly simulated: boolean;
+  /** Where another device left off; null: at the beginning. */
+  readonly progress: Progress | null;
+}
+
+/** A line of the list of studies. */
+export interface StudyListing extends Pick<StudyPlan, 'id' | 'title' | 'participants'> {
+  readonly simulated: boolean;
+  readonly createdAt: number;
+  readonly retentionUntil: number;
+}
+
+/** Everything recorded in a study. */
+export interface RecordedStudy extends StudyInfo {
+  readonly records: readonly StudyRecord[];
+}
+
+/** A command as it is stored: numbers rise. */
+export interface NumberedCommand {
+  readonly number: number;
+  readonly at: number;
+  readonly command: StudyCommand;
+}

@@ -1,0 +1,148 @@
+import './styles/document.css';
+import type { StudyListing } from './core/study/study-api';
+import { createExperimenterClient, type ExperimenterClient } from './study/study-client';
+import { openStudyFile } from './study/study-file';
+import { button, element, pageElement } from './ui/element';
+import { paperCheck, type ShownStudy, studyResults } from './ui/results-view';
+import { forgetToken, keptToken, signInForm } from './ui/sign-in';
+
+const content = pageElement('content', HTMLElement);
+const reason = (error: unknown) => (error instanceof Error ? error.message : String(error));
+
+let client: ExperimenterClient | null = null;
+let listed: readonly StudyListing[] = [];
+let shown: (ShownStudy & { readonly source: string }) | null = null;
+let conditions: readonly [string, string] | null = null;
+let complaint = '';
+
+function showStudy(study: ShownStudy, source: string): void {
+  shown = { ...study, source };
+  // The paper subtracts inverse kinematics: what comes first in the plan is what others are compared with.
+  const [baseline, other] = study.plan.conditions;
+  conditions = other && baseline ? [other.id, baseline.id] : null;
+  complaint = '';
+  render();
+}
+
+async function signIn(token: string): Promise<string | null> {
+  const candidate = createExperimenterClient(token);
+  try {
+    listed = await candidate.studies();
+  } catch (error) {
+    return reason(error);
+  }
+  client = candidate;
+  render();
+  return null;
+}
+
+async function load(id: string): Promise<void> {
+  if (!client || !id) return;
+  try {
+    const { plan, simulated, records } = await client.records(id);
+    const address = new URL(location.href);
+    address.searchParams.set('study', id);
+    history.replaceState(null, '', address);
+    showStudy({ plan, simulated, records }, 'this server');
+  } catch (error) {
+    complaint = reason(error);
+    render();
+  }
+}
+
+async function openFile(file: File): Promise<void> {
+  try {
+    showStudy(openStudyFile(new Uint8Array(await file.arrayBuffer())), file.name);
+  } catch (error) {
+    complaint = `${file.name}: ${reason(error)}`;
+    render();
+  }
+}
+
+function sourceBar(): HTMLElement {
+  const file = element('input', { type: 'file', accept: '.zip,application/zip', 'aria-label': 'Export of a study' });
+  file.addEventListener('change', () => {
+    const [chosen] = file.files ?? [];
+    if (chosen) void openFile(chosen);
+  });
+  const fileField = element('label', {}, element('span', {}, 'Or an export (zip), from this computer'), file);
+  if (!client)
+    return element('section', { class: 'card' }, signInForm(signIn), element('div', { class: 'bar' }, fileField));
+  const select = element(
+    'select',
+    { 'aria-label': 'Study' },
+    element('option', { value: '' }, listed.length === 0 ? 'This server has no studies yet' : 'Choose a study'),
+    ...listed.map(({ id, title, simulated }) =>
+      element(
+        'option',
+        { value: id, selected: shown?.plan.id === id },
+        `${simulated && !title.startsWith('SIMULATED') ? 'SIMULATED: ' : ''}${title} (${id})`,
+      ),
+    ),
+  );
+  select.addEventListener('change', () => void load(select.value));
+  return element(
+    'section',
+    { class: 'card bar' },
+    element('label', {}, element('span', {}, 'Study'), select),
+    ...(shown ? [button('Refresh', () => void load(shown?.plan.id ?? ''))] : []),
+    fileField,
+    button('Forget the token', () => {
+      forgetToken();
+      location.reload();
+    }),
+  );
+}
+
+function conditionBar({ plan }: ShownStudy): readonly Node[] {
+  if (!conditions || plan.conditions.length < 3) return [];
+  const choose = (index: 0 | 1, name: string) => {
+    const select = element(
+      'select',
+      { 'aria-label': name },
+      ...plan.conditions.map(({ id, label }) =>
+        element('option', { value: id, selected: conditions?.[index] === id }, label),
+      ),
+    );
+    select.addEventListener('change', () => {
+      if (!conditions) return;
+      const [first, second] = conditions;
+      conditions = index === 0 ? [select.value, second] : [first, select.value];
+      render();
+    });
+    return element('label', {}, element('span', {}, name), select);
+  };
+  return [element('div', { class: 'bar' }, choose(0, 'Compare'), choose(1, 'with'))];
+}
+
+function results(): readonly Node[] {
+  if (!shown || !conditions) return [];
+  const { plan, source } = shown;
+  const heading = element('h2', {}, plan.title);
+  const where = element('p', { class: 'soft' }, `${plan.id}, from ${source}.`);
+  if (conditions[0] === conditions[1]) {
+    return [heading, ...conditionBar(shown), element('p', { class: 'complaint' }, 'Choose two different conditions.')];
+  }
+  try {
+    return [heading, where, ...conditionBar(shown), ...studyResults(shown, conditions)];
+  } catch (error) {
+    return [heading, where, element('p', { class: 'complaint', role: 'alert' }, reason(error))];
+  }
+}
+
+function render(): void {
+  content.replaceChildren(
+    sourceBar(),
+    ...(complaint ? [element('p', { class: 'complaint', role: 'alert' }, complaint)] : []),
+    ...results(),
+    ...paperCheck(),
+  );
+}
+
+async function start(): Promise<void> {
+  render();
+  const token = keptToken();
+  if (token && (await signIn(token)) === null) await load(new URLSearchParams(location.search).get('study') ?? '');
+}
+
+void start();

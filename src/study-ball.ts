@@ -1,0 +1,93 @@
+import type { BallFrame, BallPlay } from './ball-play';
+import type { TaskEnd, TaskEvent, TaskPlace, TaskRunner } from './study/task-runner';
+
+/** What the study needs of the ball game on the page. */
+export interface BallHost {
+  /** The court in this room of the relay, on this seat. */
+  goToBall(place: TaskPlace): Promise<void>;
+  /** The match on the page; null: nobody is at the court. */
+  ball(): BallPlay | null;
+  leaveBall(): void;
+}
+
+/** The ball game as a task of a study; `played` hears every frame of the match on the page. */
+export interface BallRunner extends TaskRunner {
+  played(frame: BallFrame): void;
+}
+
+/** "P02 and P03". */
+const listed = (names: readonly string[]): string =>
+  names.length < 2 ? (names[0] ?? '') : `${names.slice(0, -1).join(', ')} and ${names.at(-1)}`;
+
+/** How much later than here the room's bell may be heard [s]. */
+const bellDelay = 4;
+
+export function createBallRunner(host: BallHost): BallRunner {
+  let place: TaskPlace | null = null;
+  let wanted: { readonly seconds: number } | null = null;
+  /** Second of the match at which this participant's trial began; null: not yet. */
+  let from: number | null = null;
+  let end: TaskEnd | null = null;
+  let happened: TaskEvent[] = [];
+  let missing: readonly string[] = [];
+
+  return {
+    async prepare(next) {
+      place = next;
+      await host.goToBall(next);
+    },
+    start({ seconds }) {
+      happened = [];
+      end = null;
+      from = null;
+      wanted = { seconds };
+      missing = place?.members ?? [];
+      host.ball()?.ready(true);
+    },
+    played({ state, me, players, events, time }) {
+      if (!wanted || end) return;
+      if (from === null) {
+        const there = players.flatMap((player) => (player?.ready ? [player.name] : []));
+        missing = (place?.members ?? []).filter((name) => !there.includes(name));
+        // The room may have forgotten: a server that was restarted, a seat that was only now given.
+        if (me !== null && state.phase !== 'running' && !state.players[me]?.ready) host.ball()?.ready(true);
+        if (state.phase !== 'running') return;
+        from = time;
+      }
+      const at = Math.max(0, time - from);
+      for (const event of events) {
+        if (event.type === 'thrown' && event.player === me) happened.push({ type: 'shot' });
+        if (event.type === 'missed' && event.player === me) happened.push({ type: 'miss', time: at, points: 0 });
+        // A point is the group's: it is a hit of whoever threw, and a catch for the others.
+        if (event.type === 'caught')
+          happened.push({ type: event.player === me ? 'hit' : 'catch', time: at, points: 1 });
+      }
+      const over = state.phase === 'over';
+      // Where the room's own bell rings no later, its word is the last one: a ball may still be in the air.
+      const limit = state.options.seconds <= wanted.seconds ? wanted.seconds + bellDelay : wanted.seconds;
+      if (!over && at < limit) return;
+      end = { seconds: at, ended: (over && state.end) || 'time', score: state.score, maximum: state.options.balls };
+      wanted = null;
+    },
+    take() {
+      const taken = happened;
+      happened = [];
+      return taken;
+    },
+    get end() {
+      return end;
+    },
+    get waitingFor() {
+      if (!wanted || from !== null) return null;
+      return missing.length > 0 ? listed(missing) : 'the others';
+    },
+    abort() {
+      wanted = null;
+      from = null;
+      end = null;
+      happened = [];
+      host.leaveBall();
+    },
+    assists: () => [],
+  };
+}

@@ -1,0 +1,310 @@
+import { blindLabel, type StudyStep } from './core/study/plan';
+import type { ProgressEvent } from './core/study/progress';
+import { type Question, questionnaires, scale } from './core/study/questionnaires';
+import type { ParticipantSession, Safekeeping } from './study/participant-session';
+import { type CalibrationStep, calibrationHeadline, calibrationInstruction } from './ui/calibration-dialog';
+import type { ScreenButton, StudyScreen } from './ui/study-screen';
+
+/** Everything that decides what a participant sees. */
+export interface StudySituation {
+  readonly session: ParticipantSession;
+  readonly inSession: boolean;
+  /** Index of the question shown. */
+  readonly question: number;
+  /** Handing in failed for want of an answer. */
+  readonly triedToSubmit: boolean;
+  /** null: nobody is being measured. */
+  readonly calibration: CalibrationStep | null;
+  /** Of the step at hand; null: not asked for yet. */
+  readonly prepared: { readonly state: 'loading' | 'ready' | 'failed'; readonly reason: string } | null;
+  /** Why the last wish changed nothing; null: it did. */
+  readonly refusal: string | null;
+  readonly playing: boolean;
+  /** Others without whom a trial that was started cannot begin; null: nobody. */
+  readonly waitingFor: string | null;
+}
+
+export interface ScreenActions {
+  apply(event: ProgressEvent): void;
+  goTo(index: number): void;
+  choose(question: string, value: number): void;
+  submit(): void;
+  calibrate(): void;
+  enterVr(): void;
+  prepareAgain(): void;
+}
+
+const clock = (seconds: number): string => {
+  const whole = Math.ceil(seconds);
+  return `${Math.floor(whole / 60)}:${String(whole % 60).padStart(2, '0')}`;
+};
+
+const counted = (count: number, one: string) => `${count} ${one}${count === 1 ? '' : 's'}`;
+
+/** Where answers are, in a sentence; the second part says whether somebody should worry. */
+export function safekeepingText({
+  unsent,
+  unsaved,
+  storageFault,
+  online,
+  refusal,
+}: Safekeeping): readonly [string, boolean] {
+  if (refusal !== null && unsent > 0) {
+    return [
+      `Call the experimenter: the server refuses ${counted(unsent, 'record')} (${refusal}). They stay here.`,
+      true,
+    ];
+  }
+  if (unsaved > 0) {
+    const why = storageFault ?? 'not written yet';
+    return storageFault === null
+      ? ['Saving …', false]
+      : [`Keep this page open: ${counted(unsaved, 'record')} cannot be stored on this device (${why}).`, true];
+  }
+  if (!online) return [`No connection: ${counted(unsent, 'record')} kept on this device, sent later.`, false];
+  return unsent > 0 ? ['Sending …', false] : ['Everything is saved.', false];
+}
+
+export function screenQuestions({ step }: Pick<ParticipantSession, 'step'>): readonly Question[] {
+  return step.kind === 'questionnaire' ? questionnaires[step.questionnaire].questions : [];
+}
+
+/** Participants know rounds by number, never by condition. */
+function kickerOf(session: ParticipantSession, step: StudyStep): string {
+  if (!('task' in step)) return session.plan.title;
+  const { title } = session.plan.tasks.find(({ id }) => id === step.task) ?? { title: step.task };
+  if (step.kind === 'tutorial' || (step.kind === 'rest' && step.id.endsWith('after-tutorial')))
+    return `${title} · Practice`;
+  return `${title} · ${blindLabel(step)}`;
+}
+
+/** In the headset, when the place is no longer this device's; the page has more to say. */
+export const lockedOutScreen = (session: ParticipantSession): StudyScreen => ({
+  id: 'locked-out',
+  kicker: session.plan.title,
+  title: 'Please call the experimenter',
+  text: ['Your place was released for another device. Take the headset off, please.'],
+  figure: null,
+  part: null,
+  question: null,
+  hint: null,
+  buttons: [],
+  footnote: 'This device sends nothing more.',
+  trouble: true,
+});
+
+/** The screen of the step at hand; null while the participant plays. */
+export function screenOf(situation: StudySituation, actions: ScreenActions): StudyScreen | null {
+  const { session, inSession, calibration, prepared, refusal, playing } = situation;
+  const { step, progress } = session;
+  const [kept, worrying] = safekeepingText(session.safekeeping);
+  const base = {
+    kicker: kickerOf(session, step),
+    figure: null,
+    part: null,
+    question: null,
+    hint: refusal,
+    footnote: session.simulated ? `SIMULATED · ${kept}` : kept,
+    trouble: worrying,
+  };
+  const pause: ScreenButton = {
+    id: 'pause',
+    label: 'Pause',
+    look: 'plain',
+    act: () => actions.apply({ type: 'pause' }),
+  };
+
+  if (progress.paused) {
+    return {
+      ...base,
+      id: 'paused',
+      title: 'Paused',
+      text: ['Nothing runs on. Take the headset off if you like.'],
+      buttons: [{ id: 'resume', label: 'Continue', look: 'primary', act: () => actions.apply({ type: 'resume' }) }],
+    };
+  }
+
+  const enter: ScreenButton = { id: 'enter', label: 'Enter VR', look: 'primary', act: actions.enterVr };
+  switch (step.kind) {
+    case 'calibration': {
+      if (!inSession) {
+        return {
+          ...base,
+          id: 'calibration-enter',
+          title: 'Put on the headset',
+          text: [
+            'Press the button, put the headset on and take both controllers. You are measured first: it takes five seconds.',
+          ],
+          buttons: [enter, pause],
+        };
+      }
+      if (calibration) {
+        const failed = calibration.kind === 'failed';
+        return {
+          ...base,
+          id: `calibration-${calibration.kind}`,
+          title: failed ? 'Once more, please' : 'Stand still',
+          text: [failed ? calibration.text : calibrationInstruction],
+          figure: failed ? null : calibrationHeadline(calibration),
+          part: calibration.kind === 'measuring' ? calibration.part : null,
+          buttons: failed ? [{ id: 'calibrate', label: 'Measure again', look: 'primary', act: actions.calibrate }] : [],
+        };
+      }
+      return {
+        ...base,
+        id: 'calibration',
+        title: 'Your measures',
+        text: [
+          'Stand straight inside the marked zone, look ahead and stretch both arms forward when the countdown begins.',
+          'Point at the button and pull the trigger, or touch it.',
+        ],
+        buttons: [{ id: 'calibrate', label: 'Measure me', look: 'primary', act: actions.calibrate }, pause],
+      };
+    }
+    case 'tutorial':
+    case 'trial': {
+      if (playing && inSession && situation.waitingFor !== null) {
+        return {
+          ...base,
+          id: 'waiting',
+          title: 'You are ready',
+          text: [
+            `It begins as soon as ${situation.waitingFor} ${/,| and /.test(situation.waitingFor) ? 'are' : 'is'} ready too.`,
+          ],
+          buttons: [pause],
+        };
+      }
+      if (playing && inSession) return null;
+      if (!inSession) {
+        return {
+          ...base,
+          id: 'trial-enter',
+          title: 'Put on the headset',
+          text: ['The next part is played in the headset.'],
+          buttons: [enter, pause],
+        };
+      }
+      if (prepared?.state === 'failed') {
+        return {
+          ...base,
+          id: 'trial-failed',
+          title: 'Please call the experimenter',
+          text: [prepared.reason],
+          trouble: true,
+          buttons: [{ id: 'again', label: 'Try again', look: 'primary', act: actions.prepareAgain }],
+        };
+      }
+      const task = session.plan.tasks.find(({ id }) => id === step.task);
+      const practice = step.kind === 'tutorial';
+      const ready = prepared?.state === 'ready' && !progress.running;
+      const rules =
+        task?.game === 'ball'
+          ? 'Two of you throw balls, the third catches them with the basket. Every ball in the basket is a point for all three.'
+          : 'Shoot up to five arrows at the four targets. Each target counts once; the farther, the more points.';
+      const again = progress.attempt > 1 ? ['The last attempt was interrupted and does not count.'] : [];
+      return {
+        ...base,
+        id: practice ? 'tutorial-ready' : 'trial-ready',
+        title: practice ? 'Practice' : 'Ready?',
+        text: [
+          ...again,
+          rules,
+          practice
+            ? `Try it for ${Math.round(step.seconds)} seconds. This does not count.`
+            : `You have ${Math.round(step.seconds)} seconds from the start. Stay inside the marked zone.`,
+        ],
+        buttons: [
+          {
+            id: 'start',
+            label: ready ? 'Start' : 'Loading …',
+            look: ready ? 'primary' : 'off',
+            act: () => actions.apply({ type: 'start' }),
+          },
+          pause,
+        ],
+      };
+    }
+    case 'rest': {
+      const left = session.remaining() ?? 0;
+      return {
+        ...base,
+        id: 'rest',
+        title: 'A rest',
+        text: ['Relax your arms. It goes on by itself.'],
+        figure: clock(left),
+        part: step.seconds > 0 ? 1 - left / step.seconds : 1,
+        buttons: [pause],
+      };
+    }
+    case 'questionnaire':
+      return questionScreen(situation, actions, base);
+    case 'end': {
+      const sent = session.safekeeping.unsent === 0;
+      return {
+        ...base,
+        id: 'end',
+        kicker: session.plan.title,
+        title: 'Thank you',
+        text: [
+          'You have done everything.',
+          sent
+            ? 'All your answers have arrived. You can close this page.'
+            : 'Please keep this page open until your answers have arrived.',
+        ],
+        buttons: [],
+      };
+    }
+    default:
+      return null;
+  }
+}
+
+function questionScreen(
+  { session, question: index, triedToSubmit, refusal }: StudySituation,
+  actions: ScreenActions,
+  base: Pick<StudyScreen, 'kicker' | 'figure' | 'part' | 'hint' | 'footnote' | 'trouble'>,
+): StudyScreen {
+  const questions = screenQuestions(session);
+  const { draft } = session.progress;
+  const shown = questions[Math.min(index, questions.length - 1)] as Question;
+  const at = questions.indexOf(shown);
+  const last = at === questions.length - 1;
+  const open = questions.filter(({ id }) => draft[id] === undefined).length;
+  const left = session.remaining();
+  const time = left === null ? '' : left > 0 ? `${clock(left)} left` : 'Take the time you need.';
+  const missing = triedToSubmit && draft[shown.id] === undefined;
+  return {
+    ...base,
+    id: `question-${shown.id}`,
+    title: shown.text,
+    text: [],
+    hint:
+      refusal ??
+      (missing
+        ? '* This question still needs an answer.'
+        : open > 0
+          ? `* ${open} of ${questions.length} still need an answer.`
+          : null),
+    question: {
+      id: shown.id,
+      text: shown.text,
+      number: at + 1,
+      scale,
+      answer: draft[shown.id] ?? null,
+      all: questions.map(({ id }) => ({
+        id,
+        state: draft[id] !== undefined ? 'answered' : triedToSubmit ? 'missing' : 'open',
+      })),
+      choose: (value) => actions.choose(shown.id, value),
+      goTo: actions.goTo,
+    },
+    buttons: [
+      { id: 'back', label: 'Back', look: at === 0 ? 'off' : 'plain', act: () => actions.goTo(at - 1) },
+      { id: 'pause', label: 'Pause', look: 'plain', act: () => actions.apply({ type: 'pause' }) },
+      last
+        ? { id: 'submit', label: 'Hand in', look: 'primary', act: actions.submit }
+        : { id: 'next', label: 'Next', look: 'primary', act: () => actions.goTo(at + 1) },
+    ],
+    footnote: time ? `${time} · ${base.footnote}` : base.footnote,
+  };
+}

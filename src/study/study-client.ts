@@ -1,0 +1,160 @@
+import type { Progress } from '../core/study/progress';
+import type {
+  Claim,
+  NumberedCommand,
+  ParticipantState,
+  PublicStudy,
+  Receipt,
+  RecordedStudy,
+  StudyCommand,
+  StudyInfo,
+  StudyListing,
+} from '../core/study/study-api';
+import type { StudyRecord } from '../core/study/study-record';
+
+/** The server answered, and the answer is no. */
+export class ServerRefusal extends Error {
+  readonly status: number;
+
+  constructor(status: number, message: string) {
+    super(message);
+    this.status = status;
+  }
+}
+
+/** There was no answer: no network, no server, or one that broke off. Trying again later may help. */
+export class ServerUnreachable extends Error {}
+
+interface Asked {
+  readonly method?: 'GET' | 'POST' | 'PUT' | 'DELETE';
+  readonly token?: string;
+  readonly body?: unknown;
+  /** Sent as it is instead of `body`. */
+  readonly text?: string;
+}
+
+/** Milliseconds after which an answer no longer comes. */
+const patienceMs = 15_000;
+
+async function ask(origin: string, path: string, { method = 'GET', token, body, text }: Asked): Promise<Response> {
+  const content = text ?? (body === undefined ? undefined : JSON.stringify(body));
+  let response: Response;
+  try {
+    response = await fetch(`${origin}/api/studies${path}`, {
+      method,
+      headers: {
+        ...(token && { authorization: `Bearer ${token}` }),
+        ...(content !== undefined && { 'content-type': 'application/json' }),
+      },
+      ...(content !== undefined && { body: content }),
+      cache: 'no-store',
+      signal: AbortSignal.timeout(patienceMs),
+    });
+  } catch (error) {
+    throw new ServerUnreachable(`the server does not answer (${error instanceof Error ? error.message : error})`);
+  }
+  if (response.ok) return response;
+  const said: unknown = await response.json().catch(() => null);
+  const sentence =
+    typeof said === 'object' && said !== null && 'error' in said
+      ? String(said.error)
+      : `the server says ${response.status}`;
+  // Proxies say these while the server is away; the server itself means 5xx as "nothing was acknowledged".
+  if (response.status >= 500 && response.status !== 507) throw new ServerUnreachable(sentence);
+  throw new ServerRefusal(response.status, sentence);
+}
+
+/** Asks a server for JSON; the origin is empty for the page's own server. */
+const answersOf = (origin: string) =>
+  async function answer<T>(path: string, asked: Asked = {}): Promise<T> {
+    const response = await ask(origin, path, asked);
+    try {
+      return (response.status === 204 ? null : await response.json()) as T;
+    } catch (error) {
+      throw new ServerUnreachable(`the answer broke off (${error instanceof Error ? error.message : error})`);
+    }
+  };
+
+const of = (study: string, participant?: string) =>
+  `/${encodeURIComponent(study)}${participant === undefined ? '' : `/participants/${encodeURIComponent(participant)}`}`;
+
+/** What a participant's page asks of the server. Every call throws ServerRefusal or ServerUnreachable. */
+export interface ParticipantClient {
+  study(study: string): Promise<PublicStudy>;
+  claim(study: string, participant: string): Promise<Claim>;
+  /** Returns the ids that are safely stored now. */
+  send(study: string, participant: string, token: string, records: readonly StudyRecord[]): Promise<readonly string[]>;
+  /** null: nothing has been reported. */
+  progress(study: string, participant: string, token: string): Promise<Progress | null>;
+  saveProgress(study: string, participant: string, token: string, progress: Progress): Promise<void>;
+  commands(study: string, participant: string, token: string, after: number): Promise<readonly NumberedCommand[]>;
+  sendMotion(study: string, participant: string, token: string, trial: string, recording: string): Promise<void>;
+}
+
+export function createParticipantClient(origin = ''): ParticipantClient {
+  const answer = answersOf(origin);
+  return {
+    study: (study) => answer(of(study)),
+    claim: (study, participant) => answer(`${of(study, participant)}/claim`, { method: 'POST' }),
+    async send(study, participant, token, records) {
+      const path = `${of(study, participant)}/records`;
+      return (await answer<{ acknowledged: string[] }>(path, { method: 'POST', token, body: { records } }))
+        .acknowledged;
+    },
+    async progress(study, participant, token) {
+      return (await answer<{ progress: Progress | null }>(`${of(study, participant)}/progress`, { token })).progress;
+    },
+    saveProgress: (study, participant, token, progress) =>
+      answer(`${of(study, participant)}/progress`, { method: 'PUT', token, body: progress }),
+    async commands(study, participant, token, after) {
+      const path = `${of(study, participant)}/commands?after=${after}`;
+      return (await answer<{ commands: NumberedCommand[] }>(path, { token })).commands;
+    },
+    sendMotion: (study, participant, token, trial, recording) =>
+      answer(`${of(study, participant)}/motion?trial=${encodeURIComponent(trial)}`, {
+        method: 'PUT',
+        token,
+        text: recording,
+      }),
+  };
+}
+
+/** What the experimenter's pages ask of the server. */
+export interface ExperimenterClient {
+  studies(): Promise<readonly StudyListing[]>;
+  addStudy(plan: unknown, simulated: boolean): Promise<StudyInfo>;
+  records(study: string): Promise<RecordedStudy>;
+  participants(study: string): Promise<readonly ParticipantState[]>;
+  receipts(study: string): Promise<readonly Receipt[]>;
+  command(study: string, participant: string, command: StudyCommand): Promise<void>;
+  remark(study: string, participant: string, text: string): Promise<void>;
+  release(study: string, participant: string): Promise<void>;
+  /** The zip file of a participant, or of all. */
+  export(study: string, participant?: string): Promise<{ readonly name: string; readonly zip: Blob }>;
+  delete(study: string, participant: string): Promise<Receipt>;
+}
+
+export function createExperimenterClient(token: string, origin = ''): ExperimenterClient {
+  const answer = answersOf(origin);
+  return {
+    studies: async () => (await answer<{ studies: StudyListing[] }>('', { token })).studies,
+    addStudy: (plan, simulated) => answer('', { method: 'POST', token, body: { plan, simulated } }),
+    records: (study) => answer(`${of(study)}/records`, { token }),
+    participants: async (study) =>
+      (await answer<{ participants: ParticipantState[] }>(`${of(study)}/participants`, { token })).participants,
+    receipts: async (study) => (await answer<{ receipts: Receipt[] }>(`${of(study)}/receipts`, { token })).receipts,
+    async command(study, participant, command) {
+      await answer(`${of(study, participant)}/commands`, { method: 'POST', token, body: command });
+    },
+    async remark(study, participant, text) {
+      await answer(`${of(study, participant)}/remarks`, { method: 'POST', token, body: { text } });
+    },
+    release: (study, participant) => answer(`${of(study, participant)}/release`, { method: 'POST', token }),
+    async export(study, participant) {
+      const response = await ask(origin, `${of(study, participant)}/export`, { token });
+      const name = /filename="([^"]+)"/.exec(response.headers.get('content-disposition') ?? '')?.[1];
+      return { name: name ?? `${study}.zip`, zip: await response.blob() };
+    },
+    delete: (study, participant) => answer(of(study, participant), { method: 'DELETE', token }),
+  };
+}

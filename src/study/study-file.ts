@@ -1,0 +1,52 @@
+import { strFromU8, unzipSync } from 'fflate';
+import { checkedPlan, type StudyPlan } from '../core/study/plan';
+import { checkedRecord, type StudyRecord } from '../core/study/study-record';
+
+/** A study as an export holds it. */
+export interface OpenedStudy {
+  readonly plan: StudyPlan;
+  readonly simulated: boolean;
+  readonly records: readonly StudyRecord[];
+}
+
+/** Exports of a whole study are a few megabytes; what unpacks to more than this is none [bytes]. */
+const largest = 512 * 2 ** 20;
+
+/** Reads the zip file of an export; throws a sentence that names the file in it and what is wrong. */
+export function openStudyFile(zip: Uint8Array): OpenedStudy {
+  let files: Record<string, Uint8Array>;
+  let size = 0;
+  try {
+    files = unzipSync(zip, {
+      filter({ name, originalSize }) {
+        if (!/(^|\/)(plan|records)\.json$/.test(name)) return false;
+        size += originalSize;
+        return size <= largest;
+      },
+    });
+  } catch (error) {
+    throw new Error(`This is no export of a study: ${error instanceof Error ? error.message : error}.`);
+  }
+  const json = (name: string): unknown => {
+    const path = Object.keys(files).find((path) => path === name || path.endsWith(`/${name}`));
+    if (!path) throw new Error(`This is no export of a study: it holds no ${name}.`);
+    try {
+      return JSON.parse(strFromU8(files[path] as Uint8Array));
+    } catch (error) {
+      throw new Error(`${path}: ${error instanceof Error ? error.message : error}`);
+    }
+  };
+  const plan = checkedPlan(json('plan.json'));
+  const file = json('records.json');
+  if (typeof file !== 'object' || file === null || !('records' in file) || !Array.isArray(file.records)) {
+    throw new Error('records.json: expected a list of records');
+  }
+  const records = file.records.map((record: unknown, index: number) => {
+    try {
+      return checkedRecord(record);
+    } catch (error) {
+      throw new Error(`records.json: records[${index}]: ${error instanceof Error ? error.message : error}`);
+    }
+  });
+  return { plan, records, simulated: 'simulated' in file && file.simulated === true };
+}

@@ -1,0 +1,109 @@
+import { type DBSchema, type IDBPDatabase, openDB } from 'idb';
+import type { Calibration } from '../core/body/calibration';
+import type { Side } from '../core/body/joints';
+import type { StudyPlan } from '../core/study/plan';
+import type { Progress } from '../core/study/progress';
+import type { StudyRecord } from '../core/study/study-record';
+
+/** A session as this device remembers it. */
+export interface KeptSession {
+  readonly study: string;
+  readonly participant: string;
+  readonly token: string;
+  /** Shown until the participant has noted it; then null. */
+  readonly withdrawalCode: string | null;
+  readonly plan: StudyPlan;
+  readonly simulated: boolean;
+  readonly progress: Progress;
+  /** Number of the experimenter's newest command that was followed. */
+  readonly commandsSeen: number;
+  /** The hand they prefer, once told: the bow goes into the other one. */
+  readonly preferredHand: Side | null;
+  /** The newest measures of the body; null: not measured yet. */
+  readonly calibration: Calibration | null;
+}
+
+/** Tracked frames of a trial on their way to the server. */
+export interface KeptMotion {
+  readonly trial: string;
+  readonly recording: string;
+}
+
+interface Schema extends DBSchema {
+  sessions: { key: [string, string]; value: KeptSession };
+  records: {
+    key: [string, string, string];
+    value: { study: string; participant: string; id: string; record: StudyRecord };
+  };
+  motion: { key: [string, string, string]; value: KeptMotion & { study: string; participant: string } };
+}
+
+/** What this device keeps until the server has it: sessions, records and tracked frames, in IndexedDB. */
+export interface StudyVault {
+  session(study: string, participant: string): Promise<KeptSession | null>;
+  /** The session and new records, both or neither; rejects where the device has no room. */
+  save(session: KeptSession, records: readonly StudyRecord[]): Promise<void>;
+  /** Records that the server has not acknowledged, in the order in which they came about. */
+  records(study: string, participant: string): Promise<readonly StudyRecord[]>;
+  removeRecords(study: string, participant: string, ids: readonly string[]): Promise<void>;
+  saveMotion(study: string, participant: string, motion: KeptMotion): Promise<void>;
+  motion(study: string, participant: string): Promise<readonly KeptMotion[]>;
+  removeMotion(study: string, participant: string, trial: string): Promise<void>;
+  /** Everything of this participant leaves the device. */
+  forget(study: string, participant: string): Promise<void>;
+  close(): void;
+}
+
+const everyOf = (study: string, participant: string) =>
+  IDBKeyRange.bound([study, participant, ''], [study, participant, '\uffff']);
+
+/** Opens the vault; rejects where the browser offers none (some do not in private windows). */
+export async function openStudyVault(name = 'threepoint-studies'): Promise<StudyVault> {
+  const database: IDBPDatabase<Schema> = await openDB<Schema>(name, 1, {
+    upgrade(fresh) {
+      fresh.createObjectStore('sessions', { keyPath: ['study', 'participant'] });
+      fresh.createObjectStore('records', { keyPath: ['study', 'participant', 'id'] });
+      fresh.createObjectStore('motion', { keyPath: ['study', 'participant', 'trial'] });
+    },
+  });
+  return {
+    session: async (study, participant) => (await database.get('sessions', [study, participant])) ?? null,
+    async save(session, records) {
+      // strict: resolved means written to the disk, not to its cache.
+      const transaction = database.transaction(['sessions', 'records'], 'readwrite', { durability: 'strict' });
+      const { study, participant } = session;
+      await Promise.all([
+        transaction.objectStore('sessions').put(session),
+        ...records.map((record) =>
+          transaction.objectStore('records').put({ study, participant, id: record.id, record }),
+        ),
+        transaction.done,
+      ]);
+    },
+    async records(study, participant) {
+      const kept = await database.getAll('records', everyOf(study, participant));
+      // Ids carry no order. Records of one moment: consent goes first, for nothing may be stored before it.
+      const rank = ({ kind }: StudyRecord) => (kind === 'consent' ? 0 : kind === 'event' ? 2 : 1);
+      return kept.map(({ record }) => record).toSorted((a, b) => a.at - b.at || rank(a) - rank(b));
+    },
+    async removeRecords(study, participant, ids) {
+      const transaction = database.transaction('records', 'readwrite');
+      await Promise.all([...ids.map((id) => transaction.store.delete([study, participant, id])), transaction.done]);
+    },
+    async saveMotion(study, participant, motion) {
+      await database.put('motion', { ...motion, study, participant });
+    },
+    motion: (study, participant) => database.getAll('motion', everyOf(study, participant)),
+    removeMotion: (study, participant, trial) => database.delete('motion', [study, participant, trial]),
+    async forget(study, participant) {
+      const transaction = database.transaction(['sessions', 'records', 'motion'], 'readwrite');
+      await Promise.all([
+        transaction.objectStore('sessions').delete([study, participant]),
+        transaction.objectStore('records').delete(everyOf(study, participant)),
+        transaction.objectStore('motion').delete(everyOf(study, participant)),
+        transaction.done,
+      ]);
+    },
+    close: () => database.close(),
+  };
+}

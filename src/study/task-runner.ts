@@ -1,0 +1,39 @@
+import type { TrialEvent, TrialOutcome } from '../core/study/trial-log';
+
+/** What happened in a task: something sent off, or what became of it. */
+export type TaskEvent = { readonly type: 'shot' } | TrialEvent;
+
+export interface TaskEnd {
+  /** From the start signal [s]. */
+  readonly seconds: number;
+  readonly ended: TrialOutcome['ended'];
+  readonly score: number;
+  readonly maximum: number;
+}
+
+/** Who plays a trial, with whom, where. */
+export interface TaskPlace {
+  /** Name of a room that nothing else uses: small letters and digits. */
+  readonly room: string;
+  /** The participant's code, and those of the whole group, in the order of their seats. */
+  readonly participant: string;
+  readonly members: readonly string[];
+}
+
+/** A game as the study plays it, trial by trial. */
+export interface TaskRunner {
+  /** Loads it and brings the participant to it; resolves when a trial can start. Rejects with a sentence. */
+  prepare(place: TaskPlace): Promise<void>;
+  /** The start signal. `seed` lays the trial out; the time limit is in seconds. */
+  start(trial: { readonly seed: number; readonly seconds: number }): void;
+  /** What happened since it was last asked. */
+  take(): readonly TaskEvent[];
+  /** Whom a trial that was started still waits for; null: nobody, or no trial. */
+  readonly waitingFor: string | null;
+  /** null: no trial, or one that goes on. */
+  readonly end: TaskEnd | null;
+  /** Puts the game away: after its end, or before it, when the trial counts for nothing. */
+  abort(): void;
+  /** Aids that are on. */
+  assists(): readonly string[];
+}

@@ -1,0 +1,214 @@
+import * as Plot from '@observablehq/plot';
+import type { Comparison } from '../core/study/compare-conditions';
+
+/** The two conditions compared, as people read them. */
+export interface ComparedLabels {
+  readonly first: string;
+  readonly second: string;
+}
+
+export interface ChartOptions {
+  readonly title: string;
+  readonly labels: ComparedLabels;
+  /** What a comparison is called below the axis. */
+  readonly nameOf: (comparison: Comparison) => string;
+  readonly axis: string;
+  /** Ends of the scale. */
+  readonly domain: readonly [number, number];
+  readonly simulated: boolean;
+}
+
+const colours = { first: '#c8681e', second: '#2b6cb0' } as const;
+const ink = '#1d2733';
+const sides = ['first', 'second'] as const;
+const svgNamespace = 'http://www.w3.org/2000/svg';
+
+function svgNode(tag: string, attributes: Readonly<Record<string, string | number>>, text = ''): SVGElement {
+  const node = document.createElementNS(svgNamespace, tag);
+  for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, String(value));
+  node.textContent = text;
+  return node;
+}
+
+/** Title, key and, where it applies, the mark of simulation: inside the picture, so that no copy of it loses them. */
+function headed(
+  plot: SVGSVGElement | HTMLElement,
+  { title, labels, simulated }: ChartOptions,
+  note: string,
+): SVGSVGElement {
+  if (!(plot instanceof SVGSVGElement)) throw new Error('ui/charts: expected a plain SVG from the plot');
+  const width = Number(plot.getAttribute('width'));
+  // Plots stand their labels in the middle unless told otherwise.
+  const text = { 'font-family': 'Inter, "Segoe UI", system-ui, sans-serif', fill: ink, 'text-anchor': 'start' };
+  plot.prepend(svgNode('rect', { width: '100%', height: '100%', fill: 'white' }));
+  plot.append(svgNode('text', { ...text, x: 12, y: 24, 'font-size': 16, 'font-weight': 650 }, title));
+  let x = 12;
+  for (const side of sides) {
+    plot.append(svgNode('rect', { x, y: 38, width: 12, height: 12, rx: 2, fill: colours[side] }));
+    plot.append(svgNode('text', { ...text, x: x + 18, y: 48.5, 'font-size': 13 }, labels[side]));
+    x += 38 + labels[side].length * 7.4;
+  }
+  plot.append(svgNode('text', { ...text, x: 12, y: 66, 'font-size': 12, fill: '#5b6776' }, note));
+  if (simulated) {
+    const mark = {
+      ...text,
+      x: width - 12,
+      y: 24,
+      'text-anchor': 'end',
+      'font-size': 15,
+      'font-weight': 700,
+      fill: '#b3261e',
+    };
+    plot.append(svgNode('text', mark, 'SIMULATED'));
+  }
+  return plot;
+}
+
+const shared = {
+  marginTop: 92,
+  marginLeft: 52,
+  marginBottom: 40,
+  style: { fontSize: '13px', color: ink, background: 'white', fontFamily: 'Inter, "Segoe UI", system-ui, sans-serif' },
+} as const;
+
+/** Answers are whole; other scales choose for themselves. */
+const ticksOf = ({ domain: [low, high] }: ChartOptions) =>
+  high - low < 10 ? Array.from({ length: high - low + 1 }, (_, index) => low + index) : 5;
+
+const widthFor = (count: number) => Math.max(520, 90 + count * 100);
+
+/** Means as bars with their 95 % confidence intervals: the paper's figures 11 to 14. */
+export function barChart(comparisons: readonly Comparison[], options: ChartOptions): SVGSVGElement {
+  const [low, high] = options.domain;
+  const bars = comparisons.flatMap((comparison) =>
+    sides.flatMap((side) => {
+      const summary = comparison[side];
+      return summary
+        ? [
+            {
+              of: options.nameOf(comparison),
+              side,
+              mean: summary.mean,
+              // Whiskers end where the scale does.
+              from: Math.max(low, summary.interval?.low ?? summary.mean),
+              to: Math.min(high, summary.interval?.high ?? summary.mean),
+            },
+          ]
+        : [];
+    }),
+  );
+  const plot = Plot.plot({
+    ...shared,
+    width: widthFor(comparisons.length),
+    height: 360,
+    x: { axis: null, domain: [...sides], padding: 0.12 },
+    fx: { label: null, domain: comparisons.map(options.nameOf), padding: 0.25 },
+    y: { label: null, domain: [low, high], grid: true, ticks: ticksOf(options) },
+    color: { domain: [...sides], range: [colours.first, colours.second] },
+    marks: [
+      Plot.barY(bars, { fx: 'of', x: 'side', y1: low, y2: 'mean', fill: 'side' }),
+      Plot.ruleX(bars, { fx: 'of', x: 'side', y1: 'from', y2: 'to', stroke: ink, strokeWidth: 1.5 }),
+      Plot.tickY(bars, { fx: 'of', x: 'side', y: 'from', stroke: ink, insetLeft: 10, insetRight: 10 }),
+      Plot.tickY(bars, { fx: 'of', x: 'side', y: 'to', stroke: ink, insetLeft: 10, insetRight: 10 }),
+      Plot.text(bars, {
+        fx: 'of',
+        x: 'side',
+        y: low,
+        text: ({ mean }: { mean: number }) => (mean >= 10 ? mean.toFixed(1) : mean.toFixed(2)),
+        dy: -9,
+        fill: 'white',
+        fontWeight: 600,
+      }),
+      Plot.ruleY([low]),
+    ],
+  });
+  return headed(plot as SVGSVGElement, options, `${options.axis}; mean and 95 % confidence interval`);
+}
+
+/** Every participant (or group) as a line from one condition to the other; alike ones make the line thicker. */
+export function pairedChart(comparisons: readonly Comparison[], options: ChartOptions): SVGSVGElement {
+  const lines = comparisons.flatMap((comparison) => {
+    const alike = new Map<string, { second: number; first: number; count: number }>();
+    for (const { first, second } of comparison.pairs) {
+      const key = `${first} ${second}`;
+      const line = alike.get(key) ?? { first, second, count: 0 };
+      line.count += 1;
+      alike.set(key, line);
+    }
+    return [...alike].flatMap(([key, { first, second, count }]) => {
+      const of = options.nameOf(comparison);
+      const common = {
+        of,
+        key: `${of} ${key}`,
+        count,
+        rises: first > second ? 'up' : first < second ? 'down' : 'same',
+      };
+      return [
+        { ...common, side: 'second', value: second },
+        { ...common, side: 'first', value: first },
+      ];
+    });
+  });
+  const means = comparisons.flatMap((comparison) =>
+    sides.flatMap((side) => {
+      const summary = comparison[side];
+      return summary ? [{ of: options.nameOf(comparison), side, value: summary.mean }] : [];
+    }),
+  );
+  const plot = Plot.plot({
+    ...shared,
+    width: widthFor(comparisons.length),
+    height: 360,
+    x: { axis: null, domain: ['second', 'first'], padding: 0.5 },
+    fx: { label: null, domain: comparisons.map(options.nameOf), padding: 0.2 },
+    y: { label: null, domain: [...options.domain], grid: true, ticks: ticksOf(options) },
+    color: {
+      domain: ['up', 'same', 'down', 'first', 'second'],
+      range: [colours.first, '#8a95a3', colours.second, colours.first, colours.second],
+    },
+    marks: [
+      Plot.line(lines, {
+        fx: 'of',
+        x: 'side',
+        y: 'value',
+        z: 'key',
+        stroke: 'rises',
+        strokeOpacity: 0.55,
+        strokeWidth: ({ count }: { count: number }) => 0.8 + 1.1 * count,
+        strokeLinecap: 'round',
+      }),
+      Plot.dot(means, { fx: 'of', x: 'side', y: 'value', fill: 'side', r: 5, stroke: 'white', strokeWidth: 1.5 }),
+    ],
+  });
+  return headed(
+    plot as SVGSVGElement,
+    options,
+    `${options.axis}; left ${options.labels.second}, right ${options.labels.first}`,
+  );
+}
+
+/** The picture as a file of its own. */
+export const svgText = (svg: SVGSVGElement): string => new XMLSerializer().serializeToString(svg);
+
+/** The picture in twice its size, for slides and papers that take no SVG. */
+export async function pngOf(svg: SVGSVGElement): Promise<Blob> {
+  const width = Number(svg.getAttribute('width'));
+  const height = Number(svg.getAttribute('height'));
+  const address = URL.createObjectURL(new Blob([svgText(svg)], { type: 'image/svg+xml' }));
+  try {
+    const image = new Image();
+    image.src = address;
+    await image.decode();
+    const canvas = document.createElement('canvas');
+    canvas.width = 2 * width;
+    canvas.height = 2 * height;
+    const context = canvas.getContext('2d');
+    if (!context) throw new Error('ui/charts: this browser offers no 2D canvas');
+    context.drawImage(image, 0, 0, canvas.width, canvas.height);
+    return await new Promise((resolve, reject) =>
+      canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error('the picture could not be made'))), 'image/png'),
+    );
+  } finally {
+    URL.revokeObjectURL(address);
+  }
+}

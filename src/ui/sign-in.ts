@@ -1,0 +1,42 @@
+import { button, element } from './element';
+
+/** Where the token stays while the tab is open; never longer, for the computer may be a shared one. */
+const kept = 'threepoint-experimenter-token';
+
+export const keptToken = (): string | null => sessionStorage.getItem(kept);
+export const forgetToken = (): void => sessionStorage.removeItem(kept);
+
+/** Asks for the experimenter's token; `use` answers with a complaint, or null where the token opens. */
+export function signInForm(use: (token: string) => Promise<string | null>): HTMLElement {
+  const input = element('input', {
+    type: 'password',
+    name: 'token',
+    autocomplete: 'off',
+    'aria-label': 'Token',
+    size: 40,
+  });
+  const complaint = element('p', { class: 'complaint', role: 'alert' });
+  complaint.hidden = true;
+  const go = button('Open', () => void open(), { class: 'primary' });
+  async function open(): Promise<void> {
+    const token = input.value.trim();
+    if (!token) return;
+    go.disabled = true;
+    const said = await use(token);
+    go.disabled = false;
+    complaint.hidden = said === null;
+    complaint.textContent = said ?? '';
+    if (said === null) sessionStorage.setItem(kept, token);
+  }
+  input.addEventListener('keydown', ({ key }) => {
+    if (key === 'Enter') void open();
+  });
+  return element(
+    'div',
+    { class: 'sign-in' },
+    element('label', {}, element('span', {}, 'The experimenter’s token'), input),
+    go,
+    element('p', { class: 'soft' }, 'The server draws it at its first start and says where it lies.'),
+    complaint,
+  );
+}

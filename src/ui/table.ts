@@ -1,0 +1,47 @@
+import { element } from './element';
+
+/** A cell: text, or a node of one's own. */
+export type TableCell = string | Node;
+
+/** A table with a caption; columns that hold numbers stand to the right. */
+export function tableNode(
+  caption: string,
+  heads: readonly { readonly text: string; readonly title?: string; readonly numeric?: boolean }[],
+  rows: readonly { readonly cells: readonly TableCell[]; readonly look?: string }[],
+): HTMLElement {
+  return element(
+    'div',
+    { class: 'table' },
+    element(
+      'table',
+      {},
+      element('caption', {}, caption),
+      element(
+        'thead',
+        {},
+        element(
+          'tr',
+          {},
+          ...heads.map(({ text, title, numeric }) =>
+            element('th', { scope: 'col', title, class: numeric ? 'number' : undefined }, text),
+          ),
+        ),
+      ),
+      element(
+        'tbody',
+        {},
+        ...rows.map(({ cells, look }) =>
+          element(
+            'tr',
+            { class: look },
+            ...cells.map((cell, index) =>
+              index === 0
+                ? element('th', { scope: 'row' }, cell)
+                : element('td', { class: heads[index]?.numeric ? 'number' : undefined }, cell),
+            ),
+          ),
+        ),
+      ),
+    ),
+  );
+}

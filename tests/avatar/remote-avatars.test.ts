@@ -1,0 +1,100 @@
+import { readFileSync } from 'node:fs';
+import { Mesh, type MeshStandardMaterial, SkinnedMesh } from 'three';
+import { describe, expect, test } from 'vitest';
+import { createRemoteAvatars, type RemoteAvatars, type SeenPerson } from '../../src/avatar/remote-avatars';
+import { defaultCalibration } from '../../src/core/body/calibration';
+import { forwardKinematics } from '../../src/core/body/forward-kinematics';
+import { skeletonFromCalibration } from '../../src/core/body/skeleton';
+import { createIk } from '../../src/core/estimation/ik';
+import { transformPoint } from '../../src/core/math/pose';
+import { fromAxisAngle } from '../../src/core/math/quat';
+import { distance, up, vec3 } from '../../src/core/math/vec3';
+import { actorFrame } from '../../src/core/tracking/actor-motion';
+
+const file = readFileSync(new URL('../../public/avatars/mannequin.vrm', import.meta.url));
+const bytes = file.buffer.slice(file.byteOffset, file.byteOffset + file.byteLength) as ArrayBuffer;
+const estimator = createIk(defaultCalibration);
+
+const person = (id: number, more: Partial<SeenPerson> = {}): SeenPerson => ({
+  id,
+  calibration: defaultCalibration,
+  palette: 'ember',
+  pose: estimator.estimate(actorFrame(9.5, defaultCalibration)),
+  placement: { position: vec3(id, 0, -2 * id), orientation: fromAxisAngle(up, 0.7 * id) },
+  grips: { left: 0, right: 0 },
+  opacity: 1,
+  ...more,
+});
+
+/** Draws these people until each of them has a body. */
+async function gathered(people: readonly SeenPerson[]): Promise<RemoteAvatars> {
+  const others = createRemoteAvatars(bytes, 'mannequin.vrm');
+  for (let i = 0; i < 500 && !people.every(({ id }) => others.jointsOf(id)); i++) {
+    others.show(people, i / 60);
+    await new Promise((resolve) => setImmediate(resolve));
+  }
+  others.show(people, 10);
+  return others;
+}
+
+describe('bodies of others', () => {
+  test('stand where their floor lies, joint by joint as they were solved', async () => {
+    const people = [person(1), person(2)];
+    const others = await gathered(people);
+    for (const { id, pose, placement } of people) {
+      if (!pose.body) throw new Error('IK draws a body');
+      const solved = forwardKinematics(skeletonFromCalibration(defaultCalibration), pose.body);
+      for (const name of ['head', 'leftLowerArm', 'rightLowerArm', 'rightHand'] as const) {
+        const drawn = others.jointsOf(id)?.[name];
+        expect(drawn && distance(drawn, transformPoint(placement, solved[name].position))).toBeLessThan(1e-6);
+      }
+    }
+    others.dispose();
+  });
+
+  test('share vertices, not colours', async () => {
+    const others = await gathered([person(1, { palette: 'ember' }), person(2, { palette: 'moss' })]);
+    const skins: SkinnedMesh[][] = others.object.children.map((place) => {
+      const found: SkinnedMesh[] = [];
+      place.traverse((node) => {
+        if (node instanceof SkinnedMesh) found.push(node);
+      });
+      return found;
+    });
+    const [first = [], second = []] = skins;
+    expect(first.length).toBeGreaterThan(0);
+    first.forEach((mesh, i) => {
+      expect(second[i]?.geometry.getAttribute('position')).toBe(mesh.geometry.getAttribute('position'));
+      expect(second[i]?.geometry.index).toBe(mesh.geometry.index);
+    });
+    const suits = skins.map((meshes) =>
+      meshes
+        .flatMap(({ material }) => material as MeshStandardMaterial | MeshStandardMaterial[])
+        .flat()
+        .map(({ name, color }) => `${name} ${color.getHexString()}`),
+    );
+    expect(suits[0]).not.toEqual(suits[1]);
+    others.dispose();
+  });
+
+  test('fade to a ghost, go when nobody is told, and serve whoever comes next', async () => {
+    const others = await gathered([person(1)]);
+    others.show([person(1, { opacity: 0.35 })], 11);
+    const materials: MeshStandardMaterial[] = [];
+    others.object.traverse((node) => {
+      if (node instanceof SkinnedMesh) materials.push(...[node.material as MeshStandardMaterial].flat());
+    });
+    expect(materials.every(({ opacity, transparent }) => opacity === 0.35 && transparent)).toBe(true);
+    others.show([], 12);
+    expect(others.object.children.every(({ visible }) => !visible)).toBe(true);
+    expect(others.jointsOf(1)).toBe(null);
+    others.show([person(5)], 13);
+    expect(others.jointsOf(5)).not.toBe(null);
+    expect(others.object.children).toHaveLength(1);
+    expect(others.object.children[0]?.visible).toBe(true);
+    expect(materials.every(({ opacity }) => opacity === 1)).toBe(true);
+    const [place] = others.object.children;
+    expect(place?.children.some((child) => child instanceof Mesh)).toBe(true);
+    others.dispose();
+  });
+});

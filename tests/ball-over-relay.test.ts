@@ -1,0 +1,163 @@
+import { afterAll, expect, test } from 'vitest';
+import { createRelay, type Relay } from '../server/relay';
+import { relayConfigurationFrom } from '../server/relay-configuration';
+import { serve, type WebServer } from '../server/web-server';
+import { type BallPlay, createBallPlay } from '../src/ball-play';
+import { defaultCalibration } from '../src/core/body/calibration';
+import { forwardKinematics } from '../src/core/body/forward-kinematics';
+import { skeletonFromCalibration } from '../src/core/body/skeleton';
+import { createEstimator } from '../src/core/estimation/estimators';
+import { allReleased, type Buttons } from '../src/core/games/button-presses';
+import { distance, type Vec3 } from '../src/core/math/vec3';
+import { createRoomPass } from '../src/net/room-pass';
+import { createSocketConnection } from '../src/net/socket-connection';
+
+const released: Buttons = { left: allReleased, right: allReleased };
+const closing: (() => Promise<void>)[] = [];
+
+afterAll(async () => {
+  for (const close of closing.reverse()) await close();
+});
+
+async function startServer(seconds: number, port = 0): Promise<{ server: WebServer; close(): Promise<void> }> {
+  let relay: Relay | null = null;
+  const server = await serve(
+    (request, response) => {
+      if (!relay?.handle(request, response)) response.writeHead(404).end();
+    },
+    { host: '127.0.0.1', port },
+  );
+  const configuration = relayConfigurationFrom({
+    THREEPOINT_BALL_SECONDS: String(seconds),
+    THREEPOINT_ORIGINS: 'http://ball.test',
+    THREEPOINT_LOG_LEVEL: 'silent',
+  });
+  relay = createRelay(server.requests, configuration, 'a secret of the tests of the ball game, no other');
+  let closed = false;
+  return {
+    server,
+    async close() {
+      if (closed) return;
+      closed = true;
+      await relay?.close();
+      await server.close();
+    },
+  };
+}
+
+interface Person {
+  readonly play: BallPlay;
+  /** How far each other's right elbow has gone in their own floor frame, as received here [m]. */
+  readonly elbows: Map<number, number>;
+  frame(): void;
+}
+
+function comeIn(port: number, name: string, options: { spectate?: boolean; bots?: boolean } = {}): Person {
+  const url = `http://127.0.0.1:${port}`;
+  const room = 'over-relay';
+  const play = createBallPlay({
+    connect: (visitor) => createSocketConnection({ url, room, visitor, pass: createRoomPass(url, room, 'ball') }),
+    visitor: { name, calibration: defaultCalibration, ...(options.spectate && { spectate: true }) },
+    bots: () => options.bots ?? false,
+    acting: () => !options.spectate,
+    seed: 11,
+  });
+  const estimator = createEstimator('ik', defaultCalibration);
+  const elbows = new Map<number, number>();
+  const before = new Map<number, Vec3>();
+  closing.push(async () => play.leave());
+  return {
+    play,
+    elbows,
+    frame() {
+      const time = performance.now() / 1000;
+      play.begin(time);
+      const performed = options.spectate ? null : play.act(time);
+      const seen = play.follow(time, performed?.frame ?? null, performed?.buttons ?? released);
+      if (performed) play.send(performed.frame, estimator.estimate(performed.frame), { left: 0, right: 0 });
+      for (const { id, calibration, pose } of seen?.bodies ?? []) {
+        if (!pose.body) continue;
+        const elbow = forwardKinematics(skeletonFromCalibration(calibration), pose.body).rightLowerArm.position;
+        const last = before.get(id);
+        if (last) elbows.set(id, (elbows.get(id) ?? 0) + distance(last, elbow));
+        before.set(id, elbow);
+      }
+    },
+  };
+}
+
+/** Frames of everybody, some 60 a second, until the condition holds. */
+async function until(
+  people: readonly Person[],
+  condition: () => boolean,
+  seconds: number,
+  what: string,
+): Promise<void> {
+  const end = performance.now() + seconds * 1000;
+  while (!condition()) {
+    if (performance.now() > end) {
+      throw new Error(`not within ${seconds} s: ${what}; ${JSON.stringify(people.map(({ play }) => play.probe()))}`);
+    }
+    for (const person of people) person.frame();
+    await new Promise((resolve) => setTimeout(resolve, 16));
+  }
+}
+
+test('three people over the real relay play, see each other’s elbows move and agree; one watches, one comes late', async () => {
+  const { server, close } = await startServer(14);
+  closing.push(close);
+  const players = ['ann', 'ben', 'cal'].map((name) => comeIn(server.port, name));
+  const watcher = comeIn(server.port, 'dora', { spectate: true });
+  const everybody = [...players, watcher];
+  const phases = () => everybody.map(({ play }) => play.probe()?.phase);
+  await until(everybody, () => phases().every((phase) => phase === 'running'), 20, 'the match runs');
+  await until(everybody, () => (watcher.play.probe()?.score ?? 0) > 0, 20, 'a first catch');
+  const late = comeIn(server.port, 'eve', { spectate: true });
+  everybody.push(late);
+  await until(everybody, () => (late.play.newest?.bodies.length ?? 0) === 3, 5, 'the late one sees three bodies');
+  expect(late.play.probe()?.score).toBe(watcher.play.probe()?.score);
+  expect(
+    late.play
+      .probe()
+      ?.people.map((person) => person?.name)
+      .sort(),
+  ).toEqual(['ann', 'ben', 'cal']);
+  await until(everybody, () => phases().every((phase) => phase === 'over'), 30, 'the match is over for all');
+  const results = everybody.map(({ play }) => {
+    const { score, end, balls } = play.probe() ?? {};
+    return { score, end, basket: balls?.basket };
+  });
+  console.log(`score ${results[0]?.score}, by ${results[0]?.end}; elbows as ann sees them [m]:`, [
+    ...(players[0]?.elbows ?? []),
+  ]);
+  for (const result of results) expect(result).toEqual(results[0]);
+  expect(results[0]?.score).toBeGreaterThan(0);
+  for (const { play, elbows } of players) {
+    const me = play.probe()?.seat;
+    expect([...elbows.keys()].sort()).toEqual([0, 1, 2].filter((seat) => seat !== me));
+  }
+  const throwers = [...watcher.elbows.entries()].filter(([seat]) => seat !== 2);
+  for (const [, travelled] of throwers) expect(travelled).toBeGreaterThan(0.3);
+}, 120_000);
+
+test('the relay dies in the middle of a match and comes back: the same page is in the room again, the round is void', async () => {
+  const first = await startServer(40);
+  closing.push(first.close);
+  const { port } = first.server;
+  const ann = comeIn(port, 'ann', { bots: true });
+  await until([ann], () => (ann.play.probe()?.ballsLeft ?? 20) < 20, 40, 'a ball is thrown');
+  await first.close();
+  await until([ann], () => ann.play.status.phase === 'reconnecting', 10, 'the page notices');
+  const second = await startServer(40, port);
+  closing.push(second.close);
+  const back = performance.now();
+  await until([ann], () => ann.play.status.phase === 'joined', 20, 'back in the room');
+  console.log(`back in the room ${((performance.now() - back) / 1000).toFixed(1)} s after the restart`);
+  await until(
+    [ann],
+    () => ann.play.probe()?.phase === 'running' && ann.play.probe()?.ballsLeft === 20,
+    20,
+    'a new round',
+  );
+  expect(ann.play.room?.voided).toBe(1);
+}, 120_000);

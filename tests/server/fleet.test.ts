@@ -1,0 +1,231 @@
+import { type ChildProcess, spawn } from 'node:child_process';
+import { once } from 'node:events';
+import type { AddressInfo } from 'node:net';
+import { connect, createServer } from 'node:net';
+import { fileURLToPath } from 'node:url';
+import { afterAll, beforeAll, describe, expect, test } from 'vitest';
+import { isNightly } from '../nightly';
+import { percentile, tell } from '../tell';
+import { installed } from './installed';
+import { forkRelay } from './relay-child';
+import { arrive, pause, testSecret, until } from './running-relay';
+
+const programs = { haproxy: installed('haproxy'), redis: installed('redis-server') };
+const missing = Object.values(programs).includes(null);
+const config = fileURLToPath(new URL('../../deploy/haproxy.cfg', import.meta.url));
+
+async function freePort(): Promise<number> {
+  const server = createServer().listen(0, '127.0.0.1');
+  await once(server, 'listening');
+  const { port } = server.address() as AddressInfo;
+  server.close();
+  await once(server, 'close');
+  return port;
+}
+
+async function listening(port: number): Promise<void> {
+  let open = false;
+  const end = performance.now() + 10_000;
+  while (!open) {
+    if (performance.now() > end) throw new Error(`nothing listens on port ${port}`);
+    const socket = connect(port, '127.0.0.1');
+    open = await Promise.race([
+      once(socket, 'connect').then(() => true),
+      once(socket, 'error').then(() => false),
+    ]).catch(() => false);
+    socket.destroy();
+    if (!open) await pause(0.05);
+  }
+}
+
+function run(program: string, args: readonly string[], environment: Record<string, string> = {}): ChildProcess {
+  return spawn(program, args, { stdio: 'ignore', env: { ...process.env, ...environment } });
+}
+
+async function stop(child: ChildProcess | null): Promise<void> {
+  if (!child || child.exitCode !== null || child.signalCode !== null) return;
+  child.kill('SIGKILL');
+  await once(child, 'exit');
+}
+
+const startRedis = async (port: number): Promise<ChildProcess> => {
+  const redis = run(programs.redis!, ['--port', `${port}`, '--bind', '127.0.0.1', '--save', '', '--appendonly', 'no']);
+  await listening(port);
+  return redis;
+};
+
+const adminToken = 'whoever-runs-the-tests';
+
+interface Lobby {
+  readonly rooms: readonly { readonly room: string; readonly players: number; readonly free: number }[];
+  readonly complete: boolean;
+}
+
+const lobbyAt = async (url: string): Promise<Lobby> => (await fetch(`${url}/api/rooms`)).json() as Promise<Lobby>;
+
+/** A number out of a process's metrics. */
+async function metric(url: string, name: string): Promise<number> {
+  const text = await (await fetch(`${url}/metrics`)).text();
+  return Number(new RegExp(`^${name} (\\S+)$`, 'm').exec(text)?.[1] ?? Number.NaN);
+}
+
+// Programs of the distribution, not ours to install: apt-get install haproxy redis-server
+describe.skipIf(missing)(
+  `two relay processes, Redis and a proxy${missing ? ' (haproxy or redis-server is not installed)' : ''}`,
+  () => {
+    let redis: ChildProcess | null = null;
+    let redisPort = 0;
+    let relays: Awaited<ReturnType<typeof forkRelay>>[] = [];
+    let proxies: { readonly url: string; readonly process: ChildProcess }[] = [];
+    let people: ReturnType<typeof arrive>[] = [];
+    const rooms = ['amber', 'birch', 'cedar', 'daisy', 'elder', 'fern'];
+
+    beforeAll(async () => {
+      redisPort = await freePort();
+      redis = await startRedis(redisPort);
+      const environment = {
+        THREEPOINT_SECRET: testSecret,
+        THREEPOINT_REDIS_URL: `redis://127.0.0.1:${redisPort}`,
+        THREEPOINT_TRUST_PROXY: '1',
+        THREEPOINT_JOINS_PER_MINUTE: '1000',
+        THREEPOINT_ADMIN_TOKEN: adminToken,
+      };
+      relays = [await forkRelay(environment), await forkRelay(environment)];
+      proxies = await Promise.all(
+        [0, 1].map(async () => {
+          const port = await freePort();
+          const process = run(programs.haproxy!, ['-f', config, '-db'], {
+            PROXY_BIND: `127.0.0.1:${port}`,
+            RELAY_1: `127.0.0.1:${relays[0]!.port}`,
+            RELAY_2: `127.0.0.1:${relays[1]!.port}`,
+          });
+          await listening(port);
+          return { url: `http://127.0.0.1:${port}`, process };
+        }),
+      );
+      people = rooms.flatMap((room) => ['Ann', 'Ben', 'Cal'].map((name, i) => arrive(proxies[i % 2]!.url, room, name)));
+    }, 60_000);
+
+    afterAll(async () => {
+      for (const person of people) person.stop();
+      await Promise.all(relays.map((relay) => relay.kill()));
+      await Promise.all(proxies.map(({ process }) => stop(process)));
+      await stop(redis);
+    });
+
+    test('players meet in their rooms whichever address they came through, and both processes have rooms', async () => {
+      await until(
+        'everybody with their two others',
+        () => people.every(({ connection }) => connection.room?.seats.every((row) => row?.presence === 'here')),
+        30,
+      );
+      await until('everybody seen by their two others', () =>
+        people.every(
+          ({ poses, seat }) => new Set(poses.filter((pose) => pose.seat !== seat).map((pose) => pose.seat)).size === 2,
+        ),
+      );
+      const carried = await Promise.all(relays.map(({ url }) => metric(url, 'threepoint_rooms')));
+      tell('fleet', { rooms: rooms.length, 'in the first process': carried[0]!, 'in the second': carried[1]! });
+      expect(carried[0]! + carried[1]!).toBe(rooms.length);
+      expect(Math.min(...carried)).toBeGreaterThan(0);
+    });
+
+    test('the lobby knows the rooms of both, and finds a free seat in either', async () => {
+      const lone = arrive(proxies[0]!.url, 'grove', 'Dot');
+      people.push(lone);
+      await until('Dot seated', () => lone.seat >= 0);
+      for (const { url } of proxies) {
+        let lobby = await lobbyAt(url);
+        await pause(1.5);
+        lobby = await lobbyAt(url);
+        expect(lobby.complete).toBe(true);
+        expect(lobby.rooms.map(({ room }) => room).sort()).toEqual([...rooms, 'grove']);
+      }
+      // Asked often enough to have been answered by both processes.
+      for (let i = 0; i < 4; i++) {
+        const response = await fetch(`${proxies[i % 2]!.url}/api/rooms/match`, {
+          method: 'POST',
+          headers: { 'content-type': 'application/json' },
+          body: JSON.stringify({ kind: 'ball' }),
+        });
+        expect(await response.json()).toEqual({ room: 'grove', found: true });
+      }
+    });
+
+    test('who may end a room ends it wherever it is; others do not', async () => {
+      const end = (room: string, token: string) =>
+        fetch(`${relays[0]!.url}/api/rooms/end`, {
+          method: 'POST',
+          headers: { 'content-type': 'application/json', authorization: `Bearer ${token}` },
+          body: JSON.stringify({ room }),
+        });
+      // More than one, so that some are in the process that is not asked.
+      const guests = ['heath', 'island', 'jetty', 'knoll'].map((room) => ({
+        room,
+        person: arrive(proxies[0]!.url, room, 'Eve'),
+      }));
+      await until('all in', () => guests.every(({ person }) => person.seat >= 0));
+      expect((await end('heath', 'guessed')).status).toBe(403);
+      for (const { room } of guests) expect((await end(room, adminToken)).status).toBe(200);
+      await until('all out', () => guests.every(({ person }) => person.connection.status.reason === 'closed'));
+      for (const { person } of guests) person.stop();
+    });
+
+    test('without Redis no room misses a frame, and the lobby says that it is not complete', async () => {
+      const lasting = isNightly ? 30 : 4;
+      const dropped = async () =>
+        (await Promise.all(relays.map(({ url }) => metric(url, 'threepoint_frames_dropped_total')))).reduce(
+          (a, b) => a + b,
+          0,
+        );
+      const before = await dropped();
+      for (const { poses } of people) poses.length = 0;
+      const start = performance.now();
+      await stop(redis);
+      await pause(lasting);
+      const degraded = await lobbyAt(proxies[0]!.url);
+      const span = (performance.now() - start) / 1000;
+      const lost = (await dropped()) - before;
+      const threes = people.slice(0, 3 * rooms.length);
+      const rates = threes.map(({ poses }) => poses.length / 2 / span);
+      const gaps = threes.flatMap(({ poses }) => {
+        const times = poses.map(({ arrivedAt }) => arrivedAt);
+        return times.slice(1).map((time, i) => 1000 * (time - times[i]!));
+      });
+      redis = await startRedis(redisPort);
+      tell('Redis down', {
+        seconds: span,
+        'frames lost': lost,
+        'poses a second from each': percentile(rates, 0.5),
+        'longest gap [ms]': Math.max(...gaps),
+        'rooms still listed': degraded.rooms.length,
+      });
+      expect(lost).toBe(0);
+      expect(percentile(rates, 0.5)).toBeGreaterThan(15);
+      expect(degraded.complete).toBe(false);
+      expect(degraded.rooms.length).toBeGreaterThan(0);
+      await expect
+        .poll(async () => (await lobbyAt(proxies[0]!.url)).rooms.length, { timeout: 15_000, interval: 300 })
+        .toBe(rooms.length + 1);
+    });
+
+    test('a process that is killed: its players are in their rooms on the other within 5 s', async () => {
+      await relays[0]!.kill();
+      const start = performance.now();
+      await until('the lost to notice', () => people.some(({ connection }) => connection.status.phase !== 'joined'));
+      await until('everybody back', () => people.every(({ connection }) => connection.status.phase === 'joined'), 30);
+      const took = (performance.now() - start) / 1000;
+      await until('everybody with their others', () =>
+        people
+          .slice(0, 3 * rooms.length)
+          .every(({ connection }) => connection.room?.seats.every((row) => row?.presence === 'here')),
+      );
+      tell('one process killed', {
+        'everybody back after [s]': took,
+        rooms: await metric(relays[1]!.url, 'threepoint_rooms'),
+      });
+      expect(took).toBeLessThan(isNightly ? 5 : 10);
+      expect(await metric(relays[1]!.url, 'threepoint_rooms')).toBe(rooms.length + 1);
+    });
+  },
+);

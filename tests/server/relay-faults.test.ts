@@ -1,0 +1,352 @@
+import { setFlagsFromString } from 'node:v8';
+import { runInNewContext } from 'node:vm';
+import { afterEach, describe, expect, test } from 'vitest';
+import { WebSocket } from 'ws';
+import { createRoomTokens } from '../../server/room-tokens';
+import { createRemotePlayers } from '../../src/net/remote-players';
+import { createSocketConnection } from '../../src/net/socket-connection';
+import { fists, holding, opening, releaseOf, visitor } from '../net/people';
+import { isNightly } from '../nightly';
+import { percentile, tell } from '../tell';
+import { forkRelay } from './relay-child';
+import { arrive, pause, poseBytes, rawGuest, seconds, startRelay, testSecret, tokenFor, until } from './running-relay';
+import { createSlowWay } from './slow-way';
+
+const endings: (() => unknown)[] = [];
+afterEach(async () => {
+  for (const end of endings.splice(0).reverse()) await end();
+});
+function ending<T>(thing: T, end: (thing: T) => unknown): T {
+  endings.push(() => end(thing));
+  return thing;
+}
+
+const relayHere = async (environment?: Record<string, string>) =>
+  ending(await startRelay(environment), (server) => server.close());
+const relayApart = async (environment?: Record<string, string>, port?: number) =>
+  ending(await forkRelay(environment, port), (relay) => relay.kill());
+const person = (...[url, room, name, more]: Parameters<typeof arrive>) =>
+  ending(arrive(url, room, name, more), (someone) => someone.stop());
+
+/** Three people in a running match. */
+async function threePlay(urls: readonly string[], room = 'game') {
+  const people = ['Ann', 'Ben', 'Cal'].map((name, i) => person(urls[i] ?? urls[0]!, room, name));
+  await until('everybody seated', () =>
+    people.every(({ connection }) => connection.room?.seats.every((row) => row?.presence === 'here')),
+  );
+  for (const someone of people) {
+    someone.place(someone.seat === 2 ? holding(opening) : fists(releaseOf(someone.seat)));
+    someone.connection.ready(true);
+  }
+  await until('the match running', () => people.every(({ match }) => match.phase === 'running'));
+  return people;
+}
+
+test('the relay is killed in the middle of a game and restarted after 3 s: everybody is back, the round is marked void', async () => {
+  const relay = await relayApart();
+  const people = await threePlay([relay.url]);
+  const seats = people.map(({ seat }) => seat);
+  await relay.kill();
+  await until('everybody to notice', () =>
+    people.every(({ connection }) => connection.status.phase === 'reconnecting'),
+  );
+  await pause(3);
+  const again = await relayApart({}, relay.port);
+  const restarted = performance.now();
+  const back: number[] = [];
+  await Promise.all(
+    people.map(async ({ connection }) => {
+      await until('being back', () => connection.status.phase === 'joined');
+      back.push((performance.now() - restarted) / 1000);
+    }),
+  );
+  await until('the news', () => people.every(({ news }) => news.includes('voided')));
+  tell('relay killed', { 'rejoined after [s]': percentile(back, 0.95), port: again.port });
+  expect(percentile(back, 0.95)).toBeLessThan(5);
+  expect(people.map(({ seat }) => seat)).toEqual(seats);
+  expect(people.map(({ connection }) => connection.room?.voided)).toEqual([1, 1, 1]);
+  expect(people.map(({ match }) => match.phase)).toEqual(['ready', 'ready', 'ready']);
+});
+
+test('100 ms ± 30 ms with 2 % of losses: a thrower behind it plays on', async () => {
+  const server = await relayHere();
+  const lasting = isNightly ? 300 : 6;
+  // A loss costs the time to find out and to send again.
+  const way = await createSlowWay(
+    server.port,
+    () => 100 + 60 * (Math.random() - 0.5) + (Math.random() < 0.02 ? 300 : 0),
+  );
+  ending(way, ({ close }) => close());
+  const people = await threePlay([way.url, server.url, server.url]);
+  const watching = people.map(() => createRemotePlayers());
+  people.forEach((someone, i) => {
+    someone.everyFrame((time) => {
+      for (const pose of someone.poses.splice(0)) watching[i]?.receive(pose);
+      watching[i]?.follow(time);
+    });
+  });
+  await pause(lasting);
+  const freezes = watching.map((remote) =>
+    [0, 1, 2].reduce((sum, seat) => sum + (remote.report(seat)?.freezes ?? 0), 0),
+  );
+  const minutes = lasting / 60;
+  tell('100 ± 30 ms, 2 % lost, over sockets', {
+    seconds: lasting,
+    'freezes seen by the one behind it': freezes[0] ?? Number.NaN,
+    'by the others': Math.max(freezes[1] ?? 0, freezes[2] ?? 0),
+    'delay of playback [ms]': 1000 * (watching[0]?.report(people[1]!.seat)?.delay ?? 0),
+  });
+  // Two others are seen by each: less than one a minute for each of them, and one for this machine's own busy moments.
+  expect(Math.max(...freezes)).toBeLessThanOrEqual(1 + 2 * minutes);
+  expect(people[0]?.connection.status.phase).toBe('joined');
+});
+
+test('a connection that is gone for 5 s comes back to its seat with one snapshot, within a second', async () => {
+  const server = await relayHere();
+  const way = ending(await createSlowWay(server.port), ({ close }) => close());
+  const [ann, ben] = await threePlay([way.url, server.url]);
+  const { seat } = ann!;
+  const welcomes = ann!.news.filter((word) => word === 'welcome').length;
+  way.cut();
+  await pause(5);
+  expect(ben!.connection.room?.seats[seat]?.presence).toBe('gone');
+  way.reopen();
+  await until('being back', () => ann!.connection.status.phase === 'joined');
+  const resync = performance.now() - (way.acceptedAt ?? 0);
+  await until('the others to see it', () => ben!.connection.room?.seats[seat]?.presence === 'here');
+  tell('5 s without connection', { 'resync [ms]': resync });
+  // A second is the promise; a machine that others use is allowed three.
+  expect(resync).toBeLessThan(3000);
+  expect(ann!.seat).toBe(seat);
+  expect(ann!.connection.room?.match?.phase).toBe('running');
+  await until('the snapshot', () => ann!.news.filter((word) => word === 'welcome').length > welcomes);
+  expect(ann!.news.filter((word) => word === 'welcome').length).toBe(welcomes + 1);
+  expect(ann!.connection.room?.voided).toBe(0);
+});
+
+test('500 clients reconnect at once', async () => {
+  const clients = 500;
+  const environment = { THREEPOINT_OPEN_SEATS: '16' };
+  const relay = await relayApart(environment);
+  const tokens = createRoomTokens(testSecret, () => Date.now() / 1000);
+  const connections = await Promise.all(
+    Array.from({ length: clients }, async (_, i) => {
+      const room = `open-${Math.floor(i / 16)}`;
+      const token = await tokens.issue(room, 'open');
+      return ending(
+        createSocketConnection({
+          url: relay.url,
+          room,
+          visitor: visitor(`P${i}`),
+          pass: { token: async () => token },
+        }),
+        (connection) => connection.leave(),
+      );
+    }),
+  );
+  const joined = () => connections.filter(({ status }) => status.phase === 'joined').length;
+  await until('everybody in', () => joined() === clients, 60);
+  // Beside them a relay with nothing to do: what keeps that one waiting is the machine.
+  const idle = await relayApart();
+  await relay.kill();
+  await until('everybody out', () => joined() === 0);
+  const again = await relayApart(environment, relay.port);
+  const start = seconds();
+  await Promise.all([again.forget(), idle.forget()]);
+  await until('everybody back', () => joined() === clients, 60);
+  const took = seconds() - start;
+  const [{ lagP99Ms, lagMaxMs }, machine] = await Promise.all([again.measure(), idle.measure()]);
+  tell('500 reconnect', {
+    'all in after [s]': took,
+    'event loop p99 [ms]': lagP99Ms,
+    'max [ms]': lagMaxMs,
+    "an idle process's p99 [ms]": machine.lagP99Ms,
+  });
+  expect(took).toBeLessThan(15);
+  expect(lagP99Ms).toBeLessThan(100 + 2 * machine.lagP99Ms);
+}, 120_000);
+
+/** Somebody in an open room who sends thirty poses a second, and when they heard of others. */
+async function mover(url: string, room: string) {
+  const guest = ending(await rawGuest(url, room), ({ socket }) => socket.disconnect());
+  const welcome = guest.heard.find((message) => message.type === 'welcome')!;
+  const ahead = welcome.time * 1000 - performance.now();
+  const sentAt = new Map<number, number>();
+  const gaps: number[] = [];
+  let last = performance.now();
+  guest.socket.on('frame', () => {
+    const now = performance.now();
+    gaps.push(now - last);
+    last = now;
+  });
+  const timer = setInterval(() => {
+    const timeMs = Math.round(performance.now() + ahead) & 0xffff;
+    sentAt.set(timeMs, performance.now());
+    guest.socket.emit('pose', poseBytes(timeMs));
+  }, 1000 / 30);
+  endings.push(() => clearInterval(timer));
+  return { ...guest, gaps, ahead };
+}
+
+test('a reader that stalls is kicked within 10 s, and the others do not notice', async () => {
+  const relay = await relayApart();
+  const movers: Awaited<ReturnType<typeof mover>>[] = [];
+  for (let i = 0; i < 6; i++) movers.push(await mover(relay.url, 'open-stall'));
+  const token = await tokenFor(relay.url, 'open-stall', 'open');
+  const stalled = new WebSocket(`${relay.url.replace('http', 'ws')}/relay/?EIO=4&transport=websocket&room=open-stall`);
+  endings.push(() => stalled.terminate());
+  await new Promise<void>((resolve) => {
+    stalled.on('message', (received: Buffer) => {
+      const text = received.toString();
+      if (text[0] === '0') stalled.send(`40${JSON.stringify(['/', { token }])}`);
+      else if (text.startsWith('40')) {
+        const join = { type: 'join', version: 1, name: 'slow', spectate: false, bot: false, seat: null };
+        const message = { ...join, calibration: { eyeHeight: 1.6, armSpan: 1.5 } };
+        stalled.send(`42${JSON.stringify(['/', ['message', message]])}`);
+      } else if (text.includes('"welcome"')) resolve();
+    });
+  });
+  const seatRow = () =>
+    movers[0]!.heard.findLast((message) => message.type === 'seat' && message.seat === 6) as
+      | { readonly row: readonly unknown[] | null }
+      | undefined;
+  await until('the slow one seated', () => seatRow()?.row != null);
+  await pause(0.5);
+  const before = await relay.measure();
+  stalled.pause();
+  const start = seconds();
+  for (const { gaps } of movers) gaps.length = 0;
+  await until('the kick', () => seatRow()?.row?.[3] === 2, 12);
+  const kicked = seconds() - start;
+  const after = await relay.measure();
+  const gaps = movers.flatMap((moving) => moving.gaps);
+  const grown = (after.rssBytes - before.rssBytes) / 2 ** 20;
+  tell('stalled reader', {
+    'kicked after [s]': kicked,
+    'relay grew by [MB]': grown,
+    "others' frames p95 apart [ms]": percentile(gaps, 0.95),
+  });
+  expect(kicked).toBeLessThan(10);
+  // 5 MB are the promise; a young process grows by itself.
+  expect(grown).toBeLessThan(15);
+  expect(percentile(gaps, 0.95)).toBeLessThan(100);
+});
+
+describe('abuse', () => {
+  test('2,000 messages a second, a 1 MB frame, unknown events and bad messages end the connection within 1 s', async () => {
+    const relay = await relayApart();
+    const calm: number[] = [];
+    const stormy: number[] = [];
+    const watcher = await mover(relay.url, 'open-calm');
+    const other = await mover(relay.url, 'open-calm');
+    await pause(1);
+    calm.push(...watcher.gaps.splice(0), ...other.gaps.splice(0));
+    const attacks: Record<string, (guest: Awaited<ReturnType<typeof rawGuest>>) => (() => void) | undefined> = {
+      '2,000 poses a second': ({ socket }) => {
+        let sent = 0;
+        const timer = setInterval(() => {
+          for (let i = 0; i < 20; i++) socket.emit('pose', poseBytes((sent + i) & 0xffff));
+          sent += 20;
+        }, 10);
+        return () => clearInterval(timer);
+      },
+      '2,000 messages a second': ({ say }) => {
+        const timer = setInterval(() => {
+          for (let i = 0; i < 20; i++) say({ type: 'ready', ready: i % 2 === 0 });
+        }, 10);
+        return () => clearInterval(timer);
+      },
+      'a 1 MB frame': ({ socket }) => void socket.emit('pose', new Uint8Array(2 ** 20)),
+      'an unknown event': ({ socket }) => void socket.emit('admin', { drop: 'everything' }),
+      'three bad messages': ({ say }) => {
+        for (let i = 0; i < 3; i++) say({ type: 'score', points: 20 });
+        return undefined;
+      },
+      'three bad poses': ({ socket }) => {
+        for (let i = 0; i < 3; i++) socket.emit('pose', new Uint8Array(57));
+        return undefined;
+      },
+    };
+    const figures: Record<string, number> = {};
+    for (const [name, attack] of Object.entries(attacks)) {
+      const guest = await rawGuest(relay.url, 'open-calm');
+      const start = performance.now();
+      const stop = attack(guest);
+      await until(`an end of ${name}`, () => guest.closedAt !== null, 3);
+      stop?.();
+      figures[`${name} [ms]`] = (guest.closedAt ?? Number.NaN) - start;
+    }
+    stormy.push(...watcher.gaps, ...other.gaps);
+    const slower = percentile(stormy, 0.95) - percentile(calm, 0.95);
+    tell('abuse ended after', { ...figures, "others' p95 later by [ms]": slower });
+    for (const time of Object.values(figures)) expect(time).toBeLessThan(1000);
+    expect(slower).toBeLessThan(40);
+    expect(watcher.closedAt).toBeNull();
+  });
+
+  test('more than ten events a second are not heard, and no connection is lost for a burst', async () => {
+    const server = await relayHere();
+    const guest = ending(await rawGuest(server.url, 'open-burst'), ({ socket }) => socket.disconnect());
+    for (let i = 0; i < 60; i++) guest.say({ type: 'ping', sent: i });
+    await pause(0.3);
+    const pongs = guest.heard.filter(({ type }) => type === 'pong').length;
+    expect(pongs).toBeGreaterThanOrEqual(10);
+    expect(pongs).toBeLessThan(30);
+    expect(guest.closedAt).toBeNull();
+  });
+
+  test('whoever connects and says nothing is sent away', async () => {
+    const server = await relayHere();
+    const token = await tokenFor(server.url, 'silent');
+    const socket = new WebSocket(`${server.url.replace('http', 'ws')}/relay/?EIO=4&transport=websocket`);
+    endings.push(() => socket.terminate());
+    socket.on('message', (received: Buffer) => {
+      if (received.toString()[0] === '0') socket.send(`40${JSON.stringify(['/', { token }])}`);
+      else if (received.toString() === '2') socket.send('3');
+    });
+    let closed = false;
+    socket.on('close', () => {
+      closed = true;
+    });
+    await until('the end of the silent one', () => closed, 10);
+  });
+});
+
+test('twenty rooms that fill and empty again leave no timer, socket or listener behind', async () => {
+  const server = await relayHere({ THREEPOINT_EVENTS_PER_SECOND: '100' });
+  const rounds = isNightly ? 60 : 3;
+  setFlagsFromString('--expose-gc');
+  const collect = runInNewContext('gc') as () => void;
+  const heaps: number[] = [];
+  const counts: number[] = [];
+  const handles = () => process.getActiveResourcesInfo().length;
+  const tokens = createRoomTokens(testSecret, () => Date.now() / 1000);
+  for (let round = 0; round < rounds; round++) {
+    const guests = await Promise.all(
+      Array.from({ length: 60 }, async (_, i) => {
+        const room = `soak-${i % 20}`;
+        return rawGuest(server.url, room, await tokens.issue(room, 'ball'));
+      }),
+    );
+    expect(server.relay.host.census.sockets).toBe(60);
+    for (const guest of guests) guest.say({ type: 'leave' });
+    await until('everybody gone', () => server.relay.host.census.sockets === 0);
+    await until('every connection closed', () => guests.every(({ closedAt }) => closedAt !== null));
+    await pause(1);
+    counts.push(handles());
+    collect();
+    heaps.push(process.memoryUsage().heapUsed / 2 ** 20);
+  }
+  await until('every room closed', () => server.relay.host.census.rooms === 0, 20);
+  const engine = server.relay.host.io.engine as { readonly clientsCount: number };
+  tell('soak', {
+    rounds,
+    'handles first': counts[0] ?? 0,
+    'handles last': counts.at(-1) ?? 0,
+    connections: engine.clientsCount,
+    'heap from the first round to the last [MB]': (heaps.at(-1) ?? 0) - (heaps[0] ?? 0),
+  });
+  expect(engine.clientsCount).toBe(0);
+  expect((heaps.at(-1) ?? 0) - (heaps[0] ?? 0)).toBeLessThan(10);
+  expect(counts.at(-1)).toBeLessThanOrEqual((counts[0] ?? 0) + 3);
+});

@@ -1,0 +1,63 @@
+import { readFileSync, statSync } from 'node:fs';
+import { createServer } from 'node:http';
+import type { AddressInfo } from 'node:net';
+import { join } from 'node:path';
+import { expect, onTestFinished, test } from 'vitest';
+import { openStudyService } from '../../server/study-service';
+import { paperPlan } from '../core/study/studies';
+import { directoryWith } from '../temporary-directory';
+
+const day = 86_400;
+
+async function served(directory: string, now: () => number, log: (line: string) => void = () => undefined) {
+  const service = openStudyService({ directory, token: null, now, log });
+  const server = createServer((request, response) => {
+    if (service.handle(request, response)) return;
+    response.writeHead(404).end('not of a study');
+  });
+  await new Promise<void>((resolve) => server.listen(0, '127.0.0.1', resolve));
+  const close = async () => {
+    await new Promise((resolve) => server.close(resolve));
+    service.close();
+  };
+  return { origin: `http://127.0.0.1:${(server.address() as AddressInfo).port}`, service, close };
+}
+
+test('the first start draws a token that only its owner can read, and the next start keeps it', async () => {
+  const directory = join(directoryWith(), 'new');
+  const first = await served(directory, () => 1e9);
+  const file = first.service.tokenFile as string;
+  const token = readFileSync(file, 'utf8').trim();
+  expect(token.length).toBeGreaterThanOrEqual(32);
+  expect(statSync(file).mode & 0o777).toBe(0o600);
+  await first.close();
+  const second = await served(directory, () => 1e9);
+  onTestFinished(second.close);
+  const asked = (authorization: string) => fetch(`${second.origin}/api/studies`, { headers: { authorization } });
+  expect((await asked(`Bearer ${token}`)).status).toBe(200);
+  expect((await asked('Bearer another-token-altogether')).status).toBe(401);
+  expect((await fetch(`${second.origin}/anything`)).status).toBe(404);
+});
+
+test('what is past its retention date is deleted when the server starts, and the log says so', async () => {
+  const directory = directoryWith();
+  const first = await served(directory, () => 1e9);
+  const token = readFileSync(first.service.tokenFile as string, 'utf8').trim();
+  const post = (path: string, body: unknown) =>
+    fetch(`${first.origin}/api/studies${path}`, {
+      method: 'POST',
+      headers: { authorization: `Bearer ${token}`, 'content-type': 'application/json' },
+      body: JSON.stringify(body),
+    });
+  expect((await post('', { plan: paperPlan(), simulated: false })).status).toBe(201);
+  expect((await post('/paper/participants/P01/claim', {})).status).toBe(201);
+  await first.close();
+  const lines: string[] = [];
+  const later = await served(
+    directory,
+    () => 1e9 + 366 * day,
+    (line) => lines.push(line),
+  );
+  onTestFinished(later.close);
+  expect(lines).toEqual(['study "paper": P01 is past the retention date, 0 records deleted']);
+});

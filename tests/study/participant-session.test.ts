@@ -1,0 +1,329 @@
+import 'fake-indexeddb/auto';
+import { createServer } from 'node:http';
+import type { AddressInfo } from 'node:net';
+import { join } from 'node:path';
+import { afterEach, expect, onTestFinished, test, vi } from 'vitest';
+import { createStudyRoutes } from '../../server/study-routes';
+import { openStudyStore } from '../../server/study-store';
+import { writeRecording } from '../../src/core/tracking/recording';
+import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
+import {
+  createParticipantSession,
+  isLater,
+  type ParticipantSession,
+  startSession,
+} from '../../src/study/participant-session';
+import { createExperimenterClient, createParticipantClient } from '../../src/study/study-client';
+import { openStudyVault, type StudyVault } from '../../src/study/study-vault';
+import { outcomeOf, paperPlan, somebody } from '../core/study/studies';
+import { directoryWith } from '../temporary-directory';
+
+const token = 'an-experimenter-token-of-length';
+const plan = paperPlan();
+const calibration = { eyeHeight: 1.62, armSpan: 1.4 };
+
+afterEach(() => vi.restoreAllMocks());
+
+/** The real server on a port; it can be taken away and put back on the same port. */
+async function studyServer() {
+  const store = openStudyStore(join(directoryWith(), 'studies.db'));
+  store.addStudy(plan, { simulated: false, at: 1e9 });
+  const routes = createStudyRoutes({
+    store,
+    experimenterToken: token,
+    now: () => 1e9,
+    onFault: (error) => expect(error).toBe(null),
+  });
+  let server = createServer(routes);
+  const listen = (port: number) => new Promise<void>((resolve) => server.listen(port, '127.0.0.1', resolve));
+  await listen(0);
+  const { port } = server.address() as AddressInfo;
+  const stop = async () => {
+    server.closeAllConnections();
+    await new Promise((resolve) => server.close(resolve));
+  };
+  onTestFinished(async () => {
+    if (server.listening) await stop();
+    store.close();
+  });
+  return {
+    origin: `http://127.0.0.1:${port}`,
+    store,
+    stop,
+    async restart() {
+      server = createServer(routes);
+      await listen(port);
+    },
+  };
+}
+
+let vaults = 0;
+
+/** A device with a vault of its own and a clock that rises with every look. */
+async function device(origin: string) {
+  vaults += 1;
+  const name = `vault ${vaults}`;
+  let now = 1e9;
+  const client = createParticipantClient(origin);
+  const options = (vault: StudyVault | null) => ({
+    client,
+    vault,
+    now: () => {
+      now += 1;
+      return now;
+    },
+    onChange: () => undefined,
+  });
+  const vault = await openStudyVault(name);
+  const claim = await client.claim('paper', 'P01');
+  const first = createParticipantSession(
+    startSession(claim, 'paper', 'P01'),
+    { records: [], motion: [] },
+    options(vault),
+  );
+  return {
+    first,
+    claim,
+    options,
+    vault,
+    /** The page is loaded again: nothing is left but the vault. */
+    async reload(): Promise<ParticipantSession> {
+      const again = await openStudyVault(name);
+      const kept = await again.session('paper', 'P01');
+      if (!kept) throw new Error('the vault holds no session');
+      const left = { records: await again.records('paper', 'P01'), motion: await again.motion('paper', 'P01') };
+      const session = createParticipantSession(kept, left, options(again));
+      session.apply({ type: 'reload' });
+      return session;
+    },
+  };
+}
+
+function toTheFirstQuestion(session: ParticipantSession, motion = false): void {
+  const said = [
+    session.apply({ type: 'consent', motion, version: plan.consent.version }),
+    session.apply({ type: 'demographics', demographics: somebody }),
+    session.apply({ type: 'calibrated', calibration }),
+    session.apply({ type: 'start' }),
+    session.apply({ type: 'trial-finished', outcome: outcomeOf(10) }),
+    session.apply({ type: 'start' }),
+    session.apply({ type: 'trial-finished', outcome: outcomeOf(40) }),
+  ];
+  expect(said).toEqual(said.map(() => null));
+  // A rest is over when enough ticks of this clock have passed.
+  for (let i = 0; i < 200 && session.step.kind === 'rest'; i++) session.apply({ type: 'tick' });
+  expect(session.step.kind).toBe('questionnaire');
+}
+
+test('what the server has acknowledged leaves the device, and nothing before', async () => {
+  const { origin, store } = await studyServer();
+  const { first, vault } = await device(origin);
+  toTheFirstQuestion(first);
+  await first.settled();
+  expect((await vault.records('paper', 'P01')).map(({ kind }) => kind)).toEqual([
+    'consent',
+    'demographics',
+    'calibration',
+    'trial',
+    'trial',
+  ]);
+  expect(store.records('paper')).toEqual([]);
+  await first.exchange();
+  expect(store.records('paper').map(({ kind }) => kind)).toEqual([
+    'consent',
+    'demographics',
+    'calibration',
+    'trial',
+    'trial',
+  ]);
+  expect(await vault.records('paper', 'P01')).toEqual([]);
+  expect(first.safekeeping).toEqual({
+    unsent: 0,
+    unsaved: 0,
+    storageFault: null,
+    online: true,
+    refusal: null,
+    lockedOut: false,
+  });
+  expect(store.progress('paper', 'P01')?.step).toBe(first.step.id);
+});
+
+test('a reload in a questionnaire without a network goes on at the same question, and all is sent later', async () => {
+  const server = await studyServer();
+  const { first, reload } = await device(server.origin);
+  await server.stop();
+  toTheFirstQuestion(first);
+  first.apply({ type: 'answer', question: 'Q1', value: 4 });
+  first.apply({ type: 'answer', question: 'Q2', value: 5 });
+  await first.exchange();
+  expect(first.safekeeping.online).toBe(false);
+  expect(first.safekeeping.unsent).toBe(5);
+
+  const second = await reload();
+  expect(second.step.id).toBe(first.step.id);
+  expect(second.progress.draft).toEqual({ Q1: 4, Q2: 5 });
+  expect(second.calibration).toEqual(calibration);
+  for (const question of ['Q3', 'Q4', 'Q5', 'Q6', 'Q7']) second.apply({ type: 'answer', question, value: 3 });
+  expect(second.apply({ type: 'submit' })).toBe(null);
+  await second.exchange();
+  expect(second.safekeeping.online).toBe(false);
+
+  await server.restart();
+  const third = await reload();
+  await third.exchange();
+  expect(third.safekeeping).toMatchObject({ unsent: 0, online: true, refusal: null });
+  const answers = server.store.records('paper').find(({ kind }) => kind === 'answers');
+  expect(answers?.body).toMatchObject({ answers: { Q1: 4, Q2: 5, Q3: 3, Q4: 3, Q5: 3, Q6: 3, Q7: 3 } });
+});
+
+test('a full device says so, keeps the answers in the page, and stores them when there is room again', async () => {
+  const server = await studyServer();
+  const { first, vault } = await device(server.origin);
+  await first.settled();
+  await server.stop();
+  const put = vi.spyOn(IDBObjectStore.prototype, 'put').mockImplementation(() => {
+    throw new DOMException('the quota is used up', 'QuotaExceededError');
+  });
+  toTheFirstQuestion(first);
+  await first.exchange();
+  expect(first.safekeeping).toMatchObject({
+    unsent: 5,
+    unsaved: 5,
+    storageFault: 'the quota is used up',
+    online: false,
+  });
+  put.mockRestore();
+  await first.exchange();
+  expect(first.safekeeping).toMatchObject({ unsent: 5, unsaved: 0, storageFault: null });
+  expect(await vault.records('paper', 'P01')).toHaveLength(5);
+  await server.restart();
+  await first.exchange();
+  expect(server.store.records('paper')).toHaveLength(5);
+});
+
+test('a full device with a network loses nothing either', async () => {
+  const server = await studyServer();
+  const { first } = await device(server.origin);
+  vi.spyOn(IDBObjectStore.prototype, 'put').mockImplementation(() => {
+    throw new DOMException('the quota is used up', 'QuotaExceededError');
+  });
+  toTheFirstQuestion(first);
+  await first.exchange();
+  expect(server.store.records('paper')).toHaveLength(5);
+  expect(first.safekeeping).toMatchObject({ unsent: 0, unsaved: 0 });
+});
+
+test('a browser without storage sends everything all the same', async () => {
+  const { origin, store } = await studyServer();
+  const { claim, options } = await device(origin);
+  const session = createParticipantSession(
+    startSession(claim, 'paper', 'P01'),
+    { records: [], motion: [] },
+    options(null),
+  );
+  toTheFirstQuestion(session);
+  expect(session.safekeeping).toMatchObject({ unsaved: 5, storageFault: 'this browser offers no storage' });
+  await session.exchange();
+  expect(store.records('paper')).toHaveLength(5);
+});
+
+test('the experimenter’s commands are followed once, also across a reload; one out of place is remarked', async () => {
+  const { origin, store } = await studyServer();
+  const { first, reload } = await device(origin);
+  toTheFirstQuestion(first);
+  const experimenter = createExperimenterClient(token, origin);
+  await experimenter.command('paper', 'P01', { type: 'pause' });
+  await first.exchange();
+  expect(first.progress.paused).toBe(true);
+  expect(store.overview('paper', 1e9)[0]?.session?.paused).toBe(true);
+  first.apply({ type: 'resume' });
+  await first.settled();
+
+  const second = await reload();
+  await second.exchange();
+  expect(second.progress.paused).toBe(false);
+  await experimenter.command('paper', 'P01', { type: 'start' });
+  await experimenter.command('paper', 'P01', { type: 'void-block', reason: 'the phone rang', repeat: true });
+  await second.exchange();
+  expect(second.step.id).toBe('archery/1/calibration');
+  const said = store.records('paper').flatMap((record) => (record.kind === 'event' ? [record.body] : []));
+  expect(said).toContainEqual(expect.objectContaining({ type: 'remark', text: expect.stringContaining('"start"') }));
+  expect(said).toContainEqual(expect.objectContaining({ type: 'void-block', reason: 'the phone rang' }));
+});
+
+test('tracked frames reach the server with consent to them, and leave the device then', async () => {
+  const { origin, store } = await studyServer();
+  const { first, vault } = await device(origin);
+  toTheFirstQuestion(first, true);
+  const upright = { orientation: { x: 0, y: 0, z: 0, w: 1 }, tracking: 'tracked' } as const;
+  const frame: TrackingFrame = {
+    time: 1,
+    head: { position: { x: 0, y: 1.6, z: 0 }, ...upright },
+    leftHand: null,
+    rightHand: null,
+  };
+  const recording = writeRecording({ device: 'Test headset', rateHz: 72, calibration, frames: [frame] });
+  first.keepMotion('archery/1/trial-1@1.1:trial', recording);
+  await first.settled();
+  expect(await vault.motion('paper', 'P01')).toHaveLength(1);
+  await first.exchange();
+  expect(store.motion('paper').map(({ trial, text }) => [trial, text])).toEqual([
+    ['archery/1/trial-1@1.1:trial', recording],
+  ]);
+  expect(await vault.motion('paper', 'P01')).toEqual([]);
+});
+
+test('a device whose place was released stops, and can forget', async () => {
+  const { origin } = await studyServer();
+  const { first, vault } = await device(origin);
+  toTheFirstQuestion(first);
+  await first.exchange();
+  expect(first.safekeeping.lockedOut).toBe(false);
+  await createExperimenterClient(token, origin).release('paper', 'P01');
+  await first.exchange();
+  expect(first.safekeeping.lockedOut).toBe(true);
+  await vault.forget('paper', 'P01');
+  expect(await vault.session('paper', 'P01')).toBe(null);
+});
+
+test('what the server knows later than a device with full storage is where the session goes on', async () => {
+  const { origin, store } = await studyServer();
+  const { first } = await device(origin);
+  const early = first.progress;
+  toTheFirstQuestion(first);
+  await first.exchange();
+  const known = store.progress('paper', 'P01');
+  if (!known) throw new Error('nothing was reported');
+  expect(isLater(first.schedule, known, early)).toBe(true);
+  expect(isLater(first.schedule, early, known)).toBe(false);
+  expect(isLater(first.schedule, known, known)).toBe(false);
+  first.apply({ type: 'void-block', reason: 'the phone rang', repeat: true });
+  expect(isLater(first.schedule, first.progress, known)).toBe(true);
+});
+
+test('a record that the server refuses is reported and kept, and does not hold up the others', async () => {
+  const { origin, store } = await studyServer();
+  const { first, vault } = await device(origin);
+  toTheFirstQuestion(first);
+  await first.exchange();
+  const [stored] = store.records('paper').filter(({ kind }) => kind === 'demographics');
+  if (!stored) throw new Error('there are no demographics');
+  // Another story under an id that is taken, as after a device was set back to an old backup.
+  await vault.save((await vault.session('paper', 'P01')) as never, [{ ...stored, at: stored.at + 5 }]);
+  const kept = await vault.session('paper', 'P01');
+  const again = createParticipantSession(
+    kept as NonNullable<typeof kept>,
+    { records: await vault.records('paper', 'P01'), motion: [] },
+    { client: createParticipantClient(origin), vault, now: () => 2e9, onChange: () => undefined },
+  );
+  for (const question of ['Q1', 'Q2', 'Q3', 'Q4', 'Q5', 'Q6', 'Q7'])
+    again.apply({ type: 'answer', question, value: 2 });
+  again.apply({ type: 'submit' });
+  await again.exchange();
+  expect(store.records('paper').some(({ kind }) => kind === 'answers')).toBe(true);
+  expect(again.safekeeping).toMatchObject({
+    unsent: 1,
+    online: true,
+    refusal: expect.stringContaining('something else'),
+  });
+});

@@ -1,0 +1,50 @@
+import { strToU8, zipSync } from 'fflate';
+import { expect, test } from 'vitest';
+import { nullAnswerModel } from '../../scripts/study-simulate/answer-model';
+import { statedPerformanceModel } from '../../scripts/study-simulate/performance-model';
+import { simulatedPlan, simulateStudy } from '../../scripts/study-simulate/simulate-study';
+import { exportZip } from '../../server/study-export';
+import { compareAnswers } from '../../src/core/study/compare-conditions';
+import { comparisonTable, paperTable } from '../../src/core/study/result-tables';
+import { answersIn } from '../../src/core/study/study-tables';
+import { tidyCsv } from '../../src/core/study/tidy-csv';
+import { openStudyFile } from '../../src/study/study-file';
+import { paperPlan } from '../core/study/studies';
+
+const plan = simulatedPlan(paperPlan());
+const models = { answers: nullAnswerModel, performance: statedPerformanceModel };
+const records = simulateStudy(plan, models, 1, 1e9).flatMap((one) => one.records);
+const exported = exportZip({ plan, simulated: true, records, motion: [], at: 1e9, retentionUntil: null });
+
+test('an export opens again as what was exported, its mark of simulation included', () => {
+  expect(openStudyFile(exported)).toEqual({ plan, simulated: true, records });
+});
+
+test.each<[string, Uint8Array, RegExp]>([
+  ['no zip', strToU8('hello'), /no export of a study/],
+  ['another zip', zipSync({ 'a.txt': strToU8('a') }), /holds no plan\.json/],
+  ['a broken plan', zipSync({ 'plan.json': strToU8('{') }), /plan\.json/],
+  [
+    'records that are none',
+    zipSync({ 'plan.json': strToU8(JSON.stringify(plan)), 'records.json': strToU8('{"records":[{"id":"x"}]}') }),
+    /records\[0\]/,
+  ],
+])('%s is refused in a sentence', (_, file, message) => {
+  expect(() => openStudyFile(file)).toThrow(message);
+});
+
+test('the table of comparisons has a row per question and full precision, and says that it is simulated', () => {
+  const { comparisons } = compareAnswers(answersIn(records), ['learned', 'ik']);
+  const csv = tidyCsv(comparisonTable('answers', comparisons, ['learned', 'ik'], true))
+    .trimEnd()
+    .split('\r\n');
+  expect(csv).toHaveLength(13);
+  for (const line of csv.slice(1)) expect(line.startsWith('TRUE,Q')).toBe(true);
+  const [first] = comparisons;
+  expect(csv[1]).toContain(String(first?.test?.p));
+});
+
+test('the table of the paper’s numbers marks Q1 and Q11', () => {
+  const wrong = paperTable().rows.filter(({ follows }) => follows === false);
+  expect(wrong.map(({ question }) => question)).toEqual(['Q1', 'Q11']);
+});
