@@ -97,6 +97,7 @@ export const faultRows = {
       'tests/reliability/comfort.test.ts',
       'tests/games/archery/boards.test.ts',
       'tests/games/archery/captions.test.ts',
+      'tests/core/study/trial-log.test.ts',
     ],
     manual: ['Push a stick to the side: one step of 30°, dark edges for a moment, no nausea.'],
   },
