@@ -205,8 +205,9 @@ test('a participant from consent to the end, with a reload in a questionnaire', 
   expect(trials.map(({ body }) => body.condition === null)).toEqual([true, false, false]);
   for (const { body } of trials) {
     expect(body.outcome.ended).toBe('time');
-    expect(body.outcome.frames.count).toBeGreaterThan(20);
-    expect(Object.keys(body.outcome.frames.stages)).toContain('frame');
+    // How many frames there are in some seconds is the machine's affair; each of them was timed.
+    expect(body.outcome.frames.count).toBeGreaterThan(1);
+    expect(body.outcome.frames.stages.frame?.count).toBe(body.outcome.frames.count);
     expect(body.outcome.device.input).toBe('simulated');
     expect(body.outcome.calibration?.eyeHeight).toBeCloseTo(1.7, 1);
   }

@@ -163,7 +163,8 @@ test('500 clients reconnect at once', async () => {
     "an idle process's p99 [ms]": machine.lagP99Ms,
   });
   expect(took).toBeLessThan(15);
-  expect(lagP99Ms).toBeLessThan(100 + 2 * machine.lagP99Ms);
+  // 100 ms are the promise. Where an idle process waits too, five hundred clients share its cores: then much more.
+  expect(lagP99Ms).toBeLessThan(100 + 20 * Math.max(0, machine.lagP99Ms - 10));
 }, 120_000);
 
 /** Somebody in an open room who sends thirty poses a second, and when they heard of others. */

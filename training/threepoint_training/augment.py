@@ -168,17 +168,19 @@ def rest_lost_hands(positions: Array, rotations: Array, lost: NDArray[np.bool_],
     p = load_proportions()
     yaw = quaternion.heading(rotations[:, 0])
     positions, rotations = positions.copy(), rotations.copy()
-    shoulder = positions[:, 0, 1] + (-p["eyesInHead"][0] - p["neckToHead"][0] + p["clavicle"][1]) * eye_height
+    eyes = eye_height[:, None] * np.array([0.0, p["eyesInHead"][0], -p["eyesInHead"][1]])
+    head_joint = positions[:, 0] - quaternion.rotate(rotations[:, 0], eyes)
+    shoulder = head_joint[:, 1] + (p["clavicle"][1] - p["neckToHead"][0]) * eye_height
     for hand, sign in ((0, -1.0), (1, 1.0)):
         local = np.stack(
             [
-                sign * (p["clavicleRoot"] + p["clavicle"][0] + 0.05) * eye_height,
-                np.maximum(shoulder - 0.96 * arm, 0.06 * eye_height),
-                0.02 * eye_height,
+                sign * ((p["clavicleRoot"] + p["clavicle"][0]) * eye_height + 0.1 * arm),
+                np.maximum(shoulder - 0.93 * arm, 0.06 * eye_height),
+                (p["neckToHead"][1] - p["clavicle"][2]) * eye_height - 0.06 * arm,
             ],
             axis=-1,
         )
-        rest = quaternion.rotate(yaw, local) + positions[:, 0] * np.array([1.0, 0.0, 1.0])
+        rest = quaternion.rotate(yaw, local) + head_joint * np.array([1.0, 0.0, 1.0])
         axes = np.array([[0.0, sign, 0.0], [0.0, 0.0, 1.0], [sign, 0.0, 0.0]])
         turn = quaternion.multiply(yaw, np.broadcast_to(quaternion.from_matrix(axes), yaw.shape))
         chosen = lost[:, hand, None]

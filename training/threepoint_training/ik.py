@@ -12,6 +12,9 @@ from .skeleton import Body
 
 Array = NDArray[np.float64]
 
+# The collarbone's tip moves from rest by at most this share of its length; src/core/estimation/solve-ik.ts says the same.
+GIRDLE_SHIFT = 0.9
+
 PARAMETERS_FILE = Path(__file__).parents[2] / "src/core/estimation/ik-parameters.json"
 
 
@@ -97,6 +100,9 @@ def solve(positions: Array, rotations: Array, body: Body, parameters: dict[str, 
         reach = in_chest(wrist - neck) - body.shoulder
         q = reach / a
         shift = e * (np.concatenate([one, q], -1) @ girdle.T)
+        # Hands crossed low would fold the collarbone over.
+        length = np.linalg.norm(shift, axis=-1, keepdims=True)
+        shift = shift * np.minimum(1, GIRDLE_SHIFT * clavicle / np.maximum(length, 1e-12))
         rest = body.shoulder - body.clavicle_root
         shoulder = neck + _apply(chest, (body.clavicle_root + clavicle * _normalise(rest + shift)) * mirror)
 

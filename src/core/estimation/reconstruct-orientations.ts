@@ -1,8 +1,8 @@
 import type { UpperBodyPose } from '../body/avatar-pose';
 import type { JointName, Side } from '../body/joints';
 import { type Skeleton, sideSign, wristFromHandBone } from '../body/skeleton';
-import { solveTwoBones } from '../body/two-bone-ik';
-import { clamp, smoothstep } from '../math/damper';
+import { solveTwoBones, type TwoBoneSolution } from '../body/two-bone-ik';
+import { clamp, dampedShare, smoothstep } from '../math/damper';
 import type { Pose } from '../math/pose';
 import {
   alignDirections,
@@ -40,24 +40,44 @@ import type { JointPositions } from './joint-positions';
 /** What is known of one frame, floor frame: head and hands as they are, the six joints as somebody estimates them. */
 export interface Estimate {
   readonly head: Pose<'floor'>;
-  readonly leftHand: Pose<'floor'>;
-  readonly rightHand: Pose<'floor'>;
+  readonly leftHand: EstimatedHand;
+  readonly rightHand: EstimatedHand;
   readonly joints: JointPositions;
 }
 
+/**
+ * A wrist, floor frame. trust in [0, 1]: how far the trunk goes after it where the arm alone is too short; left out: all the way. Not
+ * seen: no further than it went before the hand was lost.
+ */
+export type EstimatedHand = Pose<'floor'> & { readonly trust?: number; readonly seen?: boolean };
+
 /** What one avatar's arms remember from frame to frame, so that no elbow flips. Chest frame. */
 export interface ArmMemory {
-  pole: Vec3;
+  /** From the shoulder to the wrist, unit. */
+  readonly axis: Vec3;
+  /** Where the elbow points from that line, unit. */
+  readonly pole: Vec3;
   /** Unwrapped angle [rad] by which the hand is turned about the forearm. */
-  twist: number;
+  readonly twist: number;
+  /** How much of it the forearm takes [rad]. */
+  readonly forearmTwist: number;
 }
 
 export interface ReconstructionMemory {
   left: ArmMemory | null;
   right: ArmMemory | null;
+  /** From the left to the right shoulder, unit, floor frame. */
+  shoulderLine: Vec3 | null;
+  /** By how much [m] the hands were out of reach when they were last seen. */
+  readonly missing: Record<Side, number>;
 }
 
-export const emptyMemory = (): ReconstructionMemory => ({ left: null, right: null });
+export const emptyMemory = (): ReconstructionMemory => ({
+  left: null,
+  right: null,
+  shoulderLine: null,
+  missing: { left: 0, right: 0 },
+});
 
 interface TrunkLimits {
   /** How far the collarbone swings from rest [rad]. */
@@ -72,14 +92,34 @@ const extreme: TrunkLimits = { clavicle: 1.2, neck: 1.8 };
 /** How far a wrist bends against the forearm [rad]: 90°, the extreme of flexion. */
 const wristLimit = Math.PI / 2;
 /** An elbow circles the line from shoulder to wrist at most this fast [rad/s]; a punch's elbow does 10. */
-const swivelSpeed = 14;
-/** Elbow estimates nearer to the arm's line than this [m] say little about the side it points to. */
+const swivelSpeed = 12;
+/** The same where the hand is a guess. */
+const guessedSwivelSpeed = 5;
+/** Longest half-life [s] of the way that an elbow follows, where its estimate says little about the side it points to. */
+const unsureHalfLife = 0.35;
+/** An estimated elbow nearer to the arm's line than this [m] says little: the arm is nearly straight. */
 const unsurePole = 0.04;
-/** The trunk as an ellipse across [share of the thorax's length]: half width and half depth, skin and elbow included. */
+/** A hand nearer to the shoulder than the first says nothing about the line between them, further than the second all [arm lengths]. */
+const [handAtShoulder, handAway] = [0.1, 0.3];
+/** A forearm turns at most this fast [rad/s] about itself; a quick pronation does 15. */
+const forearmSpeed = 20;
+/** The trunk as a capsule, skin and elbow included: half width, half depth, and height of the caps [share of the thorax's length]. */
 const trunkHalfWidth = 1.2;
 const trunkHalfDepth = 0.85;
+const trunkCap = 0.5;
+
+/** Shoulders turn at most this fast [rad/s]; a pirouette's do 12. */
+const trunkSpeed = 12;
+/** Longest half-life [s] of the way that the shoulders' line follows, where their estimates lie so close that it says little. */
+const vagueLineHalfLife = 0.15;
+/** Shoulders nearer to each other than this say nothing, further apart than that all [share of their distance at rest]. */
+const [vagueShoulders, sureShoulders] = [0.2, 0.7];
+
+/** The shoulders' line of this frame from the way between their targets. */
+type LineFollower = (between: Vec3, fallback: Vec3) => Vec3;
 
 interface Torso {
+  readonly shoulderLine: Vec3;
   readonly hips: Vec3;
   readonly chest: Vec3;
   readonly neck: Vec3;
@@ -101,16 +141,26 @@ export function reconstructOrientations(
   const { head } = estimate;
   const headJoint = subtract(head.position, rotate(head.orientation, skeleton.eyesInHead));
   const reach = reachOf(skeleton);
+  const followLine = lineFollower(skeleton, memory.shoulderLine, deltaSeconds);
 
   // The trunk leans and turns after hands that the arms alone cannot reach. Overshoot: collarbone and neck take part of the way.
   let shoulderTargets = { left: estimate.joints.leftUpperArm, right: estimate.joints.rightUpperArm };
-  let torso = placeTorso(head, headJoint, shoulderTargets, estimate.joints, skeleton, anatomy);
+  let torso = placeTorso(head, headJoint, shoulderTargets, estimate.joints, skeleton, anatomy, followLine);
   let shoulders = placeShoulders(torso, shoulderTargets, skeleton, anatomy);
+  // A guessed hand does not bend the trunk: what it is out of reach by stays so, as far as the hand is not trusted.
+  const outOfReach = (side: Side): number => {
+    const { position, trust = 1, seen = true } = wristOf(estimate, side);
+    const missing = Math.max(distance(position, shoulders[side].position) - reach, 0);
+    if (!seen) return Math.max(missing - trust * memory.missing[side], 0);
+    memory.missing[side] = trust * missing;
+    return (1 - trust) * missing;
+  };
+  const given = { left: outOfReach('left'), right: outOfReach('right') };
   for (let pass = 0; pass < reachPasses; pass++) {
     const limits = pass < anatomicalPasses ? anatomy : extreme;
     const pull = (side: Side): Vec3 | null => {
       const toWrist = subtract(wristOf(estimate, side).position, shoulders[side].position);
-      const missing = length(toWrist) - reach;
+      const missing = length(toWrist) - reach - given[side];
       return missing > 1e-5 ? scale(normalise(toWrist), missing * 1.3) : null;
     };
     const left = pull('left');
@@ -120,9 +170,11 @@ export function reconstructOrientations(
       left: left ? add(shoulderTargets.left, left) : shoulderTargets.left,
       right: rightPull ? add(shoulderTargets.right, rightPull) : shoulderTargets.right,
     };
-    torso = placeTorso(head, headJoint, shoulderTargets, estimate.joints, skeleton, limits);
+    torso = placeTorso(head, headJoint, shoulderTargets, estimate.joints, skeleton, limits, followLine);
     shoulders = placeShoulders(torso, shoulderTargets, skeleton, limits);
   }
+
+  memory.shoulderLine = torso.shoulderLine;
 
   const leftArm = placeArm('left', estimate, torso, shoulders.left, skeleton, memory, deltaSeconds);
   const rightArm = placeArm('right', estimate, torso, shoulders.right, skeleton, memory, deltaSeconds);
@@ -150,12 +202,30 @@ export function reconstructOrientations(
 const reachPasses = 20;
 const anatomicalPasses = 8;
 
-const wristOf = (estimate: Estimate, side: Side): Pose<'floor'> =>
+const wristOf = (estimate: Estimate, side: Side): EstimatedHand =>
   side === 'left' ? estimate.leftHand : estimate.rightHand;
 
 /** Shoulder to wrist of a straight arm [m], a hair less, so that the elbow keeps a side. */
 const reachOf = ({ restOffsets }: Skeleton): number =>
   (length(restOffsets.rightLowerArm) + length(restOffsets.rightHand)) * (1 - 1e-5);
+
+/** Follows the shoulders' line: never faster than `trunkSpeed`, and slowly where the shoulders are estimated close together. */
+function lineFollower({ restOffsets }: Skeleton, before: Vec3 | null, deltaSeconds: number): LineFollower {
+  const width = 2 * (restOffsets.rightShoulder.x + restOffsets.rightUpperArm.x);
+  return (between, fallback) => {
+    const wanted = normalise(between, before ?? fallback);
+    if (!before) return wanted;
+    const sure = smoothstep(vagueShoulders, sureShoulders, length(between) / width);
+    const angle = Math.atan2(length(cross(before, wanted)), dot(before, wanted));
+    const way = Math.min(
+      angle * dampedShare(vagueLineHalfLife * (1 - sure), deltaSeconds),
+      trunkSpeed * Math.max(deltaSeconds, 0),
+    );
+    if (angle - way < 1e-9) return wanted;
+    const aside = normalise(cross(cross(before, wanted), before), fallback);
+    return normalise(addScaled(scale(before, Math.cos(way)), aside, Math.sin(way)));
+  };
+}
 
 /** Neck, chest joint and hips on their bones' lengths below the head, and how each vertebra turns. */
 function placeTorso(
@@ -165,10 +235,11 @@ function placeTorso(
   joints: JointPositions,
   { restOffsets }: Skeleton,
   limits: TrunkLimits,
+  followLine: LineFollower,
 ): Torso {
   const headingRight = rotate(headingOf(head.orientation), right);
   const middle = lerp(shoulderTargets.left, shoulderTargets.right, 0.5);
-  const shoulderLine = normalise(subtract(shoulderTargets.right, shoulderTargets.left), headingRight);
+  const shoulderLine = followLine(subtract(shoulderTargets.right, shoulderTargets.left), headingRight);
   const thoraxRest = add(restOffsets.upperChest, restOffsets.neck);
   const thoraxLength = length(thoraxRest);
 
@@ -190,8 +261,10 @@ function placeTorso(
   const neckBend = limitAngle(between(neckRest, subtract(headJoint, impliedNeck)), limits.neck);
   const neck = subtract(headJoint, rotate(neckBend, neckRest));
 
-  // Chest joint and hips follow half of what the neck was moved by.
-  const moved = scale(subtract(neck, impliedNeck), 0.5);
+  // Chest joint and hips follow half of what the neck was moved by; a hand far out of reach does not throw them about.
+  const shift = subtract(neck, impliedNeck);
+  const furthest = length(restOffsets.head);
+  const moved = scale(shift, 0.5 * Math.min(1, furthest / Math.max(length(shift), 1e-9)));
   const thoraxUp = normalise(subtract(neck, add(joints.chest, moved)), roughUp);
   const chest = addScaled(neck, thoraxUp, -thoraxLength);
   const lowerBackRest = add(restOffsets.spine, restOffsets.chest);
@@ -202,6 +275,7 @@ function placeTorso(
   const pelvisLine = normalise(lerp(shoulderLine, headingRight, 0.35), shoulderLine);
   const headRight = rotate(head.orientation, right);
   return {
+    shoulderLine,
     hips,
     chest,
     neck,
@@ -275,10 +349,23 @@ function placeArm(
   const downAndBack = rotate(floorFromChest, normalise(vec3(0.2 * sigma, -1, 0.5)));
   const fallbacks: [Vec3, Vec3] = [downAndBack, rotate(floorFromChest, vec3(0, 0, 1))];
 
-  const pole = steadyPole(side, estimate, floorFromChest, wrist.position, memory, deltaSeconds, fallbacks);
+  const before = memory[side];
   const solve = (direction: Vec3) =>
     solveTwoBones(shoulder.position, wrist.position, upperArm, forearm, direction, fallbacks);
-  const solution = clearOfTrunk(sigma, torso, solve, solve(pole));
+  const circle = elbowCircle(solve(downAndBack), shoulder.position);
+  const goal = wantedPole(side, estimate, circle, fallbacks);
+  const pole = steadyPole(
+    sigma,
+    goal,
+    circle,
+    torso,
+    floorFromChest,
+    before,
+    wrist.trust ?? 1,
+    upperArm + forearm,
+    deltaSeconds,
+  );
+  const solution = solve(pole);
 
   // The plane of shoulder, elbow and wrist: its normal is the elbow's hinge, +Y at rest on the right, −Y on the left.
   const along = vec3(sigma, 0, 0);
@@ -291,74 +378,144 @@ function placeArm(
   const hand = multiply(wrist.orientation, wristFromHandBone[side]);
   const handInForearm = multiply(conjugate(untwisted), hand);
   const raw = twistAngle(swingTwist(handInForearm, along).twist, along);
-  const previous = memory[side]?.twist ?? 0;
+  const previous = before?.twist ?? 0;
   const unwrapped = raw + 2 * Math.PI * Math.round((previous - raw) / (2 * Math.PI));
   const twist = Math.abs(unwrapped) > 1.25 * Math.PI ? raw : unwrapped;
-  const lowerArm = multiply(untwisted, fromAxisAngle(along, clamp(twist, -Math.PI, Math.PI) / 2));
-  memory[side] = { pole: rotate(conjugate(floorFromChest), solution.pole), twist };
+  const share = clamp(twist, -Math.PI, Math.PI) / 2;
+  const turn = forearmSpeed * Math.max(deltaSeconds, 0);
+  const forearmTwist = before ? clamp(share, before.forearmTwist - turn, before.forearmTwist + turn) : share;
+  const lowerArm = multiply(untwisted, fromAxisAngle(along, forearmTwist));
+  const toChest = conjugate(floorFromChest);
+  memory[side] = { axis: rotate(toChest, solution.axis), pole: rotate(toChest, solution.pole), twist, forearmTwist };
 
   const bend = swingTwist(multiply(conjugate(lowerArm), hand), along);
   const limited = multiply(limitAngle(bend.swing, wristLimit), limitAngle(bend.twist, wristLimit));
   return { upperArm: upperArmRotation, lowerArm, hand: multiply(lowerArm, limited) };
 }
 
-/** Where the estimated elbow points from its own arm's line, steadied: an unsure estimate keeps the side it had. */
-function steadyPole(
-  side: Side,
-  { joints }: Estimate,
-  floorFromChest: Quat,
-  wrist: Vec3,
-  memory: ReconstructionMemory,
-  deltaSeconds: number,
-  [fallback]: readonly [Vec3, Vec3],
-): Vec3 {
-  const shoulder = side === 'left' ? joints.leftUpperArm : joints.rightUpperArm;
-  const elbow = side === 'left' ? joints.leftLowerArm : joints.rightLowerArm;
-  const axis = normalise(subtract(wrist, shoulder), fallback);
-  const estimated = reject(subtract(elbow, shoulder), axis);
-  const before = memory[side];
-  const kept = before ? rotate(floorFromChest, before.pole) : fallback;
-  const keptAcross = normalise(reject(kept, axis), reject(fallback, axis));
-  const sure = smoothstep(0, unsurePole, length(estimated));
-  // An unsure estimate is followed by its share of the way every 1/60 s, at any frame rate.
-  const share = before ? 1 - (1 - sure) ** (60 * Math.max(deltaSeconds, 0)) : sure;
-  const wanted = normalise(lerp(keptAcross, normalise(estimated, keptAcross), share), keptAcross);
-  if (!before) return wanted;
-  const angle = Math.atan2(dot(cross(keptAcross, wanted), axis), dot(keptAcross, wanted));
-  const most = swivelSpeed * Math.max(deltaSeconds, 0);
-  return Math.abs(angle) <= most ? wanted : rotate(fromAxisAngle(axis, Math.sign(angle) * most), keptAcross);
+/** All places of an elbow: a circle about the line from shoulder to wrist. */
+interface ElbowCircle {
+  readonly centre: Vec3;
+  /** From shoulder to wrist, unit. */
+  readonly axis: Vec3;
+  readonly radius: number;
+  /** From shoulder to wrist [m], as far as the arm reaches. */
+  readonly span: number;
 }
 
-/** The same arm with its elbow swung outward as far as it takes to leave the trunk. */
-function clearOfTrunk<Solution extends { readonly elbow: Vec3; readonly axis: Vec3; readonly pole: Vec3 }>(
+function elbowCircle({ elbow, axis, pole }: TwoBoneSolution, shoulder: Vec3): ElbowCircle {
+  const radius = dot(subtract(elbow, shoulder), pole);
+  const centre = addScaled(elbow, pole, -radius);
+  return { centre, axis, radius, span: 2 * distance(centre, shoulder) };
+}
+
+/** Where the estimated elbow points from its own arm's line, and how sure that is, in [0, 1]. */
+function wantedPole(
+  side: Side,
+  { joints, leftHand, rightHand }: Estimate,
+  { axis }: ElbowCircle,
+  fallbacks: readonly [Vec3, Vec3],
+): { readonly direction: Vec3; readonly sure: number } {
+  const shoulder = side === 'left' ? joints.leftUpperArm : joints.rightUpperArm;
+  const elbow = side === 'left' ? joints.leftLowerArm : joints.rightLowerArm;
+  const wrist = side === 'left' ? leftHand : rightHand;
+  const ownAxis = normalise(subtract(wrist.position, shoulder), axis);
+  const aside = reject(subtract(elbow, shoulder), ownAxis);
+  let across = reject(aside, axis);
+  for (const fallback of fallbacks) if (length(across) < 1e-6) across = reject(fallback, axis);
+  return { direction: normalise(across), sure: smoothstep(0, unsurePole, length(aside)) };
+}
+
+/**
+ * Where the elbow points now: after its estimate by way of the trunk's outside, with bounded speed, and slowly where the estimate says
+ * little. The side it had is carried along as the arm moves. The first frame takes the estimate, out of the trunk.
+ */
+function steadyPole(
   sigma: number,
+  goal: { readonly direction: Vec3; readonly sure: number },
+  circle: ElbowCircle,
   torso: Torso,
-  solve: (pole: Vec3) => Solution,
-  solution: Solution,
-): Solution {
+  floorFromChest: Quat,
+  before: ArmMemory | null,
+  trust: number,
+  arm: number,
+  deltaSeconds: number,
+): Vec3 {
+  const { axis } = circle;
+  // Angles about the arm's line, from the direction that leads away from the trunk.
+  const outside = reject(rotate(floorFromChest, vec3(sigma, 0, 0)), axis);
+  const zero = normalise(length(outside) > 1e-3 ? outside : reject(rotate(floorFromChest, vec3(0, 0, 1)), axis));
+  const quarter = cross(axis, zero);
+  const angleOf = (direction: Vec3): number => Math.atan2(dot(direction, quarter), dot(direction, zero));
+  const poleAt = (angle: number): Vec3 => addScaled(scale(zero, Math.cos(angle)), quarter, Math.sin(angle));
+
+  const free = freeSwivel(circle, zero, quarter, torso);
+  const estimated = angleOf(goal.direction);
+  const wanted = free ? nearestWithin(estimated, free) : estimated;
+  if (!before) return poleAt(wanted);
+
+  const carried = rotate(between(rotate(floorFromChest, before.axis), axis), rotate(floorFromChest, before.pole));
+  const kept = angleOf(carried);
+  const inside = free !== null && nearestWithin(kept, free) !== kept;
+  // Free to move both ways round, the elbow takes the shorter; else the one that does not lead through the trunk.
+  const way = free && !inside ? wanted - kept : Math.atan2(Math.sin(wanted - kept), Math.cos(wanted - kept));
+  const sure = goal.sure * smoothstep(handAtShoulder * arm, handAway * arm, circle.span);
+  const followed = inside ? way : way * dampedShare(unsureHalfLife * (1 - sure) ** 3, deltaSeconds);
+  const most = (guessedSwivelSpeed + (swivelSpeed - guessedSwivelSpeed) * trust) * Math.max(deltaSeconds, 0);
+  return poleAt(kept + clamp(followed, -most, most));
+}
+
+/** The angles of a range [low, high] around 0 nearest to one in (−π, π]. */
+function nearestWithin(angle: number, [low, high]: readonly [number, number]): number {
+  if (angle >= low && angle <= high) return angle;
+  const beyond = (from: number) => Math.abs(Math.atan2(Math.sin(angle - from), Math.cos(angle - from)));
+  return beyond(low) < beyond(high) ? low : high;
+}
+
+/** Angles are looked at in steps of this [rad], borders found to a sixty-fourth of it. */
+const swivelStep = Math.PI / 18;
+
+/** The swivel angles about the outside at which an elbow is clear of the trunk; null: at all. */
+function freeSwivel(
+  { centre, radius }: ElbowCircle,
+  zero: Vec3,
+  quarter: Vec3,
+  torso: Torso,
+): readonly [number, number] | null {
   const unit = distance(torso.neck, torso.chest);
   const axisUp = normalise(subtract(torso.neck, torso.hips), up);
   const side = normalise(reject(rotate(torso.rotations.upperChest, right), axisUp), right);
-  const frame = conjugate(fromAxes(side, axisUp, cross(side, axisUp)));
+  const trunkFromFloor = conjugate(fromAxes(side, axisUp, cross(side, axisUp)));
   const height = distance(torso.neck, torso.hips);
+  const [c, u, v] = [
+    rotate(trunkFromFloor, subtract(centre, torso.hips)),
+    rotate(trunkFromFloor, scale(zero, radius)),
+    rotate(trunkFromFloor, scale(quarter, radius)),
+  ];
   /** Below 1 inside the trunk. */
-  const clearance = (elbow: Vec3): number => {
-    const p = rotate(frame, subtract(elbow, torso.hips));
-    if (p.y < -0.5 * unit || p.y > height) return 2;
-    return Math.hypot(p.x / (trunkHalfWidth * unit), p.z / (trunkHalfDepth * unit));
+  const clearance = (angle: number): number => {
+    const [cosine, sine] = [Math.cos(angle), Math.sin(angle)];
+    const y = c.y + u.y * cosine + v.y * sine;
+    const x = (c.x + u.x * cosine + v.x * sine) / (trunkHalfWidth * unit);
+    const z = (c.z + u.z * cosine + v.z * sine) / (trunkHalfDepth * unit);
+    const beyond = (y - clamp(y, 0, height)) / (trunkCap * unit);
+    return Math.sqrt(x * x + beyond * beyond + z * z);
   };
-  if (clearance(solution.elbow) >= 1) return solution;
-  const outward = reject(scale(side, sigma), solution.axis);
-  if (length(outward) < 1e-3) return solution;
-  const goal = normalise(outward);
-  const angle = Math.atan2(dot(cross(solution.pole, goal), solution.axis), dot(solution.pole, goal));
-  const swung = (share: number): Solution => solve(rotate(fromAxisAngle(solution.axis, angle * share), solution.pole));
-  let inside = 0;
-  let outside = 1;
-  for (let step = 0; step < 10; step++) {
-    const half = (inside + outside) / 2;
-    if (clearance(swung(half).elbow) >= 1) outside = half;
-    else inside = half;
-  }
-  return swung(outside);
+  /** From the outside on to one side: the last free angle. */
+  const border = (way: number): number => {
+    for (let step = 1; step <= 18; step++) {
+      if (clearance(way * step * swivelStep) >= 1) continue;
+      let [clear, blocked] = [(step - 1) * swivelStep, step * swivelStep];
+      for (let halving = 0; halving < 6; halving++) {
+        const middle = (clear + blocked) / 2;
+        if (clearance(way * middle) >= 1) clear = middle;
+        else blocked = middle;
+      }
+      return way * clear;
+    }
+    return way * Math.PI;
+  };
+  const high = border(1);
+  const low = border(-1);
+  return high === Math.PI && low === -Math.PI ? null : [low, high];
 }

@@ -21,6 +21,14 @@ import {
 import parameters from './ik-parameters.json';
 import type { JointPositions } from './joint-positions';
 
+/** The collarbone's tip moves from rest by at most this share of its length: beyond, hands crossed low would fold it over. */
+const girdleShift = 0.9;
+
+const limitLength = (v: Vec3, longest: number): Vec3 => {
+  const l = length(v);
+  return l > longest ? scale(v, longest / l) : v;
+};
+
 /** Head and wrists in the heading frame. */
 export interface ThreePoints {
   readonly head: Pose<'heading'>;
@@ -101,7 +109,10 @@ export function solveIk(points: ThreePoints, body: ChestSpaceBody): JointPositio
     // 6. Shoulder girdle: the collarbone swings with the hand.
     const restShoulder = add(body.clavicleRoot, body.clavicle);
     const q = scale(subtract(inChest(subtract(wrist.position, neck)), restShoulder), 1 / body.arm);
-    const shift = scale(affine(parameters.girdle, [1, q.x, q.y, q.z]), e);
+    const shift = limitLength(
+      scale(affine(parameters.girdle, [1, q.x, q.y, q.z]), e),
+      girdleShift * body.clavicleLength,
+    );
     const clavicle = scale(normalise(add(body.clavicle, shift), right), body.clavicleLength);
     const shoulder = add(neck, rotate(chest, mirrored(add(body.clavicleRoot, clavicle), sigma)));
 

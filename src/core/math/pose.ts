@@ -3,9 +3,10 @@ import { add, scale, type Vec3 } from './vec3';
 
 /**
  * The coordinate frames of the project, all right-handed, +Y up, −Z forward, metres (docs/frames.md).
- * floor: WebXR `local-floor`. heading: origin on the floor under the headset, yaw of the head. arena: shared by players.
+ * floor: WebXR `local-floor`. heading: origin on the floor under the headset, yaw of the head. body: origin on the
+ * floor under the head joint, yaw of the body (tracking/body-heading). arena: shared by players.
  */
-export type Frame = 'floor' | 'heading' | 'arena';
+export type Frame = 'floor' | 'heading' | 'body' | 'arena';
 
 declare const frame: unique symbol;
 

@@ -24,6 +24,7 @@ import {
   cross,
   distance,
   dot,
+  length,
   normalise,
   right,
   subtract,
@@ -32,8 +33,8 @@ import {
   vec3,
 } from '../../../src/core/math/vec3';
 import type { TrackedPose, TrackingFrame } from '../../../src/core/tracking/tracking-frame';
-import { number, seed } from '../arbitraries';
-import { standing, wristOrientation } from './moving-person';
+import { number, seed, standpoint } from '../arbitraries';
+import { movingPerson, standing, wristOrientation } from './moving-person';
 
 const calibration: Calibration = { eyeHeight: 1.62, armSpan: 1.53 };
 const degrees = Math.PI / 180;
@@ -231,6 +232,94 @@ describe('arms', () => {
       if (before) expect(distance(at(joints, 'rightLowerArm'), at(before, 'rightLowerArm'))).toBeLessThan(0.03);
       before = joints;
     }
+  });
+});
+
+describe('a hand that is lost', () => {
+  const skeleton = skeletonFromCalibration(calibration);
+  /** Somebody who crouches or bows: the head at this height, so far ahead of where it was, looking down by so much [rad]. */
+  const lowered = (time: number, height: number, ahead: number, down: number): TrackingFrame => ({
+    ...standing(calibration, hip.left, vec3(0.2, height - 0.3, -ahead - 0.3)),
+    time,
+    head: { position: vec3(0, height, -ahead), orientation: fromEulerYxz(vec3(-down, 0, 0)), tracking: 'tracked' },
+  });
+
+  test('does not pull the trunk after it when somebody crouches, bows or sits on the floor', () => {
+    const posture = fc.record({ height: number(0.5, 1.6), ahead: number(0, 0.5), down: number(0, 1.4) });
+    fc.assert(
+      fc.property(posture, ({ height, ahead, down }) => {
+        const estimator = createEstimator('ik', calibration);
+        let [joints, before]: [Joints | null, Joints | null] = [null, null];
+        for (let i = 0; i < 120; i++) {
+          const frame = lowered(i / 60, height, ahead, down);
+          const { body } = estimator.estimate(i < 20 ? frame : { ...frame, rightHand: null });
+          before = joints;
+          joints = forwardKinematics(skeleton, body!);
+          if (!before) continue;
+          for (const joint of ['hips', 'chest', 'neck', 'leftUpperArm', 'rightUpperArm', 'leftLowerArm'] as const) {
+            expect(distance(at(joints, joint), at(before, joint))).toBeLessThan(0.05);
+          }
+        }
+        // It rests below its shoulder, as far as the floor lets it.
+        expect(at(joints!, 'rightHand').y).toBeLessThan(at(joints!, 'rightUpperArm').y + 0.1);
+      }),
+      { seed },
+    );
+  });
+
+  test('comes and goes without a jump of any joint, whatever the person does meanwhile', () => {
+    fc.assert(
+      fc.property(fc.integer(), standpoint, number(0.1, 2), number(0, 60), (motion, place, seconds, start) => {
+        const person = movingPerson(motion, calibration, place);
+        const [whole, lossy] = [createEstimator('ik', calibration), createEstimator('ik', calibration)];
+        let before: { readonly whole: Joints; readonly lossy: Joints } | null = null;
+        for (let i = 0; i < 240; i++) {
+          const frame = person(start + i / 60);
+          const lost = i >= 30 && i < 30 + seconds * 60;
+          const now = {
+            whole: forwardKinematics(skeleton, whole.estimate(frame).body!),
+            lossy: forwardKinematics(skeleton, lossy.estimate(lost ? { ...frame, rightHand: null } : frame).body!),
+          };
+          for (const joint of before
+            ? (['hips', 'chest', 'rightUpperArm', 'rightLowerArm', 'rightHand'] as const)
+            : []) {
+            const own = distance(at(now.whole, joint), at(before!.whole, joint));
+            expect(distance(at(now.lossy, joint), at(before!.lossy, joint)) - own).toBeLessThan(0.065);
+          }
+          before = now;
+        }
+      }),
+      { seed, numRuns: 60 },
+    );
+  });
+
+  test('a pause begins anew: nothing of the arm before it is left', () => {
+    const person = movingPerson(7, calibration, { x: 1, z: -2, yaw: 2 });
+    const [used, fresh] = [createEstimator('ik', calibration), createEstimator('ik', calibration)];
+    for (let i = 0; i < 30; i++) used.estimate(person(i / 60));
+    const later = person(40);
+    expect(used.estimate(later)).toEqual(fresh.estimate(later));
+  });
+});
+
+describe('elbow and trunk', () => {
+  test('no elbow stays in the trunk, wherever the hand is held', () => {
+    const place = fc.record({ x: number(-0.35, 0.45), y: number(0.85, 1.5), z: number(-0.45, 0.1) });
+    fc.assert(
+      fc.property(place, (wrist) => {
+        const joints = bodyOf(standing(calibration, hip.left, vec3(wrist.x, wrist.y, wrist.z)));
+        const trunk = subtract(at(joints, 'neck'), at(joints, 'hips'));
+        const elbow = subtract(at(joints, 'rightLowerArm'), at(joints, 'hips'));
+        const share = Math.max(0, Math.min(1, dot(elbow, trunk) / dot(trunk, trunk)));
+        const off = addScaled(elbow, trunk, -share);
+        // The shoulder's own line turns the ellipse a little: its narrow half decides. A hand in the trunk has no free elbow.
+        const handOff = subtract(at(joints, 'rightHand'), at(joints, 'hips'));
+        const handShare = Math.max(0, Math.min(1, dot(handOff, trunk) / dot(trunk, trunk)));
+        const handAside = addScaled(handOff, trunk, -handShare);
+        if (Math.hypot(handAside.x, handAside.z) > 0.2) expect(length(off)).toBeGreaterThan(0.07);
+      }),
+      { seed, numRuns: 300 },
+    );
   });
 });
 

@@ -9,8 +9,23 @@ import { createEstimator, needsRegressor } from '../../../src/core/estimation/es
 import { estimatorNames, type PoseEstimator } from '../../../src/core/estimation/pose-estimator';
 import type { PoseRegressor } from '../../../src/core/estimation/pose-regressor';
 import { type Pose, transformPoint } from '../../../src/core/math/pose';
-import { fromAxisAngle, rotate } from '../../../src/core/math/quat';
-import { add, addScaled, distance, length, up, type Vec3, vec3 } from '../../../src/core/math/vec3';
+import { between, fromAxisAngle, multiply, rotate, swingTwist, twistAngle } from '../../../src/core/math/quat';
+import {
+  add,
+  addScaled,
+  cross,
+  distance,
+  dot,
+  length,
+  lerp,
+  normalise,
+  reject,
+  subtract,
+  up,
+  type Vec3,
+  vec3,
+} from '../../../src/core/math/vec3';
+import { headingOf } from '../../../src/core/tracking/heading';
 import type { TrackedPose, TrackingFrame } from '../../../src/core/tracking/tracking-frame';
 import { number, rotation, seed, standpoint, vector } from '../arbitraries';
 import { mirrorFrame, mirrorPoint, movingPerson, transformFrame, withHand } from './moving-person';
@@ -235,6 +250,65 @@ describe.each(estimatorNames)('%s', (name) => {
       runs(50),
     );
   });
+
+  bodyFact('no wrist bends or twists more than 90° from its forearm', async () => {
+    await fc.assert(
+      fc.asyncProperty(someone, rotation, async ({ at, calibration, start }, turn) => {
+        const estimator = create(calibration);
+        for (const time of times(start, 4)) {
+          const frame = at(time);
+          const rightHand = { ...frame.rightHand!, orientation: multiply(frame.rightHand!.orientation, turn) };
+          const { body } = await show(estimator, { ...frame, rightHand });
+          const along = vec3(1, 0, 0);
+          const wrist = body!.localRotations.rightHand;
+          const bend = Math.acos(Math.min(1, Math.max(-1, dot(rotate(wrist, along), along))));
+          expect(bend).toBeLessThan(Math.PI / 2 + 1e-6);
+          expect(Math.abs(twistAngle(swingTwist(wrist, along).twist, along))).toBeLessThan(Math.PI / 2 + 1e-6);
+        }
+      }),
+      runs(100),
+    );
+  });
+
+  bodyFact(
+    'an elbow goes steadily and never jumps to the other side of its arm, wherever hands and hand turns go',
+    async () => {
+      const jolt = fc.record({ x: number(-0.5, 0.5), y: number(-0.4, 0.5), z: number(-0.6, 0.3) });
+      await fc.assert(
+        fc.asyncProperty(
+          someone,
+          fc.array(jolt, { minLength: 3, maxLength: 3 }),
+          rotation,
+          async (who, jolts, turn) => {
+            const estimator = create(who.calibration);
+            let before: Joints | null = null;
+            for (const [i, time] of times(who.start, 24).entries()) {
+              // The hand glides by way of these places, turned anyhow: near the shoulder, behind, across the chest.
+              const frame = who.at(who.start + 0.1 * (time - who.start));
+              const [from, to] = [jolts[Math.floor(i / 12)]!, jolts[Math.floor(i / 12) + 1]!];
+              const place = lerp(from, to, (i % 12) / 12);
+              const chest = addScaled(frame.head.position, up, -0.3);
+              const hand = add(chest, rotate(headingOf(frame.head.orientation), place));
+              const rightHand: TrackedPose = { position: hand, orientation: turn, tracking: 'tracked' };
+              const joints = jointsOf(await show(estimator, { ...frame, time, rightHand }), who.calibration);
+              if (before) {
+                const axis = (j: Joints) => normalise(subtract(j.rightHand.position, j.rightUpperArm.position));
+                const pole = (j: Joints) =>
+                  reject(subtract(j.rightLowerArm.position, j.rightUpperArm.position), axis(j));
+                const carried = rotate(between(axis(before), axis(joints)), pole(before));
+                const bent = Math.min(length(pole(before)), length(pole(joints))) > 0.04;
+                const angle = Math.atan2(length(cross(carried, pole(joints))), dot(carried, pole(joints)));
+                // 12 rad/s of its own, and what the chest turns that carries it.
+                if (bent) expect(angle).toBeLessThan(0.6);
+              }
+              before = joints;
+            }
+          },
+        ),
+        runs(60),
+      );
+    },
+  );
 
   test('reset forgets: the next frame is drawn as by a new estimator', async () => {
     await fc.assert(

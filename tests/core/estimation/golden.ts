@@ -50,7 +50,7 @@ export function continuedFrame(frame: GoldenCase['frames'][number]): ContinuedFr
   return {
     time: frame.time,
     head: pose(0),
-    leftHand: { ...pose(1), seen: frame.seen[0] === true },
-    rightHand: { ...pose(2), seen: frame.seen[1] === true },
+    leftHand: { ...pose(1), seen: frame.seen[0] === true, trust: frame.seen[0] ? 1 : 0 },
+    rightHand: { ...pose(2), seen: frame.seen[1] === true, trust: frame.seen[1] ? 1 : 0 },
   };
 }

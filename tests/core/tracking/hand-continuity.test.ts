@@ -1,8 +1,10 @@
+import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import { fromAxisAngle, identity, multiply, rotate } from '../../../src/core/math/quat';
 import { add, distance, up, type Vec3, vec3 } from '../../../src/core/math/vec3';
 import { type ContinuedFrame, createHandContinuity } from '../../../src/core/tracking/hand-continuity';
 import type { TrackedPose, TrackingFrame } from '../../../src/core/tracking/tracking-frame';
+import { number, seed } from '../arbitraries';
 
 const calibration = { eyeHeight: 1.6, armSpan: 1.5 };
 const tracked = (position: Vec3, orientation = identity): TrackedPose => ({
@@ -34,7 +36,7 @@ const lost = (time: number) => frame(time, null);
 describe('a hand that is seen', () => {
   test('is where it is seen', () => {
     const [first] = follow((time) => frame(time, tracked(reach)), 0);
-    expect(first!.rightHand).toEqual({ position: reach, orientation: identity, seen: true });
+    expect(first!.rightHand).toEqual({ position: reach, orientation: identity, seen: true, trust: 1 });
     expect(first!.leftHand.seen).toBe(true);
   });
 });
@@ -59,11 +61,46 @@ describe('a hand that is lost', () => {
     expect(largestStep(frames)).toBeLessThan(0.05);
   });
 
-  test('turns with the body meanwhile', () => {
+  test('is not swung around by a head that glances aside', () => {
+    const frames = follow((time) => frame(time, null, 0.6), 0.1);
+    for (const { rightHand } of frames) expect(distance(rightHand.position, reach)).toBeLessThan(0.06);
+  });
+
+  test('turns with somebody who turns around meanwhile', () => {
+    const turning = (time: number) => Math.min(3 * time, Math.PI);
+    const { rightHand } = follow((time) => frame(time, null, turning(time)), 3).at(-1)!;
+    // Facing +Z, the right hand rests at −X.
+    expect(rightHand.position.x).toBeLessThan(-0.15);
+  });
+
+  test('stays calm when the head on its side has no heading to speak of', () => {
+    const onItsSide = (yaw: number) =>
+      multiply(fromAxisAngle(up, yaw), fromAxisAngle(vec3(0, 0, -1), Math.PI / 2 - 0.02));
+    const tilted = (time: number): TrackingFrame => ({
+      ...frame(time, null),
+      head: tracked(vec3(0, 1.2, 0), onItsSide(Math.round(time * 60) % 2 ? 0.4 : 2.5)),
+    });
+    const frames = follow((time) => (time < 0.5 ? frame(time, null) : tilted(time)), 1.5).slice(31);
+    const turnedAway = frames.map((f) => Math.atan2(f.rightHand.position.z, f.rightHand.position.x));
+    // The head joint's own way about its eyes remains.
+    expect(Math.max(...turnedAway) - Math.min(...turnedAway)).toBeLessThan(0.8);
+  });
+
+  test('swings about its shoulder, not through it', () => {
+    const behind = vec3(0.1, 1.9, 0.1);
     const continuity = createHandContinuity(() => calibration);
-    continuity.follow(frame(0, tracked(reach)));
-    const { rightHand } = continuity.follow(frame(0.05, null, 0.3));
-    expect(distance(rightHand.position, rotate(fromAxisAngle(up, 0.3), reach))).toBeLessThan(1e-3);
+    continuity.follow(frame(-0.01, tracked(behind)));
+    for (let i = 0; i < 90; i++) {
+      const { rightHand } = continuity.follow(lost(i / 60));
+      expect(distance(rightHand.position, vec3(0.18, 1.33, 0.08))).toBeGreaterThan(0.3);
+    }
+  });
+
+  test('is trusted as long as it is held, not at all when it rests', () => {
+    const trust = follow(lost, 1).map(({ rightHand }) => rightHand.trust);
+    expect(trust.slice(0, 6).every((share) => share === 1)).toBe(true);
+    expect(trust.at(-1)).toBe(0);
+    for (let i = 1; i < trust.length; i++) expect(trust[i]).toBeLessThanOrEqual(trust[i - 1]!);
   });
 
   test('does the same at 60, 72 and 120 Hz', () => {
@@ -96,7 +133,7 @@ describe('a hand that returns', () => {
     const frames = follow(lostFor(seconds), seconds + 1);
     expect(largestStep(frames)).toBeLessThan(0.05);
     const { rightHand } = frames.at(-1)!;
-    expect(rightHand).toEqual({ position: returned, orientation: fromAxisAngle(up, 1), seen: true });
+    expect(rightHand).toEqual({ position: returned, orientation: fromAxisAngle(up, 1), seen: true, trust: 1 });
   });
 
   test('is there within 200 ms when it was not far', () => {
@@ -116,6 +153,32 @@ describe('a hand that returns', () => {
   test('lost again on its way back, it sinks from where it is', () => {
     const frames = follow((time) => frame(time, time > 0.5 && time < 0.6 ? tracked(returned) : null), 1.5);
     expect(largestStep(frames)).toBeLessThan(0.05);
+  });
+});
+
+describe('a hand that comes back far from where it rests', () => {
+  test('takes no step of its own over 5 cm, wherever it comes back and however the person turns', () => {
+    const where = fc.record({ x: number(-0.5, 0.6), y: number(0.6, 2), z: number(-0.6, 0.4) });
+    fc.assert(
+      fc.property(where, where, number(-Math.PI, Math.PI), number(-6, 6), (from, back, yaw, turning) => {
+        const at = (time: number, position: Vec3 | null): TrackingFrame => {
+          const turn = fromAxisAngle(up, yaw + turning * time);
+          return { ...frame(time, position && tracked(rotate(turn, position))), head: tracked(vec3(0, 1.6, 0), turn) };
+        };
+        const continuity = createHandContinuity(() => calibration);
+        let before = continuity.follow(at(0, from)).rightHand.position;
+        for (let i = 1; i < 180; i++) {
+          const now = continuity.follow(at(i / 60, i < 60 ? null : back)).rightHand.position;
+          // What the turning person does is no step of the hand's own; the head joint it turns about goes 0.1 m round the eyes itself.
+          const radius = 0.2 + Math.max(Math.hypot(now.x, now.z), Math.hypot(before.x, before.z));
+          const own = distance(now, before) - Math.abs(turning / 60) * radius;
+          expect(own).toBeLessThan(0.05);
+          before = now;
+        }
+        expect(distance(before, rotate(fromAxisAngle(up, yaw + (turning * 179) / 60), back))).toBeLessThan(1e-9);
+      }),
+      { seed, numRuns: 200 },
+    );
   });
 });
 

@@ -1,0 +1,77 @@
+import fc from 'fast-check';
+import { describe, expect, test } from 'vitest';
+import {
+  angleBetween,
+  fromAxisAngle,
+  fromEulerYxz,
+  multiply,
+  type Quat,
+  twistAngle,
+} from '../../../src/core/math/quat';
+import { up, vec3 } from '../../../src/core/math/vec3';
+import { createBodyHeading } from '../../../src/core/tracking/body-heading';
+import { number, rotation, seed } from '../arbitraries';
+
+const turned = (yaw: number): Quat => fromAxisAngle(up, yaw);
+const yawOf = (q: Quat): number => twistAngle(q, up);
+
+/** The body's yaw after the head did what `at` says for so long. */
+function yawAfter(seconds: number, at: (time: number) => Quat, rateHz = 60): number {
+  const heading = createBodyHeading();
+  let yaw = yawOf(heading.follow(at(0), 0));
+  for (let i = 1; i <= Math.round(seconds * rateHz); i++) yaw = yawOf(heading.follow(at(i / rateHz), 1 / rateHz));
+  return yaw;
+}
+
+describe('a body under a head', () => {
+  test('faces where the head does at first', () => {
+    expect(yawAfter(0, () => turned(2))).toBeCloseTo(2, 9);
+  });
+
+  test('stays while the head glances aside', () => {
+    expect(yawAfter(0.2, (time) => turned(time > 0 ? 0.6 : 0))).toBeLessThan(0.15);
+  });
+
+  test('comes along when the head turns further than a neck does', () => {
+    expect(yawAfter(0.5, (time) => turned(Math.min(5 * time, 1.5)))).toBeGreaterThan(0.7);
+  });
+
+  test('ends up where the head keeps looking', () => {
+    expect(yawAfter(6, (time) => turned(time > 0 ? 0.6 : 0))).toBeCloseTo(0.6, 1);
+  });
+
+  test('does not turn about when the head on its side changes its mind', () => {
+    const tilted = (yaw: number) => multiply(turned(yaw), fromEulerYxz(vec3(0, 0, 1.45)));
+    expect(yawAfter(1, (time) => (time === 0 ? turned(0) : tilted(Math.round(time * 60) % 2 ? 3 : -3)))).toBeCloseTo(
+      0,
+      9,
+    );
+  });
+
+  test('never turns faster than a pirouette, whatever the head does', () => {
+    fc.assert(
+      fc.property(fc.array(rotation, { minLength: 2, maxLength: 20 }), number(0.001, 0.1), (heads, step) => {
+        const heading = createBodyHeading();
+        let before = heading.follow(heads[0]!, 0);
+        for (const head of heads) {
+          const now = heading.follow(head, step);
+          expect(angleBetween(before, now)).toBeLessThan(14.001 * step);
+          before = now;
+        }
+      }),
+      { seed },
+    );
+  });
+
+  test('does the same at 60, 72 and 120 Hz', () => {
+    const looking = (time: number) => turned(1.4 * Math.sin(3 * time));
+    for (const rate of [72, 120]) expect(yawAfter(1.5, looking, rate)).toBeCloseTo(yawAfter(1.5, looking, 60), 1);
+  });
+
+  test('forgets on reset', () => {
+    const heading = createBodyHeading();
+    heading.follow(turned(0), 0);
+    heading.reset();
+    expect(yawOf(heading.follow(turned(-2), 1 / 60))).toBeCloseTo(-2, 9);
+  });
+});
