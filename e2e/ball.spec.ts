@@ -33,12 +33,12 @@ async function until(page: Page, what: (game: BallProbe) => boolean, timeout = 6
 
 test('one person with two bots plays a short match to its end, and again', async ({ page }) => {
   test.setTimeout(180_000);
-  await open(page, 'play=ball&panel=off&quality=low&estimator=ik&seed=5&balls=4&seconds=30');
+  await open(page, 'play=ball&panel=off&quality=low&estimator=ik&seed=5&balls=2&seconds=90');
   await until(page, ({ phase }) => phase === 'running');
   const { players } = await probe(page);
   expect(players.map(({ bot }) => bot)).toEqual([true, true]);
   await keepPicture(page, 'ball-running');
-  const over = await until(page, ({ phase }) => phase === 'over', 90_000);
+  const over = await until(page, ({ phase }) => phase === 'over', 120_000);
   expect(over.end).toBe('balls');
   expect(over.balls.basket).toBe(over.score);
   expect(over.score).toBeGreaterThanOrEqual(1);
@@ -142,7 +142,8 @@ async function elbowTravel(page: Page, seat: number): Promise<number> {
   return travelled;
 }
 
-test('three browsers play over the relay, a fourth watches, a late one sees everything', async ({ browser }) => {
+// Five browsers in software rendering take minutes; tests/ball-over-relay.test.ts plays the same without any.
+test('three browsers play over the relay, a fourth watches, a late one sees everything @nightly', async ({ browser }) => {
   test.setTimeout(420_000);
   const port = await freePort();
   const server = await startServer(45, port);
