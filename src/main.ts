@@ -82,6 +82,8 @@ const mirrorByTheRange = { x: 1.95, z: -0.1, turned: -1.3 };
 const floorFromArena = { position: zero, orientation: identity };
 /** Parts of the court's middle, from where a spectator looks at first, arena frame. */
 const courtMiddle = { x: 0, y: 1, z: -2.4 };
+/** How much larger the menu in the headset is for who wants larger text. */
+const largerMenu = 1.3;
 /** How far one push of a stick turns [rad]. */
 const snapAngle = Math.PI / 6;
 const nothingPressed: Buttons = { left: allReleased, right: allReleased };
@@ -163,6 +165,7 @@ async function start(): Promise<void> {
     debugSkeleton: false,
     overlay: store.preferences.overlay ?? window.innerWidth > 760,
     vrOverlay: false,
+    largerText: store.preferences.largerText ?? false,
     palette: store.preferences.palette ?? 'porcelain',
     actor: switches.actor,
     /** On the range, without a headset: the mouse shoots instead of the archer. */
@@ -565,7 +568,7 @@ async function start(): Promise<void> {
     jumped();
   }
 
-  function toggle(name: 'mirror' | 'upperBodyOnly' | 'overlay', on: boolean): void {
+  function toggle(name: 'mirror' | 'upperBodyOnly' | 'overlay' | 'largerText', on: boolean): void {
     settings[name] = on;
     store.remember({ [name]: on });
     show();
@@ -607,6 +610,7 @@ async function start(): Promise<void> {
       setMirror: (on) => toggle('mirror', on),
       setUpperBodyOnly: (on) => toggle('upperBodyOnly', on),
       setOverlay: (on) => toggle('overlay', on),
+      setLargerText: (on) => toggle('largerText', on),
       setDebugSkeleton,
       choosePalette(name) {
         settings.palette = name;
@@ -774,6 +778,8 @@ async function start(): Promise<void> {
   function show(): void {
     const { calibration } = settings;
     overlay.setVisible(settings.overlay);
+    document.body.classList.toggle('larger-text', settings.largerText);
+    menu.object.scale.setScalar(settings.largerText ? largerMenu : 1);
     skeletonLines.setVisible(settings.debugSkeleton);
     avatar?.setUpperBodyOnly(settings.upperBodyOnly);
     panel.show({

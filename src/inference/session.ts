@@ -3,6 +3,11 @@ import type { TensorContract } from '../core/estimation/pose-regressor';
 
 export type ExecutionProvider = 'wasm' | 'webgpu';
 
+/** The part of a GPUDevice that tells of its end. */
+interface GraphicsDevice {
+  readonly lost: Promise<{ readonly message: string; readonly reason: string }>;
+}
+
 /** One model in onnxruntime-web, one run at a time. */
 export interface InferenceSession {
   readonly provider: ExecutionProvider;
@@ -29,6 +34,7 @@ export async function createSession(model: Uint8Array, provider: ExecutionProvid
     extra: { session: { disable_quant_qdq: '1' } },
   };
   const session = await ort.InferenceSession.create(model, options);
+  const lost = provider === 'webgpu' ? lossOf((await ort.env.webgpu.device) as GraphicsDevice) : null;
   let last: Promise<unknown> = Promise.resolve();
   return {
     provider,
@@ -45,8 +51,18 @@ export async function createSession(model: Uint8Array, provider: ExecutionProvid
       // Overlapping runs hang there.
       const run = last.then(start, start);
       last = run.catch(() => undefined);
-      return run;
+      // What waits for a lost device waits for ever.
+      return lost ? Promise.race([run, lost]) : run;
     },
     release: () => session.release(),
   };
+}
+
+/** Rejects when the graphics device is lost; a page that asks for nothing by then hears nothing of it. */
+function lossOf(device: GraphicsDevice): Promise<never> {
+  const loss = device.lost.then(({ message, reason }) => {
+    throw new Error(message || reason || 'the device is gone');
+  });
+  loss.catch(() => undefined);
+  return loss;
 }

@@ -23,6 +23,7 @@ export interface PanelState {
   readonly upperBodyOnly: boolean;
   readonly debugSkeleton: boolean;
   readonly overlay: boolean;
+  readonly largerText: boolean;
   readonly avatarName: string;
   /** Colours of our own avatar; null: another avatar is shown, which keeps its own. */
   readonly palette: string | null;
@@ -44,6 +45,7 @@ export interface PanelActions {
   setUpperBodyOnly(on: boolean): void;
   setDebugSkeleton(on: boolean): void;
   setOverlay(on: boolean): void;
+  setLargerText(on: boolean): void;
   choosePalette(name: string): void;
   openAvatarFile(file: File): void;
   openAvatarUrl(url: string): void;
@@ -212,6 +214,7 @@ export function createPanel(region: HTMLElement, options: PanelOptions, actions:
   const upperBody = toggle('Upper body only', actions.setUpperBodyOnly);
   const skeleton = toggle('Debug skeleton', actions.setDebugSkeleton);
   const overlay = toggle('Frame times', actions.setOverlay);
+  const largerText = toggle('Larger text', actions.setLargerText);
   const actor = toggle('Actor moves the body', actions.setActor);
   const emulatorPanel = toggle('Emulator controls', actions.setEmulatorPanel);
   const loop = toggle('Loop', actions.setLoop);
@@ -311,6 +314,7 @@ export function createPanel(region: HTMLElement, options: PanelOptions, actions:
       mirror.node,
       skeleton.node,
       overlay.node,
+      largerText.node,
     ),
     element(
       'section',
@@ -379,6 +383,7 @@ export function createPanel(region: HTMLElement, options: PanelOptions, actions:
       upperBody.input.checked = state.upperBodyOnly;
       skeleton.input.checked = state.debugSkeleton;
       overlay.input.checked = state.overlay;
+      largerText.input.checked = state.largerText;
       actor.input.checked = state.actor;
       emulatorPanel.input.checked = state.emulatorPanel;
       emulatorPanel.node.hidden = !state.emulated;

@@ -19,6 +19,7 @@ const schema = v.object({
   oneHanded: v.optional(v.boolean()),
   everyHitCounts: v.optional(v.boolean()),
   sound: v.optional(v.boolean()),
+  largerText: v.optional(v.boolean()),
   bots: v.optional(v.boolean()),
   name: v.optional(v.pipe(v.string(), v.maxLength(40))),
 });

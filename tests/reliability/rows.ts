@@ -97,6 +97,7 @@ export const faultRows = {
       'tests/reliability/comfort.test.ts',
       'tests/games/archery/boards.test.ts',
       'tests/games/archery/captions.test.ts',
+      'tests/core/study/trial-log.test.ts',
     ],
     manual: ['Push a stick to the side: one step of 30°, dark edges for a moment, no nausea.'],
   },
@@ -137,7 +138,7 @@ export const faultRows = {
     inject: 'Twenty minutes of archery rounds by the actor (nightly)',
     sees: 'Nothing grows after the first round',
     target: 'textures, geometries, programs, listeners, workers +0; heap +10 % at most',
-    tests: ['e2e/long-run.spec.ts'],
+    tests: ['e2e/long-run.spec.ts', 'tests/reliability/long-run.test.ts'],
     manual: ['The same in the headset, its memory read with the browser’s remote inspector.'],
   },
 } as const satisfies Readonly<Record<string, Row>>;

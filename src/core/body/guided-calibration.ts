@@ -67,6 +67,9 @@ const STEEPEST_GAZE = 0.5;
 // The arms of those we trained on measure 0.33 to 0.38 eye heights from shoulder to wrist; an elbow bent by 80° leaves 0.27.
 const SHORTEST_ARM = 0.27;
 const LONGEST_ARM = 0.46;
+/** The middle of what they measure; a longer arm than the second says that somebody sits, or that the floor is too high. */
+const ORDINARY_ARM = 0.355;
+const SEATED_ARM = 0.42;
 /** [m] between the left arm's length and the right's. */
 const UNEVEN_ARMS = 0.1;
 // How far, in eye heights, the shoulder joint comes forward with a stretched arm: what the fitted shoulder girdle of the
@@ -99,15 +102,27 @@ function measure(samples: readonly Sample[]): GuidedCalibration {
   // One hand that is never seen may be nobody's: the other one's arm then stands for both.
   if (wrists.length === 0) return failed('Your hands were not seen. Hold them where you can see them.');
 
-  const eyeHeight = head.y;
-  const arms = wrists.map(({ side, position }) => reachOf(side, position, eyeHeight));
+  let eyeHeight = head.y;
+  const reaches = () => wrists.map(({ side, position }) => reachOf(side, position, head.y, eyeHeight));
+  let arms = reaches();
+  const far = arms.filter((arm) => arm !== null);
+  if (far.length === arms.length && Math.min(...far) > SEATED_ARM * head.y) {
+    // Seated, or above a floor that is not where it should be: then the arms tell how tall somebody is.
+    for (let i = 0; i < 8 && arms.every((arm) => arm !== null); i++) {
+      eyeHeight = arms.reduce((sum, arm) => sum + (arm ?? 0), 0) / arms.length / ORDINARY_ARM;
+      arms = reaches();
+    }
+  }
   if (arms.some((arm) => arm === null)) {
     return failed('Your arms pointed somewhere else. Stretch them straight forward, at the height of your shoulders.');
   }
   const lengths = arms.filter((arm) => arm !== null);
   const shortest = Math.min(...lengths);
-  if (shortest < SHORTEST_ARM * eyeHeight)
-    return failed('Your arms were not stretched. Stretch them straight forward.');
+  if (shortest < SHORTEST_ARM * eyeHeight) {
+    return failed(
+      'Your arms were not stretched. Stretch them straight forward; if they were, the floor is too low: type your height instead.',
+    );
+  }
   if (Math.max(...lengths) > LONGEST_ARM * eyeHeight) {
     return failed(
       'Your arms are too long for the height of your head. Stand up straight, and check the floor’s height.',
@@ -123,10 +138,13 @@ function measure(samples: readonly Sample[]): GuidedCalibration {
   return complaint === null ? { kind: 'done', calibration } : failed(complaint);
 }
 
-/** Shoulder to wrist [m] of an arm stretched forward or sideways; null: it points elsewhere. Wrist in the heading frame. */
-function reachOf(side: Side, wrist: Vec3, eyeHeight: number): number | null {
+/**
+ * Shoulder to wrist [m] of an arm stretched forward or sideways; null: it points elsewhere. Wrist in the heading frame, the eyes this
+ * high now, which for somebody seated is less than their eye height.
+ */
+function reachOf(side: Side, wrist: Vec3, headHeight: number, eyeHeight: number): number | null {
   const sigma = sideSign(side);
-  const shoulder = restShoulder(side, eyeHeight);
+  const shoulder = add(restShoulder(side, eyeHeight), vec3(0, headHeight - eyeHeight, 0));
   const arm = subtract(wrist, shoulder);
   const reach = length(arm);
   if (reach < 1e-6) return 0;

@@ -1,0 +1,65 @@
+import { readFileSync } from 'node:fs';
+import { expect, test } from 'vitest';
+import { identity } from '../../src/core/math/quat';
+import { vec3 } from '../../src/core/math/vec3';
+import { createVignette } from '../../src/scene/vignette';
+import { measured } from './measured';
+
+const css = readFileSync(new URL('../../src/styles/page.css', import.meta.url), 'utf8');
+
+/** A colour of the page's root, as shares of red, green and blue. */
+function colour(name: string): readonly number[] {
+  const hex = new RegExp(`--${name}: #([0-9a-f]{6})`).exec(css)?.[1];
+  const rgb = new RegExp(`--${name}: rgb\\((\\d+) (\\d+) (\\d+)`).exec(css);
+  if (hex) return [0, 2, 4].map((at) => Number.parseInt(hex.slice(at, at + 2), 16) / 255);
+  if (rgb) return rgb.slice(1, 4).map((value) => Number(value) / 255);
+  throw new Error(`page.css has no colour --${name}`);
+}
+
+/** Relative luminance as WCAG defines it. */
+const luminance = (rgb: readonly number[]): number => {
+  const [r = 0, g = 0, b = 0] = rgb.map((value) =>
+    value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4,
+  );
+  return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+};
+const contrast = (a: readonly number[], b: readonly number[]): number => {
+  const [dark = 0, light = 0] = [luminance(a), luminance(b)].sort((x, y) => x - y);
+  return (light + 0.05) / (dark + 0.05);
+};
+
+test('text stands out from what it is written on, whatever colours an eye sees', () => {
+  const least = Math.min(
+    contrast(colour('ink'), colour('glass')),
+    contrast(colour('ink-soft'), colour('glass')),
+    contrast(colour('accent-ink'), colour('accent')),
+    contrast(colour('trouble'), colour('glass')),
+  );
+  expect(least).toBeGreaterThan(4.5);
+  measured('comfort', { 'least contrast of text': `${least.toFixed(1)} : 1`, 'larger text': '130 %, remembered' });
+});
+
+test('the edges are dark at a turn and clear again in under half a second, round the eyes wherever they are', () => {
+  const vignette = createVignette();
+  const eyes = { position: vec3(1, 1.6, 2), orientation: identity };
+  vignette.show(0, eyes);
+  expect(vignette.object.visible).toBe(false);
+  vignette.close(10);
+  vignette.show(10, eyes);
+  expect(vignette.darkness).toBe(1);
+  expect(vignette.object.visible).toBe(true);
+  expect(vignette.object.position.x).toBe(1);
+  vignette.show(10.2, eyes);
+  expect(vignette.darkness).toBeGreaterThan(0.2);
+  vignette.show(10.2, null);
+  expect(vignette.object.visible).toBe(false);
+  vignette.show(10.5, eyes);
+  expect(vignette.darkness).toBe(0);
+  vignette.dispose();
+});
+
+test('who asks for less motion gets no transitions', () => {
+  const reduced = /@media \(prefers-reduced-motion: reduce\) \{([\s\S]*?)\n\}/.exec(css)?.[1] ?? '';
+  expect(reduced).toMatch(/transition: none !important/);
+  expect(reduced).toMatch(/animation: none !important/);
+});

@@ -1,0 +1,121 @@
+import { expect, test } from 'vitest';
+import { arrowRestHeight, braceHeight } from '../../src/core/games/archery/bow';
+import { releaseTowards } from '../../src/core/games/archery/flight';
+import { oneHandedDraw } from '../../src/core/games/archery/gestures';
+import { archeryRules } from '../../src/core/games/archery/rules';
+import type { BallAction, BallState } from '../../src/core/games/ball/ball-state';
+import { createBallGestures } from '../../src/core/games/ball/gestures';
+import { createHolder } from '../../src/core/games/ball/holder-motion';
+import { ballRules } from '../../src/core/games/ball/rules';
+import { stations } from '../../src/core/games/ball/stations';
+import { createThrower } from '../../src/core/games/ball/thrower-motion';
+import { allReleased } from '../../src/core/games/button-presses';
+import { otherSide, type Side } from '../../src/core/games/fist';
+import { addScaled, normalise, reject, up, vec3 } from '../../src/core/math/vec3';
+import { bowman } from '../core/games/archery/bowman';
+import { playRound, steady } from '../core/games/archery/playing';
+import { measured } from './measured';
+
+/** Eyes above the floor [m] of people of 1.10 to 2.20 m, and of the same people seated. */
+const people = [1.03, 1.4, 1.6, 1.8, 2.06].flatMap((eyeHeight) => [
+  { eyeHeight, armLength: 0.355 * eyeHeight },
+  { eyeHeight: 0.72 * eyeHeight, armLength: 0.355 * eyeHeight },
+]);
+
+test('archery: everybody finishes a round with 50 of 50, with either hand, standing or seated', () => {
+  let finished = 0;
+  let played = 0;
+  for (const body of people) {
+    for (const bowSide of ['left', 'right'] as const) {
+      played += 1;
+      const { state } = playRound({ archer: { ...body, bowSide }, seed: played, times: steady(72) });
+      if (state.score === 50 && state.phase === 'over') finished += 1;
+    }
+  }
+  expect(finished).toBe(played);
+  measured('flows', { archery: `${finished} of ${played} rounds won` });
+});
+
+test('archery with one hand: a round can be won from any height', () => {
+  let won = 0;
+  let played = 0;
+  for (const bowSide of ['left', 'right'] as const) {
+    for (const eyeHeight of [1.03, 1.6]) {
+      const archer = bowman({ bowSide, oneHanded: true });
+      let state = archeryRules.start(['archer'], 4, { eyeHeight });
+      const at = vec3(bowSide === 'left' ? -0.1 : 0.1, 1.4, -0.5);
+      for (const { centre } of state.targets) {
+        // Where the knuckles must point depends a little on where the nock lies, and that on where they point.
+        let knuckles = vec3(0, 0, -1);
+        for (let round = 0; round < 6; round++) {
+          const rest = addScaled(at, normalise(reject(up, knuckles)), arrowRestHeight);
+          knuckles = releaseTowards(centre, addScaled(rest, knuckles, -braceHeight - oneHandedDraw), oneHandedDraw)!;
+        }
+        const pose = { bowAt: at, knuckles, lost: [otherSide(bowSide)] };
+        archer.forget().hold(pose, 0.1, 0).hold(pose, 2, 1).hold(pose, 1, 0);
+        for (const { actions } of archer.frames) state = archeryRules.step(state, actions).state;
+      }
+      played += 1;
+      if (state.score === 50) won += 1;
+    }
+  }
+  expect(won).toBe(played);
+  measured('flows', { 'archery with one hand': `${won} of ${played} rounds won` });
+});
+
+/** Three built-in players; one of them has one hand alone. */
+function ballMatch(eyeHeight: number, oneHanded: { readonly player: number; readonly side: Side } | null) {
+  let state: BallState = ballRules.start(['ann', 'ben', 'cal'], 3, { balls: 8, seconds: 60 });
+  const bots = stations.map((arenaFromFloor, player) =>
+    player === 2
+      ? createHolder({ eyeHeight, arenaFromFloor })
+      : createThrower({ eyeHeight, arenaFromFloor }, 3 + player),
+  );
+  const gestures = stations.map((arenaFromFloor, player) =>
+    createBallGestures(() => ({ player, state, arenaFromFloor, matchAhead: 0 })),
+  );
+  let waiting: BallAction[] = [0, 1, 2].flatMap((player): BallAction[] => [
+    { type: 'join', player },
+    { type: 'ready', player, ready: true },
+  ]);
+  let thrown = 0;
+  for (let i = 0; state.phase !== 'over' && i < 90 * 72; i++) {
+    const time = i / 72;
+    bots.forEach((bot, player) => {
+      const { frame, buttons } = bot.follow(time, { state, player });
+      const gone = oneHanded?.player === player ? otherSide(oneHanded.side) : null;
+      const seen = gone ? { ...frame, [`${gone}Hand`]: null } : frame;
+      waiting.push(...gestures[player]!.follow(seen, gone ? { ...buttons, [gone]: allReleased } : buttons).actions);
+    });
+    while ((state.tick + 1) * ballRules.tickSeconds <= time) {
+      const done = ballRules.step(state, waiting);
+      waiting = [];
+      state = done.state;
+      thrown += done.events.filter(({ type }) => type === 'thrown').length;
+      for (const gesture of gestures) gesture.hear(done.events);
+    }
+  }
+  return { state, thrown };
+}
+
+test('the ball game: everybody throws and catches, seated too; with one hand it is finished as well', () => {
+  let finished = 0;
+  let played = 0;
+  const figures: Record<string, string> = {};
+  for (const eyeHeight of [1.03, 1.2, 1.6, 1.9, 2.06]) {
+    const { state } = ballMatch(eyeHeight, null);
+    played += 1;
+    if (state.end === 'balls' && state.score > 0) finished += 1;
+  }
+  figures['ball game'] = `${finished} of ${played} matches played to the last ball`;
+  expect(finished).toBe(played);
+  let oneHanded = 0;
+  for (const player of [0, 1, 2]) {
+    for (const side of ['left', 'right'] as const) {
+      const { state, thrown } = ballMatch(1.6, { player, side });
+      if (state.phase === 'over' && state.score > 0 && thrown > 0) oneHanded += 1;
+    }
+  }
+  expect(oneHanded).toBe(6);
+  measured('flows', { ...figures, 'ball game with one hand': `${oneHanded} of 6 matches finished with a score` });
+});

@@ -1,0 +1,48 @@
+import { setFlagsFromString } from 'node:v8';
+import { runInNewContext } from 'node:vm';
+import { expect, test } from 'vitest';
+import { createArcheryPlay } from '../../src/archery-play';
+import { defaultCalibration } from '../../src/core/body/calibration';
+import { createEstimator } from '../../src/core/estimation/estimators';
+import { isNightly } from '../nightly';
+import { measured } from './measured';
+
+setFlagsFromString('--expose-gc');
+const collect = runInNewContext('gc') as () => void;
+const heap = (): number => {
+  collect();
+  collect();
+  return process.memoryUsage().heapUsed / 2 ** 20;
+};
+
+test('what plays and estimates keeps nothing of the rounds that are over', () => {
+  const minutes = isNightly ? 20 : 4;
+  let seed = 1;
+  const settings = { bowSide: 'left', oneHanded: false, everyHitCounts: false } as const;
+  const play = createArcheryPlay(
+    defaultCalibration,
+    () => settings,
+    () => seed,
+  );
+  const estimator = createEstimator('ik', defaultCalibration);
+  let time = 10;
+  const heaps: number[] = [];
+  while (time < 10 + minutes * 60) {
+    time += 1 / 72;
+    const { frame, buttons } = play.act(time);
+    const { state } = play.follow(frame, buttons);
+    estimator.estimate(frame);
+    if (state.phase !== 'over') continue;
+    expect(state.score).toBe(50);
+    seed += 1;
+    play.restart(defaultCalibration);
+    heaps.push(heap());
+  }
+  const [first = Number.NaN] = heaps;
+  const last = heaps.at(-1) ?? Number.NaN;
+  expect(heaps.length).toBeGreaterThan(3);
+  expect(last).toBeLessThan(1.1 * first);
+  measured('long-run', {
+    'without a page': `${minutes} min, ${heaps.length} rounds: heap ${first.toFixed(1)} MB after the first, ${last.toFixed(1)} MB after the last`,
+  });
+});

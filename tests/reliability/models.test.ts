@@ -1,0 +1,63 @@
+import { expect, test } from 'vitest';
+import { defaultCalibration } from '../../src/core/body/calibration';
+import { forwardKinematics } from '../../src/core/body/forward-kinematics';
+import { jointNames } from '../../src/core/body/joints';
+import { skeletonFromCalibration } from '../../src/core/body/skeleton';
+import { createEstimator } from '../../src/core/estimation/estimators';
+import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
+import { actorFrame } from '../../src/core/tracking/actor-motion';
+import { openShippedModel } from '../core/estimation/shipped-models';
+import { measured } from './measured';
+
+const skeleton = skeletonFromCalibration(defaultCalibration);
+
+/** What a network may do from its twentieth run on. */
+const faults: Readonly<Record<string, (output: Float32Array) => Promise<Float32Array>>> = {
+  'answers NaN': async (output) => output.map(() => Number.NaN),
+  'answers one NaN': async (output) => output.map((value, i) => (i === 7 ? Number.NaN : value)),
+  'answers infinity': async (output) => output.map(() => Number.POSITIVE_INFINITY),
+  'answers too few numbers': async (output) => output.slice(0, 5),
+  'answers nothing': async () => new Float32Array(),
+  rejects: () => Promise.reject(new Error('out of memory')),
+};
+
+test('a network that breaks while it runs: no bone is ever NaN, the fault is known in the same frame', async () => {
+  let bones = 0;
+  let broken = 0;
+  let latest = 0;
+  for (const name of ['learned', 'paper'] as const) {
+    for (const fault of Object.values(faults)) {
+      const shipped = await openShippedModel(name);
+      let run = 0;
+      const network: PoseRegressor = {
+        ...shipped,
+        async run(features) {
+          const output = await shipped.run(features);
+          run += 1;
+          return run > 20 ? fault(output) : output;
+        },
+      };
+      const estimator = createEstimator(name, defaultCalibration, network);
+      let known: number | null = null;
+      for (let i = 0; i < 40; i++) {
+        const frame = actorFrame(3 + i / 72, defaultCalibration);
+        await estimator.prepare(frame);
+        const joints = forwardKinematics(skeleton, estimator.estimate(frame).body!);
+        for (const joint of jointNames) {
+          const { position: p, orientation: o } = joints[joint];
+          bones += 1;
+          if (![p.x, p.y, p.z, o.x, o.y, o.z, o.w].every(Number.isFinite)) broken += 1;
+        }
+        if (known === null && run > 20 && estimator.fault() !== null) known = run - 20;
+      }
+      latest = Math.max(latest, known ?? Number.POSITIVE_INFINITY);
+    }
+  }
+  expect(broken).toBe(0);
+  expect(latest).toBe(1);
+  measured('bad-model', {
+    'bones NaN': `${broken} of ${bones}`,
+    'fault known after': `${latest} frame`,
+    faults: Object.keys(faults).length,
+  });
+});

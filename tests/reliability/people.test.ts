@@ -1,0 +1,105 @@
+import { expect, test } from 'vitest';
+import {
+  armSpanFromFingertipSpan,
+  type Calibration,
+  defaultCalibration,
+  eyeHeightFromStature,
+  provisionalCalibration,
+} from '../../src/core/body/calibration';
+import { forwardKinematics } from '../../src/core/body/forward-kinematics';
+import { startGuidedCalibration, stepGuidedCalibration } from '../../src/core/body/guided-calibration';
+import { jointNames } from '../../src/core/body/joints';
+import { armLength, skeletonFromCalibration } from '../../src/core/body/skeleton';
+import { createEstimator } from '../../src/core/estimation/estimators';
+import { identity } from '../../src/core/math/quat';
+import { add, distance, subtract, type Vec3, vec3 } from '../../src/core/math/vec3';
+import { actorFrame } from '../../src/core/tracking/actor-motion';
+import type { TrackedPose, TrackingFrame } from '../../src/core/tracking/tracking-frame';
+import { measured } from './measured';
+
+const statures = [1.1, 1.2, 1.35, 1.5, 1.7, 1.9, 2.1, 2.2];
+const bodyOf = (stature: number): Calibration => ({
+  eyeHeight: eyeHeightFromStature(stature),
+  armSpan: armSpanFromFingertipSpan(stature),
+});
+
+const tracked = (position: Vec3): TrackedPose => ({ position, orientation: identity, tracking: 'tracked' });
+const sunk = (frame: TrackingFrame, by: number): TrackingFrame => {
+  const lower = <Pose extends TrackedPose | null>(pose: Pose): Pose =>
+    (pose && { ...pose, position: subtract(pose.position, vec3(0, by, 0)) }) as Pose;
+  return { ...frame, head: lower(frame.head), leftHand: lower(frame.leftHand), rightHand: lower(frame.rightHand) };
+};
+
+/** Somebody who stands straight and stretches both arms forward. */
+function stretched(body: Calibration, time: number): TrackingFrame {
+  const skeleton = skeletonFromCalibration(body);
+  const upright = Object.fromEntries(jointNames.map((joint) => [joint, identity])) as Record<
+    (typeof jointNames)[number],
+    typeof identity
+  >;
+  const joints = forwardKinematics(skeleton, { hipsPosition: skeleton.restOffsets.hips, localRotations: upright });
+  const moved = subtract(vec3(0, body.eyeHeight, 0), add(joints.head.position, skeleton.eyesInHead));
+  const wrist = (side: 'left' | 'right') =>
+    tracked(add(add(joints[`${side}UpperArm`].position, moved), vec3(0, 0, -armLength(body))));
+  return { time, head: tracked(vec3(0, body.eyeHeight, 0)), leftHand: wrist('left'), rightHand: wrist('right') };
+}
+
+/** As the page comes to a body: two seconds of the guided calibration; whom it refuses types their height. */
+function calibrated(body: Calibration, lower: number): { readonly calibration: Calibration; readonly guided: boolean } {
+  let state = startGuidedCalibration;
+  for (let i = 0; i <= 2.1 * 72; i++) state = stepGuidedCalibration(state, sunk(stretched(body, 50 + i / 72), lower));
+  if (state.kind === 'done') return { calibration: state.calibration, guided: true };
+  return { calibration: body, guided: false };
+}
+
+/** How far the drawn wrists are from the tracked ones, and how low the pelvis gets, while somebody of this body plays about. */
+function wear(body: Calibration, calibration: Calibration, lower: number) {
+  const estimator = createEstimator('ik', calibration);
+  const skeleton = skeletonFromCalibration(calibration);
+  let off = 0;
+  let pelvis = Number.POSITIVE_INFINITY;
+  for (let i = 0; i < 20 * 15; i++) {
+    const frame = sunk(actorFrame(i / 15, body), lower);
+    const joints = forwardKinematics(skeleton, estimator.estimate(frame).body!);
+    for (const hand of ['leftHand', 'rightHand'] as const) {
+      const wrist = frame[hand];
+      if (wrist) off = Math.max(off, distance(joints[hand].position, wrist.position));
+    }
+    pelvis = Math.min(pelvis, joints.hips.position.y);
+  }
+  return { off, pelvis };
+}
+
+test.each([
+  ['standing', () => 0, true],
+  ['seated', ({ eyeHeight }: Calibration) => 0.28 * eyeHeight, false],
+  ['crouching', ({ eyeHeight }: Calibration) => 0.45 * eyeHeight, false],
+  ['a floor half a metre too high', () => 0.5, false],
+  ['a floor half a metre too low', () => -0.5, false],
+] as const)(
+  '%s: from 1.10 to 2.20 m the hands are where they are held and the pelvis stays above the floor',
+  (posture, lower, always) => {
+    let off = 0;
+    let pelvis = Number.POSITIVE_INFINITY;
+    let guided = 0;
+    for (const stature of statures) {
+      const body = bodyOf(stature);
+      const found = calibrated(body, lower(body));
+      guided += found.guided ? 1 : 0;
+      const seen = wear(body, found.calibration, lower(body));
+      off = Math.max(off, seen.off);
+      pelvis = Math.min(pelvis, seen.pelvis);
+    }
+    if (always) expect(guided).toBe(statures.length);
+    expect(pelvis).toBeGreaterThan(0);
+    expect(off).toBeLessThan(1e-3);
+    measured('people', {
+      [posture]: `wrists ${(1000 * off).toFixed(2)} mm off, pelvis ${(100 * pelvis).toFixed(0)} cm above the floor at least, measured in 2 s ${guided} of ${statures.length}, the others by hand`,
+    });
+  },
+);
+
+test('before anybody has calibrated, an adult’s body is drawn', () => {
+  for (const height of [0.4, 0.9, 1.2, 3, Number.NaN])
+    expect(provisionalCalibration(height)).toEqual(defaultCalibration);
+});

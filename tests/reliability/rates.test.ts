@@ -1,0 +1,146 @@
+import { expect, test } from 'vitest';
+import { defaultCalibration } from '../../src/core/body/calibration';
+import { forwardKinematics } from '../../src/core/body/forward-kinematics';
+import { jointNames } from '../../src/core/body/joints';
+import { skeletonFromCalibration } from '../../src/core/body/skeleton';
+import { createEstimator } from '../../src/core/estimation/estimators';
+import type { ArcheryState } from '../../src/core/games/archery/archery-state';
+import { arrowLength } from '../../src/core/games/archery/bow';
+import { releaseTowards } from '../../src/core/games/archery/flight';
+import { archeryRules, delayed } from '../../src/core/games/archery/rules';
+import type { BallAction, BallState } from '../../src/core/games/ball/ball-state';
+import { createHandSpeed } from '../../src/core/games/ball/hand-speed';
+import { ballRules } from '../../src/core/games/ball/rules';
+import { rackPosition } from '../../src/core/games/ball/stations';
+import { createMatch } from '../../src/core/games/match';
+import { add, addScaled, distance, type Vec3, vec3 } from '../../src/core/math/vec3';
+import { actorFrame } from '../../src/core/tracking/actor-motion';
+import { hold, inFront, leftThrower, stand, velocityTo } from '../core/games/ball/playing';
+import { measured } from './measured';
+
+const rates = [72, 80, 90, 120] as const;
+/** 30 % of the frames, in a pattern that drops up to two in a row. */
+const dropped = (frame: number): boolean => (frame * 7) % 10 < 3;
+const never = (): boolean => false;
+const ways = rates.flatMap((rate) => [never, dropped].map((drop) => ({ rate, drop })));
+const framesOf = (rate: number, drop: (frame: number) => boolean, seconds: number): number[] =>
+  Array.from({ length: Math.round(seconds * rate) }, (_, i) => i).flatMap((i) => (drop(i) ? [] : [i / rate]));
+
+test('arrows fly and land the same at every rate', () => {
+  const play = (rate: number, drop: (frame: number) => boolean): ArcheryState => {
+    const match = createMatch(archeryRules, archeryRules.start(['archer'], 11), { delayed });
+    const due = [0.4, 1.4, 2.5, 3.7].map((time, target) => ({ time, target }));
+    for (const time of framesOf(rate, drop, 6)) {
+      const shots = due.splice(0, due.filter((shot) => shot.time <= time).length).map(({ target }) => {
+        const nock = add(match.state.head, vec3(0.1, -0.1, -0.1));
+        const direction = releaseTowards(match.state.targets[target]!.centre, nock, 0.5)!;
+        const position = addScaled(nock, direction, arrowLength);
+        return { type: 'release', position, direction, draw: 0.5, delay: 0 } as const;
+      });
+      match.advance(100 + time, [{ type: 'stand', head: vec3(0, 1.6, 0) }, ...shots]);
+    }
+    return match.state;
+  };
+  const reference = play(90, never);
+  expect(reference.score).toBe(50);
+  let worst = 0;
+  for (const { rate, drop } of ways) {
+    const { arrows } = play(rate, drop);
+    arrows.forEach(({ landing }, i) => {
+      worst = Math.max(worst, distance(landing!.position, reference.arrows[i]!.landing!.position));
+    });
+  }
+  expect(worst).toBeLessThan(1e-3);
+  measured('rates', { arrows: `${(1000 * worst).toFixed(4)} mm apart` });
+});
+
+test('balls fly the same at every rate', () => {
+  const velocity = velocityTo(vec3(-0.5, 1.5, 1.7), inFront, 0.9);
+  const flightAt = (rate: number, drop: (frame: number) => boolean): { at: number; position: Vec3; velocity: Vec3 } => {
+    const match = createMatch(ballRules, ballRules.start(['ann', 'ben', 'cal'], 1));
+    const ball = rackPosition(0, 20);
+    let thrown: BallState['balls'][number] | null = null;
+    let deed = 0;
+    for (const time of framesOf(rate, drop, 3)) {
+      const fist = time < 0.8 ? ball : vec3(ball.x + 0.1, 1.4, ball.z - 0.3);
+      const actions: BallAction[] = [stand(leftThrower, time, fist), hold(time, inFront)];
+      if (deed === 0) {
+        for (const player of [0, 1, 2]) actions.push({ type: 'join', player }, { type: 'ready', player, ready: true });
+        deed = 1;
+      } else if (deed === 1 && time > 0.5) {
+        actions.push({ type: 'grab', player: leftThrower, sequence: 1, side: 'right', ball: 0 });
+        deed = 2;
+      } else if (deed === 2 && time > 1) {
+        // When in its frame a hand let go is the hand's own time, whenever the frame came.
+        actions.push({
+          type: 'throw',
+          player: leftThrower,
+          sequence: 2,
+          side: 'right',
+          ball: 0,
+          at: 1,
+          position: fist,
+          velocity,
+        });
+        deed = 3;
+      }
+      match.advance(200 + time, actions);
+      const place = match.state.balls[0];
+      if (place?.on === 'air') thrown ??= place;
+    }
+    if (thrown?.on !== 'air') throw new Error(`at ${rate} Hz nothing flew`);
+    const { time: at, position, velocity: speed } = thrown.launch;
+    return { at, position, velocity: speed };
+  };
+  const reference = flightAt(90, never);
+  let worst = 0;
+  for (const { rate, drop } of ways) {
+    const flight = flightAt(rate, drop);
+    // After a second of flight, at the same time of the match.
+    const off = add(flight.position, addScaled(vec3(0, 0, 0), flight.velocity, reference.at + 1 - flight.at));
+    const same = add(reference.position, reference.velocity);
+    worst = Math.max(worst, distance(off, same));
+  }
+  expect(worst).toBeLessThan(1e-3);
+  measured('rates', { balls: `${(1000 * worst).toFixed(4)} mm apart after 1 s` });
+});
+
+test('a hand throws equally fast at every rate', () => {
+  const path = (time: number): Vec3 => {
+    const angle = 9 * time + 4 * time * time - 2.2;
+    return vec3(0.1 * time, 1.4 + 0.65 * Math.cos(angle), -0.65 * Math.sin(angle));
+  };
+  const speedBy = (times: readonly number[]): Vec3 => {
+    const speed = createHandSpeed();
+    for (const time of times) speed.follow(time, path(time));
+    return speed.velocity();
+  };
+  let worst = 0;
+  for (const { rate, drop } of ways) {
+    const times = framesOf(rate, drop, 0.3);
+    const last = times.at(-1)!;
+    const fine = Array.from({ length: 1001 }, (_, i) => (last * i) / 1000);
+    worst = Math.max(worst, distance(speedBy(times), speedBy(fine)));
+  }
+  expect(worst).toBeLessThan(0.1);
+  measured('rates', { 'throws of a hand': `${(100 * worst).toFixed(1)} cm/s apart` });
+});
+
+test('filters of the body come to the same joints at every rate', () => {
+  const skeleton = skeletonFromCalibration(defaultCalibration);
+  const bodyAt = (rate: number, drop: (frame: number) => boolean) => {
+    const estimator = createEstimator('ik', defaultCalibration);
+    // The last frame is common to all rates, wherever the others lay.
+    const times = [...framesOf(rate, drop, 2), 2].map((time) => 10 + time);
+    const poses = times.map((time) => estimator.estimate(actorFrame(time, defaultCalibration)));
+    return forwardKinematics(skeleton, poses.at(-1)!.body!);
+  };
+  const reference = bodyAt(120, never);
+  let worst = 0;
+  for (const { rate, drop } of ways) {
+    const joints = bodyAt(rate, drop);
+    worst = Math.max(worst, ...jointNames.map((joint) => distance(joints[joint].position, reference[joint].position)));
+  }
+  expect(worst).toBeLessThan(0.005);
+  measured('rates', { joints: `${(1000 * worst).toFixed(2)} mm apart` });
+});

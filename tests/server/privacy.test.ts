@@ -1,0 +1,119 @@
+import { readdirSync, readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { DatabaseSync } from '@photostructure/sqlite';
+import { expect, onTestFinished, test } from 'vitest';
+import { openStudyStore } from '../../server/study-store';
+import { scheduleFor } from '../../src/core/study/plan';
+import { packetAt, toldRoom } from '../core/room/told-room';
+import { paperPlan, session } from '../core/study/studies';
+import { fists, releaseOf } from '../net/people';
+import { measured } from '../reliability/measured';
+import { directoryWith } from '../temporary-directory';
+import { arrive, pause, startRelay, until } from './running-relay';
+
+/** Every file below a directory, whatever it is called. */
+const filesIn = (directory: string): Buffer[] =>
+  readdirSync(directory, { recursive: true, withFileTypes: true })
+    .filter((entry) => entry.isFile())
+    .map((entry) => readFileSync(join(entry.parentPath, entry.name)));
+
+/** Fields that only a tracked pose or a body has. */
+const motionFields = /"(leftHand|rightHand|localRotations|hipsPosition|orientation|frames)"\s*:\s*[[{]/;
+
+test('a match over sockets and a study without consent to motion leave no motion on the disk', async () => {
+  const directory = directoryWith();
+  const file = join(directory, 'studies.db');
+  const store = openStudyStore(file);
+  let open = true;
+  onTestFinished(() => {
+    if (open) store.close();
+  });
+  const relay = await startRelay();
+  const people = ['Ann', 'Ben'].map((name) => arrive(relay.url, 'ball-privacy', name));
+  await until('both are seated', () => people.every(({ connection }) => connection.room?.mySeat != null));
+  const before = filesIn(directory).map(({ length }) => length);
+  await pause(1.5);
+  expect(
+    filesIn(directory).map(({ length }) => length),
+    'playing writes nothing',
+  ).toEqual(before);
+  for (const person of people) person.stop();
+  await relay.close();
+
+  const now = 1_800_000_000;
+  store.addStudy(paperPlan(), { simulated: false, at: now });
+  const schedule = scheduleFor(paperPlan(), 'P01');
+  const one = session(schedule);
+  one.tell({ type: 'consent', version: schedule.consentVersion, motion: false });
+  one.doUntil(({ kind }) => kind === 'end');
+  store.storeRecords('paper', 'P01', one.records, now);
+  const recording = '{"frames":[[1,{"leftHand":{"x":0.1234567}}]]}';
+  expect(() => store.storeMotion('paper', 'P01', 'archery/1/trial-1', recording, now)).toThrow('motion recording');
+  store.close();
+  open = false;
+
+  const database = new DatabaseSync(file);
+  const tables = database.prepare("SELECT name FROM sqlite_master WHERE type = 'table'").all() as { name: string }[];
+  let rows = 0;
+  for (const { name } of tables) {
+    for (const row of database.prepare(`SELECT * FROM "${name}"`).all()) {
+      rows += 1;
+      expect(JSON.stringify(row), name).not.toMatch(/"leftHand\\?":\s*[[{]\\?"?(position|x)/);
+      expect(
+        Object.values(row as object).some(
+          (value) => typeof value === 'string' && motionFields.test(value) && /0\.1234567/.test(value),
+        ),
+      ).toBe(false);
+    }
+  }
+  database.close();
+  expect(rows).toBeGreaterThan(10);
+  const motion = filesIn(directory).filter((bytes) => bytes.includes('0.1234567')).length;
+  expect(motion).toBe(0);
+  measured('privacy', {
+    'written while playing': '0 bytes',
+    'files with motion refused consent': `${motion}`,
+    'rows read': rows,
+  });
+});
+
+test('nothing that carries poses can write to a disk: relay, sockets, rooms and lobby know no file and no database', () => {
+  const server = new URL('../../server/', import.meta.url);
+  const core = new URL('../../src/core/', import.meta.url);
+  const carriers = [
+    ...readdirSync(server)
+      .filter((file) => /^(relay|socket-host|lobby|budget|room-tokens)/.test(file))
+      .map((file) => new URL(file, server)),
+    ...['room', 'protocol'].flatMap((folder) =>
+      readdirSync(new URL(`${folder}/`, core)).map((file) => new URL(`${folder}/${file}`, core)),
+    ),
+  ].filter(({ pathname }) => pathname.endsWith('.ts'));
+  expect(carriers.length).toBeGreaterThan(15);
+  const writers = carriers.filter((file) =>
+    /node:fs|sqlite|study-store|node:child_process/.test(readFileSync(file, 'utf8')),
+  );
+  // relay.ts keeps the key that signs tokens, once, and nothing else.
+  expect(writers.map(({ pathname }) => pathname.split('/').at(-1))).toEqual(['relay.ts']);
+  expect(readFileSync(new URL('relay.ts', server), 'utf8').match(/writeFileSync\(.*/g)).toHaveLength(1);
+  measured('privacy', {
+    'modules with poses that know a disk': `${writers.length} of ${carriers.length}, for the key of the tokens`,
+  });
+});
+
+test('a room hands out no pose that is older than two seconds', () => {
+  const told = toldRoom();
+  told.begin();
+  const at = told.time;
+  told.room.receivePose('ann', packetAt(told.room, 0, fists(releaseOf(0)), told.time), told.time);
+  told.pass(0.1, () => undefined);
+  expect(told.frames.length).toBeGreaterThan(0);
+  told.pass(2, () => undefined);
+  const before = told.frames.length;
+  told.pass(5, () => undefined);
+  const late = told.frames.length - before;
+  expect(late).toBe(0);
+  expect(told.time).toBeGreaterThan(at + 7);
+  const joined = told.join('late');
+  expect(JSON.stringify(joined)).not.toMatch(/"(localRotations|hipsPosition)"/);
+  measured('privacy', { 'poses handed out after 2 s': late });
+});
