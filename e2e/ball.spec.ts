@@ -143,7 +143,9 @@ async function elbowTravel(page: Page, seat: number): Promise<number> {
 }
 
 // Five browsers in software rendering take minutes; tests/ball-over-relay.test.ts plays the same without any.
-test('three browsers play over the relay, a fourth watches, a late one sees everything @nightly', async ({ browser }) => {
+test('three browsers play over the relay, a fourth watches, a late one sees everything @nightly', async ({
+  browser,
+}) => {
   test.setTimeout(420_000);
   const port = await freePort();
   const server = await startServer(45, port);

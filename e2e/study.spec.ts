@@ -249,7 +249,10 @@ async function simulateOn(origin: string): Promise<StudyPlan> {
 }
 
 // Three headsets in software rendering take minutes.
-test('three participants play the ball game together, each in a headset of their own @nightly', async ({ browser, origin }) => {
+test('three participants play the ball game together, each in a headset of their own @nightly', async ({
+  browser,
+  origin,
+}) => {
   test.setTimeout(300_000);
   await experimenter(origin).begin(shortBallStudy('trio'), true);
   const people = ['P01', 'P02', 'P03'];
