@@ -49,7 +49,7 @@ test('one person with two bots plays a short match to its end, and again', async
 
 test('in the emulated headset the built-in player throws with its tracked hands', async ({ page }) => {
   test.setTimeout(180_000);
-  await open(page, 'emulate&play=ball&panel=off&quality=low&estimator=ik&seed=5&balls=4&seconds=40');
+  await open(page, 'emulate&play=ball&panel=off&quality=low&estimator=ik&seed=5&balls=2&seconds=40');
   await emulatedHeadset(page);
   await enterVr(page);
   await until(page, ({ phase, held }) => phase === 'running' && (held.left !== null || held.right !== null), 90_000);
