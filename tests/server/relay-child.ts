@@ -3,6 +3,8 @@ import { fileURLToPath } from 'node:url';
 
 /** What a relay's process tells of itself. */
 export interface RelayMeasure {
+  /** What is alive after garbage is collected. */
+  readonly heldBytes: number;
   readonly rssBytes: number;
   readonly lagP99Ms: number;
   readonly lagMaxMs: number;
