@@ -17,6 +17,7 @@ import { bannerText } from './net/banner';
 import type { Connection, Visitor } from './net/connection';
 import type { Arena } from './scene/arena';
 import type { Quality } from './scene/renderer';
+import type { BallRound } from './ui/ball-bar';
 
 export interface BallActivityOptions {
   readonly quality: Quality;
@@ -29,26 +30,6 @@ export interface BallActivityOptions {
   acting(): boolean;
   readonly seed: number;
   readonly onCaption: (text: string) => void;
-}
-
-/** A match as the page's bar shows it. */
-export interface BallRound {
-  readonly phase: 'ready' | 'running' | 'over';
-  readonly score: number;
-  readonly of: number;
-  readonly ballsLeft: number;
-  readonly secondsLeft: number;
-  readonly role: string;
-  readonly seat: number | null;
-  readonly ready: boolean;
-  readonly rotate: boolean;
-  readonly spectators: number;
-  readonly people: readonly {
-    readonly seat: number;
-    readonly name: string;
-    readonly role: string;
-    readonly free: boolean;
-  }[];
 }
 
 /** Somebody whom the tools may know of. */

@@ -1,26 +1,29 @@
 import { button, element } from './element';
 
+/** A match as the bar shows it. */
+export interface BallRound {
+  readonly phase: 'ready' | 'running' | 'over';
+  readonly score: number;
+  readonly of: number;
+  readonly ballsLeft: number;
+  readonly secondsLeft: number;
+  readonly role: string;
+  readonly seat: number | null;
+  readonly ready: boolean;
+  readonly rotate: boolean;
+  readonly spectators: number;
+  readonly people: readonly {
+    readonly seat: number;
+    readonly name: string;
+    readonly role: string;
+    readonly free: boolean;
+  }[];
+}
+
 /** The ball game as the bar shows it. */
 export interface BallBarState {
   /** null: not in the room yet. */
-  readonly round: {
-    readonly phase: 'ready' | 'running' | 'over';
-    readonly score: number;
-    readonly of: number;
-    readonly ballsLeft: number;
-    readonly secondsLeft: number;
-    readonly role: string;
-    readonly seat: number | null;
-    readonly ready: boolean;
-    readonly rotate: boolean;
-    readonly spectators: number;
-    readonly people: readonly {
-      readonly seat: number;
-      readonly name: string;
-      readonly role: string;
-      readonly free: boolean;
-    }[];
-  } | null;
+  readonly round: BallRound | null;
   /** null: in this page alone. */
   readonly room: string | null;
   readonly bots: boolean;

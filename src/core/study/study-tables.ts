@@ -56,12 +56,17 @@ const answerColumns = [
 
 const attempt = number('attempt', '', 'From 1; a trial lost by a crash or reload is tried again.');
 
-const trialColumns = [
+/** Which trial a row belongs to. */
+const trialNames = [
   ...who,
   ...where,
   attempt,
   ...conditionColumns,
   number('repetition', '', 'Trial of the block, from 1.'),
+];
+
+const trialColumns = [
+  ...trialNames,
   number('group', '', 'Number of the group; tasks played alone: of the participant.'),
   text('ended', 'arrows, targets, balls, time, or stopped (early).'),
   number('score', 'points', "In a group the group's."),
@@ -90,11 +95,7 @@ const trialColumns = [
 ];
 
 const frameTimeColumns = [
-  ...who,
-  ...where,
-  attempt,
-  ...conditionColumns,
-  number('repetition', '', 'Trial of the block, from 1.'),
+  ...trialNames,
   text('stage', 'Stage of the frame; "frame" is all of its work.'),
   number('count', '', 'Frames measured.'),
   number('min', 'ms', 'Shortest.'),
@@ -106,11 +107,7 @@ const frameTimeColumns = [
 ];
 
 const hitColumns = [
-  ...who,
-  ...where,
-  attempt,
-  ...conditionColumns,
-  number('repetition', '', 'Trial of the block, from 1.'),
+  ...trialNames,
   number('time', 's', 'Second of the trial.'),
   text('type', 'hit, miss, catch.'),
   number('points', 'points', 'What it scored.'),

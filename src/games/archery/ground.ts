@@ -1,34 +1,19 @@
-import { Color, Mesh, MeshLambertMaterial, PlaneGeometry, type Texture } from 'three';
+import { Color, type Mesh, type MeshLambertMaterial, type PlaneGeometry, type Texture } from 'three';
+import { createPaintedGround } from '../outdoors/painted-ground';
 import { field } from './field';
-
-const half = 85;
 
 /** Mown stripes on the field, a chalk line across it at each distance [m], a rougher meadow around it; y = 0 of the arena frame. */
 export function createGround(noise: Texture, distances: readonly number[]): Mesh<PlaneGeometry, MeshLambertMaterial> {
-  const material = new MeshLambertMaterial({ color: '#ffffff' });
-  const uniforms = {
-    noise: { value: noise },
-    lightStripe: { value: new Color('#80a548') },
-    darkStripe: { value: new Color('#658c3b') },
-    meadow: { value: new Color('#7b944a') },
-    straw: { value: new Color('#b3ab62') },
+  const colors = {
+    lightStripe: new Color('#80a548'),
+    darkStripe: new Color('#658c3b'),
+    meadow: new Color('#7b944a'),
+    straw: new Color('#b3ab62'),
   };
-  material.onBeforeCompile = (shader) => {
-    Object.assign(shader.uniforms, uniforms);
-    shader.vertexShader = shader.vertexShader
-      .replace('#include <common>', '#include <common>\nvarying vec2 onGround;')
-      .replace('#include <begin_vertex>', '#include <begin_vertex>\nonGround = position.xz;');
-    shader.fragmentShader = shader.fragmentShader
-      .replace(
-        '#include <common>',
-        `#include <common>
-        varying vec2 onGround;
-        uniform sampler2D noise;
-        uniform vec3 lightStripe; uniform vec3 darkStripe; uniform vec3 meadow; uniform vec3 straw;`,
-      )
-      .replace(
-        '#include <map_fragment>',
-        `vec4 near = texture2D(noise, onGround * 0.83);
+  return createPaintedGround(noise, {
+    colors,
+    declarations: `uniform vec3 lightStripe; uniform vec3 darkStripe; uniform vec3 meadow; uniform vec3 straw;`,
+    paint: `vec4 near = texture2D(noise, onGround * 0.83);
         vec4 wide = texture2D(noise, onGround * 0.031);
         // A mower's stripes along the shooting direction; their edges are a little ragged and never alias.
         float across = onGround.x / ${field.stripe.toFixed(3)} + (near.g - 0.5) * 0.06;
@@ -51,10 +36,5 @@ export function createGround(noise: Texture, distances: readonly number[]): Mesh
         float chalk = (1.0 - smoothstep(reach - spread * 0.5, reach + spread * 0.5, off)) * min(1.0, 0.024 / reach + 0.15);
         chalk *= step(abs(onGround.x), ${(field.halfWidth - 0.25).toFixed(2)}) * (0.75 + 0.6 * blades);
         diffuseColor.rgb *= mix(grass, vec3(0.9, 0.92, 0.84), clamp(chalk, 0.0, 0.85));`,
-      );
-  };
-  const ground = new Mesh(new PlaneGeometry(2 * half, 2 * half).rotateX(-Math.PI / 2), material);
-  ground.name = 'ground';
-  ground.receiveShadow = true;
-  return ground;
+  });
 }

@@ -1,20 +1,17 @@
-import { Color, Mesh, MeshLambertMaterial, PlaneGeometry, type Texture } from 'three';
+import { Color, type Mesh, type MeshLambertMaterial, type PlaneGeometry, type Texture } from 'three';
 import { stations } from '../../core/games/ball/stations';
+import { createPaintedGround } from '../outdoors/painted-ground';
 import { court, seatLooks } from './court-plan';
-
-const half = 85;
 
 /** A painted hard court in a meadow: lane, lines, a metre scale and the players' marks; y = 0 of the arena frame. */
 export function createCourtGround(noise: Texture): Mesh<PlaneGeometry, MeshLambertMaterial> {
-  const material = new MeshLambertMaterial({ color: '#ffffff' });
-  const uniforms = {
-    noise: { value: noise },
-    meadow: { value: new Color('#7b9a48') },
-    straw: { value: new Color('#a9a85f') },
-    clay: { value: new Color('#b5714f') },
-    lane: { value: new Color('#3f7193') },
-    chalk: { value: new Color('#eef1ea') },
-    pads: { value: seatLooks.map(({ color }) => new Color(color)) },
+  const colors = {
+    meadow: new Color('#7b9a48'),
+    straw: new Color('#a9a85f'),
+    clay: new Color('#b5714f'),
+    lane: new Color('#3f7193'),
+    chalk: new Color('#eef1ea'),
+    pads: seatLooks.map(({ color }) => new Color(color)),
   };
   const fixed = (value: number) => value.toFixed(3);
   const pads = stations
@@ -22,18 +19,9 @@ export function createCourtGround(noise: Texture): Mesh<PlaneGeometry, MeshLambe
       ({ position }, index) => `paint = pad(paint, vec2(${fixed(position.x)}, ${fixed(position.z)}), pads[${index}]);`,
     )
     .join('\n        ');
-  material.onBeforeCompile = (shader) => {
-    Object.assign(shader.uniforms, uniforms);
-    shader.vertexShader = shader.vertexShader
-      .replace('#include <common>', '#include <common>\nvarying vec2 onGround;')
-      .replace('#include <begin_vertex>', '#include <begin_vertex>\nonGround = position.xz;');
-    shader.fragmentShader = shader.fragmentShader
-      .replace(
-        '#include <common>',
-        `#include <common>
-        varying vec2 onGround;
-        uniform sampler2D noise;
-        uniform vec3 meadow; uniform vec3 straw; uniform vec3 clay; uniform vec3 lane; uniform vec3 chalk;
+  return createPaintedGround(noise, {
+    colors,
+    declarations: `uniform vec3 meadow; uniform vec3 straw; uniform vec3 clay; uniform vec3 lane; uniform vec3 chalk;
         uniform vec3 pads[${stations.length}];
         // How far outside a rectangle, along the axis that is furthest out.
         float outside(vec2 at, float halfWidth, float near, float far) {
@@ -51,10 +39,7 @@ export function createCourtGround(noise: Texture): Mesh<PlaneGeometry, MeshLambe
           vec3 painted = mix(under, color, 1.0 - smoothstep(${fixed(court.padRadius)} - edge, ${fixed(court.padRadius)} + edge, far));
           return mix(painted, chalk, line(far - ${fixed(court.padRadius)}, 0.022));
         }`,
-      )
-      .replace(
-        '#include <map_fragment>',
-        `vec4 near = texture2D(noise, onGround * 0.83);
+    paint: `vec4 near = texture2D(noise, onGround * 0.83);
         vec4 wide = texture2D(noise, onGround * 0.031);
         vec3 grass = mix(meadow, straw, smoothstep(0.45, 0.78, wide.r + 0.25 * (near.g - 0.5)));
         grass *= 1.0 + 0.9 * (near.b - 0.42);
@@ -74,10 +59,5 @@ export function createCourtGround(noise: Texture): Mesh<PlaneGeometry, MeshLambe
         ${pads}
         float border = smoothstep(-0.03, 0.05, offCourt + (near.g - 0.5) * 0.12);
         diffuseColor.rgb *= mix(paint, grass, border);`,
-      );
-  };
-  const ground = new Mesh(new PlaneGeometry(2 * half, 2 * half).rotateX(-Math.PI / 2), material);
-  ground.name = 'ground';
-  ground.receiveShadow = true;
-  return ground;
+  });
 }
