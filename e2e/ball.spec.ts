@@ -64,6 +64,25 @@ test('whoever plays by hand is asked before a match begins, and can wait', async
   await until(page, ({ phase }) => phase === 'running');
 });
 
+test('without a headset a mouse takes a ball, aims and throws it', async ({ page }) => {
+  await open(page, 'play=ball&panel=off&quality=low&estimator=ik&bots=on');
+  await page.getByRole('button', { name: 'Play with the mouse' }).click();
+  await page.getByRole('button', { name: 'Ready', exact: true }).click();
+  await until(page, ({ phase, held }) => phase === 'running' && (held.left !== null || held.right !== null));
+  await page.mouse.move(250, 130);
+  await page.mouse.down();
+  await page.waitForFunction(() => {
+    const { game } = window.threepoint?.probe() ?? {};
+    return game?.name === 'ball' && (game.aim ?? 0) > 5.5;
+  });
+  await keepPicture(page, 'ball-mouse');
+  await page.mouse.up();
+  await until(page, ({ held, aim }) => aim === null && held.left === null && held.right === null);
+  await expect(page.getByText('Point at the basket and hold the button')).toBeVisible();
+  await page.getByRole('button', { name: 'Let the built-in player play' }).click();
+  await until(page, ({ ballsLeft }) => ballsLeft < 18);
+});
+
 test('a spectator sees three bots and follows one of them', async ({ page }) => {
   await open(page, 'play=ball&spectate&bots=on&panel=off&quality=low&estimator=ik&seconds=60');
   await until(page, ({ phase }) => phase === 'running');
