@@ -13,15 +13,22 @@ import {
   createBallGestures,
 } from './core/games/ball/gestures';
 import { createHolder } from './core/games/ball/holder-motion';
-import type { Performed } from './core/games/ball/player-postures';
+import type { Performed, PlayerBody } from './core/games/ball/player-postures';
 import { ballSecondsLeft, ballsLeft } from './core/games/ball/rules';
 import { holderStation, stations } from './core/games/ball/stations';
+import {
+  type BallSteering,
+  createSteeredHolder,
+  createSteeredThrower,
+  type SteeredPlayer,
+} from './core/games/ball/steered-players';
 import { type BallBot, createThrower } from './core/games/ball/thrower-motion';
+import type { Launch } from './core/games/ballistics';
 import type { Buttons } from './core/games/button-presses';
 import { fistOf, type Side } from './core/games/fist';
 import { composeTransforms, invertTransform, type Transform, transformPoint, transformPose } from './core/math/pose';
 import { identity } from './core/math/quat';
-import { type Vec3, zero } from './core/math/vec3';
+import { length, type Vec3, zero } from './core/math/vec3';
 import type { TrackedPose, TrackingFrame } from './core/tracking/tracking-frame';
 import type { Connection, ConnectionStatus, RoomView, Visitor } from './net/connection';
 import { createRemotePlayers, type RemotePlayer } from './net/remote-players';
@@ -61,6 +68,8 @@ export interface BallFrame {
   readonly role: BallRole | null;
   readonly rotate: boolean;
   readonly spectators: number;
+  /** The match's clock stands because somebody stopped it. */
+  readonly paused: boolean;
   readonly players: readonly (PlayerFrame | null)[];
   readonly bodies: readonly BodyFrame[];
   readonly opening: Opening | null;
@@ -68,6 +77,8 @@ export interface BallFrame {
   readonly cues: readonly BallCue[];
   readonly haptics: readonly BallPulse[];
   readonly held: Readonly<Record<Side, number | null>>;
+  /** How the ball in the own hand would fly, arena frame; null: nobody aims it with a mouse. */
+  readonly aim: Launch | null;
 }
 
 /** What tools may know of a match. */
@@ -84,7 +95,10 @@ export interface BallProbe {
   readonly ready: boolean;
   readonly rotate: boolean;
   readonly spectators: number;
+  readonly paused: boolean;
   readonly held: Readonly<Record<Side, number | null>>;
+  /** How fast the ball would leave the hand that a mouse aims [m/s]; null: it aims none. */
+  readonly aim: number | null;
   readonly connection: ConnectionStatus['phase'];
   /** Rounds cut short because the room had forgotten them. */
   readonly voided: number;
@@ -118,6 +132,8 @@ export interface BallPlay {
   ready(on: boolean): void;
   rotate(on: boolean): void;
   sit(seat: number | null): void;
+  /** Stops the match's clock, or no longer wants it stopped; refused where the room's terms do not allow it. */
+  pause(on: boolean): void;
   away(on: boolean): void;
   calibrate(calibration: Calibration): void;
   probe(): BallProbe | null;
@@ -131,6 +147,8 @@ export interface BallPlayOptions {
   bots(): boolean;
   /** Whether the own seat's hands are a built-in player's: who is then ready by itself. */
   acting(): boolean;
+  /** What a mouse wants of the own seat's player, own floor frame; null or absent: nothing, a built-in one plays. */
+  steering?(): BallSteering | null;
   readonly seed: number;
 }
 
@@ -151,6 +169,11 @@ const botPeople: readonly { readonly name: string; readonly calibration: Calibra
   { name: 'Kim', calibration: { eyeHeight: 1.6, armSpan: 1.51 } },
 ];
 
+const idle: BallSteering = {
+  ray: { origin: zero, direction: { x: 0, y: 0, z: -1 } },
+  pressed: false,
+  cancelled: false,
+};
 const nowhere: Transform<'floor', 'arena'> = { position: zero, orientation: identity };
 /** Seconds between two looks for free seats. */
 const seatsEvery = 0.4;
@@ -174,13 +197,15 @@ function momentsUntil(time: number, last: number | null): readonly number[] {
 const isDeed = (action: BallAction): action is Extract<BallAction, { type: 'grab' | 'drop' | 'throw' }> =>
   action.type === 'grab' || action.type === 'drop' || action.type === 'throw';
 
+const bodyAt = (station: number, calibration: Calibration): PlayerBody => ({
+  eyeHeight: calibration.eyeHeight,
+  armLength: chestSpaceBody(calibration).arm,
+  arenaFromFloor: stations[station] ?? { position: zero, orientation: identity },
+});
+
 /** The built-in player of a station; `seed`: of the scatter of its throws. */
 function actorFor(station: number, calibration: Calibration, seed: number): BallBot {
-  const body = {
-    eyeHeight: calibration.eyeHeight,
-    armLength: chestSpaceBody(calibration).arm,
-    arenaFromFloor: stations[station] ?? { position: zero, orientation: identity },
-  };
+  const body = bodyAt(station, calibration);
   return station === holderStation ? createHolder(body) : createThrower(body, seed + 31 * station);
 }
 
@@ -200,7 +225,8 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
   let opening: Opening | null = null;
   let newest: BallFrame | null = null;
   let gestures: BallGestures | null = null;
-  let own: { readonly key: string; readonly bot: BallBot } | null = null;
+  let own: { readonly key: string; readonly bot: BallBot | SteeredPlayer } | null = null;
+  let wish: BallSteering | null = null;
   let jump = false;
   /** For the moments of the own built-in player that no picture shows. */
   const between = createEstimator('ik', calibration);
@@ -209,6 +235,9 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
   /** Since when the match has been waiting for somebody to be ready [s]. */
   let waitingSince: { readonly phase: string; readonly at: number } | null = null;
   let seating = '';
+  /** For how long the match's clock has stood in all [s]: built-in players stand still meanwhile. */
+  let stood = 0;
+  let begunAt: number | null = null;
 
   const room = () => connection?.room ?? null;
 
@@ -231,9 +260,9 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
     });
   }
 
-  /** One player's frame as deeds, sent. */
+  /** One player's frame as deeds, sent. While the clock stands hands mean nothing. */
   function play(of: Connection, with_: BallGestures, frame: TrackingFrame, buttons: Buttons): BallGestureFrame {
-    const done = with_.follow(frame, buttons);
+    const done = with_.follow(of.room?.paused ? { ...frame, suspended: true } : frame, buttons);
     for (const action of done.actions) {
       if (!isDeed(action)) continue;
       const { player: _, ...deed } = action;
@@ -246,6 +275,18 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
     return seen.match?.players[seat]?.station ?? seat;
   }
 
+  /** Head, hands and buttons of a built-in player, whose own time stands when the match's does. */
+  function performedAt(actor: BallBot, time: number, state: BallState, player: number): Performed {
+    const done = actor.follow(time - stood, { state, player, ...(opening && { basket: opening.position }) });
+    return { ...done, frame: { ...done.frame, time } };
+  }
+
+  /** The player of a station who does what the mouse wants. */
+  function steeredFor(station: number): SteeredPlayer {
+    const create = station === holderStation ? createSteeredHolder : createSteeredThrower;
+    return create(bodyAt(station, calibration), () => wish ?? idle);
+  }
+
   /** One moment of a built-in player: deeds, and the solved body to the others. */
   function moveOnce(
     line: Connection,
@@ -256,11 +297,7 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
   ): BallGestureFrame | null {
     const seen = line.room;
     if (!seen?.match || seen.mySeat === null) return null;
-    const { frame, buttons } = actor.follow(moment, {
-      state: seen.match,
-      player: seen.mySeat,
-      ...(opening && { basket: opening.position }),
-    });
+    const { frame, buttons } = performedAt(actor, moment, seen.match, seen.mySeat);
     void estimator.prepare(frame);
     const pose = estimator.estimate(frame);
     line.sendPose(moment, { jump: false, pose, grips: gripsOf(buttons), curls: { left: null, right: null } });
@@ -326,7 +363,8 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
       return;
     }
     if (waitingSince?.phase !== match.phase) waitingSince = { phase: match.phase, at: time };
-    if (!options.acting() || match.players[seen.mySeat]?.ready) return;
+    // A mouse has a person behind it, who says when.
+    if (!options.acting() || options.steering?.() || match.players[seen.mySeat]?.ready) return;
     const patience = match.phase === 'over' ? rematchAfter : readyAfter;
     if (time - waitingSince.at > patience && match.players.filter(({ present }) => present).length > 1) {
       connection?.ready(true);
@@ -335,6 +373,8 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
 
   function begin(time: number): void {
     connection ??= options.connect(options.visitor, time);
+    if (room()?.paused && begunAt !== null) stood += time - begunAt;
+    begunAt = time;
     const update = connection.update(time);
     for (const pose of update.poses) remote.receive(pose);
     events = [...events, ...update.events];
@@ -419,6 +459,7 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
       role: me === null ? null : (shown.players[me]?.role ?? null),
       rotate: seen.rotate,
       spectators: seen.spectators,
+      paused: seen.paused,
       players,
       bodies,
       opening,
@@ -426,6 +467,7 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
       cues: [...missed.cues, ...(played?.cues ?? [])],
       haptics: [...missed.haptics, ...(played?.haptics ?? [])],
       held: played?.held ?? { left: null, right: null },
+      aim: wish && own && 'aim' in own.bot ? own.bot.aim : null,
     };
     events = [];
     missed = { cues: [], haptics: [] };
@@ -450,9 +492,12 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
       const seen = room();
       if (!seen?.match || seen.mySeat === null) return null;
       const station = stationOf(seen, seen.mySeat);
-      const key = `${station} ${calibration.eyeHeight} ${seen.match.phase === 'ready'}`;
-      if (own?.key !== key && (own === null || seen.match.phase !== 'running')) {
-        own = { key, bot: actorFor(station, calibration, options.seed + seen.mySeat) };
+      wish = options.steering?.() ?? null;
+      const steered = wish !== null;
+      const key = `${station} ${calibration.eyeHeight} ${steered || seen.match.phase === 'ready'}`;
+      const handedOver = own !== null && 'aim' in own.bot !== steered;
+      if (own?.key !== key && (own === null || handedOver || seen.match.phase !== 'running')) {
+        own = { key, bot: steered ? steeredFor(station) : actorFor(station, calibration, options.seed + seen.mySeat) };
       }
       const { bot } = own as NonNullable<typeof own>;
       // What lies between two slow pictures is played too; the last moment is the picture's own.
@@ -464,11 +509,7 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
         }
         actedAt = time;
       }
-      return bot.follow(time, {
-        state: connection?.room?.match ?? seen.match,
-        player: seen.mySeat,
-        ...(opening && { basket: opening.position }),
-      });
+      return performedAt(bot, time, connection?.room?.match ?? seen.match, seen.mySeat);
     },
     follow,
     send(frame, pose, grips) {
@@ -482,6 +523,7 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
     ready: (on) => connection?.ready(on),
     rotate: (on) => connection?.rotate(on),
     sit: (seat) => connection?.sit(seat),
+    pause: (on) => connection?.pause(on),
     away: (on) => connection?.away(on),
     calibrate(next) {
       calibration = next;
@@ -491,7 +533,7 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
     },
     probe() {
       if (!newest || !connection) return null;
-      const { state, me, role, rotate, spectators, held, players } = newest;
+      const { state, me, role, rotate, spectators, paused, held, aim, players } = newest;
       const count = (on: string) => state.balls.filter((place) => place.on === on).length;
       const { x, y, z } = newest.opening?.position ?? state.basket.position;
       return {
@@ -506,7 +548,9 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
         ready: me !== null && (state.players[me]?.ready ?? false),
         rotate,
         spectators,
+        paused,
         held,
+        aim: aim && length(aim.velocity),
         connection: connection.status.phase,
         voided: connection.room?.voided ?? 0,
         balls: {
