@@ -70,7 +70,10 @@ test('@nightly @long rounds of archery, one after the other: nothing grows after
   const seen: Holdings[] = [];
   while (seen.length < 3 || performance.now() - start < minutes * 60_000) {
     await playRound(page);
-    seen.push(await holdings(page, cdp));
+    const now = await holdings(page, cdp);
+    seen.push(now);
+    const minute = ((performance.now() - start) / 60_000).toFixed(1);
+    console.log(`round ${seen.length}, minute ${minute}: ${JSON.stringify(now)}`);
   }
   const played = (performance.now() - start) / 60_000;
   const first = seen[0] as Holdings;
