@@ -77,7 +77,7 @@ export const faultRows = {
   },
   people: {
     inject: 'Heights of 1.10 to 2.20 m, seated, crouching, a floor that is off by 0.5 m',
-    sees: 'Two seconds of calibration, and the body fits',
+    sees: 'Two seconds of calibration, and the body fits; above a floor that is too low the page asks to type the height',
     target: 'wrists 0 mm off the hands within reach; the pelvis never below the floor',
     tests: ['tests/reliability/people.test.ts'],
     manual: ['Sit down, calibrate, and shoot a round; stand on a step and do the same.'],
