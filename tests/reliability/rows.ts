@@ -137,7 +137,7 @@ export const faultRows = {
   'long-run': {
     inject: 'Twenty minutes of archery rounds by the actor (nightly)',
     sees: 'Nothing grows after the first round',
-    target: 'textures, geometries, programs, listeners, workers +0; heap +10 % at most',
+    target: 'textures, geometries, programs, listeners, workers +0; objects on the heap +10 % at most',
     tests: ['e2e/long-run.spec.ts', 'tests/reliability/long-run.test.ts'],
     manual: ['The same in the headset, its memory read with the browser’s remote inspector.'],
   },
