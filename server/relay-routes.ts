@@ -4,7 +4,7 @@ import type { Redis } from 'ioredis';
 import type { Logger } from 'pino';
 import { type RateLimiterAbstract, RateLimiterMemory, RateLimiterRedis, RateLimiterRes } from 'rate-limiter-flexible';
 import * as v from 'valibot';
-import { roomKinds } from '../src/core/protocol/messages';
+import { roomKinds, roomTerms } from '../src/core/protocol/messages';
 import { clientAddress, isLoopback } from './client-address';
 import type { Lobby } from './lobby';
 import type { RelayConfiguration } from './relay-configuration';
@@ -34,6 +34,8 @@ const tokenRequest = v.strictObject({
   kind: v.picklist(roomKinds),
   /** A token from before, by which the same person goes on. */
   token: v.optional(v.pipe(v.string(), v.maxLength(1024))),
+  /** For a room that this person will be the first in. */
+  terms: v.optional(roomTerms),
 });
 const endRequest = v.strictObject({ room: v.pipe(v.string(), v.regex(roomName)) });
 const roomRequest = v.strictObject({ kind: v.picklist(roomKinds) });
@@ -108,9 +110,11 @@ export function createRelayRoutes(
   async function token(request: IncomingMessage): Promise<unknown> {
     const asked = await bodyOf(request, tokenRequest);
     const before = asked.token === undefined ? null : await tokens.verifyRenewable(asked.token);
-    if (before && before.room === asked.room && before.kind === asked.kind) return { token: await tokens.sign(before) };
+    if (before && before.room === asked.room && before.kind === asked.kind) {
+      return { token: await tokens.sign({ ...before, terms: asked.terms ?? before.terms }) };
+    }
     await spendJoin(request);
-    return { token: await tokens.issue(asked.room, asked.kind) };
+    return { token: await tokens.issue(asked.room, asked.kind, asked.terms) };
   }
 
   /** A room with a seat for one more, waiting rather than playing and fuller rather than emptier; else a new one. */

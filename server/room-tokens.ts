@@ -1,18 +1,21 @@
 import { randomBytes } from 'node:crypto';
 import { errors, jwtVerify, SignJWT } from 'jose';
-import { type RoomKind, roomKinds } from '../src/core/protocol/messages';
+import * as v from 'valibot';
+import { type RoomKind, type RoomTerms, roomKinds, roomTerms } from '../src/core/protocol/messages';
 
 /** What a token says: who somebody is in which room. Known to the server alone; others know a seat and a name. */
 export interface RoomPass {
   readonly identity: string;
   readonly room: string;
   readonly kind: RoomKind;
+  /** What the room is to be like if this person is the first in it. */
+  readonly terms: RoomTerms;
 }
 
 /** Passes as signed text that expires. */
 export interface RoomTokens {
   /** For a new person. */
-  issue(room: string, kind: RoomKind): Promise<string>;
+  issue(room: string, kind: RoomKind, terms?: RoomTerms): Promise<string>;
   /** The same person for longer. */
   sign(pass: RoomPass): Promise<string>;
   /** As `verify`, for a token that has expired within the last hours: good for another one, not for coming in. */
@@ -35,8 +38,8 @@ const longestToken = 1024;
 export function createRoomTokens(secret: string, now: () => number): RoomTokens {
   const key = new TextEncoder().encode(secret);
 
-  const sign = ({ identity, room, kind }: RoomPass): Promise<string> =>
-    new SignJWT({ room, kind })
+  const sign = ({ identity, room, kind, terms }: RoomPass): Promise<string> =>
+    new SignJWT({ room, kind, terms })
       .setProtectedHeader({ alg: algorithm })
       .setIssuer(issuer)
       .setSubject(identity)
@@ -54,9 +57,10 @@ export function createRoomTokens(secret: string, now: () => number): RoomTokens 
         clockTolerance: tolerance,
       });
       const { sub: identity, room, kind } = payload;
+      const terms = v.safeParse(roomTerms, payload.terms ?? {});
       const known = roomKinds.find((name) => name === kind);
-      return identity && typeof room === 'string' && roomName.test(room) && known
-        ? { identity, room, kind: known }
+      return identity && typeof room === 'string' && roomName.test(room) && known && terms.success
+        ? { identity, room, kind: known, terms: terms.output }
         : null;
     } catch (error) {
       if (error instanceof errors.JOSEError) return null;
@@ -65,7 +69,7 @@ export function createRoomTokens(secret: string, now: () => number): RoomTokens 
   }
 
   return {
-    issue: (room, kind) => sign({ identity: randomBytes(12).toString('base64url'), room, kind }),
+    issue: (room, kind, terms = {}) => sign({ identity: randomBytes(12).toString('base64url'), room, kind, terms }),
     sign,
     verifyRenewable: (token) => read(token, renewalSeconds),
     verify: (token) => read(token, 5),

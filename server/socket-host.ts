@@ -196,7 +196,9 @@ export function createSocketHost(server: HttpServer, options: SocketHostOptions)
     }
   }
 
-  function makeRoom({ room: id, kind }: RoomPass): HostedRoom {
+  /** The first to come decides how long a round is, within what the server signed. */
+  function makeRoom({ room: id, kind, terms }: RoomPass): HostedRoom {
+    const { pausable = false, ...ball } = terms;
     roomsMade += 1;
     const joined = new Map<string, Guest>();
     const room = createRoom(
@@ -205,7 +207,8 @@ export function createSocketHost(server: HttpServer, options: SocketHostOptions)
         kind,
         epoch: `${epoch}${roomsMade}`,
         seats: configuration.openSeats,
-        ball: { seconds: configuration.ballSeconds },
+        ball: { seconds: configuration.ballSeconds, ...ball },
+        pausable,
       },
       {
         send(to, message) {
@@ -229,7 +232,7 @@ export function createSocketHost(server: HttpServer, options: SocketHostOptions)
     );
     const hosted = { room, guests: joined, emptySince: null };
     rooms.set(id, hosted);
-    log.info({ room: id, kind }, 'room opened');
+    log.info({ room: id, kind, terms }, 'room opened');
     return hosted;
   }
 

@@ -1,4 +1,4 @@
-import type { BallOptions } from './core/games/ball/ball-state';
+import type { RoomTerms } from './core/protocol/messages';
 import type { Connection, Visitor } from './net/connection';
 import { createLoopbackHost } from './net/loopback-connection';
 
@@ -15,17 +15,23 @@ function tabStorage(): Storage | undefined {
   }
 }
 
-/** Places in a room of this name on the server that the page came from; null: in a Room of this page's own, with these rules. */
+/**
+ * Places in a room of this name on the server that the page came from; null: in a Room of this page's own. `terms`: of the match, on a
+ * server those of whoever is the first in the room; a room of one's own may be paused in any case.
+ */
 export async function connectionsFor(
   room: string | null,
-  { seed, ...ball }: Partial<BallOptions> & { readonly seed: number },
+  { seed, ...terms }: RoomTerms & { readonly seed: number },
 ): Promise<Connect> {
-  if (room === null) return createLoopbackHost({ kind: 'ball', seed, ball }).connect;
+  if (room === null) {
+    const { pausable: _, ...ball } = terms;
+    return createLoopbackHost({ kind: 'ball', seed, ball }).connect;
+  }
   const [{ createSocketConnection }, { createRoomPass }] = await Promise.all([
     import('./net/socket-connection'),
     import('./net/room-pass'),
   ]);
-  const person = createRoomPass('', room, 'ball', tabStorage());
+  const person = createRoomPass('', room, 'ball', tabStorage(), terms);
   return (visitor) =>
     createSocketConnection({
       url: location.origin,

@@ -61,6 +61,8 @@ export interface BallFrame {
   readonly role: BallRole | null;
   readonly rotate: boolean;
   readonly spectators: number;
+  /** The match's clock stands because somebody stopped it. */
+  readonly paused: boolean;
   readonly players: readonly (PlayerFrame | null)[];
   readonly bodies: readonly BodyFrame[];
   readonly opening: Opening | null;
@@ -84,6 +86,7 @@ export interface BallProbe {
   readonly ready: boolean;
   readonly rotate: boolean;
   readonly spectators: number;
+  readonly paused: boolean;
   readonly held: Readonly<Record<Side, number | null>>;
   readonly connection: ConnectionStatus['phase'];
   /** Rounds cut short because the room had forgotten them. */
@@ -118,6 +121,8 @@ export interface BallPlay {
   ready(on: boolean): void;
   rotate(on: boolean): void;
   sit(seat: number | null): void;
+  /** Stops the match's clock, or no longer wants it stopped; refused where the room's terms do not allow it. */
+  pause(on: boolean): void;
   away(on: boolean): void;
   calibrate(calibration: Calibration): void;
   probe(): BallProbe | null;
@@ -209,6 +214,9 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
   /** Since when the match has been waiting for somebody to be ready [s]. */
   let waitingSince: { readonly phase: string; readonly at: number } | null = null;
   let seating = '';
+  /** For how long the match's clock has stood in all [s]: built-in players stand still meanwhile. */
+  let stood = 0;
+  let begunAt: number | null = null;
 
   const room = () => connection?.room ?? null;
 
@@ -231,9 +239,9 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
     });
   }
 
-  /** One player's frame as deeds, sent. */
+  /** One player's frame as deeds, sent. While the clock stands hands mean nothing. */
   function play(of: Connection, with_: BallGestures, frame: TrackingFrame, buttons: Buttons): BallGestureFrame {
-    const done = with_.follow(frame, buttons);
+    const done = with_.follow(of.room?.paused ? { ...frame, suspended: true } : frame, buttons);
     for (const action of done.actions) {
       if (!isDeed(action)) continue;
       const { player: _, ...deed } = action;
@@ -246,6 +254,12 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
     return seen.match?.players[seat]?.station ?? seat;
   }
 
+  /** Head, hands and buttons of a built-in player, whose own time stands when the match's does. */
+  function performedAt(actor: BallBot, time: number, state: BallState, player: number): Performed {
+    const done = actor.follow(time - stood, { state, player, ...(opening && { basket: opening.position }) });
+    return { ...done, frame: { ...done.frame, time } };
+  }
+
   /** One moment of a built-in player: deeds, and the solved body to the others. */
   function moveOnce(
     line: Connection,
@@ -256,11 +270,7 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
   ): BallGestureFrame | null {
     const seen = line.room;
     if (!seen?.match || seen.mySeat === null) return null;
-    const { frame, buttons } = actor.follow(moment, {
-      state: seen.match,
-      player: seen.mySeat,
-      ...(opening && { basket: opening.position }),
-    });
+    const { frame, buttons } = performedAt(actor, moment, seen.match, seen.mySeat);
     void estimator.prepare(frame);
     const pose = estimator.estimate(frame);
     line.sendPose(moment, { jump: false, pose, grips: gripsOf(buttons), curls: { left: null, right: null } });
@@ -335,6 +345,8 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
 
   function begin(time: number): void {
     connection ??= options.connect(options.visitor, time);
+    if (room()?.paused && begunAt !== null) stood += time - begunAt;
+    begunAt = time;
     const update = connection.update(time);
     for (const pose of update.poses) remote.receive(pose);
     events = [...events, ...update.events];
@@ -419,6 +431,7 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
       role: me === null ? null : (shown.players[me]?.role ?? null),
       rotate: seen.rotate,
       spectators: seen.spectators,
+      paused: seen.paused,
       players,
       bodies,
       opening,
@@ -464,11 +477,7 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
         }
         actedAt = time;
       }
-      return bot.follow(time, {
-        state: connection?.room?.match ?? seen.match,
-        player: seen.mySeat,
-        ...(opening && { basket: opening.position }),
-      });
+      return performedAt(bot, time, connection?.room?.match ?? seen.match, seen.mySeat);
     },
     follow,
     send(frame, pose, grips) {
@@ -482,6 +491,7 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
     ready: (on) => connection?.ready(on),
     rotate: (on) => connection?.rotate(on),
     sit: (seat) => connection?.sit(seat),
+    pause: (on) => connection?.pause(on),
     away: (on) => connection?.away(on),
     calibrate(next) {
       calibration = next;
@@ -491,7 +501,7 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
     },
     probe() {
       if (!newest || !connection) return null;
-      const { state, me, role, rotate, spectators, held, players } = newest;
+      const { state, me, role, rotate, spectators, paused, held, players } = newest;
       const count = (on: string) => state.balls.filter((place) => place.on === on).length;
       const { x, y, z } = newest.opening?.position ?? state.basket.position;
       return {
@@ -506,6 +516,7 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
         ready: me !== null && (state.players[me]?.ready ?? false),
         rotate,
         spectators,
+        paused,
         held,
         connection: connection.status.phase,
         voided: connection.room?.voided ?? 0,

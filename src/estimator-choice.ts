@@ -1,6 +1,7 @@
 import type { Calibration } from './core/body/calibration';
 import type { EstimatorName, PoseEstimator } from './core/estimation/pose-estimator';
 import type { PoseRegressor } from './core/estimation/pose-regressor';
+import { reasonOf } from './reasons';
 
 /** The estimators that are nothing without their network. */
 const networks = ['paper', 'learned'] as const satisfies readonly EstimatorName[];
@@ -34,11 +35,6 @@ export interface EstimatorChoice {
   reset(): void;
   /** Gives up on an estimator whose network has failed while running; call it now and then. */
   check(): void;
-}
-
-/** The reason behind anything that was thrown, as a sentence. */
-export function reasonOf(error: unknown): string {
-  return error instanceof Error ? error.message : String(error);
 }
 
 export function createEstimatorChoice(options: EstimatorChoiceOptions): EstimatorChoice {

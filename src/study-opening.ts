@@ -1,7 +1,7 @@
 import { scheduleFor } from './core/study/plan';
 import type { Progress } from './core/study/progress';
 import type { PublicStudy } from './core/study/study-api';
-import { reasonOf } from './estimator-choice';
+import { reasonOf } from './reasons';
 import { createParticipantSession, isLater, type ParticipantSession, startSession } from './study/participant-session';
 import { type ParticipantClient, ServerRefusal, ServerUnreachable } from './study/study-client';
 import { type KeptSession, openStudyVault, type StudyVault } from './study/study-vault';

@@ -10,7 +10,7 @@ import { placeOf } from './core/study/progress';
 import { randomFor } from './core/study/shuffle';
 import type { PublicStudy } from './core/study/study-api';
 import type { TrackingFrame } from './core/tracking/tracking-frame';
-import { reasonOf } from './estimator-choice';
+import { reasonOf } from './reasons';
 import type { ParticipantSession } from './study/participant-session';
 import { createParticipantClient, ServerRefusal } from './study/study-client';
 import type { TaskPlace, TaskRunner } from './study/task-runner';

@@ -127,6 +127,28 @@ describe('one person with two bots', () => {
     expect(events.filter(({ type }) => type === 'thrown')).toHaveLength(20);
   });
 
+  it('stands still in a pause, and the match goes on after it as if nothing had been', () => {
+    const { player, until, events, frame } = page({ seat: 0 });
+    until(() => (player.probe()?.ballsLeft ?? 20) < 18, 30);
+    player.pause(true);
+    until(() => player.probe()?.paused === true, 1);
+    frame();
+    const { secondsLeft, score } = player.probe() ?? {};
+    const heard = events.length;
+    const where = player.newest?.bodies.map(({ pose }) => pose.head.position);
+    for (let i = 0; i < 20 * 72; i++) frame();
+    expect(player.probe()).toMatchObject({ paused: true, secondsLeft, score, held: { left: null, right: null } });
+    expect(events.length).toBe(heard);
+    player.newest?.bodies.forEach(({ pose }, i) => {
+      expect(distance(pose.head.position, where?.[i] ?? pose.head.position)).toBeLessThan(0.05);
+    });
+    player.pause(false);
+    until(() => player.probe()?.phase === 'over', 110);
+    expect(player.probe()).toMatchObject({ end: 'balls', ballsLeft: 0 });
+    expect(events.filter(({ type }) => type === 'thrown')).toHaveLength(20);
+    expect(events.filter(({ type }) => type === 'refused')).toEqual([]);
+  });
+
   it('bots go when they are not wanted', () => {
     const alone = page({ bots: false });
     for (let i = 0; i < 3 * 72; i++) alone.frame();

@@ -34,6 +34,8 @@ export interface RoomView {
   readonly match: BallState | null;
   /** Seconds of the match minus seconds of this page's clock. */
   readonly matchAhead: number;
+  /** The match's clock stands because somebody stopped it. */
+  readonly paused: boolean;
   /** How many rounds were cut short because the room had forgotten them (its server was restarted). */
   readonly voided: number;
 }
@@ -74,6 +76,8 @@ export interface Connection {
   act(deed: BallDeed): void;
   ready(ready: boolean): void;
   rotate(rotate: boolean): void;
+  /** Wants the match's clock to stand; refused where the room's terms do not allow it. Said again after every return. */
+  pause(pause: boolean): void;
   away(away: boolean): void;
   /** Another seat that is free; null: watch. */
   sit(seat: number | null): void;

@@ -21,7 +21,7 @@ interface Guest {
   end(reason: ConnectionStatus['reason']): void;
 }
 
-/** The Room is the one of the server. It ticks when its first guest of a frame asks for news. */
+/** The Room is the one of the server, and as it is this page's own it may be paused. It ticks when its first guest of a frame asks for news. */
 export function createLoopbackHost({ refused, stepped, ...options }: LoopbackOptions): LoopbackHost {
   const guests = new Map<ClientId, Guest>();
   let now = 0;
@@ -29,7 +29,7 @@ export function createLoopbackHost({ refused, stepped, ...options }: LoopbackOpt
   let made = 0;
 
   const room = createRoom(
-    { id: 'here', epoch: 'here', ...options },
+    { id: 'here', epoch: 'here', pausable: true, ...options },
     {
       send: (to, message) => guests.get(to)?.session.hear(message, now),
       broadcast(message: RoomMessage) {

@@ -1,4 +1,4 @@
-import type { RoomKind } from '../core/protocol/messages';
+import type { RoomKind, RoomTerms } from '../core/protocol/messages';
 
 /** The signed pass that lets a page into a room. */
 export interface RoomPass {
@@ -12,8 +12,14 @@ export interface Keep {
   setItem(key: string, value: string): void;
 }
 
-/** Asks the relay for a pass; the same person after a reload, in the same tab. */
-export function createRoomPass(base: string, room: string, kind: RoomKind, keep?: Keep): RoomPass {
+/** Asks the relay for a pass; the same person after a reload, in the same tab. `terms`: of the room, should nobody be in it yet. */
+export function createRoomPass(
+  base: string,
+  room: string,
+  kind: RoomKind,
+  keep?: Keep,
+  terms: RoomTerms = {},
+): RoomPass {
   const key = `threepoint pass ${kind} ${room}`;
   let token = keep?.getItem(key) ?? null;
   let verified = false;
@@ -23,7 +29,12 @@ export function createRoomPass(base: string, room: string, kind: RoomKind, keep?
       const response = await fetch(`${base}/api/rooms/token`, {
         method: 'POST',
         headers: { 'content-type': 'application/json' },
-        body: JSON.stringify({ room, kind, ...(token !== null && { token }) }),
+        body: JSON.stringify({
+          room,
+          kind,
+          ...(token !== null && { token }),
+          ...(Object.keys(terms).length > 0 && { terms }),
+        }),
       });
       const answer = (await response.json()) as { token?: unknown; error?: unknown };
       if (!response.ok || typeof answer.token !== 'string') {

@@ -47,6 +47,8 @@ const toMillimetres = ({ eyeHeight, armSpan }: Calibration): Calibration => ({
 interface Known extends Pick<Welcome, 'room' | 'epoch' | 'kind' | 'seat' | 'spectators' | 'rotate'> {
   seats: (SeatRow | null)[];
   zero: number;
+  /** Second of the match at which its clock stands; null: it runs. */
+  paused: number | null;
 }
 
 /** `knowsClock`: the Room's clock is this page's own. */
@@ -63,6 +65,8 @@ export function createRoomSession(visitor: Visitor, wire: Wire, knowsClock = fal
     spectate: visitor.spectate ?? false,
     seat: visitor.seat ?? null,
   };
+  /** Whether the clock is to stand; null: never asked for. */
+  let pauseWish: boolean | null = null;
   let voided = 0;
   let now = 0;
   let nextPose = Number.NEGATIVE_INFINITY;
@@ -72,7 +76,10 @@ export function createRoomSession(visitor: Visitor, wire: Wire, knowsClock = fal
   let view: RoomView | null = null;
 
   const ahead = (): number => (knowsClock ? 0 : clock.ahead);
-  const matchAhead = (): number => (known ? ahead() - known.zero : 0);
+  const matchAhead = (): number => {
+    if (!known) return 0;
+    return known.paused === null ? ahead() - known.zero : known.paused - now;
+  };
 
   const predicted = (): BallState | null => {
     const seat = known?.seat ?? null;
@@ -95,10 +102,10 @@ export function createRoomSession(visitor: Visitor, wire: Wire, knowsClock = fal
   }
 
   function welcomed(message: Welcome): void {
-    const { room, epoch, kind, seat, spectators, rotate, zero } = message;
+    const { room, epoch, kind, seat, spectators, rotate, zero, paused } = message;
     const forgotten = known !== null && known.epoch !== epoch && confirmed?.phase === 'running';
     const seats = message.seats.map(unpackRow);
-    known = { room, epoch, kind, seat, spectators, rotate, seats, zero: zero ?? 0 };
+    known = { room, epoch, kind, seat, spectators, rotate, seats, zero: zero ?? 0, paused };
     skeletons = seats.map((row) => row && skeletonFromCalibration(row.calibration));
     confirmed = message.match && unpackBall(message.match);
     pending = [];
@@ -109,6 +116,8 @@ export function createRoomSession(visitor: Visitor, wire: Wire, knowsClock = fal
       news.push('voided');
     }
     news.push('welcome');
+    // The room may have forgotten it, or have been told otherwise before the connection was lost.
+    if (pauseWish !== null && seat !== null) wire.message({ type: 'pause', pause: pauseWish });
   }
 
   function hear(message: RoomMessage, at: number): void {
@@ -130,9 +139,13 @@ export function createRoomSession(visitor: Visitor, wire: Wire, knowsClock = fal
         wishes = { spectate: message.seat === null, seat: message.seat };
         pending = [];
         news.push('seats');
+        if (pauseWish && message.seat !== null) wire.message({ type: 'pause', pause: true });
         return;
       case 'about':
         known = { ...room, spectators: message.spectators, rotate: message.rotate };
+        return;
+      case 'paused':
+        known = { ...room, zero: message.zero, paused: message.at };
         return;
       case 'zero':
         known = { ...room, zero: message.zero };
@@ -165,6 +178,7 @@ export function createRoomSession(visitor: Visitor, wire: Wire, knowsClock = fal
         rotate: known.rotate,
         match: predicted(),
         matchAhead: matchAhead(),
+        paused: known.paused !== null,
         voided,
       };
       return view;
@@ -207,6 +221,10 @@ export function createRoomSession(visitor: Visitor, wire: Wire, knowsClock = fal
     },
     ready: (ready) => wire.message({ type: 'ready', ready }),
     rotate: (rotate) => wire.message({ type: 'rotate', rotate }),
+    pause(pause) {
+      pauseWish = pause;
+      if (known && known.seat !== null) wire.message({ type: 'pause', pause });
+    },
     away: (away) => wire.message({ type: 'away', away }),
     sit: (seat) => wire.message({ type: 'sit', seat }),
     calibrate(measures) {

@@ -1,5 +1,7 @@
-import { PerspectiveCamera, Vector3 } from 'three';
+import { PerspectiveCamera, Raycaster, Vector2, Vector3 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+import type { Pose } from '../core/math/pose';
+import type { Vec3 } from '../core/math/vec3';
 
 export const viewNames = ['third-person', 'front', 'first-person'] as const;
 /** third-person: orbits the body from behind. front: from where the mirror hangs. first-person: through the eyes. */
@@ -33,6 +35,8 @@ export interface Insets {
 /** The camera of the desktop; in a session the headset moves the camera and this rests. */
 export interface DesktopView {
   readonly camera: PerspectiveCamera;
+  /** From where and whereto the camera looks. */
+  readonly pose: Pose<'floor'>;
   readonly view: ViewName;
   setView(view: ViewName): void;
   /** Where the body stands: it decides from where it is seen best. */
@@ -44,6 +48,8 @@ export interface DesktopView {
   resize(): void;
   /** Back to where the view began. */
   recentre(): void;
+  /** The ray through a point of the window (from −1 to 1, right and up); unit direction, floor frame. */
+  rayThrough(x: number, y: number): { readonly origin: Vec3; readonly direction: Vec3 };
   /** Where the body is now (its pelvis and eyes, floor frame); elapsed [s] since the last call. */
   update(pelvis: Point, eyes: Eyes, elapsed: number): void;
 }
@@ -91,6 +97,7 @@ export function createDesktopView(canvas: HTMLCanvasElement): DesktopView {
   controls.maxDistance = 7;
   controls.minPolarAngle = 0.15;
   controls.maxPolarAngle = Math.PI / 2 + 0.12;
+  const raycaster = new Raycaster();
   const target = new Vector3(0, 1, 0);
   let view: ViewName = 'third-person';
   let scene: SceneName = 'studio';
@@ -145,6 +152,18 @@ export function createDesktopView(canvas: HTMLCanvasElement): DesktopView {
   project();
   return {
     camera,
+    get pose() {
+      const { position, quaternion } = camera;
+      return {
+        position: { x: position.x, y: position.y, z: position.z },
+        orientation: { x: quaternion.x, y: quaternion.y, z: quaternion.z, w: quaternion.w },
+      };
+    },
+    rayThrough(x, y) {
+      raycaster.setFromCamera(new Vector2(x, y), camera);
+      const { origin, direction } = raycaster.ray;
+      return { origin: { ...origin }, direction: { ...direction } };
+    },
     get view() {
       return view;
     },

@@ -4,6 +4,7 @@ import {
   LinearToneMapping,
   type MinificationTextureFilter,
   PCFShadowMap,
+  PerspectiveCamera,
   SRGBColorSpace,
   WebGLRenderer,
 } from 'three';
@@ -66,3 +67,6 @@ export function fitToWindow(renderer: WebGLRenderer, quality: Quality): void {
   renderer.setPixelRatio(quality === 'high' ? Math.min(window.devicePixelRatio, 2) : lowPixelShare);
   renderer.setSize(window.innerWidth, window.innerHeight, false);
 }
+
+/** The camera of a session: the headset places it, this only says how near and how far it sees. */
+export const createHeadsetCamera = (): PerspectiveCamera => new PerspectiveCamera(70, 1, 0.05, 90);

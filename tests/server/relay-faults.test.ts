@@ -3,6 +3,7 @@ import { runInNewContext } from 'node:vm';
 import { afterEach, describe, expect, test } from 'vitest';
 import { WebSocket } from 'ws';
 import { createRoomTokens } from '../../server/room-tokens';
+import { protocolVersion } from '../../src/core/protocol/messages';
 import { createRemotePlayers } from '../../src/net/remote-players';
 import { createSocketConnection } from '../../src/net/socket-connection';
 import { fists, holding, opening, releaseOf, visitor } from '../net/people';
@@ -201,7 +202,7 @@ test('a reader that stalls is kicked within 10 s, and the others do not notice',
       const text = received.toString();
       if (text[0] === '0') stalled.send(`40${JSON.stringify(['/', { token }])}`);
       else if (text.startsWith('40')) {
-        const join = { type: 'join', version: 1, name: 'slow', spectate: false, bot: false, seat: null };
+        const join = { type: 'join', version: protocolVersion, name: 'slow', spectate: false, bot: false, seat: null };
         const message = { ...join, calibration: { eyeHeight: 1.6, armSpan: 1.5 } };
         stalled.send(`42${JSON.stringify(['/', ['message', message]])}`);
       } else if (text.includes('"welcome"')) resolve();

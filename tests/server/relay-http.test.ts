@@ -26,7 +26,7 @@ describe('room tokens', () => {
   test('let one person into one room, and expire', async () => {
     const token = await tokens.issue('amber', 'ball');
     const pass = await tokens.verify(token);
-    expect(pass).toMatchObject({ room: 'amber', kind: 'ball' });
+    expect(pass).toMatchObject({ room: 'amber', kind: 'ball', terms: {} });
     now += 16 * 60;
     expect(await tokens.verify(token)).toBeNull();
     expect(await tokens.verifyRenewable(token)).toEqual(pass);
@@ -62,6 +62,28 @@ describe('the relay over HTTP', () => {
     const metrics = await fetch(`${server.url}/metrics`);
     expect(await metrics.text()).toContain('threepoint_poses_in_total 0');
     expect((await fetch(`${server.url}/metrics`, { headers: { 'x-forwarded-for': '9.9.9.9' } })).status).toBe(403);
+  });
+
+  test('signs the terms of a room within their limits, and keeps them when the pass is renewed', async () => {
+    const tokens = createRoomTokens(testSecret, () => Date.now() / 1000);
+    const asked = { room: 'terms', kind: 'ball' };
+    const signed = async (body: object) => {
+      const { token } = (await (await post('/api/rooms/token', body)).json()) as { token: string };
+      return { token, pass: await tokens.verify(token) };
+    };
+    const { token, pass } = await signed({ ...asked, terms: { seconds: 45, pausable: true } });
+    expect(pass?.terms).toEqual({ seconds: 45, pausable: true });
+    expect((await signed({ ...asked, token })).pass).toEqual(pass);
+    for (const terms of [
+      { seconds: 0 },
+      { seconds: 3601 },
+      { seconds: '90' },
+      { balls: 2.5 },
+      { balls: 21 },
+      { score: 20 },
+    ]) {
+      expect((await post('/api/rooms/token', { ...asked, terms })).status).toBe(400);
+    }
   });
 
   test('lets five new people a minute in from one address; who has a pass is none of them', async () => {

@@ -1,6 +1,6 @@
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
 import { atRack, fists, holding, opening, releaseOf } from '../net/people';
-import { arrive, type RunningRelay, startRelay, until } from './running-relay';
+import { arrive, pause, type RunningRelay, startRelay, until } from './running-relay';
 
 let server: RunningRelay;
 beforeAll(async () => {
@@ -9,6 +9,62 @@ beforeAll(async () => {
 afterAll(() => server.close());
 
 describe('a relay', () => {
+  test('makes a room as the first to come asks for it, and as nobody after', async () => {
+    const ann = arrive(server.url, 'short', 'Ann', { terms: { seconds: 30, balls: 6 } });
+    const people = [ann];
+    try {
+      await until('ann in', () => ann.connection.room !== null);
+      const ben = arrive(server.url, 'short', 'Ben', { terms: { seconds: 3600, pausable: true } });
+      people.push(ben);
+      await until('ben in', () => ben.connection.room !== null);
+      for (const { match } of people) expect(match.options).toMatchObject({ seconds: 30, balls: 6 });
+      expect(server.relay.host.room('short')?.options.pausable).toBe(false);
+      const cal = arrive(server.url, 'usual', 'Cal');
+      people.push(cal);
+      await until('cal in', () => cal.connection.room !== null);
+      expect(cal.match.options).toMatchObject({ seconds: 90, balls: 20 });
+    } finally {
+      for (const person of people) person.stop();
+    }
+  });
+
+  test('stops the clock of a room that may be paused, and everybody is told', async () => {
+    const people = ['Ann', 'Ben', 'Cal'].map((name) =>
+      arrive(server.url, 'study', name, { terms: { seconds: 60, pausable: true } }),
+    );
+    const [ann] = people as [(typeof people)[0]];
+    const all = (isTrue: (person: (typeof people)[0]) => boolean) => () => people.every(isTrue);
+    try {
+      await until(
+        'all seats taken',
+        all(({ connection }) => connection.room?.seats.every(Boolean) ?? false),
+      );
+      for (const person of people) person.connection.ready(true);
+      await until(
+        'the match running',
+        all(({ match }) => match.phase === 'running'),
+      );
+      ann.connection.pause(true);
+      await until(
+        'the pause',
+        all(({ connection }) => connection.room?.paused ?? false),
+      );
+      const stands = server.relay.host.room('study')?.match?.tick ?? -1;
+      const asSeen = people.map(({ match }) => match.tick);
+      await pause(0.5);
+      expect(server.relay.host.room('study')?.match?.tick).toBe(stands);
+      expect(people.map(({ match }) => match.tick)).toEqual(asSeen);
+      ann.connection.pause(false);
+      await until(
+        'the match going on',
+        all(({ match, connection }) => !connection.room?.paused && match.tick > stands),
+      );
+      for (const { match } of people) expect(match.tick).toBeLessThan(stands + 60);
+    } finally {
+      for (const person of people) person.stop();
+    }
+  });
+
   test('three people over sockets play a ball into the basket and agree', async () => {
     const people = ['Ann', 'Ben', 'Cal'].map((name) => arrive(server.url, 'game', name));
     const [ann, ben, cal] = people as [(typeof people)[0], (typeof people)[0], (typeof people)[0]];

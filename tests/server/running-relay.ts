@@ -7,7 +7,7 @@ import { defaultCalibration } from '../../src/core/body/calibration';
 import { skeletonFromCalibration } from '../../src/core/body/skeleton';
 import { identity } from '../../src/core/math/quat';
 import { vec3 } from '../../src/core/math/vec3';
-import { protocolVersion, type RoomMessage } from '../../src/core/protocol/messages';
+import { protocolVersion, type RoomMessage, type RoomTerms } from '../../src/core/protocol/messages';
 import { encodePose } from '../../src/core/protocol/pose-codec';
 import { messageEvent, pageParser } from '../../src/core/protocol/small-frames';
 import type { Visitor } from '../../src/net/connection';
@@ -58,13 +58,19 @@ export const pause = (seconds: number): Promise<void> => new Promise((resolve) =
 export const seconds = (): number => performance.now() / 1000;
 
 /** A person over a real socket, sixty frames a second. */
-export function arrive(url: string, room: string, name: string, more: Partial<Visitor> = {}, now = seconds) {
+export function arrive(
+  url: string,
+  room: string,
+  name: string,
+  { terms, ...more }: Partial<Visitor> & { readonly terms?: RoomTerms } = {},
+  now = seconds,
+) {
   const kind = room.startsWith('open') ? 'open' : 'ball';
   const connection = createSocketConnection({
     url,
     room,
     visitor: visitor(name, more),
-    pass: createRoomPass(url, room, kind),
+    pass: createRoomPass(url, room, kind, undefined, terms),
     now,
   });
   const person = createPerson(connection);

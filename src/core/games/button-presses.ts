@@ -16,6 +16,7 @@ export type Buttons = Readonly<Record<Side, HandButtons>>;
 export type Button = 'trigger' | 'grip' | 'pinch';
 
 export const allReleased: HandButtons = { trigger: 0, grip: 0, pinch: 0 };
+export const nothingPressed: Buttons = { left: allReleased, right: allReleased };
 
 /** Pressed at and above the first, released below the second; between them what it was. */
 export const pressedAt = 0.6;

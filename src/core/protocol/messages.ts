@@ -4,7 +4,7 @@ import { packedBallSchema } from './ball-snapshot';
 import { cleanName } from './names';
 
 /** Bumped with every change that an older page or server would misunderstand. */
-export const protocolVersion = 1;
+export const protocolVersion = 2;
 
 /** No control message is longer [bytes of UTF-8]; a snapshot takes at most half of it. */
 export const longestMessage = 4096;
@@ -66,6 +66,8 @@ const clientMessage = v.variant('type', [
   /** To another seat that is free, or to one from among the spectators; null: become a spectator. */
   v.strictObject({ type: v.literal('sit'), seat: v.nullable(seat) }),
   v.strictObject({ type: v.literal('calibration'), calibration }),
+  /** Stop the match's clock, or take that back: in a room whose terms allow it, for who has a seat. */
+  v.strictObject({ type: v.literal('pause'), pause: v.boolean() }),
   /** Answered at once; `sent` comes back as it is. */
   v.strictObject({ type: v.literal('ping'), sent: seconds }),
   /** For good: the seat is not held. */
@@ -86,6 +88,17 @@ export function clientMessageFrom(value: unknown): ClientMessage | null {
 /** What a room is for: the ball game has three seats, an open room sixteen and no game. */
 export const roomKinds = ['ball', 'open'] as const;
 export type RoomKind = (typeof roomKinds)[number];
+
+/**
+ * What a person may ask of a room that does not exist yet; whoever comes first decides, and nothing changes them later. `seconds`: of
+ * a round of the ball game. `pausable`: whoever has a seat may stop the match's clock.
+ */
+export const roomTerms = v.strictObject({
+  seconds: v.exactOptional(v.pipe(v.number(), v.finite(), v.minValue(1), v.maxValue(3600))),
+  balls: v.exactOptional(v.pipe(v.number(), v.integer(), v.minValue(1), v.maxValue(20))),
+  pausable: v.exactOptional(v.boolean()),
+});
+export type RoomTerms = v.InferOutput<typeof roomTerms>;
 
 /** Somebody on a seat. away: hides the page or took the headset off. gone: connection lost, the seat is held. */
 export interface SeatRow {
@@ -182,6 +195,8 @@ const roomMessage = v.variant('type', [
     /** Room clock [s] at which the match was at 0 s; null with `match`. */
     zero: v.nullable(seconds),
     match: v.nullable(packedBallSchema),
+    /** Second of the match at which its clock stands; null: it runs. */
+    paused: v.nullable(seconds),
     /** Room clock [s], now. */
     time: seconds,
   }),
@@ -191,7 +206,9 @@ const roomMessage = v.variant('type', [
   v.strictObject({ type: v.literal('about'), spectators: wholeFrom(0, 10_000), rotate: v.boolean() }),
   /** Another match, as it begins. */
   v.strictObject({ type: v.literal('match'), match: packedBallSchema, zero: seconds }),
-  /** The match paused: its zero is elsewhere now. */
+  /** The match's clock stands at this second, because somebody stopped it; null: it runs again, and its zero is elsewhere. */
+  v.strictObject({ type: v.literal('paused'), at: v.nullable(seconds), zero: seconds }),
+  /** The host of the match paused: its zero is elsewhere now. */
   v.strictObject({ type: v.literal('zero'), zero: seconds }),
   v.strictObject({ type: v.literal('events'), events: v.array(ballEvent) }),
   v.strictObject({ type: v.literal('pong'), sent: seconds, time: seconds }),

@@ -30,6 +30,8 @@ export interface RoomOptions {
   readonly seats?: number;
   readonly seed?: number;
   readonly ball?: Partial<BallOptions>;
+  /** Whoever has a seat may stop the match's clock: in a study, where all pages do as the experimenter says. Default: nobody may. */
+  readonly pausable?: boolean;
 }
 
 /** Something that the Room would not do. */
@@ -37,7 +39,7 @@ export interface RoomRefusal {
   readonly client: ClientId;
   readonly seat: number | null;
   readonly what: 'pose' | 'deed' | 'sit' | 'message';
-  readonly reason: Refusal | 'too-fast' | 'occupied' | 'no-seat' | 'not-joined' | 'joined-already';
+  readonly reason: Refusal | 'too-fast' | 'occupied' | 'no-seat' | 'not-joined' | 'joined-already' | 'not-pausable';
 }
 
 /** How a Room speaks. Called from within its methods, never at another time. */
@@ -59,6 +61,8 @@ export interface RoomOutlet {
 export const seatHoldSeconds = 30;
 /** Who has been silent or without connection this long [s] counts as away, and lets go of what they hold when the connection is lost. */
 export const awayAfter = 2.5;
+/** Where somebody was is forgotten this long after it was told [s]: movements identify people. With a tick to spare of 2 s. */
+export const poseMemory = 1.9;
 /** No head moves faster [m/s] without telling that its space was re-anchored. */
 export const fastestHead = 20;
 /** What was refused for its speed is believed after this [s]: a device that lost its place has found it again. */
@@ -80,8 +84,12 @@ interface Seat {
   heardAt: number;
   /** Room time [s] that the newest packet gives itself. */
   packetTime: number | null;
+  /** Room time [s] of the newest pose that is remembered, here or in the match; null: none is. */
+  posedAt: number | null;
   head: Vec3 | null;
   fresh: Uint8Array | null;
+  /** Wants the match's clock to stand. */
+  holds: boolean;
 }
 
 interface Client {
@@ -112,6 +120,8 @@ export interface Room {
   readonly census: RoomCensus;
   /** The match as the rules have it; null in an open room. */
   readonly match: BallState | null;
+  /** The match's clock stands because somebody on a seat wants it to. */
+  readonly paused: boolean;
   /** A new connection of somebody whose identity the host has made sure of. Replaces an older one of theirs and takes their held seat. */
   join(client: ClientId, identity: string, joining: Joining, time: number): void;
   /** The connection is lost; the seat is held for 30 s. */
@@ -135,7 +145,12 @@ export function createRoom(options: RoomOptions, outlet: RoomOutlet): Room {
   const seats: (Seat | null)[] = Array.from({ length: count }, () => null);
   const clients = new Map<ClientId, Client>();
   let match: Match<BallState, BallAction, BallEvent> | null = null;
+  /** Room time at which the match's clock was at 0; it moves on with every second that the clock stands. */
   let zero = 0;
+  /** For how long the match's clock has stood in all [s]. */
+  let stood = 0;
+  /** Room time at which the match's clock was stopped; null: it runs. */
+  let stoppedAt: number | null = null;
   let round = 0;
   let rotate = false;
   let actions: BallAction[] = [];
@@ -172,6 +187,7 @@ export function createRoom(options: RoomOptions, outlet: RoomOutlet): Room {
       rotate,
       zero: match && zero,
       match: match && packBall(match.state),
+      paused: stoppedAt === null ? null : stoppedAt - zero,
       time,
     });
   }
@@ -194,8 +210,10 @@ export function createRoom(options: RoomOptions, outlet: RoomOutlet): Room {
       presence: 'here',
       heardAt: time,
       packetTime: null,
+      posedAt: null,
       head: null,
       fresh: null,
+      holds: false,
     };
     clients.get(client)!.seat = index;
     act({ type: 'join', player: index });
@@ -243,6 +261,11 @@ export function createRoom(options: RoomOptions, outlet: RoomOutlet): Room {
     seats.forEach((seat, index) => {
       if (!seat) return;
       setPresence(index, seat, time);
+      if (seat.posedAt !== null && time - seat.posedAt > poseMemory) {
+        seat.posedAt = null;
+        seat.head = null;
+        act({ type: 'silent', player: index });
+      }
       if (seat.lostAt === null) return;
       if (seat.playing && time - seat.lostAt > awayAfter) {
         seat.playing = false;
@@ -270,7 +293,7 @@ export function createRoom(options: RoomOptions, outlet: RoomOutlet): Room {
       act({ type: 'join', player });
       act({ type: 'ready', player, ready: true });
     });
-    const events = match?.advance(time, actions) ?? [];
+    const events = match?.advance(time - stood, actions) ?? [];
     actions = [];
     outlet.broadcast({ type: 'match', match: packBall(match!.state), zero });
     tell(events);
@@ -288,11 +311,30 @@ export function createRoom(options: RoomOptions, outlet: RoomOutlet): Room {
     }
   }
 
+  const tellPause = (at: number | null): void => outlet.broadcast({ type: 'paused', at, zero });
+
   function stepMatch(time: number): void {
     if (!match) return;
+    const held = seats.some((seat) => seat?.holds);
+    if (stoppedAt !== null) {
+      if (held) return;
+      stood += time - stoppedAt;
+      zero += time - stoppedAt;
+      stoppedAt = null;
+      tellPause(null);
+    }
+    const stopping = held && match.state.phase === 'running';
     const due = actions;
     actions = [];
-    tell(match.advance(time, due));
+    if (stopping) due.push({ type: 'pause' });
+    const before = match.state.tick;
+    tell(match.advance(time - stood, due));
+    // Between two ticks of the match nothing is stepped: then it stops with the next one.
+    if (stopping && match.state.tick !== before) {
+      stoppedAt = time;
+      tellPause(time - zero);
+      return;
+    }
     // The match cuts pauses of its host out of its time.
     const shifted = time - match.lead - match.state.tick * ballRules.tickSeconds;
     if (Math.abs(shifted - zero) > 1e-3) {
@@ -319,7 +361,7 @@ export function createRoom(options: RoomOptions, outlet: RoomOutlet): Room {
     if (begun) return;
     begun = true;
     zero = time;
-    match?.advance(time, []);
+    match?.advance(time - stood, []);
   }
 
   return {
@@ -337,6 +379,9 @@ export function createRoom(options: RoomOptions, outlet: RoomOutlet): Room {
     },
     get match() {
       return match?.state ?? null;
+    },
+    get paused() {
+      return stoppedAt !== null;
     },
 
     join(client, identity, joining, time) {
@@ -424,6 +469,11 @@ export function createRoom(options: RoomOptions, outlet: RoomOutlet): Room {
           rotate = message.rotate;
           tellAbout();
           return;
+        case 'pause':
+          if (!seat) return refuse('message', 'no-seat');
+          if (!options.pausable) return refuse('message', 'not-pausable');
+          seat.holds = message.pause;
+          return;
         case 'calibration':
           known.calibration = message.calibration;
           if (seat && index !== null) {
@@ -456,10 +506,15 @@ export function createRoom(options: RoomOptions, outlet: RoomOutlet): Room {
         }
         case 'ready':
           if (index === null) return refuse('message', 'no-seat');
-          act({ type: 'ready', player: index, ready: message.ready });
+          // Nothing that waits for a clock which stands piles up.
+          if (stoppedAt === null) act({ type: 'ready', player: index, ready: message.ready });
           return;
         case 'deed':
           if (index === null) return refuse('deed', 'no-seat');
+          if (stoppedAt !== null) {
+            tell([{ type: 'refused', player: index, sequence: message.deed.sequence, reason: 'phase' }]);
+            return;
+          }
           act({ ...message.deed, player: index });
       }
     },
@@ -485,9 +540,10 @@ export function createRoom(options: RoomOptions, outlet: RoomOutlet): Room {
       seat.packetTime = packetTime;
       seat.head = head.position;
       seat.heardAt = time;
+      seat.posedAt = time;
       // What a receiver may still draw is kept until the next tick and no longer.
       seat.fresh = bytes.slice();
-      if (match) {
+      if (match && stoppedAt === null) {
         const arenaFromFloor = arenaFromFloorOf(index, count, match.state);
         const seen = (hand: typeof leftHand) =>
           hand?.tracking === 'tracked' ? transformPose(arenaFromFloor, hand) : null;

@@ -1,14 +1,20 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import { defaultCalibration } from '../../../src/core/body/calibration';
-import { clientMessageFrom, packRow, roomMessageFrom, unpackRow } from '../../../src/core/protocol/messages';
+import {
+  clientMessageFrom,
+  packRow,
+  protocolVersion,
+  roomMessageFrom,
+  unpackRow,
+} from '../../../src/core/protocol/messages';
 import { cleanName } from '../../../src/core/protocol/names';
 import { decodeFrame, encodeFrame } from '../../../src/core/protocol/pose-frame';
 import { pageParser, relayParser, type SocketPacket } from '../../../src/core/protocol/small-frames';
 
 const join = {
   type: 'join',
-  version: 1,
+  version: protocolVersion,
   name: 'Ann',
   calibration: defaultCalibration,
   spectate: false,
@@ -32,6 +38,7 @@ describe('control messages', () => {
       { type: 'ready', ready: true },
       { type: 'deed', deed: throwing },
       { type: 'sit', seat: null },
+      { type: 'pause', pause: true },
       { type: 'ping', sent: 1.5 },
     ]) {
       expect(clientMessageFrom(JSON.parse(JSON.stringify(message)))).toEqual(message);
@@ -44,7 +51,7 @@ describe('control messages', () => {
     ['an unknown type', { type: 'score', points: 20 }],
     ['a field too many', { ...join, identity: 'somebody else' }],
     ['a field too few', { type: 'ready' }],
-    ['another version', { ...join, version: 2 }],
+    ['another version', { ...join, version: protocolVersion + 1 }],
     ['a seat that no room has', { type: 'sit', seat: 16 }],
     ['half a seat', { type: 'sit', seat: 0.5 }],
     ['a giant', { ...join, calibration: { eyeHeight: 40, armSpan: 1.5 } }],

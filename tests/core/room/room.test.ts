@@ -5,7 +5,7 @@ import { followBallEvent } from '../../../src/core/games/ball/replica';
 import { ballRules } from '../../../src/core/games/ball/rules';
 import { vec3 } from '../../../src/core/math/vec3';
 import { packBall, unpackBall } from '../../../src/core/protocol/ball-snapshot';
-import { clientMessageFrom, unpackRow } from '../../../src/core/protocol/messages';
+import { clientMessageFrom, protocolVersion, unpackRow } from '../../../src/core/protocol/messages';
 import { decodeFrame } from '../../../src/core/protocol/pose-frame';
 import { createRoom, seatHoldSeconds } from '../../../src/core/room/room';
 import { atRack, fists, opening, releaseOf, velocityTo } from '../../net/people';
@@ -21,7 +21,7 @@ describe('seats', () => {
     const told = toldRoom();
     const rude = clientMessageFrom({
       type: 'join',
-      version: 1,
+      version: protocolVersion,
       ...joining({ name: ' a\u202eb\u0007\n  c\u200b \u{1f600}'.repeat(4) }),
     });
     expect(rude).toMatchObject({ name: 'ab c \u{1f600} ab c \u{1f600} ab c \u{1f600}' });

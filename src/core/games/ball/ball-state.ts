@@ -85,6 +85,10 @@ export type BallAction =
   | { readonly type: 'join'; readonly player: number }
   | { readonly type: 'leave'; readonly player: number }
   | { readonly type: 'ready'; readonly player: number; readonly ready: boolean }
+  /** Nothing has been heard of this player for so long that where they were is forgotten. */
+  | { readonly type: 'silent'; readonly player: number }
+  /** The clock is about to be stopped: no hand keeps a ball, and where everybody was is forgotten. */
+  | { readonly type: 'pause' }
   | {
       readonly type: 'pose';
       readonly player: number;

@@ -90,6 +90,9 @@ export function createBallGestures(settings: () => BallGestureSettings, firstSeq
   const speeds = { left: createHandSpeed(), right: createHandSpeed() };
   const holding: Record<Side, Holding | null> = { left: null, right: null };
   const wasNear: Record<Side, number | null> = { left: null, right: null };
+  /** The newest throw of each hand, until it is known to be refused: then the ball is still in that hand. */
+  const thrown: Record<Side, { readonly sequence: number; readonly ball: number } | null> = { left: null, right: null };
+  const unthrown = new Set<Side>();
   let slipped: BallCue[] = [];
   let sequence = firstSequence;
   let lastTime: number | null = null;
@@ -146,6 +149,8 @@ export function createBallGestures(settings: () => BallGestureSettings, firstSeq
     const thrower = state.players[player]?.role === 'thrower';
     const playing = thrower && state.phase === 'running';
 
+    for (const side of unthrown) act({ type: 'drop', sequence: number(), side });
+    unthrown.clear();
     for (const side of sides) {
       const hand = hands[side];
       const speed = speeds[side];
@@ -229,7 +234,9 @@ export function createBallGestures(settings: () => BallGestureSettings, firstSeq
         return;
       }
       holding[side] = null;
-      act({ type: 'throw', sequence: number(), side, ball: held.ball, at: time + matchAhead, position, velocity });
+      const sequence = number();
+      thrown[side] = { sequence, ball: held.ball };
+      act({ type: 'throw', sequence, side, ball: held.ball, at: time + matchAhead, position, velocity });
       cues.push({ type: 'thrown', side, ball: held.ball });
       haptics.push({ side, strength: Math.min(1, 0.3 + speed / 15), seconds: 0.05 });
     }
@@ -241,6 +248,14 @@ export function createBallGestures(settings: () => BallGestureSettings, firstSeq
       const { player } = settings();
       for (const event of events) {
         for (const side of sides) {
+          const throwing = thrown[side];
+          if (event.type === 'refused' && event.player === player && event.sequence === throwing?.sequence) {
+            thrown[side] = null;
+            if (event.reason !== 'seen-before') {
+              unthrown.add(side);
+              slipped.push({ type: 'slipped', side, ball: throwing.ball });
+            }
+          }
           const held = holding[side];
           if (!held || !('player' in event) || event.player !== player) continue;
           const refused =

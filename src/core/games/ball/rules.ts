@@ -110,10 +110,12 @@ function returnHeld(state: BallState, player: number | null): Step {
   return { state: next, events };
 }
 
+const forgotten = { head: null, left: null, right: null } as const;
+
 function join(state: BallState, index: number): Step {
   if (state.players[index]!.present) return unchanged(state);
   // A new face counts its deeds from 1 again.
-  const change = { present: true, ready: false, at: -1, head: null, left: null, right: null, sequence: 0, seen: 0 };
+  const change = { present: true, ready: false, at: -1, ...forgotten, sequence: 0, seen: 0 };
   return { state: withPlayer(state, index, change), events: [{ type: 'joined', player: index }] };
 }
 
@@ -121,9 +123,16 @@ function leave(state: BallState, index: number): Step {
   if (!state.players[index]!.present) return unchanged(state);
   const returned = returnHeld(state, index);
   return {
-    state: withPlayer(returned.state, index, { present: false, ready: false, head: null, left: null, right: null }),
+    state: withPlayer(returned.state, index, { present: false, ready: false, ...forgotten }),
     events: [...returned.events, { type: 'left', player: index }],
   };
+}
+
+/** Before the clock stops: what is held goes back, for hands do not stop; flights go on where they were. */
+function pause(state: BallState): Step {
+  const returned = returnHeld(state, null);
+  const players = returned.state.players.map((player) => ({ ...player, ...forgotten }));
+  return { state: { ...returned.state, players }, events: returned.events };
 }
 
 function setReady(state: BallState, index: number, ready: boolean): Step {
@@ -284,6 +293,7 @@ function deedOf(state: BallState, index: number, deed: BallDeed): Step | Refusal
 }
 
 function act(state: BallState, action: BallAction): Step {
+  if (action.type === 'pause') return pause(state);
   const player = state.players[action.player];
   if (!player) return unchanged(state);
   switch (action.type) {
@@ -293,6 +303,8 @@ function act(state: BallState, action: BallAction): Step {
       return leave(state, action.player);
     case 'ready':
       return setReady(state, action.player, action.ready);
+    case 'silent':
+      return { state: withPlayer(state, action.player, forgotten), events: [] };
     case 'pose':
       return pose(state, action);
     case 'grab':

@@ -30,6 +30,8 @@ function throwing(options: { side?: Side; button?: Button; state?: BallState; pl
     ...transformPose(floorFromArena, wristAround<'arena'>(hand, fist, vec3(0, 0, -1), vec3(0, 1, 0))),
     tracking: 'tracked',
   });
+  /** How far behind the mark the head is [m]. */
+  const aside = { back: 0 };
   const frame = (fist: Vec3 | null, pressed: number, kind?: HandButtons['kind'], seconds = 1 / 90) => {
     time += seconds;
     const hanging = transformPoint(arenaFromFloor, vec3(side === 'right' ? -0.25 : 0.25, 0.8, 0));
@@ -37,21 +39,19 @@ function throwing(options: { side?: Side; button?: Button; state?: BallState; pl
       [`${side}Hand`]: fist && tracked(fist, side),
       [`${other[side]}Hand`]: tracked(hanging, other[side]),
     } as unknown as Pick<TrackingFrame, 'leftHand' | 'rightHand'>;
-    const head: TrackedPose = { position: vec3(0, 1.6, 0), orientation: identity, tracking: 'tracked' };
-    const buttons = { [side]: { ...allReleased, [button]: pressed, ...(kind ? { kind } : {}) } } as Record<
-      Side,
-      HandButtons
-    >;
-    const done = gestures.follow(
-      { time, head, ...hands },
-      { ...{ left: allReleased, right: allReleased }, ...buttons },
-    );
-    settings.state = ballRules.step(settings.state, done.actions).state;
+    const head: TrackedPose = { position: vec3(0, 1.6, aside.back), orientation: identity, tracking: 'tracked' };
+    const buttons: Partial<Record<Side, HandButtons>> = {
+      [side]: { ...allReleased, [button]: pressed, ...(kind && { kind }) },
+    };
+    const done = gestures.follow({ time, head, ...hands }, { left: allReleased, right: allReleased, ...buttons });
+    const { state, events } = ballRules.step(settings.state, done.actions);
+    settings.state = state;
+    gestures.hear(events);
     return done;
   };
   const deeds = (done: { readonly actions: readonly BallAction[] }) =>
     done.actions.filter(({ type }) => type !== 'pose');
-  return { frame, deeds, gestures, settings, ball: rackPosition(0, 20), now: () => time - 100 };
+  return { frame, aside, deeds, gestures, settings, ball: rackPosition(0, 20), now: () => time - 100 };
 }
 
 const ahead = transformPoint(arenaFromFloor, vec3(0.2, 1.5, -0.3));
@@ -144,6 +144,23 @@ describe('a hand', () => {
     const done = frame(ahead, 1);
     expect(done.held.right).toBeNull();
     expect(done.cues.map(({ type }) => type)).toEqual(['slipped']);
+  });
+
+  test('whose throw was refused lets go of the ball all the same, and can take another', () => {
+    const { frame, aside, deeds, settings, ball } = carrying();
+    // Behind the line nobody throws.
+    aside.back = 1.4;
+    for (let i = 1; i < 12; i++) frame(addScaled(ahead, vec3(0, 3, -4), i / 90), 1);
+    expect(deeds(frame(addScaled(ahead, vec3(0, 3, -4), 12 / 90), 0)).map(({ type }) => type)).toEqual(['throw']);
+    expect(settings.state.balls[0]?.on).toBe('hand');
+    const after = frame(ahead, 0);
+    expect(deeds(after)).toEqual([{ type: 'drop', player: leftThrower, sequence: 3, side: 'right' }]);
+    expect(after.cues.map(({ type }) => type)).toEqual(['slipped']);
+    expect(settings.state.balls[0]).toEqual({ on: 'rack' });
+    aside.back = 0;
+    frame(ball, 0);
+    frame(ball, 1);
+    expect(settings.state.balls[0]).toEqual({ on: 'hand', player: leftThrower, side: 'right' });
   });
 
   test('of the basket holder takes no balls but tells where it is', () => {

@@ -1,0 +1,96 @@
+import { type ArcherySettings, createArcheryPlay, probeOf, roundOf } from './archery-play';
+import type { Calibration } from './core/body/calibration';
+import type { Side } from './core/body/joints';
+import type { HapticPulse } from './core/games/archery/gestures';
+import type { Buttons } from './core/games/button-presses';
+import { identity } from './core/math/quat';
+import { type Vec3, zero } from './core/math/vec3';
+import type { TrackingFrame } from './core/tracking/tracking-frame';
+import { createArcheryView } from './games/archery/archery-view';
+import { eventHaptics } from './games/archery/haptics';
+import type { Arena } from './scene/arena';
+import type { Quality } from './scene/renderer';
+
+/** The room's floor is the range's: its zone lies about the origin, the targets ahead. */
+const floorFromArena = { position: zero, orientation: identity };
+
+export interface ArcheryActivityOptions {
+  readonly quality: Quality;
+  readonly arena: Pick<Arena, 'scene' | 'setSurroundings'>;
+  readonly calibration: Calibration;
+  settings(): ArcherySettings;
+  /** Of the next round's layout. */
+  seed(): number;
+  onCaption(text: string): void;
+}
+
+interface Ray {
+  readonly origin: Vec3;
+  readonly direction: Vec3;
+}
+
+/** What a frame of play means to whoever plays. */
+export interface ArcheryMoment {
+  readonly haptics: readonly HapticPulse[];
+  /** The hand that has just taken the bow; null: nobody took it. */
+  readonly taken: Side | null;
+  /** Score or clock may have changed. */
+  readonly eventful: boolean;
+}
+
+/** Archery in the page: the range, the bow, and the round that is played. */
+export interface ArcheryActivity {
+  readonly play: ReturnType<typeof createArcheryPlay>;
+  readonly sound: ReturnType<typeof createArcheryView>['sound'];
+  /** The tracked frame as play: what it means is heard at once, what it feels like comes back. */
+  follow(frame: TrackingFrame, buttons: Buttons): ArcheryMoment;
+  /** Draws the newest frame of play; bow: whether the hands hold it or it hangs on its stand. */
+  show(head: TrackingFrame['head'], bow: boolean): void;
+  /** What a ray meets of the result's button: the distance [m]; null: nothing. */
+  restartAt(ray: Ray): number | null;
+  setHovered(hovered: boolean): void;
+  /** Whether this hand is closed round the bow. */
+  holds(side: Side): boolean;
+  round(): ReturnType<typeof roundOf> | null;
+  probe(): ReturnType<typeof probeOf> | null;
+  dispose(): void;
+}
+
+export function createArcheryActivity(options: ArcheryActivityOptions): ArcheryActivity {
+  const { quality, arena, calibration, settings, seed, onCaption } = options;
+  const play = createArcheryPlay(calibration, settings, seed);
+  const view = createArcheryView({
+    quality,
+    floorFromArena,
+    distances: play.targets.map(({ distance }) => distance),
+    onCaption,
+  });
+  arena.setSurroundings(view.range);
+  arena.scene.add(view.bow);
+
+  return {
+    play,
+    sound: view.sound,
+    follow(frame, buttons) {
+      const { events, cues, haptics, bow } = play.follow(frame, buttons);
+      const taken = cues.findLast(({ type }) => type === 'taken')?.side ?? null;
+      view.hear(events, cues);
+      const bowSide = bow?.bowSide ?? taken ?? settings().bowSide;
+      return { haptics: [...haptics, ...eventHaptics(events, bowSide)], taken, eventful: events.length > 0 };
+    },
+    show(head, bow) {
+      const { newest } = play;
+      if (newest) view.show(newest.state, bow ? newest.bow : null, newest.time, head);
+    },
+    restartAt: ({ origin, direction }) => view.result.restartAt(origin, direction),
+    setHovered: (hovered) => view.result.setHovered(hovered),
+    holds: (side) => play.newest?.bow?.bowSide === side,
+    round: () => play.newest && roundOf(play.newest),
+    probe: () => play.newest && probeOf(play.newest),
+    dispose() {
+      view.bow.removeFromParent();
+      arena.setSurroundings(null);
+      view.dispose();
+    },
+  };
+}

@@ -1,0 +1,60 @@
+import type { Activities } from './activities';
+import type { Calibration } from './core/body/calibration';
+import type { EstimatorChoice } from './estimator-choice';
+import type { FrameTiming } from './frame-timing';
+import type { Headset } from './headset';
+import type { Settings } from './settings';
+import type { StudyRun } from './study-run';
+import type { Switches } from './ui/switches';
+
+/** Characters of the device's name that a record keeps. */
+const longestDeviceName = 160;
+
+export interface JoinStudyOptions {
+  readonly asked: NonNullable<Switches['study']>;
+  readonly switches: Pick<Switches, 'actor'>;
+  readonly settings: Settings;
+  readonly choice: EstimatorChoice;
+  readonly headset: Headset;
+  readonly activities: Activities;
+  readonly timing: FrameTiming;
+  /** For this visit only. */
+  calibrate(calibration: Calibration): void;
+}
+
+/** Takes part in a study: from now on it decides what is played and with which body. */
+export async function joinStudy(options: JoinStudyOptions): Promise<StudyRun> {
+  const { asked, switches, settings, choice, headset, activities, timing, calibrate } = options;
+  const { createStudyRun } = await import('./study-run');
+  return createStudyRun(asked, {
+    enterVr: headset.enter,
+    inSession: () => headset.worn,
+    calibration: () => settings.calibration,
+    setCalibration: calibrate,
+    chooseEstimator: (name) => choice.choose(name),
+    estimator: () => choice.current.name,
+    setActor(on) {
+      settings.actor = on && switches.actor;
+    },
+    setBowSide: activities.setBowSide,
+    async goToArchery() {
+      await activities.goTo('archery');
+      if (!activities.archery) throw new Error('The archery range could not be opened.');
+    },
+    async goToBall(place) {
+      await activities.goToMatch(place);
+      if (!activities.ball) throw new Error('The ball court could not be opened.');
+    },
+    ball: () => activities.ball?.play ?? null,
+    leaveBall: () => void activities.goTo('studio'),
+    startRound: activities.startRound,
+    resetRound: activities.resetRound,
+    assists: () => (settings.oneHanded ? ['one hand'] : []),
+    device: () => ({
+      name: `${headset.emulator ? 'emulated headset in ' : ''}${navigator.userAgent}`.slice(0, longestDeviceName),
+      refreshRateHz: headset.rateHz,
+      input: settings.actor ? 'simulated' : headset.emulator ? 'emulated' : (headset.input ?? 'controllers'),
+    }),
+    listenToFrames: timing.listen,
+  });
+}

@@ -1,0 +1,60 @@
+import { type Calibration, defaultCalibration } from './core/body/calibration';
+import type { Side } from './core/body/joints';
+import type { PreferenceStore } from './ui/preferences';
+import type { Switches } from './ui/switches';
+
+/** What the user set, for this visit; whoever changes it brings it on the screen. */
+export interface Settings {
+  mirror: boolean;
+  upperBodyOnly: boolean;
+  debugSkeleton: boolean;
+  overlay: boolean;
+  /** Frame times inside the headset. */
+  vrOverlay: boolean;
+  largerText: boolean;
+  palette: string;
+  /** Somebody built in moves the body, where nobody else does. */
+  actor: boolean;
+  /** In a game, without a headset: the mouse plays instead of the actor. */
+  mouse: boolean;
+  emulatorPanel: boolean;
+  bowSide: Side;
+  oneHanded: boolean;
+  everyHitCounts: boolean;
+  /** Of a round, until the bell [s]; absent: as the game has it. */
+  seconds?: number;
+  sound: boolean;
+  bots: boolean;
+  name: string;
+  /** Whom a spectator's camera follows: a seat, or null: free. */
+  following: number | null;
+  calibration: Calibration;
+  /** Where the calibration comes from, in words. */
+  calibrationSource: string;
+}
+
+/** What the address asks for, else what was remembered, else what suits most. */
+export function createSettings(switches: Switches, { preferences }: Pick<PreferenceStore, 'preferences'>): Settings {
+  return {
+    mirror: preferences.mirror ?? true,
+    upperBodyOnly: preferences.upperBodyOnly ?? false,
+    debugSkeleton: false,
+    overlay: preferences.overlay ?? window.innerWidth > 760,
+    vrOverlay: false,
+    largerText: preferences.largerText ?? false,
+    palette: preferences.palette ?? 'porcelain',
+    actor: switches.actor,
+    mouse: false,
+    emulatorPanel: true,
+    bowSide: preferences.bowSide ?? 'left',
+    oneHanded: preferences.oneHanded ?? false,
+    everyHitCounts: preferences.everyHitCounts ?? false,
+    ...(switches.seconds && { seconds: switches.seconds }),
+    sound: preferences.sound ?? true,
+    bots: switches.bots ?? (switches.room ? false : (preferences.bots ?? true)),
+    name: switches.name ?? preferences.name ?? '',
+    following: null,
+    calibration: preferences.calibration ?? defaultCalibration,
+    calibrationSource: preferences.calibration ? 'remembered' : 'not calibrated yet',
+  };
+}

@@ -1,0 +1,120 @@
+import type { Avatar } from './avatar/avatar';
+import { createDebugSkeleton } from './avatar/debug-skeleton';
+import { createHeadLoss } from './avatar/head-loss';
+import { createMirror } from './avatar/mirror';
+import type { Side } from './core/body/joints';
+import type { Pose } from './core/math/pose';
+import type { Vec3 } from './core/math/vec3';
+import type { TrackingFrame } from './core/tracking/tracking-frame';
+import { type Arena, createArena } from './scene/arena';
+import { createDesktopView, type DesktopView, type Insets } from './scene/desktop-view';
+import { createHeadsetCamera, createRenderer, fitToWindow, type Quality } from './scene/renderer';
+import { createVignette, type Vignette } from './scene/vignette';
+
+/** The user stands at the origin and looks along −Z, at the mirror [m]. */
+const mirrorDistance = 1.5;
+/** Beside the range the mirror stands out of the arrows' way, on the side the archer's chest faces [m, rad]. */
+const mirrorByTheRange = { x: 1.95, z: -0.1, turned: -1.3 };
+/** Where shadow and light of a body go that is not there [m]. */
+const outOfSight = 100;
+/** Longest step of a camera that follows [s]: a page that was asleep does not leap. */
+const longestStep = 0.1;
+/** A pelvis hangs at this share of the eyes' height, where no body says better. */
+const pelvisShare = 0.58;
+
+/** Somebody to look at, floor frame. */
+export interface Watched {
+  readonly pelvis: Vec3;
+  readonly eyes: Pose<'floor'>;
+}
+
+/** One picture: who is in it and who sees it. */
+export interface Shot {
+  readonly time: number;
+  /** null: the head is not seen. */
+  readonly frame: TrackingFrame | null;
+  /** null: not loaded yet. */
+  readonly avatar: Avatar | null;
+  readonly inSession: boolean;
+  /** Whom a camera without a body of its own looks at; null: there is a body. */
+  readonly watched: Watched | null;
+  /** never; always; or only for a camera that does not stand behind the mirror: whoever looks from there wants to see the body. */
+  readonly mirror: 'never' | 'always' | 'unless-behind';
+}
+
+/** What is always there to be drawn, and the cameras it is drawn with. */
+export interface Stage {
+  readonly renderer: ReturnType<typeof createRenderer>;
+  readonly arena: Arena;
+  readonly view: DesktopView;
+  readonly vignette: Vignette;
+  /** Beside the range, for an archer whose bow is in this hand; null: ahead of whoever stands in the studio. */
+  placeMirror(bowSide: Side | null): void;
+  setSkeletonVisible(visible: boolean): void;
+  /** Fits picture and camera to the window; insets: what the controls cover [CSS pixels]. */
+  layOut(insets: Insets): void;
+  /** Light and camera go where the body is: before anything is drawn that depends on the camera. */
+  look(shot: Shot): void;
+  draw(shot: Shot): void;
+}
+
+export function createStage(canvas: HTMLCanvasElement, quality: Quality): Stage {
+  const renderer = createRenderer(canvas, quality);
+  const arena = createArena(renderer, quality);
+  const view = createDesktopView(canvas);
+  const mirror = createMirror({
+    distance: mirrorDistance,
+    ...(quality === 'low' && { resolution: 400, samples: 0 }),
+  });
+  const skeleton = createDebugSkeleton();
+  const headLoss = createHeadLoss();
+  const vignette = createVignette();
+  const headsetCamera = createHeadsetCamera();
+  arena.scene.add(mirror.object, skeleton.object, vignette.object);
+  let lastTime = 0;
+
+  return {
+    renderer,
+    arena,
+    view,
+    vignette,
+    placeMirror(bowSide) {
+      const { x, z, turned } = mirrorByTheRange;
+      const sign = bowSide === 'left' ? 1 : -1;
+      if (bowSide) mirror.place(sign * x, z, sign * turned);
+      else mirror.place(0, -mirrorDistance, 0);
+    },
+    setSkeletonVisible: (visible) => skeleton.setVisible(visible),
+    layOut(insets) {
+      view.setInsets(insets);
+      view.resize();
+      fitToWindow(renderer, quality);
+    },
+    look({ time, frame, avatar, inSession, watched }) {
+      const elapsed = Math.min(longestStep, Math.max(0, time - lastTime));
+      lastTime = time;
+      const hips = avatar?.jointPositions().hips;
+      if (watched) arena.follow(watched.pelvis.x, outOfSight);
+      else if (hips) arena.follow(hips.x, hips.z);
+      if (inSession) return;
+      if (watched) view.update(watched.pelvis, watched.eyes, elapsed);
+      else if (frame) {
+        const { position } = frame.head;
+        view.update(hips ?? { ...position, y: position.y * pelvisShare }, frame.head, elapsed);
+      }
+    },
+    draw({ time, frame, avatar, inSession, watched, mirror: wanted }) {
+      const inside = inSession || view.view === 'first-person';
+      if (avatar) {
+        skeleton.show(avatar.jointPositions());
+        avatar.object.visible = watched === null;
+        avatar.setOpacity(headLoss.follow(time, frame !== null));
+        avatar.setFirstPerson(inside);
+      }
+      vignette.show(time, inSession && frame ? frame.head : null);
+      const beforeIt = inside || view.camera.position.z > 0.1 - mirrorDistance;
+      mirror.setVisible(wanted === 'always' || (wanted === 'unless-behind' && beforeIt));
+      renderer.render(arena.scene, inSession ? headsetCamera : view.camera);
+    },
+  };
+}
