@@ -26,6 +26,7 @@ export interface JoinStudyOptions {
 export async function joinStudy(options: JoinStudyOptions): Promise<StudyRun> {
   const { asked, switches, settings, choice, headset, activities, timing, calibrate } = options;
   const { createStudyRun } = await import('./study-run');
+  settings.startSignal = true;
   return createStudyRun(asked, {
     enterVr: headset.enter,
     inSession: () => headset.worn,

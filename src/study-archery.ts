@@ -50,6 +50,8 @@ export function createArcheryRunner(host: ArcheryHost): ArcheryRunner {
       return taken;
     },
     waitingFor: null,
+    standing: false,
+    pause: () => undefined,
     get end() {
       return end;
     },

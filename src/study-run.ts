@@ -156,6 +156,7 @@ export function createStudyRun(
       room: `study-${first}${second}`,
       participant: running.progress.participant,
       members: group?.members ?? [],
+      seconds: step.seconds,
     };
   }
 
@@ -234,7 +235,8 @@ export function createStudyRun(
       }
     }
     if (trial && trial.key !== keyOf(running)) dropTrial();
-    trial?.pause(running.progress.paused);
+    // Whoever takes the headset off in a pause goes on when they wear it again.
+    trial?.pause(running.progress.paused || !host.inSession());
     if (isPlayed(step)) {
       if (prepared?.step !== step.id) void prepare(step);
       if (
@@ -263,6 +265,7 @@ export function createStudyRun(
       refusal,
       playing: trial !== null,
       waitingFor: trial?.waitingFor ?? null,
+      standing: trial?.standing ?? false,
     };
   }
 
@@ -444,7 +447,7 @@ export function createStudyRun(
       return session?.calibration != null;
     },
     get paused() {
-      return session?.progress.paused ?? false;
+      return session !== null && (session.progress.paused || (trial !== null && !host.inSession()));
     },
     frame(time, frame) {
       if (frame) {
@@ -453,7 +456,7 @@ export function createStudyRun(
         sheet.follow({ position: frame.head.position, forward });
       }
       const running = session;
-      if (!trial || !running || running.progress.paused) return;
+      if (!trial || !running) return;
       const finished = trial.follow(time, frame);
       if (finished) finishTrial(running, finished);
     },
@@ -462,7 +465,7 @@ export function createStudyRun(
     point: (pointers) => sheet.point(pointers),
     sessionChanged() {
       // Whoever takes the headset off in the middle of a round has not played it.
-      if (!host.inSession() && session?.progress.running && trial) {
+      if (!host.inSession() && session?.progress.running && !session.progress.paused && trial) {
         session.apply({ type: 'reload' });
         void exchange();
       }

@@ -33,7 +33,9 @@ export interface PlayedTrial {
   readonly key: string;
   /** Others without whom it cannot begin; null: nobody. */
   readonly waitingFor: string | null;
-  /** While it is paused nothing is counted. */
+  /** The game's clock stands because somebody else of the group pauses. */
+  readonly standing: boolean;
+  /** Stops game and clock, or lets them go on; nothing is counted in between. */
   pause(on: boolean): void;
   /** Every frame drawn; `frame` null: the head was not seen. Answers once, when the end has been seen for a moment; until then null. */
   follow(time: number, frame: TrackingFrame | null): FinishedTrial | null;
@@ -62,10 +64,13 @@ export function playTrial(
   let endedAt: number | null = null;
   let fellBack = false;
   let paused = false;
+  /** For how long it stood in all [s], and since when it stands now. */
+  let stood = 0;
+  let stoppedAt: number | null = null;
 
   for (const name of runner.assists()) log.assist(name);
   host.listenToFrames((spent, late) => {
-    if (!paused && endedAt === null && runner.waitingFor === null) log.frame(spent, late);
+    if (!paused && !runner.standing && endedAt === null && runner.waitingFor === null) log.frame(spent, late);
   });
   runner.start({ seed, seconds: step.seconds });
 
@@ -95,11 +100,23 @@ export function playTrial(
     get waitingFor() {
       return runner.waitingFor;
     },
-    pause(on) {
-      paused = on;
+    get standing() {
+      return runner.standing;
     },
-    follow(time, frame) {
-      if (paused || runner.waitingFor !== null) return null;
+    pause(on) {
+      if (on === paused) return;
+      paused = on;
+      runner.pause(on);
+    },
+    follow(pageTime, frame) {
+      if (runner.waitingFor !== null) return null;
+      if (paused || runner.standing) {
+        stoppedAt ??= pageTime;
+        return null;
+      }
+      if (stoppedAt !== null) stood += pageTime - stoppedAt;
+      stoppedAt = null;
+      const time = pageTime - stood;
       if (startTime === null) {
         startTime = time;
         const { eyeHeight } = host.calibration();
