@@ -91,7 +91,7 @@ export const faultRows = {
   },
   comfort: {
     inject: 'Turning by the stick, small text, no sound, colour-blind eyes, reduced motion',
-    sees: 'Snap turns behind a vignette, text that grows, captions, rings told apart by brightness, no movement of the page',
+    sees: 'Snap turns behind a vignette, text that grows, captions (in the headset where the sound is off), rings told apart by brightness, no movement of the page',
     target: 'a turn turns about the head: 0 mm; contrast 4.5 : 1',
     tests: [
       'tests/reliability/comfort.test.ts',
