@@ -26,6 +26,13 @@ const test = pageTest.extend<object, { origin: string }>({
   ],
 });
 
+declare global {
+  interface Window {
+    /** Set by a test: this page draws twice a second. */
+    resting?: boolean;
+  }
+}
+
 const study = (page: Page): Promise<StudyProbe> =>
   page
     .waitForFunction(() => window.threepoint?.probe().study)
@@ -270,6 +277,17 @@ test('three participants play the ball game together, each in a headset of their
   const pages = await Promise.all(
     people.map(async () => (await browser.newContext({ viewport: { width: 320, height: 220 } })).newPage()),
   );
+  // Real headsets compute each for themselves: those that wait here draw seldom meanwhile, so that the others draw often enough.
+  for (const page of pages) {
+    await page.addInitScript(() => {
+      const next = window.requestAnimationFrame.bind(window);
+      window.requestAnimationFrame = (draw) => (window.resting ? window.setTimeout(() => next(draw), 500) : next(draw));
+    });
+  }
+  const rest = (page: Page, resting: boolean) =>
+    page.evaluate((on) => {
+      window.resting = on;
+    }, resting);
   const everybody = <T>(act: (page: Page, index: number) => Promise<T>) => Promise.all(pages.map(act));
   // One after the other: three pages that load at once keep each other waiting.
   const headsets: EmulatedHeadset[] = [];
@@ -289,8 +307,11 @@ test('three participants play the ball game together, each in a headset of their
     await enter(page);
     await headsets[index]?.place(stretched);
     await calibrate(page);
+    await reaches(page, 'trial-ready', 60_000);
+    await rest(page, true);
   }
   const [first, second, third] = pages as [Page, Page, Page];
+  await everybody((page) => rest(page, false));
   await press(first, 'start');
   await reaches(first, 'waiting', 60_000);
   await press(second, 'start');
