@@ -15,7 +15,7 @@ from threepoint_training.skeleton import body_from_calibration
 CORPUS = generate_corpus(people=3, clips=2, frames=80, seed=6)
 PARTS = BodyParts(CORPUS, tuple(CORPUS.people))
 EXACT = TrackerConfig(*[0.0] * 6)
-PLAIN = AugmentConfig(recombined=0, lost_hand=0, arm_scale=0, eye_height_error=0, arm_span_error=0, trackers=EXACT)
+PLAIN = AugmentConfig(recombined=0, lost_hand=0, late=0, seated=0, arm_scale=0, eye_height_error=0, arm_span_error=0, trackers=EXACT)
 STILL = np.array([0.0, 0.0, 0.0, 1.0])
 
 

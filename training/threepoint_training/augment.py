@@ -34,13 +34,13 @@ class AugmentConfig:
     held_hand: float = 0.3
     held_frames: int = 12
     # Trackers that tell of the frame before.
-    late: float = 0.0
+    late: float = 0.3
     # People on a chair that their calibration knows nothing of, lower by 0.2 to 0.35 of the eye height.
-    seated: float = 0.0
+    seated: float = 0.04
     arm_scale: float = 0.03
-    eye_height_error: float = 0.012
-    arm_span_error: float = 0.015
-    trackers: TrackerConfig = TrackerConfig(headset_offset=0.012, wrist_offset=0.009)
+    eye_height_error: float = 0.025
+    arm_span_error: float = 0.02
+    trackers: TrackerConfig = TrackerConfig(headset_offset=0.025, wrist_offset=0.02)
 
 
 @dataclass(frozen=True)
