@@ -58,4 +58,4 @@ def test_few_people_are_believed_less_and_strangers_not_without_bound():
 
 def test_too_few_people_in_a_neutral_pose_is_an_error():
     with pytest.raises(ValueError, match="neutral poses of three people"):
-        neutral_pose.run(CORPUS)
+        neutral_pose.run(CORPUS, train_learned.TrainLearnedConfig(), {})

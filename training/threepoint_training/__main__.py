@@ -21,7 +21,7 @@ from rich.table import Table
 from . import ablation, export, fit_body, fit_ik, golden, ik, neutral_pose, people, prepare, skeleton, train_learned, train_paper
 from .features import paper_input
 from .generated_motion import generate_corpus
-from .model import PaperNetwork
+from .model import PaperNetwork, ResidualNetwork
 from .motion import MocapError
 from .prepared_corpus import PreparedCorpus
 
@@ -125,12 +125,14 @@ def main(config: TrainConfig, console: Console | None = None) -> dict[str, dict[
 
 def _ablate(config: TrainConfig, corpus: PreparedCorpus, progress: Progress, console: Console) -> dict[str, dict[str, float]]:
     task = progress.add_task("ablation", total=len(ablation.FOLDS) * len(ablation.variants(config.learned)))
+    networks: dict[tuple[str, ...], ResidualNetwork] = {}
     rows = ablation.run(
-        corpus, config.learned, ablation.AblationConfig(seed=config.seed), lambda name: progress.update(task, advance=1, description=name)
-    )
+        corpus, config.learned, ablation.AblationConfig(seed=config.seed),
+        lambda name: progress.update(task, advance=1, description=name), networks.__setitem__,
+    )  # fmt: skip
     progress.remove_task(task)
     shown = _print_cells("MPJPE without each part of the recipe, people held out [cm]", ablation.CONDITIONS, rows, console)
-    told = neutral_pose.run(corpus)
+    told = neutral_pose.run(corpus, config.learned, networks)
     _print_cells("MPJPE with what a neutral pose tells of its person [cm]", neutral_pose.COLUMNS, told, console)
     # Last: a page without a place for them costs no hour of training.
     ablation.write(rows)

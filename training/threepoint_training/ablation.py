@@ -11,6 +11,7 @@ import numpy as np
 
 from . import people, train_learned
 from .accuracy_tables import renew, table
+from .model import ResidualNetwork
 from .prepared_corpus import PreparedCorpus
 from .simulate_trackers import TrackerConfig
 from .train_learned import Condition, TrainLearnedConfig
@@ -71,9 +72,16 @@ def variants(config: TrainLearnedConfig) -> dict[str, TrainLearnedConfig]:
 
 
 def run(
-    corpus: PreparedCorpus, recipe: TrainLearnedConfig, config: AblationConfig = AblationConfig(), report: Callable[[str], None] = lambda _: None
+    corpus: PreparedCorpus,
+    recipe: TrainLearnedConfig,
+    config: AblationConfig = AblationConfig(),
+    report: Callable[[str], None] = lambda _: None,
+    trained: Callable[[tuple[str, ...], ResidualNetwork], None] = lambda *_: None,
 ) -> list[list[str]]:
-    """Rows of the table: MPJPE [cm] of each variant under each condition, mean over the folds; first IK."""
+    """Rows of the table: MPJPE [cm] of each variant under each condition, mean over the folds; first IK.
+
+    trained(people held out, network) hands out the recipe's own networks.
+    """
     reserved = set(people.FOLDS["A"])
     folds = [fold for fold in config.folds if set(fold) <= set(corpus.people)]
     if not folds:
@@ -86,6 +94,8 @@ def run(
         for name, variant in variants(recipe).items():
             report(f"{name}, {', '.join(fold)} held out")
             network = train_learned.train(corpus, training, variant)
+            if variant is recipe:
+                trained(fold, network)
             for condition, given in CONDITIONS.items():
                 key = (condition, variant.window_seconds)
                 if key not in tests:

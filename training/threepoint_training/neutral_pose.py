@@ -12,8 +12,10 @@ from numpy.typing import NDArray
 from . import people, train_learned
 from .accuracy_tables import renew, table
 from .features import IK_JOINTS
+from .model import ResidualNetwork
 from .prepared_corpus import JOINTS, PreparedCorpus
-from .train_learned import HeldOut
+from .train_learned import HeldOut, TrainLearnedConfig
+from .train_paper import predict as predict_joints
 
 Array = NDArray[np.float64]
 
@@ -67,9 +69,10 @@ def measure(seen: HeldOut, frames: NDArray[np.bool_]) -> Array:
     return np.median((left[frames] * _MIRROR + right[frames]) / 2, axis=0)
 
 
-def bias(seen: HeldOut) -> Array:
-    """The mean of what is true minus what IK says [6, 3], the same for both sides [eye heights]."""
-    residual = (seen.targets - seen.inputs[:, IK_JOINTS]).reshape(-1, 6, 3).mean(axis=0)
+def bias(seen: HeldOut, output: NDArray[np.float32] | None = None) -> Array:
+    """The mean of what is true minus what IK, or this output, says [6, 3], the same for both sides [eye heights]."""
+    estimated = seen.inputs[:, IK_JOINTS] if output is None else output
+    residual = (seen.targets - estimated).reshape(-1, 6, 3).mean(axis=0)
     return (residual + residual[_SWAP] * _MIRROR) / 2
 
 
@@ -83,38 +86,66 @@ def predict(measures: Array, biases: Array, measured: Array, config: NeutralPose
     return (own @ weights).reshape(biases.shape[1:])
 
 
-def run(corpus: PreparedCorpus, config: NeutralPoseConfig = NeutralPoseConfig()) -> list[list[str]]:
-    """Rows of the table: MPJPE [cm] on people of the training side who are seen in a neutral pose, everybody counted alike."""
+@dataclass(frozen=True)
+class Standing:
+    """Somebody who is seen in a neutral pose: all their frames, what their neutral pose measures, their error under IK."""
+
+    seen: HeldOut
+    measured: Array
+    bias: Array
+
+
+def standing_people(corpus: PreparedCorpus, window_seconds: tuple[float, ...], config: NeutralPoseConfig) -> dict[str, Standing]:
+    """Everybody of the training side who is seen in a neutral pose for long enough."""
     names = tuple(sorted(set(corpus.people) - set(people.FOLDS["A"])))
-    everybody = train_learned.held_out(corpus, names, (0.0,))
-    seen, measures, biases = [], [], []
+    everybody = train_learned.held_out(corpus, names, window_seconds)
+    found = {}
     for name in names:
         person = everybody.subset(np.flatnonzero(everybody.people == name))
         frames = neutral_frames(corpus, name, person, config)
         if frames.sum() >= config.fewest_frames:
-            seen.append(person)
-            measures.append(measure(person, frames))
-            biases.append(bias(person))
-    if len(seen) < 3:
-        raise ValueError(f"neutral poses of three people are needed, {len(seen)} of {len(names)} stand in one")
-    m, b = np.stack(measures), np.stack(biases)
+            found[name] = Standing(person, measure(person, frames), bias(person))
+    if len(found) < 3:
+        raise ValueError(f"neutral poses of three people are needed, {len(found)} of {len(names)} stand in one")
+    return found
+
+
+def run(
+    corpus: PreparedCorpus,
+    recipe: TrainLearnedConfig,
+    networks: dict[tuple[str, ...], ResidualNetwork],
+    config: NeutralPoseConfig = NeutralPoseConfig(),
+) -> list[list[str]]:
+    """Rows of the table: MPJPE [cm], everybody counted alike. networks: ours, by the people whom each has not seen."""
+    everybody = standing_people(corpus, recipe.window_seconds, config)
     rows: dict[str, list[Array]] = {}
-    for number, person in enumerate(seen):
-        others = np.arange(len(seen)) != number
-        corrections = {
-            "IK": np.zeros((6, 3)),
-            "+ the mean error of the others": b[others].mean(axis=0),
-            "+ what the neutral pose tells": predict(m[others], b[others], m[number], config),
-            "+ one's own mean error (bound)": b[number],
-        }
-        for label, correction in corrections.items():
-            output = (person.inputs[:, IK_JOINTS] + correction.reshape(1, 18)).astype(np.float32)
-            rows.setdefault(label, []).append(train_learned.errors_cm(output, person).mean(axis=0))
+
+    def told(name: str, unknown: tuple[str, ...]) -> Array:
+        others = [person for other, person in everybody.items() if other not in unknown]
+        return predict(np.stack([o.measured for o in others]), np.stack([o.bias for o in others]), everybody[name].measured, config)
+
+    def add(label: str, name: str, output: NDArray[np.float32], correction: Array) -> None:
+        corrected = (output + correction.reshape(1, 18)).astype(np.float32)
+        rows.setdefault(label, []).append(train_learned.errors_cm(corrected, everybody[name].seen).mean(axis=0))
+
+    for name, person in everybody.items():
+        solved = person.seen.inputs[:, IK_JOINTS]
+        add("IK", name, solved, np.zeros(18))
+        add("IK, and what the neutral pose tells", name, solved, told(name, (name,)))
+        add("IK, and the mean error of the others", name, solved, np.mean([p.bias for other, p in everybody.items() if other != name], axis=0))
+        add("IK, and one's own mean error (bound)", name, solved, person.bias)
+    for unknown, network in networks.items():
+        for name in sorted(set(unknown) & set(everybody)):
+            output = predict_joints(network, everybody[name].seen.inputs)
+            add("ours", name, output, np.zeros(18))
+            # The network has made its share of the correction; the pose speaks for the rest.
+            add("ours, and what the neutral pose tells", name, output, (1 - recipe.correction_share) * told(name, unknown))
+            add("ours, and one's own mean error (bound)", name, output, bias(everybody[name].seen, output))
     shown = []
     for label, errors in rows.items():
         mean = np.mean(errors, axis=0)
         groups = (mean, mean[:2], mean[2:4], mean[4:5], mean[5:6])
-        shown.append([f"{label}, {len(seen)} people" if label == "IK" else label, *(f"{group.mean():.2f}" for group in groups)])
+        shown.append([f"{label} ({len(errors)} people)" if "," not in label else label, *(f"{group.mean():.2f}" for group in groups)])
     return shown
 
 
