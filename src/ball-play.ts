@@ -494,7 +494,8 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
       const station = stationOf(seen, seen.mySeat);
       wish = options.steering?.() ?? null;
       const steered = wish !== null;
-      const key = `${station} ${calibration.eyeHeight} ${steered || seen.match.phase === 'ready'}`;
+      const since = steered ? 'mouse' : seen.match.phase === 'ready';
+      const key = `${station} ${calibration.eyeHeight} ${since}`;
       const handedOver = own !== null && 'aim' in own.bot !== steered;
       if (own?.key !== key && (own === null || handedOver || seen.match.phase !== 'running')) {
         own = { key, bot: steered ? steeredFor(station) : actorFor(station, calibration, options.seed + seen.mySeat) };
