@@ -501,6 +501,13 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
         own = { key, bot: steered ? steeredFor(station) : actorFor(station, calibration, options.seed + seen.mySeat) };
       }
       const { bot } = own as NonNullable<typeof own>;
+      if (handedOver && connection) {
+        // Other hands than those that held the ball: nothing is thrown on the way from the ones to the others.
+        gestures ??= gesturesOf(connection);
+        const { frame, buttons } = performedAt(bot, time, seen.match, seen.mySeat);
+        play(connection, gestures, { ...frame, suspended: true }, buttons);
+        actedAt = time;
+      }
       // What lies between two slow pictures is played too; the last moment is the picture's own.
       if (catchUp && connection) {
         gestures ??= gesturesOf(connection);
