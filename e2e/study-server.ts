@@ -67,7 +67,8 @@ export function shortBallStudy(id: string): StudyPlan {
       .filter(({ game }) => game === 'ball')
       .map((task) => ({
         ...task,
-        trialSeconds: 10,
+        // Long enough for a command of the experimenter to arrive within it.
+        trialSeconds: 20,
         tutorial: { ...task.tutorial, when: 'never' },
         restSeconds: 1,
       })),

@@ -26,6 +26,13 @@ const test = pageTest.extend<object, { origin: string }>({
   ],
 });
 
+declare global {
+  interface Window {
+    /** Set by a test: this page draws twice a second. */
+    resting?: boolean;
+  }
+}
+
 const study = (page: Page): Promise<StudyProbe> =>
   page
     .waitForFunction(() => window.threepoint?.probe().study)
@@ -105,7 +112,12 @@ async function calibrate(page: Page): Promise<void> {
 const recordsOf = async (origin: string, id: string): Promise<readonly StudyRecord[]> =>
   ((await (await experimenter(origin).ask(`/${id}/records`)).json()) as { records: StudyRecord[] }).records;
 
-test('a participant from consent to the end, with a reload in a questionnaire', async ({ page, origin }) => {
+test('a participant from consent to the end, with a reload in a questionnaire while the server of the study is away', async ({
+  page,
+  origin,
+  complaints,
+}) => {
+  complaints.allow(/ERR_FAILED.*\/api\/studies/);
   test.setTimeout(240_000);
   await experimenter(origin).begin(shortStudy('short'), true);
   let headset = await takePart(page, 'short', 'P01');
@@ -166,8 +178,10 @@ test('a participant from consent to the end, with a reload in a questionnaire', 
     if (block === 1) {
       // Half of it in the headset, the rest at the desk after a reload.
       await expect.poll(async () => (await study(page)).unsent).toBe(0);
+      await page.route('**/api/studies/**', (route) => route.abort());
       headset = await takePart(page, 'short', 'P01');
       await reaches(page, 'question-Q3');
+      await expect(page.getByText(/No connection: .* kept on this device/)).toBeVisible();
       await expect(page.getByRole('button', { name: 'Question 2, answered' })).toBeVisible();
       await page.getByRole('button', { name: 'Question 7, needs an answer' }).click();
       await page.getByRole('button', { name: 'Hand in' }).click();
@@ -181,6 +195,10 @@ test('a participant from consent to the end, with a reload in a questionnaire', 
       await page.getByRole('radio', { name: '5' }).check();
       await page.getByRole('button', { name: 'Hand in' }).click();
       await reaches(page, 'calibration-enter');
+      expect((await study(page)).unsent).toBeGreaterThan(0);
+      expect((await study(page)).unsaved).toBe(0);
+      await page.unroute('**/api/studies/**');
+      await expect.poll(async () => (await study(page)).unsent, { timeout: 40_000 }).toBe(0);
       continue;
     }
     for (const id of ['Q1', 'Q2', 'Q3', 'Q4', 'Q5', 'Q6', 'Q7']) {
@@ -259,6 +277,17 @@ test('three participants play the ball game together, each in a headset of their
   const pages = await Promise.all(
     people.map(async () => (await browser.newContext({ viewport: { width: 320, height: 220 } })).newPage()),
   );
+  // Real headsets compute each for themselves: those that wait here draw seldom meanwhile, so that the others draw often enough.
+  for (const page of pages) {
+    await page.addInitScript(() => {
+      const next = window.requestAnimationFrame.bind(window);
+      window.requestAnimationFrame = (draw) => (window.resting ? window.setTimeout(() => next(draw), 500) : next(draw));
+    });
+  }
+  const rest = (page: Page, resting: boolean) =>
+    page.evaluate((on) => {
+      window.resting = on;
+    }, resting);
   const everybody = <T>(act: (page: Page, index: number) => Promise<T>) => Promise.all(pages.map(act));
   // One after the other: three pages that load at once keep each other waiting.
   const headsets: EmulatedHeadset[] = [];
@@ -278,8 +307,11 @@ test('three participants play the ball game together, each in a headset of their
     await enter(page);
     await headsets[index]?.place(stretched);
     await calibrate(page);
+    await reaches(page, 'trial-ready', 60_000);
+    await rest(page, true);
   }
   const [first, second, third] = pages as [Page, Page, Page];
+  await everybody((page) => rest(page, false));
   await press(first, 'start');
   await reaches(first, 'waiting', 60_000);
   await press(second, 'start');
@@ -287,6 +319,23 @@ test('three participants play the ball game together, each in a headset of their
   await expect
     .poll(async () => (await everybody(study)).every(({ running }) => running), { timeout: 60_000 })
     .toBe(true);
+
+  // The experimenter pauses one of them: the match stands for all three.
+  const match = (page: Page) => page.evaluate(() => window.threepoint?.probe().game);
+  const clocks = () => everybody(async (page) => ((await match(page)) as { secondsLeft: number }).secondsLeft);
+  const command = (type: 'pause' | 'resume') =>
+    experimenter(origin).ask('/trio/participants/P02/commands', 'POST', { type });
+  await command('pause');
+  await expect.poll(() => everybody(screen), { timeout: 30_000 }).toEqual(['standing', 'paused', 'standing']);
+  await keepPicture(first, 'study-standing');
+  await keepPicture(second, 'study-paused');
+  const stand = await clocks();
+  await everybody((page) => frames(page, 20));
+  expect(await clocks()).toEqual(stand);
+  expect(Math.max(...stand)).toBeGreaterThan(0);
+  await command('resume');
+  await expect.poll(() => everybody(screen), { timeout: 30_000 }).toEqual(['playing', 'playing', 'playing']);
+
   await everybody((page) => expect.poll(() => screen(page), { timeout: 90_000 }).toMatch(/^(rest|question-Q8)$/));
   await everybody((page) => expect.poll(async () => (await study(page)).unsent).toBe(0));
 
@@ -298,6 +347,9 @@ test('three participants play the ball game together, each in a headset of their
   for (const { body } of trials) {
     expect(body.outcome.maximum).toBe(20);
     expect(body.outcome.ended).toBe('time');
+    // The match of the plan, 20 s, and no second of the pause.
+    expect(body.outcome.seconds).toBeGreaterThan(19);
+    expect(body.outcome.seconds).toBeLessThan(26);
   }
   await everybody((page) => page.context().close());
 });

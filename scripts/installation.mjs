@@ -1,4 +1,4 @@
-import { existsSync, readFileSync } from 'node:fs';
+import { existsSync, lstatSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { root, run, SetupError } from './run-command.mjs';
 
@@ -22,12 +22,19 @@ export function missingInstallation(directory = root) {
   return null;
 }
 
-/** Installs the packages of package-lock.json where they are missing or older. */
-export async function ensureInstalled() {
-  const reason = missingInstallation();
+/** Installs the packages of package-lock.json where they are missing or older; never into a folder that belongs to another copy. */
+export async function ensureInstalled(directory = root) {
+  const reason = missingInstallation(directory);
   if (reason === null) return;
+  if (lstatSync(join(directory, 'node_modules'), { throwIfNoEntry: false })?.isSymbolicLink()) {
+    throw new SetupError(
+      `${reason}, and node_modules is a symbolic link: npm ci would empty the folder it leads to. Install the packages there, or remove the link.`,
+    );
+  }
   console.log(`Installing packages (${reason}) ...`);
-  const { code } = await run('npm', ['ci', '--include=dev', '--no-audit', '--no-fund', '--no-update-notifier']);
+  const { code } = await run('npm', ['ci', '--include=dev', '--no-audit', '--no-fund', '--no-update-notifier'], {
+    cwd: directory,
+  });
   if (code !== 0) {
     throw new SetupError(
       `npm ci failed with exit code ${code}; its messages are above. It needs the npm registry once (npm config get registry).`,

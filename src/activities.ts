@@ -186,8 +186,13 @@ export function createActivities(options: ActivitiesOptions): Activities {
       mannequin,
       connect: await connectionsFor(place?.room ?? switches.room, {
         seed,
-        ...(switches.seconds && { seconds: switches.seconds }),
-        ...(switches.balls && { balls: switches.balls }),
+        // A study's match is as long as its plan says, and stands when one of the group pauses.
+        ...(place
+          ? { seconds: place.seconds, pausable: true }
+          : {
+              ...(switches.seconds && { seconds: switches.seconds }),
+              ...(switches.balls && { balls: switches.balls }),
+            }),
       }),
       visitor: {
         name: place?.participant || settings.name || (settings.actor && !headset.worn ? 'Demo' : 'Player'),

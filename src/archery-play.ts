@@ -22,6 +22,8 @@ export interface ArcherySettings {
   readonly bowSide: Side;
   readonly oneHanded: boolean;
   readonly everyHitCounts: boolean;
+  /** Whether the round waits for its signal; absent: the first arrow starts it too. */
+  readonly startSignal?: boolean;
   /** Until the bell; absent: as the game has it. */
   readonly seconds?: number;
 }
@@ -130,10 +132,15 @@ export function createArcheryPlay(
   }));
 
   function restart(person: Calibration, eyeHeight = person.eyeHeight): void {
-    const { bowSide, everyHitCounts, seconds } = settings();
+    const { bowSide, everyHitCounts, startSignal, seconds } = settings();
     match = createMatch(
       archeryRules,
-      archeryRules.start(['archer'], seed(), { eyeHeight, everyHitCounts, ...(seconds && { seconds }) }),
+      archeryRules.start(['archer'], seed(), {
+        eyeHeight,
+        everyHitCounts,
+        startedBy: startSignal ? 'signal' : 'arrow',
+        ...(seconds && { seconds }),
+      }),
       {
         delayed,
       },

@@ -5,6 +5,7 @@ import { createExperimenterClient, type ExperimenterClient, ServerRefusal } from
 import { offerDownload } from './ui/downloads';
 import { button, element, pageElement } from './ui/element';
 import { forgetToken, keptToken, signInForm } from './ui/sign-in';
+import { studySelect } from './ui/study-select';
 import { tableNode } from './ui/table';
 
 /** How often the states are asked for [ms]; a page that has been silent for longer than this is lost [s]. */
@@ -374,22 +375,7 @@ function render(): void {
   shownKey = key;
   const focused = document.activeElement?.closest('tr')?.rowIndex;
   const label = document.activeElement?.textContent;
-  const select = element(
-    'select',
-    { 'aria-label': 'Study' },
-    element('option', { value: '' }, listed.length === 0 ? 'No studies yet' : 'Choose a study'),
-    ...listed.map(({ id, title, simulated: program }) =>
-      element(
-        'option',
-        { value: id, selected: plan?.id === id },
-        `${program && !title.startsWith('SIMULATED') ? 'SIMULATED: ' : ''}${title} (${id})`,
-      ),
-    ),
-  );
-  select.addEventListener('change', () => {
-    select.blur();
-    void open(select.value);
-  });
+  const select = studySelect(listed, plan?.id, 'No studies yet', (id) => void open(id));
   content.replaceChildren(
     element(
       'section',

@@ -26,6 +26,7 @@ export interface JoinStudyOptions {
 export async function joinStudy(options: JoinStudyOptions): Promise<StudyRun> {
   const { asked, switches, settings, choice, headset, activities, timing, calibrate } = options;
   const { createStudyRun } = await import('./study-run');
+  settings.startSignal = true;
   return createStudyRun(asked, {
     enterVr: headset.enter,
     inSession: () => headset.worn,
@@ -37,9 +38,11 @@ export async function joinStudy(options: JoinStudyOptions): Promise<StudyRun> {
       settings.actor = on && switches.actor;
     },
     setBowSide: activities.setBowSide,
-    async goToArchery() {
+    async goToArchery(seconds) {
+      settings.seconds = seconds;
       await activities.goTo('archery');
       if (!activities.archery) throw new Error('The archery range could not be opened.');
+      activities.resetRound();
     },
     async goToBall(place) {
       await activities.goToMatch(place);

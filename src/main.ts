@@ -190,7 +190,11 @@ async function start(): Promise<void> {
     newestFrame: () => newestFrame,
     study: () => study,
     wear: avatar.wear,
-    onCaption: (text) => controls.caption(text),
+    onCaption(text) {
+      controls.caption(text);
+      // In the headset words would lie before the game: for whoever plays without sound.
+      stage.caption(settings.sound ? '' : text);
+    },
     onArrival() {
       recorder.stop();
       if (activities.name !== 'studio') controls.setPanelOpen(false);

@@ -5,6 +5,7 @@ import { openStudyFile } from './study/study-file';
 import { button, element, pageElement } from './ui/element';
 import { paperCheck, type ShownStudy, studyResults } from './ui/results-view';
 import { forgetToken, keptToken, signInForm } from './ui/sign-in';
+import { studySelect } from './ui/study-select';
 
 const content = pageElement('content', HTMLElement);
 const reason = (error: unknown) => (error instanceof Error ? error.message : String(error));
@@ -68,19 +69,7 @@ function sourceBar(): HTMLElement {
   const fileField = element('label', {}, element('span', {}, 'Or an export (zip), from this computer'), file);
   if (!client)
     return element('section', { class: 'card' }, signInForm(signIn), element('div', { class: 'bar' }, fileField));
-  const select = element(
-    'select',
-    { 'aria-label': 'Study' },
-    element('option', { value: '' }, listed.length === 0 ? 'This server has no studies yet' : 'Choose a study'),
-    ...listed.map(({ id, title, simulated }) =>
-      element(
-        'option',
-        { value: id, selected: shown?.plan.id === id },
-        `${simulated && !title.startsWith('SIMULATED') ? 'SIMULATED: ' : ''}${title} (${id})`,
-      ),
-    ),
-  );
-  select.addEventListener('change', () => void load(select.value));
+  const select = studySelect(listed, shown?.plan.id, 'This server has no studies yet', (id) => void load(id));
   return element(
     'section',
     { class: 'card bar' },

@@ -21,6 +21,8 @@ export interface Settings {
   bowSide: Side;
   oneHanded: boolean;
   everyHitCounts: boolean;
+  /** Rounds wait for their signal, as a study's do; absent: the first arrow starts them too. */
+  startSignal?: boolean;
   /** Of a round, until the bell [s]; absent: as the game has it. */
   seconds?: number;
   sound: boolean;

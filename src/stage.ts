@@ -10,6 +10,7 @@ import { type Arena, createArena } from './scene/arena';
 import { createDesktopView, type DesktopView, type Insets } from './scene/desktop-view';
 import { createHeadsetCamera, createRenderer, fitToWindow, type Quality } from './scene/renderer';
 import { createVignette, type Vignette } from './scene/vignette';
+import { createVrCaptions } from './ui/vr-captions';
 
 /** The user stands at the origin and looks along −Z, at the mirror [m]. */
 const mirrorDistance = 1.5;
@@ -48,6 +49,8 @@ export interface Stage {
   readonly arena: Arena;
   readonly view: DesktopView;
   readonly vignette: Vignette;
+  /** A line low before the eyes of a session; empty: none. */
+  caption(text: string): void;
   /** Beside the range, for an archer whose bow is in this hand; null: ahead of whoever stands in the studio. */
   placeMirror(bowSide: Side | null): void;
   setSkeletonVisible(visible: boolean): void;
@@ -70,7 +73,8 @@ export function createStage(canvas: HTMLCanvasElement, quality: Quality): Stage 
   const headLoss = createHeadLoss();
   const vignette = createVignette();
   const headsetCamera = createHeadsetCamera();
-  arena.scene.add(mirror.object, skeleton.object, vignette.object);
+  const captions = createVrCaptions();
+  arena.scene.add(mirror.object, skeleton.object, vignette.object, captions.object);
   let lastTime = 0;
 
   return {
@@ -78,6 +82,7 @@ export function createStage(canvas: HTMLCanvasElement, quality: Quality): Stage 
     arena,
     view,
     vignette,
+    caption: captions.say,
     placeMirror(bowSide) {
       const { x, z, turned } = mirrorByTheRange;
       const sign = bowSide === 'left' ? 1 : -1;
@@ -111,7 +116,9 @@ export function createStage(canvas: HTMLCanvasElement, quality: Quality): Stage 
         avatar.setOpacity(headLoss.follow(time, frame !== null));
         avatar.setFirstPerson(inside);
       }
-      vignette.show(time, inSession && frame ? frame.head : null);
+      const eyes = inSession && frame ? frame.head : null;
+      vignette.show(time, eyes);
+      captions.show(time, eyes);
       const beforeIt = inside || view.camera.position.z > 0.1 - mirrorDistance;
       mirror.setVisible(wanted === 'always' || (wanted === 'unless-behind' && beforeIt));
       renderer.render(arena.scene, inSession ? headsetCamera : view.camera);

@@ -4,7 +4,8 @@ import type { TaskEnd, TaskEvent, TaskRunner } from './study/task-runner';
 
 /** What the study needs of the archery on the page. */
 export interface ArcheryHost {
-  goToArchery(): Promise<void>;
+  /** The range, where a round of so many seconds waits. */
+  goToArchery(seconds: number): Promise<void>;
   /** A new round that starts with its signal. */
   startRound(seed: number, seconds: number): void;
   /** Makes the round on the page one that waits. */
@@ -22,7 +23,7 @@ export function createArcheryRunner(host: ArcheryHost): ArcheryRunner {
   let end: TaskEnd | null = null;
   let happened: TaskEvent[] = [];
   return {
-    prepare: () => host.goToArchery(),
+    prepare: ({ seconds }) => host.goToArchery(seconds),
     start({ seed, seconds }) {
       happened = [];
       end = null;
@@ -50,6 +51,8 @@ export function createArcheryRunner(host: ArcheryHost): ArcheryRunner {
       return taken;
     },
     waitingFor: null,
+    standing: false,
+    pause: () => undefined,
     get end() {
       return end;
     },

@@ -19,7 +19,7 @@ export interface BallRunner extends TaskRunner {
 const listed = (names: readonly string[]): string =>
   names.length < 2 ? (names[0] ?? '') : `${names.slice(0, -1).join(', ')} and ${names.at(-1)}`;
 
-/** How much later than here the room's bell may be heard [s]. */
+/** How much later than here the room's bell may be heard [s]: the room counts from the moment it started the match. */
 const bellDelay = 4;
 
 export function createBallRunner(host: BallHost): BallRunner {
@@ -30,6 +30,7 @@ export function createBallRunner(host: BallHost): BallRunner {
   let end: TaskEnd | null = null;
   let happened: TaskEvent[] = [];
   let missing: readonly string[] = [];
+  let standing = false;
 
   return {
     async prepare(next) {
@@ -42,10 +43,12 @@ export function createBallRunner(host: BallHost): BallRunner {
       from = null;
       wanted = { seconds };
       missing = place?.members ?? [];
+      standing = false;
       host.ball()?.ready(true);
     },
-    played({ state, me, players, events, time }) {
+    played({ state, me, players, events, time, paused }) {
       if (!wanted || end) return;
+      standing = paused;
       if (from === null) {
         const there = players.flatMap((player) => (player?.ready ? [player.name] : []));
         missing = (place?.members ?? []).filter((name) => !there.includes(name));
@@ -81,8 +84,13 @@ export function createBallRunner(host: BallHost): BallRunner {
       if (!wanted || from !== null) return null;
       return missing.length > 0 ? listed(missing) : 'the others';
     },
+    get standing() {
+      return standing;
+    },
+    pause: (on) => host.ball()?.pause(on),
     abort() {
       wanted = null;
+      standing = false;
       from = null;
       end = null;
       happened = [];

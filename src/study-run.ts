@@ -6,44 +6,51 @@ import type { Side } from './core/body/joints';
 import type { EstimatorName } from './core/estimation/pose-estimator';
 import { rotate } from './core/math/quat';
 import { vec3 } from './core/math/vec3';
-import { type StudyStep, scheduleFor } from './core/study/plan';
-import { type Progress, placeOf } from './core/study/progress';
+import { placeOf } from './core/study/progress';
 import { randomFor } from './core/study/shuffle';
 import type { PublicStudy } from './core/study/study-api';
-import { createTrialLog, type TrialLog, type TrialOutcome } from './core/study/trial-log';
-import { writeRecording } from './core/tracking/recording';
 import type { TrackingFrame } from './core/tracking/tracking-frame';
-import type { FrameListener } from './frame-timing';
 import { reasonOf } from './reasons';
-import { createParticipantSession, isLater, type ParticipantSession, startSession } from './study/participant-session';
-import { createParticipantClient, ServerRefusal, ServerUnreachable } from './study/study-client';
-import { type KeptSession, openStudyVault, type StudyVault } from './study/study-vault';
-import type { TaskEvent, TaskPlace, TaskRunner } from './study/task-runner';
+import type { ParticipantSession } from './study/participant-session';
+import { createParticipantClient, ServerRefusal } from './study/study-client';
+import type { TaskPlace, TaskRunner } from './study/task-runner';
 import { type ArcheryHost, createArcheryRunner } from './study-archery';
 import { type BallHost, createBallRunner } from './study-ball';
+import { forgetSession, type Opened, openSession } from './study-opening';
 import { lockedOutScreen, type StudySituation, screenOf, screenQuestions } from './study-screens';
+import {
+  type FinishedTrial,
+  isPlayed,
+  type PlayedStep,
+  type PlayedTrial,
+  playTrial,
+  type TrialHost,
+} from './study-trial';
 import type { CalibrationStep } from './ui/calibration-dialog';
 import { type CalibrationGuide, createCalibrationGuide } from './ui/calibration-guide';
-import { element } from './ui/element';
-import { consentForm, createStudyCard, demographicsForm, participantForm } from './ui/study-card';
+import {
+  consentForm,
+  createStudyCard,
+  demographicsForm,
+  lastWords,
+  lockedOutForm,
+  participantForm,
+  withdrawalForm,
+} from './ui/study-card';
 import type { StudyScreen } from './ui/study-screen';
 import type { Pointer } from './ui/vr-pointers';
 import { createVrStudyPanel, type VrStudyPanel } from './ui/vr-study-panel';
 
 /** What the study needs of the page; the page decides how. */
-export interface StudyHost extends ArcheryHost, BallHost {
+export interface StudyHost extends ArcheryHost, BallHost, TrialHost {
   enterVr(): Promise<void>;
   inSession(): boolean;
-  calibration(): Calibration;
   /** Of this participant, for this visit; not remembered for others. */
   setCalibration(calibration: Calibration): void;
   /** Resolves when it draws, or when it turned out that it cannot. */
   chooseEstimator(name: EstimatorName): Promise<void>;
-  estimator(): EstimatorName;
   setActor(on: boolean): void;
   setBowSide(side: Side): void;
-  device(): TrialOutcome['device'];
-  listenToFrames(listener: FrameListener | null): void;
 }
 
 /** The study on the page, as its frame loop sees it. */
@@ -85,29 +92,10 @@ export interface StudyProbe {
 const exchangeEveryMs = 2000;
 const slowestExchangeMs = 15_000;
 const tickEveryMs = 250;
-/** The end of a round is seen before the sheet comes [s]. */
-const afterglow = 2.5;
-/** Tracked frames kept per trial: some 14 MB, below what the server takes at once. */
-const mostMotionFrames = 40_000;
-/** Eyes this far below where calibration found them are those of somebody who sat down [m]. */
-const seatedDrop = 0.25;
-
 const nowSeconds = () => Date.now() / 1000;
 
-type PlayedStep = Extract<StudyStep, { kind: 'trial' | 'tutorial' }>;
-
-/** A trial that is being played. */
-interface Trial {
-  readonly step: PlayedStep;
-  /** Step, run and attempt: when it changes under the trial, the trial is void. */
-  readonly key: string;
-  readonly log: TrialLog;
-  readonly frames: TrackingFrame[] | null;
-  startTime: number | null;
-  lastTime: number;
-  endedAt: number | null;
-  fellBack: boolean;
-}
+/** The bow goes into the other hand. */
+const bowSideOf = (preferred: Side): Side => (preferred === 'left' ? 'right' : 'left');
 
 /** Opens the study that the address asks for; the page shows nothing of its own while it runs. */
 export function createStudyRun(
@@ -130,7 +118,7 @@ export function createStudyRun(
   let calibrationStep: CalibrationStep | null = null;
   let refusal: string | null = null;
   let fault: string | null = null;
-  let trial: Trial | null = null;
+  let trial: PlayedTrial | null = null;
   let prepared: { readonly step: string; state: 'loading' | 'ready' | 'failed'; reason: string } | null = null;
   let lastStepId = '';
   let exchangeTimer = 0;
@@ -155,8 +143,6 @@ export function createStudyRun(
     return (game && runners[game]) ?? null;
   };
 
-  const played = (step: StudyStep): step is PlayedStep => step.kind === 'trial' || step.kind === 'tutorial';
-
   /** Where a group meets: a room of its own for every trial of every run, which nobody can guess from another study. */
   function placeFor(step: PlayedStep): TaskPlace {
     const running = session as ParticipantSession;
@@ -170,11 +156,12 @@ export function createStudyRun(
       room: `study-${first}${second}`,
       participant: running.progress.participant,
       members: group?.members ?? [],
+      seconds: step.seconds,
     };
   }
 
   /** Whether a trial has been started that cannot begin yet. */
-  const waiting = () => trial !== null && (runnerOf(trial.step)?.waitingFor ?? null) !== null;
+  const waiting = () => trial !== null && trial.waitingFor !== null;
 
   /** Loads the game and the body of the step at hand, before anybody can start it. */
   async function prepare(step: PlayedStep): Promise<void> {
@@ -204,56 +191,25 @@ export function createStudyRun(
     const runner = runnerOf(step);
     if (!runner) return;
     const motion = running.progress.motion === true && running.plan.consent.motion !== null && step.kind === 'trial';
-    trial = {
-      step,
-      key: keyOf(running),
-      log: createTrialLog(host.device(), host.calibration()),
-      frames: motion ? [] : null,
-      startTime: null,
-      lastTime: 0,
-      endedAt: null,
-      fellBack: false,
-    };
-    for (const name of runner.assists()) trial.log.assist(name);
-    const { log } = trial;
-    host.listenToFrames((spent, late) => {
-      if (session && !session.progress.paused && trial?.endedAt === null && !waiting()) log.frame(spent, late);
-    });
     // The same round for everybody's first, second … trial: what differs between conditions is not the layout.
     const repetition = step.kind === 'trial' ? step.repetition : 0;
     const { seed } = randomFor(running.plan.seed, `layout of ${step.task} ${repetition}`);
-    runner.start({ seed: seed >>> 1, seconds: step.seconds });
+    trial = playTrial(step, runner, host, { key: keyOf(running), motion, seed: seed >>> 1 });
     show();
   }
 
   function dropTrial(): void {
-    if (!trial) return;
-    runnerOf(trial.step)?.abort();
+    trial?.abort();
     trial = null;
-    host.listenToFrames(null);
   }
 
-  function finishTrial(running: ParticipantSession, done: Trial, runner: TaskRunner): void {
-    const { end } = runner;
-    if (!end) return;
-    host.listenToFrames(null);
+  function finishTrial(running: ParticipantSession, { outcome, recording }: FinishedTrial): void {
     trial = null;
-    runner.abort();
-    const recorded = done.frames && done.frames.length > 0 ? done.frames : null;
-    const outcome = done.log.finish({ ...end, motionFrames: recorded?.length ?? 0 });
+    const { step } = running;
     const place = placeOf(running.schedule, running.progress);
     refusal = running.apply({ type: 'trial-finished', outcome });
-    if (recorded && place && refusal === null) {
-      const recording = {
-        device: outcome.device.name,
-        rateHz: outcome.device.refreshRateHz ?? 60,
-        calibration: outcome.calibration,
-      };
-      running.keepMotion(
-        `${done.step.id}@${place.run}.${place.attempt}:trial`,
-        writeRecording({ ...recording, frames: recorded }),
-      );
-    }
+    if (recording !== null && place && refusal === null)
+      running.keepMotion(`${step.id}@${place.run}.${place.attempt}:trial`, recording);
     void exchange();
   }
 
@@ -279,7 +235,9 @@ export function createStudyRun(
       }
     }
     if (trial && trial.key !== keyOf(running)) dropTrial();
-    if (played(step)) {
+    // Whoever takes the headset off in a pause goes on when they wear it again.
+    trial?.pause(running.progress.paused || !host.inSession());
+    if (isPlayed(step)) {
       if (prepared?.step !== step.id) void prepare(step);
       if (
         running.progress.running &&
@@ -306,7 +264,8 @@ export function createStudyRun(
       prepared: prepared && prepared.step === running.step.id ? prepared : null,
       refusal,
       playing: trial !== null,
-      waitingFor: trial ? (runnerOf(trial.step)?.waitingFor ?? null) : null,
+      waitingFor: trial?.waitingFor ?? null,
+      standing: trial?.standing ?? false,
     };
   }
 
@@ -352,11 +311,7 @@ export function createStudyRun(
     if (fault !== null) {
       screenId = 'fault';
       const said = fault;
-      card.form('fault', () => [
-        element('p', { class: 'kicker trouble' }, 'Study'),
-        element('h1', {}, 'The study cannot go on here'),
-        element('p', {}, said),
-      ]);
+      card.form('fault', () => lastWords('Study', 'The study cannot go on here', said, true));
       sheet.show(null);
       return;
     }
@@ -365,7 +320,12 @@ export function createStudyRun(
     if (running.safekeeping.lockedOut) {
       screenId = 'locked-out';
       dropTrial();
-      card.form('locked-out', () => lockedOutNodes(running));
+      const { participant } = running.progress;
+      card.form('locked-out', () =>
+        lockedOutForm(participant, running.safekeeping.unsent, () => {
+          void forgetSession({ study: asked.study, participant }).then(() => location.reload());
+        }),
+      );
       sheet.show(host.inSession() ? lockedOutScreen(running) : null);
       return;
     }
@@ -373,7 +333,7 @@ export function createStudyRun(
     if (running.withdrawalCode !== null) {
       screenId = 'code';
       const code = running.withdrawalCode;
-      card.form('code', () => codeNodes(code));
+      card.form('code', () => withdrawalForm(code, actions.codeNoted));
       sheet.show(null);
       return;
     }
@@ -385,7 +345,7 @@ export function createStudyRun(
           if (said === null) {
             void exchange();
             const hand = running.preferredHand;
-            if (hand) host.setBowSide(hand === 'left' ? 'right' : 'left');
+            if (hand) host.setBowSide(bowSideOf(hand));
           }
           show();
           return said;
@@ -399,22 +359,6 @@ export function createStudyRun(
     const inside = host.inSession();
     card.show(inside ? null : screen);
     sheet.show(inside ? screen : null);
-  }
-
-  function codeNodes(code: string): readonly Node[] {
-    const noted = element('button', { type: 'button', class: 'primary' }, 'I have noted it');
-    noted.addEventListener('click', actions.codeNoted);
-    return [
-      element('p', { class: 'kicker' }, 'Your withdrawal code'),
-      element('h1', {}, 'Please write this down'),
-      element('p', {}, element('code', {}, code)),
-      element(
-        'p',
-        {},
-        'Whoever gives this code to the experimenter has everything deleted that was recorded under it. It is shown only now, and nobody can look it up later.',
-      ),
-      element('div', { class: 'row' }, noted),
-    ];
   }
 
   async function exchange(): Promise<void> {
@@ -431,7 +375,7 @@ export function createStudyRun(
   function begin(opened: ParticipantSession): void {
     session = opened;
     if (opened.calibration) host.setCalibration(opened.calibration);
-    if (opened.preferredHand) host.setBowSide(opened.preferredHand === 'left' ? 'right' : 'left');
+    if (opened.preferredHand) host.setBowSide(bowSideOf(opened.preferredHand));
     window.setInterval(() => {
       if (opened.step.kind === 'rest') opened.apply({ type: 'tick' });
       show();
@@ -444,129 +388,33 @@ export function createStudyRun(
     void exchange();
   }
 
-  async function openVault(): Promise<StudyVault | null> {
-    try {
-      return await openStudyVault();
-    } catch {
-      // reason: a browser without storage is a state of the session (safekeeping.storageFault), shown on every screen
-      return null;
-    }
-  }
-
-  /** One page per participant: two would tell the server two stories. */
-  function alone(participant: string): Promise<boolean> {
-    if (!navigator.locks) return Promise.resolve(true);
-    return new Promise((resolve) => {
-      void navigator.locks.request(`threepoint study ${asked.study} ${participant}`, { ifAvailable: true }, (lock) => {
-        resolve(lock !== null);
-        // Held until the page goes.
-        return lock && new Promise(() => undefined);
-      });
-    });
-  }
-
-  /** What the server knows of a session; null: nothing, or it does not answer now. */
-  async function reportedProgress({ study, participant, token }: KeptSession): Promise<Progress | null> {
-    try {
-      return await client.progress(study, participant, token);
-    } catch (error) {
-      if (error instanceof ServerUnreachable || error instanceof ServerRefusal) return null;
-      throw error;
-    }
-  }
-
-  /** This device is no longer the participant's: whoever sits here may begin anew. */
-  function lockedOutNodes(running: ParticipantSession): readonly Node[] {
-    const { unsent } = running.safekeeping;
-    const anew = element('button', { type: 'button' }, 'Forget it here and begin anew');
-    anew.addEventListener('click', () => {
-      void openVault()
-        .then((vault) => vault?.forget(asked.study, running.progress.participant))
-        .then(() => location.reload());
-    });
-    return [
-      element('p', { class: 'kicker trouble' }, 'Study'),
-      element('h1', {}, 'Please call the experimenter'),
-      element(
-        'p',
-        {},
-        `${running.progress.participant} was released for another device, or what was recorded was deleted. This device sends nothing more.`,
-      ),
-      ...(unsent > 0
-        ? [
-            element(
-              'p',
-              { class: 'hint' },
-              `${unsent} records were never sent. Beginning anew deletes them from this device.`,
-            ),
-          ]
-        : []),
-      element('div', { class: 'row' }, anew),
-    ];
-  }
-
   async function open(participant: string): Promise<void> {
-    if (!(await alone(participant)))
-      throw new Error(`${participant} is open in another tab of this browser. Go on there, or close it.`);
-    const vault = await openVault();
-    const kept = (await vault?.session(asked.study, participant)) ?? null;
-    const options = { client, vault, now: nowSeconds, onChange: () => show() };
-    if (kept && vault) {
-      const [records, motion] = await Promise.all([
-        vault.records(asked.study, participant),
-        vault.motion(asked.study, participant),
-      ]);
-      const known = await reportedProgress(kept);
-      const current =
-        known && isLater(scheduleFor(kept.plan, participant), known, kept.progress)
-          ? { ...kept, progress: known }
-          : kept;
-      const opened = createParticipantSession(current, { records, motion }, options);
-      opened.apply({ type: 'reload' });
-      begin(opened);
-      return;
-    }
-    const study = await client.study(asked.study);
-    screenId = 'consent';
-    card.form(
-      'consent',
-      () =>
-        consentForm(
-          study.consent,
-          study.simulated ? 'This study is SIMULATED: what is recorded is marked as made by a program.' : null,
-          {
-            async agree(motion) {
-              try {
-                const claim = await client.claim(asked.study, participant);
-                const opened = createParticipantSession(
-                  startSession(claim, asked.study, participant),
-                  { records: [], motion: [] },
-                  options,
-                );
-                if (opened.step.kind === 'consent') {
-                  const said = opened.apply({ type: 'consent', motion, version: study.consent.version });
-                  if (said !== null) return said;
-                } else opened.apply({ type: 'reload' });
-                begin(opened);
-                return null;
-              } catch (error) {
-                return reasonOf(error);
-              }
-            },
-            decline: () => declined(study),
-          },
-        ),
-      `${study.title} · ${participant}`,
-    );
+    const seat = { study: asked.study, participant };
+    const opened = await openSession(seat, { client, now: nowSeconds, onChange: () => show() });
+    if (opened.kind === 'resumed') begin(opened.session);
+    else askForConsent(opened, participant);
   }
 
-  function declined(study: PublicStudy): void {
+  function askForConsent({ study, agree }: Extract<Opened, { kind: 'new' }>, participant: string): void {
+    screenId = 'consent';
+    const notice = study.simulated ? 'This study is SIMULATED: what is recorded is marked as made by a program.' : null;
+    const actions = {
+      async agree(motion: boolean) {
+        const taken = await agree(motion);
+        if (typeof taken === 'string') return taken;
+        begin(taken);
+        return null;
+      },
+      decline: () => declined(study),
+    };
+    card.form('consent', () => consentForm(study.consent, notice, actions), `${study.title} · ${participant}`);
+  }
+
+  function declined({ title }: PublicStudy): void {
     screenId = 'declined';
-    card.form('declined', () => [
-      element('p', { class: 'kicker' }, study.title),
-      element('h1', {}, 'Thank you all the same'),
-      element('p', {}, 'Nothing was recorded. You can close this page.'),
-    ]);
+    card.form('declined', () =>
+      lastWords(title, 'Thank you all the same', 'Nothing was recorded. You can close this page.', false),
+    );
   }
 
   function opening(participant: string): void {
@@ -590,11 +438,6 @@ export function createStudyRun(
     );
   } else opening(asked.participant);
 
-  function log(event: TaskEvent, to: TrialLog): void {
-    if (event.type === 'shot') to.shot();
-    else to.event(event);
-  }
-
   return {
     object: sheet.object,
     get idle() {
@@ -604,7 +447,7 @@ export function createStudyRun(
       return session?.calibration != null;
     },
     get paused() {
-      return session?.progress.paused ?? false;
+      return session !== null && (session.progress.paused || (trial !== null && !host.inSession()));
     },
     frame(time, frame) {
       if (frame) {
@@ -613,34 +456,16 @@ export function createStudyRun(
         sheet.follow({ position: frame.head.position, forward });
       }
       const running = session;
-      if (!trial || !running || running.progress.paused) return;
-      const runner = runnerOf(trial.step);
-      if (!runner || runner.waitingFor !== null) return;
-      if (trial.startTime === null) {
-        trial.startTime = time;
-        const eyes = frame?.head.position.y ?? host.calibration().eyeHeight;
-        if (eyes < host.calibration().eyeHeight - seatedDrop) trial.log.assist('seated');
-      }
-      for (const event of runner.take()) log(event, trial.log);
-      if (trial.endedAt === null) {
-        const seen = { head: frame !== null, leftHand: frame?.leftHand != null, rightHand: frame?.rightHand != null };
-        trial.log.tracked(time - trial.startTime, seen);
-        if (host.estimator() !== trial.step.estimator && !trial.fellBack) {
-          trial.fellBack = true;
-          trial.log.assist(`estimator fell back to ${host.estimator()}`);
-        }
-        const { frames } = trial;
-        if (frame && frames && frames.length < mostMotionFrames && time > trial.lastTime) frames.push(frame);
-        trial.lastTime = time;
-        if (runner.end) trial.endedAt = time;
-      } else if (time - trial.endedAt > afterglow) finishTrial(running, trial, runner);
+      if (!trial || !running) return;
+      const finished = trial.follow(time, frame);
+      if (finished) finishTrial(running, finished);
     },
     played: (frame) => archery.played(frame),
     playedBall: (frame) => ball.played(frame),
     point: (pointers) => sheet.point(pointers),
     sessionChanged() {
       // Whoever takes the headset off in the middle of a round has not played it.
-      if (!host.inSession() && session?.progress.running && trial) {
+      if (!host.inSession() && session?.progress.running && !session.progress.paused && trial) {
         session.apply({ type: 'reload' });
         void exchange();
       }

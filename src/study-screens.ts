@@ -22,6 +22,8 @@ export interface StudySituation {
   readonly playing: boolean;
   /** Others without whom a trial that was started cannot begin; null: nobody. */
   readonly waitingFor: string | null;
+  /** The game stands because somebody else of the group pauses. */
+  readonly standing: boolean;
 }
 
 export interface ScreenActions {
@@ -172,6 +174,15 @@ export function screenOf(situation: StudySituation, actions: ScreenActions): Stu
             `It begins as soon as ${situation.waitingFor} ${/,| and /.test(situation.waitingFor) ? 'are' : 'is'} ready too.`,
           ],
           buttons: [pause],
+        };
+      }
+      if (playing && inSession && situation.standing) {
+        return {
+          ...base,
+          id: 'standing',
+          title: 'Paused',
+          text: ['Somebody of your group pauses. The game goes on where it stopped.'],
+          buttons: [],
         };
       }
       if (playing && inSession) return null;

@@ -90,8 +90,8 @@ export async function startRegressor(
   const input = contract.inputs[0]!;
   const output = contract.outputs[0]!;
 
-  async function open(where: ExecutionProvider): Promise<InferenceSession> {
-    const opened = await createSession(model, where);
+  async function open(where: ExecutionProvider, bundle = where): Promise<InferenceSession> {
+    const opened = await createSession(model, where, bundle);
     if (!opened.inputNames.includes(input.name) || !opened.outputNames.includes(output.name)) {
       await opened.release();
       const has = `${opened.inputNames.join(', ')} → ${opened.outputNames.join(', ')}`;
@@ -132,12 +132,14 @@ export async function startRegressor(
         return await current.run(input, features, output.name);
       } catch (error) {
         if (current.provider !== 'webgpu') throw error;
-        // A lost device takes its session along; WASM needs nothing of it.
-        fallback ??= open('wasm').then((opened) => {
-          session = opened;
-          onProviderFallback?.(`The graphics device was lost (${reason(error)}): WebAssembly takes over.`);
-          return opened;
-        });
+        // A lost device takes its session along; WASM needs nothing of it, and the loaded bundle has it.
+        fallback ??= open('wasm', 'webgpu')
+          .catch(() => open('wasm'))
+          .then((opened) => {
+            session = opened;
+            onProviderFallback?.(`The graphics device was lost (${reason(error)}): WebAssembly takes over.`);
+            return opened;
+          });
         return (await fallback).run(input, features, output.name);
       }
     },

@@ -18,11 +18,16 @@ export interface InferenceSession {
 }
 
 /**
- * Opens a model. Only what the provider needs is downloaded: WebGPU's larger bundle comes when it is asked for.
+ * Opens a model. Only what the provider needs is downloaded: WebGPU's larger bundle comes when it is asked for. That bundle
+ * computes on WASM as well: where it has been loaded already, `bundle` 'webgpu' spares the download of the smaller one.
  * Rejects when the provider is not to be had or does not take the model.
  */
-export async function createSession(model: Uint8Array, provider: ExecutionProvider): Promise<InferenceSession> {
-  const ort = provider === 'webgpu' ? await import('onnxruntime-web/webgpu') : await import('onnxruntime-web/wasm');
+export async function createSession(
+  model: Uint8Array,
+  provider: ExecutionProvider,
+  bundle: ExecutionProvider = provider,
+): Promise<InferenceSession> {
+  const ort = bundle === 'webgpu' ? await import('onnxruntime-web/webgpu') : await import('onnxruntime-web/wasm');
   // One thread: two on two cores made the slowest frames four times slower, and no cross-origin isolation is needed.
   ort.env.wasm.numThreads = 1;
   ort.env.wasm.proxy = false;

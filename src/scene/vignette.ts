@@ -42,6 +42,9 @@ export function createVignette(): Vignette {
   object.name = 'vignette';
   object.renderOrder = 10_000;
   object.frustumCulled = false;
+  // three gives the eyes of a session these two layers, and no other camera: in a mirror it would be a black ball for a head.
+  object.layers.set(1);
+  object.layers.enable(2);
   object.visible = false;
   let closedAt = Number.NEGATIVE_INFINITY;
   return {

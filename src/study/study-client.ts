@@ -31,12 +31,19 @@ interface Asked {
   readonly body?: unknown;
   /** Sent as it is instead of `body`. */
   readonly text?: string;
+  /** Milliseconds after which an answer no longer comes. */
+  readonly patienceMs?: number;
 }
 
-/** Milliseconds after which an answer no longer comes. */
-const patienceMs = 15_000;
+const usualPatienceMs = 15_000;
+/** While somebody waits before an empty page. */
+const shortPatienceMs = 4000;
 
-async function ask(origin: string, path: string, { method = 'GET', token, body, text }: Asked): Promise<Response> {
+async function ask(
+  origin: string,
+  path: string,
+  { method = 'GET', token, body, text, patienceMs = usualPatienceMs }: Asked,
+): Promise<Response> {
   const content = text ?? (body === undefined ? undefined : JSON.stringify(body));
   let response: Response;
   try {
@@ -102,7 +109,8 @@ export function createParticipantClient(origin = ''): ParticipantClient {
         .acknowledged;
     },
     async progress(study, participant, token) {
-      return (await answer<{ progress: Progress | null }>(`${of(study, participant)}/progress`, { token })).progress;
+      const asked = { token, patienceMs: shortPatienceMs };
+      return (await answer<{ progress: Progress | null }>(`${of(study, participant)}/progress`, asked)).progress;
     },
     saveProgress: (study, participant, token, progress) =>
       answer(`${of(study, participant)}/progress`, { method: 'PUT', token, body: progress }),

@@ -18,6 +18,8 @@ export interface TaskPlace {
   /** The participant's code, and those of the whole group, in the order of their seats. */
   readonly participant: string;
   readonly members: readonly string[];
+  /** Time limit of the trial [s]. */
+  readonly seconds: number;
 }
 
 /** A game as the study plays it, trial by trial. */
@@ -30,8 +32,12 @@ export interface TaskRunner {
   take(): readonly TaskEvent[];
   /** Whom a trial that was started still waits for; null: nobody, or no trial. */
   readonly waitingFor: string | null;
+  /** Whether the game's clock stands because somebody of the group pauses. */
+  readonly standing: boolean;
   /** null: no trial, or one that goes on. */
   readonly end: TaskEnd | null;
+  /** Stops the game's clock for the whole group, or no longer wants it stopped. What is played alone stands with the page. */
+  pause(on: boolean): void;
   /** Puts the game away: after its end, or before it, when the trial counts for nothing. */
   abort(): void;
   /** Aids that are on. */

@@ -275,3 +275,46 @@ export function participantForm(title: string, go: (participant: string) => void
     element('div', { class: 'row' }, submit),
   ];
 }
+
+/** Shown once: the code with which everything can be deleted. */
+export function withdrawalForm(code: string, noted: () => void): readonly Node[] {
+  return [
+    element('p', { class: 'kicker' }, 'Your withdrawal code'),
+    element('h1', {}, 'Please write this down'),
+    element('p', {}, element('code', {}, code)),
+    ...paragraphs([
+      'Whoever gives this code to the experimenter has everything deleted that was recorded under it. It is shown only now, and nobody can look it up later.',
+    ]),
+    element('div', { class: 'row' }, button('I have noted it', noted, { class: 'primary' })),
+  ];
+}
+
+/** The place is no longer this device's: whoever sits here may begin anew. */
+export function lockedOutForm(participant: string, unsent: number, anew: () => void): readonly Node[] {
+  return [
+    element('p', { class: 'kicker trouble' }, 'Study'),
+    element('h1', {}, 'Please call the experimenter'),
+    ...paragraphs([
+      `${participant} was released for another device, or what was recorded was deleted. This device sends nothing more.`,
+    ]),
+    ...(unsent > 0
+      ? [
+          element(
+            'p',
+            { class: 'hint' },
+            `${unsent} records were never sent. Beginning anew deletes them from this device.`,
+          ),
+        ]
+      : []),
+    element('div', { class: 'row' }, button('Forget it here and begin anew', anew)),
+  ];
+}
+
+/** What leads nowhere: a heading, and why. */
+export function lastWords(kicker: string, title: string, text: string, trouble: boolean): readonly Node[] {
+  return [
+    element('p', { class: trouble ? 'kicker trouble' : 'kicker' }, kicker),
+    element('h1', {}, title),
+    ...paragraphs([text]),
+  ];
+}

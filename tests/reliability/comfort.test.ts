@@ -1,5 +1,7 @@
 import { readFileSync } from 'node:fs';
+import { Layers } from 'three';
 import { expect, test } from 'vitest';
+import { thirdPersonOnlyLayer } from '../../src/avatar/avatar';
 import { identity } from '../../src/core/math/quat';
 import { vec3 } from '../../src/core/math/vec3';
 import { createVignette } from '../../src/scene/vignette';
@@ -56,6 +58,18 @@ test('the edges are dark at a turn and clear again in under half a second, round
   vignette.show(10.5, eyes);
   expect(vignette.darkness).toBe(0);
   vignette.dispose();
+});
+
+test('the dark edges are before the eyes alone: a mirror shows no black ball for a head', () => {
+  const { object } = createVignette();
+  // As WebXRManager gives them to the left eye and the right; the camera of a mirror sees what all see, and the own head.
+  const seenBy = (...layers: number[]) => {
+    const camera = new Layers();
+    for (const layer of layers) camera.enable(layer);
+    return object.layers.test(camera);
+  };
+  expect([seenBy(1), seenBy(2)]).toEqual([true, true]);
+  expect(seenBy(thirdPersonOnlyLayer)).toBe(false);
 });
 
 test('who asks for less motion gets no transitions', () => {

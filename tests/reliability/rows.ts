@@ -77,7 +77,7 @@ export const faultRows = {
   },
   people: {
     inject: 'Heights of 1.10 to 2.20 m, seated, crouching, a floor that is off by 0.5 m',
-    sees: 'Two seconds of calibration, and the body fits',
+    sees: 'Two seconds of calibration, and the body fits; above a floor that is too low the page asks to type the height',
     target: 'wrists 0 mm off the hands within reach; the pelvis never below the floor',
     tests: ['tests/reliability/people.test.ts'],
     manual: ['Sit down, calibrate, and shoot a round; stand on a step and do the same.'],
@@ -91,7 +91,7 @@ export const faultRows = {
   },
   comfort: {
     inject: 'Turning by the stick, small text, no sound, colour-blind eyes, reduced motion',
-    sees: 'Snap turns behind a vignette, text that grows, captions, rings told apart by brightness, no movement of the page',
+    sees: 'Snap turns behind a vignette, text that grows, captions (in the headset where the sound is off), rings told apart by brightness, no movement of the page',
     target: 'a turn turns about the head: 0 mm; contrast 4.5 : 1',
     tests: [
       'tests/reliability/comfort.test.ts',
@@ -137,7 +137,7 @@ export const faultRows = {
   'long-run': {
     inject: 'Twenty minutes of archery rounds by the actor (nightly)',
     sees: 'Nothing grows after the first round',
-    target: 'textures, geometries, programs, listeners, workers +0; heap +10 % at most',
+    target: 'textures, geometries, programs, listeners, workers +0; objects on the heap +10 % at most',
     tests: ['e2e/long-run.spec.ts', 'tests/reliability/long-run.test.ts'],
     manual: ['The same in the headset, its memory read with the browser’s remote inspector.'],
   },

@@ -1,6 +1,7 @@
-import { readFileSync } from 'node:fs';
+import { readFileSync, symlinkSync } from 'node:fs';
+import { join } from 'node:path';
 import { describe, expect, test } from 'vitest';
-import { missingInstallation } from '../../scripts/installation.mjs';
+import { ensureInstalled, missingInstallation } from '../../scripts/installation.mjs';
 import { directoryWith } from '../temporary-directory';
 
 type Packages = Record<string, { version?: string; optional?: boolean; optionalDependencies?: Record<string, string> }>;
@@ -32,6 +33,18 @@ describe('what is missing', () => {
     const older = { 'node_modules/three': { version: '0.186.0' } };
     expect(missingInstallation(projectWith(wanted, older))).toBe('three 0.187.0 is missing');
   });
+});
+
+test('a linked node_modules is left alone: npm ci would empty the folder it leads to', async () => {
+  const wanted = { 'node_modules/three': { version: '0.187.0' } };
+  const owner = projectWith(wanted, { 'node_modules/three': { version: '0.186.0' } });
+  const borrower = projectWith(wanted, null);
+  symlinkSync(join(owner, 'node_modules'), join(borrower, 'node_modules'), 'dir');
+  const before = readFileSync(join(owner, 'node_modules/.package-lock.json'), 'utf8');
+  await expect(ensureInstalled(borrower)).rejects.toThrow(
+    /^three 0\.187\.0 is missing.*symbolic link.*remove the link/,
+  );
+  expect(readFileSync(join(owner, 'node_modules/.package-lock.json'), 'utf8')).toBe(before);
 });
 
 test('the lock file names every platform’s packages, or npm ci would refuse it on that platform and on this one', () => {

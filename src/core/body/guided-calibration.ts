@@ -64,8 +64,9 @@ const HAND_SWAY = 0.05;
 const SEEN = 0.7;
 // 30° up or down.
 const STEEPEST_GAZE = 0.5;
-// The arms of those we trained on measure 0.33 to 0.38 eye heights from shoulder to wrist; an elbow bent by 80° leaves 0.27.
-const SHORTEST_ARM = 0.27;
+// The arms of those we trained on measure 0.33 to 0.38 eye heights from shoulder to wrist; an elbow bent by 76° leaves 0.28,
+// and so does a floor that is half a metre too low: the two cannot be told apart, and neither is measured.
+const SHORTEST_ARM = 0.28;
 const LONGEST_ARM = 0.46;
 /** The middle of what they measure; a longer arm than the second says that somebody sits, or that the floor is too high. */
 const ORDINARY_ARM = 0.355;
@@ -135,7 +136,9 @@ function measure(samples: readonly Sample[]): GuidedCalibration {
   const shoulder = restShoulder('right', eyeHeight);
   const calibration = { eyeHeight, armSpan: 2 * (arm + shoulder.x) };
   const complaint = calibrationComplaint(calibration);
-  return complaint === null ? { kind: 'done', calibration } : failed(complaint);
+  return complaint === null
+    ? { kind: 'done', calibration }
+    : failed(`${complaint} The headset’s floor may be at the wrong height: type your height instead.`);
 }
 
 /**

@@ -33,7 +33,8 @@ export function arrowResult(state: ArcheryState, index: number): string {
 /** The last sentence of the board at a time of the match [s]. */
 function lineOf(state: ArcheryState, time: number): string {
   if (!state.inZone) return 'Step back onto the deck';
-  if (state.phase === 'ready') return 'First arrow starts the clock';
+  if (state.phase === 'ready')
+    return state.options.startedBy === 'signal' ? 'Wait for the start' : 'First arrow starts the clock';
   const landed = state.arrows.filter(({ landing }) => landing && landing.time <= time);
   const last = landed.reduce<(typeof landed)[number] | null>(
     (latest, arrow) => (!latest || (arrow.landing?.time ?? 0) >= (latest.landing?.time ?? 0) ? arrow : latest),

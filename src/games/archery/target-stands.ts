@@ -207,15 +207,18 @@ export function createTargetStands(quality: Quality): TargetStands {
   let shownPlates = '';
   let faces: InstancedMesh | null = null;
   let rims: InstancedMesh | null = null;
+  let shadows: Mesh | null = null;
 
   function build(targets: readonly Target[]): void {
+    // The other materials stay for the next stands; the shadows have their own, and a texture.
+    if (shadows) disposeTree(shadows);
     for (const child of [...object.children]) {
       object.remove(child);
       if (child instanceof Mesh) child.geometry.dispose();
       if (child instanceof InstancedMesh) child.dispose();
     }
     shownPlates = '';
-    faces = rims = null;
+    faces = rims = shadows = null;
     if (targets.length === 0) return;
     const stands = new Mesh(merged(targets.flatMap(standGeometry)), wood);
     stands.castShadow = stands.receiveShadow = true;
@@ -226,7 +229,7 @@ export function createTargetStands(quality: Quality): TargetStands {
       glow,
       targets.length,
     );
-    const shadows = createContactShadows(
+    shadows = createContactShadows(
       targets.map(({ centre, normal, radius }) => ({
         x: centre.x - normal.x * 0.25,
         z: centre.z - normal.z * 0.25,

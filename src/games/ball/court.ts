@@ -3,10 +3,10 @@ import type { Transform } from '../../core/math/pose';
 import { disposeTree } from '../../scene/dispose-tree';
 import type { Quality } from '../../scene/renderer';
 import type { Surroundings } from '../../scene/surroundings';
+import { daylight } from '../outdoors/daylight';
 import { createLandscape } from '../outdoors/landscape';
 import { createNoiseTexture } from '../outdoors/noise-texture';
-import { createReflected } from '../outdoors/reflected';
-import { createSky, hazeColor } from '../outdoors/sky';
+import { createSky } from '../outdoors/sky';
 import { createCourtFurniture } from './court-furniture';
 import { createCourtGround } from './court-ground';
 
@@ -37,22 +37,19 @@ export function createCourt(quality: Quality, balls: number): Court {
     placed(floorFromArena) {
       object.position.copy(floorFromArena.position);
       object.quaternion.copy(floorFromArena.orientation);
-      const inFloor = (x: number, y: number, z: number) => new Vector3(x, y, z).applyQuaternion(object.quaternion);
-      const sun = inFloor(...towardsSun.toArray());
-      const middle = inFloor(0, 0, -2.5).add(object.position);
       return {
         object,
-        lighting: {
-          key: { color: '#fff0d6', intensity: quality === 'high' ? 2.6 : 2.5, from: sun.toArray() },
-          rim: { color: '#cfe2ff', intensity: 0.55, from: inFloor(-3, 2.6, 1).toArray() },
-          front: { color: '#e6efff', intensity: 0.5, from: inFloor(-1.2, 1.6, -2.5).toArray() },
-          fill: { sky: '#cfe3fb', ground: '#8a7a5a', intensity: quality === 'high' ? 0.9 : 1.25 },
-          shadow: { halfSize: 6.2, resolution: 2048, softness: 3, centre: { x: middle.x, z: middle.z } },
-          fog: { color: hazeColor, near: 16, far: 95 },
-          reflected: () => createReflected(sun),
-          reflectedIntensity: 0.4,
-          contactShadow: quality === 'high' ? 0.4 : 0.6,
-        },
+        lighting: daylight(
+          {
+            quality,
+            towardsSun,
+            sunIntensity: 2.6,
+            skyIntensity: 0.9,
+            groundColor: '#8a7a5a',
+            shadows: { middle: new Vector3(0, 0, -2.5), halfSize: 6.2 },
+          },
+          floorFromArena,
+        ),
       };
     },
     dispose() {

@@ -17,7 +17,13 @@ export function createPaintedGround(
   noise: Texture,
   { colors, declarations, paint }: GroundPaint,
 ): Mesh<PlaneGeometry, MeshLambertMaterial> {
-  const material = new MeshLambertMaterial({ color: '#ffffff' });
+  // Boards and lines lie millimetres above it: depths interpolated over so large a triangle are not as exact as that.
+  const material = new MeshLambertMaterial({
+    color: '#ffffff',
+    polygonOffset: true,
+    polygonOffsetFactor: 1,
+    polygonOffsetUnits: 16,
+  });
   const uniforms = Object.fromEntries(Object.entries({ noise, ...colors }).map(([name, value]) => [name, { value }]));
   material.onBeforeCompile = (shader) => {
     Object.assign(shader.uniforms, uniforms);

@@ -38,6 +38,11 @@ describe('the scoreboard', () => {
     expect(boardText(ready, 30)).toMatchObject({ score: 0, maximum: 50, arrowsLeft: 5, seconds: 70 });
   });
 
+  it('says what the clock waits for: the first arrow, or in a study the start', () => {
+    expect(boardText(ready, 0).line).toBe('First arrow starts the clock');
+    expect(boardText(archeryRules.start([], 7, { startedBy: 'signal' }), 0).line).toBe('Wait for the start');
+  });
+
   it('counts whole seconds down and shows 0 only at the bell', () => {
     expect(boardText(withArrows([]), 0.01).seconds).toBe(70);
     expect(boardText(withArrows([]), 69.9).seconds).toBe(1);

@@ -91,6 +91,8 @@ export function createArcher(body: ArcherBody): Archer {
       // A wait ends when it is seen to end; everything else exactly on time, at any frame rate.
       began = current.waits ? time : began + current.seconds;
       plan = plan.slice(1);
+      // Whether an arrow has left is known once a frame has shown the open hand.
+      if (plan[0]?.waits) return;
     }
   }
 

@@ -76,6 +76,7 @@ export const defaultArcheryOptions: ArcheryOptions = {
   arrows: 5,
   seconds: 70,
   everyHitCounts: false,
+  startedBy: 'arrow',
   eyeHeight: 1.6,
 };
 
@@ -110,11 +111,17 @@ function placeTargets(eyeHeight: number, random: RandomState): { targets: Target
 }
 
 function checkedOptions(options: Partial<ArcheryOptions>): ArcheryOptions {
-  const { arrows, seconds, everyHitCounts, eyeHeight } = { ...defaultArcheryOptions, ...options };
+  const { arrows, seconds, everyHitCounts, startedBy, eyeHeight } = { ...defaultArcheryOptions, ...options };
   if (!(Number.isInteger(arrows) && arrows > 0)) throw new Error(`archery: arrows must be 1 or more, is ${arrows}`);
   if (!(seconds > 0 && Number.isFinite(seconds))) throw new Error(`archery: seconds must be above 0, is ${seconds}`);
   if (!Number.isFinite(eyeHeight)) throw new Error(`archery: eyeHeight must be a height in metres, is ${eyeHeight}`);
-  return { arrows, seconds, everyHitCounts, eyeHeight: clamp(eyeHeight, eyeHeightLimits.min, eyeHeightLimits.max) };
+  return {
+    arrows,
+    seconds,
+    everyHitCounts,
+    startedBy,
+    eyeHeight: clamp(eyeHeight, eyeHeightLimits.min, eyeHeightLimits.max),
+  };
 }
 
 const tickSeconds = 1 / 90;
@@ -162,6 +169,7 @@ function release(state: ArcheryState, action: Extract<ArcheryAction, { type: 're
     delay >= 0 &&
     delay < tickSeconds;
   if (!possible || state.phase === 'over' || state.arrowsLeft === 0) return nothing(state);
+  if (state.phase === 'ready' && state.options.startedBy === 'signal') return nothing(state);
   const along = normalise(direction);
   if (!(distance(addScaled(position, along, -arrowLength), state.head) <= reach)) return nothing(state);
   const time = matchTime(state) + delay;
@@ -241,7 +249,7 @@ function roundEnd(state: ArcheryState, time: number): RoundEnd | null {
 
 /**
  * One archer's round (docs/archery.md): four targets, a few arrows, a bell. Tick 1/90 s, arena frame. The first release or
- * `start` starts the clock. With `everyHitCounts` the round does not end before arrows or time do.
+ * `start` starts the clock, or `start` alone (`startedBy`). With `everyHitCounts` the round does not end before arrows or time do.
  */
 export const archeryRules: GameRules<ArcheryState, ArcheryAction, ArcheryEvent, ArcheryOptions> = {
   tickSeconds,

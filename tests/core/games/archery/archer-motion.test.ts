@@ -70,6 +70,23 @@ describe('the built-in archer', () => {
     }
   });
 
+  test('shoots at no target twice, however long the frame after a release takes', () => {
+    const archer: ArcherBody = { bowSide: 'left', eyeHeight: 1.6 };
+    const opened = playRound({ archer, times: steady(90) }).gestures.findIndex(({ actions }) =>
+      actions.some(({ type }) => type === 'release'),
+    );
+    expect(opened).toBeGreaterThan(0);
+    for (const pause of [0.3, 0.49, 0.66, 0.8, 0.99]) {
+      for (const before of [0, 2, 4, 6, 8]) {
+        const times = [...steady(90)].map((time, frame) => (frame < opened - before ? time : time + pause));
+        const { state } = playRound({ archer, times });
+        const targets = state.arrows.map(({ landing }) => landing?.target);
+        expect(new Set(targets).size, `${pause} s without a frame, ${before} frames before`).toBe(targets.length);
+        expect(state.score).toBe(50);
+      }
+    }
+  });
+
   test('wins when three of ten frames are dropped and the others come irregularly', () => {
     fc.assert(
       fc.property(fc.integer(), fc.constantFrom(...rates), (chance, rate) => {

@@ -308,6 +308,15 @@ describe('the clock', () => {
     expect(match.happened('started')).toHaveLength(1);
   });
 
+  test('and where the signal alone starts it, no arrow flies before', () => {
+    const match = told(start({ startedBy: 'signal' }));
+    match.step(shotAt(match.state, 1));
+    match.pass(100);
+    expect(match.state).toMatchObject({ phase: 'ready', tick: 0, arrowsLeft: 5, arrows: [] });
+    match.step({ type: 'start' }, shotAt(match.state, 1));
+    expect(match.state).toMatchObject({ phase: 'running', arrowsLeft: 4 });
+  });
+
   test('or until the first release', () => {
     const match = told(start());
     match.pass(3);

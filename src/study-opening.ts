@@ -1,0 +1,113 @@
+import { scheduleFor } from './core/study/plan';
+import type { Progress } from './core/study/progress';
+import type { PublicStudy } from './core/study/study-api';
+import { reasonOf } from './reasons';
+import { createParticipantSession, isLater, type ParticipantSession, startSession } from './study/participant-session';
+import { type ParticipantClient, ServerRefusal, ServerUnreachable } from './study/study-client';
+import { type KeptSession, openStudyVault, type StudyVault } from './study/study-vault';
+
+/** Whose session, of which study. */
+export interface Seat {
+  readonly study: string;
+  readonly participant: string;
+}
+
+/** A session that this device remembers goes on; anybody else is asked for consent first. */
+export type Opened =
+  | { readonly kind: 'resumed'; readonly session: ParticipantSession }
+  | {
+      readonly kind: 'new';
+      readonly study: PublicStudy;
+      /** Takes the place and begins; a sentence: why not. */
+      agree(motion: boolean): Promise<ParticipantSession | string>;
+    };
+
+export interface OpeningOptions {
+  readonly client: ParticipantClient;
+  /** Seconds since 1970. */
+  readonly now: () => number;
+  readonly onChange: () => void;
+}
+
+async function openVault(): Promise<StudyVault | null> {
+  try {
+    return await openStudyVault();
+  } catch {
+    // reason: a browser without storage is a state of the session (safekeeping.storageFault), shown on every screen
+    return null;
+  }
+}
+
+/** One page per participant: two would tell the server two stories. */
+function alone({ study, participant }: Seat): Promise<boolean> {
+  if (!navigator.locks) return Promise.resolve(true);
+  return new Promise((resolve) => {
+    void navigator.locks.request(`threepoint study ${study} ${participant}`, { ifAvailable: true }, (lock) => {
+      resolve(lock !== null);
+      // Held until the page goes.
+      return lock && new Promise(() => undefined);
+    });
+  });
+}
+
+/** What the server knows of a session; null: nothing, or it does not answer now. */
+async function reportedProgress(
+  client: ParticipantClient,
+  { study, participant, token }: KeptSession,
+): Promise<Progress | null> {
+  try {
+    return await client.progress(study, participant, token);
+  } catch (error) {
+    if (error instanceof ServerUnreachable || error instanceof ServerRefusal) return null;
+    throw error;
+  }
+}
+
+/**
+ * Opens a participant's session on this device: from its storage, whether the server answers or not; where it holds none, with the
+ * server. Rejects with a sentence, or with what the server refused.
+ */
+export async function openSession(seat: Seat, { client, now, onChange }: OpeningOptions): Promise<Opened> {
+  const { study: id, participant } = seat;
+  if (!(await alone(seat)))
+    throw new Error(`${participant} is open in another tab of this browser. Go on there, or close it.`);
+  const vault = await openVault();
+  const options = { client, vault, now, onChange };
+  const kept = (await vault?.session(id, participant)) ?? null;
+  if (kept && vault) {
+    const [records, motion] = await Promise.all([vault.records(id, participant), vault.motion(id, participant)]);
+    const known = await reportedProgress(client, kept);
+    const later = known && isLater(scheduleFor(kept.plan, participant), known, kept.progress);
+    const session = createParticipantSession(later ? { ...kept, progress: known } : kept, { records, motion }, options);
+    session.apply({ type: 'reload' });
+    return { kind: 'resumed', session };
+  }
+  const study = await client.study(id);
+  return {
+    kind: 'new',
+    study,
+    async agree(motion) {
+      try {
+        const claim = await client.claim(id, participant);
+        const session = createParticipantSession(
+          startSession(claim, id, participant),
+          { records: [], motion: [] },
+          options,
+        );
+        if (session.step.kind === 'consent') {
+          const said = session.apply({ type: 'consent', motion, version: study.consent.version });
+          if (said !== null) return said;
+        } else session.apply({ type: 'reload' });
+        return session;
+      } catch (error) {
+        return reasonOf(error);
+      }
+    },
+  };
+}
+
+/** Everything of this participant leaves the device. */
+export async function forgetSession({ study, participant }: Seat): Promise<void> {
+  const vault = await openVault();
+  await vault?.forget(study, participant);
+}

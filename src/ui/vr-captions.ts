@@ -1,0 +1,70 @@
+import type { Mesh } from 'three';
+import { dampVec3 } from '../core/math/damper';
+import type { Pose } from '../core/math/pose';
+import { rotate } from '../core/math/quat';
+import { addScaled, forward, type Vec3, vec3 } from '../core/math/vec3';
+import { createVrPanel, fillRounded, vrColors, vrFont } from './vr-panel';
+
+/** What is heard, in words, in the headset: a line low before the eyes for whoever plays without sound. */
+export interface VrCaptions {
+  readonly object: Mesh;
+  /** An empty text takes away what is said. */
+  say(text: string): void;
+  /** At this time [s] before these eyes, floor frame; null: nobody is there to read. */
+  show(time: number, eyes: Pose<'floor'> | null): void;
+}
+
+const [width, height] = [1000, 96];
+/** How far away [m], and how far below the gaze [m] there: 13 degrees. */
+const away = 1.5;
+const below = 0.35;
+const readFor = 2.5;
+/** It comes after the head, so that a glance at it does not chase it away [s]. */
+const halfLife = 0.12;
+
+export function createVrCaptions(): VrCaptions {
+  const { mesh, draw } = createVrPanel(width, height, 1100);
+  mesh.name = 'captions';
+  mesh.renderOrder = 20;
+  mesh.visible = false;
+  // The eyes of a session alone: no mirror shows it.
+  mesh.layers.set(1);
+  mesh.layers.enable(2);
+  const material = [mesh.material].flat()[0];
+  if (material) material.depthTest = false;
+  let said: { readonly text: string; until: number | null } | null = null;
+  let place: Vec3 | null = null;
+  let last = 0;
+
+  return {
+    object: mesh,
+    say(text) {
+      said = text === '' ? null : { text, until: null };
+      if (said === null) return;
+      draw((context) => {
+        context.font = `600 46px ${vrFont}`;
+        const wide = Math.min(width, context.measureText(text).width + 64);
+        fillRounded(context, [(width - wide) / 2, 4, wide, height - 8], 28, vrColors.glass);
+        context.fillStyle = vrColors.ink;
+        context.textAlign = 'center';
+        context.textBaseline = 'middle';
+        context.fillText(text, width / 2, height / 2 + 2, width - 48);
+      });
+    },
+    show(time, eyes) {
+      if (said) said.until ??= time + readFor;
+      if (!said?.until || time > said.until || !eyes) {
+        mesh.visible = false;
+        place = null;
+        return;
+      }
+      const ahead = rotate(eyes.orientation, forward);
+      const goal = addScaled(addScaled(eyes.position, ahead, away), vec3(0, -1, 0), below);
+      place = place === null ? goal : dampVec3(place, goal, halfLife, Math.max(0, time - last));
+      last = time;
+      mesh.visible = true;
+      mesh.position.set(place.x, place.y, place.z);
+      mesh.lookAt(eyes.position.x, eyes.position.y, eyes.position.z);
+    },
+  };
+}

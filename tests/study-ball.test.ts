@@ -1,0 +1,119 @@
+import { expect, test } from 'vitest';
+import { createBallPlay } from '../src/ball-play';
+import { defaultCalibration } from '../src/core/body/calibration';
+import { createEstimator } from '../src/core/estimation/estimators';
+import { allReleased, type Buttons } from '../src/core/games/button-presses';
+import { createLoopbackHost } from '../src/net/loopback-connection';
+import { createBallRunner } from '../src/study-ball';
+import { type FinishedTrial, type PlayedStep, type PlayedTrial, playTrial } from '../src/study-trial';
+
+const released: Buttons = { left: allReleased, right: allReleased };
+const people = ['P01', 'P02', 'P03'];
+const seconds = 12;
+
+const spent = { tracking: 0, features: 0, inference: 0, kinematics: 1, skinning: 1, render: 3, frame: 5 };
+
+const step = {
+  kind: 'trial',
+  id: 'ball/1/trial-1',
+  task: 'ball',
+  block: 1,
+  repetition: 1,
+  condition: 'ik',
+  estimator: 'ik',
+  seconds,
+} as PlayedStep;
+
+/** Three participants of one group in one room, each page with its own trial, at 72 frames a second. */
+async function group() {
+  const room = createLoopbackHost({ kind: 'ball', seed: 3, ball: { seconds } });
+  let time = 10;
+  const pages = await Promise.all(
+    people.map(async (participant, seat) => {
+      const play = createBallPlay({
+        connect: room.connect,
+        visitor: { name: participant, calibration: defaultCalibration, seat },
+        bots: () => false,
+        acting: () => false,
+        seed: 7,
+      });
+      const runner = createBallRunner({
+        goToBall: async () => undefined,
+        ball: () => play,
+        leaveBall: () => play.leave(),
+      });
+      await runner.prepare({ room: 'here', participant, members: people, seconds });
+      const estimator = createEstimator('ik', defaultCalibration);
+      let timeFrame: (() => void) | null = null;
+      let finished: FinishedTrial | null = null;
+      let trial: PlayedTrial | null = null;
+      return {
+        play,
+        start() {
+          trial = playTrial(
+            step,
+            runner,
+            {
+              calibration: () => defaultCalibration,
+              device: () => ({ name: 'a test', refreshRateHz: 72, input: 'simulated' }),
+              estimator: () => 'ik',
+              listenToFrames: (listener) => {
+                timeFrame = listener && (() => listener(spent, false));
+              },
+            },
+            { key: participant, motion: true, seed: 1 },
+          );
+          return trial;
+        },
+        frame() {
+          play.begin(time);
+          const performed = play.act(time);
+          play.follow(time, performed?.frame ?? null, performed?.buttons ?? released);
+          if (performed) play.send(performed.frame, estimator.estimate(performed.frame), { left: 0, right: 0 });
+          if (play.newest) runner.played(play.newest);
+          timeFrame?.();
+          if (!finished) finished = trial?.follow(time, performed?.frame ?? null) ?? null;
+        },
+        left: () => play.probe()?.secondsLeft ?? Number.NaN,
+        get finished() {
+          return finished;
+        },
+      };
+    }),
+  );
+  const pass = (duration: number) => {
+    for (let i = 0; i < duration * 72; i++) {
+      time += 1 / 72;
+      for (const page of pages) page.frame();
+    }
+  };
+  pass(1);
+  return { pages, pass, trials: pages.map((page) => page.start()) };
+}
+
+test('who pauses in a shared match stops it for the whole group, and the pause counts for nothing', async () => {
+  const { pages, pass, trials } = await group();
+  pass(6);
+  expect(trials.map(({ waitingFor }) => waitingFor)).toEqual([null, null, null]);
+  trials[1]?.pause(true);
+  pass(1);
+  expect(trials.map(({ standing }) => standing)).toEqual([true, true, true]);
+  const left = pages.map((page) => page.left());
+  pass(20);
+  expect(pages.map((page) => page.left())).toEqual(left);
+  trials[1]?.pause(false);
+  pass(1);
+  expect(trials.map(({ standing }) => standing)).toEqual([false, false, false]);
+  pass(15);
+  const outcomes = pages.map(({ finished }) => finished?.outcome);
+  for (const outcome of outcomes) {
+    expect(outcome?.ended).toBe('time');
+    expect(outcome?.seconds).toBeGreaterThan(seconds - 0.5);
+    // The match is over when the last ball in the air at the bell has come down.
+    expect(outcome?.seconds).toBeLessThan(seconds + 2.5);
+    // 72 a second while the match ran, none of the time in which it stood.
+    expect(outcome?.frames.count).toBeLessThan(72 * (seconds + 4));
+    expect(outcome?.motionFrames).toBeLessThan(72 * (seconds + 4));
+  }
+  expect(new Set(outcomes.map((outcome) => outcome?.score)).size).toBe(1);
+});
