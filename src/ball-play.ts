@@ -494,12 +494,20 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
       const station = stationOf(seen, seen.mySeat);
       wish = options.steering?.() ?? null;
       const steered = wish !== null;
-      const key = `${station} ${calibration.eyeHeight} ${steered || seen.match.phase === 'ready'}`;
+      const since = steered ? 'mouse' : seen.match.phase === 'ready';
+      const key = `${station} ${calibration.eyeHeight} ${since}`;
       const handedOver = own !== null && 'aim' in own.bot !== steered;
       if (own?.key !== key && (own === null || handedOver || seen.match.phase !== 'running')) {
         own = { key, bot: steered ? steeredFor(station) : actorFor(station, calibration, options.seed + seen.mySeat) };
       }
       const { bot } = own as NonNullable<typeof own>;
+      if (handedOver && connection) {
+        // Other hands than those that held the ball: nothing is thrown on the way from the ones to the others.
+        gestures ??= gesturesOf(connection);
+        const { frame, buttons } = performedAt(bot, time, seen.match, seen.mySeat);
+        play(connection, gestures, { ...frame, suspended: true }, buttons);
+        actedAt = time;
+      }
       // What lies between two slow pictures is played too; the last moment is the picture's own.
       if (catchUp && connection) {
         gestures ??= gesturesOf(connection);

@@ -3,6 +3,7 @@ import { type BallPlay, createBallPlay } from '../src/ball-play';
 import { defaultCalibration } from '../src/core/body/calibration';
 import { createEstimator } from '../src/core/estimation/estimators';
 import type { BallEvent, BallOptions } from '../src/core/games/ball/ball-state';
+import type { BallSteering } from '../src/core/games/ball/steered-players';
 import { allReleased, type Buttons } from '../src/core/games/button-presses';
 import { distance } from '../src/core/math/vec3';
 import { createLoopbackHost } from '../src/net/loopback-connection';
@@ -17,6 +18,7 @@ function page(options: {
   spectate?: boolean;
   ball?: Partial<BallOptions>;
   rateHz?: number;
+  steering?: () => BallSteering | null;
 }) {
   const { acting = true, bots = true, ball = {}, rateHz = 72 } = options;
   const host = createLoopbackHost({ kind: 'ball', seed: 3, ball });
@@ -30,6 +32,7 @@ function page(options: {
     },
     bots: () => bots,
     acting: () => acting,
+    ...(options.steering && { steering: options.steering }),
     seed: 7,
   });
   const estimator = createEstimator('ik', defaultCalibration);
@@ -148,6 +151,31 @@ describe('one person with two bots', () => {
     expect(events.filter(({ type }) => type === 'thrown')).toHaveLength(20);
     expect(events.filter(({ type }) => type === 'refused')).toEqual([]);
   });
+
+  it.each([72, 5])(
+    'at %i pictures a second a mouse takes over from the built-in player, throws, and hands back',
+    (rateHz) => {
+      const mouse = { on: false, pressed: false };
+      const ray = { origin: { x: -0.8, y: 2, z: 3.5 }, direction: { x: 0.11, y: -0.11, z: -0.988 } };
+      const steering = () => (mouse.on ? { ray, pressed: mouse.pressed, cancelled: false } : null);
+      const { player, until, events } = page({ seat: 0, rateHz, steering, ball: { seconds: 600 } });
+      until(() => player.probe()?.phase === 'running', 30);
+      until(() => player.probe()?.held.left !== null || player.probe()?.held.right !== null, 10);
+      mouse.on = true;
+      const mine = () => events.filter((event) => event.type === 'thrown' && event.player === 0).length;
+      const before = mine();
+      // Pressed before there is a ball to throw: it counts from then on.
+      mouse.pressed = true;
+      until(() => (player.probe()?.aim ?? 0) > 5.5, 5);
+      expect(mine()).toBe(before);
+      mouse.pressed = false;
+      until(() => mine() === before + 1, 3);
+      expect(player.probe()?.aim).toBeNull();
+      mouse.on = false;
+      until(() => mine() === before + 2, 10);
+      expect(events.filter(({ type }) => type === 'refused')).toEqual([]);
+    },
+  );
 
   it('bots go when they are not wanted', () => {
     const alone = page({ bots: false });
