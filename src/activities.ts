@@ -113,13 +113,14 @@ export function createActivities(options: ActivitiesOptions): Activities {
 
   function placeCamera(): void {
     inTheStands = watching();
+    steerByMouse();
     const inCourt = inTheStands && settings.following === null ? 'stands' : 'court';
     view.setScene(archery ? 'range' : ball ? inCourt : 'studio');
   }
 
   /** A mouse that aims does not turn the camera. */
   function steerByMouse(): void {
-    const steering = archery !== null && settings.mouse && !headset.worn;
+    const steering = (archery !== null || ball !== null) && settings.mouse && !headset.worn && !watching();
     mouse.setEnabled(steering);
     view.setOrbit(!steering);
   }
@@ -201,6 +202,10 @@ export function createActivities(options: ActivitiesOptions): Activities {
       },
       bots: () => settings.bots && place === null,
       acting: () => place === null && settings.actor && (!headset.worn || headset.emulator !== null),
+      steering: () =>
+        settings.mouse && !headset.worn
+          ? { ray: view.rayThrough(mouse.x, mouse.y), pressed: mouse.pressed, cancelled: mouse.cancelled }
+          : null,
       seed,
       onCaption,
     });

@@ -4,6 +4,7 @@ import type { AvatarPose } from './core/body/avatar-pose';
 import type { BallPulse } from './core/games/ball/gestures';
 import type { Performed } from './core/games/ball/player-postures';
 import { ballSecondsLeft, ballsLeft, defaultBallOptions } from './core/games/ball/rules';
+import type { BallSteering } from './core/games/ball/steered-players';
 import type { Buttons } from './core/games/button-presses';
 import type { Side } from './core/games/fist';
 import { type Pose, transformPose } from './core/math/pose';
@@ -28,6 +29,8 @@ export interface BallActivityOptions {
   connect(visitor: Visitor, time: number): Connection;
   bots(): boolean;
   acting(): boolean;
+  /** What a mouse wants of the own player, floor frame; null: nothing, a built-in one plays. */
+  steering(): BallSteering | null;
   readonly seed: number;
   readonly onCaption: (text: string) => void;
 }
@@ -135,8 +138,8 @@ export function createBallActivity(options: BallActivityOptions): BallActivity {
         time,
       );
       if (!seen) return;
-      const { state, me, rotate, opening, players, events, cues } = seen;
-      view.show({ state, time: seen.time, attendants: players, me, rotate, opening, head });
+      const { state, me, rotate, opening, aim, paused, players, events, cues } = seen;
+      view.show({ state, time: seen.time, attendants: players, me, rotate, opening, aim, paused, head });
       view.hear(events, cues);
     },
     point({ origin, direction }, press) {
@@ -180,6 +183,8 @@ export function createBallActivity(options: BallActivityOptions): BallActivity {
         of: state.options.balls,
         ballsLeft: ballsLeft(state),
         secondsLeft: ballSecondsLeft(state),
+        paused: seen.paused,
+        throws: me !== null && state.players[me]?.role === 'thrower',
         role: me === null ? 'Watching' : roleOf(me),
         seat: me,
         ready: me !== null && (state.players[me]?.ready ?? false),

@@ -13,15 +13,22 @@ import {
   createBallGestures,
 } from './core/games/ball/gestures';
 import { createHolder } from './core/games/ball/holder-motion';
-import type { Performed } from './core/games/ball/player-postures';
+import type { Performed, PlayerBody } from './core/games/ball/player-postures';
 import { ballSecondsLeft, ballsLeft } from './core/games/ball/rules';
 import { holderStation, stations } from './core/games/ball/stations';
+import {
+  type BallSteering,
+  createSteeredHolder,
+  createSteeredThrower,
+  type SteeredPlayer,
+} from './core/games/ball/steered-players';
 import { type BallBot, createThrower } from './core/games/ball/thrower-motion';
+import type { Launch } from './core/games/ballistics';
 import type { Buttons } from './core/games/button-presses';
 import { fistOf, type Side } from './core/games/fist';
 import { composeTransforms, invertTransform, type Transform, transformPoint, transformPose } from './core/math/pose';
 import { identity } from './core/math/quat';
-import { type Vec3, zero } from './core/math/vec3';
+import { length, type Vec3, zero } from './core/math/vec3';
 import type { TrackedPose, TrackingFrame } from './core/tracking/tracking-frame';
 import type { Connection, ConnectionStatus, RoomView, Visitor } from './net/connection';
 import { createRemotePlayers, type RemotePlayer } from './net/remote-players';
@@ -70,6 +77,8 @@ export interface BallFrame {
   readonly cues: readonly BallCue[];
   readonly haptics: readonly BallPulse[];
   readonly held: Readonly<Record<Side, number | null>>;
+  /** How the ball in the own hand would fly, arena frame; null: nobody aims it with a mouse. */
+  readonly aim: Launch | null;
 }
 
 /** What tools may know of a match. */
@@ -88,6 +97,8 @@ export interface BallProbe {
   readonly spectators: number;
   readonly paused: boolean;
   readonly held: Readonly<Record<Side, number | null>>;
+  /** How fast the ball would leave the hand that a mouse aims [m/s]; null: it aims none. */
+  readonly aim: number | null;
   readonly connection: ConnectionStatus['phase'];
   /** Rounds cut short because the room had forgotten them. */
   readonly voided: number;
@@ -136,6 +147,8 @@ export interface BallPlayOptions {
   bots(): boolean;
   /** Whether the own seat's hands are a built-in player's: who is then ready by itself. */
   acting(): boolean;
+  /** What a mouse wants of the own seat's player, own floor frame; null or absent: nothing, a built-in one plays. */
+  steering?(): BallSteering | null;
   readonly seed: number;
 }
 
@@ -156,6 +169,11 @@ const botPeople: readonly { readonly name: string; readonly calibration: Calibra
   { name: 'Kim', calibration: { eyeHeight: 1.6, armSpan: 1.51 } },
 ];
 
+const idle: BallSteering = {
+  ray: { origin: zero, direction: { x: 0, y: 0, z: -1 } },
+  pressed: false,
+  cancelled: false,
+};
 const nowhere: Transform<'floor', 'arena'> = { position: zero, orientation: identity };
 /** Seconds between two looks for free seats. */
 const seatsEvery = 0.4;
@@ -179,13 +197,15 @@ function momentsUntil(time: number, last: number | null): readonly number[] {
 const isDeed = (action: BallAction): action is Extract<BallAction, { type: 'grab' | 'drop' | 'throw' }> =>
   action.type === 'grab' || action.type === 'drop' || action.type === 'throw';
 
+const bodyAt = (station: number, calibration: Calibration): PlayerBody => ({
+  eyeHeight: calibration.eyeHeight,
+  armLength: chestSpaceBody(calibration).arm,
+  arenaFromFloor: stations[station] ?? { position: zero, orientation: identity },
+});
+
 /** The built-in player of a station; `seed`: of the scatter of its throws. */
 function actorFor(station: number, calibration: Calibration, seed: number): BallBot {
-  const body = {
-    eyeHeight: calibration.eyeHeight,
-    armLength: chestSpaceBody(calibration).arm,
-    arenaFromFloor: stations[station] ?? { position: zero, orientation: identity },
-  };
+  const body = bodyAt(station, calibration);
   return station === holderStation ? createHolder(body) : createThrower(body, seed + 31 * station);
 }
 
@@ -205,7 +225,8 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
   let opening: Opening | null = null;
   let newest: BallFrame | null = null;
   let gestures: BallGestures | null = null;
-  let own: { readonly key: string; readonly bot: BallBot } | null = null;
+  let own: { readonly key: string; readonly bot: BallBot | SteeredPlayer } | null = null;
+  let wish: BallSteering | null = null;
   let jump = false;
   /** For the moments of the own built-in player that no picture shows. */
   const between = createEstimator('ik', calibration);
@@ -258,6 +279,12 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
   function performedAt(actor: BallBot, time: number, state: BallState, player: number): Performed {
     const done = actor.follow(time - stood, { state, player, ...(opening && { basket: opening.position }) });
     return { ...done, frame: { ...done.frame, time } };
+  }
+
+  /** The player of a station who does what the mouse wants. */
+  function steeredFor(station: number): SteeredPlayer {
+    const create = station === holderStation ? createSteeredHolder : createSteeredThrower;
+    return create(bodyAt(station, calibration), () => wish ?? idle);
   }
 
   /** One moment of a built-in player: deeds, and the solved body to the others. */
@@ -336,7 +363,8 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
       return;
     }
     if (waitingSince?.phase !== match.phase) waitingSince = { phase: match.phase, at: time };
-    if (!options.acting() || match.players[seen.mySeat]?.ready) return;
+    // A mouse has a person behind it, who says when.
+    if (!options.acting() || options.steering?.() || match.players[seen.mySeat]?.ready) return;
     const patience = match.phase === 'over' ? rematchAfter : readyAfter;
     if (time - waitingSince.at > patience && match.players.filter(({ present }) => present).length > 1) {
       connection?.ready(true);
@@ -439,6 +467,7 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
       cues: [...missed.cues, ...(played?.cues ?? [])],
       haptics: [...missed.haptics, ...(played?.haptics ?? [])],
       held: played?.held ?? { left: null, right: null },
+      aim: wish && own && 'aim' in own.bot ? own.bot.aim : null,
     };
     events = [];
     missed = { cues: [], haptics: [] };
@@ -463,9 +492,12 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
       const seen = room();
       if (!seen?.match || seen.mySeat === null) return null;
       const station = stationOf(seen, seen.mySeat);
-      const key = `${station} ${calibration.eyeHeight} ${seen.match.phase === 'ready'}`;
-      if (own?.key !== key && (own === null || seen.match.phase !== 'running')) {
-        own = { key, bot: actorFor(station, calibration, options.seed + seen.mySeat) };
+      wish = options.steering?.() ?? null;
+      const steered = wish !== null;
+      const key = `${station} ${calibration.eyeHeight} ${steered || seen.match.phase === 'ready'}`;
+      const handedOver = own !== null && 'aim' in own.bot !== steered;
+      if (own?.key !== key && (own === null || handedOver || seen.match.phase !== 'running')) {
+        own = { key, bot: steered ? steeredFor(station) : actorFor(station, calibration, options.seed + seen.mySeat) };
       }
       const { bot } = own as NonNullable<typeof own>;
       // What lies between two slow pictures is played too; the last moment is the picture's own.
@@ -501,7 +533,7 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
     },
     probe() {
       if (!newest || !connection) return null;
-      const { state, me, role, rotate, spectators, paused, held, players } = newest;
+      const { state, me, role, rotate, spectators, paused, held, aim, players } = newest;
       const count = (on: string) => state.balls.filter((place) => place.on === on).length;
       const { x, y, z } = newest.opening?.position ?? state.basket.position;
       return {
@@ -518,6 +550,7 @@ export function createBallPlay(options: BallPlayOptions): BallPlay {
         spectators,
         paused,
         held,
+        aim: aim && length(aim.velocity),
         connection: connection.status.phase,
         voided: connection.room?.voided ?? 0,
         balls: {

@@ -188,6 +188,7 @@ export function createControls(options: ControlsOptions): Controls {
         location.search = `?play=ball&room=${name}`;
       },
       follow: activities.follow,
+      steer: (on) => activities.chooseShooter(on ? 'mouse' : 'actor'),
     },
   });
 
@@ -350,7 +351,8 @@ export function createControls(options: ControlsOptions): Controls {
         round: ball.round(),
         room: switches.room,
         bots: settings.bots,
-        acting: settings.actor && !headset.worn,
+        acting: settings.actor && !settings.mouse && !headset.worn,
+        mouse: headset.worn || !settings.actor ? null : settings.mouse,
         name: settings.name,
         following: settings.following,
       },

@@ -125,6 +125,8 @@ export async function measureCourt(
           me: null,
           rotate: false,
           opening: null,
+          aim: null,
+          paused: false,
           head: frame.head,
         });
         renderer.render(arena.scene, camera);

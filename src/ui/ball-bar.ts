@@ -7,6 +7,10 @@ export interface BallRound {
   readonly of: number;
   readonly ballsLeft: number;
   readonly secondsLeft: number;
+  /** The clock stands. */
+  readonly paused: boolean;
+  /** Oneself: rather than holding the basket, or watching. */
+  readonly throws: boolean;
   readonly role: string;
   readonly seat: number | null;
   readonly ready: boolean;
@@ -29,6 +33,8 @@ export interface BallBarState {
   readonly bots: boolean;
   /** A built-in player moves the own body: there is nobody to ask. */
   readonly acting: boolean;
+  /** The mouse moves the own body; null: it cannot, somebody wears a headset or steers an emulated one. */
+  readonly mouse: boolean | null;
   readonly name: string;
   /** Of a spectator: free, or the seat that is followed. */
   readonly following: number | null;
@@ -44,6 +50,8 @@ export interface BallBarActions {
   openRoom(): void;
   /** The camera of a spectator: with somebody, or null: free. */
   follow(seat: number | null): void;
+  /** The mouse moves the own body, or a built-in player does. */
+  steer(on: boolean): void;
 }
 
 /** Score, places and settings of the ball game, beside the picture. */
@@ -54,6 +62,9 @@ export function createBallBar(actions: BallBarActions, setSound: (on: boolean) =
   const where = element('p', { class: 'hint' });
   const ready = button('Ready', () => actions.ready(!isReady), { class: 'primary' });
   const watch = button('Watch', () => actions.sit(null));
+  const steer = button('Play with the mouse', () => actions.steer(true), { class: 'primary' });
+  const rest = button('Let the built-in player play', () => actions.steer(false));
+  const hint = element('p', { class: 'hint' });
   const places = element('div', { class: 'places', role: 'group', 'aria-label': 'Places' });
   const cameras = element('div', { class: 'segments', role: 'group', 'aria-label': 'Camera' });
   const check = (label: string, onChange: (on: boolean) => void) => {
@@ -75,7 +86,8 @@ export function createBallBar(actions: BallBarActions, setSound: (on: boolean) =
     where,
     places,
     cameras,
-    element('div', { class: 'row' }, ready, watch),
+    element('div', { class: 'row' }, ready, steer, rest, watch),
+    hint,
     element(
       'details',
       {},
@@ -101,7 +113,8 @@ export function createBallBar(actions: BallBarActions, setSound: (on: boolean) =
       const { round } = state;
       score.textContent = round ? `${round.score} / ${round.of}` : '–';
       left.textContent = round ? `${round.ballsLeft} ${round.ballsLeft === 1 ? 'ball' : 'balls'}` : '';
-      time.textContent = round ? `${Math.ceil(round.secondsLeft)} s` : '';
+      const seconds = round ? `${Math.ceil(round.secondsLeft)} s` : '';
+      time.textContent = round?.paused ? `${seconds}, paused` : seconds;
       const place = state.room ? `Room “${state.room}”` : 'Your own room';
       // Whoever watches knows that already.
       const watchers = round ? round.spectators - (round.seat === null ? 1 : 0) : 0;
@@ -111,6 +124,13 @@ export function createBallBar(actions: BallBarActions, setSound: (on: boolean) =
       ready.hidden = !round || round.seat === null || round.phase === 'running' || state.acting;
       ready.textContent = isReady ? 'Wait for me' : round?.phase === 'over' ? 'Play again' : 'Ready';
       ready.classList.toggle('primary', !isReady);
+      const seated = round !== null && round.seat !== null;
+      steer.hidden = !seated || state.mouse !== false;
+      rest.hidden = !seated || state.mouse !== true;
+      hint.hidden = !seated || state.mouse !== true;
+      hint.textContent = round?.throws
+        ? 'Point at the basket and hold the button: dots show where the ball will go. Let go to throw. Esc: not yet.'
+        : 'Point at where the basket is to be; it turns towards the balls by itself.';
       watch.hidden = !round || round.seat === null;
       const free = (round?.people ?? []).filter(({ free }) => free && round?.phase !== 'running');
       const key = JSON.stringify(free);

@@ -87,18 +87,27 @@ test('100 ms ± 30 ms with 2 % of losses: a thrower behind it plays on', async (
     });
   });
   await pause(lasting);
-  const freezes = watching.map((remote) =>
-    [0, 1, 2].reduce((sum, seat) => sum + (remote.report(seat)?.freezes ?? 0), 0),
-  );
+  /** How often somebody's playback of somebody else stood still. */
+  const freezes = (watcher: number, watched: number): number => {
+    const report = watching[watcher]?.report(people[watched]!.seat);
+    if (!report) throw new Error(`person ${watcher} never saw person ${watched}`);
+    return report.freezes;
+  };
+  const [behind, near, nearToo] = [0, 1, 2] as const;
   const minutes = lasting / 60;
+  const seen = Math.max(freezes(behind, near), freezes(behind, nearToo));
+  const byOthers = Math.max(freezes(near, behind), freezes(nearToo, behind));
+  // Two people with nothing between them and the relay: what they see stand still, this machine has held up.
+  const here = Math.max(freezes(near, nearToo), freezes(nearToo, near));
   tell('100 ± 30 ms, 2 % lost, over sockets', {
     seconds: lasting,
-    'freezes seen by the one behind it': freezes[0] ?? Number.NaN,
-    'by the others': Math.max(freezes[1] ?? 0, freezes[2] ?? 0),
-    'delay of playback [ms]': 1000 * (watching[0]?.report(people[1]!.seat)?.delay ?? 0),
+    'freezes seen by the one behind it': seen,
+    'of the one behind it': byOthers,
+    'between two with nothing in the way': here,
+    'delay of playback [ms]': 1000 * (watching[behind]?.report(people[near]!.seat)?.delay ?? 0),
   });
-  // Two others are seen by each: less than one a minute for each of them, and one for this machine's own busy moments.
-  expect(Math.max(...freezes)).toBeLessThanOrEqual(1 + 2 * minutes);
+  // Less than one a minute, and one that a run may end with.
+  expect(Math.max(seen, byOthers)).toBeLessThanOrEqual(here + 1 + minutes);
   expect(people[0]?.connection.status.phase).toBe('joined');
 });
 

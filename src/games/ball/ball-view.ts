@@ -4,10 +4,12 @@ import type { Opening } from '../../core/games/ball/basket';
 import type { BallCue } from '../../core/games/ball/gestures';
 import { ballSecondsLeft } from '../../core/games/ball/rules';
 import { stations } from '../../core/games/ball/stations';
+import type { Launch } from '../../core/games/ballistics';
 import { invertTransform, type Pose, type Transform, transformPoint } from '../../core/math/pose';
 import type { Vec3 } from '../../core/math/vec3';
 import type { Quality } from '../../scene/renderer';
 import type { Surroundings } from '../../scene/surroundings';
+import { createAimArc } from './aim-arc';
 import { createBalls } from './balls';
 import { lineOfEvent, type Person, type Standing, waitingLine } from './board-drawing';
 import { createBoards } from './boards';
@@ -40,6 +42,10 @@ export interface BallScene {
   readonly rotate: boolean;
   /** The basket where its holder's hands are drawn; null: where it was last. Arena frame. */
   readonly opening: Opening | null;
+  /** How a ball would fly that is let go now, arena frame; null: nobody here aims with a mouse. */
+  readonly aim: Launch | null;
+  /** The match's clock stands. */
+  readonly paused: boolean;
   /** Whose eyes and ears these are, own floor frame. */
   readonly head: Pose<'floor'>;
 }
@@ -76,9 +82,10 @@ export function createBallView({ quality, balls: count, onCaption }: BallViewOpt
   const pops = createCatchPops(quality);
   const names = createNameLabels(stations.length, quality);
   const ring = createZoneRing();
+  const arc = createAimArc();
   const lobby = createLobbySheet(quality);
   const sounds = createBallSounds(onCaption);
-  court.object.add(balls.object, basket.object, boards.object, pops.object, names.object, ring.mesh);
+  court.object.add(balls.object, basket.object, boards.object, pops.object, names.object, ring.mesh, arc.object);
   let floorFromArena: Transform<'floor', 'arena'> = {
     position: { x: 0, y: 0, z: 0 },
     orientation: { x: 0, y: 0, z: 0, w: 1 },
@@ -101,6 +108,7 @@ export function createBallView({ quality, balls: count, onCaption }: BallViewOpt
       sounds.listen(head, floorFromArena);
       const opening = scene.opening ?? state.basket;
       basket.show(opening);
+      arc.show(scene.aim);
       balls.show(state, time, (player, side) => attendants[player]?.fists[side] ?? null, opening);
       pops.show(time, eyes);
       const people = attendants.map(
@@ -108,7 +116,8 @@ export function createBallView({ quality, balls: count, onCaption }: BallViewOpt
           person && { name: person.name, bot: person.bot, presence: person.presence, me: person.me },
       );
       const standing: Standing = { state, seconds: Math.ceil(ballSecondsLeft(state)), people, me, rotate };
-      boards.show(standing, time < line.until && state.phase === 'running' ? line.text : waitingLine(standing));
+      const said = time < line.until && state.phase === 'running' ? line.text : waitingLine(standing);
+      boards.show(standing, scene.paused ? 'Paused' : said);
       lobby.show(standing, head.position.y);
       names.show(
         attendants.map((person, player) => {
@@ -142,7 +151,7 @@ export function createBallView({ quality, balls: count, onCaption }: BallViewOpt
     },
     dispose() {
       lobby.dispose();
-      for (const part of [sounds, balls, basket, boards, pops, names, court]) part.dispose();
+      for (const part of [sounds, balls, basket, boards, pops, names, arc, court]) part.dispose();
     },
   };
 }

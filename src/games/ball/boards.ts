@@ -14,7 +14,8 @@ export interface Boards {
 }
 
 const width = 3.1;
-const shape = { width, height: (width * boardSize.height) / boardSize.width, middle: 3.05 };
+/** High enough that nobody's name hides a line of it. */
+const shape = { width, height: (width * boardSize.height) / boardSize.width, middle: 3.8 };
 
 export function createBoards(quality: Quality): Boards {
   const object = new Group();

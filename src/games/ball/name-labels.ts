@@ -1,4 +1,5 @@
-import { Group, Sprite, SpriteMaterial } from 'three';
+import { Group, Sprite, SpriteMaterial, Vector3 } from 'three';
+import { clamp } from '../../core/math/damper';
 import type { Vec3 } from '../../core/math/vec3';
 import { createDrawnTexture } from '../../scene/drawn-texture';
 import type { Quality } from '../../scene/renderer';
@@ -25,8 +26,15 @@ export interface Label {
 const size = { width: 640, height: 160 } as const;
 /** Width in the world [m]. */
 const metres = 0.86;
-/** Its middle above the eyes [m]. */
-const above = 0.36;
+/** Its lower edge above the eyes [m]. */
+const above = 0.25;
+/** Seen from further away than this it grows with the distance, so that a name stays as large to the eye [m]. */
+const readableFrom = 2.8;
+/** Larger than this it would hide a neighbour's. */
+const mostGrown = 3;
+
+/** How many times its own size a label is drawn for a camera this far away [m]. */
+export const labelScale = (far: number): number => clamp(far / readableFrom, 1, mostGrown);
 
 function paint(context: CanvasRenderingContext2D, person: Person, station: number): void {
   const { width, height } = size;
@@ -68,7 +76,20 @@ function createLabel(quality: Quality) {
     depthWrite: false,
   });
   const sprite = new Sprite(material);
-  sprite.scale.set(metres, (metres * size.height) / size.width, 1);
+  const height = (metres * size.height) / size.width;
+  const head = new Vector3();
+  const there = new Vector3();
+  const eye = new Vector3();
+  /** For each camera anew: a window's is not where the player's eyes are. */
+  sprite.onBeforeRender = (_renderer, _scene, { matrixWorld }) => {
+    sprite.parent?.localToWorld(there.copy(head));
+    const grown = labelScale(there.distanceTo(eye.setFromMatrixPosition(matrixWorld)));
+    sprite.scale.set(grown * metres, grown * height, 1);
+    sprite.position.set(head.x, head.y + above + (grown * height) / 2, head.z);
+    sprite.updateMatrixWorld();
+  };
+  // It is where it is drawn only once it is drawn.
+  sprite.frustumCulled = false;
   sprite.renderOrder = 4;
   sprite.visible = false;
   let shown = '';
@@ -82,7 +103,7 @@ function createLabel(quality: Quality) {
         shown = key;
         draw((context) => paint(context, label.person, label.station));
       }
-      sprite.position.set(label.head.x, label.head.y + above, label.head.z);
+      head.copy(label.head);
       material.opacity = label.opacity;
     },
     dispose() {

@@ -15,6 +15,7 @@ import {
 } from '../../../src/games/ball/board-drawing';
 import { cueCaption, eventCaption } from '../../../src/games/ball/captions';
 import { eventHaptics } from '../../../src/games/ball/haptics';
+import { labelScale } from '../../../src/games/ball/name-labels';
 
 const person = (name: string, more: Partial<Person> = {}): Person => ({
   name,
@@ -111,5 +112,14 @@ describe('pulses', () => {
     expect(strongest(2, 'holder')).toBeGreaterThan(strongest(0, 'thrower'));
     expect(strongest(0, 'thrower')).toBeGreaterThan(0);
     expect(strongest(1, 'thrower')).toBe(0);
+  });
+});
+
+describe('names over heads', () => {
+  it('are as large to the eye from across the court as from 2.8 m, and no larger than themselves from near', () => {
+    for (const far of [0.5, 1, 2.8]) expect(labelScale(far)).toBe(1);
+    const angle = (far: number) => labelScale(far) / far;
+    for (const far of [3, 5, 8]) expect(angle(far)).toBeCloseTo(angle(2.8), 9);
+    expect(labelScale(40)).toBe(3);
   });
 });

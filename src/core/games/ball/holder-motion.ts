@@ -16,8 +16,11 @@ const lean = 0.5;
 /** A ball further from the arms than this [m] is let go by. */
 const widest = 0.85;
 
-/** Holds the basket before the belly and carries it to where the next ball comes down, stepping aside as far as needed. */
-export function createHolder(body: PlayerBody): BallBot {
+/**
+ * Holds the basket before the belly and carries it to where the next ball comes down, stepping aside as far as needed. `told`: where
+ * the opening is to be instead, own floor frame, when it waits at `home`.
+ */
+export function createHolder(body: PlayerBody, told?: (home: Vec3) => Vec3): BallBot {
   const postures = createPlayerPostures(body);
   const { arm, eyes, inFloor } = postures;
   /** Where the opening waits, and how far from there the arms alone carry it. */
@@ -56,7 +59,7 @@ export function createHolder(body: PlayerBody): BallBot {
       const elapsed = lastTime === null ? 0 : clamp(time - lastTime, 0, 0.1);
       lastTime = time;
       const ball = nextBall(sight, ballMatchTime(sight.state));
-      const goal = ball?.at ?? home;
+      const goal = told?.(home) ?? ball?.at ?? home;
       const wanted = ball ? normalise(add(scale(up, 1 - lean), scale(ball.into, -lean))) : normalise(vec3(0, 1, -0.25));
       soft = dampVec3(soft, goal, moveHalfLife, elapsed);
       opening = dampVec3(opening, soft, moveHalfLife, elapsed);

@@ -1,13 +1,12 @@
 import { clamp } from '../../math/damper';
 import { nextRandom } from '../../math/random';
-import { add, addScaled, distance, length, lerp, normalise, scale, subtract, type Vec3, vec3 } from '../../math/vec3';
+import { add, addScaled, distance, lerp, scale, subtract, type Vec3, vec3 } from '../../math/vec3';
 import { gravity } from '../ballistics';
-import { otherSide, type Side } from '../fist';
+import type { Side } from '../fist';
 import { minimumJerk } from '../posture';
 import type { BallState } from './ball-state';
 import {
   createPlayerPostures,
-  type Grasp,
   mixPostures,
   type Performed,
   type PlayerBody,
@@ -15,6 +14,7 @@ import {
 } from './player-postures';
 import { ballMatchTime } from './rules';
 import { rackPosition, stations } from './stations';
+import { createThrowPostures, withHand } from './throw-postures';
 
 /** What a bot sees of the match: the state as far as it is known, and which player it is. */
 export interface BotSight {
@@ -47,20 +47,34 @@ interface Movement {
 
 /** A ball is this long in the air [s]; longer throws are higher. */
 const flightSeconds = 0.86;
-/** The arm is this fast at once [m], then evenly fast for as long as a throw's speed is measured and a slow frame more [s]. */
-const runUp = 0.24;
-const evenSeconds = 0.095;
-const lateSeconds = 0.02;
-const slowDown = 0.24;
 /** Two balls in the air at once are one too many for a basket: throws are this far apart [s]. */
 const betweenThrows = 0.75;
 /** Nobody throws twice alike [m]. */
 const scatter = 0.14;
 
+/** The ball of the racks that is nearest to this thrower; null: none is within reach, or there is nothing to do. */
+export function nearestBall({ state, player }: BotSight): number | null {
+  if (state.phase !== 'running') return null;
+  const station = stations[state.players[player]?.station ?? 0];
+  if (!station) return null;
+  let nearest: number | null = null;
+  let least = 1;
+  state.balls.forEach((place, ball) => {
+    if (place.on !== 'rack') return;
+    const far = distance(rackPosition(ball, state.options.balls), { ...station.position, y: 1 });
+    if (far >= least) return;
+    nearest = ball;
+    least = far;
+  });
+  return nearest;
+}
+
 /** Takes ball after ball from the rack, throws it at the basket underarm, and rests. `seed`: of the scatter of its throws. */
 export function createThrower(body: PlayerBody, seed: number): BallBot {
   const postures = createPlayerPostures(body);
-  const { arm, eyes, inFloor } = postures;
+  const { inFloor } = postures;
+  const moves = createThrowPostures(postures);
+  const { resting } = moves;
   let random = { seed };
   const chance = (): number => {
     const next = nextRandom(random);
@@ -70,104 +84,25 @@ export function createThrower(body: PlayerBody, seed: number): BallBot {
 
   const basketOf = ({ state, basket }: BotSight): Vec3 => inFloor(basket ?? state.basket.position);
 
-  const resting = (at: Vec3): PlayerPosture => ({
-    eyes,
-    gaze: postures.looking(eyes, at),
-    left: postures.hanging('left', eyes),
-    right: postures.hanging('right', eyes),
-  });
-
-  const withHand = (posture: PlayerPosture, side: Side, grasp: Grasp): PlayerPosture => ({ ...posture, [side]: grasp });
-
-  /** The fist round a ball of the rack, the body leaning towards it as far as the arm is too short. */
-  function reaching(side: Side, ball: Vec3): PlayerPosture {
-    const longest = 0.97 * arm + 0.05;
-    const shoulder = postures.shoulder(side, eyes);
-    const missing = Math.max(0, distance(shoulder, ball) - longest);
-    const towards = normalise(subtract(ball, shoulder));
-    const leaned = addScaled(eyes, towards, missing);
-    const outward = side === 'left' ? -1 : 1;
-    const shoulderThere = postures.shoulder(side, leaned);
-    return {
-      eyes: leaned,
-      gaze: postures.looking(leaned, ball),
-      left: postures.hanging('left', leaned),
-      right: postures.hanging('right', leaned),
-      [side]: {
-        fist: ball,
-        knuckles: normalise(add(scale(normalise(subtract(ball, shoulderThere)), 1), vec3(0, -0.15, -0.4))),
-        thumb: vec3(-outward, 0.25, 0),
-      },
-    } as PlayerPosture;
-  }
-
   /** Take, bring before the chest, wait for a turn, swing back, throw, follow through. */
   function throwOf(ball: number, side: Side, sight: BotSight): Movement[] {
-    const outward = side === 'left' ? -1 : 1;
     const at = inFloor(rackPosition(ball, sight.state.options.balls));
     const basket = basketOf(sight);
     const target = add(basket, vec3(scatter * chance(), 0, scatter * chance()));
-    const reach = reaching(side, at);
-    const shoulder = postures.shoulder(side, eyes);
-    const ready = withHand(resting(basket), side, {
-      fist: add(shoulder, vec3(-0.05 * outward * arm, -0.42 * arm, -0.62 * arm)),
-      knuckles: normalise(vec3(-0.1 * outward, 0.15, -1)),
-      thumb: normalise(vec3(0.7 * outward, 0.7, 0)),
-    });
-    const release = add(shoulder, vec3(0, 0.06 * arm, -0.72 * arm));
+    const reach = moves.reaching(side, at);
+    const ready = moves.carrying(side, basket);
     const velocity = add(
-      scale(subtract(target, release), 1 / flightSeconds),
+      scale(subtract(target, moves.release(side)), 1 / flightSeconds),
       vec3(0, 0.5 * gravity * flightSeconds, 0),
     );
-    const speed = length(velocity);
-    const way = normalise(velocity);
-    const runSeconds = (2 * runUp) / speed;
-    const even = evenSeconds + lateSeconds;
-    const slowSeconds = (2 * slowDown) / speed;
-    const back = addScaled(release, way, -(runUp + speed * evenSeconds));
-    /** From rest to the throw's speed, on at that speed until the ball has left the hand, then to rest. */
-    const swing = (seconds: number): Vec3 => {
-      const running = clamp(seconds, 0, runSeconds);
-      const evenly = clamp(seconds - runSeconds, 0, even);
-      const slowing = clamp(seconds - runSeconds - even, 0, slowSeconds);
-      const along =
-        runUp * (running / runSeconds) ** 2 +
-        speed * evenly +
-        speed * (slowing - (slowing * slowing) / (2 * slowSeconds));
-      return addScaled(back, way, along);
-    };
-    const throwSeconds = runSeconds + even + slowSeconds;
-    const leanBack = add(eyes, vec3(0.03 * outward, -0.01, 0.06));
-    const leanAhead = add(eyes, vec3(-0.02 * outward, -0.03, -0.13));
-    const palmAhead = normalise(vec3(outward, 0.35, 0));
-    const wound: PlayerPosture = {
-      ...resting(basket),
-      eyes: leanBack,
-      gaze: postures.looking(leanBack, basket),
-      [side]: {
-        fist: back,
-        knuckles: normalise(add(normalise(subtract(back, shoulder)), scale(way, 0.6))),
-        thumb: palmAhead,
-      },
-      [otherSide(side)]: {
-        fist: add(postures.shoulder(otherSide(side), leanBack), vec3(-0.1 * outward, -0.55 * arm, -0.55 * arm)),
-        knuckles: normalise(vec3(0, 0.1, -1)),
-        thumb: normalise(vec3(0.5 * outward, 0.8, 0)),
-      },
-    } as PlayerPosture;
-    const thrown: PlayerPosture = {
-      ...resting(basket),
-      eyes: leanAhead,
-      gaze: postures.looking(leanAhead, basket),
-      [side]: { fist: swing(throwSeconds), knuckles: way, thumb: palmAhead },
-    } as PlayerPosture;
+    const { wound, thrown, seconds, releaseAt, swing } = moves.throwing(side, velocity, basket);
     return [
       { to: reach, seconds: 0.75, pressure: 0, arc: 0.06 },
       { to: reach, seconds: 0.16, pressure: 1 },
       { to: ready, seconds: 0.6, pressure: 1, arc: 0.08 },
       { to: ready, seconds: 0.05, pressure: 1, until: mayThrow },
       { to: wound, seconds: 0.5, pressure: 1 },
-      { to: thrown, seconds: throwSeconds, pressure: 0, swing, releaseAt: runSeconds + evenSeconds },
+      { to: thrown, seconds, pressure: 0, swing, releaseAt },
       { to: thrown, seconds: 0.2, pressure: 0 },
     ];
   }
@@ -183,20 +118,6 @@ export function createThrower(body: PlayerBody, seed: number): BallBot {
     return !busy && Math.floor(now / betweenThrows) % 2 === station % 2;
   }
 
-  /** The nearest ball of the racks to this thrower; null: none, or nothing to do. */
-  function chosen({ state, player }: BotSight): number | null {
-    if (state.phase !== 'running') return null;
-    const station = stations[state.players[player]?.station ?? 0];
-    if (!station) return null;
-    let best: { readonly ball: number; readonly far: number } | null = null;
-    state.balls.forEach((place, ball) => {
-      if (place.on !== 'rack') return;
-      const far = distance(rackPosition(ball, state.options.balls), { ...station.position, y: 1 });
-      if (far < 1 && (!best || far < best.far)) best = { ball, far };
-    });
-    return (best as { readonly ball: number } | null)?.ball ?? null;
-  }
-
   let from: PlayerPosture | null = null;
   let fromPressure = 0;
   let began = 0;
@@ -210,7 +131,7 @@ export function createThrower(body: PlayerBody, seed: number): BallBot {
     for (;;) {
       const current = plan[0];
       if (!current) {
-        const ball = chosen(sight);
+        const ball = nearestBall(sight);
         if (ball === null && idle) return;
         if (idle) began = time;
         idle = ball === null;

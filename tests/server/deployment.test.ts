@@ -1,0 +1,129 @@
+import { spawnSync } from 'node:child_process';
+import { existsSync, readFileSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
+import { describe, expect, test } from 'vitest';
+import { parse } from 'yaml';
+import { configurationFrom } from '../../server/configuration';
+import { relayConfigurationFrom } from '../../server/relay-configuration';
+import { installed } from './installed';
+
+const deploy = (file: string) => fileURLToPath(new URL(`../../deploy/${file}`, import.meta.url));
+const textOf = (file: string) => readFileSync(deploy(file), 'utf8');
+
+interface Service {
+  readonly build?: { readonly context: string; readonly dockerfile: string };
+  readonly image: string;
+  readonly environment?: Readonly<Record<string, string>>;
+  readonly depends_on?: readonly string[];
+  readonly volumes?: readonly string[];
+  readonly ports?: readonly string[];
+}
+
+const compose = parse(textOf('compose.yaml'), { merge: true }) as {
+  readonly services: Readonly<Record<string, Service>>;
+  readonly volumes: Readonly<Record<string, unknown>>;
+};
+const service = (name: string): Service => {
+  const found = compose.services[name];
+  if (!found) throw new Error(`compose.yaml: there is no service ${name}`);
+  return found;
+};
+const dockerfile = textOf('Dockerfile');
+
+/** As compose reads `${NAME:-default}` and `${NAME:?message}`. */
+function filled(text: string, given: Readonly<Record<string, string>>): string {
+  return text.replace(/\$\{(\w+)(?::([-?])([^}]*))?\}/g, (_all, name: string, kind: string, rest: string) => {
+    const value = given[name];
+    if (value) return value;
+    if (kind === '?') throw new Error(rest);
+    return rest ?? '';
+  });
+}
+
+const environmentOf = (name: string, given: Readonly<Record<string, string>>) =>
+  Object.fromEntries(
+    Object.entries(service(name).environment ?? {}).map(([key, value]) => [key, filled(String(value), given)]),
+  );
+
+const inImage = Object.fromEntries(
+  [...dockerfile.matchAll(/^ENV (.*)$/gm)].flatMap(([, line]) =>
+    (line ?? '').split(' ').map((pair) => pair.split('=') as [string, string]),
+  ),
+);
+
+describe('compose.yaml', () => {
+  const secret = { THREEPOINT_SECRET: 'x'.repeat(44) };
+
+  test('gives every relay what it takes, and nothing that it does not know', () => {
+    for (const name of ['relay-1', 'relay-2']) {
+      const environment = { ...inImage, ...environmentOf(name, secret) };
+      expect(relayConfigurationFrom(environment)).toMatchObject({
+        secret: secret.THREEPOINT_SECRET,
+        redisUrl: 'redis://redis:6379',
+        trustProxy: true,
+        host: '0.0.0.0',
+        logLevel: 'info',
+      });
+      expect(configurationFrom([], environment)).toMatchObject({ port: 3333, studyDirectory: '/studies' });
+      const source = ['relay-configuration', 'configuration']
+        .map((file) => readFileSync(fileURLToPath(new URL(`../../server/${file}.ts`, import.meta.url)), 'utf8'))
+        .join('');
+      for (const variable of Object.keys(environment)) expect(source, variable).toContain(variable);
+    }
+  });
+
+  test('does not start without a secret', () => {
+    expect(() => environmentOf('relay-1', {})).toThrow('set THREEPOINT_SECRET');
+    expect(() => relayConfigurationFrom(environmentOf('relay-1', { THREEPOINT_SECRET: 'short' }))).toThrow(
+      '32 characters',
+    );
+  });
+
+  test('names only services, volumes and files that there are', () => {
+    for (const { depends_on = [], volumes = [], build } of Object.values(compose.services)) {
+      for (const name of depends_on) expect(compose.services).toHaveProperty(name);
+      for (const [source] of volumes.map((volume) => volume.split(':'))) {
+        if (source?.startsWith('.')) expect(existsSync(deploy(source))).toBe(true);
+        else expect(compose.volumes).toHaveProperty(source ?? '');
+      }
+      if (build) expect(existsSync(deploy(`${build.context}/${build.dockerfile}`))).toBe(true);
+    }
+    expect(new URL(environmentOf('relay-1', secret).THREEPOINT_REDIS_URL ?? '').hostname in compose.services).toBe(
+      true,
+    );
+  });
+
+  test('gives the proxy every address that its configuration asks for, at the ports where they listen', () => {
+    const environment = service('proxy').environment ?? {};
+    const asked = new Set([...textOf('haproxy.cfg').matchAll(/\$\{(\w+)\}/g)].map(([, name]) => name));
+    expect(Object.keys(environment).sort()).toEqual([...asked].sort());
+    for (const name of ['RELAY_1', 'RELAY_2']) {
+      const [host, port] = (environment[name] ?? '').split(':');
+      expect(compose.services).toHaveProperty(host ?? '');
+      expect(port).toBe(inImage.PORT);
+    }
+    expect(service('proxy').ports).toEqual(['8080:8080']);
+    expect(environment.PROXY_BIND).toBe(':8080');
+  });
+});
+
+test('the image keeps out what people have told in confidence, and its user may write where studies go', () => {
+  const ignored = textOf('Dockerfile.dockerignore').split('\n');
+  for (const path of ['study-data', '.cache', 'node_modules', '.git']) expect(ignored).toContain(path);
+  expect(dockerfile).toMatch(/chown node:node \/studies/);
+  expect(dockerfile.indexOf('USER node')).toBeGreaterThan(dockerfile.indexOf('chown node:node'));
+  expect(inImage.STUDIES).toBe('/studies');
+  expect(service('relay-1').volumes).toContain('studies:/studies');
+});
+
+const haproxy = installed('haproxy');
+// A program of the distribution, not ours to install: apt-get install haproxy
+test.skipIf(!haproxy)(`the proxy takes its configuration${haproxy ? '' : ' (haproxy is not installed)'}`, () => {
+  const environment = { PROXY_BIND: '127.0.0.1:8080', RELAY_1: '127.0.0.1:3333', RELAY_2: '127.0.0.1:3334' };
+  const checked = spawnSync(haproxy ?? '', ['-c', '-f', deploy('haproxy.cfg')], {
+    env: { ...process.env, ...environment },
+    encoding: 'utf8',
+  });
+  expect(checked.stderr).not.toMatch(/ALERT|WARNING/);
+  expect(checked.status).toBe(0);
+});
