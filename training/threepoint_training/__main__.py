@@ -74,6 +74,12 @@ def main(config: TrainConfig, console: Console | None = None) -> dict[str, dict[
     console = console or Console()
     torch.set_num_threads(config.threads)
     rows: dict[str, dict[str, float]] = {}
+
+    def found(row: str, errors: np.ndarray) -> None:
+        rows[row] = by_joint(errors)
+        # A run takes most of an hour: what is known is told at once, in a log too.
+        console.print(f"{row}: {rows[row]['mean']:.2f} cm")
+
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=not console.is_terminal) as progress:
         corpus = _corpus(config, progress, console)
@@ -94,26 +100,28 @@ def main(config: TrainConfig, console: Console | None = None) -> dict[str, dict[
             with _kinematics(config, corpus, training, fold, shipped, progress):
                 label = f"fold {fold}" if fold else "seen people"
                 test = train_learned.held_out(corpus, unseen, config.learned.window_seconds)
-                rows[f"IK, {label} ({', '.join(unseen)})"] = by_joint(train_learned.ik_errors_cm(test))
+                found(f"IK, {label} ({', '.join(unseen)})", train_learned.ik_errors_cm(test))
                 trained: dict[str, torch.nn.Module] = {}
                 if "paper" in config.networks:
                     frames = train_paper.frames_of(corpus, unseen, config.seed)
                     trained["paper"], followed = _train_paper(config, corpus, training, frames, label, progress)
                     curve = followed if fold == shipped else curve
-                    rows[f"paper, {label} ({', '.join(unseen)})"] = by_joint(
-                        train_paper.joint_errors_cm(train_paper.predict(trained["paper"], frames.inputs), frames.targets)
+                    found(
+                        f"paper, {label} ({', '.join(unseen)})",
+                        train_paper.joint_errors_cm(train_paper.predict(trained["paper"], frames.inputs), frames.targets),
                     )
                 if "learned" in config.networks:
                     trained["learned"] = _train_learned(config, corpus, training, label, progress)
-                    rows[f"learned, {label} ({', '.join(unseen)})"] = by_joint(
-                        train_learned.errors_cm(train_paper.predict(trained["learned"], test.inputs), test)
+                    found(
+                        f"learned, {label} ({', '.join(unseen)})",
+                        train_learned.errors_cm(train_paper.predict(trained["learned"], test.inputs), test),
                     )
             if fold == shipped:
                 networks = trained
         if config.frame_random and "paper" in config.networks:
-            rows["paper, frame-random 80/20"] = by_joint(_paper_frame_random(config, corpus, progress))
+            found("paper, frame-random 80/20", _paper_frame_random(config, corpus, progress))
         if config.frame_random and "learned" in config.networks:
-            rows["learned, frame-random 80/20"] = by_joint(_learned_frame_random(config, corpus, progress))
+            found("learned, frame-random 80/20", _learned_frame_random(config, corpus, progress))
 
         training = people.training_people(shipped, everybody) if shipped else everybody
         _export(config, corpus, training, networks, rows, curve)
