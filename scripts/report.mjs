@@ -1,5 +1,6 @@
-// npm run report -- --mocap DIR [--skeleton MAP.json] [--fp32 DIR]: measures the shipping path and renews the tables and figures of
-// docs/accuracy.md. npm run report -- --redraw: the same from what was measured last.
+// npm run report -- --mocap DIR [--skeleton MAP.json] [--models DIR] [--fp32 DIR]: measures the shipping path with the networks that
+// npm run train left without their fold's people, and renews the tables and figures of docs/accuracy.md. npm run report -- --redraw: the
+// same from what was measured last.
 import { existsSync, mkdirSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { parseArgs } from 'node:util';
@@ -7,15 +8,18 @@ import { pythonEnvironment } from './python-environment.mjs';
 import { main, root, run, SetupError } from './run-command.mjs';
 
 const usage =
-  'npm run report -- --mocap DIR [--skeleton MAP.json] [--fp32 DIR]\n' +
-  'npm run report -- --redraw\n' +
-  'DIR holds .asf and .amc or .bvh files; fp32 the networks that npm run train -- --fp32 wrote. docs/accuracy.md is renewed.';
+  'npm run report -- --mocap DIR [--skeleton MAP.json] [--models DIR] [--fp32 DIR]\n' +
+  'npm run report -- --redraw [--models DIR]\n' +
+  'DIR holds .asf and .amc or .bvh files; models the networks of a cross-validation (.cache/cross-validation, where npm run train leaves ' +
+  'them); fp32 what npm run train -- --fp32 wrote. docs/accuracy.md is renewed.';
 const sixHours = 6 * 3600;
 
 function options() {
   const text = { type: 'string' };
   try {
-    const { values } = parseArgs({ options: { mocap: text, skeleton: text, fp32: text, redraw: { type: 'boolean' } } });
+    const { values } = parseArgs({
+      options: { mocap: text, skeleton: text, models: text, fp32: text, redraw: { type: 'boolean' } },
+    });
     if (!values.mocap === !values.redraw) throw new Error('either --mocap or --redraw is needed');
     return values;
   } catch (error) {
@@ -29,10 +33,13 @@ await main(async () => {
   // Poses are motion data: they stay in the cache, only pictures of them go into docs.
   const measured = join(root, '.cache/report');
   const [evaluation, figures] = ['evaluation.json', 'figures.json'].map((name) => join(measured, name));
+  const models = given.models ? path(given.models) : join(root, '.cache/cross-validation');
+  if (!existsSync(join(models, 'learned.json')))
+    throw new SetupError(`report: there are no networks in ${models}; npm run train makes them\n${usage}`);
   if (given.mocap) {
     mkdirSync(measured, { recursive: true });
-    const evaluate = [join(root, 'scripts/evaluate.mjs'), '--mocap', path(given.mocap), '--robustness'];
-    evaluate.push('--json', evaluation, '--figures', figures);
+    const evaluate = [join(root, 'scripts/evaluate.mjs'), '--mocap', path(given.mocap), '--models', models];
+    evaluate.push('--robustness', '--json', evaluation, '--figures', figures);
     for (const name of ['skeleton', 'fp32']) if (given[name]) evaluate.push(`--${name}`, path(given[name]));
     const { code } = await run(process.execPath, evaluate, { cwd: root, limitSeconds: sixHours });
     if (code !== 0) return code;
@@ -42,7 +49,16 @@ await main(async () => {
       throw new SetupError(`report: ${file} is missing; measure first, with --mocap DIR\n${usage}`);
   }
   const python = await pythonEnvironment({ extras: ['report'] });
-  const draw = ['-m', 'threepoint_training.accuracy_page', '--evaluation', evaluation, '--figures', figures];
+  const draw = [
+    '-m',
+    'threepoint_training.accuracy_page',
+    '--evaluation',
+    evaluation,
+    '--figures',
+    figures,
+    '--models',
+    models,
+  ];
   const { code } = await run(python, draw, { cwd: root, env: { PYTHONPATH: `${root}/training` }, limitSeconds: 600 });
   return code;
 });

@@ -28,7 +28,7 @@ def config(tmp_path_factory):
     from threepoint_training import __main__ as pipeline
 
     base = pipeline.quick(pipeline.TrainConfig(mocap=None, folds=("A",), seed=SEED, out=tmp_path_factory.mktemp("models")))
-    base = replace(base, fp32_out=tmp_path_factory.mktemp("fp32"))
+    base = replace(base, cross_validation=tmp_path_factory.mktemp("folds"), fp32_out=tmp_path_factory.mktemp("fp32"))
     return replace(base, learned=replace(base.learned, steps=60, batch=256, seed=SEED), paper=replace(base.paper, seed=SEED))
 
 
@@ -91,19 +91,39 @@ def test_watching_the_network_learn_changes_no_weight(config, corpus):
 
 @pytest.mark.parametrize("name", ["paper", "learned"])
 def test_the_32_bit_network_is_the_same_one_unquantised(config, run, name):
-    stated, exact = contract(config.out, name), contract(config.fp32_out, name)
+    stated, exact = contract(config.cross_validation, name), contract(config.fp32_out, name)
     assert exact["bytes"] == (config.fp32_out / exact["file"]).stat().st_size > 2 * stated["bytes"]
     given = np.random.default_rng(1).normal(size=stated["inputs"][0]["shape"]).astype(np.float32)
     outputs = [
         onnxruntime.InferenceSession(folder / f"{name}.onnx").run(None, {stated["inputs"][0]["name"]: given})[0]
-        for folder in (config.out, config.fp32_out)
+        for folder in (config.cross_validation, config.fp32_out)
     ]
     assert 0 < np.abs(outputs[0] - outputs[1]).max() < 0.1 * np.abs(outputs[1]).max()
 
 
 def test_the_table_has_a_row_per_estimator_and_protocol(run):
-    assert [row.split(",")[0] for row in run] == ["IK", "paper", "learned", "paper"]
+    held_out = [f"{name}, fold A (005)" for name in ("IK", "paper", "learned")]
+    seen = [f"{name}, {protocol}" for protocol in ("frame-random 80/20", "everybody, who was trained on") for name in ("paper", "learned")]
+    assert list(run) == held_out + seen
     assert all(0 < values["mean"] < 60 for values in run.values())
+
+
+@pytest.mark.parametrize("name", ["paper", "learned"])
+def test_the_page_s_networks_know_everybody_and_carry_the_errors_on_people_held_out(config, run, name):
+    held_out, shipped = contract(config.cross_validation, name), contract(config.out, name)
+    everybody = set(shipped["trainedOn"]["people"])
+    assert set(held_out["trainedOn"]["people"]) < everybody
+    assert {"005"} == everybody - set(held_out["trainedOn"]["people"])
+    assert held_out["errors"].items() < shipped["errors"].items()
+    assert shipped["sha256"] != held_out["sha256"]
+
+
+def test_errors_from_other_motion_are_refused(config, run, tmp_path):
+    from threepoint_training import __main__ as pipeline
+    from threepoint_training.motion import MocapError
+
+    with pytest.raises(MocapError, match="other motion"):
+        pipeline.main(replace(config, seed=SEED + 1, stages=("everybody",), out=tmp_path))
 
 
 def test_the_loss_of_both_networks_falls(config, corpus):
@@ -176,6 +196,6 @@ def test_the_same_seed_makes_the_same_weights_and_another_seed_others(config, co
 def test_the_whole_run_is_repeatable_to_the_byte(config, run, tmp_path):
     from threepoint_training import __main__ as pipeline
 
-    pipeline.main(replace(config, out=tmp_path))
+    pipeline.main(replace(config, out=tmp_path / "models", cross_validation=tmp_path / "folds"))
     for name in ("paper", "learned"):
-        assert contract(tmp_path, name)["sha256"] == contract(config.out, name)["sha256"]
+        assert contract(tmp_path / "models", name)["sha256"] == contract(config.out, name)["sha256"]

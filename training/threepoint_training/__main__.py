@@ -32,11 +32,17 @@ VERSION = "1"
 
 @dataclass(frozen=True)
 class TrainConfig:
-    """mocap None: generated motion, for trying the pipeline out. refit_kinematics also replaces the page's proportions and IK."""
+    """mocap None: generated motion, for trying the pipeline out. refit_kinematics also replaces the page's proportions and IK.
+
+    First the folds, whose errors are what is claimed; then the networks of the page, trained on everybody, who carry those errors.
+    """
 
     mocap: Path | None
     out: Path = REPOSITORY / "public/models"
-    # The same networks with 32-bit weights go there, for the evaluation to compare with; None: they are not written.
+    # The networks of the first fold and the errors of all go there: what `npm run evaluate -- --models` measures on people held out.
+    cross_validation: Path = REPOSITORY / ".cache/cross-validation"
+    stages: tuple[str, ...] = ("cross-validation", "everybody")
+    # The networks of the first fold with 32-bit weights go there, for the evaluation to compare with; None: they are not written.
     fp32_out: Path | None = None
     cache: Path = REPOSITORY / ".cache/mocap"
     skeleton_map: Path | None = None
@@ -90,45 +96,94 @@ def main(config: TrainConfig, console: Console | None = None) -> dict[str, dict[
             if not set(people.FOLDS[fold]) & set(everybody) or not people.training_people(fold, everybody):
                 console.print(f"Fold {fold} left out: it needs {', '.join(people.FOLDS[fold])} and others besides them")
         folds = [fold for fold in config.folds if set(people.FOLDS[fold]) & set(everybody) and people.training_people(fold, everybody)]
-        shipped = folds[0] if folds else None
-
-        networks: dict[str, torch.nn.Module] = {}
-        curve: train_paper.LearningCurve | None = None
-        for fold in folds or [None]:
-            training = people.training_people(fold, everybody) if fold else everybody
-            unseen = tuple(person for person in people.FOLDS[fold] if person in everybody) if fold else everybody
-            with _kinematics(config, corpus, training, fold, shipped, progress):
-                label = f"fold {fold}" if fold else "seen people"
-                test = train_learned.held_out(corpus, unseen, config.learned.window_seconds)
-                found(f"IK, {label} ({', '.join(unseen)})", train_learned.ik_errors_cm(test))
-                trained: dict[str, torch.nn.Module] = {}
-                if "paper" in config.networks:
-                    frames = train_paper.frames_of(corpus, unseen, config.seed)
-                    trained["paper"], followed = _train_paper(config, corpus, training, frames, label, progress)
-                    curve = followed if fold == shipped else curve
-                    found(
-                        f"paper, {label} ({', '.join(unseen)})",
-                        train_paper.joint_errors_cm(train_paper.predict(trained["paper"], frames.inputs), frames.targets),
-                    )
-                if "learned" in config.networks:
-                    trained["learned"] = _train_learned(config, corpus, training, label, progress)
-                    found(
-                        f"learned, {label} ({', '.join(unseen)})",
-                        train_learned.errors_cm(train_paper.predict(trained["learned"], test.inputs), test),
-                    )
-            if fold == shipped:
-                networks = trained
-        if config.frame_random and "paper" in config.networks:
-            found("paper, frame-random 80/20", _paper_frame_random(config, corpus, progress))
-        if config.frame_random and "learned" in config.networks:
-            found("learned, frame-random 80/20", _learned_frame_random(config, corpus, progress))
-
-        training = people.training_people(shipped, everybody) if shipped else everybody
-        _export(config, corpus, training, networks, rows, curve)
-    if config.out.resolve() == (REPOSITORY / "public/models").resolve():
+        if "cross-validation" in config.stages and folds:
+            _cross_validate(config, corpus, folds, found, rows, progress)
+        if "everybody" in config.stages:
+            _train_on_everybody(config, corpus, found, rows, progress)
+    if "everybody" in config.stages and config.out.resolve() == (REPOSITORY / "public/models").resolve():
         golden.main(config.out)
     _print_table("MPJPE of the networks' own output and of IK [cm]", ("mean", *LABELS), rows, console)
     return rows
+
+
+def _cross_validate(
+    config: TrainConfig,
+    corpus: PreparedCorpus,
+    folds: list[str],
+    found: Callable[[str, np.ndarray], None],
+    rows: dict[str, dict[str, float]],
+    progress: Progress,
+) -> None:
+    """Networks that have not seen the fold's people, and the paper's own protocol; the first fold's are written."""
+    everybody = tuple(corpus.people)
+    shipped = folds[0]
+    networks: dict[str, torch.nn.Module] = {}
+    curve: train_paper.LearningCurve | None = None
+    for fold in folds:
+        training = people.training_people(fold, everybody)
+        unseen = tuple(person for person in people.FOLDS[fold] if person in everybody)
+        with _kinematics(config, corpus, training, fold, shipped, progress):
+            label = f"fold {fold}"
+            test = train_learned.held_out(corpus, unseen, config.learned.window_seconds)
+            found(f"IK, {label} ({', '.join(unseen)})", train_learned.ik_errors_cm(test))
+            trained: dict[str, torch.nn.Module] = {}
+            if "paper" in config.networks:
+                frames = train_paper.frames_of(corpus, unseen, config.seed)
+                trained["paper"], followed = _train_paper(config, corpus, training, frames, label, progress)
+                curve = followed if fold == shipped else curve
+                found(
+                    f"paper, {label} ({', '.join(unseen)})",
+                    train_paper.joint_errors_cm(train_paper.predict(trained["paper"], frames.inputs), frames.targets),
+                )
+            if "learned" in config.networks:
+                trained["learned"] = _train_learned(config, corpus, training, label, progress)
+                found(
+                    f"learned, {label} ({', '.join(unseen)})",
+                    train_learned.errors_cm(train_paper.predict(trained["learned"], test.inputs), test),
+                )
+        if fold == shipped:
+            networks = trained
+    if config.frame_random and "paper" in config.networks:
+        found("paper, frame-random 80/20", _paper_frame_random(config, corpus, progress))
+    if config.frame_random and "learned" in config.networks:
+        found("learned, frame-random 80/20", _learned_frame_random(config, corpus, progress))
+    for name, network in networks.items():
+        errors = {row: values for row, values in rows.items() if row.startswith((name, "IK"))}
+        provenance = _provenance(config, corpus, people.training_people(shipped, everybody), errors)
+        learning = asdict(curve) if name == "paper" and curve else None
+        _export(config, corpus, name, network, config.cross_validation, provenance, learning, config.fp32_out)
+
+
+def _train_on_everybody(
+    config: TrainConfig, corpus: PreparedCorpus, found: Callable[[str, np.ndarray], None], rows: dict[str, dict[str, float]], progress: Progress
+) -> None:
+    """The page's networks. Their contracts state the errors on people held out, of networks trained the same way without them."""
+    everybody = tuple(sorted(corpus.people))
+    for name in config.networks:
+        errors, curve = _cross_validated(config, corpus, name)
+        row = f"{name}, everybody, who was trained on"
+        if name == "paper":
+            frames = train_paper.frames_of(corpus, everybody, config.seed)
+            network = _fit_paper(config, frames, np.arange(len(frames.inputs)), "paper everybody", progress)
+            found(row, train_paper.joint_errors_cm(train_paper.predict(network, frames.inputs), frames.targets))
+        else:
+            network = _train_learned(config, corpus, everybody, "everybody", progress)
+            test = train_learned.held_out(corpus, everybody, config.learned.window_seconds)
+            found(row, train_learned.errors_cm(train_paper.predict(network, test.inputs), test))
+        provenance = _provenance(config, corpus, everybody, errors | {row: rows[row]})
+        _export(config, corpus, name, network, config.out, provenance, curve, None)
+
+
+def _cross_validated(config: TrainConfig, corpus: PreparedCorpus, name: str) -> tuple[dict[str, dict[str, float]], dict[str, Any] | None]:
+    """Errors and learning curve of the networks whose people were held out, from their contract; none, where nobody could be."""
+    file = config.cross_validation / f"{name}.json"
+    if not file.exists():
+        return {}, None
+    contract = json.loads(file.read_text())
+    if contract["trainedOn"]["corpusHash"] != corpus.corpus_hash:
+        raise MocapError(f"{file} was made from other motion: run both stages, or give another --cross-validation")
+    curve = contract.get("learningCurve")
+    return contract["errors"], {key: value for key, value in curve.items() if key != "unit"} if curve else None
 
 
 def _ablate(config: TrainConfig, corpus: PreparedCorpus, progress: Progress, console: Console) -> dict[str, dict[str, float]]:
@@ -260,28 +315,29 @@ def _train_learned(config: TrainConfig, corpus: PreparedCorpus, training: tuple[
     return network
 
 
-def _export(config: TrainConfig, corpus: PreparedCorpus, training: tuple[str, ...], networks: dict[str, torch.nn.Module], rows: dict[str, dict[str, float]], curve: train_paper.LearningCurve | None) -> None:
+def _provenance(config: TrainConfig, corpus: PreparedCorpus, training: tuple[str, ...], errors: dict[str, dict[str, float]]) -> export.Provenance:
     source = "generated motion" if config.mocap is None else "CMU Graphics Lab Motion Capture Database and like files"
-    examples = train_learned.held_out(corpus, training[:1], config.learned.window_seconds).inputs[::97]
-    first = corpus.clip_slice(0)
-    tracked = corpus.positions[first][:, [4, 7, 10]].astype(np.float64)
-    paper_examples = paper_input(tracked, corpus.rotations[first].astype(np.float64)).astype(np.float32)[::7]
-    for name, batch in (("paper", paper_examples), ("learned", examples)):
-        if name not in networks:
-            continue
-        provenance = export.Provenance(
-            corpus=source,
-            corpus_hash=corpus.corpus_hash,
-            people=training,
-            seed=config.seed,
-            errors={row: values for row, values in rows.items() if row.startswith((name, "IK"))},
-        )
-        export.write(
-            name, networks[name], batch, config.out, VERSION,
-            (0.0,) if name == "paper" else config.learned.window_seconds, provenance,
-            None if name == "paper" else config.correction_half_life,
-            asdict(curve) if name == "paper" and curve else None, config.fp32_out,
-        )  # fmt: skip
+    return export.Provenance(corpus=source, corpus_hash=corpus.corpus_hash, people=training, seed=config.seed, errors=errors)
+
+
+def _export(
+    config: TrainConfig,
+    corpus: PreparedCorpus,
+    name: str,
+    network: torch.nn.Module,
+    out: Path,
+    provenance: export.Provenance,
+    curve: dict[str, Any] | None,
+    fp32_out: Path | None,
+) -> None:
+    if name == "paper":
+        first = corpus.clip_slice(0)
+        tracked = corpus.positions[first][:, [4, 7, 10]].astype(np.float64)
+        examples = paper_input(tracked, corpus.rotations[first].astype(np.float64)).astype(np.float32)[::7]
+    else:
+        examples = train_learned.held_out(corpus, provenance.people[:1], config.learned.window_seconds).inputs[::97]
+    window, half_life = ((0.0,), None) if name == "paper" else (config.learned.window_seconds, config.correction_half_life)
+    export.write(name, network, examples, out, VERSION, window, provenance, half_life, curve, fp32_out)
 
 
 def _print_table(title: str, columns: Sequence[str], rows: dict[str, dict[str, float]], console: Console) -> None:
@@ -304,7 +360,9 @@ def _arguments() -> TrainConfig:
     parser.add_argument("--fp32", type=Path, help="also writes the networks with 32-bit weights there, to compare with")
     parser.add_argument("--seed", type=int, default=TrainConfig.seed)
     parser.add_argument("--threads", type=int, default=TrainConfig.threads, help="more are faster with large cores; weights differ in the last digits")
-    parser.add_argument("--folds", default=",".join(TrainConfig.folds), help="A and B; the first is shipped (default: A,B)")
+    parser.add_argument("--folds", default=",".join(TrainConfig.folds), help="who is held out in turn; the first one's networks are written (default: A,B)")
+    parser.add_argument("--cross-validation", type=Path, default=TrainConfig.cross_validation, help="networks and errors of the folds go there")
+    parser.add_argument("--stage", choices=TrainConfig.stages, help="this one alone; everybody takes the errors of an earlier cross-validation")
     parser.add_argument("--networks", default=",".join(TrainConfig.networks), help="train and replace only these (default: paper,learned)")
     parser.add_argument("--no-frame-random", action="store_true", help="leave the paper's own protocol out")
     parser.add_argument("--refit-kinematics", action="store_true", help="also fit the page's body proportions and IK anew")
@@ -314,6 +372,8 @@ def _arguments() -> TrainConfig:
     config = TrainConfig(
         mocap=given.mocap,
         out=given.out,
+        cross_validation=given.cross_validation,
+        stages=(given.stage,) if given.stage else TrainConfig.stages,
         fp32_out=given.fp32,
         skeleton_map=given.skeleton,
         folds=tuple(given.folds.split(",")),

@@ -17,7 +17,7 @@ class AccuracyPageConfig:
 
     evaluation: Path
     figures: Path
-    models: Path = REPOSITORY / "public/models"
+    models: Path
     page: Path = REPOSITORY / "docs/accuracy.md"
     images: Path = REPOSITORY / "docs/images/accuracy"
 
@@ -72,5 +72,6 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description="Tables and figures of docs/accuracy.md from an evaluation.")
     parser.add_argument("--evaluation", type=Path, required=True)
     parser.add_argument("--figures", type=Path, required=True)
+    parser.add_argument("--models", type=Path, required=True)
     given = parser.parse_args()
-    main(AccuracyPageConfig(given.evaluation, given.figures))
+    main(AccuracyPageConfig(given.evaluation, given.figures, given.models))
