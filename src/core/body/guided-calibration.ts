@@ -10,6 +10,8 @@ import { sideSign, skeletonFromCalibration } from './skeleton';
 
 /** The person stands straight, looks ahead and stretches both arms forward (or sideways) for this long. */
 export const measuringSeconds = 2;
+/** A page that draws too seldom measures for longer, up to this [s]. */
+const longestMeasuringSeconds = 6;
 
 interface Sample {
   /** Floor frame. */
@@ -39,8 +41,10 @@ export function stepGuidedCalibration(state: GuidedCalibration, frame: TrackingF
   if (state.kind !== 'measuring') return state;
   const startTime = state.startTime === null || frame.time < state.startTime ? frame.time : state.startTime;
   const samples = startTime === frame.time ? [sampleOf(frame)] : [...state.samples, sampleOf(frame)];
-  const part = (frame.time - startTime) / measuringSeconds;
-  return part < 1 ? { kind: 'measuring', part, startTime, samples } : measure(samples);
+  const seconds = frame.time - startTime;
+  const enough = samples.length >= FEWEST_SAMPLES || seconds >= longestMeasuringSeconds;
+  if (seconds >= measuringSeconds && enough) return measure(samples);
+  return { kind: 'measuring', part: Math.min(1, seconds / measuringSeconds), startTime, samples };
 }
 
 function sampleOf({ head, leftHand, rightHand }: TrackingFrame): Sample {

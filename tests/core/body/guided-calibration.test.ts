@@ -191,8 +191,17 @@ describe('the guided calibration', () => {
   test('refuses when tracking was gone for most of the time', () => {
     const still = stretched(person, 'forward');
     let state: GuidedCalibration = startGuidedCalibration;
-    for (const time of [0, 0.01, 0.02, 2.5]) state = stepGuidedCalibration(state, { ...still, time });
+    for (const time of [0, 0.01, 0.02, 6.5]) state = stepGuidedCalibration(state, { ...still, time });
     expect(refused(state)).toMatch(/Tracking was lost/);
+  });
+
+  test('takes its time where frames come three times a second', () => {
+    const still = stretched(person, 'forward');
+    let state: GuidedCalibration = startGuidedCalibration;
+    for (let frame = 0; frame <= 6; frame++) state = stepGuidedCalibration(state, { ...still, time: frame / 3 });
+    expect(state).toMatchObject({ kind: 'measuring', part: 1 });
+    state = stepGuidedCalibration(state, { ...still, time: 7 / 3 });
+    expect(state.kind).toBe('done');
   });
 
   test('the measured arms are as long as the way from the shoulder to the wrist', () => {
