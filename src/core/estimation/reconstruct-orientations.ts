@@ -199,7 +199,7 @@ export function reconstructOrientations(
   return { hipsPosition: torso.hips, localRotations };
 }
 
-const reachPasses = 20;
+const reachPasses = 32;
 const anatomicalPasses = 8;
 
 const wristOf = (estimate: Estimate, side: Side): EstimatedHand =>
