@@ -94,10 +94,12 @@ export function paintBoard(context: CanvasRenderingContext2D, standing: Standing
     context.fill();
   }
   context.fillStyle = late ? ink.accentInk : ink.text;
-  context.font = `800 160px ${signFont}`;
+  // Three figures and the unit have no more room than two.
+  const long = seconds >= 100;
+  context.font = `800 ${long ? 132 : 160}px ${signFont}`;
   context.fillText(`${seconds}`, 660, 258);
   const clock = context.measureText(`${seconds}`).width;
-  context.font = `700 60px ${signFont}`;
+  context.font = `700 ${long ? 50 : 60}px ${signFont}`;
   context.fillText('s', 672 + clock, 258);
 
   context.strokeStyle = ink.line;
