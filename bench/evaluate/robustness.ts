@@ -259,7 +259,7 @@ function conditions(rateHz: number) {
       })),
     ),
   );
-  const scaled = (key: keyof Calibration, percents: readonly number[]) =>
+  const scaled = (key: 'eyeHeight' | 'armSpan', percents: readonly number[]) =>
     percents.map((percent) => ({
       percent,
       condition: {

@@ -1,5 +1,6 @@
 import { BoxGeometry, type Camera, Group, Mesh, MeshStandardMaterial, type Object3D, PlaneGeometry } from 'three';
 import { Reflector } from 'three/examples/jsm/objects/Reflector.js';
+import { eyeLayers } from '../scene/eye-layers';
 import { thirdPersonOnlyLayer } from './avatar';
 
 export interface MirrorOptions {
@@ -45,13 +46,14 @@ export function createMirror({
     // Silvered glass takes a little of the light; #bcbcbc would take none.
     color: 0xb6b9bb,
   });
-  // In first person the own head lies on this layer alone: a mirror shows it all the same. One reflecting camera per eye, made
-  // on demand by a method that three's types leave out.
+  // In first person the own head lies on this layer alone: a mirror shows it all the same. What lies on the layers of the eyes alone
+  // it does not show. One reflecting camera per eye, a copy of it made on demand by a method that three's types leave out.
   const cameras = glass as unknown as { getReflectionCamera(camera: Camera): Camera };
   const makeCamera = cameras.getReflectionCamera;
   cameras.getReflectionCamera = (camera) => {
     const reflecting = makeCamera.call(glass, camera);
     reflecting.layers.enable(thirdPersonOnlyLayer);
+    for (const eye of eyeLayers) reflecting.layers.disable(eye);
     return reflecting;
   };
   object.add(glass);

@@ -1,6 +1,7 @@
 import { BackSide, Mesh, ShaderMaterial, SphereGeometry } from 'three';
 import { smoothstep } from '../core/math/damper';
 import type { Pose } from '../core/math/pose';
+import { showToEyesAlone } from './eye-layers';
 
 /** Seconds until the picture is whole again after a turn. */
 const openingSeconds = 0.4;
@@ -42,9 +43,8 @@ export function createVignette(): Vignette {
   object.name = 'vignette';
   object.renderOrder = 10_000;
   object.frustumCulled = false;
-  // three gives the eyes of a session these two layers, and no other camera: in a mirror it would be a black ball for a head.
-  object.layers.set(1);
-  object.layers.enable(2);
+  // In a mirror it would be a black ball for a head.
+  showToEyesAlone(object);
   object.visible = false;
   let closedAt = Number.NEGATIVE_INFINITY;
   return {

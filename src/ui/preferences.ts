@@ -3,7 +3,7 @@ import { calibrationComplaint } from '../core/body/calibration';
 import { estimatorNames } from '../core/estimation/pose-estimator';
 
 const calibration = v.pipe(
-  v.object({ eyeHeight: v.number(), armSpan: v.number() }),
+  v.object({ eyeHeight: v.number(), armSpan: v.number(), gazePitch: v.optional(v.number()) }),
   v.check((measures) => calibrationComplaint(measures) === null, 'nobody measures that'),
 );
 

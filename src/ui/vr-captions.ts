@@ -3,6 +3,7 @@ import { dampVec3 } from '../core/math/damper';
 import type { Pose } from '../core/math/pose';
 import { rotate } from '../core/math/quat';
 import { addScaled, forward, type Vec3, vec3 } from '../core/math/vec3';
+import { showToEyesAlone } from '../scene/eye-layers';
 import { createVrPanel, fillRounded, vrColors, vrFont } from './vr-panel';
 
 /** What is heard, in words, in the headset: a line low before the eyes for whoever plays without sound. */
@@ -27,9 +28,7 @@ export function createVrCaptions(): VrCaptions {
   mesh.name = 'captions';
   mesh.renderOrder = 20;
   mesh.visible = false;
-  // The eyes of a session alone: no mirror shows it.
-  mesh.layers.set(1);
-  mesh.layers.enable(2);
+  showToEyesAlone(mesh);
   const material = [mesh.material].flat()[0];
   if (material) material.depthTest = false;
   let said: { readonly text: string; until: number | null } | null = null;

@@ -15,7 +15,7 @@ from threepoint_training.skeleton import body_from_calibration
 CORPUS = generate_corpus(people=3, clips=2, frames=80, seed=6)
 PARTS = BodyParts(CORPUS, tuple(CORPUS.people))
 EXACT = TrackerConfig(*[0.0] * 6)
-PLAIN = AugmentConfig(recombined=0, lost_hand=0, arm_scale=0, eye_height_error=0, arm_span_error=0, trackers=EXACT)
+PLAIN = AugmentConfig(recombined=0, lost_hand=0, late=0, seated=0, arm_scale=0, eye_height_error=0, arm_span_error=0, trackers=EXACT)
 STILL = np.array([0.0, 0.0, 0.0, 1.0])
 
 
@@ -69,7 +69,7 @@ def test_arms_have_the_length_that_the_calibration_knows(recombined):
 
 
 def test_a_lost_hand_says_so_and_rests_beside_the_hips():
-    batch = draw_batch(PARTS, 400, replace(PLAIN, lost_hand=0.3), np.random.default_rng(4))
+    batch = draw_batch(PARTS, 400, replace(PLAIN, lost_hand=0.3, held_hand=0.0), np.random.default_rng(4))
     for mask, hand, sign in ((25, slice(7, 10), -1), (26, slice(16, 19), 1)):
         lost = batch.inputs[:, mask] == 0
         assert 0.2 < lost.mean() < 0.4
@@ -77,6 +77,31 @@ def test_a_lost_hand_says_so_and_rests_beside_the_hips():
         assert np.ptp(wrist, axis=0).max() < 0.25
         assert (wrist[:, 1] < -0.9).all()
         assert (sign * wrist[:, 0] > 0.1).all()
+
+
+def test_a_held_hand_is_where_it_was_while_the_arm_moves_on():
+    held = replace(PLAIN, lost_hand=1.0, held_hand=1.0, held_frames=10)
+    seen, frozen = (draw_batch(PARTS, 300, config, np.random.default_rng(7)) for config in (PLAIN, replace(held, held_frames=10)))
+    assert (frozen.inputs[:, 25:27] == 0).all()
+    assert (seen.inputs[:, 25:27] == 1).all()
+    moved = np.linalg.norm(frozen.inputs[:, 7:10] - seen.inputs[:, 7:10], axis=1)
+    # Ten frames of generated motion: some hands moved by centimetres, none to the hips.
+    assert 0.01 < np.median(moved) < 0.4
+
+
+def test_late_trackers_tell_of_the_frame_before():
+    on_time, late = (draw_batch(PARTS, 300, replace(PLAIN, late=part), np.random.default_rng(8)) for part in (0.0, 1.0))
+    # The newest of a late window is the same person one frame earlier: nearly the same, not the same.
+    difference = np.abs(on_time.inputs[:, :25] - late.inputs[:, :25]).max(axis=1)
+    assert 1e-4 < np.median(difference) < 0.2
+
+
+def test_seated_people_are_lower_and_shaped_the_same():
+    standing, seated = (draw_batch(PARTS, 200, replace(PLAIN, seated=part), np.random.default_rng(9)) for part in (0.0, 1.0))
+    drop = standing.inputs[:, 0] - seated.inputs[:, 0]
+    assert (drop > 0.19).all()
+    assert (drop < 0.36).all()
+    np.testing.assert_allclose(seated.targets, standing.targets, atol=1e-5)
 
 
 def test_a_batch_is_finite_and_repeatable():

@@ -7,7 +7,7 @@ import argparse
 import json
 import re
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -18,10 +18,10 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
-from . import export, fit_body, fit_ik, golden, ik, people, prepare, skeleton, train_learned, train_paper
+from . import ablation, export, fit_body, fit_ik, golden, ik, neutral_pose, people, prepare, skeleton, train_learned, train_paper
 from .features import paper_input
 from .generated_motion import generate_corpus
-from .model import PaperNetwork
+from .model import PaperNetwork, ResidualNetwork
 from .motion import MocapError
 from .prepared_corpus import PreparedCorpus
 
@@ -43,12 +43,14 @@ class TrainConfig:
     folds: tuple[str, ...] = ("A", "B")
     networks: tuple[str, ...] = ("paper", "learned")
     frame_random: bool = True
+    ablate: bool = False
     refit_kinematics: bool = False
     seed: int = 2460
     # Small layers gain little from more threads, and with one their sums keep their order on any machine.
     threads: int = 1
     paper: train_paper.TrainPaperConfig = train_paper.TrainPaperConfig()
     learned: train_learned.TrainLearnedConfig = train_learned.TrainLearnedConfig()
+    learned_frame_random: train_learned.TrainFrameRandomConfig = train_learned.TrainFrameRandomConfig()
     ik: fit_ik.FitIkConfig = fit_ik.FitIkConfig()
     # The page's damping of the correction; chosen by `npm run evaluate`: jerk against error.
     correction_half_life: float = 0.05
@@ -72,9 +74,17 @@ def main(config: TrainConfig, console: Console | None = None) -> dict[str, dict[
     console = console or Console()
     torch.set_num_threads(config.threads)
     rows: dict[str, dict[str, float]] = {}
+
+    def found(row: str, errors: np.ndarray) -> None:
+        rows[row] = by_joint(errors)
+        # A run takes most of an hour: what is known is told at once, in a log too.
+        console.print(f"{row}: {rows[row]['mean']:.2f} cm")
+
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=not console.is_terminal) as progress:
         corpus = _corpus(config, progress, console)
+        if config.ablate:
+            return _ablate(config, corpus, progress, console)
         everybody = tuple(corpus.people)
         for fold in config.folds:
             if not set(people.FOLDS[fold]) & set(everybody) or not people.training_people(fold, everybody):
@@ -90,31 +100,59 @@ def main(config: TrainConfig, console: Console | None = None) -> dict[str, dict[
             with _kinematics(config, corpus, training, fold, shipped, progress):
                 label = f"fold {fold}" if fold else "seen people"
                 test = train_learned.held_out(corpus, unseen, config.learned.window_seconds)
-                rows[f"IK, {label} ({', '.join(unseen)})"] = by_joint(train_learned.ik_errors_cm(test))
+                found(f"IK, {label} ({', '.join(unseen)})", train_learned.ik_errors_cm(test))
                 trained: dict[str, torch.nn.Module] = {}
                 if "paper" in config.networks:
                     frames = train_paper.frames_of(corpus, unseen, config.seed)
                     trained["paper"], followed = _train_paper(config, corpus, training, frames, label, progress)
                     curve = followed if fold == shipped else curve
-                    rows[f"paper, {label} ({', '.join(unseen)})"] = by_joint(
-                        train_paper.joint_errors_cm(train_paper.predict(trained["paper"], frames.inputs), frames.targets)
+                    found(
+                        f"paper, {label} ({', '.join(unseen)})",
+                        train_paper.joint_errors_cm(train_paper.predict(trained["paper"], frames.inputs), frames.targets),
                     )
                 if "learned" in config.networks:
                     trained["learned"] = _train_learned(config, corpus, training, label, progress)
-                    rows[f"learned, {label} ({', '.join(unseen)})"] = by_joint(
-                        train_learned.errors_cm(train_paper.predict(trained["learned"], test.inputs), test)
+                    found(
+                        f"learned, {label} ({', '.join(unseen)})",
+                        train_learned.errors_cm(train_paper.predict(trained["learned"], test.inputs), test),
                     )
             if fold == shipped:
                 networks = trained
         if config.frame_random and "paper" in config.networks:
-            rows["paper, frame-random 80/20"] = by_joint(_paper_frame_random(config, corpus, progress))
+            found("paper, frame-random 80/20", _paper_frame_random(config, corpus, progress))
+        if config.frame_random and "learned" in config.networks:
+            found("learned, frame-random 80/20", _learned_frame_random(config, corpus, progress))
 
         training = people.training_people(shipped, everybody) if shipped else everybody
         _export(config, corpus, training, networks, rows, curve)
     if config.out.resolve() == (REPOSITORY / "public/models").resolve():
         golden.main(config.out)
-    _print_table(rows, console)
+    _print_table("MPJPE of the networks' own output and of IK [cm]", ("mean", *LABELS), rows, console)
     return rows
+
+
+def _ablate(config: TrainConfig, corpus: PreparedCorpus, progress: Progress, console: Console) -> dict[str, dict[str, float]]:
+    task = progress.add_task("ablation", total=len(ablation.FOLDS) * len(ablation.variants(config.learned)))
+    networks: dict[tuple[str, ...], ResidualNetwork] = {}
+    rows = ablation.run(
+        corpus, config.learned, ablation.AblationConfig(seed=config.seed),
+        lambda name: progress.update(task, advance=1, description=name), networks.__setitem__,
+    )  # fmt: skip
+    progress.remove_task(task)
+    shown = _print_cells("MPJPE without each part of the recipe, people held out [cm]", ablation.CONDITIONS, rows, console)
+    told = neutral_pose.run(corpus, config.learned, networks)
+    _print_cells("MPJPE with what a neutral pose tells of its person [cm]", neutral_pose.COLUMNS, told, console)
+    # Last: a page without a place for them costs no hour of training.
+    ablation.write(rows)
+    neutral_pose.write(told)
+    return shown
+
+
+def _print_cells(title: str, columns: Iterable[str], rows: list[list[str]], console: Console) -> dict[str, dict[str, float]]:
+    head = list(columns)
+    shown = {name: dict(zip(head, map(float, values), strict=True)) for name, *values in rows}
+    _print_table(title, head, shown, console)
+    return shown
 
 
 def _corpus(config: TrainConfig, progress: Progress, console: Console) -> PreparedCorpus:
@@ -186,11 +224,28 @@ def _fit_paper(
     return network
 
 
+def _frame_random(config: TrainConfig, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """The paper's protocol: 20 % of all frames, drawn at random, are the test; their neighbours train. Frames of both."""
+    test = np.sort(np.random.default_rng(config.seed).choice(count, count // 5, replace=False))
+    return np.setdiff1d(np.arange(count), test), test
+
+
+def _learned_frame_random(config: TrainConfig, corpus: PreparedCorpus, progress: Progress) -> np.ndarray:
+    frames = train_learned.held_out(corpus, tuple(corpus.people), config.learned.window_seconds)
+    chosen, test = _frame_random(config, len(frames.inputs))
+    task = progress.add_task("learned frame-random", total=config.learned_frame_random.steps)
+    network = train_learned.train_frame_random(
+        frames, chosen, config.learned_frame_random,
+        lambda step, loss: progress.update(task, completed=step + 1, description=f"learned frame-random {loss:.3f}"),
+    )  # fmt: skip
+    progress.remove_task(task)
+    tested = frames.subset(test)
+    return train_learned.errors_cm(train_paper.predict(network, tested.inputs), tested)
+
+
 def _paper_frame_random(config: TrainConfig, corpus: PreparedCorpus, progress: Progress) -> np.ndarray:
-    """The paper's protocol: 20 % of all frames, drawn at random, are the test; their neighbours train."""
     frames = train_paper.frames_of(corpus, tuple(corpus.people), config.seed)
-    test = np.sort(np.random.default_rng(config.seed).choice(len(frames.inputs), len(frames.inputs) // 5, replace=False))
-    chosen = np.setdiff1d(np.arange(len(frames.inputs)), test)
+    chosen, test = _frame_random(config, len(frames.inputs))
     network = _fit_paper(config, frames, chosen, "paper frame-random", progress)
     return train_paper.joint_errors_cm(train_paper.predict(network, frames.inputs[test]), frames.targets[test])
 
@@ -229,13 +284,13 @@ def _export(config: TrainConfig, corpus: PreparedCorpus, training: tuple[str, ..
         )  # fmt: skip
 
 
-def _print_table(rows: dict[str, dict[str, float]], console: Console) -> None:
-    table = Table(title="MPJPE of the networks' own output and of IK [cm]")
+def _print_table(title: str, columns: Sequence[str], rows: dict[str, dict[str, float]], console: Console) -> None:
+    table = Table(title=title)
     table.add_column("")
-    for label in ("mean", *LABELS):
+    for label in columns:
         table.add_column(label, justify="right")
     for row, values in rows.items():
-        table.add_row(row, *(f"{values[label]:.2f}" for label in ("mean", *LABELS)))
+        table.add_row(row, *(f"{values[label]:.2f}" for label in columns))
     console.print(table)
 
 
@@ -253,6 +308,7 @@ def _arguments() -> TrainConfig:
     parser.add_argument("--networks", default=",".join(TrainConfig.networks), help="train and replace only these (default: paper,learned)")
     parser.add_argument("--no-frame-random", action="store_true", help="leave the paper's own protocol out")
     parser.add_argument("--refit-kinematics", action="store_true", help="also fit the page's body proportions and IK anew")
+    parser.add_argument("--ablate", action="store_true", help="instead of all that: the recipe without each of its parts, for docs/training.md")
     parser.add_argument("--quick", action="store_true", help="a twentieth of the training: does it run?")
     given = parser.parse_args()
     config = TrainConfig(
@@ -263,6 +319,7 @@ def _arguments() -> TrainConfig:
         folds=tuple(given.folds.split(",")),
         networks=tuple(given.networks.split(",")),
         frame_random=not given.no_frame_random,
+        ablate=given.ablate,
         refit_kinematics=given.refit_kinematics,
         seed=given.seed,
         threads=given.threads,
@@ -283,6 +340,7 @@ def quick(config: TrainConfig) -> TrainConfig:
         config,
         paper=replace(config.paper, epochs=1, batch=1024),
         learned=replace(config.learned, steps=80, batch=512),
+        learned_frame_random=replace(config.learned_frame_random, width=64, steps=200, batch=512),
         ik=replace(config.ik, iterations=2, frames_per_person=200),
     )
 

@@ -30,10 +30,17 @@ class AugmentConfig:
     window_frames: tuple[int, ...] = (0, 6, 15)
     recombined: float = 0.8
     lost_hand: float = 0.06
+    # Of the lost hands: still held where they were seen last, up to this long ago [frames]; the others rest already.
+    held_hand: float = 0.3
+    held_frames: int = 12
+    # Trackers that tell of the frame before.
+    late: float = 0.3
+    # People on a chair that their calibration knows nothing of, lower by 0.2 to 0.35 of the eye height.
+    seated: float = 0.04
     arm_scale: float = 0.03
-    eye_height_error: float = 0.012
-    arm_span_error: float = 0.015
-    trackers: TrackerConfig = TrackerConfig(headset_offset=0.012, wrist_offset=0.009)
+    eye_height_error: float = 0.025
+    arm_span_error: float = 0.02
+    trackers: TrackerConfig = TrackerConfig(headset_offset=0.025, wrist_offset=0.02)
 
 
 @dataclass(frozen=True)
@@ -118,34 +125,51 @@ def draw_batch(parts: BodyParts, count: int, config: AugmentConfig, random: np.r
     )
     mirrored = random.uniform(size=count) < 0.5
     lost = random.uniform(size=(count, 2)) < config.lost_hand
+    held = lost & (random.uniform(size=(count, 2)) < config.held_hand)
+    held_for = np.where(held, random.integers(1, config.held_frames + 1, size=(count, 2)), 0)
+    # Masks are those of the body as it is seen, arms those of the body before it is mirrored.
+    held_for = np.where(mirrored[:, None], held_for[:, ::-1], held_for)
+    late = (random.uniform(size=count) < config.late).astype(np.int64)
+    drop = np.where(random.uniform(size=count) < config.seated, random.uniform(0.2, 0.35, count), 0.0) * sizes[:, 0]
     calibrated = body_from_calibration(
         sizes[:, 0] * (1 + random.normal(size=count) * config.eye_height_error),
         sizes[:, 1] * (1 + random.normal(size=count) * config.arm_span_error),
     )
+    def torso_at(ago: NDArray[np.int64]) -> tuple[Array, NDArray[np.int64]]:
+        """Hips, chest, neck and head that many frames before the newest, and the frames."""
+        frames = np.maximum(newest - ago, parts.clip_start[newest])
+        return parts.torso[frames] - np.array([0.0, 1.0, 0.0]) * drop[:, None, None], frames
+
+    def arm_at(side: int, ago: NDArray[np.int64]) -> tuple[Array, Array]:
+        """Shoulder, elbow and wrist of the body, and the wrist's turn, that many frames before the newest."""
+        torso, frames = torso_at(ago)
+        chest = parts.chest[frames]
+        source = np.maximum(arm_frames[side] - ago, parts.clip_start[arm_frames[side]])
+        which = arm_sides[side]
+        arm = np.where(which[:, None, None] == 0, parts.arms[0][source], parts.arms[1][source])
+        wrist = np.where(which[:, None] == 0, parts.wrist_turns[0][source], parts.wrist_turns[1][source])
+        length = np.where(which == 0, lengths[0][source], lengths[1][source])
+        # The shoulder scales with the body, the arm with its length.
+        shoulder = arm[:, :1] * (sizes[:, :1] / parts.sizes[source, :1])[:, None]
+        arm = shoulder + (arm - arm[:, :1]) * (wanted / length)[:, None, None]
+        if side == 0:
+            arm, wrist = arm * _MIRROR, wrist * _MIRROR_TURN
+        neck = torso[:, TORSO.index("neck")]
+        arm = neck[:, None] + quaternion.rotate(np.broadcast_to(chest[:, None], (*arm.shape[:-1], 4)), arm)
+        return arm, quaternion.multiply(chest, wrist)
+
     columns = []
     targets = np.empty(0)
     for age in config.window_frames:
-        frames = np.maximum(newest - age, parts.clip_start[newest])
-        chest = parts.chest[frames]
-        torso = parts.torso[frames]
-        neck = torso[:, TORSO.index("neck")]
-        arms, turns = [], []
-        for side in (0, 1):
-            source = np.maximum(arm_frames[side] - age, parts.clip_start[arm_frames[side]])
-            which = arm_sides[side]
-            arm = np.where(which[:, None, None] == 0, parts.arms[0][source], parts.arms[1][source])
-            wrist = np.where(which[:, None] == 0, parts.wrist_turns[0][source], parts.wrist_turns[1][source])
-            length = np.where(which == 0, lengths[0][source], lengths[1][source])
-            # The shoulder scales with the body, the arm with its length.
-            shoulder = arm[:, :1] * (sizes[:, :1] / parts.sizes[source, :1])[:, None]
-            arm = shoulder + (arm - arm[:, :1]) * (wanted / length)[:, None, None]
-            if side == 0:
-                arm, wrist = arm * _MIRROR, wrist * _MIRROR_TURN
-            arms.append(neck[:, None] + quaternion.rotate(np.broadcast_to(chest[:, None], (*arm.shape[:-1], 4)), arm))
-            turns.append(quaternion.multiply(chest, wrist))
+        now = np.full(count, age)
+        torso, _ = torso_at(now)
+        arms = [arm_at(side, now)[0] for side in (0, 1)]
         truth = np.stack([arms[0][:, 1], arms[1][:, 1], arms[0][:, 0], arms[1][:, 0], torso[:, 1], torso[:, 0]], axis=1)
-        anchors = np.stack([torso[:, 3], arms[0][:, 2], arms[1][:, 2]], axis=1)
-        rotations = np.stack([parts.head_turn[frames], *turns], axis=1)
+        # What trackers tell may be older than what is true.
+        torso, frames = torso_at(now + late)
+        hands = [arm_at(side, now + late + held_for[:, side]) for side in (0, 1)]
+        anchors = np.stack([torso[:, 3], hands[0][0][:, 2], hands[1][0][:, 2]], axis=1)
+        rotations = np.stack([parts.head_turn[frames], hands[0][1], hands[1][1]], axis=1)
 
         flip = mirrored[:, None, None]
         anchors = np.where(flip, anchors[:, [0, 2, 1]] * _MIRROR, anchors)
@@ -155,7 +179,7 @@ def draw_batch(parts: BodyParts, count: int, config: AugmentConfig, random: np.r
         positions = anchors + quaternion.rotate(rotations, offsets)
         positions = positions + random.normal(size=positions.shape) * config.trackers.position_noise
         rotations = quaternion.multiply(rotations, np.concatenate([head_jitter[:, None], turn_jitter], axis=1))
-        positions, rotations = rest_lost_hands(positions, rotations, lost, calibrated.eye_height[:, 0], calibrated.arm[:, 0])
+        positions, rotations = rest_lost_hands(positions, rotations, lost & ~held, calibrated.eye_height[:, 0], calibrated.arm[:, 0])
         vector, _ = frame_features(positions, rotations, calibrated, ~lost)
         columns.append(vector)
         if age == 0:

@@ -1,14 +1,15 @@
 """Trains our network: the residual of the IK solution on recombined bodies; small, averaged, stopped early."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from .augment import AugmentConfig, BodyParts, draw_batch
-from .features import IK_JOINTS, frame_features, target, windowed
+from . import quaternion
+from .augment import AugmentConfig, BodyParts, draw_batch, rest_lost_hands
+from .features import FEATURES, IK_JOINTS, frame_features, target, windowed
 from .model import ResidualNetwork
 from .prepared_corpus import PreparedCorpus
 from .simulate_trackers import TrackerConfig, draw_wearer, simulate
@@ -48,26 +49,68 @@ class HeldOut:
     people: NDArray[np.str_]
     clips: NDArray[np.int64]
 
+    def subset(self, frames: NDArray[np.int64]) -> "HeldOut":
+        """These frames alone."""
+        return HeldOut(*(getattr(self, each.name)[frames] for each in fields(self)))
 
-def held_out(corpus: PreparedCorpus, people: tuple[str, ...], window_seconds: tuple[float, ...], seed: int = 1) -> HeldOut:
+
+@dataclass(frozen=True)
+class Condition:
+    """How people held out are tracked, where that differs from a well calibrated headset."""
+
+    # Headset and wrists sit this far from where they are believed to be [m], as worn all the time.
+    offset: float = 0.0
+    # The calibrated eye height over the true one.
+    eye_height: float = 1.0
+    # One hand of each clip is never seen and rests beside the hips.
+    lost_hand: bool = False
+    # Trackers tell of so many frames before.
+    late: int = 0
+    # Everything is lower by this part of the eye height: the calibration knows people who stand.
+    seated: float = 0.0
+    # The headset looks down by so much when its wearer looks straight ahead [rad].
+    tilt: float = 0.0
+
+
+def held_out(
+    corpus: PreparedCorpus, people: tuple[str, ...], window_seconds: tuple[float, ...], seed: int = 1, condition: Condition = Condition()
+) -> HeldOut:
     """All frames of these people with the calibration they would have."""
     trackers = TrackerConfig()
+    down = np.array([0.0, 1.0, 0.0])
+    tilt = quaternion.from_rotation_vector(np.array([-condition.tilt, 0.0, 0.0]))
     rows = []
     for number, name in enumerate(people):
         person = corpus.people[name]
-        wearer = draw_wearer(trackers, np.random.default_rng([seed, number]))
-        body = body_from_calibration(np.array(person.eye_height), np.array(person.arm_span))
+        worn = draw_wearer(trackers, np.random.default_rng([seed, number]))
+        aside = condition.offset * np.array([0.0, 0.0, 1.0])
+        wearer = replace(
+            worn,
+            eyes_in_head=worn.eyes_in_head + aside,
+            wrist_offsets=worn.wrist_offsets + np.roll(aside, 2),
+            head_turn=quaternion.multiply(worn.head_turn, tilt),
+        )
+        eye_height = person.eye_height * condition.eye_height
+        body = body_from_calibration(np.array(eye_height), np.array(person.arm_span))
         for clip in corpus.clips_of({name}):
             frames = corpus.clip_slice(clip)
             random = np.random.default_rng([seed, 1, clip])
             positions, rotations = simulate(corpus.positions[frames], corpus.rotations[frames], wearer, trackers, random)
-            vector, _ = frame_features(positions, rotations, body)
-            count = len(vector)
+            truth = corpus.truth(frames).astype(np.float64)
+            count = len(truth)
+            told = np.maximum(np.arange(count) - condition.late, 0)
+            drop = condition.seated * person.eye_height * down
+            positions, rotations, truth = positions[told] - drop, rotations[told], truth - drop
+            lost = np.zeros((count, 2), bool)
+            if condition.lost_hand:
+                lost[:, clip % 2] = True
+                positions, rotations = rest_lost_hands(positions, rotations, lost, *(np.full(count, size.item()) for size in (body.eye_height, body.arm)))
+            vector, _ = frame_features(positions, rotations, body, ~lost)
             rows.append(
                 (
                     windowed(vector, np.arange(count) / corpus.rate_hz, window_seconds).astype(np.float32),
-                    target(corpus.truth(frames).astype(np.float64), positions, rotations, body).astype(np.float32),
-                    np.full(count, person.eye_height),
+                    target(truth, positions, rotations, body).astype(np.float32),
+                    np.full(count, eye_height),
                     np.full(count, name),
                     np.full(count, clip),
                 )
@@ -111,9 +154,7 @@ def train(
     for step in range(config.steps):
         current = draw_batch(parts, config.batch, config.augment, random)
         x, y = torch.from_numpy(current.inputs), torch.from_numpy(current.targets)
-        difference = ((network(x) - y) / network.output_scale).view(-1, 6, 3)
-        # Distances, not squares: what MPJPE counts, and steadier against climbers and tumblers.
-        loss = difference.norm(dim=-1).mean()
+        loss = _distance(network, x, y)
         optimiser.zero_grad()
         loss.backward()
         torch.nn.utils.clip_grad_norm_(network.parameters(), 1.0)
@@ -127,3 +168,43 @@ def train(
     averaged.output_scale *= config.correction_share
     averaged.output_mean *= config.correction_share
     return averaged
+
+
+@dataclass(frozen=True)
+class TrainFrameRandomConfig:
+    """Our network where it may know the neighbours of every test frame, as the paper's did: wider, trained longer, nothing varied."""
+
+    width: int = 512
+    hidden_layers: int = 3
+    steps: int = 7_000
+    batch: int = 1024
+    learning_rate: float = 2e-3
+    weight_decay: float = 1e-4
+    seed: int = 2460
+
+
+def train_frame_random(
+    frames: HeldOut, chosen: NDArray[np.int64], config: TrainFrameRandomConfig, report: Callable[[int, float], None] = lambda *_: None
+) -> ResidualNetwork:
+    """Trains on the chosen frames as they are; report(step, loss)."""
+    torch.manual_seed(config.seed)
+    x, y = torch.from_numpy(frames.inputs[chosen]), torch.from_numpy(frames.targets[chosen])
+    network = ResidualNetwork(x.shape[1] // FEATURES, config.width, 0.0, config.hidden_layers)
+    network.normalise(x, y - x[:, IK_JOINTS])
+    optimiser = torch.optim.AdamW(network.parameters(), lr=config.learning_rate, weight_decay=config.weight_decay)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, config.learning_rate, total_steps=config.steps, pct_start=0.1)
+    network.train()
+    for step in range(config.steps):
+        batch = torch.randint(len(x), (config.batch,))
+        loss = _distance(network, x[batch], y[batch])
+        optimiser.zero_grad()
+        loss.backward()
+        optimiser.step()
+        schedule.step()
+        report(step, float(loss.detach()))
+    return network.eval()
+
+
+def _distance(network: ResidualNetwork, x: torch.Tensor, y: torch.Tensor) -> torch.Tensor:
+    """Distances, not squares: what MPJPE counts, and steadier against climbers and tumblers."""
+    return ((network(x) - y) / network.output_scale).view(-1, 6, 3).norm(dim=-1).mean()

@@ -4,7 +4,15 @@ export interface Calibration {
   readonly eyeHeight: number;
   /** Distance [m] from wrist to wrist, arms stretched out sideways. */
   readonly armSpan: number;
+  /**
+   * How far up [rad] the headset points when its wearer looks straight ahead: it sits tilted on nearly everybody. Absent: not
+   * measured, and taken for level.
+   */
+  readonly gazePitch?: number | undefined;
 }
+
+/** The steepest tilt of a headset that is believed [rad]; whoever seems to wear it steeper was not looking ahead. */
+export const steepestGazePitch = Math.PI / 12;
 
 // Height of the eyes above the floor as a share of stature: Drillis & Contini, Body Segment Parameters (1966); ANSUR II agrees
 // within 1 %.

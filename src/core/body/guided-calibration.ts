@@ -1,9 +1,10 @@
+import { clamp } from '../math/damper';
 import { transformPoint } from '../math/pose';
 import { rotate } from '../math/quat';
 import { add, addScaled, distance, forward, length, subtract, type Vec3, vec3 } from '../math/vec3';
 import { headingFromFloor } from '../tracking/heading';
 import type { TrackedPose, TrackingFrame } from '../tracking/tracking-frame';
-import { type Calibration, calibrationComplaint } from './calibration';
+import { type Calibration, calibrationComplaint, steepestGazePitch } from './calibration';
 import type { Side } from './joints';
 import { sideSign, skeletonFromCalibration } from './skeleton';
 
@@ -77,6 +78,9 @@ const UNEVEN_ARMS = 0.1;
 // inverse kinematics does there.
 const PROTRACTION = 0.018;
 
+// Whoever reads a sheet beside them does not look where the arms point: then the gaze says nothing about the headset's tilt.
+const LOOKING_AHEAD = Math.PI / 18;
+
 const failed = (reason: string): GuidedCalibration => ({ kind: 'failed', reason });
 
 function measure(samples: readonly Sample[]): GuidedCalibration {
@@ -86,7 +90,8 @@ function measure(samples: readonly Sample[]): GuidedCalibration {
   if (heads.some((position) => distance(position, head) > HEAD_SWAY)) {
     return failed('Your head moved. Stand still for two seconds.');
   }
-  if (Math.abs(robustMean(samples.map(({ gaze }) => gaze))) > STEEPEST_GAZE) {
+  const gaze = robustMean(samples.map((sample) => sample.gaze));
+  if (Math.abs(gaze) > STEEPEST_GAZE) {
     return failed('You looked up or down. Look straight ahead.');
   }
   const wrists: { side: Side; position: Vec3 }[] = [];
@@ -134,7 +139,12 @@ function measure(samples: readonly Sample[]): GuidedCalibration {
   }
   const arm = lengths.reduce((sum, l) => sum + l, 0) / lengths.length;
   const shoulder = restShoulder('right', eyeHeight);
-  const calibration = { eyeHeight, armSpan: 2 * (arm + shoulder.x) };
+  const gazePitch = looksAhead(wrists.map(({ position }) => position)) ? Math.asin(gaze) : null;
+  const calibration: Calibration = {
+    eyeHeight,
+    armSpan: 2 * (arm + shoulder.x),
+    ...(gazePitch !== null && { gazePitch: clamp(gazePitch, -steepestGazePitch, steepestGazePitch) }),
+  };
   const complaint = calibrationComplaint(calibration);
   return complaint === null
     ? { kind: 'done', calibration }
@@ -154,6 +164,18 @@ function reachOf(side: Side, wrist: Vec3, headHeight: number, eyeHeight: number)
   if (sigma * arm.x > 0.8 * reach) return reach;
   if (-arm.z < 0.7 * reach) return null;
   return length(subtract(wrist, addScaled(shoulder, forward, PROTRACTION * eyeHeight)));
+}
+
+/** Whether both arms point where the head does; wrists in the heading frame. Arms stretched sideways do as well. */
+function looksAhead(wrists: readonly Vec3[]): boolean {
+  const [first, second] = wrists;
+  if (!first || !second) return false;
+  const between = subtract(second, first);
+  const middle = add(first, second);
+  // Stretched forward, both hands are ahead; sideways, the line between them is square to the gaze.
+  const forwards = Math.abs(Math.atan2(middle.x, -middle.z)) < LOOKING_AHEAD;
+  const sideways = Math.abs(Math.atan2(between.z, Math.abs(between.x))) < LOOKING_AHEAD;
+  return length(between) > length(middle) ? sideways : forwards && sideways;
 }
 
 /** The shoulder joint of a person who stands straight, heading frame; what the span of the arms is measured from. */

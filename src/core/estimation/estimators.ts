@@ -2,6 +2,7 @@ import type { Calibration } from '../body/calibration';
 import { createHandsOnly } from './hands-only';
 import { createIk } from './ik';
 import { createLearned } from './learned';
+import { withLevelGaze } from './level-gaze';
 import { createPaper } from './paper';
 import type { EstimatorName, PoseEstimator } from './pose-estimator';
 import type { PoseRegressor } from './pose-regressor';
@@ -16,6 +17,10 @@ export function createEstimator(
   calibration: Calibration,
   regressor: PoseRegressor | null = null,
 ): PoseEstimator {
+  return withLevelGaze(ofName(name, calibration, regressor), calibration);
+}
+
+function ofName(name: EstimatorName, calibration: Calibration, regressor: PoseRegressor | null): PoseEstimator {
   if (needsRegressor(name)) {
     if (regressor?.contract.name !== name) throw new Error(`estimator “${name}” needs the regressor of the same name`);
     return name === 'paper' ? createPaper(calibration, regressor) : createLearned(calibration, regressor);

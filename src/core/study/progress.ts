@@ -219,8 +219,8 @@ export function advance(schedule: Schedule, progress: Progress, event: ProgressE
       });
     case 'calibrated': {
       if (step.kind !== 'calibration' || !place) return outOfPlace();
-      const { eyeHeight, armSpan } = event.calibration;
-      const body = { place, eyeHeight, armSpan };
+      const { eyeHeight, armSpan, gazePitch } = event.calibration;
+      const body = { place, eyeHeight, armSpan, ...(gazePitch !== undefined && { gazePitch }) };
       return moveOn(progress, [{ ...base, kind: 'calibration', id: stepRecordId('calibration'), body }]);
     }
     case 'start':

@@ -54,6 +54,8 @@ const bodies = {
     place: placeSchema,
     eyeHeight: numberBetween(0.3, 2.5),
     armSpan: numberBetween(0.3, 2.5),
+    /** Absent: not measured. */
+    gazePitch: v.optional(numberBetween(-0.5, 0.5)),
   }),
   trial: v.object({
     place: placeSchema,

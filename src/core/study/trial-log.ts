@@ -68,7 +68,13 @@ const outcomeSchema = v.object({
     input: v.picklist(['controllers', 'hands', 'mixed', 'emulated', 'simulated']),
   }),
   /** Of the body; null: none was made. */
-  calibration: v.nullable(v.object({ eyeHeight: numberBetween(0.3, 2.5), armSpan: numberBetween(0.3, 2.5) })),
+  calibration: v.nullable(
+    v.object({
+      eyeHeight: numberBetween(0.3, 2.5),
+      armSpan: numberBetween(0.3, 2.5),
+      gazePitch: v.optional(numberBetween(-0.5, 0.5)),
+    }),
+  ),
   tracking: v.object({ head: lossSchema, leftHand: lossSchema, rightHand: lossSchema }),
   /** Aids that were on: aim assistance, seated play, one hand. */
   assists: v.pipe(v.array(text(60)), v.maxLength(16, 'expected at most sixteen assists')),

@@ -86,7 +86,8 @@ const isFiniteNumber = (value: unknown): value is number => typeof value === 'nu
 function parseCalibration(value: unknown): Calibration | null {
   if (value === null || value === undefined) return null;
   if (isRecord(value) && isFiniteNumber(value.eyeHeight) && isFiniteNumber(value.armSpan)) {
-    if (value.eyeHeight > 0 && value.armSpan > 0) return { eyeHeight: value.eyeHeight, armSpan: value.armSpan };
+    const { eyeHeight, armSpan, gazePitch } = value;
+    if (eyeHeight > 0 && armSpan > 0) return { eyeHeight, armSpan, ...(isFiniteNumber(gazePitch) && { gazePitch }) };
   }
   throw new Error('The recording’s calibration is neither null nor an eye height and an arm span in metres.');
 }

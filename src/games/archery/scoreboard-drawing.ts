@@ -1,5 +1,6 @@
 import type { ArcheryState } from '../../core/games/archery/archery-state';
 import { ink, paintCard, paintGround, signFont } from '../lettering';
+import { paintScoreHeading } from '../score-heading';
 import { paintButton } from '../sheet';
 
 /** What the board says; equal boards are drawn once. */
@@ -96,39 +97,8 @@ function pip(context: CanvasRenderingContext2D, x: number, y: number, height: nu
 export function paintBoard(context: CanvasRenderingContext2D, text: BoardText): void {
   const { width, height } = boardSize;
   paintGround(context, width, height);
-  context.textBaseline = 'alphabetic';
-  context.textAlign = 'left';
-  context.fillStyle = ink.soft;
-  context.font = `700 54px ${signFont}`;
-  context.fillText('SCORE', 64, 96);
-  context.fillText('TIME', 664, 96);
-  context.fillStyle = ink.text;
-  context.font = `800 220px ${signFont}`;
-  context.fillText(String(text.score), 54, 282);
-  const wide = context.measureText(String(text.score)).width;
-  context.fillStyle = ink.soft;
-  context.font = `700 84px ${signFont}`;
-  context.fillText(`/ ${text.maximum}`, 78 + wide, 282);
-  const late = text.phase === 'running' && text.seconds <= 10;
-  if (late) {
-    context.fillStyle = ink.warning;
-    context.beginPath();
-    context.roundRect(640, 116, 330, 190, 22);
-    context.fill();
-  }
-  context.fillStyle = late ? ink.accentInk : ink.text;
-  context.font = `800 170px ${signFont}`;
-  context.fillText(`${text.seconds}`, 660, 270);
-  const clock = context.measureText(`${text.seconds}`).width;
-  context.font = `700 64px ${signFont}`;
-  context.fillText('s', 672 + clock, 270);
-
-  context.strokeStyle = ink.line;
-  context.lineWidth = 3;
-  context.beginPath();
-  context.moveTo(64, 344);
-  context.lineTo(width - 64, 344);
-  context.stroke();
+  const { score, maximum, seconds, phase } = text;
+  paintScoreHeading(context, { score, of: maximum, seconds, running: phase === 'running' });
 
   context.fillStyle = ink.soft;
   context.font = `700 54px ${signFont}`;

@@ -1,6 +1,7 @@
 import type { BallEvent, BallState } from '../../core/games/ball/ball-state';
 import { ballsLeft } from '../../core/games/ball/rules';
 import { ink, paintCard, paintGround, signFont } from '../lettering';
+import { paintScoreHeading } from '../score-heading';
 import { paintButton, type SheetButton } from '../sheet';
 import { roleTexts, seatLooks } from './court-plan';
 
@@ -66,58 +67,29 @@ export function waitingLine({ state, people }: Standing): string {
   return waiting === 1 ? 'Waiting for one player' : `Waiting for ${waiting} players`;
 }
 
-export const boardSize = { width: 1024, height: 560 } as const;
+export const boardSize = { width: 1024, height: 588 } as const;
 
 /** Score, clock, balls left and the last sentence. */
 export function paintBoard(context: CanvasRenderingContext2D, standing: Standing, line: string): void {
   const { state, seconds } = standing;
   const { width, height } = boardSize;
   paintGround(context, width, height);
-  context.textBaseline = 'alphabetic';
-  context.textAlign = 'left';
-  context.fillStyle = ink.soft;
-  context.font = `700 54px ${signFont}`;
-  context.fillText('SCORE', 64, 92);
-  context.fillText('TIME', 664, 92);
-  context.fillStyle = ink.text;
-  context.font = `800 200px ${signFont}`;
-  context.fillText(String(state.score), 54, 262);
-  const wide = context.measureText(String(state.score)).width;
-  context.fillStyle = ink.soft;
-  context.font = `700 80px ${signFont}`;
-  context.fillText(`/ ${state.options.balls}`, 78 + wide, 262);
-  const late = state.phase === 'running' && seconds <= 10;
-  if (late) {
-    context.fillStyle = ink.warning;
-    context.beginPath();
-    context.roundRect(640, 112, 330, 176, 22);
-    context.fill();
-  }
-  context.fillStyle = late ? ink.accentInk : ink.text;
-  // Three figures and the unit have no more room than two.
-  const long = seconds >= 100;
-  context.font = `800 ${long ? 132 : 160}px ${signFont}`;
-  context.fillText(`${seconds}`, 660, 258);
-  const clock = context.measureText(`${seconds}`).width;
-  context.font = `700 ${long ? 50 : 60}px ${signFont}`;
-  context.fillText('s', 672 + clock, 258);
-
-  context.strokeStyle = ink.line;
-  context.lineWidth = 3;
-  context.beginPath();
-  context.moveTo(64, 316);
-  context.lineTo(width - 64, 316);
-  context.stroke();
+  paintScoreHeading(context, {
+    score: state.score,
+    of: state.options.balls,
+    seconds,
+    running: state.phase === 'running',
+  });
 
   const left = ballsLeft(state);
   context.fillStyle = ink.soft;
   context.font = `700 54px ${signFont}`;
-  context.fillText('BALLS', 64, 402);
+  context.fillText('BALLS', 64, 430);
   const total = state.options.balls;
   const step = Math.min(34, 480 / total);
   for (let i = 0; i < total; i++) {
     context.beginPath();
-    context.arc(286 + i * step, 383, Math.min(13, step * 0.38), 0, 2 * Math.PI);
+    context.arc(286 + i * step, 411, Math.min(13, step * 0.38), 0, 2 * Math.PI);
     context.fillStyle = i < left ? ink.accent : 'transparent';
     context.strokeStyle = i < left ? ink.accent : ink.line;
     context.lineWidth = 4;
@@ -127,10 +99,10 @@ export function paintBoard(context: CanvasRenderingContext2D, standing: Standing
   context.textAlign = 'right';
   context.fillStyle = ink.text;
   context.font = `800 64px ${signFont}`;
-  context.fillText(String(left), width - 54, 406);
+  context.fillText(String(left), width - 54, 434);
   context.textAlign = 'left';
   context.font = `700 60px ${signFont}`;
-  context.fillText(line, 64, 508, width - 128);
+  context.fillText(line, 64, 536, width - 128);
 }
 
 export type LobbyButton = 'ready' | 'rotate' | 'seat0' | 'seat1' | 'seat2';

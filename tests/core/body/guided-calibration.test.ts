@@ -10,7 +10,7 @@ import {
 import { jointNames } from '../../../src/core/body/joints';
 import { armLength, skeletonFromCalibration } from '../../../src/core/body/skeleton';
 import { type Frame, type Pose, transformPose } from '../../../src/core/math/pose';
-import { fromAxisAngle, identity, type Quat, rotate } from '../../../src/core/math/quat';
+import { fromAxisAngle, identity, multiply, type Quat, rotate } from '../../../src/core/math/quat';
 import { add, right, up, type Vec3, vec3 } from '../../../src/core/math/vec3';
 import type { TrackedPose, TrackingFrame } from '../../../src/core/tracking/tracking-frame';
 import { number, seed, standpoint } from '../arbitraries';
@@ -200,5 +200,33 @@ describe('the guided calibration', () => {
     if (state.kind !== 'done') throw new Error(JSON.stringify(state));
     const hand = rotate(identity, stretched(person, 'sideways').rightHand!.position);
     expect(hand.x).toBeCloseTo(state.calibration.armSpan / 2, 2);
+  });
+
+  describe('the tilt of the headset', () => {
+    const worn = (pitch: number, yaw = 0) => {
+      const still = stretched(person, 'forward');
+      const turn = multiply(fromAxisAngle(up, yaw), fromAxisAngle(right, pitch));
+      return guide(() => ({ ...still, head: { ...still.head, orientation: turn } }));
+    };
+
+    test('is what it shows while its wearer looks where the arms point', () => {
+      for (const pitch of [-0.2, -0.05, 0.1]) {
+        const state = worn(pitch);
+        if (state.kind !== 'done') throw new Error('not measured');
+        expect(state.calibration.gazePitch).toBeCloseTo(pitch, 6);
+      }
+    });
+
+    test('is never believed to be steeper than 15°', () => {
+      const state = worn(0.4);
+      if (state.kind !== 'done') throw new Error('not measured');
+      expect(state.calibration.gazePitch).toBeCloseTo(Math.PI / 12, 6);
+    });
+
+    test('is not measured on somebody who reads a sheet beside them', () => {
+      const state = worn(-0.2, -0.2);
+      if (state.kind !== 'done') throw new Error('not measured');
+      expect(state.calibration).not.toHaveProperty('gazePitch');
+    });
   });
 });

@@ -1,0 +1,62 @@
+"""Facts about the conditions under which a recipe is judged."""
+
+import numpy as np
+import pytest
+
+pytest.importorskip("torch")
+
+from threepoint_training import ablation, train_learned  # noqa: E402
+from threepoint_training.augment import AugmentConfig  # noqa: E402
+from threepoint_training.generated_motion import generate_corpus  # noqa: E402
+from threepoint_training.train_learned import Condition  # noqa: E402
+from threepoint_training.train_paper import predict  # noqa: E402
+
+CORPUS = generate_corpus(people=2, clips=2, frames=40, seed=3)
+WINDOW = (0.0, 0.1)
+
+
+def test_every_condition_makes_ik_worse_and_none_touches_the_frames():
+    people = tuple(CORPUS.people)
+    plain = train_learned.held_out(CORPUS, people, WINDOW)
+    base = train_learned.ik_errors_cm(plain).mean()
+    for condition in (
+        Condition(offset=0.03),
+        Condition(eye_height=1.05),
+        Condition(lost_hand=True),
+        Condition(late=4),
+        Condition(seated=0.28),
+        Condition(tilt=np.radians(8.0)),
+    ):
+        worse = train_learned.held_out(CORPUS, people, WINDOW, condition=condition)
+        assert worse.inputs.shape == plain.inputs.shape
+        np.testing.assert_array_equal(worse.people, plain.people)
+        assert train_learned.ik_errors_cm(worse).mean() > base, condition
+
+
+def test_a_lost_hand_is_masked_and_a_seated_head_is_lower():
+    people = tuple(CORPUS.people)
+    lost = train_learned.held_out(CORPUS, people, WINDOW, condition=Condition(lost_hand=True))
+    assert (lost.inputs[:, 25:27].sum(axis=1) == 1).all()
+    seated = train_learned.held_out(CORPUS, people, WINDOW, condition=Condition(seated=0.28))
+    plain = train_learned.held_out(CORPUS, people, WINDOW)
+    assert np.median(plain.inputs[:, 0] - seated.inputs[:, 0]) == pytest.approx(0.28, abs=0.01)
+
+
+def test_every_variant_has_a_row_and_the_recipes_networks_are_handed_out():
+    first, second = sorted(CORPUS.people)
+    recipe = train_learned.TrainLearnedConfig(width=8, batch=32, augment=AugmentConfig())
+    folds = ((first,), (second,))
+    networks = {}
+    rows = ablation.run(CORPUS, recipe, ablation.AblationConfig(steps=2, folds=folds), trained=networks.__setitem__)
+    assert [row[0] for row in rows] == ["IK", *ablation.variants(recipe)]
+    assert all(len(row) == 1 + len(ablation.CONDITIONS) for row in rows)
+    assert set(networks) == set(folds)
+    clean = list(ablation.CONDITIONS).index("as calibrated") + 1
+    tests = {fold: train_learned.held_out(CORPUS, fold, recipe.window_seconds) for fold in folds}
+    errors = [train_learned.errors_cm(predict(networks[fold], test.inputs), test).mean() for fold, test in tests.items()]
+    assert float(rows[1][clean]) == pytest.approx(np.mean(errors), abs=0.006)
+
+
+def test_people_whom_nobody_has_cannot_be_left_out():
+    with pytest.raises(ValueError, match="needs one of these groups"):
+        ablation.run(CORPUS, train_learned.TrainLearnedConfig())

@@ -1,0 +1,154 @@
+"""What a neutral pose tells of its person: is their error under IK known from where they stand and let their hands hang?
+
+`npm run train -- --mocap DIR --ablate` calls this and renews the table of docs/training.md. Everybody is predicted from the others.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import people, train_learned
+from .accuracy_tables import renew, table
+from .features import IK_JOINTS
+from .model import ResidualNetwork
+from .prepared_corpus import JOINTS, PreparedCorpus
+from .train_learned import HeldOut, TrainLearnedConfig
+from .train_paper import predict as predict_joints
+
+Array = NDArray[np.float64]
+
+PAGE = Path(__file__).parents[2] / "docs/training.md"
+
+COLUMNS = ("mean", "elbows", "shoulders", "spine", "pelvis")
+
+_MIRROR = np.array([-1.0, 1.0, 1.0])
+_SWAP = [1, 0, 3, 2, 4, 5]
+
+
+@dataclass(frozen=True)
+class NeutralPoseConfig:
+    """When somebody stands in a neutral pose, and how firmly the few people are believed."""
+
+    # The trunk's lean as a cosine, the height of the headset and of both wrists below it in eye heights, the wrists' speed [m/s].
+    upright: float = 0.97
+    head_height: float = 0.93
+    hands_below: float = 0.37
+    hand_speed: float = 1.0
+    fewest_frames: int = 60
+    # Ridge over standardised measures: as many people as this speak for nothing.
+    ridge: float = 4.0
+    # No measure counts as further from the mean than this many deviations.
+    furthest: float = 2.0
+
+
+def neutral_frames(corpus: PreparedCorpus, name: str, seen: HeldOut, config: NeutralPoseConfig) -> NDArray[np.bool_]:
+    """Which of this person's frames, in the order of `held_out`, are neutral poses."""
+    standing = []
+    for clip in corpus.clips_of({name}):
+        positions = corpus.positions[corpus.clip_slice(clip)].astype(np.float64)
+        trunk = positions[:, JOINTS.index("neck")] - positions[:, JOINTS.index("hips")]
+        hands = positions[:, [JOINTS.index("leftHand"), JOINTS.index("rightHand")]]
+        speed = np.linalg.norm(np.gradient(hands, 1 / corpus.rate_hz, axis=0), axis=-1).max(axis=1)
+        standing.append((trunk[:, 1] > config.upright * np.linalg.norm(trunk, axis=-1)) & (speed < config.hand_speed))
+    left, right = _wrists(seen)
+    hanging = np.maximum(left[:, 1], right[:, 1]) < -config.hands_below
+    return np.concatenate(standing) & hanging & (seen.inputs[:, 0] > config.head_height)
+
+
+def _wrists(seen: HeldOut) -> tuple[Array, Array]:
+    """From the headset, heading frame, eye heights."""
+    arm = seen.inputs[:, 45:46].astype(np.float64)
+    return seen.inputs[:, 7:10] * arm, seen.inputs[:, 16:19] * arm
+
+
+def measure(seen: HeldOut, frames: NDArray[np.bool_]) -> Array:
+    """What a calibration would write down [3]: where the wrists hang from the headset, mean of both sides: out, up, back [eye heights]."""
+    left, right = _wrists(seen)
+    return np.median((left[frames] * _MIRROR + right[frames]) / 2, axis=0)
+
+
+def bias(seen: HeldOut, output: NDArray[np.float32] | None = None) -> Array:
+    """The mean of what is true minus what IK, or this output, says [6, 3], the same for both sides [eye heights]."""
+    estimated = seen.inputs[:, IK_JOINTS] if output is None else output
+    residual = (seen.targets - estimated).reshape(-1, 6, 3).mean(axis=0)
+    return (residual + residual[_SWAP] * _MIRROR) / 2
+
+
+def predict(measures: Array, biases: Array, measured: Array, config: NeutralPoseConfig) -> Array:
+    """The bias of somebody measured so, from others' measures [N, 3] and biases [N, ...]: ridge around no bias at all."""
+    mean, deviation = measures.mean(axis=0), np.maximum(measures.std(axis=0), 1e-6)
+    others = (measures - mean) / deviation
+    own = np.clip((measured - mean) / deviation, -config.furthest, config.furthest)
+    flat = biases.reshape(len(biases), -1)
+    weights = np.linalg.solve(others.T @ others + config.ridge * np.eye(others.shape[1]), others.T @ (flat - flat.mean(axis=0)))
+    return (own @ weights).reshape(biases.shape[1:])
+
+
+@dataclass(frozen=True)
+class Standing:
+    """Somebody who is seen in a neutral pose: all their frames, what their neutral pose measures, their error under IK."""
+
+    seen: HeldOut
+    measured: Array
+    bias: Array
+
+
+def standing_people(corpus: PreparedCorpus, window_seconds: tuple[float, ...], config: NeutralPoseConfig) -> dict[str, Standing]:
+    """Everybody of the training side who is seen in a neutral pose for long enough."""
+    names = tuple(sorted(set(corpus.people) - set(people.FOLDS["A"])))
+    everybody = train_learned.held_out(corpus, names, window_seconds)
+    found = {}
+    for name in names:
+        person = everybody.subset(np.flatnonzero(everybody.people == name))
+        frames = neutral_frames(corpus, name, person, config)
+        if frames.sum() >= config.fewest_frames:
+            found[name] = Standing(person, measure(person, frames), bias(person))
+    if len(found) < 3:
+        raise ValueError(f"neutral poses of three people are needed, {len(found)} of {len(names)} stand in one")
+    return found
+
+
+def run(
+    corpus: PreparedCorpus,
+    recipe: TrainLearnedConfig,
+    networks: dict[tuple[str, ...], ResidualNetwork],
+    config: NeutralPoseConfig = NeutralPoseConfig(),
+) -> list[list[str]]:
+    """Rows of the table: MPJPE [cm], everybody counted alike. networks: ours, by the people whom each has not seen."""
+    everybody = standing_people(corpus, recipe.window_seconds, config)
+    rows: dict[str, list[Array]] = {}
+
+    def told(name: str, unknown: tuple[str, ...]) -> Array:
+        others = [person for other, person in everybody.items() if other not in unknown]
+        return predict(np.stack([o.measured for o in others]), np.stack([o.bias for o in others]), everybody[name].measured, config)
+
+    def add(label: str, name: str, output: NDArray[np.float32], correction: Array) -> None:
+        corrected = (output + correction.reshape(1, 18)).astype(np.float32)
+        rows.setdefault(label, []).append(train_learned.errors_cm(corrected, everybody[name].seen).mean(axis=0))
+
+    for name, person in everybody.items():
+        solved = person.seen.inputs[:, IK_JOINTS]
+        add("IK", name, solved, np.zeros(18))
+        add("IK, and what the neutral pose tells", name, solved, told(name, (name,)))
+        add("IK, and the mean error of the others", name, solved, np.mean([p.bias for other, p in everybody.items() if other != name], axis=0))
+        add("IK, and one's own mean error (bound)", name, solved, person.bias)
+    for unknown, network in networks.items():
+        for name in sorted(set(unknown) & set(everybody)):
+            output = predict_joints(network, everybody[name].seen.inputs)
+            add("ours", name, output, np.zeros(18))
+            # The network has made its share of the correction; the pose speaks for the rest.
+            add("ours, and what the neutral pose tells", name, output, (1 - recipe.correction_share) * told(name, unknown))
+            add("ours, and one's own mean error (bound)", name, output, bias(everybody[name].seen, output))
+    shown = []
+    for label, errors in rows.items():
+        mean = np.mean(errors, axis=0)
+        groups = (mean, mean[:2], mean[2:4], mean[4:5], mean[5:6])
+        shown.append([f"{label} ({len(errors)} people)" if "," not in label else label, *(f"{group.mean():.2f}" for group in groups)])
+    return shown
+
+
+def write(rows: list[list[str]], page: Path = PAGE) -> None:
+    """Renews the page's table."""
+    page.write_text(renew(page.read_text(), {"neutral": table(["cm", *COLUMNS], rows)}))
