@@ -18,7 +18,7 @@ import { disposeTree } from '../../scene/dispose-tree';
 /** The way that a ball would go if it were thrown now, and where it would come down; arena frame. */
 export interface AimArc {
   readonly object: Group;
-  /** null: nothing is aimed. The ring lies as high as the basket's opening, and turns green where it is in it. */
+  /** null: nothing is aimed. The ring is as high and as wide as the basket's opening; green: the ball's middle goes in. */
   show(launch: Launch | null, opening: Pick<Opening, 'position'>): void;
   dispose(): void;
 }
@@ -40,7 +40,7 @@ export function createAimArc(): AimArc {
   const material = new MeshBasicMaterial({ color: beside, ...seen });
   const path = new InstancedMesh(new SphereGeometry(1, 10, 8), material, dots);
   const ringMaterial = new MeshBasicMaterial({ color: beside, side: DoubleSide, ...seen });
-  const ring = new Mesh(new RingGeometry(ballRadius, 2 * ballRadius, 32).rotateX(-Math.PI / 2), ringMaterial);
+  const ring = new Mesh(new RingGeometry(basketRadius - 0.06, basketRadius, 40).rotateX(-Math.PI / 2), ringMaterial);
   for (const part of [path, ring]) {
     part.frustumCulled = false;
     part.renderOrder = 5;
