@@ -164,7 +164,7 @@ function elbowTravels(page: Page, seat: number, least = 0.2): Promise<unknown> {
       return before.travelled + step > least;
     },
     [seat, least] as const,
-    { timeout: 60_000 },
+    { timeout: 180_000 },
   );
 }
 
@@ -226,12 +226,12 @@ async function playTogether(browser: Browser, seconds: number, watched: boolean)
 }
 
 test('three browsers play over the relay and agree, and one that comes late sees everything', async ({ browser }) => {
-  test.setTimeout(480_000);
+  test.setTimeout(600_000);
   await playTogether(browser, 60, false);
 });
 
 test('three browsers play the whole 90 s over the relay, one watches, one comes late @nightly', async ({ browser }) => {
-  test.setTimeout(480_000);
+  test.setTimeout(600_000);
   await playTogether(browser, 90, true);
 });
 
