@@ -41,10 +41,12 @@ export function paintScoreHeading(
     context.fill();
   }
   context.fillStyle = late ? ink.accentInk : ink.text;
-  context.font = `800 170px ${signFont}`;
+  // Three figures have no more room than two.
+  const long = seconds >= 100;
+  context.font = `800 ${long ? 132 : 170}px ${signFont}`;
   context.fillText(`${seconds}`, 660, 270);
   const clock = context.measureText(`${seconds}`).width;
-  context.font = `700 64px ${signFont}`;
+  context.font = `700 ${long ? 52 : 64}px ${signFont}`;
   context.fillText('s', 672 + clock, 270);
 
   context.strokeStyle = ink.line;

@@ -60,6 +60,9 @@ const delayHalfLife = 0.5;
 /** Transit times are judged over this long [s]: clocks drift, routes change. */
 const transitMemory = 5;
 const spare = 0.01;
+/** As pages send them; and how many in a row a way holds up that is worth waiting for. */
+const posesPerSecond = 30;
+const mostMissing = 15;
 
 interface Sample {
   /** By the sender's clock, unwrapped [s]. */
@@ -207,6 +210,14 @@ export function createRemotePlayers(): RemotePlayers {
       player.behind = null;
       time = packet.timeMs / 1000;
     }
+    // Of packets that came to the relay at once only the newest is here: those between were as late as they are missing.
+    const before = player.samples[player.samples.length - 1];
+    if (before) {
+      const missing = Math.min(Math.round((time - before.time) * posesPerSecond) - 1, mostMissing);
+      for (let i = missing; i > 0; i--) {
+        player.transits.push({ at: arrivedAt, transit: arrivedAt - time + i / posesPerSecond });
+      }
+    }
     player.samples.push({ time, packet });
     player.heardAt = arrivedAt;
     player.transits.push({ at: arrivedAt, transit: arrivedAt - time });
@@ -255,8 +266,9 @@ export function createRemotePlayers(): RemotePlayers {
     // One packet from before the playhead is where the path begins.
     while (player.samples.length > 2 && player.samples[1]!.time <= at - longestGap) player.samples.shift();
     const last = player.samples[player.samples.length - 1]!;
-    watchStall(player, at > last.time + longestExtrapolation, time);
-    let shown = sampleAt(player.samples, at);
+    const nowhere = isBetweenPaths(player.samples, at);
+    watchStall(player, nowhere || at > last.time + longestExtrapolation, time);
+    let shown = (nowhere && player.shown) || sampleAt(player.samples, at);
     if (!shown) return null;
     if (player.rejoin) {
       const share = smoothstep(0, rejoinSeconds, time - player.rejoin.at);
@@ -285,6 +297,14 @@ export function createRemotePlayers(): RemotePlayers {
       return player ? { delay: player.delay, freezes: player.freezes, frozenSeconds: player.frozenSeconds } : null;
     },
   };
+}
+
+/** After a long silence nothing says how they got to where the next packet has them: they stand until they are there. */
+function isBetweenPaths(samples: readonly Sample[], time: number): boolean {
+  return samples.some(({ time: at, packet }, i) => {
+    const before = samples[i - 1];
+    return before !== undefined && !packet.jump && at - before.time > longestGap && before.time <= time && time < at;
+  });
 }
 
 /** Somebody whose space was re-anchored is elsewhere: nothing leads there. */

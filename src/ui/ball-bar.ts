@@ -129,7 +129,7 @@ export function createBallBar(actions: BallBarActions, setSound: (on: boolean) =
       rest.hidden = !seated || state.mouse !== true;
       hint.hidden = !seated || state.mouse !== true;
       hint.textContent = round?.throws
-        ? 'Point at the basket and hold the button: dots show where the ball will go. Let go to throw. Esc: not yet.'
+        ? 'Point at the basket and hold the button: the ring shows where the ball will come down. Let go when it is green. Esc: not yet.'
         : 'Point at where the basket is to be; it turns towards the balls by itself.';
       watch.hidden = !round || round.seat === null;
       const free = (round?.people ?? []).filter(({ free }) => free && round?.phase !== 'running');

@@ -32,7 +32,10 @@ function walker(time: number, more: Partial<PosePacket> = {}, lostLeft = false):
   };
 }
 
-/** Packets at 30 Hz from 0 to `end`, each `transit` late; then what is drawn at 90 Hz. */
+/**
+ * Packets at 30 Hz from 0 to `end`, each `transit` late, and of those that reach the relay at once the newest, as it passes them on;
+ * then what is drawn at 90 Hz.
+ */
 function playback(
   end: number,
   transit: (index: number) => number,
@@ -46,7 +49,9 @@ function playback(
     const packet = make(i / 30, i);
     // TCP: nothing overtakes.
     last = Math.max(last, i / 30 + transit(i));
-    if (packet) packets.push({ at: last, packet });
+    if (!packet) continue;
+    if (packets.at(-1)?.at === last) packets.pop();
+    packets.push({ at: last, packet });
   }
   let next = 0;
   for (let time = 0; time < end + 4; time += 1 / 90) {

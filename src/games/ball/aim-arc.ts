@@ -1,53 +1,79 @@
-import { InstancedMesh, Matrix4, MeshBasicMaterial, Quaternion, SphereGeometry, Vector3 } from 'three';
-import { ballRadius } from '../../core/games/ball/flight';
+import {
+  DoubleSide,
+  Group,
+  InstancedMesh,
+  Matrix4,
+  Mesh,
+  MeshBasicMaterial,
+  Quaternion,
+  RingGeometry,
+  SphereGeometry,
+  Vector3,
+} from 'three';
+import type { Opening } from '../../core/games/ball/basket';
+import { ballRadius, basketRadius } from '../../core/games/ball/flight';
 import { fallsTo, type Launch, positionAt } from '../../core/games/ballistics';
+import { disposeTree } from '../../scene/dispose-tree';
 
-/** Dots along the way that a ball would go if it were thrown now; arena frame. */
+/** The way that a ball would go if it were thrown now, and where it would come down; arena frame. */
 export interface AimArc {
-  readonly object: InstancedMesh;
-  /** null: nothing is aimed. */
-  show(launch: Launch | null): void;
+  readonly object: Group;
+  /** null: nothing is aimed. The ring is as high and as wide as the basket's opening; green: the ball's middle goes in. */
+  show(launch: Launch | null, opening: Pick<Opening, 'position'>): void;
   dispose(): void;
 }
 
-const dots = 28;
+const dots = 36;
 /** Of the first dot; the last is half as large [m]. */
 const dotRadius = 0.035;
 /** Between two dots [s]. */
 const apart = 0.045;
+const beside = '#ffb02e';
+const inside = '#3ddc84';
 
 export function createAimArc(): AimArc {
-  const geometry = new SphereGeometry(1, 10, 8);
-  const material = new MeshBasicMaterial({ color: '#ffb02e', transparent: true, opacity: 0.9, depthWrite: false });
-  const object = new InstancedMesh(geometry, material, dots);
+  const object = new Group();
   object.name = 'aim';
-  object.frustumCulled = false;
-  object.renderOrder = 3;
   object.visible = false;
+  // Over everything: from behind a thrower the way is hidden by the thrower.
+  const seen = { transparent: true, opacity: 0.9, depthWrite: false, depthTest: false, fog: false, toneMapped: false };
+  const material = new MeshBasicMaterial({ color: beside, ...seen });
+  const path = new InstancedMesh(new SphereGeometry(1, 10, 8), material, dots);
+  const ringMaterial = new MeshBasicMaterial({ color: beside, side: DoubleSide, ...seen });
+  const ring = new Mesh(new RingGeometry(basketRadius - 0.06, basketRadius, 40).rotateX(-Math.PI / 2), ringMaterial);
+  for (const part of [path, ring]) {
+    part.frustumCulled = false;
+    part.renderOrder = 5;
+  }
+  object.add(path, ring);
   const matrix = new Matrix4();
   const at = new Vector3();
   const size = new Vector3();
   const upright = new Quaternion();
   return {
     object,
-    show(launch) {
+    show(launch, { position: basket }) {
       object.visible = launch !== null;
       if (!launch) return;
-      const seconds = fallsTo(launch, ballRadius);
+      const seconds = fallsTo(launch, basket.y);
+      const lands = positionAt(launch, seconds);
       const shown = Math.min(dots, Math.floor(seconds / apart));
       for (let i = 0; i < shown; i++) {
         const radius = dotRadius * (1 - (0.5 * i) / dots);
         matrix.compose(at.copy(positionAt(launch, (i + 1) * apart)), upright, size.setScalar(radius));
-        object.setMatrixAt(i, matrix);
+        path.setMatrixAt(i, matrix);
       }
-      object.count = shown;
-      object.instanceMatrix.needsUpdate = true;
+      path.count = shown;
+      path.instanceMatrix.needsUpdate = true;
+      ring.position.copy(lands);
+      ringMaterial.color.set(
+        Math.hypot(lands.x - basket.x, lands.z - basket.z) < basketRadius - ballRadius / 2 ? inside : beside,
+      );
     },
     dispose() {
       object.removeFromParent();
-      object.dispose();
-      geometry.dispose();
-      material.dispose();
+      path.dispose();
+      disposeTree(object);
     },
   };
 }

@@ -108,7 +108,7 @@ export function createBallView({ quality, balls: count, onCaption }: BallViewOpt
       sounds.listen(head, floorFromArena);
       const opening = scene.opening ?? state.basket;
       basket.show(opening);
-      arc.show(scene.aim);
+      arc.show(scene.aim, opening);
       balls.show(state, time, (player, side) => attendants[player]?.fists[side] ?? null, opening);
       pops.show(time, eyes);
       const people = attendants.map(

@@ -167,7 +167,7 @@ export function paintLobby(context: CanvasRenderingContext2D, standing: Standing
   } else {
     context.fillStyle = ink.text;
     context.font = `600 46px ${signFont}`;
-    context.fillText('Two throw, one catches in the basket.', width / 2, 172);
+    context.fillText('Two throw, one catches in the basket.', width / 2, 172, width - 128);
     context.fillStyle = ink.soft;
     context.font = `600 42px ${signFont}`;
     context.fillText(

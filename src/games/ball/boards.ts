@@ -13,16 +13,13 @@ export interface Boards {
   dispose(): void;
 }
 
-const width = 3.1;
-/** High enough that nobody's name hides a line of it. */
-const shape = { width, height: (width * boardSize.height) / boardSize.width, middle: 3.8 };
-
 export function createBoards(quality: Quality): Boards {
   const object = new Group();
   object.name = 'boards';
   const { texture, draw } = createDrawnTexture(boardSize.width, boardSize.height, quality);
-  for (const { z, turned } of court.boards) {
-    const board = createWoodenBoard(shape, texture);
+  for (const { z, turned, width, middle } of court.boards) {
+    const height = (width * boardSize.height) / boardSize.width;
+    const board = createWoodenBoard({ width, height, middle }, texture);
     board.position.z = z;
     board.rotation.y = turned;
     object.add(board);

@@ -12,10 +12,13 @@ export const court = {
   /** Of each player's mark. */
   padRadius: 0.46,
   holderZ: stations[holderStation]?.position.z ?? -throwingDistance,
-  /** One board for the throwers, one for the holder. */
+  /**
+   * One board for the throwers, one for the holder, who is further away from it. Their middles are as high as it takes for nobody's
+   * name to hide a line.
+   */
   boards: [
-    { z: -9.4, turned: 0 },
-    { z: 6.6, turned: Math.PI },
+    { z: -9.4, turned: 0, width: 3.1, middle: 3.8 },
+    { z: 6.6, turned: Math.PI, width: 3.7, middle: 4.5 },
   ],
 } as const;
 
