@@ -202,7 +202,7 @@ test('a participant from consent to the end, with a reload in a questionnaire wh
       await page.getByRole('button', { name: 'Hand in' }).click();
       await reaches(page, 'calibration-enter');
       expect((await study(page)).unsent).toBeGreaterThan(0);
-      expect((await study(page)).unsaved).toBe(0);
+      await expect.poll(async () => (await study(page)).unsaved).toBe(0);
       await page.unroute('**/api/studies/**');
       await expect.poll(async () => (await study(page)).unsent, { timeout: 40_000 }).toBe(0);
       continue;
