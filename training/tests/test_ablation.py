@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 pytest.importorskip("torch")
+pytestmark = pytest.mark.training
 
 from threepoint_training import ablation, train_learned  # noqa: E402
 from threepoint_training.augment import AugmentConfig  # noqa: E402

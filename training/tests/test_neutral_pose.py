@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 pytest.importorskip("torch")
+pytestmark = pytest.mark.training
 
 from threepoint_training import neutral_pose, train_learned  # noqa: E402
 from threepoint_training.features import IK_JOINTS  # noqa: E402
