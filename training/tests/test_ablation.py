@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-pytest.importorskip("torch")
 pytestmark = pytest.mark.training
 
 from threepoint_training import ablation, train_learned  # noqa: E402

@@ -1,0 +1,5 @@
+"""Tests that need PyTorch are collected where it is installed: npm run test:training."""
+
+from importlib.util import find_spec
+
+collect_ignore = [] if find_spec("torch") else ["test_ablation.py", "test_neutral_pose.py"]
