@@ -2,14 +2,13 @@
 
 import numpy as np
 import pytest
+from threepoint_training import ablation, train_learned
+from threepoint_training.augment import AugmentConfig
+from threepoint_training.generated_motion import generate_corpus
+from threepoint_training.train_learned import Condition
+from threepoint_training.train_paper import predict
 
 pytestmark = pytest.mark.training
-
-from threepoint_training import ablation, train_learned  # noqa: E402
-from threepoint_training.augment import AugmentConfig  # noqa: E402
-from threepoint_training.generated_motion import generate_corpus  # noqa: E402
-from threepoint_training.train_learned import Condition  # noqa: E402
-from threepoint_training.train_paper import predict  # noqa: E402
 
 CORPUS = generate_corpus(people=2, clips=2, frames=40, seed=3)
 WINDOW = (0.0, 0.1)

@@ -2,13 +2,12 @@
 
 import numpy as np
 import pytest
+from threepoint_training import neutral_pose, train_learned
+from threepoint_training.features import IK_JOINTS
+from threepoint_training.generated_motion import generate_corpus
+from threepoint_training.neutral_pose import NeutralPoseConfig
 
 pytestmark = pytest.mark.training
-
-from threepoint_training import neutral_pose, train_learned  # noqa: E402
-from threepoint_training.features import IK_JOINTS  # noqa: E402
-from threepoint_training.generated_motion import generate_corpus  # noqa: E402
-from threepoint_training.neutral_pose import NeutralPoseConfig  # noqa: E402
 
 CORPUS = generate_corpus(people=2, clips=1, frames=60, seed=5)
 
