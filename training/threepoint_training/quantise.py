@@ -12,14 +12,15 @@ from onnx import numpy_helper
 
 
 def quantise_weights(model: onnx.ModelProto, smallest: int = 256) -> onnx.ModelProto:
-    """int8 weights, symmetric per output channel, for every matrix or kernel of at least `smallest` numbers."""
+    """int8 weights, symmetric per output channel, for every layer's matrix or kernel of at least `smallest` numbers."""
     quantised = onnx.ModelProto()
     quantised.CopyFrom(model)
     graph = quantised.graph
     weights = {
         node.input[1]: 0 if node.op_type == "Conv" or any(a.name == "transB" and a.i for a in node.attribute) else 1
         for node in graph.node
-        if node.op_type in ("Conv", "Gemm", "MatMul")
+        # Plain matrix products are geometry, exact as it is.
+        if node.op_type in ("Conv", "Gemm")
     }
     dequantisers = []
     for initialiser in list(graph.initializer):
