@@ -114,7 +114,7 @@ class ResidualNetwork(nn.Module):
         return torch.cat([inputs, inputs[:, self.mirror_column] * self.mirror_sign], dim=1).view(-1, len(self.mirror_column))
 
     def _from_chest(self, bodies: Tensor) -> "_FromChest":
-        x, up, arm, hands, shoulders, others = (bodies @ self.vectors).view(-1, 16, 3).split([1, 1, 1, 2, 2, 9], dim=1)
+        x, up, arm, hands, shoulders, others = (bodies @ self.vectors + _NO_BODY).view(-1, 16, 3).split([1, 1, 1, 2, 2, 9], dim=1)
         x = x / x.norm(dim=-1, keepdim=True)
         up = up - (up * x).sum(-1, keepdim=True) * x
         up = up / up.norm(dim=-1, keepdim=True)
@@ -152,6 +152,13 @@ _FLIP = torch.tensor([-1.0, 1.0, 1.0])
 
 # [3, 9]: x @ _SKEW, a 3 by 3 matrix, takes y to x × y.
 _SKEW = -torch.linalg.cross(torch.eye(3).unsqueeze(1).expand(3, 3, 3), torch.eye(3).expand(3, 3, 3)).transpose(1, 2).reshape(3, 9)
+
+
+# What the shoulders' line, up and the arm are where all features are 0, as when a page tries the network: no axis without a direction.
+_NO_BODY = torch.zeros(16, 3)
+_NO_BODY[0, 0] = _NO_BODY[1, 1] = 1e-6
+_NO_BODY[2] = 1e-6
+_NO_BODY = _NO_BODY.flatten()
 
 
 def _perceptron(inputs: int, width: int, hidden_layers: int, dropout: float, outputs: int) -> nn.Sequential:
