@@ -1,0 +1,99 @@
+import numpy as np
+import pytest
+import torch
+
+from threepoint_training import quaternion
+from threepoint_training.features import FEATURES, IK_JOINTS
+from threepoint_training.generated_motion import generate_corpus
+from threepoint_training.model import ResidualNetwork, on_circle
+from threepoint_training.skeleton import body_from_calibration
+from threepoint_training.train_learned import held_out
+
+WINDOW = (0.0, 0.1, 0.25)
+CORPUS = generate_corpus(people=2, clips=1, frames=200, seed=4)
+SEEN = held_out(CORPUS, tuple(CORPUS.people), WINDOW)
+SWAPPED = [1, 0, 3, 2, 4, 5]
+MIRROR = np.array([-1.0, 1.0, 1.0], np.float32)
+
+
+@pytest.fixture(scope="module")
+def network() -> ResidualNetwork:
+    """As it is before training: random weights, but the data's mean and scale."""
+    torch.manual_seed(1)
+    network = ResidualNetwork(len(WINDOW), width=32, dropout=0.0)
+    network.normalise(torch.from_numpy(SEEN.inputs), torch.from_numpy(SEEN.targets))
+    return network.eval()
+
+
+def joints(network: ResidualNetwork, inputs: np.ndarray) -> np.ndarray:
+    with torch.no_grad():
+        return network(torch.from_numpy(inputs)).numpy().reshape(-1, 6, 3)
+
+
+def axes(turns: np.ndarray) -> np.ndarray:
+    matrix = quaternion.to_matrix(turns)
+    return np.concatenate([matrix[..., :, 0], matrix[..., :, 1]], axis=-1)
+
+
+def mirrored(inputs: np.ndarray) -> np.ndarray:
+    """Features of the body a mirror shows, made from what features mean and not from what the network knows of them."""
+    taps = inputs.reshape(len(inputs), -1, FEATURES)
+    result = taps.copy()
+
+    def turned(columns: np.ndarray) -> np.ndarray:
+        x, y = columns[..., :3], columns[..., 3:]
+        matrix = np.stack([x, y, np.cross(x, y)], axis=-1)
+        flip = np.diag(MIRROR)
+        image = flip @ matrix @ flip
+        return np.concatenate([image[..., :, 0], image[..., :, 1]], axis=-1)
+
+    result[..., 1:7] = turned(taps[..., 1:7])
+    for own, other in ((7, 16), (16, 7)):
+        result[..., own : own + 3] = taps[..., other : other + 3] * MIRROR
+        result[..., own + 3 : own + 9] = turned(taps[..., other + 3 : other + 9])
+    result[..., 25], result[..., 26] = taps[..., 26], taps[..., 25]
+    ik = taps[..., IK_JOINTS].reshape(*taps.shape[:2], 6, 3)
+    result[..., IK_JOINTS] = (ik[..., SWAPPED, :] * MIRROR).reshape(*taps.shape[:2], 18)
+    return result.reshape(len(inputs), -1).astype(np.float32)
+
+
+def test_a_mirror_image_has_the_mirror_image_s_joints(network):
+    seen = joints(network, SEEN.inputs)
+    image = joints(network, mirrored(SEEN.inputs))
+    np.testing.assert_allclose(image, seen[:, SWAPPED] * MIRROR, atol=1e-5)
+    assert np.abs(seen - seen[:, SWAPPED] * MIRROR).max() > 0.02
+
+
+def test_an_elbow_knows_nothing_of_the_other_hand(network):
+    """The trunk may: that is why the elbow is looked at from its shoulder, with a trunk that keeps quiet."""
+    with torch.no_grad():
+        for layer in (network.trunk_output_mean, network.trunk_output_scale):
+            layer.zero_()
+    inputs = SEEN.inputs.copy()
+    before = joints(network, inputs)
+    inputs[:, 16:25] = np.roll(inputs[:, 16:25], 50, axis=0)
+    after = joints(network, inputs)
+    np.testing.assert_allclose(after[:, 0], before[:, 0], atol=1e-6)
+    assert np.abs(after[:, 1] - before[:, 1]).max() > 1e-3
+
+
+def test_nothing_at_all_gives_numbers_all_the_same(network):
+    assert np.isfinite(joints(network, np.zeros((1, len(WINDOW) * FEATURES), np.float32))).all()
+
+
+def test_elbows_lie_where_both_bones_let_them_be():
+    share = 0.5
+    inputs, solved = torch.from_numpy(SEEN.inputs), torch.from_numpy(SEEN.inputs[:, IK_JOINTS].reshape(-1, 6, 3))
+    moved = solved + 0.02 * torch.randn(solved.shape, generator=torch.Generator().manual_seed(3))
+    elbows, moved = on_circle(moved, inputs, share).numpy(), moved.numpy()
+    arm = SEEN.inputs[:, 45]
+    person = next(iter(CORPUS.people.values()))
+    body = body_from_calibration(np.array(person.eye_height), np.array(person.arm_span))
+    assert arm[0] == pytest.approx(float(body.arm[0] / body.eye_height[0]), rel=1e-3)
+    for side, hand in ((0, 7), (1, 16)):
+        wrist = SEEN.inputs[:, hand : hand + 3] * arm[:, None]
+        reachable = np.linalg.norm(wrist - moved[:, 2 + side], axis=1) < 0.95 * arm
+        assert reachable.sum() > 50
+        for end, bone in ((wrist, 1 - share), (moved[:, 2 + side], share)):
+            length = np.linalg.norm(end - elbows[:, side], axis=1)
+            np.testing.assert_allclose(length[reachable], bone * arm[reachable], atol=1e-3)
