@@ -32,7 +32,7 @@ async function measureFrames(browser: Browser): Promise<PageResult> {
   const page = await browser.newPage({ viewport: { width: 480, height: 270 } });
   try {
     await page.goto(`http://127.0.0.1:${server.port}/`);
-    await page.waitForFunction(() => window.benchResult ?? window.benchError, null, { timeout: 900_000 });
+    await page.waitForFunction(() => window.benchResult ?? window.benchError, null, { timeout: 1_800_000 });
     const { result, error } = await page.evaluate(() => ({ result: window.benchResult, error: window.benchError }));
     if (!result) throw new Error(`the bench page failed: ${error}`);
     return result;
