@@ -1,7 +1,7 @@
 import type { UpperBodyPose } from '../body/avatar-pose';
 import type { JointName, Side } from '../body/joints';
 import { type Skeleton, sideSign, wristFromHandBone } from '../body/skeleton';
-import { solveTwoBones, type TwoBoneSolution } from '../body/two-bone-ik';
+import { elbowFlexion, solveTwoBones, type TwoBoneSolution } from '../body/two-bone-ik';
 import { clamp, dampedShare, smoothstep } from '../math/damper';
 import type { Pose } from '../math/pose';
 import {
@@ -10,10 +10,12 @@ import {
   conjugate,
   fromAxes,
   fromAxisAngle,
+  identity,
   limitAngle,
   multiply,
   type Quat,
   rotate,
+  slerp,
   swingTwist,
   twistAngle,
 } from '../math/quat';
@@ -34,6 +36,7 @@ import {
   type Vec3,
   vec3,
 } from '../math/vec3';
+import type { HandWay } from '../tracking/hand-continuity';
 import { headingOf } from '../tracking/heading';
 import type { JointPositions } from './joint-positions';
 
@@ -47,9 +50,13 @@ export interface Estimate {
 
 /**
  * A wrist, floor frame. trust in [0, 1]: how far the trunk goes after it where the arm alone is too short; left out: all the way. Not
- * seen: no further than it went before the hand was lost.
+ * seen: no further than it went before the hand was lost. way: the arm is on its way from where it was drawn to the way's goal.
  */
-export type EstimatedHand = Pose<'floor'> & { readonly trust?: number; readonly seen?: boolean };
+export type EstimatedHand = Pose<'floor'> & {
+  readonly trust?: number;
+  readonly seen?: boolean;
+  readonly way?: HandWay;
+};
 
 /** What one avatar's arms remember from frame to frame, so that no elbow flips. Chest frame. */
 export interface ArmMemory {
@@ -61,6 +68,12 @@ export interface ArmMemory {
   readonly twist: number;
   /** How much of it the forearm takes [rad]. */
   readonly forearmTwist: number;
+  /** The upper arm as it was drawn. */
+  readonly upperArm: Quat;
+  /** The elbow's flexion as it was drawn [rad]. */
+  readonly flexion: number;
+  /** What was drawn beyond where the hand belongs when its way began: drawn = turn·goal, flexion + goal's. */
+  readonly detached: { readonly since: number; readonly turn: Quat; readonly flexion: number } | null;
 }
 
 export interface ReconstructionMemory {
@@ -326,6 +339,9 @@ function placeShoulders(
   return { left: place('left'), right: place('right') };
 }
 
+/** So near to its reach [arm lengths] an arm whose hand is a guess begins to stay bent; on a way back in the share that is left. */
+const softBend = 0.06;
+
 interface ArmRotations {
   readonly upperArm: Quat;
   readonly lowerArm: Quat;
@@ -349,18 +365,23 @@ function placeArm(
   const downAndBack = rotate(floorFromChest, normalise(vec3(0.2 * sigma, -1, 0.5)));
   const fallbacks: [Vec3, Vec3] = [downAndBack, rotate(floorFromChest, vec3(0, 0, 1))];
 
+  const { way } = wrist;
   const before = memory[side];
+  const departs = way !== undefined && before?.detached?.since !== way.since;
+  const target = way
+    ? softTarget(shoulder.position, way.goal.position, softBend * (wrist.seen ? way.left : 1), upperArm + forearm)
+    : wrist.position;
   const solve = (direction: Vec3) =>
-    solveTwoBones(shoulder.position, wrist.position, upperArm, forearm, direction, fallbacks);
+    solveTwoBones(shoulder.position, target, upperArm, forearm, direction, fallbacks);
   const circle = elbowCircle(solve(downAndBack), shoulder.position);
-  const goal = wantedPole(side, estimate, circle, fallbacks);
   const pole = steadyPole(
     sigma,
-    goal,
+    wantedPole(side, estimate, circle, fallbacks),
     circle,
     torso,
     floorFromChest,
-    before,
+    // A new way's elbow need not be near the one before: what lies between is detached, below.
+    departs ? null : before,
     wrist.trust ?? 1,
     upperArm + forearm,
     deltaSeconds,
@@ -371,8 +392,28 @@ function placeArm(
   const along = vec3(sigma, 0, 0);
   const hingeAtRest = vec3(0, sigma, 0);
   const hinge = cross(solution.pole, solution.axis);
-  const upperArmRotation = alignDirections(along, hingeAtRest, subtract(solution.elbow, shoulder.position), hinge);
-  const untwisted = alignDirections(along, hingeAtRest, subtract(wrist.position, solution.elbow), hinge);
+  let upperArmRotation = alignDirections(along, hingeAtRest, subtract(solution.elbow, shoulder.position), hinge);
+  let untwisted = alignDirections(along, hingeAtRest, subtract(target, solution.elbow), hinge);
+
+  // On its way the arm is drawn between: turned and bent by what is left of the difference to where it was drawn.
+  const toChest = conjugate(floorFromChest);
+  let upperArmInChest = multiply(toChest, upperArmRotation);
+  let flexion = elbowFlexion(upperArm, forearm, distance(shoulder.position, target));
+  let detached: ArmMemory['detached'] = null;
+  if (way) {
+    detached =
+      before && !departs
+        ? before.detached
+        : {
+            since: way.since,
+            turn: before ? multiply(before.upperArm, conjugate(upperArmInChest)) : identity,
+            flexion: before ? before.flexion - flexion : 0,
+          };
+    upperArmInChest = multiply(slerp(identity, detached?.turn ?? identity, way.left), upperArmInChest);
+    flexion += (detached?.flexion ?? 0) * way.left;
+    upperArmRotation = multiply(floorFromChest, upperArmInChest);
+    untwisted = multiply(upperArmRotation, fromAxisAngle(hingeAtRest, flexion));
+  }
 
   // The hand follows the tracked wrist; the forearm takes half of its turn, so that no wrist is wrung.
   const hand = multiply(wrist.orientation, wristFromHandBone[side]);
@@ -385,12 +426,31 @@ function placeArm(
   const turn = forearmSpeed * Math.max(deltaSeconds, 0);
   const forearmTwist = before ? clamp(share, before.forearmTwist - turn, before.forearmTwist + turn) : share;
   const lowerArm = multiply(untwisted, fromAxisAngle(along, forearmTwist));
-  const toChest = conjugate(floorFromChest);
-  memory[side] = { axis: rotate(toChest, solution.axis), pole: rotate(toChest, solution.pole), twist, forearmTwist };
+  memory[side] = {
+    axis: rotate(toChest, solution.axis),
+    pole: rotate(toChest, solution.pole),
+    twist,
+    forearmTwist,
+    upperArm: upperArmInChest,
+    flexion,
+    detached,
+  };
 
   const bend = swingTwist(multiply(conjugate(lowerArm), hand), along);
   const limited = multiply(limitAngle(bend.swing, wristLimit), limitAngle(bend.twist, wristLimit));
   return { upperArm: upperArmRotation, lowerArm, hand: multiply(lowerArm, limited) };
+}
+
+/**
+ * Where to reach for a place [m from the shoulder, arm's length `arm`]: nearer as it comes within `soft` arm lengths of the arm's reach,
+ * so that no arm snaps straight after a hand that nobody sees.
+ */
+function softTarget(shoulder: Vec3, place: Vec3, soft: number, arm: number): Vec3 {
+  const far = distance(shoulder, place);
+  const near = arm * (1 - soft);
+  if (soft <= 0 || far <= near) return place;
+  const reach = arm - soft * arm * Math.exp((near - far) / (soft * arm));
+  return addScaled(shoulder, subtract(place, shoulder), reach / far);
 }
 
 /** All places of an elbow: a circle about the line from shoulder to wrist. */
@@ -421,7 +481,7 @@ function wantedPole(
   const wrist = side === 'left' ? leftHand : rightHand;
   const ownAxis = normalise(subtract(wrist.position, shoulder), axis);
   const aside = reject(subtract(elbow, shoulder), ownAxis);
-  let across = reject(aside, axis);
+  let across = reject(rotate(between(ownAxis, axis), aside), axis);
   for (const fallback of fallbacks) if (length(across) < 1e-6) across = reject(fallback, axis);
   return { direction: normalise(across), sure: smoothstep(0, unsurePole, length(aside)) };
 }

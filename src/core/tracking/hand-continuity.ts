@@ -15,7 +15,19 @@ export type ContinuedHand = Pose<'floor'> & {
   readonly seen: boolean;
   /** How much its place is known, in [0, 1]. 1: it is there; 0: it rests, a guess; between: on its way from one to the other. */
   readonly trust: number;
+  /** Present while it is not simply where it is seen or held. */
+  readonly way?: HandWay;
 };
+
+/** A way from where an arm is drawn to where its hand belongs. */
+export interface HandWay {
+  /** Where the hand is seen, or rests. */
+  readonly goal: Pose<'floor'>;
+  /** The share of the way still to go: 1 at its beginning, 0 at the goal. */
+  readonly left: number;
+  /** When it began [s]; another time is another way. */
+  readonly since: number;
+}
 
 /** A tracking frame in which no hand is missing. */
 export interface ContinuedFrame {
@@ -43,8 +55,8 @@ interface HandMemory {
   /** As shown last. */
   shown: Reach;
   trust: number;
-  /** Where the loss began and when; null while seen. */
-  lost: { readonly from: Reach; readonly trust: number; readonly time: number } | null;
+  /** Where the loss began and when, and when the way to rest begins; null while seen. */
+  lost: { readonly from: Reach; readonly trust: number; readonly time: number; readonly departs: number } | null;
   /** What the return has to bridge: shown = seen + offset at `time`, floor frame, so that turning about does not fling it; null when bridged. */
   bridge: {
     readonly offset: Vec3;
@@ -129,10 +141,13 @@ export function createHandContinuity(calibration: () => Calibration): HandContin
     const memory = memories[side] ?? {
       shown: rest,
       trust: seen ? 1 : 0,
-      lost: seen ? null : { from: rest, trust: 0, time: Number.NEGATIVE_INFINITY },
+      lost: seen
+        ? null
+        : { from: rest, trust: 0, time: Number.NEGATIVE_INFINITY, departs: Number.NEGATIVE_INFINITY },
       bridge: null,
     };
     memories[side] = memory;
+    let way: HandWay | null = null;
 
     if (seen) {
       const seenInBody = transformPose(invertTransform(floorFromBody), tracked);
@@ -158,6 +173,7 @@ export function createHandContinuity(calibration: () => Calibration): HandContin
         const missing = 1 - evenStep(0, seconds, time - since);
         if (missing <= 0) memory.bridge = null;
         memory.trust = 1 + (trust - 1) * missing;
+        way = { goal: { position: tracked.position, orientation: tracked.orientation }, left: missing, since };
         const aside = addScaled(scale(offset, missing), detour, 4 * missing * (1 - missing));
         memory.shown = reachOf({
           position: add(seenInBody.position, rotate(conjugate(floorFromBody.orientation), aside)),
@@ -166,12 +182,14 @@ export function createHandContinuity(calibration: () => Calibration): HandContin
       }
       if (!memory.bridge) return { position: tracked.position, orientation: tracked.orientation, seen, trust: 1 };
     } else {
+      // Who was on the way back turns round at once; else the hand is held first.
+      const departs = memory.bridge ? time : time + holdSeconds;
       memory.bridge = null;
-      memory.lost ??= { from: memory.shown, trust: memory.trust, time };
+      memory.lost ??= { from: memory.shown, trust: memory.trust, time, departs };
       const { from, trust, time: since } = memory.lost;
       const arc = directionArc(from.direction, rest.direction, outside);
-      const way = arc.angle * Math.max(from.distance, rest.distance) + Math.abs(from.distance - rest.distance);
-      const duration = Math.max(easeSeconds, way / easeSpeed);
+      const metres = arc.angle * Math.max(from.distance, rest.distance) + Math.abs(from.distance - rest.distance);
+      const duration = Math.max(easeSeconds, metres / easeSpeed);
       const share = evenStep(holdSeconds, holdSeconds + duration, Math.min(time - since, 1e6));
       memory.trust = trust * (1 - share);
       memory.shown = {
@@ -179,10 +197,17 @@ export function createHandContinuity(calibration: () => Calibration): HandContin
         distance: from.distance + (rest.distance - from.distance) * share,
         orientation: slerp(from.orientation, rest.orientation, share),
       };
+      if (time > memory.lost.departs || share > 0) {
+        const goal = transformPose(floorFromBody, {
+          position: add(shoulder, placeOf(rest)),
+          orientation: rest.orientation,
+        });
+        way = { goal, left: 1 - share, since: memory.lost.departs };
+      }
     }
     const { orientation } = memory.shown;
     const pose = transformPose(floorFromBody, { position: add(shoulder, placeOf(memory.shown)), orientation });
-    return { ...pose, seen, trust: memory.trust };
+    return { ...pose, seen, trust: memory.trust, ...(way && { way }) };
   }
 
   return {
