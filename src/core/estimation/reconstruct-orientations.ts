@@ -1,7 +1,7 @@
 import type { UpperBodyPose } from '../body/avatar-pose';
 import type { JointName, Side } from '../body/joints';
 import { type Skeleton, sideSign, wristFromHandBone } from '../body/skeleton';
-import { elbowFlexion, solveTwoBones, type TwoBoneSolution } from '../body/two-bone-ik';
+import { solveTwoBones, type TwoBoneSolution } from '../body/two-bone-ik';
 import { clamp, dampedShare, smoothstep } from '../math/damper';
 import type { Pose } from '../math/pose';
 import {
@@ -10,12 +10,10 @@ import {
   conjugate,
   fromAxes,
   fromAxisAngle,
-  identity,
   limitAngle,
   multiply,
   type Quat,
   rotate,
-  slerp,
   swingTwist,
   twistAngle,
 } from '../math/quat';
@@ -38,6 +36,7 @@ import {
 } from '../math/vec3';
 import type { HandWay } from '../tracking/hand-continuity';
 import { headingOf } from '../tracking/heading';
+import { alongArc, directionArc } from '../tracking/shoulder-arc';
 import type { JointPositions } from './joint-positions';
 
 /** What is known of one frame, floor frame: head and hands as they are, the six joints as somebody estimates them. */
@@ -50,7 +49,7 @@ export interface Estimate {
 
 /**
  * A wrist, floor frame. trust in [0, 1]: how far the trunk goes after it where the arm alone is too short; left out: all the way. Not
- * seen: no further than it went before the hand was lost. way: the arm is on its way from where it was drawn to the way's goal.
+ * seen: no further than it went before the hand was lost. way: where the arm goes instead, from where it was drawn.
  */
 export type EstimatedHand = Pose<'floor'> & {
   readonly trust?: number;
@@ -68,12 +67,40 @@ export interface ArmMemory {
   readonly twist: number;
   /** How much of it the forearm takes [rad]. */
   readonly forearmTwist: number;
-  /** The upper arm as it was drawn. */
-  readonly upperArm: Quat;
-  /** The elbow's flexion as it was drawn [rad]. */
-  readonly flexion: number;
-  /** What was drawn beyond where the hand belongs when its way began: drawn = turn·goal, flexion + goal's. */
-  readonly detached: { readonly since: number; readonly turn: Quat; readonly flexion: number } | null;
+  /** As it was drawn, and where in the floor frame. */
+  readonly drawn: DrawnArm;
+  readonly joints: ElbowAndWrist;
+  /** When its hand was sent where it belongs now [s]. */
+  readonly since: number | null;
+  /** Null: it is where it belongs. */
+  readonly way: ArmWay | null;
+}
+
+/** The directions of an arm's bones, unit, and of the elbow's hinge. */
+interface DrawnArm {
+  readonly upperArm: Vec3;
+  readonly forearm: Vec3;
+  readonly hinge: Vec3;
+}
+
+type Bones = Pick<DrawnArm, 'upperArm' | 'forearm'>;
+
+interface ElbowAndWrist {
+  readonly elbow: Vec3;
+  readonly wrist: Vec3;
+}
+
+/** An arm that is not yet where its hand belongs. */
+interface ArmWay {
+  /** Where elbow and wrist belonged in the frame before, floor frame; null: it sets out. */
+  readonly goal: ElbowAndWrist | null;
+  /** Takes at least so long [s]. */
+  readonly shortest: number;
+  /** The furthest that it was away, and how far it is of that. */
+  readonly metres: number;
+  readonly left: number;
+  /** Beyond what its goal moves by itself [m/s]. */
+  readonly speed: number;
 }
 
 export interface ReconstructionMemory {
@@ -339,6 +366,14 @@ function placeShoulders(
   return { left: place('left'), right: place('right') };
 }
 
+/** An arm takes at least so long [s] to rest and back, and goes at most this fast [m/s]: 3.75 cm in a frame at 60 Hz. */
+const [restSeconds, returnSeconds] = [0.3, 0.2];
+const waySpeed = 2.25;
+/** The share of the shortest time in which it gets up to its speed, and down from it. */
+const wayRamp = 0.2;
+/** A way is measured in so many steps. */
+const waySteps = 8;
+const stillness = { metres: 0, left: 1, speed: 0 };
 /** So near to its reach [arm lengths] an arm whose hand is a guess begins to stay bent; on a way back in the share that is left. */
 const softBend = 0.06;
 
@@ -365,14 +400,18 @@ function placeArm(
   const downAndBack = rotate(floorFromChest, normalise(vec3(0.2 * sigma, -1, 0.5)));
   const fallbacks: [Vec3, Vec3] = [downAndBack, rotate(floorFromChest, vec3(0, 0, 1))];
 
-  const { way } = wrist;
   const before = memory[side];
-  const departs = way !== undefined && before?.detached?.since !== way.since;
-  const target = way
-    ? softTarget(shoulder.position, way.goal.position, softBend * (wrist.seen ? way.left : 1), upperArm + forearm)
+  const toChest = conjugate(floorFromChest);
+  const sent = wrist.way;
+  const departs = sent !== undefined && before !== null && before.since !== sent.since;
+  const setOut: ArmWay | null =
+    departs && before ? { goal: null, shortest: sent.rests ? restSeconds : returnSeconds, ...stillness } : null;
+  const way = setOut ?? before?.way ?? null;
+  const left = way?.left ?? 0;
+  const target = sent
+    ? softTarget(shoulder.position, sent.goal.position, softBend * (sent.rests ? 1 : left * left), upperArm + forearm)
     : wrist.position;
-  const solve = (direction: Vec3) =>
-    solveTwoBones(shoulder.position, target, upperArm, forearm, direction, fallbacks);
+  const solve = (direction: Vec3) => solveTwoBones(shoulder.position, target, upperArm, forearm, direction, fallbacks);
   const circle = elbowCircle(solve(downAndBack), shoulder.position);
   const pole = steadyPole(
     sigma,
@@ -380,40 +419,31 @@ function placeArm(
     circle,
     torso,
     floorFromChest,
-    // A new way's elbow need not be near the one before: what lies between is detached, below.
+    // Where the hand is sent the elbow need not be near where it was: the way there is the arm's.
     departs ? null : before,
-    wrist.trust ?? 1,
+    Math.min(wrist.trust ?? 1, 1 - left),
     upperArm + forearm,
     deltaSeconds,
   );
   const solution = solve(pole);
+  const belongs: DrawnArm = {
+    upperArm: rotate(toChest, normalise(subtract(solution.elbow, shoulder.position))),
+    forearm: rotate(toChest, normalise(subtract(target, solution.elbow))),
+    // The plane of shoulder, elbow and wrist: its normal is the elbow's hinge, +Y at rest on the right, −Y on the left.
+    hinge: rotate(toChest, cross(solution.pole, solution.axis)),
+  };
+  const jointsOf = ({ upperArm: upper, forearm: fore }: Bones): ElbowAndWrist => {
+    const elbow = addScaled(shoulder.position, rotate(floorFromChest, upper), upperArm);
+    return { elbow, wrist: addScaled(elbow, rotate(floorFromChest, fore), forearm) };
+  };
+  const { drawn, way: onward } =
+    way && before ? approach(sigma, before, belongs, way, jointsOf, deltaSeconds) : { drawn: belongs, way: null };
 
-  // The plane of shoulder, elbow and wrist: its normal is the elbow's hinge, +Y at rest on the right, −Y on the left.
   const along = vec3(sigma, 0, 0);
-  const hingeAtRest = vec3(0, sigma, 0);
-  const hinge = cross(solution.pole, solution.axis);
-  let upperArmRotation = alignDirections(along, hingeAtRest, subtract(solution.elbow, shoulder.position), hinge);
-  let untwisted = alignDirections(along, hingeAtRest, subtract(target, solution.elbow), hinge);
-
-  // On its way the arm is drawn between: turned and bent by what is left of the difference to where it was drawn.
-  const toChest = conjugate(floorFromChest);
-  let upperArmInChest = multiply(toChest, upperArmRotation);
-  let flexion = elbowFlexion(upperArm, forearm, distance(shoulder.position, target));
-  let detached: ArmMemory['detached'] = null;
-  if (way) {
-    detached =
-      before && !departs
-        ? before.detached
-        : {
-            since: way.since,
-            turn: before ? multiply(before.upperArm, conjugate(upperArmInChest)) : identity,
-            flexion: before ? before.flexion - flexion : 0,
-          };
-    upperArmInChest = multiply(slerp(identity, detached?.turn ?? identity, way.left), upperArmInChest);
-    flexion += (detached?.flexion ?? 0) * way.left;
-    upperArmRotation = multiply(floorFromChest, upperArmInChest);
-    untwisted = multiply(upperArmRotation, fromAxisAngle(hingeAtRest, flexion));
-  }
+  const inFloor = (bone: Vec3): Quat =>
+    multiply(floorFromChest, alignDirections(along, vec3(0, sigma, 0), bone, drawn.hinge));
+  const upperArmRotation = inFloor(drawn.upperArm);
+  const untwisted = inFloor(drawn.forearm);
 
   // The hand follows the tracked wrist; the forearm takes half of its turn, so that no wrist is wrung.
   const hand = multiply(wrist.orientation, wristFromHandBone[side]);
@@ -431,14 +461,92 @@ function placeArm(
     pole: rotate(toChest, solution.pole),
     twist,
     forearmTwist,
-    upperArm: upperArmInChest,
-    flexion,
-    detached,
+    drawn,
+    joints: jointsOf(drawn),
+    since: sent?.since ?? null,
+    way: onward,
   };
 
   const bend = swingTwist(multiply(conjugate(lowerArm), hand), along);
   const limited = multiply(limitAngle(bend.swing, wristLimit), limitAngle(bend.twist, wristLimit));
   return { upperArm: upperArmRotation, lowerArm, hand: multiply(lowerArm, limited) };
+}
+
+/**
+ * One frame of an arm's way from where it was drawn to where its hand belongs, along arcs about shoulder and elbow. Neither elbow nor
+ * wrist goes further than the hand's goal itself went in this frame and what the way's speed allows beyond that.
+ */
+function approach(
+  sigma: number,
+  before: ArmMemory,
+  to: DrawnArm,
+  way: ArmWay,
+  jointsOf: (bones: Bones) => ElbowAndWrist,
+  deltaSeconds: number,
+): { readonly drawn: DrawnArm; readonly way: ArmWay | null } {
+  const from = before.drawn;
+  const outside = normalise(vec3(sigma, -0.2, -1));
+  const arcs = {
+    upperArm: directionArc(from.upperArm, to.upperArm, outside),
+    forearm: directionArc(from.forearm, to.forearm, outside),
+  };
+  const at = (share: number): Bones => ({
+    upperArm: rotate(alongArc(arcs.upperArm, share), from.upperArm),
+    forearm: rotate(alongArc(arcs.forearm, share), from.forearm),
+  });
+  const places = Array.from({ length: waySteps + 1 }, (_, step) => jointsOf(at(step / waySteps)));
+  const metresOf = (joint: keyof ElbowAndWrist): number =>
+    places.reduce((sum, place, step) => sum + distance(place[joint], (places[step - 1] ?? place)[joint]), 0);
+  const toGo = Math.max(metresOf('elbow'), metresOf('wrist'));
+
+  const metres = Math.max(way.metres, toGo);
+  const top = Math.min(waySpeed, metres / (way.shortest * (1 - wayRamp)));
+  const acceleration = top / (way.shortest * wayRamp);
+  const speed = Math.min(way.speed + acceleration * deltaSeconds, top, Math.sqrt(2 * acceleration * toGo));
+
+  const goal = jointsOf(to);
+  const beyond = speed * Math.max(deltaSeconds, 0);
+  const carried = places[0] ?? before.joints;
+  const wristWay =
+    beyond + (way.goal ? distance(way.goal.wrist, goal.wrist) : distance(before.joints.wrist, carried.wrist));
+  const elbowWay =
+    beyond + (way.goal ? distance(way.goal.elbow, goal.elbow) : distance(before.joints.elbow, carried.elbow));
+  const limits = { wrist: wristWay, elbow: Math.min(elbowWay, wristWay) };
+  /** By how much [m] this share of the way would be too far for one frame. */
+  const excess = (share: number): number => {
+    const place = jointsOf(at(share));
+    return Math.max(
+      distance(before.joints.elbow, place.elbow) - limits.elbow,
+      distance(before.joints.wrist, place.wrist) - limits.wrist,
+    );
+  };
+  const share = furthestWithin(excess);
+  if (share === 1 && toGo <= beyond + 1e-6) return { drawn: to, way: null };
+  const next = at(share);
+  const left = (toGo * (1 - share)) / Math.max(metres, 1e-9);
+  const unbent = lerp(to.hinge, rotate(between(from.upperArm, next.upperArm), from.hinge), left);
+  return {
+    drawn: { ...next, hinge: normalise(addScaled(cross(next.upperArm, next.forearm), unbent, 0.1), to.hinge) },
+    way: share === 1 ? null : { ...way, goal, metres, left, speed },
+  };
+}
+
+/** The largest share in [0, 1] that does not exceed what is allowed; where every one does, the one that does so least. */
+function furthestWithin(excess: (share: number) => number): number {
+  if (excess(1) <= 0) return 1;
+  let best = { share: 0, excess: excess(0) };
+  for (let step = 1; step < waySteps; step++) {
+    const now = { share: step / waySteps, excess: excess(step / waySteps) };
+    if (now.excess <= 0 || now.excess < best.excess) best = now;
+  }
+  if (best.excess > 0) return best.share;
+  let [within, beyond] = [best.share, best.share + 1 / waySteps];
+  for (let halving = 0; halving < 6; halving++) {
+    const middle = (within + beyond) / 2;
+    if (excess(middle) <= 0) within = middle;
+    else beyond = middle;
+  }
+  return within;
 }
 
 /**

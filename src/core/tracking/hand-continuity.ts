@@ -15,18 +15,19 @@ export type ContinuedHand = Pose<'floor'> & {
   readonly seen: boolean;
   /** How much its place is known, in [0, 1]. 1: it is there; 0: it rests, a guess; between: on its way from one to the other. */
   readonly trust: number;
-  /** Present while it is not simply where it is seen or held. */
-  readonly way?: HandWay;
+  /** Where it belongs and since when. The place above is on its way there. */
+  readonly way: HandWay;
 };
 
-/** A way from where an arm is drawn to where its hand belongs. */
+/** Where a hand belongs: where it is seen, held for a moment, or rests. */
 export interface HandWay {
-  /** Where the hand is seen, or rests. */
   readonly goal: Pose<'floor'>;
-  /** The share of the way still to go: 1 at its beginning, 0 at the goal. */
-  readonly left: number;
-  /** When it began [s]; another time is another way. */
+  /** Whether that is the rest beside the hip, a guess. */
+  readonly rests: boolean;
+  /** When the hand was sent there [s]; another time is another way. */
   readonly since: number;
+  /** So long ago [s]. */
+  readonly age: number;
 }
 
 /** A tracking frame in which no hand is missing. */
@@ -52,16 +53,20 @@ interface Reach {
 }
 
 interface HandMemory {
+  /** When the hand was last sent to another place: lost for long enough, or seen again. */
+  since: number;
   /** As shown last. */
   shown: Reach;
   trust: number;
-  /** Where the loss began and when, and when the way to rest begins; null while seen. */
-  lost: { readonly from: Reach; readonly trust: number; readonly time: number; readonly departs: number } | null;
+  /** Where the loss began and when; null while seen. */
+  lost: { readonly from: Reach; readonly trust: number; readonly time: number } | null;
   /** What the return has to bridge: shown = seen + offset at `time`, floor frame, so that turning about does not fling it; null when bridged. */
   bridge: {
     readonly offset: Vec3;
     /** How far half-way it goes round the shoulder. */
     readonly detour: Vec3;
+    /** From the shoulder [m] where it began: it goes no further out than its ends. */
+    readonly distance: number;
     readonly turn: Quat;
     readonly trust: number;
     readonly seconds: number;
@@ -115,6 +120,8 @@ function detourAround(from: Vec3, to: Vec3, arm: number, outside: Vec3): Vec3 {
   return scale(normalise(addScaled(nearest, outside, 0.2 * missing), outside), missing);
 }
 
+const rests = ({ lost }: HandMemory, time: number): boolean => lost !== null && time >= lost.time + holdSeconds;
+
 /** One per avatar; frames in order of time. Before a hand was ever seen it rests. */
 export function createHandContinuity(calibration: () => Calibration): HandContinuity {
   const memories: Record<Side, HandMemory | null> = { left: null, right: null };
@@ -139,17 +146,17 @@ export function createHandContinuity(calibration: () => Calibration): HandContin
     const rest = reachOf(restingHand(side, headJoint, calibration()));
     const seen = tracked !== null && tracked.tracking === 'tracked';
     const memory = memories[side] ?? {
+      since: time,
       shown: rest,
       trust: seen ? 1 : 0,
-      lost: seen
-        ? null
-        : { from: rest, trust: 0, time: Number.NEGATIVE_INFINITY, departs: Number.NEGATIVE_INFINITY },
+      lost: seen ? null : { from: rest, trust: 0, time: Number.NEGATIVE_INFINITY },
       bridge: null,
     };
     memories[side] = memory;
-    let way: HandWay | null = null;
 
+    let goal: Pose<'floor'>;
     if (seen) {
+      goal = { position: tracked.position, orientation: tracked.orientation };
       const seenInBody = transformPose(invertTransform(floorFromBody), tracked);
       const now = reachOf(seenInBody);
       if (memory.lost) {
@@ -159,33 +166,34 @@ export function createHandContinuity(calibration: () => Calibration): HandContin
         memory.bridge = {
           offset: rotate(floorFromBody.orientation, offset),
           detour: rotate(floorFromBody.orientation, detour),
+          distance: memory.shown.distance,
           turn: multiply(conjugate(now.orientation), memory.shown.orientation),
           trust: memory.trust,
           seconds: Math.max(blendSeconds, (length(offset) + 3 * length(detour)) / easeSpeed),
           time,
         };
+        memory.since = time;
         memory.lost = null;
       }
       memory.shown = now;
       memory.trust = 1;
       if (memory.bridge) {
-        const { offset, detour, turn, trust, seconds, time: since } = memory.bridge;
+        const { offset, detour, distance, turn, trust, seconds, time: since } = memory.bridge;
         const missing = 1 - evenStep(0, seconds, time - since);
         if (missing <= 0) memory.bridge = null;
         memory.trust = 1 + (trust - 1) * missing;
-        way = { goal: { position: tracked.position, orientation: tracked.orientation }, left: missing, since };
         const aside = addScaled(scale(offset, missing), detour, 4 * missing * (1 - missing));
-        memory.shown = reachOf({
+        const passing = reachOf({
           position: add(seenInBody.position, rotate(conjugate(floorFromBody.orientation), aside)),
           orientation: multiply(now.orientation, slerp(identity, turn, missing)),
         });
+        memory.shown = { ...passing, distance: Math.min(passing.distance, Math.max(distance, now.distance)) };
       }
-      if (!memory.bridge) return { position: tracked.position, orientation: tracked.orientation, seen, trust: 1 };
     } else {
-      // Who was on the way back turns round at once; else the hand is held first.
-      const departs = memory.bridge ? time : time + holdSeconds;
+      // On its way back it stops, elsewhere than where it was to go.
+      if (memory.bridge) memory.since = time;
       memory.bridge = null;
-      memory.lost ??= { from: memory.shown, trust: memory.trust, time, departs };
+      memory.lost ??= { from: memory.shown, trust: memory.trust, time };
       const { from, trust, time: since } = memory.lost;
       const arc = directionArc(from.direction, rest.direction, outside);
       const metres = arc.angle * Math.max(from.distance, rest.distance) + Math.abs(from.distance - rest.distance);
@@ -197,17 +205,18 @@ export function createHandContinuity(calibration: () => Calibration): HandContin
         distance: from.distance + (rest.distance - from.distance) * share,
         orientation: slerp(from.orientation, rest.orientation, share),
       };
-      if (time > memory.lost.departs || share > 0) {
-        const goal = transformPose(floorFromBody, {
-          position: add(shoulder, placeOf(rest)),
-          orientation: rest.orientation,
-        });
-        way = { goal, left: 1 - share, since: memory.lost.departs };
-      }
+      if (time >= since + holdSeconds) memory.since = Math.max(memory.since, since + holdSeconds);
+      const belongs = rests(memory, time) ? rest : from;
+      goal = transformPose(floorFromBody, {
+        position: add(shoulder, placeOf(belongs)),
+        orientation: belongs.orientation,
+      });
     }
+    const way = { goal, rests: rests(memory, time), since: memory.since, age: time - memory.since };
+    if (seen && !memory.bridge) return { ...goal, seen, trust: 1, way };
     const { orientation } = memory.shown;
     const pose = transformPose(floorFromBody, { position: add(shoulder, placeOf(memory.shown)), orientation });
-    return { ...pose, seen, trust: memory.trust, ...(way && { way }) };
+    return { ...pose, seen, trust: memory.trust, way };
   }
 
   return {
