@@ -94,8 +94,8 @@ interface ElbowAndWrist {
 interface ArmWay {
   /** Where elbow and wrist belonged in the frame before, floor frame; null: it sets out. */
   readonly goal: ElbowAndWrist | null;
-  /** Takes at least so long [s]. */
-  readonly shortest: number;
+  /** To rest, rather than back to a hand that is seen. */
+  readonly rests: boolean;
   /** The furthest that it was away, and how far it is of that. */
   readonly metres: number;
   readonly left: number;
@@ -368,7 +368,7 @@ function placeShoulders(
 
 /** An arm takes at least so long [s] to rest and back, and goes at most this fast [m/s]: 3.75 cm in a frame at 60 Hz. */
 const [restSeconds, returnSeconds] = [0.3, 0.2];
-const waySpeed = 2.25;
+const [restSpeed, returnSpeed] = [1.7, 2.25];
 /** The share of the shortest time in which it gets up to its speed, and down from it. */
 const wayRamp = 0.2;
 /** A way is measured in so many steps. */
@@ -404,8 +404,7 @@ function placeArm(
   const toChest = conjugate(floorFromChest);
   const sent = wrist.way;
   const departs = sent !== undefined && before !== null && before.since !== sent.since;
-  const setOut: ArmWay | null =
-    departs && before ? { goal: null, shortest: sent.rests ? restSeconds : returnSeconds, ...stillness } : null;
+  const setOut: ArmWay | null = departs && before ? { goal: null, rests: sent.rests, ...stillness } : null;
   const way = setOut ?? before?.way ?? null;
   const left = way?.left ?? 0;
   const target = sent
@@ -500,8 +499,9 @@ function approach(
   const toGo = Math.max(metresOf('elbow'), metresOf('wrist'));
 
   const metres = Math.max(way.metres, toGo);
-  const top = Math.min(waySpeed, metres / (way.shortest * (1 - wayRamp)));
-  const acceleration = top / (way.shortest * wayRamp);
+  const [shortest, fastest] = way.rests ? [restSeconds, restSpeed] : [returnSeconds, returnSpeed];
+  const top = Math.min(fastest, metres / (shortest * (1 - wayRamp)));
+  const acceleration = top / (shortest * wayRamp);
   const speed = Math.min(way.speed + acceleration * deltaSeconds, top, Math.sqrt(2 * acceleration * toGo));
 
   const goal = jointsOf(to);
@@ -511,7 +511,10 @@ function approach(
     beyond + (way.goal ? distance(way.goal.wrist, goal.wrist) : distance(before.joints.wrist, carried.wrist));
   const elbowWay =
     beyond + (way.goal ? distance(way.goal.elbow, goal.elbow) : distance(before.joints.elbow, carried.elbow));
-  const limits = { wrist: wristWay, elbow: Math.min(elbowWay, wristWay) };
+  const limits = {
+    wrist: wristWay,
+    elbow: Math.min(elbowWay, beyond + (1 - 0.5 * smoothstep(0.1, 0.5, toGo)) * (wristWay - beyond)),
+  };
   /** By how much [m] this share of the way would be too far for one frame. */
   const excess = (share: number): number => {
     const place = jointsOf(at(share));
