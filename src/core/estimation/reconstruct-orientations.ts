@@ -436,7 +436,9 @@ function placeArm(
     return { elbow, wrist: addScaled(elbow, rotate(floorFromChest, fore), forearm) };
   };
   const { drawn, way: onward } =
-    way && before ? approach(sigma, before, belongs, way, jointsOf, deltaSeconds) : { drawn: belongs, way: null };
+    way && before
+      ? approach(sigma, before, belongs, way, sent?.age ?? Number.POSITIVE_INFINITY, jointsOf, deltaSeconds)
+      : { drawn: belongs, way: null };
 
   const along = vec3(sigma, 0, 0);
   const inFloor = (bone: Vec3): Quat =>
@@ -480,6 +482,7 @@ function approach(
   before: ArmMemory,
   to: DrawnArm,
   way: ArmWay,
+  age: number,
   jointsOf: (bones: Bones) => ElbowAndWrist,
   deltaSeconds: number,
 ): { readonly drawn: DrawnArm; readonly way: ArmWay | null } {
@@ -524,13 +527,14 @@ function approach(
     );
   };
   const share = furthestWithin(excess);
-  if (share === 1 && toGo <= beyond + 1e-6) return { drawn: to, way: null };
+  // As long as a return takes, an arm that is there already keeps from snapping straight.
+  if (share === 1 && toGo <= beyond + 1e-6 && age >= shortest) return { drawn: to, way: null };
   const next = at(share);
   const left = (toGo * (1 - share)) / Math.max(metres, 1e-9);
   const unbent = lerp(to.hinge, rotate(between(from.upperArm, next.upperArm), from.hinge), left);
   return {
     drawn: { ...next, hinge: normalise(addScaled(cross(next.upperArm, next.forearm), unbent, 0.1), to.hinge) },
-    way: share === 1 ? null : { ...way, goal, metres, left, speed },
+    way: { ...way, goal, metres, left, speed },
   };
 }
 
