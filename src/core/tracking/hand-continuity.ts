@@ -43,7 +43,7 @@ const holdSeconds = 0.1;
 const easeSeconds = 0.3;
 const blendSeconds = 0.2;
 /** Mean speed [m/s] of a returning or sinking hand on long ways; a quarter faster at most: 3.9 cm in a frame at 60 Hz. */
-const easeSpeed = 1.8;
+const [easeSpeed, returnSpeed] = [1.8, 2.3];
 
 /** A hand about its shoulder, body frame: which way, how far [m], and how it is turned. */
 interface Reach {
@@ -169,7 +169,7 @@ export function createHandContinuity(calibration: () => Calibration): HandContin
           distance: memory.shown.distance,
           turn: multiply(conjugate(now.orientation), memory.shown.orientation),
           trust: memory.trust,
-          seconds: Math.max(blendSeconds, (length(offset) + 3 * length(detour)) / easeSpeed),
+          seconds: Math.max(blendSeconds, (length(offset) + 3 * length(detour)) / returnSpeed),
           time,
         };
         memory.since = time;
