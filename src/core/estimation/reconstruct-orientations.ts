@@ -76,7 +76,7 @@ export interface ArmMemory {
   readonly way: ArmWay | null;
 }
 
-/** The directions of an arm's bones, unit, and of the elbow's hinge. */
+/** The directions of an arm's bones, unit, and of the elbow's hinge, floor frame: who whirls about does not fling an arm on its way. */
 interface DrawnArm {
   readonly upperArm: Vec3;
   readonly forearm: Vec3;
@@ -108,16 +108,23 @@ export interface ReconstructionMemory {
   right: ArmMemory | null;
   /** From the left to the right shoulder, unit, floor frame. */
   shoulderLine: Vec3 | null;
-  /** By how much [m] the hands were out of reach when they were last seen. */
-  readonly missing: Record<Side, number>;
+  /** By how much [m] the trunk went after each hand, now and when it was last seen. */
+  readonly pull: Record<Side, number>;
+  readonly seenPull: Record<Side, number>;
+  /** Where the trunk's joints were estimated about the head joint, floor axes; null: nowhere yet. */
+  trunk: TrunkJoints | null;
 }
 
 export const emptyMemory = (): ReconstructionMemory => ({
   left: null,
   right: null,
   shoulderLine: null,
-  missing: { left: 0, right: 0 },
+  pull: { left: 0, right: 0 },
+  seenPull: { left: 0, right: 0 },
+  trunk: null,
 });
+
+type TrunkJoints = Pick<JointPositions, 'leftUpperArm' | 'rightUpperArm' | 'chest' | 'hips'>;
 
 interface TrunkLimits {
   /** How far the collarbone swings from rest [rad]. */
@@ -155,6 +162,11 @@ const vagueLineHalfLife = 0.15;
 /** Shoulders nearer to each other than this say nothing, further apart than that all [share of their distance at rest]. */
 const [vagueShoulders, sureShoulders] = [0.2, 0.7];
 
+/** Estimated hips, chest and shoulders move about the head at most this fast [m/s]; 999 of 1000 frames of the motion trained on are slower. */
+const trunkJointSpeed = 2.5;
+/** The trunk goes after a hand that is lost or on its way back at most this fast [m/s]. */
+const pullSpeed = 1.5;
+
 /** The shoulders' line of this frame from the way between their targets. */
 type LineFollower = (between: Vec3, fallback: Vec3) => Vec3;
 
@@ -184,16 +196,22 @@ export function reconstructOrientations(
   const followLine = lineFollower(skeleton, memory.shoulderLine, deltaSeconds);
 
   // The trunk leans and turns after hands that the arms alone cannot reach. Overshoot: collarbone and neck take part of the way.
-  let shoulderTargets = { left: estimate.joints.leftUpperArm, right: estimate.joints.rightUpperArm };
-  let torso = placeTorso(head, headJoint, shoulderTargets, estimate.joints, skeleton, anatomy, followLine);
+  const trunk = steadyTrunk(estimate.joints, headJoint, memory, deltaSeconds);
+  let shoulderTargets = { left: trunk.leftUpperArm, right: trunk.rightUpperArm };
+  let torso = placeTorso(head, headJoint, shoulderTargets, trunk, skeleton, anatomy, followLine);
   let shoulders = placeShoulders(torso, shoulderTargets, skeleton, anatomy);
-  // A guessed hand does not bend the trunk: what it is out of reach by stays so, as far as the hand is not trusted.
+  // A guessed hand does not bend the trunk, one that comes back only little by little.
   const outOfReach = (side: Side): number => {
-    const { position, trust = 1, seen = true } = wristOf(estimate, side);
+    const { position, trust = 1, seen = true, way } = wristOf(estimate, side);
     const missing = Math.max(distance(position, shoulders[side].position) - reach, 0);
-    if (!seen) return Math.max(missing - trust * memory.missing[side], 0);
-    memory.missing[side] = trust * missing;
-    return (1 - trust) * missing;
+    const wanted = seen ? missing : Math.min(missing, trust * memory.seenPull[side]);
+    const most = pullSpeed * Math.max(deltaSeconds, 0);
+    const before = memory.pull[side];
+    const free = memory[side] === null || (seen && memory[side]?.way === null && trust === 1 && !way?.rests);
+    const pull = free ? wanted : clamp(wanted, before - most, before + most);
+    memory.pull[side] = pull;
+    if (seen) memory.seenPull[side] = pull;
+    return missing - pull;
   };
   const given = { left: outOfReach('left'), right: outOfReach('right') };
   for (let pass = 0; pass < reachPasses; pass++) {
@@ -210,7 +228,7 @@ export function reconstructOrientations(
       left: left ? add(shoulderTargets.left, left) : shoulderTargets.left,
       right: rightPull ? add(shoulderTargets.right, rightPull) : shoulderTargets.right,
     };
-    torso = placeTorso(head, headJoint, shoulderTargets, estimate.joints, skeleton, limits, followLine);
+    torso = placeTorso(head, headJoint, shoulderTargets, trunk, skeleton, limits, followLine);
     shoulders = placeShoulders(torso, shoulderTargets, skeleton, limits);
   }
 
@@ -237,6 +255,36 @@ export function reconstructOrientations(
     rightHand: local(rightArm.lowerArm, rightArm.hand),
   };
   return { hipsPosition: torso.hips, localRotations };
+}
+
+/** The trunk's joints as estimated, but about the head no faster than a body moves: a head on its side changes its heading at once. */
+function steadyTrunk(
+  { leftUpperArm, rightUpperArm, chest, hips }: JointPositions,
+  headJoint: Vec3,
+  memory: ReconstructionMemory,
+  deltaSeconds: number,
+): TrunkJoints {
+  const before = memory.trunk;
+  const most = trunkJointSpeed * Math.max(deltaSeconds, 0);
+  const follow = (joint: keyof TrunkJoints, estimated: Vec3): Vec3 => {
+    const now = subtract(estimated, headJoint);
+    if (!before) return now;
+    const way = subtract(now, before[joint]);
+    return length(way) <= most ? now : addScaled(before[joint], normalise(way), most);
+  };
+  const about = {
+    leftUpperArm: follow('leftUpperArm', leftUpperArm),
+    rightUpperArm: follow('rightUpperArm', rightUpperArm),
+    chest: follow('chest', chest),
+    hips: follow('hips', hips),
+  };
+  memory.trunk = about;
+  return {
+    leftUpperArm: add(headJoint, about.leftUpperArm),
+    rightUpperArm: add(headJoint, about.rightUpperArm),
+    chest: add(headJoint, about.chest),
+    hips: add(headJoint, about.hips),
+  };
 }
 
 const reachPasses = 32;
@@ -272,7 +320,7 @@ function placeTorso(
   head: Pose<'floor'>,
   headJoint: Vec3,
   shoulderTargets: { readonly left: Vec3; readonly right: Vec3 },
-  joints: JointPositions,
+  joints: TrunkJoints,
   { restOffsets }: Skeleton,
   limits: TrunkLimits,
   followLine: LineFollower,
@@ -426,25 +474,32 @@ function placeArm(
   );
   const solution = solve(pole);
   const belongs: DrawnArm = {
-    upperArm: rotate(toChest, normalise(subtract(solution.elbow, shoulder.position))),
-    forearm: rotate(toChest, normalise(subtract(target, solution.elbow))),
+    upperArm: normalise(subtract(solution.elbow, shoulder.position)),
+    forearm: normalise(subtract(target, solution.elbow)),
     // The plane of shoulder, elbow and wrist: its normal is the elbow's hinge, +Y at rest on the right, −Y on the left.
-    hinge: rotate(toChest, cross(solution.pole, solution.axis)),
+    hinge: cross(solution.pole, solution.axis),
   };
   const jointsOf = ({ upperArm: upper, forearm: fore }: Bones): ElbowAndWrist => {
-    const elbow = addScaled(shoulder.position, rotate(floorFromChest, upper), upperArm);
-    return { elbow, wrist: addScaled(elbow, rotate(floorFromChest, fore), forearm) };
+    const elbow = addScaled(shoulder.position, upper, upperArm);
+    return { elbow, wrist: addScaled(elbow, fore, forearm) };
   };
   const { drawn, way: onward } =
     way && before
-      ? approach(sigma, before, belongs, way, sent?.age ?? Number.POSITIVE_INFINITY, jointsOf, deltaSeconds)
+      ? approach(
+          before,
+          belongs,
+          way,
+          sent?.age ?? Number.POSITIVE_INFINITY,
+          rotate(floorFromChest, normalise(vec3(sigma, -0.2, -1))),
+          jointsOf,
+          deltaSeconds,
+        )
       : { drawn: belongs, way: null };
 
   const along = vec3(sigma, 0, 0);
-  const inFloor = (bone: Vec3): Quat =>
-    multiply(floorFromChest, alignDirections(along, vec3(0, sigma, 0), bone, drawn.hinge));
-  const upperArmRotation = inFloor(drawn.upperArm);
-  const untwisted = inFloor(drawn.forearm);
+  const turnOf = (bone: Vec3): Quat => alignDirections(along, vec3(0, sigma, 0), bone, drawn.hinge);
+  const upperArmRotation = turnOf(drawn.upperArm);
+  const untwisted = turnOf(drawn.forearm);
 
   // The hand follows the tracked wrist; the forearm takes half of its turn, so that no wrist is wrung.
   const hand = multiply(wrist.orientation, wristFromHandBone[side]);
@@ -478,16 +533,15 @@ function placeArm(
  * wrist goes further than the hand's goal itself went in this frame and what the way's speed allows beyond that.
  */
 function approach(
-  sigma: number,
   before: ArmMemory,
   to: DrawnArm,
   way: ArmWay,
   age: number,
+  outside: Vec3,
   jointsOf: (bones: Bones) => ElbowAndWrist,
   deltaSeconds: number,
 ): { readonly drawn: DrawnArm; readonly way: ArmWay | null } {
   const from = before.drawn;
-  const outside = normalise(vec3(sigma, -0.2, -1));
   const arcs = {
     upperArm: directionArc(from.upperArm, to.upperArm, outside),
     forearm: directionArc(from.forearm, to.forearm, outside),
