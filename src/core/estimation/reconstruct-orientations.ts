@@ -108,9 +108,8 @@ export interface ReconstructionMemory {
   right: ArmMemory | null;
   /** From the left to the right shoulder, unit, floor frame. */
   shoulderLine: Vec3 | null;
-  /** By how much [m] the trunk went after each hand, now and when it was last seen. */
-  readonly pull: Record<Side, number>;
-  readonly seenPull: Record<Side, number>;
+  /** By how much [m] the hands were out of reach when they were last seen. */
+  readonly missing: Record<Side, number>;
   /** Where the trunk's joints were estimated about the head joint, floor axes; null: nowhere yet. */
   trunk: TrunkJoints | null;
 }
@@ -119,8 +118,7 @@ export const emptyMemory = (): ReconstructionMemory => ({
   left: null,
   right: null,
   shoulderLine: null,
-  pull: { left: 0, right: 0 },
-  seenPull: { left: 0, right: 0 },
+  missing: { left: 0, right: 0 },
   trunk: null,
 });
 
@@ -164,8 +162,10 @@ const [vagueShoulders, sureShoulders] = [0.2, 0.7];
 
 /** Estimated hips, chest and shoulders move about the head at most this fast [m/s]; 999 of 1000 frames of the motion trained on are slower. */
 const trunkJointSpeed = 2.5;
-/** The trunk goes after a hand that is lost or on its way back at most this fast [m/s]. */
-const pullSpeed = 1.5;
+/** The same where the head lies on its side, so that its heading says nothing of the body's. */
+const vagueTrunkSpeed = 0.6;
+/** The horizontal part of the head's right axis at which its heading begins to say something, and says all. */
+const [vagueHead, sureHead] = [0.35, 0.7];
 
 /** The shoulders' line of this frame from the way between their targets. */
 type LineFollower = (between: Vec3, fallback: Vec3) => Vec3;
@@ -196,22 +196,17 @@ export function reconstructOrientations(
   const followLine = lineFollower(skeleton, memory.shoulderLine, deltaSeconds);
 
   // The trunk leans and turns after hands that the arms alone cannot reach. Overshoot: collarbone and neck take part of the way.
-  const trunk = steadyTrunk(estimate.joints, headJoint, memory, deltaSeconds);
+  const trunk = steadyTrunk(estimate.joints, head, headJoint, memory, deltaSeconds);
   let shoulderTargets = { left: trunk.leftUpperArm, right: trunk.rightUpperArm };
   let torso = placeTorso(head, headJoint, shoulderTargets, trunk, skeleton, anatomy, followLine);
   let shoulders = placeShoulders(torso, shoulderTargets, skeleton, anatomy);
-  // A guessed hand does not bend the trunk, one that comes back only little by little.
+  // A guessed hand does not bend the trunk: what it is out of reach by stays so, as far as the hand is not trusted.
   const outOfReach = (side: Side): number => {
-    const { position, trust = 1, seen = true, way } = wristOf(estimate, side);
+    const { position, trust = 1, seen = true } = wristOf(estimate, side);
     const missing = Math.max(distance(position, shoulders[side].position) - reach, 0);
-    const wanted = seen ? missing : Math.min(missing, trust * memory.seenPull[side]);
-    const most = pullSpeed * Math.max(deltaSeconds, 0);
-    const before = memory.pull[side];
-    const free = memory[side] === null || (seen && memory[side]?.way === null && trust === 1 && !way?.rests);
-    const pull = free ? wanted : clamp(wanted, before - most, before + most);
-    memory.pull[side] = pull;
-    if (seen) memory.seenPull[side] = pull;
-    return missing - pull;
+    if (!seen) return Math.max(missing - trust * memory.missing[side], 0);
+    memory.missing[side] = trust * missing;
+    return (1 - trust) * missing;
   };
   const given = { left: outOfReach('left'), right: outOfReach('right') };
   for (let pass = 0; pass < reachPasses; pass++) {
@@ -260,12 +255,15 @@ export function reconstructOrientations(
 /** The trunk's joints as estimated, but about the head no faster than a body moves: a head on its side changes its heading at once. */
 function steadyTrunk(
   { leftUpperArm, rightUpperArm, chest, hips }: JointPositions,
+  head: Pose<'floor'>,
   headJoint: Vec3,
   memory: ReconstructionMemory,
   deltaSeconds: number,
 ): TrunkJoints {
   const before = memory.trunk;
-  const most = trunkJointSpeed * Math.max(deltaSeconds, 0);
+  const side = rotate(head.orientation, right);
+  const defined = smoothstep(vagueHead, sureHead, Math.hypot(side.x, side.z));
+  const most = (vagueTrunkSpeed + (trunkJointSpeed - vagueTrunkSpeed) * defined) * Math.max(deltaSeconds, 0);
   const follow = (joint: keyof TrunkJoints, estimated: Vec3): Vec3 => {
     const now = subtract(estimated, headJoint);
     if (!before) return now;
