@@ -568,7 +568,7 @@ function approach(
     beyond + (way.goal ? distance(way.goal.elbow, goal.elbow) : distance(before.joints.elbow, carried.elbow));
   const limits = {
     wrist: wristWay,
-    elbow: Math.min(elbowWay, beyond + (1 - 0.5 * smoothstep(0.1, 0.5, toGo)) * (wristWay - beyond)),
+    elbow: Math.min(elbowWay, beyond + (1 - 0.6 * smoothstep(0.15, 0.6, metres)) * (wristWay - beyond)),
   };
   /** By how much [m] this share of the way would be too far for one frame. */
   const excess = (share: number): number => {
