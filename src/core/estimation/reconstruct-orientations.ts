@@ -412,7 +412,7 @@ function placeShoulders(
   return { left: place('left'), right: place('right') };
 }
 
-/** An arm takes at least so long [s] to rest and back, and goes at most this fast [m/s]: 3.75 cm in a frame at 60 Hz. */
+/** An arm takes about so long [s] to rest and back at least, and goes at most this fast [m/s]: 2.8 and 3.75 cm in a frame at 60 Hz. */
 const [restSeconds, returnSeconds] = [0.3, 0.2];
 const [restSpeed, returnSpeed] = [1.7, 2.25];
 /** The share of the shortest time in which it gets up to its speed, and down from it. */

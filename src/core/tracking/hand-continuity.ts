@@ -42,7 +42,7 @@ export interface ContinuedFrame {
 const holdSeconds = 0.1;
 const easeSeconds = 0.3;
 const blendSeconds = 0.2;
-/** Mean speed [m/s] of a returning or sinking hand on long ways; a quarter faster at most: 3.9 cm in a frame at 60 Hz. */
+/** Mean speed [m/s] of a sinking and a returning hand on long ways; a quarter faster at most: 3.75 and 4.8 cm in a frame at 60 Hz. */
 const [easeSpeed, returnSpeed] = [1.8, 2.3];
 
 /** A hand about its shoulder, body frame: which way, how far [m], and how it is turned. */
@@ -120,6 +120,7 @@ function detourAround(from: Vec3, to: Vec3, arm: number, outside: Vec3): Vec3 {
   return scale(normalise(addScaled(nearest, outside, 0.2 * missing), outside), missing);
 }
 
+/** Whether the hand was missed for longer than it is held. */
 const rests = ({ lost }: HandMemory, time: number): boolean => lost !== null && time >= lost.time + holdSeconds;
 
 /** One per avatar; frames in order of time. Before a hand was ever seen it rests. */
