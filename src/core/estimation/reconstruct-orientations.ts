@@ -487,6 +487,7 @@ function placeArm(
           before,
           belongs,
           way,
+          sent?.goal.position ?? target,
           sent?.age ?? Number.POSITIVE_INFINITY,
           rotate(floorFromChest, normalise(vec3(sigma, -0.2, -1))),
           jointsOf,
@@ -534,6 +535,7 @@ function approach(
   before: ArmMemory,
   to: DrawnArm,
   way: ArmWay,
+  place: Vec3,
   age: number,
   outside: Vec3,
   jointsOf: (bones: Bones) => ElbowAndWrist,
@@ -550,7 +552,7 @@ function approach(
   });
   const places = Array.from({ length: waySteps + 1 }, (_, step) => jointsOf(at(step / waySteps)));
   const metresOf = (joint: keyof ElbowAndWrist): number =>
-    places.reduce((sum, place, step) => sum + distance(place[joint], (places[step - 1] ?? place)[joint]), 0);
+    places.reduce((sum, next, step) => sum + distance(next[joint], (places[step - 1] ?? next)[joint]), 0);
   const toGo = Math.max(metresOf('elbow'), metresOf('wrist'));
 
   const metres = Math.max(way.metres, toGo);
@@ -559,7 +561,8 @@ function approach(
   const acceleration = top / (shortest * wayRamp);
   const speed = Math.min(way.speed + acceleration * deltaSeconds, top, Math.sqrt(2 * acceleration * toGo));
 
-  const goal = jointsOf(to);
+  // What the hand itself went, not what an arm that does not reach it goes with its shoulder.
+  const goal = { elbow: jointsOf(to).elbow, wrist: place };
   const beyond = speed * Math.max(deltaSeconds, 0);
   const carried = places[0] ?? before.joints;
   const wristWay =
@@ -572,10 +575,10 @@ function approach(
   };
   /** By how much [m] this share of the way would be too far for one frame. */
   const excess = (share: number): number => {
-    const place = jointsOf(at(share));
+    const next = jointsOf(at(share));
     return Math.max(
-      distance(before.joints.elbow, place.elbow) - limits.elbow,
-      distance(before.joints.wrist, place.wrist) - limits.wrist,
+      distance(before.joints.elbow, next.elbow) - limits.elbow,
+      distance(before.joints.wrist, next.wrist) - limits.wrist,
     );
   };
   const share = furthestWithin(excess);
