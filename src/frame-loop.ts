@@ -74,10 +74,9 @@ export function withTiming(regressor: PoseRegressor, timing: FrameTiming): PoseR
     async run(features) {
       timing.mark('features');
       const running = regressor.run(features);
-      if (!regressor.resolvesInFrame) {
-        timing.mark('inference');
-        return running;
-      }
+      // What it does before its first wait is over here; whoever called goes on before anything is awaited.
+      timing.mark('inference');
+      if (!regressor.resolvesInFrame) return running;
       const output = await running;
       timing.mark('inference');
       return output;

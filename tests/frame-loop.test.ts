@@ -1,8 +1,9 @@
 import { describe, expect, test } from 'vitest';
 import type { AvatarPose } from '../src/core/body/avatar-pose';
 import type { PoseEstimator } from '../src/core/estimation/pose-estimator';
+import type { PoseRegressor } from '../src/core/estimation/pose-regressor';
 import type { TrackingFrame } from '../src/core/tracking/tracking-frame';
-import { createFrameLoop, type FrameParts } from '../src/frame-loop';
+import { createFrameLoop, type FrameParts, withTiming } from '../src/frame-loop';
 import { createFrameTiming } from '../src/frame-timing';
 
 const head = {
@@ -89,4 +90,35 @@ describe('one frame', () => {
     await loop(1);
     expect(calls.at(-1)).toBe('render');
   });
+});
+
+test("what a run does before it first waits is inference, not the caller's features", async () => {
+  let now = 0;
+  const timing = createFrameTiming(() => now);
+  const regressor = withTiming(
+    {
+      contract: {} as PoseRegressor['contract'],
+      provider: 'wasm',
+      resolvesInFrame: true,
+      async run(features) {
+        now += 2;
+        await Promise.resolve();
+        now += 3;
+        return features;
+      },
+      dispose: () => Promise.resolve(),
+    },
+    timing,
+  );
+  const { parts } = observedParts();
+  const estimator: PoseEstimator = {
+    ...parts.estimator(),
+    async prepare() {
+      now += 1;
+      await regressor.run(new Float32Array(1));
+    },
+  };
+  await createFrameLoop({ ...parts, estimator: () => estimator }, timing)(0);
+  const { features, inference } = timing.summary().stages;
+  expect([features.p50Ms, inference.p50Ms]).toEqual([1, 5]);
 });
