@@ -119,8 +119,9 @@ export function goOn(
     );
   };
   const share = furthestWithin(excess);
-  // As long as a return takes, an arm that is there already keeps from snapping straight.
-  if (share === 1 && toGo <= beyond + 1e-6 && sent.age >= shortestOf(way)) return { drawn: to, way: null };
+  // There for a second frame, so that nothing softens its reach any more; but no sooner than a return takes, lest it snap straight. How far
+  // it went there does not tell: an arm that keeps up with a quick hand goes as far in every frame.
+  if (share === 1 && way.left === 0 && sent.age >= shortestOf(way)) return { drawn: to, way: null };
   const next = at(share);
   const left = (toGo * (1 - share)) / Math.max(metres, 1e-9);
   const unbent = lerp(to.hinge, rotate(between(before.drawn.upperArm, next.upperArm), before.drawn.hinge), left);

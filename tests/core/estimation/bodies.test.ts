@@ -327,6 +327,35 @@ describe('a hand that is lost', () => {
     );
   });
 
+  test('is back for good once it is back: then a body that whirls about leaves it on its controller', () => {
+    const whirl = fc.record({
+      metres: number(0.05, 0.12),
+      rate: number(8, 16),
+      at: number(0.7, 1.5),
+      turn: number(-3, 3),
+    });
+    fc.assert(
+      fc.property(whirl, ({ metres, rate, at: whirlAt, turn }) => {
+        const estimator = createEstimator('ik', calibration);
+        for (let i = 0; i < 180; i++) {
+          const back = (i - 26) / 60;
+          // The hand draws circles all the while, so that its arm is never at rest.
+          const circle = vec3(Math.sin((rate * i) / 60) * metres, Math.cos((rate * i) / 60) * metres, 0);
+          const hand = add(vec3(0.18, 1.25, -0.3), circle);
+          const frame = { ...standing(calibration, hip.left, hand), time: i / 60 };
+          const yaw = turn * Math.min(Math.max((back - whirlAt) / 0.15, 0), 1);
+          const head: TrackedPose = { ...frame.head, orientation: fromEulerYxz(vec3(0, yaw, 0)) };
+          const lost = i >= 20 && back < 0;
+          const { body } = estimator.estimate({ ...frame, head, rightHand: lost ? null : frame.rightHand });
+          if (back < 0.7) continue;
+          const joints = forwardKinematics(skeleton, body!);
+          expect(distance(at(joints, 'rightHand'), hand)).toBeLessThan(1e-4);
+        }
+      }),
+      { seed, numRuns: 60 },
+    );
+  });
+
   test('a pause begins anew: nothing of the arm before it is left', () => {
     const person = movingPerson(7, calibration, { x: 1, z: -2, yaw: 2 });
     const [used, fresh] = [createEstimator('ik', calibration), createEstimator('ik', calibration)];
