@@ -1,4 +1,4 @@
-import { smoothstep } from '../math/damper';
+import { clamp, smoothstep } from '../math/damper';
 import { between, rotate } from '../math/quat';
 import { addScaled, cross, distance, lerp, normalise, subtract, type Vec3 } from '../math/vec3';
 import type { HandWay } from '../tracking/hand-continuity';
@@ -55,6 +55,8 @@ const [restSeconds, returnSeconds] = [0.3, 0.2];
 const [restSpeed, returnSpeed] = [1.7, 2.25];
 /** The share of the shortest time in which it gets up to its speed, and down from it. */
 const wayRamp = 0.2;
+/** So long [s] after a hand is seen again its arm begins to hurry, if it is not there yet as 99 of 100 are, and is there at the latest. */
+const [hurrySeconds, latestSeconds] = [0.5, 0.8];
 /** A way is measured in so many steps. */
 const waySteps = 8;
 /** Ways longer than the first [m] begin to hold back the elbow of a hand that hurries on; from the second on it goes this share of its way less. */
@@ -106,7 +108,7 @@ export function goOn(
   const toGo = furthestWay(arm, at);
   const metres = Math.max(way.metres, toGo);
   const speed = speedOf(way, metres, toGo, deltaSeconds);
-  const beyond = speed * Math.max(deltaSeconds, 0);
+  const beyond = speed * Math.max(deltaSeconds, 0) + hurryOf(way, metres, sent.age);
   // What the hand itself went, not what an arm that does not reach it goes with its shoulder.
   const goal = { elbow: jointsOf(arm, to).elbow, wrist: sent.goal.position };
   const limits = limitsOf(before, way, goal, jointsOf(arm, at(0)), metres, beyond);
@@ -159,6 +161,12 @@ function speedOf(way: ArmWay, metres: number, toGo: number, deltaSeconds: number
   return Math.min(way.speed + acceleration * deltaSeconds, top, Math.sqrt(2 * acceleration * toGo));
 }
 
+/** How much further [m] a hand may go in a frame that has been seen again for this long [s]: at last as far as it likes. */
+function hurryOf({ rests }: ArmWay, metres: number, age: number): number {
+  const late = rests ? 0 : clamp((age - hurrySeconds) / (latestSeconds - hurrySeconds), 0, 1);
+  return (Math.max(metres, 1e-9) * late ** 2) / (1 - late);
+}
+
 /** How far [m] elbow and wrist may go in this frame: as far as the goal went and so far beyond it, the elbow on long ways less. */
 function limitsOf(
   before: ArmCourse,
@@ -170,9 +178,9 @@ function limitsOf(
 ): Readonly<Record<keyof ElbowAndWrist, number>> {
   const went = (joint: keyof ElbowAndWrist): number =>
     way.goal ? distance(way.goal[joint], goal[joint]) : distance(before.joints[joint], carried[joint]);
-  const wrist = beyond + went('wrist');
+  const wrist = went('wrist');
   const behind = 1 - heldShare * smoothstep(freeElbow, heldElbow, metres);
-  return { wrist, elbow: Math.min(beyond + went('elbow'), beyond + behind * (wrist - beyond)) };
+  return { wrist: beyond + wrist, elbow: beyond + Math.min(went('elbow'), behind * wrist) };
 }
 
 /** The largest share in [0, 1] that does not exceed what is allowed; where every one does, the one that does so least. */

@@ -18,6 +18,7 @@ import {
   rotate,
   twistAngle,
 } from '../../../src/core/math/quat';
+import { nextRandom } from '../../../src/core/math/random';
 import {
   add,
   addScaled,
@@ -32,6 +33,7 @@ import {
   type Vec3,
   vec3,
 } from '../../../src/core/math/vec3';
+import { createHandContinuity } from '../../../src/core/tracking/hand-continuity';
 import type { TrackedPose, TrackingFrame } from '../../../src/core/tracking/tracking-frame';
 import { number, seed, standpoint } from '../arbitraries';
 import { movingPerson, standing, wristOrientation } from './moving-person';
@@ -353,6 +355,39 @@ describe('a hand that is lost', () => {
         }
       }),
       { seed, numRuns: 60 },
+    );
+  });
+
+  test('is on its controller 0.9 s after it is seen again, however wildly its elbow and the trunk are estimated', () => {
+    const upright = bodyOf(standing(calibration, hip.left, ahead.right));
+    const place = fc.record({ x: number(-0.1, 0.35), y: number(1.1, 1.5), z: number(-0.35, -0.15) });
+    const scatter = fc.tuple(fc.integer(), number(0.02, 0.3), place);
+    fc.assert(
+      fc.property(scatter, ([start, metres, hand]) => {
+        const continuity = createHandContinuity(() => calibration);
+        const memory = emptyMemory();
+        let random = { seed: start };
+        const near = (position: Vec3): Vec3 => {
+          const aside = [0, 0, 0].map(() => {
+            const { value, state } = nextRandom(random);
+            random = state;
+            return metres * (2 * value - 1);
+          });
+          return add(position, vec3(aside[0]!, aside[1]!, aside[2]!));
+        };
+        for (let i = 0; i < 120; i++) {
+          const seen = i < 20 || i >= 50;
+          const frame = { ...standing(calibration, hip.left, hand as Vec3), time: i / 60 };
+          const joints = Object.fromEntries(
+            estimatedJoints.map((joint) => [joint, near(at(upright, joint))]),
+          ) as JointPositions;
+          const continued = continuity.follow(seen ? frame : { ...frame, rightHand: null });
+          const body = reconstructOrientations({ ...continued, joints }, skeleton, memory, i ? 1 / 60 : 0);
+          if (i < 50 + 0.9 * 60) continue;
+          expect(distance(at(forwardKinematics(skeleton, body), 'rightHand'), hand as Vec3)).toBeLessThan(1e-4);
+        }
+      }),
+      { seed, numRuns: 100 },
     );
   });
 
