@@ -161,7 +161,7 @@ function speedOf(way: ArmWay, metres: number, toGo: number, deltaSeconds: number
   return Math.min(way.speed + acceleration * deltaSeconds, top, Math.sqrt(2 * acceleration * toGo));
 }
 
-/** How much further [m] a hand may go in a frame that has been seen again for this long [s]: at last as far as it likes. */
+/** How much further [m] an arm goes in one frame whose hand has been seen again for `age` [s]: at last as far as there is to go. */
 function hurryOf({ rests }: ArmWay, metres: number, age: number): number {
   const late = rests ? 0 : clamp((age - hurrySeconds) / (latestSeconds - hurrySeconds), 0, 1);
   return (Math.max(metres, 1e-9) * late ** 2) / (1 - late);
