@@ -275,6 +275,7 @@ describe('a hand that is lost', () => {
         const person = movingPerson(motion, calibration, place);
         const [whole, lossy] = [createEstimator('ik', calibration), createEstimator('ik', calibration)];
         let before: { readonly whole: Joints; readonly lossy: Joints } | null = null;
+        let furthest = 0;
         for (let i = 0; i < 240; i++) {
           const frame = person(start + i / 60);
           const lost = i >= 30 && i < 30 + seconds * 60;
@@ -286,10 +287,11 @@ describe('a hand that is lost', () => {
             ? (['hips', 'chest', 'rightUpperArm', 'rightLowerArm', 'rightHand'] as const)
             : []) {
             const own = distance(at(now.whole, joint), at(before!.whole, joint));
-            expect(distance(at(now.lossy, joint), at(before!.lossy, joint)) - own).toBeLessThan(0.05);
+            furthest = Math.max(furthest, distance(at(now.lossy, joint), at(before!.lossy, joint)) - own);
           }
           before = now;
         }
+        expect(furthest).toBeLessThan(0.05);
       }),
       { seed, numRuns: 60 },
     );
