@@ -1,14 +1,12 @@
 import type { UpperBodyPose } from '../body/avatar-pose';
 import type { JointName, Side } from '../body/joints';
 import { type Skeleton, sideSign, wristFromHandBone } from '../body/skeleton';
-import { solveTwoBones, type TwoBoneSolution } from '../body/two-bone-ik';
 import { clamp, dampedShare, smoothstep } from '../math/damper';
 import type { Pose } from '../math/pose';
 import {
   alignDirections,
   between,
   conjugate,
-  fromAxes,
   fromAxisAngle,
   limitAngle,
   multiply,
@@ -26,7 +24,6 @@ import {
   length,
   lerp,
   normalise,
-  reject,
   right,
   scale,
   subtract,
@@ -34,8 +31,12 @@ import {
   type Vec3,
   vec3,
 } from '../math/vec3';
+import type { HandWay } from '../tracking/hand-continuity';
 import { headingOf } from '../tracking/heading';
+import { type Arm, type ArmCourse, type DrawnArm, goOn, jointsOf, softTarget, wayOf } from './arm-way';
+import { bendElbow, type ElbowSide, type EstimatedArm } from './elbow-side';
 import type { JointPositions } from './joint-positions';
+import { steadyTrunk, type TrunkJoints, trunkUnder } from './steady-trunk';
 
 /** What is known of one frame, floor frame: head and hands as they are, the six joints as somebody estimates them. */
 export interface Estimate {
@@ -47,16 +48,16 @@ export interface Estimate {
 
 /**
  * A wrist, floor frame. trust in [0, 1]: how far the trunk goes after it where the arm alone is too short; left out: all the way. Not
- * seen: no further than it went before the hand was lost.
+ * seen: no further than it went before the hand was lost. way: where the arm goes instead, from where it was drawn.
  */
-export type EstimatedHand = Pose<'floor'> & { readonly trust?: number; readonly seen?: boolean };
+export type EstimatedHand = Pose<'floor'> & {
+  readonly trust?: number;
+  readonly seen?: boolean;
+  readonly way?: HandWay;
+};
 
-/** What one avatar's arms remember from frame to frame, so that no elbow flips. Chest frame. */
-export interface ArmMemory {
-  /** From the shoulder to the wrist, unit. */
-  readonly axis: Vec3;
-  /** Where the elbow points from that line, unit. */
-  readonly pole: Vec3;
+/** What one avatar's arm remembers from frame to frame. */
+export interface ArmMemory extends ArmCourse, ElbowSide {
   /** Unwrapped angle [rad] by which the hand is turned about the forearm. */
   readonly twist: number;
   /** How much of it the forearm takes [rad]. */
@@ -70,6 +71,8 @@ export interface ReconstructionMemory {
   shoulderLine: Vec3 | null;
   /** By how much [m] the hands were out of reach when they were last seen. */
   readonly missing: Record<Side, number>;
+  /** Where the trunk's joints were estimated about the head joint, floor axes; null: nowhere yet. */
+  trunk: TrunkJoints | null;
 }
 
 export const emptyMemory = (): ReconstructionMemory => ({
@@ -77,6 +80,7 @@ export const emptyMemory = (): ReconstructionMemory => ({
   right: null,
   shoulderLine: null,
   missing: { left: 0, right: 0 },
+  trunk: null,
 });
 
 interface TrunkLimits {
@@ -91,23 +95,8 @@ const anatomy: TrunkLimits = { clavicle: 0.61, neck: 1.05 };
 const extreme: TrunkLimits = { clavicle: 1.2, neck: 1.8 };
 /** How far a wrist bends against the forearm [rad]: 90°, the extreme of flexion. */
 const wristLimit = Math.PI / 2;
-/** An elbow circles the line from shoulder to wrist at most this fast [rad/s]; a punch's elbow does 10. */
-const swivelSpeed = 12;
-/** The same where the hand is a guess. */
-const guessedSwivelSpeed = 5;
-/** Longest half-life [s] of the way that an elbow follows, where its estimate says little about the side it points to. */
-const unsureHalfLife = 0.35;
-/** An estimated elbow nearer to the arm's line than this [m] says little: the arm is nearly straight. */
-const unsurePole = 0.04;
-/** A hand nearer to the shoulder than the first says nothing about the line between them, further than the second all [arm lengths]. */
-const [handAtShoulder, handAway] = [0.1, 0.3];
 /** A forearm turns at most this fast [rad/s] about itself; a quick pronation does 15. */
 const forearmSpeed = 20;
-/** The trunk as a capsule, skin and elbow included: half width, half depth, and height of the caps [share of the thorax's length]. */
-const trunkHalfWidth = 1.2;
-const trunkHalfDepth = 0.85;
-const trunkCap = 0.5;
-
 /** Shoulders turn at most this fast [rad/s]; a pirouette's do 12. */
 const trunkSpeed = 12;
 /** Longest half-life [s] of the way that the shoulders' line follows, where their estimates lie so close that it says little. */
@@ -144,8 +133,10 @@ export function reconstructOrientations(
   const followLine = lineFollower(skeleton, memory.shoulderLine, deltaSeconds);
 
   // The trunk leans and turns after hands that the arms alone cannot reach. Overshoot: collarbone and neck take part of the way.
-  let shoulderTargets = { left: estimate.joints.leftUpperArm, right: estimate.joints.rightUpperArm };
-  let torso = placeTorso(head, headJoint, shoulderTargets, estimate.joints, skeleton, anatomy, followLine);
+  memory.trunk = steadyTrunk(estimate.joints, head, headJoint, memory.trunk, deltaSeconds);
+  const trunk = trunkUnder(headJoint, memory.trunk);
+  let shoulderTargets = { left: trunk.leftUpperArm, right: trunk.rightUpperArm };
+  let torso = placeTorso(head, headJoint, shoulderTargets, trunk, skeleton, anatomy, followLine);
   let shoulders = placeShoulders(torso, shoulderTargets, skeleton, anatomy);
   // A guessed hand does not bend the trunk: what it is out of reach by stays so, as far as the hand is not trusted.
   const outOfReach = (side: Side): number => {
@@ -170,14 +161,14 @@ export function reconstructOrientations(
       left: left ? add(shoulderTargets.left, left) : shoulderTargets.left,
       right: rightPull ? add(shoulderTargets.right, rightPull) : shoulderTargets.right,
     };
-    torso = placeTorso(head, headJoint, shoulderTargets, estimate.joints, skeleton, limits, followLine);
+    torso = placeTorso(head, headJoint, shoulderTargets, trunk, skeleton, limits, followLine);
     shoulders = placeShoulders(torso, shoulderTargets, skeleton, limits);
   }
 
   memory.shoulderLine = torso.shoulderLine;
 
-  const leftArm = placeArm('left', estimate, torso, shoulders.left, skeleton, memory, deltaSeconds);
-  const rightArm = placeArm('right', estimate, torso, shoulders.right, skeleton, memory, deltaSeconds);
+  const leftArm = placeArm('left', estimate, torso, shoulders.left.position, skeleton, memory, deltaSeconds);
+  const rightArm = placeArm('right', estimate, torso, shoulders.right.position, skeleton, memory, deltaSeconds);
   const r = torso.rotations;
   const local = (parent: Quat, child: Quat): Quat => multiply(conjugate(parent), child);
   const localRotations: Record<JointName, Quat> = {
@@ -232,7 +223,7 @@ function placeTorso(
   head: Pose<'floor'>,
   headJoint: Vec3,
   shoulderTargets: { readonly left: Vec3; readonly right: Vec3 },
-  joints: JointPositions,
+  joints: TrunkJoints,
   { restOffsets }: Skeleton,
   limits: TrunkLimits,
   followLine: LineFollower,
@@ -332,190 +323,97 @@ interface ArmRotations {
   readonly hand: Quat;
 }
 
+/** An arm that hangs from its shoulder: to its wrist, or on its way there; hand as tracked, forearm turned half as far. */
 function placeArm(
   side: Side,
   estimate: Estimate,
   torso: Torso,
-  shoulder: Pose<'floor'>,
+  shoulder: Vec3,
   { restOffsets }: Skeleton,
   memory: ReconstructionMemory,
   deltaSeconds: number,
 ): ArmRotations {
   const sigma = sideSign(side);
-  const wrist = wristOf(estimate, side);
-  const upperArm = length(side === 'left' ? restOffsets.leftLowerArm : restOffsets.rightLowerArm);
-  const forearm = length(side === 'left' ? restOffsets.leftHand : restOffsets.rightHand);
-  const floorFromChest = torso.rotations.upperChest;
-  const downAndBack = rotate(floorFromChest, normalise(vec3(0.2 * sigma, -1, 0.5)));
-  const fallbacks: [Vec3, Vec3] = [downAndBack, rotate(floorFromChest, vec3(0, 0, 1))];
-
   const before = memory[side];
-  const solve = (direction: Vec3) =>
-    solveTwoBones(shoulder.position, wrist.position, upperArm, forearm, direction, fallbacks);
-  const circle = elbowCircle(solve(downAndBack), shoulder.position);
-  const goal = wantedPole(side, estimate, circle, fallbacks);
-  const pole = steadyPole(
-    sigma,
-    goal,
-    circle,
+  const wrist = wristOf(estimate, side);
+  const arm: Arm = {
+    shoulder,
+    upperArm: length(side === 'left' ? restOffsets.leftLowerArm : restOffsets.rightLowerArm),
+    forearm: length(side === 'left' ? restOffsets.leftHand : restOffsets.rightHand),
+  };
+
+  const way = wayOf(before, wrist.way);
+  const setsOut = way !== null && way.goal === null;
+  const target = wrist.way ? softTarget(arm, wrist.way, way) : wrist.position;
+  const bent = bendElbow(
+    side,
+    arm,
+    target,
+    estimatedArm(side, estimate),
     torso,
-    floorFromChest,
-    before,
-    wrist.trust ?? 1,
-    upperArm + forearm,
+    // Where the hand is sent the elbow need not be near where it was: the way there is the arm's.
+    setsOut ? null : before,
+    Math.min(wrist.trust ?? 1, 1 - (way?.left ?? 0)),
     deltaSeconds,
   );
-  const solution = solve(pole);
+  const belongs: DrawnArm = {
+    upperArm: normalise(subtract(bent.elbow, shoulder)),
+    forearm: normalise(subtract(target, bent.elbow)),
+    // The plane of shoulder, elbow and wrist: its normal is the elbow's hinge, +Y at rest on the right, −Y on the left.
+    hinge: cross(bent.pole, bent.axis),
+  };
+  const { upperChest } = torso.rotations;
+  const outside = rotate(upperChest, normalise(vec3(sigma, -0.2, -1)));
+  const { drawn, way: onward } =
+    before && way && wrist.way
+      ? goOn(before, way, belongs, wrist.way, arm, outside, deltaSeconds)
+      : { drawn: belongs, way: null };
 
-  // The plane of shoulder, elbow and wrist: its normal is the elbow's hinge, +Y at rest on the right, −Y on the left.
   const along = vec3(sigma, 0, 0);
-  const hingeAtRest = vec3(0, sigma, 0);
-  const hinge = cross(solution.pole, solution.axis);
-  const upperArmRotation = alignDirections(along, hingeAtRest, subtract(solution.elbow, shoulder.position), hinge);
-  const untwisted = alignDirections(along, hingeAtRest, subtract(wrist.position, solution.elbow), hinge);
-
-  // The hand follows the tracked wrist; the forearm takes half of its turn, so that no wrist is wrung.
+  const turnOf = (bone: Vec3): Quat => alignDirections(along, vec3(0, sigma, 0), bone, drawn.hinge);
   const hand = multiply(wrist.orientation, wristFromHandBone[side]);
+  const { lowerArm, ...turned } = turnForearm(turnOf(drawn.forearm), hand, along, before, deltaSeconds);
+  const toChest = conjugate(upperChest);
+  memory[side] = {
+    axis: rotate(toChest, bent.axis),
+    pole: rotate(toChest, bent.pole),
+    ...turned,
+    drawn,
+    joints: jointsOf(arm, drawn),
+    since: wrist.way?.since ?? null,
+    way: onward,
+  };
+  return { upperArm: turnOf(drawn.upperArm), lowerArm, hand: limitWrist(lowerArm, hand, along) };
+}
+
+/** Shoulder and elbow as they are estimated, and the wrist. */
+function estimatedArm(side: Side, { joints, leftHand, rightHand }: Estimate): EstimatedArm {
+  return side === 'left'
+    ? { shoulder: joints.leftUpperArm, elbow: joints.leftLowerArm, wrist: leftHand.position }
+    : { shoulder: joints.rightUpperArm, elbow: joints.rightLowerArm, wrist: rightHand.position };
+}
+
+/** The forearm takes half of the hand's turn about it, so that no wrist is wrung; all orientations in the floor frame. */
+function turnForearm(
+  untwisted: Quat,
+  hand: Quat,
+  along: Vec3,
+  before: ArmMemory | null,
+  deltaSeconds: number,
+): { readonly lowerArm: Quat; readonly twist: number; readonly forearmTwist: number } {
   const handInForearm = multiply(conjugate(untwisted), hand);
   const raw = twistAngle(swingTwist(handInForearm, along).twist, along);
   const previous = before?.twist ?? 0;
   const unwrapped = raw + 2 * Math.PI * Math.round((previous - raw) / (2 * Math.PI));
   const twist = Math.abs(unwrapped) > 1.25 * Math.PI ? raw : unwrapped;
   const share = clamp(twist, -Math.PI, Math.PI) / 2;
-  const turn = forearmSpeed * Math.max(deltaSeconds, 0);
-  const forearmTwist = before ? clamp(share, before.forearmTwist - turn, before.forearmTwist + turn) : share;
-  const lowerArm = multiply(untwisted, fromAxisAngle(along, forearmTwist));
-  const toChest = conjugate(floorFromChest);
-  memory[side] = { axis: rotate(toChest, solution.axis), pole: rotate(toChest, solution.pole), twist, forearmTwist };
-
-  const bend = swingTwist(multiply(conjugate(lowerArm), hand), along);
-  const limited = multiply(limitAngle(bend.swing, wristLimit), limitAngle(bend.twist, wristLimit));
-  return { upperArm: upperArmRotation, lowerArm, hand: multiply(lowerArm, limited) };
+  const most = forearmSpeed * Math.max(deltaSeconds, 0);
+  const forearmTwist = before ? clamp(share, before.forearmTwist - most, before.forearmTwist + most) : share;
+  return { lowerArm: multiply(untwisted, fromAxisAngle(along, forearmTwist)), twist, forearmTwist };
 }
 
-/** All places of an elbow: a circle about the line from shoulder to wrist. */
-interface ElbowCircle {
-  readonly centre: Vec3;
-  /** From shoulder to wrist, unit. */
-  readonly axis: Vec3;
-  readonly radius: number;
-  /** From shoulder to wrist [m], as far as the arm reaches. */
-  readonly span: number;
-}
-
-function elbowCircle({ elbow, axis, pole }: TwoBoneSolution, shoulder: Vec3): ElbowCircle {
-  const radius = dot(subtract(elbow, shoulder), pole);
-  const centre = addScaled(elbow, pole, -radius);
-  return { centre, axis, radius, span: 2 * distance(centre, shoulder) };
-}
-
-/** Where the estimated elbow points from its own arm's line, and how sure that is, in [0, 1]. */
-function wantedPole(
-  side: Side,
-  { joints, leftHand, rightHand }: Estimate,
-  { axis }: ElbowCircle,
-  fallbacks: readonly [Vec3, Vec3],
-): { readonly direction: Vec3; readonly sure: number } {
-  const shoulder = side === 'left' ? joints.leftUpperArm : joints.rightUpperArm;
-  const elbow = side === 'left' ? joints.leftLowerArm : joints.rightLowerArm;
-  const wrist = side === 'left' ? leftHand : rightHand;
-  const ownAxis = normalise(subtract(wrist.position, shoulder), axis);
-  const aside = reject(subtract(elbow, shoulder), ownAxis);
-  let across = reject(aside, axis);
-  for (const fallback of fallbacks) if (length(across) < 1e-6) across = reject(fallback, axis);
-  return { direction: normalise(across), sure: smoothstep(0, unsurePole, length(aside)) };
-}
-
-/**
- * Where the elbow points now: after its estimate by way of the trunk's outside, with bounded speed, and slowly where the estimate says
- * little. The side it had is carried along as the arm moves. The first frame takes the estimate, out of the trunk.
- */
-function steadyPole(
-  sigma: number,
-  goal: { readonly direction: Vec3; readonly sure: number },
-  circle: ElbowCircle,
-  torso: Torso,
-  floorFromChest: Quat,
-  before: ArmMemory | null,
-  trust: number,
-  arm: number,
-  deltaSeconds: number,
-): Vec3 {
-  const { axis } = circle;
-  // Angles about the arm's line, from the direction that leads away from the trunk.
-  const outside = reject(rotate(floorFromChest, vec3(sigma, 0, 0)), axis);
-  const zero = normalise(length(outside) > 1e-3 ? outside : reject(rotate(floorFromChest, vec3(0, 0, 1)), axis));
-  const quarter = cross(axis, zero);
-  const angleOf = (direction: Vec3): number => Math.atan2(dot(direction, quarter), dot(direction, zero));
-  const poleAt = (angle: number): Vec3 => addScaled(scale(zero, Math.cos(angle)), quarter, Math.sin(angle));
-
-  const free = freeSwivel(circle, zero, quarter, torso);
-  const estimated = angleOf(goal.direction);
-  const wanted = free ? nearestWithin(estimated, free) : estimated;
-  if (!before) return poleAt(wanted);
-
-  const carried = rotate(between(rotate(floorFromChest, before.axis), axis), rotate(floorFromChest, before.pole));
-  const kept = angleOf(carried);
-  const inside = free !== null && nearestWithin(kept, free) !== kept;
-  // Free to move both ways round, the elbow takes the shorter; else the one that does not lead through the trunk.
-  const way = free && !inside ? wanted - kept : Math.atan2(Math.sin(wanted - kept), Math.cos(wanted - kept));
-  const sure = goal.sure * smoothstep(handAtShoulder * arm, handAway * arm, circle.span);
-  const followed = inside ? way : way * dampedShare(unsureHalfLife * (1 - sure) ** 3, deltaSeconds);
-  const most = (guessedSwivelSpeed + (swivelSpeed - guessedSwivelSpeed) * trust) * Math.max(deltaSeconds, 0);
-  return poleAt(kept + clamp(followed, -most, most));
-}
-
-/** The angles of a range [low, high] around 0 nearest to one in (−π, π]. */
-function nearestWithin(angle: number, [low, high]: readonly [number, number]): number {
-  if (angle >= low && angle <= high) return angle;
-  const beyond = (from: number) => Math.abs(Math.atan2(Math.sin(angle - from), Math.cos(angle - from)));
-  return beyond(low) < beyond(high) ? low : high;
-}
-
-/** Angles are looked at in steps of this [rad], borders found to a sixty-fourth of it. */
-const swivelStep = Math.PI / 18;
-
-/** The swivel angles about the outside at which an elbow is clear of the trunk; null: at all. */
-function freeSwivel(
-  { centre, radius }: ElbowCircle,
-  zero: Vec3,
-  quarter: Vec3,
-  torso: Torso,
-): readonly [number, number] | null {
-  const unit = distance(torso.neck, torso.chest);
-  const axisUp = normalise(subtract(torso.neck, torso.hips), up);
-  const side = normalise(reject(rotate(torso.rotations.upperChest, right), axisUp), right);
-  const trunkFromFloor = conjugate(fromAxes(side, axisUp, cross(side, axisUp)));
-  const height = distance(torso.neck, torso.hips);
-  const [c, u, v] = [
-    rotate(trunkFromFloor, subtract(centre, torso.hips)),
-    rotate(trunkFromFloor, scale(zero, radius)),
-    rotate(trunkFromFloor, scale(quarter, radius)),
-  ];
-  /** Below 1 inside the trunk. */
-  const clearance = (angle: number): number => {
-    const [cosine, sine] = [Math.cos(angle), Math.sin(angle)];
-    const y = c.y + u.y * cosine + v.y * sine;
-    const x = (c.x + u.x * cosine + v.x * sine) / (trunkHalfWidth * unit);
-    const z = (c.z + u.z * cosine + v.z * sine) / (trunkHalfDepth * unit);
-    const beyond = (y - clamp(y, 0, height)) / (trunkCap * unit);
-    return Math.sqrt(x * x + beyond * beyond + z * z);
-  };
-  /** From the outside on to one side: the last free angle. */
-  const border = (way: number): number => {
-    for (let step = 1; step <= 18; step++) {
-      if (clearance(way * step * swivelStep) >= 1) continue;
-      let [clear, blocked] = [(step - 1) * swivelStep, step * swivelStep];
-      for (let halving = 0; halving < 6; halving++) {
-        const middle = (clear + blocked) / 2;
-        if (clearance(way * middle) >= 1) clear = middle;
-        else blocked = middle;
-      }
-      return way * clear;
-    }
-    return way * Math.PI;
-  };
-  const high = border(1);
-  const low = border(-1);
-  return high === Math.PI && low === -Math.PI ? null : [low, high];
+/** The hand as it is turned, but against the forearm no further than a wrist bends. */
+function limitWrist(lowerArm: Quat, hand: Quat, along: Vec3): Quat {
+  const { swing, twist } = swingTwist(multiply(conjugate(lowerArm), hand), along);
+  return multiply(lowerArm, multiply(limitAngle(swing, wristLimit), limitAngle(twist, wristLimit)));
 }

@@ -15,7 +15,20 @@ export type ContinuedHand = Pose<'floor'> & {
   readonly seen: boolean;
   /** How much its place is known, in [0, 1]. 1: it is there; 0: it rests, a guess; between: on its way from one to the other. */
   readonly trust: number;
+  /** Where it belongs and since when. The place above is on its way there. */
+  readonly way: HandWay;
 };
+
+/** Where a hand belongs: where it is seen, held for a moment, or rests. */
+export interface HandWay {
+  readonly goal: Pose<'floor'>;
+  /** Whether that is the rest beside the hip, a guess. */
+  readonly rests: boolean;
+  /** When the hand was sent there [s]; another time is another way. */
+  readonly since: number;
+  /** So long ago [s]. */
+  readonly age: number;
+}
 
 /** A tracking frame in which no hand is missing. */
 export interface ContinuedFrame {
@@ -29,8 +42,8 @@ export interface ContinuedFrame {
 const holdSeconds = 0.1;
 const easeSeconds = 0.3;
 const blendSeconds = 0.2;
-/** Mean speed [m/s] of a returning or sinking hand on long ways; a quarter faster at most: 3.9 cm in a frame at 60 Hz. */
-const easeSpeed = 1.8;
+/** Mean speed [m/s] of a sinking and a returning hand on long ways; a quarter faster at most: 3.75 and 4.8 cm in a frame at 60 Hz. */
+const [easeSpeed, returnSpeed] = [1.8, 2.3];
 
 /** A hand about its shoulder, body frame: which way, how far [m], and how it is turned. */
 interface Reach {
@@ -40,6 +53,8 @@ interface Reach {
 }
 
 interface HandMemory {
+  /** When the hand was last sent to another place: lost for long enough, or seen again. */
+  since: number;
   /** As shown last. */
   shown: Reach;
   trust: number;
@@ -50,6 +65,8 @@ interface HandMemory {
     readonly offset: Vec3;
     /** How far half-way it goes round the shoulder. */
     readonly detour: Vec3;
+    /** From the shoulder [m] where it began: it goes no further out than its ends. */
+    readonly distance: number;
     readonly turn: Quat;
     readonly trust: number;
     readonly seconds: number;
@@ -103,6 +120,9 @@ function detourAround(from: Vec3, to: Vec3, arm: number, outside: Vec3): Vec3 {
   return scale(normalise(addScaled(nearest, outside, 0.2 * missing), outside), missing);
 }
 
+/** Whether the hand was missed for longer than it is held. */
+const rests = ({ lost }: HandMemory, time: number): boolean => lost !== null && time >= lost.time + holdSeconds;
+
 /** One per avatar; frames in order of time. Before a hand was ever seen it rests. */
 export function createHandContinuity(calibration: () => Calibration): HandContinuity {
   const memories: Record<Side, HandMemory | null> = { left: null, right: null };
@@ -127,6 +147,7 @@ export function createHandContinuity(calibration: () => Calibration): HandContin
     const rest = reachOf(restingHand(side, headJoint, calibration()));
     const seen = tracked !== null && tracked.tracking === 'tracked';
     const memory = memories[side] ?? {
+      since: time,
       shown: rest,
       trust: seen ? 1 : 0,
       lost: seen ? null : { from: rest, trust: 0, time: Number.NEGATIVE_INFINITY },
@@ -134,7 +155,9 @@ export function createHandContinuity(calibration: () => Calibration): HandContin
     };
     memories[side] = memory;
 
+    let goal: Pose<'floor'>;
     if (seen) {
+      goal = { position: tracked.position, orientation: tracked.orientation };
       const seenInBody = transformPose(invertTransform(floorFromBody), tracked);
       const now = reachOf(seenInBody);
       if (memory.lost) {
@@ -144,34 +167,38 @@ export function createHandContinuity(calibration: () => Calibration): HandContin
         memory.bridge = {
           offset: rotate(floorFromBody.orientation, offset),
           detour: rotate(floorFromBody.orientation, detour),
+          distance: memory.shown.distance,
           turn: multiply(conjugate(now.orientation), memory.shown.orientation),
           trust: memory.trust,
-          seconds: Math.max(blendSeconds, (length(offset) + 3 * length(detour)) / easeSpeed),
+          seconds: Math.max(blendSeconds, (length(offset) + 3 * length(detour)) / returnSpeed),
           time,
         };
+        memory.since = time;
         memory.lost = null;
       }
       memory.shown = now;
       memory.trust = 1;
       if (memory.bridge) {
-        const { offset, detour, turn, trust, seconds, time: since } = memory.bridge;
+        const { offset, detour, distance, turn, trust, seconds, time: since } = memory.bridge;
         const missing = 1 - evenStep(0, seconds, time - since);
         if (missing <= 0) memory.bridge = null;
         memory.trust = 1 + (trust - 1) * missing;
         const aside = addScaled(scale(offset, missing), detour, 4 * missing * (1 - missing));
-        memory.shown = reachOf({
+        const passing = reachOf({
           position: add(seenInBody.position, rotate(conjugate(floorFromBody.orientation), aside)),
           orientation: multiply(now.orientation, slerp(identity, turn, missing)),
         });
+        memory.shown = { ...passing, distance: Math.min(passing.distance, Math.max(distance, now.distance)) };
       }
-      if (!memory.bridge) return { position: tracked.position, orientation: tracked.orientation, seen, trust: 1 };
     } else {
+      // On its way back it stops, elsewhere than where it was to go.
+      if (memory.bridge) memory.since = time;
       memory.bridge = null;
       memory.lost ??= { from: memory.shown, trust: memory.trust, time };
       const { from, trust, time: since } = memory.lost;
       const arc = directionArc(from.direction, rest.direction, outside);
-      const way = arc.angle * Math.max(from.distance, rest.distance) + Math.abs(from.distance - rest.distance);
-      const duration = Math.max(easeSeconds, way / easeSpeed);
+      const metres = arc.angle * Math.max(from.distance, rest.distance) + Math.abs(from.distance - rest.distance);
+      const duration = Math.max(easeSeconds, metres / easeSpeed);
       const share = evenStep(holdSeconds, holdSeconds + duration, Math.min(time - since, 1e6));
       memory.trust = trust * (1 - share);
       memory.shown = {
@@ -179,10 +206,18 @@ export function createHandContinuity(calibration: () => Calibration): HandContin
         distance: from.distance + (rest.distance - from.distance) * share,
         orientation: slerp(from.orientation, rest.orientation, share),
       };
+      if (time >= since + holdSeconds) memory.since = Math.max(memory.since, since + holdSeconds);
+      const belongs = rests(memory, time) ? rest : from;
+      goal = transformPose(floorFromBody, {
+        position: add(shoulder, placeOf(belongs)),
+        orientation: belongs.orientation,
+      });
     }
+    const way = { goal, rests: rests(memory, time), since: memory.since, age: time - memory.since };
+    if (seen && !memory.bridge) return { ...goal, seen, trust: 1, way };
     const { orientation } = memory.shown;
     const pose = transformPose(floorFromBody, { position: add(shoulder, placeOf(memory.shown)), orientation });
-    return { ...pose, seen, trust: memory.trust };
+    return { ...pose, seen, trust: memory.trust, way };
   }
 
   return {

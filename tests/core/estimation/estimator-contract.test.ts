@@ -371,7 +371,9 @@ describe.each(estimatorNames)('%s', (name) => {
           const joints = jointsOf(await show(estimator, frame), calibration);
           if (before) {
             expect(distance(joints[`${side}Hand`].position, before[`${side}Hand`].position)).toBeLessThan(0.05);
-            expect(distance(joints[`${side}LowerArm`].position, before[`${side}LowerArm`].position)).toBeLessThan(0.09);
+            expect(distance(joints[`${side}LowerArm`].position, before[`${side}LowerArm`].position)).toBeLessThan(
+              0.065,
+            );
           }
           before = joints;
         }

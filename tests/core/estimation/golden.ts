@@ -47,10 +47,9 @@ export function continuedFrame(frame: GoldenCase['frames'][number]): ContinuedFr
     position: vec(frame.positions[index] ?? []),
     orientation: quat(frame.rotations[index] ?? []),
   });
-  return {
-    time: frame.time,
-    head: pose(0),
-    leftHand: { ...pose(1), seen: frame.seen[0] === true, trust: frame.seen[0] ? 1 : 0 },
-    rightHand: { ...pose(2), seen: frame.seen[1] === true, trust: frame.seen[1] ? 1 : 0 },
+  const hand = (index: 1 | 2) => {
+    const seen = frame.seen[index - 1] === true;
+    return { ...pose(index), seen, trust: seen ? 1 : 0, way: { goal: pose(index), rests: !seen, since: 0, age: 0 } };
   };
+  return { time: frame.time, head: pose(0), leftHand: hand(1), rightHand: hand(2) };
 }

@@ -36,7 +36,8 @@ const lost = (time: number) => frame(time, null);
 describe('a hand that is seen', () => {
   test('is where it is seen', () => {
     const [first] = follow((time) => frame(time, tracked(reach)), 0);
-    expect(first!.rightHand).toEqual({ position: reach, orientation: identity, seen: true, trust: 1 });
+    expect(first!.rightHand).toMatchObject({ position: reach, orientation: identity, seen: true, trust: 1 });
+    expect(first!.rightHand.way).toMatchObject({ goal: { position: reach, orientation: identity }, rests: false });
     expect(first!.leftHand.seen).toBe(true);
   });
 });
@@ -103,6 +104,15 @@ describe('a hand that is lost', () => {
     for (let i = 1; i < trust.length; i++) expect(trust[i]).toBeLessThanOrEqual(trust[i - 1]!);
   });
 
+  test('belongs where it was held at first, then beside the hip: that is a new way', () => {
+    const ways = follow(lost, 1).map(({ rightHand }) => rightHand.way);
+    expect(ways.slice(0, 6).every(({ rests }) => !rests)).toBe(true);
+    expect(distance(ways[5]!.goal.position, reach)).toBeLessThan(1e-3);
+    expect(ways.slice(7).every(({ rests, goal }) => rests && goal.position.y < 1)).toBe(true);
+    expect(new Set(ways.map(({ since }) => since)).size).toBe(2);
+    expect(ways.at(-1)!.age).toBeCloseTo(0.9, 6);
+  });
+
   test('does the same at 60, 72 and 120 Hz', () => {
     const at60 = follow(lost, 0.25, 60).at(-1)!.rightHand.position;
     for (const rate of [72, 120]) {
@@ -133,13 +143,36 @@ describe('a hand that returns', () => {
     const frames = follow(lostFor(seconds), seconds + 1);
     expect(largestStep(frames)).toBeLessThan(0.05);
     const { rightHand } = frames.at(-1)!;
-    expect(rightHand).toEqual({ position: returned, orientation: fromAxisAngle(up, 1), seen: true, trust: 1 });
+    expect(rightHand).toMatchObject({ position: returned, orientation: fromAxisAngle(up, 1), seen: true, trust: 1 });
   });
 
   test('is there within 200 ms when it was not far', () => {
     const near = add(reach, vec3(0.1, 0.05, 0));
     const frames = follow(lostFor(0.1, near), 0.35);
     expect(distance(frames.at(-1)!.rightHand.position, near)).toBeLessThan(1e-9);
+  });
+
+  test('belongs where it is seen from the first frame on', () => {
+    const ways = follow(lostFor(1), 1.5).map(({ rightHand }) => rightHand.way);
+    for (const way of ways.slice(60))
+      expect(way).toMatchObject({ goal: { position: returned }, rests: false, since: 1 });
+  });
+
+  test('never strays further from its shoulder than where it comes from and where it goes', () => {
+    const where = fc.record({ x: number(-0.4, 0.5), y: number(0.7, 1.9), z: number(-0.5, 0.4) });
+    const shoulder = vec3(0.18, 1.33, 0.08);
+    fc.assert(
+      fc.property(where, where, (from, back) => {
+        const continuity = createHandContinuity(() => calibration);
+        continuity.follow(frame(0, tracked(from)));
+        const places = Array.from({ length: 60 }, (_, i) =>
+          continuity.follow(frame((i + 1) / 60, i < 5 ? null : tracked(back))),
+        ).map(({ rightHand }) => distance(rightHand.position, shoulder));
+        // The shoulder of the test is near that of the code, not the same.
+        expect(Math.max(...places)).toBeLessThan(Math.max(distance(from, shoulder), distance(back, shoulder)) + 0.05);
+      }),
+      { seed },
+    );
   });
 
   test('follows its own movement while it blends', () => {
