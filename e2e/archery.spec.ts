@@ -36,8 +36,8 @@ const untilFrame = (page: Page, shows: Partial<ArcheryProbe>) =>
   );
 
 for (const estimator of ['learned', 'ik', 'paper', 'hands-only'] as const) {
-  // Rounds are played in real time: two by day, the others by night.
-  const night = estimator === 'learned' || estimator === 'ik' ? '' : ' @nightly';
+  // Rounds are played in real time: one by day, the others by night.
+  const night = estimator === 'learned' ? '' : ' @nightly';
   test(`${estimator}: the archer in the emulated headset wins 50 of 50${night}`, async ({ page }) => {
     test.setTimeout(240_000);
     await enterTheRange(page, `&estimator=${estimator}`);

@@ -1,13 +1,16 @@
+"""Facts about what the learned network is told and says, whatever its weights."""
+
 import numpy as np
 import pytest
 import torch
-
 from threepoint_training import quaternion
 from threepoint_training.features import FEATURES, IK_JOINTS
 from threepoint_training.generated_motion import generate_corpus
 from threepoint_training.model import ResidualNetwork, on_circle
 from threepoint_training.skeleton import body_from_calibration
 from threepoint_training.train_learned import held_out
+
+pytestmark = pytest.mark.training
 
 WINDOW = (0.0, 0.1, 0.25)
 CORPUS = generate_corpus(people=2, clips=1, frames=200, seed=4)

@@ -111,7 +111,7 @@ class ResidualNetwork(nn.Module):
 
     def _with_mirror_images(self, inputs: Tensor) -> Tensor:
         """Each body, then its mirror image [2 N, T·46]."""
-        return torch.cat([inputs, inputs[:, self.mirror_column] * self.mirror_sign], dim=1).view(-1, len(self.mirror_column))
+        return torch.cat([inputs, inputs[:, self.mirror_column] * self.mirror_sign], dim=1).view(-1, inputs.shape[1])
 
     def _from_chest(self, bodies: Tensor) -> "_FromChest":
         x, up, arm, hands, shoulders, others = (bodies @ self.vectors + _NO_BODY).view(-1, 16, 3).split([1, 1, 1, 2, 2, 9], dim=1)
