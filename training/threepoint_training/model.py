@@ -62,7 +62,8 @@ class ResidualNetwork(nn.Module):
 
     def __init__(self, taps: int, width: int, dropout: float, hidden_layers: int = 2) -> None:
         super().__init__()
-        trunk_inputs, arm_width = taps * FEATURES + CHEST_FEATURES, max(width // 2, 16)
+        self.inputs = taps * FEATURES
+        trunk_inputs, arm_width = self.inputs + CHEST_FEATURES, max(width // 2, 16)
         self.trunk = _perceptron(trunk_inputs, width, hidden_layers, dropout, 12)
         self.arm = _perceptron(ARM_FEATURES, arm_width, hidden_layers, dropout, 3)
         for name, inputs, outputs in (("trunk", trunk_inputs, 12), ("arm", ARM_FEATURES, 3)):
@@ -111,7 +112,7 @@ class ResidualNetwork(nn.Module):
 
     def _with_mirror_images(self, inputs: Tensor) -> Tensor:
         """Each body, then its mirror image [2 N, T·46]."""
-        return torch.cat([inputs, inputs[:, self.mirror_column] * self.mirror_sign], dim=1).view(-1, inputs.shape[1])
+        return torch.cat([inputs, inputs[:, self.mirror_column] * self.mirror_sign], dim=1).view(-1, self.inputs)
 
     def _from_chest(self, bodies: Tensor) -> "_FromChest":
         x, up, arm, hands, shoulders, others = (bodies @ self.vectors + _NO_BODY).view(-1, 16, 3).split([1, 1, 1, 2, 2, 9], dim=1)
