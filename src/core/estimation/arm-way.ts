@@ -1,3 +1,4 @@
+import { bisect } from '../math/bisection';
 import { clamp, smoothstep } from '../math/damper';
 import { between, rotate } from '../math/quat';
 import { addScaled, cross, distance, lerp, normalise, subtract, type Vec3 } from '../math/vec3';
@@ -192,11 +193,5 @@ function furthestWithin(excess: (share: number) => number): number {
     if (now.excess <= 0 || now.excess < best.excess) best = now;
   }
   if (best.excess > 0) return best.share;
-  let [within, beyond] = [best.share, best.share + 1 / waySteps];
-  for (let halving = 0; halving < 6; halving++) {
-    const middle = (within + beyond) / 2;
-    if (excess(middle) <= 0) within = middle;
-    else beyond = middle;
-  }
-  return within;
+  return bisect(best.share, best.share + 1 / waySteps, (share) => excess(share) > 0, 6)[0];
 }

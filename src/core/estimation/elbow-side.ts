@@ -1,6 +1,7 @@
 import type { Side } from '../body/joints';
 import { sideSign } from '../body/skeleton';
 import { solveTwoBones, type TwoBoneSolution } from '../body/two-bone-ik';
+import { bisect } from '../math/bisection';
 import { clamp, dampedShare, smoothstep } from '../math/damper';
 import { between, conjugate, fromAxes, type Quat, rotate } from '../math/quat';
 import {
@@ -190,13 +191,8 @@ function freeSwivel(
   const border = (way: number): number => {
     for (let step = 1; step <= 18; step++) {
       if (clearance(way * step * swivelStep) >= 1) continue;
-      let [clear, blocked] = [(step - 1) * swivelStep, step * swivelStep];
-      for (let halving = 0; halving < 6; halving++) {
-        const middle = (clear + blocked) / 2;
-        if (clearance(way * middle) >= 1) clear = middle;
-        else blocked = middle;
-      }
-      return way * clear;
+      const blocked = (angle: number): boolean => clearance(way * angle) < 1;
+      return way * bisect((step - 1) * swivelStep, step * swivelStep, blocked, 6)[0];
     }
     return way * Math.PI;
   };

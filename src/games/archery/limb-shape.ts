@@ -1,3 +1,4 @@
+import { bisect } from '../../core/math/bisection';
 import { distance, type Vec3, vec3 } from '../../core/math/vec3';
 
 /**
@@ -45,15 +46,9 @@ const tipOf = (bend: number): Vec3 => {
   return vec3(0, tip.y, tip.z);
 };
 
-/** Halves an interval until it is narrower than a thousandth of a degree: `tooFar` says on which side the wanted value lies. */
-function bisect(low: number, high: number, tooFar: (value: number) => boolean): number {
-  let from = low;
-  let to = high;
-  for (let i = 0; i < 20; i++) {
-    const middle = (from + to) / 2;
-    if (tooFar(middle)) to = middle;
-    else from = middle;
-  }
+/** The bend [rad], to a thousandth of a degree, beyond which a limb is bent too far. */
+function bendBefore(tooFar: (bend: number) => boolean): number {
+  const [from, to] = bisect(leastBend, mostBend, tooFar, 20);
   return (from + to) / 2;
 }
 
@@ -72,7 +67,7 @@ export interface StrungBow {
 
 /** Strings a bow so that at rest its string is a straight line `braceHeight` [m] before the grip. */
 export function stringBow(braceHeight: number): StrungBow {
-  const atRest = bisect(leastBend, mostBend, (bend) => tipOf(bend).z > braceHeight);
+  const atRest = bendBefore((bend) => tipOf(bend).z > braceHeight);
   const stringLength = 2 * tipOf(atRest).y;
   const tips = (bend: number) => {
     const upper = tipOf(bend);
@@ -82,7 +77,7 @@ export function stringBow(braceHeight: number): StrungBow {
     stringLength,
     tips,
     bendFor: (nock) =>
-      bisect(leastBend, mostBend, (bend) => {
+      bendBefore((bend) => {
         const { upper, lower } = tips(bend);
         return distance(upper, nock) + distance(lower, nock) < stringLength;
       }),
