@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from . import quaternion
 from .features import frame_features, target
-from .prepared_corpus import JOINTS, PreparedCorpus
+from .prepared_corpus import JOINTS, MIRRORED_JOINTS, PreparedCorpus
 from .simulate_trackers import TrackerConfig
 from .prepare import EYES_FROM_HEAD_JOINT
 from .skeleton import body_from_calibration, load_proportions
@@ -174,7 +174,7 @@ def draw_batch(parts: BodyParts, count: int, config: AugmentConfig, random: np.r
         flip = mirrored[:, None, None]
         anchors = np.where(flip, anchors[:, [0, 2, 1]] * _MIRROR, anchors)
         rotations = np.where(flip, rotations[:, [0, 2, 1]] * _MIRROR_TURN, rotations)
-        truth = np.where(flip, truth[:, [1, 0, 3, 2, 4, 5]] * _MIRROR, truth)
+        truth = np.where(flip, truth[:, MIRRORED_JOINTS] * _MIRROR, truth)
 
         positions = anchors + quaternion.rotate(rotations, offsets)
         positions = positions + random.normal(size=positions.shape) * config.trackers.position_noise

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import ik
-from .prepared_corpus import ESTIMATED_JOINTS, JOINTS, PreparedCorpus
+from .prepared_corpus import ESTIMATED_JOINTS, JOINTS, MIRRORED_JOINTS, PreparedCorpus
 from .simulate_trackers import TrackerConfig, draw_wearer, simulate
 from .skeleton import Body, body_from_calibration
 from . import quaternion
@@ -108,7 +108,7 @@ def mirror(positions: Array, rotations: Array, truth: Array) -> tuple[Array, Arr
     """Left and right exchanged: tracked points [F, 3, 3], rotations [F, 3, 4] and the six joints [F, 6, 3]."""
     flip = np.array([-1.0, 1.0, 1.0])
     turn = np.array([1.0, -1.0, -1.0, 1.0])
-    return positions[:, [0, 2, 1]] * flip, rotations[:, [0, 2, 1]] * turn, truth[:, [1, 0, 3, 2, 4, 5]] * flip
+    return positions[:, [0, 2, 1]] * flip, rotations[:, [0, 2, 1]] * turn, truth[:, MIRRORED_JOINTS] * flip
 
 
 def fit(frames: Sample, config: FitIkConfig, report: Callable[[int, float], None] = lambda *_: None) -> dict[str, Any]:

@@ -6,6 +6,7 @@ import torch
 from torch import Tensor, nn
 
 from .features import FEATURES, IK_JOINTS, OUTPUTS
+from .prepared_corpus import MIRRORED_JOINTS
 
 
 class PaperNetwork(nn.Module):
@@ -77,7 +78,7 @@ class ResidualNetwork(nn.Module):
     def normalise(self, inputs: Tensor, targets: Tensor) -> None:
         """Takes mean and deviation from the training data; constant features keep their size."""
         bodies, truth = self._with_mirror_images(inputs), targets.view(-1, 6, 3)
-        truth = torch.stack([truth, truth[:, SWAPPED] * _FLIP], dim=1).flatten(0, 1)
+        truth = torch.stack([truth, truth[:, MIRRORED_JOINTS] * _FLIP], dim=1).flatten(0, 1)
         seen = self._from_chest(bodies)
         residuals = truth - bodies[:, IK_JOINTS].reshape(-1, 6, 3)
         in_chest = residuals @ seen.axes.transpose(1, 2)
@@ -148,12 +149,10 @@ class _FromChest:
 CHEST_FEATURES = 38
 ARM_FEATURES = 17
 
-SWAPPED = [1, 0, 3, 2, 4, 5]
 _FLIP = torch.tensor([-1.0, 1.0, 1.0])
 
 # [3, 9]: x @ _SKEW, a 3 by 3 matrix, takes y to x × y.
 _SKEW = -torch.linalg.cross(torch.eye(3).unsqueeze(1).expand(3, 3, 3), torch.eye(3).expand(3, 3, 3)).transpose(1, 2).reshape(3, 9)
-
 
 # What the shoulders' line, up and the arm are where all features are 0, as when a page tries the network: no axis without a direction.
 _NO_BODY = torch.zeros(16, 3)
@@ -219,7 +218,7 @@ def _mirror_image(taps: int) -> tuple[Tensor, Tensor]:
     column, sign = torch.arange(FEATURES), torch.ones(FEATURES)
     column[7:25] = torch.cat([torch.arange(16, 25), torch.arange(7, 16)])
     column[25:27] = torch.tensor([26, 25])
-    column[IK_JOINTS] = torch.arange(27, 45).view(6, 3)[SWAPPED].flatten()
+    column[IK_JOINTS] = torch.arange(27, 45).view(6, 3)[MIRRORED_JOINTS].flatten()
     # A mirrored rotation's x axis is mirrored and turned round.
     sign[1:7] = torch.cat([-_FLIP, _FLIP])
     sign[7:25] = torch.cat([_FLIP, -_FLIP, _FLIP]).repeat(2)

@@ -13,7 +13,7 @@ from . import people, train_learned
 from .accuracy_tables import renew, table
 from .features import IK_JOINTS
 from .model import ResidualNetwork
-from .prepared_corpus import JOINTS, PreparedCorpus
+from .prepared_corpus import JOINTS, MIRRORED_JOINTS, PreparedCorpus
 from .train_learned import HeldOut, TrainLearnedConfig
 from .train_paper import predict as predict_joints
 
@@ -24,7 +24,6 @@ PAGE = Path(__file__).parents[2] / "docs/training.md"
 COLUMNS = ("mean", "elbows", "shoulders", "spine", "pelvis")
 
 _MIRROR = np.array([-1.0, 1.0, 1.0])
-_SWAP = [1, 0, 3, 2, 4, 5]
 
 
 @dataclass(frozen=True)
@@ -73,7 +72,7 @@ def bias(seen: HeldOut, output: NDArray[np.float32] | None = None) -> Array:
     """The mean of what is true minus what IK, or this output, says [6, 3], the same for both sides [eye heights]."""
     estimated = seen.inputs[:, IK_JOINTS] if output is None else output
     residual = (seen.targets - estimated).reshape(-1, 6, 3).mean(axis=0)
-    return (residual + residual[_SWAP] * _MIRROR) / 2
+    return (residual + residual[MIRRORED_JOINTS] * _MIRROR) / 2
 
 
 def predict(measures: Array, biases: Array, measured: Array, config: NeutralPoseConfig) -> Array:

@@ -17,6 +17,8 @@ ROTATIONS = ("head", "leftHand", "rightHand")
 
 # The six joints nobody tracks, in the order of every tensor (src/core/body/joints.ts).
 ESTIMATED_JOINTS = ("leftLowerArm", "rightLowerArm", "leftUpperArm", "rightUpperArm", "chest", "hips")
+# Which of them a mirror shows in the place of each.
+MIRRORED_JOINTS = [1, 0, 3, 2, 4, 5]
 
 
 @dataclass(frozen=True)

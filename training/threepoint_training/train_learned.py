@@ -156,7 +156,9 @@ def train(
     for step in range(config.steps):
         current = draw_batch(parts, config.batch, config.augment, random)
         x, y = torch.from_numpy(current.inputs), torch.from_numpy(current.targets)
-        loss = _distance(network(x), x, y, config.circle_weight, upper_arm_share)
+        joints, truth = network(x).view(-1, 6, 3), y.view(-1, 6, 3)
+        on_circles = _distance(on_circle(joints, x, upper_arm_share), truth[:, :2])
+        loss = (_distance(joints, truth) + config.circle_weight * on_circles) / _RESIDUAL
         optimiser.zero_grad()
         loss.backward()
         torch.nn.utils.clip_grad_norm_(network.parameters(), 1.0)
@@ -197,7 +199,7 @@ def train_frame_random(
     network.train()
     for step in range(config.steps):
         batch = torch.randint(len(x), (config.batch,))
-        loss = _distance(network(x[batch]), x[batch], y[batch])
+        loss = _distance(network(x[batch]).view(-1, 6, 3), y[batch].view(-1, 6, 3)) / _RESIDUAL
         optimiser.zero_grad()
         loss.backward()
         optimiser.step()
@@ -210,10 +212,6 @@ def train_frame_random(
 _RESIDUAL = 0.025
 
 
-def _distance(output: torch.Tensor, inputs: torch.Tensor, targets: torch.Tensor, circle_weight: float = 0.0, upper_arm_share: float = 0.5) -> torch.Tensor:
+def _distance(joints: torch.Tensor, truth: torch.Tensor) -> torch.Tensor:
     """Distances, not squares: what MPJPE counts, and steadier against climbers and tumblers."""
-    joints, truth = output.view(-1, 6, 3), targets.view(-1, 6, 3)
-    loss = (joints - truth).norm(dim=-1).mean()
-    if circle_weight:
-        loss = loss + circle_weight * (on_circle(joints, inputs, upper_arm_share) - truth[:, :2]).norm(dim=-1).mean()
-    return loss / _RESIDUAL
+    return (joints - truth).norm(dim=-1).mean()
