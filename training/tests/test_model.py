@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 import torch
-from threepoint_training import quaternion
 from threepoint_training.features import FEATURES, IK_JOINTS
 from threepoint_training.generated_motion import generate_corpus
 from threepoint_training.model import ResidualNetwork, on_circle
@@ -19,7 +18,7 @@ SWAPPED = [1, 0, 3, 2, 4, 5]
 MIRROR = np.array([-1.0, 1.0, 1.0], np.float32)
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def network() -> ResidualNetwork:
     """As it is before training: random weights, but the data's mean and scale."""
     torch.manual_seed(1)
@@ -31,11 +30,6 @@ def network() -> ResidualNetwork:
 def joints(network: ResidualNetwork, inputs: np.ndarray) -> np.ndarray:
     with torch.no_grad():
         return network(torch.from_numpy(inputs)).numpy().reshape(-1, 6, 3)
-
-
-def axes(turns: np.ndarray) -> np.ndarray:
-    matrix = quaternion.to_matrix(turns)
-    return np.concatenate([matrix[..., :, 0], matrix[..., :, 1]], axis=-1)
 
 
 def mirrored(inputs: np.ndarray) -> np.ndarray:
