@@ -24,7 +24,7 @@ export const faultRows = {
   },
   'hand-lost': {
     inject: 'One or both hands null or emulated',
-    sees: 'The arm eases to rest in 300 ms; the flag travels to others',
+    sees: 'The arm is held for 0.1 s and sinks to rest in 2.5 s; the flag travels to others',
     target: 'no jump over 5 cm per frame (60 Hz), 200 ms blend',
     tests: ['tests/reliability/lost-hands.test.ts', 'tests/core/tracking/hand-continuity.test.ts', 'e2e/hands.spec.ts'],
     manual: [

@@ -59,7 +59,7 @@ def test_walking_elsewhere_and_turning_changes_no_feature(motion, yaw):
     np.testing.assert_allclose(turned_joints, joints, atol=1e-9)
     turned_truth, _ = moved(truth, np.broadcast_to(rotations[:, :1], (120, 6, 4)), yaw, np.array([3.0, 0.0, -7.0]))
     np.testing.assert_allclose(
-        features.target(turned_truth, *elsewhere, BODY), features.target(truth, positions, rotations, BODY), atol=1e-9
+        features.target(turned_truth, *elsewhere, BODY, after), features.target(truth, positions, rotations, BODY, before), atol=1e-9
     )
 
 
@@ -88,7 +88,9 @@ def test_a_child_in_an_adult_s_pose_has_the_adult_s_features(motion, size):
     after, _ = features.frame_features(positions * size, rotations, grown)
     np.testing.assert_allclose(after, before, atol=1e-6)
     np.testing.assert_allclose(
-        features.target(truth * size, positions * size, rotations, grown), features.target(truth, positions, rotations, BODY), atol=1e-9
+        features.target(truth * size, positions * size, rotations, grown, after),
+        features.target(truth, positions, rotations, BODY, before),
+        atol=1e-6,
     )
 
 
@@ -142,3 +144,43 @@ def test_looking_straight_down_or_up_keeps_the_heading():
         yaw = quaternion.from_axis_angle(np.array([0.0, 1.0, 0.0]), np.array(0.7))
         head = quaternion.multiply(yaw, quaternion.from_axis_angle(np.array([1.0, 0.0, 0.0]), np.array(pitch)))
         np.testing.assert_allclose(quaternion.heading(head[None])[0], yaw, atol=1e-6)
+
+
+def turned_about_the_headset(vector: np.ndarray, q: np.ndarray) -> np.ndarray:
+    """Features [F, 46] of hands and IK joints that turn about the headset; the head's own axes turn too."""
+    turned = vector.copy()
+    spans = [slice(1, 4), slice(4, 7), *(slice(first, first + 3) for first in range(7, 25, 3)), *(slice(first, first + 3) for first in range(27, 45, 3))]
+    for span in spans:
+        turned[:, span] = quaternion.rotate(np.broadcast_to(q, (len(vector), 4)), vector[:, span])
+    return turned
+
+
+def test_a_chest_sees_the_same_whichever_way_its_body_turns_and_leans(motion):
+    vector, _ = features.frame_features(*motion[:2], BODY)
+    q = quaternion.from_rotation_vector(np.array([0.4, -0.9, 0.2]))
+    before, after = features.seen_from_chest(vector), features.seen_from_chest(turned_about_the_headset(vector, q))
+    # All but which way the room's up is.
+    room = slice(33, 36)
+    assert np.abs(after[:, room] - before[:, room]).max() > 0.1
+    after[:, room] = before[:, room]
+    np.testing.assert_allclose(after, before, atol=1e-9)
+
+
+def test_a_chest_s_axes_are_a_right_handed_frame_along_shoulders_and_spine(motion):
+    vector, joints = features.frame_features(*motion[:2], BODY)
+    axes = features.chest_axes(vector)
+    np.testing.assert_allclose(axes @ np.swapaxes(axes, 1, 2), np.broadcast_to(np.eye(3), axes.shape), atol=1e-9)
+    np.testing.assert_allclose(np.linalg.det(axes), 1.0)
+    assert (np.einsum("fi,fi->f", axes[:, 0], joints[:, 3] - joints[:, 2]) > 0.2).all()
+    assert (np.einsum("fi,fi->f", axes[:, 1], (joints[:, 2] + joints[:, 3]) / 2 - joints[:, 4]) > 0.1).all()
+
+
+def test_what_is_right_is_what_to_add_to_ik(motion):
+    positions, rotations = motion[:2]
+    vector, joints = features.frame_features(positions, rotations, BODY)
+    yaw, origin = quaternion.heading(rotations[:, 0]), positions[:, 0] * [1, 0, 1]
+    floor = quaternion.rotate(np.broadcast_to(yaw[:, None], (*joints.shape[:-1], 4)), joints) + origin[:, None]
+    up = np.array([0.0, 0.03, 0.0])
+    np.testing.assert_allclose(features.target(floor, positions, rotations, BODY, vector), 0.0, atol=1e-12)
+    told = features.target(floor + up, positions, rotations, BODY, vector).reshape(-1, 6, 3)
+    np.testing.assert_allclose(told, 0.03 / BODY.eye_height[0] * np.repeat(features.chest_axes(vector)[:, None, :, 1], 6, axis=1), atol=1e-12)

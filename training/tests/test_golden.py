@@ -8,7 +8,7 @@ import onnx
 import onnxruntime
 import pytest
 from threepoint_training import golden
-from threepoint_training.features import FEATURES, OUTPUTS
+from threepoint_training.features import CHEST_FEATURES, FEATURES, OUTPUTS
 from threepoint_training.people import FOLDS
 
 MODELS = golden.GOLDEN.parents[1] / "public/models"
@@ -67,7 +67,7 @@ def test_the_contract_speaks_of_the_file_beside_it(name):
         assert [(t.name, t.shape) for t in tensors] == [(t["name"], t["shape"]) for t in stated_tensors]
     assert stated["outputs"][0]["shape"] == [1, OUTPUTS]
     if name == "learned":
-        assert stated["inputs"][0]["shape"] == [1, FEATURES * len(stated["windowSeconds"])]
+        assert stated["inputs"][0]["shape"] == [1, FEATURES * len(stated["windowSeconds"]) + CHEST_FEATURES]
         assert stated["windowSeconds"][0] == 0
         assert stated["windowSeconds"] == sorted(stated["windowSeconds"])
         assert 0 <= stated["correctionHalfLife"] <= 0.2

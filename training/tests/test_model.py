@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 import torch
-from threepoint_training.features import FEATURES, IK_JOINTS
+from threepoint_training.features import CHEST_FEATURES, FEATURES, IK_JOINTS, seen_from_chest
 from threepoint_training.generated_motion import generate_corpus
-from threepoint_training.model import ResidualNetwork, on_circle
+from threepoint_training.model import CorrectionNetwork, on_circle
 from threepoint_training.skeleton import body_from_calibration
 from threepoint_training.train_learned import held_out
 
@@ -19,22 +19,26 @@ MIRROR = np.array([-1.0, 1.0, 1.0], np.float32)
 
 
 @pytest.fixture
-def network() -> ResidualNetwork:
+def network() -> CorrectionNetwork:
     """As it is before training: random weights, but the data's mean and scale."""
     torch.manual_seed(1)
-    network = ResidualNetwork(len(WINDOW), width=32, dropout=0.0)
+    network = CorrectionNetwork(len(WINDOW), width=32, dropout=0.0)
     network.normalise(torch.from_numpy(SEEN.inputs), torch.from_numpy(SEEN.targets))
     return network.eval()
 
 
-def joints(network: ResidualNetwork, inputs: np.ndarray) -> np.ndarray:
+def corrections(network: CorrectionNetwork, inputs: np.ndarray) -> np.ndarray:
     with torch.no_grad():
         return network(torch.from_numpy(inputs)).numpy().reshape(-1, 6, 3)
 
 
+def with_chest_view(windows: np.ndarray) -> np.ndarray:
+    return np.concatenate([windows, seen_from_chest(windows[:, :FEATURES])], axis=1).astype(np.float32)
+
+
 def mirrored(inputs: np.ndarray) -> np.ndarray:
     """Features of the body a mirror shows, made from what features mean and not from what the network knows of them."""
-    taps = inputs.reshape(len(inputs), -1, FEATURES)
+    taps = inputs[:, :-CHEST_FEATURES].reshape(len(inputs), -1, FEATURES)
     result = taps.copy()
 
     def turned(columns: np.ndarray) -> np.ndarray:
@@ -51,14 +55,14 @@ def mirrored(inputs: np.ndarray) -> np.ndarray:
     result[..., 25], result[..., 26] = taps[..., 26], taps[..., 25]
     ik = taps[..., IK_JOINTS].reshape(*taps.shape[:2], 6, 3)
     result[..., IK_JOINTS] = (ik[..., SWAPPED, :] * MIRROR).reshape(*taps.shape[:2], 18)
-    return result.reshape(len(inputs), -1).astype(np.float32)
+    return with_chest_view(result.reshape(len(inputs), -1))
 
 
-def test_a_mirror_image_has_the_mirror_image_s_joints(network):
-    seen = joints(network, SEEN.inputs)
-    image = joints(network, mirrored(SEEN.inputs))
+def test_a_mirror_image_is_corrected_to_the_mirror_image(network):
+    seen = corrections(network, SEEN.inputs)
+    image = corrections(network, mirrored(SEEN.inputs))
     np.testing.assert_allclose(image, seen[:, SWAPPED] * MIRROR, atol=1e-5)
-    assert np.abs(seen - seen[:, SWAPPED] * MIRROR).max() > 0.02
+    assert np.abs(seen - seen[:, SWAPPED] * MIRROR).max() > 0.005
 
 
 def test_an_elbow_knows_nothing_of_the_other_hand(network):
@@ -66,31 +70,34 @@ def test_an_elbow_knows_nothing_of_the_other_hand(network):
     with torch.no_grad():
         for layer in (network.trunk_output_mean, network.trunk_output_scale):
             layer.zero_()
-    inputs = SEEN.inputs.copy()
-    before = joints(network, inputs)
-    inputs[:, 16:25] = np.roll(inputs[:, 16:25], 50, axis=0)
-    after = joints(network, inputs)
+    windows = SEEN.inputs[:, :-CHEST_FEATURES].copy()
+    before = corrections(network, SEEN.inputs)
+    windows[:, 16:25] = np.roll(windows[:, 16:25], 50, axis=0)
+    after = corrections(network, with_chest_view(windows))
     np.testing.assert_allclose(after[:, 0], before[:, 0], atol=1e-6)
     assert np.abs(after[:, 1] - before[:, 1]).max() > 1e-3
 
 
 def test_nothing_at_all_gives_numbers_all_the_same(network):
-    assert np.isfinite(joints(network, np.zeros((1, len(WINDOW) * FEATURES), np.float32))).all()
+    assert np.isfinite(corrections(network, np.zeros((1, network.inputs), np.float32))).all()
 
 
 def test_elbows_lie_where_both_bones_let_them_be():
     share = 0.5
-    inputs, solved = torch.from_numpy(SEEN.inputs), torch.from_numpy(SEEN.inputs[:, IK_JOINTS].reshape(-1, 6, 3))
-    moved = solved + 0.02 * torch.randn(solved.shape, generator=torch.Generator().manual_seed(3))
-    elbows, moved = on_circle(moved, inputs, share).numpy(), moved.numpy()
+    inputs = torch.from_numpy(SEEN.inputs)
+    shift = 0.02 * torch.randn((len(inputs), 6, 3), generator=torch.Generator().manual_seed(3))
+    elbow_shift, shoulder_shift = on_circle(shift, inputs, share).numpy(), shift[:, 2:4].numpy()
     arm = SEEN.inputs[:, 45]
     person = next(iter(CORPUS.people.values()))
     body = body_from_calibration(np.array(person.eye_height), np.array(person.arm_span))
     assert arm[0] == pytest.approx(float(body.arm[0] / body.eye_height[0]), rel=1e-3)
-    for side, hand in ((0, 7), (1, 16)):
-        wrist = SEEN.inputs[:, hand : hand + 3] * arm[:, None]
-        reachable = np.linalg.norm(wrist - moved[:, 2 + side], axis=1) < 0.95 * arm
+    for side in (0, 1):
+        wrist, *_, elbow = SEEN.inputs[:, -CHEST_FEATURES:].reshape(len(inputs), -1)[:, 12 * side : 12 * side + 12].reshape(-1, 4, 3).swapaxes(0, 1)
+        # From IK's shoulder, as its chest sees them.
+        wrist, elbow = wrist * arm[:, None], elbow + elbow_shift[:, side]
+        shoulder = shoulder_shift[:, side]
+        reachable = np.linalg.norm(wrist - shoulder, axis=1) < 0.95 * arm
         assert reachable.sum() > 50
-        for end, bone in ((wrist, 1 - share), (moved[:, 2 + side], share)):
-            length = np.linalg.norm(end - elbows[:, side], axis=1)
+        for end, bone in ((wrist, 1 - share), (shoulder, share)):
+            length = np.linalg.norm(end - elbow, axis=1)
             np.testing.assert_allclose(length[reachable], bone * arm[reachable], atol=1e-3)
