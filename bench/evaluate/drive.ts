@@ -1,5 +1,6 @@
 import type { Calibration } from '../../src/core/body/calibration';
 import { forwardKinematics } from '../../src/core/body/forward-kinematics';
+import { createHeightWatch } from '../../src/core/body/height-watch';
 import { skeletonFromCalibration } from '../../src/core/body/skeleton';
 import { createEstimator } from '../../src/core/estimation/estimators';
 import type { EstimatorName } from '../../src/core/estimation/pose-estimator';
@@ -20,15 +21,23 @@ export async function drive(
   frames: readonly RecordedFrame[],
 ): Promise<MeasuredFrame[]> {
   const estimator = createEstimator(name, calibration, regressor);
-  const skeleton = skeletonFromCalibration(calibration);
+  const heightWatch = createHeightWatch();
+  let body = calibration;
+  let skeleton = skeletonFromCalibration(body);
   const result: MeasuredFrame[] = [];
   for (const { frame, truth } of frames) {
+    const grown = heightWatch.observe(frame, body);
+    if (grown) {
+      body = grown;
+      skeleton = skeletonFromCalibration(grown);
+      estimator.calibrate(grown);
+    }
     await estimator.prepare(frame);
-    const { body } = estimator.estimate(frame);
+    const { body: pose } = estimator.estimate(frame);
     if (estimator.fault()) throw new Error(`${name}: ${estimator.fault()}`);
-    if (!body) throw new Error(`${name} drew no body`);
+    if (!pose) throw new Error(`${name} drew no body`);
     const joints: Record<string, Vec3> = {};
-    for (const [joint, { position }] of Object.entries(forwardKinematics(skeleton, body))) joints[joint] = position;
+    for (const [joint, { position }] of Object.entries(forwardKinematics(skeleton, pose))) joints[joint] = position;
     result.push({
       joints,
       truth,
