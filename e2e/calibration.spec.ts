@@ -77,3 +77,22 @@ test('a taller calibration makes a longer body under the same head', async ({ pa
   await enterVr(page);
   await expect.poll(trunk).toBeGreaterThan(short + 0.03);
 });
+
+test('worn: whoever stands taller than what was typed grows, the page says why, and it is remembered', async ({
+  page,
+}) => {
+  const headset = await openWithHeadset(page, 'estimator=ik');
+  await page.getByRole('spinbutton', { name: 'Height in centimetres' }).fill('165');
+  await page.keyboard.press('Tab');
+  const typed = (await probe(page)).calibration;
+  const eyeHeight = 1.05 * typed.eyeHeight;
+  await enterVr(page);
+  await headset.place({ head: { position: [0.2, eyeHeight, 0], orientation: [0, 0, 0, 1] } });
+  await expect.poll(async () => (await probe(page)).calibration.eyeHeight).toBeCloseTo(eyeHeight, 2);
+  expect((await probe(page)).calibration.armSpan).toBeCloseTo(typed.armSpan, 3);
+  await headset.endSession();
+  await expect(page.getByText('corrected, because you stood taller')).toBeVisible();
+
+  await openWithHeadset(page, 'estimator=ik');
+  expect((await probe(page)).calibration.eyeHeight).toBeCloseTo(eyeHeight, 2);
+});

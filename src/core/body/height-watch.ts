@@ -24,7 +24,7 @@ const deadZone = 0.02;
 /** As a part of the eye height that was measured: whoever rises further stands on something. */
 const mostGrowth = 0.08;
 /** A longer one [s] between two frames hides what happened in it. */
-const longestGap = 0.25;
+const longestGap = 0.5;
 
 /** Eyes that stay within `calmRange`: from when to when [s], how low and how high [m]. */
 interface CalmStand {
