@@ -1,5 +1,5 @@
 import * as v from 'valibot';
-import { featureCount } from '../core/estimation/features';
+import { learnedInputCount } from '../core/estimation/learned';
 import type { ModelContract, PoseRegressor } from '../core/estimation/pose-regressor';
 import { createSession, type ExecutionProvider, type InferenceSession } from './session';
 
@@ -8,7 +8,7 @@ const tensor = v.object({
   shape: v.pipe(v.array(v.pipe(v.number(), v.integer(), v.minValue(1))), v.minLength(1)),
   meaning: v.string(),
   unit: v.string(),
-  frame: v.picklist(['floor', 'heading']),
+  frame: v.picklist(['floor', 'heading', 'chest']),
 });
 
 const contractSchema = v.object({
@@ -55,7 +55,7 @@ export function parseContract(file: string, text: string): ModelContract {
   }
   // An absent half-life stays absent: exact optional properties know no undefined.
   const { correctionHalfLife, ...contract } = result.output;
-  const expected = contract.name === 'paper' ? 18 : contract.windowSeconds.length * featureCount;
+  const expected = contract.name === 'paper' ? 18 : learnedInputCount(contract.windowSeconds);
   const count = (shape: readonly number[]) => shape.reduce((product, size) => product * size, 1);
   const [input, output] = [contract.inputs[0], contract.outputs[0]];
   if (input === undefined || count(input.shape) !== expected) {

@@ -21,7 +21,7 @@ from rich.table import Table
 from . import ablation, export, fit_body, fit_ik, golden, ik, neutral_pose, people, prepare, skeleton, train_learned, train_paper
 from .features import paper_input
 from .generated_motion import generate_corpus
-from .model import PaperNetwork, ResidualNetwork
+from .model import PaperNetwork, CorrectionNetwork
 from .motion import MocapError
 from .prepared_corpus import PreparedCorpus
 
@@ -188,7 +188,7 @@ def _cross_validated(config: TrainConfig, corpus: PreparedCorpus, name: str) -> 
 
 def _ablate(config: TrainConfig, corpus: PreparedCorpus, progress: Progress, console: Console) -> dict[str, dict[str, float]]:
     task = progress.add_task("ablation", total=len(ablation.FOLDS) * len(ablation.variants(config.learned)))
-    networks: dict[tuple[str, ...], ResidualNetwork] = {}
+    networks: dict[tuple[str, ...], CorrectionNetwork] = {}
     rows = ablation.run(
         corpus, config.learned, ablation.AblationConfig(seed=config.seed),
         lambda name: progress.update(task, advance=1, description=name), networks.__setitem__,

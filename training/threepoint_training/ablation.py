@@ -11,7 +11,7 @@ import numpy as np
 
 from . import people, train_learned
 from .accuracy_tables import renew, table
-from .model import ResidualNetwork
+from .model import CorrectionNetwork
 from .prepared_corpus import PreparedCorpus
 from .simulate_trackers import TrackerConfig
 from .train_learned import Condition, TrainLearnedConfig
@@ -62,7 +62,7 @@ def variants(config: TrainLearnedConfig) -> dict[str, TrainLearnedConfig]:
         "without noise": exact(position_noise=0.0, rotation_noise=0.0),
         "without errors of the calibration": without(eye_height_error=0.0, arm_span_error=0.0),
         "without lost hands": without(lost_hand=0.0),
-        "lost hands rest at once": without(held_hand=0.0),
+        "lost hands held for a moment only": without(lost_frames=12),
         "without late trackers": without(late=0.0),
         "without seated people": without(seated=0.0),
         "headsets tilted by 8°, gaze not calibrated": without(trackers=tilted),
@@ -77,7 +77,7 @@ def run(
     recipe: TrainLearnedConfig,
     config: AblationConfig = AblationConfig(),
     report: Callable[[str], None] = lambda _: None,
-    trained: Callable[[tuple[str, ...], ResidualNetwork], None] = lambda *_: None,
+    trained: Callable[[tuple[str, ...], CorrectionNetwork], None] = lambda *_: None,
 ) -> list[list[str]]:
     """Rows of the table: MPJPE [cm] of each variant under each condition, mean over the folds; first IK.
 

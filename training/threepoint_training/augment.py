@@ -9,16 +9,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import quaternion
-from .features import frame_features, target
+from .features import frame_features, seen_from_chest, target
+from .lost_hands import carry, sink
 from .prepared_corpus import JOINTS, MIRRORED_JOINTS, PreparedCorpus
 from .simulate_trackers import TrackerConfig
 from .prepare import EYES_FROM_HEAD_JOINT
-from .skeleton import body_from_calibration, load_proportions
+from .skeleton import body_from_calibration
 
 Array = NDArray[np.float64]
 
 TORSO = ("hips", "chest", "neck", "head")
 ARM = ("UpperArm", "LowerArm", "Hand")
+# Of the corpus [Hz].
+FRAME_RATE = 60
+
 _MIRROR = np.array([-1.0, 1.0, 1.0])
 _MIRROR_TURN = np.array([1.0, -1.0, -1.0, 1.0])
 
@@ -30,9 +34,8 @@ class AugmentConfig:
     window_frames: tuple[int, ...] = (0, 6, 15)
     recombined: float = 0.8
     lost_hand: float = 0.06
-    # Of the lost hands: still held where they were seen last, up to this long ago [frames]; the others rest already.
-    held_hand: float = 0.3
-    held_frames: int = 12
+    # Lost hands were seen last up to this long ago [frames].
+    lost_frames: int = 180
     # Trackers that tell of the frame before.
     late: float = 0.3
     # People on a chair that their calibration knows nothing of, lower by 0.2 to 0.35 of the eye height.
@@ -45,7 +48,7 @@ class AugmentConfig:
 
 @dataclass(frozen=True)
 class Batch:
-    """inputs [N, T·46], base [N, 18] the IK joints within them, targets [N, 18]; float32."""
+    """inputs [N, T·46 + 38], targets [N, 18]; float32."""
 
     inputs: NDArray[np.float32]
     targets: NDArray[np.float32]
@@ -125,10 +128,9 @@ def draw_batch(parts: BodyParts, count: int, config: AugmentConfig, random: np.r
     )
     mirrored = random.uniform(size=count) < 0.5
     lost = random.uniform(size=(count, 2)) < config.lost_hand
-    held = lost & (random.uniform(size=(count, 2)) < config.held_hand)
-    held_for = np.where(held, random.integers(1, config.held_frames + 1, size=(count, 2)), 0)
-    # Masks are those of the body as it is seen, arms those of the body before it is mirrored.
-    held_for = np.where(mirrored[:, None], held_for[:, ::-1], held_for)
+    unseen = np.where(lost, random.integers(1, config.lost_frames + 1, size=(count, 2)), 0)
+    # Arms are those of the body before it is mirrored.
+    unseen_arms = np.where(mirrored[:, None], unseen[:, ::-1], unseen)
     late = (random.uniform(size=count) < config.late).astype(np.int64)
     drop = np.where(random.uniform(size=count) < config.seated, random.uniform(0.2, 0.35, count), 0.0) * sizes[:, 0]
     calibrated = body_from_calibration(
@@ -158,8 +160,15 @@ def draw_batch(parts: BodyParts, count: int, config: AugmentConfig, random: np.r
         arm = neck[:, None] + quaternion.rotate(np.broadcast_to(chest[:, None], (*arm.shape[:-1], 4)), arm)
         return arm, quaternion.multiply(chest, wrist)
 
+    def hand_at(side: int, ago: NDArray[np.int64]) -> tuple[Array, Array]:
+        """A wrist and its turn that many frames before the newest; unseen: where it was last, carried along with the head."""
+        arm, turn = arm_at(side, ago + unseen_arms[:, side])
+        (before, frames_before), (now, frames) = torso_at(ago + unseen_arms[:, side]), torso_at(ago)
+        head = TORSO.index("head")
+        return carry(arm[:, 2], turn, (before[:, head], parts.head_turn[frames_before]), (now[:, head], parts.head_turn[frames]))
+
     columns = []
-    targets = np.empty(0)
+    targets = seen = np.empty(0)
     for age in config.window_frames:
         now = np.full(count, age)
         torso, _ = torso_at(now)
@@ -167,8 +176,8 @@ def draw_batch(parts: BodyParts, count: int, config: AugmentConfig, random: np.r
         truth = np.stack([arms[0][:, 1], arms[1][:, 1], arms[0][:, 0], arms[1][:, 0], torso[:, 1], torso[:, 0]], axis=1)
         # What trackers tell may be older than what is true.
         torso, frames = torso_at(now + late)
-        hands = [arm_at(side, now + late + held_for[:, side]) for side in (0, 1)]
-        anchors = np.stack([torso[:, 3], hands[0][0][:, 2], hands[1][0][:, 2]], axis=1)
+        hands = [hand_at(side, now + late) for side in (0, 1)]
+        anchors = np.stack([torso[:, TORSO.index("head")], hands[0][0], hands[1][0]], axis=1)
         rotations = np.stack([parts.head_turn[frames], hands[0][1], hands[1][1]], axis=1)
 
         flip = mirrored[:, None, None]
@@ -179,35 +188,9 @@ def draw_batch(parts: BodyParts, count: int, config: AugmentConfig, random: np.r
         positions = anchors + quaternion.rotate(rotations, offsets)
         positions = positions + random.normal(size=positions.shape) * config.trackers.position_noise
         rotations = quaternion.multiply(rotations, np.concatenate([head_jitter[:, None], turn_jitter], axis=1))
-        positions, rotations = rest_lost_hands(positions, rotations, lost & ~held, calibrated.eye_height[:, 0], calibrated.arm[:, 0])
+        positions, rotations = sink(positions, rotations, unseen / FRAME_RATE, calibrated.eye_height[:, 0], calibrated.arm[:, 0])
         vector, _ = frame_features(positions, rotations, calibrated, ~lost)
         columns.append(vector)
         if age == 0:
-            targets = target(truth, positions, rotations, calibrated)
-    return Batch(np.concatenate(columns, axis=1).astype(np.float32), targets.astype(np.float32))
-
-
-def rest_lost_hands(positions: Array, rotations: Array, lost: NDArray[np.bool_], eye_height: Array, arm: Array) -> tuple[Array, Array]:
-    """Unseen hands [F, 2] beside the hips, as src/core/tracking/hand-continuity.ts leaves them after its ease."""
-    p = load_proportions()
-    yaw = quaternion.heading(rotations[:, 0])
-    positions, rotations = positions.copy(), rotations.copy()
-    eyes = eye_height[:, None] * np.array([0.0, p["eyesInHead"][0], -p["eyesInHead"][1]])
-    head_joint = positions[:, 0] - quaternion.rotate(rotations[:, 0], eyes)
-    shoulder = head_joint[:, 1] + (p["clavicle"][1] - p["neckToHead"][0]) * eye_height
-    for hand, sign in ((0, -1.0), (1, 1.0)):
-        local = np.stack(
-            [
-                sign * ((p["clavicleRoot"] + p["clavicle"][0]) * eye_height + 0.1 * arm),
-                np.maximum(shoulder - 0.93 * arm, 0.06 * eye_height),
-                (p["neckToHead"][1] - p["clavicle"][2]) * eye_height - 0.06 * arm,
-            ],
-            axis=-1,
-        )
-        rest = quaternion.rotate(yaw, local) + head_joint * np.array([1.0, 0.0, 1.0])
-        axes = np.array([[0.0, sign, 0.0], [0.0, 0.0, 1.0], [sign, 0.0, 0.0]])
-        turn = quaternion.multiply(yaw, np.broadcast_to(quaternion.from_matrix(axes), yaw.shape))
-        chosen = lost[:, hand, None]
-        positions[:, 1 + hand] = np.where(chosen, rest, positions[:, 1 + hand])
-        rotations[:, 1 + hand] = np.where(chosen, turn, rotations[:, 1 + hand])
-    return positions, rotations
+            targets, seen = target(truth, positions, rotations, calibrated, vector), seen_from_chest(vector)
+    return Batch(np.concatenate([*columns, seen], axis=1).astype(np.float32), targets.astype(np.float32))

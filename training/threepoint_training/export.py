@@ -13,7 +13,7 @@ import onnx
 import torch
 from numpy.typing import NDArray
 
-from .features import FEATURES, OUTPUTS
+from .features import CHEST_FEATURES, FEATURES, OUTPUTS
 from .quantise import quantise_weights, run
 
 OPSET = 17
@@ -78,7 +78,7 @@ def write(
 
     With `fp32_out` the same network goes there with its 32-bit weights, so that the evaluation can compare the two.
     """
-    input_name, output_name = ("three_points", "joints") if name == "paper" else ("features", "joints")
+    input_name, output_name = ("three_points", "joints") if name == "paper" else ("features", "corrections")
     exact = to_onnx(network, examples[:1], input_name, output_name)
     quantised = quantise_weights(exact)
     content = quantised.SerializeToString()
@@ -152,8 +152,8 @@ def _paper_output() -> dict[str, Any]:
 def _learned_input(taps: int) -> dict[str, Any]:
     return {
         "name": "features",
-        "shape": [1, taps * FEATURES],
-        "meaning": f"{FEATURES} features of docs/estimation.md at each age of windowSeconds, newest first",
+        "shape": [1, taps * FEATURES + CHEST_FEATURES],
+        "meaning": f"{FEATURES} features of docs/estimation.md at each age of windowSeconds, newest first; then {CHEST_FEATURES} of what IK's chest sees",
         "unit": "1",
         "frame": "heading",
     }
@@ -161,9 +161,9 @@ def _learned_input(taps: int) -> dict[str, Any]:
 
 def _learned_output() -> dict[str, Any]:
     return {
-        "name": "joints",
+        "name": "corrections",
         "shape": [1, OUTPUTS],
-        "meaning": f"{JOINTS_IN_WORDS}: x, y, z from the headset",
+        "meaning": f"{JOINTS_IN_WORDS}: x, y, z to add to those of IK",
         "unit": "eyeHeight",
-        "frame": "heading",
+        "frame": "chest",
     }

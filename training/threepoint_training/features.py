@@ -8,7 +8,9 @@ from .skeleton import Body
 
 Array = NDArray[np.float64]
 
+# Of a frame, and of what IK's chest sees of the newest one.
 FEATURES = 46
+CHEST_FEATURES = 38
 OUTPUTS = 18
 IK_JOINTS = slice(27, 45)
 
@@ -51,12 +53,53 @@ def windowed(features: Array, times: Array, window: tuple[float, ...]) -> Array:
     return np.concatenate(parts, axis=-1)
 
 
-def target(truth: Array, positions: Array, rotations: Array, body: Body) -> Array:
-    """The output [F, 18] that would be right: the six joints − headset in the heading frame, divided by the eye height."""
+def chest_axes(vector: Array) -> Array:
+    """The axes of IK's chest as rows [F, 3, 3], heading frame, from features [F, 46]: x from shoulder to shoulder, y up the spine, z backward."""
+    _, _, left, right, chest, _ = _ik_joints(vector)
+    x = _normalise(right - left)
+    up = (left + right) / 2 - chest
+    up = _normalise(up - np.sum(up * x, -1, keepdims=True) * x)
+    return np.stack([x, up, np.cross(x, up)], axis=1)
+
+
+def seen_from_chest(vector: Array) -> Array:
+    """What IK's chest sees of a frame [F, 38], from its features [F, 46].
+
+    Left, then right arm: reach from IK's shoulder to the wrist in arm lengths, x and y axes of the hand, IK's elbow from its shoulder; x and y
+    axes of the head, the chest joint from the headset; the room's up; the lengths of both reaches. Joints in eye heights.
+    """
+    axes, arm = chest_axes(vector), vector[:, 45:46]
+    joints = _ik_joints(vector)
+    arms = []
+    for hand, elbow, shoulder in ((7, joints[0], joints[2]), (16, joints[1], joints[3])):
+        reach = vector[:, hand : hand + 3] - shoulder / arm
+        arms += [reach, vector[:, hand + 3 : hand + 6], vector[:, hand + 6 : hand + 9], elbow - shoulder]
+    seen = np.stack([*arms, vector[:, 1:4], vector[:, 4:7], joints[4]], axis=1) @ np.swapaxes(axes, 1, 2)
+    lengths = np.linalg.norm(seen[:, [0, 4]], axis=-1)
+    return np.concatenate([seen.reshape(len(vector), -1), axes[:, :, 1], lengths], axis=-1)
+
+
+def network_input(vector: Array, times: Array, window: tuple[float, ...]) -> Array:
+    """The network's input [F, T·46 + 38]: the window of features, and what IK's chest sees of the newest frame."""
+    return np.concatenate([windowed(vector, times, window), seen_from_chest(vector)], axis=-1)
+
+
+def target(truth: Array, positions: Array, rotations: Array, body: Body, vector: Array) -> Array:
+    """The output [F, 18] that would be right: the six joints − those of IK, which these features carry, seen from its chest, in eye heights."""
     yaw = quaternion.heading(rotations[:, 0])
     inverse = np.broadcast_to(quaternion.conjugate(yaw)[:, None], (*truth.shape[:-1], 4))
-    local = quaternion.rotate(inverse, truth - positions[:, :1])
-    return (local / body.eye_height[..., None]).reshape(len(truth), -1)
+    joints = quaternion.rotate(inverse, truth - positions[:, :1]) / body.eye_height[..., None]
+    correction = joints - vector[:, IK_JOINTS].reshape(-1, 6, 3)
+    return (correction @ np.swapaxes(chest_axes(vector), 1, 2)).reshape(len(truth), -1)
+
+
+def _ik_joints(vector: Array) -> list[Array]:
+    """The six joints [F, 3] from the headset, heading frame, eye heights."""
+    return list(np.moveaxis(vector[:, IK_JOINTS].reshape(-1, 6, 3), 1, 0))
+
+
+def _normalise(v: Array) -> Array:
+    return v / np.maximum(np.linalg.norm(v, axis=-1, keepdims=True), 1e-9)
 
 
 def euler_yxz(q: Array) -> Array:

@@ -52,7 +52,7 @@ def feature_vectors() -> list[dict[str, Any]]:
                     }
                     for i in range(FRAMES)
                 ],
-                "windowed": features.windowed(vector, times, WINDOW),
+                "inputs": features.network_input(vector, times, WINDOW),
             }
         )
     return cases
@@ -76,7 +76,7 @@ def model_vectors(models: Path) -> dict[str, Any]:
         if contract["name"] == "paper":
             inputs = features.paper_input(positions, rotations)
         else:
-            inputs = features.windowed(vector, np.arange(len(vector)) / 60, tuple(contract["windowSeconds"]))
+            inputs = features.network_input(vector, np.arange(len(vector)) / 60, tuple(contract["windowSeconds"]))
         inputs = inputs[::12].astype(np.float32)
         name = contract["inputs"][0]["name"]
         outputs = [session.run(None, {name: row[None]})[0][0] for row in inputs]

@@ -1,11 +1,10 @@
 """The two networks. Normalisation lives inside both: SI units or ratios go in and come out."""
 
-from dataclasses import dataclass
-
 import torch
 from torch import Tensor, nn
+from torch.nn import functional
 
-from .features import FEATURES, IK_JOINTS, OUTPUTS
+from .features import CHEST_FEATURES, FEATURES, IK_JOINTS, OUTPUTS
 from .prepared_corpus import MIRRORED_JOINTS
 
 
@@ -51,44 +50,42 @@ class PaperNetwork(nn.Module):
         return self.standardised(inputs) * self.output_scale + self.output_mean
 
 
-class ResidualNetwork(nn.Module):
-    """[N, T·46] features -> [N, 18] joints: the IK solution in the newest frame plus a learned correction.
+class CorrectionNetwork(nn.Module):
+    """[N, T·46 + 38] features -> [N, 18]: what to add to IK's six joints, seen from IK's chest, in eye heights.
 
-    Everything is seen from IK's chest, where an arm looks the same whichever way its body turns and leans. A trunk corrects shoulders,
-    chest joint and hips; an arm, the same network for both sides, then corrects an elbow, knowing of nothing but its own hand and
-    shoulder. Whatever is said of a body is said of its mirror image.
+    From the chest an arm looks the same whichever way its body turns and leans. A trunk corrects shoulders, chest joint and hips; an arm,
+    the same network for both sides, then corrects an elbow, knowing of nothing but its own hand and shoulder. Whatever is said of a body
+    is said of its mirror image.
 
     In a browser a node of the graph costs more than its arithmetic: what is linear is one matrix.
     """
 
     def __init__(self, taps: int, width: int, dropout: float, hidden_layers: int = 2) -> None:
         super().__init__()
-        self.inputs = taps * FEATURES
-        trunk_inputs, arm_width = self.inputs + CHEST_FEATURES, max(width // 2, 16)
-        self.trunk = _perceptron(trunk_inputs, width, hidden_layers, dropout, 12)
-        self.arm = _perceptron(ARM_FEATURES, arm_width, hidden_layers, dropout, 3)
-        for name, inputs, outputs in (("trunk", trunk_inputs, 12), ("arm", ARM_FEATURES, 3)):
+        self.inputs = taps * FEATURES + CHEST_FEATURES
+        self.trunk = _perceptron(self.inputs, width, hidden_layers, dropout, 12)
+        self.arm = _perceptron(ARM_FEATURES, max(width // 2, 16), hidden_layers, dropout, 3)
+        for name, inputs, outputs in (("trunk", self.inputs, 12), ("arm", ARM_FEATURES, 3)):
             self.register_buffer(f"{name}_input_mean", torch.zeros(1, inputs))
             self.register_buffer(f"{name}_input_scale", torch.ones(1, inputs))
-            self.register_buffer(f"{name}_output_mean", torch.zeros(1, outputs))
-            self.register_buffer(f"{name}_output_scale", torch.ones(1, outputs))
+            self.register_buffer(f"{name}_output_mean", torch.zeros(outputs))
+            self.register_buffer(f"{name}_output_scale", torch.ones(outputs))
         self.mirror_column, self.mirror_sign = _mirror_image(taps)
-        self.vectors, self.from_trunk, self.from_arms = _vectors(taps), _from_trunk(), _from_arms()
+        self.arm_columns = _arm_columns(taps)
+        self.from_trunk, self.from_arms = _from_trunk(), _from_arms()
 
     def normalise(self, inputs: Tensor, targets: Tensor) -> None:
         """Takes mean and deviation from the training data; constant features keep their size."""
-        bodies, truth = self._with_mirror_images(inputs), targets.view(-1, 6, 3)
-        truth = torch.stack([truth, truth[:, MIRRORED_JOINTS] * _FLIP], dim=1).flatten(0, 1)
-        seen = self._from_chest(bodies)
-        residuals = truth - bodies[:, IK_JOINTS].reshape(-1, 6, 3)
-        in_chest = residuals @ seen.axes.transpose(1, 2)
-        self._take("trunk", torch.cat([bodies, seen.told], dim=1), in_chest[:, 2:].flatten(1))
-        self._take("arm", seen.right_arm(residuals[:, 3:4]), in_chest[:, 1] - in_chest[:, 3])
+        bodies, corrections = self._with_mirror_images(inputs), targets.view(-1, 6, 3)
+        corrections = torch.stack([corrections, corrections[:, MIRRORED_JOINTS] * _FLIP], dim=1).flatten(0, 1)
+        self._take("trunk", bodies, corrections[:, 2:].flatten(1))
+        self._take("arm", self._right_arm(bodies, corrections[:, 3]), corrections[:, 1] - corrections[:, 3])
 
     def _take(self, name: str, inputs: Tensor, outputs: Tensor) -> None:
-        for kind, values, smallest in (("input", inputs, 2e-2), ("output", outputs, 1e-4)):
-            getattr(self, f"{name}_{kind}_mean").copy_(values.mean(0, keepdim=True))
-            getattr(self, f"{name}_{kind}_scale").copy_(values.std(0, keepdim=True).clamp_min(smallest))
+        getattr(self, f"{name}_input_mean").copy_(inputs.mean(0, keepdim=True))
+        getattr(self, f"{name}_input_scale").copy_(inputs.std(0, keepdim=True).clamp_min(2e-2))
+        getattr(self, f"{name}_output_mean").copy_(outputs.mean(0))
+        getattr(self, f"{name}_output_scale").copy_(outputs.std(0).clamp_min(1e-4))
 
     def shrink(self, share: float) -> None:
         """Leaves this share of the trunk's correction."""
@@ -97,68 +94,39 @@ class ResidualNetwork(nn.Module):
 
     def forward(self, inputs: Tensor) -> Tensor:
         bodies = self._with_mirror_images(inputs)
-        seen = self._from_chest(bodies)
-        trunk = self._apply("trunk", torch.cat([bodies, seen.told], dim=1)).view(-1, 4, 3) @ seen.axes
+        trunk = self._apply("trunk", bodies)
         moved, shoulders = (trunk.view(-1, 24) @ self.from_trunk).split([18, 6], dim=1)
-        arms = self._apply("arm", seen.right_arm(shoulders.reshape(-1, 1, 3))).view(-1, 1, 3) @ seen.axes
-        return inputs[:, IK_JOINTS] + moved + arms.view(-1, 6) @ self.from_arms
+        arms = self._apply("arm", self._right_arm(bodies, shoulders.reshape(-1, 3)))
+        return moved + arms.view(-1, 6) @ self.from_arms
 
     def _apply(self, name: str, inputs: Tensor) -> Tensor:
         mean, scale, output_mean, output_scale = (
             getattr(self, f"{name}_{key}") for key in ("input_mean", "input_scale", "output_mean", "output_scale")
         )
         # Trackers never leave four deviations on anybody the network knows: beyond, it is held there.
-        x = torch.clamp((inputs - mean) / scale, -4.0, 4.0)
-        return getattr(self, name)(x) * output_scale + output_mean
+        x = torch.clamp((inputs - mean) * (1 / scale), -4.0, 4.0)
+        *hidden, last = getattr(self, name)
+        for layer in hidden:
+            x = layer(x)
+        # Its scale is the last layer's own: a layer, not two more nodes.
+        return functional.linear(x, last.weight * output_scale[:, None], last.bias * output_scale + output_mean)
 
     def _with_mirror_images(self, inputs: Tensor) -> Tensor:
-        """Each body, then its mirror image [2 N, T·46]."""
-        return torch.cat([inputs, inputs[:, self.mirror_column] * self.mirror_sign], dim=1).view(-1, self.inputs)
+        """Each body, then its mirror image [2 N, T·46 + 38]."""
+        return (inputs[:, self.mirror_column] * self.mirror_sign).view(-1, self.inputs)
 
-    def _from_chest(self, bodies: Tensor) -> "_FromChest":
-        x, up, arm, hands, shoulders, others = (bodies @ self.vectors + _NO_BODY).view(-1, 16, 3).split([1, 1, 1, 2, 2, 9], dim=1)
-        x = x / x.norm(dim=-1, keepdim=True)
-        up = up - (up * x).sum(-1, keepdim=True) * x
-        up = up / up.norm(dim=-1, keepdim=True)
-        axes = torch.cat([x, up, up @ (x @ _SKEW).view(-1, 3, 3)], dim=1)
-        turned = torch.cat([hands - shoulders / arm, others], dim=1) @ axes.transpose(1, 2)
-        reaches, right, _ = turned.split([2, 3, 6], dim=1)
-        level = axes[:, :, 1]
-        told = torch.cat([turned.flatten(1), level, reaches.norm(dim=-1)], dim=1)
-        return _FromChest(axes, told, arm, reaches[:, 1:], torch.cat([right.flatten(1), level, bodies[:, 26:27]], dim=1))
+    def _right_arm(self, bodies: Tensor, shift: Tensor) -> Tensor:
+        """What the right arm is told [N, ARM_FEATURES], its shoulder being so far from IK's [N, 3]."""
+        reach, others, arm = bodies[:, self.arm_columns].split([3, 13, 1], dim=1)
+        # Without a body, as when a page tries the network, no division by nothing.
+        reach = reach - shift / arm.clamp_min(1e-3)
+        return torch.cat([reach, reach.norm(dim=-1, keepdim=True), others], dim=1)
 
 
-@dataclass(frozen=True)
-class _FromChest:
-    """Bodies as IK's chest sees them, x to its right, y up, z backward."""
-
-    axes: Tensor  # x, y and z as rows, heading frame [N, 3, 3]
-    # Reach of both hands; axes of the right hand and its elbow from the shoulder; the left's; axes of the head; the chest joint from the
-    # headset; the room's up; lengths of both reaches [N, CHEST_FEATURES].
-    told: Tensor
-    arm: Tensor  # its length, thrice [N, 1, 3], eye heights
-    reach: Tensor  # from IK's right shoulder to the hand, arm lengths [N, 1, 3]
-    others: Tensor  # axes of the right hand, IK's elbow, the room's up, whether the hand is seen [N, 13]
-
-    def right_arm(self, shift: Tensor) -> Tensor:
-        """What the right arm is told [N, ARM_FEATURES], its shoulder being so far from IK's [N, 1, 3], heading frame."""
-        reach = self.reach - (shift / self.arm) @ self.axes.transpose(1, 2)
-        return torch.cat([reach.squeeze(1), reach.norm(dim=-1), self.others], dim=1)
-
-
-CHEST_FEATURES = 38
+# Reach, its length, axes of the hand, IK's elbow, the room's up, whether the hand is seen.
 ARM_FEATURES = 17
 
 _FLIP = torch.tensor([-1.0, 1.0, 1.0])
-
-# [3, 9]: x @ _SKEW, a 3 by 3 matrix, takes y to x × y.
-_SKEW = -torch.linalg.cross(torch.eye(3).unsqueeze(1).expand(3, 3, 3), torch.eye(3).expand(3, 3, 3)).transpose(1, 2).reshape(3, 9)
-
-# What the shoulders' line, up and the arm are where all features are 0, as when a page tries the network: no axis without a direction.
-_NO_BODY = torch.zeros(16, 3)
-_NO_BODY[0, 0] = _NO_BODY[1, 1] = 1e-6
-_NO_BODY[2] = 1e-6
-_NO_BODY = _NO_BODY.flatten()
 
 
 def _perceptron(inputs: int, width: int, hidden_layers: int, dropout: float, outputs: int) -> nn.Sequential:
@@ -166,38 +134,6 @@ def _perceptron(inputs: int, width: int, hidden_layers: int, dropout: float, out
     for layer in range(hidden_layers):
         layers += [nn.Linear(inputs if layer == 0 else width, width), nn.ELU(), nn.Dropout(dropout)]
     return nn.Sequential(*layers, nn.Linear(width, outputs))
-
-
-def _vectors(taps: int) -> Tensor:
-    """[T·46, 16·3]: from the newest frame to what the chest's axes, and what it sees, are made of.
-
-    From left to right shoulder; from the chest joint up; the arm's length, thrice; hands [arm lengths], shoulders; then what
-    _FromChest.told says of axes and joints.
-    """
-    result = torch.zeros(taps * FEATURES, 16, 3)
-    axis = torch.arange(3)
-
-    def add(vector: int, feature: int, weight: float = 1.0) -> None:
-        result[feature + axis, vector, axis] += weight
-
-    hands, elbows, shoulders, chest = (7, 16), (27, 30), (33, 36), 39
-    add(0, shoulders[0], -1.0)
-    add(0, shoulders[1])
-    add(1, chest, -1.0)
-    result[45, 2] = 1.0
-    for side in (0, 1):
-        add(1, shoulders[side], 0.5)
-        add(3 + side, hands[side])
-        add(5 + side, shoulders[side])
-    for vector, side in ((7, 1), (10, 0)):
-        add(vector, hands[side] + 3)
-        add(vector + 1, hands[side] + 6)
-        add(vector + 2, elbows[side])
-        add(vector + 2, shoulders[side], -1.0)
-    add(13, 1)
-    add(14, 4)
-    add(15, chest)
-    return result.flatten(1)
 
 
 def _from_trunk() -> Tensor:
@@ -213,17 +149,31 @@ def _from_arms() -> Tensor:
     return torch.cat([_FLIP[:, None] * image, right, torch.zeros(12, 6)]).T
 
 
+def _arm_columns(taps: int) -> Tensor:
+    """Of a body's features: the right arm's reach, what else it is told, the arm's length."""
+    chest = taps * FEATURES
+    return torch.tensor([*range(chest + 12, chest + 24), *range(chest + 33, chest + 36), 26, 45])
+
+
 def _mirror_image(taps: int) -> tuple[Tensor, Tensor]:
-    """Column and sign of each feature of the mirror image, over all frames of the window."""
-    column, sign = torch.arange(FEATURES), torch.ones(FEATURES)
-    column[7:25] = torch.cat([torch.arange(16, 25), torch.arange(7, 16)])
-    column[25:27] = torch.tensor([26, 25])
-    column[IK_JOINTS] = torch.arange(27, 45).view(6, 3)[MIRRORED_JOINTS].flatten()
+    """Column and sign of each feature of a body [2 · (T·46 + 38)] and of its mirror image, over all frames of the window."""
+    frame, frame_sign = torch.arange(FEATURES), torch.ones(FEATURES)
+    frame[7:25] = torch.cat([torch.arange(16, 25), torch.arange(7, 16)])
+    frame[25:27] = torch.tensor([26, 25])
+    frame[IK_JOINTS] = torch.arange(27, 45).view(6, 3)[MIRRORED_JOINTS].flatten()
     # A mirrored rotation's x axis is mirrored and turned round.
-    sign[1:7] = torch.cat([-_FLIP, _FLIP])
-    sign[7:25] = torch.cat([_FLIP, -_FLIP, _FLIP]).repeat(2)
-    sign[IK_JOINTS] = _FLIP.repeat(6)
-    return torch.cat([column + tap * FEATURES for tap in range(taps)]), sign.repeat(taps)
+    frame_sign[1:7] = torch.cat([-_FLIP, _FLIP])
+    frame_sign[7:25] = torch.cat([_FLIP, -_FLIP, _FLIP]).repeat(2)
+    frame_sign[IK_JOINTS] = _FLIP.repeat(6)
+    chest, chest_sign = torch.arange(CHEST_FEATURES), torch.ones(CHEST_FEATURES)
+    chest[:24] = torch.cat([torch.arange(12, 24), torch.arange(12)])
+    chest[36:] = torch.tensor([37, 36])
+    chest_sign[:24] = torch.cat([_FLIP, -_FLIP, _FLIP, _FLIP]).repeat(2)
+    chest_sign[24:36] = torch.cat([-_FLIP, _FLIP, _FLIP, _FLIP])
+    inputs = taps * FEATURES + CHEST_FEATURES
+    column = torch.cat([*(frame + tap * FEATURES for tap in range(taps)), chest + taps * FEATURES])
+    sign = torch.cat([*[frame_sign] * taps, chest_sign])
+    return torch.cat([torch.arange(inputs), column]), torch.cat([torch.ones(inputs), sign])
 
 
 def _length(vectors: Tensor) -> Tensor:
@@ -231,16 +181,17 @@ def _length(vectors: Tensor) -> Tensor:
     return torch.sqrt((vectors * vectors).sum(-1, keepdim=True) + 1e-6)
 
 
-def on_circle(joints: Tensor, inputs: Tensor, upper_arm_share: float) -> Tensor:
-    """Elbows [N, 2, 3] of these joints [N, 6, 3], where upper arm and forearm let them be between shoulder and tracked wrist."""
+def on_circle(corrections: Tensor, inputs: Tensor, upper_arm_share: float) -> Tensor:
+    """The elbows' corrections [N, 2, 3] of these [N, 6, 3], once they are where upper arm and forearm let them be between shoulder and wrist."""
     arm = inputs[:, 45:46].unsqueeze(1)
     upper, fore = upper_arm_share * arm, (1 - upper_arm_share) * arm
-    shoulders = joints[:, 2:4]
-    way = inputs[:, 7:25].reshape(-1, 6, 3)[:, 0::3] * arm - shoulders
+    arms = inputs[:, -CHEST_FEATURES:][:, :24].reshape(-1, 2, 4, 3)
+    reach, elbow, shift = arms[:, :, 0] * arm, arms[:, :, 3], corrections[:, 2:4]
+    way = reach - shift
     distance = _length(way)
     axis = way / distance
-    aside = joints[:, :2] - shoulders
+    aside = elbow + corrections[:, :2] - shift
     aside = aside - (aside * axis).sum(-1, keepdim=True) * axis
-    reach = torch.minimum(torch.maximum(distance, (upper - fore).abs() + 1e-3), 0.999 * arm)
-    along = (upper**2 - fore**2 + reach**2) / (2 * reach)
-    return shoulders + along * axis + torch.sqrt((upper**2 - along**2).clamp_min(1e-8)) * aside / _length(aside)
+    reached = torch.minimum(torch.maximum(distance, (upper - fore).abs() + 1e-3), 0.999 * arm)
+    along = (upper**2 - fore**2 + reached**2) / (2 * reached)
+    return shift + along * axis + torch.sqrt((upper**2 - along**2).clamp_min(1e-8)) * aside / _length(aside) - elbow

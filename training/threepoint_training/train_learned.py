@@ -8,12 +8,15 @@ import torch
 from numpy.typing import NDArray
 
 from . import quaternion
-from .augment import AugmentConfig, BodyParts, draw_batch, rest_lost_hands
-from .features import FEATURES, IK_JOINTS, frame_features, target, windowed
-from .model import ResidualNetwork, on_circle
+from .augment import AugmentConfig, BodyParts, draw_batch
+from .features import CHEST_FEATURES, FEATURES, OUTPUTS, frame_features, network_input, target
+from .lost_hands import carry, sink
+from .model import CorrectionNetwork, on_circle
 from .prepared_corpus import PreparedCorpus
 from .simulate_trackers import TrackerConfig, draw_wearer, simulate
-from .skeleton import body_from_calibration, load_proportions
+from .skeleton import Body, body_from_calibration, load_proportions
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -43,7 +46,7 @@ class TrainLearnedConfig:
 
 @dataclass(frozen=True)
 class HeldOut:
-    """People as trackers see them, clip by clip, with the truth; outputs in eye heights times `eye_height` are metres."""
+    """People as trackers see them, clip by clip, with the truth; corrections in eye heights times `eye_height` are metres."""
 
     inputs: NDArray[np.float32]
     targets: NDArray[np.float32]
@@ -64,7 +67,7 @@ class Condition:
     offset: float = 0.0
     # The calibrated eye height over the true one.
     eye_height: float = 1.0
-    # One hand of each clip is never seen and rests beside the hips.
+    # One hand of each clip is not seen for 2 s of every 4 s.
     lost_hand: bool = False
     # Trackers tell of so many frames before.
     late: int = 0
@@ -105,13 +108,12 @@ def held_out(
             positions, rotations, truth = positions[told] - drop, rotations[told], truth - drop
             lost = np.zeros((count, 2), bool)
             if condition.lost_hand:
-                lost[:, clip % 2] = True
-                positions, rotations = rest_lost_hands(positions, rotations, lost, *(np.full(count, size.item()) for size in (body.eye_height, body.arm)))
+                positions, rotations, lost = _lose_hand(positions, rotations, clip % 2, corpus.rate_hz, body)
             vector, _ = frame_features(positions, rotations, body, ~lost)
             rows.append(
                 (
-                    windowed(vector, np.arange(count) / corpus.rate_hz, window_seconds).astype(np.float32),
-                    target(truth, positions, rotations, body).astype(np.float32),
+                    network_input(vector, np.arange(count) / corpus.rate_hz, window_seconds).astype(np.float32),
+                    target(truth, positions, rotations, body, vector).astype(np.float32),
                     np.full(count, eye_height),
                     np.full(count, name),
                     np.full(count, clip),
@@ -120,33 +122,48 @@ def held_out(
     return HeldOut(*(np.concatenate(column) for column in zip(*rows, strict=True)))
 
 
+def _lose_hand(positions: Array, rotations: Array, hand: int, rate_hz: int, body: Body) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """The same trackers, this hand seen for 2 s, lost for 2 s, and so on; and which hands are lost [F, 2]."""
+    frames, half = np.arange(len(positions)), 2 * rate_hz
+    ago = np.maximum(frames % (2 * half) - half + 1, 0)
+    last, column = frames - ago, 1 + hand
+    positions, rotations = positions.copy(), rotations.copy()
+    positions[:, column], rotations[:, column] = carry(
+        positions[last, column], rotations[last, column], (positions[last, 0], rotations[last, 0]), (positions[:, 0], rotations[:, 0])
+    )
+    unseen = np.zeros((len(frames), 2))
+    unseen[:, hand] = ago / rate_hz
+    sizes = (np.full(len(frames), size.item()) for size in (body.eye_height, body.arm))
+    return *sink(positions, rotations, unseen, *sizes), unseen > 0
+
+
 def errors_cm(output: NDArray[np.float32], people: HeldOut) -> NDArray[np.float64]:
     """Distances [F, 6] in centimetres of a network's output."""
-    difference = (output - people.targets).reshape(len(output), 6, 3)
+    difference = (output - people.targets).reshape(-1, 6, 3)
     return np.linalg.norm(difference, axis=-1) * people.eye_height[:, None] * 100
 
 
 def ik_errors_cm(people: HeldOut) -> NDArray[np.float64]:
-    """The same for the IK solution that the input carries."""
-    return errors_cm(people.inputs[:, IK_JOINTS], people)
+    """The same for IK, to which nothing is added."""
+    return errors_cm(np.zeros((1, OUTPUTS), np.float32), people)
 
 
 def train(
     corpus: PreparedCorpus,
     people: tuple[str, ...],
     config: TrainLearnedConfig,
-    report: Callable[[int, float, Callable[[], ResidualNetwork]], None] = lambda *_: None,
-) -> ResidualNetwork:
+    report: Callable[[int, float, Callable[[], CorrectionNetwork]], None] = lambda *_: None,
+) -> CorrectionNetwork:
     """Trains on these people; report(step, loss, the averaged network so far, its correction whole)."""
     torch.manual_seed(config.seed)
     random = np.random.default_rng(config.seed)
     parts = BodyParts(corpus, people)
     upper_arm_share = load_proportions()["upperArmShare"]
-    network = ResidualNetwork(len(config.augment.window_frames), config.width, config.dropout, config.hidden_layers)
+    network = CorrectionNetwork(len(config.augment.window_frames), config.width, config.dropout, config.hidden_layers)
     first = [draw_batch(parts, config.batch, config.augment, random) for _ in range(8)]
     inputs = torch.from_numpy(np.concatenate([b.inputs for b in first]))
     network.normalise(inputs, torch.from_numpy(np.concatenate([b.targets for b in first])))
-    averaged = ResidualNetwork(len(config.augment.window_frames), config.width, config.dropout, config.hidden_layers)
+    averaged = CorrectionNetwork(len(config.augment.window_frames), config.width, config.dropout, config.hidden_layers)
     averaged.load_state_dict(network.state_dict())
     averaged.eval()
     optimiser = torch.optim.AdamW(network.parameters(), lr=config.learning_rate, weight_decay=config.weight_decay)
@@ -156,9 +173,9 @@ def train(
     for step in range(config.steps):
         current = draw_batch(parts, config.batch, config.augment, random)
         x, y = torch.from_numpy(current.inputs), torch.from_numpy(current.targets)
-        joints, truth = network(x).view(-1, 6, 3), y.view(-1, 6, 3)
-        on_circles = _distance(on_circle(joints, x, upper_arm_share), truth[:, :2])
-        loss = (_distance(joints, truth) + config.circle_weight * on_circles) / _RESIDUAL
+        corrections, truth = network(x).view(-1, 6, 3), y.view(-1, 6, 3)
+        on_circles = _distance(on_circle(corrections, x, upper_arm_share), truth[:, :2])
+        loss = (_distance(corrections, truth) + config.circle_weight * on_circles) / _RESIDUAL
         optimiser.zero_grad()
         loss.backward()
         torch.nn.utils.clip_grad_norm_(network.parameters(), 1.0)
@@ -188,11 +205,11 @@ class TrainFrameRandomConfig:
 
 def train_frame_random(
     frames: HeldOut, chosen: NDArray[np.int64], config: TrainFrameRandomConfig, report: Callable[[int, float], None] = lambda *_: None
-) -> ResidualNetwork:
+) -> CorrectionNetwork:
     """Trains on the chosen frames as they are; report(step, loss)."""
     torch.manual_seed(config.seed)
     x, y = torch.from_numpy(frames.inputs[chosen]), torch.from_numpy(frames.targets[chosen])
-    network = ResidualNetwork(x.shape[1] // FEATURES, config.width, 0.0, config.hidden_layers)
+    network = CorrectionNetwork((x.shape[1] - CHEST_FEATURES) // FEATURES, config.width, 0.0, config.hidden_layers)
     network.normalise(x, y)
     optimiser = torch.optim.AdamW(network.parameters(), lr=config.learning_rate, weight_decay=config.weight_decay)
     schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, config.learning_rate, total_steps=config.steps, pct_start=0.1)
@@ -212,6 +229,6 @@ def train_frame_random(
 _RESIDUAL = 0.025
 
 
-def _distance(joints: torch.Tensor, truth: torch.Tensor) -> torch.Tensor:
+def _distance(corrections: torch.Tensor, truth: torch.Tensor) -> torch.Tensor:
     """Distances, not squares: what MPJPE counts, and steadier against climbers and tumblers."""
-    return (joints - truth).norm(dim=-1).mean()
+    return (corrections - truth).norm(dim=-1).mean()

@@ -52,7 +52,7 @@ export interface ArmCourse {
 }
 
 /** A way takes about so long [s] to rest and back at least, and goes at most this fast [m/s]: 2.8 and 3.75 cm in a frame at 60 Hz. */
-const [restSeconds, returnSeconds] = [0.3, 0.2];
+const [restSeconds, returnSeconds] = [2.5, 0.2];
 const [restSpeed, returnSpeed] = [1.7, 2.25];
 /** The share of the shortest time in which it gets up to its speed, and down from it. */
 const wayRamp = 0.2;

@@ -9,8 +9,12 @@ import type { ThreePoints } from './solve-ik';
 /** Numbers per frame; their order is in docs/estimation.md. */
 export const featureCount = 46;
 
-/** Where the IK solution begins in a frame's features: six joints − headset, in eye heights. */
-export const ikFeatureOffset = 27;
+/** Where in a frame's features begin the head's turn, left and right wrist − headset [arm lengths] (their turn follows), the IK joints − headset [eye heights]. */
+export const [headFeature, leftHandFeature, rightHandFeature, ikFeatureOffset] = [1, 7, 16, 27];
+/** From a wrist to its turn. */
+export const firstAxisFeature = 3;
+/** Arm length in eye heights. */
+export const armFeature = 45;
 
 /**
  * One frame's features from three points and the IK solution, both in this frame's heading frame. seen: 1 where the device saw

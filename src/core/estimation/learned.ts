@@ -2,11 +2,12 @@ import type { Calibration } from '../body/calibration';
 import { chestSpaceBody } from '../body/skeleton';
 import { dampVec3 } from '../math/damper';
 import type { Transform } from '../math/pose';
-import { add, scale, subtract, type Vec3, vec3, zero } from '../math/vec3';
+import { add, scale, vec3, zero } from '../math/vec3';
 import type { ContinuedFrame } from '../tracking/hand-continuity';
 import { floorFromHeading } from '../tracking/heading';
 import { createBodyEstimator } from './body-estimator';
-import { createFeatureWindow, frameFeatures } from './features';
+import { type ChestAxes, chestFeatureCount, headingFromChest, viewFromChest } from './chest-view';
+import { createFeatureWindow, featureCount, frameFeatures } from './features';
 import { pointsInHeading } from './ik';
 import { type JointPositions, mapJoints, transformJoints } from './joint-positions';
 import type { PoseEstimator } from './pose-estimator';
@@ -20,9 +21,13 @@ const defaultHalfLife = 0.04;
 /** What a run was started from: all in the heading frame of its own frame. */
 interface RunContext {
   readonly floorFromHeading: Transform<'floor', 'heading'>;
-  readonly headset: Vec3;
   readonly ik: JointPositions;
+  readonly chest: ChestAxes;
 }
+
+/** Numbers that the network is told: the features of each age, and what IK's chest sees of the newest frame. */
+export const learnedInputCount = (windowSeconds: readonly number[]): number =>
+  windowSeconds.length * featureCount + chestFeatureCount;
 
 /**
  * Our network: a correction to the IK solution, damped in the heading frame and added to the IK of the current frame, so that
@@ -46,11 +51,12 @@ export function createLearned(calibration: Calibration, regressor: PoseRegressor
     return solved;
   }
 
-  /** The network's joints in the heading frame of the run. */
-  const jointsOf = (output: Float32Array, { headset }: RunContext): JointPositions =>
-    mapJoints((_, index) =>
-      add(headset, scale(vec3(output[3 * index]!, output[3 * index + 1]!, output[3 * index + 2]!), body.eyeHeight)),
-    );
+  /** What the network adds to IK's joints [m], heading frame of the run. */
+  const correctionOf = (output: Float32Array, { chest }: RunContext): JointPositions =>
+    mapJoints((_, index) => {
+      const seen = vec3(output[3 * index]!, output[3 * index + 1]!, output[3 * index + 2]!);
+      return scale(headingFromChest(chest, seen), body.eyeHeight);
+    });
 
   return createBodyEstimator('learned', calibration, {
     calibrate(next) {
@@ -68,21 +74,21 @@ export function createLearned(calibration: Calibration, regressor: PoseRegressor
     prepare(frame) {
       const { points, ik } = solve(frame);
       const seen = { left: frame.leftHand.seen, right: frame.rightHand.seen };
-      window.push(frame.time, frameFeatures(points, seen, ik, body));
-      return regression.start(() => window.read(windowSeconds), {
-        floorFromHeading: floorFromHeading(frame.head),
-        headset: points.head.position,
-        ik,
-      });
+      const newest = frameFeatures(points, seen, ik, body);
+      const chest = viewFromChest(newest);
+      window.push(frame.time, newest);
+      const told = (): Float32Array => {
+        const input = new Float32Array(learnedInputCount(windowSeconds));
+        input.set(window.read(windowSeconds));
+        input.set(chest.features, input.length - chestFeatureCount);
+        return input;
+      };
+      return regression.start(told, { floorFromHeading: floorFromHeading(frame.head), ik, chest: chest.axes });
     },
     joints(frame, deltaSeconds) {
       const { ik } = solve(frame);
       const result = regression.newest();
-      const goal = (() => {
-        if (!result) return mapJoints(() => zero);
-        const wanted = jointsOf(result.output, result.context);
-        return mapJoints((joint) => subtract(wanted[joint], result.context.ik[joint]));
-      })();
+      const goal = result ? correctionOf(result.output, result.context) : mapJoints(() => zero);
       const before = correction;
       // The first correction arrives whole; without one IK stands alone and what was there fades.
       correction =
@@ -98,7 +104,13 @@ export function createLearned(calibration: Calibration, regressor: PoseRegressor
     },
     rawJoints() {
       const result = regression.newest();
-      return result && transformJoints(result.context.floorFromHeading, jointsOf(result.output, result.context));
+      if (!result) return null;
+      const { ik, floorFromHeading: floorFromRun } = result.context;
+      const corrected = correctionOf(result.output, result.context);
+      return transformJoints(
+        floorFromRun,
+        mapJoints((joint) => add(ik[joint], corrected[joint])),
+      );
     },
     fault: () => regression.fault(),
   });

@@ -6,7 +6,8 @@ export interface TensorContract {
   readonly meaning: string;
   /** 'm', 'rad', '1' or a ratio such as 'eyeHeight'. */
   readonly unit: string;
-  readonly frame: 'floor' | 'heading';
+  /** chest: IK's, of the newest frame. */
+  readonly frame: 'floor' | 'heading' | 'chest';
 }
 
 /** The contract beside each model file: what goes in, what comes out, what it was trained on and how good it is. */

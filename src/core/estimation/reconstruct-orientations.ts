@@ -64,13 +64,19 @@ export interface ArmMemory extends ArmCourse, ElbowSide {
   readonly forearmTwist: number;
 }
 
+/** A hand that the arm alone does not reach. */
+interface Lean {
+  /** By how much [m], and how much of it the trunk makes up for. */
+  readonly missing: number;
+  readonly made: number;
+}
+
 export interface ReconstructionMemory {
   left: ArmMemory | null;
   right: ArmMemory | null;
   /** From the left to the right shoulder, unit, floor frame. */
   shoulderLine: Vec3 | null;
-  /** By how much [m] the hands were out of reach when they were last seen. */
-  readonly missing: Record<Side, number>;
+  readonly lean: Record<Side, Lean | null>;
   /** Where the trunk's joints were estimated about the head joint, floor axes; null: nowhere yet. */
   trunk: TrunkJoints | null;
 }
@@ -79,7 +85,7 @@ export const emptyMemory = (): ReconstructionMemory => ({
   left: null,
   right: null,
   shoulderLine: null,
-  missing: { left: 0, right: 0 },
+  lean: { left: null, right: null },
   trunk: null,
 });
 
@@ -97,6 +103,8 @@ const extreme: TrunkLimits = { clavicle: 1.2, neck: 1.8 };
 const wristLimit = Math.PI / 2;
 /** A forearm turns at most this fast [rad/s] about itself; a quick pronation does 15. */
 const forearmSpeed = 20;
+/** A trunk leans after a hand that comes back, and straightens after one that is lost, at most this fast [m/s]. */
+const leanSpeed = 0.6;
 /** Shoulders turn at most this fast [rad/s]; a pirouette's do 12. */
 const trunkSpeed = 12;
 /** Longest half-life [s] of the way that the shoulders' line follows, where their estimates lie so close that it says little. */
@@ -138,13 +146,12 @@ export function reconstructOrientations(
   let shoulderTargets = { left: trunk.leftUpperArm, right: trunk.rightUpperArm };
   let torso = placeTorso(head, headJoint, shoulderTargets, trunk, skeleton, anatomy, followLine);
   let shoulders = placeShoulders(torso, shoulderTargets, skeleton, anatomy);
-  // A guessed hand does not bend the trunk: what it is out of reach by stays so, as far as the hand is not trusted.
   const outOfReach = (side: Side): number => {
-    const { position, trust = 1, seen = true } = wristOf(estimate, side);
-    const missing = Math.max(distance(position, shoulders[side].position) - reach, 0);
-    if (!seen) return Math.max(missing - trust * memory.missing[side], 0);
-    memory.missing[side] = trust * missing;
-    return (1 - trust) * missing;
+    const wrist = wristOf(estimate, side);
+    const missing = Math.max(distance(wrist.position, shoulders[side].position) - reach, 0);
+    const lean = leanAfter(wrist, missing, memory.lean[side], deltaSeconds);
+    memory.lean[side] = lean;
+    return missing - lean.made;
   };
   const given = { left: outOfReach('left'), right: outOfReach('right') };
   for (let pass = 0; pass < reachPasses; pass++) {
@@ -188,6 +195,20 @@ export function reconstructOrientations(
     rightHand: local(rightArm.lowerArm, rightArm.hand),
   };
   return { hipsPosition: torso.hips, localRotations };
+}
+
+/** How far the trunk goes after a hand: not after a guess, and after one that is on its way back no faster than people lean. */
+function leanAfter(
+  { seen = true, trust = 1 }: EstimatedHand,
+  missing: number,
+  before: Lean | null,
+  deltaSeconds: number,
+): Lean {
+  if (!before) return { missing, made: seen ? missing : 0 };
+  const further = leanSpeed * Math.max(deltaSeconds, 0);
+  const gone = trust < 1 ? 0 : Math.max(missing - before.missing, 0);
+  const most = seen ? before.made + gone + further : Math.max(before.made - further, 0);
+  return { missing, made: Math.min(missing, most) };
 }
 
 const reachPasses = 32;

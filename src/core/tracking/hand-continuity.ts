@@ -40,10 +40,11 @@ export interface ContinuedFrame {
 
 /** Holds a hand this long before letting it sink: most losses are shorter. */
 const holdSeconds = 0.1;
-const easeSeconds = 0.3;
+/** Then it goes to rest in so long [s], and is doubted the sooner: it bends no trunk where it only may be. */
+const [sinkSeconds, doubtSeconds] = [2.5, 0.3];
 const blendSeconds = 0.2;
-/** Mean speed [m/s] of a sinking and a returning hand on long ways; a quarter faster at most: 3.75 and 4.8 cm in a frame at 60 Hz. */
-const [easeSpeed, returnSpeed] = [1.8, 2.3];
+/** Mean speed [m/s] of a returning hand on long ways; a quarter faster at most: 4.8 cm in a frame at 60 Hz. */
+const returnSpeed = 2.3;
 
 /** A hand about its shoulder, body frame: which way, how far [m], and how it is turned. */
 interface Reach {
@@ -197,10 +198,9 @@ export function createHandContinuity(calibration: () => Calibration): HandContin
       memory.lost ??= { from: memory.shown, trust: memory.trust, time };
       const { from, trust, time: since } = memory.lost;
       const arc = directionArc(from.direction, rest.direction, outside);
-      const metres = arc.angle * Math.max(from.distance, rest.distance) + Math.abs(from.distance - rest.distance);
-      const duration = Math.max(easeSeconds, metres / easeSpeed);
-      const share = evenStep(holdSeconds, holdSeconds + duration, Math.min(time - since, 1e6));
-      memory.trust = trust * (1 - share);
+      const age = Math.min(time - since, 1e6);
+      const share = evenStep(holdSeconds, holdSeconds + sinkSeconds, age);
+      memory.trust = trust * (1 - evenStep(holdSeconds, holdSeconds + doubtSeconds, age));
       memory.shown = {
         direction: rotate(alongArc(arc, share), from.direction),
         distance: from.distance + (rest.distance - from.distance) * share,

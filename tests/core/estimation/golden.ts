@@ -20,7 +20,8 @@ export interface GoldenCase {
     readonly features: Numbers;
     readonly paperInput: Numbers;
   }[];
-  readonly windowed: readonly Numbers[];
+  /** The learned network's. */
+  readonly inputs: readonly Numbers[];
 }
 
 export interface GoldenModel {

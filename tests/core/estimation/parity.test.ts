@@ -1,6 +1,7 @@
 import { describe, expect, test } from 'vitest';
 import { estimatedJoints, type JointName } from '../../../src/core/body/joints';
 import { chestSpaceBody, skeletonFromCalibration } from '../../../src/core/body/skeleton';
+import { viewFromChest } from '../../../src/core/estimation/chest-view';
 import { createFeatureWindow, featureCount, frameFeatures } from '../../../src/core/estimation/features';
 import { pointsInHeading } from '../../../src/core/estimation/ik';
 import { transformJoints } from '../../../src/core/estimation/joint-positions';
@@ -41,7 +42,7 @@ describe.each(cases)('TypeScript agrees with Python for eyes at $calibration.eye
     }
   });
 
-  test('features, windowed in time, and the paper’s input', () => {
+  test('features, windowed in time and seen from the chest, and the paper’s input', () => {
     const window = createFeatureWindow(Math.max(...golden.window));
     golden.frames.forEach((frame, index) => {
       const continued = continuedFrame(frame);
@@ -55,7 +56,8 @@ describe.each(cases)('TypeScript agrees with Python for eyes at $calibration.eye
       expect(features.length).toBe(featureCount);
       expectNear(features, frame.features, `frame ${index}`);
       window.push(frame.time, features);
-      expectNear(window.read(golden.window), golden.windowed[index]!, `window ${index}`);
+      const input = [...window.read(golden.window), ...viewFromChest(features).features];
+      expectNear(input, golden.inputs[index]!, `input ${index}`);
       expectNear(paperFeatures(continued.head, continued.leftHand, continued.rightHand), frame.paperInput, 'paper');
     });
   });
