@@ -21,6 +21,8 @@ const provingSeconds = 1.25;
 const calmRange = 0.04;
 /** As a part of the eye height: shoes, and a headset that was put on anew. */
 const deadZone = 0.02;
+/** The same once something grew: what was measured is wrong then, and whoever straightens up is followed. */
+const grownDeadZone = 0.005;
 /** As a part of the eye height that was measured: whoever rises further stands on something. */
 const mostGrowth = 0.08;
 /** A longer one [s] between two frames hides what happened in it. */
@@ -62,9 +64,10 @@ export function createHeightWatch(): HeightWatch {
     observe({ time, head }, calibration) {
       if (calibration !== current) take(calibration);
       const height = levelHeight(head);
+      const zone = calibration.eyeHeight > measured ? grownDeadZone : deadZone;
       const proves =
         head.tracking === 'tracked' &&
-        height > calibration.eyeHeight * (1 + deadZone) &&
+        height > calibration.eyeHeight * (1 + zone) &&
         height <= measured * (1 + mostGrowth);
       stand = proves ? prolonged(stand, time, height) : null;
       if (!stand || time - stand.since < provingSeconds) return null;

@@ -75,11 +75,17 @@ describe('whoever stands taller than was calibrated', () => {
     expect(wear(walking, person).at(-1)!.eyeHeight).toBeCloseTo(1.05 * person.eyeHeight, 2);
   });
 
-  test('grows further when they straighten up further', () => {
-    const straightening = motion(6, (time) => person.eyeHeight * (time < 3 ? 1.03 : 1.06));
+  test('grows further when they straighten up further, by less than would have told at first', () => {
+    const straightening = motion(6, (time) => person.eyeHeight * (time < 3 ? 1.05 : 1.06));
     const heights = wear(straightening, person).map(({ eyeHeight }) => eyeHeight);
     expect(heights).toHaveLength(3);
     expect(heights.at(-1)).toBeCloseTo(1.06 * person.eyeHeight, 6);
+    expect(
+      wear(
+        motion(6, () => 1.01 * person.eyeHeight),
+        person,
+      ),
+    ).toEqual([person]);
   });
 
   test('keeps the tilt of the headset and the span that were measured', () => {
