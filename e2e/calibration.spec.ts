@@ -77,3 +77,29 @@ test('a taller calibration makes a longer body under the same head', async ({ pa
   await enterVr(page);
   await expect.poll(trunk).toBeGreaterThan(short + 0.03);
 });
+
+test('worn: whoever never calibrated and then stands up straight grows, and the page says why', async ({ page }) => {
+  const headset = await openWithHeadset(page, 'estimator=ik');
+  const stand = (height: number) => headset.place({ head: { position: [0.2, height, 0], orientation: [0, 0, 0, 1] } });
+  const eyeHeight = async () => (await probe(page)).calibration.eyeHeight;
+  await enterVr(page);
+  await stand(1.5);
+  await expect.poll(eyeHeight).toBeCloseTo(1.5, 2);
+  await stand(1.57);
+  await expect.poll(eyeHeight).toBeCloseTo(1.57, 2);
+  await headset.endSession();
+  await expect(page.getByText('corrected, because you stood taller')).toBeVisible();
+});
+
+test('worn: whoever typed a height and stands taller is told, and keeps the body that they asked for', async ({
+  page,
+}) => {
+  const headset = await openWithHeadset(page, 'estimator=ik');
+  await page.getByRole('spinbutton', { name: 'Height in centimetres' }).fill('165');
+  await page.keyboard.press('Tab');
+  const typed = (await probe(page)).calibration;
+  await enterVr(page);
+  await headset.place({ head: { position: [0.2, 1.05 * typed.eyeHeight, 0], orientation: [0, 0, 0, 1] } });
+  await expect(page.getByText(/You stand 8 cm taller than your calibration says/)).toBeVisible();
+  expect((await probe(page)).calibration).toEqual(typed);
+});

@@ -1,6 +1,7 @@
 import { createActivities } from './activities';
 import { createControls } from './controls';
 import { type Calibration, provisionalCalibration } from './core/body/calibration';
+import { createHeightWatch } from './core/body/height-watch';
 import { createEstimator } from './core/estimation/estimators';
 import { type Buttons, nothingPressed } from './core/games/button-presses';
 import type { TrackingFrame } from './core/tracking/tracking-frame';
@@ -108,6 +109,9 @@ async function start(): Promise<void> {
   // Who moves the body: a session, a replay, the actor, or the emulator that somebody steers.
   const recorder = createRecorder();
   const actor = createActor();
+  const heightWatch = createHeightWatch();
+  /** The calibration that its wearer has been told is too small. */
+  let toldTooSmall: Calibration | null = null;
   let replayedBody: Calibration | null = null;
   /** What the hands of the newest frame press. */
   let buttons: Buttons = nothingPressed;
@@ -140,12 +144,14 @@ async function start(): Promise<void> {
   function jumped(): void {
     activities.ball?.play.jumped();
     choice.reset();
+    heightWatch.reset();
   }
 
   function sessionChanged(): void {
     timing.setRate(headset.pictureRateHz);
     timing.reset();
     choice.reset();
+    heightWatch.reset();
     refit();
     controls.show();
     study?.sessionChanged();
@@ -265,6 +271,23 @@ async function start(): Promise<void> {
     if (height !== null) calibrate(provisionalCalibration(height), 'from the headset’s height', false);
   }
 
+  /** Whoever never calibrated and stands up straight grows; whoever did is told, once; a study keeps the body that it measured. */
+  function grow(frame: TrackingFrame): void {
+    const { calibration } = settings;
+    if (!headset.worn || switches.study || calibration === toldTooSmall) return;
+    const grown = heightWatch.observe(frame, calibration);
+    if (!grown) return;
+    if (!store.preferences.calibration) calibrate(grown, 'corrected, because you stood taller', false);
+    else {
+      toldTooSmall = calibration;
+      const centimetres = Math.round(100 * (grown.eyeHeight - calibration.eyeHeight));
+      notices.show(
+        'info',
+        `You stand ${centimetres} cm taller than your calibration says: you may want to calibrate again.`,
+      );
+    }
+  }
+
   let frameCount = 0;
   let lastFault = '';
   const loop = createFrameLoop<XRFrame>(
@@ -275,6 +298,7 @@ async function start(): Promise<void> {
         recorder.observe(frame);
         controls.observe(frame);
         settle(frame);
+        grow(frame);
         headset.buzz(activities.play(frame, buttons));
       },
       estimator: () => choice.current,

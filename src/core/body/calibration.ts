@@ -85,3 +85,10 @@ export function provisionalCalibration(headHeight: number): Calibration {
   if (!(headHeight >= LOWEST_STANDING_ADULT && headHeight <= eyeHeightRange.max)) return defaultCalibration;
   return { eyeHeight: headHeight, armSpan: headHeight * ARM_SPAN_PER_EYE_HEIGHT };
 }
+
+/** The same person with other eyes' height [m]: a span that was only derived from the height follows, a measured one stays. */
+export function withEyeHeight(calibration: Calibration, eyeHeight: number): Calibration {
+  const spanPerHeight = calibration.armSpan / calibration.eyeHeight;
+  const derived = Math.abs(spanPerHeight - ARM_SPAN_PER_EYE_HEIGHT) < 1e-9;
+  return { ...calibration, eyeHeight, ...(derived && { armSpan: eyeHeight * ARM_SPAN_PER_EYE_HEIGHT }) };
+}

@@ -1,0 +1,93 @@
+import { fromAxisAngle, rotate } from '../math/quat';
+import { right, zero } from '../math/vec3';
+import type { TrackingFrame } from '../tracking/tracking-frame';
+import { type Calibration, calibrationComplaint, withEyeHeight } from './calibration';
+import { skeletonFromCalibration } from './skeleton';
+
+/** Notices whoever stands taller than their calibration says. Smaller tells nothing: people crouch, slouch and sit. */
+export interface HeightWatch {
+  /**
+   * Once a frame, with the calibration in force: the same, grown, in the frame that proves it too small; else null. Another
+   * object is another calibration, unless it is the one that was returned.
+   */
+  observe(frame: TrackingFrame, calibration: Calibration): Calibration | null;
+  /** Forgets how high the headset was: the floor lies elsewhere, or somebody else wears it. */
+  reset(): void;
+}
+
+/** Seconds at a height that prove it: longer than anybody jumps. */
+const provingSeconds = 1.25;
+/** [m] by which eyes rise and sink in that time while somebody stands or walks. */
+const calmRange = 0.04;
+/** As a part of the eye height: shoes, and a headset that was put on anew. */
+const deadZone = 0.02;
+/** The same once something grew: what was measured is wrong then, and whoever straightens up is followed. */
+const grownDeadZone = 0.005;
+/** As a part of the eye height that was measured: whoever rises further stands on something. */
+const mostGrowth = 0.08;
+/** A longer one [s] between two frames hides what happened in it. */
+const longestGap = 0.5;
+
+/** Eyes that stay within `calmRange`: from when to when [s], how low and how high [m]. */
+interface CalmStand {
+  readonly since: number;
+  readonly until: number;
+  readonly lowest: number;
+  readonly highest: number;
+}
+
+export function createHeightWatch(): HeightWatch {
+  let current: Calibration | null = null;
+  /** The eye height [m] before anything grew. */
+  let measured = 0;
+  /** From the skull's pivot to the eyes, in the frame of a headset whose wearer looks straight ahead. */
+  let eyesInHeadset = zero;
+  /** How far [m] they are above that pivot then. */
+  let levelRise = 0;
+  let stand: CalmStand | null = null;
+
+  function take(calibration: Calibration): void {
+    current = calibration;
+    measured = calibration.eyeHeight;
+    const { eyesInHead } = skeletonFromCalibration(calibration);
+    eyesInHeadset = rotate(fromAxisAngle(right, -(calibration.gazePitch ?? 0)), eyesInHead);
+    levelRise = eyesInHead.y;
+    stand = null;
+  }
+
+  /** How high [m] the eyes would be if the head were level: looking up lifts a headset and makes nobody taller. */
+  function levelHeight({ position, orientation }: TrackingFrame['head']): number {
+    return position.y - rotate(orientation, eyesInHeadset).y + levelRise;
+  }
+
+  return {
+    observe({ time, head }, calibration) {
+      if (calibration !== current) take(calibration);
+      const height = levelHeight(head);
+      const zone = calibration.eyeHeight > measured ? grownDeadZone : deadZone;
+      const proves =
+        head.tracking === 'tracked' &&
+        height > calibration.eyeHeight * (1 + zone) &&
+        height <= measured * (1 + mostGrowth);
+      stand = proves ? prolonged(stand, time, height) : null;
+      if (!stand || time - stand.since < provingSeconds) return null;
+      const grown = withEyeHeight(calibration, (stand.lowest + stand.highest) / 2);
+      stand = null;
+      if (calibrationComplaint(grown) !== null) return null;
+      current = grown;
+      return grown;
+    },
+    reset() {
+      stand = null;
+    },
+  };
+}
+
+/** The stand with one more frame; one that begins with it, where the head moved or nobody looked for a while. */
+function prolonged(stand: CalmStand | null, time: number, height: number): CalmStand {
+  const begun: CalmStand = { since: time, until: time, lowest: height, highest: height };
+  if (!stand || time < stand.until || time - stand.until > longestGap) return begun;
+  const lowest = Math.min(stand.lowest, height);
+  const highest = Math.max(stand.highest, height);
+  return highest - lowest > calmRange ? begun : { since: stand.since, until: time, lowest, highest };
+}
