@@ -12,6 +12,8 @@ export default defineConfig({
   // Studies are kept by `npm start`; the pages under development talk to it.
   server: { host: '127.0.0.1', port: 5173, proxy: { '/api': 'http://127.0.0.1:3333' } },
   preview: { host: '127.0.0.1', port: 4173 },
+  // Workers are modules, so that they may load the parts they need.
+  worker: { format: 'es' },
   build: {
     target: 'es2022',
     // The policy of the server allows scripts of our own files alone: nothing may be inlined into the page as a data: URL.

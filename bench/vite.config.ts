@@ -6,5 +6,6 @@ const path = (relative: string) => fileURLToPath(new URL(relative, import.meta.u
 export default defineConfig({
   root: path('./page'),
   publicDir: path('../public'),
+  worker: { format: 'es' },
   build: { outDir: path('../.cache/bench'), emptyOutDir: true, target: 'es2022' },
 });

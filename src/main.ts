@@ -94,6 +94,7 @@ async function start(): Promise<void> {
       const { loadRegressor } = await inferenceArrives;
       const loaded = await loadRegressor(`${modelsAt}${name}.json`, {
         provider: switches.executionProvider,
+        thread: 'worker',
         onProgress: (part) => progress.report('the network', 0.9 * part),
         onProviderFallback: (reason) => notices.show('warning', reason),
       });

@@ -23,8 +23,10 @@ export async function drive(
   const skeleton = skeletonFromCalibration(calibration);
   const result: MeasuredFrame[] = [];
   for (const { frame, truth } of frames) {
-    await estimator.prepare(frame);
+    // The network answers from a worker: what a frame draws was computed from the one before.
+    const prepared = estimator.prepare(frame);
     const { body } = estimator.estimate(frame);
+    await prepared;
     if (estimator.fault()) throw new Error(`${name}: ${estimator.fault()}`);
     if (!body) throw new Error(`${name} drew no body`);
     const joints: Record<string, Vec3> = {};

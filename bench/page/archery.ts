@@ -70,7 +70,8 @@ export async function measureArchery(stage: ArcheryStage): Promise<Record<Estima
         const { frame, buttons } = round.play.act(round.frame / rateHz);
         const { state, bow, time, events, cues } = round.play.follow(frame, buttons);
         view.hear(events, cues);
-        await estimator.prepare(frame);
+        // As the page: what it started is drawn by the next frame.
+        void estimator.prepare(frame);
         avatar.apply(estimator.estimate(frame), frame.time);
         view.show(state, bow, time, frame.head);
         renderer.render(arena.scene, camera);

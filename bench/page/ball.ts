@@ -98,7 +98,8 @@ export async function measureCourt(
         if (due.length > 0) sent = Math.floor(time * packetHz);
         const started = performance.now();
         const frame = actorFrame(time, defaultCalibration);
-        await estimator.prepare(frame);
+        // As the page: what it started is drawn by the next frame.
+        void estimator.prepare(frame);
         avatar.apply(estimator.estimate(frame), frame.time);
         const receiving = performance.now();
         for (const { seat, bytes } of due) {

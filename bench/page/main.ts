@@ -108,7 +108,7 @@ async function measure(): Promise<PageResult> {
   const timing = createFrameTiming(() => performance.now());
   const regressors: Partial<Record<Method, PoseRegressor>> = {};
   for (const name of estimatorNames.filter(needsRegressor)) {
-    regressors[name] = withTiming(await loadRegressor(`/models/${name}.json`), timing);
+    regressors[name] = withTiming(await loadRegressor(`/models/${name}.json`, { thread: 'worker' }), timing);
   }
   const estimators = Object.fromEntries(
     estimatorNames.map((name) => [name, createEstimator(name, defaultCalibration, regressors[name] ?? null)]),
@@ -142,7 +142,7 @@ async function measure(): Promise<PageResult> {
         estimating = performance.now();
       },
       estimator: () => estimators[method],
-      inferenceSettlesInFrame: () => true,
+      inferenceSettlesInFrame: () => regressors[method]?.resolvesInFrame ?? false,
       skin(pose, frame) {
         inFrameNow = performance.now() - estimating;
         avatar.apply(pose, frame.time);

@@ -2,6 +2,7 @@ import * as v from 'valibot';
 import { learnedInputCount } from '../core/estimation/learned';
 import type { ModelContract, PoseRegressor } from '../core/estimation/pose-regressor';
 import { createSession, type ExecutionProvider, type InferenceSession } from './session';
+import { createWorkerSession } from './worker-session';
 
 const tensor = v.object({
   name: v.string(),
@@ -32,6 +33,8 @@ const contractSchema = v.object({
 export interface LoadOptions {
   /** Where to run; 'webgpu' gives way to 'wasm' when it cannot. */
   readonly provider?: ExecutionProvider;
+  /** Where WebAssembly runs; the page's thread is for programs without workers. */
+  readonly thread?: 'worker' | 'page';
   /** Share [0, 1] of the model file that has arrived. */
   readonly onProgress?: (share: number) => void;
   /** Why WebGPU was left for WASM, at load or when the device is lost later. */
@@ -83,7 +86,7 @@ export async function loadRegressor(contractUrl: string, options: LoadOptions = 
 export async function startRegressor(
   contract: ModelContract,
   model: Uint8Array,
-  { provider = 'wasm', onProviderFallback }: LoadOptions = {},
+  { provider = 'wasm', thread = 'page', onProviderFallback }: LoadOptions = {},
 ): Promise<PoseRegressor> {
   let session: InferenceSession | null = null;
   let fallback: Promise<InferenceSession> | null = null;
@@ -91,7 +94,8 @@ export async function startRegressor(
   const output = contract.outputs[0]!;
 
   async function open(where: ExecutionProvider, bundle = where): Promise<InferenceSession> {
-    const opened = await createSession(model, where, bundle);
+    const inWorker = thread === 'worker' && where === 'wasm' && bundle === 'wasm';
+    const opened = await (inWorker ? createWorkerSession(model) : createSession(model, where, bundle));
     if (!opened.inputNames.includes(input.name) || !opened.outputNames.includes(output.name)) {
       await opened.release();
       const has = `${opened.inputNames.join(', ')} → ${opened.outputNames.join(', ')}`;
@@ -123,7 +127,7 @@ export async function startRegressor(
       return session?.provider ?? 'none';
     },
     get resolvesInFrame() {
-      return session?.provider === 'wasm';
+      return session?.resolvesInFrame ?? false;
     },
     async run(features) {
       const current = session;

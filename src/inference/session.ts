@@ -11,6 +11,8 @@ interface GraphicsDevice {
 /** One model in onnxruntime-web, one run at a time. */
 export interface InferenceSession {
   readonly provider: ExecutionProvider;
+  /** Whether a run settles within the microtasks of the frame that asked for it. */
+  readonly resolvesInFrame: boolean;
   readonly inputNames: readonly string[];
   readonly outputNames: readonly string[];
   run(input: TensorContract, features: Float32Array, output: string): Promise<Float32Array>;
@@ -18,7 +20,7 @@ export interface InferenceSession {
 }
 
 /**
- * Opens a model. Only what the provider needs is downloaded: WebGPU's larger bundle comes when it is asked for. That bundle
+ * Opens a model on this thread. Only what the provider needs is downloaded: WebGPU's larger bundle comes when it is asked for. That bundle
  * computes on WASM as well: where it has been loaded already, `bundle` 'webgpu' spares the download of the smaller one.
  * Rejects when the provider is not to be had or does not take the model.
  */
@@ -43,6 +45,7 @@ export async function createSession(
   let last: Promise<unknown> = Promise.resolve();
   return {
     provider,
+    resolvesInFrame: provider === 'wasm',
     inputNames: session.inputNames,
     outputNames: session.outputNames,
     run(input, features, output) {

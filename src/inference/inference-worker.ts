@@ -1,0 +1,20 @@
+import { createSession, type InferenceSession } from './session';
+import type { Answer, Question } from './worker-messages';
+
+let session: InferenceSession | null = null;
+
+async function answer(question: Question): Promise<Answer> {
+  const { id } = question;
+  if ('model' in question) {
+    session = await createSession(question.model, 'wasm');
+    return { id, inputNames: session.inputNames, outputNames: session.outputNames };
+  }
+  if (!session) throw new Error('no model is open');
+  return { id, numbers: await session.run(question.input, question.features, question.output) };
+}
+
+self.addEventListener('message', ({ data: question }: MessageEvent<Question>) => {
+  answer(question)
+    .catch((error: unknown) => ({ id: question.id, broken: error instanceof Error ? error.message : String(error) }))
+    .then((answered) => self.postMessage(answered));
+});

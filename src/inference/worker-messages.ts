@@ -1,0 +1,12 @@
+import type { TensorContract } from '../core/estimation/pose-regressor';
+
+/** What the page asks of the worker that runs a model: to open it, then to run it. */
+export type Question =
+  | { readonly id: number; readonly model: Uint8Array }
+  | { readonly id: number; readonly input: TensorContract; readonly features: Float32Array; readonly output: string };
+
+/** The answer to the question of that number. */
+export type Answer =
+  | { readonly id: number; readonly inputNames: readonly string[]; readonly outputNames: readonly string[] }
+  | { readonly id: number; readonly numbers: Float32Array }
+  | { readonly id: number; readonly broken: string };
