@@ -102,9 +102,11 @@ try {
     console.log(`  ${label.padEnd(14)}${cells.map((cell) => String(cell).padStart(12)).join('')}`);
   const { first, settled, shown } = frames.costs;
   for (const [title, table] of [
-    ['In the frame: prepare and estimate, after ten seconds of it [ms]', settled.inFrameMs],
+    ['In the animation frame, after ten seconds of it [ms]', settled.inFrameMs],
     ['The same in the first ten seconds [ms]', first.inFrameMs],
     ['The same after them, while the browser shows the canvas [ms]', shown.inFrameMs],
+    ["With what it leaves for after the frame on the page's thread, after ten seconds [ms]", settled.withLaterMs],
+    ['The same in the first ten seconds [ms]', first.withLaterMs],
     ['Whole frame, until the picture is drawn [ms]', settled.frameMs],
     ["Of it, on the page's own thread [ms]", settled.threadMs],
     ['Whole frame, while the browser shows the canvas [ms]', shown.frameMs],

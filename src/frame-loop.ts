@@ -13,6 +13,8 @@ export interface FrameParts<DeviceFrame> {
   estimator(): PoseEstimator;
   /** Whether inference settles within the frame's microtasks, so that waiting for it costs no frame. */
   inferenceSettlesInFrame(): boolean;
+  /** Does the task after this animation frame, when the picture is on its way, and before the next. */
+  afterwards(task: () => void): void;
   /** Bends the body to the pose. */
   skin(pose: AvatarPose, frame: TrackingFrame): void;
   /** Draws, mirror included; frame: what was tracked, null where nothing was. */
@@ -23,13 +25,27 @@ export interface FrameParts<DeviceFrame> {
 
 /**
  * One frame, stage by stage. Every device pose is read before the first await, and drawing follows within the same
- * animation frame: either nothing is awaited or what is awaited settles in microtasks.
+ * animation frame: either what is awaited settles in microtasks, or nothing is, and the network is asked afterwards.
  */
 export function createFrameLoop<DeviceFrame>(
   parts: FrameParts<DeviceFrame>,
   timing: FrameTiming,
 ): (timeMs: number, deviceFrame?: DeviceFrame) => Promise<void> {
+  let begun = 0;
+
+  /** What the next frame will draw, unless that one came first. */
+  function askLater(estimator: PoseEstimator, frame: TrackingFrame): void {
+    const during = begun;
+    parts.afterwards(() => {
+      if (begun !== during) return;
+      timing.resume();
+      void estimator.prepare(frame);
+      timing.mark('features');
+    });
+  }
+
   return async (timeMs, deviceFrame) => {
+    begun += 1;
     timing.begin(timeMs);
     try {
       const frame = parts.track(timeMs, deviceFrame);
@@ -37,12 +53,12 @@ export function createFrameLoop<DeviceFrame>(
       timing.mark('tracking');
       if (frame) {
         const estimator = parts.estimator();
-        const prepared = estimator.prepare(frame);
-        timing.mark('features');
         if (parts.inferenceSettlesInFrame()) {
+          const prepared = estimator.prepare(frame);
+          timing.mark('features');
           await prepared;
           timing.mark('inference');
-        }
+        } else askLater(estimator, frame);
         const pose = estimator.estimate(frame);
         timing.mark('kinematics');
         parts.skin(pose, frame);

@@ -41,6 +41,8 @@ export interface FrameTiming {
   /** Counts the time since the last mark of this frame towards this stage; a stage may be marked several times. */
   mark(stage: StageName): void;
   end(): void;
+  /** After the frame: what is marked from now on is work that it left for later. It counts with the next frame. */
+  resume(): void;
   /** The rate at which the device wants frames [Hz]. */
   setRate(rateHz: number): void;
   /** Forgets what was: after a pause, a hidden page or another kind of frame nothing before is comparable. */
@@ -65,6 +67,8 @@ export function createFrameTiming(now: () => number): FrameTiming {
   let started = 0;
   let marked = 0;
   let late = false;
+  let inFrame = false;
+  let afterwards = 0;
   let listener: FrameListener | null = null;
   const told = { ...spent, frame: 0 };
   const latestMs = () => (lateAfterIntervals * 1000) / rateHz;
@@ -73,23 +77,31 @@ export function createFrameTiming(now: () => number): FrameTiming {
       late = timestampMs - lastTimestamp > latestMs();
       if (Number.isFinite(lastTimestamp)) push(intervals, timestampMs - lastTimestamp);
       lastTimestamp = timestampMs;
-      for (const name of stageNames) spent[name] = 0;
+      inFrame = true;
       started = now();
       marked = started;
     },
     mark(stage) {
       const time = now();
       spent[stage] += time - marked;
+      if (!inFrame) afterwards += time - marked;
       marked = time;
     },
     end() {
+      const whole = now() - started + afterwards;
       for (const name of stageNames) push(rings[name], spent[name]);
-      const whole = now() - started;
       push(total, whole);
-      if (!listener) return;
-      Object.assign(told, spent);
-      told.frame = whole;
-      listener(told, late);
+      if (listener) {
+        Object.assign(told, spent);
+        told.frame = whole;
+        listener(told, late);
+      }
+      inFrame = false;
+      afterwards = 0;
+      for (const name of stageNames) spent[name] = 0;
+    },
+    resume() {
+      marked = now();
     },
     setRate(rate) {
       rateHz = rate;

@@ -1,4 +1,5 @@
 import { createActivities } from './activities';
+import { createAfterFrame } from './after-frame';
 import { createControls } from './controls';
 import { type Calibration, provisionalCalibration } from './core/body/calibration';
 import { createHeightWatch } from './core/body/height-watch';
@@ -304,6 +305,7 @@ async function start(): Promise<void> {
       },
       estimator: () => choice.current,
       inferenceSettlesInFrame: () => choice.regressor?.resolvesInFrame ?? false,
+      afterwards: createAfterFrame(),
       skin(pose, frame) {
         const grips = { left: activities.grip('left', buttons), right: activities.grip('right', buttons) };
         for (const side of ['left', 'right'] as const) avatar.current?.setGrip(side, grips[side]);

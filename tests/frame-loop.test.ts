@@ -17,6 +17,7 @@ const pose: AvatarPose = { head, leftHand: null, rightHand: null, body: null };
 /** The parts of a frame, each of which writes its name down. */
 function observedParts(change: Partial<FrameParts<string>> = {}) {
   const calls: string[] = [];
+  const later: (() => void)[] = [];
   const estimator: PoseEstimator = {
     name: 'learned',
     calibrate: () => void calls.push('calibrate'),
@@ -41,6 +42,7 @@ function observedParts(change: Partial<FrameParts<string>> = {}) {
     observe: () => void calls.push('observe'),
     estimator: () => estimator,
     inferenceSettlesInFrame: () => true,
+    afterwards: (task) => void later.push(task),
     skin: () => void calls.push('skin'),
     render: (_, frame) => void calls.push(frame ? 'render' : 'render without tracking'),
     fail: (error) => void calls.push(`fail ${String(error)}`),
@@ -49,6 +51,7 @@ function observedParts(change: Partial<FrameParts<string>> = {}) {
   return {
     parts,
     calls,
+    later,
     loop: createFrameLoop(
       parts,
       createFrameTiming(() => 0),
@@ -65,10 +68,20 @@ describe('one frame', () => {
     expect(calls).toEqual(['track xr', 'observe', 'prepare', 'prepared', 'estimate', 'skin', 'render']);
   });
 
-  test('waits for no inference that outlives the frame', () => {
-    const { loop, calls } = observedParts({ inferenceSettlesInFrame: () => false });
+  test('waits for no inference that outlives the frame, and asks for it when the picture is drawn', () => {
+    const { loop, calls, later } = observedParts({ inferenceSettlesInFrame: () => false });
     void loop(0);
-    expect(calls).toEqual(['track desktop', 'observe', 'prepare', 'estimate', 'skin', 'render']);
+    expect(calls).toEqual(['track desktop', 'observe', 'estimate', 'skin', 'render']);
+    for (const task of later) task();
+    expect(calls.at(-1)).toBe('prepare');
+  });
+
+  test('asks for nothing that a newer frame has overtaken', () => {
+    const { loop, calls, later } = observedParts({ inferenceSettlesInFrame: () => false });
+    void loop(0);
+    void loop(16);
+    for (const task of later) task();
+    expect(calls.filter((call) => call === 'prepare')).toHaveLength(1);
   });
 
   test('without a tracked head the last body stays and the world is drawn', async () => {

@@ -36,6 +36,24 @@ describe('where the time of a frame goes', () => {
     expect(summary.p50Ms).toBe(8);
   });
 
+  test('what a frame leaves for later counts with the next one, the pause before it with none', () => {
+    const clock = handClock();
+    const timing = createFrameTiming(clock.now);
+    for (let frame = 0; frame < 10; frame++) {
+      timing.begin(frame * 16);
+      clock.pass(2);
+      timing.mark('kinematics');
+      timing.end();
+      clock.pass(7);
+      timing.resume();
+      clock.pass(1);
+      timing.mark('features');
+    }
+    const summary = timing.summary();
+    expect(summary.stages.features.p50Ms).toBe(1);
+    expect(summary.p50Ms).toBe(3);
+  });
+
   test('one slow frame in ten shows in p95, not in p50', () => {
     const clock = handClock();
     const timing = createFrameTiming(clock.now);

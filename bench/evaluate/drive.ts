@@ -23,10 +23,9 @@ export async function drive(
   const skeleton = skeletonFromCalibration(calibration);
   const result: MeasuredFrame[] = [];
   for (const { frame, truth } of frames) {
-    // The network answers from a worker: what a frame draws was computed from the one before.
-    const prepared = estimator.prepare(frame);
+    // The network is asked when the picture is drawn and answers from a worker: what a frame draws was computed from the one before.
     const { body } = estimator.estimate(frame);
-    await prepared;
+    await estimator.prepare(frame);
     if (estimator.fault()) throw new Error(`${name}: ${estimator.fault()}`);
     if (!body) throw new Error(`${name} drew no body`);
     const joints: Record<string, Vec3> = {};

@@ -70,11 +70,10 @@ export async function measureArchery(stage: ArcheryStage): Promise<Record<Estima
         const { frame, buttons } = round.play.act(round.frame / rateHz);
         const { state, bow, time, events, cues } = round.play.follow(frame, buttons);
         view.hear(events, cues);
-        // As the page: what it started is drawn by the next frame.
-        void estimator.prepare(frame);
         avatar.apply(estimator.estimate(frame), frame.time);
         view.show(state, bow, time, frame.head);
         renderer.render(arena.scene, camera);
+        void estimator.prepare(frame);
         const ended = performance.now();
         gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
         round.frame += 1;

@@ -98,8 +98,6 @@ export async function measureCourt(
         if (due.length > 0) sent = Math.floor(time * packetHz);
         const started = performance.now();
         const frame = actorFrame(time, defaultCalibration);
-        // As the page: what it started is drawn by the next frame.
-        void estimator.prepare(frame);
         avatar.apply(estimator.estimate(frame), frame.time);
         const receiving = performance.now();
         for (const { seat, bytes } of due) {
@@ -131,6 +129,7 @@ export async function measureCourt(
           head: frame.head,
         });
         renderer.render(arena.scene, camera);
+        void estimator.prepare(frame);
         const ended = performance.now();
         gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
         const complete = people.length === avatars - 1 && people.every(({ id }) => others.jointsOf(id) !== null);

@@ -1,4 +1,5 @@
 import { PerspectiveCamera } from 'three';
+import { createAfterFrame } from '../../src/after-frame';
 import { createAvatar } from '../../src/avatar/avatar';
 import { loadAvatar } from '../../src/avatar/load-avatar';
 import { createMirror } from '../../src/avatar/mirror';
@@ -46,6 +47,8 @@ interface Quantiles {
 interface Costs {
   /** Prepare and estimate. */
   readonly inFrameMs: Readonly<Record<Method, Quantiles>>;
+  /** And what it leaves for later on the page's thread: features, and asking the network's worker. */
+  readonly withLaterMs: Readonly<Record<Method, Quantiles>>;
   /** Until the picture is drawn. */
   readonly frameMs: Readonly<Record<Method, Quantiles>>;
   /** The part of it on the page's own thread. */
@@ -120,9 +123,9 @@ async function measure(): Promise<PageResult> {
   const measured = Object.fromEntries(
     conditions.map((condition) => [
       condition,
-      { inFrame: empty(methods), whole: empty(methods), thread: empty(methods) },
+      { inFrame: empty(methods), withLater: empty(methods), whole: empty(methods), thread: empty(methods) },
     ]),
-  ) as Record<Condition, Record<'inFrame' | 'whole' | 'thread', Record<Method, number[]>>>;
+  ) as Record<Condition, Record<'inFrame' | 'withLater' | 'whole' | 'thread', Record<Method, number[]>>>;
   const stages = Object.fromEntries(estimatorNames.map((name) => [name, empty(stageNames)])) as Record<
     EstimatorName,
     Record<StageName, number[]>
@@ -130,21 +133,18 @@ async function measure(): Promise<PageResult> {
   const spent = Object.fromEntries(stageNames.map((stage) => [stage, 0])) as Record<StageName, number>;
   timing.listen((spentMs) => Object.assign(spent, spentMs));
   let method: EstimatorName = 'ik';
-  let estimating = 0;
-
   let inFrameNow = 0;
+  let withLaterNow = 0;
   let failure: unknown = null;
   let skinned: AvatarPose | null = null;
   const loop = createFrameLoop<never>(
     {
       track: (timeMs) => actorFrame(timeMs / 1000, defaultCalibration),
-      observe() {
-        estimating = performance.now();
-      },
+      observe: () => undefined,
       estimator: () => estimators[method],
-      inferenceSettlesInFrame: () => regressors[method]?.resolvesInFrame ?? false,
+      inferenceSettlesInFrame: () => false,
+      afterwards: createAfterFrame(),
       skin(pose, frame) {
-        inFrameNow = performance.now() - estimating;
         avatar.apply(pose, frame.time);
         if (pose.body) skinned = pose;
       },
@@ -160,7 +160,7 @@ async function measure(): Promise<PageResult> {
   const pixel = new Uint8Array(4);
   const nextFrame = () => new Promise<number>((resolve) => requestAnimationFrame(resolve));
   async function runBlock(name: Method, round: number, condition: Condition): Promise<void> {
-    const { inFrame, whole, thread } = measured[condition];
+    const { inFrame, withLater, whole, thread } = measured[condition];
     if (name !== 'ccdik') method = name;
     for (const estimator of Object.values(estimators)) estimator.reset();
     for (let i = 0; i < settleFrames + blockFrames; i++) {
@@ -173,16 +173,22 @@ async function measure(): Promise<PageResult> {
         const solving = performance.now();
         ccd.solve(frame);
         inFrameNow = performance.now() - solving;
+        withLaterNow = inFrameNow;
         // It solves a rig of its own; the avatar is skinned all the same, so that the frame is as much work.
         if (skinned) avatar.apply(skinned, frame.time);
         renderer.render(arena.scene, camera);
-      } else await loop(timeMs);
+      } else {
+        await loop(timeMs);
+        inFrameNow = spent.kinematics;
+        withLaterNow = spent.features + spent.inference + spent.kinematics;
+      }
       if (failure) throw failure;
       const ended = performance.now();
       // Commands are only queued so far: asking for a pixel waits until all of them are drawn.
       gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
       if (i < settleFrames) continue;
       inFrame[name].push(inFrameNow);
+      withLater[name].push(withLaterNow);
       thread[name].push(ended - started);
       whole[name].push(performance.now() - started);
       if (name === 'ccdik' || condition !== 'settled') continue;
@@ -214,8 +220,11 @@ async function measure(): Promise<PageResult> {
   return {
     costs: Object.fromEntries(
       conditions.map((condition) => {
-        const { inFrame, whole, thread } = measured[condition];
-        return [condition, { inFrameMs: told(inFrame), frameMs: told(whole), threadMs: told(thread) }];
+        const { inFrame, withLater, whole, thread } = measured[condition];
+        return [
+          condition,
+          { inFrameMs: told(inFrame), withLaterMs: told(withLater), frameMs: told(whole), threadMs: told(thread) },
+        ];
       }),
     ) as Record<Condition, Costs>,
     stagesMs: Object.fromEntries(
