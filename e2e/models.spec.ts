@@ -53,6 +53,24 @@ test('without WebAssembly IK takes over and the page says so', async ({ page, co
   measured('no-wasm', { 'body drawn by IK': `${seconds.toFixed(2)} s after the page's script began` });
 });
 
+test('without the worker that runs networks IK takes over and the page says so', async ({ page, complaints }) => {
+  complaints.allow(/worker/i, /404/, /learned|paper/);
+  await page.route('**/inference-worker*.js', (route) => route.fulfill({ status: 404, body: 'Not found.' }));
+  await openWithHeadset(page, 'estimator=learned');
+  await expect.poll(async () => (await probe(page)).estimator).toBe('ik');
+  await expect(page.getByRole('alert').filter({ hasText: /IK|inverse kinematics/i })).toBeVisible();
+});
+
+test('a worker that dies while the network runs: IK takes over and the page says so', async ({ page, complaints }) => {
+  complaints.allow(/worker/i, /learned/);
+  await openWithHeadset(page, 'estimator=learned&actor=on');
+  await expect.poll(async () => (await probe(page)).estimator).toBe('learned');
+  const worker = page.workers().find((each) => each.url().includes('inference-worker'));
+  await worker?.evaluate(() => self.close());
+  await expect.poll(async () => (await probe(page)).estimator).toBe('ik');
+  await expect(page.getByRole('alert').filter({ hasText: /does not answer/ })).toBeVisible();
+});
+
 test('WebGPU asked for and not there: WASM takes over, the network stays, and the page says so', async ({
   page,
   complaints,

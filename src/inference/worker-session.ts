@@ -9,18 +9,30 @@ interface Waiting {
   readonly reject: (error: Error) => void;
 }
 
+/** A worker that is silent for so long [ms], or twice as long, has died. */
+const patienceMs = 2500;
+
 /**
  * Opens a model in a worker of its own: what a frame pays for a run is to ask for it; the answer arrives between frames. Rejects when
- * there is no worker or it does not take the model; a worker that breaks rejects every run from then on.
+ * there is no worker or it does not take the model; a worker that breaks or falls silent rejects every run from then on.
  */
 export async function createWorkerSession(model: Uint8Array): Promise<InferenceSession> {
   const worker = new Worker(new URL('./inference-worker.ts', import.meta.url), { type: 'module' });
   const waiting = new Map<number, Waiting>();
   let broken: Error | null = null;
+  // Opening takes as long as its download.
+  let opened = false;
   let asked = 0;
+  let suspect: number | undefined;
+  const watch = setInterval(() => {
+    const [oldest] = waiting.keys();
+    if (opened && oldest !== undefined && oldest === suspect) breakDown('the worker for inference does not answer');
+    suspect = oldest;
+  }, patienceMs);
 
   function breakDown(reason: string): void {
     broken = new Error(reason);
+    clearInterval(watch);
     worker.terminate();
     for (const { reject } of waiting.values()) reject(broken);
     waiting.clear();
@@ -44,16 +56,17 @@ export async function createWorkerSession(model: Uint8Array): Promise<InferenceS
   worker.addEventListener('error', ({ message }) => breakDown(message || 'the worker for inference did not start'));
   worker.addEventListener('messageerror', () => breakDown('the worker for inference cannot be understood'));
 
-  const opened = await ask({ model }).catch((error: unknown) => {
-    worker.terminate();
+  const tensors = await ask({ model }).catch((error: unknown) => {
+    breakDown(error instanceof Error ? error.message : String(error));
     throw error;
   });
-  if (!('inputNames' in opened)) throw new Error('the worker for inference answers what nobody asked');
+  if (!('inputNames' in tensors)) throw new Error('the worker for inference answers what nobody asked');
+  opened = true;
   return {
     provider: 'wasm',
     resolvesInFrame: false,
-    inputNames: opened.inputNames,
-    outputNames: opened.outputNames,
+    inputNames: tensors.inputNames,
+    outputNames: tensors.outputNames,
     async run(input, features, output) {
       const answer = await ask({ input, features, output });
       if (!('numbers' in answer)) throw new Error('the worker for inference answers what nobody asked');

@@ -117,7 +117,7 @@ export const faultRows = {
     ],
   },
   'no-wasm': {
-    inject: 'WASM missing, blocked by the policy, not compiling',
+    inject: 'WASM missing, blocked by the policy, not compiling; its worker missing or dead',
     sees: 'IK takes over, a notice says so',
     target: 'the avatar moves within 2 s',
     tests: ['e2e/models.spec.ts'],

@@ -59,7 +59,7 @@ class TrainConfig:
     learned_frame_random: train_learned.TrainFrameRandomConfig = train_learned.TrainFrameRandomConfig()
     ik: fit_ik.FitIkConfig = fit_ik.FitIkConfig()
     # The page's damping of the correction; chosen by `npm run evaluate`: jerk against error.
-    correction_half_life: float = 0.05
+    correction_half_life: float = 0.04
 
 
 def compact_json(content: Any) -> str:
