@@ -7,7 +7,8 @@ import argparse
 import json
 import re
 import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -18,7 +19,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
-from . import ablation, export, fit_body, fit_ik, golden, ik, neutral_pose, people, prepare, skeleton, train_learned, train_paper
+from . import ablation, export, fit_ik, golden, ik, kinematics, leave_one_out, neutral_pose, people, prepare, skeleton, train_learned, train_paper
 from .features import paper_input
 from .generated_motion import generate_corpus
 from .model import PaperNetwork, CorrectionNetwork
@@ -50,6 +51,7 @@ class TrainConfig:
     networks: tuple[str, ...] = ("paper", "learned")
     frame_random: bool = True
     ablate: bool = False
+    leave_one_out: bool = False
     refit_kinematics: bool = False
     seed: int = 2460
     # Small layers gain little from more threads, and with one their sums keep their order on any machine.
@@ -91,6 +93,9 @@ def main(config: TrainConfig, console: Console | None = None) -> dict[str, dict[
         corpus = _corpus(config, progress, console)
         if config.ablate:
             return _ablate(config, corpus, progress, console)
+        if config.leave_one_out:
+            _leave_one_out(config, corpus, progress, console)
+            return {}
         everybody = tuple(corpus.people)
         for fold in config.folds:
             if not set(people.FOLDS[fold]) & set(everybody) or not people.training_people(fold, everybody):
@@ -203,6 +208,15 @@ def _ablate(config: TrainConfig, corpus: PreparedCorpus, progress: Progress, con
     return shown
 
 
+def _leave_one_out(config: TrainConfig, corpus: PreparedCorpus, progress: Progress, console: Console) -> None:
+    task = progress.add_task("leave one out", total=len(corpus.people))
+    rows = leave_one_out.run(corpus, config.learned, config.ik, lambda name: progress.update(task, advance=1, description=f"without {name}"))
+    progress.remove_task(task)
+    for row in rows:
+        console.print("  ".join(row))
+    leave_one_out.write(rows)
+
+
 def _print_cells(title: str, columns: Iterable[str], rows: list[list[str]], console: Console) -> dict[str, dict[str, float]]:
     head = list(columns)
     shown = {name: dict(zip(head, map(float, values), strict=True)) for name, *values in rows}
@@ -226,30 +240,24 @@ def _corpus(config: TrainConfig, progress: Progress, console: Console) -> Prepar
     return corpus
 
 
-class _kinematics:  # noqa: N801 - reads as a verb where it is used
+@contextmanager
+def _kinematics(
+    config: TrainConfig, corpus: PreparedCorpus, training: tuple[str, ...], fold: str, shipped: str, progress: Progress
+) -> Iterator[None]:
     """Within it, proportions and IK are those of this fold's training people: the page's own for the shipped one."""
-
-    def __init__(self, config: TrainConfig, corpus: PreparedCorpus, training: tuple[str, ...], fold: str | None, shipped: str | None, progress: Progress) -> None:
-        self.saved = (skeleton.load_proportions, ik.load_parameters)
-        if fold == shipped and not config.refit_kinematics:
-            return
-        task = progress.add_task(f"IK {fold or ''}", total=config.ik.iterations)
-        proportions = fit_body.fit(corpus, training)
-        sample = fit_ik.sample(corpus, training, proportions, config.ik.frames_per_person, config.ik.seed)
-        parameters = fit_ik.fit(sample, config.ik, lambda iteration, _: progress.update(task, completed=iteration + 1))
-        progress.remove_task(task)
-        if fold == shipped:
-            skeleton.PROPORTIONS_FILE.write_text(compact_json(proportions))
-            ik.PARAMETERS_FILE.write_text(compact_json(parameters))
-        else:
-            skeleton.load_proportions = lambda: proportions
-            ik.load_parameters = lambda: parameters
-
-    def __enter__(self) -> None:
-        pass
-
-    def __exit__(self, *_: object) -> None:
-        skeleton.load_proportions, ik.load_parameters = self.saved
+    if fold == shipped and not config.refit_kinematics:
+        yield
+        return
+    task = progress.add_task(f"IK {fold}", total=config.ik.iterations)
+    fitted = kinematics.fit(corpus, training, config.ik, lambda done: progress.update(task, completed=done))
+    progress.remove_task(task)
+    if fold == shipped:
+        skeleton.PROPORTIONS_FILE.write_text(compact_json(fitted.proportions))
+        ik.PARAMETERS_FILE.write_text(compact_json(fitted.parameters))
+        yield
+        return
+    with kinematics.used(fitted):
+        yield
 
 
 def _train_paper(
@@ -367,6 +375,7 @@ def _arguments() -> TrainConfig:
     parser.add_argument("--no-frame-random", action="store_true", help="leave the paper's own protocol out")
     parser.add_argument("--refit-kinematics", action="store_true", help="also fit the page's body proportions and IK anew")
     parser.add_argument("--ablate", action="store_true", help="instead of all that: the recipe without each of its parts, for docs/training.md")
+    parser.add_argument("--leave-one-out", action="store_true", help="instead of all that: everybody held out in turn, for docs/training.md")
     parser.add_argument("--quick", action="store_true", help="a twentieth of the training: does it run?")
     given = parser.parse_args()
     config = TrainConfig(
@@ -380,6 +389,7 @@ def _arguments() -> TrainConfig:
         networks=tuple(given.networks.split(",")),
         frame_random=not given.no_frame_random,
         ablate=given.ablate,
+        leave_one_out=given.leave_one_out,
         refit_kinematics=given.refit_kinematics,
         seed=given.seed,
         threads=given.threads,

@@ -1,0 +1,36 @@
+"""Body proportions and constants of IK that were fitted without somebody, for errors that nobody's own data made smaller."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+from . import fit_body, fit_ik, ik, skeleton
+from .fit_ik import FitIkConfig
+from .prepared_corpus import PreparedCorpus
+
+
+@dataclass(frozen=True)
+class Kinematics:
+    """As the parameter files in src/core hold them."""
+
+    proportions: dict[str, Any]
+    parameters: dict[str, Any]
+
+
+def fit(corpus: PreparedCorpus, people: tuple[str, ...], config: FitIkConfig, report: Callable[[int], None] = lambda _: None) -> Kinematics:
+    """Fitted on these people; report(iterations done)."""
+    proportions = fit_body.fit(corpus, people)
+    sample = fit_ik.sample(corpus, people, proportions, config.frames_per_person, config.seed)
+    return Kinematics(proportions, fit_ik.fit(sample, config, lambda iteration, _: report(iteration + 1)))
+
+
+@contextmanager
+def used(fitted: Kinematics) -> Iterator[None]:
+    """Within it, skeletons and IK are these instead of the page's."""
+    saved = skeleton.load_proportions, ik.load_parameters
+    skeleton.load_proportions, ik.load_parameters = (lambda: fitted.proportions), (lambda: fitted.parameters)
+    try:
+        yield
+    finally:
+        skeleton.load_proportions, ik.load_parameters = saved
