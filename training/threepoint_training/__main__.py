@@ -154,6 +154,9 @@ def _cross_validate(
         found("learned, frame-random 80/20", _learned_frame_random(config, corpus, progress))
     for name, network in networks.items():
         errors = {row: values for row, values in rows.items() if row.startswith((name, "IK"))}
+        if not config.frame_random:
+            earlier, _ = _cross_validated(config, corpus, name)
+            errors |= {row: values for row, values in earlier.items() if "frame-random" in row}
         provenance = _provenance(config, corpus, people.training_people(shipped, everybody), errors)
         learning = asdict(curve) if name == "paper" and curve else None
         _export(config, corpus, name, network, config.cross_validation, provenance, learning, config.fp32_out)
@@ -372,7 +375,7 @@ def _arguments() -> TrainConfig:
     parser.add_argument("--cross-validation", type=Path, default=TrainConfig.cross_validation, help="networks and errors of the folds go there")
     parser.add_argument("--stage", choices=TrainConfig.stages, help="this one alone; everybody takes the errors of an earlier cross-validation")
     parser.add_argument("--networks", default=",".join(TrainConfig.networks), help="train and replace only these (default: paper,learned)")
-    parser.add_argument("--no-frame-random", action="store_true", help="leave the paper's own protocol out")
+    parser.add_argument("--no-frame-random", action="store_true", help="leave the paper's own protocol out; what an earlier run found stays")
     parser.add_argument("--refit-kinematics", action="store_true", help="also fit the page's body proportions and IK anew")
     parser.add_argument("--ablate", action="store_true", help="instead of all that: the recipe without each of its parts, for docs/training.md")
     parser.add_argument("--leave-one-out", action="store_true", help="instead of all that: everybody held out in turn, for docs/training.md")

@@ -23,14 +23,14 @@ Array = NDArray[np.float64]
 class TrainLearnedConfig:
     """Chosen by cross-validation over training people (docs/training.md)."""
 
-    width: int = 128
-    dropout: float = 0.1
+    width: int = 192
+    dropout: float = 0.2
     hidden_layers: int = 2
-    steps: int = 1500
+    steps: int = 3000
     batch: int = 1024
     learning_rate: float = 5e-3
     weight_decay: float = 1e-2
-    average_half_life_steps: float = 150.0
+    average_half_life_steps: float = 300.0
     # Of the learned correction of the trunk: what holds for the people trained on holds for others in part.
     correction_share: float = 0.65
     # What elbows count once more where the page's kinematics will put them.
