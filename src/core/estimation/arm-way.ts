@@ -2,7 +2,7 @@ import { bisect } from '../math/bisection';
 import { clamp, smoothstep } from '../math/damper';
 import { between, rotate } from '../math/quat';
 import { addScaled, cross, distance, lerp, normalise, subtract, type Vec3 } from '../math/vec3';
-import type { HandWay } from '../tracking/hand-continuity';
+import { type HandWay, sinkSeconds } from '../tracking/hand-continuity';
 import { alongArc, directionArc } from '../tracking/shoulder-arc';
 
 /** An arm as it hangs in this frame: its shoulder, floor frame, and the lengths [m] of its bones. */
@@ -51,8 +51,9 @@ export interface ArmCourse {
   readonly way: ArmWay | null;
 }
 
-/** A way takes about so long [s] to rest and back at least, and goes at most this fast [m/s]: 2.8 and 3.75 cm in a frame at 60 Hz. */
-const [restSeconds, returnSeconds] = [2.5, 0.2];
+/** A way back takes about so long [s] at least. */
+const returnSeconds = 0.2;
+/** A way goes at most this fast [m/s]: 2.8 and 3.75 cm in a frame at 60 Hz. */
 const [restSpeed, returnSpeed] = [1.7, 2.25];
 /** The share of the shortest time in which it gets up to its speed, and down from it. */
 const wayRamp = 0.2;
@@ -152,7 +153,7 @@ function furthestWay(arm: Arm, at: (share: number) => Bones): number {
   return Math.max(metresOf('elbow'), metresOf('wrist'));
 }
 
-const shortestOf = ({ rests }: ArmWay): number => (rests ? restSeconds : returnSeconds);
+const shortestOf = ({ rests }: ArmWay): number => (rests ? sinkSeconds : returnSeconds);
 
 /** Up to the way's top speed [m/s] evenly, and evenly down to a stand at its end. */
 function speedOf(way: ArmWay, metres: number, toGo: number, deltaSeconds: number): number {

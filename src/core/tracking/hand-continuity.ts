@@ -40,8 +40,10 @@ export interface ContinuedFrame {
 
 /** Holds a hand this long before letting it sink: most losses are shorter. */
 const holdSeconds = 0.1;
-/** Then it goes to rest in so long [s], and is doubted the sooner: it bends no trunk where it only may be. */
-const [sinkSeconds, doubtSeconds] = [2.5, 0.3];
+/** Then it goes to rest in so long [s]: most come back near where they were. */
+export const sinkSeconds = 2.5;
+/** It is doubted sooner than it rests [s]: nothing hurries after a guess. */
+const doubtSeconds = 0.3;
 const blendSeconds = 0.2;
 /** Mean speed [m/s] of a returning hand on long ways; a quarter faster at most: 4.8 cm in a frame at 60 Hz. */
 const returnSpeed = 2.3;
