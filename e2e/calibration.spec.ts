@@ -99,8 +99,7 @@ test('worn: whoever typed a height and stands taller is told, and keeps the body
   await page.keyboard.press('Tab');
   await expect.poll(async () => (await probe(page)).calibration.eyeHeight).toBeCloseTo(1.54, 1);
   const typed = (await probe(page)).calibration;
-  const stand = (height: number) =>
-    headset.place({ head: { position: [0.2, height, 0], orientation: [0, 0, 0, 1] } });
+  const stand = (height: number) => headset.place({ head: { position: [0.2, height, 0], orientation: [0, 0, 0, 1] } });
   await stand(typed.eyeHeight);
   await enterVr(page);
   await stand(typed.eyeHeight + 0.08);

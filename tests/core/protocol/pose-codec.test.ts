@@ -70,7 +70,7 @@ async function measure(
         const [curl, shownCurl] = [packet.curls[side], back.curls[side]];
         const hand = packet.pose[`${side}Hand`];
         const wrist = sent[`${side}Hand`];
-        const caught = hand !== null && distance(hand.position, wrist.position) < 0.002;
+        const caught = hand !== null && distance(hand.position, wrist.position) < 0.0005;
         const turned = hand && angleBetween(multiply(hand.orientation, wristFromHandBone[side]), wrist.orientation);
         if (caught && turned! < 0.01) {
           worst.take('wrists at their hands [mm]', 1000 * distance(wrist.position, shown[`${side}Hand`].position));
