@@ -171,7 +171,7 @@ test('bare hands: a pinch at the string nocks, opening it at full draw shoots', 
   await expect.poll(async () => (await round(page)).arrowsLeft).toBe(4);
 });
 
-test('a round whose time runs out ends with the bell', async ({ page }) => {
+test('a round whose time runs out ends with the bell @nightly', async ({ page }) => {
   const headset = await enterTheRange(page, '&actor=off&seconds=4');
   await nock(page, headset);
   await reachForString(page, headset, 0.4);

@@ -13,7 +13,8 @@ test('the button enters VR, and leaving brings the page back', async ({ page }) 
 });
 
 for (const estimator of ['ik', 'learned', 'paper'] as const) {
-  test(`${estimator}: the body goes where the head goes`, async ({ page }) => {
+  const night = estimator === 'learned' ? '' : ' @nightly';
+  test(`${estimator}: the body goes where the head goes${night}`, async ({ page }) => {
     const headset = await openWithHeadset(page, `estimator=${estimator}`);
     await enterVr(page);
     await headset.place({

@@ -12,7 +12,7 @@ const standing = (ahead: number): Placement => ({
 /** In the order of their keys. */
 const estimators = ['learned', 'ik', 'paper', 'hands-only'] as const;
 
-test('pictures from behind and from the front, with each estimator', async ({ page }) => {
+test('pictures from behind and from the front, with each estimator @nightly', async ({ page }) => {
   const headset = await openWithHeadset(page, 'panel=off&quality=high');
   await headset.place(standing(0));
   for (const view of ['third-person', 'front'] as const) {
@@ -28,7 +28,8 @@ test('pictures from behind and from the front, with each estimator', async ({ pa
 });
 
 for (const estimator of estimators) {
-  test(`${estimator}: a picture of the mirror in VR`, async ({ page }) => {
+  const night = estimator === 'learned' ? '' : ' @nightly';
+  test(`${estimator}: a picture of the mirror in VR${night}`, async ({ page }) => {
     const headset = await openWithHeadset(page, `estimator=${estimator}&panel=off`);
     await enterVr(page);
     // Close to the mirror, which hangs 1.8 m away.
