@@ -45,7 +45,7 @@ interface Quantiles {
 
 /** Of one condition, by method. */
 interface Costs {
-  /** Prepare and estimate. */
+  /** Estimate: what the method costs within the animation frame. */
   readonly inFrameMs: Readonly<Record<Method, Quantiles>>;
   /** And what it leaves for later on the page's thread: features, and asking the network's worker. */
   readonly withLaterMs: Readonly<Record<Method, Quantiles>>;

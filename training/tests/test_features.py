@@ -90,7 +90,7 @@ def test_a_child_in_an_adult_s_pose_has_the_adult_s_features(motion, size):
     np.testing.assert_allclose(
         features.target(truth * size, positions * size, rotations, grown, after),
         features.target(truth, positions, rotations, BODY, before),
-        atol=1e-6,
+        atol=1e-9,
     )
 
 

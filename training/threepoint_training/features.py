@@ -56,9 +56,9 @@ def windowed(features: Array, times: Array, window: tuple[float, ...]) -> Array:
 def chest_axes(vector: Array) -> Array:
     """The axes of IK's chest as rows [F, 3, 3], heading frame, from features [F, 46]: x from shoulder to shoulder, y up the spine, z backward."""
     _, _, left, right, chest, _ = _ik_joints(vector)
-    x = _normalise(right - left)
+    x = ik.normalise(right - left)
     up = (left + right) / 2 - chest
-    up = _normalise(up - np.sum(up * x, -1, keepdims=True) * x)
+    up = ik.normalise(up - np.sum(up * x, -1, keepdims=True) * x)
     return np.stack([x, up, np.cross(x, up)], axis=1)
 
 
@@ -96,10 +96,6 @@ def target(truth: Array, positions: Array, rotations: Array, body: Body, vector:
 def _ik_joints(vector: Array) -> list[Array]:
     """The six joints [F, 3] from the headset, heading frame, eye heights."""
     return list(np.moveaxis(vector[:, IK_JOINTS].reshape(-1, 6, 3), 1, 0))
-
-
-def _normalise(v: Array) -> Array:
-    return v / np.maximum(np.linalg.norm(v, axis=-1, keepdims=True), 1e-9)
 
 
 def euler_yxz(q: Array) -> Array:

@@ -23,7 +23,8 @@ def load_parameters() -> dict[str, Any]:
     return json.loads(PARAMETERS_FILE.read_text())
 
 
-def _normalise(v: Array) -> Array:
+def normalise(v: Array) -> Array:
+    """The vectors [..., 3] at length one; nothing stays nothing."""
     return v / np.maximum(np.linalg.norm(v, axis=-1, keepdims=True), 1e-12)
 
 
@@ -76,12 +77,12 @@ def solve(positions: Array, rotations: Array, body: Body, parameters: dict[str, 
         return _apply(turn, np.stack([np.sin(beta), np.cos(alpha) * np.cos(beta), -np.sin(alpha) * np.cos(beta)], -1))
 
     upper, lower = up(k["upper"]), up(k["lower"])
-    chest_x = _normalise(np.cross(upper, turn[..., :, 2]))
+    chest_x = normalise(np.cross(upper, turn[..., :, 2]))
     chest = np.stack([chest_x, upper, np.cross(chest_x, upper)], -1)
 
     neck_length = np.linalg.norm(body.neck_to_head, axis=-1, keepdims=True)
     neck_rest = np.broadcast_to(body.neck_to_head / neck_length, headset.shape)
-    neck = head_joint - neck_length * _normalise((1 - k["neck"]) * _apply(chest, neck_rest) + k["neck"] * _apply(head, neck_rest))
+    neck = head_joint - neck_length * normalise((1 - k["neck"]) * _apply(chest, neck_rest) + k["neck"] * _apply(head, neck_rest))
     chest_joint = neck - body.thorax * upper
     hips = chest_joint - body.lower_back * lower
     hips = np.concatenate([hips[:, :1], np.maximum(hips[:, 1:2], 0.08 * e), hips[:, 2:]], -1)
@@ -104,7 +105,7 @@ def solve(positions: Array, rotations: Array, body: Body, parameters: dict[str, 
         length = np.linalg.norm(shift, axis=-1, keepdims=True)
         shift = shift * np.minimum(1, GIRDLE_SHIFT * clavicle / np.maximum(length, 1e-12))
         rest = body.shoulder - body.clavicle_root
-        shoulder = neck + _apply(chest, (body.clavicle_root + clavicle * _normalise(rest + shift)) * mirror)
+        shoulder = neck + _apply(chest, (body.clavicle_root + clavicle * normalise(rest + shift)) * mirror)
 
         hand = quaternion.to_matrix(rotations[:, 1 + side])
         q = in_chest(wrist - shoulder) / a
@@ -124,7 +125,7 @@ def two_bone_elbow(shoulder: Array, wrist: Array, upper_arm: Array, forearm: Arr
     for substitute in (-chest[..., :, 1], chest[..., :, 2]):
         short = np.linalg.norm(across, axis=-1, keepdims=True) < 1e-4
         across = np.where(short, substitute - _dot(substitute, axis) * axis, across)
-    across = _normalise(across)
+    across = normalise(across)
     reach = np.clip(distance, np.abs(upper_arm - forearm) + 1e-4, (upper_arm + forearm) * (1 - 1e-5))
     along = (upper_arm**2 - forearm**2 + reach**2) / (2 * reach)
     return shoulder + along * axis + np.sqrt(np.maximum(upper_arm**2 - along**2, 0)) * across
