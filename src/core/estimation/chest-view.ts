@@ -27,7 +27,9 @@ export interface ChestView {
 
 /** From one frame's features. */
 export function viewFromChest(frame: Float32Array): ChestView {
-  const axes = chestAxes(frame);
+  const [leftShoulder, rightShoulder] = [ikJoint(frame, 'leftUpperArm'), ikJoint(frame, 'rightUpperArm')];
+  const chest = ikJoint(frame, 'chest');
+  const axes = chestAxes(leftShoulder, rightShoulder, chest);
   const features = new Float32Array(chestFeatureCount);
   let next = 0;
   const see = (seen: Vec3): Vec3 => {
@@ -48,10 +50,10 @@ export function viewFromChest(frame: Float32Array): ChestView {
     see(vectorAt(frame, columns));
     see(vectorAt(frame, columns + 3));
   };
-  const left = seeArm(leftHandFeature, ikJoint(frame, 'leftUpperArm'), ikJoint(frame, 'leftLowerArm'));
-  const right = seeArm(rightHandFeature, ikJoint(frame, 'rightUpperArm'), ikJoint(frame, 'rightLowerArm'));
+  const left = seeArm(leftHandFeature, leftShoulder, ikJoint(frame, 'leftLowerArm'));
+  const right = seeArm(rightHandFeature, rightShoulder, ikJoint(frame, 'rightLowerArm'));
   seeTurn(headFeature);
-  see(ikJoint(frame, 'chest'));
+  see(chest);
   features.set([axes.x.y, axes.y.y, axes.z.y, left, right], next);
   return { axes, features };
 }
@@ -60,10 +62,9 @@ export function viewFromChest(frame: Float32Array): ChestView {
 export const headingFromChest = ({ x, y, z }: ChestAxes, seen: Vec3): Vec3 =>
   addScaled(addScaled(scale(x, seen.x), y, seen.y), z, seen.z);
 
-function chestAxes(frame: Float32Array): ChestAxes {
-  const [left, right] = [ikJoint(frame, 'leftUpperArm'), ikJoint(frame, 'rightUpperArm')];
+function chestAxes(left: Vec3, right: Vec3, chest: Vec3): ChestAxes {
   const x = normalise(subtract(right, left));
-  const spine = subtract(addScaled(scale(left, 0.5), right, 0.5), ikJoint(frame, 'chest'));
+  const spine = subtract(addScaled(scale(left, 0.5), right, 0.5), chest);
   const y = normalise(addScaled(spine, x, -dot(spine, x)));
   return { x, y, z: cross(x, y) };
 }

@@ -70,6 +70,7 @@ async function measure(
         const [curl, shownCurl] = [packet.curls[side], back.curls[side]];
         const hand = packet.pose[`${side}Hand`];
         const wrist = sent[`${side}Hand`];
+        // An arm on its way back stays bent a little: in its last frames it is a millimetre short of its hand.
         const caught = hand !== null && distance(hand.position, wrist.position) < 0.0005;
         const turned = hand && angleBetween(multiply(hand.orientation, wristFromHandBone[side]), wrist.orientation);
         if (caught && turned! < 0.01) {
