@@ -1,7 +1,7 @@
 import type { ArcheryProbe } from '../src/archery-play';
 import type { EmulatedHeadset, Rotation } from './emulated-headset';
 import { emulatedHeadset, frames } from './emulated-headset';
-import { enterVr, expect, joint, keepPicture, open, probe, test } from './page-fixture';
+import { enterVr, expect, keepPicture, open, probe, settledJoint, test } from './page-fixture';
 
 // What is played does not depend on how many pixels show it.
 test.use({ viewport: { width: 800, height: 500 } });
@@ -79,10 +79,9 @@ const turned: { left: Rotation; right: Rotation } = {
 
 /** Moves the string hand to where the string is, and `behind` [m] further back. */
 async function reachForString(page: Page, headset: EmulatedHeadset, behind = 0): Promise<void> {
-  await frames(page, 4);
+  const wrist = await settledJoint(page, 'rightHand');
   const { nockPoint } = await round(page);
   if (!nockPoint) throw new Error('nobody holds the bow');
-  const wrist = await joint(page, 'rightHand');
   const ray = await page.evaluate(() => {
     const { controllers, hands, primaryInputMode } = window.emulatedDevice;
     const { x, y, z } = (primaryInputMode === 'hand' ? hands : controllers).right.position;
@@ -106,20 +105,27 @@ const press = (page: Page, side: 'left' | 'right', value: number) =>
     value,
   ] as const);
 
-/** Puts the string hand to where the page draws the string, so that a press nocks. */
-async function nock(page: Page, headset: EmulatedHeadset): Promise<void> {
-  await stand(headset);
-  await press(page, 'right', 0);
-  await reachForString(page, headset);
-  // A frame that takes more than a second is a pause, and what is pressed after a pause was not pressed at the string: once more.
+/** Nocks and draws with what holds the string. A frame of more than a second is a pause, and takes the arrow off: then once more. */
+async function nockAndDraw(
+  page: Page,
+  headset: EmulatedHeadset,
+  hold: (value: number) => Promise<unknown>,
+  thumbsUp = asHeld,
+): Promise<void> {
   await expect(async () => {
-    await press(page, 'right', 0);
-    await frames(page, 2);
-    await press(page, 'right', 1);
+    await stand(headset, 0, thumbsUp);
+    await hold(0);
+    await reachForString(page, headset);
+    await hold(1);
     await frames(page, 3);
     expect((await round(page)).stage).not.toBe('empty');
-  }).toPass();
+    await reachForString(page, headset, 0.4);
+    expect((await round(page)).draw).toBeGreaterThan(0.2);
+  }).toPass(patience);
 }
+
+const pinch = (page: Page, value: number) =>
+  page.evaluate((value) => window.emulatedDevice.hands.right.updatePinchValue(value), value);
 
 test('whoever leaves the zone is warned, and coming back is noticed', async ({ page }) => {
   const headset = await enterTheRange(page, '&actor=off');
@@ -134,9 +140,7 @@ test('whoever leaves the zone is warned, and coming back is noticed', async ({ p
 
 test('a controller lost with the string drawn never shoots; the arrow goes back to the quiver', async ({ page }) => {
   const headset = await enterTheRange(page, '&actor=off');
-  await nock(page, headset);
-  await reachForString(page, headset, 0.4);
-  await expect.poll(async () => (await round(page)).draw).toBeGreaterThan(0.2);
+  await nockAndDraw(page, headset, (value) => press(page, 'right', value));
   await headset.setConnected('right', false);
   await expect.poll(async () => (await round(page)).stage).toBe('empty');
   await press(page, 'right', 0);
@@ -158,24 +162,14 @@ test('hands are changed in the menu of the page, and remembered', async ({ page 
 test('bare hands: a pinch at the string nocks, opening it at full draw shoots', async ({ page }) => {
   const headset = await enterTheRange(page, '&actor=off');
   await headset.useInput('hand');
-  await stand(headset, 0, turned);
-  const pinch = (value: number) =>
-    page.evaluate((value) => window.emulatedDevice.hands.right.updatePinchValue(value), value);
-  await pinch(0);
-  await reachForString(page, headset);
-  await pinch(1);
-  await expect.poll(async () => (await round(page)).stage).not.toBe('empty');
-  await reachForString(page, headset, 0.4);
-  await expect.poll(async () => (await round(page)).draw).toBeGreaterThan(0.2);
-  await pinch(0);
+  await nockAndDraw(page, headset, (value) => pinch(page, value), turned);
+  await pinch(page, 0);
   await expect.poll(async () => (await round(page)).arrowsLeft).toBe(4);
 });
 
 test('a round whose time runs out ends with the bell @nightly', async ({ page }) => {
   const headset = await enterTheRange(page, '&actor=off&seconds=4');
-  await nock(page, headset);
-  await reachForString(page, headset, 0.4);
-  await expect.poll(async () => (await round(page)).draw).toBeGreaterThan(0.2);
+  await nockAndDraw(page, headset, (value) => press(page, 'right', value));
   await press(page, 'right', 0);
   await expect.poll(async () => (await round(page)).phase).toBe('running');
   await expect.poll(async () => (await round(page)).phase).toBe('over');

@@ -1,12 +1,12 @@
 import { readdirSync, readFileSync } from 'node:fs';
-import { expect, joint, keepPicture, open, openWithHeadset, probe, test } from './page-fixture';
+import { expect, joint, keepPicture, open, openWithHeadset, probe, settledJoint, test } from './page-fixture';
 
 const avatarFile = readdirSync('public/avatars').find((name) => name.endsWith('.vrm'));
 
 test('a VRM from a local file takes the place of ours, with the hands still on the controllers', async ({ page }) => {
   if (!avatarFile) throw new Error('public/avatars holds no .vrm: npm run build:avatar');
   await openWithHeadset(page, 'estimator=ik');
-  const hand = await joint(page, 'leftHand');
+  const hand = await settledJoint(page, 'leftHand');
   await page.getByRole('tab', { name: 'Avatar' }).click();
   await page
     .getByLabel('Open VRM file')

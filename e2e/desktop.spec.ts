@@ -1,4 +1,4 @@
-import { expect, joint, keepPicture, open, openWithHeadset, probe, test } from './page-fixture';
+import { expect, joint, keepPicture, open, openWithHeadset, probe, settledJoint, test } from './page-fixture';
 
 test('a newcomer sees a moving body within seconds, without touching anything', async ({ page }) => {
   await open(page, 'quality=low');
@@ -16,7 +16,7 @@ test('a newcomer sees a moving body within seconds, without touching anything', 
 
 test('the estimators are switched live, on the same motion, without moving the hands', async ({ page }) => {
   await openWithHeadset(page);
-  const hands = await joint(page, 'rightHand');
+  const hands = await settledJoint(page, 'rightHand');
   for (const [label, name] of [
     ['Inverse kinematics', 'ik'],
     ['Paper', 'paper'],

@@ -24,6 +24,25 @@ export async function joint(page: Page, name: string): Promise<Point> {
   return position;
 }
 
+/** Where a joint comes to a stand [m], floor frame: the arm of a hand that has only just been seen is on its way there. */
+export async function settledJoint(page: Page, name: string): Promise<Point> {
+  let still = 0;
+  let position = await joint(page, name);
+  await expect
+    .poll(
+      async () => {
+        await frames(page, 2);
+        const before = position;
+        position = await joint(page, name);
+        still = distance(position, before) < 1e-4 ? still + 1 : 0;
+        return still;
+      },
+      { message: `${name} stands still`, intervals: [0] },
+    )
+    .toBeGreaterThan(1);
+  return position;
+}
+
 export function distance(a: Point, b: Point): number {
   return Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
