@@ -118,3 +118,26 @@ def test_a_batch_is_finite_and_repeatable():
     np.testing.assert_array_equal(first.inputs, second.inputs)
     np.testing.assert_array_equal(first.targets, second.targets)
     assert np.abs(first.targets).mean() < 0.15
+
+
+def test_a_window_says_whose_torso_and_arms_it_has():
+    """Nobody's arms but theirs on anybody's torso: without recombination all three are one person."""
+    alone = draw_batch(PARTS, 200, PLAIN, np.random.default_rng(6)).people
+    assert (alone == alone[:, :1]).all()
+    mixed = draw_batch(PARTS, 200, replace(PLAIN, recombined=1.0), np.random.default_rng(6)).people
+    assert set(mixed.flat) == set(range(len(PARTS.people)))
+    assert (mixed[:, 1] != mixed[:, 2]).any() and (mixed[:, 0] != mixed[:, 1]).any()
+
+
+def test_a_mirrored_body_has_its_owners_arms_on_the_other_sides():
+    """The upper arm's share of an arm tells whose it is."""
+    parts = BodyParts(CORPUS, tuple(CORPUS.people))
+    own = np.array([0.3, 0.5, 0.7])
+    for arm in parts.arms:
+        arm[:, 1] = arm[:, 0] + own[parts.person, None] * (arm[:, 2] - arm[:, 0])
+    batch = draw_batch(parts, 400, replace(PLAIN, recombined=1.0), np.random.default_rng(6))
+    joints = joints_of(batch)
+    upper_arm = np.linalg.norm(joints[:, [0, 1]] - joints[:, [2, 3]], axis=-1)
+    hands = batch.inputs[:, [[7, 8, 9], [16, 17, 18]]] * batch.inputs[:, 45, None, None]
+    forearm = np.linalg.norm(hands - joints[:, [0, 1]], axis=-1)
+    np.testing.assert_allclose(upper_arm / (upper_arm + forearm), own[batch.people[:, 1:]], atol=1e-4)

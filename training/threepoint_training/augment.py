@@ -48,10 +48,11 @@ class AugmentConfig:
 
 @dataclass(frozen=True)
 class Batch:
-    """inputs [N, T·46 + 38], targets [N, 18]; float32."""
+    """inputs [N, T·46 + 38], targets [N, 18]; float32. people [N, 3]: whose torso, left and right arm, as numbers of `BodyParts.people`."""
 
     inputs: NDArray[np.float32]
     targets: NDArray[np.float32]
+    people: NDArray[np.int64]
 
 
 class BodyParts:
@@ -69,10 +70,9 @@ class BodyParts:
         self.clip_start = np.repeat(np.cumsum([0, *lengths[:-1]]), lengths)
         self.sizes = np.repeat(np.array(sizes), lengths, axis=0)
         names = np.array([corpus.clip_people[clip] for clip in clips])
-        self.person = np.repeat(names, lengths)
         # Everybody counts alike, but a person with ten times the motion still counts somewhat more.
-        _, inverse, counts = np.unique(self.person, return_inverse=True, return_counts=True)
-        weight = counts[inverse] ** -0.5
+        self.people, self.person, counts = np.unique(np.repeat(names, lengths), return_inverse=True, return_counts=True)
+        weight = counts[self.person] ** -0.5
         self.cumulative = np.cumsum(weight) / weight.sum()
 
         x = joint["rightUpperArm"] - joint["leftUpperArm"]
@@ -193,4 +193,6 @@ def draw_batch(parts: BodyParts, count: int, config: AugmentConfig, random: np.r
         columns.append(vector)
         if age == 0:
             targets, seen = target(truth, positions, rotations, calibrated, vector), seen_from_chest(vector)
-    return Batch(np.concatenate([*columns, seen], axis=1).astype(np.float32), targets.astype(np.float32))
+    arms_of = np.stack([parts.person[frames] for frames in arm_frames], axis=1)
+    whose = np.column_stack([parts.person[newest], np.where(mirrored[:, None], arms_of[:, ::-1], arms_of)])
+    return Batch(np.concatenate([*columns, seen], axis=1).astype(np.float32), targets.astype(np.float32), whose)

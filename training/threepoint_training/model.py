@@ -77,7 +77,7 @@ class CorrectionNetwork(nn.Module):
     def normalise(self, inputs: Tensor, targets: Tensor) -> None:
         """Takes mean and deviation from the training data; constant features keep their size."""
         bodies, corrections = self._with_mirror_images(inputs), targets.view(-1, 6, 3)
-        corrections = torch.stack([corrections, corrections[:, MIRRORED_JOINTS] * _FLIP], dim=1).flatten(0, 1)
+        corrections = torch.stack([corrections, corrections[:, MIRRORED_JOINTS] * FLIP], dim=1).flatten(0, 1)
         self._take("trunk", bodies, corrections[:, 2:].flatten(1))
         self._take("arm", self._right_arm(bodies, corrections[:, 3]), corrections[:, 1] - corrections[:, 3])
 
@@ -126,7 +126,7 @@ class CorrectionNetwork(nn.Module):
 # Reach, its length, axes of the hand, IK's elbow, the room's up, whether the hand is seen.
 ARM_FEATURES = 17
 
-_FLIP = torch.tensor([-1.0, 1.0, 1.0])
+FLIP = torch.tensor([-1.0, 1.0, 1.0])
 
 
 def _perceptron(inputs: int, width: int, hidden_layers: int, dropout: float, outputs: int) -> nn.Sequential:
@@ -139,14 +139,14 @@ def _perceptron(inputs: int, width: int, hidden_layers: int, dropout: float, out
 def _from_trunk() -> Tensor:
     """[24, 18 + 6]: what the trunk says of a body and its image to how the six joints move, elbows with their shoulders, and both right shoulders."""
     body, image = torch.eye(24).view(2, 4, 3, 24)
-    left, right, chest, hips = ((body[joint] + _FLIP[:, None] * image[twin]) / 2 for joint, twin in enumerate([1, 0, 2, 3]))
-    return torch.cat([left, right, left, right, chest, hips, right, _FLIP[:, None] * left]).T
+    left, right, chest, hips = ((body[joint] + FLIP[:, None] * image[twin]) / 2 for joint, twin in enumerate([1, 0, 2, 3]))
+    return torch.cat([left, right, left, right, chest, hips, right, FLIP[:, None] * left]).T
 
 
 def _from_arms() -> Tensor:
     """[6, 18]: the right elbow's move in a body and in its image to those of the six joints."""
     right, image = torch.eye(6).view(2, 3, 6)
-    return torch.cat([_FLIP[:, None] * image, right, torch.zeros(12, 6)]).T
+    return torch.cat([FLIP[:, None] * image, right, torch.zeros(12, 6)]).T
 
 
 def _arm_columns(taps: int) -> Tensor:
@@ -162,14 +162,14 @@ def _mirror_image(taps: int) -> tuple[Tensor, Tensor]:
     frame[25:27] = torch.tensor([26, 25])
     frame[IK_JOINTS] = torch.arange(27, 45).view(6, 3)[MIRRORED_JOINTS].flatten()
     # A mirrored rotation's x axis is mirrored and turned round.
-    frame_sign[1:7] = torch.cat([-_FLIP, _FLIP])
-    frame_sign[7:25] = torch.cat([_FLIP, -_FLIP, _FLIP]).repeat(2)
-    frame_sign[IK_JOINTS] = _FLIP.repeat(6)
+    frame_sign[1:7] = torch.cat([-FLIP, FLIP])
+    frame_sign[7:25] = torch.cat([FLIP, -FLIP, FLIP]).repeat(2)
+    frame_sign[IK_JOINTS] = FLIP.repeat(6)
     chest, chest_sign = torch.arange(CHEST_FEATURES), torch.ones(CHEST_FEATURES)
     chest[:24] = torch.cat([torch.arange(12, 24), torch.arange(12)])
     chest[36:] = torch.tensor([37, 36])
-    chest_sign[:24] = torch.cat([_FLIP, -_FLIP, _FLIP, _FLIP]).repeat(2)
-    chest_sign[24:36] = torch.cat([-_FLIP, _FLIP, _FLIP, _FLIP])
+    chest_sign[:24] = torch.cat([FLIP, -FLIP, FLIP, FLIP]).repeat(2)
+    chest_sign[24:36] = torch.cat([-FLIP, FLIP, FLIP, FLIP])
     inputs = taps * FEATURES + CHEST_FEATURES
     column = torch.cat([*(frame + tap * FEATURES for tap in range(taps)), chest + taps * FEATURES])
     sign = torch.cat([*[frame_sign] * taps, chest_sign])

@@ -12,6 +12,7 @@ from .augment import AugmentConfig, BodyParts, draw_batch
 from .features import CHEST_FEATURES, FEATURES, OUTPUTS, frame_features, network_input, target
 from .lost_hands import carry, sink
 from .model import CorrectionNetwork, on_circle
+from .person_effects import PersonEffects
 from .prepared_corpus import PreparedCorpus
 from .simulate_trackers import TrackerConfig, draw_wearer, simulate
 from .skeleton import Body, body_from_calibration, load_proportions
@@ -32,9 +33,12 @@ class TrainLearnedConfig:
     weight_decay: float = 1e-2
     average_half_life_steps: float = 300.0
     # Of the learned correction of the trunk: what holds for the people trained on holds for others in part.
-    correction_share: float = 0.65
+    correction_share: float = 0.75
     # What elbows count once more where the page's kinematics will put them.
     circle_weight: float = 1 / 3
+    # Everybody trained on has an effect of their own, held back by this ridge; None: nobody has.
+    effects_ridge: float | None = 1e-3
+    effects_learning_rate: float = 2e-2
     seed: int = 2460
     augment: AugmentConfig = field(default_factory=AugmentConfig)
 
@@ -166,16 +170,27 @@ def train(
     averaged = CorrectionNetwork(len(config.augment.window_frames), config.width, config.dropout, config.hidden_layers)
     averaged.load_state_dict(network.state_dict())
     averaged.eval()
-    optimiser = torch.optim.AdamW(network.parameters(), lr=config.learning_rate, weight_decay=config.weight_decay)
-    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, config.learning_rate, total_steps=config.steps, pct_start=0.1)
+    effects = PersonEffects(len(parts.people), inputs)
+    optimiser = torch.optim.AdamW(
+        [
+            {"params": network.parameters(), "lr": config.learning_rate, "weight_decay": config.weight_decay},
+            {"params": effects.parameters(), "lr": config.effects_learning_rate, "weight_decay": 0.0},
+        ]
+    )
+    peaks = [config.learning_rate, config.effects_learning_rate]
+    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, peaks, total_steps=config.steps, pct_start=0.1)
     keep = 0.5 ** (1 / config.average_half_life_steps)
     network.train()
     for step in range(config.steps):
         current = draw_batch(parts, config.batch, config.augment, random)
         x, y = torch.from_numpy(current.inputs), torch.from_numpy(current.targets)
         corrections, truth = network(x).view(-1, 6, 3), y.view(-1, 6, 3)
+        if config.effects_ridge is not None:
+            corrections = corrections + effects(x, torch.from_numpy(current.people))
         on_circles = _distance(on_circle(corrections, x, upper_arm_share), truth[:, :2])
         loss = (_distance(corrections, truth) + config.circle_weight * on_circles) / _RESIDUAL
+        if config.effects_ridge is not None:
+            loss = loss + config.effects_ridge * effects.size()
         optimiser.zero_grad()
         loss.backward()
         torch.nn.utils.clip_grad_norm_(network.parameters(), 1.0)
