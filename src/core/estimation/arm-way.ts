@@ -62,8 +62,8 @@ const [hurrySeconds, latestSeconds] = [0.7, 0.9];
 /** A way is measured in so many steps. */
 const waySteps = 8;
 /** Ways longer than the first [m] begin to hold back the elbow of a hand that hurries on; from the second on it goes this share of its way less. */
-const [freeElbow, heldElbow] = [0.15, 0.6];
-const heldShare = 0.6;
+const [freeElbow, heldElbow] = [0.05, 0.4];
+const heldShare = 0.66;
 /** So near to its reach [arm lengths] an arm whose hand is a guess begins to stay bent; on a way back in the share that is left. */
 const softBend = 0.06;
 
