@@ -72,14 +72,29 @@ test('without a headset a mouse takes a ball, aims and throws it', async ({ page
   await expect(page.getByText('Point at the basket and hold the button')).toBeVisible();
   await until(page, ({ held }) => held.left !== null || held.right !== null);
   await page.mouse.move(250, 130);
-  await page.mouse.down();
-  await page.waitForFunction(() => {
-    const { game } = window.threepoint?.probe() ?? {};
-    return game?.name === 'ball' && (game.aim ?? 0) > 5.5;
-  });
-  await keepPicture(page, 'ball-mouse');
-  await page.mouse.up();
-  await until(page, ({ held, aim }) => aim === null && held.left === null && held.right === null);
+  // A frame of over a second is a pause, after which a ball lies in its rack and not in the air: then it is thrown once more.
+  await expect(async () => {
+    await page.mouse.down();
+    await page.waitForFunction(
+      () => {
+        const { game } = window.threepoint?.probe() ?? {};
+        return game?.name === 'ball' && (game.aim ?? 0) > 5.5;
+      },
+      undefined,
+      { timeout: 10_000 },
+    );
+    await keepPicture(page, 'ball-mouse');
+    // Frame by frame: the next ball is soon in the hand.
+    const gone = page.waitForFunction(
+      () => {
+        const { game } = window.threepoint?.probe() ?? {};
+        return game?.name === 'ball' && game.aim === null && game.held.left === null && game.held.right === null;
+      },
+      undefined,
+      { timeout: 10_000 },
+    );
+    await Promise.all([gone, page.mouse.up()]);
+  }).toPass({ timeout: 60_000 });
   await page.getByRole('button', { name: 'Let the built-in player play' }).click();
   await until(page, ({ ballsLeft }) => ballsLeft < 18);
 });
