@@ -138,17 +138,6 @@ test('whoever leaves the zone is warned, and coming back is noticed', async ({ p
   await expect.poll(async () => (await round(page)).inZone).toBe(true);
 });
 
-test('a controller lost with the string drawn never shoots; the arrow goes back to the quiver', async ({ page }) => {
-  const headset = await enterTheRange(page, '&actor=off');
-  await nockAndDraw(page, headset, (value) => press(page, 'right', value));
-  await headset.setConnected('right', false);
-  await expect.poll(async () => (await round(page)).stage).toBe('empty');
-  await press(page, 'right', 0);
-  await headset.setConnected('right', true);
-  await frames(page, 5);
-  expect((await round(page)).arrowsLeft).toBe(5);
-});
-
 test('hands are changed in the menu of the page, and remembered', async ({ page }) => {
   await open(page, 'emulate&play=archery&seed=7&panel=off&quality=low');
   await expect.poll(async () => (await round(page)).bowSide).toBe('left');
@@ -159,22 +148,38 @@ test('hands are changed in the menu of the page, and remembered', async ({ page 
   await expect.poll(async () => (await round(page)).bowSide, { timeout: 60_000 }).toBe('right');
 });
 
-test('bare hands: a pinch at the string nocks, opening it at full draw shoots', async ({ page }) => {
-  const headset = await enterTheRange(page, '&actor=off');
-  await headset.useInput('hand');
-  await nockAndDraw(page, headset, (value) => pinch(page, value), turned);
-  await pinch(page, 0);
-  await expect.poll(async () => (await round(page)).arrowsLeft).toBe(4);
-});
+test.describe('one arrow', () => {
+  // Nobody keeps a picture of it, and frames are quicker so.
+  test.use({ viewport: { width: 480, height: 300 } });
 
-test('a round whose time runs out ends with the bell @nightly', async ({ page }) => {
-  const headset = await enterTheRange(page, '&actor=off&seconds=4');
-  await nockAndDraw(page, headset, (value) => press(page, 'right', value));
-  await press(page, 'right', 0);
-  await expect.poll(async () => (await round(page)).phase).toBe('running');
-  await expect.poll(async () => (await round(page)).phase).toBe('over');
-  expect((await round(page)).end).toBe('time');
-  expect((await round(page)).arrowsLeft).toBe(4);
+  test('a controller lost with the string drawn never shoots; the arrow goes back to the quiver', async ({ page }) => {
+    const headset = await enterTheRange(page, '&actor=off');
+    await nockAndDraw(page, headset, (value) => press(page, 'right', value));
+    await headset.setConnected('right', false);
+    await expect.poll(async () => (await round(page)).stage).toBe('empty');
+    await press(page, 'right', 0);
+    await headset.setConnected('right', true);
+    await frames(page, 5);
+    expect((await round(page)).arrowsLeft).toBe(5);
+  });
+
+  test('bare hands: a pinch at the string nocks, opening it at full draw shoots', async ({ page }) => {
+    const headset = await enterTheRange(page, '&actor=off');
+    await headset.useInput('hand');
+    await nockAndDraw(page, headset, (value) => pinch(page, value), turned);
+    await pinch(page, 0);
+    await expect.poll(async () => (await round(page)).arrowsLeft).toBe(4);
+  });
+
+  test('a round whose time runs out ends with the bell @nightly', async ({ page }) => {
+    const headset = await enterTheRange(page, '&actor=off&seconds=4');
+    await nockAndDraw(page, headset, (value) => press(page, 'right', value));
+    await press(page, 'right', 0);
+    await expect.poll(async () => (await round(page)).phase).toBe('running');
+    await expect.poll(async () => (await round(page)).phase).toBe('over');
+    expect((await round(page)).end).toBe('time');
+    expect((await round(page)).arrowsLeft).toBe(4);
+  });
 });
 
 test('at a desk the mouse aims, draws and shoots', async ({ page }) => {
