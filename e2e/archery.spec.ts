@@ -127,7 +127,7 @@ async function nockAndDraw(
 const pinch = (page: Page, value: number) =>
   page.evaluate((value) => window.emulatedDevice.hands.right.updatePinchValue(value), value);
 
-test('whoever leaves the zone is warned, and coming back is noticed', async ({ page }) => {
+test('whoever leaves the zone is warned, and coming back is noticed @nightly', async ({ page }) => {
   const headset = await enterTheRange(page, '&actor=off');
   await stand(headset);
   await expect.poll(async () => (await round(page)).inZone).toBe(true);
@@ -185,11 +185,12 @@ test.describe('one arrow', () => {
 test('at a desk the mouse aims, draws and shoots', async ({ page }) => {
   await open(page, 'play=archery&seed=7&panel=off&quality=low');
   await page.getByRole('button', { name: 'Shoot with the mouse' }).click();
-  await expect.poll(async () => (await round(page)).arrowsLeft).toBe(5);
+  await expect(page.getByRole('button', { name: 'Shoot with the mouse' })).toBeHidden();
+  const { arrowsLeft } = await round(page);
   await page.mouse.move(330, 130);
   await page.mouse.down();
   await expect.poll(async () => (await round(page)).draw, { timeout: 30_000 }).toBeGreaterThan(0.3);
   await page.mouse.up();
-  await expect.poll(async () => (await round(page)).arrowsLeft, { timeout: 30_000 }).toBe(4);
+  await expect.poll(async () => (await round(page)).arrowsLeft, { timeout: 30_000 }).toBe(arrowsLeft - 1);
   await page.keyboard.press('Escape');
 });

@@ -42,7 +42,7 @@ for (const estimator of ['ik', 'learned', 'paper'] as const) {
   });
 }
 
-test('crouching lowers the body and never puts the pelvis below the floor', async ({ page }) => {
+test('crouching lowers the body and never puts the pelvis below the floor @nightly', async ({ page }) => {
   const headset = await openWithHeadset(page, 'estimator=ik');
   await enterVr(page);
   await headset.place({ head: { position: [0, 1.6, 0] } });

@@ -348,12 +348,11 @@ async function start(): Promise<void> {
     const { width, height } = canvas.getBoundingClientRect();
     activities.point(view.rayThrough((2 * clientX) / width - 1, 1 - (2 * clientY) / height), true);
   });
+  const pictureLost = 'The graphics device was lost. The picture comes back as soon as the browser gives it back.';
   canvas.addEventListener('webglcontextlost', () => {
     notices.show(
       'warning',
-      headset.worn
-        ? 'The graphics device was lost, and VR with it. Your game goes on: enter VR again.'
-        : 'The graphics device was lost. The picture comes back as soon as the browser gives it back.',
+      headset.worn ? 'The graphics device was lost, and VR with it. Your game goes on: enter VR again.' : pictureLost,
     );
     // What the headset shows was drawn by the lost device; a session cannot be given another one.
     headset.exit();
@@ -361,6 +360,7 @@ async function start(): Promise<void> {
   canvas.addEventListener('webglcontextrestored', () => {
     arena.restore();
     timing.reset();
+    notices.withdraw(pictureLost);
     notices.show('info', 'The graphics device is back.');
   });
   document.addEventListener('visibilitychange', () => {
