@@ -1,7 +1,7 @@
 import type { ArcheryProbe } from '../src/archery-play';
 import type { EmulatedHeadset, Rotation } from './emulated-headset';
 import { emulatedHeadset, frames } from './emulated-headset';
-import { enterVr, expect, keepPicture, open, probe, settledJoint, test } from './page-fixture';
+import { enterVr, expect, keepPicture, open, probe, settledJoint, test, untilFrame } from './page-fixture';
 
 // What is played does not depend on how many pixels show it.
 test.use({ viewport: { width: 800, height: 500 } });
@@ -24,17 +24,6 @@ async function enterTheRange(page: Page, query = ''): Promise<EmulatedHeadset> {
 
 const patience = { timeout: 60_000 };
 
-/** The first frame that shows this: what lasts a moment is not missed between two looks. */
-const untilFrame = (page: Page, shows: Partial<ArcheryProbe>) =>
-  page.waitForFunction(
-    (shows) => {
-      const game = window.threepoint?.probe().game;
-      return game?.name === 'archery' && Object.entries(shows).every(([key, value]) => game[key as 'score'] === value);
-    },
-    shows,
-    patience,
-  );
-
 for (const estimator of ['learned', 'ik', 'paper', 'hands-only'] as const) {
   // Rounds are played in real time: one by day, the others by night.
   const night = estimator === 'learned' ? '' : ' @nightly';
@@ -43,11 +32,11 @@ for (const estimator of ['learned', 'ik', 'paper', 'hands-only'] as const) {
     await enterTheRange(page, `&estimator=${estimator}`);
     await expect.poll(async () => (await probe(page)).estimator).toBe(estimator);
     if (estimator === 'learned') {
-      await untilFrame(page, { stage: 'drawing' });
+      await untilFrame<ArcheryProbe>(page, { stage: 'drawing' });
       await keepPicture(page, 'archery-drawing');
-      await untilFrame(page, { arrowsLeft: 4 });
+      await untilFrame<ArcheryProbe>(page, { arrowsLeft: 4 });
       await keepPicture(page, 'archery-flight');
-      await untilFrame(page, { score: 5 });
+      await untilFrame<ArcheryProbe>(page, { score: 5 });
       await keepPicture(page, 'archery-hit');
     }
     await expect.poll(async () => (await round(page)).phase, { timeout: 200_000, intervals: [1000] }).toBe('over');

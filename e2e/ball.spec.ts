@@ -4,7 +4,7 @@ import { fileURLToPath } from 'node:url';
 import type { Browser } from '@playwright/test';
 import type { BallProbe } from '../src/ball-play';
 import { emulatedHeadset } from './emulated-headset';
-import { enterVr, expect, keepPicture, open, probe, test } from './page-fixture';
+import { enterVr, expect, keepPicture, open, probe, test, untilFrame } from './page-fixture';
 
 // What is played does not depend on how many pixels show it.
 test.use({ viewport: { width: 480, height: 300 } });
@@ -75,23 +75,13 @@ test('without a headset a mouse takes a ball, aims and throws it', async ({ page
   // A frame of over a second is a pause, after which a ball lies in its rack and not in the air: then it is thrown once more.
   await expect(async () => {
     await page.mouse.down();
-    await page.waitForFunction(
-      () => {
-        const { game } = window.threepoint?.probe() ?? {};
-        return game?.name === 'ball' && (game.aim ?? 0) > 5.5;
-      },
-      undefined,
-      { timeout: 10_000 },
-    );
+    await until(page, ({ aim }) => (aim ?? 0) > 5.5, 10_000);
     await keepPicture(page, 'ball-mouse');
     // Frame by frame: the next ball is soon in the hand.
-    const gone = page.waitForFunction(
-      () => {
-        const { game } = window.threepoint?.probe() ?? {};
-        return game?.name === 'ball' && game.aim === null && game.held.left === null && game.held.right === null;
-      },
-      undefined,
-      { timeout: 10_000 },
+    const gone = untilFrame<BallProbe>(
+      page,
+      { phase: 'running', aim: null, held: { left: null, right: null } },
+      10_000,
     );
     await Promise.all([gone, page.mouse.up()]);
   }).toPass({ timeout: 60_000 });

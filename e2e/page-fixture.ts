@@ -43,6 +43,23 @@ export async function settledJoint(page: Page, name: string): Promise<Point> {
   return position;
 }
 
+/** The first frame in which the game shows this: what lasts a moment is not missed between two looks. */
+export async function untilFrame<Game extends NonNullable<Probe['game']>>(
+  page: Page,
+  shows: Partial<Game>,
+  timeout = 60_000,
+): Promise<void> {
+  await page.waitForFunction(
+    (shows) => {
+      const game: object = window.threepoint?.probe().game ?? {};
+      const now = new Map(Object.entries(game).map(([key, value]) => [key, JSON.stringify(value)]));
+      return Object.entries(shows).every(([key, value]) => now.get(key) === JSON.stringify(value));
+    },
+    shows as Record<string, unknown>,
+    { timeout },
+  );
+}
+
 export function distance(a: Point, b: Point): number {
   return Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }

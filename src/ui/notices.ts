@@ -17,39 +17,47 @@ export interface Notices {
   current(): readonly Notice[];
 }
 
+interface Shown {
+  readonly notice: Notice;
+  readonly node: HTMLElement;
+  /** The timer that takes it away. */
+  leaving?: ReturnType<typeof setTimeout>;
+}
+
 /** Milliseconds that an information stays: long enough to read twice. */
 const infoDurationMs = 6000;
 const most = 4;
 
 /** Sentences for the user, in the region given; trouble is announced at once, the rest politely. */
 export function createNotices(region: HTMLElement): Notices {
-  const shown = new Map<string, { readonly notice: Notice; readonly node: HTMLElement }>();
-  const leaving = new Map<string, ReturnType<typeof setTimeout>>();
+  const shown = new Map<string, Shown>();
   const close = (text: string) => {
-    shown.get(text)?.node.remove();
+    const of = shown.get(text);
+    clearTimeout(of?.leaving);
+    of?.node.remove();
     shown.delete(text);
+  };
+  const open = (level: NoticeLevel, text: string): Shown => {
+    const node = element(
+      'div',
+      { class: `notice ${level}`, role: level === 'info' ? 'status' : 'alert' },
+      element('p', {}, text),
+      button('×', () => close(text), { 'aria-label': 'Close this notice', class: 'quiet icon' }),
+    );
+    region.append(node);
+    const opened = { notice: { level, text }, node };
+    shown.set(text, opened);
+    const oldest = shown.keys().next().value;
+    if (shown.size > most && oldest !== undefined) close(oldest);
+    return opened;
   };
   return {
     show(level, text) {
-      if (level === 'info') {
-        // Said again, it stays as long again.
-        clearTimeout(leaving.get(text));
-        leaving.set(
-          text,
-          setTimeout(() => close(text), infoDurationMs),
-        );
-      }
-      if (shown.has(text)) return;
-      const node = element(
-        'div',
-        { class: `notice ${level}`, role: level === 'info' ? 'status' : 'alert' },
-        element('p', {}, text),
-        button('×', () => close(text), { 'aria-label': 'Close this notice', class: 'quiet icon' }),
-      );
-      region.append(node);
-      shown.set(text, { notice: { level, text }, node });
-      const oldest = shown.keys().next().value;
-      if (shown.size > most && oldest !== undefined) close(oldest);
+      const of = shown.get(text) ?? open(level, text);
+      if (of.notice.level !== 'info') return;
+      // Said again, it stays as long again.
+      clearTimeout(of.leaving);
+      of.leaving = setTimeout(() => close(text), infoDurationMs);
     },
     withdraw: close,
     current: () => [...shown.values()].map(({ notice }) => notice),
