@@ -5,8 +5,7 @@ import pytest
 import torch
 from threepoint_training.features import CHEST_FEATURES, FEATURES, IK_JOINTS, seen_from_chest
 from threepoint_training.generated_motion import generate_corpus
-from threepoint_training.model import CorrectionNetwork, on_circle
-from threepoint_training.skeleton import body_from_calibration
+from threepoint_training.model import CorrectionNetwork
 from threepoint_training.train_learned import held_out
 
 pytestmark = pytest.mark.training
@@ -80,24 +79,3 @@ def test_an_elbow_knows_nothing_of_the_other_hand(network):
 
 def test_nothing_at_all_gives_numbers_all_the_same(network):
     assert np.isfinite(corrections(network, np.zeros((1, network.inputs), np.float32))).all()
-
-
-def test_elbows_lie_where_both_bones_let_them_be():
-    share = 0.5
-    inputs = torch.from_numpy(SEEN.inputs)
-    shift = 0.02 * torch.randn((len(inputs), 6, 3), generator=torch.Generator().manual_seed(3))
-    elbow_shift, shoulder_shift = on_circle(shift, inputs, share).numpy(), shift[:, 2:4].numpy()
-    arm = SEEN.inputs[:, 45]
-    person = next(iter(CORPUS.people.values()))
-    body = body_from_calibration(np.array(person.eye_height), np.array(person.arm_span))
-    assert arm[0] == pytest.approx(float(body.arm[0] / body.eye_height[0]), rel=1e-3)
-    for side in (0, 1):
-        wrist, *_, elbow = SEEN.inputs[:, -CHEST_FEATURES:].reshape(len(inputs), -1)[:, 12 * side : 12 * side + 12].reshape(-1, 4, 3).swapaxes(0, 1)
-        # From IK's shoulder, as its chest sees them.
-        wrist, elbow = wrist * arm[:, None], elbow + elbow_shift[:, side]
-        shoulder = shoulder_shift[:, side]
-        reachable = np.linalg.norm(wrist - shoulder, axis=1) < 0.95 * arm
-        assert reachable.sum() > 50
-        for end, bone in ((wrist, 1 - share), (shoulder, share)):
-            length = np.linalg.norm(end - elbow, axis=1)
-            np.testing.assert_allclose(length[reachable], bone * arm[reachable], atol=1e-3)

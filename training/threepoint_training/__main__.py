@@ -306,7 +306,7 @@ def _learned_frame_random(config: TrainConfig, corpus: PreparedCorpus, progress:
     )  # fmt: skip
     progress.remove_task(task)
     tested = frames.subset(test)
-    return train_learned.errors_cm(train_paper.predict(network, tested.inputs), tested)
+    return train_learned.said_errors_cm(train_paper.predict(network, tested.inputs), tested)
 
 
 def _paper_frame_random(config: TrainConfig, corpus: PreparedCorpus, progress: Progress) -> np.ndarray:

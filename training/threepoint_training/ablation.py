@@ -67,8 +67,8 @@ def variants(config: TrainLearnedConfig) -> dict[str, TrainLearnedConfig]:
         "without seated people": without(seated=0.0),
         "headsets tilted by 8°, gaze not calibrated": without(trackers=tilted),
         "whole correction": replace(config, correction_share=1.0),
-        "nobody has an effect of their own": replace(config, effects_ridge=None),
-        "elbows not judged on their circles": replace(config, circle_weight=0.0),
+        "nobody has an effect of their own": replace(config, effects_learning_rate=0.0),
+        "joints judged as they are said": replace(config, placed_weight=0.0, said_weight=1.0),
         "only the newest frame": without(window_frames=(0,)),
     }
 

@@ -174,24 +174,3 @@ def _mirror_image(taps: int) -> tuple[Tensor, Tensor]:
     column = torch.cat([*(frame + tap * FEATURES for tap in range(taps)), chest + taps * FEATURES])
     sign = torch.cat([*[frame_sign] * taps, chest_sign])
     return torch.cat([torch.arange(inputs), column]), torch.cat([torch.ones(inputs), sign])
-
-
-def _length(vectors: Tensor) -> Tensor:
-    """[..., 1]; of nothing a thousandth, so that gradients stay finite."""
-    return torch.sqrt((vectors * vectors).sum(-1, keepdim=True) + 1e-6)
-
-
-def on_circle(corrections: Tensor, inputs: Tensor, upper_arm_share: float) -> Tensor:
-    """The elbows' corrections [N, 2, 3] of these [N, 6, 3], once they are where upper arm and forearm let them be between shoulder and wrist."""
-    arm = inputs[:, 45:46].unsqueeze(1)
-    upper, fore = upper_arm_share * arm, (1 - upper_arm_share) * arm
-    arms = inputs[:, -CHEST_FEATURES:][:, :24].reshape(-1, 2, 4, 3)
-    reach, elbow, shift = arms[:, :, 0] * arm, arms[:, :, 3], corrections[:, 2:4]
-    way = reach - shift
-    distance = _length(way)
-    axis = way / distance
-    aside = elbow + corrections[:, :2] - shift
-    aside = aside - (aside * axis).sum(-1, keepdim=True) * axis
-    reached = torch.minimum(torch.maximum(distance, (upper - fore).abs() + 1e-3), 0.999 * arm)
-    along = (upper**2 - fore**2 + reached**2) / (2 * reached)
-    return shift + along * axis + torch.sqrt((upper**2 - along**2).clamp_min(1e-8)) * aside / _length(aside) - elbow

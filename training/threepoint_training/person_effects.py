@@ -16,31 +16,51 @@ _EFFECT = 0.02
 
 
 class PersonEffects(nn.Module):
-    """Of each of `people` persons: how the corrections of shoulders, chest joint and hips go with what IK's chest sees, and where the own arms'
-    shoulders and elbows are."""
+    """Of each of `people` persons: how the corrections of shoulders, chest joint and hips go with what IK's chest sees, how an elbow goes with
+    what it sees of that arm, and where the own arms' shoulders are."""
 
     def __init__(self, people: int, inputs: Tensor) -> None:
         """inputs [N, T·46 + 38]: some of the training's, for mean and deviation of what the chest sees."""
         super().__init__()
         self.trunk = nn.Parameter(torch.zeros(people, CHEST_FEATURES + 1, 12))
-        # Shoulder and elbow of a right arm, the elbow from its shoulder.
-        self.arm = nn.Parameter(torch.zeros(people, 2, 3))
+        # Of a right arm; the elbow from its shoulder.
+        self.elbow = nn.Parameter(torch.zeros(people, _ARM_SEEN + 1, 3))
+        self.shoulder = nn.Parameter(torch.zeros(people, 3))
         seen = inputs[:, -CHEST_FEATURES:]
-        self.register_buffer("mean", seen.mean(0))
-        self.register_buffer("scale", seen.std(0).clamp_min(2e-2))
+        for name, values in (("trunk", seen), ("arm", _as_right_arms(seen).flatten(0, 1))):
+            self.register_buffer(f"{name}_mean", values.mean(0))
+            self.register_buffer(f"{name}_scale", values.std(0).clamp_min(2e-2))
 
     def forward(self, inputs: Tensor, people: Tensor) -> Tensor:
         """What to add to the corrections [N, 6, 3] of windows [N, T·46 + 38] of these people's torsos, left and right arms [N, 3]."""
-        seen = torch.clamp((inputs[:, -CHEST_FEATURES:] - self.mean) / self.scale, -4.0, 4.0)
-        told = torch.cat([seen, torch.ones(len(seen), 1)], dim=1)
-        trunk = torch.einsum("nf,nfo->no", told, _centred(self.trunk)[people[:, 0]]).view(-1, 4, 3)
-        arms = _centred(self.arm)[people[:, 1:]] * torch.stack([FLIP, torch.ones(3)])[:, None]
-        shoulders = trunk[:, :2] + arms[:, :, 0]
-        return _EFFECT * torch.cat([shoulders + arms[:, :, 1], shoulders, trunk[:, 2:]], dim=1)
+        seen = inputs[:, -CHEST_FEATURES:]
+        torso, arms = people[:, 0], people[:, 1:]
+        trunk = torch.einsum("nf,nfo->no", self._told("trunk", seen), _centred(self.trunk)[torso]).view(-1, 4, 3)
+        right = torch.stack([FLIP, torch.ones(3)])
+        shoulders = trunk[:, :2] + right * _centred(self.shoulder)[arms]
+        elbows = right * torch.einsum("naf,nafo->nao", self._told("arm", _as_right_arms(seen)), _centred(self.elbow)[arms])
+        return _EFFECT * torch.cat([shoulders + elbows, shoulders, trunk[:, 2:]], dim=1)
 
     def size(self) -> Tensor:
         """The sum of squares that a ridge keeps small."""
-        return self.trunk.square().sum() + self.arm.square().sum()
+        return sum((each.square().sum() for each in self.parameters()), torch.zeros(()))
+
+    def _told(self, name: str, seen: Tensor) -> Tensor:
+        """In deviations, and a one for what is constant."""
+        mean, scale = getattr(self, f"{name}_mean"), getattr(self, f"{name}_scale")
+        return nn.functional.pad(torch.clamp((seen - mean) / scale, -4.0, 4.0), (0, 1), value=1.0)
+
+
+# Of what the chest sees, what is about one arm: reach, two axes of the hand, IK's elbow; the room's up; the reach's length.
+_ARM_SEEN = 16
+_MIRRORED = torch.cat([FLIP, -FLIP, FLIP, FLIP, FLIP, torch.ones(1)])
+
+
+def _as_right_arms(seen: Tensor) -> Tensor:
+    """Both arms [N, 2, 16] of what the chest sees [N, 38], the left one as its mirror image."""
+    up = seen[:, None, 33:36].expand(-1, 2, -1)
+    arms = torch.cat([seen[:, :24].view(-1, 2, 12), up, seen[:, 36:, None]], dim=2)
+    return arms * torch.stack([_MIRRORED, torch.ones(_ARM_SEEN)])
 
 
 def _centred(effects: Tensor) -> Tensor:

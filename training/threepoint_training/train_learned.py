@@ -11,11 +11,12 @@ from . import quaternion
 from .augment import AugmentConfig, BodyParts, draw_batch
 from .features import CHEST_FEATURES, FEATURES, OUTPUTS, frame_features, network_input, target
 from .lost_hands import carry, sink
-from .model import CorrectionNetwork, on_circle
+from .model import CorrectionNetwork
 from .person_effects import PersonEffects
+from .placement import Placement
 from .prepared_corpus import PreparedCorpus
 from .simulate_trackers import TrackerConfig, draw_wearer, simulate
-from .skeleton import Body, body_from_calibration, load_proportions
+from .skeleton import Body, body_from_calibration
 
 Array = NDArray[np.float64]
 
@@ -34,10 +35,11 @@ class TrainLearnedConfig:
     average_half_life_steps: float = 300.0
     # Of the learned correction of the trunk: what holds for the people trained on holds for others in part.
     correction_share: float = 0.75
-    # What elbows count once more where the page's kinematics will put them.
-    circle_weight: float = 1 / 3
-    # Everybody trained on has an effect of their own, held back by this ridge; None: nobody has.
-    effects_ridge: float | None = 1e-3
+    # What joints count where the page's skeleton puts them, and as the network says them: what bones hold back is kept small.
+    placed_weight: float = 1.0
+    said_weight: float = 0.1
+    # Everybody trained on has an effect of their own, held back by this ridge; what learns at no rate stays nothing.
+    effects_ridge: float = 1e-3
     effects_learning_rate: float = 2e-2
     seed: int = 2460
     augment: AugmentConfig = field(default_factory=AugmentConfig)
@@ -142,7 +144,18 @@ def _lose_hand(positions: Array, rotations: Array, hand: int, rate_hz: int, body
 
 
 def errors_cm(output: NDArray[np.float32], people: HeldOut) -> NDArray[np.float64]:
-    """Distances [F, 6] in centimetres of a network's output."""
+    """Distances [F, 6] in centimetres of a network's output, joints being where the page's skeleton puts them."""
+    placement, said = Placement(), np.broadcast_to(output, people.targets.shape)
+    joints = []
+    for first in range(0, len(said), _AT_ONCE):
+        rows = slice(first, first + _AT_ONCE)
+        corrections = torch.from_numpy(said[rows].reshape(-1, 6, 3).astype(np.float32))
+        joints.append(placement(corrections, torch.from_numpy(people.inputs[rows])).numpy())
+    return said_errors_cm(np.concatenate(joints).reshape(-1, OUTPUTS), people)
+
+
+def said_errors_cm(output: NDArray[np.float32], people: HeldOut) -> NDArray[np.float64]:
+    """The same of the joints as the output says them, whatever bones let them."""
     difference = (output - people.targets).reshape(-1, 6, 3)
     return np.linalg.norm(difference, axis=-1) * people.eye_height[:, None] * 100
 
@@ -162,7 +175,7 @@ def train(
     torch.manual_seed(config.seed)
     random = np.random.default_rng(config.seed)
     parts = BodyParts(corpus, people)
-    upper_arm_share = load_proportions()["upperArmShare"]
+    placement = Placement()
     network = CorrectionNetwork(len(config.augment.window_frames), config.width, config.dropout, config.hidden_layers)
     first = [draw_batch(parts, config.batch, config.augment, random) for _ in range(8)]
     inputs = torch.from_numpy(np.concatenate([b.inputs for b in first]))
@@ -184,13 +197,10 @@ def train(
     for step in range(config.steps):
         current = draw_batch(parts, config.batch, config.augment, random)
         x, y = torch.from_numpy(current.inputs), torch.from_numpy(current.targets)
-        corrections, truth = network(x).view(-1, 6, 3), y.view(-1, 6, 3)
-        if config.effects_ridge is not None:
-            corrections = corrections + effects(x, torch.from_numpy(current.people))
-        on_circles = _distance(on_circle(corrections, x, upper_arm_share), truth[:, :2])
-        loss = (_distance(corrections, truth) + config.circle_weight * on_circles) / _RESIDUAL
-        if config.effects_ridge is not None:
-            loss = loss + config.effects_ridge * effects.size()
+        corrections = network(x).view(-1, 6, 3) + effects(x, torch.from_numpy(current.people))
+        truth = y.view(-1, 6, 3)
+        distance = config.said_weight * _distance(corrections, truth) + config.placed_weight * _distance(placement(corrections, x), truth)
+        loss = distance / _RESIDUAL + config.effects_ridge * effects.size()
         optimiser.zero_grad()
         loss.backward()
         torch.nn.utils.clip_grad_norm_(network.parameters(), 1.0)
@@ -240,6 +250,8 @@ def train_frame_random(
     return network.eval()
 
 
+# Frames whose joints are placed in one go.
+_AT_ONCE = 8192
 # An everyday residual in eye heights: keeps the loss near one.
 _RESIDUAL = 0.025
 

@@ -24,6 +24,17 @@ export interface GoldenCase {
   readonly inputs: readonly Numbers[];
 }
 
+/** Joints as somebody estimates them, and where the skeleton puts them, floor frame. */
+export interface GoldenPlacement {
+  readonly calibration: Calibration;
+  readonly frames: readonly {
+    readonly positions: readonly Numbers[];
+    readonly rotations: readonly Numbers[];
+    readonly estimated: readonly Numbers[];
+    readonly placed: readonly Numbers[];
+  }[];
+}
+
 export interface GoldenModel {
   readonly sha256: string;
   readonly tolerance: number;
