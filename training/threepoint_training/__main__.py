@@ -107,7 +107,7 @@ def main(config: TrainConfig, console: Console | None = None) -> dict[str, dict[
             _train_on_everybody(config, corpus, found, rows, progress)
     if "everybody" in config.stages and config.out.resolve() == (REPOSITORY / "public/models").resolve():
         golden.main(config.out)
-    _print_table("MPJPE of the networks' own output and of IK [cm]", ("mean", *LABELS), rows, console)
+    _print_table("MPJPE: IK and ours where the skeleton puts joints, the paper's as its network says them [cm]", ("mean", *LABELS), rows, console)
     return rows
 
 

@@ -28,7 +28,7 @@ COLUMNS = ("IK", "ours", "ours / IK", "elbows, ours / IK", "minutes")
 def run(
     corpus: PreparedCorpus, recipe: TrainLearnedConfig, ik: FitIkConfig, report: Callable[[str], None] = lambda _: None
 ) -> list[list[str]]:
-    """Rows of the table, a person each, and their mean, everybody counted alike; cm over six joints, before the page's kinematics."""
+    """Rows of the table, a person each, and their mean, everybody counted alike; cm over six joints where the skeleton puts them."""
     recipe = replace(recipe, steps=min(recipe.steps, STEPS))
     rows, errors = [], []
     for name in sorted(corpus.people):

@@ -30,7 +30,7 @@ export interface ModelContract {
   readonly trainedOn: { readonly corpus: string; readonly corpusHash: string; readonly people: readonly string[] };
   readonly gitCommit: string;
   readonly seed: number;
-  /** MPJPE [cm] of the raw output by protocol and joint, as measured by the training run. */
+  /** MPJPE [cm] by protocol and joint, as measured by the training run (docs/training.md). */
   readonly errors: Readonly<Record<string, Readonly<Record<string, number>>>>;
 }
 
