@@ -59,7 +59,8 @@ test('crouching lowers the body and never puts the pelvis below the floor @night
   expect((await joint(page, 'hips'))[1]).toBeGreaterThan(0);
 });
 
-test('a headset that is taken off and put on again leaves the body whole', async ({ page }) => {
+// By day one of the faults in VR takes the headset off (faults.spec.ts).
+test('a headset that is taken off and put on again leaves the body whole @nightly', async ({ page }) => {
   const headset = await openWithHeadset(page, 'estimator=ik');
   await enterVr(page);
   await headset.place({ head: { position: [0, 1.6, 0] } });

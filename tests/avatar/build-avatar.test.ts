@@ -4,6 +4,7 @@ import { validateBytes } from 'gltf-validator';
 import { beforeAll, describe, expect, test } from 'vitest';
 import { buildMannequin } from '../../scripts/build-avatar/mannequin';
 import { bones } from '../../scripts/build-avatar/rig';
+import { isNightly } from '../nightly';
 
 const file = readFileSync(new URL('../../public/avatars/mannequin.vrm', import.meta.url));
 
@@ -95,7 +96,10 @@ describe('the mannequin', () => {
     expect(bones).toHaveLength(6 + 2 * (4 + 15 + 4));
   });
 
-  test('comes out of its script byte by byte', { timeout: 240_000 }, async () => {
-    expect(Buffer.from(await buildMannequin()).equals(file)).toBe(true);
-  });
+  // A minute of a core, and nothing that changes by the day.
+  if (isNightly) {
+    test('comes out of its script byte by byte', { timeout: 240_000 }, async () => {
+      expect(Buffer.from(await buildMannequin()).equals(file)).toBe(true);
+    });
+  }
 });
