@@ -127,6 +127,8 @@ class CorrectionNetwork(nn.Module):
 ARM_FEATURES = 17
 
 FLIP = torch.tensor([-1.0, 1.0, 1.0])
+# What the chest sees of an arm (reach, two axes of the hand, IK's elbow), mirrored; a mirrored rotation's x axis is turned round too.
+ARM_FLIP = torch.cat([FLIP, -FLIP, FLIP, FLIP])
 
 
 def _perceptron(inputs: int, width: int, hidden_layers: int, dropout: float, outputs: int) -> nn.Sequential:
@@ -168,7 +170,7 @@ def _mirror_image(taps: int) -> tuple[Tensor, Tensor]:
     chest, chest_sign = torch.arange(CHEST_FEATURES), torch.ones(CHEST_FEATURES)
     chest[:24] = torch.cat([torch.arange(12, 24), torch.arange(12)])
     chest[36:] = torch.tensor([37, 36])
-    chest_sign[:24] = torch.cat([FLIP, -FLIP, FLIP, FLIP]).repeat(2)
+    chest_sign[:24] = ARM_FLIP.repeat(2)
     chest_sign[24:36] = torch.cat([-FLIP, FLIP, FLIP, FLIP])
     inputs = taps * FEATURES + CHEST_FEATURES
     column = torch.cat([*(frame + tap * FEATURES for tap in range(taps)), chest + taps * FEATURES])

@@ -9,7 +9,7 @@ import torch
 from torch import Tensor, nn
 
 from .features import CHEST_FEATURES
-from .model import FLIP
+from .model import ARM_FLIP, FLIP
 
 # An everyday effect in eye heights: keeps the parameters near one.
 _EFFECT = 0.02
@@ -53,7 +53,7 @@ class PersonEffects(nn.Module):
 
 # Of what the chest sees, what is about one arm: reach, two axes of the hand, IK's elbow; the room's up; the reach's length.
 _ARM_SEEN = 16
-_MIRRORED = torch.cat([FLIP, -FLIP, FLIP, FLIP, FLIP, torch.ones(1)])
+_MIRRORED = torch.cat([ARM_FLIP, FLIP, torch.ones(1)])
 
 
 def _as_right_arms(seen: Tensor) -> Tensor:

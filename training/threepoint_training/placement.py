@@ -36,13 +36,13 @@ class Placement:
         seen, arm = inputs[:, -CHEST_FEATURES:], inputs[:, 45:46].unsqueeze(1)
         wrists = ik_joints[:, 2:4] + seen[:, :24].view(-1, 2, 4, 3)[:, :, 0] * arm
         estimated = ik_joints + corrections
-        head_joint = self._head_joint(seen)
+        head_joint, heading_right = self._head_joint(seen), axes[:, :, 0]
         targets = estimated[:, 2:4]
-        chest, hips, shoulders = self._trunk(targets, estimated, head_joint, axes[:, :, 0])
+        chest, hips, shoulders = self._trunk(targets, estimated, head_joint, heading_right)
         for _ in range(reach_passes):
             to_wrist = wrists - shoulders
             targets = targets + _unit(to_wrist) * (_length(to_wrist) - arm).clamp_min(0.0) * 1.3
-            chest, hips, shoulders = self._trunk(targets, estimated, head_joint, axes[:, :, 0])
+            chest, hips, shoulders = self._trunk(targets, estimated, head_joint, heading_right)
         elbows = self._elbows(estimated, shoulders, wrists, arm)
         return torch.cat([elbows, shoulders, chest.unsqueeze(1), hips.unsqueeze(1)], dim=1) - ik_joints
 

@@ -145,13 +145,9 @@ def _lose_hand(positions: Array, rotations: Array, hand: int, rate_hz: int, body
 
 def errors_cm(output: NDArray[np.float32], people: HeldOut) -> NDArray[np.float64]:
     """Distances [F, 6] in centimetres of a network's output, joints being where the page's skeleton puts them."""
-    placement, said = Placement(), np.broadcast_to(output, people.targets.shape)
-    joints = []
-    for first in range(0, len(said), _AT_ONCE):
-        rows = slice(first, first + _AT_ONCE)
-        corrections = torch.from_numpy(said[rows].reshape(-1, 6, 3).astype(np.float32))
-        joints.append(placement(corrections, torch.from_numpy(people.inputs[rows])).numpy())
-    return said_errors_cm(np.concatenate(joints).reshape(-1, OUTPUTS), people)
+    said = np.broadcast_to(output, people.targets.shape).reshape(-1, 6, 3).astype(np.float32)
+    placed = Placement()(torch.from_numpy(said), torch.from_numpy(people.inputs))
+    return said_errors_cm(placed.numpy().reshape(-1, OUTPUTS), people)
 
 
 def said_errors_cm(output: NDArray[np.float32], people: HeldOut) -> NDArray[np.float64]:
@@ -250,8 +246,6 @@ def train_frame_random(
     return network.eval()
 
 
-# Frames whose joints are placed in one go.
-_AT_ONCE = 8192
 # An everyday residual in eye heights: keeps the loss near one.
 _RESIDUAL = 0.025
 
