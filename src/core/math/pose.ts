@@ -1,5 +1,5 @@
-import { conjugate, multiply, type Quat, rotate } from './quat';
-import { add, scale, type Vec3 } from './vec3';
+import { conjugate, copyQuat, type MutableQuat, multiply, type Quat, quat, rotate, rotateInverse } from './quat';
+import { add, copyVec3, type MutableVec3, scale, subtract, type Vec3, vec3 } from './vec3';
 
 /**
  * The coordinate frames of the project, all right-handed, +Y up, −Z forward, metres (docs/frames.md).
@@ -17,6 +17,12 @@ export interface Pose<F extends Frame> {
   readonly [frame]?: F;
 }
 
+/** A pose that its owner overwrites: an optional last argument `target`, as with `MutableVec3`. */
+export interface MutablePose<F extends Frame> extends Pose<F> {
+  readonly position: MutableVec3;
+  readonly orientation: MutableQuat;
+}
+
 declare const transformFrames: unique symbol;
 
 /** The rigid transform that takes coordinates in From to coordinates in To; named toFromFrom: `headingFromFloor`. */
@@ -26,29 +32,77 @@ export interface Transform<To extends Frame, From extends Frame> {
   readonly [transformFrames]?: readonly [To, From];
 }
 
+/** A transform that its owner overwrites. */
+export interface MutableTransform<To extends Frame, From extends Frame> extends Transform<To, From> {
+  readonly position: MutableVec3;
+  readonly orientation: MutableQuat;
+}
+
+/** At the origin, turned not at all; for buffers. */
+export const makePose = <F extends Frame>(): MutablePose<F> => ({
+  position: vec3(0, 0, 0),
+  orientation: quat(0, 0, 0, 1),
+});
+
+export function copyPose<F extends Frame>(pose: Pose<F>, target: MutablePose<F> = makePose()): MutablePose<F> {
+  copyVec3(pose.position, target.position);
+  copyQuat(pose.orientation, target.orientation);
+  return target;
+}
+
+export const makeTransform = <To extends Frame, From extends Frame>(): MutableTransform<To, From> => ({
+  position: vec3(0, 0, 0),
+  orientation: quat(0, 0, 0, 1),
+});
+
 /** A point's coordinates in To. */
-export const transformPoint = <To extends Frame, From extends Frame>(t: Transform<To, From>, point: Vec3): Vec3 =>
-  add(t.position, rotate(t.orientation, point));
+export function transformPoint<To extends Frame, From extends Frame>(
+  t: Transform<To, From>,
+  point: Vec3,
+  target: MutableVec3 = vec3(0, 0, 0),
+): MutableVec3 {
+  rotate(t.orientation, point, target);
+  return add(t.position, target, target);
+}
+
+/** A point's coordinates in From: the inverse of `transformPoint`. */
+export function untransformPoint<To extends Frame, From extends Frame>(
+  t: Transform<To, From>,
+  point: Vec3,
+  target: MutableVec3 = vec3(0, 0, 0),
+): MutableVec3 {
+  subtract(point, t.position, target);
+  return rotateInverse(t.orientation, target, target);
+}
 
 /** A pose in To. */
-export const transformPose = <To extends Frame, From extends Frame>(
+export function transformPose<To extends Frame, From extends Frame>(
   t: Transform<To, From>,
   pose: Pose<From>,
-): Pose<To> => ({
-  position: transformPoint(t, pose.position),
-  orientation: multiply(t.orientation, pose.orientation),
-});
+  target: MutablePose<To> = makePose(),
+): MutablePose<To> {
+  transformPoint(t, pose.position, target.position);
+  multiply(t.orientation, pose.orientation, target.orientation);
+  return target;
+}
 
 /** From From to To by way of Via. */
-export const composeTransforms = <To extends Frame, Via extends Frame, From extends Frame>(
+export function composeTransforms<To extends Frame, Via extends Frame, From extends Frame>(
   toFromVia: Transform<To, Via>,
   viaFromFrom: Transform<Via, From>,
-): Transform<To, From> => ({
-  position: transformPoint(toFromVia, viaFromFrom.position),
-  orientation: multiply(toFromVia.orientation, viaFromFrom.orientation),
-});
+  target: MutableTransform<To, From> = makeTransform(),
+): MutableTransform<To, From> {
+  transformPoint(toFromVia, viaFromFrom.position, target.position);
+  multiply(toFromVia.orientation, viaFromFrom.orientation, target.orientation);
+  return target;
+}
 
-export const invertTransform = <To extends Frame, From extends Frame>(t: Transform<To, From>): Transform<From, To> => {
-  const orientation = conjugate(t.orientation);
-  return { position: scale(rotate(orientation, t.position), -1), orientation };
-};
+export function invertTransform<To extends Frame, From extends Frame>(
+  t: Transform<To, From>,
+  target: MutableTransform<From, To> = makeTransform(),
+): MutableTransform<From, To> {
+  conjugate(t.orientation, target.orientation);
+  rotate(target.orientation, t.position, target.position);
+  scale(target.position, -1, target.position);
+  return target;
+}

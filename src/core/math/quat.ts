@@ -1,4 +1,4 @@
-import { cross, dot, length, normalise, type Vec3, vec3 } from './vec3';
+import { cross, dot, length, type MutableVec3, normalise, setVec3, type Vec3, vec3 } from './vec3';
 
 /** A rotation as a unit quaternion, component order xyzw wherever it becomes an array. */
 export interface Quat {
@@ -8,113 +8,183 @@ export interface Quat {
   readonly w: number;
 }
 
+/** A rotation that its owner overwrites: an optional last argument `target`, as with `MutableVec3`. */
+export interface MutableQuat {
+  x: number;
+  y: number;
+  z: number;
+  w: number;
+}
+
 export const identity: Quat = { x: 0, y: 0, z: 0, w: 1 };
 
+export const quat = (x: number, y: number, z: number, w: number): MutableQuat => ({ x, y, z, w });
+
+export function setQuat(target: MutableQuat, x: number, y: number, z: number, w: number): MutableQuat {
+  target.x = x;
+  target.y = y;
+  target.z = z;
+  target.w = w;
+  return target;
+}
+
+export const copyQuat = (q: Quat, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat =>
+  setQuat(target, q.x, q.y, q.z, q.w);
+
 /** The rotation b followed by a. */
-export const multiply = (a: Quat, b: Quat): Quat => ({
-  x: a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
-  y: a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
-  z: a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w,
-  w: a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z,
-});
+export const multiply = (a: Quat, b: Quat, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat =>
+  setQuat(
+    target,
+    a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+    a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+    a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w,
+    a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z,
+  );
 
 /** The inverse of a unit quaternion. */
-export const conjugate = (q: Quat): Quat => ({ x: -q.x, y: -q.y, z: -q.z, w: q.w });
+export const conjugate = (q: Quat, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat =>
+  setQuat(target, -q.x, -q.y, -q.z, q.w);
 
 /** v rotated by q. */
-export function rotate(q: Quat, v: Vec3): Vec3 {
+export function rotate(q: Quat, v: Vec3, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 {
   const tx = 2 * (q.y * v.z - q.z * v.y);
   const ty = 2 * (q.z * v.x - q.x * v.z);
   const tz = 2 * (q.x * v.y - q.y * v.x);
-  return {
-    x: v.x + q.w * tx + q.y * tz - q.z * ty,
-    y: v.y + q.w * ty + q.z * tx - q.x * tz,
-    z: v.z + q.w * tz + q.x * ty - q.y * tx,
-  };
+  return setVec3(
+    target,
+    v.x + q.w * tx + q.y * tz - q.z * ty,
+    v.y + q.w * ty + q.z * tx - q.x * tz,
+    v.z + q.w * tz + q.x * ty - q.y * tx,
+  );
+}
+
+/** v rotated by the inverse of the unit quaternion q. */
+export function rotateInverse(q: Quat, v: Vec3, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 {
+  const tx = 2 * (q.z * v.y - q.y * v.z);
+  const ty = 2 * (q.x * v.z - q.z * v.x);
+  const tz = 2 * (q.y * v.x - q.x * v.y);
+  return setVec3(
+    target,
+    v.x + q.w * tx - q.y * tz + q.z * ty,
+    v.y + q.w * ty - q.z * tx + q.x * tz,
+    v.z + q.w * tz - q.x * ty + q.y * tx,
+  );
 }
 
 /** q scaled to length 1; the identity where it has none. */
-export function normaliseQuat(q: Quat): Quat {
-  const l = Math.hypot(q.x, q.y, q.z, q.w);
-  return l < 1e-12 ? identity : { x: q.x / l, y: q.y / l, z: q.z / l, w: q.w / l };
+export function normaliseQuat(q: Quat, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat {
+  const squares = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
+  const l = squares > 1e-280 && squares < 1e280 ? Math.sqrt(squares) : Math.hypot(q.x, q.y, q.z, q.w);
+  return l < 1e-12 ? copyQuat(identity, target) : setQuat(target, q.x / l, q.y / l, q.z / l, q.w / l);
 }
 
 /** The rotation by `angle` [rad] about a unit axis. */
-export function fromAxisAngle(axis: Vec3, angle: number): Quat {
+export function fromAxisAngle(axis: Vec3, angle: number, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat {
   const s = Math.sin(angle / 2);
-  return { x: axis.x * s, y: axis.y * s, z: axis.z * s, w: Math.cos(angle / 2) };
+  return setQuat(target, axis.x * s, axis.y * s, axis.z * s, Math.cos(angle / 2));
 }
 
+const unitFrom = vec3(0, 0, 0);
+const unitTo = vec3(0, 0, 0);
+const normal = vec3(0, 0, 0);
+
 /** The smallest rotation from the direction of one vector to that of another; half a turn about any normal when they oppose. */
-export function between(from: Vec3, to: Vec3): Quat {
-  const a = normalise(from);
-  const b = normalise(to);
+export function rotationBetween(from: Vec3, to: Vec3, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat {
+  const a = normalise(from, undefined, unitFrom);
+  const b = normalise(to, undefined, unitTo);
   const w = 1 + dot(a, b);
   if (w < 1e-9) {
-    const normal = normalise(cross(a, Math.abs(a.x) < 0.9 ? vec3(1, 0, 0) : vec3(0, 1, 0)));
-    return { x: normal.x, y: normal.y, z: normal.z, w: 0 };
+    if (Math.abs(a.x) < 0.9) setVec3(normal, 0, a.z, -a.y);
+    else setVec3(normal, -a.z, 0, a.x);
+    normalise(normal, undefined, normal);
+    return setQuat(target, normal.x, normal.y, normal.z, 0);
   }
-  const c = cross(a, b);
-  return normaliseQuat({ x: c.x, y: c.y, z: c.z, w });
+  const c = cross(a, b, normal);
+  return normaliseQuat(setQuat(target, c.x, c.y, c.z, w), target);
 }
 
 /** The rotation whose x, y, z axes are these (orthonormal, right-handed). */
-export function fromAxes(x: Vec3, y: Vec3, z: Vec3): Quat {
+export function fromAxes(x: Vec3, y: Vec3, z: Vec3, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat {
   const trace = x.x + y.y + z.z;
   if (trace > 0) {
     const s = 2 * Math.sqrt(trace + 1);
-    return normaliseQuat({ x: (y.z - z.y) / s, y: (z.x - x.z) / s, z: (x.y - y.x) / s, w: s / 4 });
-  }
-  if (x.x > y.y && x.x > z.z) {
+    setQuat(target, (y.z - z.y) / s, (z.x - x.z) / s, (x.y - y.x) / s, s / 4);
+  } else if (x.x > y.y && x.x > z.z) {
     const s = 2 * Math.sqrt(1 + x.x - y.y - z.z);
-    return normaliseQuat({ x: s / 4, y: (x.y + y.x) / s, z: (z.x + x.z) / s, w: (y.z - z.y) / s });
-  }
-  if (y.y > z.z) {
+    setQuat(target, s / 4, (x.y + y.x) / s, (z.x + x.z) / s, (y.z - z.y) / s);
+  } else if (y.y > z.z) {
     const s = 2 * Math.sqrt(1 + y.y - x.x - z.z);
-    return normaliseQuat({ x: (x.y + y.x) / s, y: s / 4, z: (y.z + z.y) / s, w: (z.x - x.z) / s });
+    setQuat(target, (x.y + y.x) / s, s / 4, (z.y + y.z) / s, (z.x - x.z) / s);
+  } else {
+    const s = 2 * Math.sqrt(1 + z.z - x.x - y.y);
+    setQuat(target, (x.z + z.x) / s, (y.z + z.y) / s, s / 4, (x.y - y.x) / s);
   }
-  const s = 2 * Math.sqrt(1 + z.z - x.x - y.y);
-  return normaliseQuat({ x: (z.x + x.z) / s, y: (y.z + z.y) / s, z: s / 4, w: (x.y - y.x) / s });
+  return normaliseQuat(target, target);
+}
+
+const frameX = vec3(0, 0, 0);
+const frameY = vec3(0, 0, 0);
+const frameZ = vec3(0, 0, 0);
+const toFrame = quat(0, 0, 0, 1);
+const fromFrame = quat(0, 0, 0, 1);
+
+/** Writes the rotation whose x axis is along main and whose z axis is normal to main and side; false where these are parallel. */
+function frameOf(main: Vec3, side: Vec3, target: MutableQuat): boolean {
+  normalise(main, undefined, frameX);
+  cross(frameX, side, frameZ);
+  if (length(frameZ) < 1e-6 * (length(side) + 1e-12)) return false;
+  normalise(frameZ, undefined, frameZ);
+  fromAxes(frameX, cross(frameZ, frameX, frameY), frameZ, target);
+  return true;
 }
 
 /**
  * The rotation that takes the direction `fromMain` to `toMain` exactly and `fromSide` as near to `toSide` as that allows.
  * Parallel main and side: the twist is the smallest rotation's.
  */
-export function alignDirections(fromMain: Vec3, fromSide: Vec3, toMain: Vec3, toSide: Vec3): Quat {
-  const frame = (main: Vec3, side: Vec3): Quat | null => {
-    const m = normalise(main);
-    const n = cross(m, side);
-    if (length(n) < 1e-6 * (length(side) + 1e-12)) return null;
-    const normal = normalise(n);
-    return fromAxes(m, cross(normal, m), normal);
-  };
-  const to = frame(toMain, toSide);
-  const from = frame(fromMain, fromSide);
-  return to && from ? multiply(to, conjugate(from)) : between(fromMain, toMain);
+export function alignDirections(
+  fromMain: Vec3,
+  fromSide: Vec3,
+  toMain: Vec3,
+  toSide: Vec3,
+  target: MutableQuat = quat(0, 0, 0, 1),
+): MutableQuat {
+  return frameOf(toMain, toSide, toFrame) && frameOf(fromMain, fromSide, fromFrame)
+    ? multiply(toFrame, conjugate(fromFrame, fromFrame), target)
+    : rotationBetween(fromMain, toMain, target);
 }
 
 /** Along the shorter arc from a (t = 0) to b (t = 1). */
-export function slerp(a: Quat, b: Quat, t: number): Quat {
+export function slerp(a: Quat, b: Quat, t: number, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat {
   const cosine = a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w;
   const sign = cosine < 0 ? -1 : 1;
   const angle = Math.acos(Math.min(1, Math.abs(cosine)));
   const sine = Math.sin(angle);
   const u = sine < 1e-6 ? 1 - t : Math.sin((1 - t) * angle) / sine;
   const v = (sine < 1e-6 ? t : Math.sin(t * angle) / sine) * sign;
-  return normaliseQuat({ x: a.x * u + b.x * v, y: a.y * u + b.y * v, z: a.z * u + b.z * v, w: a.w * u + b.w * v });
+  setQuat(target, a.x * u + b.x * v, a.y * u + b.y * v, a.z * u + b.z * v, a.w * u + b.w * v);
+  return normaliseQuat(target, target);
 }
 
 /** The angle [0, π] between two rotations; q and −q are the same rotation. */
 export function angleBetween(a: Quat, b: Quat): number {
-  const d = multiply(conjugate(a), b);
-  return 2 * Math.atan2(Math.hypot(d.x, d.y, d.z), Math.abs(d.w));
+  // The components of conjugate(a)·b.
+  const x = a.w * b.x - a.x * b.w - a.y * b.z + a.z * b.y;
+  const y = a.w * b.y + a.x * b.z - a.y * b.w - a.z * b.x;
+  const z = a.w * b.z - a.x * b.y + a.y * b.x - a.z * b.w;
+  const w = a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z;
+  return 2 * Math.atan2(Math.sqrt(x * x + y * y + z * z), Math.abs(w));
+}
+
+/** The twist of q = swing·twist about a unit axis. A half-turn swing: the identity. */
+export function twistOf(q: Quat, axis: Vec3, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat {
+  const along = q.x * axis.x + q.y * axis.y + q.z * axis.z;
+  return normaliseQuat(setQuat(target, axis.x * along, axis.y * along, axis.z * along, q.w), target);
 }
 
 /** q = swing·twist: the twist is about the unit axis, the swing about an axis at right angles to it. Half-turn swings: no twist. */
 export function swingTwist(q: Quat, axis: Vec3): { readonly swing: Quat; readonly twist: Quat } {
-  const along = q.x * axis.x + q.y * axis.y + q.z * axis.z;
-  const twist = normaliseQuat({ x: axis.x * along, y: axis.y * along, z: axis.z * along, w: q.w });
+  const twist = twistOf(q, axis);
   return { swing: multiply(q, conjugate(twist)), twist };
 }
 
@@ -126,23 +196,18 @@ export function twistAngle(q: Quat, axis: Vec3): number {
 }
 
 /** The rotation by at most `limit` [rad] in the direction of q. */
-export function limitAngle(q: Quat, limit: number): Quat {
+export function limitAngle(q: Quat, limit: number, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat {
   const angle = angleBetween(identity, q);
-  return angle <= limit ? q : slerp(identity, q, limit / angle);
+  return angle <= limit ? copyQuat(q, target) : slerp(identity, q, limit / angle, target);
 }
 
 /** Angles [rad] about x, y, z of the intrinsic decomposition Ry·Rx·Rz. */
-export function toEulerYxz(q: Quat): Vec3 {
+export function toEulerYxz(q: Quat, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 {
   const m12 = 2 * (q.y * q.z - q.x * q.w);
-  return {
-    x: Math.asin(Math.max(-1, Math.min(1, -m12))),
-    y: Math.atan2(2 * (q.x * q.z + q.y * q.w), 1 - 2 * (q.x * q.x + q.y * q.y)),
-    z: Math.atan2(2 * (q.x * q.y + q.z * q.w), 1 - 2 * (q.x * q.x + q.z * q.z)),
-  };
-}
-
-/** Ry·Rx·Rz of angles [rad] about x, y, z. */
-export function fromEulerYxz(angles: Vec3): Quat {
-  const about = (x: number, y: number, z: number, angle: number) => fromAxisAngle(vec3(x, y, z), angle);
-  return multiply(about(0, 1, 0, angles.y), multiply(about(1, 0, 0, angles.x), about(0, 0, 1, angles.z)));
+  return setVec3(
+    target,
+    Math.asin(Math.max(-1, Math.min(1, -m12))),
+    Math.atan2(2 * (q.x * q.z + q.y * q.w), 1 - 2 * (q.x * q.x + q.y * q.y)),
+    Math.atan2(2 * (q.x * q.y + q.z * q.w), 1 - 2 * (q.x * q.x + q.z * q.z)),
+  );
 }
