@@ -79,6 +79,11 @@ const clientMessage = v.variant('type', [
 export type ClientMessage = v.InferOutput<typeof clientMessage>;
 export type Joining = Omit<v.InferOutput<typeof join>, 'type' | 'version'>;
 
+/** The kinds of message that a client may send. */
+export const clientMessageTypes: readonly ClientMessage['type'][] = clientMessage.options.map(
+  ({ entries }) => entries.type.literal,
+);
+
 /** The message, checked field by field; null for anything else. */
 export function clientMessageFrom(value: unknown): ClientMessage | null {
   const result = v.safeParse(clientMessage, value, { abortEarly: true });

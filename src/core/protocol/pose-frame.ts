@@ -1,5 +1,5 @@
 import { mostSeats } from './messages';
-import { longestPose } from './pose-codec';
+import { longestPose } from './pose-packet';
 
 /** First byte of a frame; another one: another layout. */
 export const frameVersion = 1;

@@ -1,11 +1,11 @@
 import { clamp } from '../math/damper';
-import { normaliseQuat, type Quat } from '../math/quat';
-import { normalise, type Vec3, vec3 } from '../math/vec3';
+import { type MutableQuat, normaliseQuat, type Quat, quat, setQuat } from '../math/quat';
+import { cross, type MutableVec3, normalise, setVec3, type Vec3, vec3 } from '../math/vec3';
 import type { BitReader, BitWriter } from './bits';
 
 /**
  * Numbers on the wire. A signed number of b bits is a step in [−m, m] with m = 2^(b−1) − 1, written as step + m: zero is exact,
- * and the code 2^b − 1 means nothing, so that whoever reads it knows that the bytes are bad.
+ * and the code 2^b − 1 means nothing, so that a reader knows that the bytes are bad.
  */
 export const mostSteps = (bits: number): number => 2 ** (bits - 1) - 1;
 
@@ -24,109 +24,165 @@ export function readStep(reader: BitReader, bits: number): number | null {
   return step <= mostSteps(bits) ? step : null;
 }
 
-/** A rotation as steps: which of x, y, z, w is largest (and taken as positive), and the other three in order. */
+/** A rotation as steps: which of x, y, z, w is largest (and taken as positive), and the other three in order. A buffer. */
 export interface QuatSteps {
-  readonly largest: number;
-  readonly steps: readonly [number, number, number];
+  largest: number;
+  a: number;
+  b: number;
+  c: number;
 }
+
+export const makeQuatSteps = (): QuatSteps => ({ largest: 3, a: 0, b: 0, c: 0 });
 
 /** The three that are not largest lie within ±1/√2. */
 const range = Math.SQRT1_2;
 
-export function toQuatSteps(q: Quat, bits: number): QuatSteps {
-  const parts = [q.x, q.y, q.z, q.w];
+export function toQuatSteps({ x, y, z, w }: Quat, bits: number, target: QuatSteps = makeQuatSteps()): QuatSteps {
   let largest = 3;
-  for (let i = 0; i < 3; i++) if (Math.abs(parts[i]!) > Math.abs(parts[largest]!)) largest = i;
-  const sign = parts[largest]! < 0 ? -1 : 1;
-  const steps = parts.filter((_, i) => i !== largest).map((part) => toStep(sign * part, range, bits));
-  return { largest, steps: steps as [number, number, number] };
+  let most = w;
+  if (Math.abs(x) > Math.abs(most)) [largest, most] = [0, x];
+  if (Math.abs(y) > Math.abs(most)) [largest, most] = [1, y];
+  if (Math.abs(z) > Math.abs(most)) [largest, most] = [2, z];
+  const sign = most < 0 ? -1 : 1;
+  target.largest = largest;
+  target.a = toStep(sign * (largest === 0 ? y : x), range, bits);
+  target.b = toStep(sign * (largest <= 1 ? z : y), range, bits);
+  target.c = toStep(sign * (largest <= 2 ? w : z), range, bits);
+  return target;
 }
 
-export function fromQuatSteps({ largest, steps }: QuatSteps, bits: number): Quat {
-  const [a, b, c] = steps.map((step) => fromStep(step, range, bits)) as [number, number, number];
+export function fromQuatSteps(steps: QuatSteps, bits: number, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat {
+  const a = fromStep(steps.a, range, bits);
+  const b = fromStep(steps.b, range, bits);
+  const c = fromStep(steps.c, range, bits);
   const d = Math.sqrt(Math.max(0, 1 - a * a - b * b - c * c));
-  const parts = [a, b, c];
-  parts.splice(largest, 0, d);
-  const [x, y, z, w] = parts as [number, number, number, number];
-  return normaliseQuat({ x, y, z, w });
+  if (steps.largest === 0) setQuat(target, d, a, b, c);
+  else if (steps.largest === 1) setQuat(target, a, d, b, c);
+  else if (steps.largest === 2) setQuat(target, a, b, d, c);
+  else setQuat(target, a, b, c, d);
+  return normaliseQuat(target, target);
 }
 
-export function writeQuat(writer: BitWriter, { largest, steps }: QuatSteps, bits: number): void {
+export function writeQuat(writer: BitWriter, { largest, a, b, c }: QuatSteps, bits: number): void {
   writer.write(largest, 2);
-  for (const step of steps) writeStep(writer, step, bits);
+  writeStep(writer, a, bits);
+  writeStep(writer, b, bits);
+  writeStep(writer, c, bits);
 }
 
 /** The rotation; null where the fourth component would not be the largest. */
-export function readQuat(reader: BitReader, bits: number): QuatSteps | null {
-  const largest = reader.read(2);
+export function readQuat(reader: BitReader, bits: number, target: QuatSteps = makeQuatSteps()): QuatSteps | null {
+  target.largest = reader.read(2);
   const a = readStep(reader, bits);
   const b = readStep(reader, bits);
   const c = readStep(reader, bits);
   if (a === null || b === null || c === null) return null;
+  target.a = a;
+  target.b = b;
+  target.c = c;
   const most = mostSteps(bits);
   const squares = (a * a + b * b + c * c) / (2 * most * most);
   const others = Math.max(Math.abs(a), Math.abs(b), Math.abs(c)) / most;
   // Rounding moves each of four equal components by half a step: two steps are more than it ever takes.
   const rest = Math.sqrt(Math.max(0, 1 - squares)) * Math.SQRT2;
-  return rest >= others - 4 / most ? { largest, steps: [a, b, c] } : null;
+  return rest >= others - 4 / most ? target : null;
 }
 
-/** Three steps: a vector. */
-export type VecSteps = readonly [number, number, number];
-
-export function writeVec(writer: BitWriter, steps: VecSteps, bits: number): void {
-  for (const step of steps) writeStep(writer, step, bits);
+/** Three steps: a vector. A buffer. */
+export interface VecSteps {
+  x: number;
+  y: number;
+  z: number;
 }
 
-export function readVec(reader: BitReader, bits: number): VecSteps | null {
+export const makeVecSteps = (): VecSteps => ({ x: 0, y: 0, z: 0 });
+
+export function writeVec(writer: BitWriter, { x, y, z }: VecSteps, bits: number): void {
+  writeStep(writer, x, bits);
+  writeStep(writer, y, bits);
+  writeStep(writer, z, bits);
+}
+
+export function readVec(reader: BitReader, bits: number, target: VecSteps = makeVecSteps()): VecSteps | null {
   const x = readStep(reader, bits);
   const y = readStep(reader, bits);
   const z = readStep(reader, bits);
-  return x === null || y === null || z === null ? null : [x, y, z];
+  if (x === null || y === null || z === null) return null;
+  target.x = x;
+  target.y = y;
+  target.z = z;
+  return target;
 }
 
-/** A direction as the place where it leaves a cube: through which face, and where on it. */
+/** A direction as the place where it leaves a cube: through which face, and where on it. A buffer. */
 export interface DirectionSteps {
   /** 0 to 2: x, y, z. */
-  readonly axis: number;
-  readonly negative: boolean;
-  /** The other two components against the axis's. */
-  readonly steps: readonly [number, number];
+  axis: number;
+  negative: boolean;
+  /** The other two components, in order, against the axis's. */
+  a: number;
+  b: number;
 }
 
-export function toDirectionSteps({ x, y, z }: Vec3, bits: number): DirectionSteps {
-  const parts = [x, y, z];
+export const makeDirectionSteps = (): DirectionSteps => ({ axis: 0, negative: false, a: 0, b: 0 });
+
+export function toDirectionSteps(
+  { x, y, z }: Vec3,
+  bits: number,
+  target: DirectionSteps = makeDirectionSteps(),
+): DirectionSteps {
   let axis = 0;
-  for (let i = 1; i < 3; i++) if (Math.abs(parts[i]!) > Math.abs(parts[axis]!)) axis = i;
-  const size = Math.abs(parts[axis]!) || 1;
-  const others = parts.filter((_, i) => i !== axis).map((part) => toStep(part, size, bits));
-  return { axis, negative: parts[axis]! < 0, steps: others as [number, number] };
+  let most = x;
+  if (Math.abs(y) > Math.abs(most)) [axis, most] = [1, y];
+  if (Math.abs(z) > Math.abs(most)) [axis, most] = [2, z];
+  const size = Math.abs(most) || 1;
+  target.axis = axis;
+  target.negative = most < 0;
+  target.a = toStep(axis === 0 ? y : x, size, bits);
+  target.b = toStep(axis === 2 ? y : z, size, bits);
+  return target;
 }
 
 /** The unit vector. */
-export function fromDirectionSteps({ axis, negative, steps }: DirectionSteps, bits: number): Vec3 {
-  const parts = steps.map((step) => fromStep(step, 1, bits));
-  parts.splice(axis, 0, negative ? -1 : 1);
-  const [x, y, z] = parts as [number, number, number];
-  return normalise(vec3(x, y, z));
+export function fromDirectionSteps(
+  { axis, negative, a, b }: DirectionSteps,
+  bits: number,
+  target: MutableVec3 = vec3(0, 0, 0),
+): MutableVec3 {
+  const face = negative ? -1 : 1;
+  const first = fromStep(a, 1, bits);
+  const second = fromStep(b, 1, bits);
+  if (axis === 0) setVec3(target, face, first, second);
+  else if (axis === 1) setVec3(target, first, face, second);
+  else setVec3(target, first, second, face);
+  return normalise(target, undefined, target);
 }
 
-export function writeDirection(writer: BitWriter, { axis, negative, steps }: DirectionSteps, bits: number): void {
+export function writeDirection(writer: BitWriter, { axis, negative, a, b }: DirectionSteps, bits: number): void {
   writer.write(axis, 2);
   writer.write(negative ? 1 : 0, 1);
-  for (const step of steps) writeStep(writer, step, bits);
+  writeStep(writer, a, bits);
+  writeStep(writer, b, bits);
 }
 
-export function readDirection(reader: BitReader, bits: number): DirectionSteps | null {
-  const axis = reader.read(2);
-  const negative = reader.read(1) === 1;
+export function readDirection(
+  reader: BitReader,
+  bits: number,
+  target: DirectionSteps = makeDirectionSteps(),
+): DirectionSteps | null {
+  target.axis = reader.read(2);
+  target.negative = reader.read(1) === 1;
   const a = readStep(reader, bits);
   const b = readStep(reader, bits);
-  return axis === 3 || a === null || b === null ? null : { axis, negative, steps: [a, b] };
+  if (target.axis === 3 || a === null || b === null) return null;
+  target.a = a;
+  target.b = b;
+  return target;
 }
 
-/** Two unit vectors that make a right-handed frame with a unit vector. */
-export function across(axis: Vec3): readonly [Vec3, Vec3] {
-  const u = normalise(Math.abs(axis.y) < 0.9 ? vec3(axis.z, 0, -axis.x) : vec3(0, -axis.z, axis.y));
-  return [u, vec3(axis.y * u.z - axis.z * u.y, axis.z * u.x - axis.x * u.z, axis.x * u.y - axis.y * u.x)];
+/** Writes two unit vectors that make a right-handed frame with a unit vector. */
+export function across(axis: Vec3, u: MutableVec3, v: MutableVec3): void {
+  if (Math.abs(axis.y) < 0.9) setVec3(u, axis.z, 0, -axis.x);
+  else setVec3(u, 0, -axis.z, axis.y);
+  cross(axis, normalise(u, undefined, u), v);
 }

@@ -9,14 +9,8 @@ import type { PoseRegressor } from '../../../src/core/estimation/pose-regressor'
 import { angleBetween, identity, multiply } from '../../../src/core/math/quat';
 import { nextRandom } from '../../../src/core/math/random';
 import { distance, vec3 } from '../../../src/core/math/vec3';
-import {
-  decodePoints,
-  decodePose,
-  encodePose,
-  longestPose,
-  type PosePacket,
-  poseVersion,
-} from '../../../src/core/protocol/pose-codec';
+import { decodePoints, decodePose, encodePose } from '../../../src/core/protocol/pose-codec';
+import { longestPose, type PosePacket, poseVersion } from '../../../src/core/protocol/pose-packet';
 import { isNightly } from '../../nightly';
 import { seed } from '../arbitraries';
 import { openShippedModel } from '../estimation/shipped-models';

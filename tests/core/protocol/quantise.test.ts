@@ -65,7 +65,7 @@ test('rotations survive the wire, both signs alike: 0.1° at 11 bits, 0.8° at 8
 
 test('three components that leave no room for a largest one are no rotation', () => {
   const writer = createBitWriter();
-  writeQuat(writer, { largest: 3, steps: [1023, 1023, 1023] }, 11);
+  writeQuat(writer, { largest: 3, a: 1023, b: 1023, c: 1023 }, 11);
   expect(readQuat(createBitReader(writer.bytes()), 11)).toBeNull();
 });
 

@@ -1,14 +1,15 @@
 import fc from 'fast-check';
 import type { Calibration } from '../../../src/core/body/calibration';
 import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
-import { createIk } from '../../../src/core/estimation/ik';
+import { createIk } from '../../../src/core/estimation/estimators';
 import type { PoseEstimator } from '../../../src/core/estimation/pose-estimator';
 import { fromAxisAngle, multiply } from '../../../src/core/math/quat';
 import { up, vec3 } from '../../../src/core/math/vec3';
-import type { FingerCurl, PosePacket } from '../../../src/core/protocol/pose-codec';
+import type { FingerCurl, PosePacket } from '../../../src/core/protocol/pose-packet';
 import { actorFrame } from '../../../src/core/tracking/actor-motion';
 import type { TrackedPose, TrackingFrame } from '../../../src/core/tracking/tracking-frame';
 import { number, rotation, standpoint, vector } from '../arbitraries';
+import { show } from '../estimation/drawn';
 import { movingPerson, transformFrame, withHand } from '../estimation/moving-person';
 
 export const calibrationOf = fc
@@ -29,7 +30,7 @@ const curl = fc.option(
   { nil: null },
 );
 
-/** Somebody of any size anywhere, turned anyhow, in the middle of an actor's or a random movement, both hands with a fate. */
+/** A person of any size anywhere, turned anyhow, in the middle of an actor's or a random movement, both hands with a fate. */
 export const someoneSent = fc.record({
   calibration: calibrationOf,
   motion: fc.integer({ min: 1 }),
@@ -75,7 +76,7 @@ export function framesOf(someone: Someone): readonly TrackingFrame[] {
   });
 }
 
-/** What somebody sends whose body this estimator solves (IK unless told). */
+/** What a person sends whose body this estimator solves (IK unless told). */
 export async function packetOf(
   someone: Someone,
   create: (calibration: Calibration) => PoseEstimator = createIk,
@@ -83,8 +84,7 @@ export async function packetOf(
   const estimator = create(someone.calibration);
   let pose: PosePacket['pose'] | null = null;
   for (const frame of framesOf(someone)) {
-    await estimator.prepare(frame);
-    pose = estimator.estimate(frame);
+    pose = await show(estimator, frame);
   }
   return {
     packet: {

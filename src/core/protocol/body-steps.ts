@@ -1,0 +1,212 @@
+import { alongArm, clavicleRest, handBoneRotation } from '../body/arm-rotations';
+import type { UpperBodyPose } from '../body/avatar-pose';
+import type { JointPoses } from '../body/forward-kinematics';
+import type { Side } from '../body/joints';
+import type { Skeleton } from '../body/skeleton';
+import { elbowFlexion } from '../body/two-bone-ik';
+import { clamp } from '../math/damper';
+import type { Pose } from '../math/pose';
+import { angleBetween, conjugate, multiply, type Quat, quat, rotate, twistAngle, twistOf } from '../math/quat';
+import {
+  add,
+  addScaled,
+  cross,
+  distance,
+  dot,
+  length,
+  normalise,
+  reject,
+  scale,
+  subtract,
+  type Vec3,
+  vec3,
+} from '../math/vec3';
+import {
+  type ArmSteps,
+  type BodyBits,
+  type BodySteps,
+  bodyBitsFor,
+  clavicleRange,
+  directionBits,
+  flexionBits,
+  forearmBits,
+  forearmRange,
+  freeHandBits,
+  levels,
+  limited,
+  stretchBits,
+  stretchUnit,
+  swivelBits,
+  type TrunkSteps,
+} from './pose-steps';
+import { across, toDirectionSteps, toQuatSteps, toStep } from './quantise';
+import { armAxis, armBones, chestAxis, RebuiltArm, RebuiltTrunk, spineAxis, swivelAxes } from './rebuild-body';
+
+/** A body's wrist this near to the tracked hand is drawn there [m, rad]; else it is sent on its own. */
+const sameWrist = 0.003;
+const sameHand = (0.8 * Math.PI) / 180;
+/** A rebuilt elbow further off than this [m] is worth a wrist that is off by some tenths of a millimetre. */
+const sameElbow = 0.002;
+
+/** The joints of an arm. */
+const jointsOf = {
+  left: { shoulder: 'leftUpperArm', elbow: 'leftLowerArm', wrist: 'leftHand' },
+  right: { shoulder: 'rightUpperArm', elbow: 'rightLowerArm', wrist: 'rightHand' },
+} as const;
+
+/** The elbow's hinge in T-pose. */
+const hingeAtRest: Readonly<Record<Side, Vec3>> = { left: vec3(0, -1, 0), right: vec3(0, 1, 0) };
+
+// Scratch of one call.
+const axis = vec3(0, 0, 0);
+const toHand = vec3(0, 0, 0);
+const reached = vec3(0, 0, 0);
+const rest = vec3(0, 0, 0);
+const towards = vec3(0, 0, 0);
+const pole = vec3(0, 0, 0);
+const acrossU = vec3(0, 0, 0);
+const acrossV = vec3(0, 0, 0);
+const difference = quat(0, 0, 0, 1);
+
+/** How far one rotation is twisted from another about an axis, as steps. */
+function twistSteps(about: Vec3, from: Quat, to: Quat, range: number, bits: number): number {
+  multiply(conjugate(from, difference), to, difference);
+  return toStep(twistAngle(twistOf(difference, about, difference), about), range, bits);
+}
+
+function writeTrunk(
+  body: UpperBodyPose,
+  joints: JointPoses,
+  bits: BodyBits,
+  skeleton: Skeleton,
+  target: TrunkSteps,
+): void {
+  const { hips } = body.localRotations;
+  const { spine, chest, upperChest, neck } = joints;
+  toQuatSteps(hips, bits.trunk, target.hips);
+  toQuatSteps(upperChest.orientation, bits.trunk, target.upperChest);
+  toQuatSteps(neck.orientation, bits.trunk, target.neck);
+  target.spineTwist = twistSteps(spineAxis(skeleton, axis), hips, spine.orientation, Math.PI, bits.twist);
+  chestAxis(skeleton, axis);
+  target.chestTwist = twistSteps(axis, upperChest.orientation, chest.orientation, Math.PI, bits.twist);
+}
+
+/** Whether the body's wrist is elsewhere than the hand, or turned otherwise. */
+function isFree(side: Side, joints: JointPoses, hand: Pose<'floor'>, skeleton: Skeleton): boolean {
+  const names = jointsOf[side];
+  const { position, orientation } = joints[names.wrist];
+  const { upper, lower } = armBones(side, skeleton);
+  const shoulder = joints[names.shoulder].position;
+  const far = length(subtract(hand.position, shoulder, toHand));
+  // What a straight arm cannot reach it points at.
+  addScaled(shoulder, normalise(toHand, undefined, toHand), Math.min(far, upper + lower), reached);
+  return (
+    distance(position, reached) > sameWrist ||
+    angleBetween(orientation, handBoneRotation(side, hand.orientation, difference)) > sameHand
+  );
+}
+
+/** A body with its joints, and the head and hands from which the receiver will rebuild it. */
+export interface SentBody {
+  readonly body: UpperBodyPose;
+  readonly joints: JointPoses;
+  /** As the receiver has them. */
+  readonly head: Pose<'floor'>;
+  readonly hands: Readonly<Record<Side, Pose<'floor'>>>;
+}
+
+/** What the receiver will rebuild, step by step, so that each step makes up for the rounding before it. */
+class Rebuilding {
+  private readonly trunk = new RebuiltTrunk();
+  private readonly arms = { left: new RebuiltArm('left'), right: new RebuiltArm('right') };
+
+  write(sent: SentBody, skeleton: Skeleton, target: BodySteps): void {
+    const { body, joints, head, hands } = sent;
+    const { left, right } = target.arms;
+    left.free = isFree('left', joints, hands.left, skeleton);
+    right.free = isFree('right', joints, hands.right, skeleton);
+    const bits = bodyBitsFor(target.arms);
+    target.bits = bits;
+    writeTrunk(body, joints, bits, skeleton, target.trunk);
+    this.trunk.place(head, target.trunk, bits, skeleton);
+    this.writeArm('left', sent, skeleton, target);
+    this.writeArm('right', sent, skeleton, target);
+  }
+
+  private writeArm(side: Side, sent: SentBody, skeleton: Skeleton, target: BodySteps): void {
+    const { joints, hands } = sent;
+    const arm = this.arms[side];
+    const steps = target.arms[side];
+    this.writeClavicle(side, joints, target.bits.clavicle, skeleton, steps);
+    arm.placeShoulder(this.trunk, steps, target.bits.clavicle, skeleton);
+    const shoulder = arm.shoulder.position;
+    const names = jointsOf[side];
+    const { position, orientation } = joints[names.wrist];
+    const far = distance(joints[names.shoulder].position, position);
+    if (steps.free) {
+      const { upper, lower } = armBones(side, skeleton);
+      toDirectionSteps(subtract(position, shoulder, towards), directionBits, steps.direction);
+      steps.flexion = levels(elbowFlexion(upper, lower, far) / Math.PI, flexionBits);
+      toQuatSteps(orientation, freeHandBits, steps.hand);
+    }
+    const elbowError = this.writeBend(side, sent, 0, skeleton, steps);
+    if (steps.free || elbowError <= sameElbow) return;
+    const { swivel, forearmTwist } = steps;
+    const stretch = limited((far - distance(shoulder, hands[side].position)) / stretchUnit, stretchBits);
+    if (this.writeBend(side, sent, stretch, skeleton, steps) < elbowError) return;
+    steps.stretch = 0;
+    steps.swivel = swivel;
+    steps.forearmTwist = forearmTwist;
+  }
+
+  /** The clavicle's swing that puts the shoulder nearest to where it is, from where the receiver's clavicle begins. */
+  private writeClavicle(side: Side, joints: JointPoses, bits: number, skeleton: Skeleton, steps: ArmSteps): void {
+    const { upperChest, clavicleRoots } = this.trunk;
+    normalise(clavicleRest(side, skeleton), undefined, rest);
+    subtract(joints[jointsOf[side].shoulder].position, clavicleRoots[side], towards);
+    rotate(conjugate(upperChest, difference), normalise(towards, undefined, towards), towards);
+    const angle = Math.acos(clamp(dot(rest, towards), -1, 1));
+    cross(rest, towards, towards);
+    scale(normalise(towards, undefined, towards), angle, towards);
+    across(rest, acrossU, acrossV);
+    steps.clavicleU = toStep(dot(towards, acrossU), clavicleRange, bits);
+    steps.clavicleV = toStep(dot(towards, acrossV), clavicleRange, bits);
+  }
+
+  /**
+   * Swivel and twist that make the receiver's arm, between its own shoulder and a wrist that is stretched so far, look like the
+   * sender's; returns how far off its elbow is [m].
+   */
+  private writeBend(
+    side: Side,
+    { joints, hands }: SentBody,
+    stretch: number,
+    skeleton: Skeleton,
+    steps: ArmSteps,
+  ): number {
+    const arm = this.arms[side];
+    const names = jointsOf[side];
+    const shoulder = arm.shoulder.position;
+    const elbow = joints[names.elbow];
+    steps.stretch = stretch;
+    arm.aim(hands[side], steps, skeleton);
+    armAxis(shoulder, arm.wrist, this.trunk.upperChest, axis);
+    reject(subtract(elbow.position, shoulder, pole), axis, pole);
+    // A straight arm's elbow is on the line: then the plane in which it would bend.
+    if (!(length(pole) > 0.02)) cross(axis, rotate(joints[names.shoulder].orientation, hingeAtRest[side], pole), pole);
+    swivelAxes(side, this.trunk.upperChest, axis, acrossU, acrossV);
+    steps.swivel = toStep(Math.atan2(dot(pole, acrossV), dot(pole, acrossU)), Math.PI, swivelBits);
+    steps.forearmTwist = 0;
+    arm.bend(this.trunk, steps, skeleton);
+    steps.forearmTwist = twistSteps(alongArm[side], arm.lowerArm, elbow.orientation, forearmRange, forearmBits);
+    const { restOffsets } = skeleton;
+    rotate(arm.upperArm, side === 'left' ? restOffsets.leftLowerArm : restOffsets.rightLowerArm, towards);
+    return distance(add(shoulder, towards, towards), elbow.position);
+  }
+}
+
+const rebuilding = new Rebuilding();
+
+/** Writes the numbers of a body. */
+export const writeBodySteps = (sent: SentBody, skeleton: Skeleton, target: BodySteps): void =>
+  rebuilding.write(sent, skeleton, target);

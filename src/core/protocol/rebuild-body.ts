@@ -1,0 +1,228 @@
+import { alongArm, armBoneRotation, clavicleRest, elbowHinge, handBoneRotation } from '../body/arm-rotations';
+import type { UpperBodyPose } from '../body/avatar-pose';
+import { headJointOf } from '../body/head-joint';
+import type { Side } from '../body/joints';
+import type { Skeleton } from '../body/skeleton';
+import { elbowCircle, elbowOnCircle, makeElbowCircle, poleAcross } from '../body/two-bone-ik';
+import { makePose, type Pose } from '../math/pose';
+import { conjugate, copyQuat, fromAxisAngle, type MutableQuat, multiply, type Quat, quat, rotate } from '../math/quat';
+import {
+  add,
+  addScaled,
+  copyVec3,
+  cross,
+  forward,
+  length,
+  type MutableVec3,
+  normalise,
+  reject,
+  scale,
+  subtract,
+  type Vec3,
+  vec3,
+} from '../math/vec3';
+import {
+  type ArmSteps,
+  type BodyBits,
+  type BodySteps,
+  clavicleRange,
+  directionBits,
+  flexionBits,
+  forearmBits,
+  forearmRange,
+  freeHandBits,
+  stretchUnit,
+  swivelBits,
+  type TrunkSteps,
+} from './pose-steps';
+import { across, fromDirectionSteps, fromQuatSteps, fromStep } from './quantise';
+
+const down: Vec3 = { x: 0, y: -1, z: 0 };
+
+// Scratch of one call.
+const axis = vec3(0, 0, 0);
+const turn = vec3(0, 0, 0);
+const turned = quat(0, 0, 0, 1);
+const acrossU = vec3(0, 0, 0);
+const acrossV = vec3(0, 0, 0);
+const pole = vec3(0, 0, 0);
+const bend = vec3(0, 0, 0);
+const hinge = vec3(0, 0, 0);
+const direction = vec3(0, 0, 0);
+const circle = makeElbowCircle();
+const fallbacks: readonly [Vec3, Vec3] = [axis, acrossU];
+const bones = { upper: 0, lower: 0 };
+
+/** The axis a joint twists about: the way to the next one. */
+export const spineAxis = ({ restOffsets }: Skeleton, target: MutableVec3): MutableVec3 =>
+  normalise(add(restOffsets.spine, restOffsets.chest, target), undefined, target);
+export const chestAxis = ({ restOffsets }: Skeleton, target: MutableVec3): MutableVec3 =>
+  normalise(add(restOffsets.upperChest, restOffsets.neck, target), undefined, target);
+
+/** The bones of an arm [m]; the same object in every call. */
+export function armBones(side: Side, { restOffsets }: Skeleton): { readonly upper: number; readonly lower: number } {
+  bones.upper = length(side === 'left' ? restOffsets.leftLowerArm : restOffsets.rightLowerArm);
+  bones.lower = length(side === 'left' ? restOffsets.leftHand : restOffsets.rightHand);
+  return bones;
+}
+
+/** Rotations of the trunk's joints against the floor, and where the clavicles begin, as the receiver rebuilds them. */
+export class RebuiltTrunk {
+  readonly hipsPosition = vec3(0, 0, 0);
+  readonly hips = quat(0, 0, 0, 1);
+  readonly spine = quat(0, 0, 0, 1);
+  readonly chest = quat(0, 0, 0, 1);
+  readonly upperChest = quat(0, 0, 0, 1);
+  readonly neck = quat(0, 0, 0, 1);
+  readonly clavicleRoots: Readonly<Record<Side, MutableVec3>> = { left: vec3(0, 0, 0), right: vec3(0, 0, 0) };
+  private readonly joint = vec3(0, 0, 0);
+
+  /** From the head down: the trunk hangs from where the head is. */
+  place(head: Pose<'floor'>, steps: TrunkSteps, bits: BodyBits, skeleton: Skeleton): void {
+    const { hips, spine, chest, upperChest, neck, joint } = this;
+    const { restOffsets: offsets, eyesInHead } = skeleton;
+    fromQuatSteps(steps.hips, bits.trunk, hips);
+    fromQuatSteps(steps.upperChest, bits.trunk, upperChest);
+    fromQuatSteps(steps.neck, bits.trunk, neck);
+    twisted(hips, spineAxis(skeleton, axis), fromStep(steps.spineTwist, Math.PI, bits.twist), spine);
+    twisted(upperChest, chestAxis(skeleton, axis), fromStep(steps.chestTwist, Math.PI, bits.twist), chest);
+
+    headJointOf(head, eyesInHead, joint);
+    subtract(joint, rotate(neck, offsets.head, turn), joint);
+    subtract(joint, rotate(upperChest, offsets.neck, turn), joint);
+    const { left, right } = this.clavicleRoots;
+    add(joint, rotate(upperChest, offsets.leftShoulder, left), left);
+    add(joint, rotate(upperChest, offsets.rightShoulder, right), right);
+    subtract(joint, rotate(chest, offsets.upperChest, turn), joint);
+    subtract(joint, rotate(spine, offsets.chest, turn), joint);
+    subtract(joint, rotate(hips, offsets.spine, turn), this.hipsPosition);
+  }
+}
+
+/** A rotation followed by a twist [rad] about an axis of its own. */
+const twisted = (rotation: Quat, about: Vec3, angle: number, target: MutableQuat): MutableQuat =>
+  multiply(rotation, fromAxisAngle(about, angle, turned), target);
+
+/** Down, back and a little outward from a shoulder, upper chest's frame: the direction from which swivels are counted. */
+const swivelZero: Readonly<Record<Side, Vec3>> = { left: vec3(-0.2, -0.88, 0.43), right: vec3(0.2, -0.88, 0.43) };
+
+/** Writes the directions about the line from shoulder to wrist that the swivel is counted from, and a quarter turn on. */
+export function swivelAxes(side: Side, upperChest: Quat, along: Vec3, u: MutableVec3, v: MutableVec3): void {
+  reject(rotate(upperChest, swivelZero[side], u), along, u);
+  // An arm that points down and back has no such direction: then forward. Both ends know the same arm, to the last bit or nearly.
+  if (!(length(u) > 0.1)) reject(rotate(upperChest, forward, u), along, u);
+  normalise(u, undefined, u);
+  cross(along, u, v);
+}
+
+/** From shoulder to wrist, unit; an arm of no length hangs. */
+export function armAxis(shoulder: Vec3, wrist: Vec3, upperChest: Quat, target: MutableVec3): MutableVec3 {
+  rotate(upperChest, down, turn);
+  return normalise(subtract(wrist, shoulder, target), turn, target);
+}
+
+/** An arm as the receiver rebuilds it: clavicle, then where it ends, then how it bends. */
+export class RebuiltArm {
+  /** The shoulder joint, and the rotation of the clavicle. */
+  readonly shoulder = makePose<'floor'>();
+  readonly wrist = vec3(0, 0, 0);
+  readonly elbow = vec3(0, 0, 0);
+  readonly upperArm = quat(0, 0, 0, 1);
+  readonly lowerArm = quat(0, 0, 0, 1);
+  readonly hand = quat(0, 0, 0, 1);
+
+  constructor(private readonly side: Side) {}
+
+  placeShoulder(trunk: RebuiltTrunk, { clavicleU, clavicleV }: ArmSteps, bits: number, skeleton: Skeleton): void {
+    const { position, orientation } = this.shoulder;
+    const rest = clavicleRest(this.side, skeleton);
+    across(normalise(rest, undefined, axis), acrossU, acrossV);
+    scale(acrossU, fromStep(clavicleU, clavicleRange, bits), turn);
+    addScaled(turn, acrossV, fromStep(clavicleV, clavicleRange, bits), turn);
+    const angle = length(turn);
+    twisted(trunk.upperChest, normalise(turn, undefined, turn), angle, orientation);
+    add(trunk.clavicleRoots[this.side], rotate(orientation, rest, position), position);
+  }
+
+  /** Where the arm ends: at its own wrist, or at the hand. */
+  aim(
+    hand: Pose<'floor'>,
+    { free, stretch, direction: towards, flexion, hand: turnedAs }: ArmSteps,
+    skeleton: Skeleton,
+  ): void {
+    const { position: shoulder } = this.shoulder;
+    if (free) {
+      const { upper, lower } = armBones(this.side, skeleton);
+      const angle = (flexion / (2 ** flexionBits - 1)) * Math.PI;
+      const far = Math.sqrt(upper * upper + lower * lower + 2 * upper * lower * Math.cos(angle));
+      addScaled(shoulder, fromDirectionSteps(towards, directionBits, direction), far, this.wrist);
+      fromQuatSteps(turnedAs, freeHandBits, this.hand);
+      return;
+    }
+    normalise(subtract(hand.position, shoulder, direction), undefined, direction);
+    addScaled(hand.position, direction, stretch * stretchUnit, this.wrist);
+    handBoneRotation(this.side, hand.orientation, this.hand);
+  }
+
+  /** The elbow swivels to where it is told, the forearm twists. */
+  bend({ upperChest }: RebuiltTrunk, { swivel, forearmTwist }: ArmSteps, skeleton: Skeleton): void {
+    const { side, wrist, elbow, upperArm, lowerArm } = this;
+    const { position: shoulder } = this.shoulder;
+    armAxis(shoulder, wrist, upperChest, axis);
+    swivelAxes(side, upperChest, axis, acrossU, acrossV);
+    const angle = fromStep(swivel, Math.PI, swivelBits);
+    addScaled(scale(acrossU, Math.cos(angle), pole), acrossV, Math.sin(angle), pole);
+    elbowCircle(shoulder, wrist, armBones(side, skeleton), axis, circle);
+    elbowOnCircle(circle, poleAcross(circle.axis, pole, fallbacks, bend), elbow);
+    elbowHinge(pole, axis, hinge);
+    armBoneRotation(side, subtract(elbow, shoulder, direction), hinge, upperArm);
+    armBoneRotation(side, subtract(wrist, elbow, direction), hinge, lowerArm);
+    twisted(lowerArm, alongArm[side], fromStep(forearmTwist, forearmRange, forearmBits), lowerArm);
+  }
+}
+
+const receivedTrunk = new RebuiltTrunk();
+const receivedArms = { left: new RebuiltArm('left'), right: new RebuiltArm('right') };
+
+/** A new rotation of a joint against its parent. */
+const local = (parent: Quat, child: Quat): Quat => multiply(conjugate(parent, turned), child);
+
+/** The body that a packet's numbers stand for. */
+export function placeBody(
+  head: Pose<'floor'>,
+  hands: Readonly<Record<Side, Pose<'floor'>>>,
+  { bits, trunk: trunkSteps, arms }: BodySteps,
+  skeleton: Skeleton,
+): UpperBodyPose {
+  const trunk = receivedTrunk;
+  trunk.place(head, trunkSteps, bits, skeleton);
+  const place = (side: Side): RebuiltArm => {
+    const arm = receivedArms[side];
+    arm.placeShoulder(trunk, arms[side], bits.clavicle, skeleton);
+    arm.aim(hands[side], arms[side], skeleton);
+    arm.bend(trunk, arms[side], skeleton);
+    return arm;
+  };
+  const left = place('left');
+  const right = place('right');
+  const { hips, spine, chest, upperChest, neck } = trunk;
+  return {
+    hipsPosition: copyVec3(trunk.hipsPosition),
+    localRotations: {
+      hips: copyQuat(hips),
+      spine: local(hips, spine),
+      chest: local(spine, chest),
+      upperChest: local(chest, upperChest),
+      neck: local(upperChest, neck),
+      head: local(neck, head.orientation),
+      leftShoulder: local(upperChest, left.shoulder.orientation),
+      leftUpperArm: local(left.shoulder.orientation, left.upperArm),
+      leftLowerArm: local(left.upperArm, left.lowerArm),
+      leftHand: local(left.lowerArm, left.hand),
+      rightShoulder: local(upperChest, right.shoulder.orientation),
+      rightUpperArm: local(right.shoulder.orientation, right.upperArm),
+      rightLowerArm: local(right.upperArm, right.lowerArm),
+      rightHand: local(right.lowerArm, right.hand),
+    },
+  };
+}
