@@ -1,16 +1,51 @@
 import type { Calibration } from '../../src/core/body/calibration';
 import { forwardKinematics } from '../../src/core/body/forward-kinematics';
 import { skeletonFromCalibration } from '../../src/core/body/skeleton';
-import { createEstimator } from '../../src/core/estimation/estimators';
+import { createIk, createWithNetwork } from '../../src/core/estimation/estimators';
+import { copyJoints, type JointPositions } from '../../src/core/estimation/joint-positions';
 import type { EstimatorName } from '../../src/core/estimation/pose-estimator';
 import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
 import type { Vec3 } from '../../src/core/math/vec3';
+import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
 import type { MeasuredFrame } from './measures';
 import type { RecordedFrame } from './recordings';
 
 /** Methods that have a body to measure; hands-only has none. */
 export const measuredMethods = ['ik', 'paper', 'learned'] as const satisfies readonly EstimatorName[];
 export type MeasuredMethod = (typeof measuredMethods)[number];
+
+/** What is drawn of one frame, floor frame [m]: every joint by name, and what the network alone said. */
+export interface DrawnFrame {
+  readonly joints: Readonly<Record<string, Vec3>>;
+  readonly raw: JointPositions | null;
+}
+
+/** One estimator behind the only calls that the evaluation makes of it: frames in order of time, and the page's reset. */
+export interface Driver {
+  draw(frame: TrackingFrame): Promise<DrawnFrame>;
+  reset(): void;
+}
+
+/** The shipping path of one estimator; `draw` rejects where it reports a fault or draws no body. */
+export function createDriver(name: MeasuredMethod, calibration: Calibration, regressor: PoseRegressor | null): Driver {
+  const estimator = name === 'ik' ? createIk(calibration) : createWithNetwork(name, calibration, regressor);
+  const skeleton = skeletonFromCalibration(calibration);
+  return {
+    async draw(frame) {
+      // The network is asked when the picture is drawn and answers from a worker: what a frame draws was computed from the one before.
+      const { pose, request } = estimator.update(frame);
+      await request?.ask();
+      if (estimator.fault()) throw new Error(`${name}: ${estimator.fault()}`);
+      if (!pose.body) throw new Error(`${name} drew no body`);
+      const joints: Record<string, Vec3> = {};
+      for (const [joint, { position }] of Object.entries(forwardKinematics(skeleton, pose.body)))
+        joints[joint] = position;
+      const raw = estimator.source.network?.answer(estimator.state.solved);
+      return { joints, raw: raw ? copyJoints(raw) : null };
+    },
+    reset: () => estimator.reset(),
+  };
+}
 
 /** Drives the shipping path over one clip, frame by frame as the page would. */
 export async function drive(
@@ -19,23 +54,12 @@ export async function drive(
   regressor: PoseRegressor | null,
   frames: readonly RecordedFrame[],
 ): Promise<MeasuredFrame[]> {
-  const estimator = createEstimator(name, calibration, regressor);
-  const skeleton = skeletonFromCalibration(calibration);
+  const driver = createDriver(name, calibration, regressor);
   const result: MeasuredFrame[] = [];
   for (const { frame, truth } of frames) {
-    // The network is asked when the picture is drawn and answers from a worker: what a frame draws was computed from the one before.
-    const { body } = estimator.estimate(frame);
-    await estimator.prepare(frame);
-    if (estimator.fault()) throw new Error(`${name}: ${estimator.fault()}`);
-    if (!body) throw new Error(`${name} drew no body`);
-    const joints: Record<string, Vec3> = {};
-    for (const [joint, { position }] of Object.entries(forwardKinematics(skeleton, body))) joints[joint] = position;
-    result.push({
-      joints,
-      truth,
-      raw: estimator.rawJoints(),
-      wrists: { left: frame.leftHand?.position ?? null, right: frame.rightHand?.position ?? null },
-    });
+    const { leftHand, rightHand } = frame;
+    const wrists = { left: leftHand?.position ?? null, right: rightHand?.position ?? null };
+    result.push({ ...(await driver.draw(frame)), truth, wrists });
   }
   return result;
 }

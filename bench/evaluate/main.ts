@@ -1,9 +1,5 @@
-import { readFileSync, writeFileSync } from 'node:fs';
-import { join } from 'node:path';
+import { writeFileSync } from 'node:fs';
 import { parseArgs } from 'node:util';
-import { needsRegressor } from '../../src/core/estimation/estimators';
-import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
-import { parseContract, startRegressor } from '../../src/inference/load-regressor';
 import { drive, type MeasuredMethod, measuredMethods } from './drive';
 import { addFigures, emptyCollection, figuresOf } from './figures';
 import {
@@ -16,6 +12,7 @@ import {
   report,
   reportNames,
 } from './measures';
+import { loadRegressors } from './networks';
 import { calibrationOf, readClip, readIndex } from './recordings';
 import { chooseClips, measureRobustness, robustnessText } from './robustness';
 
@@ -35,16 +32,6 @@ const { values: options } = parseArgs({
 
 type Exact = Partial<Record<MeasuredMethod, Report>>;
 
-/** The networks of a folder with their contracts. */
-async function startRegressors(folder: string): Promise<Map<MeasuredMethod, PoseRegressor>> {
-  const started = new Map<MeasuredMethod, PoseRegressor>();
-  for (const name of measuredMethods.filter(needsRegressor)) {
-    const contract = parseContract(`${name}.json`, readFileSync(join(folder, `${name}.json`), 'utf8'));
-    started.set(name, await startRegressor(contract, readFileSync(join(folder, contract.file))));
-  }
-  return started;
-}
-
 /** The share of the work that is done, on a terminal only; nothing remains of it at the end. */
 function progress(share: number, what = 'robustness'): void {
   if (!process.stderr.isTTY) return;
@@ -56,13 +43,13 @@ async function main(): Promise<void> {
   if (!recordings || !models)
     throw new Error('evaluate: --recordings and --models are needed; `npm run evaluate` gives them');
   const index = readIndex(recordings);
-  const regressors = await startRegressors(models);
+  const regressors = await loadRegressors(models);
   const seen = new Set([...regressors.values()].flatMap(({ contract }) => contract.trainedOn.people));
-  const exactRegressors = fp32 ? await startRegressors(fp32) : null;
+  const exactRegressors = fp32 ? await loadRegressors(fp32) : null;
   const exact = new Map<MeasuredMethod, Measures>();
   const listed = [...new Set(index.clips.map(({ person }) => person))].sort();
   const unseen = listed.filter((person) => !seen.has(person));
-  // What is shown and compared is what nobody was trained on, as long as there is such a person.
+  // What is shown and compared are people never trained on, as long as there are any.
   const judged = new Set(unseen.length > 0 ? unseen : listed);
   const collection = emptyCollection();
 

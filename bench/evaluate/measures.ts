@@ -158,23 +158,26 @@ export function addClip(measures: Measures, frames: readonly MeasuredFrame[], ra
 
 export function merge(parts: readonly Measures[]): Measures {
   const whole = emptyMeasures();
-  for (const part of parts) {
-    part.errors.forEach((errors, index) => {
-      for (const error of errors) whole.errors[index]?.push(error);
-    });
-    for (const swivel of part.swivels) whole.swivels.push(swivel);
-    for (const key of ['squares', 'absolutes'] as const) {
-      part[key].forEach((sum, index) => {
-        whole[key][index] = (whole[key][index] ?? 0) + sum;
-      });
-    }
-    for (const key of ['jerk', 'truthJerk', 'handError', 'hands', 'rawError', 'rawCount'] as const) {
-      whole[key] += part[key];
-    }
-    whole.boneVariation = Math.max(whole.boneVariation, part.boneVariation);
-    whole.handErrorMax = Math.max(whole.handErrorMax, part.handErrorMax);
-  }
+  for (const part of parts) addMeasures(whole, part);
   return whole;
+}
+
+/** Adds what was measured elsewhere. */
+export function addMeasures(whole: Measures, part: Measures): void {
+  part.errors.forEach((errors, index) => {
+    for (const error of errors) whole.errors[index]?.push(error);
+  });
+  for (const swivel of part.swivels) whole.swivels.push(swivel);
+  for (const key of ['squares', 'absolutes'] as const) {
+    part[key].forEach((sum, index) => {
+      whole[key][index] = (whole[key][index] ?? 0) + sum;
+    });
+  }
+  for (const key of ['jerk', 'truthJerk', 'handError', 'hands', 'rawError', 'rawCount'] as const) {
+    whole[key] += part[key];
+  }
+  whole.boneVariation = Math.max(whole.boneVariation, part.boneVariation);
+  whole.handErrorMax = Math.max(whole.handErrorMax, part.handErrorMax);
 }
 
 export const rounded = (value: number, digits: number): number => Number(value.toFixed(digits));

@@ -16,7 +16,7 @@ import {
   trackers,
 } from './disturbances';
 import { drive, type MeasuredMethod } from './drive';
-import { addClip, emptyMeasures, type MeasuredFrame, type Measures, report, rounded } from './measures';
+import { addClip, addMeasures, emptyMeasures, type MeasuredFrame, type Measures, report, rounded } from './measures';
 import type { RecordedFrame } from './recordings';
 
 /** One clip with what its person calibrated. */
@@ -364,7 +364,13 @@ export async function measureRobustness<
   };
 }
 
-function addErrorsAndJerk(measures: Measures, driven: readonly MeasuredFrame[], atHz: number, jerkHz: number): void {
+/** Errors of frames at `atHz`, jerk as at `jerkHz`: rates would not compare otherwise. */
+export function addErrorsAndJerk(
+  measures: Measures,
+  driven: readonly MeasuredFrame[],
+  atHz: number,
+  jerkHz: number,
+): void {
   if (atHz === jerkHz) {
     addClip(measures, driven, jerkHz);
     return;
@@ -373,11 +379,7 @@ function addErrorsAndJerk(measures: Measures, driven: readonly MeasuredFrame[], 
   addClip(resampled, resampleEstimates(driven, atHz, jerkHz), jerkHz);
   const own = emptyMeasures();
   addClip(own, driven, atHz);
-  own.errors.forEach((errors, index) => {
-    for (const error of errors) measures.errors[index]?.push(error);
-  });
-  measures.jerk += resampled.jerk;
-  measures.truthJerk += resampled.truthJerk;
+  addMeasures(measures, { ...own, jerk: resampled.jerk, truthJerk: resampled.truthJerk });
 }
 
 /** The table that `--robustness` prints. */

@@ -66,6 +66,7 @@ describe('offsets', () => {
 
   test('of the grips move both hands, mirrored, and no hand that is not there', () => {
     const frames = loseHands(recordedMotion(2, 30), [{ side: 'right', start: 3, end: 5 }]);
+    expect(frames.filter(({ frame }) => !frame.rightHand)).toHaveLength(2);
     offsetTrackers(frames, 'grips', offset).forEach(({ frame }, row) => {
       const before = frames[row]!.frame;
       for (const [side, x] of [

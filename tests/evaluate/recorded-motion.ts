@@ -2,8 +2,9 @@ import { type RecordedFrame, type TruthJoint, truthJoints } from '../../bench/ev
 import type { Calibration } from '../../src/core/body/calibration';
 import { forwardKinematics } from '../../src/core/body/forward-kinematics';
 import { skeletonFromCalibration } from '../../src/core/body/skeleton';
-import { createIk } from '../../src/core/estimation/ik';
+import { createIk } from '../../src/core/estimation/estimators';
 import type { Vec3 } from '../../src/core/math/vec3';
+import { poseOf } from '../core/estimation/drawn';
 import { movingPerson } from '../core/estimation/moving-person';
 
 export const person: Calibration = { eyeHeight: 1.6, armSpan: 1.5 };
@@ -16,7 +17,7 @@ export function recordedMotion(seed: number, frames: number, rateHz = 60): Recor
   const skeleton = skeletonFromCalibration(other);
   return Array.from({ length: frames }, (_, row) => {
     const frame = at(row / rateHz);
-    const { body } = ik.estimate(frame);
+    const { body } = poseOf(ik, frame);
     if (!body) throw new Error('IK drew no body');
     const joints = forwardKinematics(skeleton, body);
     const truth = Object.fromEntries(truthJoints.map((joint) => [joint, joints[joint].position]));

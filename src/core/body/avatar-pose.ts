@@ -1,13 +1,27 @@
-import type { Quat } from '../math/quat';
-import type { Vec3 } from '../math/vec3';
+import { copyQuat, type MutableQuat, type Quat, quat } from '../math/quat';
+import { copyVec3, type MutableVec3, type Vec3, vec3 } from '../math/vec3';
 import type { TrackedPose } from '../tracking/tracking-frame';
-import type { JointName } from './joints';
+import { type JointName, jointNames } from './joints';
 
 /** Rotations of the upper body's joints; every identity is the T-pose facing −Z. `hips` is relative to the floor frame. */
 export interface UpperBodyPose {
   readonly hipsPosition: Vec3;
   readonly localRotations: Readonly<Record<JointName, Quat>>;
 }
+
+/** A body's pose that its owner overwrites. */
+export interface MutableUpperBodyPose extends UpperBodyPose {
+  readonly hipsPosition: MutableVec3;
+  readonly localRotations: Readonly<Record<JointName, MutableQuat>>;
+}
+
+export const makeUpperBodyPose = (): MutableUpperBodyPose => ({
+  hipsPosition: vec3(0, 0, 0),
+  localRotations: Object.fromEntries(jointNames.map((joint) => [joint, quat(0, 0, 0, 1)])) as Record<
+    JointName,
+    MutableQuat
+  >,
+});
 
 /**
  * What one frame shows: head and hands exactly as tracked in this frame, and the body between them.
@@ -19,3 +33,19 @@ export interface AvatarPose {
   readonly rightHand: TrackedPose | null;
   readonly body: UpperBodyPose | null;
 }
+
+const copyTracked = <T extends TrackedPose | null>(pose: T): T =>
+  pose && { ...pose, position: copyVec3(pose.position), orientation: copyQuat(pose.orientation) };
+
+/** The same pose in objects of its own: to be kept, because estimators and playback overwrite theirs with every frame. */
+export const copyAvatarPose = ({ head, leftHand, rightHand, body }: AvatarPose): AvatarPose => ({
+  head: copyTracked(head),
+  leftHand: copyTracked(leftHand),
+  rightHand: copyTracked(rightHand),
+  body: body && {
+    hipsPosition: copyVec3(body.hipsPosition),
+    localRotations: Object.fromEntries(
+      jointNames.map((joint) => [joint, copyQuat(body.localRotations[joint])]),
+    ) as Record<JointName, Quat>,
+  },
+});

@@ -1,25 +1,38 @@
-import type { Pose } from '../math/pose';
-import { multiply, rotate } from '../math/quat';
-import { add } from '../math/vec3';
+import { type MutablePose, makePose, type Pose } from '../math/pose';
+import { copyQuat, multiply, rotate } from '../math/quat';
+import { add, copyVec3 } from '../math/vec3';
 import type { UpperBodyPose } from './avatar-pose';
 import { type JointName, jointNames, parentOf } from './joints';
 import type { Skeleton } from './skeleton';
 
+/** Every joint, floor frame. */
+export type JointPoses = Readonly<Record<JointName, Pose<'floor'>>>;
+export type MutableJointPoses = Readonly<Record<JointName, MutablePose<'floor'>>>;
+
+export const makeJointPoses = (): MutableJointPoses =>
+  Object.fromEntries(jointNames.map((joint) => [joint, makePose<'floor'>()])) as Record<
+    JointName,
+    MutablePose<'floor'>
+  >;
+
 /** Where every joint is, floor frame: the skeleton's offsets turned by the pose's rotations, parents first. */
-export function forwardKinematics(skeleton: Skeleton, pose: UpperBodyPose): Record<JointName, Pose<'floor'>> {
-  const joints = {} as Record<JointName, Pose<'floor'>>;
-  for (const joint of jointNames) {
+export function forwardKinematics(
+  skeleton: Skeleton,
+  pose: UpperBodyPose,
+  target: MutableJointPoses = makeJointPoses(),
+): MutableJointPoses {
+  for (let index = 0; index < jointNames.length; index++) {
+    const joint = jointNames[index]!;
     const parent = parentOf[joint];
-    const rotation = pose.localRotations[joint];
+    const { position, orientation } = target[joint];
     if (parent === null) {
-      joints[joint] = { position: pose.hipsPosition, orientation: rotation };
+      copyVec3(pose.hipsPosition, position);
+      copyQuat(pose.localRotations[joint], orientation);
     } else {
-      const { position, orientation } = joints[parent];
-      joints[joint] = {
-        position: add(position, rotate(orientation, skeleton.restOffsets[joint])),
-        orientation: multiply(orientation, rotation),
-      };
+      const from = target[parent];
+      add(from.position, rotate(from.orientation, skeleton.restOffsets[joint], position), position);
+      multiply(from.orientation, pose.localRotations[joint], orientation);
     }
   }
-  return joints;
+  return target;
 }

@@ -73,16 +73,16 @@ const STEEPEST_GAZE = 0.5;
 // and so does a floor that is half a metre too low: the two cannot be told apart, and neither is measured.
 const SHORTEST_ARM = 0.28;
 const LONGEST_ARM = 0.46;
-/** The middle of what they measure; a longer arm than the second says that somebody sits, or that the floor is too high. */
+/** The middle of what they measure; a longer arm than the second says that the wearer sits, or that the floor is too high. */
 const ORDINARY_ARM = 0.355;
 const SEATED_ARM = 0.42;
 /** [m] between the left arm's length and the right's. */
 const UNEVEN_ARMS = 0.1;
-// How far, in eye heights, the shoulder joint comes forward with a stretched arm: what the fitted shoulder girdle of the
+// How far, in eye heights, the shoulder joint comes forward with a stretched arm: what the fitted clavicle of the
 // inverse kinematics does there.
 const PROTRACTION = 0.018;
 
-// Whoever reads a sheet beside them does not look where the arms point: then the gaze says nothing about the headset's tilt.
+// A wearer who reads a sheet beside them does not look where the arms point: then the gaze says nothing about the headset's tilt.
 const LOOKING_AHEAD = Math.PI / 18;
 
 const failed = (reason: string): GuidedCalibration => ({ kind: 'failed', reason });
@@ -109,7 +109,7 @@ function measure(samples: readonly Sample[]): GuidedCalibration {
     if (sway > HAND_SWAY) return failed('Your hands moved. Hold them still for two seconds.');
     wrists.push({ side, position });
   }
-  // One hand that is never seen may be nobody's: the other one's arm then stands for both.
+  // One hand that is never seen may be missing: the other one's arm then stands for both.
   if (wrists.length === 0) return failed('Your hands were not seen. Hold them where you can see them.');
 
   let eyeHeight = head.y;
@@ -117,7 +117,7 @@ function measure(samples: readonly Sample[]): GuidedCalibration {
   let arms = reaches();
   const far = arms.filter((arm) => arm !== null);
   if (far.length === arms.length && Math.min(...far) > SEATED_ARM * head.y) {
-    // Seated, or above a floor that is not where it should be: then the arms tell how tall somebody is.
+    // Seated, or above a floor that is not where it should be: then the arms tell how tall the wearer is.
     for (let i = 0; i < 8 && arms.every((arm) => arm !== null); i++) {
       eyeHeight = arms.reduce((sum, arm) => sum + (arm ?? 0), 0) / arms.length / ORDINARY_ARM;
       arms = reaches();
@@ -157,7 +157,7 @@ function measure(samples: readonly Sample[]): GuidedCalibration {
 
 /**
  * Shoulder to wrist [m] of an arm stretched forward or sideways; null: it points elsewhere. Wrist in the heading frame, the eyes this
- * high now, which for somebody seated is less than their eye height.
+ * high now, which for a seated wearer is less than their eye height.
  */
 function reachOf(side: Side, wrist: Vec3, headHeight: number, eyeHeight: number): number | null {
   const sigma = sideSign(side);

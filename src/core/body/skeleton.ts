@@ -3,6 +3,7 @@ import { add, length, up, type Vec3, vec3 } from '../math/vec3';
 import proportions from './body-proportions.json';
 import type { Calibration } from './calibration';
 import type { JointName, Side } from './joints';
+import type { LimbBones } from './two-bone-ik';
 
 /**
  * The calibrated body in T-pose, facing −Z: each joint's offset [m] from its parent (`hips`: from the floor below),
@@ -71,8 +72,7 @@ export function skeletonFromCalibration(calibration: Calibration): Skeleton {
 export interface ChestSpaceBody {
   readonly eyeHeight: number;
   readonly arm: number;
-  readonly upperArm: number;
-  readonly forearm: number;
+  readonly armBones: LimbBones;
   readonly eyesInHead: Vec3;
   readonly neckToHead: Vec3;
   readonly thorax: number;
@@ -91,8 +91,7 @@ export function chestSpaceBody(calibration: Calibration): ChestSpaceBody {
   return {
     eyeHeight: e,
     arm,
-    upperArm: p.upperArmShare * arm,
-    forearm: (1 - p.upperArmShare) * arm,
+    armBones: { upper: p.upperArmShare * arm, lower: (1 - p.upperArmShare) * arm },
     eyesInHead: vec3(0, p.eyesInHead[0]! * e, -p.eyesInHead[1]! * e),
     neckToHead: vec3(0, p.neckToHead[0]! * e, -p.neckToHead[1]! * e),
     thorax: p.chestToNeck * e,

@@ -1,52 +1,94 @@
 import { clamp } from '../math/damper';
-import { addScaled, cross, dot, length, normalise, reject, subtract, type Vec3 } from '../math/vec3';
+import {
+  addScaled,
+  cross,
+  dot,
+  length,
+  type MutableVec3,
+  normalise,
+  reject,
+  subtract,
+  type Vec3,
+  vec3,
+} from '../math/vec3';
+
+/** The lengths [m] of a limb's two bones. */
+export interface LimbBones {
+  /** Upper arm or thigh. */
+  readonly upper: number;
+  /** Forearm or shank. */
+  readonly lower: number;
+}
 
 /** Elbow flexion in [0, π] rad that puts the wrist `distance` [m] from the shoulder; out of reach: straight arm. */
-export function elbowFlexion(upperArm: number, forearm: number, distance: number): number {
-  const cosine = (upperArm * upperArm + forearm * forearm - distance * distance) / (2 * upperArm * forearm);
+export function elbowFlexion(upper: number, lower: number, distance: number): number {
+  const cosine = (upper * upper + lower * lower - distance * distance) / (2 * upper * lower);
   return Math.PI - Math.acos(clamp(cosine, -1, 1));
 }
 
-export interface TwoBoneSolution {
-  readonly elbow: Vec3;
+/** All places an elbow (or knee) can have: a circle about the line from shoulder to wrist. */
+export interface ElbowCircle {
+  readonly centre: MutableVec3;
   /** From shoulder to wrist, unit. */
-  readonly axis: Vec3;
-  /** At right angles to the axis, unit: where the elbow points. */
-  readonly pole: Vec3;
+  readonly axis: MutableVec3;
+  /** [m] */
+  radius: number;
+  /** From shoulder to wrist [m], as far as the bones reach. */
+  span: number;
 }
 
-/**
- * The elbow (or knee) on the side of `pole`, all in one frame [m]. `fallbacks` stand in for a pole along the arm; out of
- * reach: on the straight arm.
- */
-export function solveTwoBones(
+export const makeElbowCircle = (): ElbowCircle => ({
+  centre: vec3(0, 0, 0),
+  axis: vec3(0, 0, 0),
+  radius: Number.NaN,
+  span: Number.NaN,
+});
+
+/** The elbow's circle, all in one frame [m]; a wrist at the shoulder lies along `fallbackAxis`, one out of reach leaves the arm straight. */
+export function elbowCircle(
   shoulder: Vec3,
   wrist: Vec3,
-  upperArm: number,
-  forearm: number,
+  { upper, lower }: LimbBones,
+  fallbackAxis: Vec3,
+  target: ElbowCircle = makeElbowCircle(),
+): ElbowCircle {
+  const { axis, centre } = target;
+  subtract(wrist, shoulder, axis);
+  const span = clamp(length(axis), Math.abs(upper - lower) + 1e-4, (upper + lower) * (1 - 1e-5));
+  normalise(axis, fallbackAxis, axis);
+  const along = (upper * upper - lower * lower + span * span) / (2 * span);
+  target.span = span;
+  target.radius = Math.sqrt(Math.max(upper * upper - along * along, 0));
+  addScaled(shoulder, axis, along, centre);
+  return target;
+}
+
+/** The unit vector at right angles to `axis` nearest to `pole`; where that lies along the axis, to the first fallback that does not. */
+export function poleAcross(
+  axis: Vec3,
   pole: Vec3,
   fallbacks: readonly [Vec3, Vec3],
-): TwoBoneSolution {
-  const line = subtract(wrist, shoulder);
-  const distance = length(line);
-  const axis = normalise(line, fallbacks[0]);
-  let across = reject(pole, axis);
-  for (const fallback of fallbacks) if (length(across) < 1e-4) across = reject(fallback, axis);
-  const direction = normalise(across, fallbacks[0]);
-  const reach = clamp(distance, Math.abs(upperArm - forearm) + 1e-4, (upperArm + forearm) * (1 - 1e-5));
-  const along = (upperArm * upperArm - forearm * forearm + reach * reach) / (2 * reach);
-  const height = Math.sqrt(Math.max(upperArm * upperArm - along * along, 0));
-  return {
-    elbow: addScaled(addScaled(shoulder, axis, along), direction, height),
-    axis,
-    pole: direction,
-  };
+  target: MutableVec3 = vec3(0, 0, 0),
+): MutableVec3 {
+  reject(pole, axis, target);
+  if (length(target) < 1e-4) reject(fallbacks[0], axis, target);
+  if (length(target) < 1e-4) reject(fallbacks[1], axis, target);
+  return normalise(target, fallbacks[0], target);
 }
+
+/** The elbow on its circle in the direction `pole` (unit, at right angles to the axis) from the centre. */
+export const elbowOnCircle = (circle: ElbowCircle, pole: Vec3, target?: MutableVec3): MutableVec3 =>
+  addScaled(circle.centre, pole, circle.radius, target);
+
+const axisBefore = vec3(0, 0, 0);
+const fromAxis = vec3(0, 0, 0);
+const toAxis = vec3(0, 0, 0);
 
 /** The signed angle (−π, π] [rad] about shoulder→wrist from one elbow to another: the error in swivel. */
 export function swivelAngle(shoulder: Vec3, wrist: Vec3, elbow: Vec3, otherElbow: Vec3): number {
-  const axis = normalise(subtract(wrist, shoulder));
-  const a = reject(subtract(elbow, shoulder), axis);
-  const b = reject(subtract(otherElbow, shoulder), axis);
-  return Math.atan2(dot(cross(a, b), axis), dot(a, b));
+  const axis = normalise(subtract(wrist, shoulder, axisBefore), undefined, axisBefore);
+  const a = reject(subtract(elbow, shoulder, fromAxis), axis, fromAxis);
+  const b = reject(subtract(otherElbow, shoulder, toAxis), axis, toAxis);
+  const cosine = dot(a, b);
+  return Math.atan2(dot(cross(a, b, a), axis), cosine);
 }

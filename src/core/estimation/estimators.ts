@@ -1,15 +1,44 @@
 import type { Calibration } from '../body/calibration';
 import { createHandsOnly } from './hands-only';
-import { createIk } from './ik';
-import { createLearned } from './learned';
-import { withLevelGaze } from './level-gaze';
+import { transformJoints } from './joint-positions';
+import type { JointSource } from './joint-source';
 import { createPaper } from './paper';
+import { Pipeline } from './pipeline';
 import type { EstimatorName, PoseEstimator } from './pose-estimator';
 import type { PoseRegressor } from './pose-regressor';
+import { createResidual } from './residual';
+
+/** The methods that are nothing without their network. */
+export type NetworkName = 'paper' | 'learned';
 
 /** Whether a method needs a network. */
-export const needsRegressor = (name: EstimatorName): name is 'paper' | 'learned' =>
-  name === 'paper' || name === 'learned';
+export const needsRegressor = (name: EstimatorName): name is NetworkName => name === 'paper' || name === 'learned';
+
+/** Inverse kinematics alone: the competitor that the networks are measured against, with the same calibration. */
+const ikAlone: JointSource = {
+  network: null,
+  calibrate: () => undefined,
+  reset: () => undefined,
+  joints({ ik, floorFromHeading }, _, target) {
+    transformJoints(floorFromHeading, ik.joints, target);
+  },
+};
+
+export const createIk = (calibration: Calibration): Pipeline => new Pipeline('ik', calibration, ikAlone);
+
+/** One method with a network, whose stages can be looked at; throws where the regressor is another's. */
+export function createWithNetwork(
+  name: NetworkName,
+  calibration: Calibration,
+  regressor: PoseRegressor | null,
+): Pipeline {
+  if (regressor?.contract.name !== name) throw new Error(`estimator “${name}” needs the regressor of the same name`);
+  return new Pipeline(
+    name,
+    calibration,
+    name === 'paper' ? createPaper(regressor) : createResidual(calibration, regressor),
+  );
+}
 
 /** One estimator by name; `paper` and `learned` throw without their regressor. */
 export function createEstimator(
@@ -17,13 +46,6 @@ export function createEstimator(
   calibration: Calibration,
   regressor: PoseRegressor | null = null,
 ): PoseEstimator {
-  return withLevelGaze(ofName(name, calibration, regressor), calibration);
-}
-
-function ofName(name: EstimatorName, calibration: Calibration, regressor: PoseRegressor | null): PoseEstimator {
-  if (needsRegressor(name)) {
-    if (regressor?.contract.name !== name) throw new Error(`estimator “${name}” needs the regressor of the same name`);
-    return name === 'paper' ? createPaper(calibration, regressor) : createLearned(calibration, regressor);
-  }
-  return name === 'ik' ? createIk(calibration) : createHandsOnly();
+  if (needsRegressor(name)) return createWithNetwork(name, calibration, regressor);
+  return name === 'ik' ? createIk(calibration) : createHandsOnly(calibration);
 }

@@ -2,101 +2,128 @@ import { estimatedJoints } from '../body/joints';
 import type { ChestSpaceBody } from '../body/skeleton';
 import type { Pose } from '../math/pose';
 import { rotate } from '../math/quat';
-import { right, up } from '../math/vec3';
+import { right, up, type Vec3, vec3 } from '../math/vec3';
 import type { JointPositions } from './joint-positions';
 import type { ThreePoints } from './solve-ik';
 
 /** Numbers per frame; their order is in docs/estimation.md. */
 export const featureCount = 46;
 
-/** Where in a frame's features begin the head's turn, left and right wrist − headset [arm lengths] (their turn follows), the IK joints − headset [eye heights]. */
-export const [headFeature, leftHandFeature, rightHandFeature, ikFeatureOffset] = [1, 7, 16, 27];
-/** From a wrist to its turn. */
-export const firstAxisFeature = 3;
-/** Arm length in eye heights. */
-export const armFeature = 45;
+/** Whether the device saw each hand in the frame. */
+export interface SeenHands {
+  readonly left: boolean;
+  readonly right: boolean;
+}
 
-/**
- * One frame's features from three points and the IK solution, both in this frame's heading frame. seen: 1 where the device saw
- * the hand in this frame, else 0.
- */
+const axis = vec3(0, 0, 0);
+
+/** Writes a vector from `next` on and returns the index behind it. */
+function write(features: Float32Array, next: number, { x, y, z }: Vec3): number {
+  features[next] = x;
+  features[next + 1] = y;
+  features[next + 2] = z;
+  return next + 3;
+}
+
+/** A position relative to the headset, in units of `unit` [m]. */
+function writeFromHeadset(
+  features: Float32Array,
+  next: number,
+  { x, y, z }: Vec3,
+  headset: Vec3,
+  unit: number,
+): number {
+  features[next] = (x - headset.x) / unit;
+  features[next + 1] = (y - headset.y) / unit;
+  features[next + 2] = (z - headset.z) / unit;
+  return next + 3;
+}
+
+/** The first two columns of a rotation. */
+function writeColumns(features: Float32Array, start: number, { orientation }: Pose<'heading'>): number {
+  const next = write(features, start, rotate(orientation, right, axis));
+  return write(features, next, rotate(orientation, up, axis));
+}
+
+/** One frame's features from three points and IK's joints, both in this frame's heading frame. */
 export function frameFeatures(
-  points: ThreePoints,
-  seen: { readonly left: boolean; readonly right: boolean },
+  { head, leftHand, rightHand }: ThreePoints,
+  seen: SeenHands,
   ikJoints: JointPositions,
   body: ChestSpaceBody,
+  target: Float32Array = new Float32Array(featureCount),
 ): Float32Array {
-  const features = new Float32Array(featureCount);
-  const headset = points.head.position;
-  let next = 0;
-  const write = (x: number, y: number, z: number): void => {
-    features[next++] = x;
-    features[next++] = y;
-    features[next++] = z;
-  };
-  const writeTurn = ({ orientation }: Pose<'heading'>): void => {
-    for (const axis of [right, up]) {
-      const column = rotate(orientation, axis);
-      write(column.x, column.y, column.z);
-    }
-  };
-  features[next++] = headset.y / body.eyeHeight;
-  writeTurn(points.head);
-  for (const hand of [points.leftHand, points.rightHand]) {
-    const { x, y, z } = hand.position;
-    write((x - headset.x) / body.arm, (y - headset.y) / body.arm, (z - headset.z) / body.arm);
-    writeTurn(hand);
+  const headset = head.position;
+  target[0] = headset.y / body.eyeHeight;
+  let next = writeColumns(target, 1, head);
+  next = writeFromHeadset(target, next, leftHand.position, headset, body.arm);
+  next = writeColumns(target, next, leftHand);
+  next = writeFromHeadset(target, next, rightHand.position, headset, body.arm);
+  next = writeColumns(target, next, rightHand);
+  target[next] = seen.left ? 1 : 0;
+  target[next + 1] = seen.right ? 1 : 0;
+  next += 2;
+  for (let index = 0; index < estimatedJoints.length; index++) {
+    next = writeFromHeadset(target, next, ikJoints[estimatedJoints[index]!], headset, body.eyeHeight);
   }
-  features[next++] = seen.left ? 1 : 0;
-  features[next++] = seen.right ? 1 : 0;
-  for (const joint of estimatedJoints) {
-    const { x, y, z } = ikJoints[joint];
-    write((x - headset.x) / body.eyeHeight, (y - headset.y) / body.eyeHeight, (z - headset.z) / body.eyeHeight);
-  }
-  features[next] = body.arm / body.eyeHeight;
-  return features;
+  target[next] = body.arm / body.eyeHeight;
+  return target;
+}
+
+interface TimedFeatures {
+  time: number;
+  readonly features: Float32Array;
 }
 
 /** The recent frames' features, read at ages in seconds, so that a window means the same at 60, 72 and 120 Hz. */
-export interface FeatureWindow {
-  /** Appends a frame; a time that does not advance replaces the newest. */
-  push(timeSeconds: number, features: Float32Array): void;
-  /** Features at `ages` before the newest frame, concatenated; linear between frames, the oldest before the start. */
-  read(ages: readonly number[]): Float32Array;
-  clear(): void;
-}
+export class FeatureWindow {
+  /** Oldest first; what was dropped is kept to be written again. */
+  readonly #frames: TimedFeatures[] = [];
+  readonly #spare: TimedFeatures[] = [];
+  readonly #longestAge: number;
 
-export function createFeatureWindow(longestAgeSeconds: number): FeatureWindow {
-  let frames: { readonly time: number; readonly features: Float32Array }[] = [];
-  return {
-    push(time, features) {
-      const newest = frames.at(-1);
-      if (newest && time < newest.time - longestAgeSeconds) frames = [];
-      while (frames.length > 0 && frames.at(-1)!.time >= time) frames.pop();
-      frames.push({ time, features });
-      // One frame beyond the longest age stays, to interpolate from.
-      while (frames.length > 2 && frames[1]!.time < time - longestAgeSeconds) frames.shift();
-    },
-    read(ages) {
-      const newest = frames.at(-1);
-      const result = new Float32Array(ages.length * featureCount);
-      if (!newest) return result;
-      ages.forEach((age, slot) => {
-        const wanted = Math.max(newest.time - age, frames[0]!.time);
-        let after = frames.length - 1;
-        while (after > 0 && frames[after - 1]!.time >= wanted) after -= 1;
-        const late = frames[after]!;
-        const early = frames[Math.max(0, after - 1)]!;
-        const gap = late.time - early.time;
-        const share = gap > 0 ? (wanted - early.time) / gap : 1;
-        for (let i = 0; i < featureCount; i++) {
-          result[slot * featureCount + i] = early.features[i]! * (1 - share) + late.features[i]! * share;
-        }
-      });
-      return result;
-    },
-    clear() {
-      frames = [];
-    },
-  };
+  constructor(longestAgeSeconds: number) {
+    this.#longestAge = longestAgeSeconds;
+  }
+
+  /** The buffer of a new frame, for its features to be written into; a time that does not advance replaces the newest. */
+  push(time: number): Float32Array {
+    const frames = this.#frames;
+    const newest = frames.at(-1);
+    if (newest && time < newest.time - this.#longestAge) this.clear();
+    while (frames.length > 0 && frames.at(-1)!.time >= time) this.#spare.push(frames.pop()!);
+    const frame = this.#spare.pop() ?? { time, features: new Float32Array(featureCount) };
+    frame.time = time;
+    frames.push(frame);
+    // One frame beyond the longest age stays, to interpolate from.
+    while (frames.length > 2 && frames[1]!.time < time - this.#longestAge) this.#spare.push(frames.shift()!);
+    return frame.features;
+  }
+
+  /** Writes the features at `ages` [s] before the newest frame, one after the other; linear between frames, the oldest before the start. */
+  read(ages: readonly number[], target: Float32Array): void {
+    const frames = this.#frames;
+    const newest = frames.at(-1);
+    if (!newest) {
+      target.fill(0, 0, ages.length * featureCount);
+      return;
+    }
+    for (let slot = 0; slot < ages.length; slot++) {
+      const wanted = Math.max(newest.time - ages[slot]!, frames[0]!.time);
+      let after = frames.length - 1;
+      while (after > 0 && frames[after - 1]!.time >= wanted) after -= 1;
+      const late = frames[after]!;
+      const early = frames[Math.max(0, after - 1)]!;
+      const gap = late.time - early.time;
+      const share = gap > 0 ? (wanted - early.time) / gap : 1;
+      const from = slot * featureCount;
+      for (let i = 0; i < featureCount; i++) {
+        target[from + i] = early.features[i]! * (1 - share) + late.features[i]! * share;
+      }
+    }
+  }
+
+  clear(): void {
+    while (this.#frames.length > 0) this.#spare.push(this.#frames.pop()!);
+  }
 }

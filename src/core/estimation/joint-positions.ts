@@ -1,23 +1,44 @@
 import { type EstimatedJoint, estimatedJoints } from '../body/joints';
 import { type Frame, type Transform, transformPoint } from '../math/pose';
-import type { Vec3 } from '../math/vec3';
+import { copyVec3, type MutableVec3, type Vec3, vec3 } from '../math/vec3';
 
-/** Where the six joints nobody tracks are [m], in the frame the variable's name says. */
+/** Where the six joints are that no device tracks [m], in the frame the variable's name says. */
 export type JointPositions = Readonly<Record<EstimatedJoint, Vec3>>;
 
-export function transformJoints<To extends Frame, From extends Frame>(
-  toFromFrom: Transform<To, From>,
-  joints: JointPositions,
-): JointPositions {
-  return mapJoints((joint) => transformPoint(toFromFrom, joints[joint]));
-}
+/** Six joints that their owner overwrites. */
+export type MutableJointPositions = Readonly<Record<EstimatedJoint, MutableVec3>>;
 
 /** Builds positions joint by joint; `index` is the joint's place in every tensor. */
-export function mapJoints(position: (joint: EstimatedJoint, index: number) => Vec3): JointPositions {
-  const result = {} as Record<EstimatedJoint, Vec3>;
+export function mapJoints<T>(position: (joint: EstimatedJoint, index: number) => T): Record<EstimatedJoint, T> {
+  const result = {} as Record<EstimatedJoint, T>;
   for (let index = 0; index < estimatedJoints.length; index++) {
     const joint = estimatedJoints[index]!;
     result[joint] = position(joint, index);
   }
   return result;
+}
+
+export const makeJoints = (): MutableJointPositions => mapJoints(() => vec3(0, 0, 0));
+
+export function copyJoints(
+  joints: JointPositions,
+  target: MutableJointPositions = makeJoints(),
+): MutableJointPositions {
+  for (let index = 0; index < estimatedJoints.length; index++) {
+    const joint = estimatedJoints[index]!;
+    copyVec3(joints[joint], target[joint]);
+  }
+  return target;
+}
+
+export function transformJoints<To extends Frame, From extends Frame>(
+  toFromFrom: Transform<To, From>,
+  joints: JointPositions,
+  target: MutableJointPositions = makeJoints(),
+): MutableJointPositions {
+  for (let index = 0; index < estimatedJoints.length; index++) {
+    const joint = estimatedJoints[index]!;
+    transformPoint(toFromFrom, joints[joint], target[joint]);
+  }
+  return target;
 }

@@ -1,44 +1,60 @@
-import type { Calibration } from '../body/calibration';
-import { chestSpaceBody } from '../body/skeleton';
-import { add, type Vec3, vec3 } from '../math/vec3';
-import type { ContinuedFrame } from '../tracking/hand-continuity';
-import { floorFromHeading } from '../tracking/heading';
-import { createBodyEstimator } from './body-estimator';
-import { pointsInHeading } from './ik';
-import { mapJoints, transformJoints } from './joint-positions';
-import { paperFeatures } from './paper-features';
-import type { PoseEstimator } from './pose-estimator';
+import { estimatedJoints } from '../body/joints';
+import { setVec3 } from '../math/vec3';
+import { type MutableJointPositions, makeJoints, transformJoints } from './joint-positions';
+import type { JointNetwork, JointSource, SolvedFrame } from './joint-source';
+import { LatestResult } from './latest-result';
+import { paperFeatureCount, paperFeatures } from './paper-features';
 import type { PoseRegressor } from './pose-regressor';
-import { createRegression } from './regression';
-import { solveIk } from './solve-ik';
 
 /** The paper's network as published: local positions in the room's axes and Euler angles in, six joints out. IK until it answers. */
-export function createPaper(calibration: Calibration, regressor: PoseRegressor): PoseEstimator {
-  let body = chestSpaceBody(calibration);
-  const regression = createRegression<{ readonly underHead: Vec3 }>(regressor);
-  const underHead = ({ head }: ContinuedFrame): Vec3 => ({ ...head.position, y: 0 });
-  const jointsFrom = (origin: Vec3, output: Float32Array) =>
-    mapJoints((_, index) => add(origin, vec3(output[3 * index]!, output[3 * index + 1]!, output[3 * index + 2]!)));
+export function createPaper(regressor: PoseRegressor): JointSource {
+  const input = new Float32Array(paperFeatureCount);
+  const answered = makeJoints();
+  let newest: Float32Array | null = null;
+  const inference = new LatestResult(
+    regressor,
+    (output) => {
+      newest = output;
+    },
+    () => {
+      newest = null;
+    },
+  );
 
-  return createBodyEstimator('paper', calibration, {
-    calibrate(next) {
-      body = chestSpaceBody(next);
+  /** The joints [m] from the floor point under this frame's headset: an answer to an older frame moves along with the head. */
+  function place(output: Float32Array, { completed }: SolvedFrame, target: MutableJointPositions): void {
+    const { x, z } = completed.head.position;
+    for (let index = 0; index < estimatedJoints.length; index++) {
+      const at = 3 * index;
+      setVec3(target[estimatedJoints[index]!], x + output[at]!, output[at + 1]!, z + output[at + 2]!);
+    }
+  }
+
+  const network: JointNetwork = {
+    ask({ completed }) {
+      if (inference.running) return inference.running;
+      return inference.start(paperFeatures(completed.head, completed.leftHand, completed.rightHand, input));
     },
-    reset: () => regression.reset(),
-    prepare: (frame) =>
-      regression.start(() => paperFeatures(frame.head, frame.leftHand, frame.rightHand), {
-        underHead: underHead(frame),
-      }),
-    joints(frame) {
-      const result = regression.newest();
-      if (!result) return transformJoints(floorFromHeading(frame.head), solveIk(pointsInHeading(frame), body));
-      // A result from an older frame moves along with the head.
-      return jointsFrom(underHead(frame), result.output);
+    answer(solved) {
+      if (newest === null) return null;
+      place(newest, solved, answered);
+      return answered;
     },
-    rawJoints() {
-      const result = regression.newest();
-      return result && jointsFrom(result.context.underHead, result.output);
+    get fault() {
+      return inference.fault;
     },
-    fault: () => regression.fault(),
-  });
+  };
+
+  return {
+    network,
+    calibrate: () => undefined,
+    reset() {
+      inference.reset();
+      newest = null;
+    },
+    joints(solved, _, target) {
+      if (newest) place(newest, solved, target);
+      else transformJoints(solved.floorFromHeading, solved.ik.joints, target);
+    },
+  };
 }

@@ -39,9 +39,7 @@ export interface PoseRegressor {
   readonly contract: ModelContract;
   /** Where it runs, for the overlay: 'wasm', 'webgpu'. */
   readonly provider: string;
-  /** True where `run` settles within the microtasks of the frame that called it, so that awaiting it costs no frame. */
-  readonly resolvesInFrame: boolean;
-  /** features: as many numbers as the input tensor has elements. Rejects when the runtime fails. One run at a time. */
+  /** features: as many numbers as the input tensor has elements, not to be overwritten until it settles. Rejects when the runtime fails. One run at a time. */
   run(features: Float32Array): Promise<Float32Array>;
   dispose(): Promise<void>;
 }

@@ -1,33 +1,32 @@
+import { headJointOf } from '../body/head-joint';
 import type { Side } from '../body/joints';
 import { type ChestSpaceBody, sideSign } from '../body/skeleton';
-import { solveTwoBones } from '../body/two-bone-ik';
+import { elbowCircle, elbowOnCircle, makeElbowCircle, poleAcross } from '../body/two-bone-ik';
 import { clamp } from '../math/damper';
-import type { Pose } from '../math/pose';
-import { conjugate, fromAxes, fromAxisAngle, rotate } from '../math/quat';
+import { type MutablePose, makePose, type Pose } from '../math/pose';
+import { fromAxes, fromAxisAngle, quat, rotate, rotateInverse } from '../math/quat';
 import {
   add,
   addScaled,
+  backward,
   cross,
+  forward,
   length,
   lerp,
+  type MutableVec3,
   normalise,
+  reject,
   right,
   scale,
+  setVec3,
   subtract,
   up,
   type Vec3,
   vec3,
 } from '../math/vec3';
 import parameters from './ik-parameters.json';
-import type { JointPositions } from './joint-positions';
-
-/** The collarbone's tip moves from rest by at most this share of its length: beyond, hands crossed low would fold it over. */
-const girdleShift = 0.9;
-
-const limitLength = (v: Vec3, longest: number): Vec3 => {
-  const l = length(v);
-  return l > longest ? scale(v, longest / l) : v;
-};
+import { type MutableJointPositions, makeJoints } from './joint-positions';
+import limits from './kinematic-limits.json';
 
 /** Head and wrists in the heading frame. */
 export interface ThreePoints {
@@ -36,105 +35,196 @@ export interface ThreePoints {
   readonly rightHand: Pose<'heading'>;
 }
 
-const backward: Vec3 = vec3(0, 0, 1);
+export const makeThreePoints = (): { readonly [point in keyof ThreePoints]: MutablePose<'heading'> } => ({
+  head: makePose(),
+  leftHand: makePose(),
+  rightHand: makePose(),
+});
 
-const weighted = (weights: readonly number[], values: readonly number[]): number => {
+/** The axes of the chest, unit: from the left to the right shoulder, up the spine, backward. */
+export interface ChestAxes {
+  readonly x: MutableVec3;
+  readonly y: MutableVec3;
+  readonly z: MutableVec3;
+}
+
+export const makeChestAxes = (): ChestAxes => ({ x: vec3(0, 0, 0), y: vec3(0, 0, 0), z: vec3(0, 0, 0) });
+
+/** What inverse kinematics finds, heading frame. */
+export interface IkSolution {
+  readonly joints: MutableJointPositions;
+  /** By the shoulders and the chest joint. */
+  readonly chest: ChestAxes;
+  /** Where each elbow points from the line between shoulder and wrist, unit. */
+  readonly poles: Readonly<Record<Side, MutableVec3>>;
+}
+
+export const makeIkSolution = (): IkSolution => ({
+  joints: makeJoints(),
+  chest: makeChestAxes(),
+  poles: { left: vec3(0, 0, 0), right: vec3(0, 0, 0) },
+});
+
+const { ik: bounds } = limits;
+
+/** The sum of weights·values. */
+function weighted(weights: readonly number[], values: Float64Array): number {
   let sum = 0;
   for (let i = 0; i < weights.length; i++) sum += weights[i]! * values[i]!;
   return sum;
-};
+}
 
-/** [1, …vectors] times a 3-row matrix of parameters. */
-const affine = (rows: readonly (readonly number[])[], values: readonly number[]): Vec3 =>
-  vec3(weighted(rows[0]!, values), weighted(rows[1]!, values), weighted(rows[2]!, values));
+/** A 3-row matrix of parameters times values. */
+const affine = (rows: readonly (readonly number[])[], values: Float64Array, target: MutableVec3): MutableVec3 =>
+  setVec3(target, weighted(rows[0]!, values), weighted(rows[1]!, values), weighted(rows[2]!, values));
 
-const mirrored = (v: Vec3, sigma: number): Vec3 => vec3(v.x * sigma, v.y, v.z);
+function mirror(v: MutableVec3, sigma: number): MutableVec3 {
+  v.x *= sigma;
+  return v;
+}
+
+/** What the steps of one solution tell each other, heading frame; overwritten by the next. */
+const headJoint = vec3(0, 0, 0);
+/** Wrists from the head joint [arm lengths], their middle and the way between them. */
+const left = vec3(0, 0, 0);
+const rightHand = vec3(0, 0, 0);
+const middle = vec3(0, 0, 0);
+const across = vec3(0, 0, 0);
+/** The chest's yaw, and the chest's frame: y from the chest joint to the neck. */
+const yaw = quat(0, 0, 0, 1);
+const chest = quat(0, 0, 0, 1);
+const thoraxUp = vec3(0, 0, 0);
+const lowerBackUp = vec3(0, 0, 0);
+const neck = vec3(0, 0, 0);
+
+const sagittal = new Float64Array(6);
+const lateral = new Float64Array(3);
+const reach = new Float64Array(4);
+const handFeatures = new Float64Array(10);
+const a = vec3(0, 0, 0);
+const b = vec3(0, 0, 0);
+const circle = makeElbowCircle();
+const fallbackPoles: readonly [MutableVec3, MutableVec3] = [vec3(0, 0, 0), vec3(0, 0, 0)];
 
 /**
- * The six joints in the heading frame from head and wrists: spine bend, pelvis under the head, shoulder girdle and
- * two-bone arms with an anatomical swivel. The numbered steps are those of docs/estimation.md.
+ * Stage 2: the six joints from head and wrists: spine bend, pelvis under the head, clavicles and two-bone arms with an
+ * anatomical swivel. The numbered steps are those of docs/estimation.md.
  */
-export function solveIk(points: ThreePoints, body: ChestSpaceBody): JointPositions {
-  const { head } = points;
-  const e = body.eyeHeight;
-  const headJoint = subtract(head.position, rotate(head.orientation, body.eyesInHead));
-  const left = scale(subtract(points.leftHand.position, headJoint), 1 / body.arm);
-  const rightHand = scale(subtract(points.rightHand.position, headJoint), 1 / body.arm);
-  const middle = lerp(left, rightHand, 0.5);
-  const across = subtract(rightHand, left);
+export function solveIk(points: ThreePoints, body: ChestSpaceBody, target: IkSolution = makeIkSolution()): IkSolution {
+  headJointOf(points.head, body.eyesInHead, headJoint);
+  scale(subtract(points.leftHand.position, headJoint, left), 1 / body.arm, left);
+  scale(subtract(points.rightHand.position, headJoint, rightHand), 1 / body.arm, rightHand);
+  lerp(left, rightHand, 0.5, middle);
+  subtract(rightHand, left, across);
+  turnChest();
+  leanTrunk(points.head, body);
+  placeTrunk(points.head, body, target.joints);
+  placeArm('left', points.leftHand, body, target);
+  placeArm('right', points.rightHand, body, target);
+  chestAxesOf(target.joints, target.chest);
+  return target;
+}
 
-  // 1. Chest yaw: turned by the hands.
+/** 1. Chest yaw: turned by the hands. */
+function turnChest(): void {
   const [acrossWeight = 0, middleWeight = 0] = parameters.yaw;
   const aheadX = acrossWeight * across.z + middleWeight * middle.x;
   const aheadZ = -1 - acrossWeight * across.x + middleWeight * middle.z;
-  const yaw = 1.2 * Math.tanh(Math.atan2(-aheadX, Math.max(-aheadZ, 0.2)) / 1.2);
-  const turn = fromAxisAngle(up, yaw);
+  const most = bounds.yawSaturation;
+  fromAxisAngle(up, most * Math.tanh(Math.atan2(-aheadX, Math.max(-aheadZ, bounds.leastAhead)) / most), yaw);
+}
 
-  // 2. Lean of thorax and lower back.
-  const lookingDown = -rotate(head.orientation, vec3(0, 0, -1)).y;
-  const crouch = clamp(1 - head.position.y / e, -0.2, 0.9);
-  const sagittal = [1, lookingDown, crouch, -middle.z, -middle.y, lookingDown * crouch];
-  const lateral = [rotate(head.orientation, right).y, middle.x, rightHand.y - left.y];
-  const upDirection = (segment: { forward: number[]; sideways: number[] }): Vec3 => {
-    const alpha = clamp(weighted(segment.forward, sagittal), -0.6, 1.9);
-    const beta = clamp(weighted(segment.sideways, lateral), -0.8, 0.8);
-    const flat = Math.cos(beta);
-    return rotate(turn, vec3(Math.sin(beta), Math.cos(alpha) * flat, -Math.sin(alpha) * flat));
-  };
-  const thoraxUp = upDirection(parameters.upper);
-  const lowerBackUp = upDirection(parameters.lower);
+/** 2. Lean of thorax and lower back. 3. Chest frame. */
+function leanTrunk(head: Pose<'heading'>, body: ChestSpaceBody): void {
+  const lookingDown = -rotate(head.orientation, forward, a).y;
+  const crouch = clamp(1 - head.position.y / body.eyeHeight, bounds.crouch.min, bounds.crouch.max);
+  sagittal[0] = 1;
+  sagittal[1] = lookingDown;
+  sagittal[2] = crouch;
+  sagittal[3] = -middle.z;
+  sagittal[4] = -middle.y;
+  sagittal[5] = lookingDown * crouch;
+  lateral[0] = rotate(head.orientation, right, a).y;
+  lateral[1] = middle.x;
+  lateral[2] = rightHand.y - left.y;
+  upDirection(parameters.upper, thoraxUp);
+  upDirection(parameters.lower, lowerBackUp);
 
-  // 3. Chest frame.
-  const chestX = normalise(cross(thoraxUp, rotate(turn, backward)), right);
-  const chest = fromAxes(chestX, thoraxUp, cross(chestX, thoraxUp));
-  const chestInverse = conjugate(chest);
+  normalise(cross(thoraxUp, rotate(yaw, backward, a), a), right, a);
+  fromAxes(a, thoraxUp, cross(a, thoraxUp, b), chest);
+}
 
-  // 4. Neck base. 5. Chest joint and hips.
+function upDirection(segment: { forward: number[]; sideways: number[] }, target: MutableVec3): void {
+  const alpha = clamp(weighted(segment.forward, sagittal), bounds.leanForward.min, bounds.leanForward.max);
+  const beta = clamp(weighted(segment.sideways, lateral), bounds.leanSideways.min, bounds.leanSideways.max);
+  const flat = Math.cos(beta);
+  setVec3(target, Math.sin(beta), Math.cos(alpha) * flat, -Math.sin(alpha) * flat);
+  rotate(yaw, target, target);
+}
+
+/** 4. Neck base. 5. Chest joint and hips. */
+function placeTrunk(head: Pose<'heading'>, body: ChestSpaceBody, joints: MutableJointPositions): void {
   const neckLength = length(body.neckToHead);
-  const neckRest = scale(body.neckToHead, 1 / neckLength);
-  const neckDirection = normalise(
-    lerp(rotate(chest, neckRest), rotate(head.orientation, neckRest), parameters.neck),
-    thoraxUp,
-  );
-  const neck = addScaled(headJoint, neckDirection, -neckLength);
-  const chestJoint = addScaled(neck, thoraxUp, -body.thorax);
-  const hipsBelow = addScaled(chestJoint, lowerBackUp, -body.lowerBack);
-  const hips = vec3(hipsBelow.x, Math.max(hipsBelow.y, 0.08 * e), hipsBelow.z);
+  rotate(chest, body.neckToHead, a);
+  rotate(head.orientation, body.neckToHead, b);
+  normalise(scale(lerp(a, b, parameters.neck, a), 1 / neckLength, a), thoraxUp, a);
+  addScaled(headJoint, a, -neckLength, neck);
+  addScaled(neck, thoraxUp, -body.thorax, joints.chest);
+  addScaled(joints.chest, lowerBackUp, -body.lowerBack, joints.hips);
+  joints.hips.y = Math.max(joints.hips.y, bounds.lowestHips * body.eyeHeight);
+}
 
-  const arm = (side: Side): { shoulder: Vec3; elbow: Vec3 } => {
-    const sigma = sideSign(side);
-    const wrist = side === 'left' ? points.leftHand : points.rightHand;
-    const inChest = (v: Vec3): Vec3 => mirrored(rotate(chestInverse, v), sigma);
+/** A vector of the heading frame in the chest frame, mirrored for the left arm. */
+const inChest = (v: Vec3, sigma: number, target: MutableVec3): MutableVec3 =>
+  mirror(rotateInverse(chest, v, target), sigma);
 
-    // 6. Shoulder girdle: the collarbone swings with the hand.
-    const restShoulder = add(body.clavicleRoot, body.clavicle);
-    const q = scale(subtract(inChest(subtract(wrist.position, neck)), restShoulder), 1 / body.arm);
-    const shift = limitLength(
-      scale(affine(parameters.girdle, [1, q.x, q.y, q.z]), e),
-      girdleShift * body.clavicleLength,
-    );
-    const clavicle = scale(normalise(add(body.clavicle, shift), right), body.clavicleLength);
-    const shoulder = add(neck, rotate(chest, mirrored(add(body.clavicleRoot, clavicle), sigma)));
+function placeArm(side: Side, wrist: Pose<'heading'>, body: ChestSpaceBody, { joints, poles }: IkSolution): void {
+  const sigma = sideSign(side);
+  const shoulder = side === 'left' ? joints.leftUpperArm : joints.rightUpperArm;
+  placeShoulder(wrist, body, sigma, shoulder);
 
-    // 7. Elbow: the swivel follows where the hand is and how it is turned.
-    const r = scale(inChest(subtract(wrist.position, shoulder)), 1 / body.arm);
-    const back = inChest(rotate(wrist.orientation, up));
-    const heel = inChest(rotate(wrist.orientation, backward));
-    const values = [1, r.x, r.y, r.z, back.x, back.y, back.z, heel.x, heel.y, heel.z];
-    const pole = rotate(chest, mirrored(affine(parameters.pole, values), sigma));
-    const down = scale(thoraxUp, -1);
-    const behind = rotate(chest, backward);
-    const { elbow } = solveTwoBones(shoulder, wrist.position, body.upperArm, body.forearm, pole, [down, behind]);
-    return { shoulder, elbow };
-  };
-  const leftArm = arm('left');
-  const rightArm = arm('right');
-  return {
-    leftLowerArm: leftArm.elbow,
-    rightLowerArm: rightArm.elbow,
-    leftUpperArm: leftArm.shoulder,
-    rightUpperArm: rightArm.shoulder,
-    chest: chestJoint,
-    hips,
-  };
+  // 7. Elbow: the swivel follows where the hand is and how it is turned.
+  handFeatures[0] = 1;
+  inChest(subtract(wrist.position, shoulder, a), sigma, a);
+  writeTo(handFeatures, 1, scale(a, 1 / body.arm, a));
+  writeTo(handFeatures, 4, inChest(rotate(wrist.orientation, up, a), sigma, a));
+  writeTo(handFeatures, 7, inChest(rotate(wrist.orientation, backward, a), sigma, a));
+  const pole = side === 'left' ? poles.left : poles.right;
+  rotate(chest, mirror(affine(parameters.pole, handFeatures, pole), sigma), pole);
+  scale(thoraxUp, -1, fallbackPoles[0]);
+  rotate(chest, backward, fallbackPoles[1]);
+  elbowCircle(shoulder, wrist.position, body.armBones, fallbackPoles[0], circle);
+  poleAcross(circle.axis, pole, fallbackPoles, pole);
+  elbowOnCircle(circle, pole, side === 'left' ? joints.leftLowerArm : joints.rightLowerArm);
+}
+
+/** 6. Shoulder: the clavicle swings with the hand. */
+function placeShoulder(wrist: Pose<'heading'>, body: ChestSpaceBody, sigma: number, target: MutableVec3): void {
+  const restShoulder = add(body.clavicleRoot, body.clavicle, b);
+  subtract(inChest(subtract(wrist.position, neck, a), sigma, a), restShoulder, a);
+  reach[0] = 1;
+  writeTo(reach, 1, scale(a, 1 / body.arm, a));
+  scale(affine(parameters.clavicle, reach, a), body.eyeHeight, a);
+  const far = length(a);
+  const most = bounds.clavicleShift * body.clavicleLength;
+  if (far > most) scale(a, most / far, a);
+  normalise(add(body.clavicle, a, a), right, a);
+  scale(a, body.clavicleLength, a);
+  mirror(add(body.clavicleRoot, a, a), sigma);
+  add(neck, rotate(chest, a, a), target);
+}
+
+function writeTo(values: Float64Array, at: number, { x, y, z }: Vec3): void {
+  values[at] = x;
+  values[at + 1] = y;
+  values[at + 2] = z;
+}
+
+/** The chest's axes by its joints: x between the shoulders, y the part of the way from the chest joint to their middle that is normal to it. */
+function chestAxesOf(joints: MutableJointPositions, { x, y, z }: ChestAxes): void {
+  normalise(subtract(joints.rightUpperArm, joints.leftUpperArm, x), undefined, x);
+  lerp(joints.leftUpperArm, joints.rightUpperArm, 0.5, y);
+  subtract(y, joints.chest, y);
+  normalise(reject(y, x, y), undefined, y);
+  cross(x, y, z);
 }

@@ -1,27 +1,56 @@
-import type { Pose, Transform } from '../math/pose';
-import { conjugate, fromAxisAngle, type Quat, rotate } from '../math/quat';
-import { cross, length, right, scale, up, type Vec3, vec3 } from '../math/vec3';
+import { smoothstep } from '../math/damper';
+import { type MutableTransform, makeTransform, type Pose, type Transform } from '../math/pose';
+import { conjugate, fromAxisAngle, type MutableQuat, type Quat, quat, rotate } from '../math/quat';
+import { forward, right, scale, setVec3, up, vec3 } from '../math/vec3';
+
+const axis = vec3(0, 0, 0);
 
 /**
- * The yaw of a head as a rotation about +Y, from its right axis, so that looking straight up or down does not matter.
- * A head on its side has none: then the gaze's, then that of −Z.
+ * The yaw [rad] of a head about +Y, from its right axis, so that looking straight up or down does not matter. A head on its side
+ * has none: then the gaze's, then that of −Z.
  */
-export function headingOf(orientation: Quat): Quat {
-  const candidates = [cross(up, rotate(orientation, right)), rotate(orientation, vec3(0, 0, -1))];
-  for (const candidate of candidates) {
-    const ahead: Vec3 = { ...candidate, y: 0 };
-    if (length(ahead) >= 1e-3) return fromAxisAngle(up, Math.atan2(-ahead.x, -ahead.z));
-  }
-  return fromAxisAngle(up, 0);
+export function yawOf(orientation: Quat): number {
+  const side = rotate(orientation, right, axis);
+  // The horizontal direction at right angles to the right axis is ahead.
+  if (Math.sqrt(side.x * side.x + side.z * side.z) >= 1e-3) return Math.atan2(-side.z, side.x);
+  const gaze = rotate(orientation, forward, axis);
+  return Math.sqrt(gaze.x * gaze.x + gaze.z * gaze.z) >= 1e-3 ? Math.atan2(-gaze.x, -gaze.z) : 0;
+}
+
+/** The yaw of a head as a rotation about +Y; see `yawOf`. */
+export const headingOf = (orientation: Quat, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat =>
+  fromAxisAngle(up, yawOf(orientation), target);
+
+/** The length in [0, 1] of the horizontal part of a head's right axis: 0 for a head on its side. */
+function headingDefinition(orientation: Quat): number {
+  const side = rotate(orientation, right, axis);
+  return Math.sqrt(side.x * side.x + side.z * side.z);
 }
 
 /** From the heading frame (origin on the floor under the headset, yaw of the head) to the floor frame. */
-export function floorFromHeading(head: Pose<'floor'>): Transform<'floor', 'heading'> {
-  return { position: { ...head.position, y: 0 }, orientation: headingOf(head.orientation) };
+export function floorFromHeading(
+  head: Pose<'floor'>,
+  target: MutableTransform<'floor', 'heading'> = makeTransform(),
+): MutableTransform<'floor', 'heading'> {
+  setVec3(target.position, head.position.x, 0, head.position.z);
+  headingOf(head.orientation, target.orientation);
+  return target;
 }
 
 /** The inverse of `floorFromHeading`. */
-export function headingFromFloor(head: Pose<'floor'>): Transform<'heading', 'floor'> {
-  const orientation = conjugate(headingOf(head.orientation));
-  return { position: scale(rotate(orientation, { ...head.position, y: 0 }), -1), orientation };
+export function headingFromFloor(
+  head: Pose<'floor'>,
+  target: MutableTransform<'heading', 'floor'> = makeTransform(),
+): Transform<'heading', 'floor'> {
+  conjugate(headingOf(head.orientation, target.orientation), target.orientation);
+  setVec3(target.position, head.position.x, 0, head.position.z);
+  scale(rotate(target.orientation, target.position, target.position), -1, target.position);
+  return target;
 }
+
+/** The horizontal part of a head's right axis at which its heading begins to mean something, and at which it is certain. */
+const [undefinedHeading, definedHeading] = [0.35, 0.7];
+
+/** Confidence in [0, 1] of a head's heading: 0 for a head on its side, whose heading says nothing of the body's. */
+export const headingConfidence = (orientation: Quat): number =>
+  smoothstep(undefinedHeading, definedHeading, headingDefinition(orientation));

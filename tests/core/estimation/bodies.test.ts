@@ -3,25 +3,18 @@ import { describe, expect, test } from 'vitest';
 import type { Calibration } from '../../../src/core/body/calibration';
 import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
 import { estimatedJoints, type JointName, type Side } from '../../../src/core/body/joints';
-import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
+import { chestSpaceBody, skeletonFromCalibration } from '../../../src/core/body/skeleton';
 import { swivelAngle } from '../../../src/core/body/two-bone-ik';
+import { completeHands, makeCompleteHandsState } from '../../../src/core/estimation/complete-hands';
 import { createEstimator } from '../../../src/core/estimation/estimators';
+import { filterJoints, makeFilterJointsState } from '../../../src/core/estimation/filter-joints';
 import type { JointPositions } from '../../../src/core/estimation/joint-positions';
-import { emptyMemory, reconstructOrientations } from '../../../src/core/estimation/reconstruct-orientations';
-import type { Pose } from '../../../src/core/math/pose';
-import {
-  angleBetween,
-  fromAxisAngle,
-  fromEulerYxz,
-  identity,
-  multiply,
-  rotate,
-  twistAngle,
-} from '../../../src/core/math/quat';
+import { angleBetween, fromAxisAngle, identity, multiply, rotate, twistAngle } from '../../../src/core/math/quat';
 import { nextRandom } from '../../../src/core/math/random';
 import {
   add,
   addScaled,
+  copyVec3,
   cross,
   distance,
   dot,
@@ -33,22 +26,22 @@ import {
   type Vec3,
   vec3,
 } from '../../../src/core/math/vec3';
-import { createHandContinuity } from '../../../src/core/tracking/hand-continuity';
 import type { TrackedPose, TrackingFrame } from '../../../src/core/tracking/tracking-frame';
-import { number, seed, standpoint } from '../arbitraries';
+import { cases } from '../../nightly';
+import { evenly, number, seed, standpoint } from '../arbitraries';
+import { fromEulerYxz } from '../euler-angles';
+import { completedFrame, fitted, type Joints, poseOf } from './drawn';
 import { movingPerson, standing, wristOrientation } from './moving-person';
 
 const calibration: Calibration = { eyeHeight: 1.62, armSpan: 1.53 };
 const degrees = Math.PI / 180;
 
-type Joints = Readonly<Record<JointName, Pose<'floor'>>>;
-
-/** The body IK gives somebody who has held this pose for a while. */
+/** The body that IK gives a person who has held this pose for a while. */
 function bodyOf(frame: TrackingFrame, body = calibration): Joints {
   const estimator = createEstimator('ik', body);
   let joints: Joints | null = null;
   for (let i = 0; i < 5; i++) {
-    const pose = estimator.estimate({ ...frame, time: frame.time + i / 60 });
+    const pose = poseOf(estimator, { ...frame, time: frame.time + i / 60 });
     joints = forwardKinematics(skeletonFromCalibration(body), pose.body!);
   }
   return joints!;
@@ -115,6 +108,7 @@ describe('arms', () => {
   test('an elbow that was estimated inside the trunk comes out of it', () => {
     const inTrunk = fc.record({ x: number(-0.08, 0.08), y: number(-0.02, 0.15), z: number(-0.08, 0.06) });
     const before = fc.record({ x: number(-0.25, 0.3), y: number(0.95, 1.35), z: number(-0.4, -0.15) });
+    let besideTheTrunk = 0;
     fc.assert(
       fc.property(before, inTrunk, (wrist, inside) => {
         const frame = standing(calibration, hip.left, vec3(wrist.x, wrist.y, wrist.z));
@@ -123,21 +117,23 @@ describe('arms', () => {
         const joints = Object.fromEntries(
           estimatedJoints.map((joint) => [joint, at(upright, joint)]),
         ) as JointPositions;
-        const estimate = { ...frame, joints: { ...joints, rightLowerArm: add(chest, inside as Vec3) } };
-        const skeleton = skeletonFromCalibration(calibration);
-        const solved = forwardKinematics(skeleton, reconstructOrientations(estimate, skeleton, emptyMemory(), 0));
+        const estimate = { ...joints, rightLowerArm: add(chest, inside as Vec3) };
+        const solved = fitted(calibration)(completedFrame(frame, calibration), estimate, 0);
         const elbow = subtract(at(solved, 'rightLowerArm'), at(solved, 'chest'));
         const belowNeck = at(solved, 'rightLowerArm').y < at(solved, 'neck').y - 0.02;
         const aboveHips = at(solved, 'rightLowerArm').y > at(solved, 'hips').y;
-        if (belowNeck && aboveHips) expect(Math.hypot(elbow.x / 0.12, elbow.z / 0.08)).toBeGreaterThan(1);
+        if (!belowNeck || !aboveHips) return;
+        besideTheTrunk += 1;
+        expect(Math.hypot(elbow.x / 0.12, elbow.z / 0.08)).toBeGreaterThan(1);
       }),
       { seed, numRuns: 300 },
     );
+    expect(besideTheTrunk).toBeGreaterThan(100);
   });
 
   describe('an elbow from frame to frame', () => {
-    const skeleton = skeletonFromCalibration(calibration);
     const frame = standing(calibration, hip.left, ahead.right);
+    const completed = completedFrame(frame, calibration);
     const upright = bodyOf(frame);
     const joints = Object.fromEntries(estimatedJoints.map((joint) => [joint, at(upright, joint)])) as JointPositions;
     const shoulder = joints.rightUpperArm;
@@ -147,20 +143,9 @@ describe('arms', () => {
 
     /** The angle [rad] by which elbows turn about the arm's line, from one estimate to the next, `seconds` apart. */
     const turned = (estimates: readonly Vec3[], seconds: number): number[] => {
-      const memory = emptyMemory();
+      const fitBody = fitted(calibration);
       const elbows = estimates.map((rightLowerArm, i) =>
-        at(
-          forwardKinematics(
-            skeleton,
-            reconstructOrientations(
-              { ...frame, joints: { ...joints, rightLowerArm } },
-              skeleton,
-              memory,
-              i ? seconds : 0,
-            ),
-          ),
-          'rightLowerArm',
-        ),
+        at(fitBody(completed, { ...joints, rightLowerArm }, i ? seconds : 0), 'rightLowerArm'),
       );
       return elbows.slice(1).map((elbow, i) => Math.abs(swivelAngle(shoulder, wrist, elbows[i]!, elbow)));
     };
@@ -199,7 +184,7 @@ describe('arms', () => {
         wristOrientation(normalise(vec3(0, -0.1, -1)), vec3(1, 0, 0)),
         fromAxisAngle(vec3(0, 0, 1), roll * degrees),
       );
-      const pose = createEstimator('ik', calibration).estimate({
+      const pose = poseOf(createEstimator('ik', calibration), {
         ...frame,
         rightHand: { ...frame.rightHand, orientation },
       });
@@ -230,7 +215,7 @@ describe('arms', () => {
     for (let i = 0; i <= 240; i++) {
       const z = -0.35 - 0.4 * Math.sin((i / 240) * Math.PI);
       const frame = { ...standing(calibration, hip.left, vec3(0.2, 1.35, z)), time: i / 60 };
-      const joints = forwardKinematics(skeletonFromCalibration(calibration), estimator.estimate(frame).body!);
+      const joints = forwardKinematics(skeletonFromCalibration(calibration), poseOf(estimator, frame).body!);
       if (before) expect(distance(at(joints, 'rightLowerArm'), at(before, 'rightLowerArm'))).toBeLessThan(0.03);
       before = joints;
     }
@@ -239,14 +224,14 @@ describe('arms', () => {
 
 describe('a hand that is lost', () => {
   const skeleton = skeletonFromCalibration(calibration);
-  /** Somebody who crouches or bows: the head at this height, so far ahead of where it was, looking down by so much [rad]. */
+  /** A person who crouches or bows: the head at this height, so far ahead of where it was, looking down by so much [rad]. */
   const lowered = (time: number, height: number, ahead: number, down: number): TrackingFrame => ({
     ...standing(calibration, hip.left, vec3(0.2, height - 0.3, -ahead - 0.3)),
     time,
     head: { position: vec3(0, height, -ahead), orientation: fromEulerYxz(vec3(-down, 0, 0)), tracking: 'tracked' },
   });
 
-  test('does not pull the trunk after it when somebody crouches, bows or sits on the floor', () => {
+  test('does not pull the trunk after it when a person crouches, bows or sits on the floor', () => {
     const posture = fc.record({ height: number(0.5, 1.6), ahead: number(0, 0.5), down: number(0, 1.4) });
     fc.assert(
       fc.property(posture, ({ height, ahead, down }) => {
@@ -254,7 +239,7 @@ describe('a hand that is lost', () => {
         let [joints, before]: [Joints | null, Joints | null] = [null, null];
         for (let i = 0; i < 120; i++) {
           const frame = lowered(i / 60, height, ahead, down);
-          const { body } = estimator.estimate(i < 20 ? frame : { ...frame, rightHand: null });
+          const { body } = poseOf(estimator, i < 20 ? frame : { ...frame, rightHand: null });
           before = joints;
           joints = forwardKinematics(skeleton, body!);
           if (!before) continue;
@@ -265,11 +250,11 @@ describe('a hand that is lost', () => {
         // It rests below its shoulder, as far as the floor lets it.
         expect(at(joints!, 'rightHand').y).toBeLessThan(at(joints!, 'rightUpperArm').y + 0.1);
       }),
-      { seed },
+      { seed, numRuns: cases(40) },
     );
   });
 
-  test('comes and goes without a jump of any joint, whatever the person does meanwhile', () => {
+  test('comes and goes without a jump of any joint, in any motion of the person meanwhile', () => {
     fc.assert(
       fc.property(fc.integer(), standpoint, number(0.1, 2), number(0, 60), (motion, place, seconds, start) => {
         const person = movingPerson(motion, calibration, place);
@@ -280,8 +265,8 @@ describe('a hand that is lost', () => {
           const frame = person(start + i / 60);
           const lost = i >= 30 && i < 30 + seconds * 60;
           const now = {
-            whole: forwardKinematics(skeleton, whole.estimate(frame).body!),
-            lossy: forwardKinematics(skeleton, lossy.estimate(lost ? { ...frame, rightHand: null } : frame).body!),
+            whole: forwardKinematics(skeleton, poseOf(whole, frame).body!),
+            lossy: forwardKinematics(skeleton, poseOf(lossy, lost ? { ...frame, rightHand: null } : frame).body!),
           };
           for (const joint of before
             ? (['hips', 'chest', 'rightUpperArm', 'rightLowerArm', 'rightHand'] as const)
@@ -293,7 +278,7 @@ describe('a hand that is lost', () => {
         }
         expect(furthest).toBeLessThan(0.05);
       }),
-      { seed, numRuns: 60 },
+      { seed, numRuns: cases(20) },
     );
   });
 
@@ -318,7 +303,7 @@ describe('a hand that is lost', () => {
         for (let i = 0; i < 180; i++) {
           const lost = i >= 20 && i < 20 + seconds * 60;
           const frame = { ...standing(calibration, hip.left, i < 20 ? ahead.right : back), time: i / 60 };
-          const { body } = estimator.estimate(lost ? { ...frame, rightHand: null } : frame);
+          const { body } = poseOf(estimator, lost ? { ...frame, rightHand: null } : frame);
           const joints = forwardKinematics(skeleton, body!);
           for (const joint of before ? (['rightUpperArm', 'rightLowerArm', 'rightHand'] as const) : [])
             expect(distance(at(joints, joint), at(before!, joint))).toBeLessThan(0.05);
@@ -327,7 +312,7 @@ describe('a hand that is lost', () => {
           if (i > 20 + seconds * 60 + 42) expect(distance(at(joints, 'rightHand'), back)).toBeLessThan(2e-3);
         }
       }),
-      { seed, numRuns: 100 },
+      { seed, numRuns: cases(40) },
     );
   });
 
@@ -350,7 +335,7 @@ describe('a hand that is lost', () => {
           const yaw = turn * Math.min(Math.max((back - whirlAt) / 0.15, 0), 1);
           const head: TrackedPose = { ...frame.head, orientation: fromEulerYxz(vec3(0, yaw, 0)) };
           const lost = i >= 20 && back < 0;
-          const { body } = estimator.estimate({ ...frame, head, rightHand: lost ? null : frame.rightHand });
+          const { body } = poseOf(estimator, { ...frame, head, rightHand: lost ? null : frame.rightHand });
           if (back < 0.7) continue;
           const joints = forwardKinematics(skeleton, body!);
           expect(distance(at(joints, 'rightHand'), hand)).toBeLessThan(1e-4);
@@ -366,8 +351,9 @@ describe('a hand that is lost', () => {
     const scatter = fc.tuple(fc.integer(), number(0.02, 0.3), place);
     fc.assert(
       fc.property(scatter, ([start, metres, hand]) => {
-        const continuity = createHandContinuity(() => calibration);
-        const memory = emptyMemory();
+        const hands = makeCompleteHandsState();
+        const body = chestSpaceBody(calibration);
+        const fitBody = fitted(calibration);
         let random = { seed: start };
         const near = (position: Vec3): Vec3 => {
           const aside = [0, 0, 0].map(() => {
@@ -383,10 +369,11 @@ describe('a hand that is lost', () => {
           const joints = Object.fromEntries(
             estimatedJoints.map((joint) => [joint, near(at(upright, joint))]),
           ) as JointPositions;
-          const continued = continuity.follow(seen ? frame : { ...frame, rightHand: null });
-          const body = reconstructOrientations({ ...continued, joints }, skeleton, memory, i ? 1 / 60 : 0);
+          const deltaSeconds = i ? 1 / 60 : 0;
+          const tracked = seen ? frame : { ...frame, rightHand: null };
+          const drawn = fitBody(completeHands(hands, frame.head, tracked, body, deltaSeconds), joints, deltaSeconds);
           if (i < 50 + 0.9 * 60) continue;
-          expect(distance(at(forwardKinematics(skeleton, body), 'rightHand'), hand as Vec3)).toBeLessThan(1e-4);
+          expect(distance(at(drawn, 'rightHand'), hand as Vec3)).toBeLessThan(1e-4);
         }
       }),
       { seed, numRuns: 100 },
@@ -396,15 +383,16 @@ describe('a hand that is lost', () => {
   test('a pause begins anew: nothing of the arm before it is left', () => {
     const person = movingPerson(7, calibration, { x: 1, z: -2, yaw: 2 });
     const [used, fresh] = [createEstimator('ik', calibration), createEstimator('ik', calibration)];
-    for (let i = 0; i < 30; i++) used.estimate(person(i / 60));
+    for (let i = 0; i < 30; i++) poseOf(used, person(i / 60));
     const later = person(40);
-    expect(used.estimate(later)).toEqual(fresh.estimate(later));
+    expect(poseOf(used, later)).toEqual(poseOf(fresh, later));
   });
 });
 
 describe('elbow and trunk', () => {
-  test('no elbow stays in the trunk, wherever the hand is held', () => {
-    const place = fc.record({ x: number(-0.35, 0.45), y: number(0.85, 1.5), z: number(-0.45, 0.1) });
+  test('no elbow stays in the trunk, wherever the hand is held but at the other flank', () => {
+    const place = fc.record({ x: evenly(-0.35, 0.45), y: evenly(0.85, 1.5), z: evenly(-0.45, 0.1) });
+    let handsOutside = 0;
     fc.assert(
       fc.property(place, (wrist) => {
         const joints = bodyOf(standing(calibration, hip.left, vec3(wrist.x, wrist.y, wrist.z)));
@@ -416,10 +404,15 @@ describe('elbow and trunk', () => {
         const handOff = subtract(at(joints, 'rightHand'), at(joints, 'hips'));
         const handShare = Math.max(0, Math.min(1, dot(handOff, trunk) / dot(trunk, trunk)));
         const handAside = addScaled(handOff, trunk, -handShare);
-        if (Math.hypot(handAside.x, handAside.z) > 0.2) expect(length(off)).toBeGreaterThan(0.07);
+        if (Math.hypot(handAside.x, handAside.z) <= 0.2) return;
+        // A right hand at the left flank gets there only round the trunk, which IK does not draw.
+        if (wrist.x < -0.15 && wrist.z > -0.05) return;
+        handsOutside += 1;
+        expect(length(off)).toBeGreaterThan(0.07);
       }),
       { seed, numRuns: 300 },
     );
+    expect(handsOutside).toBeGreaterThan(100);
   });
 });
 
@@ -430,7 +423,7 @@ describe('the trunk', () => {
   };
   const facing = (joints: Joints, joint: JointName): Vec3 => rotate(joints[joint].orientation, vec3(0, 0, -1));
 
-  test('somebody who stands upright is upright: hips under the head, at their height', () => {
+  test('a person who stands upright is upright: hips under the head, at their height', () => {
     const joints = bodyOf(standing(calibration, hip.left, hip.right));
     const hips = at(joints, 'hips');
     expect(Math.abs(hips.x)).toBeLessThan(0.02);
@@ -463,27 +456,24 @@ describe('the trunk', () => {
     expect(at(joints, 'hips').y).toBeLessThan(1);
   });
 
-  test('an estimate that turns about at once turns nobody about at once, least of all under a head on its side', () => {
-    const skeleton = skeletonFromCalibration(calibration);
+  test('an estimate that turns about at once turns no person about at once, least of all under a head on its side', () => {
     const upright = bodyOf(standing(calibration, ahead.left, ahead.right));
     const joints = Object.fromEntries(estimatedJoints.map((joint) => [joint, at(upright, joint)])) as JointPositions;
     const bowed = { ...joints, hips: add(joints.hips, vec3(0, 0, 0.3)), chest: add(joints.chest, vec3(0, 0, 0.15)) };
     const bent = { ...joints, hips: add(joints.hips, vec3(0, 0, -0.3)), chest: add(joints.chest, vec3(0, 0, -0.15)) };
     const longestStep = (roll: number): number => {
-      const memory = emptyMemory();
-      const frame = {
-        ...standing(calibration, ahead.left, ahead.right),
-        ...{ head: { position: vec3(0, 1.62, 0), orientation: fromEulerYxz(vec3(0, 0, roll)) } },
+      const head: TrackedPose = {
+        position: vec3(0, 1.62, 0),
+        orientation: fromEulerYxz(vec3(0, 0, roll)),
+        tracking: 'tracked',
       };
-      const hips = [bowed, bowed, bent, bent, bent].map((estimated, i) =>
-        at(
-          forwardKinematics(
-            skeleton,
-            reconstructOrientations({ ...frame, joints: estimated }, skeleton, memory, i ? 1 / 60 : 0),
-          ),
-          'hips',
-        ),
-      );
+      const completed = completedFrame({ ...standing(calibration, ahead.left, ahead.right), head }, calibration);
+      const filter = makeFilterJointsState();
+      const fitBody = fitted(calibration);
+      const hips = [bowed, bowed, bent, bent, bent].map((estimated, i) => {
+        const seconds = i ? 1 / 60 : 0;
+        return copyVec3(at(fitBody(completed, filterJoints(filter, estimated, completed, seconds), seconds), 'hips'));
+      });
       return Math.max(...hips.slice(1).map((place, i) => distance(place, hips[i]!)));
     };
     expect(longestStep(0)).toBeLessThan(0.05);
@@ -491,14 +481,18 @@ describe('the trunk', () => {
   });
 
   test('crouching lowers the hips, and they stay above the floor even when the head is on it', () => {
+    let aboveTheFloor = 0;
     fc.assert(
-      fc.property(number(-0.2, 1.62), number(-1.5, 1), (height, pitch) => {
+      fc.property(evenly(-0.2, 1.62), evenly(-1.5, 1), (height, pitch) => {
         const joints = bodyOf(looking(vec3(pitch, 0, 0), vec3(0, height, 0)));
         // A head under the floor is a floor at the wrong height: then the hips hang where the spine lets them.
-        if (height > 0.3) expect(at(joints, 'hips').y).toBeGreaterThan(0.05);
+        if (height <= 0.3) return;
+        aboveTheFloor += 1;
+        expect(at(joints, 'hips').y).toBeGreaterThan(0.05);
       }),
       { seed },
     );
+    expect(aboveTheFloor).toBeGreaterThan(30);
   });
 
   test('the head keeps its pose upside down', () => {

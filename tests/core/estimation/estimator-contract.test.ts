@@ -8,8 +8,8 @@ import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
 import { createEstimator, needsRegressor } from '../../../src/core/estimation/estimators';
 import { estimatorNames, type PoseEstimator } from '../../../src/core/estimation/pose-estimator';
 import type { PoseRegressor } from '../../../src/core/estimation/pose-regressor';
-import { type Pose, transformPoint } from '../../../src/core/math/pose';
-import { between, fromAxisAngle, multiply, rotate, swingTwist, twistAngle } from '../../../src/core/math/quat';
+import { transformPoint } from '../../../src/core/math/pose';
+import { fromAxisAngle, multiply, rotate, rotationBetween, swingTwist, twistAngle } from '../../../src/core/math/quat';
 import {
   add,
   addScaled,
@@ -28,6 +28,7 @@ import {
 import { headingOf } from '../../../src/core/tracking/heading';
 import type { TrackedPose, TrackingFrame } from '../../../src/core/tracking/tracking-frame';
 import { number, rotation, seed, standpoint, vector } from '../arbitraries';
+import { type Joints, show, showAll } from './drawn';
 import { mirrorFrame, mirrorPoint, movingPerson, transformFrame, withHand } from './moving-person';
 import { openShippedModel } from './shipped-models';
 
@@ -37,29 +38,19 @@ const calibrationOf = fc
   .tuple(number(1, 2.1), number(0.86, 1.02))
   .map(([eyeHeight, ratio]): Calibration => ({ eyeHeight, armSpan: eyeHeight * ratio }));
 
-/** Somebody of any size, standing anywhere, turned anyhow, in the middle of a movement. */
-const someone = fc
+/** A person of any size, standing anywhere, turned anyhow, in the middle of a movement. */
+const person = fc
   .record({ motion: fc.integer(), calibration: calibrationOf, standpoint, start: number(0, 100) })
-  .map((someone) => ({ ...someone, at: movingPerson(someone.motion, someone.calibration, someone.standpoint) }));
-
-type Joints = Readonly<Record<JointName, Pose<'floor'>>>;
+  .map((one) => ({ ...one, at: movingPerson(one.motion, one.calibration, one.standpoint) }));
 
 const jointsOf = (pose: AvatarPose, calibration: Calibration): Joints => {
   if (pose.body === null) throw new Error('this estimator shows no body');
   return forwardKinematics(skeletonFromCalibration(calibration), pose.body);
 };
 
-/** The frame through the estimator, inference awaited. */
-async function show(estimator: PoseEstimator, frame: TrackingFrame): Promise<AvatarPose> {
-  await estimator.prepare(frame);
-  return estimator.estimate(frame);
-}
-
-async function showAll(estimator: PoseEstimator, frames: readonly TrackingFrame[]): Promise<AvatarPose> {
-  let pose: AvatarPose | null = null;
-  for (const frame of frames) pose = await show(estimator, frame);
-  return pose!;
-}
+/** The second frame of a motion: the first in which a network's answer is drawn. */
+const showSecond = (estimator: PoseEstimator, at: (time: number) => TrackingFrame, time: number): Promise<AvatarPose> =>
+  showAll(estimator, [at(time - rate), at(time)]);
 
 const times = (start: number, count: number, step = rate): number[] =>
   Array.from({ length: count }, (_, i) => start + i * step);
@@ -88,12 +79,15 @@ describe.each(estimatorNames)('%s', (name) => {
 
   const create = (calibration: Calibration): PoseEstimator => createEstimator(name, calibration, regressor);
   const bodyFact = factIf(name !== 'hands-only');
-  // Inference costs: fewer cases where every frame runs a network.
-  const runs = (most: number) => ({ seed, ...(wantsModel ? { numRuns: Math.ceil(most / 5) } : { numRuns: most }) });
+  // Inference costs: fewer cases where every frame runs a network, and none to shrink the one that fails.
+  const runs = (most: number) => ({
+    seed,
+    ...(wantsModel ? { numRuns: Math.ceil(most / 5), endOnFailure: true } : { numRuns: most }),
+  });
 
   test('head and hands are those of this very frame', async () => {
     await fc.assert(
-      fc.asyncProperty(someone, async ({ at, calibration, start }) => {
+      fc.asyncProperty(person, async ({ at, calibration, start }) => {
         const estimator = create(calibration);
         for (const time of times(start, 3)) {
           const frame = at(time);
@@ -109,9 +103,9 @@ describe.each(estimatorNames)('%s', (name) => {
 
   bodyFact('the head is exactly where it is tracked', async () => {
     await fc.assert(
-      fc.asyncProperty(someone, async ({ at, calibration, start }) => {
+      fc.asyncProperty(person, async ({ at, calibration, start }) => {
         const frame = at(start);
-        const { head } = jointsOf(await show(create(calibration), frame), calibration);
+        const { head } = jointsOf(await showSecond(create(calibration), at, start), calibration);
         const eyes = add(head.position, rotate(head.orientation, skeletonFromCalibration(calibration).eyesInHead));
         expect(distance(eyes, frame.head.position)).toBeLessThan(1e-9);
         expect(head.orientation).toBeSameRotationAs(frame.head.orientation);
@@ -124,7 +118,7 @@ describe.each(estimatorNames)('%s', (name) => {
     'the hands land on the wrists wherever they can be reached, else a straight arm points at them',
     async () => {
       await fc.assert(
-        fc.asyncProperty(someone, async ({ at, calibration, start }) => {
+        fc.asyncProperty(person, async ({ at, calibration, start }) => {
           const estimator = create(calibration);
           const { restOffsets } = skeletonFromCalibration(calibration);
           const reach = length(restOffsets.leftLowerArm) + length(restOffsets.leftHand);
@@ -146,9 +140,9 @@ describe.each(estimatorNames)('%s', (name) => {
 
   bodyFact('a person who has the calibrated arms is never out of reach', async () => {
     await fc.assert(
-      fc.asyncProperty(someone, async ({ at, calibration, start }) => {
+      fc.asyncProperty(person, async ({ at, calibration, start }) => {
         const frame = at(start);
-        const joints = jointsOf(await show(create(calibration), frame), calibration);
+        const joints = jointsOf(await showSecond(create(calibration), at, start), calibration);
         expect(distance(joints.leftHand.position, frame.leftHand!.position)).toBeLessThan(1e-3);
         expect(distance(joints.rightHand.position, frame.rightHand!.position)).toBeLessThan(1e-3);
       }),
@@ -158,9 +152,9 @@ describe.each(estimatorNames)('%s', (name) => {
 
   bodyFact('bones keep their lengths, rotations theirs', async () => {
     await fc.assert(
-      fc.asyncProperty(someone, async ({ at, calibration, start }) => {
+      fc.asyncProperty(person, async ({ at, calibration, start }) => {
         const { restOffsets } = skeletonFromCalibration(calibration);
-        const pose = await show(create(calibration), at(start));
+        const pose = await showSecond(create(calibration), at, start);
         for (const q of Object.values(pose.body!.localRotations)) {
           expect(Math.abs(Math.hypot(q.x, q.y, q.z, q.w) - 1)).toBeLessThan(1e-9);
         }
@@ -211,34 +205,37 @@ describe.each(estimatorNames)('%s', (name) => {
   });
 
   // The paper's network sees room coordinates: that it does not turn with the person is one of its weaknesses.
-  factIf(name === 'ik' || name === 'learned')('who turns and moves as a whole takes the whole body along', async () => {
-    await fc.assert(
-      fc.asyncProperty(someone, standpoint, async ({ at, calibration, start }, { x, z, yaw }) => {
-        const elsewhere = { position: vec3(x, 0, z), orientation: fromAxisAngle(up, yaw) };
-        const frames = times(start, 6, 0.05).map(at);
-        const here = jointsOf(await showAll(create(calibration), frames), calibration);
-        const there = jointsOf(
-          await showAll(
-            create(calibration),
-            frames.map((frame) => transformFrame(elsewhere, frame)),
-          ),
-          calibration,
-        );
-        for (const joint of jointNames) {
-          const expected = transformPoint(elsewhere, here[joint].position);
-          // The network counts in single precision.
-          expect(distance(there[joint].position, expected)).toBeLessThan(name === 'learned' ? 1e-3 : 1e-6);
-        }
-      }),
-      runs(50),
-    );
-  });
+  factIf(name === 'ik' || name === 'learned')(
+    'a person who turns and moves as a whole takes the whole body along',
+    async () => {
+      await fc.assert(
+        fc.asyncProperty(person, standpoint, async ({ at, calibration, start }, { x, z, yaw }) => {
+          const elsewhere = { position: vec3(x, 0, z), orientation: fromAxisAngle(up, yaw) };
+          const frames = times(start, 6, 0.05).map(at);
+          const here = jointsOf(await showAll(create(calibration), frames), calibration);
+          const there = jointsOf(
+            await showAll(
+              create(calibration),
+              frames.map((frame) => transformFrame(elsewhere, frame)),
+            ),
+            calibration,
+          );
+          for (const joint of jointNames) {
+            const expected = transformPoint(elsewhere, here[joint].position);
+            // The network counts in single precision.
+            expect(distance(there[joint].position, expected)).toBeLessThan(name === 'learned' ? 1e-3 : 1e-6);
+          }
+        }),
+        runs(50),
+      );
+    },
+  );
 
   factIf(name === 'ik')('a mirrored person has a mirrored body', async () => {
     const mirroredName = (joint: JointName) =>
       (joint.startsWith('left') ? joint.replace('left', 'right') : joint.replace('right', 'left')) as JointName;
     await fc.assert(
-      fc.asyncProperty(someone, async ({ at, calibration, start }) => {
+      fc.asyncProperty(person, async ({ at, calibration, start }) => {
         const frames = times(start, 6, 0.05).map(at);
         const plain = jointsOf(await showAll(create(calibration), frames), calibration);
         const mirrored = jointsOf(await showAll(create(calibration), frames.map(mirrorFrame)), calibration);
@@ -253,7 +250,7 @@ describe.each(estimatorNames)('%s', (name) => {
 
   bodyFact('no wrist bends or twists more than 90° from its forearm', async () => {
     await fc.assert(
-      fc.asyncProperty(someone, rotation, async ({ at, calibration, start }, turn) => {
+      fc.asyncProperty(person, rotation, async ({ at, calibration, start }, turn) => {
         const estimator = create(calibration);
         for (const time of times(start, 4)) {
           const frame = at(time);
@@ -274,32 +271,36 @@ describe.each(estimatorNames)('%s', (name) => {
     'an elbow goes steadily and never jumps to the other side of its arm, wherever hands and hand turns go',
     async () => {
       const jolt = fc.record({ x: number(-0.5, 0.5), y: number(-0.4, 0.5), z: number(-0.6, 0.3) });
+      let bentSteps = 0;
       await fc.assert(
         fc.asyncProperty(
-          someone,
+          person,
           fc.array(jolt, { minLength: 3, maxLength: 3 }),
           rotation,
-          async (who, jolts, turn) => {
-            const estimator = create(who.calibration);
+          async (wearer, jolts, turn) => {
+            const estimator = create(wearer.calibration);
             let before: Joints | null = null;
-            for (const [i, time] of times(who.start, 24).entries()) {
+            for (const [i, time] of times(wearer.start, 24).entries()) {
               // The hand glides by way of these places, turned anyhow: near the shoulder, behind, across the chest.
-              const frame = who.at(who.start + 0.1 * (time - who.start));
+              const frame = wearer.at(wearer.start + 0.1 * (time - wearer.start));
               const [from, to] = [jolts[Math.floor(i / 12)]!, jolts[Math.floor(i / 12) + 1]!];
               const place = lerp(from, to, (i % 12) / 12);
               const chest = addScaled(frame.head.position, up, -0.3);
               const hand = add(chest, rotate(headingOf(frame.head.orientation), place));
               const rightHand: TrackedPose = { position: hand, orientation: turn, tracking: 'tracked' };
-              const joints = jointsOf(await show(estimator, { ...frame, time, rightHand }), who.calibration);
+              const joints = jointsOf(await show(estimator, { ...frame, time, rightHand }), wearer.calibration);
               if (before) {
                 const axis = (j: Joints) => normalise(subtract(j.rightHand.position, j.rightUpperArm.position));
                 const pole = (j: Joints) =>
                   reject(subtract(j.rightLowerArm.position, j.rightUpperArm.position), axis(j));
-                const carried = rotate(between(axis(before), axis(joints)), pole(before));
+                const carried = rotate(rotationBetween(axis(before), axis(joints)), pole(before));
                 const bent = Math.min(length(pole(before)), length(pole(joints))) > 0.04;
                 const angle = Math.atan2(length(cross(carried, pole(joints))), dot(carried, pole(joints)));
                 // 12 rad/s of its own, and what the chest turns that carries it.
-                if (bent) expect(angle).toBeLessThan(0.6);
+                if (bent) {
+                  bentSteps += 1;
+                  expect(angle).toBeLessThan(0.6);
+                }
               }
               before = joints;
             }
@@ -307,18 +308,21 @@ describe.each(estimatorNames)('%s', (name) => {
         ),
         runs(60),
       );
+      expect(bentSteps).toBeGreaterThan(50);
     },
   );
 
   test('reset forgets: the next frame is drawn as by a new estimator', async () => {
     await fc.assert(
-      fc.asyncProperty(someone, someone, async (first, second) => {
+      fc.asyncProperty(person, person, async (first, second) => {
         const used = create(second.calibration);
         await showAll(used, times(first.start, 5).map(first.at));
         used.reset();
-        const frame = second.at(first.start + 5 * rate);
-        const fresh = await show(create(second.calibration), frame);
-        expect(await show(used, frame)).toEqual(fresh);
+        const fresh = create(second.calibration);
+        for (const time of times(first.start + 5 * rate, 3)) {
+          const frame = second.at(time);
+          expect(await show(used, frame)).toEqual(await show(fresh, frame));
+        }
       }),
       runs(30),
     );
@@ -326,11 +330,12 @@ describe.each(estimatorNames)('%s', (name) => {
 
   bodyFact('a calibration takes effect with the next frame', async () => {
     await fc.assert(
-      fc.asyncProperty(someone, calibrationOf, async ({ at, calibration, start }, before) => {
+      fc.asyncProperty(person, calibrationOf, async ({ at, calibration, start }, before) => {
         const recalibrated = create(before);
         recalibrated.calibrate(calibration);
-        const pose = await show(recalibrated, at(start));
-        expect(pose).toEqual(await show(create(calibration), at(start)));
+        const fresh = create(calibration);
+        for (const time of times(start, 3))
+          expect(await show(recalibrated, at(time))).toEqual(await show(fresh, at(time)));
       }),
       runs(20),
     );
@@ -338,7 +343,7 @@ describe.each(estimatorNames)('%s', (name) => {
 
   bodyFact('the same motion looks the same at 60 Hz and at 120 Hz', async () => {
     await fc.assert(
-      fc.asyncProperty(someone, async ({ at, calibration, start }) => {
+      fc.asyncProperty(person, async ({ at, calibration, start }) => {
         const slow = await showAll(create(calibration), times(start, 31).map(at));
         const fast = await showAll(create(calibration), times(start, 61, rate / 2).map(at));
         expect(apart(jointsOf(slow, calibration), jointsOf(fast, calibration))).toBeLessThan(0.02);
@@ -355,7 +360,7 @@ describe.each(estimatorNames)('%s', (name) => {
       found: vector(0.25),
     });
     await fc.assert(
-      fc.asyncProperty(someone, loss, async ({ at, calibration, start }, { side, emulated, lostFor, found }) => {
+      fc.asyncProperty(person, loss, async ({ at, calibration, start }, { side, emulated, lostFor, found }) => {
         const estimator = create(calibration);
         const still = at(start);
         const hand = still[`${side}Hand`]!;
@@ -369,7 +374,8 @@ describe.each(estimatorNames)('%s', (name) => {
             : null;
           const frame = { ...withHand(still, side, lost ? elsewhere : seen), time };
           const joints = jointsOf(await show(estimator, frame), calibration);
-          if (before) {
+          // The paper's network takes over from IK with its first answer, in the second frame: that is no loss.
+          if (before && time - start > 0.1) {
             expect(distance(joints[`${side}Hand`].position, before[`${side}Hand`].position)).toBeLessThan(0.05);
             expect(distance(joints[`${side}LowerArm`].position, before[`${side}LowerArm`].position)).toBeLessThan(
               0.065,
@@ -385,7 +391,7 @@ describe.each(estimatorNames)('%s', (name) => {
 
   bodyFact('a hand that was never seen rests beside the hip, not at the origin', async () => {
     await fc.assert(
-      fc.asyncProperty(someone, async ({ at, calibration, start }) => {
+      fc.asyncProperty(person, async ({ at, calibration, start }) => {
         const frame = { ...at(start), leftHand: null, rightHand: null };
         const pose = await show(create(calibration), frame);
         expect([pose.leftHand, pose.rightHand]).toEqual([null, null]);

@@ -1,11 +1,13 @@
 import { describe, expect, test } from 'vitest';
-import type { AvatarPose } from '../../../src/core/body/avatar-pose';
+import { type AvatarPose, copyAvatarPose } from '../../../src/core/body/avatar-pose';
 import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
 import { jointNames } from '../../../src/core/body/joints';
 import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
-import { createEstimator, needsRegressor } from '../../../src/core/estimation/estimators';
+import { createEstimator, createWithNetwork, needsRegressor } from '../../../src/core/estimation/estimators';
+import type { Pipeline } from '../../../src/core/estimation/pipeline';
 import type { PoseRegressor } from '../../../src/core/estimation/pose-regressor';
 import { distance } from '../../../src/core/math/vec3';
+import { poseOf, show, showAll } from './drawn';
 import { movingPerson } from './moving-person';
 import { openShippedModel } from './shipped-models';
 
@@ -20,8 +22,11 @@ const apart = (a: AvatarPose, b: AvatarPose): number => {
 
 const ikPose = (count: number): AvatarPose => {
   const ik = createEstimator('ik', calibration);
-  return frames.slice(0, count).map((frame) => ik.estimate(frame))[count - 1]!;
+  return frames.slice(0, count).map((frame) => poseOf(ik, frame))[count - 1]!;
 };
+
+/** The newest answer of its network as joints; null: there is none. */
+const answerOf = ({ source, state }: Pipeline) => source.network!.answer(state.solved);
 
 /** A network that breaks in its own way from some run on. */
 const breaking = (
@@ -50,24 +55,19 @@ const ways: [string, (output: Float32Array) => Promise<Float32Array>, RegExp][] 
 
 describe.each(['paper', 'learned'] as const)('%s with a failing network', (name) => {
   test.each(ways)('that %s: the body is IK’s, and a sentence names the network', async (_, way, sentence) => {
-    const estimator = createEstimator(name, calibration, breaking(await openShippedModel(name), 0, way));
-    let pose: AvatarPose | null = null;
-    for (const frame of frames.slice(0, 5)) {
-      await estimator.prepare(frame);
-      pose = estimator.estimate(frame);
-    }
-    expect(apart(pose!, ikPose(5))).toBeLessThan(1e-9);
+    const estimator = createWithNetwork(name, calibration, breaking(await openShippedModel(name), 0, way));
+    const pose = await showAll(estimator, frames.slice(0, 5));
+    expect(apart(pose, ikPose(5))).toBeLessThan(1e-9);
     expect(estimator.fault()).toMatch(sentence);
     expect(estimator.fault()).toContain(name);
-    expect(estimator.rawJoints()).toBeNull();
+    expect(answerOf(estimator)).toBeNull();
   });
 
   test.each(ways)('that works for a while and then %s: the body goes over to IK', async (_, way) => {
-    const estimator = createEstimator(name, calibration, breaking(await openShippedModel(name), 30, way));
+    const estimator = createWithNetwork(name, calibration, breaking(await openShippedModel(name), 30, way));
     let pose: AvatarPose | null = null;
     for (const [i, frame] of frames.entries()) {
-      await estimator.prepare(frame);
-      pose = estimator.estimate(frame);
+      pose = await show(estimator, frame);
       expect(estimator.fault() === null).toBe(i < 30);
     }
     // A second after the fault nothing of the network is left, but for where the elbow's memory began.
@@ -77,15 +77,15 @@ describe.each(['paper', 'learned'] as const)('%s with a failing network', (name)
   test('that recovers: the fault is forgotten', async () => {
     let run = 0;
     const shipped = await openShippedModel(name);
-    const estimator = createEstimator(name, calibration, {
+    const estimator = createWithNetwork(name, calibration, {
       ...shipped,
       run: (features) => (run++ === 0 ? Promise.reject(new Error('cold')) : shipped.run(features)),
     });
-    await estimator.prepare(frames[0]!);
+    await show(estimator, frames[0]!);
     expect(estimator.fault()).not.toBeNull();
-    await estimator.prepare(frames[1]!);
+    await show(estimator, frames[1]!);
     expect(estimator.fault()).toBeNull();
-    expect(estimator.rawJoints()).not.toBeNull();
+    expect(answerOf(estimator)).not.toBeNull();
   });
 });
 
@@ -95,7 +95,7 @@ describe.each(['paper', 'learned'] as const)('%s with a slow network', (name) =>
     let running = 0;
     let started = 0;
     let finish: (() => void) | null = null;
-    const estimator = createEstimator(name, calibration, {
+    const estimator = createWithNetwork(name, calibration, {
       ...shipped,
       async run(features) {
         running += 1;
@@ -109,19 +109,22 @@ describe.each(['paper', 'learned'] as const)('%s with a slow network', (name) =>
         return output;
       },
     });
-    const first = estimator.prepare(frames[0]!);
-    const second = estimator.prepare(frames[1]!);
-    expect(apart(estimator.estimate(frames[1]!), ikPose(1))).toBeLessThan(0.2);
-    expect(estimator.rawJoints()).toBeNull();
+    const first = estimator.update(frames[0]!).request!.ask();
+    const { pose, request } = estimator.update(frames[1]!);
+    expect(apart(copyAvatarPose(pose), ikPose(2))).toBeLessThan(1e-9);
+    const second = request!.ask();
+    expect(answerOf(estimator)).toBeNull();
     await expect.poll(() => finish).not.toBeNull();
     finish!();
     await Promise.all([first, second]);
     expect(started).toBe(1);
-    expect(estimator.rawJoints()).not.toBeNull();
-    const third = estimator.prepare(frames[2]!);
-    expect(started).toBe(2);
-    expect(estimator.estimate(frames[2]!).head).toEqual(frames[2]!.head);
+    expect(answerOf(estimator)).not.toBeNull();
     finish = null;
+    const drawn = estimator.update(frames[2]!);
+    expect(drawn.pose.head).toEqual(frames[2]!.head);
+    expect(apart(copyAvatarPose(drawn.pose), ikPose(3))).toBeGreaterThan(1e-4);
+    const third = drawn.request!.ask();
+    expect(started).toBe(2);
     await expect.poll(() => finish).not.toBeNull();
     finish!();
     await third;
@@ -129,11 +132,11 @@ describe.each(['paper', 'learned'] as const)('%s with a slow network', (name) =>
 
   test('forgets a run that a reset overtook', async () => {
     const shipped = await openShippedModel(name);
-    const estimator = createEstimator(name, calibration, shipped);
-    const running = estimator.prepare(frames[0]!);
+    const estimator = createWithNetwork(name, calibration, shipped);
+    const running = estimator.update(frames[0]!).request!.ask();
     estimator.reset();
     await running;
-    expect(estimator.rawJoints()).toBeNull();
+    expect(answerOf(estimator)).toBeNull();
     expect(estimator.fault()).toBeNull();
   });
 });

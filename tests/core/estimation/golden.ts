@@ -1,8 +1,11 @@
 import { readFileSync } from 'node:fs';
 import type { Calibration } from '../../../src/core/body/calibration';
+import type { SeenHands } from '../../../src/core/estimation/features';
+import { makeThreePoints, type ThreePoints } from '../../../src/core/estimation/solve-ik';
+import { type Pose, transformPose } from '../../../src/core/math/pose';
 import type { Quat } from '../../../src/core/math/quat';
 import type { Vec3 } from '../../../src/core/math/vec3';
-import type { ContinuedFrame } from '../../../src/core/tracking/hand-continuity';
+import { headingFromFloor } from '../../../src/core/tracking/heading';
 
 type Numbers = readonly number[];
 
@@ -24,14 +27,18 @@ export interface GoldenCase {
   readonly inputs: readonly Numbers[];
 }
 
-/** Joints as somebody estimates them, and where the skeleton puts them, floor frame. */
-export interface GoldenPlacement {
+/** Joints as they are estimated, and where torso and arm fitting put them on the skeleton, floor frame. */
+export interface GoldenFit {
   readonly calibration: Calibration;
   readonly frames: readonly {
+    /** Where the hands are. */
+    readonly situation: string;
     readonly positions: readonly Numbers[];
     readonly rotations: readonly Numbers[];
     readonly estimated: readonly Numbers[];
-    readonly placed: readonly Numbers[];
+    readonly fitted: readonly Numbers[];
+    /** Of the left and the right elbow: whether the swivel limiter keeps it out of the trunk. */
+    readonly limited: readonly boolean[];
   }[];
 }
 
@@ -53,15 +60,33 @@ export const quat = ([x = Number.NaN, y = Number.NaN, z = Number.NaN, w = Number
   w,
 });
 
-/** A golden frame as the estimators see it. */
-export function continuedFrame(frame: GoldenCase['frames'][number]): ContinuedFrame {
+/** Head and wrists of a golden frame, floor frame, and which hands were seen. */
+export interface GoldenPoints {
+  readonly head: Pose<'floor'>;
+  readonly leftHand: Pose<'floor'>;
+  readonly rightHand: Pose<'floor'>;
+  readonly seen: SeenHands;
+}
+
+export function goldenPoints({ positions, rotations, seen }: GoldenCase['frames'][number]): GoldenPoints {
   const pose = (index: number) => ({
-    position: vec(frame.positions[index] ?? []),
-    orientation: quat(frame.rotations[index] ?? []),
+    position: vec(positions[index] ?? []),
+    orientation: quat(rotations[index] ?? []),
   });
-  const hand = (index: 1 | 2) => {
-    const seen = frame.seen[index - 1] === true;
-    return { ...pose(index), seen, trust: seen ? 1 : 0, way: { goal: pose(index), rests: !seen, since: 0, age: 0 } };
+  return {
+    head: pose(0),
+    leftHand: pose(1),
+    rightHand: pose(2),
+    seen: { left: seen[0] === true, right: seen[1] === true },
   };
-  return { time: frame.time, head: pose(0), leftHand: hand(1), rightHand: hand(2) };
+}
+
+/** The same as IK sees them. */
+export function pointsInHeading({ head, leftHand, rightHand }: GoldenPoints): ThreePoints {
+  const points = makeThreePoints();
+  const transform = headingFromFloor(head);
+  transformPose(transform, head, points.head);
+  transformPose(transform, leftHand, points.leftHand);
+  transformPose(transform, rightHand, points.rightHand);
+  return points;
 }

@@ -1,6 +1,6 @@
 import { describe, expect, test } from 'vitest';
 import { estimatedJoints } from '../../../src/core/body/joints';
-import { learnedInputCount } from '../../../src/core/estimation/learned';
+import { learnedInputCount } from '../../../src/core/estimation/residual';
 import { type GoldenModel, readGolden } from './golden';
 import { type NetworkName, openShippedModel } from './shipped-models';
 

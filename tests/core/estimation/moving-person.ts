@@ -2,12 +2,13 @@ import type { Calibration } from '../../../src/core/body/calibration';
 import type { Side } from '../../../src/core/body/joints';
 import { chestSpaceBody, sideSign } from '../../../src/core/body/skeleton';
 import { type Frame, type Transform, transformPose } from '../../../src/core/math/pose';
-import { fromAxes, fromAxisAngle, fromEulerYxz, multiply, type Quat, rotate } from '../../../src/core/math/quat';
+import { fromAxes, fromAxisAngle, multiply, type Quat, rotate } from '../../../src/core/math/quat';
 import { nextRandom } from '../../../src/core/math/random';
 import { add, addScaled, cross, normalise, right, subtract, up, type Vec3, vec3 } from '../../../src/core/math/vec3';
 import type { TrackedPose, TrackingFrame } from '../../../src/core/tracking/tracking-frame';
+import { fromEulerYxz } from '../euler-angles';
 
-/** Where somebody stands on the floor and which way they face at the start. */
+/** Where a person stands on the floor and which way they face at the start. */
 export interface Standpoint {
   readonly x: number;
   readonly z: number;
@@ -24,7 +25,7 @@ export function wristOrientation(fingers: Vec3, back: Vec3): Quat {
 }
 
 /**
- * Somebody who leans, turns, crouches and moves the arms as a body of this calibration can: the frame at any time. Made of
+ * A person who leans, turns, crouches and moves the arms as a body of this calibration can: the frame at any time. Made of
  * sines of a seed, with its own simple body, so that it is no mirror image of what is tested.
  */
 export function movingPerson(
@@ -78,9 +79,9 @@ export function movingPerson(
         chest,
         fromEulerYxz(vec3(0.6 + swing(time), -sigma * roll(time), sigma * (0.35 + out(time)))),
       );
-      const elbow = addScaled(shoulder, rotate(upper, up), -body.upperArm);
+      const elbow = addScaled(shoulder, rotate(upper, up), -body.armBones.upper);
       const forearm = multiply(upper, fromAxisAngle(right, 1.1 + 0.6 * Math.tanh(flexion(time))));
-      const wrist = addScaled(elbow, rotate(forearm, up), -body.forearm);
+      const wrist = addScaled(elbow, rotate(forearm, up), -body.armBones.lower);
       const grip = wristOrientation(vec3(0, -1, 0), vec3(sigma, 0, 0));
       const wristTurn = fromEulerYxz(vec3(bend(time), sigma * bend(time + 1), turn(time)));
       return tracked(wrist, multiply(multiply(forearm, grip), wristTurn));
@@ -126,7 +127,7 @@ export function mirrorFrame(frame: TrackingFrame): TrackingFrame {
 export const withHand = (frame: TrackingFrame, side: Side, hand: TrackedPose | null): TrackingFrame =>
   side === 'left' ? { ...frame, leftHand: hand } : { ...frame, rightHand: hand };
 
-/** Somebody at rest, upright, facing −Z, with the wrists there (floor frame), fingers away from the shoulder. */
+/** A person at rest, upright, facing −Z, with the wrists there (floor frame), fingers away from the shoulder. */
 export function standing(
   calibration: Calibration,
   leftWrist: Vec3,

@@ -1,14 +1,13 @@
 import { describe, expect, test } from 'vitest';
 import { estimatedJoints, type JointName } from '../../../src/core/body/joints';
 import { chestSpaceBody, skeletonFromCalibration } from '../../../src/core/body/skeleton';
-import { viewFromChest } from '../../../src/core/estimation/chest-view';
-import { createFeatureWindow, featureCount, frameFeatures } from '../../../src/core/estimation/features';
-import { pointsInHeading } from '../../../src/core/estimation/ik';
+import { chestFeatureCount, chestFeatures } from '../../../src/core/estimation/chest-features';
+import { FeatureWindow, featureCount, frameFeatures } from '../../../src/core/estimation/features';
 import { transformJoints } from '../../../src/core/estimation/joint-positions';
 import { paperFeatures } from '../../../src/core/estimation/paper-features';
 import { solveIk } from '../../../src/core/estimation/solve-ik';
 import { floorFromHeading } from '../../../src/core/tracking/heading';
-import { continuedFrame, type GoldenCase, readGolden } from './golden';
+import { type GoldenCase, goldenPoints, pointsInHeading, readGolden } from './golden';
 
 const tolerance = 1e-5;
 const cases = readGolden<GoldenCase[]>('features.json');
@@ -33,8 +32,9 @@ describe.each(cases)('TypeScript agrees with Python for eyes at $calibration.eye
 
   test('the IK solution in the floor frame', () => {
     for (const frame of golden.frames) {
-      const continued = continuedFrame(frame);
-      const joints = transformJoints(floorFromHeading(continued.head), solveIk(pointsInHeading(continued), body));
+      const points = goldenPoints(frame);
+      const { joints } = solveIk(pointsInHeading(points), body);
+      transformJoints(floorFromHeading(points.head), joints, joints);
       estimatedJoints.forEach((joint, index) => {
         const { x, y, z } = joints[joint];
         expectNear([x, y, z], frame.ikJoints[index]!, joint);
@@ -43,22 +43,19 @@ describe.each(cases)('TypeScript agrees with Python for eyes at $calibration.eye
   });
 
   test('features, windowed in time and seen from the chest, and the paper’s input', () => {
-    const window = createFeatureWindow(Math.max(...golden.window));
+    const window = new FeatureWindow(Math.max(...golden.window));
+    const input = new Float32Array(golden.window.length * featureCount + chestFeatureCount);
     golden.frames.forEach((frame, index) => {
-      const continued = continuedFrame(frame);
-      const points = pointsInHeading(continued);
-      const features = frameFeatures(
-        points,
-        { left: continued.leftHand.seen, right: continued.rightHand.seen },
-        solveIk(points, body),
-        body,
-      );
+      const seen = goldenPoints(frame);
+      const points = pointsInHeading(seen);
+      const solution = solveIk(points, body);
+      const features = frameFeatures(points, seen.seen, solution.joints, body, window.push(frame.time));
       expect(features.length).toBe(featureCount);
       expectNear(features, frame.features, `frame ${index}`);
-      window.push(frame.time, features);
-      const input = [...window.read(golden.window), ...viewFromChest(features).features];
+      window.read(golden.window, input);
+      chestFeatures(points, solution, body, input, golden.window.length * featureCount);
       expectNear(input, golden.inputs[index]!, `input ${index}`);
-      expectNear(paperFeatures(continued.head, continued.leftHand, continued.rightHand), frame.paperInput, 'paper');
+      expectNear(paperFeatures(seen.head, seen.leftHand, seen.rightHand), frame.paperInput, 'paper');
     });
   });
 });

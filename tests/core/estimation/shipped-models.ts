@@ -19,7 +19,6 @@ export async function openShippedModel(name: NetworkName): Promise<PoseRegressor
   return {
     contract,
     provider: 'wasm',
-    resolvesInFrame: true,
     async run(features) {
       const results = await session.run({ [input.name]: new ort.Tensor('float32', features, input.shape) });
       return results[output.name]!.data as Float32Array;

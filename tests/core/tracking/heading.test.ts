@@ -1,10 +1,11 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import { transformPoint } from '../../../src/core/math/pose';
-import { fromAxisAngle, fromEulerYxz, multiply, rotate } from '../../../src/core/math/quat';
+import { fromAxisAngle, multiply, rotate } from '../../../src/core/math/quat';
 import { distance, forward, right, up, vec3 } from '../../../src/core/math/vec3';
 import { floorFromHeading, headingFromFloor, headingOf } from '../../../src/core/tracking/heading';
 import { number, rotation, seed, vector } from '../arbitraries';
+import { fromEulerYxz } from '../euler-angles';
 
 describe('the heading', () => {
   test('is the yaw of the head, however it nods or tilts a little', () => {

@@ -1,0 +1,16 @@
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { needsRegressor } from '../../src/core/estimation/estimators';
+import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
+import { parseContract, startRegressor } from '../../src/inference/load-regressor';
+import { type MeasuredMethod, measuredMethods } from './drive';
+
+/** The networks of a folder with their contracts, started. */
+export async function loadRegressors(folder: string): Promise<Map<MeasuredMethod, PoseRegressor>> {
+  const started = new Map<MeasuredMethod, PoseRegressor>();
+  for (const name of measuredMethods.filter(needsRegressor)) {
+    const contract = parseContract(`${name}.json`, readFileSync(join(folder, `${name}.json`), 'utf8'));
+    started.set(name, await startRegressor(contract, readFileSync(join(folder, contract.file))));
+  }
+  return started;
+}

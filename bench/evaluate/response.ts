@@ -1,0 +1,158 @@
+import type { Calibration } from '../../src/core/body/calibration';
+import { fromAxisAngle, identity, multiply, type Quat } from '../../src/core/math/quat';
+import { nextRandom } from '../../src/core/math/random';
+import { add, dot, length, normalise, scale, subtract, type Vec3, vec3 } from '../../src/core/math/vec3';
+import type { TrackedPose, TrackingFrame } from '../../src/core/tracking/tracking-frame';
+import type { Driver } from './drive';
+
+/** The calibration of the person who stands there. */
+export const standing: Calibration = { eyeHeight: 1.62, armSpan: 1.48 };
+
+export type WavedPoint = 'head' | 'rightHand';
+
+/** How a drawn joint follows a tracked point that goes to and fro. */
+export interface Response {
+  /** How late [ms] it is against the same estimator with all the time it wants. */
+  readonly lagMs: number;
+  /** How far it goes, relative to that. */
+  readonly gain: number;
+}
+
+const ways: Readonly<Record<WavedPoint, Vec3>> = { head: vec3(0.08, 0, 0), rightHand: vec3(0, 0.15, -0.05) };
+/** So slow [Hz] that filters do not matter. */
+const slowHz = 0.1;
+/** Before anything counts, and at least counted, in whole cycles. */
+const [settleSeconds, countedSeconds] = [3, 4];
+/** Joints that go less [m] than this do not follow at all. */
+const still = 0.002;
+
+const tracked = (position: Vec3, orientation: Quat): TrackedPose => ({ position, orientation, tracking: 'tracked' });
+
+/** A person who stands with bent elbows, one point displaced [m]. */
+function stance(time: number, point: WavedPoint | null, displaced: Vec3): TrackingFrame {
+  const at = (name: WavedPoint | 'leftHand', rest: Vec3) =>
+    tracked(name === point ? add(rest, displaced) : rest, identity);
+  return {
+    time,
+    head: at('head', vec3(0, standing.eyeHeight, 0)),
+    leftHand: at('leftHand', vec3(-0.2, 1.08, -0.32)),
+    rightHand: at('rightHand', vec3(0.2, 1.08, -0.32)),
+  };
+}
+
+/** The fundamental of a joint's way: cosine and sine parts by axis [m]. */
+interface Fundamental {
+  readonly cosine: Vec3;
+  readonly sine: Vec3;
+}
+
+async function fundamentals(
+  driver: Driver,
+  point: WavedPoint,
+  hz: number,
+  joints: readonly string[],
+  rateHz: number,
+): Promise<Readonly<Record<string, Fundamental>>> {
+  const cycles = Math.max(1, Math.ceil(countedSeconds * hz));
+  const counted = Math.round((cycles * rateHz) / hz);
+  const settling = settleSeconds * rateHz;
+  const sums = new Map(joints.map((joint) => [joint, { cosine: [0, 0, 0], sine: [0, 0, 0] }]));
+  const way = ways[point];
+  for (let row = -settling; row < counted; row++) {
+    const phase = (2 * Math.PI * hz * row) / rateHz;
+    const swing = Math.sin(phase);
+    const frame = stance(row / rateHz, point, scale(way, swing));
+    const drawn = await driver.draw(frame);
+    if (row < 0) continue;
+    for (const [joint, { cosine, sine }] of sums) {
+      const { x, y, z } = drawn.joints[joint] as Vec3;
+      [x, y, z].forEach((value, axis) => {
+        cosine[axis] = (cosine[axis] ?? 0) + (2 * value * Math.cos(phase)) / counted;
+        sine[axis] = (sine[axis] ?? 0) + (2 * value * Math.sin(phase)) / counted;
+      });
+    }
+  }
+  const vector = ([x = 0, y = 0, z = 0]: readonly number[]) => vec3(x, y, z);
+  return Object.fromEntries(
+    [...sums].map(([joint, { cosine, sine }]) => [joint, { cosine: vector(cosine), sine: vector(sine) }]),
+  );
+}
+
+/** How joints follow a wave of each frequency [Hz] of one tracked point; null: the joint stays where it is. */
+export async function measureResponse(
+  driver: () => Driver,
+  point: WavedPoint,
+  frequencies: readonly number[],
+  joints: readonly string[],
+  rateHz = 60,
+): Promise<Readonly<Record<string, Response | null>>[]> {
+  const slow = await fundamentals(driver(), point, slowHz, joints, rateHz);
+  const responses: Readonly<Record<string, Response | null>>[] = [];
+  for (const hz of frequencies) {
+    const quick = await fundamentals(driver(), point, hz, joints, rateHz);
+    responses.push(Object.fromEntries(joints.map((joint) => [joint, responseOf(slow[joint]!, quick[joint]!, hz)])));
+  }
+  return responses;
+}
+
+/** The quick wave as a multiple of the slow one, by its projection on that: amplitude ratio, and phase as a time. */
+function responseOf(slow: Fundamental, quick: Fundamental, hz: number): Response | null {
+  const power = length(slow.cosine) ** 2 + length(slow.sine) ** 2;
+  if (Math.sqrt(power) < still) return null;
+  const inPhase = (dot(quick.sine, slow.sine) + dot(quick.cosine, slow.cosine)) / power;
+  const ahead = (dot(quick.cosine, slow.sine) - dot(quick.sine, slow.cosine)) / power;
+  const lagMs = (-Math.atan2(ahead, inPhase) / (2 * Math.PI * hz)) * 1000;
+  return { lagMs, gain: Math.hypot(inPhase, ahead) };
+}
+
+/** Standard deviations of the trackers' noise by axis: 0.3 mm, 0.1°. */
+const noise = { metres: 0.0003, radians: 0.1 * (Math.PI / 180) };
+
+/** Root mean square [mm] of what joints move from frame to frame while the wearer stands still and the trackers are noisy. */
+export async function measureTremble(
+  driver: Driver,
+  joints: readonly string[],
+  rateHz = 60,
+): Promise<Readonly<Record<string, number>>> {
+  let state = { seed: 15 };
+  const normal = (): number => {
+    const draw = () => {
+      const next = nextRandom(state);
+      state = next.state;
+      return next.value;
+    };
+    return Math.sqrt(-2 * Math.log(1 - draw())) * Math.cos(2 * Math.PI * draw());
+  };
+  const noisy = <P extends TrackedPose | null>(pose: P): P => {
+    if (!pose) return pose;
+    const by = (size: number) => vec3(normal() * size, normal() * size, normal() * size);
+    const turn = by(noise.radians);
+    const angle = length(turn);
+    return {
+      ...pose,
+      position: add(pose.position, by(noise.metres)),
+      orientation: multiply(pose.orientation, fromAxisAngle(normalise(turn), angle)),
+    };
+  };
+  const sums = new Map(joints.map((joint) => [joint, 0]));
+  const [settling, counted] = [2 * rateHz, 10 * rateHz];
+  let before: Readonly<Record<string, Vec3>> | null = null;
+  for (let row = -settling; row < counted; row++) {
+    const frame = stance(row / rateHz, null, vec3(0, 0, 0));
+    const { head, leftHand, rightHand } = frame;
+    const drawn = await driver.draw({
+      ...frame,
+      head: noisy(head),
+      leftHand: noisy(leftHand),
+      rightHand: noisy(rightHand),
+    });
+    if (before && row >= 0) {
+      for (const joint of joints) {
+        const went = length(subtract(drawn.joints[joint] as Vec3, before[joint] as Vec3)) * 1000;
+        sums.set(joint, (sums.get(joint) ?? 0) + went * went);
+      }
+    }
+    before = drawn.joints;
+  }
+  return Object.fromEntries([...sums].map(([joint, sum]) => [joint, Math.sqrt(sum / counted)]));
+}

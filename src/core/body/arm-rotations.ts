@@ -1,0 +1,37 @@
+import { alignDirections, type MutableQuat, multiply, type Quat, rotate } from '../math/quat';
+import { add, cross, type MutableVec3, subtract, type Vec3, vec3 } from '../math/vec3';
+import type { Side } from './joints';
+import { type Skeleton, wristFromHandBone } from './skeleton';
+
+/** Where an arm points in T-pose. */
+export const alongArm: Readonly<Record<Side, Vec3>> = { left: vec3(-1, 0, 0), right: vec3(1, 0, 0) };
+
+/** The elbow's hinge in T-pose: it bends forearms forward. */
+const hingeAtRest: Readonly<Record<Side, Vec3>> = { left: vec3(0, -1, 0), right: vec3(0, 1, 0) };
+
+/** The hinge of an elbow, at right angles to shoulder, elbow and wrist: pole × axis of its circle. */
+export const elbowHinge = (pole: Vec3, axis: Vec3, target?: MutableVec3): MutableVec3 => cross(pole, axis, target);
+
+/** The rotation of an upper arm or an untwisted forearm that points in `direction` and bends about `hinge`, floor frame. */
+export const armBoneRotation = (side: Side, direction: Vec3, hinge: Vec3, target?: MutableQuat): MutableQuat =>
+  alignDirections(alongArm[side], hingeAtRest[side], direction, hinge, target);
+
+/** The rotation of the hand's bone under a wrist that is turned like this, floor frame. */
+export const handBoneRotation = (side: Side, wrist: Quat, target?: MutableQuat): MutableQuat =>
+  multiply(wrist, wristFromHandBone[side], target);
+
+/** Where a clavicle begins [m], under a neck joint at `neck` on a thorax that is turned like `upperChest`, floor frame. */
+export function clavicleRoot(
+  side: Side,
+  neck: Vec3,
+  upperChest: Quat,
+  { restOffsets }: Skeleton,
+  target: MutableVec3 = vec3(0, 0, 0),
+): MutableVec3 {
+  subtract(side === 'left' ? restOffsets.leftShoulder : restOffsets.rightShoulder, restOffsets.neck, target);
+  return add(neck, rotate(upperChest, target, target), target);
+}
+
+/** From the clavicle's root to the shoulder joint [m] on a clavicle at rest, clavicle's frame. */
+export const clavicleRest = (side: Side, { restOffsets }: Skeleton): Vec3 =>
+  side === 'left' ? restOffsets.leftUpperArm : restOffsets.rightUpperArm;

@@ -1,0 +1,201 @@
+import type { LimbBones } from '../body/two-bone-ik';
+import { bisect } from '../math/bisection';
+import { clamp } from '../math/damper';
+import { quat, rotate, rotationBetween } from '../math/quat';
+import { addScaled, copyVec3, cross, distance, lerp, type MutableVec3, normalise, type Vec3, vec3 } from '../math/vec3';
+import { aimArc, alongArc, type DirectionArc, directionArc, makeDirectionArc, passArc } from './direction-arc';
+
+/** A transition takes so long [s] at least. */
+const shortestSeconds = 0.2;
+/** Elbow and wrist go at most this fast [m/s] beyond what the hand itself moves: 3.75 cm in a frame at 60 Hz. */
+const fastest = 2.25;
+/** The share of the shortest time in which they get up to speed, and down from it. */
+const ramp = 0.2;
+/** From the first [s] on an arm whose goal runs away is drawn to it, at the second it is there: no measured transition took longer than 0.7 s. */
+const [hurrySeconds, longestSeconds] = [0.7, 0.9];
+/** A path is measured in so many steps. */
+const pathSteps = 8;
+
+/** The directions of an arm's bones, unit, and of the elbow's hinge, floor frame. */
+export interface ArmDirections {
+  readonly upperArm: MutableVec3;
+  readonly forearm: MutableVec3;
+  readonly hinge: MutableVec3;
+}
+
+export const makeArmDirections = (): ArmDirections => ({
+  upperArm: vec3(0, 0, 0),
+  forearm: vec3(0, 0, 0),
+  hinge: vec3(0, 0, 0),
+});
+
+export function copyArmDirections(from: ArmDirections, target: ArmDirections): void {
+  copyVec3(from.upperArm, target.upperArm);
+  copyVec3(from.forearm, target.forearm);
+  copyVec3(from.hinge, target.hinge);
+}
+
+/** Where an arm belongs in this frame, floor frame. */
+export interface ArmGoal extends ArmDirections {
+  readonly shoulder: Vec3;
+  /** Where the hand is seen or will rest; the arm itself may end short of it. */
+  readonly hand: Vec3;
+  /** How long the way to it takes at least [s]: a hand sinks slowly to rest. 0: the hand is seen. */
+  readonly seconds: number;
+  readonly bones: LimbBones;
+  /** Where an arm passes that swings all the way round, unit. */
+  readonly outside: Vec3;
+}
+
+/**
+ * An arm that is not yet where it belongs, because its goal has jumped: from frame to frame each bone turns on an arc from where it
+ * was drawn to where it belongs now, both with the same share of its arc, and neither elbow nor wrist goes further than the speed
+ * and what the hand itself moves allow. Bones turn in the room's axes: a body that turns about flings no arm.
+ */
+export interface ArmTransition {
+  /** Since the jump [s]; NaN: there is no transition. */
+  age: number;
+  /** Beyond what the hand itself moves [m/s], now and at most; and how fast it changes [m/s²]. */
+  speed: number;
+  topSpeed: number;
+  acceleration: number;
+  /** Where the hand belonged in the frame before, and where elbow and wrist were drawn [m]. */
+  readonly hand: MutableVec3;
+  readonly elbow: MutableVec3;
+  readonly wrist: MutableVec3;
+  readonly upperArm: DirectionArc;
+  readonly forearm: DirectionArc;
+}
+
+export const makeArmTransition = (): ArmTransition => ({
+  age: Number.NaN,
+  speed: Number.NaN,
+  topSpeed: Number.NaN,
+  acceleration: Number.NaN,
+  hand: vec3(0, 0, 0),
+  elbow: vec3(0, 0, 0),
+  wrist: vec3(0, 0, 0),
+  upperArm: makeDirectionArc(),
+  forearm: makeDirectionArc(),
+});
+
+const turn = quat(0, 0, 0, 1);
+const elbow = vec3(0, 0, 0);
+const wrist = vec3(0, 0, 0);
+const bone = vec3(0, 0, 0);
+const unbent = vec3(0, 0, 0);
+const elbowBefore = vec3(0, 0, 0);
+const wristBefore = vec3(0, 0, 0);
+
+/** Places `elbow` and `wrist` of an arm whose bones point in these directions. */
+function placeJoints(upperArm: Vec3, forearm: Vec3, { shoulder, bones }: ArmGoal): void {
+  addScaled(shoulder, upperArm, bones.upper, elbow);
+  addScaled(elbow, forearm, bones.lower, wrist);
+}
+
+/** Places `elbow` and `wrist` at a share of the arcs. */
+function placeAt({ upperArm, forearm }: ArmTransition, drawn: ArmDirections, goal: ArmGoal, share: number): void {
+  rotate(alongArc(upperArm, share, turn), drawn.upperArm, bone);
+  rotate(alongArc(forearm, share, turn), drawn.forearm, unbent);
+  placeJoints(bone, unbent, goal);
+}
+
+/** How far [m] elbow or wrist travel on the arcs, whichever goes further. */
+function pathLength(transition: ArmTransition, drawn: ArmDirections, goal: ArmGoal): number {
+  let metres = 0;
+  for (let step = 0; step <= pathSteps; step++) {
+    placeAt(transition, drawn, goal, step / pathSteps);
+    if (step > 0) metres += Math.max(distance(elbow, elbowBefore), distance(wrist, wristBefore));
+    copyVec3(elbow, elbowBefore);
+    copyVec3(wrist, wristBefore);
+  }
+  return metres;
+}
+
+/** How far [m] elbow or wrist at a share of the arcs are from where they were drawn, whichever is further. */
+function distanceAt(transition: ArmTransition, drawn: ArmDirections, goal: ArmGoal, share: number): number {
+  placeAt(transition, drawn, goal, share);
+  return Math.max(distance(elbow, transition.elbow), distance(wrist, transition.wrist));
+}
+
+/** The share of the arcs up to which neither elbow nor wrist is further than this [m] from where it was drawn. */
+function shareWithin(transition: ArmTransition, drawn: ArmDirections, goal: ArmGoal, metres: number): number {
+  let step = 0;
+  while (step <= pathSteps && distanceAt(transition, drawn, goal, step / pathSteps) <= metres) step += 1;
+  if (step === 0) return 0;
+  if (step > pathSteps) return 1;
+  const tooFar = (share: number): boolean => distanceAt(transition, drawn, goal, share) > metres;
+  return bisect((step - 1) / pathSteps, step / pathSteps, tooFar, 6);
+}
+
+/** Begins a transition from the arm that was drawn to the one that belongs there. */
+export function startTransition(transition: ArmTransition, drawn: ArmDirections, goal: ArmGoal): void {
+  directionArc(drawn.upperArm, goal.upperArm, goal.outside, transition.upperArm);
+  directionArc(drawn.forearm, goal.forearm, goal.outside, transition.forearm);
+  const seconds = Math.max(shortestSeconds, goal.seconds);
+  const metres = pathLength(transition, drawn, goal);
+  transition.age = 0;
+  transition.speed = 0;
+  transition.topSpeed = Math.min(fastest, metres / (seconds * (1 - ramp)));
+  transition.acceleration = transition.topSpeed / (seconds * ramp);
+  copyVec3(goal.hand, transition.hand);
+  placeJoints(drawn.upperArm, drawn.forearm, goal);
+  copyVec3(elbow, transition.elbow);
+  copyVec3(wrist, transition.wrist);
+}
+
+/** How far [m] elbow and wrist may go in this frame: up to the speed evenly, evenly down to a stand, and along with the goal. */
+function stepOf(transition: ArmTransition, toGo: number, goal: ArmGoal, deltaSeconds: number): number {
+  const { acceleration, topSpeed, hand } = transition;
+  const slowing = Math.sqrt(2 * acceleration * toGo);
+  transition.speed = Math.min(transition.speed + acceleration * deltaSeconds, topSpeed, slowing);
+  return distance(goal.hand, hand) + transition.speed * deltaSeconds;
+}
+
+/** Writes the arm of this frame into `drawn`, which holds that of the frame before. */
+export function followTransition(
+  transition: ArmTransition,
+  goal: ArmGoal,
+  drawn: ArmDirections,
+  deltaSeconds: number,
+): void {
+  const { upperArm, forearm } = transition;
+  if (Number.isNaN(transition.age)) {
+    copyArmDirections(goal, drawn);
+    return;
+  }
+  const passed = Math.max(deltaSeconds, 0);
+  transition.age += passed;
+  aimArc(upperArm, drawn.upperArm, goal.upperArm);
+  aimArc(forearm, drawn.forearm, goal.forearm);
+  const toGo = pathLength(transition, drawn, goal);
+  const step = stepOf(transition, toGo, goal, passed);
+  // Whatever the shoulder does, the arm goes on; one whose goal runs away is drawn to it in the end.
+  const least = Math.min(1, (transition.speed * passed) / Math.max(3 * toGo, 1e-9));
+  const hurry = goal.seconds === 0 ? clamp((transition.age - hurrySeconds) / (longestSeconds - hurrySeconds), 0, 1) : 0;
+  const share = Math.max(hurry, least, shareWithin(transition, drawn, goal, step));
+  copyVec3(goal.hand, transition.hand);
+  if (share === 1 && transition.age >= shortestSeconds) transition.age = Number.NaN;
+  goAlong(transition, goal, drawn, share);
+  placeJoints(drawn.upperArm, drawn.forearm, goal);
+  copyVec3(elbow, transition.elbow);
+  copyVec3(wrist, transition.wrist);
+}
+
+/** Turns the drawn bones by a share of the arcs, and the hinge with them. */
+function goAlong({ upperArm, forearm }: ArmTransition, goal: ArmGoal, drawn: ArmDirections, share: number): void {
+  if (share === 1) {
+    copyArmDirections(goal, drawn);
+    return;
+  }
+  copyVec3(drawn.upperArm, bone);
+  rotate(alongArc(upperArm, share, turn), drawn.upperArm, drawn.upperArm);
+  rotate(alongArc(forearm, share, turn), drawn.forearm, drawn.forearm);
+  passArc(upperArm, share);
+  passArc(forearm, share);
+  // The hinge is the bones' normal; of a straight arm it turns from the drawn one's to the goal's.
+  rotate(rotationBetween(bone, drawn.upperArm, turn), drawn.hinge, unbent);
+  lerp(unbent, goal.hinge, share, unbent);
+  cross(drawn.upperArm, drawn.forearm, drawn.hinge);
+  normalise(addScaled(drawn.hinge, unbent, 0.1, drawn.hinge), goal.hinge, drawn.hinge);
+}

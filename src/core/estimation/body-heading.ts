@@ -1,0 +1,49 @@
+import { clamp, smoothingFactor } from '../math/damper';
+import { fromAxisAngle, type MutableQuat, type Quat, quat } from '../math/quat';
+import { up } from '../math/vec3';
+import { headingConfidence, yawOf } from '../tracking/heading';
+
+/** As far [rad] as people turn their head without their body: 40°. Beyond it the body comes along. */
+const headTurn = 0.7;
+/** Half-life [s] of the part of the angle from body to head beyond that. */
+const followHalfLife = 0.04;
+/** Half-life [s] of the part within: a person who keeps looking to one side stands that way. */
+const settleHalfLife = 0.6;
+/** A body turns at most this fast [rad/s]; a pirouette does 12. */
+const turnSpeed = 14;
+/** Integrated in steps of at most this [s], so that every frame rate gives the same. */
+const longestStep = 1 / 240;
+
+export interface BodyHeading {
+  /** Of the body about +Y [rad]; NaN: not known yet. */
+  yaw: number;
+}
+
+export const makeBodyHeading = (): BodyHeading => ({ yaw: Number.NaN });
+
+/**
+ * The yaw of a body under a turning head, as a rotation about +Y: still where only the head turns, slow to settle, limited in
+ * speed, and kept where the head is so tilted that its heading is hardly defined. The first call takes the head's.
+ */
+export function followBodyHeading(
+  state: BodyHeading,
+  head: Quat,
+  deltaSeconds: number,
+  target: MutableQuat = quat(0, 0, 0, 1),
+): MutableQuat {
+  const heading = yawOf(head);
+  if (Number.isNaN(state.yaw)) state.yaw = heading;
+  const confidence = headingConfidence(head);
+  const steps = Math.ceil(Math.max(deltaSeconds, 0) / longestStep);
+  const step = deltaSeconds / steps;
+  const [follow, settle] = [smoothingFactor(followHalfLife, step), smoothingFactor(settleHalfLife, step)];
+  let { yaw } = state;
+  for (let i = 0; i < steps; i++) {
+    const error = Math.atan2(Math.sin(heading - yaw), Math.cos(heading - yaw));
+    const within = clamp(error, -headTurn, headTurn);
+    const turn = (error - within) * follow + within * settle;
+    yaw += confidence * clamp(turn, -turnSpeed * step, turnSpeed * step);
+  }
+  state.yaw = yaw;
+  return fromAxisAngle(up, yaw, target);
+}

@@ -1,0 +1,68 @@
+import type { ChestSpaceBody } from '../body/skeleton';
+import { rotate } from '../math/quat';
+import { addScaled, dot, length, type MutableVec3, right, scale, subtract, up, type Vec3, vec3 } from '../math/vec3';
+import type { ChestAxes, IkSolution, ThreePoints } from './solve-ik';
+
+/** Numbers of one frame in the chest frame; their order is in docs/estimation.md. */
+export const chestFeatureCount = 38;
+
+/** A vector of the heading frame along the chest's axes. */
+function inChest({ x, y, z }: ChestAxes, v: Vec3, target: MutableVec3): MutableVec3 {
+  const [alongX, alongY, alongZ] = [dot(x, v), dot(y, v), dot(z, v)];
+  target.x = alongX;
+  target.y = alongY;
+  target.z = alongZ;
+  return target;
+}
+
+/** A vector of the chest frame in the heading frame. */
+export function headingFromChest({ x, y, z }: ChestAxes, v: Vec3, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 {
+  const [alongX, alongY, alongZ] = [v.x, v.y, v.z];
+  scale(x, alongX, target);
+  addScaled(target, y, alongY, target);
+  return addScaled(target, z, alongZ, target);
+}
+
+const vector = vec3(0, 0, 0);
+
+function write(target: Float32Array, next: number, chest: ChestAxes, v: MutableVec3): number {
+  const { x, y, z } = inChest(chest, v, v);
+  target[next] = x;
+  target[next + 1] = y;
+  target[next + 2] = z;
+  return next + 3;
+}
+
+/**
+ * Chest-frame features of one frame, in which an arm looks the same however its body turns and leans: written into `target` from
+ * `start` on.
+ */
+export function chestFeatures(
+  { head, leftHand, rightHand }: ThreePoints,
+  { joints, chest }: IkSolution,
+  body: ChestSpaceBody,
+  target: Float32Array,
+  start: number,
+): void {
+  let next = start;
+  const reaches = start + chestFeatureCount - 2;
+  for (let arm = 0; arm < 2; arm++) {
+    const hand = arm === 0 ? leftHand : rightHand;
+    const shoulder = arm === 0 ? joints.leftUpperArm : joints.rightUpperArm;
+    const elbow = arm === 0 ? joints.leftLowerArm : joints.rightLowerArm;
+    scale(subtract(hand.position, shoulder, vector), 1 / body.arm, vector);
+    target[reaches + arm] = length(vector);
+    next = write(target, next, chest, vector);
+    next = write(target, next, chest, rotate(hand.orientation, right, vector));
+    next = write(target, next, chest, rotate(hand.orientation, up, vector));
+    scale(subtract(elbow, shoulder, vector), 1 / body.eyeHeight, vector);
+    next = write(target, next, chest, vector);
+  }
+  next = write(target, next, chest, rotate(head.orientation, right, vector));
+  next = write(target, next, chest, rotate(head.orientation, up, vector));
+  scale(subtract(joints.chest, head.position, vector), 1 / body.eyeHeight, vector);
+  next = write(target, next, chest, vector);
+  target[next] = chest.x.y;
+  target[next + 1] = chest.y.y;
+  target[next + 2] = chest.z.y;
+}

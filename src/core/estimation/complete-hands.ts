@@ -1,0 +1,261 @@
+import { headJointOf } from '../body/head-joint';
+import type { Side } from '../body/joints';
+import { type ChestSpaceBody, sideSign } from '../body/skeleton';
+import { trapezoidalEasing } from '../math/damper';
+import {
+  copyPose,
+  type MutablePose,
+  type MutableTransform,
+  makePose,
+  makeTransform,
+  type Pose,
+  type Transform,
+  transformPose,
+  untransformPoint,
+} from '../math/pose';
+import { conjugate, copyQuat, fromAxes, type MutableQuat, multiply, quat, rotate, slerp } from '../math/quat';
+import {
+  addScaled,
+  copyVec3,
+  distance,
+  down,
+  length,
+  type MutableVec3,
+  normalise,
+  scale,
+  setVec3,
+  subtract,
+  type Vec3,
+  vec3,
+} from '../math/vec3';
+import type { TrackedPose, TrackingFrame } from '../tracking/tracking-frame';
+import { type BodyHeading, followBodyHeading, makeBodyHeading } from './body-heading';
+import { alongArc, type DirectionArc, directionArc, makeDirectionArc } from './direction-arc';
+import lostHand from './lost-hand.json';
+
+/** Most losses are shorter than a hand is held; of the longer ones most come back near where they were, so it goes to rest slowly. */
+const { holdSeconds, restSeconds, hanging, lowestRest } = lostHand;
+/** Confidence falls from 1 to 0, and rises again, in so long [s]: in a lost hand it is gone long before that rests, for nothing hurries after a guess. */
+const confidenceSeconds = 0.3;
+/** A hand that is seen again so far [m] from where it was taken to be has jumped: no confidence is left in what follows it. */
+const jumpMetres = 0.1;
+
+/** Where a hand is taken to be, floor frame: as it is seen, else a guess that moves slowly. */
+export interface CompletedHand extends MutablePose<'floor'> {
+  /** tracked: seen in this frame. held: lost a moment ago. sinking: on its way to rest beside the hip, or there. */
+  source: 'tracked' | 'held' | 'sinking';
+  /** In [0, 1]. 1: the hand is there. 0: a guess. */
+  confidence: number;
+  /** Where its arm belongs: where the hand is seen, is held, or will rest. */
+  readonly goal: MutablePose<'floor'>;
+  /** The goal is elsewhere than in the frame before for no motion of the wearer: the drawn arm must bridge the distance. */
+  jumped: boolean;
+}
+
+/** A frame in which no hand is missing. */
+export interface CompletedFrame {
+  readonly head: Pose<'floor'>;
+  readonly headJoint: Vec3;
+  readonly leftHand: CompletedHand;
+  readonly rightHand: CompletedHand;
+}
+
+/** A hand about its shoulder, body frame: in which direction, how far [m], and how it is turned. */
+interface Reach {
+  readonly direction: MutableVec3;
+  distance: number;
+  readonly orientation: MutableQuat;
+}
+
+interface HandState {
+  readonly hand: CompletedHand;
+  /** Where it was seen last, or rests if it never was. */
+  readonly last: Reach;
+  /** False before the first frame. */
+  known: boolean;
+  /** Since the first frame without it [s]; negative while it is seen. */
+  lostSeconds: number;
+  readonly rest: MutablePose<'body'>;
+  readonly arc: DirectionArc;
+}
+
+/** What `completeHands` remembers of one wearer, and the frame it returns. */
+export interface CompleteHandsState {
+  readonly heading: BodyHeading;
+  /** Origin on the floor under the head joint, yaw of the body. */
+  readonly floorFromBody: MutableTransform<'floor', 'body'>;
+  readonly left: HandState;
+  readonly right: HandState;
+  readonly frame: CompletedFrame & { head: Pose<'floor'>; readonly headJoint: MutableVec3 };
+}
+
+const makeReach = (): Reach => ({ direction: vec3(0, -1, 0), distance: Number.NaN, orientation: quat(0, 0, 0, 1) });
+
+const makeHandState = (): HandState => ({
+  hand: { ...makePose<'floor'>(), source: 'sinking', confidence: Number.NaN, goal: makePose(), jumped: false },
+  last: makeReach(),
+  known: false,
+  lostSeconds: Number.NaN,
+  rest: makePose(),
+  arc: makeDirectionArc(),
+});
+
+export function makeCompleteHandsState(): CompleteHandsState {
+  const [left, right] = [makeHandState(), makeHandState()];
+  return {
+    heading: makeBodyHeading(),
+    floorFromBody: makeTransform(),
+    left,
+    right,
+    frame: { head: makePose(), headJoint: vec3(0, 0, 0), leftHand: left.hand, rightHand: right.hand },
+  };
+}
+
+/** The shoulder of an upright trunk under a head joint at this height [m], body frame. */
+function uprightShoulder(side: Side, headJointHeight: number, body: ChestSpaceBody, target: MutableVec3): MutableVec3 {
+  return setVec3(
+    target,
+    sideSign(side) * (body.clavicleRoot.x + body.clavicle.x),
+    headJointHeight - body.neckToHead.y + body.clavicle.y,
+    -body.neckToHead.z + body.clavicle.z,
+  );
+}
+
+const restAxes: Readonly<Record<Side, MutableQuat>> = {
+  left: fromAxes(vec3(0, 0, -1), vec3(-1, 0, 0), vec3(0, 1, 0)),
+  right: fromAxes(vec3(0, 0, 1), vec3(1, 0, 0), vec3(0, 1, 0)),
+};
+
+/** A relaxed arm below a head joint at this height [m], body frame: the wrist beside the thigh, the back of the hand outward, fingers down. */
+export function restingHand(
+  side: Side,
+  headJointHeight: number,
+  body: ChestSpaceBody,
+  target: MutablePose<'body'> = makePose(),
+): MutablePose<'body'> {
+  const { position } = target;
+  uprightShoulder(side, headJointHeight, body, position);
+  position.x += sideSign(side) * hanging.outward * body.arm;
+  position.y = Math.max(position.y + hanging.up * body.arm, lowestRest * body.eyeHeight);
+  position.z -= hanging.forward * body.arm;
+  copyQuat(restAxes[side], target.orientation);
+  return target;
+}
+
+function reachOf(pose: Pose<'body'>, shoulder: Vec3, target: Reach): Reach {
+  subtract(pose.position, shoulder, target.direction);
+  target.distance = length(target.direction);
+  normalise(target.direction, down, target.direction);
+  copyQuat(pose.orientation, target.orientation);
+  return target;
+}
+
+const shoulder = vec3(0, 0, 0);
+const resting = makeReach();
+const inBody = makePose<'body'>();
+const inverse = quat(0, 0, 0, 1);
+const turn = quat(0, 0, 0, 1);
+const outside: Readonly<Record<Side, Vec3>> = {
+  left: normalise(vec3(-1, -0.2, -1)),
+  right: normalise(vec3(1, -0.2, -1)),
+};
+
+/** A hand that the device sees. */
+function followSeen(
+  state: HandState,
+  tracked: TrackedPose,
+  floorFromBody: Transform<'floor', 'body'>,
+  deltaSeconds: number,
+): void {
+  const { hand } = state;
+  hand.jumped = state.known && state.lostSeconds >= 0;
+  if (!state.known) hand.confidence = 1;
+  else if (hand.jumped) {
+    const unmoved = Math.max(0, 1 - distance(tracked.position, hand.position) / jumpMetres);
+    hand.confidence = Math.min(hand.confidence, unmoved);
+  } else hand.confidence = Math.min(1, hand.confidence + deltaSeconds / confidenceSeconds);
+  hand.source = 'tracked';
+  copyVec3(tracked.position, hand.position);
+  copyQuat(tracked.orientation, hand.orientation);
+  copyPose(hand, hand.goal);
+  state.lostSeconds = -1;
+  untransformPoint(floorFromBody, tracked.position, inBody.position);
+  multiply(conjugate(floorFromBody.orientation, inverse), tracked.orientation, inBody.orientation);
+  reachOf(inBody, shoulder, state.last);
+}
+
+/** A hand that the device does not see: held, then on an arc about its shoulder to rest. */
+function followLost(
+  state: HandState,
+  side: Side,
+  floorFromBody: Transform<'floor', 'body'>,
+  deltaSeconds: number,
+): void {
+  const { hand, last, arc } = state;
+  reachOf(state.rest, shoulder, resting);
+  if (!state.known) {
+    copyVec3(resting.direction, last.direction);
+    last.distance = resting.distance;
+    copyQuat(resting.orientation, last.orientation);
+    hand.confidence = 0;
+    state.lostSeconds = holdSeconds + restSeconds;
+  } else state.lostSeconds = state.lostSeconds < 0 ? 0 : state.lostSeconds + deltaSeconds;
+  const held = state.lostSeconds < holdSeconds;
+  if (!held) hand.confidence = Math.max(0, hand.confidence - deltaSeconds / confidenceSeconds);
+  hand.jumped = state.known && !held && hand.source !== 'sinking';
+  hand.source = held ? 'held' : 'sinking';
+
+  const share = trapezoidalEasing(holdSeconds, holdSeconds + restSeconds, state.lostSeconds);
+  directionArc(last.direction, resting.direction, outside[side], arc);
+  rotate(alongArc(arc, share, turn), last.direction, inBody.position);
+  scale(inBody.position, last.distance + (resting.distance - last.distance) * share, inBody.position);
+  addScaled(inBody.position, shoulder, 1, inBody.position);
+  slerp(last.orientation, resting.orientation, share, inBody.orientation);
+  transformPose(floorFromBody, inBody, hand);
+  if (held) copyPose(hand, hand.goal);
+  else transformPose(floorFromBody, state.rest, hand.goal);
+}
+
+function completeHand(
+  state: CompleteHandsState,
+  side: Side,
+  tracked: TrackedPose | null,
+  body: ChestSpaceBody,
+  deltaSeconds: number,
+): void {
+  const { floorFromBody } = state;
+  const { y } = state.frame.headJoint;
+  uprightShoulder(side, y, body, shoulder);
+  restingHand(side, y, body, state[side].rest);
+  if (tracked !== null && tracked.tracking === 'tracked') followSeen(state[side], tracked, floorFromBody, deltaSeconds);
+  else followLost(state[side], side, floorFromBody, deltaSeconds);
+  state[side].known = true;
+}
+
+/**
+ * Stage 1: the frame in which a hand that is not seen is held, then sinks to rest beside the hip, and in which a hand that is
+ * seen again is where it is seen. The one place that decides where a lost hand is; before a hand was ever seen it rests.
+ */
+export function completeHands(
+  state: CompleteHandsState,
+  head: Pose<'floor'>,
+  { leftHand, rightHand }: Pick<TrackingFrame, 'leftHand' | 'rightHand'>,
+  body: ChestSpaceBody,
+  deltaSeconds: number,
+): CompletedFrame {
+  const { frame, floorFromBody } = state;
+  frame.head = head;
+  headJointOf(head, body.eyesInHead, frame.headJoint);
+  setVec3(floorFromBody.position, frame.headJoint.x, 0, frame.headJoint.z);
+  followBodyHeading(state.heading, head.orientation, deltaSeconds, floorFromBody.orientation);
+  completeHand(state, 'left', leftHand, body, deltaSeconds);
+  completeHand(state, 'right', rightHand, body, deltaSeconds);
+  return frame;
+}
+
+/** Forgets the past: the next frame is the first. */
+export function resetCompleteHands(state: CompleteHandsState): void {
+  state.heading.yaw = Number.NaN;
+  state.left.known = false;
+  state.right.known = false;
+}

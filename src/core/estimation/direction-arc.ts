@@ -1,0 +1,75 @@
+import {
+  angleBetween,
+  copyQuat,
+  identity,
+  type MutableQuat,
+  multiply,
+  quat,
+  rotationBetween,
+  slerp,
+} from '../math/quat';
+import { addScaled, dot, lerp, type MutableVec3, normalise, reject, type Vec3, vec3 } from '../math/vec3';
+
+/** The path on a sphere from one direction to another, by way of a third where they lie far apart. */
+export interface DirectionArc {
+  readonly first: MutableQuat;
+  readonly second: MutableQuat;
+  /** Of the whole path [rad]. */
+  angle: number;
+  /** The first leg's share of it. */
+  share: number;
+  /** The direction by whose way the path leads, unit; a path that is not roundabout leads straight to its end. */
+  readonly via: MutableVec3;
+  roundabout: boolean;
+}
+
+export const makeDirectionArc = (): DirectionArc => ({
+  first: quat(0, 0, 0, 1),
+  second: quat(0, 0, 0, 1),
+  angle: Number.NaN,
+  share: Number.NaN,
+  via: vec3(0, 0, 0),
+  roundabout: false,
+});
+
+/** Directions further apart than this [rad] are joined by way of `outside`: the shortest path may lead through the body. */
+const farApart = 2.1;
+
+const aside = vec3(0, 0, 0);
+
+/** From the unit direction `from` to `to`; `outside` is where an arm passes that swings all the way round. */
+export function directionArc(
+  from: Vec3,
+  to: Vec3,
+  outside: Vec3,
+  target: DirectionArc = makeDirectionArc(),
+): DirectionArc {
+  const { via } = target;
+  target.roundabout = Math.acos(Math.max(-1, Math.min(1, dot(from, to)))) > farApart;
+  addScaled(lerp(from, to, 0.5, via), normalise(reject(outside, from, aside), outside, aside), 0.5, via);
+  normalise(via, outside, via);
+  return aimArc(target, from, to);
+}
+
+/** The rest of the same path, from a direction on it to an end that has moved. */
+export function aimArc(arc: DirectionArc, from: Vec3, to: Vec3): DirectionArc {
+  const { first, second, via, roundabout } = arc;
+  const a = angleBetween(identity, rotationBetween(from, roundabout ? via : to, first));
+  const b = roundabout ? angleBetween(identity, rotationBetween(via, to, second)) : 0;
+  arc.angle = a + b;
+  arc.share = a + b > 0 ? a / (a + b) : 1;
+  return arc;
+}
+
+/** So much of the path in [0, 1] is behind: once its first leg is, it leads straight to its end. */
+export function passArc(arc: DirectionArc, progress: number): void {
+  if (progress >= arc.share) arc.roundabout = false;
+}
+
+/** The rotation from the arc's start to `progress` in [0, 1] of its path. */
+export function alongArc(arc: DirectionArc, progress: number, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat {
+  const { first, second, share } = arc;
+  if (progress <= share)
+    return share > 0 ? slerp(identity, first, Math.min(1, progress / share), target) : copyQuat(identity, target);
+  return multiply(slerp(identity, second, (progress - share) / (1 - share), target), first, target);
+}

@@ -1,0 +1,96 @@
+import { estimatedJoints } from '../body/joints';
+import { smoothingFactor } from '../math/damper';
+import type { Pose } from '../math/pose';
+import { add, addScaled, copyVec3, length, lerp, type MutableVec3, setVec3, subtract, vec3 } from '../math/vec3';
+import { headingConfidence } from '../tracking/heading';
+import type { CompletedFrame, CompletedHand } from './complete-hands';
+import { type JointPositions, type MutableJointPositions, makeJoints } from './joint-positions';
+
+/** Half-life [s] of the joints about the head: a tenth of a degree of noise in the headset moves hips by a millimetre. */
+const jointHalfLife = 0.02;
+/** Half-life [s] of the head's position below which noise is not followed; constant velocities are, without lag. */
+const headHalfLife = 0.035;
+/** The trunk's joints move about the head at most this fast [m/s]; 999 of 1000 frames of the motion trained on are slower. */
+const trunkSpeed = 2.5;
+/**
+ * The same where the joints may jump for no motion of the wearer: under a head on its side, whose heading says nothing of the body's, and
+ * after a hand that was lost is seen elsewhere.
+ */
+const doubtfulTrunkSpeed = 0.6;
+
+export interface FilterJointsState {
+  /** False before the first frame, which passes unchanged. */
+  known: boolean;
+  /** The joints from the headset [m], floor axes. */
+  readonly relative: MutableJointPositions;
+  /** The headset's filtered position [m] and velocity [m/s], floor frame. */
+  readonly position: MutableVec3;
+  readonly velocity: MutableVec3;
+  readonly joints: MutableJointPositions;
+}
+
+export const makeFilterJointsState = (): FilterJointsState => ({
+  known: false,
+  relative: makeJoints(),
+  position: vec3(0, 0, 0),
+  velocity: vec3(0, 0, 0),
+  joints: makeJoints(),
+});
+
+const goal = vec3(0, 0, 0);
+const step = vec3(0, 0, 0);
+
+/** A critically damped g-h filter (Brookner, Tracking and Kalman Filtering Made Easy, 1998), which keeps pace with a person who walks. */
+function followHead({ position, velocity }: FilterJointsState, head: Pose<'floor'>, deltaSeconds: number): void {
+  if (deltaSeconds <= 0) return;
+  const memory = 2 ** (-deltaSeconds / headHalfLife);
+  addScaled(position, velocity, deltaSeconds, position);
+  subtract(head.position, position, step);
+  addScaled(position, step, 1 - memory * memory, position);
+  addScaled(velocity, step, (1 - memory) ** 2 / deltaSeconds, velocity);
+}
+
+/** That a hand does not make joints jump: one that is lost goes slowly. */
+const confidenceIn = ({ source, confidence }: CompletedHand): number => (source === 'tracked' ? confidence : 1);
+
+/** Goes to the goal by `share`, but no further than `most` [m]. */
+function followJoint(joint: MutableVec3, share: number, most: number): void {
+  subtract(lerp(joint, goal, share, step), joint, step);
+  const far = length(step);
+  addScaled(joint, step, far > most ? most / far : 1, joint);
+}
+
+/**
+ * Stage 4: takes the trackers' noise out of joints that no device tracks; head and hands are never touched. Relative to the headset
+ * each joint passes a low-pass, the trunk's with a limited rate; the headset that they hang from passes a g-h filter. The elbow of a
+ * hand that has jumped jumps along: its way is the arm's transition. Floor frame.
+ */
+export function filterJoints(
+  state: FilterJointsState,
+  joints: JointPositions,
+  { head, leftHand, rightHand }: CompletedFrame,
+  deltaSeconds: number,
+): MutableJointPositions {
+  const confidence = Math.min(headingConfidence(head.orientation), confidenceIn(leftHand), confidenceIn(rightHand));
+  const speed = doubtfulTrunkSpeed + (trunkSpeed - doubtfulTrunkSpeed) * confidence;
+  const share = smoothingFactor(jointHalfLife, deltaSeconds);
+  if (state.known) followHead(state, head, deltaSeconds);
+  else copyVec3(head.position, state.position);
+  for (let index = 0; index < estimatedJoints.length; index++) {
+    const joint = estimatedJoints[index]!;
+    const relative = state.relative[joint];
+    const hand = joint === 'leftLowerArm' ? leftHand : joint === 'rightLowerArm' ? rightHand : null;
+    subtract(joints[joint], head.position, goal);
+    if (!state.known || hand?.jumped) copyVec3(goal, relative);
+    else followJoint(relative, share, hand ? Number.POSITIVE_INFINITY : speed * Math.max(deltaSeconds, 0));
+    add(state.position, relative, state.joints[joint]);
+  }
+  state.known = true;
+  return state.joints;
+}
+
+/** Forgets the past: the next frame is the first. */
+export function resetFilterJoints(state: FilterJointsState): void {
+  state.known = false;
+  setVec3(state.velocity, 0, 0, 0);
+}

@@ -1,0 +1,259 @@
+import { alongArm, armBoneRotation, elbowHinge, handBoneRotation } from '../body/arm-rotations';
+import type { Side } from '../body/joints';
+import type { Skeleton } from '../body/skeleton';
+import { elbowCircle, elbowOnCircle, type LimbBones, makeElbowCircle } from '../body/two-bone-ik';
+import { clamp } from '../math/damper';
+import {
+  conjugate,
+  fromAxisAngle,
+  limitAngle,
+  type MutableQuat,
+  multiply,
+  type Quat,
+  quat,
+  rotate,
+  rotateInverse,
+  twistAngle,
+  twistOf,
+} from '../math/quat';
+import {
+  addScaled,
+  backward,
+  copyVec3,
+  distance,
+  length,
+  type MutableVec3,
+  normalise,
+  subtract,
+  type Vec3,
+  vec3,
+} from '../math/vec3';
+import {
+  type ArmDirections,
+  type ArmGoal,
+  type ArmTransition,
+  copyArmDirections,
+  followTransition,
+  makeArmDirections,
+  makeArmTransition,
+  startTransition,
+} from './arm-transition';
+import type { CompletedFrame, CompletedHand } from './complete-hands';
+import type { TorsoPose } from './fit-torso';
+import type { JointPositions } from './joint-positions';
+import { restSeconds } from './lost-hand.json';
+import { type EstimatedPole, estimatedPole, limitSwivel, type SwivelState } from './swivel-limiter';
+
+/** How far a wrist bends against the forearm [rad]: 90°, the extreme of flexion. */
+const wristLimit = Math.PI / 2;
+/** A forearm turns at most this fast [rad/s] about itself; a quick pronation does 15. */
+const forearmSpeed = 20;
+/** So near to its reach [arm lengths] an arm at rest begins to stay bent, so that no elbow snaps straight. */
+const softReach = 0.06;
+
+/** The rotations of an arm's bones, floor frame. */
+export interface ArmRotations {
+  readonly upperArm: MutableQuat;
+  readonly lowerArm: MutableQuat;
+  readonly hand: MutableQuat;
+}
+
+/** What one arm remembers, and the rotations it returns. */
+interface ArmState extends SwivelState {
+  /** False before the first frame. */
+  known: boolean;
+  readonly rotations: ArmRotations;
+  /** As it was drawn last. */
+  readonly drawn: ArmDirections;
+  readonly transition: ArmTransition;
+  /** Unwrapped angle [rad] by which the hand is turned about the forearm, and how much of it the forearm takes. */
+  twist: number;
+  forearmTwist: number;
+}
+
+export interface FitArmsState {
+  readonly left: ArmState;
+  readonly right: ArmState;
+}
+
+const makeArmState = (): ArmState => ({
+  known: false,
+  axis: vec3(0, 0, 0),
+  pole: vec3(0, 0, 0),
+  rotations: { upperArm: quat(0, 0, 0, 1), lowerArm: quat(0, 0, 0, 1), hand: quat(0, 0, 0, 1) },
+  drawn: makeArmDirections(),
+  transition: makeArmTransition(),
+  twist: Number.NaN,
+  forearmTwist: Number.NaN,
+});
+
+export const makeFitArmsState = (): FitArmsState => ({ left: makeArmState(), right: makeArmState() });
+
+export const armBones = ({ restOffsets }: Skeleton): LimbBones => ({
+  upper: length(restOffsets.rightLowerArm),
+  lower: length(restOffsets.rightHand),
+});
+
+/** What both arms of one frame are fitted to; floor frame. */
+export interface ArmGoals {
+  readonly frame: CompletedFrame;
+  readonly joints: JointPositions;
+  readonly torso: TorsoPose;
+  readonly bones: LimbBones;
+  /** Where IK's elbows point: for arms whose estimate says nothing. */
+  readonly poles: Readonly<Record<Side, Vec3>>;
+}
+
+const downAndBack: Readonly<Record<Side, Vec3>> = {
+  left: normalise(vec3(-0.2, -1, 0.5)),
+  right: normalise(vec3(0.2, -1, 0.5)),
+};
+const sideways: Readonly<Record<Side, Vec3>> = {
+  left: normalise(vec3(-1, -0.2, -1)),
+  right: normalise(vec3(1, -0.2, -1)),
+};
+
+type Mutable<T> = { -readonly [Key in keyof T]: T[Key] };
+
+const wrist = vec3(0, 0, 0);
+const elbow = vec3(0, 0, 0);
+const pole = vec3(0, 0, 0);
+const circle = makeElbowCircle();
+const wantedPole: EstimatedPole = { direction: vec3(0, 0, 0), confidence: Number.NaN };
+const fallbackPoles: readonly [MutableVec3, MutableVec3] = [vec3(0, 0, 0), vec3(0, 0, 0)];
+const goal: Mutable<ArmGoal> & { readonly outside: MutableVec3 } = {
+  ...makeArmDirections(),
+  shoulder: wrist,
+  hand: wrist,
+  seconds: Number.NaN,
+  bones: { upper: Number.NaN, lower: Number.NaN },
+  outside: vec3(0, 0, 0),
+};
+const untwisted = quat(0, 0, 0, 1);
+const hand = quat(0, 0, 0, 1);
+const inverse = quat(0, 0, 0, 1);
+const inForearm = quat(0, 0, 0, 1);
+const twist = quat(0, 0, 0, 1);
+
+/** Stage 5, the arms: they hang from the trunk's shoulders, reach the hands and bend where their elbows are estimated. */
+export function fitArms(state: FitArmsState, goals: ArmGoals, deltaSeconds: number): FitArmsState {
+  fitArm('left', state.left, goals, deltaSeconds);
+  fitArm('right', state.right, goals, deltaSeconds);
+  return state;
+}
+
+/** One arm: to its wrist, or on its way there; the hand as tracked, the forearm turned half as far. */
+function fitArm(side: Side, state: ArmState, goals: ArmGoals, deltaSeconds: number): void {
+  const { torso, bones } = goals;
+  const completed = side === 'left' ? goals.frame.leftHand : goals.frame.rightHand;
+  const floorFromChest = torso.rotations.upperChest;
+  const jumped = state.known && completed.jumped;
+  placeElbow(side, jumped ? null : state, goals, completed, deltaSeconds);
+
+  goal.shoulder = torso.shoulders[side];
+  goal.hand = completed.goal.position;
+  goal.seconds = completed.source === 'sinking' ? restSeconds : 0;
+  goal.bones = bones;
+  normalise(subtract(elbow, goal.shoulder, goal.upperArm), undefined, goal.upperArm);
+  normalise(subtract(wrist, elbow, goal.forearm), undefined, goal.forearm);
+  elbowHinge(pole, circle.axis, goal.hinge);
+  rotate(floorFromChest, sideways[side], goal.outside);
+  if (jumped) startTransition(state.transition, state.drawn, goal);
+  if (state.known) followTransition(state.transition, goal, state.drawn, deltaSeconds);
+  else copyArmDirections(goal, state.drawn);
+
+  handBoneRotation(side, completed.orientation, hand);
+  turnBones(side, state, deltaSeconds);
+  rotateInverse(floorFromChest, circle.axis, state.axis);
+  rotateInverse(floorFromChest, pole, state.pole);
+  state.known = true;
+}
+
+/**
+ * Finds `wrist`, `circle`, `pole` and `elbow` of the arm that reaches its hand. before: null after a jump, since its elbow need not be
+ * near where it was: the way there is the transition's.
+ */
+function placeElbow(
+  side: Side,
+  before: ArmState | null,
+  { joints, torso, bones, poles }: ArmGoals,
+  completed: CompletedHand,
+  deltaSeconds: number,
+): void {
+  const shoulder = torso.shoulders[side];
+  const floorFromChest = torso.rotations.upperChest;
+  const armLength = bones.upper + bones.lower;
+  softened(completed, shoulder, armLength);
+  rotate(floorFromChest, downAndBack[side], fallbackPoles[0]);
+  rotate(floorFromChest, backward, fallbackPoles[1]);
+  elbowCircle(shoulder, wrist, bones, fallbackPoles[0], circle);
+  const estimatedShoulder = side === 'left' ? joints.leftUpperArm : joints.rightUpperArm;
+  const estimatedElbow = side === 'left' ? joints.leftLowerArm : joints.rightLowerArm;
+  estimatedPole(
+    { shoulder: estimatedShoulder, elbow: estimatedElbow, wrist: completed.position },
+    circle,
+    [poles[side], fallbackPoles[0]],
+    wantedPole,
+  );
+  const { confidence } = completed;
+  limitSwivel(
+    before?.known ? before : null,
+    wantedPole,
+    circle,
+    { side, torso, armLength, confidence, deltaSeconds },
+    pole,
+  );
+  elbowOnCircle(circle, pole, elbow);
+}
+
+/** Writes where the wrist is to be: nearer than a place to rest as that comes near the arm's reach, so that no arm snaps straight. */
+function softened({ goal: { position }, source }: CompletedHand, shoulder: Vec3, armLength: number): void {
+  copyVec3(position, wrist);
+  const soft = source === 'sinking' ? softReach : 0;
+  const far = distance(shoulder, position);
+  const near = armLength * (1 - soft);
+  if (soft <= 0 || far <= near) return;
+  const reach = armLength - soft * armLength * Math.exp((near - far) / (soft * armLength));
+  addScaled(shoulder, subtract(position, shoulder, wrist), reach / far, wrist);
+}
+
+/** The bones' rotations from their directions and the hand's: the forearm takes half of the hand's turn about it, so that no wrist is wrung. */
+function turnBones(side: Side, state: ArmState, deltaSeconds: number): void {
+  const { drawn, rotations } = state;
+  const along = alongArm[side];
+  armBoneRotation(side, drawn.upperArm, drawn.hinge, rotations.upperArm);
+  armBoneRotation(side, drawn.forearm, drawn.hinge, untwisted);
+  turnForearm(state, along, deltaSeconds);
+  multiply(untwisted, fromAxisAngle(along, state.forearmTwist, twist), rotations.lowerArm);
+  limitWrist(rotations.lowerArm, along, rotations.hand);
+}
+
+/** Half of the angle by which the hand is turned about the forearm: unwrapped, so that it does not flip at a half turn, and limited in speed. */
+function turnForearm(state: ArmState, along: Vec3, deltaSeconds: number): void {
+  multiply(conjugate(untwisted, inverse), hand, inForearm);
+  const raw = twistAngle(twistOf(inForearm, along, twist), along);
+  const previous = state.known ? state.twist : 0;
+  const unwrapped = raw + 2 * Math.PI * Math.round((previous - raw) / (2 * Math.PI));
+  state.twist = Math.abs(unwrapped) > 1.25 * Math.PI ? raw : unwrapped;
+  const half = clamp(state.twist, -Math.PI, Math.PI) / 2;
+  const most = forearmSpeed * Math.max(deltaSeconds, 0);
+  state.forearmTwist = state.known ? clamp(half, state.forearmTwist - most, state.forearmTwist + most) : half;
+}
+
+/** The hand as it is turned, but against the forearm no further than a wrist bends. */
+function limitWrist(lowerArm: Quat, along: Vec3, target: MutableQuat): void {
+  multiply(conjugate(lowerArm, inverse), hand, inForearm);
+  twistOf(inForearm, along, twist);
+  // The swing: what is left of the rotation without its twist.
+  multiply(inForearm, conjugate(twist, inverse), inForearm);
+  multiply(limitAngle(inForearm, wristLimit, inForearm), limitAngle(twist, wristLimit, twist), target);
+  multiply(lowerArm, target, target);
+}
+
+/** Forgets the past: the next frame is the first. */
+export function resetFitArms(state: FitArmsState): void {
+  for (const arm of [state.left, state.right]) {
+    arm.known = false;
+    arm.transition.age = Number.NaN;
+  }
+}

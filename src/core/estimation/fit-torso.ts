@@ -1,0 +1,334 @@
+import { clavicleRest, clavicleRoot } from '../body/arm-rotations';
+import type { Side } from '../body/joints';
+import type { Skeleton } from '../body/skeleton';
+import { clamp, smoothingFactor, smoothstep } from '../math/damper';
+import { alignDirections, limitAngle, type MutableQuat, multiply, quat, rotate, rotationBetween } from '../math/quat';
+import {
+  add,
+  addScaled,
+  backward,
+  copyVec3,
+  cross,
+  distance,
+  dot,
+  down,
+  length,
+  lerp,
+  type MutableVec3,
+  normalise,
+  right,
+  scale,
+  setVec3,
+  subtract,
+  up,
+  type Vec3,
+  vec3,
+} from '../math/vec3';
+import { headingOf } from '../tracking/heading';
+import type { CompletedFrame, CompletedHand } from './complete-hands';
+import type { JointPositions } from './joint-positions';
+import limits from './kinematic-limits.json';
+
+const { torso: shares } = limits;
+
+/** How far the clavicle swings and the neck bends from rest against the thorax [rad]. */
+type TorsoLimits = Readonly<Record<'clavicleSwing' | 'neckBend', number>>;
+/** For the one frame in fifty thousand whose wrist lies further away than anatomy allows: the hand on the controller comes first. */
+const extreme: TorsoLimits = { clavicleSwing: 1.2, neckBend: 1.8 };
+/** The trunk is placed anew so often at most until both arms reach their hands; then the limits widen, for so many more. */
+const [anatomicalPasses, extremePasses] = [8, 24];
+/** No trunk leans further [m] after a hand that it does not reach at once: the limits of clavicle and neck are met before. */
+const furthestLean = 0.6;
+
+/** A trunk leans after a hand that comes back, and straightens after one that is lost, at most this fast [m/s]. */
+const leanSpeed = 0.6;
+/** Shoulders turn at most this fast [rad/s]; a pirouette's do 12. */
+const turnSpeed = 12;
+/** Longest half-life [s] of the shoulders' line, where they are estimated so close together that it says little. */
+const shoulderLineHalfLife = 0.15;
+/** Shoulders nearer to each other than the first say nothing of their line, further apart than the second all [share of their distance at rest]. */
+const [undefinedLine, definedLine] = [0.2, 0.7];
+/** Of the turn from the pelvis to the shoulders' line, in the lower back [1]. */
+const spineToShoulders = 0.35;
+/** The height [m] of the hip joints' middle when sitting on the floor. */
+const lowestHips = 0.09;
+
+const trunkBones = ['hips', 'spine', 'chest', 'upperChest', 'neck'] as const;
+
+/** A trunk with its bones' lengths under the head, floor frame. */
+export interface TorsoPose {
+  readonly hips: MutableVec3;
+  readonly chest: MutableVec3;
+  readonly neck: MutableVec3;
+  readonly rotations: Readonly<Record<(typeof trunkBones)[number], MutableQuat>>;
+  readonly clavicles: Readonly<Record<Side, MutableQuat>>;
+  readonly shoulders: Readonly<Record<Side, MutableVec3>>;
+}
+
+/** How a shoulder goes after a hand that the arm alone does not reach: from where it is estimated [m], floor frame. */
+interface Lean {
+  /** As far as the hand is missed. */
+  readonly wanted: MutableVec3;
+  readonly wantedBefore: MutableVec3;
+  /** As far as the trunk leans. */
+  readonly offset: MutableVec3;
+}
+
+const makeLean = (): Lean => ({ wanted: vec3(0, 0, 0), wantedBefore: vec3(0, 0, 0), offset: vec3(0, 0, 0) });
+
+export interface FitTorsoState {
+  /** False before the first frame. */
+  known: boolean;
+  readonly pose: TorsoPose;
+  /** From the left to the right shoulder, unit, floor frame: of this frame, and of the one before. */
+  readonly shoulderLine: MutableVec3;
+  readonly lineBefore: MutableVec3;
+  readonly lean: Readonly<Record<Side, Lean>>;
+}
+
+export const makeFitTorsoState = (): FitTorsoState => ({
+  known: false,
+  pose: {
+    hips: vec3(0, 0, 0),
+    chest: vec3(0, 0, 0),
+    neck: vec3(0, 0, 0),
+    rotations: {
+      hips: quat(0, 0, 0, 1),
+      spine: quat(0, 0, 0, 1),
+      chest: quat(0, 0, 0, 1),
+      upperChest: quat(0, 0, 0, 1),
+      neck: quat(0, 0, 0, 1),
+    },
+    clavicles: { left: quat(0, 0, 0, 1), right: quat(0, 0, 0, 1) },
+    shoulders: { left: vec3(0, 0, 0), right: vec3(0, 0, 0) },
+  },
+  shoulderLine: vec3(1, 0, 0),
+  lineBefore: vec3(1, 0, 0),
+  lean: { left: makeLean(), right: makeLean() },
+});
+
+/** What the fitting of the torso needs of a skeleton, measured once. */
+export interface TorsoBones {
+  readonly skeleton: Skeleton;
+  /** From chest joint to neck, and from hips to chest joint, at rest. */
+  readonly thorax: Vec3;
+  readonly thoraxLength: number;
+  readonly lowerBack: Vec3;
+  readonly lowerBackLength: number;
+  readonly neckLength: number;
+  /** From the neck to the middle of the shoulders, at rest. */
+  readonly shouldersFromNeck: Vec3;
+  readonly shoulderWidth: number;
+  /** Shoulder to wrist of a straight arm [m], a hair less, so that the elbow keeps a side. */
+  readonly reach: number;
+}
+
+export function torsoBones(skeleton: Skeleton): TorsoBones {
+  const offsets = skeleton.restOffsets;
+  const thorax = add(offsets.upperChest, offsets.neck);
+  const lowerBack = add(offsets.spine, offsets.chest);
+  const left = add(offsets.leftShoulder, offsets.leftUpperArm);
+  const rightShoulder = add(offsets.rightShoulder, offsets.rightUpperArm);
+  return {
+    skeleton,
+    thorax,
+    thoraxLength: length(thorax),
+    lowerBack,
+    lowerBackLength: length(lowerBack),
+    neckLength: length(offsets.head),
+    shouldersFromNeck: subtract(lerp(left, rightShoulder, 0.5), offsets.neck),
+    shoulderWidth: 2 * rightShoulder.x,
+    reach: (length(offsets.rightLowerArm) + length(offsets.rightHand)) * (1 - 1e-5),
+  };
+}
+
+/** What the torso of one frame is fitted to; floor frame. */
+interface TorsoGoal {
+  readonly joints: JointPositions;
+  readonly frame: CompletedFrame;
+  readonly bones: TorsoBones;
+  readonly deltaSeconds: number;
+}
+
+/** Where the shoulders are to be, floor frame. */
+const targets: Readonly<Record<Side, MutableVec3>> = { left: vec3(0, 0, 0), right: vec3(0, 0, 0) };
+/** By how much the neck was moved onto its length from the head, the part of it that chest joint and hips follow. */
+const moved = vec3(0, 0, 0);
+const headingRight = vec3(0, 0, 0);
+const thoraxUp = vec3(0, 0, 0);
+const roughUp = vec3(0, 0, 0);
+const a = vec3(0, 0, 0);
+const b = vec3(0, 0, 0);
+const c = vec3(0, 0, 0);
+const rotation = quat(0, 0, 0, 1);
+const swing = quat(0, 0, 0, 1);
+
+/**
+ * Stage 5, the trunk: neck, chest joint, hips and clavicles on their bones' lengths under the head, as nearly where they are
+ * estimated as that lets them, leaning and turning after hands that the arms alone cannot reach.
+ */
+export function fitTorso(
+  state: FitTorsoState,
+  joints: JointPositions,
+  frame: CompletedFrame,
+  bones: TorsoBones,
+  deltaSeconds: number,
+): TorsoPose {
+  const { pose, lean } = state;
+  const goal: TorsoGoal = { joints, frame, bones, deltaSeconds };
+  rotate(headingOf(frame.head.orientation, rotation), right, headingRight);
+  setVec3(lean.left.wanted, 0, 0, 0);
+  setVec3(lean.right.wanted, 0, 0, 0);
+  for (let pass = 0; pass <= anatomicalPasses + extremePasses; pass++) {
+    const within = pass > anatomicalPasses ? extreme : limits.torso;
+    add(joints.leftUpperArm, lean.left.wanted, targets.left);
+    add(joints.rightUpperArm, lean.right.wanted, targets.right);
+    placeThorax(state, goal, within);
+    const pulledLeft = pull(lean.left, pose.shoulders.left, frame.leftHand, bones);
+    const pulledRight = pull(lean.right, pose.shoulders.right, frame.rightHand, bones);
+    if (!pulledLeft && !pulledRight) break;
+  }
+  const leansLeft = followLean(lean.left, frame.leftHand, state.known, deltaSeconds);
+  const leansRight = followLean(lean.right, frame.rightHand, state.known, deltaSeconds);
+  if (!leansLeft || !leansRight) {
+    add(joints.leftUpperArm, lean.left.offset, targets.left);
+    add(joints.rightUpperArm, lean.right.offset, targets.right);
+    placeThorax(state, goal, limits.torso);
+  }
+  placeSpine(state, goal);
+  copyVec3(state.shoulderLine, state.lineBefore);
+  state.known = true;
+  return pose;
+}
+
+/** Leans a shoulder further towards a hand that is out of the arm's reach; false: it is not. No trunk goes after a guess. */
+function pull({ wanted }: Lean, shoulder: Vec3, { position, source }: CompletedHand, { reach }: TorsoBones): boolean {
+  if (source !== 'tracked') return false;
+  subtract(position, shoulder, a);
+  const missing = length(a) - reach;
+  if (missing <= 1e-5) return false;
+  addScaled(wanted, normalise(a, undefined, a), missing * shares.reachOvershoot, wanted);
+  return true;
+}
+
+/**
+ * Leans as far as is wanted, but after a hand that was lost or has come back no faster than people do; then only what is wanted
+ * anew is had at once. False: the lean is not yet what is wanted.
+ */
+function followLean(
+  { wanted, wantedBefore, offset }: Lean,
+  hand: CompletedHand,
+  known: boolean,
+  deltaSeconds: number,
+): boolean {
+  const anew = hand.source === 'tracked' && hand.confidence === 1 ? distance(wanted, wantedBefore) : 0;
+  const most = known ? leanSpeed * Math.max(deltaSeconds, 0) + anew : Number.POSITIVE_INFINITY;
+  copyVec3(wanted, wantedBefore);
+  if (distance(wanted, offset) <= most) {
+    copyVec3(wanted, offset);
+    return true;
+  }
+  const leant = length(offset);
+  if (leant > furthestLean) scale(offset, furthestLean / leant, offset);
+  const far = distance(wanted, offset);
+  lerp(offset, wanted, Math.min(1, most / far), offset);
+  return false;
+}
+
+/** The shoulders' line: never faster than `turnSpeed`, and slowly where the shoulders are estimated close together. */
+function followShoulderLine(state: FitTorsoState, { shoulderWidth }: TorsoBones, deltaSeconds: number): void {
+  const { shoulderLine: line, lineBefore: before, known } = state;
+  subtract(targets.right, targets.left, a);
+  const apart = length(a);
+  const wanted = normalise(a, known ? before : headingRight, line);
+  if (!known) return;
+  const confidence = smoothstep(undefinedLine, definedLine, apart / shoulderWidth);
+  const angle = Math.atan2(length(cross(before, wanted, b)), dot(before, wanted));
+  const turn = Math.min(
+    angle * smoothingFactor(shoulderLineHalfLife * (1 - confidence), deltaSeconds),
+    turnSpeed * Math.max(deltaSeconds, 0),
+  );
+  if (angle - turn < 1e-9) return;
+  normalise(cross(b, before, b), headingRight, b);
+  scale(before, Math.cos(turn), line);
+  normalise(addScaled(line, b, Math.sin(turn), line), before, line);
+}
+
+/** Neck, chest joint, the upper chest's rotation and the shoulders, from where the shoulders are to be. */
+function placeThorax(
+  state: FitTorsoState,
+  { joints, frame, bones, deltaSeconds }: TorsoGoal,
+  within: TorsoLimits,
+): void {
+  const { pose, shoulderLine } = state;
+  const { upperChest } = pose.rotations;
+  followShoulderLine(state, bones, deltaSeconds);
+  const middle = lerp(targets.left, targets.right, 0.5, a);
+
+  // The neck's base that these shoulders hang from, then brought onto the neck's length from the head.
+  normalise(subtract(middle, joints.chest, roughUp), up, roughUp);
+  const roughChest = alignDirections(bones.thorax, right, roughUp, shoulderLine, rotation);
+  const impliedNeck = subtract(middle, rotate(roughChest, bones.shouldersFromNeck, b), a);
+  const neckRest = rotate(roughChest, bones.skeleton.restOffsets.head, b);
+  limitAngle(rotationBetween(neckRest, subtract(frame.headJoint, impliedNeck, c), swing), within.neckBend, swing);
+  subtract(frame.headJoint, rotate(swing, neckRest, c), pose.neck);
+
+  // Chest joint and hips follow a share of what the neck was moved by; a hand far out of reach does not throw them about.
+  subtract(pose.neck, impliedNeck, moved);
+  const far = length(moved);
+  scale(moved, shares.neckShiftShare * Math.min(1, bones.neckLength / Math.max(far, 1e-9)), moved);
+  subtract(pose.neck, add(joints.chest, moved, b), thoraxUp);
+  normalise(thoraxUp, roughUp, thoraxUp);
+  addScaled(pose.neck, thoraxUp, -bones.thoraxLength, pose.chest);
+  alignDirections(bones.thorax, right, thoraxUp, shoulderLine, upperChest);
+  placeShoulder('left', pose, bones, within);
+  placeShoulder('right', pose, bones, within);
+}
+
+/** A shoulder on its clavicle, which swings towards its target. */
+function placeShoulder(
+  side: Side,
+  { neck, rotations, clavicles, shoulders }: TorsoPose,
+  { skeleton }: TorsoBones,
+  within: TorsoLimits,
+): void {
+  const root = clavicleRoot(side, neck, rotations.upperChest, skeleton, a);
+  const rest = rotate(rotations.upperChest, clavicleRest(side, skeleton), b);
+  limitAngle(rotationBetween(rest, subtract(targets[side], root, c), swing), within.clavicleSwing, swing);
+  add(root, rotate(swing, rest, b), shoulders[side]);
+  multiply(swing, rotations.upperChest, clavicles[side]);
+}
+
+/** Hips, and how each vertebra turns: the pelvis faces between head and shoulders; each joint above turns a part of the rest. */
+function placeSpine({ pose, shoulderLine }: FitTorsoState, { joints, frame, bones }: TorsoGoal): void {
+  const { head, headJoint } = frame;
+  const { hips, chest, neck, rotations } = pose;
+  hangHips(chest, add(joints.hips, moved, a), bones.lowerBackLength, hips);
+  const lowerBackUp = normalise(subtract(chest, hips, a), up, a);
+  const pelvisLine = normalise(lerp(shoulderLine, headingRight, shares.pelvisToHead, b), shoulderLine, b);
+  alignDirections(bones.lowerBack, right, lowerBackUp, pelvisLine, rotations.hips);
+  lerp(pelvisLine, shoulderLine, spineToShoulders, c);
+  alignDirections(bones.lowerBack, right, lowerBackUp, c, rotations.spine);
+  lerp(pelvisLine, shoulderLine, shares.chestToShoulders, c);
+  alignDirections(bones.thorax, right, thoraxUp, c, rotations.chest);
+  lerp(shoulderLine, rotate(head.orientation, right, a), 0.5, c);
+  alignDirections(bones.skeleton.restOffsets.head, right, subtract(headJoint, neck, a), c, rotations.neck);
+}
+
+/** The hips at `lowerBack` [m] from the chest joint towards their target, but never below the floor. */
+function hangHips(chest: Vec3, goal: Vec3, lowerBack: number, hips: MutableVec3): void {
+  subtract(goal, chest, hips);
+  addScaled(chest, normalise(hips, down, hips), lowerBack, hips);
+  const lowest = Math.min(lowestHips, chest.y + lowerBack);
+  if (hips.y >= lowest) return;
+  const drop = clamp(chest.y - lowest, -lowerBack, lowerBack);
+  const aside = Math.sqrt(lowerBack * lowerBack - drop * drop);
+  const horizontal = setVec3(hips, hips.x - chest.x, 0, hips.z - chest.z);
+  normalise(horizontal, backward, horizontal);
+  setVec3(hips, chest.x + horizontal.x * aside, chest.y - drop, chest.z + horizontal.z * aside);
+}
+
+/** Forgets the past: the next frame is the first. */
+export function resetFitTorso(state: FitTorsoState): void {
+  state.known = false;
+}

@@ -1,0 +1,61 @@
+import type { PoseRegressor } from './pose-regressor';
+
+/** Latest-result inference: runs a regressor one at a time and hands over what it finished; nothing it does wrong gets out as an exception. */
+export class LatestResult {
+  readonly #regressor: PoseRegressor;
+  readonly #outputs: number;
+  readonly #finished: (output: Float32Array) => void;
+  readonly #failed: () => void;
+  #running: Promise<void> | null = null;
+  #fault: string | null = null;
+  #epoch = 0;
+
+  /** finished: hears each valid result. failed: a run went wrong, so that what earlier ones said no longer holds. */
+  constructor(regressor: PoseRegressor, finished: (output: Float32Array) => void, failed: () => void) {
+    this.#regressor = regressor;
+    this.#outputs = regressor.contract.outputs[0]?.shape.reduce((product, size) => product * size, 1) ?? 0;
+    this.#finished = finished;
+    this.#failed = failed;
+  }
+
+  /** The run under way, if there is one; none may be started beside it. */
+  get running(): Promise<void> | null {
+    return this.#running;
+  }
+
+  /** What went wrong last, until a run succeeds. */
+  get fault(): string | null {
+    return this.#fault;
+  }
+
+  /** Starts a run; resolves when it is finished, however it ends. `features` may be overwritten then. */
+  start(features: Float32Array): Promise<void> {
+    this.#running ??= this.#run(features).finally(() => {
+      this.#running = null;
+    });
+    return this.#running;
+  }
+
+  /** Forgets the run under way: its result is not handed over. */
+  reset(): void {
+    this.#epoch += 1;
+  }
+
+  async #run(features: Float32Array): Promise<void> {
+    const startedIn = this.#epoch;
+    const { contract } = this.#regressor;
+    try {
+      const output = await this.#regressor.run(features);
+      if (startedIn !== this.#epoch) return;
+      if (output.length !== this.#outputs) {
+        throw new Error(`${output.length} numbers came out, the contract says ${this.#outputs}`);
+      }
+      if (!output.every(Number.isFinite)) throw new Error('the output has numbers that are not finite');
+      this.#finished(output);
+      this.#fault = null;
+    } catch (error) {
+      this.#failed();
+      this.#fault = `${contract.name}: ${error instanceof Error ? error.message : String(error)}`;
+    }
+  }
+}

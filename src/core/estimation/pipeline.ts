@@ -1,0 +1,161 @@
+import { type MutableUpperBodyPose, makeUpperBodyPose } from '../body/avatar-pose';
+import type { Calibration } from '../body/calibration';
+import { chestSpaceBody, skeletonFromCalibration } from '../body/skeleton';
+import { makePose, makeTransform, transformPose } from '../math/pose';
+import { rotate } from '../math/quat';
+import { vec3 } from '../math/vec3';
+import { floorFromHeading, headingFromFloor } from '../tracking/heading';
+import type { TrackedPose, TrackingFrame } from '../tracking/tracking-frame';
+import { completeHands, makeCompleteHandsState, resetCompleteHands } from './complete-hands';
+import { composeBody } from './compose-body';
+import { filterJoints, makeFilterJointsState, resetFilterJoints } from './filter-joints';
+import { armBones, fitArms, makeFitArmsState, resetFitArms } from './fit-arms';
+import { fitTorso, makeFitTorsoState, resetFitTorso, torsoBones } from './fit-torso';
+import { HeadsetPitch } from './headset-pitch';
+import { makeJoints } from './joint-positions';
+import type { JointSource, SolvedFrame } from './joint-source';
+import type { Estimate, EstimatorName, InferenceRequest, PoseEstimator } from './pose-estimator';
+import { makeIkSolution, makeThreePoints, solveIk } from './solve-ik';
+
+/** A gap longer than this [s] is no motion: filters and memories begin anew. */
+const longestGapSeconds = 0.5;
+
+/** The wearer's body, measured in the ways that the stages need. */
+function measure(calibration: Calibration) {
+  const skeleton = skeletonFromCalibration(calibration);
+  return {
+    chestSpace: chestSpaceBody(calibration),
+    torso: torsoBones(skeleton),
+    arm: armBones(skeleton),
+  };
+}
+
+/** Everything that is remembered of one wearer, stage by stage; a stage writes its own part alone. */
+function makeEstimatorState() {
+  const hands = makeCompleteHandsState();
+  return {
+    hands,
+    solved: {
+      time: Number.NaN,
+      completed: hands.frame,
+      floorFromHeading: makeTransform<'floor', 'heading'>(),
+      points: makeThreePoints(),
+      ik: makeIkSolution(),
+    } satisfies SolvedFrame,
+    /** The six joints of the third stage, floor frame. */
+    joints: makeJoints(),
+    filter: makeFilterJointsState(),
+    torso: makeFitTorsoState(),
+    arms: makeFitArmsState(),
+  };
+}
+
+export type EstimatorState = ReturnType<typeof makeEstimatorState>;
+
+/** Before the first frame. */
+const noHead: TrackedPose = { ...makePose<'floor'>(), tracking: 'emulated' };
+
+/** What `update` returns, overwritten by the next. */
+interface OwnedPose {
+  head: TrackedPose;
+  leftHand: TrackedPose | null;
+  rightHand: TrackedPose | null;
+  readonly body: MutableUpperBodyPose;
+}
+
+/**
+ * An estimator with a body: complete hands → solve IK → correct (the source) → filter joints → fit torso, fit arms. A method is its
+ * source; every other stage is the same for all.
+ */
+export class Pipeline implements PoseEstimator {
+  readonly name: EstimatorName;
+  readonly source: JointSource;
+  /** Of the newest frame; for benches that look at single stages. */
+  readonly state: EstimatorState = makeEstimatorState();
+  readonly #headingFromFloor = makeTransform<'heading', 'floor'>();
+  /** IK's poles, floor frame. */
+  readonly #poles = { left: vec3(0, 0, 0), right: vec3(0, 0, 0) };
+  readonly #estimate: { readonly pose: OwnedPose; readonly request: InferenceRequest | null };
+  readonly #pitch: HeadsetPitch;
+  #body: ReturnType<typeof measure>;
+  #lastTime = Number.NaN;
+
+  constructor(name: EstimatorName, calibration: Calibration, source: JointSource) {
+    this.name = name;
+    this.source = source;
+    this.#pitch = new HeadsetPitch(calibration);
+    this.#body = measure(calibration);
+    const { network } = source;
+    this.#estimate = {
+      pose: { head: noHead, leftHand: null, rightHand: null, body: makeUpperBodyPose() },
+      request: network && { ask: () => network.ask(this.state.solved) },
+    };
+  }
+
+  calibrate(calibration: Calibration): void {
+    this.#pitch.calibrate(calibration);
+    this.#body = measure(calibration);
+    this.source.calibrate(this.#body.chestSpace);
+  }
+
+  reset(): void {
+    const { hands, filter, torso, arms } = this.state;
+    resetCompleteHands(hands);
+    this.source.reset();
+    resetFilterJoints(filter);
+    resetFitTorso(torso);
+    resetFitArms(arms);
+    this.#lastTime = Number.NaN;
+  }
+
+  fault(): string | null {
+    return this.source.network?.fault ?? null;
+  }
+
+  update(frame: TrackingFrame): Estimate {
+    const { state } = this;
+    const body = this.#body;
+    const deltaSeconds = this.#elapsed(frame.time);
+    const head = this.#pitch.level(frame.head);
+
+    const completed = completeHands(state.hands, head, frame, body.chestSpace, deltaSeconds);
+    const solved = this.#solve(frame.time);
+    this.source.joints(solved, deltaSeconds, state.joints);
+    const joints = filterJoints(state.filter, state.joints, completed, deltaSeconds);
+    const torso = fitTorso(state.torso, joints, completed, body.torso, deltaSeconds);
+    const goals = { frame: completed, joints, torso, bones: body.arm, poles: this.#poles };
+    const arms = fitArms(state.arms, goals, deltaSeconds);
+
+    const { pose } = this.#estimate;
+    pose.head = head;
+    pose.leftHand = frame.leftHand;
+    pose.rightHand = frame.rightHand;
+    composeBody(torso, arms, head.orientation, pose.body);
+    return this.#estimate;
+  }
+
+  /** Seconds since the last frame; 0 for the first, which a pause or a time that runs backwards makes it again. */
+  #elapsed(time: number): number {
+    const elapsed = time - this.#lastTime;
+    if (elapsed < 0 || elapsed > longestGapSeconds) this.reset();
+    const continues = !Number.isNaN(this.#lastTime);
+    this.#lastTime = time;
+    return continues ? elapsed : 0;
+  }
+
+  /** Stage 2 in the heading frame. */
+  #solve(time: number): SolvedFrame {
+    const { solved, hands } = this.state;
+    const { head, leftHand, rightHand } = hands.frame;
+    solved.time = time;
+    headingFromFloor(head, this.#headingFromFloor);
+    transformPose(this.#headingFromFloor, head, solved.points.head);
+    transformPose(this.#headingFromFloor, leftHand, solved.points.leftHand);
+    transformPose(this.#headingFromFloor, rightHand, solved.points.rightHand);
+    solveIk(solved.points, this.#body.chestSpace, solved.ik);
+    floorFromHeading(head, solved.floorFromHeading);
+    rotate(solved.floorFromHeading.orientation, solved.ik.poles.left, this.#poles.left);
+    rotate(solved.floorFromHeading.orientation, solved.ik.poles.right, this.#poles.right);
+    return solved;
+  }
+}

@@ -1,0 +1,210 @@
+import type { Side } from '../body/joints';
+import { sideSign } from '../body/skeleton';
+import { type ElbowCircle, poleAcross } from '../body/two-bone-ik';
+import { bisect } from '../math/bisection';
+import { clamp, smoothingFactor, smoothstep } from '../math/damper';
+import { fromAxes, quat, rotate, rotateInverse, rotationBetween } from '../math/quat';
+import {
+  addScaled,
+  backward,
+  cross,
+  distance,
+  dot,
+  length,
+  type MutableVec3,
+  normalise,
+  reject,
+  right,
+  scale,
+  setVec3,
+  subtract,
+  up,
+  type Vec3,
+  vec3,
+} from '../math/vec3';
+import type { TorsoPose } from './fit-torso';
+import limits from './kinematic-limits.json';
+
+const { trunkCapsule: capsule } = limits;
+
+/** An elbow circles the line from shoulder to wrist at most this fast [rad/s]; a punch's elbow does 10. */
+const swivelSpeed = 12;
+/** The same where the hand is a guess. */
+const guessedSwivelSpeed = 5;
+/** Longest half-life [s] of the swivel angle, where its estimate says little about the side the elbow points to. */
+const swivelHalfLife = 0.35;
+/** An estimated elbow nearer to the arm's line than this [m] says little: the arm is nearly straight. */
+const definedPole = 0.04;
+/** A hand nearer to the shoulder than the first says nothing about the line between them, further than the second all [arm lengths]. */
+const [handAtShoulder, handAway] = [0.1, 0.3];
+
+/** What an elbow remembers, so that it does not flip: chest frame. */
+export interface SwivelState {
+  /** From the shoulder to the wrist, unit. */
+  readonly axis: MutableVec3;
+  /** Where the elbow points from that line, unit. */
+  readonly pole: MutableVec3;
+}
+
+/** Where an estimated elbow points from its own arm's line, and the confidence in [0, 1] in that. */
+export interface EstimatedPole {
+  readonly direction: MutableVec3;
+  confidence: number;
+}
+
+const ownAxis = vec3(0, 0, 0);
+const turn = quat(0, 0, 0, 1);
+
+/** The pole of an estimated arm, carried to the circle of the arm that is drawn; all in the floor frame. */
+export function estimatedPole(
+  estimated: { readonly shoulder: Vec3; readonly elbow: Vec3; readonly wrist: Vec3 },
+  { axis }: ElbowCircle,
+  fallbacks: readonly [Vec3, Vec3],
+  target: EstimatedPole,
+): EstimatedPole {
+  const { direction } = target;
+  normalise(subtract(estimated.wrist, estimated.shoulder, ownAxis), axis, ownAxis);
+  reject(subtract(estimated.elbow, estimated.shoulder, direction), ownAxis, direction);
+  target.confidence = smoothstep(0, definedPole, length(direction));
+  rotate(rotationBetween(ownAxis, axis, turn), direction, direction);
+  poleAcross(axis, direction, fallbacks, direction);
+  return target;
+}
+
+export interface SwivelLimits {
+  readonly side: Side;
+  readonly torso: TorsoPose;
+  /** Upper arm and forearm together [m]. */
+  readonly armLength: number;
+  /** In the hand, in [0, 1]: elbows of guesses turn slower. */
+  readonly confidence: number;
+  readonly deltaSeconds: number;
+}
+
+/** Angles about the arm's line are counted from `zero`, which leads away from the trunk, towards `quarter`. */
+const zero = vec3(0, 0, 0);
+const quarter = vec3(0, 0, 0);
+const carried = vec3(0, 0, 0);
+
+const angleOf = (direction: Vec3): number => Math.atan2(dot(direction, quarter), dot(direction, zero));
+
+function poleAt(angle: number, target: MutableVec3): MutableVec3 {
+  scale(zero, Math.cos(angle), target);
+  return addScaled(target, quarter, Math.sin(angle), target);
+}
+
+/**
+ * Writes where the elbow points now: after its estimate by way of the trunk's outside, with bounded speed, and slowly where the
+ * estimate says little. Its previous side (null: none) is carried along as the arm moves; the first frame takes the estimate, out of
+ * the trunk.
+ */
+export function limitSwivel(
+  before: SwivelState | null,
+  wantedPole: EstimatedPole,
+  circle: ElbowCircle,
+  { side, torso, armLength, confidence, deltaSeconds }: SwivelLimits,
+  target: MutableVec3,
+): MutableVec3 {
+  const { axis } = circle;
+  const floorFromChest = torso.rotations.upperChest;
+  reject(rotate(floorFromChest, setVec3(zero, sideSign(side), 0, 0), zero), axis, zero);
+  if (length(zero) <= 1e-3) reject(rotate(floorFromChest, backward, zero), axis, zero);
+  normalise(zero, undefined, zero);
+  cross(axis, zero, quarter);
+
+  const limited = findClearSwivel(circle, torso);
+  const estimated = angleOf(wantedPole.direction);
+  const wanted = limited ? nearestWithin(estimated) : estimated;
+  if (before === null) return poleAt(wanted, target);
+
+  rotationBetween(rotate(floorFromChest, before.axis, carried), axis, turn);
+  rotate(turn, rotate(floorFromChest, before.pole, carried), carried);
+  const kept = angleOf(carried);
+  const inside = limited && nearestWithin(kept) !== kept;
+  // Free to turn both ways round, the elbow takes the shorter; else the one that does not lead through the trunk.
+  const toGo = limited && !inside ? wanted - kept : Math.atan2(Math.sin(wanted - kept), Math.cos(wanted - kept));
+  const defined = wantedPole.confidence * smoothstep(handAtShoulder * armLength, handAway * armLength, circle.span);
+  const followed = inside ? toGo : toGo * smoothingFactor(swivelHalfLife * (1 - defined) ** 3, deltaSeconds);
+  const most = (guessedSwivelSpeed + (swivelSpeed - guessedSwivelSpeed) * confidence) * Math.max(deltaSeconds, 0);
+  return poleAt(kept + clamp(followed, -most, most), target);
+}
+
+/** The swivel angles at which the elbow is clear of the trunk, around 0; written by `findClearSwivel`. */
+const clear = { low: -Math.PI + 0.5, high: Math.PI - 0.5 };
+
+/** The clear angle nearest to one in (−π, π]. */
+function nearestWithin(angle: number): number {
+  const { low, high } = clear;
+  if (angle >= low && angle <= high) return angle;
+  const beyond = (from: number) => Math.abs(Math.atan2(Math.sin(angle - from), Math.cos(angle - from)));
+  return beyond(low) < beyond(high) ? low : high;
+}
+
+/** Angles are looked at in steps of this [rad], borders found to a sixty-fourth of it. */
+const swivelStep = Math.PI / 18;
+
+const side = vec3(0, 0, 0);
+const trunkUp = vec3(0, 0, 0);
+const floorFromTrunk = quat(0, 0, 0, 1);
+const behind = vec3(0, 0, 0);
+/** The elbow's circle in units of the trunk's capsule: its centre, and its radius towards `zero` and `quarter`. */
+const centre = vec3(0, 0, 0);
+const towardsZero = vec3(0, 0, 0);
+const towardsQuarter = vec3(0, 0, 0);
+/** From the hips to the neck [heights of the capsule's caps]. */
+const trunk = { height: 0.5 };
+
+/** A vector in the trunk's frame, with the capsule's half width, height of the caps and half depth as units of x, y and z. */
+function inCapsule(v: Vec3, unit: number, target: MutableVec3): MutableVec3 {
+  rotateInverse(floorFromTrunk, v, target);
+  target.x /= capsule.halfWidth * unit;
+  target.y /= capsule.cap * unit;
+  target.z /= capsule.halfDepth * unit;
+  return target;
+}
+
+/** The squared distance of a point from the capsule's axis; below 1 it is inside. */
+function squaredDistance(x: number, y: number, z: number): number {
+  const beyond = y - clamp(y, 0, trunk.height);
+  return x * x + beyond * beyond + z * z;
+}
+
+/** Finds the swivel angles at which an elbow is clear of the trunk; false: all are. */
+function findClearSwivel(circle: ElbowCircle, { hips, chest, neck, rotations }: TorsoPose): boolean {
+  const unit = distance(neck, chest);
+  normalise(subtract(neck, hips, trunkUp), up, trunkUp);
+  normalise(reject(rotate(rotations.upperChest, right, side), trunkUp, side), right, side);
+  fromAxes(side, trunkUp, cross(side, trunkUp, behind), floorFromTrunk);
+  trunk.height = distance(neck, hips) / (capsule.cap * unit);
+  inCapsule(subtract(circle.centre, hips, centre), unit, centre);
+  inCapsule(scale(zero, circle.radius, towardsZero), unit, towardsZero);
+  inCapsule(scale(quarter, circle.radius, towardsQuarter), unit, towardsQuarter);
+  const furthest = Math.sqrt(dot(towardsZero, towardsZero) + dot(towardsQuarter, towardsQuarter));
+  if (Math.sqrt(squaredDistance(centre.x, centre.y, centre.z)) - furthest >= 1) return false;
+  clear.high = border(1);
+  clear.low = -border(-1);
+  return clear.high < Math.PI || clear.low > -Math.PI;
+}
+
+/** Whether an elbow at this angle is inside the trunk. */
+function isInside(angle: number): boolean {
+  const [cosine, sine] = [Math.cos(angle), Math.sin(angle)];
+  return (
+    squaredDistance(
+      centre.x + towardsZero.x * cosine + towardsQuarter.x * sine,
+      centre.y + towardsZero.y * cosine + towardsQuarter.y * sine,
+      centre.z + towardsZero.z * cosine + towardsQuarter.z * sine,
+    ) < 1
+  );
+}
+
+const isInsideBackward = (angle: number): boolean => isInside(-angle);
+
+/** From 0 on in the direction of `sign`: the last clear angle. */
+function border(sign: 1 | -1): number {
+  const blocked = sign === 1 ? isInside : isInsideBackward;
+  for (let step = 1; step <= 18; step++) {
+    if (blocked(step * swivelStep)) return bisect((step - 1) * swivelStep, step * swivelStep, blocked, 6);
+  }
+  return Math.PI;
+}

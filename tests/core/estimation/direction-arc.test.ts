@@ -1,0 +1,68 @@
+import fc from 'fast-check';
+import { describe, expect, test } from 'vitest';
+import { alongArc, directionArc } from '../../../src/core/estimation/direction-arc';
+import { rotate } from '../../../src/core/math/quat';
+import { distance, dot, length, normalise, scale, type Vec3, vec3 } from '../../../src/core/math/vec3';
+import { number, seed } from '../arbitraries';
+
+const direction = fc
+  .record({ x: number(-1, 1), y: number(-1, 1), z: number(-1, 1) })
+  .filter((v) => length(v) > 0.1)
+  .map((v) => normalise(v as Vec3));
+const outside = normalise(vec3(1, -0.2, -1));
+
+const angle = (a: Vec3, b: Vec3): number => 2 * Math.asin(Math.min(1, distance(a, b) / 2));
+/** The direction after this share of the way. */
+const at = (from: Vec3, to: Vec3, share: number): Vec3 =>
+  rotate(alongArc(directionArc(from, to, outside), share), from);
+
+describe('an arc from one direction to another', () => {
+  test('starts at the first and ends at the second', () => {
+    fc.assert(
+      fc.property(direction, direction, (from, to) => {
+        expect(distance(at(from, to, 0), from)).toBeLessThan(1e-9);
+        expect(distance(at(from, to, 1), to)).toBeLessThan(1e-6);
+      }),
+      { seed },
+    );
+  });
+
+  test('is gone along evenly: equal shares turn equal angles', () => {
+    fc.assert(
+      fc.property(direction, direction, (from, to) => {
+        const whole = directionArc(from, to, outside).angle;
+        for (let i = 1; i <= 20; i++) {
+          // The bend halfway may be cut.
+          const turned = angle(at(from, to, i / 20), at(from, to, (i - 1) / 20));
+          expect(turned).toBeLessThan(whole / 20 + 1e-6);
+          expect(turned).toBeGreaterThan(whole / 40 - 1e-6);
+        }
+      }),
+      { seed },
+    );
+  });
+
+  test('is the shortest between directions less than 120° apart', () => {
+    fc.assert(
+      fc.property(direction, direction, (from, to) => {
+        fc.pre(angle(from, to) < 2.09);
+        expect(directionArc(from, to, outside).angle).toBeCloseTo(angle(from, to), 6);
+        const middle = at(from, to, 0.5);
+        expect(Math.abs(angle(middle, from) - angle(middle, to))).toBeLessThan(1e-6);
+      }),
+      { seed },
+    );
+  });
+
+  test('passes on the outside between opposite directions, and is at most a full turn', () => {
+    fc.assert(
+      fc.property(direction, (from) => {
+        fc.pre(Math.abs(dot(from, outside)) < 0.9);
+        const to = scale(from, -1);
+        expect(dot(at(from, to, 0.5), outside)).toBeGreaterThan(0);
+        expect(directionArc(from, to, outside).angle).toBeLessThan(2 * Math.PI);
+      }),
+      { seed },
+    );
+  });
+});
