@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import pytest
-
 from threepoint_training import accuracy_page, accuracy_tables
 
 JOINTS = tuple(accuracy_tables.JOINTS)

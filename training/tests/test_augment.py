@@ -4,11 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from threepoint_training import features
 from threepoint_training.augment import AugmentConfig, BodyParts, draw_batch
-from threepoint_training.features import CHEST_FEATURES, FEATURES, IK_JOINTS, chest_axes
+from threepoint_training.chest_features import CHEST_FEATURES, chest_axes
+from threepoint_training.features import ARM_LENGTH, FEATURES, IK_JOINTS, SEEN, frame_features, hand_positions
 from threepoint_training.generated_motion import generate_corpus
 from threepoint_training.prepare import EYES_FROM_HEAD_JOINT
+from threepoint_training.residual import network_input, residual
 from threepoint_training.simulate_trackers import TrackerConfig, Wearer, simulate
 from threepoint_training.skeleton import body_from_calibration
 
@@ -27,9 +28,9 @@ def corpus_rows():
         frames = CORPUS.clip_slice(clip)
         positions, rotations = simulate(CORPUS.positions[frames], CORPUS.rotations[frames], wearer, EXACT, np.random.default_rng(0))
         body = body_from_calibration(np.array(CORPUS.people[person].eye_height), np.array(CORPUS.people[person].arm_span))
-        vector, _ = features.frame_features(positions, rotations, body)
-        inputs.append(features.network_input(vector, np.arange(len(vector)) / 60, (0, 0.1, 0.25)))
-        targets.append(features.target(CORPUS.truth(frames).astype(np.float64), positions, rotations, body, vector))
+        vector, _ = frame_features(positions, rotations, body)
+        inputs.append(network_input(vector, np.arange(len(vector)) / 60, (0, 0.1, 0.25)))
+        targets.append(residual(CORPUS.truth(frames).astype(np.float64), positions, rotations, body, vector))
     return np.concatenate(inputs), np.concatenate(targets)
 
 
@@ -57,7 +58,7 @@ def test_arms_of_others_move_the_hands_but_not_the_torso():
     mixed = draw_batch(PARTS, 200, replace(PLAIN, recombined=1.0), np.random.default_rng(2))
     # The same frames are drawn first; mirroring is drawn later, so compare what mirroring leaves alone: the height of the hips.
     np.testing.assert_allclose(joints_of(mixed)[:, 5, 1], joints_of(plain)[:, 5, 1], atol=1e-5)
-    assert np.abs(mixed.inputs[:, 7:10] - plain.inputs[:, 7:10]).max() > 0.3
+    assert np.abs(hand_positions(mixed.inputs) - hand_positions(plain.inputs)).max() > 0.3
 
 
 @pytest.mark.parametrize("recombined", [0.0, 1.0])
@@ -66,7 +67,7 @@ def test_arms_have_the_length_that_the_calibration_knows(recombined):
     config = replace(PLAIN, recombined=recombined, arm_scale=0.05)
     batch = draw_batch(PARTS, 300, config, np.random.default_rng(3))
     joints = joints_of(batch)
-    span_ratio = batch.inputs[:, 45]
+    span_ratio = batch.inputs[:, ARM_LENGTH]
     for elbow, shoulder, hand in ((0, 2, slice(7, 10)), (1, 3, slice(16, 19))):
         wrist = batch.inputs[:, hand] * span_ratio[:, None]
         length = np.linalg.norm(joints[:, elbow] - joints[:, shoulder], axis=1) + np.linalg.norm(wrist - joints[:, elbow], axis=1)
@@ -77,7 +78,7 @@ def test_arms_have_the_length_that_the_calibration_knows(recombined):
 def test_a_lost_hand_says_so_and_comes_to_rest_beside_the_hips_in_time():
     def resting(lost_frames, hand, sign):
         batch = draw_batch(PARTS, 400, replace(PLAIN, lost_hand=1.0, lost_frames=lost_frames), np.random.default_rng(4))
-        assert (batch.inputs[:, 25:27] == 0).all()
+        assert (batch.inputs[:, SEEN] == 0).all()
         wrist = batch.inputs[:, hand]
         return ((wrist[:, 1] < -0.9) & (sign * wrist[:, 0] > 0.1)).mean()
 
@@ -90,7 +91,7 @@ def test_a_lost_hand_says_so_and_comes_to_rest_beside_the_hips_in_time():
 def test_a_hand_lost_for_a_moment_is_where_it_was_while_the_arm_moves_on():
     held = replace(PLAIN, lost_hand=1.0, lost_frames=6)
     seen, frozen = (draw_batch(PARTS, 300, config, np.random.default_rng(7)) for config in (PLAIN, held))
-    moved = np.linalg.norm(frozen.inputs[:, 7:10] - seen.inputs[:, 7:10], axis=1)
+    moved = np.linalg.norm((hand_positions(frozen.inputs) - hand_positions(seen.inputs))[:, 0], axis=1)
     # Six frames of generated motion: some hands moved by centimetres, none to the hips.
     assert 0.002 < np.median(moved) < 0.2
 
@@ -98,7 +99,7 @@ def test_a_hand_lost_for_a_moment_is_where_it_was_while_the_arm_moves_on():
 def test_late_trackers_tell_of_the_frame_before():
     on_time, late = (draw_batch(PARTS, 300, replace(PLAIN, late=part), np.random.default_rng(8)) for part in (0.0, 1.0))
     # The newest of a late window is the same person one frame earlier: nearly the same, not the same.
-    difference = np.abs(on_time.inputs[:, :25] - late.inputs[:, :25]).max(axis=1)
+    difference = np.abs(on_time.inputs[:, : SEEN.start] - late.inputs[:, : SEEN.start]).max(axis=1)
     assert 1e-4 < np.median(difference) < 0.2
 
 
@@ -121,7 +122,7 @@ def test_a_batch_is_finite_and_repeatable():
 
 
 def test_a_window_says_whose_torso_and_arms_it_has():
-    """Nobody's arms but theirs on anybody's torso: without recombination all three are one person."""
+    """Without recombination torso and arms are one person's."""
     alone = draw_batch(PARTS, 200, PLAIN, np.random.default_rng(6)).people
     assert (alone == alone[:, :1]).all()
     mixed = draw_batch(PARTS, 200, replace(PLAIN, recombined=1.0), np.random.default_rng(6)).people
@@ -138,6 +139,6 @@ def test_a_mirrored_body_has_its_owners_arms_on_the_other_sides():
     batch = draw_batch(parts, 400, replace(PLAIN, recombined=1.0), np.random.default_rng(6))
     joints = joints_of(batch)
     upper_arm = np.linalg.norm(joints[:, [0, 1]] - joints[:, [2, 3]], axis=-1)
-    hands = batch.inputs[:, [[7, 8, 9], [16, 17, 18]]] * batch.inputs[:, 45, None, None]
+    hands = hand_positions(batch.inputs) * batch.inputs[:, ARM_LENGTH, None, None]
     forearm = np.linalg.norm(hands - joints[:, [0, 1]], axis=-1)
     np.testing.assert_allclose(upper_arm / (upper_arm + forearm), own[batch.people[:, 1:]], atol=1e-4)

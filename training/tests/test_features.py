@@ -2,9 +2,13 @@
 
 import numpy as np
 import pytest
-from threepoint_training import features, fit_ik, ik, quaternion
+from threepoint_training import fit_ik, quaternion, solve_ik
+from threepoint_training.chest_features import UP, chest_axes, chest_features
+from threepoint_training.features import FEATURES, HANDS, HEAD_AXES, IK_JOINTS, SEEN, frame_features, windowed
 from threepoint_training.generated_motion import generate_clip
+from threepoint_training.paper_features import euler_yxz, paper_features
 from threepoint_training.prepared_corpus import ESTIMATED_JOINTS, JOINTS, Person
+from threepoint_training.residual import residual
 from threepoint_training.simulate_trackers import TrackerConfig, draw_wearer, simulate
 from threepoint_training.skeleton import body_from_calibration
 
@@ -34,18 +38,18 @@ def moved(positions, rotations, yaw, offset):
 def mirrored_features(vector):
     """What the features of the mirrored motion must be: sides exchanged, x and the mirrored rotations' signs turned."""
     axis_x, axis_y = np.array([1.0, -1, -1]), np.array([-1.0, 1, 1])
-    head = np.concatenate([vector[:, 1:4] * axis_x, vector[:, 4:7] * axis_y], 1)
-    hands = [
-        np.concatenate([vector[:, a : a + 3] * axis_y, vector[:, a + 3 : a + 6] * axis_x, vector[:, a + 6 : a + 9] * axis_y], 1)
-        for a in (16, 7)
-    ]
-    joints = vector[:, 27:45].reshape(-1, 6, 3)[:, SIDE_SWAPPED] * np.array([-1.0, 1, 1])
-    return np.concatenate([vector[:, :1], head, *hands, vector[:, [26, 25]], joints.reshape(-1, 18), vector[:, 45:]], 1)
+    mirrored = vector.copy()
+    mirrored[:, HEAD_AXES] *= np.concatenate([axis_x, axis_y])
+    for hand, other in (HANDS, HANDS[::-1]):
+        mirrored[:, hand] = vector[:, other] * np.concatenate([axis_y, axis_x, axis_y])
+    mirrored[:, SEEN] = vector[:, SEEN][:, ::-1]
+    mirrored[:, IK_JOINTS] = (vector[:, IK_JOINTS].reshape(-1, 6, 3)[:, SIDE_SWAPPED] * axis_y).reshape(-1, 18)
+    return mirrored
 
 
 def test_the_vector_has_46_finite_numbers(motion):
-    vector, _ = features.frame_features(*motion[:2], BODY)
-    assert vector.shape == (120, features.FEATURES)
+    vector, _ = frame_features(*motion[:2], BODY)
+    assert vector.shape == (120, FEATURES)
     assert np.isfinite(vector).all()
 
 
@@ -53,30 +57,30 @@ def test_the_vector_has_46_finite_numbers(motion):
 def test_walking_elsewhere_and_turning_changes_no_feature(motion, yaw):
     positions, rotations, truth = motion
     elsewhere = moved(positions, rotations, yaw, np.array([3.0, 0.0, -7.0]))
-    before, joints = features.frame_features(positions, rotations, BODY)
-    after, turned_joints = features.frame_features(*elsewhere, BODY)
+    before, joints = frame_features(positions, rotations, BODY)
+    after, turned_joints = frame_features(*elsewhere, BODY)
     np.testing.assert_allclose(after, before, atol=1e-9)
     np.testing.assert_allclose(turned_joints, joints, atol=1e-9)
     turned_truth, _ = moved(truth, np.broadcast_to(rotations[:, :1], (120, 6, 4)), yaw, np.array([3.0, 0.0, -7.0]))
     np.testing.assert_allclose(
-        features.target(turned_truth, *elsewhere, BODY, after), features.target(truth, positions, rotations, BODY, before), atol=1e-9
+        residual(turned_truth, *elsewhere, BODY, after), residual(truth, positions, rotations, BODY, before), atol=1e-9
     )
 
 
 def test_the_paper_s_input_does_turn_with_the_person_but_does_not_move(motion):
     positions, rotations, _ = motion
-    before = features.paper_input(positions, rotations)
-    np.testing.assert_allclose(features.paper_input(positions + [2.0, 0.0, 5.0], rotations), before, atol=1e-9)
-    turned = features.paper_input(*moved(positions, rotations, 1.0, np.zeros(3)))
+    before = paper_features(positions, rotations)
+    np.testing.assert_allclose(paper_features(positions + [2.0, 0.0, 5.0], rotations), before, atol=1e-9)
+    turned = paper_features(*moved(positions, rotations, 1.0, np.zeros(3)))
     assert np.abs(turned[:, 0] - before[:, 0]).max() > 0.1
 
 
 def test_the_mirror_image_has_the_mirrored_features(motion):
     positions, rotations, truth = motion
     seen = np.random.default_rng(2).uniform(size=(120, 2)) > 0.3
-    vector, _ = features.frame_features(positions, rotations, BODY, seen)
+    vector, _ = frame_features(positions, rotations, BODY, seen)
     mirrored_positions, mirrored_rotations, _ = fit_ik.mirror(positions, rotations, truth)
-    mirrored, _ = features.frame_features(mirrored_positions, mirrored_rotations, BODY, seen[:, ::-1])
+    mirrored, _ = frame_features(mirrored_positions, mirrored_rotations, BODY, seen[:, ::-1])
     np.testing.assert_allclose(mirrored, mirrored_features(vector), atol=1e-9)
 
 
@@ -84,12 +88,12 @@ def test_the_mirror_image_has_the_mirrored_features(motion):
 def test_a_child_in_an_adult_s_pose_has_the_adult_s_features(motion, size):
     positions, rotations, truth = motion
     grown = body_from_calibration(np.array(PERSON.eye_height * size), np.array(PERSON.arm_span * size))
-    before, _ = features.frame_features(positions, rotations, BODY)
-    after, _ = features.frame_features(positions * size, rotations, grown)
+    before, _ = frame_features(positions, rotations, BODY)
+    after, _ = frame_features(positions * size, rotations, grown)
     np.testing.assert_allclose(after, before, atol=1e-6)
     np.testing.assert_allclose(
-        features.target(truth * size, positions * size, rotations, grown, after),
-        features.target(truth, positions, rotations, BODY, before),
+        residual(truth * size, positions * size, rotations, grown, after),
+        residual(truth, positions, rotations, BODY, before),
         atol=1e-9,
     )
 
@@ -97,42 +101,42 @@ def test_a_child_in_an_adult_s_pose_has_the_adult_s_features(motion, size):
 def test_an_unseen_hand_says_so_and_changes_nothing_else(motion):
     seen = np.ones((120, 2), bool)
     seen[:, 0] = False
-    with_hand, _ = features.frame_features(*motion[:2], BODY)
-    without, _ = features.frame_features(*motion[:2], BODY, seen)
-    assert np.flatnonzero((with_hand != without).any(axis=0)).tolist() == [25]
+    with_hand, _ = frame_features(*motion[:2], BODY)
+    without, _ = frame_features(*motion[:2], BODY, seen)
+    assert np.flatnonzero((with_hand != without).any(axis=0)).tolist() == [SEEN.start]
 
 
 def test_the_ik_joints_within_are_those_of_the_solver(motion):
     positions, rotations, _ = motion
-    vector, joints = features.frame_features(positions, rotations, BODY)
-    local, turns, _, _ = ik.to_heading(positions, rotations)
-    expected = (ik.solve(local, turns, BODY) - local[:, :1]) / PERSON.eye_height
-    np.testing.assert_allclose(vector[:, features.IK_JOINTS].reshape(-1, 6, 3), expected, atol=1e-12)
+    vector, joints = frame_features(positions, rotations, BODY)
+    local, turns, _, _ = solve_ik.to_heading(positions, rotations)
+    expected = (solve_ik.solve(local, turns, BODY) - local[:, :1]) / PERSON.eye_height
+    np.testing.assert_allclose(vector[:, IK_JOINTS].reshape(-1, 6, 3), expected, atol=1e-12)
     np.testing.assert_allclose((joints - local[:, :1]) / PERSON.eye_height, expected, atol=1e-12)
 
 
 @pytest.mark.parametrize("rate", [60, 72, 90, 120])
 def test_the_window_means_the_same_at_every_frame_rate(rate):
     """Of features that change linearly, at a moment that every rate samples."""
-    slope = np.random.default_rng(4).normal(size=features.FEATURES)
+    slope = np.random.default_rng(4).normal(size=FEATURES)
     times = np.arange(rate + 1) / rate
-    window = features.windowed(times[:, None] * slope, times, (0.0, 0.1, 0.25))
+    window = windowed(times[:, None] * slope, times, (0.0, 0.1, 0.25))
     np.testing.assert_allclose(window[-1].reshape(3, -1), np.array([1.0, 0.9, 0.75])[:, None] * slope, atol=1e-12)
 
 
 def test_before_there_is_a_history_the_oldest_frame_stands_in():
-    vector = np.arange(5.0)[:, None] * np.ones(features.FEATURES)
-    window = features.windowed(vector, np.arange(5) / 60, (0.0, 0.1, 0.25)).reshape(5, 3, -1)
+    vector = np.arange(5.0)[:, None] * np.ones(FEATURES)
+    window = windowed(vector, np.arange(5) / 60, (0.0, 0.1, 0.25)).reshape(5, 3, -1)
     np.testing.assert_array_equal(window[:, 0], vector)
     np.testing.assert_array_equal(window[:, 1:], 0)
-    alone = features.windowed(vector[:1], np.zeros(1), (0.0, 0.1))
+    alone = windowed(vector[:1], np.zeros(1), (0.0, 0.1))
     np.testing.assert_array_equal(alone, np.concatenate([vector[:1], vector[:1]], 1))
 
 
 def test_euler_angles_compose_to_the_rotation():
     rotations = np.random.default_rng(6).normal(size=(200, 4))
     rotations /= np.linalg.norm(rotations, axis=-1, keepdims=True)
-    angles = features.euler_yxz(rotations)
+    angles = euler_yxz(rotations)
     x, y, z = (quaternion.from_axis_angle(np.broadcast_to(np.eye(3)[axis], (200, 3)), angles[:, axis]) for axis in range(3))
     composed = quaternion.multiply(quaternion.multiply(y, x), z)
     np.testing.assert_allclose(np.abs(np.sum(composed * rotations, axis=-1)), 1, atol=1e-9)
@@ -149,38 +153,37 @@ def test_looking_straight_down_or_up_keeps_the_heading():
 def turned_about_the_headset(vector: np.ndarray, q: np.ndarray) -> np.ndarray:
     """Features [F, 46] of hands and IK joints that turn about the headset; the head's own axes turn too."""
     turned = vector.copy()
-    spans = [slice(1, 4), slice(4, 7), *(slice(first, first + 3) for first in range(7, 25, 3)), *(slice(first, first + 3) for first in range(27, 45, 3))]
-    for span in spans:
-        turned[:, span] = quaternion.rotate(np.broadcast_to(q, (len(vector), 4)), vector[:, span])
+    for part in (HEAD_AXES, *HANDS, IK_JOINTS):
+        vectors = vector[:, part].reshape(len(vector), -1, 3)
+        turned[:, part] = quaternion.rotate(np.broadcast_to(q, (*vectors.shape[:-1], 4)), vectors).reshape(len(vector), -1)
     return turned
 
 
-def test_a_chest_sees_the_same_whichever_way_its_body_turns_and_leans(motion):
-    vector, _ = features.frame_features(*motion[:2], BODY)
+def test_chest_frame_features_do_not_change_as_a_body_turns_and_leans(motion):
+    vector, _ = frame_features(*motion[:2], BODY)
     q = quaternion.from_rotation_vector(np.array([0.4, -0.9, 0.2]))
-    before, after = features.seen_from_chest(vector), features.seen_from_chest(turned_about_the_headset(vector, q))
+    before, after = chest_features(vector), chest_features(turned_about_the_headset(vector, q))
     # All but which way the room's up is.
-    room = slice(33, 36)
-    assert np.abs(after[:, room] - before[:, room]).max() > 0.1
-    after[:, room] = before[:, room]
+    assert np.abs(after[:, UP] - before[:, UP]).max() > 0.1
+    after[:, UP] = before[:, UP]
     np.testing.assert_allclose(after, before, atol=1e-9)
 
 
 def test_a_chest_s_axes_are_a_right_handed_frame_along_shoulders_and_spine(motion):
-    vector, joints = features.frame_features(*motion[:2], BODY)
-    axes = features.chest_axes(vector)
+    vector, joints = frame_features(*motion[:2], BODY)
+    axes = chest_axes(vector)
     np.testing.assert_allclose(axes @ np.swapaxes(axes, 1, 2), np.broadcast_to(np.eye(3), axes.shape), atol=1e-9)
     np.testing.assert_allclose(np.linalg.det(axes), 1.0)
     assert (np.einsum("fi,fi->f", axes[:, 0], joints[:, 3] - joints[:, 2]) > 0.2).all()
     assert (np.einsum("fi,fi->f", axes[:, 1], (joints[:, 2] + joints[:, 3]) / 2 - joints[:, 4]) > 0.1).all()
 
 
-def test_what_is_right_is_what_to_add_to_ik(motion):
+def test_the_residual_is_what_to_add_to_ik(motion):
     positions, rotations = motion[:2]
-    vector, joints = features.frame_features(positions, rotations, BODY)
+    vector, joints = frame_features(positions, rotations, BODY)
     yaw, origin = quaternion.heading(rotations[:, 0]), positions[:, 0] * [1, 0, 1]
     floor = quaternion.rotate(np.broadcast_to(yaw[:, None], (*joints.shape[:-1], 4)), joints) + origin[:, None]
     up = np.array([0.0, 0.03, 0.0])
-    np.testing.assert_allclose(features.target(floor, positions, rotations, BODY, vector), 0.0, atol=1e-12)
-    told = features.target(floor + up, positions, rotations, BODY, vector).reshape(-1, 6, 3)
-    np.testing.assert_allclose(told, 0.03 / BODY.eye_height[0] * np.repeat(features.chest_axes(vector)[:, None, :, 1], 6, axis=1), atol=1e-12)
+    np.testing.assert_allclose(residual(floor, positions, rotations, BODY, vector), 0.0, atol=1e-12)
+    answer = residual(floor + up, positions, rotations, BODY, vector).reshape(-1, 6, 3)
+    np.testing.assert_allclose(answer, 0.03 / BODY.eye_height[0] * np.repeat(chest_axes(vector)[:, None, :, 1], 6, axis=1), atol=1e-12)

@@ -4,7 +4,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 from threepoint_training import quaternion
 from threepoint_training.mocap_asf_amc import parse_amc, parse_asf
 from threepoint_training.mocap_bvh import parse_bvh

@@ -1,9 +1,10 @@
-"""Facts about what the learned network is told and says, whatever its weights."""
+"""Facts about the learned network that hold with any weights."""
 
 import numpy as np
 import pytest
 import torch
-from threepoint_training.features import CHEST_FEATURES, FEATURES, IK_JOINTS, seen_from_chest
+from threepoint_training.chest_features import CHEST_FEATURES, chest_features
+from threepoint_training.features import FEATURES, HANDS, HEAD_AXES, IK_JOINTS, SEEN
 from threepoint_training.generated_motion import generate_corpus
 from threepoint_training.model import CorrectionNetwork
 from threepoint_training.train_learned import held_out
@@ -12,7 +13,7 @@ pytestmark = pytest.mark.training
 
 WINDOW = (0.0, 0.1, 0.25)
 CORPUS = generate_corpus(people=2, clips=1, frames=200, seed=4)
-SEEN = held_out(CORPUS, tuple(CORPUS.people), WINDOW)
+PEOPLE = held_out(CORPUS, tuple(CORPUS.people), WINDOW)
 SWAPPED = [1, 0, 3, 2, 4, 5]
 MIRROR = np.array([-1.0, 1.0, 1.0], np.float32)
 
@@ -22,7 +23,7 @@ def network() -> CorrectionNetwork:
     """As it is before training: random weights, but the data's mean and scale."""
     torch.manual_seed(1)
     network = CorrectionNetwork(len(WINDOW), width=32, dropout=0.0)
-    network.normalise(torch.from_numpy(SEEN.inputs), torch.from_numpy(SEEN.targets))
+    network.normalise(torch.from_numpy(PEOPLE.inputs), torch.from_numpy(PEOPLE.targets))
     return network.eval()
 
 
@@ -31,8 +32,8 @@ def corrections(network: CorrectionNetwork, inputs: np.ndarray) -> np.ndarray:
         return network(torch.from_numpy(inputs)).numpy().reshape(-1, 6, 3)
 
 
-def with_chest_view(windows: np.ndarray) -> np.ndarray:
-    return np.concatenate([windows, seen_from_chest(windows[:, :FEATURES])], axis=1).astype(np.float32)
+def with_chest_features(windows: np.ndarray) -> np.ndarray:
+    return np.concatenate([windows, chest_features(windows[:, :FEATURES])], axis=1).astype(np.float32)
 
 
 def mirrored(inputs: np.ndarray) -> np.ndarray:
@@ -47,19 +48,19 @@ def mirrored(inputs: np.ndarray) -> np.ndarray:
         image = flip @ matrix @ flip
         return np.concatenate([image[..., :, 0], image[..., :, 1]], axis=-1)
 
-    result[..., 1:7] = turned(taps[..., 1:7])
-    for own, other in ((7, 16), (16, 7)):
-        result[..., own : own + 3] = taps[..., other : other + 3] * MIRROR
-        result[..., own + 3 : own + 9] = turned(taps[..., other + 3 : other + 9])
-    result[..., 25], result[..., 26] = taps[..., 26], taps[..., 25]
+    result[..., HEAD_AXES] = turned(taps[..., HEAD_AXES])
+    for own, other in (HANDS, HANDS[::-1]):
+        position, axes = np.split(taps[..., other], [3], axis=-1)
+        result[..., own] = np.concatenate([position * MIRROR, turned(axes)], axis=-1)
+    result[..., SEEN] = taps[..., SEEN][..., ::-1]
     ik = taps[..., IK_JOINTS].reshape(*taps.shape[:2], 6, 3)
     result[..., IK_JOINTS] = (ik[..., SWAPPED, :] * MIRROR).reshape(*taps.shape[:2], 18)
-    return with_chest_view(result.reshape(len(inputs), -1))
+    return with_chest_features(result.reshape(len(inputs), -1))
 
 
 def test_a_mirror_image_is_corrected_to_the_mirror_image(network):
-    seen = corrections(network, SEEN.inputs)
-    image = corrections(network, mirrored(SEEN.inputs))
+    seen = corrections(network, PEOPLE.inputs)
+    image = corrections(network, mirrored(PEOPLE.inputs))
     np.testing.assert_allclose(image, seen[:, SWAPPED] * MIRROR, atol=1e-5)
     assert np.abs(seen - seen[:, SWAPPED] * MIRROR).max() > 0.005
 
@@ -69,10 +70,10 @@ def test_an_elbow_knows_nothing_of_the_other_hand(network):
     with torch.no_grad():
         for layer in (network.trunk_output_mean, network.trunk_output_scale):
             layer.zero_()
-    windows = SEEN.inputs[:, :-CHEST_FEATURES].copy()
-    before = corrections(network, SEEN.inputs)
-    windows[:, 16:25] = np.roll(windows[:, 16:25], 50, axis=0)
-    after = corrections(network, with_chest_view(windows))
+    windows = PEOPLE.inputs[:, :-CHEST_FEATURES].copy()
+    before = corrections(network, PEOPLE.inputs)
+    windows[:, HANDS[1]] = np.roll(windows[:, HANDS[1]], 50, axis=0)
+    after = corrections(network, with_chest_features(windows))
     np.testing.assert_allclose(after[:, 0], before[:, 0], atol=1e-6)
     assert np.abs(after[:, 1] - before[:, 1]).max() > 1e-3
 

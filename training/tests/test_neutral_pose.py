@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from threepoint_training import neutral_pose, train_learned
+from threepoint_training.features import ARM_LENGTH, HANDS
 from threepoint_training.generated_motion import generate_corpus
 from threepoint_training.neutral_pose import NeutralPoseConfig
 
@@ -22,7 +23,7 @@ def test_the_bias_is_what_both_sides_share():
     shift[5] = (0.0, 0.0, 0.05)
     person.targets[:] = shift.reshape(18)
     np.testing.assert_allclose(neutral_pose.bias(person), shift, atol=1e-6)
-    # Leaning aside is nobody's habit as long as it is not known to which side.
+    # Leaning to one side is no habit as long as it is not known to which.
     person.targets[:, 15] += 0.04
     np.testing.assert_allclose(neutral_pose.bias(person), shift, atol=1e-6)
 
@@ -31,12 +32,13 @@ def test_hands_that_hang_further_back_are_measured_so():
     person = one_person()
     frames = np.ones(len(person.inputs), bool)
     before = neutral_pose.measure(person, frames)
-    person.inputs[:, [9, 18]] += 0.1
+    for hand in HANDS:
+        person.inputs[:, hand.start + 2] += 0.1
     after = neutral_pose.measure(person, frames)
-    np.testing.assert_allclose(after - before, [0, 0, 0.1 * person.inputs[0, 45]], atol=1e-6)
+    np.testing.assert_allclose(after - before, [0, 0, 0.1 * person.inputs[0, ARM_LENGTH]], atol=1e-6)
 
 
-def test_somebody_like_the_others_is_predicted_like_them():
+def test_a_person_like_the_others_is_predicted_like_them():
     random = np.random.default_rng(1)
     measures = random.normal(size=(40, 3))
     biases = (measures @ np.array([0.0, 0.0, 0.02]))[:, None, None] * np.ones((6, 3))
@@ -56,4 +58,4 @@ def test_few_people_are_believed_less_and_strangers_not_without_bound():
 
 def test_too_few_people_in_a_neutral_pose_is_an_error():
     with pytest.raises(ValueError, match="neutral poses of three people"):
-        neutral_pose.run(CORPUS, train_learned.TrainLearnedConfig(), {})
+        neutral_pose.main(CORPUS, train_learned.TrainLearnedConfig(), {})

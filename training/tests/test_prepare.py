@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 from threepoint_training import prepare, quaternion, recordings
 from threepoint_training.motion import MocapError
 from threepoint_training.prepared_corpus import JOINTS, PreparedCorpus
@@ -13,7 +12,7 @@ from threepoint_training.skeleton_map import read_skeleton_map
 
 
 def person_bvh(frames: list[tuple[float, float, float, float]], frame_time: float = 1 / 60) -> str:
-    """Somebody in centimetres, T-pose at rest, facing +Z, left = +X. A frame: the hips' x, y, z [cm] and yaw [degrees]."""
+    """A person in centimetres, T-pose at rest, facing +Z, left = +X. A frame: the hips' x, y, z [cm] and yaw [degrees]."""
 
     def joint(name: str, offset: tuple[float, float, float], *children: str) -> str:
         body = "".join(children) or "End Site\n{\nOFFSET 0 1 0\n}\n"
@@ -84,7 +83,7 @@ def test_other_rates_are_brought_to_60(tmp_path: Path) -> None:
     walk = [(float(i), 92.0, 0.0, 0.0) for i in range(101)]
     corpus = corpus_of(tmp_path, p1_walk=person_bvh(walk, frame_time=1 / 100))
     assert len(corpus.positions) == 61
-    # One centimetre a frame at 100 Hz is one metre a second, to the left of somebody facing −Z.
+    # One centimetre a frame at 100 Hz is one metre a second, to the left of a person facing −Z.
     np.testing.assert_allclose(np.diff(corpus.positions[:, 0, 0]), -1 / 60, atol=1e-5)
 
 

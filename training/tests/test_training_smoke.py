@@ -25,9 +25,9 @@ def one_thread():
 
 @pytest.fixture(scope="module")
 def config(tmp_path_factory):
-    from threepoint_training import __main__ as pipeline
+    from threepoint_training.training_config import TrainConfig, quick
 
-    base = pipeline.quick(pipeline.TrainConfig(mocap=None, folds=("A",), seed=SEED, out=tmp_path_factory.mktemp("models")))
+    base = quick(TrainConfig(mocap=None, folds=("A",), seed=SEED, out=tmp_path_factory.mktemp("models")))
     base = replace(base, cross_validation=tmp_path_factory.mktemp("folds"), fp32_out=tmp_path_factory.mktemp("fp32"))
     return replace(base, learned=replace(base.learned, steps=60, batch=256, seed=SEED), paper=replace(base.paper, seed=SEED))
 
@@ -42,7 +42,7 @@ def corpus():
 @pytest.fixture(scope="module")
 def run(config):
     """The pipeline's table, after it wrote its models."""
-    from threepoint_training import __main__ as pipeline
+    from threepoint_training import pipeline
 
     return pipeline.main(config)
 
@@ -103,27 +103,27 @@ def test_the_32_bit_network_is_the_same_one_unquantised(config, run, name):
 
 def test_the_table_has_a_row_per_estimator_and_protocol(run):
     held_out = [f"{name}, fold A (005)" for name in ("IK", "paper", "learned")]
-    seen = [f"{name}, {protocol}" for protocol in ("frame-random 80/20", "everybody, who was trained on") for name in ("paper", "learned")]
+    seen = [f"{name}, {protocol}" for protocol in ("frame-random 80/20", "all subjects, trained on") for name in ("paper", "learned")]
     assert list(run) == held_out + seen
     assert all(0 < values["mean"] < 60 for values in run.values())
 
 
 @pytest.mark.parametrize("name", ["paper", "learned"])
-def test_the_page_s_networks_know_everybody_and_carry_the_errors_on_people_held_out(config, run, name):
+def test_the_page_s_networks_know_all_subjects_and_carry_the_errors_on_people_held_out(config, run, name):
     held_out, shipped = contract(config.cross_validation, name), contract(config.out, name)
-    everybody = set(shipped["trainedOn"]["people"])
-    assert set(held_out["trainedOn"]["people"]) < everybody
-    assert {"005"} == everybody - set(held_out["trainedOn"]["people"])
+    subjects = set(shipped["trainedOn"]["people"])
+    assert set(held_out["trainedOn"]["people"]) < subjects
+    assert {"005"} == subjects - set(held_out["trainedOn"]["people"])
     assert held_out["errors"].items() < shipped["errors"].items()
     assert shipped["sha256"] != held_out["sha256"]
 
 
 def test_errors_from_other_motion_are_refused(config, run, tmp_path):
-    from threepoint_training import __main__ as pipeline
+    from threepoint_training import pipeline
     from threepoint_training.motion import MocapError
 
     with pytest.raises(MocapError, match="other motion"):
-        pipeline.main(replace(config, seed=SEED + 1, stages=("everybody",), out=tmp_path))
+        pipeline.main(replace(config, seed=SEED + 1, stages=("all-subjects",), out=tmp_path))
 
 
 def test_the_loss_of_both_networks_falls(config, corpus):
@@ -194,7 +194,7 @@ def test_the_same_seed_makes_the_same_weights_and_another_seed_others(config, co
 
 
 def test_the_whole_run_is_repeatable_to_the_byte(config, run, tmp_path):
-    from threepoint_training import __main__ as pipeline
+    from threepoint_training import pipeline
 
     pipeline.main(replace(config, out=tmp_path / "models", cross_validation=tmp_path / "folds"))
     for name in ("paper", "learned"):

@@ -1,4 +1,4 @@
-"""What each part of the recipe is for: the network trained without it, on people held out, as calibrated and under what it is for.
+"""What each part of the recipe is for: the network trained without it, judged on people held out, as calibrated and disturbed.
 
 `npm run train -- --mocap DIR --ablate` calls this and renews the table of docs/training.md. 005 and 135 stand on neither side.
 """
@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from . import people, train_learned
+from . import splits, train_learned
 from .accuracy_tables import renew, table
 from .model import CorrectionNetwork
 from .prepared_corpus import PreparedCorpus
@@ -66,14 +66,14 @@ def variants(config: TrainLearnedConfig) -> dict[str, TrainLearnedConfig]:
         "without late trackers": without(late=0.0),
         "without seated people": without(seated=0.0),
         "headsets tilted by 8°, gaze not calibrated": without(trackers=tilted),
-        "whole correction": replace(config, correction_share=1.0),
-        "nobody has an effect of their own": replace(config, effects_learning_rate=0.0),
-        "joints judged as they are said": replace(config, placed_weight=0.0, said_weight=1.0),
+        "no shrinkage": replace(config, shrinkage=1.0),
+        "no per-subject random effects": replace(config, effects_learning_rate=0.0),
+        "loss on raw joints alone": replace(config, fitted_loss_weight=0.0, auxiliary_loss_weight=1.0),
         "only the newest frame": without(window_frames=(0,)),
     }
 
 
-def run(
+def main(
     corpus: PreparedCorpus,
     recipe: TrainLearnedConfig,
     config: AblationConfig = AblationConfig(),
@@ -84,7 +84,7 @@ def run(
 
     trained(people held out, network) hands out the recipe's own networks.
     """
-    reserved = set(people.FOLDS["A"])
+    reserved = set(splits.FOLDS["A"])
     folds = [fold for fold in config.folds if set(fold) <= set(corpus.people)]
     if not folds:
         raise ValueError(f"the ablation needs one of these groups of people: {' or '.join('+'.join(fold) for fold in config.folds)}")
@@ -103,7 +103,7 @@ def run(
                 if key not in tests:
                     tests[key] = train_learned.held_out(corpus, fold, variant.window_seconds, condition=given)
                 test = tests[key]
-                own = train_learned.errors_cm(predict(network, test.inputs), test)
+                own = train_learned.fitted_errors_cm(predict(network, test.inputs), test)
                 errors.setdefault(name, {}).setdefault(condition, []).append(float(own.mean()))
                 if name == "the recipe":
                     errors.setdefault("IK", {}).setdefault(condition, []).append(float(train_learned.ik_errors_cm(test).mean()))

@@ -57,7 +57,7 @@ def main(config: AccuracyPageConfig) -> None:
         if not plots.learning_curve(contracts["paper"], config.images):
             print("paper.json has no learning curve: its figure stays as it is")
         if not plots.train_and_test(evaluation, config.images):
-            print("nobody, or everybody, was trained on: the figure of both stays as it is")
+            print("all evaluated people were trained on, or none: the figure of both stays as it is")
         if figures["trace"] is not None:
             plots.right_shoulder(figures["trace"], config.images)
         plots.by_joint(evaluation, config.images)

@@ -233,7 +233,7 @@ BONES = (
 
 
 def _seen_from(point: list[float], turn: float) -> tuple[float, float]:
-    """Somebody who faces the beholder, turned by `turn` [rad]: to the right of the page, up."""
+    """A point of a person who faces the beholder, turned by `turn` [rad]: to the right of the page, up."""
     right, height, back = point
     return -(right * np.cos(turn) + back * np.sin(turn)), height
 

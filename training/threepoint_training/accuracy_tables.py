@@ -22,7 +22,7 @@ def held_out(evaluation: Json) -> Json:
 
 
 def people_held_out(evaluation: Json) -> list[str]:
-    """Their names; everybody's where all have been seen."""
+    """Their names; all names where all have been trained on."""
     names = [name for name, person in evaluation["people"].items() if not person["seen"]]
     return sorted(names or evaluation["people"])
 

@@ -3,17 +3,19 @@
 Eleven people are too few to learn how arms and torsos go together; their recombinations are many.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import quaternion
-from .features import frame_features, seen_from_chest, target
-from .lost_hands import carry, sink
-from .prepared_corpus import JOINTS, MIRRORED_JOINTS, PreparedCorpus
-from .simulate_trackers import TrackerConfig
+from .chest_features import chest_features
+from .complete_hands import carry_with_head, complete_hands
+from .features import frame_features
 from .prepare import EYES_FROM_HEAD_JOINT
+from .prepared_corpus import JOINTS, MIRRORED_JOINTS, PreparedCorpus
+from .residual import residual
+from .simulate_trackers import TrackerConfig
 from .skeleton import body_from_calibration
 
 Array = NDArray[np.float64]
@@ -36,7 +38,7 @@ class AugmentConfig:
     lost_hand: float = 0.06
     # Lost hands were seen last up to this long ago [frames].
     lost_frames: int = 180
-    # Trackers that tell of the frame before.
+    # Trackers that report the frame before.
     late: float = 0.3
     # People on a chair that their calibration knows nothing of, lower by 0.2 to 0.35 of the eye height.
     seated: float = 0.04
@@ -70,7 +72,7 @@ class BodyParts:
         self.clip_start = np.repeat(np.cumsum([0, *lengths[:-1]]), lengths)
         self.sizes = np.repeat(np.array(sizes), lengths, axis=0)
         names = np.array([corpus.clip_people[clip] for clip in clips])
-        # Everybody counts alike, but a person with ten times the motion still counts somewhat more.
+        # All people count nearly alike; one with ten times the motion counts somewhat more.
         self.people, self.person, counts = np.unique(np.repeat(names, lengths), return_inverse=True, return_counts=True)
         weight = counts[self.person] ** -0.5
         self.cumulative = np.cumsum(weight) / weight.sum()
@@ -101,8 +103,52 @@ class BodyParts:
         return np.searchsorted(self.cumulative, random.uniform(size=count)).clip(max=len(self.cumulative) - 1)
 
 
-def draw_batch(parts: BodyParts, count: int, config: AugmentConfig, random: np.random.Generator) -> Batch:
-    """That many windows."""
+@dataclass(frozen=True)
+class _Bodies:
+    """Bodies put together from torsos and arms: the newest frames [N] of each, and how large they are."""
+
+    parts: BodyParts
+    newest: NDArray[np.int64]
+    # Of the left and of the right arm: from which frames, and from which side of the person there.
+    arm_frames: tuple[NDArray[np.int64], NDArray[np.int64]]
+    arm_sides: tuple[NDArray[np.int64], NDArray[np.int64]]
+    # Eye height and span [N, 2], length of both arms [N], and by how much a chair lowers them [N]; all [m].
+    sizes: Array
+    arm_length: Array
+    drop: Array
+
+    def torso_at(self, ago: NDArray[np.int64]) -> tuple[Array, NDArray[np.int64]]:
+        """Hips, chest, neck and head [N, 4, 3] that many frames before the newest, and the frames."""
+        frames = np.maximum(self.newest - ago, self.parts.clip_start[self.newest])
+        return self.parts.torso[frames] - np.array([0.0, 1.0, 0.0]) * self.drop[:, None, None], frames
+
+    def arm_at(self, side: int, ago: NDArray[np.int64]) -> tuple[Array, Array]:
+        """Shoulder, elbow and wrist [N, 3, 3] of the body, and the wrist's rotation, that many frames before the newest."""
+        parts, which = self.parts, self.arm_sides[side]
+        torso, frames = self.torso_at(ago)
+        chest = parts.chest[frames]
+        source = np.maximum(self.arm_frames[side] - ago, parts.clip_start[self.arm_frames[side]])
+        arm = np.where(which[:, None, None] == 0, parts.arms[0][source], parts.arms[1][source])
+        wrist = np.where(which[:, None] == 0, parts.wrist_turns[0][source], parts.wrist_turns[1][source])
+        length = np.where(which == 0, parts.arm_length[0][source], parts.arm_length[1][source])
+        # The shoulder scales with the body, the arm with its length.
+        shoulder = arm[:, :1] * (self.sizes[:, :1] / parts.sizes[source, :1])[:, None]
+        arm = shoulder + (arm - arm[:, :1]) * (self.arm_length / length)[:, None, None]
+        if side == 0:
+            arm, wrist = arm * _MIRROR, wrist * _MIRROR_TURN
+        neck = torso[:, TORSO.index("neck")]
+        arm = neck[:, None] + quaternion.rotate(np.broadcast_to(chest[:, None], (*arm.shape[:-1], 4)), arm)
+        return arm, quaternion.multiply(chest, wrist)
+
+    def hand_at(self, side: int, ago: NDArray[np.int64], unseen: NDArray[np.int64]) -> tuple[Array, Array]:
+        """A wrist and its rotation that many frames before the newest; unseen for so many: where it was last, carried along with the head."""
+        arm, turn = self.arm_at(side, ago + unseen)
+        (before, frames_before), (now, frames) = self.torso_at(ago + unseen), self.torso_at(ago)
+        head, turns = TORSO.index("head"), self.parts.head_turn
+        return carry_with_head(arm[:, 2], turn, (before[:, head], turns[frames_before]), (now[:, head], turns[frames]))
+
+
+def _draw_bodies(parts: BodyParts, count: int, config: AugmentConfig, random: np.random.Generator) -> _Bodies:
     newest = parts.draw(random, count)
     sizes = parts.sizes[newest].copy()
     arm_frames, arm_sides = [], []
@@ -110,89 +156,76 @@ def draw_batch(parts: BodyParts, count: int, config: AugmentConfig, random: np.r
         other = random.uniform(size=count) < config.recombined
         arm_frames.append(np.where(other, parts.draw(random, count), newest))
         arm_sides.append(np.where(other, random.integers(0, 2, count), side))
-    lengths = np.stack(parts.arm_length)
-    own = (lengths[0][newest] + lengths[1][newest]) / 2
+    own = (parts.arm_length[0][newest] + parts.arm_length[1][newest]) / 2
     wanted = own * (1 + random.normal(size=count) * config.arm_scale)
     sizes[:, 1] += 2 * (wanted - own)
+    return _Bodies(parts, newest, tuple(arm_frames), tuple(arm_sides), sizes, wanted, np.zeros(count))
 
-    turn_jitter = quaternion.from_rotation_vector(random.normal(size=(count, 2, 3)) * config.trackers.hand_turn / np.sqrt(3))
-    head_jitter = quaternion.from_rotation_vector(
-        np.stack([random.normal(size=count) * config.trackers.headset_pitch, np.zeros(count), np.zeros(count)], -1)
+
+def _draw_worn(count: int, trackers: TrackerConfig, random: np.random.Generator) -> tuple[Array, Array]:
+    """How trackers are worn: offsets [N, 3, 3] in the head's and hands' frames [m], and rotations [N, 3, 4] against them."""
+    hands = quaternion.from_rotation_vector(random.normal(size=(count, 2, 3)) * trackers.hand_turn / np.sqrt(3))
+    head = quaternion.from_rotation_vector(
+        np.stack([random.normal(size=count) * trackers.headset_pitch, np.zeros(count), np.zeros(count)], -1)
     )
     offsets = np.concatenate(
         [
-            EYES_FROM_HEAD_JOINT + random.normal(size=(count, 1, 3)) * config.trackers.headset_offset,
-            random.normal(size=(count, 2, 3)) * config.trackers.wrist_offset,
+            EYES_FROM_HEAD_JOINT + random.normal(size=(count, 1, 3)) * trackers.headset_offset,
+            random.normal(size=(count, 2, 3)) * trackers.wrist_offset,
         ],
         axis=1,
     )
+    return offsets, np.concatenate([head[:, None], hands], axis=1)
+
+
+def _mirror_some(mirrored: NDArray[np.bool_], trackers: Array, rotations: Array, truth: Array) -> tuple[Array, Array, Array]:
+    """These of the bodies [N] seen in a mirror: tracked points [N, 3, 3], rotations [N, 3, 4] and true joints [N, 6, 3]."""
+    flip = mirrored[:, None, None]
+    return (
+        np.where(flip, trackers[:, [0, 2, 1]] * _MIRROR, trackers),
+        np.where(flip, rotations[:, [0, 2, 1]] * _MIRROR_TURN, rotations),
+        np.where(flip, truth[:, MIRRORED_JOINTS] * _MIRROR, truth),
+    )
+
+
+def draw_batch(parts: BodyParts, count: int, config: AugmentConfig, random: np.random.Generator) -> Batch:
+    """That many windows."""
+    bodies = _draw_bodies(parts, count, config, random)
+    offsets, worn = _draw_worn(count, config.trackers, random)
     mirrored = random.uniform(size=count) < 0.5
     lost = random.uniform(size=(count, 2)) < config.lost_hand
     unseen = np.where(lost, random.integers(1, config.lost_frames + 1, size=(count, 2)), 0)
     # Arms are those of the body before it is mirrored.
     unseen_arms = np.where(mirrored[:, None], unseen[:, ::-1], unseen)
     late = (random.uniform(size=count) < config.late).astype(np.int64)
-    drop = np.where(random.uniform(size=count) < config.seated, random.uniform(0.2, 0.35, count), 0.0) * sizes[:, 0]
+    sizes = bodies.sizes
+    bodies = replace(bodies, drop=np.where(random.uniform(size=count) < config.seated, random.uniform(0.2, 0.35, count), 0.0) * sizes[:, 0])
     calibrated = body_from_calibration(
         sizes[:, 0] * (1 + random.normal(size=count) * config.eye_height_error),
         sizes[:, 1] * (1 + random.normal(size=count) * config.arm_span_error),
     )
-    def torso_at(ago: NDArray[np.int64]) -> tuple[Array, NDArray[np.int64]]:
-        """Hips, chest, neck and head that many frames before the newest, and the frames."""
-        frames = np.maximum(newest - ago, parts.clip_start[newest])
-        return parts.torso[frames] - np.array([0.0, 1.0, 0.0]) * drop[:, None, None], frames
-
-    def arm_at(side: int, ago: NDArray[np.int64]) -> tuple[Array, Array]:
-        """Shoulder, elbow and wrist of the body, and the wrist's turn, that many frames before the newest."""
-        torso, frames = torso_at(ago)
-        chest = parts.chest[frames]
-        source = np.maximum(arm_frames[side] - ago, parts.clip_start[arm_frames[side]])
-        which = arm_sides[side]
-        arm = np.where(which[:, None, None] == 0, parts.arms[0][source], parts.arms[1][source])
-        wrist = np.where(which[:, None] == 0, parts.wrist_turns[0][source], parts.wrist_turns[1][source])
-        length = np.where(which == 0, lengths[0][source], lengths[1][source])
-        # The shoulder scales with the body, the arm with its length.
-        shoulder = arm[:, :1] * (sizes[:, :1] / parts.sizes[source, :1])[:, None]
-        arm = shoulder + (arm - arm[:, :1]) * (wanted / length)[:, None, None]
-        if side == 0:
-            arm, wrist = arm * _MIRROR, wrist * _MIRROR_TURN
-        neck = torso[:, TORSO.index("neck")]
-        arm = neck[:, None] + quaternion.rotate(np.broadcast_to(chest[:, None], (*arm.shape[:-1], 4)), arm)
-        return arm, quaternion.multiply(chest, wrist)
-
-    def hand_at(side: int, ago: NDArray[np.int64]) -> tuple[Array, Array]:
-        """A wrist and its turn that many frames before the newest; unseen: where it was last, carried along with the head."""
-        arm, turn = arm_at(side, ago + unseen_arms[:, side])
-        (before, frames_before), (now, frames) = torso_at(ago + unseen_arms[:, side]), torso_at(ago)
-        head = TORSO.index("head")
-        return carry(arm[:, 2], turn, (before[:, head], parts.head_turn[frames_before]), (now[:, head], parts.head_turn[frames]))
-
     columns = []
-    targets = seen = np.empty(0)
+    targets = in_chest_frame = np.empty(0)
     for age in config.window_frames:
         now = np.full(count, age)
-        torso, _ = torso_at(now)
-        arms = [arm_at(side, now)[0] for side in (0, 1)]
+        torso, _ = bodies.torso_at(now)
+        arms = [bodies.arm_at(side, now)[0] for side in (0, 1)]
         truth = np.stack([arms[0][:, 1], arms[1][:, 1], arms[0][:, 0], arms[1][:, 0], torso[:, 1], torso[:, 0]], axis=1)
-        # What trackers tell may be older than what is true.
-        torso, frames = torso_at(now + late)
-        hands = [hand_at(side, now + late) for side in (0, 1)]
+        # Trackers may report what was true a frame before.
+        torso, frames = bodies.torso_at(now + late)
+        hands = [bodies.hand_at(side, now + late, unseen_arms[:, side]) for side in (0, 1)]
         anchors = np.stack([torso[:, TORSO.index("head")], hands[0][0], hands[1][0]], axis=1)
         rotations = np.stack([parts.head_turn[frames], hands[0][1], hands[1][1]], axis=1)
-
-        flip = mirrored[:, None, None]
-        anchors = np.where(flip, anchors[:, [0, 2, 1]] * _MIRROR, anchors)
-        rotations = np.where(flip, rotations[:, [0, 2, 1]] * _MIRROR_TURN, rotations)
-        truth = np.where(flip, truth[:, MIRRORED_JOINTS] * _MIRROR, truth)
+        anchors, rotations, truth = _mirror_some(mirrored, anchors, rotations, truth)
 
         positions = anchors + quaternion.rotate(rotations, offsets)
         positions = positions + random.normal(size=positions.shape) * config.trackers.position_noise
-        rotations = quaternion.multiply(rotations, np.concatenate([head_jitter[:, None], turn_jitter], axis=1))
-        positions, rotations = sink(positions, rotations, unseen / FRAME_RATE, calibrated.eye_height[:, 0], calibrated.arm[:, 0])
+        rotations = quaternion.multiply(rotations, worn)
+        positions, rotations = complete_hands(positions, rotations, unseen / FRAME_RATE, calibrated.eye_height[:, 0], calibrated.arm[:, 0])
         vector, _ = frame_features(positions, rotations, calibrated, ~lost)
         columns.append(vector)
         if age == 0:
-            targets, seen = target(truth, positions, rotations, calibrated, vector), seen_from_chest(vector)
-    arms_of = np.stack([parts.person[frames] for frames in arm_frames], axis=1)
-    whose = np.column_stack([parts.person[newest], np.where(mirrored[:, None], arms_of[:, ::-1], arms_of)])
-    return Batch(np.concatenate([*columns, seen], axis=1).astype(np.float32), targets.astype(np.float32), whose)
+            targets, in_chest_frame = residual(truth, positions, rotations, calibrated, vector), chest_features(vector)
+    arms_of = np.stack([parts.person[frames] for frames in bodies.arm_frames], axis=1)
+    whose = np.column_stack([parts.person[bodies.newest], np.where(mirrored[:, None], arms_of[:, ::-1], arms_of)])
+    return Batch(np.concatenate([*columns, in_chest_frame], axis=1).astype(np.float32), targets.astype(np.float32), whose)

@@ -13,8 +13,10 @@ import onnx
 import torch
 from numpy.typing import NDArray
 
-from .features import CHEST_FEATURES, FEATURES, OUTPUTS
+from .chest_features import CHEST_FEATURES
+from .features import FEATURES
 from .quantise import quantise_weights, run
+from .residual import OUTPUTS
 
 OPSET = 17
 # What onnxruntime's WASM may differ from its native build: sums in another order.
@@ -31,6 +33,8 @@ class Provenance:
     people: tuple[str, ...]
     seed: int
     errors: dict[str, dict[str, float]]
+    # By epochs; None: it was not followed.
+    learning_curve: dict[str, list[float]] | None = None
 
 
 def to_onnx(network: torch.nn.Module, example: NDArray[np.float32], input_name: str, output_name: str) -> onnx.ModelProto:
@@ -62,71 +66,73 @@ def git_commit() -> str:
     return f"{commit}{'-modified' if changed else ''}"
 
 
-def write(
-    name: str,
-    network: torch.nn.Module,
-    examples: NDArray[np.float32],
-    out: Path,
-    version: str,
-    window_seconds: tuple[float, ...],
-    provenance: Provenance,
-    correction_half_life: float | None = None,
-    learning_curve: dict[str, list[float]] | None = None,
-    fp32_out: Path | None = None,
-) -> dict[str, Any]:
-    """Writes `name`.onnx and `name`.json into `out`; examples, real inputs, measure what the 8 bits cost.
+@dataclass(frozen=True)
+class ExportConfig:
+    """name: paper or learned; window_seconds: ages of the frames in its input. fp32_out: the same network goes there with 32-bit weights, so
+    that the evaluation can compare the two; None: it does not."""
 
-    With `fp32_out` the same network goes there with its 32-bit weights, so that the evaluation can compare the two.
-    """
-    input_name, output_name = ("three_points", "joints") if name == "paper" else ("features", "corrections")
+    name: str
+    version: str
+    out: Path
+    window_seconds: tuple[float, ...]
+    provenance: Provenance
+    # Of the page's filter of the correction [s]; None: the network's joints are no correction.
+    correction_half_life: float | None = None
+    fp32_out: Path | None = None
+
+
+def main(config: ExportConfig, network: torch.nn.Module, examples: NDArray[np.float32]) -> dict[str, Any]:
+    """Writes NAME.onnx and NAME.json and returns the contract; examples, real inputs, measure what the 8 bits cost."""
+    input_name, output_name = ("three_points", "joints") if config.name == "paper" else ("features", "corrections")
     exact = to_onnx(network, examples[:1], input_name, output_name)
     quantised = quantise_weights(exact)
-    content = quantised.SerializeToString()
+    difference = np.abs(run(exact, examples) - run(quantised, examples)).max()
+    quantisation = {
+        "scheme": "int8 weights, symmetric per output channel; floating-point activations",
+        "maxAbsoluteDifference": round(float(difference), 6),
+        "runtimeTolerance": RUNTIME_TOLERANCE,
+    }
+    contract = _write(config, config.out, quantised, quantisation)
+    if config.fp32_out is not None:
+        _write(config, config.fp32_out, exact, {"scheme": "none: fp32", "maxAbsoluteDifference": 0, "runtimeTolerance": RUNTIME_TOLERANCE})
+    return contract
+
+
+def _write(config: ExportConfig, out: Path, model: onnx.ModelProto, quantisation: dict[str, Any]) -> dict[str, Any]:
+    """Graph and contract into a folder."""
+    content = model.SerializeToString()
     out.mkdir(parents=True, exist_ok=True)
-    (out / f"{name}.onnx").write_bytes(content)
-    before, after = run(exact, examples), run(quantised, examples)
+    (out / f"{config.name}.onnx").write_bytes(content)
+    contract = _contract(config, content, quantisation)
+    (out / f"{config.name}.json").write_text(json.dumps(contract, indent=2, ensure_ascii=False) + "\n")
+    return contract
+
+
+def _contract(config: ExportConfig, content: bytes, quantisation: dict[str, Any]) -> dict[str, Any]:
+    is_paper, provenance = config.name == "paper", config.provenance
     contract: dict[str, Any] = {
-        "name": name,
-        "version": version,
-        "file": f"{name}.onnx",
+        "name": config.name,
+        "version": config.version,
+        "file": f"{config.name}.onnx",
         "bytes": len(content),
         "sha256": hashlib.sha256(content).hexdigest(),
-        "inputs": [_paper_input() if name == "paper" else _learned_input(len(window_seconds))],
-        "outputs": [_paper_output() if name == "paper" else _learned_output()],
+        "inputs": [_paper_input() if is_paper else _learned_input(len(config.window_seconds))],
+        "outputs": [_paper_output() if is_paper else _learned_output()],
         "rateHz": 60,
-        "windowSeconds": window_seconds,
+        "windowSeconds": config.window_seconds,
     }
-    if correction_half_life is not None:
-        contract["correctionHalfLife"] = correction_half_life
+    if config.correction_half_life is not None:
+        contract["correctionHalfLife"] = config.correction_half_life
     contract |= {
-        "quantisation": {
-            "scheme": "int8 weights, symmetric per output channel; floating-point activations",
-            "maxAbsoluteDifference": round(float(np.abs(before - after).max()), 6),
-            "runtimeTolerance": RUNTIME_TOLERANCE,
-        },
+        "quantisation": quantisation,
         "trainedOn": {"corpus": provenance.corpus, "corpusHash": provenance.corpus_hash, "people": provenance.people},
         "gitCommit": git_commit(),
         "seed": provenance.seed,
         "errors": {protocol: {joint: round(value, 2) for joint, value in row.items()} for protocol, row in provenance.errors.items()},
     }
-    if learning_curve is not None:
-        contract["learningCurve"] = {"unit": "cm² per coordinate, network alone"} | learning_curve
-    (out / f"{name}.json").write_text(_contract_text(contract))
-    if fp32_out is not None:
-        fp32_out.mkdir(parents=True, exist_ok=True)
-        content = exact.SerializeToString()
-        (fp32_out / f"{name}.onnx").write_bytes(content)
-        unquantised = contract | {
-            "bytes": len(content),
-            "sha256": hashlib.sha256(content).hexdigest(),
-            "quantisation": {"scheme": "none: fp32", "maxAbsoluteDifference": 0, "runtimeTolerance": RUNTIME_TOLERANCE},
-        }
-        (fp32_out / f"{name}.json").write_text(_contract_text(unquantised))
+    if provenance.learning_curve is not None:
+        contract["learningCurve"] = {"unit": "cm² per coordinate, network alone"} | provenance.learning_curve
     return contract
-
-
-def _contract_text(contract: dict[str, Any]) -> str:
-    return json.dumps(contract, indent=2, ensure_ascii=False) + "\n"
 
 
 def _paper_input() -> dict[str, Any]:
@@ -153,7 +159,7 @@ def _learned_input(taps: int) -> dict[str, Any]:
     return {
         "name": "features",
         "shape": [1, taps * FEATURES + CHEST_FEATURES],
-        "meaning": f"{FEATURES} features of docs/estimation.md at each age of windowSeconds, newest first; then {CHEST_FEATURES} of what IK's chest sees",
+        "meaning": f"{FEATURES} features of docs/estimation.md at each age of windowSeconds, newest first; then {CHEST_FEATURES} in the chest frame",
         "unit": "1",
         "frame": "heading",
     }

@@ -8,11 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from . import ik
+from . import quaternion, solve_ik
 from .prepared_corpus import ESTIMATED_JOINTS, JOINTS, MIRRORED_JOINTS, PreparedCorpus
 from .simulate_trackers import TrackerConfig, draw_wearer, simulate
 from .skeleton import Body, body_from_calibration
-from . import quaternion
 
 Array = NDArray[np.float64]
 
@@ -22,7 +21,7 @@ PRIOR: dict[str, Any] = {
     "upper": {"forward": [0, 0.25, 0.3, 0.1, 0, 0], "sideways": [0.2, 0.1, 0]},
     "lower": {"forward": [-0.05, 0.15, 0.8, 0.05, 0, 0], "sideways": [0.1, 0.05, 0]},
     "neck": 0.5,
-    "girdle": [[0, 0, 0, 0], [0, 0, 0.03, 0], [0, 0, 0, 0.03]],
+    "clavicle": [[0, 0, 0, 0], [0, 0, 0.03, 0], [0, 0, 0, 0.03]],
     "pole": [[0.4] + [0] * 9, [-1.0] + [0] * 9, [0.6] + [0] * 9],
 }
 
@@ -41,7 +40,7 @@ class FitIkConfig:
 def flatten(parameters: dict[str, Any]) -> Array:
     """The parameters as one vector, in the file's order."""
     parts = [parameters["yaw"], *(parameters[s][k] for s in ("upper", "lower") for k in ("forward", "sideways"))]
-    parts += [[parameters["neck"]], *parameters["girdle"], *parameters["pole"]]
+    parts += [[parameters["neck"]], *parameters["clavicle"], *parameters["pole"]]
     return np.concatenate([np.asarray(part, np.float64) for part in parts])
 
 
@@ -57,7 +56,7 @@ def unflatten(vector: Array) -> dict[str, Any]:
     for segment in ("upper", "lower"):
         for key in ("forward", "sideways"):
             result[segment][key] = take(PRIOR[segment][key])
-    for key in ("neck", "girdle", "pole"):
+    for key in ("neck", "clavicle", "pole"):
         result[key] = take(PRIOR[key])
     return result
 
@@ -79,6 +78,7 @@ def sample(
     proportions: dict[str, Any],
     per_person: int | None,
     seed: int,
+    *,
     mirrored: bool = True,
 ) -> Sample:
     """Frames of these people as trackers would see them, the same number of each (None: all), mirrored ones beside them."""
@@ -93,7 +93,7 @@ def sample(
             frames = np.sort(random.choice(frames, per_person, replace=False))
         true_positions = corpus.positions[frames].astype(np.float64)
         positions, rotations = simulate(true_positions, corpus.rotations[frames], draw_wearer(trackers, random), trackers, random)
-        local, turns, yaw, origin = ik.to_heading(positions, rotations)
+        local, turns, yaw, origin = solve_ik.to_heading(positions, rotations)
         truth = true_positions[:, columns] - origin[:, None]
         truth = quaternion.rotate(np.broadcast_to(quaternion.conjugate(yaw)[:, None], (*truth.shape[:-1], 4)), truth)
         sizes = np.tile([person.eye_height, person.arm_span], (len(frames), 1))
@@ -118,7 +118,7 @@ def fit(frames: Sample, config: FitIkConfig, report: Callable[[int, float], None
     count = len(frames.truth) * len(ESTIMATED_JOINTS)
 
     def residuals(values: Array) -> Array:
-        return ik.solve(frames.positions, frames.rotations, frames.body, unflatten(values)) - frames.truth
+        return solve_ik.solve(frames.positions, frames.rotations, frames.body, unflatten(values)) - frames.truth
 
     def cost(values: Array, errors: Array) -> float:
         distance = np.linalg.norm(errors, axis=-1)
@@ -152,4 +152,4 @@ def fit(frames: Sample, config: FitIkConfig, report: Callable[[int, float], None
 
 def errors_cm(frames: Sample, parameters: dict[str, Any]) -> Array:
     """Distances [F, 6] in centimetres."""
-    return np.linalg.norm(ik.solve(frames.positions, frames.rotations, frames.body, parameters) - frames.truth, axis=-1) * 100
+    return np.linalg.norm(solve_ik.solve(frames.positions, frames.rotations, frames.body, parameters) - frames.truth, axis=-1) * 100

@@ -18,7 +18,7 @@ def _wave(random: np.random.Generator, times: Array, dimensions: int, amplitude:
 
 
 def generate_clip(random: np.random.Generator, frames: int, person: Person) -> tuple[Array, Array]:
-    """Joints [F, 11, 3] and rotations [F, 3, 4] (head, hands) of somebody wandering, turning, bending and moving the arms."""
+    """Joints [F, 11, 3] and rotations [F, 3, 4] (head, hands) of a person wandering, turning, bending and moving the arms."""
     times = np.arange(frames) / RATE_HZ
     e = person.eye_height
     arm = (person.arm_span - 0.24 * e) / 2

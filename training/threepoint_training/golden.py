@@ -2,17 +2,23 @@
 
 import argparse
 import json
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import features, quaternion
+from . import quaternion, solve_ik
+from .chest_features import chest_axes
+from .features import frame_features
 from .generated_motion import generate_clip
+from .paper_features import paper_features
 from .prepared_corpus import Person
+from .residual import network_input
 from .simulate_trackers import TrackerConfig, draw_wearer, simulate
-from .skeleton import body_from_calibration, rest_offsets
+from .skeleton import Body, body_from_calibration, rest_offsets
 
 Array = NDArray[np.float64]
 
@@ -24,7 +30,7 @@ WINDOW = (0.0, 0.1, 0.25)
 
 
 def _tracked(eye_height: float, arm_span: float, random: np.random.Generator) -> tuple[Array, Array]:
-    """Some frames of somebody of that size, as trackers see them."""
+    """Some frames of a person of that size, as trackers see them."""
     joints, turns = generate_clip(random, FRAMES * STRIDE, Person("golden", eye_height, arm_span))
     trackers = TrackerConfig()
     positions, rotations = simulate(joints, turns, draw_wearer(trackers, random), trackers, random)
@@ -32,7 +38,7 @@ def _tracked(eye_height: float, arm_span: float, random: np.random.Generator) ->
 
 
 def _in_floor_frame(joints: Array, positions: Array, rotations: Array) -> Array:
-    """Joints [F, 6, 3] that the heading frame has there."""
+    """Points [F, N, 3] of the heading frames of these trackers."""
     yaw, origin = quaternion.heading(rotations[:, 0]), positions[:, 0] * [1, 0, 1]
     return quaternion.rotate(np.broadcast_to(yaw[:, None], (*joints.shape[:-1], 4)), joints) + origin[:, None]
 
@@ -46,7 +52,7 @@ def feature_vectors() -> list[dict[str, Any]]:
         seen = random.uniform(size=(FRAMES, 2)) > 0.15
         times = np.arange(FRAMES) * STRIDE / 60 + random.uniform(0, 0.01, FRAMES)
         body = body_from_calibration(np.array(eye_height), np.array(arm_span))
-        vector, ik_joints = features.frame_features(positions, rotations, body, seen)
+        vector, ik_joints = frame_features(positions, rotations, body, seen)
         floor_joints = _in_floor_frame(ik_joints, positions, rotations)
         cases.append(
             {
@@ -61,43 +67,81 @@ def feature_vectors() -> list[dict[str, Any]]:
                         "seen": seen[i],
                         "ikJoints": floor_joints[i],
                         "features": vector[i],
-                        "paperInput": features.paper_input(positions[i : i + 1], rotations[i : i + 1])[0].ravel(),
+                        "paperInput": paper_features(positions[i : i + 1], rotations[i : i + 1])[0].ravel(),
                     }
                     for i in range(FRAMES)
                 ],
-                "inputs": features.network_input(vector, times, WINDOW),
+                "inputs": network_input(vector, times, WINDOW),
             }
         )
     return cases
 
 
-def placement_vectors() -> list[dict[str, Any]]:
-    """The same people, joints estimated about where IK has them, and where the skeleton puts those."""
+def _hands_before_the_trunk(positions: Array, ik_joints: Array, body: Body, random: np.random.Generator) -> Array:
+    """Wrists close to the chest joint, so that elbows estimated beside IK's lie in the trunk now and then; heading frame."""
+    moved = positions.copy()
+    place = np.array([[-0.1, -0.05, -0.16], [0.1, -0.05, -0.16]]) + random.normal(scale=0.05, size=(len(positions), 2, 3))
+    moved[:, 1:] = ik_joints[:, 4:5] + place * body.eye_height
+    return moved
+
+
+def _hands_out_of_reach(positions: Array, ik_joints: Array, body: Body, random: np.random.Generator) -> Array:
+    """Wrists at 0.99 to 1.25 arm lengths from IK's shoulders: straight arms and a leaning trunk. Both hands further away have no solution, and what
+    the passes end with then amplifies the last digits of its input."""
+    moved = positions.copy()
+    reach = moved[:, 1:] - ik_joints[:, 2:4]
+    reach *= random.uniform(0.99, 1.25, (len(positions), 2, 1)) * body.arm / np.linalg.norm(reach, axis=-1, keepdims=True)
+    moved[:, 1:] = ik_joints[:, 2:4] + reach
+    return moved
+
+
+# Where hands are, and the standard deviation of elbows' and of other joints' corrections [eye heights].
+SITUATIONS: dict[str, tuple[Callable[[Array, Array, Body, np.random.Generator], Array], float, float]] = {
+    "hands as tracked": (lambda positions, *_: positions, 0.015, 0.015),
+    "hands before the trunk": (_hands_before_the_trunk, 0.2, 0.015),
+    "hands out of reach": (_hands_out_of_reach, 0.05, 0.015),
+}
+
+
+def fitted_vectors() -> list[dict[str, Any]]:
+    """People in three sizes, joints estimated about where IK has them, and where torso and arm fitting put those on the skeleton.
+
+    `limited` says of each elbow whether the swivel limiter keeps it out of the trunk.
+    """
     import torch
 
-    from .placement import Placement
+    from .differentiable_kinematics import DifferentiableKinematics, as_the_page_fits
 
-    placement = Placement()
+    fitting = DifferentiableKinematics(torch.float64)
     cases = []
     for number, (eye_height, arm_span) in enumerate(BODIES):
-        random = np.random.default_rng([13, number])
-        positions, rotations = _tracked(eye_height, arm_span, random)
-        vector, ik_joints = features.frame_features(positions, rotations, body_from_calibration(np.array(eye_height), np.array(arm_span)))
-        inputs = torch.from_numpy(features.network_input(vector, np.arange(FRAMES) / 60, WINDOW).astype(np.float32))
-        said = random.normal(scale=0.015, size=ik_joints.shape)
-        came_to = placement(torch.from_numpy(said.astype(np.float32)), inputs, reach_passes=8).numpy()
-        axes = features.chest_axes(vector)
-        estimated, placed = (
-            _in_floor_frame(ik_joints + eye_height * shift @ axes, positions, rotations) for shift in (said, came_to.astype(np.float64))
-        )
-        cases.append(
-            {
-                "calibration": {"eyeHeight": eye_height, "armSpan": arm_span},
-                "frames": [
-                    {"positions": positions[i], "rotations": rotations[i], "estimated": estimated[i], "placed": placed[i]} for i in range(FRAMES)
-                ],
-            }
-        )
+        body = body_from_calibration(np.array(eye_height), np.array(arm_span))
+        frames = []
+        for kind, (situation, (move, elbows, others)) in enumerate(SITUATIONS.items()):
+            random = np.random.default_rng([13, number, kind])
+            positions, rotations = _tracked(eye_height, arm_span, random)
+            local, turns, _, _ = solve_ik.to_heading(positions, rotations)
+            positions = _in_floor_frame(move(local, solve_ik.solve(local, turns, body), body, random), positions, rotations)
+            vector, ik_joints = frame_features(positions, rotations, body)
+            inputs = torch.from_numpy(network_input(vector, np.arange(FRAMES) / 60, WINDOW))
+            corrections = random.normal(size=ik_joints.shape) * np.array([elbows] * 2 + [others] * 4)[:, None]
+            fitted, limited = fitting.fit(torch.from_numpy(corrections), inputs, as_the_page_fits(eye_height))
+            axes = chest_axes(vector)
+            estimated, placed = (
+                _in_floor_frame(ik_joints + eye_height * shift @ axes, positions, rotations) for shift in (corrections, fitted.numpy())
+            )
+            frames += [
+                {
+                    "situation": situation,
+                    "positions": positions[i],
+                    "rotations": rotations[i],
+                    "estimated": estimated[i],
+                    "fitted": placed[i],
+                    "limited": limited[i].numpy(),
+                }
+                for i in range(FRAMES)
+            ]
+        cases.append({"calibration": {"eyeHeight": eye_height, "armSpan": arm_span}, "frames": frames})
     return cases
 
 
@@ -112,14 +156,14 @@ def model_vectors(models: Path) -> dict[str, Any]:
     trackers = TrackerConfig()
     positions, rotations = simulate(joints, turns, draw_wearer(trackers, random), trackers, random)
     body = body_from_calibration(np.array(person.eye_height), np.array(person.arm_span))
-    vector, _ = features.frame_features(positions, rotations, body)
+    vector, _ = frame_features(positions, rotations, body)
     for contract_file in sorted(models.glob("*.json")):
         contract = json.loads(contract_file.read_text())
         session = onnxruntime.InferenceSession(models / contract["file"])
         if contract["name"] == "paper":
-            inputs = features.paper_input(positions, rotations)
+            inputs = paper_features(positions, rotations)
         else:
-            inputs = features.network_input(vector, np.arange(len(vector)) / 60, tuple(contract["windowSeconds"]))
+            inputs = network_input(vector, np.arange(len(vector)) / 60, tuple(contract["windowSeconds"]))
         inputs = inputs[::12].astype(np.float32)
         name = contract["inputs"][0]["name"]
         outputs = [session.run(None, {name: row[None]})[0][0] for row in inputs]
@@ -131,28 +175,36 @@ def model_vectors(models: Path) -> dict[str, Any]:
     return result
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
+    """Arrays as lists, numbers to nine digits after the point: what JSON takes."""
     if isinstance(value, np.ndarray):
-        return _plain(value.tolist())
+        return plain(value.tolist())
     if isinstance(value, dict):
-        return {key: _plain(part) for key, part in value.items()}
+        return {key: plain(part) for key, part in value.items()}
     if isinstance(value, list | tuple):
-        return [_plain(part) for part in value]
+        return [plain(part) for part in value]
     if isinstance(value, np.bool_ | bool):
         return bool(value)
     return round(float(value), 9) if isinstance(value, float | np.floating) else value
 
 
-def main(models: Path) -> None:
-    """Writes tests/golden/features.json and placement.json, and models.json where there are models."""
+@dataclass(frozen=True)
+class GoldenConfig:
+    """models: the folder whose networks get golden outputs."""
+
+    models: Path = Path(__file__).parents[2] / "public/models"
+
+
+def main(config: GoldenConfig) -> None:
+    """Writes tests/golden/features.json and fitted-joints.json, and models.json where there are models."""
     GOLDEN.mkdir(parents=True, exist_ok=True)
-    (GOLDEN / "features.json").write_text(json.dumps(_plain(feature_vectors())) + "\n")
-    (GOLDEN / "placement.json").write_text(json.dumps(_plain(placement_vectors())) + "\n")
-    if list(models.glob("*.json")):
-        (GOLDEN / "models.json").write_text(json.dumps(_plain(model_vectors(models))) + "\n")
+    (GOLDEN / "features.json").write_text(json.dumps(plain(feature_vectors())) + "\n")
+    (GOLDEN / "fitted-joints.json").write_text(json.dumps(plain(fitted_vectors())) + "\n")
+    if list(config.models.glob("*.json")):
+        (GOLDEN / "models.json").write_text(json.dumps(plain(model_vectors(config.models))) + "\n")
 
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--models", type=Path, default=Path(__file__).parents[2] / "public/models")
-    main(parser.parse_args().models)
+    parser.add_argument("--models", type=Path, default=GoldenConfig.models)
+    main(GoldenConfig(parser.parse_args().models))

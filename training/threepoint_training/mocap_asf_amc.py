@@ -4,7 +4,7 @@ Joints are named by their bones: "lhumerus" is where the bone starts, "lhumerus:
 A bone's rotation in its parent is C·M·C⁻¹ with the bone's `axis` C and the motion's angles M, both R = Rz·Ry·Rx for order XYZ.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -49,90 +49,119 @@ def euler_quaternion(angles: NDArray[np.float64], order: str = "xyz") -> NDArray
     return q
 
 
+@dataclass(frozen=True)
+class _RawBone:
+    """A bone as :bonedata has it; angles in the file's unit."""
+
+    name: str
+    direction: NDArray[np.float64]
+    length: float
+    axis: NDArray[np.float64]
+    axis_order: str
+    dof: tuple[str, ...]
+
+
+@dataclass
+class _Sections:
+    """What an .asf file says, before its bones are put in order."""
+
+    radians_per_unit: float = np.pi / 180
+    root: dict[str, list[str]] = field(default_factory=dict)
+    bones: dict[str, _RawBone] = field(default_factory=dict)
+    # Parents by child.
+    parents: dict[str, str] = field(default_factory=dict)
+
+
 def parse_asf(path: Path) -> AsfSkeleton:
     """Reads a skeleton; what is missing or malformed raises MocapError with the line."""
-    section = ""
-    radians_per_unit = np.pi / 180
-    root: dict[str, list[str]] = {}
-    blocks: list[dict[str, list[str]]] = []
-    children: list[tuple[str, str]] = []
+    sections = _read_sections(path)
+    orientation = np.array([float(word) for word in sections.root.get("orientation", ["0", "0", "0"])[:3]])
+    axis_order = (sections.root.get("axis") or ["XYZ"])[0]
+    return AsfSkeleton(
+        path=path,
+        bones=_ordered_bones(path, sections),
+        root_order=tuple(word.lower() for word in sections.root.get("order", ["TX", "TY", "TZ", "RX", "RY", "RZ"])),
+        root_axis=euler_quaternion(orientation * sections.radians_per_unit, axis_order),
+        root_position=np.array([float(word) for word in sections.root.get("position", ["0", "0", "0"])[:3]]),
+        radians_per_unit=sections.radians_per_unit,
+    )
+
+
+def _read_sections(path: Path) -> _Sections:
+    result, section = _Sections(), ""
     block: dict[str, list[str]] | None = None
-    line_number = 0
-
-    def fail(message: str) -> MocapError:
-        return MocapError(f"{path.name}, line {line_number}: {message}")
-
-    def numbers(words: list[str], count: int, what: str) -> NDArray[np.float64]:
-        try:
-            values = np.array([float(word) for word in words[:count]])
-        except ValueError:
-            raise fail(f"{what} should be {count} numbers, is “{' '.join(words)}”") from None
-        if len(values) < count or not np.all(np.isfinite(values)):
-            raise fail(f"{what} should be {count} numbers, is “{' '.join(words)}”")
-        return values
-
-    parsed: list[tuple[str, NDArray[np.float64], float, NDArray[np.float64], str, tuple[str, ...]]] = []
-    for line_number, line in enumerate(path.read_text(errors="replace").splitlines(), start=1):
+    for number, line in enumerate(path.read_text(errors="replace").splitlines(), start=1):
         words = line.split("#")[0].split()
         if not words:
             continue
         if words[0].startswith(":"):
             section = words[0]
-            continue
-        if section == ":units" and words[0] == "angle":
-            radians_per_unit = np.pi / 180 if words[1:2] == ["deg"] else 1.0
+        elif section == ":units" and words[0] == "angle":
+            result.radians_per_unit = np.pi / 180 if words[1:2] == ["deg"] else 1.0
         elif section == ":root":
-            root[words[0]] = words[1:]
+            result.root[words[0]] = words[1:]
+        elif section == ":bonedata" and words[0] == "begin":
+            block = {}
+        elif section == ":bonedata" and words[0] == "end":
+            bone = _raw_bone(block, f"{path.name}, line {number}")
+            result.bones[bone.name], block = bone, None
         elif section == ":bonedata":
-            if words[0] == "begin":
-                block = {}
-            elif words[0] == "end":
-                if block is None or "name" not in block or not block["name"]:
-                    raise fail("a bone without a name ends here")
-                direction = numbers(block.get("direction", []), 3, f"the direction of {block['name'][0]}")
-                length = float(numbers(block.get("length", []), 1, f"the length of {block['name'][0]}")[0])
-                axis_words = block.get("axis", ["0", "0", "0", "XYZ"])
-                axis = numbers(axis_words, 3, f"the axis of {block['name'][0]}")
-                order = axis_words[3] if len(axis_words) > 3 else "XYZ"
-                norm = np.linalg.norm(direction)
-                if norm > 0:
-                    direction = direction / norm
-                parsed.append((block["name"][0], direction, length, axis, order, tuple(word.lower() for word in block.get("dof", []))))
-                block = None
-            elif block is not None and words[0] in ("name", "direction", "length", "axis", "dof"):
+            if block is not None and words[0] in ("name", "direction", "length", "axis", "dof"):
                 block[words[0]] = words[1:]
         elif section == ":hierarchy" and words[0] not in ("begin", "end"):
-            children += [(child, words[0]) for child in words[1:]]
-
-    if not parsed:
+            result.parents |= dict.fromkeys(words[1:], words[0])
+    if not result.bones:
         raise MocapError(f"{path.name}: no :bonedata with bones, so this is no ASF skeleton")
-    parent_of = dict(children)
-    by_name = {entry[0]: entry for entry in parsed}
+    return result
+
+
+def _raw_bone(block: dict[str, list[str]] | None, where: str) -> _RawBone:
+    """The bone of a block; `where` it ends begins every complaint."""
+    if block is None or not block.get("name"):
+        raise MocapError(f"{where}: a bone without a name ends here")
+
+    def numbers(words: list[str], count: int, what: str) -> NDArray[np.float64]:
+        try:
+            values = np.array([float(word) for word in words[:count]])
+        except ValueError:
+            values = np.empty(0)
+        if len(values) < count or not np.all(np.isfinite(values)):
+            raise MocapError(f"{where}: {what} should be {count} numbers, is “{' '.join(words)}”")
+        return values
+
+    name = block["name"][0]
+    direction = numbers(block.get("direction", []), 3, f"the direction of {name}")
+    length = float(numbers(block.get("length", []), 1, f"the length of {name}")[0])
+    axis = block.get("axis", ["0", "0", "0", "XYZ"])
+    norm = np.linalg.norm(direction)
+    return _RawBone(
+        name=name,
+        direction=direction / norm if norm > 0 else direction,
+        length=length,
+        axis=numbers(axis, 3, f"the axis of {name}"),
+        axis_order=axis[3] if len(axis) > 3 else "XYZ",
+        dof=tuple(word.lower() for word in block.get("dof", [])),
+    )
+
+
+def _ordered_bones(path: Path, sections: _Sections) -> tuple[Bone, ...]:
+    """Parents before children; bones that the hierarchy does not name are left out."""
+    for child in sections.parents:
+        if child not in sections.bones:
+            raise MocapError(f"{path.name}: the hierarchy names “{child}”, but :bonedata has no such bone")
     bones: list[Bone] = []
     placed = {"root"}
-    for child, parent in children:
-        if child not in by_name:
-            raise MocapError(f"{path.name}: the hierarchy names “{child}”, but :bonedata has no such bone")
-    remaining = [entry for entry in parsed if entry[0] in parent_of]
+    remaining = [bone for bone in sections.bones.values() if bone.name in sections.parents]
     while remaining:
-        ready = [entry for entry in remaining if parent_of[entry[0]] in placed]
+        ready = [bone for bone in remaining if sections.parents[bone.name] in placed]
         if not ready:
-            raise MocapError(f"{path.name}: the hierarchy does not lead from the root to {remaining[0][0]}")
-        for name, direction, length, axis, order, dof in ready:
-            axis_quaternion = euler_quaternion(axis * radians_per_unit, order)
-            bones.append(Bone(name, direction, length, axis_quaternion, dof, parent_of[name]))
-            placed.add(name)
-        remaining = [entry for entry in remaining if entry[0] not in placed]
-    orientation = np.array([float(word) for word in root.get("orientation", ["0", "0", "0"])[:3]])
-    axis_order = (root.get("axis") or ["XYZ"])[0]
-    return AsfSkeleton(
-        path=path,
-        bones=tuple(bones),
-        root_order=tuple(word.lower() for word in root.get("order", ["TX", "TY", "TZ", "RX", "RY", "RZ"])),
-        root_axis=euler_quaternion(orientation * radians_per_unit, axis_order),
-        root_position=np.array([float(word) for word in root.get("position", ["0", "0", "0"])[:3]]),
-        radians_per_unit=radians_per_unit,
-    )
+            raise MocapError(f"{path.name}: the hierarchy does not lead from the root to {remaining[0].name}")
+        for bone in ready:
+            axis = euler_quaternion(bone.axis * sections.radians_per_unit, bone.axis_order)
+            bones.append(Bone(bone.name, bone.direction, bone.length, axis, bone.dof, sections.parents[bone.name]))
+            placed.add(bone.name)
+        remaining = [bone for bone in remaining if bone.name not in placed]
+    return tuple(bones)
 
 
 def _read_channels(path: Path, skeleton: AsfSkeleton) -> NDArray[np.float64]:

@@ -1,5 +1,6 @@
 """Biovision hierarchies (.bvh). A joint is its bone's origin; an end site is named "<parent>:end"."""
 
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -9,16 +10,36 @@ from . import quaternion
 from .motion import MocapError, Motion
 
 
+@dataclass
+class _Hierarchy:
+    """Joints in the file's order, parents before children (−1: none); offsets in the file's units, channels by joint."""
+
+    names: list[str] = field(default_factory=list)
+    parents: list[int] = field(default_factory=list)
+    offsets: list[NDArray[np.float64]] = field(default_factory=list)
+    channels: list[tuple[str, ...]] = field(default_factory=list)
+
+    def open(self, name: str, parent: int) -> int:
+        """The number of a joint that begins here."""
+        self.names.append(name)
+        self.parents.append(parent)
+        self.offsets.append(np.zeros(3))
+        self.channels.append(())
+        return len(self.names) - 1
+
+
 def parse_bvh(path: Path) -> Motion:
     """Reads skeleton and motion; what is malformed raises MocapError with the line."""
     lines = path.read_text(errors="replace").splitlines()
-    names: list[str] = []
-    parents: list[int] = []
-    offsets: list[NDArray[np.float64]] = []
-    channels: list[tuple[str, ...]] = []
-    stack: list[int] = []
+    hierarchy, motion_line = _read_hierarchy(path, lines)
+    values, frame_time = _read_frames(path, lines, motion_line, sum(map(len, hierarchy.channels)))
+    return _pose(path, hierarchy, values, 1.0 / frame_time)
+
+
+def _read_hierarchy(path: Path, lines: list[str]) -> tuple[_Hierarchy, int]:
+    """What stands before MOTION, and that line's number."""
+    hierarchy, stack = _Hierarchy(), list[int]()
     pending: str | None = None
-    motion_line: int | None = None
     number = 0
 
     def fail(message: str) -> MocapError:
@@ -36,15 +57,11 @@ def parse_bvh(path: Path) -> Motion:
                 if not pending:
                     raise fail("a joint without a name")
             case "END":
-                pending = f"{names[stack[-1]]}:end" if stack else "end"
+                pending = f"{hierarchy.names[stack[-1]]}:end" if stack else "end"
             case "{":
                 if pending is None:
                     raise fail("“{” without a joint before it")
-                names.append(pending)
-                parents.append(stack[-1] if stack else -1)
-                offsets.append(np.zeros(3))
-                channels.append(())
-                stack.append(len(names) - 1)
+                stack.append(hierarchy.open(pending, stack[-1] if stack else -1))
                 pending = None
             case "}":
                 if not stack:
@@ -57,24 +74,24 @@ def parse_bvh(path: Path) -> Motion:
                     raise fail(f"OFFSET should be three numbers, is “{' '.join(words[1:])}”") from None
                 if not stack or offset.shape != (3,):
                     raise fail("OFFSET should be three numbers inside a joint")
-                offsets[stack[-1]] = offset
+                hierarchy.offsets[stack[-1]] = offset
             case "CHANNELS":
                 if not stack or len(words) < 2 or not words[1].isdigit() or len(words) != 2 + int(words[1]):
                     raise fail(f"CHANNELS should be a count and as many names, is “{' '.join(words[1:])}”")
-                channels[stack[-1]] = tuple(words[2:])
+                hierarchy.channels[stack[-1]] = tuple(words[2:])
             case "MOTION":
-                motion_line = number
-                break
+                if stack:
+                    raise fail("the hierarchy is not closed before MOTION")
+                return hierarchy, number
             case _:
                 raise fail(f"“{words[0]}” is not known in a BVH hierarchy")
-    if motion_line is None:
-        raise MocapError(f"{path.name}: no MOTION section")
-    if stack:
-        raise MocapError(f"{path.name}, line {motion_line}: the hierarchy is not closed before MOTION")
+    raise MocapError(f"{path.name}: no MOTION section")
 
+
+def _read_frames(path: Path, lines: list[str], motion_line: int, width: int) -> tuple[NDArray[np.float64], float]:
+    """The channels of all frames [frames, width] after the line MOTION, and the time between frames [s]."""
     frame_time: float | None = None
     declared: int | None = None
-    width = sum(len(channel) for channel in channels)
     rows: list[list[float]] = []
     for number, line in enumerate(lines[motion_line:], start=motion_line + 1):
         text = line.strip()
@@ -89,9 +106,9 @@ def parse_bvh(path: Path) -> Motion:
             try:
                 row = [float(word) for word in text.split()]
             except ValueError:
-                raise fail("a frame has something that is no number") from None
+                raise MocapError(f"{path.name}, line {number}: a frame has something that is no number") from None
             if len(row) != width:
-                raise fail(f"a frame has {len(row)} numbers, the hierarchy has {width} channels")
+                raise MocapError(f"{path.name}, line {number}: a frame has {len(row)} numbers, the hierarchy has {width} channels")
             rows.append(row)
     if not rows:
         raise MocapError(f"{path.name}: no frames")
@@ -102,17 +119,21 @@ def parse_bvh(path: Path) -> Motion:
     values = np.array(rows)
     if not np.all(np.isfinite(values)):
         raise MocapError(f"{path.name}: frame {int(np.flatnonzero(~np.isfinite(values).all(1))[0]) + 1} has a number that is not finite")
+    return values, frame_time
 
-    frames = len(values)
-    positions = np.zeros((frames, len(names), 3))
-    rotations = np.zeros((frames, len(names), 4))
-    rest = np.zeros((len(names), 3))
+
+def _pose(path: Path, hierarchy: _Hierarchy, values: NDArray[np.float64], frame_rate: float) -> Motion:
+    """Forward kinematics of the channels."""
+    frames, count = len(values), len(hierarchy.names)
+    positions = np.zeros((frames, count, 3))
+    rotations = np.zeros((frames, count, 4))
+    rest = np.zeros((count, 3))
     column = 0
     axes = {"X": np.array([1.0, 0, 0]), "Y": np.array([0, 1.0, 0]), "Z": np.array([0, 0, 1.0])}
-    for joint, parent in enumerate(parents):
-        local = np.broadcast_to(offsets[joint], (frames, 3)).copy()
+    for joint, parent in enumerate(hierarchy.parents):
+        local = np.broadcast_to(hierarchy.offsets[joint], (frames, 3)).copy()
         turn = np.broadcast_to([0.0, 0.0, 0.0, 1.0], (frames, 4))
-        for channel in channels[joint]:
+        for channel in hierarchy.channels[joint]:
             axis, kind = channel[0].upper(), channel[1:].lower()
             if kind == "position":
                 # A root's position replaces its offset; the same channel on other joints does too in files that carry them.
@@ -121,13 +142,13 @@ def parse_bvh(path: Path) -> Motion:
                 step = quaternion.from_axis_angle(np.broadcast_to(axes[axis], (frames, 3)), np.radians(values[:, column]))
                 turn = quaternion.multiply(turn, step)
             else:
-                raise MocapError(f"{path.name}: channel “{channel}” of {names[joint]} is not known")
+                raise MocapError(f"{path.name}: channel “{channel}” of {hierarchy.names[joint]} is not known")
             column += 1
         if parent < 0:
             positions[:, joint] = local
             rotations[:, joint] = turn
         else:
-            rest[joint] = rest[parent] + offsets[joint]
+            rest[joint] = rest[parent] + hierarchy.offsets[joint]
             positions[:, joint] = positions[:, parent] + quaternion.rotate(rotations[:, parent], local)
             rotations[:, joint] = quaternion.multiply(rotations[:, parent], turn)
-    return Motion(tuple(names), rest, positions, rotations, 1.0 / frame_time)
+    return Motion(tuple(hierarchy.names), rest, positions, rotations, frame_rate)

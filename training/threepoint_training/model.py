@@ -4,8 +4,10 @@ import torch
 from torch import Tensor, nn
 from torch.nn import functional
 
-from .features import CHEST_FEATURES, FEATURES, IK_JOINTS, OUTPUTS
+from .chest_features import ARM_COLUMNS, ARMS, CHEST_FEATURES, CHEST_HEAD_AXES, CHEST_JOINT, REACH_LENGTHS, UP
+from .features import ARM_LENGTH, FEATURES, HANDS, HEAD_AXES, IK_JOINTS, SEEN
 from .prepared_corpus import MIRRORED_JOINTS
+from .residual import OUTPUTS
 
 
 class PaperNetwork(nn.Module):
@@ -51,13 +53,13 @@ class PaperNetwork(nn.Module):
 
 
 class CorrectionNetwork(nn.Module):
-    """[N, T·46 + 38] features -> [N, 18]: what to add to IK's six joints, seen from IK's chest, in eye heights.
+    """[N, T·46 + 38] features -> [N, 18]: the residual to add to IK's six joints, chest frame, in eye heights.
 
-    From the chest an arm looks the same whichever way its body turns and leans. A trunk corrects shoulders, chest joint and hips; an arm,
-    the same network for both sides, then corrects an elbow, knowing of nothing but its own hand and shoulder. Whatever is said of a body
-    is said of its mirror image.
+    In the chest frame an arm looks the same however its body turns and leans. A trunk network corrects shoulders, chest joint and
+    hips; an arm network, the same for both sides, then corrects an elbow, given nothing but its own hand and shoulder. A body and its mirror
+    image get mirrored corrections.
 
-    In a browser a node of the graph costs more than its arithmetic: what is linear is one matrix.
+    In a browser a node of the graph costs more than its arithmetic, so linear steps are merged into one matrix.
     """
 
     def __init__(self, taps: int, width: int, dropout: float, hidden_layers: int = 2) -> None:
@@ -88,7 +90,7 @@ class CorrectionNetwork(nn.Module):
         getattr(self, f"{name}_output_scale").copy_(outputs.std(0).clamp_min(1e-4))
 
     def shrink(self, share: float) -> None:
-        """Leaves this share of the trunk's correction."""
+        """Multiplies the trunk's correction by this share in [0, 1]."""
         self.trunk_output_mean *= share
         self.trunk_output_scale *= share
 
@@ -103,7 +105,7 @@ class CorrectionNetwork(nn.Module):
         mean, scale, output_mean, output_scale = (
             getattr(self, f"{name}_{key}") for key in ("input_mean", "input_scale", "output_mean", "output_scale")
         )
-        # Trackers never leave four deviations on anybody the network knows: beyond, it is held there.
+        # Trackers stay within four deviations on the people trained on; inputs beyond are held there.
         x = torch.clamp((inputs - mean) * (1 / scale), -4.0, 4.0)
         *hidden, last = getattr(self, name)
         for layer in hidden:
@@ -116,9 +118,9 @@ class CorrectionNetwork(nn.Module):
         return (inputs[:, self.mirror_column] * self.mirror_sign).view(-1, self.inputs)
 
     def _right_arm(self, bodies: Tensor, shift: Tensor) -> Tensor:
-        """What the right arm is told [N, ARM_FEATURES], its shoulder being so far from IK's [N, 3]."""
+        """The inputs of the arm network [N, ARM_FEATURES] for the right arm, whose shoulder was corrected by `shift` [N, 3]."""
         reach, others, arm = bodies[:, self.arm_columns].split([3, 13, 1], dim=1)
-        # Without a body, as when a page tries the network, no division by nothing.
+        # Inputs of zeros, with which a page tries the network out, must not divide by zero.
         reach = reach - shift / arm.clamp_min(1e-3)
         return torch.cat([reach, reach.norm(dim=-1, keepdim=True), others], dim=1)
 
@@ -127,7 +129,7 @@ class CorrectionNetwork(nn.Module):
 ARM_FEATURES = 17
 
 FLIP = torch.tensor([-1.0, 1.0, 1.0])
-# What the chest sees of an arm (reach, two axes of the hand, IK's elbow), mirrored; a mirrored rotation's x axis is turned round too.
+# Mirrors the chest-frame features of an arm (reach, two axes of the hand, IK's elbow); a mirrored rotation's x axis changes its sign too.
 ARM_FLIP = torch.cat([FLIP, -FLIP, FLIP, FLIP])
 
 
@@ -139,39 +141,43 @@ def _perceptron(inputs: int, width: int, hidden_layers: int, dropout: float, out
 
 
 def _from_trunk() -> Tensor:
-    """[24, 18 + 6]: what the trunk says of a body and its image to how the six joints move, elbows with their shoulders, and both right shoulders."""
+    """[24, 18 + 6]: from the trunk's outputs for a body and its image to corrections of the six joints (elbows with their shoulders) and of both right shoulders."""
     body, image = torch.eye(24).view(2, 4, 3, 24)
     left, right, chest, hips = ((body[joint] + FLIP[:, None] * image[twin]) / 2 for joint, twin in enumerate([1, 0, 2, 3]))
     return torch.cat([left, right, left, right, chest, hips, right, FLIP[:, None] * left]).T
 
 
 def _from_arms() -> Tensor:
-    """[6, 18]: the right elbow's move in a body and in its image to those of the six joints."""
+    """[6, 18]: from the right elbow's correction in a body and in its image to those of the six joints."""
     right, image = torch.eye(6).view(2, 3, 6)
     return torch.cat([FLIP[:, None] * image, right, torch.zeros(12, 6)]).T
 
 
 def _arm_columns(taps: int) -> Tensor:
-    """Of a body's features: the right arm's reach, what else it is told, the arm's length."""
+    """Columns of a body's inputs: reach, hand and elbow of the right arm, up, whether the right hand is seen, the arm's length."""
     chest = taps * FEATURES
-    return torch.tensor([*range(chest + 12, chest + 24), *range(chest + 33, chest + 36), 26, 45])
+    right_arm = range(chest + ARMS.start + ARM_COLUMNS, chest + ARMS.stop)
+    return torch.tensor([*right_arm, *range(chest + UP.start, chest + UP.stop), SEEN.stop - 1, ARM_LENGTH])
 
 
 def _mirror_image(taps: int) -> tuple[Tensor, Tensor]:
     """Column and sign of each feature of a body [2 · (T·46 + 38)] and of its mirror image, over all frames of the window."""
     frame, frame_sign = torch.arange(FEATURES), torch.ones(FEATURES)
-    frame[7:25] = torch.cat([torch.arange(16, 25), torch.arange(7, 16)])
-    frame[25:27] = torch.tensor([26, 25])
-    frame[IK_JOINTS] = torch.arange(27, 45).view(6, 3)[MIRRORED_JOINTS].flatten()
+    left, right = HANDS
+    frame[left], frame[right] = frame[right].clone(), frame[left].clone()
+    frame[SEEN] = frame[SEEN].flip(0)
+    frame[IK_JOINTS] = frame[IK_JOINTS].view(6, 3)[MIRRORED_JOINTS].flatten()
     # A mirrored rotation's x axis is mirrored and turned round.
-    frame_sign[1:7] = torch.cat([-FLIP, FLIP])
-    frame_sign[7:25] = torch.cat([FLIP, -FLIP, FLIP]).repeat(2)
+    frame_sign[HEAD_AXES] = torch.cat([-FLIP, FLIP])
+    for hand in HANDS:
+        frame_sign[hand] = torch.cat([FLIP, -FLIP, FLIP])
     frame_sign[IK_JOINTS] = FLIP.repeat(6)
     chest, chest_sign = torch.arange(CHEST_FEATURES), torch.ones(CHEST_FEATURES)
-    chest[:24] = torch.cat([torch.arange(12, 24), torch.arange(12)])
-    chest[36:] = torch.tensor([37, 36])
-    chest_sign[:24] = ARM_FLIP.repeat(2)
-    chest_sign[24:36] = torch.cat([-FLIP, FLIP, FLIP, FLIP])
+    chest[ARMS] = chest[ARMS].view(2, ARM_COLUMNS).flip(0).flatten()
+    chest[REACH_LENGTHS] = chest[REACH_LENGTHS].flip(0)
+    chest_sign[ARMS] = ARM_FLIP.repeat(2)
+    chest_sign[CHEST_HEAD_AXES] = torch.cat([-FLIP, FLIP])
+    chest_sign[CHEST_JOINT], chest_sign[UP] = FLIP, FLIP
     inputs = taps * FEATURES + CHEST_FEATURES
     column = torch.cat([*(frame + tap * FEATURES for tap in range(taps)), chest + taps * FEATURES])
     sign = torch.cat([*[frame_sign] * taps, chest_sign])

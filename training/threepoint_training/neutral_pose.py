@@ -1,6 +1,6 @@
 """What a neutral pose tells of its person: is their error under IK known from where they stand and let their hands hang?
 
-`npm run train -- --mocap DIR --ablate` calls this and renews the table of docs/training.md. Everybody is predicted from the others.
+`npm run train -- --mocap DIR --ablate` calls this and renews the table of docs/training.md. Each person is predicted from the others.
 """
 
 from dataclasses import dataclass
@@ -9,11 +9,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from . import people, train_learned
+from . import splits, train_learned
 from .accuracy_tables import renew, table
-from .features import OUTPUTS
+from .features import ARM_LENGTH, HEADSET_HEIGHT, hand_positions
 from .model import CorrectionNetwork
 from .prepared_corpus import JOINTS, MIRRORED_JOINTS, PreparedCorpus
+from .residual import OUTPUTS
 from .train_learned import HeldOut, TrainLearnedConfig
 from .train_paper import predict as predict_joints
 
@@ -28,7 +29,7 @@ _MIRROR = np.array([-1.0, 1.0, 1.0])
 
 @dataclass(frozen=True)
 class NeutralPoseConfig:
-    """When somebody stands in a neutral pose, and how firmly the few people are believed."""
+    """When a person stands in a neutral pose, and how much a regression over few people is held back."""
 
     # The trunk's lean as a cosine, the height of the headset and of both wrists below it in eye heights, the wrists' speed [m/s].
     upright: float = 0.97
@@ -36,7 +37,7 @@ class NeutralPoseConfig:
     hands_below: float = 0.37
     hand_speed: float = 1.0
     fewest_frames: int = 60
-    # Ridge over standardised measures: as many people as this speak for nothing.
+    # Ridge over standardised measures: weighs as much as this many people without any bias.
     ridge: float = 4.0
     # No measure counts as further from the mean than this many deviations.
     furthest: float = 2.0
@@ -53,13 +54,13 @@ def neutral_frames(corpus: PreparedCorpus, name: str, seen: HeldOut, config: Neu
         standing.append((trunk[:, 1] > config.upright * np.linalg.norm(trunk, axis=-1)) & (speed < config.hand_speed))
     left, right = _wrists(seen)
     hanging = np.maximum(left[:, 1], right[:, 1]) < -config.hands_below
-    return np.concatenate(standing) & hanging & (seen.inputs[:, 0] > config.head_height)
+    return np.concatenate(standing) & hanging & (seen.inputs[:, HEADSET_HEIGHT] > config.head_height)
 
 
 def _wrists(seen: HeldOut) -> tuple[Array, Array]:
     """From the headset, heading frame, eye heights."""
-    arm = seen.inputs[:, 45:46].astype(np.float64)
-    return seen.inputs[:, 7:10] * arm, seen.inputs[:, 16:19] * arm
+    left, right = np.moveaxis(hand_positions(seen.inputs) * seen.inputs[:, ARM_LENGTH, None, None].astype(np.float64), 1, 0)
+    return left, right
 
 
 def measure(seen: HeldOut, frames: NDArray[np.bool_]) -> Array:
@@ -69,13 +70,13 @@ def measure(seen: HeldOut, frames: NDArray[np.bool_]) -> Array:
 
 
 def bias(seen: HeldOut, output: NDArray[np.float32] | None = None) -> Array:
-    """The mean of what is true minus what IK, or this output, says [6, 3], the same for both sides, as IK's chest sees it [eye heights]."""
+    """The mean of what is true minus what IK, or this output, says [6, 3], the same for both sides, chest frame [eye heights]."""
     residual = (seen.targets - (0 if output is None else output)).reshape(-1, 6, 3).mean(axis=0)
     return (residual + residual[MIRRORED_JOINTS] * _MIRROR) / 2
 
 
 def predict(measures: Array, biases: Array, measured: Array, config: NeutralPoseConfig) -> Array:
-    """The bias of somebody measured so, from others' measures [N, 3] and biases [N, ...]: ridge around no bias at all."""
+    """The bias of a person measured so, from others' measures [N, 3] and biases [N, ...]: ridge around no bias at all."""
     mean, deviation = measures.mean(axis=0), np.maximum(measures.std(axis=0), 1e-6)
     others = (measures - mean) / deviation
     own = np.clip((measured - mean) / deviation, -config.furthest, config.furthest)
@@ -86,7 +87,7 @@ def predict(measures: Array, biases: Array, measured: Array, config: NeutralPose
 
 @dataclass(frozen=True)
 class Standing:
-    """Somebody who is seen in a neutral pose: all their frames, what their neutral pose measures, their error under IK."""
+    """A person who is seen in a neutral pose: all their frames, what their neutral pose measures, their error under IK."""
 
     seen: HeldOut
     measured: Array
@@ -94,12 +95,12 @@ class Standing:
 
 
 def standing_people(corpus: PreparedCorpus, window_seconds: tuple[float, ...], config: NeutralPoseConfig) -> dict[str, Standing]:
-    """Everybody of the training side who is seen in a neutral pose for long enough."""
-    names = tuple(sorted(set(corpus.people) - set(people.FOLDS["A"])))
-    everybody = train_learned.held_out(corpus, names, window_seconds)
+    """The people of the training side who are seen in a neutral pose for long enough."""
+    names = tuple(sorted(set(corpus.people) - set(splits.FOLDS["A"])))
+    people = train_learned.held_out(corpus, names, window_seconds)
     found = {}
     for name in names:
-        person = everybody.subset(np.flatnonzero(everybody.people == name))
+        person = people.subset(np.flatnonzero(people.people == name))
         frames = neutral_frames(corpus, name, person, config)
         if frames.sum() >= config.fewest_frames:
             found[name] = Standing(person, measure(person, frames), bias(person))
@@ -108,37 +109,37 @@ def standing_people(corpus: PreparedCorpus, window_seconds: tuple[float, ...], c
     return found
 
 
-def run(
+def main(
     corpus: PreparedCorpus,
     recipe: TrainLearnedConfig,
     networks: dict[tuple[str, ...], CorrectionNetwork],
     config: NeutralPoseConfig = NeutralPoseConfig(),
 ) -> list[list[str]]:
-    """Rows of the table: MPJPE [cm], everybody counted alike. networks: ours, by the people whom each has not seen."""
-    everybody = standing_people(corpus, recipe.window_seconds, config)
+    """Rows of the table: MPJPE [cm], all people counted alike. networks: ours, by the people held out of each."""
+    standing = standing_people(corpus, recipe.window_seconds, config)
     rows: dict[str, list[Array]] = {}
 
-    def told(name: str, unknown: tuple[str, ...]) -> Array:
-        others = [person for other, person in everybody.items() if other not in unknown]
-        return predict(np.stack([o.measured for o in others]), np.stack([o.bias for o in others]), everybody[name].measured, config)
+    def predicted(name: str, unknown: tuple[str, ...]) -> Array:
+        others = [person for other, person in standing.items() if other not in unknown]
+        return predict(np.stack([o.measured for o in others]), np.stack([o.bias for o in others]), standing[name].measured, config)
 
     def add(label: str, name: str, output: NDArray[np.float32], correction: Array) -> None:
         corrected = (output + correction.reshape(1, 18)).astype(np.float32)
-        rows.setdefault(label, []).append(train_learned.errors_cm(corrected, everybody[name].seen).mean(axis=0))
+        rows.setdefault(label, []).append(train_learned.fitted_errors_cm(corrected, standing[name].seen).mean(axis=0))
 
-    for name, person in everybody.items():
+    for name, person in standing.items():
         solved = np.zeros((1, OUTPUTS), np.float32)
         add("IK", name, solved, np.zeros(18))
-        add("IK, and what the neutral pose tells", name, solved, told(name, (name,)))
-        add("IK, and the mean error of the others", name, solved, np.mean([p.bias for other, p in everybody.items() if other != name], axis=0))
+        add("IK, and what the neutral pose tells", name, solved, predicted(name, (name,)))
+        add("IK, and the mean error of the others", name, solved, np.mean([p.bias for other, p in standing.items() if other != name], axis=0))
         add("IK, and one's own mean error (bound)", name, solved, person.bias)
     for unknown, network in networks.items():
-        for name in sorted(set(unknown) & set(everybody)):
-            output = predict_joints(network, everybody[name].seen.inputs)
+        for name in sorted(set(unknown) & set(standing)):
+            output = predict_joints(network, standing[name].seen.inputs)
             add("ours", name, output, np.zeros(18))
             # The network has made its share of the correction; the pose speaks for the rest.
-            add("ours, and what the neutral pose tells", name, output, (1 - recipe.correction_share) * told(name, unknown))
-            add("ours, and one's own mean error (bound)", name, output, bias(everybody[name].seen, output))
+            add("ours, and what the neutral pose tells", name, output, (1 - recipe.shrinkage) * predicted(name, unknown))
+            add("ours, and one's own mean error (bound)", name, output, bias(standing[name].seen, output))
     shown = []
     for label, errors in rows.items():
         mean = np.mean(errors, axis=0)

@@ -14,7 +14,7 @@ from . import quaternion
 from .mocap_asf_amc import AsfSkeleton, parse_amc, parse_asf
 from .mocap_bvh import parse_bvh
 from .motion import MocapError, Motion
-from .prepared_corpus import JOINTS, PreparedCorpus, Person
+from .prepared_corpus import JOINTS, Person, PreparedCorpus
 from .skeleton_map import CMU_METRES_PER_UNIT, SkeletonMap, find_skeleton_map, read_skeleton_map
 
 RATE_HZ = 60
@@ -157,7 +157,7 @@ def _to_our_joints(motion: Motion, skeleton: SkeletonMap, rate: float, file_name
         q = quaternion.multiply(np.broadcast_to(turn, q.shape), quaternion.multiply(q, np.broadcast_to(quaternion.conjugate(turn), q.shape)))
         if joint in _HAND_REST:
             elbow = rest[joint.replace("Hand", "LowerArm")]
-            align = quaternion.between(_LATERAL[joint], rest[joint] - elbow)
+            align = quaternion.rotation_between(_LATERAL[joint], rest[joint] - elbow)
             q = quaternion.multiply(q, np.broadcast_to(quaternion.multiply(align, _HAND_REST[joint]), q.shape))
         rotations.append(quaternion.continuous(q))
     foot_names = [name for name in ("leftFoot", "rightFoot", "leftToes", "rightToes") if name in skeleton.joints]

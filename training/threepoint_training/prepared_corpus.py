@@ -14,8 +14,10 @@ JOINTS = (
     "rightUpperArm", "rightLowerArm", "rightHand",
 )  # fmt: skip
 ROTATIONS = ("head", "leftHand", "rightHand")
+# Of the same three among JOINTS.
+TRACKED_COLUMNS = [JOINTS.index(joint) for joint in ROTATIONS]
 
-# The six joints nobody tracks, in the order of every tensor (src/core/body/joints.ts).
+# The six joints that no tracker sees, in the order of every tensor (src/core/body/joints.ts).
 ESTIMATED_JOINTS = ("leftLowerArm", "rightLowerArm", "leftUpperArm", "rightUpperArm", "chest", "hips")
 # Which of them a mirror shows in the place of each.
 MIRRORED_JOINTS = [1, 0, 3, 2, 4, 5]

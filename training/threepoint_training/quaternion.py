@@ -77,7 +77,7 @@ def to_matrix(q: Array) -> Array:
     )
 
 
-def between(a: Array, b: Array) -> Array:
+def rotation_between(a: Array, b: Array) -> Array:
     """The smallest rotation that takes the direction of a to that of b; half a turn about any normal when they oppose."""
     a = a / np.linalg.norm(a, axis=-1, keepdims=True)
     b = b / np.linalg.norm(b, axis=-1, keepdims=True)

@@ -11,12 +11,11 @@ import numpy as np
 
 from . import prepare
 from .motion import MocapError
-from .prepared_corpus import JOINTS, PreparedCorpus
+from .prepared_corpus import JOINTS, ROTATIONS, PreparedCorpus
 from .simulate_trackers import TrackerConfig, draw_wearer, simulate
 
 VERSION = 1
-TRACKED = ("head", "leftHand", "rightHand")
-COLUMNS = tuple(f"{point}.{part}" for point in TRACKED for part in ("px", "py", "pz", "qx", "qy", "qz", "qw")) + tuple(
+COLUMNS = tuple(f"{point}.{part}" for point in ROTATIONS for part in ("px", "py", "pz", "qx", "qy", "qz", "qw")) + tuple(
     f"truth.{joint}.{axis}" for joint in JOINTS for axis in "xyz"
 )
 

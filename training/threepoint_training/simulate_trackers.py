@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from . import quaternion
 from .prepare import EYES_FROM_HEAD_JOINT
-from .prepared_corpus import JOINTS
+from .prepared_corpus import TRACKED_COLUMNS
 
 Array = NDArray[np.float64]
 
@@ -52,7 +52,7 @@ def simulate(
     positions = np.asarray(positions, np.float64)
     rotations = np.asarray(rotations, np.float64)
     frames = len(positions)
-    anchors = positions[:, [JOINTS.index("head"), JOINTS.index("leftHand"), JOINTS.index("rightHand")]]
+    anchors = positions[:, TRACKED_COLUMNS]
     offsets = np.stack([wearer.eyes_in_head, *wearer.wrist_offsets])
     tracked = anchors + quaternion.rotate(rotations, np.broadcast_to(offsets, (frames, 3, 3)))
     tracked = tracked + random.normal(size=tracked.shape) * config.position_noise

@@ -9,14 +9,16 @@ from numpy.typing import NDArray
 
 from . import quaternion
 from .augment import AugmentConfig, BodyParts, draw_batch
-from .features import CHEST_FEATURES, FEATURES, OUTPUTS, frame_features, network_input, target
-from .lost_hands import carry, sink
+from .chest_features import CHEST_FEATURES
+from .complete_hands import carry_with_head, complete_hands
+from .differentiable_kinematics import DifferentiableKinematics
+from .features import FEATURES, frame_features
 from .model import CorrectionNetwork
-from .person_effects import PersonEffects
-from .placement import Placement
 from .prepared_corpus import PreparedCorpus
+from .residual import OUTPUTS, network_input, residual
 from .simulate_trackers import TrackerConfig, draw_wearer, simulate
 from .skeleton import Body, body_from_calibration
+from .subject_effects import SubjectEffects
 
 Array = NDArray[np.float64]
 
@@ -34,11 +36,11 @@ class TrainLearnedConfig:
     weight_decay: float = 1e-2
     average_half_life_steps: float = 300.0
     # Of the learned correction of the trunk: what holds for the people trained on holds for others in part.
-    correction_share: float = 0.75
-    # What joints count where the page's skeleton puts them, and as the network says them: what bones hold back is kept small.
-    placed_weight: float = 1.0
-    said_weight: float = 0.1
-    # Everybody trained on has an effect of their own, held back by this ridge; what learns at no rate stays nothing.
+    shrinkage: float = 0.75
+    # Of errors of joints after torso and arm fitting, and of raw joints, so that what fitting takes back is kept small.
+    fitted_loss_weight: float = 1.0
+    auxiliary_loss_weight: float = 0.1
+    # Of the per-subject random effects; at a learning rate of 0 they stay 0.
     effects_ridge: float = 1e-3
     effects_learning_rate: float = 2e-2
     seed: int = 2460
@@ -75,7 +77,7 @@ class Condition:
     eye_height: float = 1.0
     # One hand of each clip is not seen for 2 s of every 4 s.
     lost_hand: bool = False
-    # Trackers tell of so many frames before.
+    # Trackers report what was so many frames before.
     late: int = 0
     # Everything is lower by this part of the eye height: the calibration knows people who stand.
     seated: float = 0.0
@@ -109,9 +111,9 @@ def held_out(
             positions, rotations = simulate(corpus.positions[frames], corpus.rotations[frames], wearer, trackers, random)
             truth = corpus.truth(frames).astype(np.float64)
             count = len(truth)
-            told = np.maximum(np.arange(count) - condition.late, 0)
+            reported = np.maximum(np.arange(count) - condition.late, 0)
             drop = condition.seated * person.eye_height * down
-            positions, rotations, truth = positions[told] - drop, rotations[told], truth - drop
+            positions, rotations, truth = positions[reported] - drop, rotations[reported], truth - drop
             lost = np.zeros((count, 2), bool)
             if condition.lost_hand:
                 positions, rotations, lost = _lose_hand(positions, rotations, clip % 2, corpus.rate_hz, body)
@@ -119,7 +121,7 @@ def held_out(
             rows.append(
                 (
                     network_input(vector, np.arange(count) / corpus.rate_hz, window_seconds).astype(np.float32),
-                    target(truth, positions, rotations, body, vector).astype(np.float32),
+                    residual(truth, positions, rotations, body, vector).astype(np.float32),
                     np.full(count, eye_height),
                     np.full(count, name),
                     np.full(count, clip),
@@ -134,31 +136,31 @@ def _lose_hand(positions: Array, rotations: Array, hand: int, rate_hz: int, body
     ago = np.maximum(frames % (2 * half) - half + 1, 0)
     last, column = frames - ago, 1 + hand
     positions, rotations = positions.copy(), rotations.copy()
-    positions[:, column], rotations[:, column] = carry(
+    positions[:, column], rotations[:, column] = carry_with_head(
         positions[last, column], rotations[last, column], (positions[last, 0], rotations[last, 0]), (positions[:, 0], rotations[:, 0])
     )
     unseen = np.zeros((len(frames), 2))
     unseen[:, hand] = ago / rate_hz
     sizes = (np.full(len(frames), size.item()) for size in (body.eye_height, body.arm))
-    return *sink(positions, rotations, unseen, *sizes), unseen > 0
+    return *complete_hands(positions, rotations, unseen, *sizes), unseen > 0
 
 
-def errors_cm(output: NDArray[np.float32], people: HeldOut) -> NDArray[np.float64]:
-    """Distances [F, 6] in centimetres of a network's output, joints being where the page's skeleton puts them."""
-    said = np.broadcast_to(output, people.targets.shape).reshape(-1, 6, 3).astype(np.float32)
-    placed = Placement()(torch.from_numpy(said), torch.from_numpy(people.inputs))
-    return said_errors_cm(placed.numpy().reshape(-1, OUTPUTS), people)
+def fitted_errors_cm(output: NDArray[np.float32], people: HeldOut) -> NDArray[np.float64]:
+    """Distances [F, 6] in centimetres of a network's output, after torso and arm fitting."""
+    raw = np.broadcast_to(output, people.targets.shape).reshape(-1, 6, 3).astype(np.float32)
+    fitted = DifferentiableKinematics()(torch.from_numpy(raw), torch.from_numpy(people.inputs))
+    return raw_errors_cm(fitted.numpy().reshape(-1, OUTPUTS), people)
 
 
-def said_errors_cm(output: NDArray[np.float32], people: HeldOut) -> NDArray[np.float64]:
-    """The same of the joints as the output says them, whatever bones let them."""
+def raw_errors_cm(output: NDArray[np.float32], people: HeldOut) -> NDArray[np.float64]:
+    """Distances [F, 6] in centimetres of a network's output, before the skeleton."""
     difference = (output - people.targets).reshape(-1, 6, 3)
     return np.linalg.norm(difference, axis=-1) * people.eye_height[:, None] * 100
 
 
 def ik_errors_cm(people: HeldOut) -> NDArray[np.float64]:
-    """The same for IK, to which nothing is added."""
-    return errors_cm(np.zeros((1, OUTPUTS), np.float32), people)
+    """The same for IK, to which nothing is added, after torso and arm fitting."""
+    return fitted_errors_cm(np.zeros((1, OUTPUTS), np.float32), people)
 
 
 def train(
@@ -167,11 +169,11 @@ def train(
     config: TrainLearnedConfig,
     report: Callable[[int, float, Callable[[], CorrectionNetwork]], None] = lambda *_: None,
 ) -> CorrectionNetwork:
-    """Trains on these people; report(step, loss, the averaged network so far, its correction whole)."""
+    """Trains on these people; report(step, loss, the averaged network so far, not shrunk)."""
     torch.manual_seed(config.seed)
     random = np.random.default_rng(config.seed)
     parts = BodyParts(corpus, people)
-    placement = Placement()
+    kinematics = DifferentiableKinematics()
     network = CorrectionNetwork(len(config.augment.window_frames), config.width, config.dropout, config.hidden_layers)
     first = [draw_batch(parts, config.batch, config.augment, random) for _ in range(8)]
     inputs = torch.from_numpy(np.concatenate([b.inputs for b in first]))
@@ -179,7 +181,7 @@ def train(
     averaged = CorrectionNetwork(len(config.augment.window_frames), config.width, config.dropout, config.hidden_layers)
     averaged.load_state_dict(network.state_dict())
     averaged.eval()
-    effects = PersonEffects(len(parts.people), inputs)
+    effects = SubjectEffects(len(parts.people), inputs)
     optimiser = torch.optim.AdamW(
         [
             {"params": network.parameters(), "lr": config.learning_rate, "weight_decay": config.weight_decay},
@@ -195,8 +197,9 @@ def train(
         x, y = torch.from_numpy(current.inputs), torch.from_numpy(current.targets)
         corrections = network(x).view(-1, 6, 3) + effects(x, torch.from_numpy(current.people))
         truth = y.view(-1, 6, 3)
-        distance = config.said_weight * _distance(corrections, truth) + config.placed_weight * _distance(placement(corrections, x), truth)
-        loss = distance / _RESIDUAL + config.effects_ridge * effects.size()
+        raw, fitted = _distance(corrections, truth), _distance(kinematics(corrections, x), truth)
+        distance = config.auxiliary_loss_weight * raw + config.fitted_loss_weight * fitted
+        loss = distance / _RESIDUAL + config.effects_ridge * effects.penalty()
         optimiser.zero_grad()
         loss.backward()
         torch.nn.utils.clip_grad_norm_(network.parameters(), 1.0)
@@ -207,7 +210,7 @@ def train(
             for average, value in zip(averaged.parameters(), network.parameters(), strict=True):
                 average.lerp_(value, 1 - weight)
         report(step, float(loss.detach()), lambda: averaged)
-    averaged.shrink(config.correction_share)
+    averaged.shrink(config.shrinkage)
     return averaged
 
 

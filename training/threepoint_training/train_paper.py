@@ -7,8 +7,8 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from .features import floor_under_head, paper_input
 from .model import PaperNetwork
+from .paper_features import floor_under_head, paper_features
 from .prepared_corpus import PreparedCorpus
 from .simulate_trackers import TrackerConfig, draw_wearer, simulate
 
@@ -55,7 +55,7 @@ def frames_of(corpus: PreparedCorpus, people: tuple[str, ...], seed: int) -> Pap
             frames = corpus.clip_slice(clip)
             random = np.random.default_rng([seed, 1, clip])
             positions, rotations = simulate(corpus.positions[frames], corpus.rotations[frames], wearer, trackers, random)
-            inputs.append(paper_input(positions, rotations).astype(np.float32))
+            inputs.append(paper_features(positions, rotations).astype(np.float32))
             targets.append((corpus.truth(frames) - floor_under_head(positions)).reshape(len(positions), -1).astype(np.float32))
             clips.append(np.full(len(positions), clip))
     return PaperFrames(np.concatenate(inputs), np.concatenate(targets), np.concatenate(clips))
@@ -70,14 +70,14 @@ def train(
 ) -> PaperNetwork:
     """Trains on the chosen frames and the poses half-way to each one's successor.
 
-    report(epoch, iteration, MSE) tells the loss of batches; watch(epochs, network) sees the network as it would be used.
+    report(epoch, iteration, MSE) gets the loss of batches; watch(epochs, network) sees the network as it would be used.
     """
     torch.manual_seed(config.seed)
     random = np.random.default_rng(config.seed)
     network = PaperNetwork()
     # In-between poses only between neighbours that both train: none may come from a test frame.
     following = chosen[:-1][(np.diff(chosen) == 1) & (frames.clips[chosen[:-1]] == frames.clips[chosen[1:]])]
-    inputs = np.concatenate([frames.inputs[chosen], _between(frames.inputs, following)])
+    inputs = np.concatenate([frames.inputs[chosen], _midway(frames.inputs, following)])
     targets = np.concatenate([frames.targets[chosen], (frames.targets[following] + frames.targets[following + 1]) / 2])
     x, y = torch.from_numpy(inputs), torch.from_numpy(targets)
     network.normalise(x, y)
@@ -118,7 +118,7 @@ def follow_learning(train: PaperFrames, test: PaperFrames, every: int = 16) -> t
     return curve, watch
 
 
-def _between(inputs: NDArray[np.float32], following: NDArray[np.int64]) -> NDArray[np.float32]:
+def _midway(inputs: NDArray[np.float32], following: NDArray[np.int64]) -> NDArray[np.float32]:
     """Linear interpolation of positions and of angles, each angle along its shorter way."""
     first, second = inputs[following], inputs[following + 1]
     middle = (first + second) / 2

@@ -1,11 +1,11 @@
-"""Body proportions and constants of IK that were fitted without somebody, for errors that nobody's own data made smaller."""
+"""Body proportions and constants of IK fitted without the people held out, so that their data makes no error smaller."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
-from . import fit_body, fit_ik, ik, skeleton
+from . import fit_ik, fit_proportions, skeleton, solve_ik
 from .fit_ik import FitIkConfig
 from .prepared_corpus import PreparedCorpus
 
@@ -20,7 +20,7 @@ class Kinematics:
 
 def fit(corpus: PreparedCorpus, people: tuple[str, ...], config: FitIkConfig, report: Callable[[int], None] = lambda _: None) -> Kinematics:
     """Fitted on these people; report(iterations done)."""
-    proportions = fit_body.fit(corpus, people)
+    proportions = fit_proportions.fit(corpus, people)
     sample = fit_ik.sample(corpus, people, proportions, config.frames_per_person, config.seed)
     return Kinematics(proportions, fit_ik.fit(sample, config, lambda iteration, _: report(iteration + 1)))
 
@@ -28,9 +28,9 @@ def fit(corpus: PreparedCorpus, people: tuple[str, ...], config: FitIkConfig, re
 @contextmanager
 def used(fitted: Kinematics) -> Iterator[None]:
     """Within it, skeletons and IK are these instead of the page's."""
-    saved = skeleton.load_proportions, ik.load_parameters
-    skeleton.load_proportions, ik.load_parameters = (lambda: fitted.proportions), (lambda: fitted.parameters)
+    saved = skeleton.load_proportions, solve_ik.load_parameters
+    skeleton.load_proportions, solve_ik.load_parameters = (lambda: fitted.proportions), (lambda: fitted.parameters)
     try:
         yield
     finally:
-        skeleton.load_proportions, ik.load_parameters = saved
+        skeleton.load_proportions, solve_ik.load_parameters = saved

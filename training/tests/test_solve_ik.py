@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from threepoint_training import fit_ik, ik, quaternion
+from threepoint_training import fit_ik, quaternion, solve_ik
 from threepoint_training.generated_motion import generate_clip
 from threepoint_training.prepared_corpus import Person
 from threepoint_training.simulate_trackers import TrackerConfig, draw_wearer, simulate
@@ -21,7 +21,7 @@ def pose(left, right, head=(0.0, EYES, 0.0), pitch=0.0):
     """The six joints with wrists at these points [m]; hands as in hanging arms."""
     gaze = quaternion.from_axis_angle(np.array([1.0, 0.0, 0.0]), np.array(np.radians(pitch)))
     positions = np.array([[head, left, right]], np.float64)
-    return ik.solve(positions, np.stack([gaze, HANGING[-1.0], HANGING[1.0]])[None], BODY)[0]
+    return solve_ik.solve(positions, np.stack([gaze, HANGING[-1.0], HANGING[1.0]])[None], BODY)[0]
 
 
 def symmetric(x, y, z, **head):
@@ -37,7 +37,7 @@ def motion(request):
     joints, turns = generate_clip(random, 200, Person("test", EYES, SPAN))
     trackers = TrackerConfig()
     positions, rotations = simulate(joints, turns, draw_wearer(trackers, random), trackers, random)
-    return ik.to_heading(positions, rotations)[:2]
+    return solve_ik.to_heading(positions, rotations)[:2]
 
 
 def test_who_stands_upright_has_the_pelvis_under_the_head_at_the_height_of_hips():
@@ -94,7 +94,7 @@ def test_both_hands_to_the_right_turn_the_chest_to_the_right():
 
 
 def test_bone_lengths_are_those_of_the_calibrated_body(motion):
-    joints = ik.solve(*motion, BODY)
+    joints = solve_ik.solve(*motion, BODY)
     for elbow, shoulder, hand in ((LEFT_ELBOW, LEFT_SHOULDER, 1), (RIGHT_ELBOW, RIGHT_SHOULDER, 2)):
         upper = np.linalg.norm(joints[:, elbow] - joints[:, shoulder], axis=-1)
         np.testing.assert_allclose(upper, float(BODY.upper_arm[0]), rtol=1e-6)
@@ -109,9 +109,9 @@ def test_bone_lengths_are_those_of_the_calibrated_body(motion):
 
 def test_the_mirror_image_has_the_mirrored_body(motion):
     positions, rotations = motion
-    joints = ik.solve(positions, rotations, BODY)
+    joints = solve_ik.solve(positions, rotations, BODY)
     mirrored_positions, mirrored_rotations, expected = fit_ik.mirror(positions, rotations, joints)
-    np.testing.assert_allclose(ik.solve(mirrored_positions, mirrored_rotations, BODY), expected, atol=1e-9)
+    np.testing.assert_allclose(solve_ik.solve(mirrored_positions, mirrored_rotations, BODY), expected, atol=1e-9)
 
 
 def test_finite_wherever_the_hands_are():
@@ -123,14 +123,14 @@ def test_finite_wherever_the_hands_are():
     positions[400:600, 1:] *= 50
     rotations = random.normal(size=(2000, 3, 4))
     rotations /= np.linalg.norm(rotations, axis=-1, keepdims=True)
-    joints = ik.solve(*ik.to_heading(positions, rotations)[:2], BODY)
+    joints = solve_ik.solve(*solve_ik.to_heading(positions, rotations)[:2], BODY)
     assert np.isfinite(joints).all()
 
 
 def test_fitting_finds_the_parameters_that_made_the_motion(motion):
     """From the prior, towards bodies that IK itself posed."""
     positions, rotations = motion
-    truth = ik.solve(positions, rotations, BODY)
+    truth = solve_ik.solve(positions, rotations, BODY)
     frames = fit_ik.Sample(positions, rotations, truth, BODY, np.full(len(truth), "test"))
     start = fit_ik.errors_cm(frames, fit_ik.PRIOR).mean()
     fitted = fit_ik.fit(frames, fit_ik.FitIkConfig(iterations=8, ridge=1e-7))
@@ -138,7 +138,7 @@ def test_fitting_finds_the_parameters_that_made_the_motion(motion):
 
 
 def test_parameters_survive_the_way_through_a_vector():
-    parameters = ik.load_parameters()
+    parameters = solve_ik.load_parameters()
     assert fit_ik.unflatten(fit_ik.flatten(parameters)) == parameters
 
 

@@ -50,7 +50,7 @@ def fit(corpus: PreparedCorpus, people: tuple[str, ...]) -> dict[str, Any]:
         )  # fmt: skip
         rows[-1] = np.concatenate([rows[-1], [upper / (upper + fore), EYES_FROM_HEAD_JOINT[1] / person.eye_height, -EYES_FROM_HEAD_JOINT[2] / person.eye_height, *tilts]])
     mean = [round(float(value), 5) for value in np.mean(rows, axis=0)]
-    root = 0.012  # The collarbone starts two centimetres beside the breastbone's middle.
+    root = 0.012  # The clavicle starts two centimetres beside the breastbone's middle.
     return {
         "hipsHeight": mean[0],
         "hipsToSpine": mean[1],

@@ -1,4 +1,4 @@
-"""Inverse kinematics as docs/estimation.md states it, vectorised over frames; the twin of src/core/estimation/ik.ts."""
+"""Inverse kinematics as docs/estimation.md states it, vectorised over frames; the twin of src/core/estimation/solve-ik.ts."""
 
 import json
 from pathlib import Path
@@ -8,12 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import quaternion
+from .kinematic_limits import IK as LIMITS
 from .skeleton import Body
 
 Array = NDArray[np.float64]
-
-# The collarbone's tip moves from rest by at most this share of its length; src/core/estimation/solve-ik.ts says the same.
-GIRDLE_SHIFT = 0.9
 
 PARAMETERS_FILE = Path(__file__).parents[2] / "src/core/estimation/ik-parameters.json"
 
@@ -30,6 +28,10 @@ def normalise(v: Array) -> Array:
 
 def _dot(a: Array, b: Array) -> Array:
     return np.sum(a * b, axis=-1, keepdims=True)
+
+
+def _within(values: Array, limits: dict[str, float]) -> Array:
+    return np.clip(values, limits["min"], limits["max"])
 
 
 def _yaw_matrix(yaw: Array) -> Array:
@@ -63,17 +65,18 @@ def solve(positions: Array, rotations: Array, body: Body, parameters: dict[str, 
 
     forward_x = k["yaw"][0] * across[:, 2] + k["yaw"][1] * middle[:, 0]
     forward_z = -1 - k["yaw"][0] * across[:, 0] + k["yaw"][1] * middle[:, 2]
-    yaw = 1.2 * np.tanh(np.arctan2(-forward_x, np.maximum(-forward_z, 0.2)) / 1.2)
+    saturation = LIMITS["yawSaturation"]
+    yaw = saturation * np.tanh(np.arctan2(-forward_x, np.maximum(-forward_z, LIMITS["leastAhead"])) / saturation)
 
-    crouch = np.clip(1 - headset[:, 1] / e[..., 0], -0.2, 0.9)
+    crouch = _within(1 - headset[:, 1] / e[..., 0], LIMITS["crouch"])
     looking_down = -gaze[:, 1]
     sagittal = np.stack([np.ones_like(crouch), looking_down, crouch, -middle[:, 2], -middle[:, 1], looking_down * crouch], -1)
     lateral = np.stack([right_axis[:, 1], middle[:, 0], right[:, 1] - left[:, 1]], -1)
     turn = _yaw_matrix(yaw)
 
     def up(segment: dict[str, list[float]]) -> Array:
-        alpha = np.clip(sagittal @ np.array(segment["forward"]), -0.6, 1.9)
-        beta = np.clip(lateral @ np.array(segment["sideways"]), -0.8, 0.8)
+        alpha = _within(sagittal @ np.array(segment["forward"]), LIMITS["leanForward"])
+        beta = _within(lateral @ np.array(segment["sideways"]), LIMITS["leanSideways"])
         return _apply(turn, np.stack([np.sin(beta), np.cos(alpha) * np.cos(beta), -np.sin(alpha) * np.cos(beta)], -1))
 
     upper, lower = up(k["upper"]), up(k["lower"])
@@ -85,10 +88,11 @@ def solve(positions: Array, rotations: Array, body: Body, parameters: dict[str, 
     neck = head_joint - neck_length * normalise((1 - k["neck"]) * _apply(chest, neck_rest) + k["neck"] * _apply(head, neck_rest))
     chest_joint = neck - body.thorax * upper
     hips = chest_joint - body.lower_back * lower
-    hips = np.concatenate([hips[:, :1], np.maximum(hips[:, 1:2], 0.08 * e), hips[:, 2:]], -1)
+    hips = np.concatenate([hips[:, :1], np.maximum(hips[:, 1:2], LIMITS["lowestHips"] * e), hips[:, 2:]], -1)
 
-    girdle, pole = np.array(k["girdle"]), np.array(k["pole"])
-    clavicle = np.linalg.norm(body.shoulder - body.clavicle_root, axis=-1, keepdims=True)
+    rest = body.shoulder - body.clavicle_root
+    clavicle_length = np.linalg.norm(rest, axis=-1, keepdims=True)
+    clavicle, pole = np.array(k["clavicle"]), np.array(k["pole"])
     one = np.ones_like(neck[:, :1])
     elbows, shoulders = [], []
     for side, sign in ((0, -1.0), (1, 1.0)):
@@ -100,24 +104,22 @@ def solve(positions: Array, rotations: Array, body: Body, parameters: dict[str, 
 
         reach = in_chest(wrist - neck) - body.shoulder
         q = reach / a
-        shift = e * (np.concatenate([one, q], -1) @ girdle.T)
-        # Hands crossed low would fold the collarbone over.
+        shift = e * (np.concatenate([one, q], -1) @ clavicle.T)
         length = np.linalg.norm(shift, axis=-1, keepdims=True)
-        shift = shift * np.minimum(1, GIRDLE_SHIFT * clavicle / np.maximum(length, 1e-12))
-        rest = body.shoulder - body.clavicle_root
-        shoulder = neck + _apply(chest, (body.clavicle_root + clavicle * normalise(rest + shift)) * mirror)
+        shift = shift * np.minimum(1, LIMITS["clavicleShift"] * clavicle_length / np.maximum(length, 1e-12))
+        shoulder = neck + _apply(chest, (body.clavicle_root + clavicle_length * normalise(rest + shift)) * mirror)
 
         hand = quaternion.to_matrix(rotations[:, 1 + side])
         q = in_chest(wrist - shoulder) / a
         columns = np.concatenate([one, q, in_chest(hand[..., :, 1]), in_chest(hand[..., :, 2])], -1)
         direction = _apply(chest, (columns @ pole.T) * mirror)
-        elbows.append(two_bone_elbow(shoulder, wrist, body.upper_arm, body.forearm, direction, chest))
+        elbows.append(two_bone_elbow(shoulder, wrist, body.upper_arm, body.forearm, direction, chest=chest))
         shoulders.append(shoulder)
     return np.stack([*elbows, *shoulders, chest_joint, hips], axis=1)
 
 
-def two_bone_elbow(shoulder: Array, wrist: Array, upper_arm: Array, forearm: Array, pole: Array, chest: Array) -> Array:
-    """The elbow [F, 3] on the side of `pole`; out of reach: on the straight arm."""
+def two_bone_elbow(shoulder: Array, wrist: Array, upper_arm: Array, forearm: Array, pole: Array, *, chest: Array) -> Array:
+    """The elbow [F, 3] on the side of `pole`, or where that is along the arm, below or behind the chest's axes; out of reach: on the straight arm."""
     axis = wrist - shoulder
     distance = np.linalg.norm(axis, axis=-1, keepdims=True)
     axis = np.where(distance > 1e-9, axis / np.maximum(distance, 1e-9), -chest[..., :, 1])

@@ -1,28 +1,28 @@
-"""Where a hand is taken to be that is not seen, as src/core/tracking/hand-continuity.ts has it: held, then sinking to rest beside the hip."""
+"""Where hands are taken to be that are not seen: held, then on their way to rest beside the hip.
+
+The twin of src/core/estimation/complete-hands.ts for hands that stay lost.
+"""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import quaternion
+from .kinematic_limits import LOST_HAND
 from .skeleton import load_proportions
 
 Array = NDArray[np.float64]
 
-# Held for so long, then at rest after so much more [s].
-HOLD_SECONDS = 0.1
-SINK_SECONDS = 2.5
 
-
-def carry(hand: Array, turn: Array, head: tuple[Array, Array], head_now: tuple[Array, Array]) -> tuple[Array, Array]:
-    """A hand [F, 3] and its turn, seen last under a head (place [F, 3], turn [F, 4]), carried along to where that head is now."""
+def carry_with_head(hand: Array, turn: Array, head: tuple[Array, Array], head_now: tuple[Array, Array]) -> tuple[Array, Array]:
+    """A hand [F, 3] and its rotation, seen last under a head (position [F, 3], rotation [F, 4]), carried along to where that head is now."""
     (place, way), (place_now, way_now) = head, head_now
     turned = quaternion.multiply(quaternion.heading(way_now), quaternion.conjugate(quaternion.heading(way)))
     return place_now + quaternion.rotate(turned, hand - place), quaternion.multiply(turned, turn)
 
 
-def sink(positions: Array, rotations: Array, unseen: Array, eye_height: Array, arm: Array) -> tuple[Array, Array]:
-    """Hands that were carried along, unseen for so long [F, 2] in seconds (0: seen), on their way to rest; positions [F, 3, 3] of headset and hands."""
-    share = _even_step((unseen - HOLD_SECONDS) / SINK_SECONDS)
+def complete_hands(positions: Array, rotations: Array, unseen: Array, eye_height: Array, arm: Array) -> tuple[Array, Array]:
+    """Headset and hands [F, 3, 3] as estimators get them; hands come carried along, unseen for so long [F, 2] in seconds (0: seen)."""
+    share = _trapezoidal_easing((unseen - LOST_HAND["holdSeconds"]) / LOST_HAND["restSeconds"])
     positions, rotations = positions.copy(), rotations.copy()
     for hand, (place, turn) in enumerate(_rest(positions[:, 0], rotations[:, 0], eye_height, arm)):
         sunk = share[:, hand]
@@ -31,8 +31,8 @@ def sink(positions: Array, rotations: Array, unseen: Array, eye_height: Array, a
     return positions, rotations
 
 
-def _even_step(share: Array) -> Array:
-    """evenStep of src/core/math/damper.ts: up to an even speed in a fifth of the time, and down again."""
+def _trapezoidal_easing(share: Array) -> Array:
+    """From 0 to 1: constant acceleration for a fifth of the time, constant speed, constant deceleration (src/core/math/damper.ts)."""
     ramp, t = 0.2, np.clip(share, 0.0, 1.0)
     slow, fast = 2 * ramp * (1 - ramp), (t - ramp / 2) / (1 - ramp)
     return np.where(t < ramp, t**2 / slow, np.where(t > 1 - ramp, 1 - (1 - t) ** 2 / slow, fast))
@@ -40,7 +40,7 @@ def _even_step(share: Array) -> Array:
 
 def _rest(headset: Array, gaze: Array, eye_height: Array, arm: Array) -> list[tuple[Array, Array]]:
     """Left and right wrist beside the hips and how they are turned."""
-    p = load_proportions()
+    p, hanging = load_proportions(), LOST_HAND["hanging"]
     yaw = quaternion.heading(gaze)
     eyes = eye_height[:, None] * np.array([0.0, p["eyesInHead"][0], -p["eyesInHead"][1]])
     head_joint = headset - quaternion.rotate(gaze, eyes)
@@ -49,9 +49,9 @@ def _rest(headset: Array, gaze: Array, eye_height: Array, arm: Array) -> list[tu
     for sign in (-1.0, 1.0):
         local = np.stack(
             [
-                sign * ((p["clavicleRoot"] + p["clavicle"][0]) * eye_height + 0.1 * arm),
-                np.maximum(shoulder - 0.93 * arm, 0.06 * eye_height),
-                (p["neckToHead"][1] - p["clavicle"][2]) * eye_height - 0.06 * arm,
+                sign * ((p["clavicleRoot"] + p["clavicle"][0]) * eye_height + hanging["outward"] * arm),
+                np.maximum(shoulder + hanging["up"] * arm, LOST_HAND["lowestRest"] * eye_height),
+                (p["neckToHead"][1] - p["clavicle"][2]) * eye_height - hanging["forward"] * arm,
             ],
             axis=-1,
         )

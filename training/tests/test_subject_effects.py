@@ -1,4 +1,4 @@
-"""Facts about what is learned of each person trained on, beside the network."""
+"""Facts about per-subject random effects, which are learned beside the network."""
 
 from dataclasses import replace
 
@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import torch
 from threepoint_training.augment import AugmentConfig, BodyParts, draw_batch
-from threepoint_training.features import CHEST_FEATURES
+from threepoint_training.chest_features import CHEST_FEATURES
 from threepoint_training.generated_motion import generate_corpus
 from threepoint_training.model import FLIP, CorrectionNetwork
-from threepoint_training.person_effects import PersonEffects
+from threepoint_training.subject_effects import SubjectEffects
 from threepoint_training.train_learned import TrainLearnedConfig, train
 
 pytestmark = pytest.mark.training
@@ -21,17 +21,17 @@ INPUTS, PEOPLE = torch.from_numpy(BATCH.inputs), torch.from_numpy(BATCH.people)
 
 
 @pytest.fixture
-def effects() -> PersonEffects:
+def effects() -> SubjectEffects:
     """Of people who differ in every way that can be told."""
     torch.manual_seed(3)
-    effects = PersonEffects(len(PARTS.people), INPUTS)
+    effects = SubjectEffects(len(PARTS.people), INPUTS)
     for parameter in effects.parameters():
         torch.nn.init.normal_(parameter, std=0.3)
     return effects
 
 
-def test_nobody_has_an_effect_before_training():
-    assert PersonEffects(len(PARTS.people), INPUTS)(INPUTS, PEOPLE).abs().max() == 0
+def test_no_subject_has_an_effect_before_training():
+    assert SubjectEffects(len(PARTS.people), INPUTS)(INPUTS, PEOPLE).abs().max() == 0
 
 
 def test_the_effects_of_all_people_on_one_window_are_zero_on_average(effects):
@@ -69,7 +69,7 @@ def test_how_an_arm_is_held_changes_its_own_elbow_and_nothing_else(effects):
     torch.testing.assert_close(moved[:, 1:], torch.zeros(len(INPUTS), 5, 3))
 
 
-def test_at_no_learning_rate_nobody_has_an_effect():
+def test_at_no_learning_rate_no_subject_has_an_effect():
     config = TrainLearnedConfig(width=16, steps=4, batch=64, effects_learning_rate=0.0)
     networks = [train(CORPUS, tuple(CORPUS.people), replace(config, effects_ridge=ridge)) for ridge in (1e-3, 10.0)]
     states = [network.state_dict() for network in networks]

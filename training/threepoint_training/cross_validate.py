@@ -1,0 +1,110 @@
+"""Networks without the people of each fold, whose errors are what is claimed, and the paper's own protocol."""
+
+import json
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import torch
+
+from . import fit_networks, fitted_kinematics, skeleton, solve_ik, train_learned, train_paper
+from .fit_networks import Destination, TrainingRun
+from .motion import MocapError
+from .splits import FOLDS, training_people
+
+
+def usable_folds(run: TrainingRun) -> list[str]:
+    """The folds that the corpus has people for on both sides; the others are reported."""
+    subjects = tuple(run.corpus.people)
+    usable = []
+    for fold in run.config.folds:
+        if set(FOLDS[fold]) & set(subjects) and training_people(fold, subjects):
+            usable.append(fold)
+        else:
+            run.report.console.print(f"Fold {fold} left out: it needs {', '.join(FOLDS[fold])} and others besides them")
+    return usable
+
+
+def main(run: TrainingRun, folds: list[str]) -> None:
+    """Trains and judges the networks of these folds; the first fold's are written."""
+    shipped = folds[0]
+    networks: dict[str, torch.nn.Module] = {}
+    curve: train_paper.LearningCurve | None = None
+    for fold in folds:
+        trained, followed = _cross_validate(run, fold, is_shipped=fold == shipped)
+        if fold == shipped:
+            networks, curve = trained, followed
+    if run.config.frame_random and "paper" in run.config.networks:
+        run.report.found("paper, frame-random 80/20", fit_networks.paper_frame_random_errors_cm(run))
+    if run.config.frame_random and "learned" in run.config.networks:
+        run.report.found("learned, frame-random 80/20", fit_networks.learned_frame_random_errors_cm(run))
+    for name, network in networks.items():
+        errors = {row: values for row, values in run.report.rows.items() if row.startswith((name, "IK"))}
+        if not run.config.frame_random:
+            earlier, _ = earlier_errors(run, name)
+            errors |= {row: values for row, values in earlier.items() if "frame-random" in row}
+        training = training_people(shipped, tuple(run.corpus.people))
+        provenance = fit_networks.provenance(run, training, errors, curve if name == "paper" else None)
+        fit_networks.write(run, name, network, provenance, Destination(run.config.cross_validation, run.config.fp32_out))
+
+
+def _cross_validate(run: TrainingRun, fold: str, is_shipped: bool) -> tuple[dict[str, torch.nn.Module], train_paper.LearningCurve | None]:
+    """The networks of one fold and the learning curve of the paper's."""
+    config, corpus, found = run.config, run.corpus, run.report.found
+    subjects = tuple(corpus.people)
+    training = training_people(fold, subjects)
+    unseen = tuple(person for person in FOLDS[fold] if person in subjects)
+    label, names = f"fold {fold}", ", ".join(unseen)
+    trained: dict[str, torch.nn.Module] = {}
+    curve: train_paper.LearningCurve | None = None
+    with _kinematics(run, training, fold, is_shipped):
+        test = train_learned.held_out(corpus, unseen, config.learned.window_seconds)
+        found(f"IK, {label} ({names})", train_learned.ik_errors_cm(test))
+        if "paper" in config.networks:
+            frames = train_paper.frames_of(corpus, unseen, config.seed)
+            trained["paper"], curve = fit_networks.followed_paper(run, training, frames, label)
+            errors = train_paper.joint_errors_cm(train_paper.predict(trained["paper"], frames.inputs), frames.targets)
+            found(f"paper, {label} ({names})", errors)
+        if "learned" in config.networks:
+            trained["learned"] = fit_networks.learned(run, training, label)
+            found(f"learned, {label} ({names})", train_learned.fitted_errors_cm(train_paper.predict(trained["learned"], test.inputs), test))
+    return trained, curve
+
+
+@contextmanager
+def _kinematics(run: TrainingRun, training: tuple[str, ...], fold: str, is_shipped: bool) -> Iterator[None]:
+    """Within it, proportions and IK are those of this fold's training people: the page's own for the shipped one."""
+    if is_shipped and not run.config.refit_kinematics:
+        yield
+        return
+    with run.report.task(f"IK {fold}", run.config.ik.iterations) as advance:
+        fitted = fitted_kinematics.fit(run.corpus, training, run.config.ik, lambda done: advance(done, None))
+    if is_shipped:
+        skeleton.PROPORTIONS_FILE.write_text(compact_json(fitted.proportions))
+        solve_ik.PARAMETERS_FILE.write_text(compact_json(fitted.parameters))
+        yield
+        return
+    with fitted_kinematics.used(fitted):
+        yield
+
+
+def compact_json(content: Any) -> str:
+    """JSON with a line per innermost list, as the parameter files in src/core are written."""
+
+    def on_one_line(match: re.Match[str]) -> str:
+        return f"[{' '.join(match[1].split())}]"
+
+    return re.sub(r"\[\s+([^\[\]{}]*?)\s+\]", on_one_line, json.dumps(content, indent=2)) + "\n"
+
+
+def earlier_errors(run: TrainingRun, name: str) -> tuple[dict[str, dict[str, float]], dict[str, list[float]] | None]:
+    """Errors and learning curve of the cross-validation's networks, from their contract; none, where there was no fold."""
+    file = run.config.cross_validation / f"{name}.json"
+    if not file.exists():
+        return {}, None
+    contract = json.loads(file.read_text())
+    if contract["trainedOn"]["corpusHash"] != run.corpus.corpus_hash:
+        raise MocapError(f"{file} was made from other motion: run both stages, or give another --cross-validation")
+    curve = contract.get("learningCurve")
+    return contract["errors"], {key: value for key, value in curve.items() if key != "unit"} if curve else None

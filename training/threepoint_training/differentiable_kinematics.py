@@ -1,0 +1,217 @@
+"""Torso and arm fitting as a layer that gradients pass: where joints come to lie on bones of constant length.
+
+The twin of src/core/estimation/fit-torso.ts and fit-arms.ts for a frame that none came before. All in the frame of IK's chest, in eye
+heights, from the headset. What is left out moves no estimated joint of a person who stands or sits: the floor under hips, and the rotations
+of vertebrae, forearms and hands.
+"""
+
+import math
+from dataclasses import dataclass, fields
+
+import torch
+from torch import Tensor
+
+from .chest_features import ARM_COLUMNS, ARMS, CHEST_FEATURES, CHEST_HEAD_AXES
+from .features import ARM_LENGTH, IK_JOINTS
+from .kinematic_limits import REACH, TORSO, TORSO_EXTREME
+from .skeleton import load_proportions, rest_offsets
+from .swivel_limiter import ElbowCircles, Trunk, limit_swivel
+
+
+@dataclass(frozen=True)
+class FittingConfig:
+    """How closely fitting follows the page. The defaults are the loss's: as little as gradients need, and far from where they grow."""
+
+    # The trunk leans after hands that are out of reach so many times; beyond anatomical_passes its joints go to their extremes.
+    reach_passes: int = 1
+    # Hands further away than this are out of reach [arm lengths]; nearer to it than that they count as reached [eye heights].
+    reach: float = 1.0
+    least_missing: float = 0.0
+    # Shoulder to wrist of the straightest arm [arm lengths] and, beyond the difference of its bones, of the most bent one [eye heights].
+    straightest: float = 0.999
+    most_bent: float = 1e-3
+    swivel_limiter: bool = False
+
+
+LOSS = FittingConfig()
+
+
+def as_the_page_fits(eye_height: float) -> FittingConfig:
+    """All that the page does, for a body of this eye height [m]."""
+    return FittingConfig(
+        reach_passes=REACH["anatomicalPasses"] + REACH["extremePasses"],
+        reach=REACH["straightest"],
+        least_missing=1e-5 / eye_height,
+        straightest=REACH["straightest"],
+        most_bent=1e-4 / eye_height,
+        swivel_limiter=True,
+    )
+
+
+@dataclass(frozen=True)
+class _Goal:
+    """What fitting starts from [N, …]: estimated joints, wrists [N, 2, 3], the head joint, and the heading's right axis."""
+
+    estimated: Tensor
+    wrists: Tensor
+    head_joint: Tensor
+    heading_right: Tensor
+    arm: Tensor
+
+
+class DifferentiableKinematics:
+    """Fits joints to the skeleton of the proportions in use."""
+
+    def __init__(self, dtype: torch.dtype = torch.float32) -> None:
+        self.rest = {joint: torch.tensor(offset, dtype=dtype) for joint, offset in rest_offsets(1.0, 1.0).items()}
+        self.x = torch.tensor([1.0, 0.0, 0.0], dtype=dtype)
+        self.upper_arm_share: float = load_proportions()["upperArmShare"]
+        self.thorax = self.rest["upperChest"] + self.rest["neck"]
+        self.lower_back_length = (self.rest["spine"] + self.rest["chest"]).norm()
+        # Of shoulders at rest, their middle from the neck's base.
+        left, right = (self.rest[f"{side}Shoulder"] + self.rest[f"{side}UpperArm"] for side in ("left", "right"))
+        self.shoulders_from_neck = (left + right) / 2 - self.rest["neck"]
+
+    def __call__(self, corrections: Tensor, inputs: Tensor, config: FittingConfig = LOSS) -> Tensor:
+        """What corrections of IK's joints [N, 6, 3] come to on the skeleton [N, 6, 3]; inputs [N, T·46 + 38] of the network."""
+        return self.fit(corrections, inputs, config)[0]
+
+    def fit(self, corrections: Tensor, inputs: Tensor, config: FittingConfig) -> tuple[Tensor, Tensor]:
+        """As a call; and which elbows the swivel limiter keeps out of the trunk [N, 2]."""
+        axes, ik_joints = _in_chest_frame(inputs)
+        chest_features, arm = inputs[:, -CHEST_FEATURES:], inputs[:, ARM_LENGTH, None, None]
+        goal = _Goal(
+            estimated=ik_joints + corrections,
+            wrists=ik_joints[:, 2:4] + chest_features[:, ARMS].view(-1, 2, ARM_COLUMNS)[:, :, :3] * arm,
+            head_joint=self._head_joint(chest_features),
+            heading_right=axes[:, :, 0],
+            arm=arm,
+        )
+        trunk, shoulders = self.fit_torso(goal, config)
+        elbows, limited = self.fit_arms(goal, trunk, shoulders, config)
+        joints = torch.cat([elbows, shoulders, trunk.chest.unsqueeze(1), trunk.hips.unsqueeze(1)], dim=1)
+        return joints - ik_joints, limited
+
+    def _head_joint(self, chest_features: Tensor) -> Tensor:
+        x, y = chest_features[:, CHEST_HEAD_AXES].split(3, dim=1)
+        head = torch.stack([x, y, torch.cross(x, y, dim=-1)], dim=-1)
+        return -head @ self.rest["eyesInHead"]
+
+    def fit_torso(self, goal: _Goal, config: FittingConfig) -> tuple[Trunk, Tensor]:
+        """The trunk and the shoulders [N, 2, 3], leaning after hands that the arms alone do not reach."""
+        targets = goal.estimated[:, 2:4]
+        trunk, shoulders = self._place_trunk(goal, targets, TORSO)
+        for number in range(config.reach_passes):
+            to_wrist = goal.wrists - shoulders
+            direction, missing = _unit(to_wrist), (_length(to_wrist) - config.reach * goal.arm).clamp_min(0.0)
+            targets = targets + direction * torch.where(missing > config.least_missing, missing, 0.0) * TORSO["reachOvershoot"]
+            limits = TORSO if number < REACH["anatomicalPasses"] else TORSO_EXTREME
+            placed = self._place_trunk(goal, targets, limits)
+            if config.reach_passes > 1:
+                placed = _chosen((missing > config.least_missing).any(dim=1), placed, (trunk, shoulders))
+            trunk, shoulders = placed
+        return trunk, shoulders
+
+    def _place_trunk(self, goal: _Goal, targets: Tensor, limits: dict[str, float]) -> tuple[Trunk, Tensor]:
+        """Chest joint, hips and shoulders on their bones below the head, as nearly as limits allow where shoulders are wanted [N, 2, 3]."""
+        estimated, head_joint = goal.estimated, goal.head_joint
+        middle = targets.mean(1)
+        line = _unit(targets[:, 1] - targets[:, 0])
+        rough = self._aligned(self.thorax, middle - estimated[:, 4], line)
+        implied_neck = middle - rough @ self.shoulders_from_neck
+        neck_bone = self.rest["head"]
+        neck = head_joint - _swung(rough @ neck_bone, head_joint - implied_neck, limits["neckBend"])
+        # Chest joint and hips follow a share of what the neck was moved by.
+        shift = neck - implied_neck
+        moved = shift * TORSO["neckShiftShare"] * (neck_bone.norm() / _length(shift)).clamp_max(1.0)
+        up = _unit(neck - estimated[:, 4] - moved)
+        chest = neck - up * self.thorax.norm()
+        hips = chest + _unit(estimated[:, 5] + moved - chest) * self.lower_back_length
+        pelvis_line = _unit(torch.lerp(line, goal.heading_right, TORSO["pelvisToHead"]))
+        lower, upper = (self._aligned(self.thorax, up, side) for side in (torch.lerp(pelvis_line, line, TORSO["chestToShoulders"]), line))
+        shoulders = []
+        for number, side in enumerate(("left", "right")):
+            root = chest + lower @ self.rest["upperChest"] + upper @ self.rest[f"{side}Shoulder"]
+            shoulders.append(root + _swung(upper @ self.rest[f"{side}UpperArm"], targets[:, number] - root, limits["clavicleSwing"]))
+        return Trunk(hips, chest, neck, upper), torch.stack(shoulders, dim=1)
+
+    def fit_arms(self, goal: _Goal, trunk: Trunk, shoulders: Tensor, config: FittingConfig) -> tuple[Tensor, Tensor]:
+        """Elbows [N, 2, 3] where upper arm and forearm let them be, on the side where they are estimated, from the estimated shoulders.
+
+        Also which of them the swivel limiter moved [N, 2].
+        """
+        estimated, wrists, arm = goal.estimated, goal.wrists, goal.arm
+        upper, fore = self.upper_arm_share * arm, (1 - self.upper_arm_share) * arm
+        own, axis = _unit(wrists - estimated[:, 2:4]), _unit(wrists - shoulders)
+        pole = _carried(_across(estimated[:, :2] - estimated[:, 2:4], own), own, axis)
+        reached = torch.minimum(torch.maximum(_length(wrists - shoulders), (upper - fore).abs() + config.most_bent), config.straightest * arm)
+        along = (upper**2 - fore**2 + reached**2) / (2 * reached)
+        centre, radius = shoulders + along * axis, torch.sqrt((upper**2 - along**2).clamp_min(1e-8))
+        pole = _unit(_across(pole, axis))
+        limited = torch.zeros(pole.shape[:2], dtype=torch.bool)
+        if config.swivel_limiter:
+            pole, limited = limit_swivel(ElbowCircles(centre, axis, radius), pole, trunk)
+        return centre + radius * pole, limited
+
+    def _aligned(self, main: Tensor, to_main: Tensor, to_x: Tensor) -> Tensor:
+        """The rotations [N, 3, 3] that take `main` [3] to the directions `to_main` [N, 3], and x as nearly as that allows to `to_x` [N, 3]."""
+        return _frame(to_main, to_x) @ _frame(main, self.x).T
+
+
+def _chosen(bodies: Tensor, a: tuple[Trunk, Tensor], b: tuple[Trunk, Tensor]) -> tuple[Trunk, Tensor]:
+    """Trunk and shoulders `a` of these bodies [N], `b` of the others."""
+
+    def choose(x: Tensor, y: Tensor) -> Tensor:
+        return torch.where(bodies.view(-1, *[1] * (x.dim() - 1)), x, y)
+
+    trunk = Trunk(*(choose(getattr(a[0], each.name), getattr(b[0], each.name)) for each in fields(Trunk)))
+    return trunk, choose(a[1], b[1])
+
+
+def _in_chest_frame(inputs: Tensor) -> tuple[Tensor, Tensor]:
+    """The axes of IK's chest as rows [N, 3, 3], heading frame, and IK's joints [N, 6, 3] along them."""
+    joints = inputs[:, IK_JOINTS].reshape(-1, 6, 3)
+    left, right, chest = joints[:, 2], joints[:, 3], joints[:, 4]
+    x = _unit(right - left)
+    up = _unit(_across((left + right) / 2 - chest, x))
+    axes = torch.stack([x, up, torch.cross(x, up, dim=-1)], dim=1)
+    return axes, joints @ axes.transpose(1, 2)
+
+
+def _length(vectors: Tensor) -> Tensor:
+    """[..., 1]; of nothing a hundred-thousandth, so that gradients stay finite."""
+    return torch.sqrt((vectors * vectors).sum(-1, keepdim=True) + 1e-10)
+
+
+def _unit(vectors: Tensor) -> Tensor:
+    return vectors / _length(vectors)
+
+
+def _dot(a: Tensor, b: Tensor) -> Tensor:
+    return (a * b).sum(-1, keepdim=True)
+
+
+def _across(vectors: Tensor, axis: Tensor) -> Tensor:
+    return vectors - _dot(vectors, axis) * axis
+
+
+def _frame(main: Tensor, side: Tensor) -> Tensor:
+    first = _unit(main)
+    normal = _unit(torch.cross(first, side, dim=-1))
+    return torch.stack([first, torch.cross(normal, first, dim=-1), normal], dim=-1)
+
+
+def _swung(rest: Tensor, towards: Tensor, limit: float) -> Tensor:
+    """Bones as long as `rest` [N, 3] in these directions [N, 3], but no further than `limit` [rad] from it."""
+    start, end = _unit(rest), _unit(towards)
+    aside = _across(end, start)
+    furthest = start * math.cos(limit) + _unit(aside) * math.sin(limit)
+    within = torch.atan2(_length(aside), _dot(start, end)) <= limit
+    return _length(rest) * torch.where(within, end, furthest)
+
+
+def _carried(vectors: Tensor, before: Tensor, after: Tensor) -> Tensor:
+    """Turned as the direction `before` is turned into `after`."""
+    normal = torch.cross(before, after, dim=-1)
+    once = torch.cross(normal, vectors, dim=-1)
+    return vectors + once + torch.cross(normal, once, dim=-1) / (1 + _dot(before, after)).clamp_min(1e-3)

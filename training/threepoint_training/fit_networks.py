@@ -1,0 +1,135 @@
+"""One network trained, judged or written: the steps that cross-validation and the networks of the page share."""
+
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+import torch
+
+from . import export, train_learned, train_paper
+from .model import PaperNetwork
+from .paper_features import paper_features
+from .prepared_corpus import TRACKED_COLUMNS, PreparedCorpus
+from .training_config import TrainConfig
+from .training_report import TrainingReport
+
+VERSION = "1"
+
+
+@dataclass(frozen=True)
+class TrainingRun:
+    """What every step of a run is given."""
+
+    config: TrainConfig
+    corpus: PreparedCorpus
+    report: TrainingReport
+
+
+def paper(
+    run: TrainingRun,
+    frames: train_paper.PaperFrames,
+    label: str,
+    chosen: np.ndarray | None = None,
+    watch: Callable[[float, PaperNetwork], None] = lambda *_: None,
+) -> torch.nn.Module:
+    """The paper's network trained on the chosen frames; None: on all."""
+    config = run.config.paper
+    chosen = np.arange(len(frames.inputs)) if chosen is None else chosen
+    batches = max(1, 2 * len(chosen) // config.batch)
+    with run.report.task(f"paper {label}", config.epochs * 100) as advance:
+
+        def report(epoch: int, iteration: int, loss: float) -> None:
+            advance(100 * epoch + 100 * iteration / batches, f"paper {label} {loss:.4f}")
+
+        return train_paper.train(frames, chosen, config, report, watch)
+
+
+def followed_paper(
+    run: TrainingRun, training: tuple[str, ...], test: train_paper.PaperFrames, label: str
+) -> tuple[torch.nn.Module, train_paper.LearningCurve]:
+    """The paper's network trained on these people, and its learning curve on them and on the test's."""
+    frames = train_paper.frames_of(run.corpus, training, run.config.seed)
+    curve, watch = train_paper.follow_learning(frames, test)
+    return paper(run, frames, label, watch=watch), curve
+
+
+def learned(run: TrainingRun, training: tuple[str, ...], label: str) -> torch.nn.Module:
+    """Our network trained on these people."""
+    with run.report.task(f"learned {label}", run.config.learned.steps) as advance:
+        return train_learned.train(
+            run.corpus, training, run.config.learned, lambda step, loss, _: advance(step + 1, f"learned {label} {loss:.3f}")
+        )
+
+
+def _frame_random_split(run: TrainingRun, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """The paper's protocol: 20 % of all frames, drawn at random, are the test; their neighbours train. Frames of both."""
+    test = np.sort(np.random.default_rng(run.config.seed).choice(count, count // 5, replace=False))
+    return np.setdiff1d(np.arange(count), test), test
+
+
+def paper_frame_random_errors_cm(run: TrainingRun) -> np.ndarray:
+    """Of the paper's network under the paper's protocol [F, 6]."""
+    frames = train_paper.frames_of(run.corpus, tuple(run.corpus.people), run.config.seed)
+    chosen, test = _frame_random_split(run, len(frames.inputs))
+    network = paper(run, frames, "frame-random", chosen)
+    return train_paper.joint_errors_cm(train_paper.predict(network, frames.inputs[test]), frames.targets[test])
+
+
+def learned_frame_random_errors_cm(run: TrainingRun) -> np.ndarray:
+    """Of our network under the paper's protocol, raw joints [F, 6]."""
+    frames = train_learned.held_out(run.corpus, tuple(run.corpus.people), run.config.learned.window_seconds)
+    chosen, test = _frame_random_split(run, len(frames.inputs))
+    config = run.config.learned_frame_random
+    with run.report.task("learned frame-random", config.steps) as advance:
+        network = train_learned.train_frame_random(
+            frames, chosen, config, lambda step, loss: advance(step + 1, f"learned frame-random {loss:.3f}")
+        )
+    tested = frames.subset(test)
+    return train_learned.raw_errors_cm(train_paper.predict(network, tested.inputs), tested)
+
+
+@dataclass(frozen=True)
+class Destination:
+    """Where a network goes; fp32: with 32-bit weights too, None: not."""
+
+    out: Path
+    fp32: Path | None = None
+
+
+def write(
+    run: TrainingRun,
+    name: str,
+    network: torch.nn.Module,
+    provenance: export.Provenance,
+    destination: Destination,
+) -> None:
+    """Writes a network with its contract."""
+    if name == "paper":
+        first = run.corpus.clip_slice(0)
+        tracked = run.corpus.positions[first][:, TRACKED_COLUMNS].astype(np.float64)
+        examples = paper_features(tracked, run.corpus.rotations[first].astype(np.float64)).astype(np.float32)[::7]
+        window, half_life = (0.0,), None
+    else:
+        window, half_life = run.config.learned.window_seconds, run.config.correction_half_life
+        examples = train_learned.held_out(run.corpus, provenance.people[:1], window).inputs[::97]
+    export.main(
+        export.ExportConfig(name, VERSION, destination.out, window, provenance, correction_half_life=half_life, fp32_out=destination.fp32),
+        network,
+        examples,
+    )
+
+
+def provenance(
+    run: TrainingRun, training: tuple[str, ...], errors: dict[str, dict[str, float]], curve: train_paper.LearningCurve | dict[str, list[float]] | None
+) -> export.Provenance:
+    """Where a network of this run comes from."""
+    source = "generated motion" if run.config.mocap is None else "CMU Graphics Lab Motion Capture Database and like files"
+    return export.Provenance(
+        corpus=source,
+        corpus_hash=run.corpus.corpus_hash,
+        people=training,
+        seed=run.config.seed,
+        errors=errors,
+        learning_curve=asdict(curve) if isinstance(curve, train_paper.LearningCurve) else curve,
+    )

@@ -1,0 +1,15 @@
+"""Limits and shares that Python and TypeScript both read; names, units and reasons stand in the files."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+_CORE = Path(__file__).parents[2] / "src/core"
+_LIMITS: dict[str, Any] = json.loads((_CORE / "estimation/kinematic-limits.json").read_text())
+
+IK: dict[str, Any] = _LIMITS["ik"]
+TORSO: dict[str, float] = _LIMITS["torso"]
+TORSO_EXTREME: dict[str, float] = _LIMITS["torsoExtreme"]
+REACH: dict[str, Any] = _LIMITS["reach"]
+TRUNK_CAPSULE: dict[str, float] = _LIMITS["trunkCapsule"]
+LOST_HAND: dict[str, Any] = json.loads((_CORE / "estimation/lost-hand.json").read_text())

@@ -1,0 +1,26 @@
+"""The input of the paper's network; the twin of src/core/estimation/paper-features.ts."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import quaternion
+
+Array = NDArray[np.float64]
+
+
+def euler_yxz(q: Array) -> Array:
+    """Angles [rad] about x, y, z of R = Ry·Rx·Rz."""
+    m = quaternion.to_matrix(q)
+    x = np.arcsin(np.clip(-m[..., 1, 2], -1, 1))
+    return np.stack([x, np.arctan2(m[..., 0, 2], m[..., 2, 2]), np.arctan2(m[..., 1, 0], m[..., 1, 1])], -1)
+
+
+def floor_under_head(positions: Array) -> Array:
+    """The point [F, 1, 3] on the floor under the headset: where the paper's local positions begin."""
+    return positions[:, :1] * np.array([1.0, 0.0, 1.0])
+
+
+def paper_features(positions: Array, rotations: Array) -> Array:
+    """The paper's input [F, 2, 3, 3]: depth (local position [m], Euler angles [rad]), row (x, y, z), column (head, left, right)."""
+    local = positions - floor_under_head(positions)
+    return np.stack([np.swapaxes(local, 1, 2), np.swapaxes(euler_yxz(rotations), 1, 2)], axis=1)

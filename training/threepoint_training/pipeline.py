@@ -1,0 +1,111 @@
+"""From mocap files to public/models, in one run: prepare, proportions and IK, the paper's network, ours, export, the table.
+
+A run is seeded: the same data and options write the same weights on the same machine.
+"""
+
+import torch
+from rich.console import Console
+
+from . import ablation, cross_validate, fit_networks, golden, leave_one_out, neutral_pose, prepare, train_learned, train_paper
+from .fit_networks import Destination, TrainingRun
+from .generated_motion import generate_corpus
+from .model import CorrectionNetwork
+from .prepared_corpus import PreparedCorpus
+from .training_config import REPOSITORY, TrainConfig
+from .training_report import LABELS, TrainingReport
+
+TITLE = "MPJPE: IK and ours after torso and arm fitting, the paper's network raw [cm]"
+
+
+def main(config: TrainConfig, console: Console | None = None) -> dict[str, dict[str, float]]:
+    """Trains, writes models and contracts, prints the table and returns it: MPJPE [cm] by row and joint."""
+    torch.set_num_threads(config.threads)
+    report = TrainingReport(console or Console())
+    with report.progress:
+        run = TrainingRun(config, _corpus(config, report), report)
+        if config.ablate:
+            return _ablate(run)
+        if config.leave_one_out:
+            _leave_one_out(run)
+            return {}
+        folds = cross_validate.usable_folds(run)
+        if "cross-validation" in config.stages and folds:
+            cross_validate.main(run, folds)
+        if "all-subjects" in config.stages:
+            _train_on_all_subjects(run)
+    if "all-subjects" in config.stages and config.out.resolve() == (REPOSITORY / "public/models").resolve():
+        golden.main(golden.GoldenConfig(config.out))
+    report.table(TITLE, ("mean", *LABELS), report.rows)
+    return report.rows
+
+
+def _train_on_all_subjects(run: TrainingRun) -> None:
+    """The page's networks. Their contracts state the errors on people held out, of networks trained the same way without them."""
+    subjects = tuple(sorted(run.corpus.people))
+    for name in run.config.networks:
+        errors, curve = cross_validate.earlier_errors(run, name)
+        row = f"{name}, all subjects, trained on"
+        if name == "paper":
+            frames = train_paper.frames_of(run.corpus, subjects, run.config.seed)
+            network = fit_networks.paper(run, frames, "all subjects")
+            run.report.found(row, train_paper.joint_errors_cm(train_paper.predict(network, frames.inputs), frames.targets))
+        else:
+            network = fit_networks.learned(run, subjects, "all subjects")
+            test = train_learned.held_out(run.corpus, subjects, run.config.learned.window_seconds)
+            run.report.found(row, train_learned.fitted_errors_cm(train_paper.predict(network, test.inputs), test))
+        provenance = fit_networks.provenance(run, subjects, errors | {row: run.report.rows[row]}, curve)
+        fit_networks.write(run, name, network, provenance, Destination(run.config.out))
+
+
+def _ablate(run: TrainingRun) -> dict[str, dict[str, float]]:
+    recipe, networks = run.config.learned, dict[tuple[str, ...], CorrectionNetwork]()
+    done = 0
+    with run.report.task("ablation", len(ablation.FOLDS) * len(ablation.variants(recipe))) as advance:
+
+        def report(name: str) -> None:
+            nonlocal done
+            done += 1
+            advance(done, name)
+
+        rows = ablation.main(run.corpus, recipe, ablation.AblationConfig(seed=run.config.seed), report, networks.__setitem__)
+    shown = run.report.table_of_cells("MPJPE without each part of the recipe, people held out [cm]", ablation.CONDITIONS, rows)
+    neutral = neutral_pose.main(run.corpus, recipe, networks)
+    run.report.table_of_cells("MPJPE with what a neutral pose tells of its person [cm]", neutral_pose.COLUMNS, neutral)
+    # Last: a page without a place for them costs no hour of training.
+    ablation.write(rows)
+    neutral_pose.write(neutral)
+    return shown
+
+
+def _leave_one_out(run: TrainingRun) -> None:
+    done = 0
+    with run.report.task("leave one out", len(run.corpus.people)) as advance:
+
+        def report(name: str) -> None:
+            nonlocal done
+            done += 1
+            advance(done, f"without {name}")
+
+        rows = leave_one_out.main(run.corpus, run.config.learned, run.config.ik, report)
+    for row in rows:
+        run.report.console.print("  ".join(row))
+    leave_one_out.write(rows)
+
+
+def _corpus(config: TrainConfig, report: TrainingReport) -> PreparedCorpus:
+    if config.mocap is None:
+        return generate_corpus(people=6, clips=4, frames=600, seed=config.seed)
+    done = 0
+    with report.task("prepare", None) as advance:
+
+        def file(name: str) -> None:
+            nonlocal done
+            done += 1
+            advance(done, f"prepare {name}")
+
+        corpus = prepare.main(prepare.PrepareConfig(config.mocap, config.skeleton_map, cache=config.cache), file)
+    for problem in corpus.problems:
+        report.console.print(f"  {problem}")
+    minutes = len(corpus.positions) / corpus.rate_hz / 60
+    report.console.print(f"{len(corpus.clips)} clips of {len(corpus.people)} people, {minutes:.0f} minutes at {corpus.rate_hz} Hz")
+    return corpus

@@ -1,0 +1,28 @@
+"""What the learned network is given and what it should answer; the twin of src/core/estimation/residual.ts."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import quaternion
+from .chest_features import chest_axes, chest_features
+from .features import IK_JOINTS, windowed
+from .skeleton import Body
+
+Array = NDArray[np.float64]
+
+# Three coordinates of each of the six joints.
+OUTPUTS = 18
+
+
+def network_input(vector: Array, times: Array, window: tuple[float, ...]) -> Array:
+    """The network's input [F, T·46 + 38]: the window of features, and the chest-frame features of the newest frame."""
+    return np.concatenate([windowed(vector, times, window), chest_features(vector)], axis=-1)
+
+
+def residual(truth: Array, positions: Array, rotations: Array, body: Body, vector: Array) -> Array:
+    """The right output [F, 18]: the six true joints [F, 6, 3] − those of IK, which these features carry, chest frame, in eye heights."""
+    yaw = quaternion.heading(rotations[:, 0])
+    inverse = np.broadcast_to(quaternion.conjugate(yaw)[:, None], (*truth.shape[:-1], 4))
+    joints = quaternion.rotate(inverse, truth - positions[:, :1]) / body.eye_height[..., None]
+    correction = joints - vector[:, IK_JOINTS].reshape(-1, 6, 3)
+    return (correction @ np.swapaxes(chest_axes(vector), 1, 2)).reshape(len(truth), -1)

@@ -1,0 +1,52 @@
+"""The configuration of one run of `npm run train`."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from . import fit_ik, train_learned, train_paper
+
+REPOSITORY = Path(__file__).parents[2]
+
+
+@dataclass(frozen=True)
+class TrainConfig:
+    """mocap None: generated motion, for trying the pipeline out. refit_kinematics also replaces the page's proportions and IK.
+
+    First the folds, whose errors are what is claimed; then the networks of the page, trained on all subjects, which carry those errors.
+    """
+
+    mocap: Path | None
+    out: Path = REPOSITORY / "public/models"
+    # The networks of the first fold and the errors of all go there: what `npm run evaluate -- --models` measures on people held out.
+    cross_validation: Path = REPOSITORY / ".cache/cross-validation"
+    stages: tuple[str, ...] = ("cross-validation", "all-subjects")
+    # The networks of the first fold with 32-bit weights go there, for the evaluation to compare with; None: they are not written.
+    fp32_out: Path | None = None
+    cache: Path = REPOSITORY / ".cache/mocap"
+    skeleton_map: Path | None = None
+    folds: tuple[str, ...] = ("A", "B")
+    networks: tuple[str, ...] = ("paper", "learned")
+    frame_random: bool = True
+    ablate: bool = False
+    leave_one_out: bool = False
+    refit_kinematics: bool = False
+    seed: int = 2460
+    # Small layers gain little from more threads, and with one their sums keep their order on any machine.
+    threads: int = 1
+    paper: train_paper.TrainPaperConfig = train_paper.TrainPaperConfig()
+    learned: train_learned.TrainLearnedConfig = train_learned.TrainLearnedConfig()
+    learned_frame_random: train_learned.TrainFrameRandomConfig = train_learned.TrainFrameRandomConfig()
+    ik: fit_ik.FitIkConfig = fit_ik.FitIkConfig()
+    # Half-life [s] of the page's filter of the correction; chosen by `npm run evaluate`: jerk against error.
+    correction_half_life: float = 0.04
+
+
+def quick(config: TrainConfig) -> TrainConfig:
+    """The same pipeline, a twentieth of the work."""
+    return replace(
+        config,
+        paper=replace(config.paper, epochs=1, batch=1024),
+        learned=replace(config.learned, steps=80, batch=512),
+        learned_frame_random=replace(config.learned_frame_random, width=64, steps=200, batch=512),
+        ik=replace(config.ik, iterations=2, frames_per_person=200),
+    )
