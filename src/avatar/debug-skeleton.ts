@@ -30,6 +30,9 @@ const bonesDrawn: readonly (readonly [string, string])[] = [
 ];
 const dots = [...new Set(bonesDrawn.flat())];
 
+/** What is not there lies far below the floor [m]. */
+const farBelow: Vec3 = { x: 0, y: -1000, z: 0 };
+
 export function createDebugSkeleton(): DebugSkeleton {
   const object = new Group();
   object.name = 'debug skeleton';
@@ -47,19 +50,10 @@ export function createDebugSkeleton(): DebugSkeleton {
     object.add(part);
   }
 
-  function write(
-    geometry: BufferGeometry,
-    names: readonly string[],
-    joints: Readonly<Record<string, Vec3 | undefined>>,
-  ): void {
-    const positions = geometry.getAttribute('position');
-    names.forEach((name, index) => {
-      // What is not there lies far below the floor.
-      const { x, y, z } = joints[name] ?? { x: 0, y: -1000, z: 0 };
-      positions.setXYZ(index, x, y, z);
-    });
-    positions.needsUpdate = true;
-  }
+  const [linePlaces, dotPlaces] = geometries.map((geometry) => geometry.getAttribute('position')) as [
+    BufferAttribute,
+    BufferAttribute,
+  ];
 
   return {
     object,
@@ -68,10 +62,22 @@ export function createDebugSkeleton(): DebugSkeleton {
     },
     show(joints) {
       if (!object.visible) return;
-      const known = bonesDrawn.filter(([from, to]) => joints[from] && joints[to]);
-      write(geometries[0], known.flat(), joints);
-      geometries[0].setDrawRange(0, known.length * 2);
-      write(geometries[1], dots, joints);
+      let ends = 0;
+      for (const [from, to] of bonesDrawn) {
+        const start = joints[from];
+        const end = joints[to];
+        if (!start || !end) continue;
+        linePlaces.setXYZ(ends, start.x, start.y, start.z);
+        linePlaces.setXYZ(ends + 1, end.x, end.y, end.z);
+        ends += 2;
+      }
+      linePlaces.needsUpdate = true;
+      geometries[0].setDrawRange(0, ends);
+      for (let index = 0; index < dots.length; index++) {
+        const at = joints[dots[index]!] ?? farBelow;
+        dotPlaces.setXYZ(index, at.x, at.y, at.z);
+      }
+      dotPlaces.needsUpdate = true;
     },
     dispose() {
       for (const geometry of geometries) geometry.dispose();

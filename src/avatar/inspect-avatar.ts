@@ -26,6 +26,7 @@ const primitive = v.object({
   targets: list(v.record(v.string(), index)),
 });
 const gltf = v.object({
+  extensionsRequired: list(v.string()),
   nodes: list(v.object({ mesh: v.optional(index), children: list(index) })),
   meshes: list(v.object({ primitives: v.array(primitive) })),
   accessors: list(v.object({ count: index, type: v.optional(v.string(), 'SCALAR') })),
@@ -34,6 +35,11 @@ const gltf = v.object({
   buffers: list(v.object({ byteLength: index, uri: v.optional(v.string()) })),
   images: list(v.object({ uri: v.optional(v.string()), bufferView: v.optional(index) })),
 });
+
+/** Extensions without which a file cannot be read, and which this page reads. */
+const readable =
+  /^(VRM|VRMC_\w+|KHR_materials_(?!variants)\w+|KHR_(texture_transform|mesh_quantization|lights_punctual)|EXT_(texture_webp|texture_avif|materials_bump))$/;
+const compression = /draco|meshopt|basisu/;
 
 const numbersOf: Readonly<Record<string, number>> = {
   SCALAR: 1,
@@ -97,7 +103,14 @@ export function inspectAvatar(bytes: Uint8Array, name: string): void {
     const [issue] = parsed.issues;
     throw new Error(`${name}: no VRM or GLB file (${v.getDotPath(issue) ?? 'the whole'}: ${issue.message})`);
   }
-  const { nodes, meshes, accessors, skins, images, bufferViews } = parsed.output;
+  const { extensionsRequired, nodes, meshes, accessors, skins, images, bufferViews } = parsed.output;
+  const foreign = extensionsRequired.find((extension) => !readable.test(extension));
+  if (foreign !== undefined)
+    throw new Error(
+      compression.test(foreign)
+        ? `${name}: is compressed (${foreign}); this page reads avatars that are saved without compression`
+        : `${name}: needs ${foreign.slice(0, 60)}, which this page does not read`,
+    );
   limit('nodes', nodes.length, avatarLimits.nodes);
   limit('bones', new Set(skins.flatMap(({ joints }) => joints)).size, avatarLimits.bones);
 

@@ -1,14 +1,26 @@
-import { BoxGeometry, type Camera, Group, Mesh, MeshStandardMaterial, type Object3D, PlaneGeometry } from 'three';
+import {
+  BoxGeometry,
+  type Camera,
+  Frustum,
+  Group,
+  Matrix4,
+  Mesh,
+  MeshStandardMaterial,
+  type Object3D,
+  PlaneGeometry,
+  type Scene,
+  type WebGLRenderer,
+} from 'three';
 import { Reflector } from 'three/examples/jsm/objects/Reflector.js';
 import { eyeLayers } from '../scene/eye-layers';
-import { thirdPersonOnlyLayer } from './avatar';
+import { thirdPersonOnlyLayer } from './body-meshes';
 
 export interface MirrorOptions {
   /** How far ahead of the floor's origin, along −Z, it stands [m]. */
   readonly distance?: number;
   readonly width?: number;
   readonly height?: number;
-  /** Pixels across the reflection's texture; a headset draws it once for each eye. */
+  /** Pixels across the reflection's texture; a headset draws one for each eye. */
   readonly resolution?: number;
   /** Samples per pixel of the reflection; 0 for software rendering. */
   readonly samples?: number;
@@ -20,6 +32,8 @@ export interface Mirror {
   setVisible(visible: boolean): void;
   /** Stands it with its middle at (x, z) [m], floor frame; turned 0 it faces +Z, positive to +X [rad]. */
   place(x: number, z: number, turned: number): void;
+  /** Draws what it reflects of the scene to this camera, or in a session to the eyes. Call it before the scene itself is drawn. */
+  reflect(renderer: WebGLRenderer, scene: Scene, camera: Camera): void;
   dispose(): void;
 }
 
@@ -27,76 +41,153 @@ const frameWidth = 0.035;
 const frameDepth = 0.05;
 const gapBelow = 0.06;
 
-export function createMirror({
-  distance = 1.8,
-  width = 1.5,
-  height = 2.15,
-  resolution = 1024,
-  samples = 4,
-}: MirrorOptions = {}): Mirror {
-  const object = new Group();
-  object.name = 'mirror';
-  object.position.set(0, gapBelow + height / 2 + frameWidth, -distance);
+/**
+ * The reflection is drawn with the very programs of the scene: into a texture whose colours are encoded as the canvas's are (see
+ * `reflect`). Where they differed, three.js looked up the program of every material twice a frame, which left 47 kB to the collector.
+ */
+const { ReflectorShader } = Reflector as unknown as { readonly ReflectorShader: Record<'fragmentShader', string> };
+const shader = {
+  ...ReflectorShader,
+  name: 'MirrorShader',
+  fragmentShader: ReflectorShader.fragmentShader.replace(
+    'vec4 base = texture2DProj( tDiffuse, vUv );',
+    'vec4 base = sRGBTransferEOTF( texture2DProj( tDiffuse, vUv ) );',
+  ),
+};
 
-  const glass = new Reflector(new PlaneGeometry(width, height), {
-    textureWidth: resolution,
-    textureHeight: Math.round((resolution * height) / width),
-    clipBias: 0.003,
-    multisample: samples,
-    // Silvered glass takes a little of the light; #bcbcbc would take none.
-    color: 0xb6b9bb,
-  });
-  // In first person the own head lies on this layer alone: a mirror shows it all the same. What lies on the layers of the eyes alone
-  // it does not show. One reflecting camera per eye, a copy of it made on demand by a method that three's types leave out.
-  const cameras = glass as unknown as { getReflectionCamera(camera: Camera): Camera };
-  const makeCamera = cameras.getReflectionCamera;
-  cameras.getReflectionCamera = (camera) => {
-    const reflecting = makeCamera.call(glass, camera);
-    reflecting.layers.enable(thirdPersonOnlyLayer);
-    for (const eye of eyeLayers) reflecting.layers.disable(eye);
-    return reflecting;
-  };
-  object.add(glass);
+const seen = new Frustum();
+const projection = new Matrix4();
 
-  // What holds the glass lies between it and the reflecting camera; clipping it away is not exact everywhere.
-  const mount = new Group();
-  object.add(mount);
-  const reflect = glass.onBeforeRender;
-  glass.onBeforeRender = (...args) => {
-    mount.visible = false;
-    reflect.apply(glass, args);
-    mount.visible = true;
-  };
+class StandingMirror implements Mirror {
+  readonly object = new Group();
+  /** One for each eye of a session; on a desktop the first alone. */
+  private readonly glasses: Reflector[] = [];
+  private readonly reflections: Reflector['onBeforeRender'][] = [];
+  private readonly width: number;
+  private readonly height: number;
+  private readonly resolution: number;
+  private readonly samples: number;
+  private readonly frameMaterial = new MeshStandardMaterial({ color: 0x2a2f38, roughness: 0.35, metalness: 0.7 });
 
-  const frameMaterial = new MeshStandardMaterial({ color: 0x2a2f38, roughness: 0.35, metalness: 0.7 });
-  const bar = (across: number, up: number, x: number, y: number): void => {
-    const mesh = new Mesh(new BoxGeometry(across, up, frameDepth), frameMaterial);
-    mesh.position.set(x, y, -frameDepth / 2 + 0.006);
-    mount.add(mesh);
-  };
-  bar(width + 2 * frameWidth, frameWidth, 0, (height + frameWidth) / 2);
-  bar(width + 2 * frameWidth, frameWidth, 0, -(height + frameWidth) / 2);
-  bar(frameWidth, height, (width + frameWidth) / 2, 0);
-  bar(frameWidth, height, -(width + frameWidth) / 2, 0);
-  const back = new Mesh(new PlaneGeometry(width + 2 * frameWidth, height + 2 * frameWidth), frameMaterial);
-  back.rotation.y = Math.PI;
-  back.position.z = -0.01;
-  mount.add(back);
+  constructor({ distance = 1.8, width = 1.5, height = 2.15, resolution = 1024, samples = 4 }: MirrorOptions) {
+    this.width = width;
+    this.height = height;
+    this.resolution = resolution;
+    this.samples = samples;
+    this.object.name = 'mirror';
+    this.object.position.set(0, gapBelow + height / 2 + frameWidth, -distance);
+    this.addGlass();
+    this.addFrame();
+  }
 
-  return {
-    object,
-    place(x, z, turned) {
-      object.position.set(x, object.position.y, z);
-      object.rotation.y = turned;
-    },
-    setVisible(visible) {
-      object.visible = visible;
-    },
-    dispose() {
+  setVisible(visible: boolean): void {
+    this.object.visible = visible;
+  }
+
+  place(x: number, z: number, turned: number): void {
+    this.object.position.set(x, this.object.position.y, z);
+    this.object.rotation.y = turned;
+  }
+
+  reflect(renderer: WebGLRenderer, scene: Scene, camera: Camera): void {
+    if (!this.object.visible) return;
+    const { xr } = renderer;
+    if (!xr.isPresenting) {
+      if (camera.parent === null) camera.updateMatrixWorld();
+      for (let i = 1; i < this.glasses.length; i++) this.glasses[i]!.visible = false;
+      this.glasses[0]!.layers.set(0);
+      this.reflectTo(0, renderer, scene, camera);
+      return;
+    }
+    // As three.js does at the beginning of a frame in a session.
+    xr.updateCamera(camera as Parameters<typeof xr.updateCamera>[0]);
+    const { cameras } = xr.getCamera();
+    for (let eye = 0; eye < cameras.length && eye < eyeLayers.length; eye++) {
+      if (!this.glasses[eye]) this.addGlass();
+      this.glasses[eye]!.layers.set(eyeLayers[eye]!);
+      this.reflectTo(eye, renderer, scene, cameras[eye]!);
+    }
+  }
+
+  dispose(): void {
+    for (const glass of this.glasses) {
       glass.dispose();
       glass.geometry.dispose();
-      frameMaterial.dispose();
-      object.removeFromParent();
-    },
-  };
+    }
+    this.frameMaterial.dispose();
+    this.object.removeFromParent();
+  }
+
+  /** What a camera sees in one of the glasses; nothing, where it does not see that glass. */
+  private reflectTo(index: number, renderer: WebGLRenderer, scene: Scene, camera: Camera): void {
+    const glass = this.glasses[index]!;
+    glass.visible = true;
+    glass.updateWorldMatrix(true, false);
+    projection.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
+    seen.setFromProjectionMatrix(projection);
+    if (!seen.intersectsObject(glass)) return;
+    const target = glass.getRenderTarget();
+    target.texture.colorSpace = renderer.outputColorSpace;
+    // What holds the glass lies between it and the reflecting camera; clipping it away is not exact everywhere.
+    this.object.visible = false;
+    this.reflections[index]!.call(
+      glass,
+      renderer,
+      scene,
+      camera,
+      glass.geometry,
+      glass.material as never,
+      null as never,
+    );
+    this.object.visible = true;
+  }
+
+  private addGlass(): void {
+    const glass = new Reflector(new PlaneGeometry(this.width, this.height), {
+      textureWidth: this.resolution,
+      textureHeight: Math.round((this.resolution * this.height) / this.width),
+      clipBias: 0.003,
+      multisample: this.samples,
+      // Silvered glass takes a little of the light; #bcbcbc would take none.
+      color: 0xb6b9bb,
+      shader,
+    });
+    // By this three.js knows a target whose colours are encoded like a canvas's.
+    Object.assign(glass.getRenderTarget(), { isXRRenderTarget: true });
+    // In first person the own head lies on this layer alone: a mirror shows it all the same. What lies on the layers of the eyes alone
+    // it does not show. The reflecting camera is a copy made on demand by a method that three's types leave out.
+    const cameras = glass as unknown as { getReflectionCamera(camera: Camera): Camera };
+    const makeCamera = cameras.getReflectionCamera;
+    cameras.getReflectionCamera = (camera) => {
+      const reflecting = makeCamera.call(glass, camera);
+      reflecting.layers.enable(thirdPersonOnlyLayer);
+      for (const eye of eyeLayers) reflecting.layers.disable(eye);
+      return reflecting;
+    };
+    this.reflections.push(glass.onBeforeRender);
+    // Drawn beforehand, and not in the midst of the scene: a render within a render has lights of its own, and each material is looked up
+    // anew for them.
+    glass.onBeforeRender = () => undefined;
+    this.glasses.push(glass);
+    this.object.add(glass);
+  }
+
+  private addFrame(): void {
+    const { width, height, frameMaterial } = this;
+    const bar = (across: number, up: number, x: number, y: number): void => {
+      const mesh = new Mesh(new BoxGeometry(across, up, frameDepth), frameMaterial);
+      mesh.position.set(x, y, -frameDepth / 2 + 0.006);
+      this.object.add(mesh);
+    };
+    bar(width + 2 * frameWidth, frameWidth, 0, (height + frameWidth) / 2);
+    bar(width + 2 * frameWidth, frameWidth, 0, -(height + frameWidth) / 2);
+    bar(frameWidth, height, (width + frameWidth) / 2, 0);
+    bar(frameWidth, height, -(width + frameWidth) / 2, 0);
+    const back = new Mesh(new PlaneGeometry(width + 2 * frameWidth, height + 2 * frameWidth), frameMaterial);
+    back.rotation.y = Math.PI;
+    back.position.z = -0.01;
+    this.object.add(back);
+  }
 }
+
+export const createMirror = (options: MirrorOptions = {}): Mirror => new StandingMirror(options);

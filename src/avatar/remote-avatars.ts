@@ -2,14 +2,14 @@ import { Group, type Mesh, type MeshBasicMaterial, type Object3D, type PlaneGeom
 import type { AvatarPose } from '../core/body/avatar-pose';
 import type { Calibration } from '../core/body/calibration';
 import type { Side } from '../core/body/joints';
-import type { Pose, Transform } from '../core/math/pose';
-import { rotate } from '../core/math/quat';
-import { add, type Vec3 } from '../core/math/vec3';
+import { type MutableTransform, makeTransform, type Transform, transformPoint } from '../core/math/pose';
+import { copyQuat } from '../core/math/quat';
+import { copyVec3, type Vec3 } from '../core/math/vec3';
 import { createBlobShadow } from '../scene/blob-shadow';
 import { type Avatar, createAvatar } from './avatar';
 import { parseAvatar } from './load-avatar';
 
-/** Somebody else as they are to be drawn in this frame. */
+/** Another person as they are to be drawn in this frame. */
 export interface SeenPerson {
   /** Who it is, for as long as they are there: the same number is the same body. */
   readonly id: number;
@@ -27,9 +27,9 @@ export interface SeenPerson {
 /** The bodies of other people: mannequins that share what the graphics device holds of one. */
 export interface RemoteAvatars {
   readonly object: Group;
-  /** Draws these people and nobody else, at a time [s] on the clock of the frames. */
+  /** Draws these people and no one else, at a time [s] on the clock of the frames. */
   show(people: readonly SeenPerson[], time: number): void;
-  /** Where the joints of somebody are drawn, floor frame of this room [m]; null: nobody of this number is drawn. */
+  /** Where a person's joints are drawn, floor frame of this room [m]; null: no one of this number is drawn. */
   jointsOf(id: number): Readonly<Record<string, Vec3>> | null;
   dispose(): void;
 }
@@ -42,10 +42,8 @@ interface Body {
   fitted: Calibration | null;
   palette: string;
   opacity: number;
-  placement: Pose<'floor'>;
+  readonly placement: MutableTransform<'floor', 'floor'>;
 }
-
-const fingers = ['left', 'right'] as const;
 
 /** The second body draws from the first one's memory on the graphics device: only bones and colours are its own. */
 function shareGeometry(from: Object3D, to: Object3D): void {
@@ -65,7 +63,12 @@ function shareGeometry(from: Object3D, to: Object3D): void {
   });
 }
 
-/** `bytes`: of the mannequin's file. Bodies are made when they are first needed, one after the other, and kept for whoever comes next. */
+function isAmong(people: readonly SeenPerson[], id: number): boolean {
+  for (const person of people) if (person.id === id) return true;
+  return false;
+}
+
+/** `bytes`: of the mannequin's file. Bodies are made when they are first needed, one after the other, and kept for the next person who comes. */
 export function createRemoteAvatars(bytes: ArrayBuffer, name: string): RemoteAvatars {
   const object = new Group();
   object.name = 'other people';
@@ -95,19 +98,18 @@ export function createRemoteAvatars(bytes: ArrayBuffer, name: string): RemoteAva
       fitted: null,
       palette: '',
       opacity: 1,
-      placement: { position: { x: 0, y: 0, z: 0 }, orientation: { x: 0, y: 0, z: 0, w: 1 } },
+      placement: makeTransform(),
     });
   }
 
   /** The body of this number, or a free one; null while one is being made. */
   function bodyFor(id: number, people: readonly SeenPerson[]): Body | null {
-    const own = bodies.find((body) => body.id === id);
-    if (own) return own;
-    const free = bodies.find((body) => body.id === null || !people.some((person) => person.id === body.id));
-    if (free) {
-      free.id = id;
-      free.fitted = null;
-      return free;
+    for (const body of bodies) if (body.id === id) return body;
+    for (const body of bodies) {
+      if (body.id !== null && isAmong(people, body.id)) continue;
+      body.id = id;
+      body.fitted = null;
+      return body;
     }
     if (failed) throw failed;
     if (!making) {
@@ -140,10 +142,12 @@ export function createRemoteAvatars(bytes: ArrayBuffer, name: string): RemoteAva
       shadow.visible = opacity > 0.5;
       body.opacity = opacity;
     }
-    body.placement = placement;
+    copyVec3(placement.position, body.placement.position);
+    copyQuat(placement.orientation, body.placement.orientation);
     place.position.copy(placement.position);
     place.quaternion.copy(placement.orientation);
-    for (const side of fingers) avatar.setGrip(side, grips[side]);
+    avatar.setGrip('left', grips.left);
+    avatar.setGrip('right', grips.right);
     avatar.apply(pose, time);
     const { hips, head } = avatar.jointPositions();
     const over = hips ?? head;
@@ -158,7 +162,8 @@ export function createRemoteAvatars(bytes: ArrayBuffer, name: string): RemoteAva
         if (body) draw(body, person, time);
       }
       for (const body of bodies) {
-        const there = people.some(({ id, opacity }) => id === body.id && opacity > 0);
+        let there = false;
+        for (const { id, opacity } of people) there ||= id === body.id && opacity > 0;
         body.place.visible = there;
         if (!there) body.id = null;
       }
@@ -167,8 +172,7 @@ export function createRemoteAvatars(bytes: ArrayBuffer, name: string): RemoteAva
       const body = bodies.find((candidate) => candidate.id === id);
       if (!body) return null;
       const joints = Object.entries(body.avatar.jointPositions());
-      const { position, orientation } = body.placement;
-      return Object.fromEntries(joints.map(([joint, at]) => [joint, add(position, rotate(orientation, at))]));
+      return Object.fromEntries(joints.map(([joint, at]) => [joint, transformPoint(body.placement, at)]));
     },
     dispose() {
       disposed = true;

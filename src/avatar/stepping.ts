@@ -1,7 +1,21 @@
 import type { Side } from '../core/body/joints';
 import { clamp, dampVec3, smoothstep } from '../core/math/damper';
-import { fromAxisAngle, rotate } from '../core/math/quat';
-import { add, addScaled, distance, lerp, scale, subtract, up, type Vec3, vec3, zero } from '../core/math/vec3';
+import { fromAxisAngle, quat, rotate } from '../core/math/quat';
+import {
+  add,
+  addScaled,
+  copyVec3,
+  length,
+  lerp,
+  type MutableVec3,
+  scale,
+  setVec3,
+  subtract,
+  up,
+  type Vec3,
+  vec3,
+  zero,
+} from '../core/math/vec3';
 
 /** Legs are no estimate: feet stand where they were put until the pelvis has left them. All in the floor frame. */
 export interface Foot {
@@ -29,23 +43,38 @@ export interface Feet {
   readonly right: Foot;
 }
 
+/** A foot on its way. */
 interface Step {
-  readonly from: Vec3;
-  readonly fromYaw: number;
-  to: Vec3;
+  readonly from: MutableVec3;
+  fromYaw: number;
+  readonly to: MutableVec3;
   toYaw: number;
   progress: number;
-  readonly duration: number;
+  /** [s] */
+  duration: number;
+}
+
+/** Where a foot belongs. */
+interface Place {
+  readonly position: MutableVec3;
+  yaw: number;
 }
 
 interface FootState {
-  position: Vec3;
+  readonly position: MutableVec3;
   yaw: number;
-  step: Step | null;
+  pitch: number;
+  planted: boolean;
+  readonly step: Step;
+  readonly place: Place;
+  /** How much it wants to step; more than 1: it is left behind. */
+  urgency: number;
 }
 
 export interface Stepping {
-  /** Feet after `deltaSeconds` more in this stance. A jump of the pelvis takes the feet along. */
+  /**
+   * Feet after `deltaSeconds` more in this stance; the same object in every frame. A jump of the pelvis takes the feet along.
+   */
   update(stance: Stance, deltaSeconds: number): Feet;
   reset(): void;
 }
@@ -53,124 +82,169 @@ export interface Stepping {
 /** A foot is left behind when its place is farther than this, in leg lengths, or turned by more [rad]. */
 const strideShare = 0.17;
 const turnLimit = 0.6;
-/** Farther than this, in leg lengths, nobody steps: the person was moved. */
+/** Farther than this, in leg lengths, no one steps: the person was moved. */
 const jumpShare = 1.3;
-/** Only who runs lifts a foot before the other is down. */
+/** A foot is lifted before the other is down only in running. */
 const overlapUrgency = 4;
 const slowStep = 0.34;
 const fastStep = 0.16;
 const velocityHalfLife = 0.08;
+/** Toes turn out by this much [rad]. */
+const toesOut = 0.12;
 
 const wrap = (angle: number): number => Math.atan2(Math.sin(angle), Math.cos(angle));
 
-export function createStepping(): Stepping {
-  let feet: Record<Side, FootState> | null = null;
-  let velocity: Vec3 = zero;
-  let lastPelvis: Vec3 | null = null;
+/** Distance along the floor [m]. */
+function distanceAcross(a: Vec3, b: Vec3): number {
+  const x = a.x - b.x;
+  const z = a.z - b.z;
+  return Math.sqrt(x * x + z * z);
+}
 
-  /** Where a foot belongs: beside the pelvis, toes a little out. */
-  const placeOf = (side: Side, { pelvis, yaw, halfWidth, ankleHeight }: Stance): { position: Vec3; yaw: number } => {
-    const sigma = side === 'left' ? -1 : 1;
-    const aside = rotate(fromAxisAngle(up, yaw), vec3(sigma * halfWidth, 0, 0));
-    return { position: { ...add(pelvis, aside), y: ankleHeight }, yaw: yaw - sigma * 0.12 };
-  };
+/** A vector no longer than `longest`. */
+function limit(v: MutableVec3, longest: number): MutableVec3 {
+  const l = length(v);
+  return l > longest ? scale(v, longest / l, v) : v;
+}
 
-  function standUp(stance: Stance): Record<Side, FootState> {
-    velocity = zero;
-    return {
-      left: { ...placeOf('left', stance), step: null },
-      right: { ...placeOf('right', stance), step: null },
-    };
+const makeFoot = (): FootState => ({
+  position: vec3(0, 0, 0),
+  yaw: 0,
+  pitch: 0,
+  planted: true,
+  step: { from: vec3(0, 0, 0), fromYaw: 0, to: vec3(0, 0, 0), toYaw: 0, progress: 0, duration: slowStep },
+  place: { position: vec3(0, 0, 0), yaw: 0 },
+  urgency: 0,
+});
+
+// Scratch of one call.
+const turn = quat(0, 0, 0, 1);
+const ahead = vec3(0, 0, 0);
+const ground = vec3(0, 0, 0);
+const pelvisNow = vec3(0, 0, 0);
+const speed = vec3(0, 0, 0);
+
+class TwoFeet implements Stepping {
+  private readonly feet: Readonly<Record<Side, FootState>> = { left: makeFoot(), right: makeFoot() };
+  private standing = false;
+  private readonly velocity = vec3(0, 0, 0);
+  private readonly lastPelvis = vec3(0, 0, 0);
+  private hasPelvis = false;
+
+  update(stance: Stance, deltaSeconds: number): Feet {
+    const { feet } = this;
+    const { left, right } = feet;
+    this.followPelvis(stance, deltaSeconds);
+    this.findPlace('left', stance);
+    this.findPlace('right', stance);
+    const farthest = jumpShare * stance.legLength;
+    const far =
+      distanceAcross(left.position, left.place.position) > farthest ||
+      distanceAcross(right.position, right.place.position) > farthest;
+    if (!this.standing || far) this.standUp();
+    this.measureUrgency(left, stance);
+    this.measureUrgency(right, stance);
+    // One foot at a time; the one that is farther off goes first. Running overlaps: the other may start near the end.
+    const leftFirst = left.urgency >= right.urgency;
+    this.lift(leftFirst ? left : right, leftFirst ? right : left);
+    this.lift(leftFirst ? right : left, leftFirst ? left : right);
+    this.advance(left, stance, deltaSeconds);
+    this.advance(right, stance, deltaSeconds);
+    return feet;
   }
 
-  function advance(foot: FootState, place: { position: Vec3; yaw: number }, stance: Stance, delta: number): void {
-    const { step } = foot;
-    if (!step) return;
-    step.progress = Math.min(1, step.progress + delta / step.duration);
+  reset(): void {
+    this.standing = false;
+    this.hasPelvis = false;
+    copyVec3(zero, this.velocity);
+  }
+
+  private followPelvis(stance: Stance, deltaSeconds: number): void {
+    const { velocity, lastPelvis } = this;
+    setVec3(pelvisNow, stance.pelvis.x, 0, stance.pelvis.z);
+    if (this.hasPelvis && distanceAcross(pelvisNow, lastPelvis) > 0.5 * stance.legLength) this.standing = false;
+    if (deltaSeconds > 0 && this.hasPelvis) {
+      scale(subtract(pelvisNow, lastPelvis, speed), 1 / deltaSeconds, speed);
+      dampVec3(velocity, speed, velocityHalfLife, deltaSeconds, velocity);
+    }
+    copyVec3(pelvisNow, lastPelvis);
+    this.hasPelvis = true;
+  }
+
+  /** Beside the pelvis, toes a little out. */
+  private findPlace(side: Side, { pelvis, yaw, halfWidth, ankleHeight }: Stance): void {
+    const { place } = this.feet[side];
+    const sigma = side === 'left' ? -1 : 1;
+    const { position } = place;
+    rotate(fromAxisAngle(up, yaw, turn), setVec3(position, sigma * halfWidth, 0, 0), position);
+    add(pelvis, position, position);
+    position.y = ankleHeight;
+    place.yaw = yaw - sigma * toesOut;
+  }
+
+  private standUp(): void {
+    copyVec3(zero, this.velocity);
+    this.standing = true;
+    plant(this.feet.left);
+    plant(this.feet.right);
+  }
+
+  private measureUrgency(foot: FootState, { legLength }: Stance): void {
+    const { place, position } = foot;
+    copyVec3(this.velocity, ahead);
+    addScaled(place.position, limit(ahead, 1.2), 0.12, ahead);
+    const left = distanceAcross(position, ahead) / (strideShare * legLength);
+    foot.urgency = Math.max(left, Math.abs(wrap(foot.yaw - place.yaw)) / turnLimit);
+  }
+
+  private lift(foot: FootState, other: FootState): void {
+    const mayLift = other.planted || (other.step.progress > 0.75 && foot.urgency > overlapUrgency);
+    if (!foot.planted || foot.urgency <= 1 || !mayLift) return;
+    const { step, place } = foot;
+    foot.planted = false;
+    copyVec3(foot.position, step.from);
+    step.fromYaw = foot.yaw;
+    copyVec3(place.position, step.to);
+    step.toYaw = place.yaw;
+    step.progress = 0;
+    step.duration = slowStep + (fastStep - slowStep) * smoothstep(1, 3, foot.urgency);
+  }
+
+  private advance(foot: FootState, stance: Stance, deltaSeconds: number): void {
+    const { step, place, position } = foot;
+    if (foot.planted) {
+      position.y = stance.ankleHeight;
+      foot.pitch = 0;
+      return;
+    }
+    step.progress = Math.min(1, step.progress + deltaSeconds / step.duration);
     // The landing place follows the pelvis for the first half of the step, then it is fixed.
     if (step.progress < 0.6) {
-      const lead = scale(velocity, step.duration * (1 - step.progress) + 0.5 * step.duration);
-      step.to = add(place.position, limited(lead, 0.35 * stance.legLength));
+      scale(this.velocity, step.duration * (1 - step.progress) + 0.5 * step.duration, step.to);
+      add(place.position, limit(step.to, 0.35 * stance.legLength), step.to);
       step.toYaw = place.yaw;
     }
     const share = smoothstep(0, 1, step.progress);
-    const way = distance({ ...step.from, y: 0 }, { ...step.to, y: 0 });
+    const way = distanceAcross(step.from, step.to);
     const lift =
       Math.sin(Math.PI * step.progress) * clamp(0.25 * way, 0.02, 0.11) * Math.min(1, stance.legLength / 0.8);
-    const ground = lerp(step.from, step.to, share);
-    foot.position = vec3(ground.x, stance.ankleHeight + lift, ground.z);
+    lerp(step.from, step.to, share, ground);
+    setVec3(position, ground.x, stance.ankleHeight + lift, ground.z);
     foot.yaw = step.fromYaw + wrap(step.toYaw - step.fromYaw) * share;
-    if (step.progress >= 1) {
-      foot.position = { ...step.to, y: stance.ankleHeight };
-      foot.step = null;
-    }
+    foot.pitch = 0.35 * Math.sin(Math.PI * step.progress) * (step.progress < 0.5 ? 1 : -0.5);
+    if (step.progress < 1) return;
+    setVec3(position, step.to.x, stance.ankleHeight, step.to.z);
+    foot.planted = true;
+    foot.pitch = 0;
   }
-
-  return {
-    update(stance, deltaSeconds) {
-      const pelvis = { ...stance.pelvis, y: 0 };
-      if (feet && lastPelvis && distance(pelvis, lastPelvis) > 0.5 * stance.legLength) feet = null;
-      if (deltaSeconds > 0 && lastPelvis) {
-        velocity = dampVec3(
-          velocity,
-          scale(subtract(pelvis, lastPelvis), 1 / deltaSeconds),
-          velocityHalfLife,
-          deltaSeconds,
-        );
-      }
-      lastPelvis = pelvis;
-      feet ??= standUp(stance);
-      const places = { left: placeOf('left', stance), right: placeOf('right', stance) };
-      const off = (side: Side): number => {
-        const foot = feet![side];
-        const place = places[side];
-        const ahead = addScaled(place.position, limited(velocity, 1.2), 0.12);
-        const left = distance({ ...foot.position, y: 0 }, { ...ahead, y: 0 }) / (strideShare * stance.legLength);
-        return Math.max(left, Math.abs(wrap(foot.yaw - place.yaw)) / turnLimit);
-      };
-      const far = (side: Side): boolean =>
-        distance({ ...feet![side].position, y: 0 }, { ...places[side].position, y: 0 }) > jumpShare * stance.legLength;
-      if (far('left') || far('right')) feet = standUp(stance);
-
-      // One foot at a time; the one that is farther off goes first. Running overlaps: the other may start near the end.
-      const urgency: Record<Side, number> = { left: off('left'), right: off('right') };
-      const first: Side = urgency.left >= urgency.right ? 'left' : 'right';
-      for (const side of [first, first === 'left' ? 'right' : 'left'] as const) {
-        const foot = feet[side];
-        const other = feet[side === 'left' ? 'right' : 'left'];
-        const mayLift = other.step === null || (other.step.progress > 0.75 && urgency[side] > overlapUrgency);
-        if (foot.step === null && urgency[side] > 1 && mayLift) {
-          const hurry = smoothstep(1, 3, urgency[side]);
-          foot.step = {
-            from: foot.position,
-            fromYaw: foot.yaw,
-            to: places[side].position,
-            toYaw: places[side].yaw,
-            progress: 0,
-            duration: slowStep + (fastStep - slowStep) * hurry,
-          };
-        }
-      }
-      for (const side of ['left', 'right'] as const) {
-        feet[side].position = feet[side].step ? feet[side].position : { ...feet[side].position, y: stance.ankleHeight };
-        advance(feet[side], places[side], stance, deltaSeconds);
-      }
-      const shown = (side: Side): Foot => {
-        const { position, yaw, step } = feet![side];
-        const pitch = step ? 0.35 * Math.sin(Math.PI * step.progress) * (step.progress < 0.5 ? 1 : -0.5) : 0;
-        return { position, yaw, pitch, planted: step === null };
-      };
-      return { left: shown('left'), right: shown('right') };
-    },
-    reset() {
-      feet = null;
-      lastPelvis = null;
-      velocity = zero;
-    },
-  };
 }
 
-function limited(v: Vec3, longest: number): Vec3 {
-  const l = Math.hypot(v.x, v.y, v.z);
-  return l > longest ? scale(v, longest / l) : v;
+/** Puts a foot down at its place. */
+function plant(foot: FootState): void {
+  copyVec3(foot.place.position, foot.position);
+  foot.yaw = foot.place.yaw;
+  foot.pitch = 0;
+  foot.planted = true;
 }
+
+export const createStepping = (): Stepping => new TwoFeet();

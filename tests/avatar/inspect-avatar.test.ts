@@ -1,7 +1,7 @@
 import { afterAll, describe, expect, test } from 'vitest';
 import { imageSize } from '../../src/avatar/image-size';
 import { avatarLimits, inspectAvatar } from '../../src/avatar/inspect-avatar';
-import { loadAvatar } from '../../src/avatar/load-avatar';
+import { loadAvatar, parseAvatar } from '../../src/avatar/load-avatar';
 import { gltfFaults } from '../../src/avatar/validate-gltf';
 import { measured } from '../reliability/measured';
 import { changed, type GltfJson, mannequin } from './glb';
@@ -149,7 +149,7 @@ const attempts: readonly (readonly [string, () => ArrayBuffer, RegExp])[] = [
 let refused = 0;
 afterAll(() =>
   measured('avatars', {
-    'files refused': `${refused} of ${attempts.length + broken.length}`,
+    'files refused': `${refused} of ${attempts.length + compressions.length + broken.length}`,
     limits: `${avatarLimits.megabytes} MB, ${avatarLimits.triangles / 1000} k triangles, ${avatarLimits.textures} textures of ${avatarLimits.texturePixels} pixels, ${avatarLimits.bones} bones`,
   }),
 );
@@ -173,8 +173,49 @@ describe('an avatar from a file', () => {
   });
 });
 
+const compressions = [
+  'EXT_meshopt_compression',
+  'KHR_meshopt_compression',
+  'KHR_draco_mesh_compression',
+  'KHR_texture_basisu',
+];
+
+/** Says that the file cannot be read without this, and marks its buffers as compressed by it. */
+const compressed = (extension: string) =>
+  changed((json) => {
+    json.extensionsUsed.push(extension);
+    json.extensionsRequired = [extension];
+    const extensions = { [extension]: { buffer: 0, byteLength: 10, byteStride: 4, count: 1, mode: 'ATTRIBUTES' } };
+    for (const view of json.bufferViews) Object.assign(view, { extensions });
+  });
+
+describe('a compressed body', () => {
+  // A rejection that no part of the page waits for ends a test run: the loader must not have begun.
+  test.each(['EXT_meshopt_compression', 'KHR_meshopt_compression', 'KHR_draco_mesh_compression', 'KHR_texture_basisu'])(
+    '%s is refused in one sentence, before the loader begins',
+    async (extension) => {
+      const sentence = `somebody.vrm: is compressed (${extension}); this page reads avatars that are saved without compression`;
+      const rejections: unknown[] = [];
+      const heard = (reason: unknown) => void rejections.push(reason);
+      process.on('unhandledRejection', heard);
+      await expect(parseAvatar(compressed(extension), 'somebody.vrm')).rejects.toThrow(sentence);
+      await new Promise((resolve) => setImmediate(resolve));
+      process.off('unhandledRejection', heard);
+      expect(rejections).toEqual([]);
+      refused += 1;
+    },
+  );
+
+  test('what VRMs of others need is read', () => {
+    const file = changed((json) => {
+      json.extensionsRequired = ['VRMC_vrm', 'VRMC_materials_mtoon', 'KHR_materials_unlit', 'KHR_texture_transform'];
+    });
+    expect(() => look(file)).not.toThrow();
+  });
+});
+
 /** As the page opens files, with the validator that its worker runs. */
-const opened = (bytes: ArrayBuffer) => loadAvatar(new File([bytes], 'somebody.vrm'), { validate: gltfFaults });
+const opened = (bytes: ArrayBuffer) => loadAvatar(bytes, 'somebody.vrm', gltfFaults);
 
 /** Well within every limit, and wrong all the same. */
 const broken: readonly (readonly [string, (json: GltfJson) => void])[] = [
@@ -218,7 +259,7 @@ describe('the Khronos validator', () => {
       return [];
     };
     for (const [, file] of attempts) {
-      await expect(loadAvatar(new File([file()], 'somebody.vrm'), { validate })).rejects.toThrow('somebody.vrm');
+      await expect(loadAvatar(file(), 'somebody.vrm', validate)).rejects.toThrow('somebody.vrm');
       refused += 1;
     }
     expect(asked).toBe(0);

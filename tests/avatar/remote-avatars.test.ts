@@ -5,11 +5,12 @@ import { createRemoteAvatars, type RemoteAvatars, type SeenPerson } from '../../
 import { defaultCalibration } from '../../src/core/body/calibration';
 import { forwardKinematics } from '../../src/core/body/forward-kinematics';
 import { skeletonFromCalibration } from '../../src/core/body/skeleton';
-import { createIk } from '../../src/core/estimation/ik';
+import { createIk } from '../../src/core/estimation/estimators';
 import { transformPoint } from '../../src/core/math/pose';
 import { fromAxisAngle } from '../../src/core/math/quat';
 import { distance, up, vec3 } from '../../src/core/math/vec3';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
+import { poseOf } from '../core/estimation/drawn';
 
 const file = readFileSync(new URL('../../public/avatars/mannequin.vrm', import.meta.url));
 const bytes = file.buffer.slice(file.byteOffset, file.byteOffset + file.byteLength) as ArrayBuffer;
@@ -19,7 +20,7 @@ const person = (id: number, more: Partial<SeenPerson> = {}): SeenPerson => ({
   id,
   calibration: defaultCalibration,
   palette: 'ember',
-  pose: estimator.estimate(actorFrame(9.5, defaultCalibration)),
+  pose: poseOf(estimator, actorFrame(9.5, defaultCalibration)),
   placement: { position: vec3(id, 0, -2 * id), orientation: fromAxisAngle(up, 0.7 * id) },
   grips: { left: 0, right: 0 },
   opacity: 1,
@@ -77,7 +78,7 @@ describe('bodies of others', () => {
     others.dispose();
   });
 
-  test('fade to a ghost, go when nobody is told, and serve whoever comes next', async () => {
+  test('fade to a ghost, go when no one is told of, and serve the next person', async () => {
     const others = await gathered([person(1)]);
     others.show([person(1, { opacity: 0.35 })], 11);
     const materials: MeshStandardMaterial[] = [];

@@ -1,0 +1,159 @@
+import type { VRM } from '@pixiv/three-vrm';
+import { Color, type Material, type Mesh, MeshStandardMaterial, type Object3D, SkinnedMesh } from 'three';
+import { palettes } from './palettes';
+import type { Rig } from './rig';
+import { type SkinPart, sortByPart } from './skin-parts';
+
+/** The layer of what only others and mirrors see: the own head. VRM's own number for it. */
+export const thirdPersonOnlyLayer = 10;
+const firstPersonOnlyLayer = 9;
+
+interface AvatarMesh {
+  readonly mesh: Mesh;
+  readonly audience: 'both' | 'others' | 'self';
+  /** Index count up to and including each part; null for meshes without a skin. */
+  readonly ends: Record<SkinPart, number> | null;
+}
+
+function readMeshes(vrm: VRM, bones: Rig['bones']): AvatarMesh[] {
+  const partByNode = new Map<Object3D, SkinPart | 'hips'>();
+  const hipLine = bones.get('leftUpperLeg')?.restPosition.y ?? 0;
+  for (const [name, { node }] of bones) {
+    const part: SkinPart | 'hips' =
+      name === 'hips'
+        ? 'hips'
+        : name.endsWith('Hand')
+          ? 'hands'
+          : name === 'head'
+            ? 'head'
+            : /Leg$|Foot$/.test(name)
+              ? 'legs'
+              : 'trunk';
+    partByNode.set(node, part);
+  }
+  const partOfBone = (node: Object3D): SkinPart | 'hips' => {
+    for (let above: Object3D | null = node; above; above = above.parent) {
+      const part = partByNode.get(above);
+      if (part) return part;
+    }
+    return 'trunk';
+  };
+  const result: AvatarMesh[] = [];
+  vrm.scene.traverse((node) => {
+    if (!('isMesh' in node)) return;
+    const mesh = node as Mesh;
+    // Bones carry the skin far from where it lay at rest: its own bounds say nothing.
+    mesh.frustumCulled = false;
+    mesh.castShadow = true;
+    const audience = mesh.layers.isEnabled(0)
+      ? 'both'
+      : mesh.layers.isEnabled(firstPersonOnlyLayer)
+        ? 'self'
+        : 'others';
+    const ends = mesh instanceof SkinnedMesh ? sortByPart(mesh, partOfBone, hipLine) : null;
+    result.push({ mesh, audience, ends });
+  });
+  return result;
+}
+
+function materialsOf(mesh: Mesh): Material[] {
+  return Array.isArray(mesh.material) ? mesh.material : [mesh.material];
+}
+
+/** What a body shows of itself: all of it, head and hands, or nothing before its first pose. */
+export type Shown = 'body' | 'hands' | 'nothing';
+
+/** The skin of an avatar: which of it is drawn, for which eyes, in which colours. */
+export class BodyMeshes {
+  private readonly meshes: readonly AvatarMesh[];
+  private readonly looks = new Map<Material, { readonly transparent: boolean; readonly opacity: number }>();
+  private shown: Shown = 'nothing';
+  private upperBodyOnly = false;
+  private firstPerson = false;
+  private opacity = 1;
+
+  constructor(vrm: VRM, bones: Rig['bones']) {
+    this.meshes = readMeshes(vrm, bones);
+    this.showParts();
+    this.showLayers();
+  }
+
+  /** Whether that is something else than before. */
+  show(shown: Shown): boolean {
+    if (shown === this.shown) return false;
+    this.shown = shown;
+    this.showParts();
+    return true;
+  }
+
+  setUpperBodyOnly(on: boolean): void {
+    this.upperBodyOnly = on;
+    this.showParts();
+  }
+
+  setFirstPerson(on: boolean): void {
+    if (on === this.firstPerson) return;
+    this.firstPerson = on;
+    this.showLayers();
+  }
+
+  /** Recolours the materials that a palette names; a palette that is not known changes nothing. */
+  setPalette(name: string): void {
+    const palette = palettes.find((candidate) => candidate.name === name);
+    if (!palette) return;
+    const colors: Record<string, string> = {
+      Suit: palette.suit,
+      Accent: palette.color,
+      Head: palette.head,
+      Visor: palette.visor,
+    };
+    for (const { mesh } of this.meshes) {
+      for (const material of materialsOf(mesh)) {
+        const color = colors[material.name];
+        if (color && material instanceof MeshStandardMaterial) material.color = new Color(color);
+      }
+    }
+  }
+
+  setOpacity(opacity: number): void {
+    if (opacity === this.opacity) return;
+    this.opacity = opacity;
+    for (const { mesh } of this.meshes) {
+      for (const material of materialsOf(mesh)) {
+        const solid = this.ownLook(material);
+        const transparent = solid.transparent || opacity < 1;
+        if (material.transparent !== transparent) {
+          material.transparent = transparent;
+          material.needsUpdate = true;
+        }
+        material.opacity = opacity * solid.opacity;
+      }
+      mesh.castShadow = opacity > 0.5;
+    }
+  }
+
+  /** As the file has it: hair and glasses are transparent by themselves. */
+  private ownLook(material: Material) {
+    const { transparent, opacity } = material;
+    const look = this.looks.get(material) ?? { transparent, opacity };
+    this.looks.set(material, look);
+    return look;
+  }
+
+  private showParts(): void {
+    const last: SkinPart = this.shown === 'hands' ? 'head' : this.upperBodyOnly ? 'trunk' : 'legs';
+    for (const { mesh, ends } of this.meshes) {
+      const end = ends?.[last];
+      mesh.visible = this.shown !== 'nothing' && (end === undefined ? this.shown === 'body' : end > 0);
+      if (end !== undefined) mesh.geometry.setDrawRange(0, end);
+    }
+  }
+
+  private showLayers(): void {
+    for (const { mesh, audience } of this.meshes) {
+      if (audience === 'both') mesh.layers.set(0);
+      else if (audience === 'others') mesh.layers.set(this.firstPerson ? thirdPersonOnlyLayer : 0);
+      else mesh.layers.set(this.firstPerson ? 0 : firstPersonOnlyLayer);
+    }
+  }
+}

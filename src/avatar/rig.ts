@@ -1,0 +1,204 @@
+import type { VRM, VRMHumanBoneName } from '@pixiv/three-vrm';
+import { Matrix4, type Object3D, Quaternion, Vector3 } from 'three';
+import { type JointName, jointNames } from '../core/body/joints';
+import { fromAxisAngle, multiply, type Quat, quat } from '../core/math/quat';
+import { copyVec3, distance, type MutableVec3, up, type Vec3, vec3 } from '../core/math/vec3';
+
+export const legJoints = [
+  'leftUpperLeg',
+  'leftLowerLeg',
+  'leftFoot',
+  'rightUpperLeg',
+  'rightLowerLeg',
+  'rightFoot',
+] as const;
+type LegJoint = (typeof legJoints)[number];
+export type AvatarJoint = JointName | LegJoint;
+
+interface RigBone {
+  readonly node: Object3D;
+  readonly parent: RigBone | null;
+  /** The rest pose in the rig's own frame, facing +Z. */
+  readonly restRotation: Quaternion;
+  readonly restPosition: Vector3;
+  /** The node's actual parent, which need not be a human bone, in the frame of the parent bone at rest (or of the rig). */
+  readonly fromParentBone: Matrix4;
+  /** Stretch along the bone, in its own frame, and the uniform scale of the rig. */
+  readonly stretch: Matrix4;
+  /** World matrix of this frame. */
+  readonly world: Matrix4;
+  /** Where it is drawn in this frame, floor frame [m]. */
+  readonly drawn: MutableVec3;
+}
+
+/** The bone whose origin marks the far end of another: what its length is measured to. */
+const farEnd: Partial<Record<AvatarJoint, AvatarJoint>> = {
+  hips: 'spine',
+  spine: 'chest',
+  chest: 'upperChest',
+  upperChest: 'neck',
+  neck: 'head',
+  leftShoulder: 'leftUpperArm',
+  leftUpperArm: 'leftLowerArm',
+  leftLowerArm: 'leftHand',
+  rightShoulder: 'rightUpperArm',
+  rightUpperArm: 'rightLowerArm',
+  rightLowerArm: 'rightHand',
+  leftUpperLeg: 'leftLowerLeg',
+  leftLowerLeg: 'leftFoot',
+  rightUpperLeg: 'rightLowerLeg',
+  rightLowerLeg: 'rightFoot',
+};
+
+/** Parents before children. */
+const drivenJoints: readonly AvatarJoint[] = [...jointNames, ...legJoints];
+
+const trunkBones: ReadonlySet<string> = new Set([
+  'hips',
+  'spine',
+  'chest',
+  'upperChest',
+  'neck',
+  'leftShoulder',
+  'rightShoulder',
+]);
+
+/** From a VRM at rest, which faces +Z, to our T-pose, which faces −Z. */
+const ourFacing: Quat = fromAxisAngle(up, Math.PI);
+/** No bone is stretched or shortened further than this [share of its own length]. */
+const mostStretch = 3;
+const leastStretch = 0.3;
+
+const unitScale = new Vector3(1, 1, 1);
+const position = new Vector3();
+const rotation = new Quaternion();
+const above = new Matrix4();
+const facing = quat(0, 0, 0, 1);
+
+/** The bones of a VRM that poses move. Each has its own place: the rig is no chain of rotations. */
+export class Rig {
+  readonly bones: ReadonlyMap<AvatarJoint, RigBone>;
+  /** Joints of the bones as drawn, floor frame [m]; the same object in every frame. */
+  readonly joints: Partial<Record<AvatarJoint, Vec3>> = {};
+  /** Constraints read positions and rotations; drawing needs the matrices alone. */
+  private readonly constrained: boolean;
+
+  constructor(vrm: VRM) {
+    this.bones = readRig(vrm);
+    this.constrained = (vrm.nodeConstraintManager?.constraints.size ?? 0) > 0;
+    for (const { node } of this.bones.values()) node.matrixAutoUpdate = false;
+  }
+
+  /** Where the rig has this joint at rest, its own frame, facing +Z; null: it has no such bone. */
+  rest(name: AvatarJoint): Vector3 | null {
+    return this.bones.get(name)?.restPosition ?? null;
+  }
+
+  /**
+   * Scales the rig by `scale` and stretches each bone to its length [m] in `joints` (a T-pose), legs to `legs`; lengths that neither
+   * tells stay the rig's own.
+   */
+  fit(
+    joints: Readonly<Record<JointName, { readonly position: Vec3 }>>,
+    legs: { readonly upper: number; readonly lower: number },
+    scale: number,
+  ): void {
+    for (const [name, { restPosition, restRotation, stretch }] of this.bones) {
+      const end = farEnd[name];
+      const endPosition = end && this.rest(end);
+      if (!endPosition) {
+        setStretch(stretch, unitY, 1, scale);
+        continue;
+      }
+      const own = restPosition.distanceTo(endPosition) * scale;
+      const wanted =
+        name in joints && end in joints
+          ? distance(joints[name as JointName].position, joints[end as JointName].position)
+          : name.endsWith('UpperLeg')
+            ? legs.upper
+            : name.endsWith('LowerLeg')
+              ? legs.lower
+              : own;
+      // The trunk's vertebrae are short and lie differently in every rig: stretched, they would tear; moved apart, they bend.
+      const fixed = trunkBones.has(name) || own <= 1e-4;
+      const factor = fixed ? 1 : Math.min(mostStretch, Math.max(leastStretch, wanted / own));
+      const direction = endPosition.clone().sub(restPosition).normalize();
+      setStretch(stretch, direction.applyQuaternion(restRotation.clone().invert()), factor, scale);
+    }
+  }
+
+  /**
+   * Puts a bone where a joint of ours is: position [m] and rotation from T-pose, floor frame; a bone the rig lacks: nothing. `seen`:
+   * whether it counts among the joints that are drawn.
+   */
+  place(name: AvatarJoint, at: Vec3, rotationFromRest: Quat, seen = true): void {
+    const bone = this.bones.get(name);
+    if (!bone) return;
+    const { node, parent, world, fromParentBone } = bone;
+    const { x, y, z, w } = multiply(rotationFromRest, ourFacing, facing);
+    rotation.set(x, y, z, w).multiply(bone.restRotation);
+    world.compose(position.set(at.x, at.y, at.z), rotation, unitScale).multiply(bone.stretch);
+    // What lies between the parent bone and this node (and above the hips) keeps its rest pose.
+    if (parent) above.multiplyMatrices(parent.world, fromParentBone);
+    else above.copy(fromParentBone);
+    node.matrix.multiplyMatrices(above.invert(), world);
+    if (this.constrained) node.matrix.decompose(node.position, node.quaternion, node.scale);
+    node.matrixWorldNeedsUpdate = true;
+    copyVec3(at, bone.drawn);
+    if (seen) this.joints[name] = bone.drawn;
+  }
+
+  /** Shrinks a bone to nothing: what no one sees is not drawn. */
+  shrink(name: AvatarJoint): void {
+    const bone = this.bones.get(name);
+    if (!bone) return;
+    bone.world.makeScale(0, 0, 0);
+    bone.node.matrix.makeScale(1e-6, 1e-6, 1e-6);
+    delete this.joints[name];
+  }
+
+  /** From now on no joint counts as drawn. */
+  forgetJoints(): void {
+    for (const name of this.bones.keys()) delete this.joints[name];
+  }
+}
+
+const unitY = new Vector3(0, 1, 0);
+
+/** scale·(1 + (factor − 1)·d·dᵀ): longer along a direction only. */
+function setStretch(target: Matrix4, d: Vector3, factor: number, uniform: number): void {
+  const k = factor - 1;
+  target.set(
+    1 + k * d.x * d.x, k * d.x * d.y, k * d.x * d.z, 0,
+    k * d.x * d.y, 1 + k * d.y * d.y, k * d.y * d.z, 0,
+    k * d.x * d.z, k * d.y * d.z, 1 + k * d.z * d.z, 0,
+    0, 0, 0, 1,
+  ); // biome-ignore format: a matrix
+  target.multiply(new Matrix4().makeScale(uniform, uniform, uniform));
+}
+
+function readRig(vrm: VRM): Map<AvatarJoint, RigBone> {
+  const bones = new Map<AvatarJoint, RigBone>();
+  const nodes = new Map<Object3D, RigBone>();
+  for (const name of drivenJoints) {
+    const node = vrm.humanoid.getRawBoneNode(name as VRMHumanBoneName);
+    if (!node) continue;
+    let above: Object3D | null = node.parent;
+    while (above && !nodes.has(above)) above = above.parent;
+    const parent = (above && nodes.get(above)) ?? null;
+    const actualParent = node.parent?.matrixWorld ?? new Matrix4();
+    const target: RigBone = {
+      node,
+      parent,
+      restRotation: node.getWorldQuaternion(new Quaternion()),
+      restPosition: node.getWorldPosition(new Vector3()),
+      fromParentBone: parent ? parent.node.matrixWorld.clone().invert().multiply(actualParent) : actualParent.clone(),
+      stretch: new Matrix4(),
+      world: new Matrix4(),
+      drawn: vec3(0, 0, 0),
+    };
+    nodes.set(node, target);
+    bones.set(name, target);
+  }
+  return bones;
+}
