@@ -1,4 +1,5 @@
 import { parseArgs } from 'node:util';
+import { weaknessOf } from './secret-bits';
 
 /** How this process serves, from the command line and the environment. */
 export interface Configuration {
@@ -17,7 +18,8 @@ export const usage = `Usage: npm start -- [options]
   --lan          HTTPS for every device on the network, with a certificate of our own
   --studies DIR  where studies are kept (or the environment variable STUDIES); default study-data
   --help         this text
-The environment variable EXPERIMENTER_TOKEN (16 characters or more) replaces the token that the server draws for itself.`;
+The environment variable EXPERIMENTER_TOKEN (128 bits or more, as "openssl rand -base64 32" draws them) replaces the token that the
+server draws for itself.`;
 
 /** What was asked for cannot be done; the message is for the person at the terminal. */
 export class ConfigurationError extends Error {}
@@ -55,10 +57,14 @@ export function configurationFrom(
         ? portFrom(environment.PORT, 'The environment variable PORT')
         : 3333;
   const experimenterToken = environment.EXPERIMENTER_TOKEN || null;
-  if (experimenterToken !== null && !/^[\w~+/.-]{16,256}$/.test(experimenterToken)) {
-    throw new ConfigurationError(
-      'The environment variable EXPERIMENTER_TOKEN must have 16 to 256 characters: letters, digits and - _ ~ + / .',
-    );
+  if (experimenterToken !== null) {
+    if (!/^[\w~+/.-]{16,256}={0,2}$/.test(experimenterToken)) {
+      throw new ConfigurationError(
+        'The environment variable EXPERIMENTER_TOKEN must have 16 to 256 characters: letters, digits and - _ ~ + / .',
+      );
+    }
+    const weakness = weaknessOf(experimenterToken);
+    if (weakness) throw new ConfigurationError(`The token in the environment variable EXPERIMENTER_TOKEN ${weakness}`);
   }
   const studyDirectory = values.studies ?? (environment.STUDIES || null);
   if (studyDirectory === '') throw new ConfigurationError('--studies needs the name of a directory.');

@@ -1,6 +1,6 @@
 import { Redis } from 'ioredis';
 import type { Logger } from 'pino';
-import type { RoomListing } from './socket-host';
+import type { RoomListing } from './hosted-rooms';
 
 /** Rooms of all processes, as far as this one knows. */
 export interface Lobby {

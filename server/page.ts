@@ -1,8 +1,9 @@
 import { createHash } from 'node:crypto';
 import { existsSync, readdirSync, readFileSync } from 'node:fs';
-import type { IncomingMessage, ServerResponse } from 'node:http';
+import type { IncomingMessage, RequestListener } from 'node:http';
 import { extname, join } from 'node:path';
-import { securityHeaders } from './security-headers';
+import { type Answer, plain, sendAnswer } from './http/answer';
+import { targetOf } from './http/target';
 
 const contentTypes: Readonly<Record<string, string>> = {
   '.html': 'text/html; charset=utf-8',
@@ -46,7 +47,7 @@ interface ServedFile {
 function encoded(body: Buffer, headers: Record<string, string>, encoding?: string): Encoded {
   const etag = `"${createHash('sha256').update(body).digest('base64url').slice(0, 22)}"`;
   const encodingHeader = encoding ? { 'content-encoding': encoding } : {};
-  return { body, headers: { ...headers, ...encodingHeader, etag, 'content-length': body.length } };
+  return { body, headers: { ...headers, ...encodingHeader, etag } };
 }
 
 function filesBelow(directory: string, prefix = ''): string[] {
@@ -91,63 +92,36 @@ function accepts(header: string | undefined, encoding: string): boolean {
   });
 }
 
-function pathOf(url: string | undefined): string | null {
-  try {
-    const path = decodeURIComponent((url ?? '/').replace(/[?#].*$/s, ''));
-    return path.endsWith('/') ? `${path}index.html` : path;
-  } catch (error) {
-    if (error instanceof URIError) return null;
-    throw error;
-  }
-}
-
-function answer(response: ServerResponse, status: number, text: string, headers: Record<string, string> = {}): void {
-  response.writeHead(status, { 'content-type': 'text/plain; charset=utf-8', 'cache-control': 'no-store', ...headers });
-  response.end(`${text}\n`);
-}
-
 /**
  * Serves a built page from memory: the files are read once, so that a request touches no disk, no path leads out of the
- * directory, and a rebuild under a running server breaks nobody's download. Throws where there is no index.html.
+ * directory, and a rebuild under a running server breaks no download. Throws where there is no index.html.
  */
-export function createPageHandler(directory: string): (request: IncomingMessage, response: ServerResponse) => void {
+export function createPageHandler(directory: string): RequestListener {
   if (!existsSync(join(directory, 'index.html'))) {
     throw new Error(`${directory} holds no index.html: build the page first (npm run build)`);
   }
   const files = load(directory);
-  return (request, response) => {
-    for (const [name, value] of Object.entries(securityHeaders)) response.setHeader(name, value);
-    if (request.method !== 'GET' && request.method !== 'HEAD') {
-      answer(response, 405, 'Only GET and HEAD are answered here.', { allow: 'GET, HEAD' });
-      return;
+
+  function answerTo({ method, url, headers: asked }: IncomingMessage): Answer {
+    if (method !== 'GET' && method !== 'HEAD') {
+      const refused = plain('Only GET and HEAD are answered here.', 405);
+      return { ...refused, headers: { ...refused.headers, allow: 'GET, HEAD' } };
     }
-    const path = pathOf(request.url);
-    if (path === null) {
-      answer(response, 400, 'This address is not well formed.');
-      return;
-    }
-    if (path === '/healthz') {
-      answer(response, 200, 'ok');
-      return;
-    }
+    const target = targetOf(url);
+    if (!target) return plain('This address is not well formed.', 400);
+    const path = decodeURIComponent(target.path);
+    if (path === '/healthz') return plain('ok');
+    const name = path.endsWith('/') ? `${path}index.html` : path;
     // Pages are asked for by their name alone: /results is results.html.
-    const file = files.get(path) ?? files.get(`${path}.html`);
-    if (!file) {
-      answer(response, 404, 'Not found.');
-      return;
-    }
+    const file = files.get(name) ?? files.get(`${name}.html`);
+    if (!file) return plain('Not found.', 404);
     const encoding = encodings.find(
-      ({ name }) => file.compressed.has(name) && accepts(request.headers['accept-encoding'], name),
+      ({ name: encodingName }) => file.compressed.has(encodingName) && accepts(asked['accept-encoding'], encodingName),
     );
     const { body, headers } = (encoding && file.compressed.get(encoding.name)) ?? file.plain;
-    const known = request.headers['if-none-match']?.split(/\s*,\s*/).map((tag) => tag.replace(/^W\//, ''));
-    if (known?.includes(String(headers.etag))) {
-      const { 'content-length': _, ...rest } = headers;
-      response.writeHead(304, rest);
-      response.end();
-      return;
-    }
-    response.writeHead(200, headers);
-    response.end(request.method === 'HEAD' ? undefined : body);
-  };
+    const known = asked['if-none-match']?.split(/\s*,\s*/).map((tag) => tag.replace(/^W\//, ''));
+    return known?.includes(String(headers.etag)) ? { status: 304, headers } : { status: 200, headers, body };
+  }
+
+  return (request, response) => sendAnswer(request, response, answerTo(request));
 }

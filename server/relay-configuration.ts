@@ -1,4 +1,5 @@
 import { ConfigurationError } from './configuration';
+import { weaknessOf } from './secret-bits';
 
 /** How the relay behaves, from the environment. */
 export interface RelayConfiguration {
@@ -6,12 +7,16 @@ export interface RelayConfiguration {
   readonly secret: string | null;
   /** Pages of these origins may connect; empty: pages of the very address they connect to. */
   readonly origins: readonly string[];
+  /** Names of the server besides localhost, this machine's own and those of the origins. */
+  readonly hosts: readonly string[];
   /** How often a room's poses are passed on, and its match stepped, per second. */
   readonly tickHz: number;
   readonly posesPerSecond: number;
   readonly eventsPerSecond: number;
   /** New people per minute and address; a person who returns does not count. */
   readonly joinsPerMinute: number;
+  /** Connections that one address may have open at once. */
+  readonly connectionsPerAddress: number;
   readonly mostRooms: number;
   /** Seats of an open room. */
   readonly openSeats: number;
@@ -23,7 +28,7 @@ export interface RelayConfiguration {
   readonly redisUrl: string | null;
   /** The address to listen on; null: this machine alone, or with --lan all of its own. */
   readonly host: string | null;
-  /** Whoever sends this as "Authorization: Bearer …" may end rooms; null: nobody. */
+  /** The holder of this, sent as "Authorization: Bearer …", may end rooms; null: no one. */
   readonly adminToken: string | null;
   readonly logLevel: (typeof logLevels)[number];
 }
@@ -34,18 +39,21 @@ const shortestSecret = 32;
 type Environment = Readonly<Record<string, string | undefined>>;
 
 export const relayEnvironment = `Environment of the relay (docs/relay.md):
-  THREEPOINT_SECRET             signs room tokens; at least ${shortestSecret} characters, the same in every process of a fleet
+  THREEPOINT_SECRET             signs room tokens; 128 bits or more (openssl rand -base64 32), the same in every process of a fleet
   THREEPOINT_ORIGINS            origins of pages that may connect, with commas between; default: the server's own
+  THREEPOINT_HOSTS              names of the server, with commas between, where it has others than localhost, its addresses,
+                                this machine's name and those in THREEPOINT_ORIGINS
   THREEPOINT_TICK_HZ            how often a room's poses are passed on a second, 20 to 120; default 90
   THREEPOINT_POSES_PER_SECOND   budget of each client; default 40
   THREEPOINT_EVENTS_PER_SECOND  budget of each client; default 10
   THREEPOINT_JOINS_PER_MINUTE   budget of new people of each address; default 5, on this machine itself 120
+  THREEPOINT_CONNECTIONS_PER_ADDRESS  connections that one address may have open; default 256
   THREEPOINT_MOST_ROOMS         rooms in this process; default 500
   THREEPOINT_OPEN_SEATS         seats of a room without a game, 1 to 16; default 16
   THREEPOINT_BALL_SECONDS       length of a round of the ball game; default 90
   THREEPOINT_TRUST_PROXY        1: a proxy stands in front and tells the clients' addresses; default 0
   THREEPOINT_REDIS_URL          redis://HOST:PORT of the lobby that several processes share
-  THREEPOINT_ADMIN_TOKEN        lets whoever has it end rooms; 16 characters or more
+  THREEPOINT_ADMIN_TOKEN        lets its holder end rooms; 128 bits or more
   THREEPOINT_HOST               address to listen on behind a proxy, as 0.0.0.0; default 127.0.0.1
   THREEPOINT_LOG_LEVEL          ${logLevels.join(', ')}; default warn`;
 
@@ -77,6 +85,26 @@ function originsFrom(text: string | undefined): readonly string[] {
     });
 }
 
+function hostsFrom(text: string | undefined): readonly string[] {
+  const names = (text ?? '')
+    .split(',')
+    .map((part) => part.trim())
+    .filter(Boolean);
+  for (const name of names) {
+    if (!/^[a-z0-9]([a-z0-9.-]*[a-z0-9])?$/i.test(name)) {
+      throw new ConfigurationError(
+        `The environment variable THREEPOINT_HOSTS must hold names as study.example.org, without ports, not "${name}".`,
+      );
+    }
+  }
+  return names;
+}
+
+function refuseWeak(name: string, secret: string | null): void {
+  const weakness = secret === null ? null : weaknessOf(secret);
+  if (weakness) throw new ConfigurationError(`The secret in the environment variable ${name} ${weakness}`);
+}
+
 /** Throws a ConfigurationError that names the variable and what it should be. */
 export function relayConfigurationFrom(environment: Environment): RelayConfiguration {
   const secret = environment.THREEPOINT_SECRET || null;
@@ -85,12 +113,14 @@ export function relayConfigurationFrom(environment: Environment): RelayConfigura
       `The environment variable THREEPOINT_SECRET must have at least ${shortestSecret} characters, has ${secret.length}.`,
     );
   }
+  refuseWeak('THREEPOINT_SECRET', secret);
   const adminToken = environment.THREEPOINT_ADMIN_TOKEN || null;
   if (adminToken !== null && !/^\S{16,256}$/.test(adminToken)) {
     throw new ConfigurationError(
       `The environment variable THREEPOINT_ADMIN_TOKEN must have 16 to 256 characters and no spaces, has ${adminToken.length}.`,
     );
   }
+  refuseWeak('THREEPOINT_ADMIN_TOKEN', adminToken);
   const redisUrl = environment.THREEPOINT_REDIS_URL || null;
   if (redisUrl !== null && !/^rediss?:\/\/\S+$/.test(redisUrl)) {
     throw new ConfigurationError(
@@ -115,10 +145,13 @@ export function relayConfigurationFrom(environment: Environment): RelayConfigura
   return {
     secret,
     origins: originsFrom(environment.THREEPOINT_ORIGINS),
+    hosts: hostsFrom(environment.THREEPOINT_HOSTS),
     tickHz: number('THREEPOINT_TICK_HZ', 90, 20, 120),
     posesPerSecond: whole('THREEPOINT_POSES_PER_SECOND', 40, 1, 200),
     eventsPerSecond: whole('THREEPOINT_EVENTS_PER_SECOND', 10, 1, 1000),
     joinsPerMinute: whole('THREEPOINT_JOINS_PER_MINUTE', 5, 1, 100_000),
+    // A class of thirty behind one address: six connections for the page and two WebSockets each.
+    connectionsPerAddress: whole('THREEPOINT_CONNECTIONS_PER_ADDRESS', 256, 8, 1_000_000),
     mostRooms: whole('THREEPOINT_MOST_ROOMS', 500, 1, 100_000),
     openSeats: whole('THREEPOINT_OPEN_SEATS', 16, 1, 16),
     ballSeconds: number('THREEPOINT_BALL_SECONDS', 90, 1, 3600),

@@ -1,6 +1,6 @@
 import { Counter, collectDefaultMetrics, Gauge, Histogram, Registry } from 'prom-client';
 
-/** What is counted in the hot path: plain numbers, read when somebody asks. */
+/** What is counted in the hot path: plain numbers, read when they are asked for. */
 export interface RelayCounts {
   posesIn: number;
   posesIgnored: number;
@@ -23,13 +23,22 @@ export interface RelayMetrics {
   close(): void;
 }
 
-/** Who is there, asked for whenever the metrics are. */
-export interface RelayCensus {
+/** Who is in the rooms of this process. */
+export interface HostCensus {
   readonly rooms: number;
   readonly players: number;
   readonly bots: number;
   readonly spectators: number;
+}
+
+/** Who is there, asked for whenever the metrics are. */
+export interface RelayCensus extends HostCensus {
+  /** WebSockets that are open, silent ones included. */
   readonly sockets: number;
+  /** Connections of any kind that are open, silent ones included. */
+  readonly connections: number;
+  /** Connections refused since the start, because their address had too many. */
+  readonly refusedConnections: number;
 }
 
 export function createRelayMetrics(census: () => RelayCensus): RelayMetrics {
@@ -75,7 +84,17 @@ export function createRelayMetrics(census: () => RelayCensus): RelayMetrics {
   gauge('players', 'People on seats, held seats included.');
   gauge('bots', 'Bots on seats.');
   gauge('spectators', 'People who watch.');
-  gauge('sockets', 'Connections.');
+  gauge('sockets', 'WebSockets that are open, silent ones included.');
+  gauge('connections', 'Connections of any kind that are open, silent ones included.');
+  new Counter({
+    name: 'threepoint_connections_refused_total',
+    help: 'Connections refused because their address had too many.',
+    registers,
+    collect() {
+      this.reset();
+      this.inc(census().refusedConnections);
+    },
+  });
   const kicks = new Counter({
     name: 'threepoint_kicks_total',
     help: 'Clients that were disconnected, by reason.',

@@ -1,22 +1,27 @@
 import { randomBytes } from 'node:crypto';
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
-import type { Server as HttpServer, IncomingMessage, ServerResponse } from 'node:http';
 import { dirname } from 'node:path';
 import { createAdapter } from '@socket.io/redis-adapter';
 import { pino } from 'pino';
 import { Adapter } from 'socket.io-adapter';
+import type { Door } from './door';
+import type { RoomListing } from './hosted-rooms';
+import type { Service } from './http/router';
 import { connectRedis, connectRedisPatiently, createOwnLobby, createRedisLobby } from './lobby';
 import type { RelayConfiguration } from './relay-configuration';
-import { createRelayMetrics } from './relay-metrics';
+import { createRelayMetrics, type RelayCensus } from './relay-metrics';
 import { createRelayRoutes } from './relay-routes';
+import { createRelayTransport } from './relay-transport';
 import { createRoomTokens } from './room-tokens';
-import { createSocketHost, type RoomListing, type SocketHost } from './socket-host';
+import { createSocketHost, type SocketHost } from './socket-host';
+import type { UpgradeListener } from './web-server';
 
-/** A relay on a server: its sockets and its part of the HTTP. */
+/** A relay for a server: its sockets and its part of the HTTP. */
 export interface Relay {
   readonly host: SocketHost;
-  /** Answers what is the relay's and returns true; false for any other request. */
-  handle(request: IncomingMessage, response: ServerResponse): boolean;
+  readonly census: RelayCensus;
+  readonly service: Service;
+  readonly upgrade: UpgradeListener;
   /** Says farewell and closes; the server itself is its owner's. */
   close(): Promise<void>;
 }
@@ -37,14 +42,21 @@ export function secretIn(path: string): string {
   return secret;
 }
 
-/** Starts a relay on the server's upgrade requests; `secret` signs the tokens. */
-export function createRelay(server: HttpServer, configuration: RelayConfiguration, secret: string): Relay {
+/** Starts a relay; `secret` signs the tokens, `door` counts the connections of its server. */
+export function createRelay(configuration: RelayConfiguration, secret: string, door: Door): Relay {
   const log = pino({ level: configuration.logLevel, base: { node: process.pid } });
   const now = (): number => performance.now() / 1000;
   const node = randomBytes(6).toString('hex');
   const tokens = createRoomTokens(secret, () => Date.now() / 1000);
-  const metrics = createRelayMetrics(() => host.census);
-  const host = createSocketHost(server, { configuration, tokens, log, metrics, now });
+  const census = (): RelayCensus => ({
+    ...host.census,
+    sockets: transport.sockets,
+    connections: door.open,
+    refusedConnections: door.refused,
+  });
+  const metrics = createRelayMetrics(census);
+  const transport = createRelayTransport(configuration, { log, metrics });
+  const host = createSocketHost(transport, { configuration, tokens, log, metrics, now });
   const connections = configuration.redisUrl
     ? {
         own: connectRedis(configuration.redisUrl, log),
@@ -84,15 +96,15 @@ export function createRelay(server: HttpServer, configuration: RelayConfiguratio
     const text = JSON.stringify(rooms);
     if (text === told) return;
     told = text;
-    // What nobody can be told now is told with the next change: without Redis nothing piles up.
+    // What cannot be told now is told with the next change: without Redis nothing piles up.
     (reachesAll() ? hall : hall.local).emit('node', { node, rooms });
   }, lobbyEveryMs);
 
-  const handle = createRelayRoutes({
+  const service = createRelayRoutes({
     configuration,
     tokens,
     lobby,
-    host,
+    census,
     metrics,
     log,
     endRoom,
@@ -100,7 +112,11 @@ export function createRelay(server: HttpServer, configuration: RelayConfiguratio
   });
   return {
     host,
-    handle,
+    get census() {
+      return census();
+    },
+    service,
+    upgrade: transport.upgrade,
     async close() {
       clearInterval(timer);
       await host.close();

@@ -1,15 +1,23 @@
 import { randomBytes } from 'node:crypto';
 import { errors, jwtVerify, SignJWT } from 'jose';
 import * as v from 'valibot';
-import { type RoomKind, type RoomTerms, roomKinds, roomTerms } from '../src/core/protocol/messages';
+import { mostSeats, type RoomKind, type RoomTerms, roomKinds, roomTerms } from '../src/core/protocol/messages';
 
-/** What a token says: who somebody is in which room. Known to the server alone; others know a seat and a name. */
+/** A place that is one person's own, by the name that it is known under; seat null: among those who watch. */
+export interface AssignedPlace {
+  readonly seat: number | null;
+  readonly name: string;
+}
+
+/** What a token says: who a person is in which room. Known to the server alone; others know a seat and a name. */
 export interface RoomPass {
   readonly identity: string;
   readonly room: string;
   readonly kind: RoomKind;
   /** What the room is to be like if this person is the first in it. */
   readonly terms: RoomTerms;
+  /** Of a room whose places are all assigned; null: a room where a person takes any place that is free. */
+  readonly assigned: AssignedPlace | null;
 }
 
 /** Passes as signed text that expires. */
@@ -26,6 +34,8 @@ export interface RoomTokens {
 
 /** Names of rooms: what goes into an address and can be told over the telephone. */
 export const roomName = /^[a-z0-9][a-z0-9-]{0,31}$/;
+/** Names of rooms whose places are assigned: no other room can be called so. Proxies find a room by 32 characters at most. */
+export const assignedRoomName = /^study\.[0-9a-f]{24}$/;
 
 const lifeSeconds = 15 * 60;
 /** A token may be renewed this long after it has expired [s]. */
@@ -34,12 +44,19 @@ const issuer = 'threepoint';
 const algorithm = 'HS256';
 const longestToken = 1024;
 
+const assignedPlace = v.nullable(
+  v.strictObject({
+    seat: v.nullable(v.pipe(v.number(), v.integer(), v.minValue(0), v.maxValue(mostSeats - 1))),
+    name: v.string(),
+  }),
+);
+
 /** `now`: seconds since 1970. */
 export function createRoomTokens(secret: string, now: () => number): RoomTokens {
   const key = new TextEncoder().encode(secret);
 
-  const sign = ({ identity, room, kind, terms }: RoomPass): Promise<string> =>
-    new SignJWT({ room, kind, terms })
+  const sign = ({ identity, room, kind, terms, assigned }: RoomPass): Promise<string> =>
+    new SignJWT({ room, kind, terms, ...(assigned && { assigned: { ...assigned } }) })
       .setProtectedHeader({ alg: algorithm })
       .setIssuer(issuer)
       .setSubject(identity)
@@ -59,9 +76,11 @@ export function createRoomTokens(secret: string, now: () => number): RoomTokens 
       const { sub: identity, room, kind } = payload;
       const terms = v.safeParse(roomTerms, payload.terms ?? {});
       const known = roomKinds.find((name) => name === kind);
-      return identity && typeof room === 'string' && roomName.test(room) && known && terms.success
-        ? { identity, room, kind: known, terms: terms.output }
-        : null;
+      const assigned = v.safeParse(assignedPlace, payload.assigned ?? null);
+      if (!identity || typeof room !== 'string' || !known || !terms.success || !assigned.success) return null;
+      // A room has assigned places or it has none: its name tells which.
+      const named = assigned.output ? assignedRoomName : roomName;
+      return named.test(room) ? { identity, room, kind: known, terms: terms.output, assigned: assigned.output } : null;
     } catch (error) {
       if (error instanceof errors.JOSEError) return null;
       throw error;
@@ -69,7 +88,8 @@ export function createRoomTokens(secret: string, now: () => number): RoomTokens 
   }
 
   return {
-    issue: (room, kind, terms = {}) => sign({ identity: randomBytes(12).toString('base64url'), room, kind, terms }),
+    issue: (room, kind, terms = {}) =>
+      sign({ identity: randomBytes(12).toString('base64url'), room, kind, terms, assigned: null }),
     sign,
     verifyRenewable: (token) => read(token, renewalSeconds),
     verify: (token) => read(token, 5),

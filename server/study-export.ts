@@ -64,7 +64,7 @@ export function exportFiles(content: ExportContent): Readonly<Record<string, str
   return files;
 }
 
-/** The name of an export, so that nobody takes simulated people for people. */
+/** The name of an export, so that simulated people are not taken for people. */
 export const exportName = (
   { plan, simulated }: Pick<ExportContent, 'plan' | 'simulated'>,
   participant?: string,

@@ -1,8 +1,12 @@
 import { randomBytes } from 'node:crypto';
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
-import type { IncomingMessage, ServerResponse } from 'node:http';
 import { join } from 'node:path';
-import { createStudyRoutes, shortestExperimenterToken } from './study-routes';
+import { ConfigurationError } from './configuration';
+import type { WrongGuess } from './guess-limits';
+import type { Service } from './http/router';
+import { weaknessOf } from './secret-bits';
+import { createStudyRoutes } from './study-routes';
+import type { StudySeats } from './study-seats';
 import { openStudyStore } from './study-store';
 
 export interface StudyServiceOptions {
@@ -12,13 +16,16 @@ export interface StudyServiceOptions {
   readonly token: string | null;
   /** Seconds since 1970. */
   readonly now: () => number;
-  /** Told of faults and of deletions by the retention date, one line each. */
+  /** Signs participants into the rooms of their trials. */
+  readonly seats: StudySeats;
+  /** Believe what a proxy in front says of a client's address. */
+  readonly trustProxy: boolean;
+  /** Told of faults, of wrong guesses and of deletions by the retention date, one line each. */
   readonly log: (line: string) => void;
 }
 
 export interface StudyService {
-  /** Answers requests below /api/studies and returns true; false for any other request. */
-  handle(request: IncomingMessage, response: ServerResponse): boolean;
+  readonly service: Service;
   /** Where the token lies; null: it was given. */
   readonly tokenFile: string | null;
   close(): void;
@@ -26,27 +33,37 @@ export interface StudyService {
 
 const hourMs = 3_600_000;
 
+/** As this server draws tokens, and has drawn them before. */
+const drawnToken = /^([\w-]{43}|[\w-]{32})$/;
+
 /** The token in this file; drawn and written, readable for its owner alone, where there is none. */
 function keptToken(file: string): string {
-  if (!existsSync(file)) writeFileSync(file, `${randomBytes(24).toString('base64url')}\n`, { mode: 0o600 });
+  if (!existsSync(file)) writeFileSync(file, `${randomBytes(32).toString('base64url')}\n`, { mode: 0o600 });
   const token = readFileSync(file, 'utf8').trim();
-  if (token.length < shortestExperimenterToken) {
-    throw new Error(`${file}: the experimenter's token needs at least ${shortestExperimenterToken} characters`);
-  }
+  const weakness = drawnToken.test(token) ? null : weaknessOf(token);
+  if (weakness) throw new ConfigurationError(`The experimenter's token in ${file} ${weakness}`);
   return token;
 }
 
+const wrongGuess = ({ what, of, address, failures }: WrongGuess): string =>
+  `study: a wrong ${what}${of === null ? '' : ` for "${of}"`} came from ${address}, number ${failures} within the hour`;
+
 /** The studies of this server: its database, its routes and, once an hour, what its retention dates demand. */
-export function openStudyService({ directory, token, now, log }: StudyServiceOptions): StudyService {
+export function openStudyService(options: StudyServiceOptions): StudyService {
+  const { directory, token, now, seats, trustProxy, log } = options;
   mkdirSync(directory, { recursive: true, mode: 0o700 });
   const tokenFile = token === null ? join(directory, 'experimenter-token') : null;
   const experimenterToken = token ?? keptToken(tokenFile as string);
   const store = openStudyStore(join(directory, 'studies.db'));
-  const handle = createStudyRoutes({
+  const service = createStudyRoutes({
     store,
     experimenterToken,
     now,
-    onFault: (error) => log(`study: ${error instanceof Error ? (error.stack ?? error.message) : String(error)}`),
+    seats,
+    trustProxy,
+    onWrongGuess: (guess) => log(wrongGuess(guess)),
+    onFault: (error) =>
+      log(`study, a fault: ${error instanceof Error ? (error.stack ?? error.message) : String(error)}`),
   });
   const expire = () => {
     for (const { study, participant, records } of store.deleteExpired(now())) {
@@ -57,7 +74,7 @@ export function openStudyService({ directory, token, now, log }: StudyServiceOpt
   const timer = setInterval(expire, hourMs);
   timer.unref();
   return {
-    handle,
+    service,
     tokenFile,
     close() {
       clearInterval(timer);

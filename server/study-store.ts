@@ -1,11 +1,12 @@
 import { createHash, randomBytes, timingSafeEqual } from 'node:crypto';
 import { gunzipSync, gzipSync } from 'node:zlib';
-import { DatabaseSync, type DatabaseSyncInstance } from '@photostructure/sqlite';
+import { DatabaseSync } from '@photostructure/sqlite';
 import { checkedPlan, participantsOf, type StudyPlan, scheduleFor } from '../src/core/study/plan';
 import { currentStep, type Progress, remainingSeconds, resumed } from '../src/core/study/progress';
 import type { ParticipantState, Receipt, StudyCommand, StudyInfo } from '../src/core/study/study-api';
 import { recordVersion, type StudyRecord } from '../src/core/study/study-record';
 import type { MotionFile } from './study-export';
+import { migrate, newCode, normalisedCode } from './study-schema';
 
 /** Why the store will not do it; the message is for the person who asked. */
 export class StoreRefusal extends Error {
@@ -26,7 +27,11 @@ export interface StudyStore {
   addStudy(plan: StudyPlan, options: { readonly simulated: boolean; readonly at: number }): StudyInfo;
   study(id: string): StudyInfo;
   studies(): readonly StudyInfo[];
-  /** Gives the place to whoever asks first. The withdrawal code comes with the first claim alone; null later. */
+  /** Whether this is the invitation to the place, however it was typed. */
+  invites(study: string, participant: string, code: string): boolean;
+  /** Another invitation to the place, in an open study to all of them; the old one opens nothing any more. */
+  reinvite(study: string, participant: string): void;
+  /** Gives a place that is free away. The withdrawal code comes with the first claim alone; null later. */
   claim(
     study: string,
     participant: string,
@@ -56,73 +61,13 @@ export interface StudyStore {
   motion(study: string, participant?: string): readonly MotionFile[];
   overview(study: string, now: number): readonly ParticipantState[];
   deleteParticipant(study: string, participant: string, reason: Receipt['reason'], at: number): Receipt;
-  /** Deletes everything of whoever has this code; null: nobody has. */
+  /** Deletes everything of the participant who has this code; null: none has. */
   withdraw(study: string, code: string, at: number): Receipt | null;
   /** Deletes what is past its retention date. */
   deleteExpired(now: number): readonly Receipt[];
   receipts(study: string): readonly Receipt[];
   close(): void;
 }
-
-/** Each brings the database from its index to the next version. Never change one that was released: add one. */
-const migrations: readonly string[] = [
-  `
-  CREATE TABLE studies (
-    id TEXT PRIMARY KEY,
-    plan TEXT NOT NULL,
-    simulated INTEGER NOT NULL CHECK (simulated IN (0, 1)),
-    created_at REAL NOT NULL,
-    retention_until REAL NOT NULL
-  ) STRICT;
-  CREATE TABLE participants (
-    study TEXT NOT NULL REFERENCES studies (id),
-    participant TEXT NOT NULL,
-    token_hash BLOB,
-    withdrawal_hash BLOB,
-    withdrawn INTEGER NOT NULL DEFAULT 0 CHECK (withdrawn IN (0, 1)),
-    motion_consent INTEGER CHECK (motion_consent IN (0, 1)),
-    progress TEXT,
-    progress_at REAL,
-    PRIMARY KEY (study, participant)
-  ) STRICT;
-  CREATE TABLE records (
-    number INTEGER PRIMARY KEY,
-    study TEXT NOT NULL,
-    participant TEXT NOT NULL,
-    id TEXT NOT NULL,
-    record TEXT NOT NULL,
-    received_at REAL NOT NULL,
-    UNIQUE (study, participant, id),
-    FOREIGN KEY (study, participant) REFERENCES participants (study, participant)
-  ) STRICT;
-  CREATE TABLE motion (
-    study TEXT NOT NULL,
-    participant TEXT NOT NULL,
-    trial TEXT NOT NULL,
-    gzipped BLOB NOT NULL,
-    received_at REAL NOT NULL,
-    PRIMARY KEY (study, participant, trial),
-    FOREIGN KEY (study, participant) REFERENCES participants (study, participant)
-  ) STRICT;
-  CREATE TABLE commands (
-    number INTEGER PRIMARY KEY AUTOINCREMENT,
-    study TEXT NOT NULL,
-    participant TEXT NOT NULL,
-    command TEXT NOT NULL,
-    at REAL NOT NULL,
-    FOREIGN KEY (study, participant) REFERENCES participants (study, participant)
-  ) STRICT;
-  CREATE TABLE receipts (
-    number INTEGER PRIMARY KEY AUTOINCREMENT,
-    study TEXT NOT NULL,
-    participant TEXT NOT NULL,
-    reason TEXT NOT NULL,
-    records INTEGER NOT NULL,
-    motion_files INTEGER NOT NULL,
-    at REAL NOT NULL
-  ) STRICT;
-  `,
-];
 
 export const mostRecordsPerParticipant = 10_000;
 /** Compressed bytes of tracked frames. */
@@ -133,47 +78,33 @@ const secondsPerDay = 86_400;
 const hashOf = (secret: string) => createHash('sha256').update(secret).digest();
 const newToken = () => randomBytes(32).toString('base64url');
 
-// Crockford's base 32 without letters that are mistaken for digits: a code is read from a note and typed.
-const codeAlphabet = '0123456789ABCDEFGHJKMNPQRSTVWXYZ';
-
-/** Eighty bits as XXXX-XXXX-XXXX-XXXX. */
-function newWithdrawalCode(): string {
-  const characters = Array.from(randomBytes(16), (byte) => codeAlphabet[byte % 32]).join('');
-  return (characters.match(/.{4}/g) as string[]).join('-');
-}
-
-/** The code as it was given, however it was typed. */
-export function normalisedCode(typed: string): string {
-  const characters = typed
-    .toUpperCase()
-    .replace(/[IL]/g, '1')
-    .replace(/O/g, '0')
-    .replace(/[^0-9A-Z]/g, '');
-  return (characters.match(/.{1,4}/g) ?? []).join('-');
-}
-
-function migrate(database: DatabaseSyncInstance): void {
-  const version = (database.prepare('PRAGMA user_version').get() as { user_version: number }).user_version;
-  if (version > migrations.length) {
-    throw new Error(`the study database has version ${version}; this server knows versions up to ${migrations.length}`);
-  }
-  for (let next = version; next < migrations.length; next++) {
-    database.exec(`BEGIN IMMEDIATE; ${migrations[next]} PRAGMA user_version = ${next + 1}; COMMIT`);
-  }
-}
-
 interface ParticipantRow {
   readonly participant: string;
   readonly token_hash: Uint8Array | null;
   readonly withdrawal_hash: Uint8Array | null;
+  readonly invitation: string | null;
   readonly withdrawn: number;
   readonly motion_consent: number | null;
   readonly progress: string | null;
   readonly progress_at: number | null;
 }
 
-/** Opens the database in this file, makes it where there is none, and brings it up to date. */
-export function openStudyStore(file: string): StudyStore {
+/** SQLite's codes: the disk, or what the database may take of it, is full; 4874: no room for the index of its log. */
+const diskIsFull = new Set([13, 4874]);
+
+/** The refusal of what failed for want of room; any other error as it is. */
+function asRefusal(error: unknown): unknown {
+  const { sqliteExtendedCode } = (error ?? {}) as { sqliteExtendedCode?: unknown };
+  return typeof sqliteExtendedCode === 'number' && diskIsFull.has(sqliteExtendedCode)
+    ? new StoreRefusal('full', 'the disk of the server is full: nothing of this was stored')
+    : error;
+}
+
+/**
+ * Opens the database in this file, makes it where there is none, and brings it up to date. It grows to `mostBytes`, so that studies leave
+ * room for the rest of the machine; beyond that writes are refused as "full".
+ */
+export function openStudyStore(file: string, { mostBytes = 16 * 2 ** 30 } = {}): StudyStore {
   const database = new DatabaseSync(file);
   // FULL: what was acknowledged survives a power cut too. secure_delete: what was deleted is overwritten.
   database.exec(`
@@ -183,19 +114,21 @@ export function openStudyStore(file: string): StudyStore {
     PRAGMA secure_delete = ON;
     PRAGMA busy_timeout = 5000;
   `);
+  const { page_size: pageBytes } = database.prepare('PRAGMA page_size').get() as { page_size: number };
+  database.exec(`PRAGMA max_page_count = ${Math.floor(mostBytes / pageBytes)}`);
   migrate(database);
 
   function transaction<T>(body: () => T): T {
-    database.exec('BEGIN IMMEDIATE');
-    let result: T;
     try {
-      result = body();
+      database.exec('BEGIN IMMEDIATE');
+      const result = body();
+      database.exec('COMMIT');
+      return result;
     } catch (error) {
-      database.exec('ROLLBACK');
-      throw error;
+      // A full disk has rolled back already.
+      if (database.isTransaction) database.exec('ROLLBACK');
+      throw asRefusal(error);
     }
-    database.exec('COMMIT');
-    return result;
   }
 
   const sql = {
@@ -274,7 +207,7 @@ export function openStudyStore(file: string): StudyStore {
 
   function deleteParticipant(study: string, participant: string, reason: Receipt['reason'], at: number): Receipt {
     const receipt = transaction(() => {
-      participantOf(study, participant);
+      const before = participantOf(study, participant);
       const of = [study, participant];
       const { changes: records } = database
         .prepare('DELETE FROM records WHERE study = ? AND participant = ?')
@@ -283,13 +216,15 @@ export function openStudyStore(file: string): StudyStore {
         .prepare('DELETE FROM motion WHERE study = ? AND participant = ?')
         .run(...of);
       database.prepare('DELETE FROM commands WHERE study = ? AND participant = ?').run(...of);
-      // Who withdrew stays out; a place that the experimenter cleared may be taken anew.
+      // A participant who withdrew stays out; a place that the experimenter cleared may be taken anew, by a new invitation.
+      const open = studyOf(study).plan.entry === 'open';
+      const invitation = reason !== 'experimenter' ? null : open ? before.invitation : newCode();
       database
         .prepare(
           `UPDATE participants SET token_hash = NULL, withdrawal_hash = NULL, motion_consent = NULL, progress = NULL,
-           progress_at = NULL, withdrawn = ? WHERE study = ? AND participant = ?`,
+           progress_at = NULL, withdrawn = ?, invitation = ? WHERE study = ? AND participant = ?`,
         )
-        .run(reason === 'withdrawn' ? 1 : 0, ...of);
+        .run(reason === 'withdrawn' ? 1 : 0, invitation, ...of);
       const row = database
         .prepare(
           `INSERT INTO receipts (study, participant, reason, records, motion_files, at) VALUES (?, ?, ?, ?, ?, ?)
@@ -330,13 +265,26 @@ export function openStudyStore(file: string): StudyStore {
         database
           .prepare('INSERT INTO studies (id, plan, simulated, created_at, retention_until) VALUES (?, ?, ?, ?, ?)')
           .run(checked.id, text, Number(simulated), at, at + checked.retentionDays * secondsPerDay);
-        const insert = database.prepare('INSERT INTO participants (study, participant) VALUES (?, ?)');
-        for (const participant of participantsOf(checked)) insert.run(checked.id, participant);
+        const insert = database.prepare('INSERT INTO participants (study, participant, invitation) VALUES (?, ?, ?)');
+        const common = checked.entry === 'open' ? newCode() : null;
+        for (const participant of participantsOf(checked)) insert.run(checked.id, participant, common ?? newCode());
         return studyOf(checked.id);
       });
     },
     study: studyOf,
     studies: () => (sql.studies.all() as Record<string, unknown>[]).map(infoOf),
+    invites(study, participant, code) {
+      const { invitation } = participantOf(study, participant);
+      // Hashes are of one length, as the comparison wants them.
+      return invitation !== null && timingSafeEqual(hashOf(normalisedCode(code)), hashOf(invitation));
+    },
+    reinvite(study, participant) {
+      const { plan } = studyOf(study);
+      presentParticipant(study, participant);
+      const whose = plan.entry === 'open' ? 'withdrawn = 0' : 'participant = ?';
+      const of = plan.entry === 'open' ? [study] : [study, participant];
+      database.prepare(`UPDATE participants SET invitation = ? WHERE study = ? AND ${whose}`).run(newCode(), ...of);
+    },
     claim(study, participant, at) {
       const { retentionUntil } = studyOf(study);
       if (at > retentionUntil) throw new StoreRefusal('forbidden', `the study "${study}" is past its retention date`);
@@ -349,7 +297,7 @@ export function openStudyStore(file: string): StudyStore {
           );
         }
         const token = newToken();
-        const withdrawalCode = row.withdrawal_hash ? null : newWithdrawalCode();
+        const withdrawalCode = row.withdrawal_hash ? null : newCode();
         database
           .prepare(
             `UPDATE participants SET token_hash = ?, withdrawal_hash = coalesce(withdrawal_hash, ?)
@@ -521,6 +469,7 @@ export function openStudyStore(file: string): StudyStore {
         const progress = row.progress === null ? null : resumed(schedule, row.progress);
         return {
           participant: row.participant,
+          invitation: row.invitation,
           claimed: row.token_hash !== null,
           withdrawn: row.withdrawn === 1,
           records: countRecords(study, row.participant),

@@ -9,7 +9,7 @@ import {
   type ProgressEvent,
   remainingSeconds,
 } from '../core/study/progress';
-import type { Claim, NumberedCommand } from '../core/study/study-api';
+import type { Claim, NumberedCommand, PlayedTogether, SignedSeat } from '../core/study/study-api';
 import type { StudyRecord } from '../core/study/study-record';
 import { type ParticipantClient, ServerRefusal, ServerUnreachable } from './study-client';
 import type { KeptMotion, KeptSession, StudyVault } from './study-vault';
@@ -48,6 +48,8 @@ export interface ParticipantSession {
   /** Takes an event at once and stores what follows; returns why not, null: taken. */
   apply(event: ProgressEvent): string | null;
   codeNoted(): void;
+  /** The participant's seat in the room of a trial that the group plays together; rejects with why there is none. */
+  seat(trial: PlayedTogether): Promise<SignedSeat>;
   /** Tracked frames of a trial, kept until the server has them. */
   keepMotion(trial: string, recording: string): void;
   /** Sends what is unsent, reports the progress and follows the experimenter's commands. Never rejects. */
@@ -253,7 +255,7 @@ export function createParticipantSession(
     await saving;
     try {
       await sendAll();
-      // Before consent nobody is told even where they are.
+      // Before consent not even the step is reported.
       if (session.progress.motion !== null) {
         const { progress } = session;
         await client.saveProgress(study, participant, token, progress);
@@ -312,6 +314,7 @@ export function createParticipantSession(
     codeNoted() {
       change({ ...session, withdrawalCode: null }, []);
     },
+    seat: (trial) => client.seat(study, participant, token, trial),
     keepMotion(trial, recording) {
       const motion = { trial, recording };
       motionOutbox.set(trial, motion);

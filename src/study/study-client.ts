@@ -3,9 +3,11 @@ import type {
   Claim,
   NumberedCommand,
   ParticipantState,
+  PlayedTogether,
   PublicStudy,
   Receipt,
   RecordedStudy,
+  SignedSeat,
   StudyCommand,
   StudyInfo,
   StudyListing,
@@ -15,10 +17,13 @@ import type { StudyRecord } from '../core/study/study-record';
 /** The server answered, and the answer is no. */
 export class ServerRefusal extends Error {
   readonly status: number;
+  /** What of the request was wrong, as `records[1].body.age`; null: not a matter of one field. */
+  readonly field: string | null;
 
-  constructor(status: number, message: string) {
+  constructor(status: number, message: string, field: string | null = null) {
     super(message);
     this.status = status;
+    this.field = field;
   }
 }
 
@@ -36,7 +41,7 @@ interface Asked {
 }
 
 const usualPatienceMs = 15_000;
-/** While somebody waits before an empty page. */
+/** While a person waits before an empty page. */
 const shortPatienceMs = 4000;
 
 async function ask(
@@ -68,7 +73,8 @@ async function ask(
       : `the server says ${response.status}`;
   // Proxies say these while the server is away; the server itself means 5xx as "nothing was acknowledged".
   if (response.status >= 500 && response.status !== 507) throw new ServerUnreachable(sentence);
-  throw new ServerRefusal(response.status, sentence);
+  const field = typeof said === 'object' && said !== null && 'field' in said ? said.field : null;
+  throw new ServerRefusal(response.status, sentence, typeof field === 'string' ? field : null);
 }
 
 /** Asks a server for JSON; the origin is empty for the page's own server. */
@@ -88,7 +94,8 @@ const of = (study: string, participant?: string) =>
 /** What a participant's page asks of the server. Every call throws ServerRefusal or ServerUnreachable. */
 export interface ParticipantClient {
   study(study: string): Promise<PublicStudy>;
-  claim(study: string, participant: string): Promise<Claim>;
+  /** `invitation` as it stands in the link, or as it was typed. */
+  claim(study: string, participant: string, invitation: string): Promise<Claim>;
   /** Returns the ids that are safely stored now. */
   send(study: string, participant: string, token: string, records: readonly StudyRecord[]): Promise<readonly string[]>;
   /** null: nothing has been reported. */
@@ -96,13 +103,16 @@ export interface ParticipantClient {
   saveProgress(study: string, participant: string, token: string, progress: Progress): Promise<void>;
   commands(study: string, participant: string, token: string, after: number): Promise<readonly NumberedCommand[]>;
   sendMotion(study: string, participant: string, token: string, trial: string, recording: string): Promise<void>;
+  /** The participant's seat in the room of a trial that a group plays together. */
+  seat(study: string, participant: string, token: string, trial: PlayedTogether): Promise<SignedSeat>;
 }
 
 export function createParticipantClient(origin = ''): ParticipantClient {
   const answer = answersOf(origin);
   return {
     study: (study) => answer(of(study)),
-    claim: (study, participant) => answer(`${of(study, participant)}/claim`, { method: 'POST' }),
+    claim: (study, participant, invitation) =>
+      answer(`${of(study, participant)}/claim`, { method: 'POST', body: { invitation } }),
     async send(study, participant, token, records) {
       const path = `${of(study, participant)}/records`;
       return (await answer<{ acknowledged: string[] }>(path, { method: 'POST', token, body: { records } }))
@@ -124,6 +134,8 @@ export function createParticipantClient(origin = ''): ParticipantClient {
         token,
         text: recording,
       }),
+    seat: (study, participant, token, trial) =>
+      answer(`${of(study, participant)}/seat`, { method: 'POST', token, body: trial }),
   };
 }
 
@@ -137,6 +149,8 @@ export interface ExperimenterClient {
   command(study: string, participant: string, command: StudyCommand): Promise<void>;
   remark(study: string, participant: string, text: string): Promise<void>;
   release(study: string, participant: string): Promise<void>;
+  /** Another invitation; links with the old one open nothing any more. */
+  reinvite(study: string, participant: string): Promise<void>;
   /** The zip file of a participant, or of all. */
   export(study: string, participant?: string): Promise<{ readonly name: string; readonly zip: Blob }>;
   delete(study: string, participant: string): Promise<Receipt>;
@@ -158,6 +172,7 @@ export function createExperimenterClient(token: string, origin = ''): Experiment
       await answer(`${of(study, participant)}/remarks`, { method: 'POST', token, body: { text } });
     },
     release: (study, participant) => answer(`${of(study, participant)}/release`, { method: 'POST', token }),
+    reinvite: (study, participant) => answer(`${of(study, participant)}/invitation`, { method: 'POST', token }),
     async export(study, participant) {
       const response = await ask(origin, `${of(study, participant)}/export`, { token });
       const name = /filename="([^"]+)"/.exec(response.headers.get('content-disposition') ?? '')?.[1];

@@ -1,3 +1,4 @@
+import type { SignedSeat } from '../core/study/study-api';
 import type { TrialEvent, TrialOutcome } from '../core/study/trial-log';
 
 /** What happened in a task: something sent off, or what became of it. */
@@ -13,8 +14,8 @@ export interface TaskEnd {
 
 /** Who plays a trial, with whom, where. */
 export interface TaskPlace {
-  /** Name of a room that nothing else uses: small letters and digits. */
-  readonly room: string;
+  /** A seat in the room of the whole group, which nothing else uses; asks the server for it anew each time. */
+  seat(): Promise<SignedSeat>;
   /** The participant's code, and those of the whole group, in the order of their seats. */
   readonly participant: string;
   readonly members: readonly string[];
@@ -30,9 +31,9 @@ export interface TaskRunner {
   start(trial: { readonly seed: number; readonly seconds: number }): void;
   /** What happened since it was last asked. */
   take(): readonly TaskEvent[];
-  /** Whom a trial that was started still waits for; null: nobody, or no trial. */
+  /** Whom a trial that was started still waits for; null: no one, or no trial. */
   readonly waitingFor: string | null;
-  /** Whether the game's clock stands because somebody of the group pauses. */
+  /** Whether the game's clock stands because one of the group pauses. */
   readonly standing: boolean;
   /** null: no trial, or one that goes on. */
   readonly end: TaskEnd | null;

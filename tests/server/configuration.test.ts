@@ -6,10 +6,10 @@ const noStudies = { studyDirectory: null, experimenterToken: null };
 
 describe('the configuration', () => {
   test('studies lie where the command line says, else where the environment does; the token is never an argument', () => {
-    const environment = { STUDIES: '/var/studies', EXPERIMENTER_TOKEN: 'a-token-of-sixteen+' };
+    const environment = { STUDIES: '/var/studies', EXPERIMENTER_TOKEN: 'kN3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA+' };
     expect(configurationFrom([], environment)).toMatchObject({
       studyDirectory: '/var/studies',
-      experimenterToken: 'a-token-of-sixteen+',
+      experimenterToken: 'kN3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA+',
     });
     expect(configurationFrom(['--studies', 'here'], environment)).toMatchObject({ studyDirectory: 'here' });
   });
@@ -29,6 +29,11 @@ describe('the configuration', () => {
     [['--port', '70000'], {}, /not "70000"/],
     [[], { PORT: '-1' }, /environment variable PORT must be a port number.*"-1"/],
     [[], { EXPERIMENTER_TOKEN: 'short' }, /EXPERIMENTER_TOKEN must have 16/],
+    [
+      [],
+      { EXPERIMENTER_TOKEN: 'our-laboratory-token' },
+      /EXPERIMENTER_TOKEN has some \d+ bits, .* needs 128: let "openssl rand -base64 32" draw one/,
+    ],
     [['--studies='], {}, /--studies needs/],
     [['--lam'], {}, /--lam[\s\S]*Usage: npm start/],
     [['--port'], {}, /--port[\s\S]*Usage/],

@@ -9,7 +9,7 @@ import { paperPlan, session } from '../core/study/studies';
 import { fists, releaseOf } from '../net/people';
 import { measured } from '../reliability/measured';
 import { directoryWith } from '../temporary-directory';
-import { arrive, pause, startRelay, until } from './running-relay';
+import { arrive, startRelay, until } from './running-relay';
 
 /** Every file below a directory, whatever it is called. */
 const filesIn = (directory: string): Buffer[] =>
@@ -32,7 +32,10 @@ test('a match over sockets and a study without consent to motion leave no motion
   const people = ['Ann', 'Ben'].map((name) => arrive(relay.url, 'ball-privacy', name));
   await until('both are seated', () => people.every(({ connection }) => connection.room?.mySeat != null));
   const before = filesIn(directory).map(({ length }) => length);
-  await pause(1.5);
+  const heard = people.map(({ poses }) => poses.length);
+  await until('each to have heard sixty more poses', () =>
+    people.every(({ poses }, i) => poses.length > heard[i]! + 60),
+  );
   expect(
     filesIn(directory).map(({ length }) => length),
     'playing writes nothing',
@@ -82,7 +85,7 @@ test('nothing that carries poses can write to a disk: relay, sockets, rooms and 
   const core = new URL('../../src/core/', import.meta.url);
   const carriers = [
     ...readdirSync(server)
-      .filter((file) => /^(relay|socket-host|lobby|budget|room-tokens)/.test(file))
+      .filter((file) => /^(relay|socket-host|guest|hosted-rooms|tick|lobby|budget|room-tokens)/.test(file))
       .map((file) => new URL(file, server)),
     ...['room', 'protocol'].flatMap((folder) =>
       readdirSync(new URL(`${folder}/`, core)).map((file) => new URL(`${folder}/${file}`, core)),

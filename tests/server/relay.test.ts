@@ -1,6 +1,6 @@
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
 import { atRack, fists, holding, opening, releaseOf } from '../net/people';
-import { arrive, pause, type RunningRelay, startRelay, until } from './running-relay';
+import { arrive, type RunningRelay, startRelay, until } from './running-relay';
 
 let server: RunningRelay;
 beforeAll(async () => {
@@ -51,7 +51,10 @@ describe('a relay', () => {
       );
       const stands = server.relay.host.room('study')?.match?.tick ?? -1;
       const asSeen = people.map(({ match }) => match.tick);
-      await pause(0.5);
+      const heard = people.map(({ poses }) => poses.length);
+      await until('each to have heard sixty more poses', () =>
+        people.every(({ poses }, i) => poses.length > heard[i]! + 60),
+      );
       expect(server.relay.host.room('study')?.match?.tick).toBe(stands);
       expect(people.map(({ match }) => match.tick)).toEqual(asSeen);
       ann.connection.pause(false);

@@ -1,5 +1,6 @@
-import type { AddressInfo } from 'node:net';
 import { io, type Socket } from 'socket.io-client';
+import { createDoor } from '../../server/door';
+import { createRouter, noPage } from '../../server/http/router';
 import { createRelay } from '../../server/relay';
 import { relayConfigurationFrom } from '../../server/relay-configuration';
 import { serve } from '../../server/web-server';
@@ -15,27 +16,23 @@ import { createRoomPass } from '../../src/net/room-pass';
 import { createSocketConnection } from '../../src/net/socket-connection';
 import { createPerson, visitor } from '../net/people';
 
-export const testSecret = 'a secret of the tests, long enough for them';
+export const testSecret = 'tests-kN3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gAzE4uV7iO';
 
 /** A relay of this process on a free port of loopback. */
 export async function startRelay(environment: Record<string, string> = {}, port = 0) {
   const configuration = relayConfigurationFrom({ THREEPOINT_LOG_LEVEL: 'silent', ...environment });
-  let handle: ReturnType<typeof createRelay>['handle'] | null = null;
-  const server = await serve(
-    (request, response) => {
-      if (handle?.(request, response)) return;
-      response.writeHead(404);
-      response.end();
-    },
-    { host: '127.0.0.1', port },
-  );
-  const relay = createRelay(server.requests, configuration, configuration.secret ?? testSecret);
-  handle = relay.handle;
-  const { port: actual } = server.requests.address() as AddressInfo;
+  const door = createDoor({ perAddress: configuration.connectionsPerAddress, behindProxy: configuration.trustProxy });
+  const relay = createRelay(configuration, configuration.secret ?? testSecret, door);
+  const server = await serve(createRouter([relay.service], noPage), {
+    host: '127.0.0.1',
+    port,
+    upgrade: relay.upgrade,
+    door,
+  });
   return {
     relay,
-    url: `http://127.0.0.1:${actual}`,
-    port: actual,
+    url: `http://127.0.0.1:${server.port}`,
+    port: server.port,
     async close() {
       await relay.close();
       await server.close();
@@ -71,7 +68,7 @@ export function arrive(
     room,
     visitor: visitor(name, more),
     pass: createRoomPass(url, room, kind, undefined, terms),
-    now,
+    clock: { now, leftOut: 0 },
   });
   const person = createPerson(connection);
   let frames: ((time: number) => void) | null = null;
@@ -122,7 +119,7 @@ export async function tokenFor(url: string, room: string, kind: 'ball' | 'open' 
 }
 
 /** A socket without our client behind it: for saying what no page of ours says. */
-export function rawSocket(url: string, token: string, room: string): Socket {
+export function rawSocket(url: string, token: string, room: string, extraHeaders: Record<string, string> = {}): Socket {
   return io(url, {
     path: '/relay',
     transports: ['websocket'],
@@ -131,6 +128,7 @@ export function rawSocket(url: string, token: string, room: string): Socket {
     auth: { token },
     reconnection: false,
     forceNew: true,
+    extraHeaders,
   });
 }
 

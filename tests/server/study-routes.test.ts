@@ -1,82 +1,13 @@
-import { createServer } from 'node:http';
-import type { AddressInfo } from 'node:net';
-import { join } from 'node:path';
 import { strFromU8, unzipSync } from 'fflate';
-import { describe, expect, onTestFinished, test } from 'vitest';
-import { bodyLimits, createStudyRoutes } from '../../server/study-routes';
-import { openStudyStore } from '../../server/study-store';
+import { describe, expect, test } from 'vitest';
+import { bodyLimits } from '../../server/study-routes';
 import { scheduleFor } from '../../src/core/study/plan';
 import { begin } from '../../src/core/study/progress';
 import type { StudyRecord } from '../../src/core/study/study-record';
 import { writeRecording } from '../../src/core/tracking/recording';
 import { paperPlan, session } from '../core/study/studies';
-import { directoryWith } from '../temporary-directory';
-
-const experimenter = 'an-experimenter-token-of-length';
-const now = 1_800_000_000;
-
-// biome-ignore lint/suspicious/noExplicitAny: reason: what arrives over HTTP has no type; each test says what it expects.
-type Anything = any;
-
-async function served({ experimenterToken = experimenter as string | null } = {}) {
-  const store = openStudyStore(join(directoryWith(), 'studies.db'));
-  const faults: unknown[] = [];
-  const routes = createStudyRoutes({
-    store,
-    experimenterToken,
-    now: () => now,
-    onFault: (error) => faults.push(error),
-  });
-  const server = createServer((request, response) => {
-    if (routes(request, response)) return;
-    response.writeHead(418);
-    response.end();
-  });
-  await new Promise<void>((resolve) => server.listen(0, '127.0.0.1', resolve));
-  onTestFinished(async () => {
-    server.closeAllConnections();
-    await new Promise((resolve) => server.close(resolve));
-    store.close();
-    expect(faults).toEqual([]);
-  });
-  const origin = `http://127.0.0.1:${(server.address() as AddressInfo).port}`;
-  async function ask(
-    method: string,
-    path: string,
-    { token, json, raw }: { token?: string; json?: unknown; raw?: RequestInit } = {},
-  ) {
-    const response = await fetch(`${origin}${path}`, {
-      method,
-      headers: {
-        ...(json !== undefined && { 'content-type': 'application/json' }),
-        ...(token && { authorization: `Bearer ${token}` }),
-      },
-      ...(json !== undefined && { body: JSON.stringify(json) }),
-      ...raw,
-    });
-    const body = Buffer.from(await response.arrayBuffer());
-    const isJson = response.headers.get('content-type')?.startsWith('application/json');
-    return {
-      status: response.status,
-      headers: response.headers,
-      body,
-      json: (isJson ? JSON.parse(body.toString()) : null) as Anything,
-    };
-  }
-  return { ask, store, origin };
-}
-
-async function withPaperStudy() {
-  const server = await served();
-  const added = await server.ask('POST', '/api/studies', {
-    token: experimenter,
-    json: { plan: paperPlan(), simulated: false },
-  });
-  expect(added.status).toBe(201);
-  const claim = async (participant: string): Promise<string> =>
-    (await server.ask('POST', `/api/studies/paper/participants/${participant}/claim`)).json.token;
-  return { ...server, claim };
-}
+import { measured } from '../reliability/measured';
+import { experimenter, now, servedPaperStudy, servedStudies } from './running-studies';
 
 function completed(participant: string, motion = false): StudyRecord[] {
   const schedule = scheduleFor(paperPlan(), participant);
@@ -90,8 +21,8 @@ const own = (participant: string, rest = '') => `/api/studies/paper/participants
 
 describe('a participant', () => {
   test('claims a place, sends records, and is told which are safe', async () => {
-    const { ask, store } = await withPaperStudy();
-    const claimed = await ask('POST', own('P01', '/claim'));
+    const { ask, invited, store } = await servedPaperStudy();
+    const claimed = await ask('POST', own('P01', '/claim'), { json: invited('P01') });
     expect(claimed.status).toBe(201);
     expect(claimed.json.withdrawalCode).toMatch(/^(\w{4}-){3}\w{4}$/);
     expect(claimed.json.plan).toEqual(paperPlan());
@@ -102,7 +33,7 @@ describe('a participant', () => {
   });
 
   test('goes on on another device where the first one was', async () => {
-    const { ask, claim } = await withPaperStudy();
+    const { ask, invited, claim } = await servedPaperStudy();
     const token = await claim('P01');
     const progress = {
       ...begin(scheduleFor(paperPlan(), 'P01')),
@@ -111,15 +42,15 @@ describe('a participant', () => {
       motion: false,
     };
     expect((await ask('PUT', own('P01', '/progress'), { token, json: progress })).status).toBe(204);
-    expect((await ask('POST', own('P01', '/claim'))).status).toBe(409);
+    expect((await ask('POST', own('P01', '/claim'), { json: invited('P01') })).status).toBe(409);
     expect((await ask('POST', own('P01', '/release'), { token: experimenter })).status).toBe(204);
-    const second = await ask('POST', own('P01', '/claim'));
+    const second = await ask('POST', own('P01', '/claim'), { json: invited('P01') });
     expect(second.json.progress).toEqual(progress);
     expect((await ask('GET', own('P01', '/progress'), { token })).status).toBe(401);
   });
 
   test('cannot read, write or delete what is of others', async () => {
-    const { ask, claim, store } = await withPaperStudy();
+    const { ask, claim, store } = await servedPaperStudy();
     const token = await claim('P01');
     const other = await claim('P02');
     const records = completed('P02');
@@ -157,7 +88,7 @@ describe('a participant', () => {
   });
 
   test('cannot put records under the code of another', async () => {
-    const { ask, claim, store } = await withPaperStudy();
+    const { ask, claim, store } = await servedPaperStudy();
     const token = await claim('P01');
     const answer = await ask('POST', own('P01', '/records'), { token, json: { records: completed('P02') } });
     expect(answer.status).toBe(403);
@@ -165,14 +96,14 @@ describe('a participant', () => {
   });
 
   test('learns nothing of the conditions before the place is theirs', async () => {
-    const { ask } = await withPaperStudy();
+    const { ask } = await servedPaperStudy();
     const { json } = await ask('GET', '/api/studies/paper');
     expect(Object.keys(json).toSorted()).toEqual(['consent', 'id', 'simulated', 'title']);
   });
 
   test('withdraws with the code alone, and gets a receipt', async () => {
-    const { ask, store } = await withPaperStudy();
-    const { token, withdrawalCode } = (await ask('POST', own('P01', '/claim'))).json;
+    const { ask, invited, store } = await servedPaperStudy();
+    const { token, withdrawalCode } = (await ask('POST', own('P01', '/claim'), { json: invited('P01') })).json;
     await ask('POST', own('P01', '/records'), { token, json: { records: completed('P01') } });
     expect((await ask('POST', '/api/studies/paper/withdraw', { json: { code: 'AAAA-AAAA-AAAA-AAAA' } })).status).toBe(
       404,
@@ -186,7 +117,7 @@ describe('a participant', () => {
   });
 
   test('sends tracked frames that are a recording, with consent to them', async () => {
-    const { ask, claim, store } = await withPaperStudy();
+    const { ask, claim, store } = await servedPaperStudy();
     const token = await claim('P01');
     await ask('POST', own('P01', '/records'), { token, json: { records: completed('P01', true) } });
     const head = {
@@ -209,7 +140,7 @@ describe('a participant', () => {
 
 describe('the experimenter', () => {
   test('sees where everybody is and steers', async () => {
-    const { ask, claim } = await withPaperStudy();
+    const { ask, claim } = await servedPaperStudy();
     const token = await claim('P01');
     const { json } = await ask('GET', '/api/studies/paper/participants', { token: experimenter });
     expect(json.participants).toHaveLength(15);
@@ -223,7 +154,7 @@ describe('the experimenter', () => {
   });
 
   test('notes remarks, which are exported', async () => {
-    const { ask, claim } = await withPaperStudy();
+    const { ask, claim } = await servedPaperStudy();
     const token = await claim('P01');
     await ask('POST', own('P01', '/records'), { token, json: { records: completed('P01') } });
     expect(
@@ -234,7 +165,7 @@ describe('the experimenter', () => {
   });
 
   test('exports, deletes, exports', async () => {
-    const { ask, claim } = await withPaperStudy();
+    const { ask, claim } = await servedPaperStudy();
     for (const participant of ['P01', 'P02']) {
       const token = await claim(participant);
       await ask('POST', own(participant, '/records'), { token, json: { records: completed(participant) } });
@@ -257,21 +188,14 @@ describe('the experimenter', () => {
   });
 
   test('is nobody where no token was set', async () => {
-    const { ask } = await served({ experimenterToken: null });
+    const { ask } = await servedStudies({ experimenterToken: null });
     expect((await ask('GET', '/api/studies', { token: experimenter })).status).toBe(401);
-  });
-
-  test('cannot have a token that is guessed', () => {
-    const store = openStudyStore(':memory:');
-    onTestFinished(() => store.close());
-    const options = { store, experimenterToken: 'secret', now: () => now, onFault: () => undefined };
-    expect(() => createStudyRoutes(options)).toThrow('at least 16 characters');
   });
 });
 
 describe('what is wrong', () => {
   test('in a plan is named by field', async () => {
-    const { ask } = await served();
+    const { ask } = await servedStudies();
     const plan = { ...paperPlan(), seed: -1 };
     const { status, json } = await ask('POST', '/api/studies', {
       token: experimenter,
@@ -282,7 +206,7 @@ describe('what is wrong', () => {
   });
 
   test('in a record is named by field, and nothing of the batch is stored', async () => {
-    const { ask, claim, store } = await withPaperStudy();
+    const { ask, claim, store } = await servedPaperStudy();
     const token = await claim('P01');
     const records = completed('P01').map((record) =>
       record.kind === 'demographics' ? { ...record, body: { ...record.body, age: 7 } } : record,
@@ -294,7 +218,7 @@ describe('what is wrong', () => {
   });
 
   test('answers with the status that says what', async () => {
-    const { ask, claim } = await withPaperStudy();
+    const { ask, claim } = await servedPaperStudy();
     const token = await claim('P01');
     const send = async (raw: RequestInit) =>
       (
@@ -307,16 +231,21 @@ describe('what is wrong', () => {
     expect(await send({ body: '{"records":[]}', headers: asJson })).toBe(400);
     expect(await send({ body: '{}', headers: { 'content-type': 'text/plain' } })).toBe(415);
     expect(await send({ body: `"${'x'.repeat(bodyLimits.json)}"`, headers: asJson })).toBe(413);
+    const nested = `${'['.repeat(100_000)}${']'.repeat(100_000)}`;
+    const deep = await ask('PUT', own('P01', '/progress'), {
+      raw: { body: nested, headers: { ...asJson, authorization: `Bearer ${token}` } },
+    });
+    expect([deep.status, deep.json.error]).toEqual([400, 'the body is nested more than 64 deep']);
     expect((await ask('GET', '/api/studies/none')).status).toBe(404);
-    expect((await ask('POST', own('P16', '/claim'))).status).toBe(404);
-    expect((await ask('POST', own('Anna', '/claim'))).status).toBe(400);
+    expect((await ask('POST', own('P16', '/claim'), { json: { invitation: 'AAAA' } })).status).toBe(404);
+    expect((await ask('POST', own('Anna', '/claim'), { json: {} })).status).toBe(400);
     expect((await ask('GET', '/api/studies/paper/nothing', { token: experimenter })).status).toBe(404);
     expect((await ask('PUT', '/api/studies/paper')).status).toBe(405);
     expect((await ask('GET', own('P01', '/commands?after=soon'), { token })).status).toBe(400);
   });
 
   test('a body that grows past its limit while it arrives is cut off', async () => {
-    const { ask, claim, store } = await withPaperStudy();
+    const { ask, claim, store } = await servedPaperStudy();
     const token = await claim('P01');
     const endless = new ReadableStream({
       pull: (controller) => controller.enqueue(new Uint8Array(65_536).fill(0x20)),
@@ -334,9 +263,33 @@ describe('what is wrong', () => {
     expect(store.records('paper')).toEqual([]);
   });
 
-  test('other addresses are left to others', async () => {
-    const { ask } = await served();
-    for (const path of ['/', '/api/studies-of-others', '/index.html'])
-      expect((await ask('GET', path)).status).toBe(418);
+  test('a full disk is said as 507; what was there stays, and deleting makes room again', async () => {
+    const { ask, claim, store } = await servedPaperStudy({}, { mostBytes: 400 * 1024 });
+    const tokens = [await claim('P01'), await claim('P02')];
+    const own1 = completed('P01');
+    expect((await ask('POST', own('P01', '/records'), { token: tokens[0]!, json: { records: own1 } })).status).toBe(
+      200,
+    );
+    const remark = () => ask('POST', own('P01', '/remarks'), { token: experimenter, json: { text: 'x'.repeat(2000) } });
+    let stored = 0;
+    let last = await remark();
+    while (last.status === 201 && stored < 1000) {
+      stored += 1;
+      last = await remark();
+    }
+    expect(last.json.error).toBe('the disk of the server is full: nothing of this was stored');
+    const second = () =>
+      ask('POST', own('P02', '/records'), { token: tokens[1]!, json: { records: completed('P02') } });
+    const refused = [last.status, (await second()).status];
+    expect(refused).toEqual([507, 507]);
+    const lost = own1.length + stored - store.records('paper', 'P01').length;
+    expect(lost).toBe(0);
+    expect((await ask('DELETE', own('P01'), { token: experimenter })).status).toBe(200);
+    expect((await second()).status).toBe(200);
+    measured('full-disk', {
+      answers: refused.join(', '),
+      'acknowledged and lost': lost,
+      'stored once there is room': 'yes',
+    });
   });
 });

@@ -1,26 +1,23 @@
 import { readFileSync, statSync } from 'node:fs';
-import { createServer } from 'node:http';
-import type { AddressInfo } from 'node:net';
 import { join } from 'node:path';
 import { expect, onTestFinished, test } from 'vitest';
+import { createRouter, noPage } from '../../server/http/router';
 import { openStudyService } from '../../server/study-service';
+import { serve } from '../../server/web-server';
 import { paperPlan } from '../core/study/studies';
 import { directoryWith } from '../temporary-directory';
+import { studySeats } from './running-studies';
 
 const day = 86_400;
 
 async function served(directory: string, now: () => number, log: (line: string) => void = () => undefined) {
-  const service = openStudyService({ directory, token: null, now, log });
-  const server = createServer((request, response) => {
-    if (service.handle(request, response)) return;
-    response.writeHead(404).end('not of a study');
-  });
-  await new Promise<void>((resolve) => server.listen(0, '127.0.0.1', resolve));
+  const service = openStudyService({ directory, token: null, now, seats: studySeats, trustProxy: false, log });
+  const server = await serve(createRouter([service.service], noPage), { host: '127.0.0.1', port: 0 });
   const close = async () => {
-    await new Promise((resolve) => server.close(resolve));
+    await server.close();
     service.close();
   };
-  return { origin: `http://127.0.0.1:${(server.address() as AddressInfo).port}`, service, close };
+  return { origin: `http://127.0.0.1:${server.port}`, service, close };
 }
 
 test('the first start draws a token that only its owner can read, and the next start keeps it', async () => {

@@ -1,10 +1,10 @@
 import 'fake-indexeddb/auto';
-import { createServer } from 'node:http';
-import type { AddressInfo } from 'node:net';
 import { join } from 'node:path';
 import { afterEach, expect, onTestFinished, test, vi } from 'vitest';
+import { createRouter, noPage } from '../../server/http/router';
 import { createStudyRoutes } from '../../server/study-routes';
 import { openStudyStore } from '../../server/study-store';
+import { serve, type WebServer } from '../../server/web-server';
 import { writeRecording } from '../../src/core/tracking/recording';
 import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
 import {
@@ -16,9 +16,10 @@ import {
 import { createExperimenterClient, createParticipantClient } from '../../src/study/study-client';
 import { openStudyVault, type StudyVault } from '../../src/study/study-vault';
 import { outcomeOf, paperPlan, somebody } from '../core/study/studies';
+import { studySeats } from '../server/running-studies';
 import { directoryWith } from '../temporary-directory';
 
-const token = 'an-experimenter-token-of-length';
+const token = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 const plan = paperPlan();
 const calibration = { eyeHeight: 1.62, armSpan: 1.4 };
 
@@ -31,28 +32,31 @@ async function studyServer() {
   const routes = createStudyRoutes({
     store,
     experimenterToken: token,
+    seats: studySeats,
+    trustProxy: false,
+    onWrongGuess: () => undefined,
     now: () => 1e9,
     onFault: (error) => expect(error).toBe(null),
   });
-  let server = createServer(routes);
-  const listen = (port: number) => new Promise<void>((resolve) => server.listen(port, '127.0.0.1', resolve));
-  await listen(0);
-  const { port } = server.address() as AddressInfo;
+  const listen = (port: number) => serve(createRouter([routes], noPage), { host: '127.0.0.1', port });
+  let server: WebServer | null = await listen(0);
+  const { port } = server;
   const stop = async () => {
-    server.closeAllConnections();
-    await new Promise((resolve) => server.close(resolve));
+    await server?.close();
+    server = null;
   };
   onTestFinished(async () => {
-    if (server.listening) await stop();
+    await stop();
     store.close();
   });
   return {
     origin: `http://127.0.0.1:${port}`,
     store,
+    /** What the link of P01 says. */
+    invitation: store.overview('paper', 1e9)[0]?.invitation as string,
     stop,
     async restart() {
-      server = createServer(routes);
-      await listen(port);
+      server = await listen(port);
     },
   };
 }
@@ -60,7 +64,7 @@ async function studyServer() {
 let vaults = 0;
 
 /** A device with a vault of its own and a clock that rises with every look. */
-async function device(origin: string) {
+async function device({ origin, invitation }: { readonly origin: string; readonly invitation: string }) {
   vaults += 1;
   const name = `vault ${vaults}`;
   let now = 1e9;
@@ -75,7 +79,7 @@ async function device(origin: string) {
     onChange: () => undefined,
   });
   const vault = await openStudyVault(name);
-  const claim = await client.claim('paper', 'P01');
+  const claim = await client.claim('paper', 'P01', invitation);
   const first = createParticipantSession(
     startSession(claim, 'paper', 'P01'),
     { records: [], motion: [] },
@@ -116,8 +120,9 @@ function toTheFirstQuestion(session: ParticipantSession, motion = false): void {
 }
 
 test('what the server has acknowledged leaves the device, and nothing before', async () => {
-  const { origin, store } = await studyServer();
-  const { first, vault } = await device(origin);
+  const server = await studyServer();
+  const { store } = server;
+  const { first, vault } = await device(server);
   toTheFirstQuestion(first);
   await first.settled();
   expect((await vault.records('paper', 'P01')).map(({ kind }) => kind)).toEqual([
@@ -150,7 +155,7 @@ test('what the server has acknowledged leaves the device, and nothing before', a
 
 test('a reload in a questionnaire without a network goes on at the same question, and all is sent later', async () => {
   const server = await studyServer();
-  const { first, reload } = await device(server.origin);
+  const { first, reload } = await device(server);
   await server.stop();
   toTheFirstQuestion(first);
   first.apply({ type: 'answer', question: 'Q1', value: 4 });
@@ -178,7 +183,7 @@ test('a reload in a questionnaire without a network goes on at the same question
 
 test('a full device says so, keeps the answers in the page, and stores them when there is room again', async () => {
   const server = await studyServer();
-  const { first, vault } = await device(server.origin);
+  const { first, vault } = await device(server);
   await first.settled();
   await server.stop();
   const put = vi.spyOn(IDBObjectStore.prototype, 'put').mockImplementation(() => {
@@ -203,7 +208,7 @@ test('a full device says so, keeps the answers in the page, and stores them when
 
 test('a full device with a network loses nothing either', async () => {
   const server = await studyServer();
-  const { first } = await device(server.origin);
+  const { first } = await device(server);
   vi.spyOn(IDBObjectStore.prototype, 'put').mockImplementation(() => {
     throw new DOMException('the quota is used up', 'QuotaExceededError');
   });
@@ -214,8 +219,9 @@ test('a full device with a network loses nothing either', async () => {
 });
 
 test('a browser without storage sends everything all the same', async () => {
-  const { origin, store } = await studyServer();
-  const { claim, options } = await device(origin);
+  const server = await studyServer();
+  const { store } = server;
+  const { claim, options } = await device(server);
   const session = createParticipantSession(
     startSession(claim, 'paper', 'P01'),
     { records: [], motion: [] },
@@ -228,10 +234,11 @@ test('a browser without storage sends everything all the same', async () => {
 });
 
 test('the experimenter’s commands are followed once, also across a reload; one out of place is remarked', async () => {
-  const { origin, store } = await studyServer();
-  const { first, reload } = await device(origin);
+  const server = await studyServer();
+  const { store } = server;
+  const { first, reload } = await device(server);
   toTheFirstQuestion(first);
-  const experimenter = createExperimenterClient(token, origin);
+  const experimenter = createExperimenterClient(token, server.origin);
   await experimenter.command('paper', 'P01', { type: 'pause' });
   await first.exchange();
   expect(first.progress.paused).toBe(true);
@@ -252,8 +259,9 @@ test('the experimenter’s commands are followed once, also across a reload; one
 });
 
 test('tracked frames reach the server with consent to them, and leave the device then', async () => {
-  const { origin, store } = await studyServer();
-  const { first, vault } = await device(origin);
+  const server = await studyServer();
+  const { store } = server;
+  const { first, vault } = await device(server);
   toTheFirstQuestion(first, true);
   const upright = { orientation: { x: 0, y: 0, z: 0, w: 1 }, tracking: 'tracked' } as const;
   const frame: TrackingFrame = {
@@ -274,12 +282,12 @@ test('tracked frames reach the server with consent to them, and leave the device
 });
 
 test('a device whose place was released stops, and can forget', async () => {
-  const { origin } = await studyServer();
-  const { first, vault } = await device(origin);
+  const server = await studyServer();
+  const { first, vault } = await device(server);
   toTheFirstQuestion(first);
   await first.exchange();
   expect(first.safekeeping.lockedOut).toBe(false);
-  await createExperimenterClient(token, origin).release('paper', 'P01');
+  await createExperimenterClient(token, server.origin).release('paper', 'P01');
   await first.exchange();
   expect(first.safekeeping.lockedOut).toBe(true);
   await vault.forget('paper', 'P01');
@@ -287,8 +295,9 @@ test('a device whose place was released stops, and can forget', async () => {
 });
 
 test('what the server knows later than a device with full storage is where the session goes on', async () => {
-  const { origin, store } = await studyServer();
-  const { first } = await device(origin);
+  const server = await studyServer();
+  const { store } = server;
+  const { first } = await device(server);
   const early = first.progress;
   toTheFirstQuestion(first);
   await first.exchange();
@@ -302,8 +311,9 @@ test('what the server knows later than a device with full storage is where the s
 });
 
 test('a record that the server refuses is reported and kept, and does not hold up the others', async () => {
-  const { origin, store } = await studyServer();
-  const { first, vault } = await device(origin);
+  const server = await studyServer();
+  const { store } = server;
+  const { first, vault } = await device(server);
   toTheFirstQuestion(first);
   await first.exchange();
   const [stored] = store.records('paper').filter(({ kind }) => kind === 'demographics');
@@ -314,7 +324,7 @@ test('a record that the server refuses is reported and kept, and does not hold u
   const again = createParticipantSession(
     kept as NonNullable<typeof kept>,
     { records: await vault.records('paper', 'P01'), motion: [] },
-    { client: createParticipantClient(origin), vault, now: () => 2e9, onChange: () => undefined },
+    { client: createParticipantClient(server.origin), vault, now: () => 2e9, onChange: () => undefined },
   );
   for (const question of ['Q1', 'Q2', 'Q3', 'Q4', 'Q5', 'Q6', 'Q7'])
     again.apply({ type: 'answer', question, value: 2 });

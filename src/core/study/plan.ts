@@ -50,6 +50,8 @@ const planSchema = v.strictObject({
   /** Decides groups and orders: the same seed gives the same study. */
   seed: integerBetween(0, 2 ** 31 - 1),
   participants: integerBetween(1, 999),
+  /** Who may take a place: the holder of its own invitation (invited, where nothing is said), or of the study's one (open). */
+  entry: v.exactOptional(v.picklist(['invited', 'open'], 'expected invited or open')),
   /** all: every order of the conditions; williams: as many rows as conditions (twice that if odd), each after each equally often. */
   orders: v.picklist(['all', 'williams'], 'expected all or williams'),
   conditions: v.pipe(

@@ -24,6 +24,8 @@ export interface Receipt {
 /** What the experimenter sees of a participant. */
 export interface ParticipantState {
   readonly participant: string;
+  /** What takes the place; null: the participant has withdrawn. */
+  readonly invitation: string | null;
   readonly claimed: boolean;
   readonly withdrawn: boolean;
   readonly records: number;
@@ -47,12 +49,24 @@ export interface StudyInfo {
   readonly retentionUntil: number;
 }
 
-/** What anybody may know of a study before taking part. */
+/** What is public of a study. */
 export interface PublicStudy extends Pick<StudyPlan, 'id' | 'title' | 'consent'> {
   readonly simulated: boolean;
 }
 
-/** What whoever takes a participant's place is given. */
+/** A trial that a group plays together: a step of the schedule, and the how many-eth run of its block. */
+export interface PlayedTogether {
+  readonly step: string;
+  readonly run: number;
+}
+
+/** A seat in the room of such a trial, signed for one participant. */
+export interface SignedSeat {
+  readonly room: string;
+  readonly token: string;
+}
+
+/** What a device is given that takes a participant's place. */
 export interface Claim {
   readonly token: string;
   /** With the first claim alone; null later. */

@@ -21,9 +21,28 @@ function fieldOf(issue: v.BaseIssue<unknown>): string {
   }, '');
 }
 
+const kindsInWords: Readonly<Record<string, string>> = {
+  string: 'text',
+  number: 'a number',
+  boolean: 'true or false',
+  Array: 'a list',
+  Object: 'an object',
+};
+
+/** What is wrong, for schemas that have no sentence of their own. */
+function complaintOf({ kind, expected, received }: v.BaseIssue<unknown>): string {
+  if (expected === 'never') return 'is not known here';
+  if (kind === 'schema' && received === 'undefined') return 'is missing';
+  const words = expected
+    ?.replace(/^\((.*)\)$/, '$1')
+    .replaceAll('"', '')
+    .replaceAll(' | ', ' or ');
+  return words ? `expected ${kindsInWords[words] ?? words}` : 'is not what it should be';
+}
+
 /** The value as the schema knows it; throws a ValidationError that names the first field that is wrong. */
 export function checked<Schema extends v.GenericSchema>(schema: Schema, value: unknown): v.InferOutput<Schema> {
-  const result = v.safeParse(schema, value, { abortEarly: true });
+  const result = v.safeParse(schema, value, { abortEarly: true, message: complaintOf });
   if (result.success) return result.output;
   const [issue] = result.issues;
   throw new ValidationError(fieldOf(issue), issue.message);

@@ -3,6 +3,7 @@ import { runInNewContext } from 'node:vm';
 import { afterEach, describe, expect, test } from 'vitest';
 import { WebSocket } from 'ws';
 import { createRoomTokens } from '../../server/room-tokens';
+import { nextRandom } from '../../src/core/math/random';
 import { protocolVersion } from '../../src/core/protocol/messages';
 import { createRemotePlayers } from '../../src/net/remote-players';
 import { createSocketConnection } from '../../src/net/socket-connection';
@@ -72,11 +73,14 @@ test('the relay is killed in the middle of a game and restarted after 3 s: every
 test('100 ms ± 30 ms with 2 % of losses: a thrower behind it plays on', async () => {
   const server = await relayHere();
   const lasting = isNightly ? 300 : 6;
+  let chance = { seed: 2460 };
+  const drawn = () => {
+    const { value, state } = nextRandom(chance);
+    chance = state;
+    return value;
+  };
   // A loss costs the time to find out and to send again.
-  const way = await createSlowWay(
-    server.port,
-    () => 100 + 60 * (Math.random() - 0.5) + (Math.random() < 0.02 ? 300 : 0),
-  );
+  const way = await createSlowWay(server.port, () => 100 + 60 * (drawn() - 0.5) + (drawn() < 0.02 ? 300 : 0));
   ending(way, ({ close }) => close());
   const people = await threePlay([way.url, server.url, server.url]);
   const watching = people.map(() => createRemotePlayers());
@@ -145,7 +149,7 @@ test('a connection that is gone for 5 s comes back to its seat with one snapshot
 
 test('500 clients reconnect at once', async () => {
   const clients = 500;
-  const environment = { THREEPOINT_OPEN_SEATS: '16' };
+  const environment = { THREEPOINT_OPEN_SEATS: '16', THREEPOINT_CONNECTIONS_PER_ADDRESS: '600' };
   const relay = await relayApart(environment);
   const tokens = createRoomTokens(testSecret, () => Date.now() / 1000);
   const connections = await Promise.all(
@@ -231,7 +235,7 @@ test('a reader that stalls is kicked within 10 s, and the others do not notice',
       | { readonly row: readonly unknown[] | null }
       | undefined;
   await until('the slow one seated', () => seatRow()?.row != null);
-  await pause(0.5);
+  await until('fifteen frames each', () => movers.every(({ gaps }) => gaps.length >= 15));
   const before = await relay.measure();
   stalled.pause();
   const start = seconds();
@@ -260,7 +264,7 @@ describe('abuse', () => {
     const stormy: number[] = [];
     const watcher = await mover(relay.url, 'open-calm');
     const other = await mover(relay.url, 'open-calm');
-    await pause(1);
+    await until('thirty frames each', () => watcher.gaps.length >= 30 && other.gaps.length >= 30);
     calm.push(...watcher.gaps.splice(0), ...other.gaps.splice(0));
     const attacks: Record<string, (guest: Awaited<ReturnType<typeof rawGuest>>) => (() => void) | undefined> = {
       '2,000 poses a second': ({ socket }) => {
@@ -309,10 +313,13 @@ describe('abuse', () => {
     const server = await relayHere();
     const guest = ending(await rawGuest(server.url, 'open-burst'), ({ socket }) => socket.disconnect());
     for (let i = 0; i < 60; i++) guest.say({ type: 'ping', sent: i });
-    await pause(0.3);
-    const pongs = guest.heard.filter(({ type }) => type === 'pong').length;
-    expect(pongs).toBeGreaterThanOrEqual(10);
-    expect(pongs).toBeLessThan(30);
+    const pongs = () => guest.heard.filter(({ type }) => type === 'pong').length;
+    await until('ten answers', () => pongs() >= 10);
+    // What came in the same burst has been answered or dropped once a guest who came later is answered.
+    const witness = ending(await rawGuest(server.url, 'open-burst'), ({ socket }) => socket.disconnect());
+    witness.say({ type: 'ping', sent: 0 });
+    await until('the answer to another', () => witness.heard.some(({ type }) => type === 'pong'));
+    expect(pongs()).toBeLessThan(30);
     expect(guest.closedAt).toBeNull();
   });
 
@@ -341,6 +348,7 @@ test('twenty rooms that fill and empty again leave no timer, socket or listener 
   const heaps: number[] = [];
   const counts: number[] = [];
   const handles = () => process.getActiveResourcesInfo().length;
+  const before = handles();
   const tokens = createRoomTokens(testSecret, () => Date.now() / 1000);
   for (let round = 0; round < rounds; round++) {
     const guests = await Promise.all(
@@ -349,11 +357,11 @@ test('twenty rooms that fill and empty again leave no timer, socket or listener 
         return rawGuest(server.url, room, await tokens.issue(room, 'ball'));
       }),
     );
-    expect(server.relay.host.census.sockets).toBe(60);
+    expect(server.relay.census.sockets).toBe(60);
     for (const guest of guests) guest.say({ type: 'leave' });
-    await until('everybody gone', () => server.relay.host.census.sockets === 0);
+    await until('everybody gone', () => server.relay.census.sockets === 0);
     await until('every connection closed', () => guests.every(({ closedAt }) => closedAt !== null));
-    await pause(1);
+    await until('timers and sockets let go', () => handles() <= before + 3, 5);
     counts.push(handles());
     collect();
     heaps.push(process.memoryUsage().heapUsed / 2 ** 20);

@@ -1,0 +1,126 @@
+import type { IncomingMessage } from 'node:http';
+import type { Socket as NetSocket } from 'node:net';
+import type { Duplex } from 'node:stream';
+import { Server as Engine } from 'engine.io';
+import type { Logger } from 'pino';
+import { Server, type Socket } from 'socket.io';
+import { longestMessage } from '../src/core/protocol/messages';
+import { relayParser } from '../src/core/protocol/small-frames';
+import { clientAddress } from './client-address';
+import { createTally } from './door';
+import { HttpError, refusal, sendRawAnswer } from './http/answer';
+import { targetOf } from './http/target';
+import type { RelayConfiguration } from './relay-configuration';
+import type { RelayMetrics } from './relay-metrics';
+import { createSitePolicy } from './site-policy';
+import { handshakeMs } from './web-server';
+
+/** Where the relay is found on its server. */
+export const relayPath = '/relay';
+
+/** WebSockets below the rooms: who may open one, and how all of them end. */
+export interface RelayTransport {
+  readonly io: Server;
+  /** Every WebSocket that is open, silent ones included. */
+  readonly sockets: number;
+  /** Opens a WebSocket, or answers why not; false where the address is not the relay's. */
+  upgrade(request: IncomingMessage, socket: Duplex, head: Buffer): boolean;
+  close(): void;
+}
+
+/** After a farewell the connection is torn down within this [ms], whether or not the other side reads. */
+const farewellMs = 1000;
+
+/** What the other side does not close is closed for it. */
+const destroySoon = (raw: NetSocket | undefined): void => {
+  if (raw && !raw.destroyed) setTimeout(() => raw.destroy(), farewellMs).unref();
+};
+
+/** Ends the connection however little the other side reads. */
+export function hangUp(socket: Socket): void {
+  const raw: NetSocket | undefined = socket.conn.request?.socket;
+  socket.disconnect(true);
+  destroySoon(raw);
+}
+
+/** Why this is no request for a WebSocket of the relay's protocol; null: it is one. */
+function complaintAbout({ method, headers }: IncomingMessage, query: URLSearchParams): HttpError | null {
+  if (
+    method !== 'GET' ||
+    headers.upgrade?.toLowerCase() !== 'websocket' ||
+    !/^[+/0-9A-Za-z]{22}==$/.test(headers['sec-websocket-key'] ?? '')
+  ) {
+    return new HttpError(400, 'this is no request for a WebSocket');
+  }
+  if (headers['sec-websocket-version'] !== '13') {
+    return new HttpError(426, 'WebSockets have version 13 here', { headers: { 'sec-websocket-version': '13' } });
+  }
+  if (query.get('EIO') !== '4' || query.get('transport') !== 'websocket' || query.has('sid')) {
+    return new HttpError(400, 'the relay speaks Engine.IO 4 over WebSockets alone');
+  }
+  return null;
+}
+
+/** Opens WebSockets at `relayPath`, so many for each address. */
+export function createRelayTransport(
+  configuration: RelayConfiguration,
+  { log, metrics }: { readonly log: Logger; readonly metrics: RelayMetrics },
+): RelayTransport {
+  const addresses = createTally(configuration.connectionsPerAddress);
+  const site = createSitePolicy(configuration);
+  const engine = new Engine({
+    transports: ['websocket'],
+    allowUpgrades: false,
+    perMessageDeflate: false,
+    maxHttpBufferSize: longestMessage,
+    // A page that hangs, and a reader that stalls behind full buffers, is found out within seven seconds.
+    pingInterval: 3000,
+    pingTimeout: 4000,
+  });
+  const io = new Server({ serveClient: false, connectTimeout: handshakeMs, parser: relayParser });
+  io.bind(engine);
+  engine.on('connection', (conn: Socket['conn']) => {
+    const raw = conn.request.socket;
+    conn.once('close', () => destroySoon(raw));
+  });
+
+  function refusalOf(request: IncomingMessage, query: URLSearchParams): HttpError | null {
+    const complaint = complaintAbout(request, query);
+    if (complaint) return complaint;
+    const stranger = site.refusalOfHost(request) ?? site.refusalOfOrigin(request);
+    if (stranger) {
+      metrics.kicked('origin');
+      log.warn({ origin: request.headers.origin, host: request.headers.host }, 'origin refused');
+      return new HttpError(stranger.status, stranger.message);
+    }
+    if (!addresses.take(clientAddress(request, configuration.trustProxy))) {
+      metrics.kicked('connections');
+      return new HttpError(429, `an address has at most ${configuration.connectionsPerAddress} connections here`);
+    }
+    return null;
+  }
+
+  return {
+    io,
+    get sockets() {
+      return engine.clientsCount;
+    },
+    upgrade(request, socket, head) {
+      const target = targetOf(request.url);
+      if (!target || target.path.replace(/\/$/, '') !== relayPath) return false;
+      const refused = refusalOf(request, target.query);
+      if (refused) {
+        sendRawAnswer(socket, refusal(refused));
+        return true;
+      }
+      const address = clientAddress(request, configuration.trustProxy);
+      socket.once('close', () => addresses.give(address));
+      engine.handleUpgrade(request as never, socket, head);
+      return true;
+    },
+    close() {
+      io.disconnectSockets(true);
+      engine.close();
+    },
+  };
+}

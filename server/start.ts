@@ -1,0 +1,72 @@
+import type { Credentials } from './certificate';
+import { createDoor } from './door';
+import { createRouter, type Route } from './http/router';
+import { createPageHandler } from './page';
+import { createRelay } from './relay';
+import type { RelayConfiguration } from './relay-configuration';
+import { createRoomTokens } from './room-tokens';
+import { createSitePolicy } from './site-policy';
+import { createStudySeats } from './study-seats';
+import { openStudyService } from './study-service';
+import { serve } from './web-server';
+
+export interface StartOptions {
+  /** Holds the built page. */
+  readonly pageDirectory: string;
+  readonly studyDirectory: string;
+  /** null: the one kept with the studies. */
+  readonly experimenterToken: string | null;
+  readonly relay: RelayConfiguration;
+  /** Signs the passes into rooms. */
+  readonly secret: string;
+  readonly host: string;
+  readonly port: number;
+  readonly credentials?: Credentials;
+  /** Told of faults, wrong guesses and deletions of the studies, one line each. */
+  readonly log: (line: string) => void;
+}
+
+/** The page, the studies and the relay on one port. */
+export interface RunningServer {
+  readonly port: number;
+  /** Where the experimenter's token lies; null: it was given. */
+  readonly tokenFile: string | null;
+  /** Everything that is answered below the page. */
+  readonly routes: readonly Route[];
+  close(): Promise<void>;
+}
+
+/** Starts all that `npm start` serves. Throws where there is no built page. */
+export async function startServer(options: StartOptions): Promise<RunningServer> {
+  const { relay: relaying, host, port, credentials, log } = options;
+  const now = () => Date.now() / 1000;
+  const page = createPageHandler(options.pageDirectory);
+  const studies = openStudyService({
+    directory: options.studyDirectory,
+    token: options.experimenterToken,
+    now,
+    seats: createStudySeats(options.secret, createRoomTokens(options.secret, now)),
+    trustProxy: relaying.trustProxy,
+    log,
+  });
+  const door = createDoor({ perAddress: relaying.connectionsPerAddress, behindProxy: relaying.trustProxy });
+  const relay = createRelay(relaying, options.secret, door);
+  const services = [relay.service, studies.service];
+  const server = await serve(createRouter(services, page, createSitePolicy(relaying)), {
+    host,
+    port,
+    ...(credentials && { credentials }),
+    upgrade: relay.upgrade,
+    door,
+  });
+  return {
+    port: server.port,
+    tokenFile: studies.tokenFile,
+    routes: services.flatMap(({ routes }): readonly Route[] => routes),
+    async close() {
+      await relay.close();
+      await server.close();
+      studies.close();
+    },
+  };
+}

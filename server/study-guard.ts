@@ -1,0 +1,130 @@
+import { createHash, timingSafeEqual } from 'node:crypto';
+import type { IncomingMessage } from 'node:http';
+import { RateLimiterMemory, RateLimiterRes } from 'rate-limiter-flexible';
+import { clientAddress, networkOf } from './client-address';
+import { createGuessLimits, TooManyGuesses, type WrongGuess } from './guess-limits';
+import { HttpError } from './http/answer';
+import { normalisedCode } from './study-schema';
+import type { StudyStore } from './study-store';
+
+/**
+ * Who may call a route of the studies. participant: with the token of this very participant, or as an experimenter; invited: with the
+ * invitation to this place, or as an experimenter; withdrawing: with a participant's withdrawal code.
+ */
+export type StudyAccess = 'anyone' | 'participant' | 'experimenter' | 'invited' | 'withdrawing';
+
+export interface StudyGuardOptions {
+  readonly store: StudyStore;
+  /** The holder of this, sent as "Authorization: Bearer …", is an experimenter; null: no one is. */
+  readonly experimenterToken: string | null;
+  readonly trustProxy: boolean;
+  readonly onWrongGuess: (guess: WrongGuess) => void;
+}
+
+/** Whom a route concerns. */
+interface Concerned {
+  readonly request: IncomingMessage;
+  readonly study: string;
+  readonly participant: string;
+}
+
+/** Makes sure of secrets: of tokens, invitations and withdrawal codes. What it throws are HttpErrors. */
+export interface StudyGuard {
+  /** Whether the request bears this participant's own token. */
+  isParticipant(concerned: Concerned): boolean;
+  /** What can be told from a request's head; invitations and codes come with its body. */
+  admit(access: StudyAccess, concerned: Concerned): Promise<void>;
+  /** Throws unless this is the invitation to the place, or the request an experimenter's. */
+  admitInvited(concerned: Concerned, invitation: string | undefined): Promise<void>;
+  /** Runs what a withdrawal code opens; throws where it opens nothing. */
+  withdrawing<T>(concerned: Omit<Concerned, 'participant'>, code: string, withdraw: () => T | null): Promise<T>;
+}
+
+/** Places of an open study that one address may take within an hour: whoever has its link could take them all otherwise. */
+export const openPlacesPerHour = 6;
+
+const digest = (secret: string) => createHash('sha256').update(secret).digest();
+
+function bearerOf(request: IncomingMessage): string | null {
+  return /^Bearer ([\w~+/.-]{1,256}=*)$/.exec(request.headers.authorization ?? '')?.[1] ?? null;
+}
+
+const tooMany = (message: string, seconds: number) =>
+  new HttpError(429, message, { headers: { 'retry-after': String(seconds) } });
+
+export function createStudyGuard(options: StudyGuardOptions): StudyGuard {
+  const { store, experimenterToken, trustProxy, onWrongGuess } = options;
+  const experimenterDigest = experimenterToken === null ? null : digest(experimenterToken);
+  const guesses = createGuessLimits(onWrongGuess);
+  const openPlaces = new RateLimiterMemory({ points: openPlacesPerHour, duration: 3600 });
+  const addressOf = (request: IncomingMessage) => clientAddress(request, trustProxy);
+
+  async function attempt(guess: Parameters<typeof guesses.attempt>[0], isRight: () => boolean): Promise<boolean> {
+    try {
+      return await guesses.attempt(guess, isRight);
+    } catch (error) {
+      if (!(error instanceof TooManyGuesses)) throw error;
+      throw tooMany(error.message, error.retryAfterSeconds);
+    }
+  }
+
+  async function isExperimenter(request: IncomingMessage): Promise<boolean> {
+    const token = bearerOf(request);
+    if (token === null) return false;
+    return attempt(
+      { what: 'token', address: addressOf(request), of: null, secret: token },
+      () => experimenterDigest !== null && timingSafeEqual(digest(token), experimenterDigest),
+    );
+  }
+
+  const isParticipant = ({ request, study, participant }: Concerned) => {
+    const token = bearerOf(request);
+    return token !== null && store.holds(study, participant, token);
+  };
+
+  async function spendOpenPlace(request: IncomingMessage): Promise<void> {
+    try {
+      await openPlaces.consume(networkOf(addressOf(request)));
+    } catch (error) {
+      if (!(error instanceof RateLimiterRes)) throw error;
+      const seconds = Math.ceil(error.msBeforeNext / 1000);
+      throw tooMany(`${openPlacesPerHour} places were taken from this address; try again in ${seconds} s`, seconds);
+    }
+  }
+
+  return {
+    isParticipant,
+    async admit(access, concerned) {
+      if (access !== 'participant' && access !== 'experimenter') return;
+      // Participants' tokens are 256 drawn bits: they are looked at however many guesses came from their address.
+      if (access === 'participant' && isParticipant(concerned)) return;
+      if (await isExperimenter(concerned.request)) return;
+      throw new HttpError(401, 'this needs the token of the participant or of an experimenter');
+    },
+    async admitInvited({ request, study, participant }, invitation) {
+      const { plan } = store.study(study);
+      if (bearerOf(request) !== null && (await isExperimenter(request))) return;
+      if (invitation === undefined) {
+        const why = `${participant} is taken by invitation: it stands in the link of the participant`;
+        throw new HttpError(403, why, { field: 'invitation' });
+      }
+      const secret = `${participant} ${normalisedCode(invitation)}`;
+      const right = await attempt({ what: 'invitation', address: addressOf(request), of: study, secret }, () =>
+        store.invites(study, participant, invitation),
+      );
+      if (!right) throw new HttpError(403, `this is not the invitation of ${participant}`, { field: 'invitation' });
+      if (plan.entry === 'open') await spendOpenPlace(request);
+    },
+    async withdrawing({ request, study }, code, withdraw) {
+      store.study(study);
+      let result: ReturnType<typeof withdraw> = null;
+      const secret = normalisedCode(code);
+      await attempt({ what: 'withdrawal code', address: addressOf(request), of: study, secret }, () => {
+        result = withdraw();
+        return result !== null;
+      });
+      if (result === null) throw new HttpError(404, 'nothing is recorded under this code');
+      return result;
+    },
+  };
+}

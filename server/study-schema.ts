@@ -1,0 +1,105 @@
+import { randomBytes } from 'node:crypto';
+import type { DatabaseSyncInstance } from '@photostructure/sqlite';
+
+// Crockford's base 32 without letters that are mistaken for digits: a code is read from a note and typed.
+const codeAlphabet = '0123456789ABCDEFGHJKMNPQRSTVWXYZ';
+
+/** Eighty bits as XXXX-XXXX-XXXX-XXXX. */
+export function newCode(): string {
+  const characters = Array.from(randomBytes(16), (byte) => codeAlphabet[byte % 32]).join('');
+  return (characters.match(/.{4}/g) as string[]).join('-');
+}
+
+/** The code as it was given, however it was typed. */
+export function normalisedCode(typed: string): string {
+  const characters = typed
+    .toUpperCase()
+    .replace(/[IL]/g, '1')
+    .replace(/O/g, '0')
+    .replace(/[^0-9A-Z]/g, '');
+  return (characters.match(/.{1,4}/g) ?? []).join('-');
+}
+
+/** Each brings the database from its index to the next version. Never change one that was released: add one. */
+const migrations: readonly (string | ((database: DatabaseSyncInstance) => void))[] = [
+  `
+  CREATE TABLE studies (
+    id TEXT PRIMARY KEY,
+    plan TEXT NOT NULL,
+    simulated INTEGER NOT NULL CHECK (simulated IN (0, 1)),
+    created_at REAL NOT NULL,
+    retention_until REAL NOT NULL
+  ) STRICT;
+  CREATE TABLE participants (
+    study TEXT NOT NULL REFERENCES studies (id),
+    participant TEXT NOT NULL,
+    token_hash BLOB,
+    withdrawal_hash BLOB,
+    withdrawn INTEGER NOT NULL DEFAULT 0 CHECK (withdrawn IN (0, 1)),
+    motion_consent INTEGER CHECK (motion_consent IN (0, 1)),
+    progress TEXT,
+    progress_at REAL,
+    PRIMARY KEY (study, participant)
+  ) STRICT;
+  CREATE TABLE records (
+    number INTEGER PRIMARY KEY,
+    study TEXT NOT NULL,
+    participant TEXT NOT NULL,
+    id TEXT NOT NULL,
+    record TEXT NOT NULL,
+    received_at REAL NOT NULL,
+    UNIQUE (study, participant, id),
+    FOREIGN KEY (study, participant) REFERENCES participants (study, participant)
+  ) STRICT;
+  CREATE TABLE motion (
+    study TEXT NOT NULL,
+    participant TEXT NOT NULL,
+    trial TEXT NOT NULL,
+    gzipped BLOB NOT NULL,
+    received_at REAL NOT NULL,
+    PRIMARY KEY (study, participant, trial),
+    FOREIGN KEY (study, participant) REFERENCES participants (study, participant)
+  ) STRICT;
+  CREATE TABLE commands (
+    number INTEGER PRIMARY KEY AUTOINCREMENT,
+    study TEXT NOT NULL,
+    participant TEXT NOT NULL,
+    command TEXT NOT NULL,
+    at REAL NOT NULL,
+    FOREIGN KEY (study, participant) REFERENCES participants (study, participant)
+  ) STRICT;
+  CREATE TABLE receipts (
+    number INTEGER PRIMARY KEY AUTOINCREMENT,
+    study TEXT NOT NULL,
+    participant TEXT NOT NULL,
+    reason TEXT NOT NULL,
+    records INTEGER NOT NULL,
+    motion_files INTEGER NOT NULL,
+    at REAL NOT NULL
+  ) STRICT;
+  `,
+  // Places could be taken by their name alone before: each gets an invitation of its own now.
+  (database) => {
+    database.exec('ALTER TABLE participants ADD COLUMN invitation TEXT');
+    const places = database.prepare('SELECT study, participant FROM participants WHERE withdrawn = 0').all();
+    const invite = database.prepare('UPDATE participants SET invitation = ? WHERE study = ? AND participant = ?');
+    for (const { study, participant } of places as { study: string; participant: string }[]) {
+      invite.run(newCode(), study, participant);
+    }
+  },
+];
+
+/** Brings a database up to date; throws where it is of a later version than this server. */
+export function migrate(database: DatabaseSyncInstance): void {
+  const version = (database.prepare('PRAGMA user_version').get() as { user_version: number }).user_version;
+  if (version > migrations.length) {
+    throw new Error(`the study database has version ${version}; this server knows versions up to ${migrations.length}`);
+  }
+  for (let next = version; next < migrations.length; next++) {
+    const migration = migrations[next] as (typeof migrations)[number];
+    database.exec('BEGIN IMMEDIATE');
+    if (typeof migration === 'string') database.exec(migration);
+    else migration(database);
+    database.exec(`PRAGMA user_version = ${next + 1}; COMMIT`);
+  }
+}

@@ -1,0 +1,201 @@
+import type { ClientMessage } from '../../src/core/protocol/messages';
+
+/** Who sends a request. */
+export const httpRoles = {
+  stranger: 'a program or page without any secret',
+  network: 'the same, by the server’s address on the network',
+  otherSite: 'a page of another site, with the experimenter’s token',
+  pointedHere: 'a page of another site whose name was pointed at this machine (DNS rebinding)',
+  participant: 'the participant that the address names',
+  otherParticipant: 'another participant of the study',
+  experimenter: 'the holder of the experimenter’s token',
+} as const;
+export type HttpRole = keyof typeof httpRoles;
+
+/** Statuses of a well-formed request, by who sends it. */
+export interface HttpRow {
+  readonly gives: string;
+  readonly json?: 'plan' | 'records' | 'progress' | 'motion' | 'seat' | Readonly<Record<string, unknown>>;
+  /** Behind the path. */
+  readonly query?: string;
+  readonly status: Readonly<Record<HttpRole, number>>;
+  /** A secret of this route alone, and the status that it gets. */
+  readonly also?: { readonly who: 'invited' | 'withdrawing' | 'admin' | 'this machine'; readonly status: number };
+}
+
+const shut = { otherSite: 403, pointedHere: 421 } as const;
+const forAll = (status: number): HttpRow['status'] => ({
+  stranger: status,
+  network: status,
+  ...shut,
+  participant: status,
+  otherParticipant: status,
+  experimenter: status,
+});
+/** Read by pages of other sites too, without their seeing the answer. */
+const readable = (status: number): HttpRow['status'] => ({ ...forAll(status), otherSite: status });
+const forExperimenter = (status: number): HttpRow['status'] => ({ ...forAll(401), experimenter: status });
+const forParticipant = (status: number): HttpRow['status'] => ({ ...forExperimenter(status), participant: status });
+
+const study = '/api/studies/:study';
+const place = `${study}/participants/:participant`;
+
+/** One row for every route of the server: a route without one fails tests/server/access.test.ts. */
+export const httpRows: Readonly<Record<string, HttpRow>> = {
+  'GET /': { gives: 'the page and its files', status: readable(200) },
+  'GET /healthz': { gives: 'that the server lives, and how many are there', status: readable(200) },
+  'GET /metrics': {
+    gives: 'counts of the relay, for programs on this machine',
+    status: readable(403),
+    also: { who: 'this machine', status: 200 },
+  },
+  'GET /relay': { gives: 'nothing without an upgrade (below)', status: readable(426) },
+  'GET /api/rooms': { gives: 'rooms that are open to all', status: forAll(200) },
+  'POST /api/rooms/match': { gives: 'the name of such a room', json: { kind: 'ball' }, status: forAll(200) },
+  'POST /api/rooms/new': { gives: 'the name of a new one', json: { kind: 'ball' }, status: forAll(200) },
+  'POST /api/rooms/token': {
+    gives: 'a pass to such a room',
+    json: { room: 'meadow', kind: 'ball' },
+    status: forAll(200),
+  },
+  'POST /api/rooms/end': {
+    gives: 'the end of any room',
+    json: { room: 'meadow' },
+    status: forAll(403),
+    also: { who: 'admin', status: 200 },
+  },
+  'GET /api/studies': { gives: 'the list of studies', status: forExperimenter(200) },
+  'POST /api/studies': { gives: 'a new study', json: 'plan', status: forExperimenter(201) },
+  [`GET ${study}`]: { gives: 'title and consent text', status: forAll(200) },
+  [`GET ${study}/records`]: { gives: 'everything recorded', status: forExperimenter(200) },
+  [`GET ${study}/receipts`]: { gives: 'receipts of deletions', status: forExperimenter(200) },
+  [`GET ${study}/export`]: { gives: 'everything, as a zip file', status: forExperimenter(200) },
+  [`GET ${study}/participants`]: { gives: 'where all are, and their invitations', status: forExperimenter(200) },
+  [`POST ${study}/withdraw`]: {
+    gives: 'the deletion of everything under a withdrawal code',
+    json: { code: 'ZZZZ-ZZZZ-ZZZZ-ZZZZ' },
+    status: forAll(404),
+    also: { who: 'withdrawing', status: 200 },
+  },
+  [`POST ${place}/claim`]: {
+    gives: 'a free place, by its invitation',
+    json: {},
+    status: { ...forAll(403), experimenter: 201 },
+    also: { who: 'invited', status: 201 },
+  },
+  [`POST ${place}/invitation`]: { gives: 'a new invitation to the place', status: forExperimenter(204) },
+  [`POST ${place}/release`]: { gives: 'the place to another device', status: forExperimenter(204) },
+  [`POST ${place}/records`]: { gives: 'records to the store', json: 'records', status: forParticipant(200) },
+  [`GET ${place}/records`]: { gives: 'the participant’s records', status: forParticipant(200) },
+  [`PUT ${place}/progress`]: { gives: 'the step to the store', json: 'progress', status: forParticipant(204) },
+  [`GET ${place}/progress`]: { gives: 'the participant’s step', status: forParticipant(200) },
+  [`GET ${place}/commands`]: { gives: 'the experimenter’s commands', status: forParticipant(200) },
+  [`POST ${place}/commands`]: {
+    gives: 'a command to the participant’s page',
+    json: { type: 'pause' },
+    status: forExperimenter(201),
+  },
+  [`POST ${place}/remarks`]: { gives: 'a remark to the store', json: { text: 'tall' }, status: forExperimenter(201) },
+  [`PUT ${place}/motion`]: {
+    gives: 'tracked frames to the store',
+    json: 'motion',
+    query: '?trial=archery/1/trial-1',
+    status: forParticipant(204),
+  },
+  [`POST ${place}/seat`]: {
+    gives: 'a pass to the room of a trial: the own seat, to an experimenter a place to watch from',
+    json: 'seat',
+    status: forParticipant(200),
+  },
+  [`GET ${place}/export`]: { gives: 'everything of the participant, as a zip file', status: forParticipant(200) },
+  [`DELETE ${place}`]: { gives: 'the deletion of everything of the participant', status: forExperimenter(200) },
+};
+
+/** Who speaks to a room. */
+export const socketRoles = {
+  player: 'the holder of a pass, on a seat of a room that is open to all',
+  spectator: 'the holder of such a pass, watching',
+  participant: 'a participant in the room of their trial',
+  experimenter: 'an experimenter, watching there',
+} as const;
+export type SocketRole = keyof typeof socketRoles;
+
+/** What becomes of it: taken; refused, with the room's reason; ends the connection. */
+export type Outcome = 'taken' | 'no-seat' | 'not-pausable' | 'assigned' | 'ends';
+
+export interface SocketRow {
+  readonly gives: string;
+  readonly outcome: Readonly<Record<SocketRole, Outcome>>;
+}
+
+const all = (outcome: Outcome): SocketRow['outcome'] => ({
+  player: outcome,
+  spectator: outcome,
+  participant: outcome,
+  experimenter: outcome,
+});
+const seated: SocketRow['outcome'] = { ...all('taken'), spectator: 'no-seat', experimenter: 'no-seat' };
+
+/** One row for every message of a client, and for what is none. */
+export const socketRows: Readonly<Record<ClientMessage['type'] | 'pose' | 'unknown', SocketRow>> = {
+  join: { gives: 'a place: any that is free, in the room of a trial the own one', outcome: all('taken') },
+  pose: { gives: 'the own body to the others; who watches shows none', outcome: all('taken') },
+  ready: { gives: 'the match its start', outcome: seated },
+  rotate: { gives: 'other roles with the next match', outcome: seated },
+  away: { gives: 'that the player is away', outcome: all('taken') },
+  sit: {
+    gives: 'another seat that is free',
+    outcome: { ...all('taken'), participant: 'assigned', experimenter: 'assigned' },
+  },
+  calibration: { gives: 'the own measures', outcome: all('taken') },
+  pause: { gives: 'a clock that stands', outcome: { ...seated, player: 'not-pausable' } },
+  ping: { gives: 'the room’s time', outcome: all('taken') },
+  leave: { gives: 'the own seat back', outcome: all('taken') },
+  deed: { gives: 'what hands do, as the rules judge it', outcome: seated },
+  unknown: { gives: 'nothing', outcome: all('ends') },
+};
+
+const table = (head: readonly string[], rows: readonly (readonly string[])[]): string =>
+  [head, head.map(() => '---'), ...rows].map((cells) => `| ${cells.join(' | ')} |`).join('\n');
+
+const word = (status: number): string => (status < 300 ? `**yes** ${status}` : `no ${status}`);
+
+/** What docs/security.md has between its marks. */
+export function accessTables(): string {
+  const roles = Object.keys(httpRoles) as HttpRole[];
+  const names = [
+    'stranger',
+    'same network',
+    'other site',
+    'name pointed here',
+    'participant',
+    'another',
+    'experimenter',
+  ];
+  const http = Object.entries(httpRows).map(([route, { gives, status, also }]) => [
+    `\`${route}\``,
+    also ? `${gives} (${also.who}: ${word(also.status)})` : gives,
+    ...roles.map((role) => word(status[role])),
+  ]);
+  const sockets = Object.entries(socketRows).map(([type, { gives, outcome }]) => [
+    `\`${type}\``,
+    gives,
+    ...(Object.keys(socketRoles) as SocketRole[]).map((role) =>
+      outcome[role] === 'taken' ? '**yes**' : `no: ${outcome[role]}`,
+    ),
+  ]);
+  return [
+    table(['request', 'gives', ...names], http),
+    '',
+    table(['message', 'gives', 'player', 'spectator', 'participant, in a trial', 'experimenter, in a trial'], sockets),
+  ].join('\n');
+}
+
+export const marks = ['<!-- written by scripts/security-table.ts -->', '<!-- up to here -->'] as const;
+
+/** The page with its tables as they are now; throws where it has no marks. */
+export function withTables(page: string): string {
+  const [before, after] = [page.indexOf(marks[0]), page.indexOf(marks[1])];
+  if (before < 0 || after < before) throw new Error('docs/security.md lacks the marks between which its tables stand');
+  return `${page.slice(0, before)}${marks[0]}\n\n${accessTables()}\n\n${page.slice(after)}`;
+}

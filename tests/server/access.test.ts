@@ -1,0 +1,305 @@
+import { readFileSync } from 'node:fs';
+import { request as httpRequest, type OutgoingHttpHeaders, type RequestListener } from 'node:http';
+import { join } from 'node:path';
+import { afterAll, beforeAll, describe, expect, onTestFinished, test } from 'vitest';
+import { createDoor } from '../../server/door';
+import { createRouter } from '../../server/http/router';
+import { createRelay } from '../../server/relay';
+import { relayConfigurationFrom } from '../../server/relay-configuration';
+import { createSitePolicy } from '../../server/site-policy';
+import { createStudyRoutes } from '../../server/study-routes';
+import { openStudyStore } from '../../server/study-store';
+import { serve } from '../../server/web-server';
+import { defaultCalibration } from '../../src/core/body/calibration';
+import { clientMessageTypes } from '../../src/core/protocol/messages';
+import { poseEvent } from '../../src/core/protocol/small-frames';
+import { scheduleFor } from '../../src/core/study/plan';
+import { begin } from '../../src/core/study/progress';
+import { checkedRecord } from '../../src/core/study/study-record';
+import { writeRecording } from '../../src/core/tracking/recording';
+import { paperPlan, session } from '../core/study/studies';
+import { measured } from '../reliability/measured';
+import { directoryWith } from '../temporary-directory';
+import {
+  type HttpRole,
+  type HttpRow,
+  httpRoles,
+  httpRows,
+  type Outcome,
+  type SocketRole,
+  socketRoles,
+  socketRows,
+  withTables,
+} from './access-rows';
+import { poseBytes, rawGuest, rawSocket, startRelay, testSecret, tokenFor, until } from './running-relay';
+import { experimenter, now, studySeats } from './running-studies';
+
+const adminToken = 'admin-kN3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
+const plan = paperPlan();
+const trial = { step: 'ball/1/trial-1', run: 1 };
+const page: RequestListener = (_request, response) => response.end('the page');
+
+/** The whole server behind a proxy, with a study in which P01 and P02 take part and P03's place is free. */
+async function wholeServer() {
+  const store = openStudyStore(join(directoryWith(), 'studies.db'));
+  store.addStudy(plan, { simulated: false, at: now });
+  const claims = { P01: store.claim('paper', 'P01', now), P02: store.claim('paper', 'P02', now) };
+  const one = session(scheduleFor(plan, 'P01'));
+  one.tell({ type: 'consent', version: plan.consent.version, motion: true });
+  one.doUntil(({ kind }) => kind === 'end');
+  const records = one.records.map(checkedRecord);
+  store.storeRecords('paper', 'P01', records, now);
+  const environment = {
+    THREEPOINT_LOG_LEVEL: 'silent',
+    THREEPOINT_TRUST_PROXY: '1',
+    THREEPOINT_ADMIN_TOKEN: adminToken,
+  };
+  const configuration = relayConfigurationFrom(environment);
+  const door = createDoor({ perAddress: 100, behindProxy: true });
+  const relay = createRelay(configuration, testSecret, door);
+  const studies = createStudyRoutes({
+    store,
+    experimenterToken: experimenter,
+    seats: studySeats,
+    trustProxy: true,
+    now: () => now,
+    onWrongGuess: () => undefined,
+    onFault: (error) => expect(error).toBeNull(),
+  });
+  const services = [relay.service, studies];
+  const server = await serve(createRouter(services, page, createSitePolicy(configuration)), {
+    host: '127.0.0.1',
+    port: 0,
+    upgrade: relay.upgrade,
+    door,
+  });
+  onTestFinished(async () => {
+    await relay.close();
+    await server.close();
+    store.close();
+  });
+  return {
+    port: server.port,
+    routes: services.flatMap(({ routes }) => [...routes]),
+    store,
+    claims,
+    records,
+  };
+}
+type WholeServer = Awaited<ReturnType<typeof wholeServer>>;
+
+const head = {
+  position: { x: 0, y: 1.6, z: 0 },
+  orientation: { x: 0, y: 0, z: 0, w: 1 },
+  tracking: 'tracked',
+} as const;
+const recording = writeRecording({
+  device: 'Test headset',
+  rateHz: 72,
+  calibration: null,
+  frames: [{ time: 0, head, leftHand: null, rightHand: null }],
+});
+
+function bodyOf({ json }: HttpRow, { records }: WholeServer): string | undefined {
+  if (json === 'motion') return recording;
+  if (json === undefined) return undefined;
+  const bodies = {
+    plan: { plan: { ...plan, id: 'another' }, simulated: false },
+    records: { records },
+    progress: begin(scheduleFor(plan, 'P01')),
+    seat: trial,
+  };
+  return JSON.stringify(typeof json === 'string' ? bodies[json] : json);
+}
+
+interface Sent {
+  readonly headers: OutgoingHttpHeaders;
+  readonly body?: string | undefined;
+}
+
+const statusOf = (port: number, method: string, path: string, { headers, body }: Sent): Promise<number> =>
+  new Promise((resolve, reject) => {
+    const type =
+      body === undefined ? {} : { 'content-type': 'application/json', 'content-length': Buffer.byteLength(body) };
+    const request = httpRequest({ port, method, path, agent: false, headers: { ...type, ...headers } }, (response) => {
+      response.resume().on('end', () => resolve(response.statusCode ?? 0));
+    });
+    request.on('error', reject).end(body);
+  });
+
+/** How a request of this role says who it is; each from an address of its own. */
+function headersOf(role: HttpRole, { port, claims }: WholeServer): OutgoingHttpHeaders {
+  const bearer = (token: string) => ({ authorization: `Bearer ${token}` });
+  const from = { 'x-forwarded-for': `203.0.113.${Object.keys(httpRoles).indexOf(role) + 1}` };
+  const host = `localhost:${port}`;
+  const headers: Record<HttpRole, OutgoingHttpHeaders> = {
+    stranger: { host },
+    network: { host: `192.168.7.20:${port}`, origin: `http://192.168.7.20:${port}` },
+    otherSite: { host, origin: 'http://evil.example', ...bearer(experimenter) },
+    pointedHere: { host: `evil.example:${port}`, origin: `http://evil.example:${port}`, ...bearer(experimenter) },
+    participant: { host, origin: `http://${host}`, ...bearer(claims.P01.token) },
+    otherParticipant: { host, origin: `http://${host}`, ...bearer(claims.P02.token) },
+    experimenter: { host, origin: `http://${host}`, ...bearer(experimenter) },
+  };
+  return { ...from, ...headers[role] };
+}
+
+let cells = 0;
+let differing = 0;
+const count = (asExpected: boolean): void => {
+  cells += 1;
+  if (!asExpected) differing += 1;
+};
+afterAll(() => measured('access', { cells, 'cells that differ from docs/security.md': differing }));
+
+test('every route of the server has a row, and every row a route', async () => {
+  const { routes } = await wholeServer();
+  const known = routes.map(({ method, path }) => `${method} ${path}`);
+  expect(Object.keys(httpRows).toSorted()).toEqual([...known, 'GET /'].toSorted());
+  expect(Object.keys(socketRows).toSorted()).toEqual([...clientMessageTypes, 'pose', 'unknown'].toSorted());
+  measured('access', { 'routes and messages': known.length + Object.keys(socketRows).length });
+});
+
+test('docs/security.md has these rows (written by scripts/security-table.ts)', () => {
+  const text = readFileSync(new URL('../../docs/security.md', import.meta.url), 'utf8');
+  expect(text).toBe(withTables(text));
+});
+
+/** Who changes least goes first, so that what one is given changes nothing for the next. */
+const order: readonly HttpRole[] = [
+  'stranger',
+  'network',
+  'otherSite',
+  'pointedHere',
+  'otherParticipant',
+  'participant',
+  'experimenter',
+];
+
+describe.each(Object.entries(httpRows))('%s', (name, row) => {
+  const [method, path] = name.split(' ') as [string, string];
+  // Its own place is taken already: a free one is claimed.
+  const participant = path.endsWith('/claim') ? 'P03' : 'P01';
+  const address = path.replace(':study', 'paper').replace(':participant', participant) + (row.query ?? '');
+
+  test(`${order.map((role) => `${role} ${row.status[role]}`).join(', ')}`, async () => {
+    const server = await wholeServer();
+    for (const role of order) {
+      const sent = { headers: headersOf(role, server), body: bodyOf(row, server) };
+      const status = await statusOf(server.port, method, address, sent);
+      count(status === row.status[role]);
+      expect(status, `${name}, ${httpRoles[role]}`).toBe(row.status[role]);
+    }
+  });
+
+  const { also } = row;
+  if (!also) return;
+  test(`${also.who} ${also.status}`, async () => {
+    const server = await wholeServer();
+    const host = `localhost:${server.port}`;
+    const secrets = {
+      invited: { headers: { host }, json: { invitation: server.store.overview('paper', now)[2]?.invitation } },
+      withdrawing: { headers: { host }, json: { code: server.claims.P01.withdrawalCode } },
+      admin: { headers: { host, authorization: `Bearer ${adminToken}` }, json: row.json },
+      'this machine': { headers: { host }, json: undefined },
+    };
+    const { headers, json } = secrets[also.who];
+    const status = await statusOf(server.port, method, address, { headers, body: json && JSON.stringify(json) });
+    count(status === also.status);
+    expect(status).toBe(also.status);
+  });
+});
+
+describe('a message to a room', () => {
+  let relay: Awaited<ReturnType<typeof startRelay>>;
+  beforeAll(async () => {
+    relay = await startRelay();
+  });
+  afterAll(() => relay.close());
+
+  /** What rooms refused so far, by reason. */
+  async function refusals(): Promise<ReadonlyMap<string, number>> {
+    const metrics = await (await fetch(`${relay.url}/metrics`)).text();
+    const sums = new Map<string, number>();
+    for (const [, reason, number] of metrics.matchAll(/^threepoint_refusals_total\{.*reason="([\w-]+)".*\} (\d+)$/gm)) {
+      sums.set(reason as string, (sums.get(reason as string) ?? 0) + Number(number));
+    }
+    return sums;
+  }
+
+  async function guestAs(role: SocketRole, room: string) {
+    if (role === 'player') return rawGuest(relay.url, room);
+    if (role === 'spectator') {
+      const guest = await rawGuest(relay.url, room);
+      guest.say({ type: 'sit', seat: null });
+      await until('the seat given up', () => guest.heard.some(({ type }) => type === 'seated'));
+      return guest;
+    }
+    const seat = await studySeats.sign(plan, 'P01', trial, role === 'experimenter');
+    return rawGuest(relay.url, seat.room, seat.token);
+  }
+
+  const messages: Readonly<Record<string, unknown>> = {
+    ready: { type: 'ready', ready: true },
+    rotate: { type: 'rotate', rotate: true },
+    away: { type: 'away', away: true },
+    sit: { type: 'sit', seat: 2 },
+    calibration: { type: 'calibration', calibration: defaultCalibration },
+    pause: { type: 'pause', pause: true },
+    ping: { type: 'ping', sent: 7 },
+    leave: { type: 'leave' },
+    deed: { type: 'deed', deed: { type: 'drop', sequence: 1, side: 'left' } },
+  };
+  /** Reasons of admission; what the rules of a game refuse, everyone on a seat may try. */
+  const reasons: readonly Outcome[] = ['no-seat', 'not-pausable', 'assigned'];
+
+  async function outcomeOf(type: string, role: SocketRole, room: string): Promise<Outcome> {
+    const guest = await guestAs(role, room);
+    const before = await refusals();
+    if (type === 'pose') guest.socket.emit(poseEvent, poseBytes(0));
+    else if (type === 'unknown') guest.socket.emit('format-disk', {});
+    else if (type !== 'join') guest.say(messages[type]);
+    if (type !== 'leave' && type !== 'unknown') {
+      guest.say({ type: 'ping', sent: 9 });
+      const answered = () => guest.heard.some((message) => message.type === 'pong' && message.sent === 9);
+      await until('the answer', () => answered() || guest.closedAt !== null);
+    } else await until('the end', () => guest.closedAt !== null);
+    const left = guest.heard.some((message) => message.type === 'farewell' && message.reason === 'left');
+    if (guest.closedAt !== null && !left) return 'ends';
+    guest.socket.disconnect();
+    const after = await refusals();
+    return reasons.find((reason) => (after.get(reason) ?? 0) > (before.get(reason) ?? 0)) ?? 'taken';
+  }
+
+  test.each(Object.entries(socketRows))('%s: as docs/security.md says', async (type, { outcome }) => {
+    for (const role of Object.keys(socketRoles) as SocketRole[]) {
+      const found = await outcomeOf(type, role, `room-of-${type}`);
+      count(found === outcome[role]);
+      expect(found, `${type}, ${socketRoles[role]}`).toBe(outcome[role]);
+    }
+  });
+
+  test('comes from no one without a pass, and from no page of another site with one', async () => {
+    const token = await tokenFor(relay.url, 'meadow');
+    const refusal = (given: string, extraHeaders: Record<string, string>) =>
+      new Promise<string>((resolve) => {
+        const socket = rawSocket(relay.url, given, 'meadow', extraHeaders);
+        socket.on('connect', () => resolve('let in'));
+        socket.on('connect_error', (error) => resolve(error.message));
+        socket.on('connect', () => socket.disconnect());
+      });
+    const { host } = new URL(relay.url);
+    expect(await refusal(token, { origin: relay.url })).toBe('let in');
+    expect(await refusal('', { origin: relay.url })).toBe('refused');
+    for (const headers of [
+      { origin: 'http://evil.example' },
+      { origin: relay.url.replace('http:', 'https:') },
+      { origin: 'null' },
+      { host: 'evil.example', origin: 'http://evil.example' },
+      { host: `${host}.evil.example`, origin: `http://${host}.evil.example` },
+    ]) {
+      expect(await refusal(token, headers), JSON.stringify(headers)).toBe('websocket error');
+    }
+    measured('other-sites', { 'WebSockets of other sites refused': '5 of 5' });
+  });
+});

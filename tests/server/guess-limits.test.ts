@@ -1,0 +1,111 @@
+import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
+import { networkOf } from '../../server/client-address';
+import { createGuessLimits, TooManyGuesses, type WrongGuess } from '../../server/guess-limits';
+
+beforeEach(() => {
+  vi.useFakeTimers();
+});
+afterEach(() => {
+  vi.useRealTimers();
+});
+
+/** A door that one secret opens, and what came of guesses: true, false, or the seconds to wait. */
+function door(secret = 'the right one') {
+  const wrong: WrongGuess[] = [];
+  const limits = createGuessLimits((guess) => wrong.push(guess));
+  let lookedAt = 0;
+  const guess = async (
+    said: string,
+    address = '203.0.113.7',
+    of: string | null = 'paper',
+  ): Promise<boolean | number> => {
+    try {
+      return await limits.attempt({ what: 'withdrawal code', address, of, secret: said }, () => {
+        lookedAt += 1;
+        return said === secret;
+      });
+    } catch (error) {
+      if (!(error instanceof TooManyGuesses)) throw error;
+      return error.retryAfterSeconds;
+    }
+  };
+  return { guess, wrong, lookedAt: () => lookedAt };
+}
+
+describe('guesses from one address', () => {
+  test('are looked at five times, then after 1, 2, 4 … seconds', async () => {
+    const { guess } = door();
+    for (let i = 0; i < 5; i++) expect(await guess(`wrong ${i}`)).toBe(false);
+    const delays: number[] = [];
+    for (let i = 5; i < 12; i++) {
+      expect(await guess(`wrong ${i}`)).toBe(false);
+      delays.push((await guess('next')) as number);
+      vi.advanceTimersByTime((delays.at(-1) as number) * 1000);
+    }
+    expect(delays).toEqual([1, 2, 4, 8, 16, 32, 64]);
+  });
+
+  test('do not wait longer because somebody does not wait: what was not looked at does not count', async () => {
+    const { guess } = door();
+    for (let i = 0; i < 6; i++) await guess(`wrong ${i}`);
+    for (let i = 0; i < 500; i++) expect(await guess(`more ${i}`)).toBe(1);
+    vi.advanceTimersByTime(1000);
+    expect(await guess('the right one')).toBe(true);
+  });
+
+  test('are counted when they come all at once, too', async () => {
+    const { guess, lookedAt } = door();
+    const answers = await Promise.all(Array.from({ length: 3000 }, (_, i) => guess(`wrong ${i}`)));
+    expect(lookedAt()).toBe(6);
+    expect(answers.filter((answer) => answer === false)).toHaveLength(6);
+  });
+
+  test('that are right are forgotten as guesses', async () => {
+    const { guess } = door();
+    for (let i = 0; i < 5; i++) await guess(`wrong ${i}`);
+    expect(await guess('the right one')).toBe(true);
+    for (let i = 5; i < 10; i++) expect(await guess(`wrong ${i}`)).toBe(false);
+  });
+
+  test('that repeat themselves are one guess: a page whose place was released goes on asking', async () => {
+    const { guess, lookedAt } = door();
+    for (let i = 0; i < 100; i++) expect(await guess('the old token')).toBe(false);
+    expect(lookedAt()).toBe(1);
+    expect(await guess('the right one')).toBe(true);
+  });
+
+  test('do not shut out a person whose secret was right before, at the same address', async () => {
+    const { guess } = door();
+    expect(await guess('the right one')).toBe(true);
+    for (let i = 0; i < 50; i++) await guess(`wrong ${i}`);
+    expect(await guess('wrong again')).toBe(1);
+    expect(await guess('the right one')).toBe(true);
+  });
+});
+
+describe('guesses from many addresses', () => {
+  test('at one study wait for each other, a minute at most; other studies do not', async () => {
+    const { guess, lookedAt } = door();
+    const answers: (boolean | number)[] = [];
+    for (let i = 0; i < 3000; i++) answers.push(await guess(`wrong ${i}`, `198.51.${i >> 8}.${i & 255}`));
+    expect(lookedAt()).toBe(21);
+    expect(answers.slice(21).every((answer) => typeof answer === 'number' && answer <= 60)).toBe(true);
+    expect(await guess('the right one', '192.0.2.1', 'another study')).toBe(true);
+    vi.advanceTimersByTime(60_000);
+    expect(await guess('the right one', '192.0.2.1')).toBe(true);
+  });
+
+  test('from one IPv6 line are those of one address', () => {
+    expect(networkOf('2001:db8:0:7::1')).toBe(networkOf('2001:0db8:0000:0007:ffff:1:2:3'));
+    expect(networkOf('2001:db8:0:7::1')).not.toBe(networkOf('2001:db8:0:8::1'));
+    expect(networkOf('::ffff:203.0.113.7')).toBe('203.0.113.7');
+    expect(networkOf('::1')).toBe('0:0:0:0::/64');
+    expect(networkOf('fe80::1%eth0')).toBe(networkOf('fe80::2'));
+  });
+});
+
+test('the log is told where guesses come from and how many, not what was guessed', async () => {
+  const { guess, wrong } = door();
+  await guess('my dog’s name', '203.0.113.9');
+  expect(wrong).toEqual([{ what: 'withdrawal code', address: '203.0.113.9', of: 'paper', failures: 1 }]);
+});

@@ -1,0 +1,93 @@
+import { join } from 'node:path';
+import { expect, onTestFinished } from 'vitest';
+import type { WrongGuess } from '../../server/guess-limits';
+import { createRouter, noPage } from '../../server/http/router';
+import { createRoomTokens } from '../../server/room-tokens';
+import { createStudyRoutes } from '../../server/study-routes';
+import { createStudySeats } from '../../server/study-seats';
+import { openStudyStore } from '../../server/study-store';
+import { serve } from '../../server/web-server';
+import type { StudyPlan } from '../../src/core/study/plan';
+import { paperPlan } from '../core/study/studies';
+import { directoryWith } from '../temporary-directory';
+import { testSecret } from './running-relay';
+
+export const experimenter = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
+export const now = 1_800_000_000;
+export const studySeats = createStudySeats(
+  testSecret,
+  createRoomTokens(testSecret, () => Date.now() / 1000),
+);
+
+// biome-ignore lint/suspicious/noExplicitAny: reason: what arrives over HTTP has no type; each test says what it expects.
+export type Anything = any;
+
+export interface Asked {
+  readonly token?: string;
+  readonly json?: unknown;
+  readonly raw?: RequestInit;
+  /** Where the proxy in front says that the request comes from. */
+  readonly from?: string;
+}
+
+/** The studies' part of the server on a port of loopback, as if behind a proxy; with its store and what it logs. */
+export async function servedStudies({ experimenterToken = experimenter as string | null, mostBytes = 2 ** 30 } = {}) {
+  const store = openStudyStore(join(directoryWith(), 'studies.db'), { mostBytes });
+  const faults: unknown[] = [];
+  const wrongGuesses: WrongGuess[] = [];
+  const service = createStudyRoutes({
+    store,
+    experimenterToken,
+    seats: studySeats,
+    trustProxy: true,
+    now: () => now,
+    onWrongGuess: (guess) => wrongGuesses.push(guess),
+    onFault: (error) => faults.push(error),
+  });
+  const server = await serve(createRouter([service], noPage), { host: '127.0.0.1', port: 0 });
+  onTestFinished(async () => {
+    await server.close();
+    store.close();
+    expect(faults).toEqual([]);
+  });
+  const origin = `http://127.0.0.1:${server.port}`;
+  async function ask(method: string, path: string, { token, json, raw, from }: Asked = {}) {
+    const response = await fetch(`${origin}${path}`, {
+      method,
+      headers: {
+        ...(json !== undefined && { 'content-type': 'application/json' }),
+        ...(token && { authorization: `Bearer ${token}` }),
+        ...(from && { 'x-forwarded-for': from }),
+      },
+      ...(json !== undefined && { body: JSON.stringify(json) }),
+      ...raw,
+    });
+    const body = Buffer.from(await response.arrayBuffer());
+    const isJson = response.headers.get('content-type')?.startsWith('application/json');
+    return {
+      status: response.status,
+      headers: response.headers,
+      body,
+      json: (isJson ? JSON.parse(body.toString()) : null) as Anything,
+    };
+  }
+  return { ask, store, origin, wrongGuesses };
+}
+
+/** The same with the paper's study on it, changed or not. */
+export async function servedPaperStudy(
+  changes: Partial<StudyPlan> = {},
+  options: { readonly mostBytes?: number } = {},
+) {
+  const server = await servedStudies(options);
+  server.store.addStudy(paperPlan(changes), { simulated: false, at: now });
+  /** What a participant's link says. */
+  const invited = (participant: string) => ({
+    invitation: server.store.overview('paper', now).find((state) => state.participant === participant)?.invitation,
+  });
+  const claim = async (participant: string): Promise<string> => {
+    const path = `/api/studies/paper/participants/${participant}/claim`;
+    return (await server.ask('POST', path, { json: invited(participant) })).json.token;
+  };
+  return { ...server, invited, claim };
+}

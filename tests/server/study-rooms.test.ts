@@ -1,0 +1,177 @@
+import { io } from 'socket.io-client';
+import { afterEach, beforeEach, describe, expect, test } from 'vitest';
+import { createRoomTokens } from '../../server/room-tokens';
+import { createStudySeats } from '../../server/study-seats';
+import { pageParser } from '../../src/core/protocol/small-frames';
+import { scheduleFor } from '../../src/core/study/plan';
+import { createRoomPass } from '../../src/net/room-pass';
+import { paperPlan } from '../core/study/studies';
+import { measured } from '../reliability/measured';
+import { type RunningRelay, rawGuest, rawSocket, startRelay, testSecret, tokenFor, until } from './running-relay';
+
+const plan = paperPlan();
+const tokens = createRoomTokens(testSecret, () => Date.now() / 1000);
+const seats = createStudySeats(testSecret, tokens);
+const step = 'ball/1/trial-1';
+const trial = { step, run: 1 };
+/** The three of P01's group, in the order of their seats. */
+const group = scheduleFor(plan, 'P01').groups.ball?.members as readonly string[];
+
+let server: RunningRelay;
+beforeEach(async () => {
+  server = await startRelay();
+});
+afterEach(() => server.close());
+
+const seatOf = (participant: string, watching = false) => seats.sign(plan, participant, trial, watching);
+
+async function sitDown(participant: string, watching = false) {
+  const { room, token } = await seatOf(participant, watching);
+  return { room, guest: await rawGuest(server.url, room, token) };
+}
+
+const welcomeOf = ({ guest }: Awaited<ReturnType<typeof sitDown>>) =>
+  guest.heard.find((message) => message.type === 'welcome');
+
+/** What the lobby's socket tells a stranger. */
+const toldByLobby = () =>
+  new Promise<string>((resolve) => {
+    let told = '';
+    const socket = io(`${server.url}/lobby`, {
+      path: '/relay',
+      transports: ['websocket'],
+      parser: pageParser,
+      forceNew: true,
+    });
+    socket.on('rooms', (list) => {
+      told += JSON.stringify(list);
+    });
+    socket.on('node', (list) => {
+      told += JSON.stringify(list);
+      if (!told.includes('meadow')) return;
+      socket.disconnect();
+      resolve(told);
+    });
+  });
+
+const post = (path: string, body: unknown) =>
+  fetch(`${server.url}${path}`, {
+    method: 'POST',
+    headers: { 'content-type': 'application/json' },
+    body: JSON.stringify(body),
+  });
+
+describe('the room of a trial', () => {
+  test('is in no list: not of the lobby, not of its socket, and no one is matched into it', async () => {
+    const lobby = toldByLobby();
+    const { room, guest } = await sitDown('P01');
+    const stranger = await rawGuest(server.url, 'meadow');
+    const told = await lobby;
+    await until('the lobby to know', () => server.relay.host.rooms.length === 1);
+    await expect.poll(async () => (await fetch(`${server.url}/api/rooms`)).text()).toContain('meadow');
+    const listed = await (await fetch(`${server.url}/api/rooms`)).text();
+    const matched = await (await post('/api/rooms/match', { kind: 'ball' })).text();
+    expect(server.relay.host.room(room)?.census.players).toBe(1);
+    for (const text of [told, listed, matched]) expect(text).not.toContain('study');
+    measured('study-rooms', { 'lists that show the room of a trial': '0 of 3' });
+    guest.socket.disconnect();
+    stranger.socket.disconnect();
+  });
+
+  test('lets each participant of the group onto their own seat, under their own code, whatever the page asks for', async () => {
+    const people = [];
+    for (const participant of group.toReversed()) people.unshift(await sitDown(participant));
+    expect(people.map((one) => welcomeOf(one)?.seat)).toEqual([0, 1, 2]);
+    const last = people[0]?.guest.heard.findLast((message) => message.type === 'seat' || message.type === 'welcome');
+    expect(JSON.stringify([welcomeOf(people[0] as never), last])).toContain(group[0]);
+    expect(JSON.stringify(people.map(welcomeOf))).not.toContain('raw');
+    const [first] = people;
+    first?.guest.say({ type: 'sit', seat: null });
+    first?.guest.say({ type: 'ping', sent: 1 });
+    await until('the answer', () => first?.guest.heard.some(({ type }) => type === 'pong') === true);
+    expect(first?.guest.heard.some(({ type }) => type === 'seated')).toBe(false);
+    for (const { guest } of people) guest.socket.disconnect();
+  });
+
+  test('has no seat for a stranger: a pass for it is signed to no one, and no pass for another room opens it', async () => {
+    const { room, guest } = await sitDown('P01');
+    let refused = 0;
+    const attempts: unknown[] = [
+      { room, kind: 'ball' },
+      { room: room.toUpperCase(), kind: 'ball' },
+      { room, kind: 'open' },
+      { room, kind: 'ball', token: (await seatOf('P01')).token },
+      { room: 'meadow', kind: 'ball', assigned: { seat: 1, name: 'P02' } },
+    ];
+    for (const attempt of attempts) {
+      const { status } = await post('/api/rooms/token', attempt);
+      if (status === 400) refused += 1;
+    }
+    expect(refused).toBe(attempts.length);
+    // Signed by this server, for a name of this kind, but without a seat.
+    const forged = await tokens.sign({ identity: 'me', room, kind: 'ball', terms: {}, assigned: null });
+    const answer = await new Promise<string>((resolve) => {
+      const socket = rawSocket(server.url, forged, room);
+      socket.on('connect', () => resolve('let in'));
+      socket.on('connect_error', (error) => resolve(error.message));
+    });
+    expect(answer).toBe('refused');
+    const elsewhere = await rawGuest(server.url, room, await tokenFor(server.url, 'meadow'));
+    expect(elsewhere.heard.find((message) => message.type === 'welcome')).toMatchObject({ room: 'meadow' });
+    expect(server.relay.host.room(room)?.census).toMatchObject({ players: 1, spectators: 0 });
+    measured('study-rooms', { 'seats that a stranger got': `0 of ${attempts.length + 2} attempts` });
+    for (const { socket } of [guest, elsewhere]) socket.disconnect();
+  });
+
+  test('is watched with the experimenter’s pass alone, which takes no seat', async () => {
+    const watching = await sitDown('P01', true);
+    expect(welcomeOf(watching)?.seat).toBeNull();
+    watching.guest.say({ type: 'sit', seat: 1 });
+    watching.guest.say({ type: 'ping', sent: 1 });
+    await until('the answer', () => watching.guest.heard.some(({ type }) => type === 'pong'));
+    expect(server.relay.host.room(watching.room)?.census).toMatchObject({ players: 0, spectators: 1 });
+    watching.guest.socket.disconnect();
+  });
+
+  test('is the same one for the group and another one for other groups, steps and runs', async () => {
+    const others = scheduleFor(plan, 'P01').groups.ball?.number;
+    const stranger = plan.participants;
+    const far = Array.from({ length: stranger }, (_, i) => `P${String(i + 1).padStart(2, '0')}`).find(
+      (name) => scheduleFor(plan, name).groups.ball?.number !== others,
+    ) as string;
+    const rooms = await Promise.all(group.map(async (name) => (await seatOf(name)).room));
+    expect(new Set(rooms).size).toBe(1);
+    const different = await Promise.all([
+      seatOf(far),
+      seats.sign(plan, 'P01', { step, run: 2 }, false),
+      seats.sign(plan, 'P01', { step: 'ball/2/trial-1', run: 1 }, false),
+      createStudySeats(`${testSecret}2`, tokens).sign(plan, 'P01', trial, false),
+    ]);
+    expect(new Set([...rooms, ...different.map(({ room }) => room)]).size).toBe(5);
+    for (const { room } of different) expect(room).toMatch(/^study\.[0-9a-f]{24}$/);
+  });
+
+  test('is none where a participant plays alone', async () => {
+    await expect(seats.sign(plan, 'P01', { step: 'archery/1/trial-1', run: 1 }, false)).rejects.toThrow(
+      'expected a step that P01 plays with others',
+    );
+    await expect(seats.sign(plan, 'P01', { step: 'ball/1/rest', run: 1 }, false)).rejects.toThrow('step');
+  });
+});
+
+test('a person who comes back with their pass has their seat again', async () => {
+  const first = await sitDown('P02');
+  const again = await sitDown('P02');
+  await until('the first sent away', () => first.guest.closedAt !== null);
+  expect(first.guest.heard.at(-1)).toEqual({ type: 'farewell', reason: 'replaced' });
+  expect(welcomeOf(again)?.seat).toBe(scheduleFor(plan, 'P02').groups.ball?.members.indexOf('P02'));
+  again.guest.socket.disconnect();
+});
+
+test('rooms of everyone else are as open as they were', async () => {
+  const pass = createRoomPass(server.url, 'study-group-of-friends', 'ball');
+  const guest = await rawGuest(server.url, 'study-group-of-friends', await pass.token(false));
+  guest.say({ type: 'sit', seat: 2 });
+  await until('the seat', () => guest.heard.some(({ type }) => type === 'seated'));
+  guest.socket.disconnect();
+});

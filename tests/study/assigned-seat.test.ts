@@ -1,0 +1,56 @@
+import { expect, onTestFinished, test, vi } from 'vitest';
+import { relayConfigurationFrom } from '../../server/relay-configuration';
+import { startServer } from '../../server/start';
+import { assignedSeat } from '../../src/ball-connections';
+import { scheduleFor } from '../../src/core/study/plan';
+import type { ParticipantState } from '../../src/core/study/study-api';
+import { createExperimenterClient, createParticipantClient } from '../../src/study/study-client';
+import { paperPlan } from '../core/study/studies';
+import { visitor } from '../net/people';
+import { testSecret, until } from '../server/running-relay';
+import { directoryWith } from '../temporary-directory';
+
+const experimenterToken = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
+const trial = { step: 'ball/1/trial-1', run: 1 };
+const clock = { now: () => performance.now() / 1000, leftOut: 0 };
+
+test('participants who were invited meet in the room of their trial, each on their own seat, through the server as it is started', async () => {
+  const server = await startServer({
+    pageDirectory: directoryWith({ 'index.html': 'the page' }),
+    studyDirectory: directoryWith(),
+    experimenterToken,
+    relay: relayConfigurationFrom({ THREEPOINT_LOG_LEVEL: 'silent' }),
+    secret: testSecret,
+    host: '127.0.0.1',
+    port: 0,
+    log: (line) => expect(line).toBeNull(),
+  });
+  onTestFinished(() => server.close());
+  const origin = `http://127.0.0.1:${server.port}`;
+  vi.stubGlobal('location', { origin });
+  onTestFinished(() => void vi.unstubAllGlobals());
+
+  const experimenter = createExperimenterClient(experimenterToken, origin);
+  await experimenter.addStudy(paperPlan(), false);
+  const states = await experimenter.participants('paper');
+  const invitationOf = (name: string) =>
+    states.find(({ participant }: ParticipantState) => participant === name)?.invitation as string;
+  const group = scheduleFor(paperPlan(), 'P01').groups.ball?.members as readonly string[];
+  const client = createParticipantClient(origin);
+  const connections = await Promise.all(
+    group.map(async (participant) => {
+      const { token } = await client.claim('paper', participant, invitationOf(participant));
+      const connect = await assignedSeat(() => client.seat('paper', participant, token, trial), clock);
+      return connect(visitor('whatever the page says'), clock.now());
+    }),
+  );
+  onTestFinished(() => {
+    for (const connection of connections) connection.leave();
+  });
+  await until('all three seated', () =>
+    connections.every(({ room }) => room?.seats.filter((seat) => seat !== null).length === group.length),
+  );
+  expect(connections.map(({ room }) => room?.mySeat)).toEqual([0, 1, 2]);
+  for (const { room } of connections) expect(room?.seats.map((seat) => seat?.name)).toEqual(group);
+  expect(await (await fetch(`${origin}/api/rooms`)).json()).toMatchObject({ rooms: [] });
+});
