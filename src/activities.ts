@@ -7,10 +7,12 @@ import { type Buttons, nothingPressed } from './core/games/button-presses';
 import type { Vec3 } from './core/math/vec3';
 import type { TrackingFrame } from './core/tracking/tracking-frame';
 import type { Headset } from './headset';
+import { readLimited } from './limited-files';
+import type { PageClock } from './page-clock';
 import { firstLine, reasonOf } from './reasons';
 import type { Quality } from './scene/renderer';
 import type { Settings } from './settings';
-import { ownAvatarAt } from './shown-avatar';
+import { avatarFile, ownAvatarAt } from './shown-avatar';
 import type { Stage, Watched } from './stage';
 import type { TaskPlace } from './study/task-runner';
 import type { StudyRun } from './study-run';
@@ -37,6 +39,7 @@ export interface ActivitiesOptions {
   readonly settings: Settings;
   readonly store: PreferenceStore;
   readonly notices: Pick<Notices, 'show'>;
+  readonly clock: PageClock;
   readonly stage: Pick<Stage, 'arena' | 'view' | 'placeMirror'>;
   readonly mouse: MouseAim;
   readonly headset: Pick<Headset, 'worn' | 'emulator'>;
@@ -62,6 +65,8 @@ export interface Activities {
   readonly archery: ArcheryActivity | null;
   readonly ball: BallActivity | null;
   goTo(next: ActivityName): Promise<void>;
+  /** Into the room again that this page has left or lost. */
+  rejoin(): Promise<void>;
   /** The court in a study's room, on this participant's seat. */
   goToMatch(place: TaskPlace): Promise<void>;
   /** Another round, where rounds are not a study's. */
@@ -172,34 +177,30 @@ export function createActivities(options: ActivitiesOptions): Activities {
 
   async function openCourt(): Promise<void> {
     const place = studyPlace;
-    const [{ createBallActivity }, { connectionsFor }, mannequin] = await Promise.all([
+    const [{ createBallActivity }, { assignedSeat, connectionsFor }, mannequin] = await Promise.all([
       import('./ball-activity'),
       import('./ball-connections'),
-      fetch(ownAvatarAt).then((response) => {
-        if (!response.ok) throw new Error(`the server answers ${response.status} to ${ownAvatarAt}`);
-        return response.arrayBuffer();
-      }),
+      readLimited(ownAvatarAt, avatarFile),
     ]);
     ball = createBallActivity({
       quality,
       arena,
       mannequin,
-      connect: await connectionsFor(place?.room ?? switches.room, {
-        seed,
-        // A study's match is as long as its plan says, and stands when one of the group pauses.
-        ...(place
-          ? { seconds: place.seconds, pausable: true }
-          : {
-              ...(switches.seconds && { seconds: switches.seconds }),
-              ...(switches.balls && { balls: switches.balls }),
-            }),
-      }),
+      connect: place
+        ? await assignedSeat(place.seat, options.clock)
+        : await connectionsFor(switches.room, {
+            seed,
+            clock: options.clock,
+            ...(switches.seconds && { seconds: switches.seconds }),
+            ...(switches.balls && { balls: switches.balls }),
+          }),
       visitor: {
-        name: place?.participant || settings.name || (settings.actor && !headset.worn ? 'Demo' : 'Player'),
+        name: place?.participant || settings.name || settings.guestName,
         calibration: body(),
         ...(place && { seat: place.members.indexOf(place.participant) }),
         ...(switches.spectate && { spectate: true }),
       },
+      unnamed: !place && !settings.name,
       bots: () => settings.bots && place === null,
       acting: () => place === null && settings.actor && (!headset.worn || headset.emulator !== null),
       steering: () =>
@@ -249,6 +250,11 @@ export function createActivities(options: ActivitiesOptions): Activities {
       return ball;
     },
     goTo,
+    async rejoin() {
+      if (!ball || arriving) return;
+      leave();
+      await goTo('ball');
+    },
     async goToMatch(place) {
       if (ball) await goTo('studio');
       studyPlace = place;

@@ -8,6 +8,7 @@ import { type Vec3, zero } from './core/math/vec3';
 import type { TrackingFrame } from './core/tracking/tracking-frame';
 import { createArcheryView } from './games/archery/archery-view';
 import { eventHaptics } from './games/archery/haptics';
+import { lineOf } from './games/archery/scoreboard-drawing';
 import type { Arena } from './scene/arena';
 import type { Quality } from './scene/renderer';
 
@@ -51,7 +52,8 @@ export interface ArcheryActivity {
   setHovered(hovered: boolean): void;
   /** Whether this hand is closed round the bow. */
   holds(side: Side): boolean;
-  round(): ReturnType<typeof roundOf> | null;
+  /** The round in numbers, and what it waits for, in words (null: for nothing). */
+  round(): (ReturnType<typeof roundOf> & { readonly waiting: string | null }) | null;
   probe(): ReturnType<typeof probeOf> | null;
   dispose(): void;
 }
@@ -85,7 +87,13 @@ export function createArcheryActivity(options: ArcheryActivityOptions): ArcheryA
     restartAt: ({ origin, direction }) => view.result.restartAt(origin, direction),
     setHovered: (hovered) => view.result.setHovered(hovered),
     holds: (side) => play.newest?.bow?.bowSide === side,
-    round: () => play.newest && roundOf(play.newest),
+    round() {
+      const { newest } = play;
+      if (!newest) return null;
+      const { state, time } = newest;
+      const waits = state.phase === 'ready' || (state.phase === 'running' && !state.inZone);
+      return { ...roundOf(newest), waiting: waits ? `${lineOf(state, time)}.` : null };
+    },
     probe: () => play.newest && probeOf(play.newest),
     dispose() {
       view.bow.removeFromParent();

@@ -1,20 +1,22 @@
 import { createRemoteAvatars } from './avatar/remote-avatars';
-import { type BallPlay, type BallProbe, createBallPlay } from './ball-play';
+import type { BallFrame, BallProbe } from './ball-frame';
+import { type BallPlay, createBallPlay } from './ball-play';
 import type { AvatarPose } from './core/body/avatar-pose';
 import type { BallPulse } from './core/games/ball/gestures';
 import type { Performed } from './core/games/ball/player-postures';
-import { ballSecondsLeft, ballsLeft, defaultBallOptions } from './core/games/ball/rules';
+import { ballsLeft, defaultBallOptions } from './core/games/ball/rules';
 import type { BallSteering } from './core/games/ball/steered-players';
 import type { Buttons } from './core/games/button-presses';
 import type { Side } from './core/games/fist';
-import { type Pose, transformPose } from './core/math/pose';
+import { type Pose, type Transform, transformPose } from './core/math/pose';
 import type { Vec3 } from './core/math/vec3';
 import type { TrackingFrame } from './core/tracking/tracking-frame';
 import { createBallView } from './games/ball/ball-view';
-import { seatOfButton } from './games/ball/board-drawing';
+import { ownName, type Standing, seatOfButton, waitingFor } from './games/ball/board-drawing';
 import { roleTexts, seatLooks } from './games/ball/court-plan';
 import { eventHaptics } from './games/ball/haptics';
-import { bannerText } from './net/banner';
+import { createMatchClock } from './games/ball/match-clock';
+import { bannerText, connectionText } from './net/banner';
 import type { Connection, Visitor } from './net/connection';
 import type { Arena } from './scene/arena';
 import type { Quality } from './scene/renderer';
@@ -26,6 +28,8 @@ export interface BallActivityOptions {
   /** The file of the body that others have. */
   readonly mannequin: ArrayBuffer;
   readonly visitor: Visitor;
+  /** The visitor's name was given by the page: its player reads “You” instead. */
+  readonly unnamed: boolean;
   connect(visitor: Visitor, time: number): Connection;
   bots(): boolean;
   acting(): boolean;
@@ -35,7 +39,7 @@ export interface BallActivityOptions {
   readonly onCaption: (text: string) => void;
 }
 
-/** Somebody whom the tools may know of. */
+/** A player whom the tools may know of. */
 export interface PlayerProbe {
   readonly seat: number;
   readonly name: string;
@@ -62,13 +66,13 @@ export interface BallActivity {
   /** The tracked frame as play: what it means is heard at once, what it feels like comes back. */
   follow(frame: TrackingFrame, buttons: Buttons): readonly BallPulse[];
   send(frame: TrackingFrame, pose: AvatarPose, grips: Readonly<Record<Side, number>>): void;
-  /** Draws the match; head: whose eyes and ears these are, own floor frame. `tracked`: whether `follow` was called for this frame. */
+  /** Draws the match; head: the eyes and ears of the viewer, own floor frame. `tracked`: whether `follow` was called for this frame. */
   show(time: number, head: Pose<'floor'>, tracked: boolean): void;
   /** What a ray meets on the sheet before and after a match: the distance [m]; null: nothing. `press`: does what it says. */
   point(ray: Ray, press: boolean): number | null;
   /** The colours of the own seat: one of the avatar's palettes; null: a spectator. */
   readonly palette: string | null;
-  /** Pelvis and eyes of somebody to follow, own floor frame; null: nobody of this seat is drawn. */
+  /** Pelvis and eyes of a player to follow, own floor frame; null: no player of this seat is drawn. */
   bodyOf(seat: number): { readonly pelvis: Vec3; readonly eyes: Pose<'floor'> } | null;
   /** Which of the others there are to follow. */
   readonly seats: readonly number[];
@@ -86,27 +90,45 @@ export function createBallActivity(options: BallActivityOptions): BallActivity {
   const view = createBallView({ quality, balls: defaultBallOptions.balls, onCaption });
   const others = createRemoteAvatars(mannequin, 'mannequin.vrm');
   arena.scene.add(view.own, others.object);
-  let placedAt = '';
+  let placedAt: Transform<'floor', 'arena'> | null = null;
   let voided = 0;
   let notice: { readonly text: string; readonly until: number } | null = null;
   let now = 0;
+  const clock = createMatchClock();
 
-  /** The court turns round whoever looks: again with every change of seat. */
+  /** The court turns round the viewer: again with every change of seat. */
   function place(): void {
     const at = play.floorFromArena;
-    const key = JSON.stringify(at);
-    if (key === placedAt) return;
-    placedAt = key;
+    if (at === placedAt) return;
+    placedAt = at;
     arena.setSurroundings(view.placed(at));
+  }
+
+  /** A built-in player moves the own body, with no person behind it. */
+  const acting = () => options.acting() && !options.steering();
+  const ended = () => play.status.phase === 'ended';
+
+  const writtenOf: BallFrame['players'][number][] = [];
+  /** The players as they are written of on this page; the list lasts until the next call. */
+  function named(players: BallFrame['players']): BallFrame['players'] {
+    if (!options.unnamed) return players;
+    writtenOf.length = players.length;
+    players.forEach((player, i) => {
+      writtenOf[i] = player?.me ? { ...player, name: ownName } : player;
+    });
+    return writtenOf;
   }
 
   function follow(time: number, frame: TrackingFrame | null, buttons: Buttons): readonly BallPulse[] {
     const seen = play.follow(time, frame, buttons);
     if (!seen) return [];
+    clock.follow(seen.state);
     const { me, role, events, haptics } = seen;
-    return me === null || role === null ? haptics : [...haptics, ...eventHaptics(events, me, role)];
+    if (me === null || role === null || events.length === 0) return haptics;
+    return [...haptics, ...eventHaptics(events, me, role)];
   }
 
+  const nobodies: BallFrame['bodies'] = [];
   const nobody: Buttons = {
     left: { trigger: 0, grip: 0, pinch: 0 },
     right: { trigger: 0, grip: 0, pinch: 0 },
@@ -127,23 +149,35 @@ export function createBallActivity(options: BallActivityOptions): BallActivity {
         notice = { text: 'The server was restarted: this round does not count. A new one can begin.', until: time + 8 };
       voided = times;
     },
-    act: play.act,
+    act: (time, catchUp) => play.act(time, catchUp),
     follow: (frame, buttons) => follow(frame.time, frame, buttons),
-    send: play.send,
+    send: (frame, pose, grips) => play.send(frame, pose, grips),
     show(time, head, tracked) {
       if (!tracked) follow(time, null, nobody);
       const seen = play.newest;
-      others.show(
-        (seen?.bodies ?? []).map((body) => ({ ...body, palette: seatLooks[body.station]?.palette ?? 'porcelain' })),
-        time,
-      );
+      others.show(seen?.bodies ?? nobodies, time);
       if (!seen) return;
-      const { state, me, rotate, opening, aim, paused, players, events, cues } = seen;
-      view.show({ state, time: seen.time, attendants: players, me, rotate, opening, aim, paused, head });
+      const { state, me, rotate, opening, aim, paused, events, cues } = seen;
+      const attendants = named(seen.players);
+      view.show({
+        state,
+        time: seen.time,
+        attendants,
+        me,
+        rotate,
+        opening,
+        aim,
+        paused,
+        secondsLeft: clock.secondsLeft,
+        head,
+        pageTime: time,
+        inRoom: !ended(),
+        acting: acting(),
+      });
       view.hear(events, cues);
     },
     point({ origin, direction }, press) {
-      const hit = view.lobby.buttonAt(origin, direction);
+      const hit = ended() ? null : view.lobby.buttonAt(origin, direction);
       view.lobby.setHovered(hit?.id ?? null);
       if (!hit) return null;
       if (press) {
@@ -175,15 +209,29 @@ export function createBallActivity(options: BallActivityOptions): BallActivity {
     round() {
       const seen = play.newest;
       if (!seen) return null;
-      const { state, me, rotate, spectators, players } = seen;
+      const { state, me, rotate, spectators } = seen;
+      const players = named(seen.players);
+      const standing: Standing = {
+        state,
+        seconds: Math.ceil(clock.secondsLeft),
+        people: players,
+        me,
+        rotate,
+        acting: acting(),
+      };
+      const delay = play.room?.delay ?? null;
       const roleOf = (player: number): string => roleTexts[state.players[player]?.station ?? player] ?? '';
       return {
         phase: state.phase,
         score: state.score,
         of: state.options.balls,
         ballsLeft: ballsLeft(state),
-        secondsLeft: ballSecondsLeft(state),
+        secondsLeft: clock.secondsLeft,
+        seconds: state.options.seconds,
         paused: seen.paused,
+        waiting: ended() ? null : waitingFor(standing),
+        connection: delay === null || ended() ? null : connectionText(delay),
+        ended: ended() ? (bannerText(play.status) ?? 'The connection has ended.') : null,
         throws: me !== null && state.players[me]?.role === 'thrower',
         role: me === null ? 'Watching' : roleOf(me),
         seat: me,
@@ -201,7 +249,10 @@ export function createBallActivity(options: BallActivityOptions): BallActivity {
     banner() {
       return bannerText(play.status) ?? (notice && now < notice.until ? notice.text : null);
     },
-    probe: play.probe,
+    probe() {
+      const seen = play.probe();
+      return seen && { ...seen, secondsLeft: clock.secondsLeft };
+    },
     players() {
       const seen = play.newest;
       return (seen?.bodies ?? []).flatMap(({ id, opacity }): PlayerProbe[] => {

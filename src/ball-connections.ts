@@ -1,5 +1,6 @@
 import type { RoomTerms } from './core/protocol/messages';
-import type { Connection, Visitor } from './net/connection';
+import type { SignedSeat } from './core/study/study-api';
+import type { Connection, LocalClock, Visitor } from './net/connection';
 import { createLoopbackHost } from './net/loopback-connection';
 
 /** Makes one visitor's place in a room; `time`: the page's clock [s]. */
@@ -15,13 +16,20 @@ function tabStorage(): Storage | undefined {
   }
 }
 
+/** The seat that a server assigns, of which it signs a pass; the pass is asked for anew when the first one has expired. */
+export async function assignedSeat(seat: () => Promise<SignedSeat>, clock: LocalClock): Promise<Connect> {
+  const [{ createSocketConnection }, first] = await Promise.all([import('./net/socket-connection'), seat()]);
+  const pass = { token: async (afresh: boolean) => (afresh ? await seat() : first).token };
+  return (visitor) => createSocketConnection({ url: location.origin, room: first.room, visitor, clock, pass });
+}
+
 /**
  * Places in a room of this name on the server that the page came from; null: in a Room of this page's own. `terms`: of the match, on a
- * server those of whoever is the first in the room; a room of one's own may be paused in any case.
+ * server those of the first page in the room; a room of one's own may be paused in any case.
  */
 export async function connectionsFor(
   room: string | null,
-  { seed, ...terms }: RoomTerms & { readonly seed: number },
+  { seed, clock, ...terms }: RoomTerms & { readonly seed: number; readonly clock: LocalClock },
 ): Promise<Connect> {
   if (room === null) {
     const { pausable: _, ...ball } = terms;
@@ -37,7 +45,8 @@ export async function connectionsFor(
       url: location.origin,
       room,
       visitor,
-      // Each bot is somebody of its own.
+      clock,
+      // Each bot is a guest of its own.
       pass: visitor.bot ? createRoomPass('', room, 'ball') : person,
     });
 }

@@ -16,6 +16,7 @@ import type { TrackingFrame } from './core/tracking/tracking-frame';
 import type { EstimatorChoice } from './estimator-choice';
 import { type FrameTiming, stageNames } from './frame-timing';
 import type { Headset } from './headset';
+import { type FileKind, nameOf, readLimited } from './limited-files';
 import { firstLine, reasonOf } from './reasons';
 import type { Recorder } from './recorder';
 import { type ViewName, viewNames } from './scene/desktop-view';
@@ -29,6 +30,7 @@ import { offerDownload } from './ui/downloads';
 import { acceptDroppedFiles } from './ui/dropped-files';
 import { pageElement } from './ui/element';
 import { estimatorOrder, estimatorTexts } from './ui/estimator-texts';
+import { createInvitation, type Invitation } from './ui/invitation';
 import type { Notices } from './ui/notices';
 import { createOverlay, type FrameReport } from './ui/overlay';
 import { createPanel } from './ui/panel';
@@ -45,6 +47,12 @@ const reportEveryMs = 250;
 const largerMenu = 1.3;
 /** Of a window [CSS pixels], up to which the controls lie below the picture instead of beside it. */
 const narrowest = 760;
+/** Between the body and the button that enters VR [CSS pixels]. */
+const besideEnter = 8;
+/** Twice what the recorder keeps at most. */
+const recordingFile: FileKind = { what: 'a recording', megabytes: 100 };
+/** Of an address that has just opened a room for others. */
+const invitingHash = '#invite';
 const roomLetters = 'abcdefghjkmnpqrstuvwxyz';
 
 export interface ControlsOptions {
@@ -82,7 +90,8 @@ export interface Controls {
   observe(frame: TrackingFrame): void;
   /** Rays and finger tips in the headset: the study or the menu first, then the sheets of a game. */
   point(): void;
-  openRecording(name: string, text: Promise<string>): Promise<void>;
+  /** Replays a file of this device, or what an address answers. */
+  openRecording(source: string | File): Promise<void>;
 }
 
 export function createControls(options: ControlsOptions): Controls {
@@ -134,17 +143,27 @@ export function createControls(options: ControlsOptions): Controls {
   }
 
   // Files.
-  async function openAvatar(source: string | File | null, name: string): Promise<void> {
-    if ((await avatar.open(source, name)) && source) notices.show('info', `${name} is your avatar now.`);
+  async function openAvatar(source: string | File): Promise<void> {
+    if (await avatar.open(source)) notices.show('info', `${avatar.name} is your avatar now.`);
   }
 
-  async function openRecording(name: string, text: Promise<string>): Promise<void> {
+  /** Ours, also after a reload. */
+  function showOwnAvatar(): void {
+    const address = new URL(location.href);
+    address.searchParams.delete('avatar');
+    history.replaceState(null, '', address);
+    void avatar.openOwn();
+  }
+
+  async function openRecording(source: string | File): Promise<void> {
+    const name = nameOf(source);
     try {
-      const recording = recorder.open(name, await text);
+      const recording = recorder.open(name, new TextDecoder().decode(await readLimited(source, recordingFile)));
       options.replays(recording.calibration);
       replay();
     } catch (error) {
-      notices.show('error', `${name} could not be replayed: ${firstLine(reasonOf(error))}`);
+      const reason = firstLine(reasonOf(error)).replace(`${name}: `, '');
+      notices.show('error', `${name} could not be replayed: ${reason}`);
     }
   }
 
@@ -156,10 +175,21 @@ export function createControls(options: ControlsOptions): Controls {
   }
 
   function openFile(file: File): void {
-    if (/\.json$/i.test(file.name)) void openRecording(file.name, file.text());
-    else void openAvatar(file, file.name);
+    if (/\.json$/i.test(file.name)) void openRecording(file);
+    else void openAvatar(file);
   }
   acceptDroppedFiles(openFile);
+
+  // Others.
+  let invitation: Invitation | null = null;
+  function invite(): void {
+    invitation ??= createInvitation();
+    if (switches.room) invitation.open(switches.room);
+  }
+  if (location.hash === invitingHash) {
+    history.replaceState(null, '', `${location.pathname}${location.search}`);
+    invite();
+  }
 
   const playBar = createPlayBar(pageElement('play', HTMLElement), {
     goTo: (activity) => void activities.goTo(activity),
@@ -185,8 +215,10 @@ export function createControls(options: ControlsOptions): Controls {
       openRoom() {
         const random = crypto.getRandomValues(new Uint8Array(6));
         const name = Array.from(random, (byte) => roomLetters[byte % roomLetters.length]).join('');
-        location.search = `?play=ball&room=${name}`;
+        location.assign(`?play=ball&room=${name}${invitingHash}`);
       },
+      invite,
+      rejoin: () => void activities.rejoin(),
       follow: activities.follow,
       steer: (on) => activities.chooseShooter(on ? 'mouse' : 'actor'),
     },
@@ -218,8 +250,8 @@ export function createControls(options: ControlsOptions): Controls {
         show();
       },
       openAvatarFile: openFile,
-      openAvatarUrl: (url) => void openAvatar(url, url.split('/').at(-1) ?? url),
-      showOwnAvatar: () => void openAvatar(null, 'Mannequin'),
+      openAvatarUrl: (url) => void openAvatar(url),
+      showOwnAvatar,
       calibrate: startGuide,
       setMeasures({ heightCm, armSpanCm }) {
         const calibration = {
@@ -266,7 +298,7 @@ export function createControls(options: ControlsOptions): Controls {
         const file = recorder.file();
         if (file) offerDownload(file.name, 'application/json', file.text);
       },
-      openRecording: (file) => void openRecording(file.name, file.text()),
+      openRecording: (file) => void openRecording(file),
       setLoop(on) {
         recorder.setLoop(on);
         show();
@@ -312,6 +344,7 @@ export function createControls(options: ControlsOptions): Controls {
 
   const overlay = createOverlay(pageElement('overlay', HTMLElement));
   const banner = pageElement('banner', HTMLElement);
+  const enter = pageElement('enter', HTMLElement);
 
   /** Controls cover a part of the window: the body stands in the middle of the rest. */
   function layOut(): void {
@@ -319,10 +352,12 @@ export function createControls(options: ControlsOptions): Controls {
     const right = narrow || !panel.open ? 0 : 352;
     document.body.classList.toggle('panel-open', panel.open);
     document.body.style.setProperty('--panel-inset', `${right}px`);
-    const bottom = !narrow ? 110 : panel.open ? window.innerHeight * 0.48 : 130;
+    const covered = window.innerHeight - enter.getBoundingClientRect().top + besideEnter;
+    const bottom = narrow && panel.open ? window.innerHeight * 0.48 : enter.offsetHeight > 0 ? covered : 0;
     stage.layOut({ left: 0, right, bottom });
   }
   window.addEventListener('resize', layOut);
+  new ResizeObserver(layOut).observe(enter);
   panelRegion.addEventListener('toggle', layOut);
 
   function showInHeadset(): void {
@@ -336,8 +371,11 @@ export function createControls(options: ControlsOptions): Controls {
       activity: activities.name,
       bowSide: settings.bowSide,
       roundOver: archery?.round()?.over ?? false,
-      ready: ballRound && ballRound.seat !== null && ballRound.phase !== 'running' ? ballRound.ready : null,
-      notice: ball?.banner() ?? notices.current().at(-1)?.text ?? null,
+      ready:
+        ballRound && ballRound.ended === null && ballRound.seat !== null && ballRound.phase !== 'running'
+          ? ballRound.ready
+          : null,
+      notice: ball?.banner() ?? notices.current().at(-1)?.text ?? ballRound?.waiting ?? ballRound?.connection ?? null,
     });
   }
 
@@ -354,6 +392,7 @@ export function createControls(options: ControlsOptions): Controls {
         acting: settings.actor && !settings.mouse && !headset.worn,
         mouse: headset.worn || !settings.actor ? null : settings.mouse,
         name: settings.name,
+        guestName: settings.guestName,
         following: settings.following,
       },
       round: archery?.round() ?? null,
@@ -380,7 +419,9 @@ export function createControls(options: ControlsOptions): Controls {
       estimator: choice.wanted,
       unavailable: choice.unavailable,
       view: view.view,
-      avatarName: avatar.name,
+      avatarName: avatar.current ? avatar.name : 'None yet',
+      avatarPending: avatar.pending,
+      ownAvatarOffered: !avatar.own || avatar.pending !== null || avatar.current === null,
       palette: avatar.own ? settings.palette : null,
       heightCm: 100 * statureFromEyeHeight(eyeHeight),
       armSpanCm: 100 * fingertipSpanFromArmSpan(armSpan),

@@ -2,6 +2,7 @@ import './styles/document.css';
 import { checkedPlan, type Schedule, type StudyPlan, scheduleFor } from './core/study/plan';
 import type { ParticipantState, Receipt, StudyCommand, StudyListing } from './core/study/study-api';
 import { createExperimenterClient, type ExperimenterClient, ServerRefusal } from './study/study-client';
+import { studyLink } from './study/study-link';
 import { offerDownload } from './ui/downloads';
 import { button, element, pageElement } from './ui/element';
 import { forgetToken, keptToken, signInForm } from './ui/sign-in';
@@ -177,7 +178,6 @@ function rowOf(state: ParticipantState, of: StudyPlan) {
   const active = session !== null && session.kind !== 'end' && !withdrawn;
   const startable =
     active && !session.paused && !session.running && (session.kind === 'trial' || session.kind === 'tutorial');
-  const address = `/?study=${of.id}&participant=${participant}`;
   return {
     look: session && Date.now() / 1000 - session.reportedAt > silentAfter ? 'stale' : '',
     cells: [
@@ -201,9 +201,54 @@ function rowOf(state: ParticipantState, of: StudyPlan) {
         small('Delete …', () => void remove(of, participant), !claimed && records === 0, 'danger'),
       ),
       element('div', { class: 'soft' }, ...orderTexts(schedule, of).map((line) => element('div', {}, line))),
-      element('a', { href: address, target: '_blank', rel: 'noopener' }, 'open'),
+      linkCell(of, state),
     ],
   };
+}
+
+/** The participant's page: to open here, to copy, and the invitation to type where a link cannot be sent. */
+function linkCell(of: StudyPlan, { participant, invitation }: ParticipantState): HTMLElement | string {
+  if (invitation === null) return '';
+  const link = studyLink({ study: of.id, participant, invitation });
+  return element(
+    'div',
+    {},
+    element(
+      'div',
+      { class: 'row-actions' },
+      element('a', { href: link, target: '_blank', rel: 'noopener' }, 'open'),
+      button('Copy', () => void copyLink(participant, link), { class: 'small', title: 'Copy the link' }),
+      button('New …', () => void reinvite(of, participant), { class: 'small', title: 'Make a new link' }),
+    ),
+    element(
+      'code',
+      { class: 'soft', title: 'The invitation: what the page asks for where it was not in the link' },
+      invitation,
+    ),
+  );
+}
+
+async function reinvite(of: StudyPlan, participant: string): Promise<void> {
+  const whose = of.entry === 'open' ? 'all participants' : participant;
+  if (!confirm(`Make a new link for ${whose}? The old one opens nothing any more; a place that is taken stays taken.`))
+    return;
+  await attempt(async () => {
+    await client?.reinvite(of.id, participant);
+    return `${participant} has a new link.`;
+  });
+}
+
+async function copyLink(participant: string, link: string): Promise<void> {
+  const address = new URL(link, location.origin).href;
+  await attempt(async () => {
+    try {
+      await navigator.clipboard.writeText(address);
+      return `The link of ${participant} is in the clipboard: give it to ${participant} alone.`;
+    } catch {
+      // reason: a browser that lets no page write to the clipboard still shows what is to be copied
+      return `The link of ${participant}: ${address}`;
+    }
+  });
 }
 
 async function voidBlock(of: StudyPlan, participant: string): Promise<void> {
@@ -370,7 +415,7 @@ function render(): void {
   }
   const second = Math.floor(Date.now() / 1000);
   const key = JSON.stringify([listed, plan?.id, states, receipts, notice, complaint, online, second]);
-  // A list that somebody has open, or a field that they type in, is not taken away from under them.
+  // An open list, or a field that is being typed in, is not taken away.
   if (key === shownKey || pressing || document.activeElement instanceof HTMLSelectElement) return;
   shownKey = key;
   const focused = document.activeElement?.closest('tr')?.rowIndex;

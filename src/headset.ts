@@ -7,6 +7,7 @@ import type { Stage } from './stage';
 import type { Notices } from './ui/notices';
 import type { Switches } from './ui/switches';
 import { type Emulator, installEmulator } from './xr/emulator';
+import { giveFramesToEvents } from './xr/frameless-events';
 import { buzz, type Pulse } from './xr/haptics';
 import { describeXrSupport, requestVrSession } from './xr/session';
 import { createTracker, type Tracker } from './xr/tracker';
@@ -98,6 +99,7 @@ export function createHeadset(options: HeadsetOptions): Headset {
 
   async function begin(): Promise<void> {
     const xr = await requestVrSession();
+    giveFramesToEvents(xr);
     await renderer.xr.setSession(xr);
     const space = renderer.xr.getReferenceSpace();
     if (!space) throw new Error('the headset offers no floor to stand on (local-floor)');

@@ -11,6 +11,7 @@ import { createFrameLoop, withTiming } from './frame-loop';
 import { createFrameTiming } from './frame-timing';
 import { createHeadset } from './headset';
 import { joinStudy } from './join-study';
+import { createPageClock } from './page-clock';
 import { exposeProbe } from './probe';
 import { firstLine, reasonOf } from './reasons';
 import { createRecorder } from './recorder';
@@ -53,7 +54,7 @@ async function start(): Promise<void> {
 
   const notices = createNotices(pageElement('notices', HTMLElement));
   const { switches, complaints } = readSwitches(location.search);
-  const store = createPreferenceStore(browserStorage());
+  const store = createPreferenceStore(browserStorage(), (sentence) => notices.show('warning', sentence));
   for (const complaint of [...complaints, store.complaint]) if (complaint) notices.show('warning', complaint);
   const wentWrong = (text: string) => notices.show('error', `Something went wrong: ${firstLine(text)}`);
   window.addEventListener('error', ({ message }) => wentWrong(message));
@@ -74,13 +75,12 @@ async function start(): Promise<void> {
     notices,
     onChange: () => controls.show(),
   });
-  const avatarArrives = avatar.open(switches.avatar, switches.avatar ?? 'Mannequin', (part) =>
-    progress.report('the avatar', part),
-  );
+  const avatarArrives = avatar.openOwn((part) => progress.report('the avatar', part));
   const inferenceArrives = import('./inference/load-regressor');
   inferenceArrives.catch(() => undefined);
 
   const timing = createFrameTiming(() => performance.now());
+  const clock = createPageClock(() => performance.now());
   const canvas = pageElement('stage', HTMLCanvasElement);
   const quality = switches.quality ?? affordableQuality();
   document.body.classList.toggle('low-quality', quality === 'low');
@@ -191,6 +191,7 @@ async function start(): Promise<void> {
     settings,
     store,
     notices,
+    clock,
     stage,
     mouse: createMouseAim(canvas),
     headset,
@@ -237,13 +238,14 @@ async function start(): Promise<void> {
       jumped();
     },
   });
+  // Ours stands there until another has arrived, and stays where that does not.
+  if (switches.avatar) void avatar.open(switches.avatar);
   const enterButton = createEnterButton(pageElement('enter', HTMLDivElement), () => void headset.enter());
 
   /** Somebody who needs nobody: the players built into the games, else the actor. */
   const perform = (time: number) => activities.act(time) ?? { frame: actor.frameAt(time), buttons: nothingPressed };
 
-  function track(timeMs: number, deviceFrame: XRFrame | undefined): TrackingFrame | null {
-    const time = timeMs / 1000;
+  function track(time: number, deviceFrame: XRFrame | undefined): TrackingFrame | null {
     const { emulator } = headset;
     buttons = nothingPressed;
     activities.begin(time);
@@ -294,6 +296,7 @@ async function start(): Promise<void> {
   let lastFault = '';
   const loop = createFrameLoop<XRFrame>(
     {
+      resumed: jumped,
       track,
       observe(frame) {
         newestFrame = frame;
@@ -304,7 +307,6 @@ async function start(): Promise<void> {
         headset.buzz(activities.play(frame, buttons));
       },
       estimator: () => choice.current,
-      inferenceSettlesInFrame: () => choice.regressor?.resolvesInFrame ?? false,
       afterwards: createAfterFrame(),
       skin(pose, frame) {
         const grips = { left: activities.grip('left', buttons), right: activities.grip('right', buttons) };
@@ -312,8 +314,7 @@ async function start(): Promise<void> {
         avatar.current?.apply(pose, frame.time);
         activities.ball?.send(frame, pose, grips);
       },
-      render(timeMs, frame) {
-        const time = timeMs / 1000;
+      render(time, frame) {
         frameCount += 1;
         study?.frame(time, frame);
         if (headset.visibility === 'visible') controls.point();
@@ -341,12 +342,21 @@ async function start(): Promise<void> {
       },
     },
     timing,
+    clock,
   );
 
-  canvas.addEventListener('click', ({ clientX, clientY }) => {
-    if (headset.worn || study) return;
+  function pointAt({ clientX, clientY }: MouseEvent, press: boolean): number | null {
+    if (headset.worn || study) return null;
     const { width, height } = canvas.getBoundingClientRect();
-    activities.point(view.rayThrough((2 * clientX) / width - 1, 1 - (2 * clientY) / height), true);
+    return activities.point(view.rayThrough((2 * clientX) / width - 1, 1 - (2 * clientY) / height), press);
+  }
+  /** Whether the button of the mouse went down on a sheet of a game: one that came under a throw is not meant. */
+  let pressing = false;
+  canvas.addEventListener('pointerdown', (event) => {
+    pressing = pointAt(event, false) !== null;
+  });
+  canvas.addEventListener('click', (event) => {
+    if (pressing) pointAt(event, true);
   });
   const pictureLost = 'The graphics device was lost. The picture comes back as soon as the browser gives it back.';
   canvas.addEventListener('webglcontextlost', () => {
@@ -416,7 +426,7 @@ async function start(): Promise<void> {
   controls.setPanelOpen(switches.panel);
   if (switches.view) view.setView(switches.view);
   controls.layOut();
-  renderer.setAnimationLoop((timeMs, deviceFrame) => void loop(timeMs, deviceFrame ?? undefined));
+  renderer.setAnimationLoop((timestampMs, deviceFrame) => loop(timestampMs, deviceFrame ?? undefined));
   const sessionsPrepared = prepareSessions();
   const chosen = choice.choose(switches.estimator ?? store.preferences.estimator ?? 'learned');
   void chosen.then(() => progress.report('the network', 1));
@@ -428,14 +438,7 @@ async function start(): Promise<void> {
   progress.report('the first picture', 1);
   progress.showBody();
   mark('firstBody');
-  if (switches.replay) {
-    const address = switches.replay;
-    const text = fetch(address).then((response) => {
-      if (!response.ok) throw new Error(`the server answers ${response.status}`);
-      return response.text();
-    });
-    void controls.openRecording(address, text);
-  }
+  if (switches.replay) void controls.openRecording(switches.replay);
   await Promise.all([chosen, sessionsPrepared, activities.goTo(switches.play)]);
   if (switches.study) {
     study = await joinStudy({

@@ -1,6 +1,6 @@
 import type { ArcheryProbe } from './archery-play';
 import type { PlayerProbe } from './ball-activity';
-import type { BallProbe } from './ball-play';
+import type { BallProbe } from './ball-frame';
 import type { Calibration } from './core/body/calibration';
 import type { EstimatorName } from './core/estimation/pose-estimator';
 import type { FrameSummary } from './frame-timing';

@@ -27,7 +27,10 @@ export interface Settings {
   seconds?: number;
   sound: boolean;
   bots: boolean;
+  /** As given by the player; empty: not given. */
   name: string;
+  /** What others call a player who has given no name. */
+  readonly guestName: string;
   /** Whom a spectator's camera follows: a seat, or null: free. */
   following: number | null;
   calibration: Calibration;
@@ -41,7 +44,7 @@ export function createSettings(switches: Switches, { preferences }: Pick<Prefere
     mirror: preferences.mirror ?? true,
     upperBodyOnly: preferences.upperBodyOnly ?? false,
     debugSkeleton: false,
-    overlay: preferences.overlay ?? window.innerWidth > 760,
+    overlay: preferences.overlay ?? false,
     vrOverlay: false,
     largerText: preferences.largerText ?? false,
     palette: preferences.palette ?? 'porcelain',
@@ -55,6 +58,7 @@ export function createSettings(switches: Switches, { preferences }: Pick<Prefere
     sound: preferences.sound ?? true,
     bots: switches.bots ?? (switches.room ? false : (preferences.bots ?? true)),
     name: switches.name ?? preferences.name ?? '',
+    guestName: `Guest ${10 + ((crypto.getRandomValues(new Uint8Array(1))[0] ?? 0) % 90)}`,
     following: null,
     calibration: preferences.calibration ?? defaultCalibration,
     calibrationSource: preferences.calibration ? 'remembered' : 'not calibrated yet',

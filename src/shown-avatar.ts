@@ -1,7 +1,9 @@
 import { type Avatar, createAvatar } from './avatar/avatar';
-import { loadAvatar } from './avatar/load-avatar';
+import { avatarLimits } from './avatar/inspect-avatar';
+import { type LoadedAvatar, loadAvatar, parseAvatar } from './avatar/load-avatar';
 import { validateInWorker } from './avatar/validate-in-worker';
 import type { Calibration } from './core/body/calibration';
+import { type FileKind, nameOf, readLimited } from './limited-files';
 import { firstLine, reasonOf } from './reasons';
 import type { Arena } from './scene/arena';
 import type { Settings } from './settings';
@@ -13,11 +15,15 @@ export const ownAvatarAt = '/avatars/mannequin.vrm';
 export interface ShownAvatarOptions {
   scene(): Arena['scene'];
   readonly settings: Pick<Settings, 'palette' | 'upperBodyOnly'>;
-  /** Of whoever moves. */
+  /** Of the person who moves. */
   body(): Calibration;
   readonly notices: Pick<Notices, 'show'>;
   onChange(): void;
 }
+
+/** A body from a file. */
+export const avatarFile: FileKind = { what: 'an avatar', megabytes: avatarLimits.megabytes };
+const ownName = 'Mannequin';
 
 /** The avatar on the stage. One is shown at a time; another takes its place only when it has arrived whole. */
 export interface ShownAvatar {
@@ -26,8 +32,12 @@ export interface ShownAvatar {
   readonly name: string;
   /** Whether it is our own, whose colours can be chosen. */
   readonly own: boolean;
-  /** Loads another; what goes wrong becomes a notice, and false. A source of null is our own avatar. */
-  open(source: string | File | null, name: string, onProgress?: (part: number) => void): Promise<boolean>;
+  /** What became of the avatar that was asked for last, in words: on its way, or refused; null: it is shown. */
+  readonly pending: string | null;
+  /** Our own takes its place, or stays there; what is still on its way is not waited for. False and a notice where it cannot be had. */
+  openOwn(onProgress?: (share: number) => void): Promise<boolean>;
+  /** Loads another; what goes wrong becomes a notice, and false. Of several the one asked for last is shown. */
+  open(source: string | File): Promise<boolean>;
   /** One of our own avatar's palettes; null: the one the user chose. */
   wear(palette: string | null): void;
 }
@@ -35,8 +45,12 @@ export interface ShownAvatar {
 export function createShownAvatar(options: ShownAvatarOptions): ShownAvatar {
   const { scene, settings, body, notices, onChange } = options;
   let avatar: Avatar | null = null;
-  let name = 'Mannequin';
+  let name = ownName;
   let own = true;
+  let pending: string | null = null;
+  /** Counts what was asked for; and which of that is shown. */
+  let asked = 0;
+  let shown = 0;
 
   function wear(palette: string | null): void {
     if (own) avatar?.setPalette(palette ?? settings.palette);
@@ -51,7 +65,31 @@ export function createShownAvatar(options: ShownAvatarOptions): ShownAvatar {
     wear(null);
     avatar.setUpperBodyOnly(settings.upperBodyOnly);
     avatar.fitTo(body());
-    onChange();
+  }
+
+  /** Shows what `load` brings unless something that was asked for later has come before it. */
+  async function arrive(load: () => Promise<LoadedAvatar>, itsName: string, isOwn: boolean): Promise<boolean> {
+    asked += 1;
+    const turn = asked;
+    if (!isOwn) {
+      pending = `${itsName} is on its way.`;
+      onChange();
+    }
+    try {
+      const loaded = await load();
+      if (turn < shown) return false;
+      show(createAvatar(loaded), itsName, isOwn);
+      shown = turn;
+      if (turn === asked) pending = null;
+      return true;
+    } catch (error) {
+      const reason = firstLine(reasonOf(error)).replace(`${itsName}: `, '');
+      notices.show('error', `${itsName} could not be shown: ${reason}`);
+      if (turn === asked) pending = isOwn ? null : `${itsName} could not be shown.`;
+      return false;
+    } finally {
+      onChange();
+    }
   }
 
   return {
@@ -64,18 +102,15 @@ export function createShownAvatar(options: ShownAvatarOptions): ShownAvatar {
     get own() {
       return own;
     },
-    async open(source, itsName, onProgress) {
-      try {
-        const loaded = await loadAvatar(source ?? ownAvatarAt, {
-          ...(onProgress && { onProgress }),
-          ...(source && { validate: validateInWorker }),
-        });
-        show(createAvatar(loaded), itsName, source === null);
-        return true;
-      } catch (error) {
-        notices.show('error', `${itsName} could not be shown: ${firstLine(reasonOf(error))}`);
-        return false;
-      }
+    get pending() {
+      return pending;
+    },
+    openOwn: (onProgress) =>
+      arrive(async () => parseAvatar(await readLimited(ownAvatarAt, avatarFile, onProgress), ownName), ownName, true),
+    open(source) {
+      const itsName = nameOf(source);
+      const load = async () => loadAvatar(await readLimited(source, avatarFile), itsName, validateInWorker);
+      return arrive(load, itsName, false);
     },
     wear,
   };

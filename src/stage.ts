@@ -121,7 +121,9 @@ export function createStage(canvas: HTMLCanvasElement, quality: Quality): Stage 
       captions.show(time, eyes);
       const beforeIt = inside || view.camera.position.z > 0.1 - mirrorDistance;
       mirror.setVisible(wanted === 'always' || (wanted === 'unless-behind' && beforeIt));
-      renderer.render(arena.scene, inSession ? headsetCamera : view.camera);
+      const camera = inSession ? headsetCamera : view.camera;
+      mirror.reflect(renderer, arena.scene, camera);
+      renderer.render(arena.scene, camera);
     },
   };
 }

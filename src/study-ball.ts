@@ -1,4 +1,5 @@
-import type { BallFrame, BallPlay } from './ball-play';
+import type { BallFrame } from './ball-frame';
+import type { BallPlay } from './ball-play';
 import type { TaskEnd, TaskEvent, TaskPlace, TaskRunner } from './study/task-runner';
 
 /** What the study needs of the ball game on the page. */

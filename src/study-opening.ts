@@ -7,19 +7,19 @@ import { type ParticipantClient, ServerRefusal, ServerUnreachable } from './stud
 import { type KeptSession, openStudyVault, type StudyVault } from './study/study-vault';
 
 /** Whose session, of which study. */
-export interface Seat {
+export interface Place {
   readonly study: string;
   readonly participant: string;
 }
 
-/** A session that this device remembers goes on; anybody else is asked for consent first. */
+/** A session that this device remembers goes on; without one, consent is asked for first. */
 export type Opened =
   | { readonly kind: 'resumed'; readonly session: ParticipantSession }
   | {
       readonly kind: 'new';
       readonly study: PublicStudy;
-      /** Takes the place and begins; a sentence: why not. */
-      agree(motion: boolean): Promise<ParticipantSession | string>;
+      /** Takes the place by its invitation and begins; `uninvited`: it was another invitation. A sentence: why not. */
+      agree(motion: boolean, invitation: string): Promise<ParticipantSession | 'uninvited' | { readonly why: string }>;
     };
 
 export interface OpeningOptions {
@@ -39,7 +39,7 @@ async function openVault(): Promise<StudyVault | null> {
 }
 
 /** One page per participant: two would tell the server two stories. */
-function alone({ study, participant }: Seat): Promise<boolean> {
+function alone({ study, participant }: Place): Promise<boolean> {
   if (!navigator.locks) return Promise.resolve(true);
   return new Promise((resolve) => {
     void navigator.locks.request(`threepoint study ${study} ${participant}`, { ifAvailable: true }, (lock) => {
@@ -67,9 +67,9 @@ async function reportedProgress(
  * Opens a participant's session on this device: from its storage, whether the server answers or not; where it holds none, with the
  * server. Rejects with a sentence, or with what the server refused.
  */
-export async function openSession(seat: Seat, { client, now, onChange }: OpeningOptions): Promise<Opened> {
-  const { study: id, participant } = seat;
-  if (!(await alone(seat)))
+export async function openSession(place: Place, { client, now, onChange }: OpeningOptions): Promise<Opened> {
+  const { study: id, participant } = place;
+  if (!(await alone(place)))
     throw new Error(`${participant} is open in another tab of this browser. Go on there, or close it.`);
   const vault = await openVault();
   const options = { client, vault, now, onChange };
@@ -86,9 +86,9 @@ export async function openSession(seat: Seat, { client, now, onChange }: Opening
   return {
     kind: 'new',
     study,
-    async agree(motion) {
+    async agree(motion, invitation) {
       try {
-        const claim = await client.claim(id, participant);
+        const claim = await client.claim(id, participant, invitation);
         const session = createParticipantSession(
           startSession(claim, id, participant),
           { records: [], motion: [] },
@@ -96,18 +96,19 @@ export async function openSession(seat: Seat, { client, now, onChange }: Opening
         );
         if (session.step.kind === 'consent') {
           const said = session.apply({ type: 'consent', motion, version: study.consent.version });
-          if (said !== null) return said;
+          if (said !== null) return { why: said };
         } else session.apply({ type: 'reload' });
         return session;
       } catch (error) {
-        return reasonOf(error);
+        if (error instanceof ServerRefusal && error.field === 'invitation') return 'uninvited';
+        return { why: reasonOf(error) };
       }
     },
   };
 }
 
 /** Everything of this participant leaves the device. */
-export async function forgetSession({ study, participant }: Seat): Promise<void> {
+export async function forgetSession({ study, participant }: Place): Promise<void> {
   const vault = await openVault();
   await vault?.forget(study, participant);
 }

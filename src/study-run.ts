@@ -1,6 +1,6 @@
 import './styles/study.css';
 import type { ArcheryFrame } from './archery-play';
-import type { BallFrame } from './ball-play';
+import type { BallFrame } from './ball-frame';
 import type { Calibration } from './core/body/calibration';
 import type { Side } from './core/body/joints';
 import type { EstimatorName } from './core/estimation/pose-estimator';
@@ -10,9 +10,11 @@ import { placeOf } from './core/study/progress';
 import { randomFor } from './core/study/shuffle';
 import type { PublicStudy } from './core/study/study-api';
 import type { TrackingFrame } from './core/tracking/tracking-frame';
+import { neverBack } from './page-clock';
 import { reasonOf } from './reasons';
 import type { ParticipantSession } from './study/participant-session';
 import { createParticipantClient, ServerRefusal } from './study/study-client';
+import { invitationIn, studyLink } from './study/study-link';
 import type { TaskPlace, TaskRunner } from './study/task-runner';
 import { type ArcheryHost, createArcheryRunner } from './study-archery';
 import { type BallHost, createBallRunner } from './study-ball';
@@ -92,7 +94,8 @@ export interface StudyProbe {
 const exchangeEveryMs = 2000;
 const slowestExchangeMs = 15_000;
 const tickEveryMs = 250;
-const nowSeconds = () => Date.now() / 1000;
+/** Seconds since 1970, in order even where the system's clock is set back. */
+const nowSeconds = neverBack(() => Date.now() / 1000);
 
 /** The bow goes into the other hand. */
 const bowSideOf = (preferred: Side): Side => (preferred === 'left' ? 'right' : 'left');
@@ -134,7 +137,7 @@ export function createStudyRun(
       guide.cancel();
       session?.apply({ type: 'calibrated', calibration });
     },
-    // What went wrong stays to be read until somebody measures again.
+    // What went wrong stays to be read until the participant measures again.
     closesItself: () => false,
   });
 
@@ -143,19 +146,14 @@ export function createStudyRun(
     return (game && runners[game]) ?? null;
   };
 
-  /** Where a group meets: a room of its own for every trial of every run, which nobody can guess from another study. */
+  /** Where a group meets: a room of its own for every trial of every run, on a seat that the server signs. */
   function placeFor(step: PlayedStep): TaskPlace {
     const running = session as ParticipantSession;
-    const group = running.schedule.groups[step.task];
     const run = running.progress.runs[`${step.task}/${step.block}`] ?? 1;
-    const name = `${running.plan.id} ${step.id} ${run} ${group?.number}`;
-    const [first, second] = ['room', 'again'].map((purpose) =>
-      (randomFor(running.plan.seed, `${purpose} ${name}`).seed >>> 0).toString(36),
-    );
     return {
-      room: `study-${first}${second}`,
+      seat: () => running.seat({ step: step.id, run }),
       participant: running.progress.participant,
-      members: group?.members ?? [],
+      members: running.schedule.groups[step.task]?.members ?? [],
       seconds: step.seconds,
     };
   }
@@ -191,7 +189,7 @@ export function createStudyRun(
     const runner = runnerOf(step);
     if (!runner) return;
     const motion = running.progress.motion === true && running.plan.consent.motion !== null && step.kind === 'trial';
-    // The same round for everybody's first, second … trial: what differs between conditions is not the layout.
+    // The same round for each participant's first, second … trial: what differs between conditions is not the layout.
     const repetition = step.kind === 'trial' ? step.repetition : 0;
     const { seed } = randomFor(running.plan.seed, `layout of ${step.task} ${repetition}`);
     trial = playTrial(step, runner, host, { key: keyOf(running), motion, seed: seed >>> 1 });
@@ -213,7 +211,7 @@ export function createStudyRun(
     void exchange();
   }
 
-  /** What follows from where the session is now, whoever brought it there. */
+  /** What follows from where the session is now, however it came there. */
   function settle(): void {
     const running = session;
     if (!running) return;
@@ -391,17 +389,44 @@ export function createStudyRun(
   async function open(participant: string): Promise<void> {
     const seat = { study: asked.study, participant };
     const opened = await openSession(seat, { client, now: nowSeconds, onChange: () => show() });
+    const invitation = invitationIn(location.hash);
     if (opened.kind === 'resumed') begin(opened.session);
-    else askForConsent(opened, participant);
+    else if (invitation === null) askWho();
+    else askForConsent(opened, participant, invitation);
   }
 
-  function askForConsent({ study, agree }: Extract<Opened, { kind: 'new' }>, participant: string): void {
+  /** Participant and invitation, as far as the address does not say them; `complaint`: what was wrong with what it says. */
+  function askWho(complaint: string | null = null): void {
+    screenId = 'participant';
+    const known = { participant: asked.participant, invitation: invitationIn(location.hash) };
+    // A whole link put into the address of this tab differs behind "#" alone, which loads nothing anew.
+    window.addEventListener('hashchange', () => location.reload());
+    card.form('participant', () =>
+      participantForm({ title: 'Who takes part?', complaint }, known, (said) => {
+        const address = new URL(location.href);
+        address.searchParams.set('participant', said.participant);
+        address.hash = new URL(studyLink({ study: asked.study, ...said }), location.origin).hash;
+        if (address.href === location.href) location.reload();
+        else location.assign(address);
+      }),
+    );
+  }
+
+  function askForConsent(
+    { study, agree }: Extract<Opened, { kind: 'new' }>,
+    participant: string,
+    invitation: string,
+  ): void {
     screenId = 'consent';
     const notice = study.simulated ? 'This study is SIMULATED: what is recorded is marked as made by a program.' : null;
     const actions = {
       async agree(motion: boolean) {
-        const taken = await agree(motion);
-        if (typeof taken === 'string') return taken;
+        const taken = await agree(motion, invitation);
+        if (taken === 'uninvited') {
+          askWho(`This is not the invitation of ${participant}. Compare it with your link, or ask the experimenter.`);
+          return null;
+        }
+        if ('why' in taken) return taken.why;
         begin(taken);
         return null;
       },
@@ -427,16 +452,8 @@ export function createStudyRun(
     });
   }
 
-  if (asked.participant === null) {
-    screenId = 'participant';
-    card.form('participant', () =>
-      participantForm('Who takes part?', (participant) => {
-        const address = new URL(location.href);
-        address.searchParams.set('participant', participant);
-        location.assign(address);
-      }),
-    );
-  } else opening(asked.participant);
+  if (asked.participant === null) askWho();
+  else opening(asked.participant);
 
   return {
     object: sheet.object,

@@ -15,9 +15,7 @@ function estimatorOf(name: EstimatorName, _: unknown, network?: PoseRegressor): 
     name,
     calibrate: () => undefined,
     reset: () => undefined,
-    prepare: async () => undefined,
-    estimate: () => ({ head, leftHand: null, rightHand: null, body: null }),
-    rawJoints: () => null,
+    update: () => ({ pose: { head, leftHand: null, rightHand: null, body: null }, request: null }),
     fault: () => (network?.provider === 'broken' ? 'out of memory' : null),
   };
 }
@@ -27,7 +25,6 @@ function networkOn(provider: string): PoseRegressor {
     // reason: the choice of an estimator reads nothing of the contract
     contract: {} as PoseRegressor['contract'],
     provider,
-    resolvesInFrame: true,
     run: async () => new Float32Array(18),
     dispose: async () => undefined,
   };
@@ -78,7 +75,7 @@ describe('which estimator draws', () => {
     expect(faults).toEqual(['learned: out of memory']);
   });
 
-  test('who changes their mind while a network loads keeps the later choice', async () => {
+  test('a person who changes their mind while a network loads keeps the later choice', async () => {
     let arrive: (network: PoseRegressor) => void = () => undefined;
     const { choice } = choiceThat(() => new Promise((resolve) => (arrive = resolve)));
     const first = choice.choose('paper');

@@ -35,9 +35,12 @@ export interface SheetContent<Id extends string> {
 /** A sheet in the world that is read and pressed, facing +Z of its own frame. */
 export interface Sheet<Id extends string> {
   readonly mesh: Mesh;
-  /** null hides it. */
-  show(content: SheetContent<Id> | null): void;
-  /** The button that a ray meets, and how far away [m, floor frame; unit direction]; null: none, or there is no sheet now. */
+  /** Once a frame; null hides it. `time` [s]: on any clock that goes on. */
+  show(content: SheetContent<Id> | null, time: number): void;
+  /**
+   * The button that a ray meets, and how far away [m, floor frame; unit direction]; null: none, or no sheet has been there for
+   * `settlingSeconds`.
+   */
   buttonAt(origin: Point, direction: Point): { readonly id: Id; readonly distance: number } | null;
   /** Lights the button that something points at. */
   setHovered(id: Id | null): void;
@@ -59,6 +62,25 @@ export function buttonUnder<Id extends string>(
   return found?.id ?? null;
 }
 
+/** What has just come takes no press for so long [s]: it was meant for what was there before. */
+export const settlingSeconds = 0.5;
+
+/** Whether something that is shown has been there for long enough to be pressed. Times [s] on any clock that goes on. */
+export function createSettling() {
+  let cameAt: number | null = null;
+  let now = 0;
+  return {
+    /** Once a frame. */
+    show(shown: boolean, time: number): void {
+      now = time;
+      cameAt = shown ? (cameAt ?? time) : null;
+    },
+    get settled(): boolean {
+      return cameAt !== null && now - cameAt >= settlingSeconds;
+    },
+  };
+}
+
 export function createSheet<Id extends string>(size: SheetSize, quality: Quality): Sheet<Id> {
   const { texture, draw } = createDrawnTexture(size.width, size.height, quality);
   const mesh = new Mesh(
@@ -70,6 +92,7 @@ export function createSheet<Id extends string>(size: SheetSize, quality: Quality
   let shown: SheetContent<Id> | null = null;
   let hovered: Id | null = null;
   let drawn = '';
+  const settling = createSettling();
 
   function redraw(): void {
     if (!shown) return;
@@ -85,13 +108,14 @@ export function createSheet<Id extends string>(size: SheetSize, quality: Quality
   const along = new Vector3();
   return {
     mesh,
-    show(content) {
+    show(content, time) {
+      settling.show(content !== null, time);
       shown = content;
       mesh.visible = content !== null;
       redraw();
     },
     buttonAt(origin, direction) {
-      if (!shown) return null;
+      if (!shown || !settling.settled) return null;
       mesh.updateWorldMatrix(true, false);
       inverse.copy(mesh.matrixWorld).invert();
       from.copy(origin).applyMatrix4(inverse);

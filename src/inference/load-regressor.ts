@@ -1,6 +1,6 @@
 import * as v from 'valibot';
-import { learnedInputCount } from '../core/estimation/learned';
 import type { ModelContract, PoseRegressor } from '../core/estimation/pose-regressor';
+import { learnedInputCount } from '../core/estimation/residual';
 import { createSession, type ExecutionProvider, type InferenceSession } from './session';
 import { createWorkerSession } from './worker-session';
 
@@ -101,7 +101,7 @@ export async function startRegressor(
       const has = `${opened.inputNames.join(', ')} → ${opened.outputNames.join(', ')}`;
       throw new Error(`${contract.file}: has the tensors ${has}, its contract says ${input.name} → ${output.name}`);
     }
-    // The first run compiles and allocates: it must not happen in somebody's frame.
+    // The first run compiles and allocates: it must not happen in a frame of the wearer's.
     const numbers = await opened.run(input, new Float32Array(input.shape.reduce((a, b) => a * b, 1)), output.name);
     if (numbers.length !== outputNumbers || !numbers.every(Number.isFinite)) {
       await opened.release();
@@ -125,9 +125,6 @@ export async function startRegressor(
     contract,
     get provider() {
       return session?.provider ?? 'none';
-    },
-    get resolvesInFrame() {
-      return session?.resolvesInFrame ?? false;
     },
     async run(features) {
       const current = session;

@@ -11,8 +11,6 @@ interface GraphicsDevice {
 /** One model in onnxruntime-web, one run at a time. */
 export interface InferenceSession {
   readonly provider: ExecutionProvider;
-  /** Whether a run settles within the microtasks of the frame that asked for it. */
-  readonly resolvesInFrame: boolean;
   readonly inputNames: readonly string[];
   readonly outputNames: readonly string[];
   run(input: TensorContract, features: Float32Array, output: string): Promise<Float32Array>;
@@ -45,7 +43,6 @@ export async function createSession(
   let last: Promise<unknown> = Promise.resolve();
   return {
     provider,
-    resolvesInFrame: provider === 'wasm',
     inputNames: session.inputNames,
     outputNames: session.outputNames,
     run(input, features, output) {

@@ -64,7 +64,6 @@ export async function createWorkerSession(model: Uint8Array): Promise<InferenceS
   opened = true;
   return {
     provider: 'wasm',
-    resolvesInFrame: false,
     inputNames: tensors.inputNames,
     outputNames: tensors.outputNames,
     async run(input, features, output) {

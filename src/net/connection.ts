@@ -2,7 +2,14 @@ import type { Calibration } from '../core/body/calibration';
 import type { BallDeed, BallEvent, BallState } from '../core/games/ball/ball-state';
 import type { Transform } from '../core/math/pose';
 import type { Farewell, RoomKind, SeatRow } from '../core/protocol/messages';
-import type { PosePacket } from '../core/protocol/pose-codec';
+import type { PosePacket } from '../core/protocol/pose-packet';
+
+/** This page's clock, that of the tracked frames [s]; it never goes back. */
+export interface LocalClock {
+  now(): number;
+  /** What it left out of the page's pauses in all [s]: other clocks went on meanwhile. */
+  readonly leftOut: number;
+}
 
 /** How it stands between this page and its room. */
 export interface ConnectionStatus {
@@ -32,6 +39,8 @@ export interface RoomView {
    * not in it as they are now: poses are with the remote players, and the basket is in its holder's hands (`basketInHands`).
    */
   readonly match: BallState | null;
+  /** How long the room takes to answer [s]; null: it is in this page, or has not answered yet. */
+  readonly delay: number | null;
   /** Seconds of the match minus seconds of this page's clock. */
   readonly matchAhead: number;
   /** The match's clock stands because somebody stopped it. */
@@ -61,8 +70,7 @@ export interface ConnectionUpdate {
 export type ShownPose = Omit<PosePacket, 'timeMs'>;
 
 /**
- * A place in a room, whether the Room runs on a server or in this page. Times are this page's clock [s], that of the tracked frames
- * (`performance.now() / 1000`).
+ * A place in a room, whether the Room runs on a server or in this page. Times are this page's clock [s], that of the tracked frames.
  */
 export interface Connection {
   readonly status: ConnectionStatus;

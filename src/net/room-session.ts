@@ -29,6 +29,8 @@ export interface RoomSession extends Omit<Connection, 'status' | 'leave' | 'upda
   joining(): Joining;
   hear(message: RoomMessage, now: number): void;
   hearFrame(frame: Uint8Array, now: number): void;
+  /** This page's clock left out `seconds` of a pause that ended at `now`; the Room's went on. */
+  paused(seconds: number, now: number): void;
   /** What came since the last call; asks for the time when that is due. */
   update(now: number, connected: boolean): ConnectionUpdate;
 }
@@ -177,6 +179,7 @@ export function createRoomSession(visitor: Visitor, wire: Wire, knowsClock = fal
         spectators: known.spectators,
         rotate: known.rotate,
         match: predicted(),
+        delay: knowsClock ? null : clock.delayAt(now),
         matchAhead: matchAhead(),
         paused: known.paused !== null,
         voided,
@@ -186,6 +189,8 @@ export function createRoomSession(visitor: Visitor, wire: Wire, knowsClock = fal
     joining: () => ({ name: visitor.name, calibration, bot: visitor.bot ?? false, ...wishes }),
     hear,
     hearFrame(frame, at) {
+      // A bot looks at no one: it plays by what the match says.
+      if (visitor.bot) return;
       const seatPoses = decodeFrame(frame);
       for (const { seat, bytes } of seatPoses ?? []) {
         const theirs = skeletons[seat];
@@ -195,6 +200,7 @@ export function createRoomSession(visitor: Visitor, wire: Wire, knowsClock = fal
       }
       if (poses.length > mostWaiting) poses = poses.slice(-mostWaiting);
     },
+    paused: clock.paused,
     update(time, connected) {
       now = time;
       view = null;

@@ -2,7 +2,7 @@ import { io } from 'socket.io-client';
 import { protocolVersion, roomMessageFrom } from '../core/protocol/messages';
 import { frameEvent, messageEvent, pageParser, poseEvent } from '../core/protocol/small-frames';
 import { createBackOff } from './back-off';
-import type { Connection, ConnectionStatus, Visitor } from './connection';
+import type { Connection, ConnectionStatus, LocalClock, Visitor } from './connection';
 import type { RoomPass } from './room-pass';
 import { createRoomSession } from './room-session';
 
@@ -13,11 +13,13 @@ export interface SocketConnectionOptions {
   readonly room: string;
   readonly visitor: Visitor;
   readonly pass: RoomPass;
-  /** This page's clock [s], that of the tracked frames. */
-  readonly now?: () => number;
+  /** Absent: the browser's own, which leaves nothing out. */
+  readonly clock?: LocalClock;
   /** Numbers in [0, 1) for the waits between attempts. */
   readonly chance?: () => number;
 }
+
+const runningTime: LocalClock = { now: () => performance.now() / 1000, leftOut: 0 };
 
 /** Without an answer in this time [ms] an attempt has failed. */
 const patienceMs = 4000;
@@ -26,7 +28,8 @@ const mostRefusals = 3;
 
 /** A place in a room on a relay. Connects at once, and again whenever the connection is lost, until it has ended. */
 export function createSocketConnection(options: SocketConnectionOptions): Connection {
-  const { url, room, visitor, pass, now = () => performance.now() / 1000 } = options;
+  const { url, room, visitor, pass, clock = runningTime } = options;
+  const now = () => clock.now();
   const backOff = createBackOff(options.chance);
   let phase: ConnectionStatus['phase'] = 'connecting';
   let reason: ConnectionStatus['reason'] = null;
@@ -34,6 +37,7 @@ export function createSocketConnection(options: SocketConnectionOptions): Connec
   let refusals = 0;
   let waiting: ReturnType<typeof setTimeout> | null = null;
   let joinedOnce = false;
+  let leftOut = clock.leftOut;
 
   const socket = io(url, {
     path: '/relay',
@@ -77,7 +81,7 @@ export function createSocketConnection(options: SocketConnectionOptions): Connec
     reason = because;
     const seconds = backOff.next();
     retryAt = now() + seconds;
-    // Whatever is half open would answer into the next attempt.
+    // What is half open would answer into the next attempt.
     socket.disconnect();
     wait(seconds * 1000, attempt);
   }
@@ -145,7 +149,11 @@ export function createSocketConnection(options: SocketConnectionOptions): Connec
         reason,
       };
     },
-    update: (time) => session.update(time, joined()),
+    update(time) {
+      if (clock.leftOut > leftOut) session.paused(clock.leftOut - leftOut, time);
+      leftOut = clock.leftOut;
+      return session.update(time, joined());
+    },
     leave() {
       if (joined()) socket.emit(messageEvent, { type: 'leave' });
       end('left');

@@ -40,7 +40,7 @@ export function affordableQuality(): Quality {
 export function createRenderer(canvas: HTMLCanvasElement, quality: Quality): WebGLRenderer {
   const renderer = new WebGLRenderer({ canvas, antialias: quality === 'high', powerPreference: 'high-performance' });
   renderer.outputColorSpace = SRGBColorSpace;
-  // Three fogs after tone mapping, but in a mirror before it: only a mapping that leaves colours alone shows one room in both.
+  // Three fogs after tone mapping, and what a mirror shows is mapped twice: a mapping that leaves colours alone shows one room in both.
   renderer.toneMapping = LinearToneMapping;
   renderer.shadowMap.enabled = quality === 'high';
   renderer.shadowMap.type = PCFShadowMap;

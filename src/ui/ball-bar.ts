@@ -1,4 +1,5 @@
 import { button, element } from './element';
+import { ballRulesText, rulesList } from './rules';
 
 /** A match as the bar shows it. */
 export interface BallRound {
@@ -6,9 +7,18 @@ export interface BallRound {
   readonly score: number;
   readonly of: number;
   readonly ballsLeft: number;
+  /** Until the bell; of a match that is over, what was left at its end. */
   readonly secondsLeft: number;
+  /** How long a match is. */
+  readonly seconds: number;
   /** The clock stands. */
   readonly paused: boolean;
+  /** What the match waits for, in a sentence; null: for nothing. */
+  readonly waiting: string | null;
+  /** How good the connection is, in words; null: there is none, the room is in this page. */
+  readonly connection: string | null;
+  /** Why this page is in the room no longer; null: it is. */
+  readonly ended: string | null;
   /** Oneself: rather than holding the basket, or watching. */
   readonly throws: boolean;
   readonly role: string;
@@ -31,11 +41,13 @@ export interface BallBarState {
   /** null: in this page alone. */
   readonly room: string | null;
   readonly bots: boolean;
-  /** A built-in player moves the own body: there is nobody to ask. */
+  /** A built-in player moves the own body: no person is there to be asked. */
   readonly acting: boolean;
-  /** The mouse moves the own body; null: it cannot, somebody wears a headset or steers an emulated one. */
+  /** The mouse moves the own body; null: it cannot, a headset is worn or an emulated one is steered. */
   readonly mouse: boolean | null;
   readonly name: string;
+  /** What others call a player who has given no name. */
+  readonly guestName: string;
   /** Of a spectator: free, or the seat that is followed. */
   readonly following: number | null;
 }
@@ -48,10 +60,96 @@ export interface BallBarActions {
   setName(name: string): void;
   /** Opens a room where others can come too. */
   openRoom(): void;
-  /** The camera of a spectator: with somebody, or null: free. */
+  /** Shows what to send to others so that they come. */
+  invite(): void;
+  /** Into the room again that this page is in no longer. */
+  rejoin(): void;
+  /** The camera of a spectator: with a player, or null: free. */
   follow(seat: number | null): void;
   /** The mouse moves the own body, or a built-in player does. */
   steer(on: boolean): void;
+}
+
+/** A button for a seat; null: for none. */
+interface Offer {
+  readonly seat: number | null;
+  readonly label: string;
+  readonly act: () => void;
+  readonly pressed?: boolean;
+}
+
+/** A row of buttons that is made anew when what it offers changes. */
+function createOffers(attributes: Record<string, string>) {
+  const node = element('div', attributes);
+  let shown = '';
+  return {
+    node,
+    show(offers: readonly Offer[], disabled = false) {
+      const key = JSON.stringify([offers, disabled]);
+      node.hidden = offers.length === 0;
+      if (key === shown) return;
+      shown = key;
+      node.replaceChildren(
+        ...offers.map(({ label, act, pressed }) =>
+          button(label, act, { disabled, ...(pressed !== undefined && { 'aria-pressed': String(pressed) }) }),
+        ),
+      );
+    },
+  };
+}
+
+/** A labelled switch. */
+function createCheck(label: string, onChange: (on: boolean) => void) {
+  const input = element('input', { type: 'checkbox', role: 'switch' });
+  input.addEventListener('change', () => onChange(input.checked));
+  return { input, node: element('label', { class: 'toggle' }, element('span', {}, label), input) };
+}
+
+/** Who plays and by which rules, folded away. */
+function createPlayers(actions: BallBarActions, setSound: (on: boolean) => void) {
+  const bots = createCheck('Bots take free places', actions.setBots);
+  const rotate = createCheck('Swap roles after each match', actions.rotate);
+  const sound = createCheck('Sound', setSound);
+  const name = element('input', { type: 'text', maxlength: 24, autocomplete: 'nickname', 'aria-label': 'Your name' });
+  name.addEventListener('change', () => actions.setName(name.value));
+  const rules = element('div');
+  let rulesShown = '';
+  const node = element(
+    'details',
+    {},
+    element('summary', {}, 'Players and rules'),
+    rules,
+    element('label', { class: 'toggle' }, element('span', {}, 'Your name'), name),
+    bots.node,
+    rotate.node,
+    sound.node,
+  );
+  return {
+    node,
+    show({ round, bots: botsOn, name: given, guestName }: BallBarState, soundOn: boolean) {
+      const sentences = ballRulesText(round?.of ?? 20, round?.seconds ?? 90);
+      if (sentences.join() !== rulesShown) {
+        rulesShown = sentences.join();
+        rules.replaceChildren(rulesList(sentences));
+      }
+      bots.input.checked = botsOn;
+      rotate.input.checked = round?.rotate ?? false;
+      rotate.input.disabled = round?.seat === null || (round?.ended ?? null) !== null;
+      sound.input.checked = soundOn;
+      name.placeholder = guestName;
+      if (document.activeElement !== name) name.value = given;
+    },
+  };
+}
+
+/** Where this page plays, as what, and how good the connection is. */
+function whereText({ round, room }: BallBarState): string {
+  const place = room ? `Room “${room}”` : 'Your own room';
+  if (!round) return `${place} · joining …`;
+  // A spectator counts among the spectators, and knows that already.
+  const watchers = round.spectators - (round.seat === null ? 1 : 0);
+  const watching = watchers > 0 ? `${watchers} ${round.seat === null ? 'more ' : ''}watching` : null;
+  return [place, round.role, watching, round.connection].filter(Boolean).join(' · ');
 }
 
 /** Score, places and settings of the ball game, beside the picture. */
@@ -60,104 +158,96 @@ export function createBallBar(actions: BallBarActions, setSound: (on: boolean) =
   const left = element('span', { class: 'arrows' });
   const time = element('span', { class: 'time' });
   const where = element('p', { class: 'hint' });
+  const waiting = element('p', { class: 'waiting', role: 'status' });
   const ready = button('Ready', () => actions.ready(!isReady), { class: 'primary' });
+  const rejoin = button('Take over again', actions.rejoin, { class: 'primary' });
   const watch = button('Watch', () => actions.sit(null));
   const steer = button('Play with the mouse', () => actions.steer(true), { class: 'primary' });
   const rest = button('Let the built-in player play', () => actions.steer(false));
   const hint = element('p', { class: 'hint' });
-  const places = element('div', { class: 'places', role: 'group', 'aria-label': 'Places' });
-  const cameras = element('div', { class: 'segments', role: 'group', 'aria-label': 'Camera' });
-  const check = (label: string, onChange: (on: boolean) => void) => {
-    const input = element('input', { type: 'checkbox', role: 'switch' });
-    input.addEventListener('change', () => onChange(input.checked));
-    return { input, node: element('label', { class: 'toggle' }, element('span', {}, label), input) };
-  };
-  const bots = check('Bots take free places', actions.setBots);
-  const rotate = check('Swap roles after each match', actions.rotate);
-  const sound = check('Sound', setSound);
-  const name = element('input', { type: 'text', maxlength: 24, autocomplete: 'nickname', 'aria-label': 'Your name' });
-  name.addEventListener('change', () => actions.setName(name.value));
+  const places = createOffers({ class: 'places', role: 'group', 'aria-label': 'Places' });
+  const cameras = createOffers({ class: 'segments', role: 'group', 'aria-label': 'Camera' });
   const openRoom = button('Play with others', actions.openRoom);
-  const link = element('a', { class: 'hint', target: '_blank', rel: 'noopener' }, 'Link for the others');
+  const invite = button('Invite others', actions.invite);
+  const players = createPlayers(actions, setSound);
   const node = element(
     'div',
     { class: 'round' },
     element('div', { class: 'row board' }, score, left, time),
     where,
-    places,
-    cameras,
-    element('div', { class: 'row' }, ready, steer, rest, watch),
+    waiting,
+    places.node,
+    cameras.node,
+    element('div', { class: 'row' }, rejoin, ready, steer, rest, watch),
     hint,
-    element(
-      'details',
-      {},
-      element('summary', {}, 'Players and rules'),
-      element('label', { class: 'toggle' }, element('span', {}, 'Your name'), name),
-      bots.node,
-      rotate.node,
-      sound.node,
-      element('div', { class: 'row' }, openRoom),
-      link,
-    ),
+    element('div', { class: 'row' }, openRoom, invite),
+    players.node,
   );
   node.hidden = true;
   let isReady = false;
-  let placesShown = '';
-  let camerasShown = '';
+
+  function showScore(round: BallRound | null): void {
+    score.textContent = round ? `${round.score} / ${round.of}` : '–';
+    left.textContent = round ? `${round.ballsLeft} ${round.ballsLeft === 1 ? 'ball' : 'balls'}` : '';
+    const seconds = round ? `${Math.ceil(round.secondsLeft)} s` : '';
+    time.textContent = round?.paused ? `${seconds}, paused` : seconds;
+  }
+
+  /** What can be pressed now; where this page is in the room no longer, nothing but the way back. */
+  function showDeeds({ round, acting, mouse }: BallBarState): void {
+    const out = (round?.ended ?? null) !== null;
+    const seated = round !== null && round.seat !== null;
+    isReady = round?.ready ?? false;
+    rejoin.hidden = !out;
+    ready.hidden = !seated || round.phase === 'running' || acting;
+    ready.textContent = isReady ? 'Wait for me' : round?.phase === 'over' ? 'Play again' : 'Ready';
+    ready.classList.toggle('primary', !isReady && !out);
+    steer.hidden = !seated || mouse !== false;
+    steer.classList.toggle('primary', !out);
+    rest.hidden = !seated || mouse !== true;
+    watch.hidden = !seated;
+    for (const deed of [ready, steer, rest, watch]) deed.disabled = out;
+    hint.hidden = !seated || mouse !== true || out;
+    hint.textContent = round?.throws
+      ? 'Point at the basket and hold the button: the ring shows where the ball will come down. Let go when it is green. Esc: not yet.'
+      : 'Point at where the basket is to be; it turns towards the balls by itself.';
+  }
+
+  function showPeople({ round, following }: BallBarState): void {
+    const out = (round?.ended ?? null) !== null;
+    const free = round && round.phase !== 'running' ? round.people.filter((person) => person.free) : [];
+    const sit = ({ seat, role }: BallRound['people'][number]) => ({
+      seat,
+      label: `Play as ${role.toLowerCase()}`,
+      act: () => actions.sit(seat),
+    });
+    places.show(free.map(sit), out);
+    const followed = round?.seat === null ? round.people.filter(({ name }) => name !== 'free') : null;
+    const camera = (label: string, seat: number | null) => ({
+      seat,
+      label,
+      act: () => actions.follow(seat),
+      pressed: seat === following,
+    });
+    cameras.show(followed ? [camera('Free', null), ...followed.map(({ seat, name }) => camera(name, seat))] : []);
+  }
 
   return {
     node,
     show(state: BallBarState | null, soundOn: boolean): void {
       node.hidden = state === null;
       if (!state) return;
-      const { round } = state;
-      score.textContent = round ? `${round.score} / ${round.of}` : '–';
-      left.textContent = round ? `${round.ballsLeft} ${round.ballsLeft === 1 ? 'ball' : 'balls'}` : '';
-      const seconds = round ? `${Math.ceil(round.secondsLeft)} s` : '';
-      time.textContent = round?.paused ? `${seconds}, paused` : seconds;
-      const place = state.room ? `Room “${state.room}”` : 'Your own room';
-      // Whoever watches knows that already.
-      const watchers = round ? round.spectators - (round.seat === null ? 1 : 0) : 0;
-      const watching = watchers > 0 ? ` · ${watchers} ${round?.seat === null ? 'more ' : ''}watching` : '';
-      where.textContent = round ? `${place} · ${round.role}${watching}` : `${place} · joining …`;
-      isReady = round?.ready ?? false;
-      ready.hidden = !round || round.seat === null || round.phase === 'running' || state.acting;
-      ready.textContent = isReady ? 'Wait for me' : round?.phase === 'over' ? 'Play again' : 'Ready';
-      ready.classList.toggle('primary', !isReady);
-      const seated = round !== null && round.seat !== null;
-      steer.hidden = !seated || state.mouse !== false;
-      rest.hidden = !seated || state.mouse !== true;
-      hint.hidden = !seated || state.mouse !== true;
-      hint.textContent = round?.throws
-        ? 'Point at the basket and hold the button: the ring shows where the ball will come down. Let go when it is green. Esc: not yet.'
-        : 'Point at where the basket is to be; it turns towards the balls by itself.';
-      watch.hidden = !round || round.seat === null;
-      const free = (round?.people ?? []).filter(({ free }) => free && round?.phase !== 'running');
-      const key = JSON.stringify(free);
-      if (key !== placesShown) {
-        placesShown = key;
-        places.replaceChildren(
-          ...free.map(({ seat, role }) => button(`Play as ${role.toLowerCase()}`, () => actions.sit(seat))),
-        );
-      }
-      places.hidden = free.length === 0;
-      const followed = round?.seat === null ? round.people.filter(({ name }) => name !== 'free') : [];
-      const cameraKey = JSON.stringify([followed, state.following]);
-      if (cameraKey !== camerasShown) {
-        camerasShown = cameraKey;
-        const choice = (label: string, seat: number | null) =>
-          button(label, () => actions.follow(seat), { 'aria-pressed': String(seat === state.following) });
-        cameras.replaceChildren(choice('Free', null), ...followed.map(({ seat, name }) => choice(name, seat)));
-      }
-      cameras.hidden = round?.seat !== null || !round;
-      bots.input.checked = state.bots;
-      rotate.input.checked = round?.rotate ?? false;
-      rotate.input.disabled = round?.seat === null;
-      sound.input.checked = soundOn;
-      if (document.activeElement !== name) name.value = state.name;
-      openRoom.hidden = state.room !== null;
-      link.hidden = state.room === null;
-      if (state.room) link.href = `?play=ball&room=${encodeURIComponent(state.room)}`;
+      const { round, room } = state;
+      showScore(round);
+      where.textContent = whereText(state);
+      const sentence = round?.ended ?? round?.waiting ?? null;
+      if (waiting.textContent !== (sentence ?? '')) waiting.textContent = sentence;
+      waiting.hidden = sentence === null;
+      showDeeds(state);
+      showPeople(state);
+      openRoom.hidden = room !== null;
+      invite.hidden = room === null;
+      players.show(state, soundOn);
     },
   };
 }

@@ -3,7 +3,7 @@ import type { EstimatorName } from '../core/estimation/pose-estimator';
 /** How each estimator is called on the page and what it does, in one line. */
 export const estimatorTexts: Readonly<Record<EstimatorName, { readonly label: string; readonly text: string }>> = {
   learned: { label: 'Learned', text: 'A network trained on motion capture corrects the IK body.' },
-  ik: { label: 'Inverse kinematics', text: 'Spine, shoulder girdle and elbows in closed form.' },
+  ik: { label: 'Inverse kinematics', text: 'Spine, clavicles and elbows in closed form.' },
   paper: { label: 'Paper', text: 'The network of Anvari, Park and Kim (2023), as published.' },
   'hands-only': { label: 'Hands only', text: 'Head and hands as tracked, no body between them.' },
 };

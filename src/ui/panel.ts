@@ -25,6 +25,10 @@ export interface PanelState {
   readonly overlay: boolean;
   readonly largerText: boolean;
   readonly avatarName: string;
+  /** What became of an avatar that was asked for and is not shown; null: nothing to tell. */
+  readonly avatarPending: string | null;
+  /** Another avatar than ours is shown, or was wanted. */
+  readonly ownAvatarOffered: boolean;
   /** Colours of our own avatar; null: another avatar is shown, which keeps its own. */
   readonly palette: string | null;
   readonly heightCm: number;
@@ -220,6 +224,7 @@ export function createPanel(region: HTMLElement, options: PanelOptions, actions:
   const loop = toggle('Loop', actions.setLoop);
 
   const avatarName = element('p', { class: 'avatar-name' });
+  const avatarPending = element('p', { class: 'hint', role: 'status' });
   const ownAvatar = button('Back to ours', actions.showOwnAvatar);
   const url = element('input', {
     type: 'url',
@@ -266,6 +271,7 @@ export function createPanel(region: HTMLElement, options: PanelOptions, actions:
       {},
       element('h2', {}, 'Avatar'),
       avatarName,
+      avatarPending,
       element(
         'div',
         { class: 'swatches', role: 'group', 'aria-label': 'Colours' },
@@ -277,7 +283,7 @@ export function createPanel(region: HTMLElement, options: PanelOptions, actions:
       'section',
       {},
       element('h2', {}, 'Another one'),
-      element('p', { class: 'hint' }, 'Any humanoid VRM or GLB: drop it on the page, or'),
+      element('p', { class: 'hint' }, 'Any VRM avatar (0.x or 1.0): drop it on the page, or'),
       element('div', { class: 'row' }, ...fileButton('Open VRM file', '.vrm,.glb', actions.openAvatarFile)),
       urlForm,
     ),
@@ -390,7 +396,9 @@ export function createPanel(region: HTMLElement, options: PanelOptions, actions:
       exit.hidden = !state.inSession;
       loop.input.checked = state.recorder.loop;
       avatarName.textContent = state.avatarName;
-      ownAvatar.hidden = state.palette !== null;
+      avatarPending.textContent = state.avatarPending;
+      avatarPending.hidden = state.avatarPending === null;
+      ownAvatar.hidden = !state.ownAvatarOffered;
 
       const { mode, name, duration } = state.recorder;
       record.disabled = mode === 'recording';

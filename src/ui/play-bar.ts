@@ -1,5 +1,6 @@
 import { type BallBarActions, type BallBarState, createBallBar } from './ball-bar';
 import { button, element } from './element';
+import { archeryRulesText, rulesList } from './rules';
 
 /** What people do here: look at themselves in the studio, or play. */
 export const activityNames = ['studio', 'archery', 'ball'] as const;
@@ -15,6 +16,8 @@ export interface RoundState {
   readonly arrowsLeft: number;
   readonly secondsLeft: number;
   readonly over: boolean;
+  /** What the round waits for, in a sentence; null: for nothing. */
+  readonly waiting: string | null;
 }
 
 export interface PlayState {
@@ -77,10 +80,12 @@ export function createPlayBar(region: HTMLElement, actions: PlayActions): PlayBa
   const everyHit = check('Every hit counts', actions.setEveryHitCounts);
   const sound = check('Sound', actions.setSound);
   const hint = element('p', { class: 'hint' });
+  const waiting = element('p', { class: 'waiting', role: 'status' });
   const settings = element(
     'details',
     {},
     element('summary', {}, 'Rules and hands'),
+    rulesList(archeryRulesText),
     leftBow.node,
     oneHanded.node,
     everyHit.node,
@@ -90,6 +95,7 @@ export function createPlayBar(region: HTMLElement, actions: PlayActions): PlayBa
     'div',
     { class: 'round' },
     element('div', { class: 'row board' }, score, arrows, time),
+    waiting,
     element('div', { class: 'row' }, shoot, watch, restart),
     hint,
     settings,
@@ -121,6 +127,8 @@ export function createPlayBar(region: HTMLElement, actions: PlayActions): PlayBa
       score.textContent = `${round.score} / ${round.of}`;
       arrows.textContent = `${round.arrowsLeft} ${round.arrowsLeft === 1 ? 'arrow' : 'arrows'}`;
       time.textContent = `${Math.ceil(round.secondsLeft)} s`;
+      if (waiting.textContent !== (round.waiting ?? '')) waiting.textContent = round.waiting;
+      waiting.hidden = round.waiting === null;
       restart.classList.toggle('primary', round.over);
       shoot.hidden = state.inSession || state.shooter === 'mouse';
       watch.hidden = state.shooter === 'actor';

@@ -4,7 +4,7 @@ import { estimatorNames } from '../core/estimation/pose-estimator';
 
 const calibration = v.pipe(
   v.object({ eyeHeight: v.number(), armSpan: v.number(), gazePitch: v.optional(v.number()) }),
-  v.check((measures) => calibrationComplaint(measures) === null, 'nobody measures that'),
+  v.check((measures) => calibrationComplaint(measures) === null, 'no person measures that'),
 );
 
 const schema = v.object({
@@ -59,10 +59,26 @@ export function parsePreferences(text: string | null): { preferences: Preference
   }
 }
 
-/** Preferences in the storage given (localStorage); null where the browser grants none. */
-export function createPreferenceStore(storage: Pick<Storage, 'getItem' | 'setItem'> | null): PreferenceStore {
+const denied = 'This browser lets the page keep nothing: calibration and settings last for this visit only.';
+
+/**
+ * Preferences in the storage given (localStorage); null where the browser grants none. `onDenied` hears of a storage that takes nothing,
+ * once.
+ */
+export function createPreferenceStore(
+  storage: Pick<Storage, 'getItem' | 'setItem'> | null,
+  onDenied: (sentence: string) => void = () => undefined,
+): PreferenceStore {
   const read = parsePreferences(storage?.getItem(key) ?? null);
   let preferences = read.preferences;
+  let told = false;
+
+  function tellOfDenial(): void {
+    if (!told) onDenied(denied);
+    told = true;
+  }
+  if (storage === null) tellOfDenial();
+
   return {
     get preferences() {
       return preferences;
@@ -78,6 +94,7 @@ export function createPreferenceStore(storage: Pick<Storage, 'getItem' | 'setIte
       } catch (error) {
         // A full or forbidden storage costs the memory of the next visit, nothing of this one.
         if (!(error instanceof DOMException)) throw error;
+        tellOfDenial();
       }
     },
   };

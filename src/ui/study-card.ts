@@ -97,7 +97,7 @@ export function createStudyCard(): StudyCard {
           ),
         );
         card.replaceChildren(kicker, content, figure, bar, hint, row, footnote);
-        // A card built anew keeps whoever uses the keyboard where they were.
+        // A card built anew keeps the focus of the keyboard where it was.
         const again = focused && card.querySelector<HTMLElement>(`[data-id="${focused}"]`);
         if (again) again.focus({ preventScroll: true });
         if (another) card.scrollTop = 0;
@@ -255,23 +255,50 @@ export function demographicsForm(done: (answers: Record<string, unknown>) => str
   ];
 }
 
-/** Asks for a code of a participant; `go` gets it in capitals. */
-export function participantForm(title: string, go: (participant: string) => void): readonly Node[] {
-  const input = element('input', {
-    type: 'text',
-    name: 'participant',
-    placeholder: 'P01',
-    autocomplete: 'off',
-    maxlength: 4,
-  });
-  const submit = button('Continue', () => go(input.value.trim().toUpperCase()), { class: 'primary' });
-  input.addEventListener('keydown', ({ key }) => {
-    if (key === 'Enter') submit.click();
-  });
+/** Who takes part, and what shows that they were invited. */
+interface Invited {
+  readonly participant: string;
+  readonly invitation: string;
+}
+
+/** Asks for a participant's code and invitation, filled in as far as they are known; `go` gets both in capitals. */
+export function participantForm(
+  { title, complaint: said }: { readonly title: string; readonly complaint: string | null },
+  known: { readonly [Part in keyof Invited]: string | null },
+  go: (said: Invited) => void,
+): readonly Node[] {
+  const complaint = complaintLine();
+  if (said !== null) complaint.say(said);
+  const field = (name: keyof Invited, label: string, placeholder: string, maxlength: number) => {
+    const attributes = { type: 'text', name, placeholder, maxlength, autocomplete: 'off' };
+    const input = element('input', { ...attributes, value: known[name] ?? '' });
+    input.addEventListener('keydown', ({ key }) => {
+      if (key === 'Enter') submit.click();
+    });
+    return {
+      said: () => input.value.trim().toUpperCase(),
+      node: element('label', { class: 'field' }, element('span', {}, label), input),
+    };
+  };
+  const participant = field('participant', 'Your code, as the experimenter gave it to you', 'P01', 4);
+  const invitation = field('invitation', 'Your invitation: sixteen letters and digits', 'XXXX-XXXX-XXXX-XXXX', 30);
+  const submit = button(
+    'Continue',
+    () => {
+      const answer = { participant: participant.said(), invitation: invitation.said() };
+      if (!/^P\d{2,3}$/.test(answer.participant))
+        complaint.say('Your code is a P with two or three digits, such as P01.');
+      else if (answer.invitation === '') complaint.say('Without the invitation the place cannot be taken.');
+      else go(answer);
+    },
+    { class: 'primary' },
+  );
   return [
     element('p', { class: 'kicker' }, 'Study'),
     element('h1', {}, title),
-    element('label', { class: 'field' }, element('span', {}, 'Your code, as the experimenter gave it to you'), input),
+    participant.node,
+    invitation.node,
+    complaint.node,
     element('div', { class: 'row' }, submit),
   ];
 }
@@ -283,13 +310,13 @@ export function withdrawalForm(code: string, noted: () => void): readonly Node[]
     element('h1', {}, 'Please write this down'),
     element('p', {}, element('code', {}, code)),
     ...paragraphs([
-      'Whoever gives this code to the experimenter has everything deleted that was recorded under it. It is shown only now, and nobody can look it up later.',
+      'Give this code to the experimenter, and everything that was recorded under it is deleted. It is shown only now, and cannot be looked up later.',
     ]),
     element('div', { class: 'row' }, button('I have noted it', noted, { class: 'primary' })),
   ];
 }
 
-/** The place is no longer this device's: whoever sits here may begin anew. */
+/** The place is no longer this device's: the next participant here may begin anew. */
 export function lockedOutForm(participant: string, unsent: number, anew: () => void): readonly Node[] {
   return [
     element('p', { class: 'kicker trouble' }, 'Study'),

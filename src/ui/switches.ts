@@ -29,43 +29,81 @@ export interface Switches {
   readonly spectate: boolean;
   /** Whether bots take free seats; null: in a room of one's own they do. */
   readonly bots: boolean | null;
-  /** What the others call whoever plays here; null: the page asks. */
+  /** What the others call the player of this page; null: the page asks. */
   readonly name: string | null;
   /** Of a ball game in this page; null: as the game has it. */
   readonly balls: number | null;
 }
 
-const onOff = v.optional(v.picklist(['on', 'off']), 'on');
+const onOff = v.picklist(['on', 'off']);
+const address = v.pipe(v.string(), v.minLength(1));
+const wholeNumber = (least: number, most: number) =>
+  v.pipe(v.string(), v.regex(/^\d{1,9}$/), v.transform(Number), v.minValue(least), v.maxValue(most));
 const schema = v.object({
-  actor: onOff,
-  panel: onOff,
+  actor: v.optional(onOff, 'on'),
+  panel: v.optional(onOff, 'on'),
   estimator: v.optional(v.picklist(estimatorNames)),
   ep: v.optional(v.picklist(['wasm', 'webgpu']), 'wasm'),
-  avatar: v.optional(v.pipe(v.string(), v.minLength(1))),
+  avatar: v.optional(address),
   quality: v.optional(v.picklist(['high', 'low'])),
-  replay: v.optional(v.pipe(v.string(), v.minLength(1))),
+  replay: v.optional(address),
   view: v.optional(v.picklist(viewNames)),
   play: v.optional(v.picklist(activityNames), 'studio'),
-  seconds: v.optional(v.pipe(v.string(), v.regex(/^\d{1,4}$/), v.transform(Number), v.minValue(1))),
+  seconds: v.optional(wholeNumber(1, 9999)),
   room: v.optional(v.pipe(v.string(), v.regex(/^[a-z0-9][a-z0-9-]{0,31}$/))),
-  bots: v.optional(v.picklist(['on', 'off'])),
+  bots: v.optional(onOff),
   name: v.optional(v.pipe(v.string(), v.minLength(1), v.maxLength(40))),
-  balls: v.optional(v.pipe(v.string(), v.regex(/^\d{1,2}$/), v.transform(Number), v.minValue(1), v.maxValue(20))),
-  seed: v.optional(v.pipe(v.string(), v.regex(/^\d{1,9}$/), v.transform(Number))),
+  balls: v.optional(wholeNumber(1, 20)),
+  seed: v.optional(wholeNumber(0, 999_999_999)),
   study: v.optional(v.pipe(v.string(), v.regex(/^[a-z0-9][a-z0-9-]{0,47}$/))),
   participant: v.optional(v.pipe(v.string(), v.regex(/^P\d{2,3}$/))),
 });
 
-/** Reads the query of the address. A value nobody knows counts as not given and yields a sentence. */
+/** What each switch takes, in words. */
+const takes: Readonly<Record<keyof typeof schema.entries, string>> = {
+  actor: 'on or off',
+  panel: 'on or off',
+  estimator: oneOf(estimatorNames),
+  ep: 'wasm or webgpu',
+  avatar: 'the address of a VRM file',
+  quality: 'high or low',
+  replay: 'the address of a recording',
+  view: oneOf(viewNames),
+  play: oneOf(activityNames),
+  seconds: 'a whole number from 1 to 9999',
+  room: 'small letters, digits and hyphens, 32 at most, the first no hyphen',
+  bots: 'on or off',
+  name: 'a name of 1 to 40 characters',
+  balls: 'a whole number from 1 to 20',
+  seed: 'a whole number from 0 to 999999999',
+  study: 'the id of a study: small letters, digits and hyphens',
+  participant: 'a code such as P01',
+};
+
+function oneOf(values: readonly string[]): string {
+  return `${values.slice(0, -1).join(', ')} or ${values.at(-1)}`;
+}
+
+/** A sentence about a value that its switch does not take. */
+function complaintOf(key: keyof typeof takes, value: string): string {
+  const shown = value.length > 40 ? `${value.slice(0, 40)}…` : value;
+  const said =
+    value === ''
+      ? `The address says ${key}= and no value`
+      : `The address says ${key}=${shown}, which this page does not know`;
+  return `${said}: ${key} takes ${takes[key]}.`;
+}
+
+/** Reads the query of the address. A value that a switch does not take counts as not given and yields a sentence. */
 export function readSwitches(query: string): { readonly switches: Switches; readonly complaints: readonly string[] } {
   const given = Object.fromEntries(new URLSearchParams(query));
   const complaints: string[] = [];
   let result = v.safeParse(schema, given);
   while (!result.success) {
     for (const issue of result.issues) {
-      const key = String(issue.path?.[0]?.key ?? '');
-      const expected = issue.expected ? `; it takes ${issue.expected}` : '';
-      complaints.push(`The address says ${key}=${given[key]}, which this page does not know${expected}.`);
+      const key = issue.path?.[0]?.key as keyof typeof takes;
+      if (!(key in given)) continue;
+      complaints.push(complaintOf(key, given[key] ?? ''));
       delete given[key];
     }
     result = v.safeParse(schema, given);

@@ -1,6 +1,6 @@
 import { describe, expect, test } from 'vitest';
 import { createBackOff } from '../../src/net/back-off';
-import { bannerText } from '../../src/net/banner';
+import { bannerText, connectionText } from '../../src/net/banner';
 
 describe('trying again', () => {
   test('waits longer after every failure, at most 4.5 s, and starts over after a success', () => {
@@ -34,4 +34,11 @@ test('the banner says what is going on, and nothing when all is well', () => {
   );
   expect(bannerText({ ...status, phase: 'ended', reason: 'replaced' })).toContain('somewhere else');
   expect(bannerText({ ...status, phase: 'ended', reason: 'left' })).toBe('You left the room.');
+});
+
+test('how good a connection is, is said in words and in figures', () => {
+  expect(connectionText(0.0004)).toBe('Connection good, 1 ms');
+  expect(connectionText(0.024)).toBe('Connection good, 24 ms');
+  expect(connectionText(0.2)).toBe('Connection fair, 200 ms');
+  expect(connectionText(3.2)).toBe('Connection poor, 3 s');
 });

@@ -76,4 +76,40 @@ describe('clock sync', () => {
     expect(asks).toBeGreaterThanOrEqual(8);
     expect(asks).toBeLessThanOrEqual(9);
   });
+
+  test('a pause that our clock left out is told of and costs nothing; an answer from before it counts no more', () => {
+    const sync = createClockSync();
+    const { error } = follow(sync, 5, 10, 3, lan(), lan());
+    expect(error).toBeLessThan(0.01);
+    // Asked at 14.99, answered by theirs at 17.991; ours stood at 15 for 20 s.
+    sync.paused(20, 15);
+    expect(sync.ahead).toBeCloseTo(23, 2);
+    sync.hear(14.99, 17.991, 15.01);
+    expect(sync.ahead).toBeCloseTo(23, 2);
+    expect(sync.due(15.01)).toBe(true);
+    sync.hear(15.01, 38.012, 15.014);
+    expect(sync.ahead).toBeCloseTo(23, 2);
+  });
+
+  test('a clock that was set ahead looks like a pause until the first answer', () => {
+    const sync = createClockSync();
+    follow(sync, 5, 10, 3, lan(), lan());
+    sync.paused(20, 15);
+    sync.hear(15, 18.002, 15.004);
+    expect(sync.ahead).toBeCloseTo(3, 2);
+  });
+
+  test('tells how long answers take: the median of the last five, and the wait for one that does not come', () => {
+    const sync = createClockSync();
+    expect(sync.delayAt(5)).toBeNull();
+    let now = 5;
+    for (const trip of [0.02, 0.03, 0.4, 0.025, 0.021]) {
+      now += 2.5;
+      expect(sync.due(now)).toBe(true);
+      sync.hear(now, now + trip / 2, now + trip);
+    }
+    expect(sync.delayAt(now + 0.5)).toBeCloseTo(0.025, 9);
+    expect(sync.due(now + 2.5)).toBe(true);
+    expect(sync.delayAt(now + 5.5)).toBeCloseTo(3, 9);
+  });
 });

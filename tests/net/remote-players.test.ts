@@ -1,16 +1,18 @@
 import { describe, expect, test } from 'vitest';
 import { defaultCalibration } from '../../src/core/body/calibration';
-import { createIk } from '../../src/core/estimation/ik';
+import { createIk } from '../../src/core/estimation/estimators';
 import { identity } from '../../src/core/math/quat';
 import { nextRandom } from '../../src/core/math/random';
 import { distance, vec3 } from '../../src/core/math/vec3';
-import type { PosePacket } from '../../src/core/protocol/pose-codec';
+import type { PosePacket } from '../../src/core/protocol/pose-packet';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
-import { createRemotePlayers, firstDelay, longestExtrapolation } from '../../src/net/remote-players';
+import { firstDelay, longestExtrapolation } from '../../src/net/playback';
+import { createRemotePlayers } from '../../src/net/remote-players';
+import { poseOf } from '../core/estimation/drawn';
 import { isNightly } from '../nightly';
 import { tell } from '../tell';
 
-/** Somebody whose head goes along x at 1 m/s, hands beside it. */
+/** A person whose head goes along x at 1 m/s, hands beside it. */
 function walker(time: number, more: Partial<PosePacket> = {}, lostLeft = false): PosePacket {
   const at = (x: number, y: number) => ({
     position: vec3(x, y, 0),
@@ -107,7 +109,7 @@ describe('playback of others', () => {
       tell(name, { minutes, 'freezes a minute': freezes, 'shown late by [ms]': mean * 1000 });
       return freezes;
     };
-    // Somebody on a bad line, seen by somebody on a good one, or the other way round; and, for the record, both on bad ones.
+    // A person on a bad line, seen by one on a good line, or the other way round; and, for the record, both on bad ones.
     expect(measure('100 ± 30 ms, 2 % lost', () => badWay() + 0.005)).toBeLessThan(1);
     measure('the same, both players so', () => badWay() + badWay());
   });
@@ -136,7 +138,7 @@ describe('playback of others', () => {
     expect(hiddenAt - heard).toBeCloseTo(3, 1);
   });
 
-  test('whoever was hidden is back with their first packet, where they are now', () => {
+  test('a person who was hidden is back with their first packet, where they are now', () => {
     const players = createRemotePlayers();
     players.receive({ seat: 1, packet: walker(0), arrivedAt: 0 });
     players.follow(0.1);
@@ -163,7 +165,7 @@ describe('playback of others', () => {
     for (const off of places) expect(Math.abs(off)).toBeLessThanOrEqual(34);
   });
 
-  test('a re-anchored space is a jump: nobody is drawn on the way', () => {
+  test('a re-anchored space is a jump: no body is drawn on the way', () => {
     const seen: number[] = [];
     playback(
       2,
@@ -200,7 +202,7 @@ describe('playback of others', () => {
 
   test('a body between two packets keeps its bones and stays near both', () => {
     const ik = createIk(defaultCalibration);
-    const poses = Array.from({ length: 60 }, (_, i) => ik.estimate(actorFrame(i / 30, defaultCalibration)));
+    const poses = Array.from({ length: 60 }, (_, i) => poseOf(ik, actorFrame(i / 30, defaultCalibration)));
     let drawnBodies = 0;
     playback(
       2,
@@ -227,7 +229,7 @@ describe('playback of others', () => {
     for (let frame = 0; frame < frames; frame++) {
       const time = frame / 72;
       if (frame % 2 === 0) {
-        const pose = ik.estimate(actorFrame(time, defaultCalibration));
+        const pose = poseOf(ik, actorFrame(time, defaultCalibration));
         for (let seat = 1; seat < 16; seat++) {
           players.receive({ seat, packet: walker(time, { pose }), arrivedAt: time });
         }

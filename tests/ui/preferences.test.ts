@@ -2,6 +2,7 @@ import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import { armSpanRange, eyeHeightRange } from '../../src/core/body/calibration';
 import { createPreferenceStore, parsePreferences } from '../../src/ui/preferences';
+import { evenly } from '../core/arbitraries';
 
 function memory(): Pick<Storage, 'getItem' | 'setItem'> {
   const items = new Map<string, string>();
@@ -35,19 +36,27 @@ describe('what the page remembers', () => {
     expect(read.complaint).toMatch(/damaged \(calibration\)/);
   });
 
-  test('whatever is stored, reading it throws nothing and yields no measure outside a person', () => {
+  test('reading anything that is stored throws nothing and yields no measure outside a person', () => {
+    const seen = { complaints: 0, calibrations: 0 };
     fc.assert(
       fc.property(
         fc.oneof(
           fc.string(),
           fc.json(),
           fc.object().map((value) => JSON.stringify({ calibration: value })),
+          fc
+            .record({ eyeHeight: evenly(0.9, 2.3), armSpan: evenly(0.9, 2.3) })
+            .map((calibration) => JSON.stringify({ calibration })),
         ),
         (text) => {
           const { preferences, complaint } = parsePreferences(text);
-          if (complaint !== null) expect(preferences).toEqual({});
+          if (complaint !== null) {
+            seen.complaints += 1;
+            expect(preferences).toEqual({});
+          }
           const { calibration } = preferences;
           if (!calibration) return;
+          seen.calibrations += 1;
           expect(calibration.eyeHeight).toBeGreaterThanOrEqual(eyeHeightRange.min);
           expect(calibration.eyeHeight).toBeLessThanOrEqual(eyeHeightRange.max);
           expect(calibration.armSpan).toBeGreaterThanOrEqual(armSpanRange.min);
@@ -55,9 +64,11 @@ describe('what the page remembers', () => {
         },
       ),
     );
+    expect(seen.complaints).toBeGreaterThan(20);
+    expect(seen.calibrations).toBeGreaterThan(2);
   });
 
-  test('where the browser stores nothing, the choice lasts as long as the page', () => {
+  test('where the browser stores nothing, the choice lasts as long as the page, which says so once', () => {
     const full = {
       getItem: () => null,
       setItem: () => {
@@ -65,9 +76,14 @@ describe('what the page remembers', () => {
       },
     };
     for (const storage of [null, full]) {
-      const store = createPreferenceStore(storage);
+      const told: string[] = [];
+      const store = createPreferenceStore(storage, (sentence) => void told.push(sentence));
       store.remember({ mirror: false });
-      expect(store.preferences.mirror).toBe(false);
+      store.remember({ sound: false });
+      expect(store.preferences).toEqual({ mirror: false, sound: false });
+      expect(told).toEqual([
+        'This browser lets the page keep nothing: calibration and settings last for this visit only.',
+      ]);
     }
   });
 });

@@ -50,11 +50,32 @@ describe('the address of the page', () => {
     expect(readSwitches('?study=Paper%2F..&participant=P07').complaints).toHaveLength(1);
   });
 
-  test('a value nobody knows is said in a sentence and counts as not given, the others count', () => {
+  test('a value that no switch takes is said in a sentence and counts as not given, the others count', () => {
     const { switches, complaints } = readSwitches('?estimator=magic&quality=low&ep=gpu');
     expect(switches).toMatchObject({ estimator: null, quality: 'low', executionProvider: 'wasm' });
     expect(complaints).toHaveLength(2);
     expect(complaints.join(' ')).toContain('estimator=magic');
     expect(complaints.join(' ')).toContain('ep=gpu');
+  });
+
+  test('what a switch takes is said in words, not in patterns', () => {
+    const asked =
+      '?replay=&avatar=&seconds=x&balls=99&seed=-1&room=Our%20Room&study=..&participant=me&actor=maybe&view=top';
+    const { switches, complaints } = readSwitches(asked);
+    expect(complaints).toContain('The address says replay= and no value: replay takes the address of a recording.');
+    expect(complaints).toContain(
+      'The address says seconds=x, which this page does not know: seconds takes a whole number from 1 to 9999.',
+    );
+    expect(complaints).toContain(
+      'The address says balls=99, which this page does not know: balls takes a whole number from 1 to 20.',
+    );
+    expect(complaints).toHaveLength(10);
+    for (const complaint of complaints) expect(complaint).not.toMatch(/[/^\\>(){}|"]/);
+    expect(switches).toMatchObject({ replay: null, seconds: null, balls: null, seed: null, room: null, study: null });
+  });
+
+  test('a value without end is shown as far as it is read', () => {
+    const [complaint] = readSwitches(`?ep=${'x'.repeat(5000)}`).complaints;
+    expect(complaint?.length).toBeLessThan(160);
   });
 });

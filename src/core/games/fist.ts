@@ -1,6 +1,6 @@
 import type { Frame, Pose } from '../math/pose';
 import { fromAxes, type Quat, rotate } from '../math/quat';
-import { add, cross, normalise, reject, scale, subtract, type Vec3, vec3 } from '../math/vec3';
+import { add, cross, type MutableVec3, normalise, reject, scale, subtract, type Vec3, vec3 } from '../math/vec3';
 
 export type Side = 'left' | 'right';
 
@@ -10,7 +10,8 @@ export const otherSide = (side: Side): Side => (side === 'left' ? 'right' : 'lef
 export const fistInWrist: Vec3 = vec3(0, -0.025, -0.08);
 
 /** What a fist closes round (a bow's grip, a ball), of a wrist. */
-export const fistOf = (wrist: Pose<Frame>): Vec3 => add(wrist.position, rotate(wrist.orientation, fistInWrist));
+export const fistOf = (wrist: Pose<Frame>, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 =>
+  add(wrist.position, rotate(wrist.orientation, fistInWrist, target), target);
 
 /** Out of the fist on the thumb's side, unit. */
 export const thumbOf = (side: Side, orientation: Quat): Vec3 =>

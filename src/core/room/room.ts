@@ -30,8 +30,10 @@ export interface RoomOptions {
   readonly seats?: number;
   readonly seed?: number;
   readonly ball?: Partial<BallOptions>;
-  /** Whoever has a seat may stop the match's clock: in a study, where all pages do as the experimenter says. Default: nobody may. */
+  /** Players on a seat may stop the match's clock: in a study, where all pages do as the experimenter says. Default: none may. */
   readonly pausable?: boolean;
+  /** Every seat is one person's own: each who joins names theirs, and no one moves to another. */
+  readonly assigned?: boolean;
 }
 
 /** Something that the Room would not do. */
@@ -39,7 +41,15 @@ export interface RoomRefusal {
   readonly client: ClientId;
   readonly seat: number | null;
   readonly what: 'pose' | 'deed' | 'sit' | 'message';
-  readonly reason: Refusal | 'too-fast' | 'occupied' | 'no-seat' | 'not-joined' | 'joined-already' | 'not-pausable';
+  readonly reason:
+    | Refusal
+    | 'too-fast'
+    | 'occupied'
+    | 'no-seat'
+    | 'not-joined'
+    | 'joined-already'
+    | 'not-pausable'
+    | 'assigned';
 }
 
 /** How a Room speaks. Called from within its methods, never at another time. */
@@ -228,8 +238,9 @@ export function createRoom(options: RoomOptions, outlet: RoomOutlet): Room {
     seats[index] = null;
   }
 
-  /** A seat for somebody who asks; −1: none. People take a bot's seat where no other is free. */
+  /** A seat for a person or bot who asks; −1: none. People take a bot's seat where no other is free. */
   function seatFor(wish: number | null, bot: boolean): number {
+    if (options.assigned) return wish !== null && wish < count && !seats[wish] ? wish : -1;
     if (wish !== null && wish < count && (!seats[wish] || (seats[wish].bot && !bot))) return wish;
     const free = seats.indexOf(null);
     return free >= 0 || bot ? free : seats.findIndex((seat) => seat?.bot);
@@ -491,6 +502,7 @@ export function createRoom(options: RoomOptions, outlet: RoomOutlet): Room {
         case 'sit': {
           const wish = message.seat;
           if (wish === index) return;
+          if (options.assigned) return refuse('sit', 'assigned');
           if (wish !== null && (wish >= count || (seats[wish] && (!seats[wish].bot || known.bot)))) {
             refuse('sit', 'occupied');
             return;

@@ -83,7 +83,7 @@ export function createArcheryView({ quality, floorFromArena, distances, onCaptio
       trails.show(shot, matchTime, eyes);
       pops.show(state, matchTime, eyes);
       scoreboard.show(state, matchTime);
-      result.show(state);
+      result.show(state, matchTime);
       bow.show(bowView ?? (rest && hangingBow(rest, floorFromArena.orientation)));
       stand.show(bowView ? null : rest);
       range.setZoneWarning(!state.inZone);

@@ -47,10 +47,7 @@ const tipOf = (bend: number): Vec3 => {
 };
 
 /** The bend [rad], to a thousandth of a degree, beyond which a limb is bent too far. */
-function bendBefore(tooFar: (bend: number) => boolean): number {
-  const [from, to] = bisect(leastBend, mostBend, tooFar, 20);
-  return (from + to) / 2;
-}
+const bendBefore = (tooFar: (bend: number) => boolean): number => bisect(leastBend, mostBend, tooFar, 21);
 
 const leastBend = -0.5;
 const mostBend = 2.2;

@@ -14,8 +14,8 @@ interface Point {
 /** The panel at the end of a round: score, percentage, each arrow, a button for another round; arena frame. */
 export interface ResultPanel {
   readonly object: Group;
-  /** Shows the result of a round that is over; hides itself otherwise. */
-  show(state: ArcheryState): void;
+  /** Shows the result of a round that is over; hides itself otherwise. `time`: of the match [s]. */
+  show(state: ArcheryState, time: number): void;
   /** Distance along a ray [m, floor frame; unit direction] to the restart button; null: it misses, or there is no panel now. */
   restartAt(origin: Point, direction: Point): number | null;
   /** Lights the button while something points at it. */
@@ -36,7 +36,7 @@ export function createResultPanel(quality: Quality): ResultPanel {
   object.add(sheet.mesh);
   return {
     object,
-    show(state) {
+    show(state, time) {
       // A little below the eyes, standing or seated.
       object.position.y = state.options.eyeHeight - 0.18;
       sheet.show(
@@ -47,6 +47,7 @@ export function createResultPanel(quality: Quality): ResultPanel {
               paint: (context, hovered) => paintResult(context, state, hovered !== null),
             }
           : null,
+        time,
       );
     },
     restartAt: (origin, direction) => sheet.buttonAt(origin, direction)?.distance ?? null,

@@ -1,4 +1,5 @@
 import type { ArcheryState } from '../../core/games/archery/archery-state';
+import { secondsLeft } from '../../core/games/archery/rules';
 import { ink, paintCard, paintGround, signFont } from '../lettering';
 import { paintScoreHeading } from '../score-heading';
 import { paintButton } from '../sheet';
@@ -32,7 +33,7 @@ export function arrowResult(state: ArcheryState, index: number): string {
 }
 
 /** The last sentence of the board at a time of the match [s]. */
-function lineOf(state: ArcheryState, time: number): string {
+export function lineOf(state: ArcheryState, time: number): string {
   if (!state.inZone) return 'Step back onto the deck';
   if (state.phase === 'ready')
     return state.options.startedBy === 'signal' ? 'Wait for the start' : 'First arrow starts the clock';
@@ -51,13 +52,16 @@ function lineOf(state: ArcheryState, time: number): string {
 }
 
 export function boardText(state: ArcheryState, time: number): BoardText {
-  const left = Math.max(0, state.options.seconds - (state.phase === 'ready' ? 0 : time));
+  const left =
+    state.phase === 'over'
+      ? secondsLeft(state)
+      : Math.max(0, state.options.seconds - (state.phase === 'ready' ? 0 : time));
   return {
     score: state.score,
     maximum: maximumScore(state),
     arrows: state.options.arrows,
     arrowsLeft: state.arrowsLeft,
-    seconds: state.phase === 'over' && state.end === 'time' ? 0 : Math.ceil(left),
+    seconds: Math.ceil(left),
     phase: state.phase,
     inZone: state.inZone,
     line: lineOf(state, time),

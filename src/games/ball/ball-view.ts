@@ -2,7 +2,6 @@ import type { Group } from 'three';
 import type { BallEvent, BallState } from '../../core/games/ball/ball-state';
 import type { Opening } from '../../core/games/ball/basket';
 import type { BallCue } from '../../core/games/ball/gestures';
-import { ballSecondsLeft } from '../../core/games/ball/rules';
 import { stations } from '../../core/games/ball/stations';
 import type { Launch } from '../../core/games/ballistics';
 import { invertTransform, type Pose, type Transform, transformPoint } from '../../core/math/pose';
@@ -46,6 +45,13 @@ export interface BallScene {
   readonly aim: Launch | null;
   /** The match's clock stands. */
   readonly paused: boolean;
+  /** Seconds until the bell; after a match what was left at its end. */
+  readonly secondsLeft: number;
+  /** The page's time [s], and whether it is still in the room. */
+  readonly pageTime: number;
+  readonly inRoom: boolean;
+  /** A built-in player has the own seat. */
+  readonly acting: boolean;
   /** Whose eyes and ears these are, own floor frame. */
   readonly head: Pose<'floor'>;
 }
@@ -54,7 +60,7 @@ export interface BallScene {
 export interface BallView {
   /** The place as it lies in a room whose floor is there; to be given to the arena, and again whenever the seat changes. */
   placed(floorFromArena: Transform<'floor', 'arena'>): Surroundings;
-  /** What belongs to whoever looks, own floor frame; to be added to the scene. */
+  /** What belongs to the viewer, own floor frame; to be added to the scene. */
   readonly own: Group;
   readonly lobby: Pick<LobbySheet, 'buttonAt' | 'setHovered'>;
   show(scene: BallScene): void;
@@ -115,10 +121,17 @@ export function createBallView({ quality, balls: count, onCaption }: BallViewOpt
         (person): Person | null =>
           person && { name: person.name, bot: person.bot, presence: person.presence, me: person.me },
       );
-      const standing: Standing = { state, seconds: Math.ceil(ballSecondsLeft(state)), people, me, rotate };
+      const standing: Standing = {
+        state,
+        seconds: Math.ceil(scene.secondsLeft),
+        people,
+        me,
+        rotate,
+        acting: scene.acting,
+      };
       const said = time < line.until && state.phase === 'running' ? line.text : waitingLine(standing);
       boards.show(standing, scene.paused ? 'Paused' : said);
-      lobby.show(standing, head.position.y);
+      lobby.show(standing, head.position.y, scene.pageTime, scene.inRoom);
       names.show(
         attendants.map((person, player) => {
           const station = state.players[player]?.station ?? player;

@@ -5,7 +5,7 @@ import { paintScoreHeading } from '../score-heading';
 import { paintButton, type SheetButton } from '../sheet';
 import { roleTexts, seatLooks } from './court-plan';
 
-/** Somebody on a seat, as boards and labels write of them. */
+/** A player on a seat, as boards and labels write of them. */
 export interface Person {
   readonly name: string;
   readonly bot: boolean;
@@ -23,7 +23,12 @@ export interface Standing {
   readonly me: number | null;
   /** Roles move on with every match. */
   readonly rotate: boolean;
+  /** A built-in player has the own seat, and is ready by itself. */
+  readonly acting: boolean;
 }
+
+/** What a player reads in place of a name that they have not given. */
+export const ownName = 'You';
 
 /** A bot's name says that it is one. */
 export const nameOf = ({ name, bot }: Pick<Person, 'name' | 'bot'>): string =>
@@ -36,20 +41,20 @@ export const catchesOf = (state: BallState, player: number): number =>
 /** What the last thing that happened reads like on the board; null: nothing to say. */
 export function lineOfEvent(event: BallEvent, people: readonly (Person | null)[]): string | null {
   const who = 'player' in event ? people[event.player] : null;
-  const name = who ? who.name : 'Somebody';
+  const name = who?.me ? 'you' : (who?.name ?? 'A player');
   switch (event.type) {
     case 'started':
       return 'Go!';
     case 'caught':
       return `In! Thrown by ${name}`;
     case 'missed':
-      return `${name}’s ball is on the floor`;
+      return who?.me ? 'Your ball is on the floor' : `${name}’s ball is on the floor`;
     case 'bounced':
       return event.off === 'basket' ? 'Off the rim' : null;
     case 'left':
-      return `${name} has left`;
+      return who?.me ? null : `${name} has left`;
     case 'joined':
-      return `${name} has joined`;
+      return who?.me ? null : `${name} has joined`;
     default:
       return null;
   }
@@ -65,6 +70,24 @@ export function waitingLine({ state, people }: Standing): string {
   if (!roles.has('holder')) return 'Waiting for a basket holder';
   const waiting = there.filter((player) => !state.players[player]?.ready).length;
   return waiting === 1 ? 'Waiting for one player' : `Waiting for ${waiting} players`;
+}
+
+const listed = (names: readonly string[]): string =>
+  names.length < 2 ? (names[0] ?? '') : `${names.slice(0, -1).join(', ')} and ${names.at(-1)}`;
+
+/** What a match waits for, to be read beside the player; null: for nothing, it runs. */
+export function waitingFor(standing: Standing): string | null {
+  const { state, people, me, acting } = standing;
+  if (state.phase === 'running') return null;
+  const there = people.flatMap((person, player) => (person ? [player] : []));
+  const roles = new Set(there.map((player) => state.players[player]?.role));
+  if (!roles.has('thrower') || !roles.has('holder'))
+    return `${waitingLine({ ...standing, state: { ...state, phase: 'ready' } })}.`;
+  const idle = there.filter((player) => !state.players[player]?.ready);
+  const names = idle.flatMap((player) => (player !== me && people[player] ? [nameOf(people[player])] : []));
+  const press = state.phase === 'over' ? 'Play again' : 'Ready';
+  if (me !== null && !acting && idle.includes(me)) return `Waiting for ${listed(['you', ...names])}: press ${press}.`;
+  return names.length > 0 ? `Waiting for ${listed(names)}.` : 'The match begins in a moment.';
 }
 
 export const boardSize = { width: 1024, height: 588 } as const;
@@ -127,7 +150,7 @@ const byStation = ({ state }: Standing): readonly number[] =>
     .map((_, player) => player)
     .sort((a, b) => (state.players[a]?.station ?? 0) - (state.players[b]?.station ?? 0));
 
-/** The buttons that whoever reads this may press: a place for each seat that is free or a bot's, and ready. */
+/** The buttons that its reader may press: a place for each seat that is free or a bot's, and ready. */
 export function lobbyButtons(standing: Standing): readonly SheetButton<LobbyButton>[] {
   const { people, me } = standing;
   const places = byStation(standing).flatMap((player, row): SheetButton<LobbyButton>[] => {
@@ -178,6 +201,14 @@ export function paintLobby(context: CanvasRenderingContext2D, standing: Standing
   }
   for (const [row, player] of byStation(standing).entries()) {
     paintRow(context, standing, player, rowTop + row * rowHeight);
+  }
+  const waiting = waitingFor(standing);
+  if (waiting) {
+    context.textAlign = 'center';
+    context.textBaseline = 'middle';
+    context.fillStyle = ink.accent;
+    context.font = `700 38px ${signFont}`;
+    context.fillText(waiting, width / 2, 702, width - 96);
   }
   const buttons = lobbyButtons(standing);
   for (const button of buttons) {
@@ -233,7 +264,7 @@ function paintRow(context: CanvasRenderingContext2D, standing: Standing, player:
   context.textAlign = 'left';
   context.fillStyle = person ? ink.text : ink.soft;
   context.font = `700 42px ${signFont}`;
-  const name = person ? `${nameOf(person)}${person.me ? ' · you' : ''}` : 'Free';
+  const name = person ? (person.me && person.name !== ownName ? `${nameOf(person)} · you` : nameOf(person)) : 'Free';
   const taken = person !== null && (!person.bot || player === me);
   context.fillText(name, 164, middle - 20, taken ? 520 : 500);
   context.fillStyle = ink.soft;

@@ -18,11 +18,11 @@ export interface Hearing {
 
 const whoIs = ({ people, me }: Hearing, player: number): string => {
   const person = people[player];
-  return player === me ? 'You' : person ? nameOf(person) : 'Somebody';
+  return player === me ? 'You' : person ? nameOf(person) : 'A player';
 };
 
 const refusals: Partial<Readonly<Record<Refusal, string>>> = {
-  taken: 'Somebody else has that ball',
+  taken: 'Another player has that ball',
   reach: 'Too far away',
   zone: 'Step back to your mark: throws count from there',
   time: 'Too late: time is up',

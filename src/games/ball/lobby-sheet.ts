@@ -4,11 +4,11 @@ import type { Quality } from '../../scene/renderer';
 import { createSheet, type Sheet, type SheetSize } from '../sheet';
 import { type LobbyButton, lobbyButtons, lobbySize, paintLobby, type Standing } from './board-drawing';
 
-/** Before and after a match, in front of whoever plays; own floor frame. */
+/** Before and after a match, in front of the player; own floor frame. */
 export interface LobbySheet extends Pick<Sheet<LobbyButton>, 'buttonAt' | 'setHovered'> {
   readonly object: Group;
-  /** eyeHeight [m]: of whoever reads it. Hides itself during a match. */
-  show(standing: Standing, eyeHeight: number): void;
+  /** eyeHeight [m]: of the reader; `time` [s]: the page's. Hides itself during a match, and where `inRoom` is false. */
+  show(standing: Standing, eyeHeight: number, time: number, inRoom: boolean): void;
   dispose(): void;
 }
 
@@ -22,25 +22,29 @@ export function createLobbySheet(quality: Quality): LobbySheet {
   object.add(sheet.mesh);
   return {
     object,
-    show(standing, eyeHeight) {
-      const { state, people, me, rotate } = standing;
+    show(standing, eyeHeight, time, inRoom) {
+      const { state, people, me, rotate, acting } = standing;
       object.position.y = Math.max(0.75, eyeHeight - 0.16);
-      if (state.phase === 'running') return sheet.show(null);
+      if (state.phase === 'running' || !inRoom) return sheet.show(null, time);
       const { phase, end, score, options, players } = state;
-      sheet.show({
-        key: JSON.stringify([
-          phase,
-          end,
-          score,
-          options,
-          players.map(({ ready, role }) => [ready, role]),
-          people,
-          me,
-          rotate,
-        ]),
-        buttons: lobbyButtons(standing),
-        paint: (context, hovered) => paintLobby(context, standing, hovered),
-      });
+      sheet.show(
+        {
+          key: JSON.stringify([
+            phase,
+            end,
+            score,
+            options,
+            players.map(({ ready, role }) => [ready, role]),
+            people,
+            me,
+            rotate,
+            acting,
+          ]),
+          buttons: lobbyButtons(standing),
+          paint: (context, hovered) => paintLobby(context, standing, hovered),
+        },
+        time,
+      );
     },
     buttonAt: sheet.buttonAt,
     setHovered: sheet.setHovered,

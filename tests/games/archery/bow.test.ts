@@ -2,10 +2,10 @@ import fc from 'fast-check';
 import { type BufferAttribute, Mesh } from 'three';
 import { describe, expect, it } from 'vitest';
 import { braceHeight, maximumDraw } from '../../../src/core/games/archery/bow';
-import { fromEulerYxz } from '../../../src/core/math/quat';
 import { distance, vec3 } from '../../../src/core/math/vec3';
 import { createBow } from '../../../src/games/archery/bow';
 import { stringBow } from '../../../src/games/archery/limb-shape';
+import { fromEulerYxz } from '../../core/euler-angles';
 import { bowView } from './bow-view';
 
 const draws = fc.double({ min: 0, max: maximumDraw, noNaN: true });

@@ -11,11 +11,14 @@ import {
   type Person,
   type Standing,
   seatOfButton,
+  waitingFor,
   waitingLine,
 } from '../../../src/games/ball/board-drawing';
 import { cueCaption, eventCaption } from '../../../src/games/ball/captions';
 import { eventHaptics } from '../../../src/games/ball/haptics';
+import { createMatchClock } from '../../../src/games/ball/match-clock';
 import { labelScale } from '../../../src/games/ball/name-labels';
+import { createSettling, settlingSeconds } from '../../../src/games/sheet';
 
 const person = (name: string, more: Partial<Person> = {}): Person => ({
   name,
@@ -33,6 +36,7 @@ const standing = (people: Standing['people'], state: BallState = fresh, me: numb
   people,
   me,
   rotate: false,
+  acting: false,
 });
 
 const withReady = (...ready: boolean[]): BallState => ({
@@ -49,7 +53,27 @@ describe('the board', () => {
     expect(waitingLine(standing(all, withReady(true, true, false)))).toBe('Waiting for one player');
   });
 
-  it('names whoever threw a ball that was caught, and counts by thrower', () => {
+  it('beside the player: says who is waited for, by name, and what to press', () => {
+    const all = [person('ann', { me: true }), person('Max', { bot: true }), person('cal')];
+    const told = (...ready: boolean[]) => waitingFor(standing(all, withReady(...ready)));
+    expect(waitingFor(standing([person('ann', { me: true }), null, null]))).toBe('Waiting for a basket holder.');
+    expect(told(false, true, true)).toBe('Waiting for you: press Ready.');
+    expect(told(false, false, false)).toBe('Waiting for you, Max (bot) and cal: press Ready.');
+    expect(told(true, false, false)).toBe('Waiting for Max (bot) and cal.');
+    expect(told(true, true, true)).toBe('The match begins in a moment.');
+    const over = { ...withReady(false, true, true), phase: 'over' as const, end: 'balls' as const };
+    expect(waitingFor(standing(all, over))).toBe('Waiting for you: press Play again.');
+    expect(waitingFor({ ...standing(all, over), acting: true })).toBe('The match begins in a moment.');
+    expect(waitingFor(standing(all, { ...over, phase: 'running' }))).toBeNull();
+  });
+
+  it('speaks to the player of their own throws', () => {
+    const people = [person('ann', { me: true }), null, null];
+    expect(lineOfEvent({ type: 'caught', ball: 3, player: 0, at: 2, score: 1 }, people)).toBe('In! Thrown by you');
+    expect(lineOfEvent({ type: 'missed', ball: 3, player: 0 } as BallEvent, people)).toBe('Your ball is on the floor');
+  });
+
+  it('names the thrower of a ball that was caught, and counts by thrower', () => {
     const event: BallEvent = { type: 'caught', ball: 3, player: 1, at: 2, score: 1 };
     expect(lineOfEvent(event, [null, person('ben'), null])).toBe('In! Thrown by ben');
     const balls: BallPlace[] = [
@@ -70,7 +94,7 @@ describe('the board', () => {
 });
 
 describe('the sheet before and after a match', () => {
-  it('offers the places that are free or a bot’s, and ready to whoever has one', () => {
+  it('offers the places that are free or a bot’s, and ready to the player who has one', () => {
     const people = [person('ann', { me: true }), person('Max', { bot: true }), null];
     expect(lobbyButtons(standing(people)).map(({ id }) => id)).toEqual(['seat1', 'seat2', 'rotate', 'ready']);
     const watcher = lobbyButtons(standing([person('ann'), null, person('cal')], fresh, null));
@@ -93,7 +117,7 @@ describe('captions', () => {
 
   it('say why a deed was refused, only to whoever did it', () => {
     const refused = (player: number): BallEvent => ({ type: 'refused', player, sequence: 1, reason: 'taken' });
-    expect(eventCaption(refused(0), null, hearing)).toBe('Somebody else has that ball');
+    expect(eventCaption(refused(0), null, hearing)).toBe('Another player has that ball');
     expect(eventCaption(refused(1), null, hearing)).toBe(null);
   });
 
@@ -121,5 +145,41 @@ describe('names over heads', () => {
     const angle = (far: number) => labelScale(far) / far;
     for (const far of [3, 5, 8]) expect(angle(far)).toBeCloseTo(angle(2.8), 9);
     expect(labelScale(40)).toBe(3);
+  });
+});
+
+describe('the clock of a match', () => {
+  it('stands after its end, however long the result is read, and is whole again before the next', () => {
+    const clock = createMatchClock();
+    const at = (tick: number, more: Partial<BallState>) => clock.follow({ ...fresh, tick, startedAt: 0, ...more });
+    at(60 * 30, { phase: 'running' });
+    expect(clock.secondsLeft).toBeCloseTo(60, 6);
+    at(60 * 50, { phase: 'over', end: 'balls' });
+    expect(clock.secondsLeft).toBeCloseTo(60, 6);
+    at(60 * 90, { phase: 'over', end: 'time' });
+    expect(clock.secondsLeft).toBe(0);
+    clock.follow({ ...fresh, startedAt: null });
+    expect(clock.secondsLeft).toBe(90);
+  });
+});
+
+describe('a sheet that comes under a hand or a mouse', () => {
+  it('takes no press for half a second, each time it comes', () => {
+    const settling = createSettling();
+    const settledAfter = (from: number): number => {
+      for (let time = from; ; time += 1 / 72) {
+        settling.show(true, time);
+        if (settling.settled) return time - from;
+      }
+    };
+    settling.show(false, 9);
+    expect(settling.settled).toBe(false);
+    for (const from of [10, 40]) {
+      const waited = settledAfter(from);
+      expect(waited).toBeGreaterThanOrEqual(settlingSeconds - 1e-9);
+      expect(waited).toBeLessThan(settlingSeconds + 1 / 36);
+      settling.show(false, from + 20);
+      expect(settling.settled).toBe(false);
+    }
   });
 });

@@ -1,6 +1,6 @@
-import { clamp, damp, dampedShare, smoothstep } from '../../math/damper';
+import { clamp, damp, smoothingFactor, smoothstep } from '../../math/damper';
 import { type Pose, type Transform, transformPoint } from '../../math/pose';
-import { between, identity, rotate, slerp } from '../../math/quat';
+import { identity, rotate, rotationBetween, slerp } from '../../math/quat';
 import {
   add,
   addScaled,
@@ -160,7 +160,7 @@ const forwardOf = (bow: Pose<'floor'>): Vec3 => rotate(bow.orientation, forward)
 
 /** The unit vector on the shorter arc from a to b, `share` of the way. */
 const turnTowards = (a: Vec3, b: Vec3, share: number): Vec3 =>
-  normalise(rotate(slerp(identity, between(a, b), share), a), a);
+  normalise(rotate(slerp(identity, rotationBetween(a, b), share), a), a);
 
 /** One per archer. */
 export function createArcheryGestures(settings: () => ArcheryGestureSettings): ArcheryGestures {
@@ -253,7 +253,7 @@ export function createArcheryGestures(settings: () => ArcheryGestureSettings): A
     if (delta > pauseSeconds || !armed || anotherHand || presses.changedKind(stringSide)) cancel(stringSide);
 
     if (settling) {
-      settling = turnTowards(settling, forwardOf(inHand), dampedShare(settleHalfLife, delta));
+      settling = turnTowards(settling, forwardOf(inHand), smoothingFactor(settleHalfLife, delta));
       if (dot(settling, forwardOf(inHand)) > settled) settling = null;
     }
     const empty = settling ? turnBow(inHand, settling) : inHand;
@@ -362,7 +362,7 @@ export function createArcheryGestures(settings: () => ArcheryGestureSettings): A
       const draw = behind ? clamp(length(line) - braceHeight, 0, maximumDraw) : 0;
       const share = smoothstep(handAims, lineAims, draw);
       const goal = behind ? turnTowards(forwardOf(inHand), normalise(line), share) : forwardOf(inHand);
-      arrow.direction = turnTowards(arrow.direction, goal, dampedShare(aimHalfLife * share, delta));
+      arrow.direction = turnTowards(arrow.direction, goal, smoothingFactor(aimHalfLife * share, delta));
       if (delta > 0) arrow.drawSpeed = damp(arrow.drawSpeed, (draw - arrow.draw) / delta, drawSpeedHalfLife, delta);
       arrow.draw = draw;
 
@@ -374,7 +374,7 @@ export function createArcheryGestures(settings: () => ArcheryGestureSettings): A
     }
 
     function drawWithButton(arrow: Nocked): void {
-      arrow.direction = turnTowards(arrow.direction, forwardOf(inHand), dampedShare(oneHandedAimHalfLife, delta));
+      arrow.direction = turnTowards(arrow.direction, forwardOf(inHand), smoothingFactor(oneHandedAimHalfLife, delta));
       arrow.draw = Math.min(oneHandedDraw, arrow.draw + oneHandedDrawSpeed * delta);
       if (arrow.draw < oneHandedDraw) arrow.stage = arrow.draw > drawingFrom ? 'drawing' : 'nocked';
       else if (arrow.stage !== 'anchored') anchor(arrow);

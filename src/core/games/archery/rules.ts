@@ -129,8 +129,15 @@ const tickSeconds = 1 / 90;
 /** Seconds of the match that have passed. */
 export const matchTime = (state: ArcheryState): number => state.tick * tickSeconds;
 
-/** Seconds until the bell; 0 when it has rung. */
-export const secondsLeft = (state: ArcheryState): number => Math.max(0, state.options.seconds - matchTime(state));
+/** When a round ended that its arrows ended [s]: as the last of them came down. */
+const lastLanding = ({ arrows }: ArcheryState): number =>
+  Math.max(0, ...arrows.map(({ landing }) => landing?.time ?? 0));
+
+/** Seconds until the bell, 0 when it has rung; of a round that is over, what was left at its end. */
+export function secondsLeft(state: ArcheryState): number {
+  if (state.phase === 'over' && state.end === 'time') return 0;
+  return Math.max(0, state.options.seconds - (state.phase === 'over' ? lastLanding(state) : matchTime(state)));
+}
 
 const isAbove = ({ x, z }: Vec3, margin: number): boolean =>
   Math.abs(x) <= zone.width / 2 - margin && Math.abs(z) <= zone.depth / 2 - margin;

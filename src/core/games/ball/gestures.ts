@@ -1,9 +1,17 @@
-import { type Transform, transformPoint, transformPose } from '../../math/pose';
-import { distance, type Vec3 } from '../../math/vec3';
+import {
+  type MutablePose,
+  makePose,
+  makeTransform,
+  type Transform,
+  transformPoint,
+  transformPose,
+} from '../../math/pose';
+import { copyVec3, distance, length, type MutableVec3, type Vec3, vec3 } from '../../math/vec3';
 import type { TrackedPose, TrackingFrame } from '../../tracking/tracking-frame';
 import {
   allReleased,
   type Button,
+  type ButtonPresses,
   type Buttons,
   createButtonPresses,
   pressureOf,
@@ -11,7 +19,7 @@ import {
 } from '../button-presses';
 import { fistOf, type Side } from '../fist';
 import type { BallAction, BallDeed, BallEvent, BallState } from './ball-state';
-import { createHandSpeed } from './hand-speed';
+import { createHandSpeed, type HandSpeed } from './hand-speed';
 import { slowestThrow } from './rules';
 import { rackPosition } from './stations';
 
@@ -34,14 +42,14 @@ export interface BallPulse {
   readonly seconds: number;
 }
 
-/** Something to hear or see in a caption. slipped: the ball was somebody else's. */
+/** Something to hear or see in a caption. slipped: the ball was another player's. */
 export interface BallCue {
   readonly type: 'near' | 'grabbed' | 'thrown' | 'dropped' | 'slipped';
   readonly side: Side;
   readonly ball: number;
 }
 
-/** What one frame of hands and buttons means. */
+/** What one frame of hands and buttons means; the pose among its actions, `held` and `near` are the same objects in every frame. */
 export interface BallGestureFrame {
   /** Arena frame; the pose first. */
   readonly actions: readonly BallAction[];
@@ -70,6 +78,13 @@ export const holdSeconds = 0.5;
 /** A pause of this length [s] throws nothing. */
 const longestPause = 0.3;
 
+/** How a hand was when it opened, arena frame. */
+interface Opened {
+  readonly time: number;
+  readonly position: Vec3;
+  readonly velocity: Vec3;
+}
+
 interface Holding {
   readonly ball: number;
   readonly button: Button;
@@ -77,212 +92,256 @@ interface Holding {
   /** Time of the first frame that missed the hand [s]; null: seen. */
   lostAt: number | null;
   /** An opened pinch counts with the next frame that sees the hand: fingers also seem to open when a camera loses them. */
-  opened: { readonly time: number; readonly position: Vec3; readonly velocity: Vec3 } | null;
+  opened: Opened | null;
 }
 
 const sides = ['left', 'right'] as const;
 
 const seenHand = (hand: TrackedPose | null): TrackedPose | null => (hand?.tracking === 'tracked' ? hand : null);
 
-/** One per player; deeds are numbered from the one after `sequence`. */
-export function createBallGestures(settings: () => BallGestureSettings, firstSequence = 0): BallGestures {
-  const presses = createButtonPresses();
-  const speeds = { left: createHandSpeed(), right: createHandSpeed() };
-  const holding: Record<Side, Holding | null> = { left: null, right: null };
-  const wasNear: Record<Side, number | null> = { left: null, right: null };
-  /** The newest throw of each hand, until it is known to be refused: then the ball is still in that hand. */
-  const thrown: Record<Side, { readonly sequence: number; readonly ball: number } | null> = { left: null, right: null };
-  const unthrown = new Set<Side>();
-  let slipped: BallCue[] = [];
-  let sequence = firstSequence;
-  let lastTime: number | null = null;
+/** What a hand does with balls, and what it did before. */
+interface HandMemory {
+  readonly speed: HandSpeed;
+  holding: Holding | null;
+  /** The newest throw, until it is known to be refused: then the ball is still in the hand. */
+  thrown: { readonly sequence: number; readonly ball: number } | null;
+  /** A throw was refused: the ball is to be put back. */
+  unthrown: boolean;
+  /** The middle of the fist in this frame, arena frame. */
+  readonly fist: MutableVec3;
+  /** As the match hears of it. */
+  readonly pose: MutablePose<'arena'>;
+}
 
-  const inHand = (side: Side) => holding[side]?.ball ?? null;
+const makeHandMemory = (): HandMemory => ({
+  speed: createHandSpeed(),
+  holding: null,
+  thrown: null,
+  unthrown: false,
+  fist: vec3(0, 0, 0),
+  pose: makePose<'arena'>(),
+});
+
+type PoseAction = Extract<BallAction, { type: 'pose' }>;
+
+class PlayerGestures implements BallGestures {
+  sequence: number;
+  private readonly presses: ButtonPresses = createButtonPresses();
+  private readonly hands: Readonly<Record<Side, HandMemory>> = { left: makeHandMemory(), right: makeHandMemory() };
+  private readonly near: Record<Side, number | null> = { left: null, right: null };
+  private readonly held: Record<Side, number | null> = { left: null, right: null };
+  private slipped: BallCue[] = [];
+  private lastTime = Number.NaN;
+  private readonly head = vec3(0, 0, 0);
+  private readonly pose: { -readonly [Key in keyof PoseAction]: PoseAction[Key] };
+  // Of the frame that is followed now.
+  private now: BallGestureSettings;
+  private time = 0;
+  private actions: BallAction[] = [];
+  private haptics: BallPulse[] = [];
+  private cues: BallCue[] = [];
+
+  constructor(
+    private readonly settings: () => BallGestureSettings,
+    firstSequence: number,
+  ) {
+    this.sequence = firstSequence;
+    this.now = { player: 0, state: null as never, arenaFromFloor: makeTransform<'arena', 'floor'>(), matchAhead: 0 };
+    this.pose = { type: 'pose', player: 0, at: 0, head: this.head, left: null, right: null };
+  }
+
+  follow(frame: TrackingFrame, buttons: Buttons): BallGestureFrame {
+    this.begin(frame);
+    if (frame.suspended) return this.wait();
+    const { player, state, arenaFromFloor } = this.now;
+    const paused = frame.time - this.lastTime > longestPause;
+    this.lastTime = frame.time;
+    const left = seenHand(frame.leftHand);
+    const right = seenHand(frame.rightHand);
+    this.pose.left = left && transformPose(arenaFromFloor, left, this.hands.left.pose);
+    this.pose.right = right && transformPose(arenaFromFloor, right, this.hands.right.pose);
+    const playing = state.players[player]?.role === 'thrower' && state.phase === 'running';
+    for (const side of sides) {
+      const hand = this.hands[side];
+      if (hand.unthrown) this.act({ type: 'drop', sequence: this.number(), side });
+      hand.unthrown = false;
+    }
+    this.followHand('left', left, buttons, playing, paused);
+    this.followHand('right', right, buttons, playing, paused);
+    return this.told();
+  }
+
+  hear(events: readonly BallEvent[]): void {
+    if (events.length === 0) return;
+    const { player } = this.settings();
+    for (const event of events) for (const side of sides) this.hearOf(side, event, player);
+  }
+
+  private begin(frame: TrackingFrame): void {
+    this.now = this.settings();
+    const { player, arenaFromFloor, matchAhead } = this.now;
+    this.time = frame.time;
+    this.pose.player = player;
+    this.pose.at = frame.time + matchAhead;
+    transformPoint(arenaFromFloor, frame.head.position, this.head);
+    this.actions = [this.pose];
+    this.haptics = [];
+  }
 
   /** Another thing is before the page: what is held is held until the hands come back. */
-  function wait(frame: TrackingFrame): BallGestureFrame {
-    const { player, arenaFromFloor, matchAhead } = settings();
-    lastTime = frame.time;
+  private wait(): BallGestureFrame {
+    this.lastTime = this.time;
+    this.pose.left = null;
+    this.pose.right = null;
+    this.cues = [];
     for (const side of sides) {
-      presses.follow(side, allReleased, false);
-      speeds[side].reset();
-      wasNear[side] = null;
-      const held = holding[side];
-      if (!held) continue;
-      held.lostAt = frame.time;
+      const { speed, holding } = this.hands[side];
+      this.presses.follow(side, allReleased, false);
+      speed.reset();
+      this.near[side] = null;
+      if (!holding) continue;
+      holding.lostAt = this.time;
+      holding.opened = null;
+    }
+    return this.tell();
+  }
+
+  private told(): BallGestureFrame {
+    this.cues = this.slipped.length > 0 ? [...this.slipped, ...this.cues] : this.cues;
+    this.slipped = [];
+    return this.tell();
+  }
+
+  private tell(): BallGestureFrame {
+    const { actions, haptics, cues, held, near, hands } = this;
+    held.left = hands.left.holding?.ball ?? null;
+    held.right = hands.right.holding?.ball ?? null;
+    this.cues = [];
+    return { actions, haptics, cues, held, near };
+  }
+
+  private act(deed: BallDeed): void {
+    this.actions.push({ ...deed, player: this.now.player });
+  }
+
+  private number(): number {
+    this.sequence += 1;
+    return this.sequence;
+  }
+
+  private followHand(side: Side, wrist: TrackedPose | null, buttons: Buttons, playing: boolean, paused: boolean): void {
+    const { speed, fist, holding } = this.hands[side];
+    const pressed = this.presses.follow(side, buttons[side] ?? allReleased, wrist !== null);
+    if (!wrist || paused) speed.reset();
+    if (wrist) {
+      transformPoint(this.now.arenaFromFloor, fistOf(wrist, fist), fist);
+      speed.follow(this.time, copyVec3(fist));
+    }
+    if (holding) {
+      this.near[side] = null;
+      if (!playing || paused || this.presses.changedKind(side)) this.drop(side, holding);
+      else this.carry(side, holding, wrist !== null, pressureOf(buttons[side], holding.button));
+    } else if (playing && wrist) this.take(side, pressed[0]);
+    else this.near[side] = null;
+  }
+
+  private drop(side: Side, { ball }: Holding): void {
+    this.hands[side].holding = null;
+    this.act({ type: 'drop', sequence: this.number(), side });
+    this.cues.push({ type: 'dropped', side, ball });
+  }
+
+  private take(side: Side, button: Button | undefined): void {
+    const { left, right } = this.hands;
+    const ball = nearestBall(this.now.state, this.hands[side].fist, left.holding, right.holding);
+    if (ball !== null && ball !== this.near[side] && !button) {
+      this.cues.push({ type: 'near', side, ball });
+      this.haptics.push({ side, strength: 0.15, seconds: 0.02 });
+    }
+    this.near[side] = ball;
+    if (ball === null || !button) return;
+    const sequence = this.number();
+    this.hands[side].holding = { ball, button, sequence, lostAt: null, opened: null };
+    this.near[side] = null;
+    this.act({ type: 'grab', sequence, side, ball });
+    this.cues.push({ type: 'grabbed', side, ball });
+    this.haptics.push({ side, strength: 0.5, seconds: 0.03 });
+  }
+
+  private carry(side: Side, held: Holding, seen: boolean, pressure: number): void {
+    if (!seen) {
+      // The button of a hand that no camera sees says nothing: many devices let go of it when they lose the hand.
       held.opened = null;
+      held.lostAt ??= this.time;
+      if (this.time - held.lostAt >= holdSeconds) this.drop(side, held);
+      return;
     }
-    const head = transformPoint(arenaFromFloor, frame.head.position);
-    return {
-      actions: [{ type: 'pose', player, at: frame.time + matchAhead, head, left: null, right: null }],
-      haptics: [],
-      cues: [],
-      held: { left: inHand('left'), right: inHand('right') },
-      near: { ...wasNear },
-    };
+    if (held.lostAt !== null) {
+      held.lostAt = null;
+      if (pressure < releasedBelow) this.drop(side, held);
+      return;
+    }
+    if (pressure >= releasedBelow) {
+      held.opened = null;
+      return;
+    }
+    const { fist, speed } = this.hands[side];
+    const now: Opened = { time: this.time, position: copyVec3(fist), velocity: speed.velocity() };
+    if (held.button === 'pinch' && !held.opened) held.opened = now;
+    else this.letGo(side, held, held.opened ?? now);
   }
 
-  function follow(frame: TrackingFrame, buttons: Buttons): BallGestureFrame {
-    if (frame.suspended) return wait(frame);
-    const { player, state, arenaFromFloor, matchAhead } = settings();
-    const cues = slipped;
-    slipped = [];
-    const haptics: BallPulse[] = [];
-    const actions: BallAction[] = [];
-    const paused = lastTime !== null && frame.time - lastTime > longestPause;
-    lastTime = frame.time;
-    const hands = { left: seenHand(frame.leftHand), right: seenHand(frame.rightHand) };
-    const inArena = (hand: TrackedPose | null) => hand && transformPose(arenaFromFloor, hand);
-    actions.push({
-      type: 'pose',
-      player,
-      at: frame.time + matchAhead,
-      head: transformPoint(arenaFromFloor, frame.head.position),
-      left: inArena(hands.left),
-      right: inArena(hands.right),
-    });
-    const act = (deed: BallDeed) => actions.push({ ...deed, player });
-    const number = (): number => {
-      sequence += 1;
-      return sequence;
-    };
-    const thrower = state.players[player]?.role === 'thrower';
-    const playing = thrower && state.phase === 'running';
-
-    for (const side of unthrown) act({ type: 'drop', sequence: number(), side });
-    unthrown.clear();
-    for (const side of sides) {
-      const hand = hands[side];
-      const speed = speeds[side];
-      const pressed = presses.follow(side, buttons[side] ?? allReleased, hand !== null);
-      if (!hand || paused) speed.reset();
-      const fist = hand && transformPoint(arenaFromFloor, fistOf(hand));
-      if (fist) speed.follow(frame.time, fist);
-      const held = holding[side];
-      if (held) {
-        wasNear[side] = null;
-        if (!playing || paused || presses.changedKind(side)) drop(side, held);
-        else carry(side, held, fist);
-      } else if (playing && fist) {
-        take(side, fist, pressed[0]);
-      } else {
-        wasNear[side] = null;
-      }
+  private letGo(side: Side, held: Holding, { time, position, velocity }: Opened): void {
+    const { ball } = held;
+    const speed = length(velocity);
+    if (speed < slowestThrow) {
+      this.drop(side, held);
+      return;
     }
-
-    return {
-      actions,
-      haptics,
-      cues,
-      held: { left: inHand('left'), right: inHand('right') },
-      near: { ...wasNear },
-    };
-
-    function drop(side: Side, { ball }: Holding): void {
-      holding[side] = null;
-      act({ type: 'drop', sequence: number(), side });
-      cues.push({ type: 'dropped', side, ball });
-    }
-
-    function take(side: Side, fist: Vec3, button: Button | undefined): void {
-      const ball = nearestBall(state, fist, holding);
-      if (ball !== null && ball !== wasNear[side] && !button) {
-        cues.push({ type: 'near', side, ball });
-        haptics.push({ side, strength: 0.15, seconds: 0.02 });
-      }
-      wasNear[side] = ball;
-      if (ball === null || !button) return;
-      const grab = number();
-      holding[side] = { ball, button, sequence: grab, lostAt: null, opened: null };
-      wasNear[side] = null;
-      act({ type: 'grab', sequence: grab, side, ball });
-      cues.push({ type: 'grabbed', side, ball });
-      haptics.push({ side, strength: 0.5, seconds: 0.03 });
-    }
-
-    function carry(side: Side, held: Holding, fist: Vec3 | null): void {
-      const value = pressureOf(buttons[side], held.button);
-      if (!fist) {
-        // The button of a hand that nobody sees says nothing: many devices let go of it when they lose the hand.
-        held.opened = null;
-        held.lostAt ??= frame.time;
-        if (frame.time - held.lostAt >= holdSeconds) drop(side, held);
-        return;
-      }
-      if (held.lostAt !== null) {
-        held.lostAt = null;
-        if (value < releasedBelow) drop(side, held);
-        return;
-      }
-      if (value >= releasedBelow) {
-        held.opened = null;
-        return;
-      }
-      const now = { time: frame.time, position: fist, velocity: speeds[side].velocity() };
-      if (held.button === 'pinch' && !held.opened) held.opened = now;
-      else letGo(side, held, held.opened ?? now);
-    }
-
-    function letGo(
-      side: Side,
-      held: Holding,
-      { time, position, velocity }: { readonly time: number; readonly position: Vec3; readonly velocity: Vec3 },
-    ): void {
-      const speed = distance(velocity, { x: 0, y: 0, z: 0 });
-      if (speed < slowestThrow) {
-        drop(side, held);
-        return;
-      }
-      holding[side] = null;
-      const sequence = number();
-      thrown[side] = { sequence, ball: held.ball };
-      act({ type: 'throw', sequence, side, ball: held.ball, at: time + matchAhead, position, velocity });
-      cues.push({ type: 'thrown', side, ball: held.ball });
-      haptics.push({ side, strength: Math.min(1, 0.3 + speed / 15), seconds: 0.05 });
-    }
+    const hand = this.hands[side];
+    const sequence = this.number();
+    hand.holding = null;
+    hand.thrown = { sequence, ball };
+    this.act({ type: 'throw', sequence, side, ball, at: time + this.now.matchAhead, position, velocity });
+    this.cues.push({ type: 'thrown', side, ball });
+    this.haptics.push({ side, strength: Math.min(1, 0.3 + speed / 15), seconds: 0.05 });
   }
 
-  return {
-    follow,
-    hear(events) {
-      const { player } = settings();
-      for (const event of events) {
-        for (const side of sides) {
-          const throwing = thrown[side];
-          if (event.type === 'refused' && event.player === player && event.sequence === throwing?.sequence) {
-            thrown[side] = null;
-            if (event.reason !== 'seen-before') {
-              unthrown.add(side);
-              slipped.push({ type: 'slipped', side, ball: throwing.ball });
-            }
-          }
-          const held = holding[side];
-          if (!held || !('player' in event) || event.player !== player) continue;
-          const refused =
-            event.type === 'refused' && event.sequence === held.sequence && event.reason !== 'seen-before';
-          const returned = event.type === 'returned' && event.ball === held.ball;
-          if (!refused && !returned) continue;
-          holding[side] = null;
-          slipped.push({ type: 'slipped', side, ball: held.ball });
-        }
+  private hearOf(side: Side, event: BallEvent, player: number): void {
+    const hand = this.hands[side];
+    const { thrown, holding } = hand;
+    if (event.type === 'refused' && event.player === player && event.sequence === thrown?.sequence) {
+      hand.thrown = null;
+      if (event.reason !== 'seen-before') {
+        hand.unthrown = true;
+        this.slipped.push({ type: 'slipped', side, ball: thrown.ball });
       }
-    },
-    get sequence() {
-      return sequence;
-    },
-  };
+    }
+    if (!holding || !('player' in event) || event.player !== player) return;
+    const refused = event.type === 'refused' && event.sequence === holding.sequence && event.reason !== 'seen-before';
+    const returned = event.type === 'returned' && event.ball === holding.ball;
+    if (!refused && !returned) return;
+    hand.holding = null;
+    this.slipped.push({ type: 'slipped', side, ball: holding.ball });
+  }
 }
 
-/** The ball in a rack that a fist would take, unless the other hand has just taken it. */
-function nearestBall(state: BallState, fist: Vec3, holding: Readonly<Record<Side, Holding | null>>): number | null {
+/** One per player; deeds are numbered from the one after `firstSequence`. */
+export const createBallGestures = (settings: () => BallGestureSettings, firstSequence = 0): BallGestures =>
+  new PlayerGestures(settings, firstSequence);
+
+/** The ball in a rack that a fist would take, unless one of the two hands has just taken it. */
+function nearestBall(state: BallState, fist: Vec3, left: Holding | null, right: Holding | null): number | null {
   let nearest: number | null = null;
   let least = takeReach;
-  state.balls.forEach((place, ball) => {
-    if (place.on !== 'rack' || holding.left?.ball === ball || holding.right?.ball === ball) return;
-    const far = distance(fist, rackPosition(ball, state.options.balls));
-    if (far > least) return;
+  for (let ball = 0; ball < state.balls.length; ball++) {
+    if (state.balls[ball]!.on !== 'rack' || left?.ball === ball || right?.ball === ball) continue;
+    const far = distance(fist, rackPosition(ball, state.options.balls, rack));
+    if (far > least) continue;
     nearest = ball;
     least = far;
-  });
+  }
   return nearest;
 }
+
+const rack = vec3(0, 0, 0);

@@ -1,6 +1,6 @@
 import type { Transform } from '../../math/pose';
 import { fromAxisAngle, identity } from '../../math/quat';
-import { up, type Vec3, vec3 } from '../../math/vec3';
+import { type MutableVec3, setVec3, up, vec3 } from '../../math/vec3';
 import { ballRadius } from './flight';
 
 /** From each thrower to the basket holder, along the floor [m]. */
@@ -19,7 +19,7 @@ export const stations: readonly Transform<'arena', 'floor'>[] = [
 /** The station of the basket holder. */
 export const holderStation = 2;
 
-/** Everybody stays this near to their own station [m]. */
+/** Every player stays this near to their own station [m]. */
 export const zoneRadius = 1.2;
 
 const rackHeight = 0.85;
@@ -30,11 +30,11 @@ const columns = 2;
  * Where a ball lies in its rack, arena frame: beside the thrower, towards the other one, so that both can reach the nearer balls
  * of both racks.
  */
-export function rackPosition(ball: number, balls: number): Vec3 {
+export function rackPosition(ball: number, balls: number, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 {
   const perRack = Math.ceil(balls / 2);
   const side = ball < perRack ? -1 : 1;
   const slot = ball % perRack;
   const column = slot % columns;
   const row = Math.floor(slot / columns);
-  return vec3(side * (aside - 0.34 - column * spacing), rackHeight + ballRadius, 0.2 - row * spacing);
+  return setVec3(target, side * (aside - 0.34 - column * spacing), rackHeight + ballRadius, 0.2 - row * spacing);
 }

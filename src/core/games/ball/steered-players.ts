@@ -1,4 +1,4 @@
-import { clamp, dampedShare } from '../../math/damper';
+import { clamp, smoothingFactor } from '../../math/damper';
 import { transformPoint } from '../../math/pose';
 import { rotate } from '../../math/quat';
 import { add, addScaled, distance, normalise, scale, subtract, type Vec3, vec3 } from '../../math/vec3';
@@ -104,7 +104,7 @@ export function createSteeredThrower(body: PlayerBody, steering: () => BallSteer
       const target = ahead(wish.ray, basket.z);
       if (!wish.pressed) spent = false;
       const towards = (goal: PlayerPosture, halfLife = moveHalfLife): PlayerPosture =>
-        mixPostures(posture ?? goal, goal, dampedShare(halfLife, elapsed));
+        mixPostures(posture ?? goal, goal, smoothingFactor(halfLife, elapsed));
       const holds = ballInHand(state, player, side) >= 0;
       const elapsedHere = () => time - began;
       const place = () => postures.inFloor(rackPosition(ball, state.options.balls));

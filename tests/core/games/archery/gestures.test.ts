@@ -327,6 +327,7 @@ describe('the aim', () => {
   test('the arrow always lies on its rest, the bow points along it, the upper limb stays up', () => {
     const archer = bowman();
     archer.drawTo(0.5, { direction: normalise(vec3(0.3, 0.3, -1)), knuckles: vec3(0, 0, -1) });
+    expect(archer.frames.filter(({ bow }) => bow?.arrow).length).toBeGreaterThan(10);
     for (const { bow } of archer.frames) {
       const { position, orientation } = bow!.bow;
       const ahead = rotate(orientation, vec3(0, 0, -1));

@@ -1,6 +1,6 @@
 import fc from 'fast-check';
 import { describe, expect, it } from 'vitest';
-import { createIk } from '../../../../src/core/estimation/ik';
+import { createIk } from '../../../../src/core/estimation/estimators';
 import type { BallAction, BallEvent, BallState } from '../../../../src/core/games/ball/ball-state';
 import { type BallGestures, createBallGestures } from '../../../../src/core/games/ball/gestures';
 import { createHolder } from '../../../../src/core/games/ball/holder-motion';
@@ -101,7 +101,7 @@ describe('bots', () => {
     frames.forEach((now, index) => {
       if (index % 3 !== 0) return;
       now.forEach((frame, player) => {
-        const { body } = estimators[player]?.estimate(frame) ?? {};
+        const { body } = estimators[player]?.update(frame).pose ?? {};
         expect(body && frame.head.position.y - body.hipsPosition.y).toBeGreaterThan(0.45);
         expect(rotate(frame.head.orientation, vec3(0, 0, -1)).z).toBeLessThan(-0.4);
       });

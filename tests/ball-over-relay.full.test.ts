@@ -1,7 +1,4 @@
 import { afterAll, expect, test } from 'vitest';
-import { createRelay, type Relay } from '../server/relay';
-import { relayConfigurationFrom } from '../server/relay-configuration';
-import { serve, type WebServer } from '../server/web-server';
 import { type BallPlay, createBallPlay } from '../src/ball-play';
 import { defaultCalibration } from '../src/core/body/calibration';
 import { forwardKinematics } from '../src/core/body/forward-kinematics';
@@ -11,6 +8,8 @@ import { allReleased, type Buttons } from '../src/core/games/button-presses';
 import { distance, type Vec3 } from '../src/core/math/vec3';
 import { createRoomPass } from '../src/net/room-pass';
 import { createSocketConnection } from '../src/net/socket-connection';
+import { poseOf } from './core/estimation/drawn';
+import { type RunningRelay, startRelay } from './server/running-relay';
 
 const released: Buttons = { left: allReleased, right: allReleased };
 const closing: (() => Promise<void>)[] = [];
@@ -19,31 +18,8 @@ afterAll(async () => {
   for (const close of closing.reverse()) await close();
 });
 
-async function startServer(seconds: number, port = 0): Promise<{ server: WebServer; close(): Promise<void> }> {
-  let relay: Relay | null = null;
-  const server = await serve(
-    (request, response) => {
-      if (!relay?.handle(request, response)) response.writeHead(404).end();
-    },
-    { host: '127.0.0.1', port },
-  );
-  const configuration = relayConfigurationFrom({
-    THREEPOINT_BALL_SECONDS: String(seconds),
-    THREEPOINT_ORIGINS: 'http://ball.test',
-    THREEPOINT_LOG_LEVEL: 'silent',
-  });
-  relay = createRelay(server.requests, configuration, 'a secret of the tests of the ball game, no other');
-  let closed = false;
-  return {
-    server,
-    async close() {
-      if (closed) return;
-      closed = true;
-      await relay?.close();
-      await server.close();
-    },
-  };
-}
+const startServer = (seconds: number, port = 0): Promise<RunningRelay> =>
+  startRelay({ THREEPOINT_BALL_SECONDS: String(seconds), THREEPOINT_ORIGINS: 'http://ball.test' }, port);
 
 interface Person {
   readonly play: BallPlay;
@@ -74,7 +50,7 @@ function comeIn(port: number, name: string, options: { spectate?: boolean; bots?
       play.begin(time);
       const performed = options.spectate ? null : play.act(time);
       const seen = play.follow(time, performed?.frame ?? null, performed?.buttons ?? released);
-      if (performed) play.send(performed.frame, estimator.estimate(performed.frame), { left: 0, right: 0 });
+      if (performed) play.send(performed.frame, poseOf(estimator, performed.frame), { left: 0, right: 0 });
       for (const { id, calibration, pose } of seen?.bodies ?? []) {
         if (!pose.body) continue;
         const elbow = forwardKinematics(skeletonFromCalibration(calibration), pose.body).rightLowerArm.position;
@@ -86,7 +62,7 @@ function comeIn(port: number, name: string, options: { spectate?: boolean; bots?
   };
 }
 
-/** Frames of everybody, some 60 a second, until the condition holds. */
+/** Frames of all of them, some 60 a second, until the condition holds. */
 async function until(
   people: readonly Person[],
   condition: () => boolean,
@@ -104,17 +80,17 @@ async function until(
 }
 
 test('three people over the real relay play, see each other’s elbows move and agree; one watches, one comes late', async () => {
-  const { server, close } = await startServer(14);
-  closing.push(close);
+  const server = await startServer(14);
+  closing.push(server.close);
   const players = ['ann', 'ben', 'cal'].map((name) => comeIn(server.port, name));
   const watcher = comeIn(server.port, 'dora', { spectate: true });
-  const everybody = [...players, watcher];
-  const phases = () => everybody.map(({ play }) => play.probe()?.phase);
-  await until(everybody, () => phases().every((phase) => phase === 'running'), 20, 'the match runs');
-  await until(everybody, () => (watcher.play.probe()?.score ?? 0) > 0, 20, 'a first catch');
+  const all = [...players, watcher];
+  const phases = () => all.map(({ play }) => play.probe()?.phase);
+  await until(all, () => phases().every((phase) => phase === 'running'), 20, 'the match runs');
+  await until(all, () => (watcher.play.probe()?.score ?? 0) > 0, 20, 'a first catch');
   const late = comeIn(server.port, 'eve', { spectate: true });
-  everybody.push(late);
-  await until(everybody, () => (late.play.newest?.bodies.length ?? 0) === 3, 5, 'the late one sees three bodies');
+  all.push(late);
+  await until(all, () => (late.play.newest?.bodies.length ?? 0) === 3, 5, 'the late one sees three bodies');
   expect(late.play.probe()?.score).toBe(watcher.play.probe()?.score);
   expect(
     late.play
@@ -122,8 +98,8 @@ test('three people over the real relay play, see each other’s elbows move and 
       ?.people.map((person) => person?.name)
       .sort(),
   ).toEqual(['ann', 'ben', 'cal']);
-  await until(everybody, () => phases().every((phase) => phase === 'over'), 30, 'the match is over for all');
-  const results = everybody.map(({ play }) => {
+  await until(all, () => phases().every((phase) => phase === 'over'), 30, 'the match is over for all');
+  const results = all.map(({ play }) => {
     const { score, end, balls } = play.probe() ?? {};
     return { score, end, basket: balls?.basket };
   });
@@ -143,10 +119,11 @@ test('three people over the real relay play, see each other’s elbows move and 
 test('the relay dies in the middle of a match and comes back: the same page is in the room again, the round is void', async () => {
   const first = await startServer(40);
   closing.push(first.close);
-  const { port } = first.server;
+  const { port } = first;
   const ann = comeIn(port, 'ann', { bots: true });
   await until([ann], () => (ann.play.probe()?.ballsLeft ?? 20) < 20, 40, 'a ball is thrown');
   await first.close();
+  closing.length = 0;
   await until([ann], () => ann.play.status.phase === 'reconnecting', 10, 'the page notices');
   const second = await startServer(40, port);
   closing.push(second.close);

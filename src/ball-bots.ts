@@ -1,0 +1,240 @@
+import type { Calibration } from './core/body/calibration';
+import { chestSpaceBody } from './core/body/skeleton';
+import { createEstimator } from './core/estimation/estimators';
+import type { PoseEstimator } from './core/estimation/pose-estimator';
+import type { BallAction, BallState } from './core/games/ball/ball-state';
+import type { Opening } from './core/games/ball/basket';
+import { type BallGestureFrame, type BallGestures, createBallGestures } from './core/games/ball/gestures';
+import { createHolder } from './core/games/ball/holder-motion';
+import type { Performed, PlayerBody } from './core/games/ball/player-postures';
+import { holderStation, stations } from './core/games/ball/stations';
+import { type BallBot, createThrower } from './core/games/ball/thrower-motion';
+import type { Buttons } from './core/games/button-presses';
+import type { Side } from './core/games/fist';
+import { identity } from './core/math/quat';
+import { zero } from './core/math/vec3';
+import type { TrackingFrame } from './core/tracking/tracking-frame';
+import type { Connection, RoomView, Visitor } from './net/connection';
+
+/** A built-in player moves at least this often, however slowly pictures come: a throw is over in a fifth of a second. */
+const movesPerSecond = 60;
+/** After a longer pause than this [s] nothing is made up for. */
+const longestCatchUp = 1;
+
+/** The moments since the last one at which a built-in player moves; the last is now. */
+export function momentsUntil(time: number, last: number | null): readonly number[] {
+  const passed = last === null ? 0 : time - last;
+  if (passed > longestCatchUp) return [time];
+  const count = Math.max(1, Math.floor(passed * movesPerSecond));
+  const moments: number[] = [];
+  for (let i = 0; i < count; i++) moments.push(time - (passed * (count - 1 - i)) / count);
+  return moments;
+}
+
+const isDeed = (action: BallAction): action is Extract<BallAction, { type: 'grab' | 'drop' | 'throw' }> =>
+  action.type === 'grab' || action.type === 'drop' || action.type === 'throw';
+
+export const bodyAt = (station: number, calibration: Calibration): PlayerBody => ({
+  eyeHeight: calibration.eyeHeight,
+  armLength: chestSpaceBody(calibration).arm,
+  arenaFromFloor: stations[station] ?? { position: zero, orientation: identity },
+});
+
+/** The built-in player of a station; `seed`: of the scatter of its throws. */
+export function actorFor(station: number, calibration: Calibration, seed: number): BallBot {
+  const body = bodyAt(station, calibration);
+  return station === holderStation ? createHolder(body) : createThrower(body, seed + 31 * station);
+}
+
+const gripsOf = (buttons: Buttons): Record<Side, number> => {
+  const closed = ({ trigger, grip, pinch }: Buttons[Side]) => Math.max(trigger, grip, pinch);
+  return { left: closed(buttons.left), right: closed(buttons.right) };
+};
+
+/** What built-in players know of the court besides the state of the match. */
+export interface CourtSight {
+  /** For how long the match's clock has stood in all [s]: built-in players stand still meanwhile. */
+  stood: number;
+  opening: Opening | null;
+}
+
+/** Hands become deeds on this connection. */
+export function gesturesOf(of: Connection): BallGestures {
+  return createBallGestures(() => {
+    const seen = of.room;
+    const seat = seen?.mySeat ?? 0;
+    return {
+      player: seat,
+      // Asked only while there is a match: see `play`.
+      state: seen?.match as BallState,
+      arenaFromFloor: of.arenaFromFloor(seat),
+      matchAhead: seen?.matchAhead ?? 0,
+    };
+  });
+}
+
+/** One player's frame as deeds, sent. While the clock stands hands mean nothing. */
+export function play(of: Connection, gestures: BallGestures, frame: TrackingFrame, buttons: Buttons): BallGestureFrame {
+  const done = gestures.follow(of.room?.paused ? { ...frame, suspended: true } : frame, buttons);
+  for (const action of done.actions) {
+    if (!isDeed(action)) continue;
+    const { player: _, ...deed } = action;
+    of.act(deed);
+  }
+  return done;
+}
+
+export const stationOf = (seen: RoomView, seat: number): number => seen.match?.players[seat]?.station ?? seat;
+
+/** Head, hands and buttons of a built-in player, whose own time stands when the match's does. */
+export function performedAt(
+  actor: BallBot,
+  time: number,
+  state: BallState,
+  player: number,
+  { stood, opening }: CourtSight,
+): Performed {
+  const done = actor.follow(time - stood, { state, player, ...(opening && { basket: opening.position }) });
+  return stood === 0 ? done : { ...done, frame: { ...done.frame, time } };
+}
+
+/** A built-in player on a connection, and how its body is solved. */
+export interface Mover {
+  readonly line: Connection;
+  readonly gestures: BallGestures;
+  readonly actor: BallBot;
+  readonly estimator: PoseEstimator;
+}
+
+const noCurls = { left: null, right: null };
+
+/** One moment of a built-in player: deeds, and the solved body to the others. */
+export function moveOnce(
+  { line, gestures, actor, estimator }: Mover,
+  moment: number,
+  sight: CourtSight,
+): BallGestureFrame | null {
+  const seen = line.room;
+  if (!seen?.match || seen.mySeat === null) return null;
+  const { frame, buttons } = performedAt(actor, moment, seen.match, seen.mySeat, sight);
+  const { pose } = estimator.update(frame);
+  line.sendPose(moment, { jump: false, pose, grips: gripsOf(buttons), curls: noCurls });
+  return play(line, gestures, frame, buttons);
+}
+
+/** Bots of different build; they say that they are bots. */
+const botPeople: readonly { readonly name: string; readonly calibration: Calibration }[] = [
+  { name: 'Ada', calibration: { eyeHeight: 1.52, armSpan: 1.42 } },
+  { name: 'Max', calibration: { eyeHeight: 1.7, armSpan: 1.62 } },
+  { name: 'Kim', calibration: { eyeHeight: 1.6, armSpan: 1.51 } },
+];
+
+/** Seconds between two looks for free seats. */
+const seatsEvery = 0.4;
+/** A built-in player is ready after this long [s]. */
+export const readyAfter = 1;
+
+interface Bot {
+  readonly connection: Connection;
+  readonly calibration: Calibration;
+  readonly estimator: PoseEstimator;
+  gestures: BallGestures | null;
+  actor: BallBot | null;
+  /** For which station and phase its actor was made. */
+  station: number;
+  fresh: boolean;
+  readonly since: number;
+  movedAt: number | null;
+}
+
+export interface BotsOptions {
+  connect(visitor: Visitor, time: number): Connection;
+  /** Whether bots take the seats that are free; asked for in every frame. */
+  bots(): boolean;
+  readonly seed: number;
+}
+
+/** The bots that this page brings along. */
+export class BallBots {
+  private bots: Bot[] = [];
+  private lookedAt = Number.NEGATIVE_INFINITY;
+
+  constructor(
+    private readonly options: BotsOptions,
+    private readonly sight: CourtSight,
+  ) {}
+
+  /** Bots come for seats that are free in the room of `connection`, and go when they are not wanted or a person has come. */
+  seat(connection: Connection, time: number): void {
+    const { options } = this;
+    const wanted = options.bots();
+    let ended = false;
+    for (const bot of this.bots) {
+      const gone = bot.connection.status.phase === 'ended';
+      const seatless = bot.connection.room !== null && bot.connection.room.mySeat === null;
+      if (!gone && (seatless || !wanted)) bot.connection.leave();
+      ended ||= bot.connection.status.phase === 'ended';
+    }
+    if (ended) this.bots = this.bots.filter(({ connection: { status } }) => status.phase !== 'ended');
+    const seen = connection.room;
+    if (!seen || connection.status.phase !== 'joined' || !wanted || time - this.lookedAt < seatsEvery) return;
+    this.lookedAt = time;
+    const coming = this.bots.filter((bot) => bot.connection.room === null).length;
+    const free = seen.seats.flatMap((row, seat) => (row === null ? [seat] : [])).slice(coming);
+    for (const seat of free) this.invite(seat, time);
+  }
+
+  /** Moves all of them, as often as 60 times a second. */
+  move(time: number): void {
+    for (const bot of this.bots) this.moveBot(bot, time);
+  }
+
+  leave(): void {
+    for (const bot of this.bots) bot.connection.leave();
+    this.bots = [];
+  }
+
+  private invite(seat: number, time: number): void {
+    const person = botPeople[seat % botPeople.length];
+    if (!person) return;
+    this.bots.push({
+      connection: this.options.connect({ ...person, bot: true, seat }, time),
+      calibration: person.calibration,
+      estimator: createEstimator('ik', person.calibration),
+      gestures: null,
+      actor: null,
+      station: -1,
+      fresh: false,
+      since: time,
+      movedAt: null,
+    });
+  }
+
+  private moveBot(bot: Bot, time: number): void {
+    const { connection: line, estimator } = bot;
+    const update = line.update(time);
+    const seen = line.room;
+    if (!seen || seen.mySeat === null || !seen.match) return;
+    const { match, mySeat } = seen;
+    if (update.news.some((what) => what !== 'seats')) bot.gestures = null;
+    bot.gestures ??= gesturesOf(line);
+    bot.gestures.hear(update.events);
+    const actor = this.actorOf(bot, stationOf(seen, mySeat), match.phase, mySeat);
+    const mover = { line, gestures: bot.gestures, actor, estimator };
+    for (const moment of momentsUntil(time, bot.movedAt)) moveOnce(mover, moment, this.sight);
+    bot.movedAt = time;
+    const me = match.players[mySeat];
+    if (me && !me.ready && match.phase !== 'running' && time - bot.since > readyAfter) line.ready(true);
+  }
+
+  /** Another station, or another round: another actor, but not while a round is played. */
+  private actorOf(bot: Bot, station: number, phase: BallState['phase'], seat: number): BallBot {
+    const fresh = phase === 'ready';
+    if (!bot.actor || ((bot.station !== station || bot.fresh !== fresh) && phase !== 'running')) {
+      bot.actor = actorFor(station, bot.calibration, this.options.seed + seat);
+      bot.station = station;
+      bot.fresh = fresh;
+    }
+    return bot.actor;
+  }
+}

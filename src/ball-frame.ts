@@ -1,0 +1,274 @@
+import type { AvatarPose } from './core/body/avatar-pose';
+import type { Calibration } from './core/body/calibration';
+import type { BallEvent, BallRole, BallState } from './core/games/ball/ball-state';
+import { basketInHands, type Opening } from './core/games/ball/basket';
+import type { BallCue, BallPulse } from './core/games/ball/gestures';
+import { ballSecondsLeft, ballsLeft } from './core/games/ball/rules';
+import type { Launch } from './core/games/ballistics';
+import { fistOf, type Side } from './core/games/fist';
+import {
+  composeTransforms,
+  type MutableTransform,
+  makePose,
+  makeTransform,
+  type Transform,
+  transformPoint,
+  transformPose,
+} from './core/math/pose';
+import { length, type MutableVec3, type Vec3, vec3 } from './core/math/vec3';
+import type { TrackedPose, TrackingFrame } from './core/tracking/tracking-frame';
+import { seatLooks } from './games/ball/court-plan';
+import type { Connection, ConnectionStatus, RoomView } from './net/connection';
+import type { RemotePlayer } from './net/remote-players';
+
+/** A person or bot at the court in one frame. Heads and fists are the same objects in every frame: copy what must stay. */
+export interface PlayerFrame {
+  readonly name: string;
+  readonly bot: boolean;
+  readonly presence: 'here' | 'away' | 'gone';
+  readonly me: boolean;
+  readonly role: BallRole;
+  readonly station: number;
+  readonly ready: boolean;
+  /** Arena frame; null: not to be seen now. */
+  readonly head: Vec3 | null;
+  readonly fists: Readonly<Record<Side, Vec3 | null>>;
+  readonly opacity: number;
+}
+
+/** A body to be drawn; its floor as it lies in this room. */
+export interface BodyFrame {
+  readonly id: number;
+  readonly calibration: Calibration;
+  readonly station: number;
+  /** One of the avatar's palettes. */
+  readonly palette: string;
+  readonly pose: AvatarPose;
+  readonly placement: Transform<'floor', 'floor'>;
+  readonly grips: Readonly<Record<Side, number>>;
+  readonly opacity: number;
+}
+
+/** What one frame of the match brought: to be seen, heard and felt. */
+export interface BallFrame {
+  readonly state: BallState;
+  /** Seconds of the match. */
+  readonly time: number;
+  readonly me: number | null;
+  readonly role: BallRole | null;
+  readonly rotate: boolean;
+  readonly spectators: number;
+  /** The match's clock stands because a player stopped it. */
+  readonly paused: boolean;
+  readonly players: readonly (PlayerFrame | null)[];
+  readonly bodies: readonly BodyFrame[];
+  readonly opening: Opening | null;
+  readonly events: readonly BallEvent[];
+  readonly cues: readonly BallCue[];
+  readonly haptics: readonly BallPulse[];
+  readonly held: Readonly<Record<Side, number | null>>;
+  /** How the ball in the own hand would fly, arena frame; null: no one aims it with a mouse. */
+  readonly aim: Launch | null;
+}
+
+/** What tools may know of a match. */
+export interface BallProbe {
+  readonly name: 'ball';
+  readonly phase: BallState['phase'];
+  readonly end: BallState['end'];
+  readonly score: number;
+  readonly ballsLeft: number;
+  readonly secondsLeft: number;
+  /** Own seat; null: a spectator. */
+  readonly seat: number | null;
+  readonly role: BallRole | null;
+  readonly ready: boolean;
+  readonly rotate: boolean;
+  readonly spectators: number;
+  readonly paused: boolean;
+  readonly held: Readonly<Record<Side, number | null>>;
+  /** How fast the ball would leave the hand that a mouse aims [m/s]; null: it aims none. */
+  readonly aim: number | null;
+  readonly connection: ConnectionStatus['phase'];
+  /** Rounds cut short because the room had forgotten them. */
+  readonly voided: number;
+  /** How many balls are in each kind of place. */
+  readonly balls: Readonly<Record<'rack' | 'hand' | 'air' | 'floor' | 'basket', number>>;
+  /** The middle of the opening, arena frame [m]. */
+  readonly basket: readonly [number, number, number];
+  readonly people: readonly ({ readonly name: string; readonly bot: boolean; readonly presence: string } | null)[];
+}
+
+/** What tools may know of this frame of a match. */
+export function probeOf(
+  { state, me, role, rotate, spectators, paused, held, aim, players, opening }: BallFrame,
+  connection: Connection,
+): BallProbe {
+  const count = (on: string) => state.balls.filter((place) => place.on === on).length;
+  const { x, y, z } = opening?.position ?? state.basket.position;
+  return {
+    name: 'ball',
+    phase: state.phase,
+    end: state.end,
+    score: state.score,
+    ballsLeft: ballsLeft(state),
+    secondsLeft: ballSecondsLeft(state),
+    seat: me,
+    role,
+    ready: me !== null && (state.players[me]?.ready ?? false),
+    rotate,
+    spectators,
+    paused,
+    held,
+    aim: aim && length(aim.velocity),
+    connection: connection.status.phase,
+    voided: connection.room?.voided ?? 0,
+    balls: {
+      rack: count('rack'),
+      hand: count('hand'),
+      air: count('air'),
+      floor: count('floor'),
+      basket: count('basket'),
+    },
+    basket: [x, y, z],
+    people: players.map((player) => player && { name: player.name, bot: player.bot, presence: player.presence }),
+  };
+}
+
+type Mutable<T> = { -readonly [Key in keyof T]: T[Key] };
+
+/** What is shown of one seat, and the memory for it. */
+interface SeatView {
+  readonly player: Mutable<Omit<PlayerFrame, 'fists'>> & { readonly fists: Record<Side, Vec3 | null> };
+  readonly body: Mutable<BodyFrame> & { readonly placement: MutableTransform<'floor', 'floor'> };
+  readonly head: MutableVec3;
+  readonly fists: Readonly<Record<Side, MutableVec3>>;
+}
+
+/** Who is where in this frame, own floor frame of each. */
+interface Place {
+  readonly head: { readonly position: Vec3 };
+  readonly leftHand: TrackedPose | null;
+  readonly rightHand: TrackedPose | null;
+}
+
+/** Where the people of a room are, for those who draw them: in memory of its own, which the next frame overwrites. */
+export class CourtPeople {
+  readonly players: (PlayerFrame | null)[] = [];
+  readonly bodies: BodyFrame[] = [];
+  /** The opening of the basket in its holder's hands, arena frame; null: no hand of theirs is seen. */
+  opening: Opening | null = null;
+  private readonly views: SeatView[] = [];
+  private readonly left = makePose<'arena'>();
+  private readonly right = makePose<'arena'>();
+
+  /**
+   * Looks at everyone; `frame`: the own hands, null where nothing is tracked. floorFromArena: where the arena lies in this room.
+   */
+  look(
+    line: Connection,
+    seen: RoomView,
+    frame: TrackingFrame | null,
+    others: readonly RemotePlayer[],
+    floorFromArena: Transform<'floor', 'arena'>,
+  ): void {
+    const { seats, mySeat } = seen;
+    const shown = seen.match;
+    this.players.length = seats.length;
+    this.bodies.length = 0;
+    this.opening = null;
+    if (!shown) return;
+    for (let seat = 0; seat < seats.length; seat++) {
+      const row = seats[seat];
+      const player = shown.players[seat];
+      const there = seat === mySeat ? null : remoteOn(seat, others);
+      const arenaFromFloor = line.arenaFromFloor(seat);
+      const place = seat === mySeat ? frame : (there?.pose ?? null);
+      if (player?.role === 'holder') this.opening = place && this.openingOf(place, arenaFromFloor);
+      this.players[seat] = null;
+      if (!row) continue;
+      const view = this.viewOf(seat);
+      if (there) {
+        const { body } = view;
+        body.calibration = row.calibration;
+        body.station = player?.station ?? seat;
+        body.palette = seatLooks[body.station]?.palette ?? 'porcelain';
+        body.pose = there.pose;
+        body.grips = there.grips;
+        body.opacity = there.opacity;
+        composeTransforms(floorFromArena, arenaFromFloor, body.placement);
+        this.bodies.push(body);
+      }
+      if (!player) continue;
+      const told = view.player;
+      told.name = row.name;
+      told.bot = row.bot;
+      told.presence = row.presence;
+      told.me = seat === mySeat;
+      told.role = player.role;
+      told.station = player.station;
+      told.ready = player.ready;
+      told.head = place && transformPoint(arenaFromFloor, place.head.position, view.head);
+      told.fists.left = fistIn(arenaFromFloor, place?.leftHand, view.fists.left);
+      told.fists.right = fistIn(arenaFromFloor, place?.rightHand, view.fists.right);
+      told.opacity = told.me ? 1 : (there?.opacity ?? 0);
+      this.players[seat] = told;
+    }
+  }
+
+  private openingOf({ leftHand, rightHand }: Place, arenaFromFloor: Transform<'arena', 'floor'>): Opening | null {
+    return basketInHands(
+      leftHand && transformPose(arenaFromFloor, leftHand, this.left),
+      rightHand && transformPose(arenaFromFloor, rightHand, this.right),
+    );
+  }
+
+  private viewOf(seat: number): SeatView {
+    const known = this.views[seat];
+    if (known) return known;
+    const view = makeSeatView(seat);
+    this.views[seat] = view;
+    return view;
+  }
+}
+
+const makeSeatView = (seat: number): SeatView => ({
+  player: {
+    name: '',
+    bot: false,
+    presence: 'here',
+    me: false,
+    role: 'thrower',
+    station: seat,
+    ready: false,
+    head: null,
+    fists: { left: null, right: null },
+    opacity: 0,
+  },
+  body: {
+    id: seat,
+    calibration: { eyeHeight: Number.NaN, armSpan: Number.NaN },
+    station: seat,
+    palette: '',
+    pose: { head: { ...makePose<'floor'>(), tracking: 'emulated' }, leftHand: null, rightHand: null, body: null },
+    placement: makeTransform(),
+    grips: { left: 0, right: 0 },
+    opacity: 0,
+  },
+  head: vec3(0, 0, 0),
+  fists: { left: vec3(0, 0, 0), right: vec3(0, 0, 0) },
+});
+
+function remoteOn(seat: number, others: readonly RemotePlayer[]): RemotePlayer | null {
+  for (const other of others) if (other.seat === seat) return other;
+  return null;
+}
+
+/** The middle of a fist, arena frame; null: the hand is not seen. */
+function fistIn(
+  arenaFromFloor: Transform<'arena', 'floor'>,
+  hand: TrackedPose | null | undefined,
+  target: MutableVec3,
+): MutableVec3 | null {
+  return hand ? transformPoint(arenaFromFloor, fistOf(hand, target), target) : null;
+}

@@ -1,0 +1,18 @@
+import type { BallState } from '../../core/games/ball/ball-state';
+import { ballSecondsLeft } from '../../core/games/ball/rules';
+
+/** The clock of matches as it is shown: after the end of one it stands at what was left. */
+export function createMatchClock() {
+  let secondsLeft = 0;
+  return {
+    /** Until the bell [s]. */
+    get secondsLeft() {
+      return secondsLeft;
+    },
+    /** Every frame of a match. */
+    follow(state: BallState): void {
+      if (state.phase !== 'over') secondsLeft = ballSecondsLeft(state);
+      else if (state.end === 'time') secondsLeft = 0;
+    },
+  };
+}

@@ -1,0 +1,73 @@
+import { firstLine, reasonOf } from './reasons';
+
+/** What a file is to be, with its article, and how much of it this page reads. */
+export interface FileKind {
+  readonly what: string;
+  readonly megabytes: number;
+}
+
+/** What sentences call a file: its name, of an address the last part. */
+export const nameOf = (source: string | File): string =>
+  typeof source === 'string' ? source.split(/[?#]/)[0]?.split('/').at(-1) || source : source.name;
+
+/**
+ * The bytes of a file of this device or of what an address answers; `onProgress` hears the share [0, 1] that has come. What is larger
+ * than its kind may be is refused before it is read, or as soon as that shows. Rejects with a sentence that names the file.
+ */
+export async function readLimited(
+  source: string | File,
+  kind: FileKind,
+  onProgress?: (share: number) => void,
+): Promise<ArrayBuffer> {
+  const bytes = typeof source === 'string' ? await download(source, kind, onProgress) : await readFile(source, kind);
+  onProgress?.(1);
+  return bytes;
+}
+
+function readFile(file: File, kind: FileKind): Promise<ArrayBuffer> {
+  if (file.size > kind.megabytes * 2 ** 20) throw tooLarge(file.name, kind);
+  return file.arrayBuffer();
+}
+
+const tooLarge = (name: string, { what, megabytes }: FileKind): Error =>
+  new Error(`${name}: more than ${megabytes} MB; ${what} may have that at most`);
+
+async function download(url: string, kind: FileKind, onProgress?: (share: number) => void): Promise<ArrayBuffer> {
+  const name = nameOf(url);
+  const most = kind.megabytes * 2 ** 20;
+  const aborting = new AbortController();
+  const response = await fetch(url, { signal: aborting.signal }).catch((error: unknown) => {
+    throw new Error(`${name}: could not be fetched (${firstLine(reasonOf(error))})`);
+  });
+  /** Ends the answer, so that nothing more of it comes. */
+  const refuse = (error: Error): never => {
+    aborting.abort();
+    throw error;
+  };
+  if (!response.ok || !response.body)
+    return refuse(new Error(`${name}: the server answers ${response.status} ${response.statusText}`.trim()));
+  if (/^text\/html\b/i.test(response.headers.get('content-type') ?? ''))
+    return refuse(new Error(`${name}: the server answers with a web page, not with ${kind.what}`));
+  const total = Number(response.headers.get('content-length')) || 0;
+  if (total > most) return refuse(tooLarge(name, kind));
+  const pieces: Uint8Array[] = [];
+  let received = 0;
+  const reader = response.body.getReader();
+  for (;;) {
+    const { done, value } = await reader.read().catch((error: unknown) => {
+      throw new Error(`${name}: the connection was lost on the way (${firstLine(reasonOf(error))})`);
+    });
+    if (done) break;
+    pieces.push(value);
+    received += value.length;
+    if (received > most) return refuse(tooLarge(name, kind));
+    if (total > 0) onProgress?.(Math.min(1, received / total));
+  }
+  const whole = new Uint8Array(received);
+  let offset = 0;
+  for (const piece of pieces) {
+    whole.set(piece, offset);
+    offset += piece.length;
+  }
+  return whole.buffer;
+}

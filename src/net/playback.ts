@@ -1,0 +1,218 @@
+import { clamp, smoothingFactor, smoothstep } from '../core/math/damper';
+import type { PosePacket } from '../core/protocol/pose-packet';
+import { ShownPlayer } from './shown-player';
+import { TransitWindow } from './transit-window';
+
+/** How playback of one player goes. */
+export interface PlaybackReport {
+  /** How far behind the newest that could be shown it is [s]. */
+  readonly delay: number;
+  /** Times it stood still for more than 250 ms, and all of them together [s]. */
+  readonly freezes: number;
+  readonly frozenSeconds: number;
+}
+
+/** Playback is this far behind [s], at first and at the ends of what the network's unevenness may make of it. */
+export const firstDelay = 0.1;
+export const shortestDelay = 0.066;
+export const longestDelay = 0.2;
+/** No one is drawn further ahead of their newest packet [s]. */
+export const longestExtrapolation = 0.1;
+/** Silence after which a player is a ghost, and after which they are hidden [s]. */
+export const ghostAfter = 1;
+export const hideAfter = 3;
+const ghostOpacity = 0.35;
+const fadeSeconds = 0.3;
+/** The way from where playback stood still to where it goes on takes this long [s]. */
+const rejoinSeconds = 0.2;
+/** Standing still for longer than this [s] is a freeze. */
+const freezeSeconds = 0.25;
+/** Packets this far apart [s] are no path. */
+const longestGap = 0.5;
+/** The delay follows the network in this half-life [s]. */
+const delayHalfLife = 0.5;
+/** Transit times are judged over this long [s]: clocks drift, routes change. */
+const transitMemory = 5;
+/** Added to what the network's unevenness asks for [s]. */
+const spare = 0.01;
+/** As pages send them; and how many in a row a way holds up that is worth waiting for. */
+const posesPerSecond = 30;
+const mostMissing = 15;
+
+interface Sample {
+  /** By the sender's clock, unwrapped [s]. */
+  readonly time: number;
+  readonly packet: PosePacket;
+}
+
+/** Seconds between two packets, as they mostly are. */
+function intervalOf(samples: readonly Sample[]): number {
+  const first = samples[0];
+  const last = samples[samples.length - 1];
+  return first && last && samples.length > 1 ? (last.time - first.time) / (samples.length - 1) : 1 / 30;
+}
+
+const unwrapAfter = (timeMs: number, last: Sample): number => {
+  const step = (((timeMs - last.packet.timeMs + 32768) % 65536) + 65536) % 65536;
+  return last.time + (step - 32768) / 1000;
+};
+
+/** Writes what is drawn of a player at a time of the sender's clock [s]; before the first packet: as that has it. */
+function sampleAt(samples: readonly Sample[], time: number, target: ShownPlayer): void {
+  const last = samples[samples.length - 1]!;
+  const first = samples[0]!;
+  if (time <= first.time) {
+    target.copy(first.packet);
+    return;
+  }
+  for (let i = samples.length - 2; i >= 0; i--) {
+    const a = samples[i]!;
+    const b = samples[i + 1]!;
+    if (time < a.time && i > 0) continue;
+    const span = b.time - a.time;
+    const path = !b.packet.jump && span <= longestGap;
+    if (time < b.time) {
+      if (path) target.mix(a.packet, b.packet, (time - a.time) / span);
+      else target.copy(a.packet);
+    } else if (!path) target.copy(b.packet);
+    else {
+      // Beyond the newest: on as it went, slower and slower, as it is ever less likely.
+      const beyond = Math.min(time - b.time, 10);
+      const ahead = longestExtrapolation * (1 - Math.exp(-beyond / longestExtrapolation));
+      target.mix(a.packet, b.packet, 1 + ahead / span);
+    }
+    return;
+  }
+  target.copy(last.packet);
+}
+
+/** After a long silence nothing says how they got to where the next packet has them: they stand until they are there. */
+function isBetweenPaths(samples: readonly Sample[], time: number): boolean {
+  for (let i = 1; i < samples.length; i++) {
+    const { time: at, packet } = samples[i]!;
+    const before = samples[i - 1]!.time;
+    if (!packet.jump && at - before > longestGap && before <= time && time < at) return true;
+  }
+  return false;
+}
+
+/** A player whose space was re-anchored is elsewhere: nothing leads there. */
+function isAcrossJump(samples: readonly Sample[], time: number): boolean {
+  for (const { time: at, packet } of samples) if (packet.jump && at <= time && time - at < rejoinSeconds) return true;
+  return false;
+}
+
+function opacityAfter(silence: number): number {
+  const ghost = 1 - (1 - ghostOpacity) * smoothstep(ghostAfter, ghostAfter + fadeSeconds, silence);
+  return ghost * (1 - smoothstep(hideAfter - fadeSeconds, hideAfter, silence));
+}
+
+/** Plays one player's packets back a moment late. Times that are not known are NaN: a number and nothing else stays unboxed. */
+export class Playback {
+  private samples: Sample[] = [];
+  private readonly transits = new TransitWindow(transitMemory);
+  private heardAt = 0;
+  /** Page's clock minus the sender's clock of what is drawn. */
+  private behind = Number.NaN;
+  private delay = firstDelay;
+  private followedAt = Number.NaN;
+  /** What is drawn; the same object in every frame. */
+  readonly shown = new ShownPlayer();
+  private isShown = false;
+  /** Where playback stood still, and when it went on. */
+  private readonly rejoinFrom = new ShownPlayer();
+  private rejoinAt = Number.NaN;
+  private stalledAt = Number.NaN;
+  private freezes = 0;
+  private frozenSeconds = 0;
+
+  receive(packet: PosePacket, arrivedAt: number): void {
+    const last = this.samples[this.samples.length - 1];
+    let time = last ? unwrapAfter(packet.timeMs, last) : packet.timeMs / 1000;
+    const silent = arrivedAt - this.heardAt > hideAfter;
+    if (last && time <= last.time && !silent) return;
+    if (last && silent) {
+      // A player who was hidden comes back as they are now, whatever their clock says.
+      this.samples = [];
+      this.transits.clear();
+      this.behind = Number.NaN;
+      time = packet.timeMs / 1000;
+    }
+    // Of packets that came to the relay at once only the newest is here: those between were as late as they are missing.
+    const before = this.samples[this.samples.length - 1];
+    if (before) {
+      const missing = Math.min(Math.round((time - before.time) * posesPerSecond) - 1, mostMissing);
+      for (let i = missing; i > 0; i--) this.transits.add(arrivedAt, arrivedAt - time + i / posesPerSecond);
+    }
+    this.samples.push({ time, packet });
+    this.heardAt = arrivedAt;
+    this.transits.add(arrivedAt, arrivedAt - time);
+  }
+
+  /** Writes into `shown` what is drawn at this time of the page's clock [s] and returns how solid it is; null: nothing is drawn. */
+  follow(time: number): number | null {
+    const { samples, shown } = this;
+    const silence = time - this.heardAt;
+    if (silence >= hideAfter) {
+      // No pose is kept for longer than it is shown.
+      if (samples.length > 1) samples.splice(0, samples.length - 1);
+      this.isShown = false;
+      this.stalledAt = Number.NaN;
+      this.followedAt = time;
+      return null;
+    }
+    const at = this.playhead(time);
+    this.followedAt = time;
+    // One packet from before the playhead is where the path begins.
+    while (samples.length > 2 && samples[1]!.time <= at - longestGap) samples.shift();
+    const last = samples[samples.length - 1]!;
+    const nowhere = isBetweenPaths(samples, at);
+    this.watchStall(nowhere || at > last.time + longestExtrapolation, time);
+    if (!nowhere || !this.isShown) sampleAt(samples, at, shown);
+    this.isShown = true;
+    this.rejoin(time, at);
+    return opacityAfter(silence);
+  }
+
+  report(): PlaybackReport {
+    return { delay: this.delay, freezes: this.freezes, frozenSeconds: this.frozenSeconds };
+  }
+
+  /** The time of the sender's clock that is drawn now; never goes back. */
+  private playhead(time: number): number {
+    const { transits } = this;
+    const wanted = clamp(transits.late + intervalOf(this.samples) + spare, shortestDelay, longestDelay);
+    const passed = Number.isNaN(this.followedAt) ? 0 : time - this.followedAt;
+    this.delay += (wanted - this.delay) * smoothingFactor(delayHalfLife, passed);
+    const goal = transits.least + this.delay;
+    // A clock that was set afresh is another timeline; else the playhead hurries or dawdles by a tenth at most.
+    if (Number.isNaN(this.behind) || Math.abs(goal - this.behind) > 0.5) this.behind = goal;
+    else this.behind += clamp(goal - this.behind, -0.1 * passed, 0.1 * passed);
+    return time - this.behind;
+  }
+
+  private watchStall(stalled: boolean, time: number): void {
+    if (stalled) {
+      if (Number.isNaN(this.stalledAt)) this.stalledAt = time;
+      return;
+    }
+    if (Number.isNaN(this.stalledAt)) return;
+    const stood = time - this.stalledAt;
+    if (stood > freezeSeconds) {
+      this.freezes += 1;
+      this.frozenSeconds += stood;
+    }
+    this.stalledAt = Number.NaN;
+    if (!this.isShown) return;
+    this.rejoinFrom.copy(this.shown);
+    this.rejoinAt = time;
+  }
+
+  /** After a standstill they go from where they stood to where they are in a fifth of a second. */
+  private rejoin(time: number, at: number): void {
+    if (Number.isNaN(this.rejoinAt)) return;
+    const share = smoothstep(0, rejoinSeconds, time - this.rejoinAt);
+    if (share >= 1 || isAcrossJump(this.samples, at)) this.rejoinAt = Number.NaN;
+    else this.shown.mix(this.rejoinFrom, this.shown, share);
+  }
+}

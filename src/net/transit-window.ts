@@ -1,0 +1,76 @@
+/** Room at first: 5 s of 30 packets a second, and some. */
+const firstCapacity = 256;
+
+/** How long the packets of the last seconds were on their way, in order of arrival and by length. Keeps its memory. */
+export class TransitWindow {
+  private arrivals = new Float64Array(firstCapacity);
+  private transits = new Float64Array(firstCapacity);
+  private sorted = new Float64Array(firstCapacity);
+  private first = 0;
+  private count = 0;
+
+  /** `memory`: what arrived longer ago than this is forgotten [s]. */
+  constructor(private readonly memory: number) {}
+
+  clear(): void {
+    this.first = 0;
+    this.count = 0;
+  }
+
+  /** A packet that arrived at this time [s], after this long on its way [s, plus the difference of two clocks]. */
+  add(arrivedAt: number, transit: number): void {
+    if (this.count === this.sorted.length) this.grow();
+    const end = (this.first + this.count) % this.sorted.length;
+    this.arrivals[end] = arrivedAt;
+    this.transits[end] = transit;
+    const at = this.rankOf(transit);
+    this.sorted.copyWithin(at + 1, at, this.count);
+    this.sorted[at] = transit;
+    this.count += 1;
+    while (this.count > 0 && arrivedAt - this.arrivals[this.first]! > this.memory) this.forgetOldest();
+  }
+
+  /** The shortest transit [s]; 0 before the first packet. */
+  get least(): number {
+    return this.count > 0 ? this.sorted[0]! : 0;
+  }
+
+  /** How much later than the fastest all but one in twenty were [s]. */
+  get late(): number {
+    return this.count > 0 ? this.sorted[Math.floor(this.count * 0.95)]! - this.least : 0;
+  }
+
+  /** How many are shorter. */
+  private rankOf(transit: number): number {
+    let from = 0;
+    let to = this.count;
+    while (from < to) {
+      const middle = (from + to) >> 1;
+      if (this.sorted[middle]! < transit) from = middle + 1;
+      else to = middle;
+    }
+    return from;
+  }
+
+  private forgetOldest(): void {
+    const at = this.rankOf(this.transits[this.first]!);
+    this.sorted.copyWithin(at, at + 1, this.count);
+    this.first = (this.first + 1) % this.sorted.length;
+    this.count -= 1;
+  }
+
+  private grow(): void {
+    const { length } = this.sorted;
+    const inOrder = (ring: Float64Array): Float64Array<ArrayBuffer> => {
+      const longer = new Float64Array(2 * length);
+      for (let i = 0; i < this.count; i++) longer[i] = ring[(this.first + i) % length]!;
+      return longer;
+    };
+    this.arrivals = inOrder(this.arrivals);
+    this.transits = inOrder(this.transits);
+    const sorted = new Float64Array(2 * length);
+    sorted.set(this.sorted);
+    this.sorted = sorted;
+    this.first = 0;
+  }
+}

@@ -1,0 +1,77 @@
+/** A frame that comes later than this after the one before it [s] follows a pause, of which no more than this counts. */
+export const longestStep = 0.5;
+/** Of the first frames, until one has told how long they are [s]. */
+const usualStep = 1 / 60;
+/** No device draws more often [s]: a time stamp that is less ahead does not tell how long the frame was. */
+const shortestStep = 1 / 1000;
+
+/**
+ * The page's one time [s]: games, estimators, playback of the others and the log of a study all count in it. It never goes back and never
+ * leaps, whatever the time stamps do: devices change between clocks of their own, systems set theirs, tabs sleep.
+ */
+export interface PageClock {
+  /**
+   * The time of a frame that the device dates `timestampMs`. A time stamp that goes back is taken as another clock's: this one goes on by
+   * the length of the last frame. One that is more than `longestStep` ahead follows a pause: this clock goes on by `longestStep`.
+   */
+  frame(timestampMs: number): number;
+  /** Whether the newest frame follows a pause. */
+  readonly paused: boolean;
+  /** What was left out of all pauses so far [s]. */
+  readonly leftOut: number;
+  /** The time between two frames, for what comes from elsewhere. */
+  now(): number;
+}
+
+/** `read`: the page's running time [ms], on any clock that mostly goes on (`performance.now`). */
+export function createPageClock(read: () => number): PageClock {
+  /** Of the newest frame: its time here, what the device said, and what `read` did then. */
+  let time = 0;
+  let stamp: number | null = null;
+  let readAt = read();
+  let told = 0;
+  let step = usualStep;
+  let paused = false;
+  let leftOut = 0;
+
+  return {
+    frame(timestampMs) {
+      if (stamp === null) time = timestampMs / 1000;
+      else {
+        const passed = (timestampMs - stamp) / 1000;
+        paused = passed > longestStep;
+        if (paused) leftOut += passed - longestStep;
+        else if (passed >= shortestStep) step = passed;
+        time += paused ? longestStep : step;
+      }
+      stamp = timestampMs;
+      readAt = read();
+      time = Math.max(time, told);
+      told = time;
+      return time;
+    },
+    get paused() {
+      return paused;
+    },
+    get leftOut() {
+      return leftOut;
+    },
+    now() {
+      const since = Math.min(longestStep, Math.max(0, (read() - readAt) / 1000));
+      told = Math.max(told, (stamp === null ? readAt / 1000 : time) + since);
+      return told;
+    },
+  };
+}
+
+/** The same clock, which goes on from where it was when it is set back. Asked often: what passes between two questions may be lost. */
+export function neverBack(read: () => number): () => number {
+  let setBack = 0;
+  let last = Number.NEGATIVE_INFINITY;
+  return () => {
+    const now = read() + setBack;
+    if (now < last) setBack += last - now;
+    last = Math.max(last, now);
+    return last;
+  };
+}

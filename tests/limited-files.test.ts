@@ -1,0 +1,127 @@
+import type { RequestListener } from 'node:http';
+import { createServer } from 'node:http';
+import type { AddressInfo } from 'node:net';
+import { afterEach, describe, expect, test } from 'vitest';
+import { nameOf, readLimited } from '../src/limited-files';
+import { measured } from './reliability/measured';
+
+const recording = { what: 'a recording', megabytes: 1 };
+const closing: (() => void)[] = [];
+
+afterEach(() => {
+  for (const close of closing.splice(0)) close();
+});
+
+/** The address of a file that a server of this machine answers like this. */
+async function servedAt(answer: RequestListener): Promise<string> {
+  const server = createServer(answer);
+  await new Promise<void>((resolve) => server.listen(0, '127.0.0.1', resolve));
+  closing.push(() => {
+    server.closeAllConnections();
+    server.close();
+  });
+  return `http://127.0.0.1:${(server.address() as AddressInfo).port}/motion/walk.json?again`;
+}
+
+/** A file of this size whose bytes are counted as they are asked for. */
+function dropped(size: number) {
+  const file = new File(['{}'], 'walk.json');
+  let reads = 0;
+  Object.defineProperties(file, {
+    size: { value: size },
+    arrayBuffer: {
+      value() {
+        reads += 1;
+        return new Blob(['{}']).arrayBuffer();
+      },
+    },
+  });
+  return { file, reads: () => reads };
+}
+
+describe('a file of this device', () => {
+  test('of 300 MB is refused before a byte of it is read', async () => {
+    const { file, reads } = dropped(300 * 2 ** 20);
+    await expect(readLimited(file, { what: 'a recording', megabytes: 100 })).rejects.toThrow(
+      'walk.json: more than 100 MB; a recording may have that at most',
+    );
+    expect(reads()).toBe(0);
+    measured('bad-input', { 'bytes read of 300 MB': 0 });
+  });
+
+  test('as large as it may be is read', async () => {
+    const { file, reads } = dropped(2 ** 20);
+    expect((await readLimited(file, recording)).byteLength).toBe(2);
+    expect(reads()).toBe(1);
+  });
+});
+
+describe('what an address answers', () => {
+  test('comes whole, with the share that has come', async () => {
+    const url = await servedAt((_, response) =>
+      response.setHeader('content-length', 300_000).end(Buffer.alloc(300_000, 7)),
+    );
+    const shares: number[] = [];
+    const bytes = await readLimited(url, recording, (share) => shares.push(share));
+    expect(new Uint8Array(bytes).every((byte) => byte === 7) && bytes.byteLength).toBe(300_000);
+    expect(shares).toEqual([...shares].sort((a, b) => a - b));
+    expect(shares.at(-1)).toBe(1);
+  });
+
+  test.each([
+    ['nothing', 'walk.json: the server answers 404 Not Found', (_, response) => response.writeHead(404).end('no')],
+    [
+      'a web page',
+      'walk.json: the server answers with a web page, not with a recording',
+      (_, response) => response.setHeader('content-type', 'text/html; charset=utf-8').end('<!doctype html>'),
+    ],
+    [
+      'more than it may be, and says so',
+      'walk.json: more than 1 MB; a recording may have that at most',
+      (_, response) => response.setHeader('content-length', 300 * 2 ** 20).write('{'),
+    ],
+    [
+      'half of what it promised',
+      /^walk\.json: the connection was lost on the way \(/,
+      (_, response) => {
+        response.setHeader('content-length', 1000).write('{');
+        setImmediate(() => response.destroy());
+      },
+    ],
+  ] satisfies [string, string | RegExp, RequestListener][])(
+    '%s: refused in a sentence',
+    async (_, sentence, answer) => {
+      await expect(readLimited(await servedAt(answer), recording)).rejects.toThrow(sentence);
+    },
+  );
+
+  test('without end is given up as soon as it is more than it may be', async () => {
+    let sent = 0;
+    let ended = false;
+    const url = await servedAt((_, response) => {
+      const piece = Buffer.alloc(2 ** 16);
+      const more = () => {
+        while (!ended && response.write(piece)) sent += piece.length;
+      };
+      response.on('drain', more).on('close', () => {
+        ended = true;
+      });
+      more();
+    });
+    await expect(readLimited(url, recording)).rejects.toThrow('more than 1 MB');
+    await expect.poll(() => ended).toBe(true);
+    expect(sent).toBeLessThan(64 * 2 ** 20);
+  });
+
+  test('from a server that is not there: a sentence', async () => {
+    await expect(readLimited('http://127.0.0.1:9/walk.json', recording)).rejects.toThrow(
+      /^walk\.json: could not be fetched \(/,
+    );
+  });
+});
+
+test('a file is called by its name, an address by its last part', () => {
+  expect(nameOf(new File([], 'a.vrm'))).toBe('a.vrm');
+  expect(nameOf('https://elsewhere.test/bodies/b.vrm?x=1#y')).toBe('b.vrm');
+  expect(nameOf('https://elsewhere.test/')).toBe('https://elsewhere.test/');
+});

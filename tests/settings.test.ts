@@ -1,0 +1,55 @@
+import { describe, expect, test } from 'vitest';
+import { defaultCalibration } from '../src/core/body/calibration';
+import { createSettings } from '../src/settings';
+import type { Preferences } from '../src/ui/preferences';
+import { readSwitches } from '../src/ui/switches';
+
+/** Settings of a visit with this address by a person whose browser remembers this. */
+const visit = (query: string, remembered: Preferences = {}) =>
+  createSettings(readSwitches(query).switches, { preferences: { overlay: false, ...remembered } });
+
+describe('what a visit begins with', () => {
+  test('a first visit has a mirror, sound, the bow in the left hand, and nothing calibrated', () => {
+    expect(visit('')).toMatchObject({
+      ...{
+        mirror: true,
+        sound: true,
+        bowSide: 'left',
+        oneHanded: false,
+        upperBodyOnly: false,
+        actor: true,
+        mouse: false,
+      },
+      ...{ calibration: defaultCalibration, calibrationSource: 'not calibrated yet' },
+    });
+  });
+
+  test('what was remembered comes back', () => {
+    const calibration = { eyeHeight: 1.5, armSpan: 1.4 };
+    const remembered = { mirror: false, sound: false, bowSide: 'right', calibration, name: 'Robin' } as const;
+    expect(visit('', remembered)).toMatchObject({ ...remembered, calibrationSource: 'remembered' });
+  });
+
+  test('the address has the last word on the name, and on who moves the body', () => {
+    expect(visit('?name=Kim', { name: 'Robin' }).name).toBe('Kim');
+    expect(visit('?actor=off').actor).toBe(false);
+  });
+
+  test('a round is as long as the game has it, unless the address says', () => {
+    expect(visit('')).not.toHaveProperty('seconds');
+    expect(visit('?seconds=40').seconds).toBe(40);
+  });
+});
+
+describe('bots', () => {
+  test('play along in a room of one’s own, as they did last time', () => {
+    expect(visit('').bots).toBe(true);
+    expect(visit('', { bots: false }).bots).toBe(false);
+  });
+
+  test('stay away from a room where others may come, whatever was remembered, unless the address asks for them', () => {
+    expect(visit('?room=garden', { bots: true }).bots).toBe(false);
+    expect(visit('?room=garden&bots=on').bots).toBe(true);
+    expect(visit('?bots=off', { bots: true }).bots).toBe(false);
+  });
+});

@@ -1,0 +1,217 @@
+import { describe, expect, test } from 'vitest';
+import type { ProgressEvent } from '../src/core/study/progress';
+import { questionnaires } from '../src/core/study/questionnaires';
+import { createParticipantSession, startSession } from '../src/study/participant-session';
+import { createParticipantClient } from '../src/study/study-client';
+import { type ScreenActions, type StudySituation, safekeepingText, screenOf } from '../src/study-screens';
+import { outcomeOf, paperPlan, somebody } from './core/study/studies';
+
+const plan = paperPlan();
+const consent = { type: 'consent', version: plan.consent.version, motion: false } as const;
+const demographics = { type: 'demographics', demographics: somebody } as const;
+const measured = { type: 'calibrated', calibration: { eyeHeight: 1.62, armSpan: 1.5 } } as const;
+
+/** A participant of the paper's study on a device without storage and without a server, after these events; the clock stands. */
+function participant(...events: readonly ProgressEvent[]) {
+  let now = 1_800_000_000;
+  const claim = { plan, token: 'a token', withdrawalCode: 'a code', simulated: false, progress: null };
+  const session = createParticipantSession(
+    startSession(claim as Parameters<typeof startSession>[0], plan.id, 'P01'),
+    { records: [], motion: [] },
+    { client: createParticipantClient('http://127.0.0.1:9'), vault: null, now: () => now, onChange: () => undefined },
+  );
+  const tell = (event: ProgressEvent) => expect(session.apply(event)).toBeNull();
+  events.forEach(tell);
+  const done: string[] = [];
+  const actions: ScreenActions = {
+    apply: tell,
+    goTo: (index) => void done.push(`question ${index}`),
+    choose: (question, value) => tell({ type: 'answer', question, value }),
+    submit: () => void done.push('submit'),
+    calibrate: () => void done.push('calibrate'),
+    enterVr: () => void done.push('enter VR'),
+    prepareAgain: () => void done.push('prepare again'),
+  };
+  return {
+    session,
+    tell,
+    done,
+    pass(seconds: number) {
+      now += seconds;
+    },
+    /** What is seen in this situation; in the headset, all prepared, unless it says otherwise. */
+    screen: (situation: Partial<StudySituation> = {}) =>
+      screenOf(
+        {
+          ...{ session, inSession: true, question: 0, triedToSubmit: false, calibration: null, refusal: null },
+          ...{ prepared: { state: 'ready', reason: '' }, playing: false, waitingFor: null, standing: false },
+          ...situation,
+        },
+        actions,
+      ),
+  };
+}
+
+/** The same one, who has played the practice and the first round and sits before the questions. */
+function beforeTheQuestions() {
+  const one = participant(consent, demographics, measured);
+  for (let step = 0; one.session.step.kind !== 'questionnaire' && step < 20; step++) {
+    if (one.session.step.kind === 'calibration') one.tell(measured);
+    else if (one.session.step.kind === 'rest') {
+      one.pass(one.session.step.seconds);
+      one.tell({ type: 'tick' });
+    } else {
+      one.tell({ type: 'start' });
+      one.pass(42);
+      one.tell({ type: 'trial-finished', outcome: outcomeOf() });
+    }
+  }
+  return one;
+}
+
+describe('a participant who is to be measured', () => {
+  test('is asked to put the headset on first, then to measure', () => {
+    const one = participant(consent, demographics);
+    const before = one.screen({ inSession: false });
+    expect(before?.id).toBe('calibration-enter');
+    before?.buttons.find(({ id }) => id === 'enter')?.act();
+    const worn = one.screen();
+    expect(worn?.id).toBe('calibration');
+    worn?.buttons.find(({ id }) => id === 'calibrate')?.act();
+    expect(one.done).toEqual(['enter VR', 'calibrate']);
+  });
+
+  test('is told why it did not succeed, and may try again', () => {
+    const text = 'Your hands were not seen.';
+    const failed = participant(consent, demographics).screen({ calibration: { kind: 'failed', text } });
+    expect(failed).toMatchObject({ id: 'calibration-failed', text: [text] });
+    expect(failed?.buttons.map(({ id }) => id)).toEqual(['calibrate']);
+  });
+});
+
+describe('a participant before a round', () => {
+  test('cannot start what is still loading, and is told how long it lasts', () => {
+    const one = participant(consent, demographics, measured);
+    expect(one.session.step.kind).toBe('tutorial');
+    const loading = one.screen({ prepared: { state: 'loading', reason: '' } });
+    expect(loading?.buttons[0]).toMatchObject({ id: 'start', look: 'off' });
+    const ready = one.screen();
+    expect(ready).toMatchObject({ id: 'tutorial-ready', title: 'Practice' });
+    expect(ready?.buttons[0]).toMatchObject({ label: 'Start', look: 'primary' });
+    const step = one.session.step as { readonly seconds: number };
+    expect(ready?.text.join(' ')).toContain(`${Math.round(step.seconds)} seconds`);
+  });
+
+  test('calls the experimenter where the game cannot be loaded', () => {
+    const one = participant(consent, demographics, measured);
+    const failed = one.screen({ prepared: { state: 'failed', reason: 'The range could not be opened.' } });
+    expect(failed).toMatchObject({ id: 'trial-failed', text: ['The range could not be opened.'], trouble: true });
+    failed?.buttons[0]?.act();
+    expect(one.done).toEqual(['prepare again']);
+  });
+
+  test('never learns the condition, only the number of the round', () => {
+    const one = beforeTheQuestions();
+    const seen = JSON.stringify(one.screen());
+    for (const { id, label } of plan.conditions) {
+      expect(seen).not.toContain(`"${id}"`);
+      expect(seen).not.toContain(label);
+    }
+  });
+});
+
+describe('a participant who plays', () => {
+  const playing = () => participant(consent, demographics, measured, { type: 'start' });
+
+  test('sees the game and no sheet', () => {
+    expect(playing().screen({ playing: true })).toBeNull();
+  });
+
+  test('is told for whom the game waits, and when it stands for another', () => {
+    const one = playing();
+    expect(one.screen({ playing: true, waitingFor: 'P02 and P03' })).toMatchObject({
+      id: 'waiting',
+      text: ['It begins as soon as P02 and P03 are ready too.'],
+    });
+    expect(one.screen({ playing: true, waitingFor: 'P02' })?.text[0]).toContain('P02 is ready');
+    expect(one.screen({ playing: true, standing: true })?.id).toBe('standing');
+  });
+
+  test('who takes the headset off is asked to put it on', () => {
+    expect(playing().screen({ playing: true, inSession: false })?.id).toBe('trial-enter');
+  });
+});
+
+describe('a participant with a pause', () => {
+  test('sees that alone, whatever else there was, until it is over', () => {
+    const one = participant(consent, demographics);
+    one
+      .screen()
+      ?.buttons.find(({ id }) => id === 'pause')
+      ?.act();
+    const paused = one.screen({ calibration: { kind: 'failed', text: '' } });
+    expect(paused?.id).toBe('paused');
+    paused?.buttons[0]?.act();
+    expect(one.screen()?.id).toBe('calibration');
+  });
+});
+
+describe('a participant with a questionnaire', () => {
+  test('goes from question to question, hands in at the last, and is told what is missing', () => {
+    const one = beforeTheQuestions();
+    const { step } = one.session;
+    if (step.kind !== 'questionnaire') throw new Error(`expected a questionnaire, not ${step.kind}`);
+    const { questions } = questionnaires[step.questionnaire];
+    const first = one.screen();
+    expect(first?.id).toBe(`question-${questions[0]?.id}`);
+    expect(first?.hint).toBe(`* ${questions.length} of ${questions.length} still need an answer.`);
+    expect(first?.buttons.map(({ id, look }) => [id, look])).toEqual([
+      ['back', 'off'],
+      ['pause', 'plain'],
+      ['next', 'primary'],
+    ]);
+    first?.buttons[2]?.act();
+    expect(one.done).toEqual(['question 1']);
+    first?.question?.choose(4);
+    expect(one.screen()?.question?.answer).toBe(4);
+    const last = one.screen({ question: questions.length - 1, triedToSubmit: true });
+    expect(last?.hint).toBe('* This question still needs an answer.');
+    expect(last?.question?.all.map(({ state }) => state)).toEqual([
+      'answered',
+      ...questions.slice(1).map(() => 'missing'),
+    ]);
+    last?.buttons[2]?.act();
+    expect(one.done).toEqual(['question 1', 'submit']);
+  });
+
+  test('sees how much time is left, and is not hurried when it is over', () => {
+    const one = beforeTheQuestions();
+    expect(one.screen()?.footnote).toMatch(/^7:00 left/);
+    one.pass(61);
+    expect(one.screen()?.footnote).toMatch(/^5:59 left/);
+    one.pass(600);
+    expect(one.screen()?.footnote).toMatch(/^Take the time you need/);
+  });
+});
+
+describe('where answers are', () => {
+  const safe = { unsent: 0, unsaved: 0, storageFault: null, online: true, refusal: null, lockedOut: false };
+  test.each([
+    [{}, 'Everything is saved.', false],
+    [{ unsent: 2 }, 'Sending …', false],
+    [{ unsent: 1, online: false }, 'No connection: 1 record kept on this device, sent later.', false],
+    [{ unsaved: 3 }, 'Saving …', false],
+    [
+      { unsaved: 3, storageFault: 'the disk is full' },
+      'Keep this page open: 3 records cannot be stored on this device (the disk is full).',
+      true,
+    ],
+    [
+      { unsent: 2, refusal: 'no such study' },
+      'Call the experimenter: the server refuses 2 records (no such study). They stay here.',
+      true,
+    ],
+  ])('%j is said, and whether to worry', (change, text, worrying) => {
+    expect(safekeepingText({ ...safe, ...change })).toEqual([text, worrying]);
+  });
+});
