@@ -1,6 +1,23 @@
 import { defineConfig } from '@playwright/test';
 import { findChromium } from './scripts/chromium.mjs';
 
+/**
+ * Which tests run: those of `npm test` carry no mark, those of `npm run test:full` @full, those of `npm run nightly` @nightly. Asked for
+ * without a word, a file runs all but the nightly ones.
+ */
+function chosenBy(word = 'day and full') {
+  const choices: Readonly<Record<string, { readonly grep?: RegExp; readonly grepInvert?: RegExp }>> = {
+    'day and full': { grepInvert: /@nightly/ },
+    day: { grepInvert: /@(full|nightly)/ },
+    full: { grep: /@full/ },
+    nightly: { grep: /@nightly/ },
+    all: {},
+  };
+  const choice = choices[word];
+  if (!choice) throw new Error(`THREEPOINT_TESTS=${word}: expected one of ${Object.keys(choices).join(', ')}`);
+  return choice;
+}
+
 const executablePath = (await findChromium()) ?? undefined;
 
 export default defineConfig({
@@ -10,8 +27,7 @@ export default defineConfig({
   workers: 1,
   fullyParallel: false,
   forbidOnly: Boolean(process.env.CI),
-  // What takes minutes, or a browser of its own, is looked at by night (npm run nightly).
-  ...(process.env.THREEPOINT_NIGHTLY ? {} : { grepInvert: /@nightly/ }),
+  ...chosenBy(process.env.THREEPOINT_TESTS),
   timeout: 90_000,
   expect: { timeout: 20_000 },
   reporter: [['list']],

@@ -12,11 +12,11 @@ test('a VRM from a local file takes the place of ours, with the hands still on t
     .getByLabel('Open VRM file')
     .and(page.locator('input'))
     .setInputFiles({
-      name: 'somebody-else.vrm',
+      name: 'another-person.vrm',
       mimeType: 'model/gltf-binary',
       buffer: readFileSync(`public/avatars/${avatarFile}`),
     });
-  await expect.poll(async () => (await probe(page)).avatar.name).toMatch(/somebody-else/);
+  await expect.poll(async () => (await probe(page)).avatar.name).toMatch(/another-person/);
   await expect
     .poll(async () => {
       const now = await joint(page, 'leftHand');
@@ -24,7 +24,7 @@ test('a VRM from a local file takes the place of ours, with the hands still on t
     })
     .toBeLessThan(1);
   await page.getByRole('button', { name: 'Back to ours' }).click();
-  await expect.poll(async () => (await probe(page)).avatar.name).not.toMatch(/somebody-else/);
+  await expect.poll(async () => (await probe(page)).avatar.name).not.toMatch(/another-person/);
 });
 
 test('a file that is no avatar is refused in a sentence, and ours stays', async ({ page, complaints }) => {

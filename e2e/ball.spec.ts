@@ -2,9 +2,10 @@ import { spawn } from 'node:child_process';
 import { createServer } from 'node:net';
 import { fileURLToPath } from 'node:url';
 import type { Browser } from '@playwright/test';
-import type { BallProbe } from '../src/ball-play';
+import type { BallProbe } from '../src/ball-frame';
+import { driveTime, goOn, holdAt } from './driven-time';
 import { emulatedHeadset } from './emulated-headset';
-import { enterVr, expect, keepPicture, open, probe, test, untilFrame } from './page-fixture';
+import { enterVr, expect, keepPicture, open, probe, test } from './page-fixture';
 
 // What is played does not depend on how many pixels show it.
 test.use({ viewport: { width: 480, height: 300 } });
@@ -32,65 +33,61 @@ async function until(page: Page, what: (game: BallProbe) => boolean, timeout = 6
 }
 
 test('one person with two bots plays a short match to its end, and again', async ({ page }) => {
-  test.setTimeout(180_000);
   await open(page, 'play=ball&panel=off&quality=low&estimator=ik&seed=5&balls=2&seconds=90');
   await until(page, ({ phase }) => phase === 'running');
   const { players } = await probe(page);
   expect(players.map(({ bot }) => bot)).toEqual([true, true]);
   await keepPicture(page, 'ball-running');
-  const over = await until(page, ({ phase }) => phase === 'over', 120_000);
+  await driveTime(page);
+  const over = await until(page, ({ phase }) => phase === 'over');
   expect(over.end).toBe('balls');
   expect(over.balls.basket).toBe(over.score);
   expect(over.score).toBeGreaterThanOrEqual(1);
   await keepPicture(page, 'ball-result');
-  const again = await until(page, ({ phase }) => phase === 'running', 60_000);
+  const again = await until(page, ({ phase }) => phase === 'running');
   expect(again.score).toBeLessThanOrEqual(over.score);
 });
 
 test('in the emulated headset the built-in player throws with its tracked hands', async ({ page }) => {
-  test.setTimeout(180_000);
   await open(page, 'emulate&play=ball&panel=off&quality=low&estimator=ik&seed=5&balls=2&seconds=40');
   await emulatedHeadset(page);
   await enterVr(page);
-  await until(page, ({ phase, held }) => phase === 'running' && (held.left !== null || held.right !== null), 90_000);
+  await until(page, ({ phase, held }) => phase === 'running' && (held.left !== null || held.right !== null));
   await keepPicture(page, 'ball-headset');
-  const over = await until(page, ({ phase }) => phase === 'over', 120_000);
+  const over = await until(page, ({ phase }) => phase === 'over');
   expect(over.balls.hand).toBe(0);
 });
 
-test('whoever plays by hand is asked before a match begins, and can wait', async ({ page }) => {
+test('a person who plays by hand is asked before a match begins, and can wait', async ({ page }) => {
   await open(page, 'play=ball&panel=off&quality=low&estimator=ik&actor=off&emulate');
   await page.getByRole('button', { name: 'Ready', exact: true }).click();
+  await driveTime(page);
   await until(page, ({ phase }) => phase === 'running');
 });
 
 test('without a headset a mouse takes a ball, aims and throws it', async ({ page }) => {
   await open(page, 'play=ball&panel=off&quality=low&estimator=ik&bots=on&seconds=600');
-  // The built-in player has begun the match: whoever wants to play takes over.
+  await driveTime(page);
+  // The built-in player has begun the match: a person who wants to play takes over.
   await until(page, ({ phase }) => phase === 'running');
   await page.getByRole('button', { name: 'Play with the mouse' }).click();
   await expect(page.getByText('Point at the basket and hold the button')).toBeVisible();
   await until(page, ({ held }) => held.left !== null || held.right !== null);
   await page.mouse.move(250, 130);
-  // A frame of over a second is a pause, after which a ball lies in its rack and not in the air: then it is thrown once more.
-  await expect(async () => {
-    await page.mouse.down();
-    await until(page, ({ aim }) => (aim ?? 0) > 5.5, 10_000);
-    await keepPicture(page, 'ball-mouse');
-    // Frame by frame: the next ball is soon in the hand.
-    const gone = untilFrame<BallProbe>(
-      page,
-      { phase: 'running', aim: null, held: { left: null, right: null } },
-      10_000,
-    );
-    await Promise.all([gone, page.mouse.up()]);
-  }).toPass({ timeout: 60_000 });
+  await page.mouse.down();
+  await until(page, ({ aim }) => (aim ?? 0) > 5.5);
+  await keepPicture(page, 'ball-mouse');
+  // Frame by frame: the next ball is soon in the hand.
+  const gone = holdAt<BallProbe>(page, { phase: 'running', aim: null, held: { left: null, right: null } });
+  await Promise.all([gone, page.mouse.up()]);
+  await goOn(page);
   await page.getByRole('button', { name: 'Let the built-in player play' }).click();
   await until(page, ({ ballsLeft }) => ballsLeft < 18);
 });
 
 test('a spectator sees three bots and follows one of them', async ({ page }) => {
   await open(page, 'play=ball&spectate&bots=on&panel=off&quality=low&estimator=ik&seconds=60');
+  await driveTime(page);
   await until(page, ({ phase }) => phase === 'running');
   expect((await match(page))?.seat).toBe(null);
   await expect.poll(async () => (await probe(page)).players.length).toBe(3);
@@ -98,7 +95,7 @@ test('a spectator sees three bots and follows one of them', async ({ page }) => 
   await expect(page.getByRole('button', { name: 'Kim', pressed: true })).toBeVisible();
 });
 
-/** A port of this machine that nobody listens on. */
+/** A port of this machine on which nothing listens. */
 async function freePort(): Promise<number> {
   const probing = createServer();
   await new Promise<void>((resolve) => probing.listen(0, '127.0.0.1', resolve));
@@ -155,7 +152,7 @@ async function join(browser: Browser, port: number, room: string, query: string)
   return page;
 }
 
-/** Resolves once this page has seen somebody's elbow go this far in all [m], floor frame; rejects with the way it has seen. */
+/** Resolves once this page has seen a player's elbow go this far in all [m], floor frame; rejects with the way it has seen. */
 function elbowTravels(page: Page, seat: number, least = 0.2): Promise<unknown> {
   return page.waitForFunction(
     ([seat, least]) => {
@@ -173,7 +170,7 @@ function elbowTravels(page: Page, seat: number, least = 0.2): Promise<unknown> {
   );
 }
 
-/** How the match ended, as this page saw it at that moment; nobody has to ask in time. */
+/** How the match ended, as this page saw it at that moment. */
 async function resultOn(page: Page, timeout: number): Promise<Pick<BallProbe, 'score' | 'end' | 'balls'>> {
   const ended = await page.waitForFunction(
     () => {
@@ -189,17 +186,17 @@ async function resultOn(page: Page, timeout: number): Promise<Pick<BallProbe, 's
 const leave = (page: Page): Promise<void> | undefined => page.context().browser()?.close();
 
 /**
- * Three people in a browser each play a whole match over the server; somebody comes to watch when it is under way, and with
- * `watched` somebody else has been watching from the start.
+ * Three people in a browser each play a whole match over the server; a spectator comes when it is under way, and with `watched`
+ * another one has been watching from the start.
  */
 async function playTogether(browser: Browser, seconds: number, watched: boolean): Promise<void> {
   const port = await freePort();
   const server = await startServer(seconds, port);
-  const everybody: Page[] = [];
+  const all: Page[] = [];
   try {
     const come = async (query: string) => {
       const page = await join(browser, port, 'three', query);
-      everybody.push(page);
+      all.push(page);
       return page;
     };
     const names = ['ann', 'ben', 'cal'];
@@ -220,17 +217,19 @@ async function playTogether(browser: Browser, seconds: number, watched: boolean)
       .toEqual([0, 1, 2]);
     await Promise.all([0, 1].map((seat) => elbowTravels(late, seat)));
     await keepPicture(late, 'ball-watched');
-    const results = await Promise.all(everybody.map((page) => resultOn(page, (seconds + 60) * 1000)));
+    const results = await Promise.all(all.map((page) => resultOn(page, (seconds + 60) * 1000)));
     console.log(`${results.length} browsers saw: ${results.map(({ score, end }) => `${score} (${end})`).join(', ')}`);
     for (const result of results) expect(result).toEqual(results[0]);
     expect(results[0]?.balls.basket).toBe(results[0]?.score);
   } finally {
-    await Promise.all(everybody.map(leave));
+    await Promise.all(all.map(leave));
     await server.kill();
   }
 }
 
-test('three browsers play over the relay and agree, and one that comes late sees everything', async ({ browser }) => {
+test('three browsers play over the relay and agree, and one that comes late sees everything @full', async ({
+  browser,
+}) => {
   test.setTimeout(600_000);
   await playTogether(browser, 60, false);
 });
@@ -240,7 +239,7 @@ test('three browsers play the whole 90 s over the relay, one watches, one comes 
   await playTogether(browser, 90, true);
 });
 
-test('the relay is killed and started again in the middle of a match: a banner, everybody is back, the round is void', async ({
+test('the relay is killed and started again in the middle of a match: a banner, all are back, the round is void @full', async ({
   browser,
 }) => {
   test.setTimeout(300_000);

@@ -1,6 +1,16 @@
-import { expect, joint, keepPicture, open, openWithHeadset, probe, settledJoint, test } from './page-fixture';
+import {
+  expect,
+  freshTest,
+  joint,
+  keepPicture,
+  open,
+  openWithHeadset,
+  probe,
+  settledJoint,
+  test,
+} from './page-fixture';
 
-test('a newcomer sees a moving body within seconds, without touching anything', async ({ page }) => {
+freshTest('a newcomer sees a moving body within seconds, without touching anything', async ({ page }) => {
   await open(page, 'quality=low');
   const { loading } = await probe(page);
   console.log('loading [ms]', JSON.stringify(loading));

@@ -120,7 +120,7 @@ export async function emulatedHeadset(page: Page): Promise<EmulatedHeadset> {
         type Space = { offsetMatrix: ArrayLike<number>; parentSpace?: object };
         const { controllers, hands } = window.emulatedDevice;
         const input = (name === 'wrist' ? hands : controllers)[side];
-        // A session does this in every frame; outside of one nobody does.
+        // A session does this in every frame; outside of one it has to be done here.
         input.updateTargetRaySpace();
         const source = input.inputSource;
         const own = (space: object) => {

@@ -3,7 +3,7 @@ import { createPageHandler } from '../server/page';
 import { serve } from '../server/web-server';
 import { measured } from '../tests/reliability/measured';
 import { emulatedHeadset, frames } from './emulated-headset';
-import { enterVr, expect, open, probe, test } from './page-fixture';
+import { enterVr, expect, freshTest, open, probe, test } from './page-fixture';
 
 type Page = Parameters<typeof open>[0];
 
@@ -84,8 +84,7 @@ test('a lost graphics device comes back with the game as it was: mirror, archery
   figures.mirror = `${Math.round(await loseGraphics(page))} ms`;
   await expect(page.getByText('The graphics device is back.')).toBeVisible();
   await expect(page.getByText('The graphics device was lost.')).toBeHidden();
-  // 3 s are the target, and docs/reliability.md says what it was; a machine that does something else meanwhile shall not fail.
-  for (const [where, time] of Object.entries(figures)) expect(Number.parseFloat(time), where).toBeLessThan(15_000);
+  for (const [where, time] of Object.entries(figures)) expect(Number.parseFloat(time), where).toBeLessThan(3000);
   measured('graphics-lost', figures);
 });
 
@@ -95,7 +94,7 @@ for (const place of ['studio', 'archery', 'ball'] as const) {
   test(`${when}in VR (${place}): a head that is lost for 3 s, a menu, a headset taken off`, async ({ page }) => {
     await open(page, `emulate&play=${place}&seed=7&panel=off&quality=low&estimator=learned`);
     const headset = await emulatedHeadset(page);
-    await enterVr(page);
+    await enterVr(page, { stepMs: null });
     await page.waitForFunction(() => window.threepoint?.probe().tracking, undefined, patience);
     const before = await probe(page);
     const lost = await page.evaluate(
@@ -168,7 +167,7 @@ for (const place of ['studio', 'archery', 'ball'] as const) {
   });
 }
 
-test('cross-origin isolated and without WebXR: the same page, and a sentence', async ({ page, complaints }) => {
+freshTest('cross-origin isolated and without WebXR: the same page, and a sentence', async ({ page, complaints }) => {
   complaints.allow(/asked http:\/\/localhost/);
   const handler = createPageHandler(fileURLToPath(new URL('../dist', import.meta.url)));
   const server = await serve(
@@ -197,7 +196,7 @@ test('cross-origin isolated and without WebXR: the same page, and a sentence', a
   }
 });
 
-test('nothing but our own files runs, and a refused session is said', async ({ page, complaints }) => {
+freshTest('nothing but our own files runs, and a refused session is said', async ({ page, complaints }) => {
   complaints.allow(/policy|refused|blocked|CSP|violates/i);
   // What an attacker would have to get into the page first: our own origin lends it a file here.
   await page.route('**/attack.js', (route) =>

@@ -1,6 +1,6 @@
 import type { CDPSession } from '@playwright/test';
 import { measured } from '../tests/reliability/measured';
-import { expect, open, probe, test } from './page-fixture';
+import { expect, open, probe, freshTest as test } from './page-fixture';
 
 type Page = Parameters<typeof open>[0];
 

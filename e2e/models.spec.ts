@@ -1,6 +1,6 @@
 import type { Page, Route } from '@playwright/test';
 import { measured } from '../tests/reliability/measured';
-import { enterVr, expect, joint, openWithHeadset, probe, test } from './page-fixture';
+import { enterVr, expect, joint, openWithHeadset, probe, freshTest as test } from './page-fixture';
 
 /** What can be wrong with a model file, and how the server would answer then. */
 const faults: Readonly<Record<string, (route: Route) => Promise<void>>> = {
@@ -19,13 +19,11 @@ const faults: Readonly<Record<string, (route: Route) => Promise<void>>> = {
   },
 };
 
-/** How long after the page's script the body has moved [s]. */
-const movedAfter = (page: Page): Promise<number> =>
-  page.evaluate(async () => {
-    const read = () => window.threepoint?.probe();
-    const begun = read()?.loading.script ?? 0;
-    const first = read()?.loading.firstBody ?? Number.NaN;
-    return (first - begun) / 1000;
+/** How long after the page's script, and after its avatar was there, the body was drawn [s]. */
+const firstBody = (page: Page): Promise<{ readonly afterScript: number; readonly afterAvatar: number }> =>
+  page.evaluate(() => {
+    const { script = 0, avatar = 0, firstBody = Number.NaN } = window.threepoint?.probe().loading ?? {};
+    return { afterScript: (firstBody - script) / 1000, afterAvatar: (firstBody - avatar) / 1000 };
   });
 
 for (const [fault, fulfil] of Object.entries(faults)) {
@@ -47,10 +45,10 @@ test('without WebAssembly IK takes over and the page says so', async ({ page, co
   await openWithHeadset(page, 'estimator=learned');
   await expect.poll(async () => (await probe(page)).estimator).toBe('ik');
   await expect(page.getByRole('alert').filter({ hasText: /IK|inverse kinematics/i })).toBeVisible();
-  const seconds = await movedAfter(page);
-  // 2 s are the target; a machine that does something else meanwhile shall not fail.
-  expect(seconds).toBeLessThan(15);
-  measured('no-wasm', { 'body drawn by IK': `${seconds.toFixed(2)} s after the page's script began` });
+  const { afterScript, afterAvatar } = await firstBody(page);
+  // How long a network and a graphics device of software take to bring the avatar is not WASM's doing.
+  expect(afterAvatar).toBeLessThan(2);
+  measured('no-wasm', { 'body drawn by IK': `${afterScript.toFixed(2)} s after the page's script began` });
 });
 
 test('without the worker that runs networks IK takes over and the page says so', async ({ page, complaints }) => {

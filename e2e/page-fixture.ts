@@ -1,9 +1,11 @@
 import { mkdirSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
-import { test as base, expect, type Page } from '@playwright/test';
+import { type Browser, test as base, type ConsoleMessage, expect, type Page, type Request } from '@playwright/test';
 import { createPageHandler } from '../server/page';
 import { serve } from '../server/web-server';
+import type { EstimatorName } from '../src/core/estimation/pose-estimator';
 import type { Probe } from '../src/probe';
+import { driveTime, letTimePass } from './driven-time';
 import { type EmulatedHeadset, emulatedHeadset, frames, type Point } from './emulated-headset';
 
 export { expect };
@@ -43,45 +45,145 @@ export async function settledJoint(page: Page, name: string): Promise<Point> {
   return position;
 }
 
-/** The first frame in which the game shows this: what lasts a moment is not missed between two looks. */
-export async function untilFrame<Game extends NonNullable<Probe['game']>>(
-  page: Page,
-  shows: Partial<Game>,
-  timeout = 60_000,
-): Promise<void> {
-  await page.waitForFunction(
-    (shows) => {
-      const game: object = window.threepoint?.probe().game ?? {};
-      const now = new Map(Object.entries(game).map(([key, value]) => [key, JSON.stringify(value)]));
-      return Object.entries(shows).every(([key, value]) => now.get(key) === JSON.stringify(value));
-    },
-    shows as Record<string, unknown>,
-    { timeout },
-  );
-}
-
 export function distance(a: Point, b: Point): number {
   return Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
-/** Opens the page with this query and waits until a body is on the screen. */
+/** Estimators in the order of their keys on the page. */
+const estimatorKeys: readonly EstimatorName[] = ['learned', 'ik', 'paper', 'hands-only'];
+
+/** What a page was left with: as it was after loading, a test may find it without loading it anew. */
+interface LoadedPage {
+  /** Of the address, without the estimator. */
+  readonly query: string;
+  readonly left: string;
+}
+const loaded = new WeakMap<Page, LoadedPage>();
+
+/** Everything that a test can change in the studio and that the next one would notice, as one text. */
+const stateOf = (page: Page): Promise<string> =>
+  page.evaluate(() => {
+    const { calibration, view, recorder, avatar, notices } = window.threepoint!.probe();
+    const switches = [...document.querySelectorAll<HTMLInputElement>('input[type=checkbox]')].map(
+      (each) => each.checked,
+    );
+    const tab = document.querySelector('[role=tab][aria-selected=true]')?.textContent;
+    // Which estimator is remembered does not matter: a test that opens the page names one. What is empty was forgotten.
+    const stored = Object.values({ ...localStorage, ...sessionStorage }).map((text) =>
+      text.replace(/"estimator":"[a-z-]+",?/, '').replace(/^\{\}$/, ''),
+    );
+    return JSON.stringify([
+      calibration,
+      view,
+      recorder.mode,
+      avatar.name,
+      notices,
+      switches,
+      tab,
+      stored.filter(Boolean),
+    ]);
+  });
+
+/** Takes the emulated headset off and lays its controllers down where they were; nothing where the page has none. */
+async function layDown(page: Page): Promise<void> {
+  await letTimePass(page);
+  await page.evaluate(async (placement) => {
+    const device = window.emulatedDevice;
+    if (!device) return;
+    await device.activeSession?.end();
+    device.updateVisibilityState('visible');
+    device.primaryInputMode = 'controller';
+    device.position.set(...placement.head);
+    device.quaternion.set(0, 0, 0, 1);
+    for (const side of ['left', 'right'] as const) {
+      for (const input of [device.controllers[side], device.hands[side]]) {
+        input.connected = true;
+        const [x, y, z] = placement[side];
+        input.position.set(x, y, z);
+        input.quaternion.set(0, 0, 0, 1);
+      }
+      for (const button of ['trigger', 'squeeze'] as const) device.controllers[side].updateButtonValue(button, 0);
+      device.hands[side].updatePinchValue(0);
+    }
+  }, laidDown);
+  await page.waitForFunction(() => window.threepoint?.probe().activity === 'desktop');
+}
+
+/** A headset that has been worn has measured its wearer's height; presses the page's own button against that. */
+async function resetCalibration(page: Page): Promise<void> {
+  const reset = page.getByRole('button', { name: 'Reset calibration', includeHidden: true });
+  await reset.evaluate((button: HTMLButtonElement) => button.click());
+}
+
+const laidDown = {
+  head: [0, 1.6, 0],
+  left: [-0.25, 1.1, -0.3],
+  right: [0.25, 1.1, -0.3],
+} as const satisfies Record<string, Point>;
+
+/** Takes the page back to how it was when it had loaded; false where a test has changed more than that can undo. */
+async function takenBack(page: Page): Promise<boolean> {
+  const before = loaded.get(page);
+  if (!before) return false;
+  await layDown(page);
+  await resetCalibration(page);
+  return (await stateOf(page)) === before.left;
+}
+
+/**
+ * Opens the page with this query and waits until a body is on the screen. A studio that has been opened with it before and is as it was
+ * then, is not loaded again: only its estimator is chosen as the query says. Games and studies begin anew.
+ */
 export async function open(page: Page, query: string): Promise<void> {
+  const wanted = new URLSearchParams(query);
+  const estimator = (wanted.get('estimator') ?? 'learned') as EstimatorName;
+  wanted.delete('estimator');
+  const studio = !wanted.has('play') && !wanted.has('study');
+  if (studio && loaded.get(page)?.query === wanted.toString() && (await takenBack(page))) {
+    await page.evaluate(() => (document.activeElement as HTMLElement | null)?.blur());
+    await page.keyboard.press(String(estimatorKeys.indexOf(estimator) + 1));
+    await expect.poll(async () => (await probe(page)).estimator, { intervals: [20] }).toBe(estimator);
+    return;
+  }
+  if (loaded.has(page)) await forget(page);
+  await load(page, query);
+}
+
+/** Empties what the page keeps in this browser, as for a visitor who comes for the first time. */
+async function forget(page: Page): Promise<void> {
+  await page.evaluate(async () => {
+    localStorage.clear();
+    sessionStorage.clear();
+    for (const { name } of await indexedDB.databases()) if (name) indexedDB.deleteDatabase(name);
+  });
+}
+
+/** Loads the page with this query, as a visitor does who comes again: what it remembers, it remembers. */
+export async function load(page: Page, query: string): Promise<void> {
+  loaded.delete(page);
   await page.goto(`/?${query}`);
   await page.waitForFunction(() => window.threepoint?.probe().ready === true, undefined, {
     timeout: 60_000,
   });
+  const kept = new URLSearchParams(query);
+  kept.delete('estimator');
+  loaded.set(page, { query: kept.toString(), left: await stateOf(page) });
 }
 
-/** Opens the page with the emulator, nobody moving it, drawn small. */
+/** Opens the page with the emulator, no actor moving it, drawn small. */
 export async function openWithHeadset(page: Page, query = ''): Promise<EmulatedHeadset> {
   await open(page, `emulate&actor=off&quality=low${query ? `&${query}` : ''}`);
   return emulatedHeadset(page);
 }
 
-/** Presses the button as a person would, and waits for the session. */
-export async function enterVr(page: Page): Promise<void> {
+/**
+ * Presses the button as a person would, and waits for the session. There the page's time is driven, in the usual steps or in these [ms];
+ * null: it goes on as it does, for what is about time itself or about what is drawn meanwhile.
+ */
+export async function enterVr(page: Page, { stepMs }: { readonly stepMs?: number | null } = {}): Promise<void> {
   await page.getByRole('button', { name: 'Enter VR' }).click();
   await page.waitForFunction(() => Boolean(window.emulatedDevice?.activeSession));
+  if (stepMs !== null) await driveTime(page, stepMs);
   await frames(page, 5);
 }
 
@@ -90,6 +192,7 @@ const artifacts = fileURLToPath(new URL('../artifacts/screenshots/', import.meta
 /** Keeps a picture for people to look at: artifacts/screenshots/NAME.png. */
 export async function keepPicture(page: Page, name: string): Promise<void> {
   mkdirSync(artifacts, { recursive: true });
+  await page.evaluate(() => window.drivenTime?.drawn());
   await page.screenshot({ path: `${artifacts}${name}.png` });
 }
 
@@ -98,8 +201,42 @@ export interface ExpectedComplaints {
   allow(...patterns: RegExp[]): void;
 }
 
-/** Tests on the built page, served as `npm start` serves it; each also fails on anything the page complains about. */
-export const test = base.extend<{ complaints: ExpectedComplaints }, { origin: string }>({
+/** A page that says where its policy is broken. */
+async function newPage(browser: Browser, origin: string): Promise<Page> {
+  const context = await browser.newContext({ baseURL: origin });
+  const page = await context.newPage();
+  await page.addInitScript(() => {
+    document.addEventListener('securitypolicyviolation', (event) => {
+      console.error(`policy: ${event.violatedDirective} forbids ${event.blockedURI}`);
+    });
+  });
+  return page;
+}
+
+/** Hears what a page complains about until it is stopped; the texts fill as they come. */
+function listen(page: Page, origin: string): { readonly heard: readonly string[]; stop(): void } {
+  const heard: string[] = [];
+  const onConsole = (message: ConsoleMessage) => {
+    // A blocked resource shows as an error of the console too: violations of the policy land here.
+    if (message.type() === 'error') heard.push(`console: ${message.text()} (${message.location().url})`);
+  };
+  const onError = (error: Error) => heard.push(`exception: ${error.stack ?? error.message}`);
+  const onRequest = (request: Request) => {
+    const url = new URL(request.url());
+    if (!['data:', 'blob:'].includes(url.protocol) && url.origin !== origin) heard.push(`asked ${url.origin}: ${url}`);
+  };
+  page.on('console', onConsole).on('pageerror', onError).on('request', onRequest);
+  return {
+    heard,
+    stop: () => page.off('console', onConsole).off('pageerror', onError).off('request', onRequest),
+  };
+}
+
+/**
+ * Tests on the built page, served as `npm start` serves it; each also fails on anything the page complains about. They share one page,
+ * which `open` loads anew only where it must; a test that changes the browser around the page takes `freshTest`.
+ */
+export const test = base.extend<{ complaints: ExpectedComplaints }, { origin: string; sharedPage: Page }>({
   origin: [
     // biome-ignore lint/correctness/noEmptyPattern: Playwright reads the fixture's needs from this pattern
     async ({}, use) => {
@@ -113,26 +250,27 @@ export const test = base.extend<{ complaints: ExpectedComplaints }, { origin: st
 
   baseURL: ({ origin }, use) => use(origin),
 
+  sharedPage: [
+    async ({ browser, origin }, use) => {
+      const page = await newPage(browser, origin);
+      await use(page);
+      await page.context().close();
+    },
+    { scope: 'worker' },
+  ],
+
+  page: async ({ sharedPage, viewport }, use) => {
+    if (viewport) await sharedPage.setViewportSize(viewport);
+    await use(sharedPage);
+    await sharedPage.unrouteAll();
+  },
+
   complaints: [
     async ({ page, origin }, use) => {
-      const heard: string[] = [];
+      const { heard, stop } = listen(page, origin);
       const allowed: RegExp[] = [];
-      page.on('console', (message) => {
-        // A blocked resource shows as an error of the console too: violations of the policy land here.
-        if (message.type() === 'error') heard.push(`console: ${message.text()} (${message.location().url})`);
-      });
-      page.on('pageerror', (error) => heard.push(`exception: ${error.stack ?? error.message}`));
-      page.on('request', (request) => {
-        const url = new URL(request.url());
-        if (!['data:', 'blob:'].includes(url.protocol) && url.origin !== origin)
-          heard.push(`asked ${url.origin}: ${url}`);
-      });
-      await page.addInitScript(() => {
-        document.addEventListener('securitypolicyviolation', (event) => {
-          console.error(`policy: ${event.violatedDirective} forbids ${event.blockedURI}`);
-        });
-      });
       await use({ allow: (...patterns) => allowed.push(...patterns) });
+      stop();
       expect(
         heard.filter((text) => !allowed.some((pattern) => pattern.test(text))),
         'complaints of the page',
@@ -140,4 +278,14 @@ export const test = base.extend<{ complaints: ExpectedComplaints }, { origin: st
     },
     { auto: true },
   ],
+});
+
+/** The same with a browser context of the test's own: nothing stored, nothing replaced by another test. */
+export const freshTest = test.extend({
+  page: async ({ browser, origin, viewport }, use) => {
+    const page = await newPage(browser, origin);
+    if (viewport) await page.setViewportSize(viewport);
+    await use(page);
+    await page.context().close();
+  },
 });

@@ -37,7 +37,7 @@ for (const estimator of estimators) {
     await expectHandsOnControllers(page, headset);
     expect((await probe(page)).estimator).toBe(estimator);
     await keepPicture(page, `mirror-${estimator}`);
-    // Nobody sees the own head from the inside: it is where the eyes are, and not in the picture.
+    // No one sees the own head from the inside: it is where the eyes are, and not in the picture.
     expect((await joint(page, 'head'))[1]).toBeGreaterThan(1.4);
   });
 }

@@ -15,7 +15,7 @@ async function recordTheActor(page: Page): Promise<string> {
   return readFileSync(path, 'utf8');
 }
 
-// By day the one that asks a network and the one that asks nobody, the others by night.
+// By day one that asks a network and one that asks none, the others by night.
 const replays = {
   '': [
     ['Hands only', 'hands-only'],

@@ -5,8 +5,10 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { parsePlan, type StudyPlan } from '../src/core/study/plan';
+import type { ParticipantState } from '../src/core/study/study-api';
+import { studyLink } from '../src/study/study-link';
 
-export const experimenterToken = 'a-token-for-tests-alone';
+export const experimenterToken = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 
 const atRoot = (path: string) => fileURLToPath(new URL(`../${path}`, import.meta.url));
 
@@ -85,6 +87,14 @@ export function experimenter(origin: string) {
     });
   return {
     ask,
+    /** The link to a participant's place, as the experimenter's page shows it, with switches of the page. */
+    async link(study: string, participant: string, switches = ''): Promise<string> {
+      const { participants } = (await (await ask(`/${study}/participants`)).json()) as {
+        participants: readonly ParticipantState[];
+      };
+      const invitation = participants.find((one) => one.participant === participant)?.invitation ?? null;
+      return origin + studyLink({ study, participant, invitation }).replace('#', `${switches}#`);
+    },
     async begin(plan: StudyPlan, simulated: boolean): Promise<void> {
       const response = await ask('', 'POST', { plan, simulated });
       if (!response.ok) throw new Error(`the study "${plan.id}" was not begun: ${await response.text()}`);

@@ -8,7 +8,7 @@ import { parsePlan, type StudyPlan } from '../src/core/study/plan';
 import type { StudyRecord } from '../src/core/study/study-record';
 import type { StudyProbe } from '../src/study-run';
 import { type EmulatedHeadset, emulatedHeadset, frames } from './emulated-headset';
-import { expect, keepPicture, test as pageTest } from './page-fixture';
+import { enterVr, expect, keepPicture, freshTest as pageTest } from './page-fixture';
 import { experimenter, experimenterToken, serveStudies, shortBallStudy, shortStudy } from './study-server';
 
 // What is answered does not depend on how many pixels show it.
@@ -58,7 +58,7 @@ const press = (page: Page, id: string, leave = false): Promise<void> =>
     async ([id, upright, leave]) => {
       const frame = () => new Promise<void>((resolve) => requestAnimationFrame(() => resolve()));
       const until = async <T>(look: () => T | undefined | false): Promise<T> => {
-        for (let patience = 0; patience < 600; patience++) {
+        for (const end = Date.now() + 60_000; Date.now() < end; ) {
           const seen = look();
           if (seen) return seen;
           await frame();
@@ -87,27 +87,26 @@ const press = (page: Page, id: string, leave = false): Promise<void> =>
     [id, upright, leave] as const,
   );
 
-async function takePart(page: Page, id: string, participant: string): Promise<EmulatedHeadset> {
-  await page.goto(`/?study=${id}&participant=${participant}&emulate&quality=low`);
+async function takePart(page: Page, origin: string, id: string, participant: string): Promise<EmulatedHeadset> {
+  await page.goto(await experimenter(origin).link(id, participant, '&emulate&quality=low'));
+  return headsetOf(page);
+}
+
+async function headsetOf(page: Page): Promise<EmulatedHeadset> {
   await page.waitForFunction(() => window.threepoint?.probe().ready === true, undefined, { timeout: 60_000 });
   return emulatedHeadset(page);
 }
 
-async function enter(page: Page): Promise<void> {
-  await page.getByRole('button', { name: 'Enter VR' }).click();
-  await page.waitForFunction(() => Boolean(window.emulatedDevice?.activeSession));
-  await frames(page, 5);
-}
-
 async function calibrate(page: Page): Promise<void> {
   await reaches(page, 'calibration');
-  // A machine that draws too few frames in two seconds measures nobody: then once more, as a person would.
-  await expect(async () => {
-    await press(page, 'calibrate', true);
-    await expect.poll(() => screen(page), { timeout: 12_000 }).toMatch(/-(ready|failed)$/);
-    expect(await screen(page)).toMatch(/-ready$/);
-  }).toPass({ timeout: 60_000 });
+  await press(page, 'calibrate', true);
+  // Five seconds of the page's time are fifty frames, and each costs what the machine needs for it.
+  await expect.poll(() => screen(page), { intervals: [100], timeout: 90_000 }).toMatch(/-(ready|failed)$/);
+  expect(await screen(page)).toMatch(/-ready$/);
 }
+
+/** Questions and rounds need few frames, and each draws the sheet anew. */
+const tenHertz = { stepMs: 100 };
 
 const recordsOf = async (origin: string, id: string): Promise<readonly StudyRecord[]> =>
   ((await (await experimenter(origin).ask(`/${id}/records`)).json()) as { records: StudyRecord[] }).records;
@@ -120,7 +119,7 @@ test('a participant from consent to the end, with a reload in a questionnaire wh
   complaints.allow(/ERR_FAILED.*\/api\/studies/);
   test.setTimeout(240_000);
   await experimenter(origin).begin(shortStudy('short'), true);
-  let headset = await takePart(page, 'short', 'P01');
+  let headset = await takePart(page, origin, 'short', 'P01');
 
   await expect(page.getByRole('heading', { name: /Taking part/ })).toBeVisible();
   await expect(page.getByRole('button', { name: 'I agree' })).toBeDisabled();
@@ -144,7 +143,7 @@ test('a participant from consent to the end, with a reload in a questionnaire wh
   await keepPicture(page, 'study-demographics');
   await page.getByRole('button', { name: 'Continue' }).click();
 
-  await enter(page);
+  await enterVr(page, tenHertz);
   await headset.place(stretched);
   await reaches(page, 'calibration');
   await keepPicture(page, 'study-calibration');
@@ -157,13 +156,13 @@ test('a participant from consent to the end, with a reload in a questionnaire wh
 
   for (const block of [1, 2]) {
     if (block === 2) {
-      await enter(page);
+      await enterVr(page, tenHertz);
       await headset.place(stretched);
       await calibrate(page);
       await reaches(page, 'trial-ready');
     }
     await press(page, 'start');
-    // Where frames take a second, the round of five may be over between two looks.
+    // The round of five seconds may be over between two looks.
     await expect
       .poll(async () => {
         const { running, screen } = await study(page);
@@ -185,7 +184,8 @@ test('a participant from consent to the end, with a reload in a questionnaire wh
       // Half of it in the headset, the rest at the desk after a reload.
       await expect.poll(async () => (await study(page)).unsent).toBe(0);
       await page.route('**/api/studies/**', (route) => route.abort());
-      headset = await takePart(page, 'short', 'P01');
+      await page.reload();
+      headset = await headsetOf(page);
       await reaches(page, 'question-Q3');
       await expect(page.getByText(/No connection: .* kept on this device/)).toBeVisible();
       await expect(page.getByRole('button', { name: 'Question 2, answered' })).toBeVisible();
@@ -244,6 +244,32 @@ test('a participant from consent to the end, with a reload in a questionnaire wh
   await expect(page.getByRole('img', { name: /Archery: mean scores/ })).toBeVisible();
 });
 
+test('a link without its invitation asks for it, a wrong one is said, and the link of the experimenter’s page opens the place', async ({
+  page,
+  origin,
+  complaints,
+}) => {
+  complaints.allow(/403.*\/claim/);
+  await experimenter(origin).begin(shortStudy('invited'), true);
+  await page.goto(`${origin}/?study=invited&participant=P02&quality=low`);
+  await expect(page.getByLabel(/Your code/)).toHaveValue('P02');
+  await page.getByRole('button', { name: 'Continue' }).click();
+  await expect(page.getByRole('alert').filter({ hasText: 'Without the invitation' })).toBeVisible();
+  await page.getByLabel('Your invitation').fill('aaaa-bbbb-cccc-dddd');
+  await page.getByRole('button', { name: 'Continue' }).click();
+  const agree = async () => {
+    await page.getByLabel(/I have read this/).check();
+    await page.getByRole('button', { name: 'I agree' }).click();
+  };
+  await agree();
+  await expect(page.getByText('This is not the invitation of P02.')).toBeVisible();
+  const link = await experimenter(origin).link('invited', 'P02', '&quality=low');
+  // As a person would: the whole link into the address of the same tab.
+  await page.evaluate((address) => location.assign(address), link);
+  await agree();
+  await expect(page.getByText('write this down')).toBeVisible();
+});
+
 async function signIn(page: Page): Promise<void> {
   await page.getByLabel('Token').fill(experimenterToken);
   await page.getByRole('button', { name: 'Open' }).click();
@@ -294,11 +320,11 @@ test('three participants play the ball game together, each in a headset of their
     page.evaluate((on) => {
       window.resting = on;
     }, resting);
-  const everybody = <T>(act: (page: Page, index: number) => Promise<T>) => Promise.all(pages.map(act));
+  const all = <T>(act: (page: Page, index: number) => Promise<T>) => Promise.all(pages.map(act));
   // One after the other: three pages that load at once keep each other waiting.
   const headsets: EmulatedHeadset[] = [];
   for (const [index, page] of pages.entries()) {
-    await page.goto(`${origin}/?study=trio&participant=${people[index]}&emulate&quality=low`);
+    await page.goto(await experimenter(origin).link('trio', people[index] as string, '&emulate&quality=low'));
     await page.waitForFunction(() => window.threepoint?.probe().ready === true, undefined, { timeout: 90_000 });
     headsets.push(await emulatedHeadset(page));
     await page.getByLabel(/I have read this/).check();
@@ -310,40 +336,39 @@ test('three participants play the ball game together, each in a headset of their
     await page.getByLabel(/Age/).fill('26');
     await page.getByLabel(/Field of study/).fill('Computer science');
     await page.getByRole('button', { name: 'Continue' }).click();
-    await enter(page);
+    // Three clocks that one relay keeps together cannot be driven.
+    await enterVr(page, { stepMs: null });
     await headsets[index]?.place(stretched);
     await calibrate(page);
     await reaches(page, 'trial-ready', 60_000);
     await rest(page, true);
   }
   const [first, second, third] = pages as [Page, Page, Page];
-  await everybody((page) => rest(page, false));
+  await all((page) => rest(page, false));
   await press(first, 'start');
   await reaches(first, 'waiting', 60_000);
   await press(second, 'start');
   await press(third, 'start');
-  await expect
-    .poll(async () => (await everybody(study)).every(({ running }) => running), { timeout: 60_000 })
-    .toBe(true);
+  await expect.poll(async () => (await all(study)).every(({ running }) => running), { timeout: 60_000 }).toBe(true);
 
   // The experimenter pauses one of them: the match stands for all three.
   const match = (page: Page) => page.evaluate(() => window.threepoint?.probe().game);
-  const clocks = () => everybody(async (page) => ((await match(page)) as { secondsLeft: number }).secondsLeft);
+  const clocks = () => all(async (page) => ((await match(page)) as { secondsLeft: number }).secondsLeft);
   const command = (type: 'pause' | 'resume') =>
     experimenter(origin).ask('/trio/participants/P02/commands', 'POST', { type });
   await command('pause');
-  await expect.poll(() => everybody(screen), { timeout: 30_000 }).toEqual(['standing', 'paused', 'standing']);
+  await expect.poll(() => all(screen), { timeout: 30_000 }).toEqual(['standing', 'paused', 'standing']);
   await keepPicture(first, 'study-standing');
   await keepPicture(second, 'study-paused');
   const stand = await clocks();
-  await everybody((page) => frames(page, 20));
+  await all((page) => frames(page, 20));
   expect(await clocks()).toEqual(stand);
   expect(Math.max(...stand)).toBeGreaterThan(0);
   await command('resume');
-  await expect.poll(() => everybody(screen), { timeout: 30_000 }).toEqual(['playing', 'playing', 'playing']);
+  await expect.poll(() => all(screen), { timeout: 30_000 }).toEqual(['playing', 'playing', 'playing']);
 
-  await everybody((page) => expect.poll(() => screen(page), { timeout: 90_000 }).toMatch(/^(rest|question-Q8)$/));
-  await everybody((page) => expect.poll(async () => (await study(page)).unsent).toBe(0));
+  await all((page) => expect.poll(() => screen(page), { timeout: 90_000 }).toMatch(/^(rest|question-Q8)$/));
+  await all((page) => expect.poll(async () => (await study(page)).unsent).toBe(0));
 
   const trials = (await recordsOf(origin, 'trio')).filter((record) => record.kind === 'trial');
   expect(trials.map(({ participant }) => participant)).toEqual(people);
@@ -357,7 +382,7 @@ test('three participants play the ball game together, each in a headset of their
     expect(body.outcome.seconds).toBeGreaterThan(19);
     expect(body.outcome.seconds).toBeLessThan(26);
   }
-  await everybody((page) => page.context().close());
+  await all((page) => page.context().close());
 });
 
 test('results of fifteen simulated participants; export, delete, export', async ({ page, origin }) => {

@@ -1,99 +1,13 @@
 // npm test: installs what is missing, runs every stage whether or not one before it failed, and ends with one line that
-// counts the tests. Names of stages as arguments run those alone.
+// counts the tests. Arguments name stages, or a whole suite (day, full, training, nightly), to run those alone.
 import { mkdirSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
-import { buildWhenStale } from './build.mjs';
-import { ensureChromium } from './chromium.mjs';
 import { ensureInstalled } from './installation.mjs';
-import { pythonEnvironment } from './python-environment.mjs';
 import { main, root, run, SetupError } from './run-command.mjs';
 import { countLine, readResults } from './test-results.mjs';
+import { stages, stagesOf } from './test-stages.mjs';
 
 const reports = join(root, 'artifacts/test-reports');
-const node = (script, ...args) => [process.execPath, join('node_modules', script), ...args];
-
-const pytest = async ({ extras, marker, report }) => {
-  const python = await pythonEnvironment({ extras });
-  return [[python, '-m', 'pytest', 'training', '-m', marker, '-p', 'no:cacheprovider', `--junitxml=${report}`]];
-};
-
-/** Each stage: the commands it consists of, and for runners of tests the report they leave. */
-const stages = {
-  types: {
-    commands: () => [
-      node('typescript/bin/tsc', '--noEmit'),
-      node('typescript/bin/tsc', '--noEmit', '-p', 'tsconfig.core.json'),
-    ],
-  },
-  lint: { commands: () => [node('@biomejs/biome/bin/biome', 'check', '.')] },
-  dependencies: {
-    commands: () => [
-      node(
-        'dependency-cruiser/bin/dependency-cruise.mjs',
-        '--config',
-        '.dependency-cruiser.mjs',
-        'src',
-        'server',
-        'tests',
-        'e2e',
-        'bench',
-      ),
-    ],
-  },
-  unit: {
-    runner: 'vitest',
-    commands: (report) => [
-      node('vitest/vitest.mjs', 'run', '--reporter=default', '--reporter=json', `--outputFile.json=${report}`),
-    ],
-  },
-  python: { runner: 'pytest', commands: (report) => pytest({ extras: [], marker: 'not training', report }) },
-  e2e: {
-    runner: 'playwright',
-    limitSeconds: 1200,
-    commands: async (report) => {
-      process.env.CHROMIUM_PATH = await ensureChromium();
-      process.env.PLAYWRIGHT_JSON_OUTPUT_NAME = report;
-      await buildWhenStale();
-      return [node('@playwright/test/cli.js', 'test', '--reporter=list,json')];
-    },
-  },
-  training: {
-    runner: 'pytest',
-    limitSeconds: 1200,
-    byName: true,
-    commands: (report) => pytest({ extras: ['train'], marker: 'training', report }),
-  },
-  nightly: {
-    runner: 'vitest',
-    limitSeconds: 3600,
-    byName: true,
-    commands: (report) => {
-      process.env.PROPERTY_RUNS ??= '5000';
-      return [
-        node(
-          'vitest/vitest.mjs',
-          'run',
-          '--testTimeout=600000',
-          '--reporter=default',
-          '--reporter=json',
-          `--outputFile.json=${report}`,
-        ),
-      ];
-    },
-  },
-  'nightly-e2e': {
-    runner: 'playwright',
-    limitSeconds: 5400,
-    byName: true,
-    commands: async (report) => {
-      process.env.CHROMIUM_PATH = await ensureChromium();
-      process.env.PLAYWRIGHT_JSON_OUTPUT_NAME = report;
-      process.env.THREEPOINT_NIGHTLY = '1';
-      await buildWhenStale();
-      return [node('@playwright/test/cli.js', 'test', '--grep', '@nightly', '--reporter=list,json')];
-    },
-  },
-};
 
 const seconds = (start) => `${((performance.now() - start) / 1000).toFixed(1)} s`;
 
@@ -138,11 +52,12 @@ function printSummary(outcomes, start) {
 await main(async () => {
   const start = performance.now();
   const named = process.argv.slice(2);
-  const unknown = named.filter((name) => !(name in stages));
+  const known = (name) => name in stages || stagesOf(name).length > 0;
+  const unknown = named.filter((name) => !known(name));
   if (unknown.length > 0) {
     throw new SetupError(`No stage is called ${unknown.join(', ')}; there are: ${Object.keys(stages).join(', ')}`);
   }
-  const chosen = named.length > 0 ? named : Object.keys(stages).filter((name) => !stages[name].byName);
+  const chosen = (named.length > 0 ? named : ['day']).flatMap((name) => (name in stages ? [name] : stagesOf(name)));
   await ensureInstalled();
   rmSync(reports, { recursive: true, force: true });
   mkdirSync(reports, { recursive: true });

@@ -2,6 +2,10 @@ import { spawnSync } from 'node:child_process';
 import { readFileSync, symlinkSync } from 'node:fs';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
+import { cruise, type ICruiseResult } from 'dependency-cruiser';
+import extractDepcruiseOptions from 'dependency-cruiser/config-utl/extract-depcruise-options';
+import extractTsConfig from 'dependency-cruiser/config-utl/extract-ts-config';
+import typescript from 'typescript';
 import { describe, expect, test } from 'vitest';
 import { directoryWith } from './temporary-directory';
 
@@ -18,27 +22,17 @@ function projectOf(files: Readonly<Record<string, string>>): string {
   return directory;
 }
 
-function runTool(directory: string, script: string, ...args: string[]): { code: number | null; output: string } {
-  const { status, stdout, stderr } = spawnSync(process.execPath, [join(root, 'node_modules', script), ...args], {
-    cwd: directory,
-    encoding: 'utf8',
-  });
-  return { code: status, output: stdout + stderr };
-}
+/** Read once and used in this process: a new process for each project would spend a second on starting. */
+const importRules = await extractDepcruiseOptions(join(root, '.dependency-cruiser.mjs'));
+const tsConfig = extractTsConfig(join(root, 'tsconfig.json'));
 
 /** The names of the import rules that these files break, each once. */
-function brokenImportRules(files: Readonly<Record<string, string>>): string[] {
+async function brokenImportRules(files: Readonly<Record<string, string>>): Promise<string[]> {
   const folders = [...new Set(Object.keys(files).map((path) => path.split('/')[0] as string))];
-  const { output } = runTool(
-    projectOf(files),
-    'dependency-cruiser/bin/dependency-cruise.mjs',
-    '--config',
-    join(root, '.dependency-cruiser.mjs'),
-    '--output-type',
-    'json',
-    ...folders,
-  );
-  const { summary } = JSON.parse(output) as { summary: { violations: { rule: { name: string } }[] } };
+  const options = { ...structuredClone(importRules), baseDir: projectOf(files) };
+  const { output } = await cruise(folders, options, undefined, { tsConfig });
+  const { modules, summary } = output as ICruiseResult;
+  expect(modules.map(({ source }) => source)).toEqual(expect.arrayContaining(Object.keys(files)));
   return [...new Set(summary.violations.map(({ rule }) => rule.name))].sort();
 }
 
@@ -116,42 +110,54 @@ describe('the import rules', () => {
     ],
     ['no circles', 'no-cycles', { 'src/ui/a.ts': "import './b';", 'src/ui/b.ts': "import './a';" }],
     ['imports lead somewhere', 'imports-resolve', { 'src/ui/a.ts': "import './gone';" }],
-  ])('%s (%s)', (_, rule, files) => {
-    expect(brokenImportRules(files as Record<string, string>)).toContain(rule);
+  ])('%s (%s)', async (_, rule, files) => {
+    expect(await brokenImportRules(files as Record<string, string>)).toContain(rule);
   });
 
-  test('what the design allows breaks none', () => {
+  test('what the design allows breaks none', async () => {
     const allowed = {
       'src/core/math/vec3.ts': empty,
       'src/core/tracking/tracking-frame.ts': "import '../math/vec3';",
       'src/core/body/skeleton.ts': "import '../math/vec3';",
-      'src/core/estimation/ik.ts':
+      'src/core/estimation/estimators.ts':
         "import '../math/vec3';\nimport '../body/skeleton';\nimport '../tracking/tracking-frame';",
       'src/core/study/plan.ts': "import 'valibot';",
       'src/core/study/statistics.ts': "import '@stdlib/stats-base-dists-t-cdf';",
       'src/scene/renderer.ts': "import 'three';",
       'src/avatar/mirror.ts':
         "import 'three';\nimport '@pixiv/three-vrm';\nimport '../scene/renderer';\nimport '../core/body/skeleton';",
-      'src/inference/regressor.ts': "import 'onnxruntime-web/wasm';\nimport '../core/estimation/ik';",
+      'src/inference/regressor.ts': "import 'onnxruntime-web/wasm';\nimport '../core/estimation/estimators';",
       'src/main.ts': "import './avatar/mirror';\nimport './inference/regressor';",
       'server/main.ts': "import 'node:http';\nimport '../src/core/math/vec3';",
     };
-    expect(brokenImportRules(allowed)).toEqual([]);
+    expect(await brokenImportRules(allowed)).toEqual([]);
   });
 });
 
-describe('no clock and no chance in core', () => {
-  const lint = (path: string, code: string) =>
-    runTool(
-      projectOf({ [path]: code }),
-      '@biomejs/biome/bin/biome',
-      'lint',
-      '--vcs-enabled=false',
-      '--colors=off',
-      path,
-    );
+/** What the linter says of each of these files, in one run over all of them; a file that it finds nothing in has no entry. */
+function lint(files: Readonly<Record<string, string>>): ReadonlyMap<string, string> {
+  const { stdout, stderr } = spawnSync(
+    process.execPath,
+    [
+      ...[join(root, 'node_modules/@biomejs/biome/bin/biome'), 'lint', '--vcs-enabled=false', '--colors=off'],
+      ...['--max-diagnostics=none', ...Object.keys(files)],
+    ],
+    { cwd: projectOf(files), encoding: 'utf8' },
+  );
+  const output = `${stdout}${stderr}`;
+  expect(output).toContain(`Checked ${Object.keys(files).length} files`);
+  // Each finding begins with a line of its own: file, line, column.
+  const findings = output.split(/^(?=src\/\S+:\d+:\d+ )/m).slice(1);
+  const said = new Map<string, string>();
+  for (const finding of findings) {
+    const file = finding.slice(0, finding.indexOf(':'));
+    said.set(file, `${said.get(file) ?? ''}${finding}`);
+  }
+  return said;
+}
 
-  test.each([
+describe('no clock and no chance in core', () => {
+  const forbidden = [
     ['export const now = () => Date.now();', 'core has no clock'],
     ['export const now = () => new Date();', 'core has no clock'],
     ['export const now = () => performance.now();', 'core has no clock'],
@@ -161,40 +167,70 @@ describe('no clock and no chance in core', () => {
     ['const { random } = Math;\nexport const roll = () => random();', 'core has no chance'],
     ['export const roll = () => crypto.randomUUID();', 'core has no chance'],
     ['export const roll = () => globalThis.Math.random();', 'core knows no surroundings'],
-  ])('%s', (code, message) => {
-    const inCore = lint('src/core/math/a.ts', `${code}\n`);
-    expect(inCore.code).not.toBe(0);
-    expect(inCore.output).toContain(message);
-    expect(lint('src/net/a.ts', `${code}\n`).output).not.toContain(message);
+  ] as const;
+  const mathematics = 'src/core/math/mathematics.ts';
+  const inCore = (index: number) => `src/core/math/case-${index}.ts`;
+  const outside = (index: number) => `src/net/case-${index}.ts`;
+  let said: ReadonlyMap<string, string> | null = null;
+  const findings = (): ReadonlyMap<string, string> => {
+    const files = forbidden.flatMap(([code], index) =>
+      [inCore(index), outside(index)].map((path) => [path, `${code}\n`] as const),
+    );
+    const welcome = 'export const half = (x: number) => Math.sin(x) / Math.PI;\n';
+    said ??= lint({ ...Object.fromEntries(files), [mathematics]: welcome });
+    return said;
+  };
+
+  test.each(forbidden.map(([code, message], index) => [code, message, index] as const))('%s', (_, message, index) => {
+    expect(findings().get(inCore(index))).toContain(message);
+    expect(findings().get(outside(index)) ?? '').not.toContain(message);
   });
 
   test('mathematics is welcome', () => {
-    const { code, output } = lint('src/core/math/a.ts', 'export const half = (x: number) => Math.sin(x) / Math.PI;\n');
-    expect(output).toContain('Checked 1 file');
-    expect(code).toBe(0);
+    expect(findings().get(mathematics)).toBeUndefined();
   });
 });
 
-describe('core compiles without a browser and without Node', () => {
-  const compile = (code: string) => {
-    const directory = projectOf({ 'src/core/math/a.ts': code });
-    return runTool(directory, 'typescript/bin/tsc', '--noEmit', '-p', 'tsconfig.core.json');
-  };
+/** What the compiler says of each of these files under the rules of core, all in one program, as `path(line,column): …`. */
+function compileAsCore(files: Readonly<Record<string, string>>): readonly string[] {
+  const directory = projectOf(files);
+  const host = { ...typescript.sys, onUnRecoverableConfigFileDiagnostic: () => undefined };
+  const config = typescript.getParsedCommandLineOfConfigFile(join(directory, 'tsconfig.core.json'), {}, host);
+  if (!config) throw new Error('tsconfig.core.json could not be read');
+  expect(config.fileNames).toHaveLength(Object.keys(files).length);
+  const program = typescript.createProgram(config.fileNames, config.options);
+  return [...config.errors, ...typescript.getPreEmitDiagnostics(program)].map((diagnostic) =>
+    typescript.formatDiagnostic(diagnostic, {
+      getCurrentDirectory: () => directory,
+      getCanonicalFileName: (path) => path,
+      getNewLine: () => '\n',
+    }),
+  );
+}
 
-  test.each([
+describe('core compiles without a browser and without Node', () => {
+  const unknown = [
     'window.innerWidth',
     'performance.now()',
     'console.log(1)',
     'process.env',
     'document.title',
     'fetch("/")',
-  ])('%s is unknown there', (expression) => {
-    const { code, output } = compile(`export const a = () => ${expression};\n`);
-    expect(code).not.toBe(0);
-    expect(output).toContain('src/core/math/a.ts(1,');
+  ];
+  const path = (index: number) => `src/core/math/case-${index}.ts`;
+  let said: readonly string[] | null = null;
+  const errors = (): readonly string[] => {
+    const files = unknown.map((expression, index) => [path(index), `export const a = () => ${expression};\n`] as const);
+    const welcome = 'export const half = (x: number) => Math.sin(x) / Math.PI;\n';
+    said ??= compileAsCore({ ...Object.fromEntries(files), 'src/core/math/mathematics.ts': welcome });
+    return said;
+  };
+
+  test.each(unknown.map((expression, index) => [expression, index] as const))('%s is unknown there', (_, index) => {
+    expect(errors().filter((text) => text.startsWith(`${path(index)}(1,`))).not.toEqual([]);
   });
 
   test('mathematics compiles', () => {
-    expect(compile('export const half = (x: number) => Math.sin(x) / Math.PI;\n')).toEqual({ code: 0, output: '' });
+    expect(errors().filter((text) => !/^src\/core\/math\/case-\d\.ts\(/.test(text))).toEqual([]);
   });
 });

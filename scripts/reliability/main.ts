@@ -17,7 +17,7 @@ const suites = {
 };
 
 function runTests(script: string, args: readonly string[]): boolean {
-  const env = { ...process.env, RELIABILITY_FIGURES: told, THREEPOINT_NIGHTLY: '1' };
+  const env = { ...process.env, RELIABILITY_FIGURES: told, THREEPOINT_NIGHTLY: '1', THREEPOINT_TESTS: 'all' };
   return (
     spawnSync(process.execPath, [`node_modules/${script}`, ...args], { cwd: root, env, stdio: 'inherit' }).status === 0
   );

@@ -1,4 +1,4 @@
-import { faultRows, promiseRows, type Row, type RowName, rows } from '../../tests/reliability/rows';
+import { attackRows, faultRows, promiseRows, type Row, type RowName, rows } from '../../tests/reliability/rows';
 
 /** What the tests measured, by row and by the name of the figure. */
 export type Figures = Readonly<Partial<Record<RowName, Readonly<Record<string, string | number>>>>>;
@@ -53,6 +53,10 @@ ${table(faultRows, figures)}
 ## Promises
 
 ${table(promiseRows, figures)}
+
+## Attacks on the server
+
+${table(attackRows, figures)}
 
 ## By hand, with a headset
 

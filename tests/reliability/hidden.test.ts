@@ -4,6 +4,7 @@ import { defaultCalibration } from '../../src/core/body/calibration';
 import { createEstimator } from '../../src/core/estimation/estimators';
 import { allReleased } from '../../src/core/games/button-presses';
 import { createLoopbackHost } from '../../src/net/loopback-connection';
+import { poseOf } from '../core/estimation/drawn';
 import { measured } from './measured';
 
 const released = { left: allReleased, right: allReleased };
@@ -24,7 +25,7 @@ function person(host: ReturnType<typeof createLoopbackHost>, name: string, seat:
       play.begin(time);
       const performed = play.act(time);
       const seen = play.follow(time, performed?.frame ?? null, performed?.buttons ?? released);
-      if (performed) play.send(performed.frame, estimator.estimate(performed.frame), { left: 0, right: 0 });
+      if (performed) play.send(performed.frame, poseOf(estimator, performed.frame), { left: 0, right: 0 });
       return seen;
     },
   };

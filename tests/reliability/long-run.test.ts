@@ -4,6 +4,7 @@ import { expect, test } from 'vitest';
 import { createArcheryPlay } from '../../src/archery-play';
 import { defaultCalibration } from '../../src/core/body/calibration';
 import { createEstimator } from '../../src/core/estimation/estimators';
+import { poseOf } from '../core/estimation/drawn';
 import { isNightly } from '../nightly';
 import { measured } from './measured';
 
@@ -31,7 +32,7 @@ test('what plays and estimates keeps nothing of the rounds that are over', () =>
     time += 1 / 72;
     const { frame, buttons } = play.act(time);
     const { state } = play.follow(frame, buttons);
-    estimator.estimate(frame);
+    poseOf(estimator, frame);
     if (state.phase !== 'over') continue;
     expect(state.score).toBe(50);
     seed += 1;

@@ -7,13 +7,14 @@ import { distance, type Vec3, vec3 } from '../../src/core/math/vec3';
 import { decodePose, encodePose } from '../../src/core/protocol/pose-codec';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
 import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
+import { poseOf, show } from '../core/estimation/drawn';
 import { openShippedModel } from '../core/estimation/shipped-models';
 import { isNightly } from '../nightly';
 import { measured } from './measured';
 
 const skeleton = skeletonFromCalibration(defaultCalibration);
 
-/** Somebody who stands still, whose hands are lost or guessed for this long and then seen again. */
+/** A person who stands still, whose hands are lost or guessed for this long and then seen again. */
 function spoiled(
   time: number,
   which: 'left' | 'right' | 'both',
@@ -47,8 +48,7 @@ test('a wrist goes to rest and comes back without a jump, whichever hand, howeve
           let before: Record<'left' | 'right', Vec3> | null = null;
           for (let i = 0; i < (1.7 + seconds) * 60; i++) {
             const frame = spoiled(i / 60, which, how, seconds);
-            await estimator.prepare(frame);
-            const { body } = estimator.estimate(frame);
+            const { body } = await show(estimator, frame);
             if (!body) throw new Error(`${name} draws a body`);
             const joints = forwardKinematics(skeleton, body);
             const now = { left: joints.leftHand.position, right: joints.rightHand.position };
@@ -69,7 +69,7 @@ test('a wrist goes to rest and comes back without a jump, whichever hand, howeve
 test('others learn of it: null and emulated arrive as they are', () => {
   for (const how of ['null', 'emulated'] as const) {
     const frame = spoiled(0.6, 'left', how, 1);
-    const pose = createEstimator('ik', defaultCalibration).estimate(frame);
+    const pose = poseOf(createEstimator('ik', defaultCalibration), frame);
     const packet = { timeMs: 1, jump: false, pose, grips: { left: 0, right: 0 }, curls: { left: null, right: null } };
     const bytes = encodePose(packet, skeleton);
     const arrived = bytes && decodePose(bytes, skeleton);

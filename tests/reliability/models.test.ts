@@ -6,6 +6,7 @@ import { skeletonFromCalibration } from '../../src/core/body/skeleton';
 import { createEstimator } from '../../src/core/estimation/estimators';
 import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
+import { show } from '../core/estimation/drawn';
 import { openShippedModel } from '../core/estimation/shipped-models';
 import { measured } from './measured';
 
@@ -41,8 +42,7 @@ test('a network that breaks while it runs: no bone is ever NaN, the fault is kno
       let known: number | null = null;
       for (let i = 0; i < 40; i++) {
         const frame = actorFrame(3 + i / 72, defaultCalibration);
-        await estimator.prepare(frame);
-        const joints = forwardKinematics(skeleton, estimator.estimate(frame).body!);
+        const joints = forwardKinematics(skeleton, (await show(estimator, frame)).body!);
         for (const joint of jointNames) {
           const { position: p, orientation: o } = joints[joint];
           bones += 1;

@@ -15,6 +15,7 @@ import { identity } from '../../src/core/math/quat';
 import { add, distance, subtract, type Vec3, vec3 } from '../../src/core/math/vec3';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
 import type { TrackedPose, TrackingFrame } from '../../src/core/tracking/tracking-frame';
+import { poseOf } from '../core/estimation/drawn';
 import { measured } from './measured';
 
 const statures = [1.1, 1.2, 1.35, 1.5, 1.7, 1.9, 2.1, 2.2];
@@ -30,7 +31,7 @@ const sunk = (frame: TrackingFrame, by: number): TrackingFrame => {
   return { ...frame, head: lower(frame.head), leftHand: lower(frame.leftHand), rightHand: lower(frame.rightHand) };
 };
 
-/** Somebody who stands straight and stretches both arms forward. */
+/** A person who stands straight and stretches both arms forward. */
 function stretched(body: Calibration, time: number): TrackingFrame {
   const skeleton = skeletonFromCalibration(body);
   const upright = Object.fromEntries(jointNames.map((joint) => [joint, identity])) as Record<
@@ -52,7 +53,7 @@ function measuredInTwoSeconds(body: Calibration, lower: number): Calibration | s
   return state.kind === 'done' ? state.calibration : state.reason;
 }
 
-/** How far the drawn wrists are from the tracked ones, and how low the pelvis gets, while somebody of this body plays about. */
+/** How far the drawn wrists are from the tracked ones, and how low the pelvis gets, while a person of this body plays about. */
 function wear(body: Calibration, calibration: Calibration, lower: number) {
   const estimator = createEstimator('ik', calibration);
   const skeleton = skeletonFromCalibration(calibration);
@@ -60,7 +61,7 @@ function wear(body: Calibration, calibration: Calibration, lower: number) {
   let pelvis = Number.POSITIVE_INFINITY;
   for (let i = 0; i < 20 * 15; i++) {
     const frame = sunk(actorFrame(i / 15, body), lower);
-    const joints = forwardKinematics(skeleton, estimator.estimate(frame).body!);
+    const joints = forwardKinematics(skeleton, poseOf(estimator, frame).body!);
     for (const hand of ['leftHand', 'rightHand'] as const) {
       const wrist = frame[hand];
       if (wrist) off = Math.max(off, distance(joints[hand].position, wrist.position));
@@ -70,7 +71,7 @@ function wear(body: Calibration, calibration: Calibration, lower: number) {
   return { off, pelvis };
 }
 
-/** Somebody of each stature wears the body that `calibrationOf` gives them; the worst of them. */
+/** A person of each stature wears the body that `calibrationOf` gives them; the worst of them. */
 function worn(lower: (body: Calibration) => number, calibrationOf: (body: Calibration) => Calibration) {
   const seen = statures.map(bodyOf).map((body) => wear(body, calibrationOf(body), lower(body)));
   return {
@@ -103,7 +104,7 @@ test.each([
   },
 );
 
-test('a floor half a metre too low: nobody is measured wrongly; with the height typed, the body fits', () => {
+test('a floor half a metre too low: no one is measured wrongly; with the height typed, the body fits', () => {
   const lower = () => -0.5;
   // Stretched arms under a head that is too high look like the bent ones of somebody taller.
   for (const body of statures.map(bodyOf)) expect(measuredInTwoSeconds(body, lower())).toMatch(/type your height/);

@@ -15,6 +15,7 @@ import { rackPosition } from '../../src/core/games/ball/stations';
 import { createMatch } from '../../src/core/games/match';
 import { add, addScaled, distance, type Vec3, vec3 } from '../../src/core/math/vec3';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
+import { poseOf } from '../core/estimation/drawn';
 import { hold, inFront, leftThrower, stand, velocityTo } from '../core/games/ball/playing';
 import { measured } from './measured';
 
@@ -132,7 +133,7 @@ test('filters of the body come to the same joints at every rate', () => {
     const estimator = createEstimator('ik', defaultCalibration);
     // The last frame is common to all rates, wherever the others lay.
     const times = [...framesOf(rate, drop, 2), 2].map((time) => 10 + time);
-    const poses = times.map((time) => estimator.estimate(actorFrame(time, defaultCalibration)));
+    const poses = times.map((time) => poseOf(estimator, actorFrame(time, defaultCalibration)));
     return forwardKinematics(skeleton, poses.at(-1)!.body!);
   };
   const reference = bodyAt(120, never);

@@ -2,7 +2,7 @@
 export interface Row {
   /** What is done to the page, the headset or the server. */
   readonly inject: string;
-  /** What whoever plays must see then. */
+  /** What the wearer, a player or a client must see then. */
   readonly sees: string;
   readonly target: string;
   /** The tests that try it; each tells its figures to this row. */
@@ -26,7 +26,11 @@ export const faultRows = {
     inject: 'One or both hands null or emulated',
     sees: 'The arm is held for 0.1 s and sinks to rest in 2.5 s; the flag travels to others',
     target: 'no jump over 5 cm per frame (60 Hz), 200 ms blend',
-    tests: ['tests/reliability/lost-hands.test.ts', 'tests/core/tracking/hand-continuity.test.ts', 'e2e/hands.spec.ts'],
+    tests: [
+      'tests/reliability/lost-hands.test.ts',
+      'tests/core/estimation/complete-hands.test.ts',
+      'e2e/hands.spec.ts',
+    ],
     manual: [
       'Put one controller behind your back for two seconds and bring it back: the arm sinks and returns smoothly.',
     ],
@@ -95,6 +99,7 @@ export const faultRows = {
     target: 'a turn turns about the head: 0 mm; contrast 4.5 : 1',
     tests: [
       'tests/reliability/comfort.test.ts',
+      'tests/xr/tracker.test.ts',
       'tests/games/archery/boards.test.ts',
       'tests/games/archery/captions.test.ts',
       'tests/core/study/trial-log.test.ts',
@@ -133,6 +138,30 @@ export const faultRows = {
     sees: 'WASM takes over, else IK',
     target: '500 ms',
     tests: ['e2e/webgpu.spec.ts', 'e2e/models.spec.ts'],
+  },
+  'clock-steps': {
+    inject: 'Page time steps back or ahead by 5 or 20 s, and back again',
+    sees: 'Rules, bodies, built-in players, playback of others, recordings and the log of a trial go on at once',
+    target: 'no standstill; on by half a second at most; every frame once, in order',
+    tests: ['tests/reliability/clock-steps.test.ts', 'tests/page-clock.test.ts', 'tests/net/clock-sync.test.ts'],
+  },
+  'avatar-missing': {
+    inject: 'The address of an avatar answers 404, a web page, 61 MB, a compressed body, a body without bones',
+    sees: 'Our own body stands there until another has arrived, and stays; a sentence says why; the panel offers *Back to ours*',
+    target: 'our own body with the first picture, 5 of 5',
+    tests: ['e2e/avatar-address.spec.ts', 'tests/limited-files.test.ts'],
+  },
+  'bad-input': {
+    inject:
+      'A recording of 300 MB, an event of a button without its frame, switches that mean nothing, a storage that is denied',
+    sees: 'A sentence in words, once; nothing is read, thrown or lost',
+    target: '0 bytes read, 0 exceptions',
+    tests: [
+      'tests/limited-files.test.ts',
+      'tests/xr/frameless-events.test.ts',
+      'tests/ui/switches.test.ts',
+      'tests/ui/preferences.test.ts',
+    ],
   },
   'long-run': {
     inject: 'Twenty minutes of archery rounds by the actor (nightly)',
@@ -182,6 +211,75 @@ export const promiseRows = {
   },
 } as const satisfies Readonly<Record<string, Row>>;
 
-export type RowName = keyof typeof faultRows | keyof typeof promiseRows;
+/** Attacks on the server, and what strangers try: on the network, or by a page of another site in the browser of a person who uses this one. */
+export const attackRows = {
+  'raw-requests': {
+    inject:
+      '100,000 request lines, methods, headers and bodies by a grammar, over raw sockets, to every route (1,000 by day)',
+    sees: 'Each gets an answer with our headers; the process lives, health answers meanwhile',
+    target: '0 without an answer, 0 faults, health within 50 ms',
+    tests: ['tests/server/any-request.test.ts'],
+  },
+  'unwanted-bodies': {
+    inject: 'A body of 200 MB, announced or in chunks, for a page or a route that takes none or little',
+    sees: 'The refusal is heard, and the connection ends instead of reading on',
+    target: 'no more than the buffers of the system and 1 MiB',
+    tests: ['tests/server/door.test.ts'],
+  },
+  connections: {
+    inject: '1,500 silent TCP connections and WebSockets from one address, its limit 1,000',
+    sees: 'All are counted in health and metrics; those beyond the limit are ended at once, the others at the deadline of 5 s',
+    target: '0 open after the deadline; health of other addresses at most 5 ms later (p95)',
+    tests: ['tests/server/door.test.ts'],
+  },
+  'full-disk': {
+    inject: 'The disk of the studies is full',
+    sees: '507 and a sentence; what was acknowledged stays; writing goes on once there is room',
+    target: '0 acknowledged and lost',
+    tests: ['tests/server/study-routes.test.ts'],
+  },
+  'server-clock': {
+    inject: 'The clock of the server goes an hour ahead and an hour back, in a game and in a study',
+    sees: 'Rooms go on; passes are renewed; records keep their order and none is refused',
+    target: '0 players gone, 0 records refused',
+    tests: ['tests/server/server-clock.test.ts'],
+  },
+  'study-places': {
+    inject:
+      'Places of a study claimed without an invitation: by another site’s page, by a loop over all of them, by guesses',
+    sees: 'A sentence; the places stay free for those who were invited',
+    target: '0 places taken',
+    tests: ['tests/server/study-entry.test.ts', 'tests/server/study-store.test.ts'],
+  },
+  'other-sites': {
+    inject:
+      'Requests of pages of other sites: foreign origins, https origins at the http port, names pointed at this machine',
+    sees: 'Every one of them that would change something, or read what is not public, is refused',
+    target: '0 answered',
+    tests: ['tests/server/site-policy.test.ts', 'tests/server/study-entry.test.ts', 'tests/server/access.test.ts'],
+  },
+  'study-rooms': {
+    inject: 'A stranger looks for the room of a study’s trial, asks for a pass to it, forges one',
+    sees: 'It is in no list; its seats are signed for its participants; only an experimenter may watch',
+    target: '0 lists, 0 seats',
+    tests: ['tests/server/study-rooms.test.ts'],
+  },
+  guessing: {
+    inject:
+      '3000 guesses of the experimenter’s token, of withdrawal codes and of invitations, one after the other and all at once',
+    sees: 'Five are looked at, then one after 1, 2, 4 … seconds; the log has who guessed and never what',
+    target: '10 of 3000 looked at, at most',
+    tests: ['tests/server/study-entry.test.ts', 'tests/server/guess-limits.test.ts'],
+  },
+  access: {
+    inject:
+      'Every route and socket event as a stranger, a participant, another participant, an experimenter and another site',
+    sees: 'What docs/security.md says for each',
+    target: 'no route or event without a row; no cell that differs',
+    tests: ['tests/server/access.test.ts'],
+  },
+} as const satisfies Readonly<Record<string, Row>>;
 
-export const rows: Readonly<Record<RowName, Row>> = { ...faultRows, ...promiseRows };
+export type RowName = keyof typeof faultRows | keyof typeof promiseRows | keyof typeof attackRows;
+
+export const rows: Readonly<Record<RowName, Row>> = { ...faultRows, ...promiseRows, ...attackRows };

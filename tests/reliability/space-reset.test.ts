@@ -10,6 +10,7 @@ import { fromAxisAngle } from '../../src/core/math/quat';
 import { distance, up, vec3 } from '../../src/core/math/vec3';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
 import type { TrackedPose, TrackingFrame } from '../../src/core/tracking/tracking-frame';
+import { show } from '../core/estimation/drawn';
 import { openShippedModel } from '../core/estimation/shipped-models';
 import { measured } from './measured';
 
@@ -26,7 +27,7 @@ const recentred = (frame: TrackingFrame): TrackingFrame => ({
   rightHand: frame.rightHand && moved(frame.rightHand),
 });
 
-test('a space that is reset leaves no body on the way: the first frame is drawn as by somebody who has just come', async () => {
+test('a space that is reset leaves no body on the way: the first frame is drawn as of a person who has just come', async () => {
   const skeleton = skeletonFromCalibration(defaultCalibration);
   let worst = 0;
   let between = 0;
@@ -37,14 +38,12 @@ test('a space that is reset leaves no body on the way: the first frame is drawn 
     const [estimator, fresh] = [make(), make()];
     for (let i = 0; i < 90; i++) {
       const frame = actorFrame(4 + i / 72, defaultCalibration);
-      await estimator.prepare(frame);
-      estimator.estimate(frame);
+      await show(estimator, frame);
     }
     estimator.reset();
     for (let i = 90; i < 110; i++) {
       const frame = recentred(actorFrame(4 + i / 72, defaultCalibration));
-      await Promise.all([estimator.prepare(frame), fresh.prepare(frame)]);
-      const [pose, expected] = [estimator.estimate(frame), fresh.estimate(frame)];
+      const [pose, expected] = [await show(estimator, frame), await show(fresh, frame)];
       if (!pose.body || !expected.body) continue;
       const [joints, same] = [forwardKinematics(skeleton, pose.body), forwardKinematics(skeleton, expected.body)];
       const off = Math.max(...jointNames.map((joint) => distance(joints[joint].position, same[joint].position)));

@@ -23,22 +23,24 @@ const simulate = (changes: Partial<typeof models> = {}, seed = 1) =>
   simulateStudy(plan, { ...models, ...changes }, seed, start).flatMap(({ records }) => records);
 
 describe('a simulated study', () => {
+  const simulated = simulate();
+
   test('is the same for the same seed, and another for another', () => {
-    expect(simulate()).toEqual(simulate());
-    expect(simulate({}, 2)).not.toEqual(simulate());
+    expect(simulate()).toEqual(simulated);
+    expect(simulate({}, 2)).not.toEqual(simulated);
   });
 
   test('is marked in every record and by its name', () => {
     expect(plan.id).toBe('paper-simulated');
     expect(plan.title).toMatch(/^SIMULATED: /);
-    for (const record of simulate()) {
+    for (const record of simulated) {
       expect(record.simulated).toBe(true);
       expect(record.study).toBe('paper-simulated');
     }
   });
 
   test('holds what the store takes from people: complete answers, trials within their limits', () => {
-    const records = simulate();
+    const records = simulated;
     for (const record of records) expect(checkedRecord(JSON.parse(JSON.stringify(record)))).toEqual(record);
     const valid = trialsIn(records).filter(({ excluded }) => !excluded);
     expect(valid).toHaveLength(15 * 4);
@@ -57,7 +59,7 @@ describe('a simulated study', () => {
   });
 
   test('gives the three of a group the same score, and their throws add up to no more than twenty', () => {
-    const ball = simulate().flatMap((record) =>
+    const ball = simulated.flatMap((record) =>
       record.kind === 'trial' && record.body.place.task === 'ball' ? [record] : [],
     );
     for (const members of groupsOf(plan, 3)) {

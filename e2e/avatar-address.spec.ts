@@ -1,0 +1,85 @@
+import { EventEmitter, once } from 'node:events';
+import { changed, mannequin } from '../tests/avatar/glb';
+import { measured } from '../tests/reliability/measured';
+import { expect, joint, keepPicture, open, probe, test } from './page-fixture';
+
+test.use({ viewport: { width: 800, height: 500 } });
+
+const glb = (bytes: ArrayBuffer) => ({ contentType: 'model/gltf-binary', body: Buffer.from(bytes) });
+const compressed = () =>
+  changed((json) => {
+    json.extensionsUsed.push('EXT_meshopt_compression');
+    json.extensionsRequired = ['EXT_meshopt_compression'];
+    const extensions = {
+      EXT_meshopt_compression: { buffer: 0, byteLength: 10, byteStride: 4, count: 1, mode: 'ATTRIBUTES' },
+    };
+    for (const view of json.bufferViews) Object.assign(view, { extensions });
+  });
+const plain = () =>
+  changed((json) => {
+    for (const extension of ['extensions', 'extensionsUsed']) delete json[extension];
+  });
+
+/** What the address of an avatar may answer, and what is said of it. */
+const answers = {
+  'nothing.vrm': [() => ({ status: 404, body: 'no' }), /nothing\.vrm could not be shown: the server answers 404/],
+  'page.vrm': [() => ({ contentType: 'text/html', body: '<!doctype html><p>Welcome' }), /answers with a web page/],
+  'large.vrm': [() => glb(new ArrayBuffer(61 * 2 ** 20)), /more than 60 MB/],
+  'compressed.vrm': [() => glb(compressed()), /is compressed \(EXT_meshopt_compression\)/],
+  'plain.glb': [() => glb(plain()), /no humanoid in it/],
+} as const;
+
+test('an avatar of the address that does not arrive leaves our own body standing, and says why', async ({
+  page,
+  complaints,
+}) => {
+  test.setTimeout(240_000);
+  complaints.allow(/404 \(Not Found\)/);
+  let stood = 0;
+  for (const [name, [answer, sentence]] of Object.entries(answers)) {
+    await page.route(
+      ({ pathname }) => pathname === `/elsewhere/${name}`,
+      (route) => route.fulfill(answer()),
+    );
+    await open(page, `quality=low&estimator=ik&panel=off&avatar=/elsewhere/${name}`);
+    await joint(page, 'hips');
+    await expect(page.getByRole('alert').filter({ hasText: name })).toContainText(sentence);
+    expect(
+      (await probe(page)).notices.filter(({ level }) => level === 'error'),
+      name,
+    ).toHaveLength(1);
+    expect((await probe(page)).avatar).toMatchObject({ name: 'Mannequin' });
+    stood += 1;
+  }
+  await page.getByRole('button', { name: 'Controls' }).click();
+  await page.getByRole('tab', { name: 'Avatar' }).click();
+  await expect(page.getByText('plain.glb could not be shown.', { exact: true })).toBeVisible();
+  await keepPicture(page, 'avatar-refused');
+  await page.getByRole('button', { name: 'Back to ours' }).click();
+  await expect(page.getByRole('button', { name: 'Back to ours' })).toBeHidden();
+  expect(new URL(page.url()).searchParams.has('avatar')).toBe(false);
+  measured('avatar-missing', { 'our own body stands there': `${stood} of ${Object.keys(answers).length}` });
+});
+
+test('our own body stands there until the avatar of the address has arrived; the one asked for last is shown', async ({
+  page,
+}) => {
+  const letThrough = new EventEmitter();
+  const held = once(letThrough, 'now');
+  await page.route(
+    ({ pathname }) => pathname === '/elsewhere/slow.vrm',
+    async (route) => {
+      await held;
+      await route.fulfill(glb(mannequin()));
+    },
+  );
+  await open(page, 'quality=low&estimator=ik&avatar=/elsewhere/slow.vrm');
+  await joint(page, 'hips');
+  await page.getByRole('tab', { name: 'Avatar' }).click();
+  await expect(page.getByText('slow.vrm is on its way.')).toBeVisible();
+  await expect(page.getByRole('button', { name: 'Back to ours' })).toBeVisible();
+  letThrough.emit('now');
+  await expect.poll(async () => (await probe(page)).avatar.name).toBe('slow.vrm');
+  await page.getByRole('button', { name: 'Back to ours' }).click();
+  await expect.poll(async () => (await probe(page)).avatar.name).toBe('Mannequin');
+});

@@ -1,0 +1,85 @@
+import { join } from 'node:path';
+import { buildWhenStale } from './build.mjs';
+import { ensureChromium } from './chromium.mjs';
+import { pythonEnvironment } from './python-environment.mjs';
+
+const node = (script, ...args) => [process.execPath, join('node_modules', script), ...args];
+
+const pytest = async ({ extras, marker, report }) => {
+  const python = await pythonEnvironment({ extras });
+  return [[python, '-m', 'pytest', 'training', '-m', marker, '-p', 'no:cacheprovider', `--junitxml=${report}`]];
+};
+
+/** Unit tests: 'day' all but those in *.full.test.ts, 'full' those alone, 'all' (vitest.config.ts). */
+const vitest = (tests, report, ...args) => {
+  process.env.THREEPOINT_TESTS = tests;
+  return [
+    node('vitest/vitest.mjs', 'run', ...args, '--reporter=default', '--reporter=json', `--outputFile.json=${report}`),
+  ];
+};
+
+/** Browser tests: 'day' those without a mark, 'full' those marked @full, 'nightly' those marked @nightly (playwright.config.ts). */
+const playwright = (tests) => async (report) => {
+  process.env.CHROMIUM_PATH = await ensureChromium();
+  process.env.PLAYWRIGHT_JSON_OUTPUT_NAME = report;
+  process.env.THREEPOINT_TESTS = tests;
+  await buildWhenStale();
+  return [node('@playwright/test/cli.js', 'test', '--reporter=list,json')];
+};
+
+/**
+ * Each stage: the commands it consists of (report: where its runner leaves the outcome), its runner, how long it may take, and the suite it
+ * belongs to: 'day' (npm test), 'full' (npm run test:full), 'training', 'nightly'.
+ */
+export const stages = {
+  types: {
+    suite: 'day',
+    commands: () => [
+      node('typescript/bin/tsc', '--noEmit'),
+      node('typescript/bin/tsc', '--noEmit', '-p', 'tsconfig.core.json'),
+    ],
+  },
+  lint: { suite: 'day', commands: () => [node('@biomejs/biome/bin/biome', 'check', '.')] },
+  dependencies: {
+    suite: 'day',
+    commands: () => [
+      node(
+        ...['dependency-cruiser/bin/dependency-cruise.mjs', '--config', '.dependency-cruiser.mjs'],
+        ...['src', 'server', 'tests', 'e2e', 'bench'],
+      ),
+    ],
+  },
+  unit: {
+    suite: 'day',
+    runner: 'vitest',
+    commands: (report) => vitest('day', report),
+  },
+  python: {
+    suite: 'day',
+    runner: 'pytest',
+    commands: (report) => pytest({ extras: [], marker: 'not training', report }),
+  },
+  e2e: { suite: 'day', runner: 'playwright', commands: playwright('day') },
+  'unit-full': { suite: 'full', runner: 'vitest', commands: (report) => vitest('full', report) },
+  'e2e-full': { suite: 'full', runner: 'playwright', limitSeconds: 1200, commands: playwright('full') },
+  training: {
+    suite: 'training',
+    runner: 'pytest',
+    limitSeconds: 1200,
+    commands: (report) => pytest({ extras: ['train'], marker: 'training', report }),
+  },
+  // Every unit test once more, with more cases of each property and longer runs.
+  'unit-nightly': {
+    suite: 'nightly',
+    runner: 'vitest',
+    limitSeconds: 3600,
+    commands: (report) => {
+      process.env.PROPERTY_RUNS ??= '5000';
+      return vitest('all', report, '--testTimeout=600000');
+    },
+  },
+  'e2e-nightly': { suite: 'nightly', runner: 'playwright', limitSeconds: 5400, commands: playwright('nightly') },
+};
+
+/** The names of the stages of a suite, in their order. */
+export const stagesOf = (suite) => Object.keys(stages).filter((name) => stages[name].suite === suite);

@@ -1,0 +1,240 @@
+import { describe, expect, test } from 'vitest';
+import { createArcheryPlay, probeOf } from '../../src/archery-play';
+import { createBallPlay } from '../../src/ball-play';
+import type { AvatarPose } from '../../src/core/body/avatar-pose';
+import { defaultCalibration } from '../../src/core/body/calibration';
+import { createEstimator } from '../../src/core/estimation/estimators';
+import { type Buttons, nothingPressed } from '../../src/core/games/button-presses';
+import { distance } from '../../src/core/math/vec3';
+import { actorFrame, actorLoopSeconds } from '../../src/core/tracking/actor-motion';
+import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
+import { createFrameLoop } from '../../src/frame-loop';
+import { createFrameTiming } from '../../src/frame-timing';
+import { createLoopbackHost } from '../../src/net/loopback-connection';
+import { createPageClock } from '../../src/page-clock';
+import { createRecorder } from '../../src/recorder';
+import { createArcheryRunner } from '../../src/study-archery';
+import { type PlayedStep, playTrial } from '../../src/study-trial';
+import { measured } from './measured';
+
+const frameMs = 1000 / 72;
+/** Steps of the page's time [s], each taken back again a while later. */
+const steps = [-5, -20, 5, 20];
+
+interface Part {
+  track?(time: number): { readonly frame: TrackingFrame; readonly buttons: Buttons } | null;
+  observe?(frame: TrackingFrame, buttons: Buttons): void;
+  skin?(pose: AvatarPose, frame: TrackingFrame): void;
+  render?(time: number, frame: TrackingFrame | null): void;
+}
+
+/** The page's frame loop at 72 Hz over a device whose time stamps leap as told. */
+function page(part: Part) {
+  let stamp = 30_000;
+  let buttons = nothingPressed;
+  const estimator = createEstimator('ik', defaultCalibration);
+  const faults: unknown[] = [];
+  const loop = createFrameLoop<never>(
+    {
+      resumed: () => estimator.reset(),
+      track(time) {
+        const performed = part.track ? part.track(time) : null;
+        buttons = performed?.buttons ?? nothingPressed;
+        return performed?.frame ?? actorFrame(time, defaultCalibration);
+      },
+      observe: (frame) => part.observe?.(frame, buttons),
+      estimator: () => estimator,
+      afterwards: () => undefined,
+      skin: (pose, frame) => part.skin?.(pose, frame),
+      render: (time, frame) => part.render?.(time, frame),
+      fail: (error) => void faults.push(error),
+    },
+    createFrameTiming(() => stamp),
+    createPageClock(() => stamp),
+  );
+  return {
+    faults,
+    leap(seconds: number) {
+      stamp += seconds * 1000;
+    },
+    run(seconds: number) {
+      for (let i = 0; i < Math.round(seconds * 72); i++) {
+        stamp += frameMs;
+        void loop(stamp);
+      }
+    },
+  };
+}
+
+describe.each(steps)('page time leaps by %d s, and back 4 s later', (step) => {
+  test('a round of archery goes on at once, both times', () => {
+    const play = createArcheryPlay(
+      defaultCalibration,
+      () => ({ bowSide: 'left', oneHanded: false, everyHitCounts: false }),
+      () => 7,
+    );
+    const { run, leap, faults } = page({
+      track: (time) => play.act(time),
+      observe: (frame, buttons) => void play.follow(frame, buttons),
+    });
+    const secondsLeft = () => (play.newest ? probeOf(play.newest).secondsLeft : Number.NaN);
+    const until = (condition: () => boolean) => {
+      for (let i = 0; i < 60 && !condition(); i++) run(0.25);
+    };
+    until(() => play.newest?.state.phase === 'running');
+    expect(play.newest?.state.phase).toBe('running');
+    let standing = 0;
+    let leapt = 0;
+    for (const by of [step, -step]) {
+      leap(by);
+      const before = secondsLeft();
+      run(1 / 72);
+      const first = before - secondsLeft();
+      leapt = Math.max(leapt, first);
+      run(2);
+      const passed = before - secondsLeft() - first;
+      standing = Math.max(standing, 2 - passed);
+      expect(first).toBeGreaterThanOrEqual(0);
+      expect(first).toBeLessThanOrEqual(0.53);
+      expect(passed).toBeCloseTo(2, 1);
+      run(2);
+    }
+    until(() => play.newest?.state.phase === 'over');
+    expect(play.newest?.state).toMatchObject({ end: 'targets', score: 50 });
+    expect(faults).toEqual([]);
+    measured('clock-steps', {
+      [`archery, ${step} s and back`]: `stands still ${Math.abs(standing).toFixed(2)} s, first frame ${leapt.toFixed(2)} s`,
+    });
+  });
+
+  test('a ball game with two built-in players goes on, theirs included', () => {
+    const host = createLoopbackHost({ kind: 'ball', seed: 5, ball: { seconds: 60 } });
+    const play = createBallPlay({
+      connect: host.connect,
+      visitor: { name: 'Robin', calibration: defaultCalibration },
+      bots: () => true,
+      acting: () => true,
+      seed: 3,
+    });
+    const shown = new Map<number, number>();
+    let opacity = 1;
+    const { run, leap, faults } = page({
+      track(time) {
+        play.begin(time);
+        return play.act(time);
+      },
+      observe(frame, buttons) {
+        const seen = play.follow(frame.time, frame, buttons);
+        for (const body of seen?.bodies ?? []) {
+          shown.set(body.id, (shown.get(body.id) ?? 0) + 1);
+          opacity = Math.min(opacity, body.opacity);
+        }
+      },
+      skin: (pose, frame) => play.send(frame, pose, { left: 0, right: 0 }),
+    });
+    for (let i = 0; i < 40 && play.probe()?.phase !== 'running'; i++) run(0.25);
+    expect(play.probe()?.phase).toBe('running');
+    run(3);
+    opacity = 1;
+    for (const by of [step, -step]) {
+      leap(by);
+      const before = play.probe()?.secondsLeft ?? Number.NaN;
+      shown.clear();
+      run(4);
+      const passed = before - (play.probe()?.secondsLeft ?? Number.NaN);
+      expect(passed).toBeGreaterThan(3.9);
+      expect(passed).toBeLessThan(4.6);
+      expect([...shown.values()]).toEqual([288, 288]);
+      expect(opacity, 'no player becomes a ghost').toBe(1);
+    }
+    expect(play.probe()?.score).toBeGreaterThan(0);
+    expect(faults).toEqual([]);
+  });
+
+  test('the body moves on in its own time: no hand leaps further than a frame moves it', () => {
+    let last: { readonly pose: AvatarPose; readonly time: number } | null = null;
+    let furthest = 0;
+    const { run, leap, faults } = page({
+      skin(pose, { time }) {
+        const hand = pose.leftHand;
+        const before = last?.pose.leftHand;
+        if (hand && before) {
+          expect(time).toBeGreaterThan(last?.time ?? Number.NaN);
+          furthest = Math.max(furthest, distance(hand.position, before.position) / (time - (last?.time ?? 0)));
+        }
+        last = { pose, time };
+      },
+    });
+    run(actorLoopSeconds + 1);
+    const usual = furthest;
+    for (const by of [step, -step]) {
+      leap(by);
+      run(4);
+    }
+    expect(furthest).toBeLessThanOrEqual(usual * 1.05);
+    expect(faults).toEqual([]);
+  });
+
+  test('a recording and the log of a trial have every frame once, in order', () => {
+    const recorder = createRecorder();
+    const play = createArcheryPlay(
+      defaultCalibration,
+      () => ({ bowSide: 'left', oneHanded: false, everyHitCounts: false, startSignal: true }),
+      () => 7,
+    );
+    const runner = createArcheryRunner({
+      goToArchery: async () => undefined,
+      startRound() {
+        play.restart(defaultCalibration);
+        play.signal();
+      },
+      resetRound: () => undefined,
+      assists: () => [],
+    });
+    const trial = playTrial(
+      {
+        kind: 'trial',
+        id: 'archery/1/trial-1',
+        task: 'archery',
+        block: 1,
+        repetition: 1,
+        condition: 'ik',
+        estimator: 'ik',
+        seconds: 70,
+      } as PlayedStep,
+      runner,
+      {
+        calibration: () => defaultCalibration,
+        device: () => ({ name: 'a test', refreshRateHz: 72, input: 'simulated' }),
+        estimator: () => 'ik',
+        listenToFrames: () => undefined,
+      },
+      { key: 'a', motion: true, seed: 7 },
+    );
+    recorder.record({ device: 'actor', rateHz: 72, calibration: defaultCalibration });
+    let finished: ReturnType<typeof trial.follow> = null;
+    const { run, leap, faults } = page({
+      track: (time) => play.act(time),
+      observe(frame, buttons) {
+        recorder.observe(frame);
+        runner.played(play.follow(frame, buttons));
+      },
+      render(time, frame) {
+        finished ??= trial.follow(time, frame);
+      },
+    });
+    run(2);
+    for (const by of [step, -step]) {
+      leap(by);
+      run(2);
+    }
+    expect(recorder.frameCount).toBe(6 * 72);
+    for (let i = 0; i < 400 && !finished; i++) run(0.25);
+    const log = finished as unknown as NonNullable<ReturnType<typeof trial.follow>>;
+    const times = log.outcome.events.map(({ time }) => time);
+    expect(times).toEqual([...times].sort((a, b) => a - b));
+    expect(log.outcome.events).toHaveLength(4);
+    expect(log.recording).not.toBeNull();
+    expect(faults).toEqual([]);
+  });
+});
