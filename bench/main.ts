@@ -1,18 +1,20 @@
 import { writeFileSync } from 'node:fs';
-import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
 import { type Browser, chromium } from '@playwright/test';
 import { findChromium } from '../scripts/chromium.mjs';
 import { createPageHandler } from '../server/page';
 import { serve, type WebServer } from '../server/web-server';
 import { stageNames } from '../src/frame-timing';
+import { type Allocations, builtIn, measureAllocations } from './allocations';
 import type { PageResult } from './page/main';
 
 /** Bytes of the first visit, as sent and as unpacked. */
 type Bytes = Record<'app' | 'wasm' | 'models' | 'avatars', number>;
 
-const { values: options } = parseArgs({ options: { json: { type: 'string' } } });
-const built = (folder: string) => fileURLToPath(new URL(`../${folder}`, import.meta.url));
+const { values: options, positionals } = parseArgs({
+  options: { json: { type: 'string' }, allocations: { type: 'boolean' } },
+  allowPositionals: true,
+});
 
 /** Finer clocks need isolation: without it performance.now() moves in steps of 0.1 ms. */
 function serveIsolated(folder: string): Promise<WebServer> {
@@ -28,7 +30,7 @@ function serveIsolated(folder: string): Promise<WebServer> {
 }
 
 async function measureFrames(browser: Browser): Promise<PageResult> {
-  const server = await serveIsolated(built('.cache/bench'));
+  const server = await serveIsolated(builtIn('.cache/bench'));
   const page = await browser.newPage({ viewport: { width: 480, height: 270 } });
   try {
     await page.goto(`http://127.0.0.1:${server.port}/`);
@@ -44,7 +46,7 @@ async function measureFrames(browser: Browser): Promise<PageResult> {
 
 /** Opens the real page afresh: when the first body is on the screen, and what had to travel for it. */
 async function measureVisit(browser: Browser): Promise<{ readonly firstBodyMs: number; readonly bytes: Bytes }> {
-  const server = await serve(createPageHandler(built('dist')), { host: '127.0.0.1', port: 0 });
+  const server = await serve(createPageHandler(builtIn('dist')), { host: '127.0.0.1', port: 0 });
   const times: number[] = [];
   let bytes: Bytes = { app: 0, wasm: 0, models: 0, avatars: 0 };
   try {
@@ -94,12 +96,39 @@ const browser = await chromium.launch({
     '--disable-sync',
   ],
 });
-try {
-  const visit = await measureVisit(browser);
-  const frames = await measureFrames(browser);
-  const result = { ...frames, ...visit };
-  const row = (label: string, cells: readonly (string | number)[]) =>
-    console.log(`  ${label.padEnd(14)}${cells.map((cell) => String(cell).padStart(12)).join('')}`);
+const row = (label: string, cells: readonly (string | number)[]) =>
+  console.log(`  ${label.padEnd(14)}${cells.map((cell) => String(cell).padStart(12)).join('')}`);
+
+function tellAllocations({ bytes: { update, ...frames } }: Allocations): void {
+  console.log('\nWhat a frame leaves to the collector [kB]');
+  const measured = Object.entries({ ...update, ...frames }).filter(([, bytes]) => Number.isFinite(bytes));
+  for (const [name, bytes] of measured) row(name, [(bytes / 1000).toFixed(1)]);
+}
+
+/** Where it comes from, down to where the rest is small change. */
+function tellSites({ sites }: Allocations): void {
+  for (const [name, places] of Object.entries(sites)) {
+    console.log(`\n${name}: the functions that leave most [bytes a frame]`);
+    for (const { name: site, at, bytes } of places.slice(0, 40))
+      console.log(`  ${String(bytes).padStart(8)}  ${site.padEnd(36)} ${at}`);
+  }
+}
+
+async function measureWhereAllocated(browser: Browser): Promise<void> {
+  const allocations = await measureAllocations(
+    browser,
+    { page: builtIn('.cache/bench-of-page'), bench: builtIn('.cache/bench') },
+    positionals.length > 0 ? positionals : undefined,
+  );
+  tellSites(allocations);
+  tellAllocations(allocations);
+  if (options.json) writeFileSync(options.json, `${JSON.stringify(allocations, null, 2)}\n`);
+}
+
+const share = (value: number) => `${(100 * value).toFixed(1)} %`;
+
+/** By method: within the frame, with what it leaves for later, and the whole. */
+function tellCosts(frames: PageResult): void {
   const { first, settled, shown } = frames.costs;
   for (const [title, table] of [
     ['In the animation frame, after ten seconds of it [ms]', settled.inFrameMs],
@@ -117,6 +146,9 @@ try {
     for (const [name, { p50, p95, p99 }] of Object.entries(table))
       row(name, [p50.toFixed(3), p95.toFixed(3), p99.toFixed(3)]);
   }
+}
+
+function tellStages(frames: PageResult): void {
   console.log('\nStages, median, after ten seconds [ms]');
   row('', stageNames);
   for (const [name, stages] of Object.entries(frames.stagesMs))
@@ -124,11 +156,13 @@ try {
       name,
       stageNames.map((stage) => stages[stage].toFixed(3)),
     );
+}
+
+function tellArchery(frames: PageResult): void {
   console.log("\nA round of archery, frame on the page's own thread [ms]; missed: share later than that rate allows");
   row('', ['min', 'mean', 'p50', 'p95', 'max', '72 Hz', '90 Hz', 'drawn p50', 'drawn p95', 'points']);
   for (const [name, times] of Object.entries(frames.archery)) {
     const { min, mean, p50, p95, max, missed72, missed90, drawnP50, drawnP95, score } = times;
-    const share = (value: number) => `${(100 * value).toFixed(1)} %`;
     row(name, [
       ...[min, mean, p50, p95, max].map((ms) => ms.toFixed(2)),
       share(missed72),
@@ -138,6 +172,9 @@ try {
       score,
     ]);
   }
+}
+
+function tellCourt(frames: PageResult): void {
   console.log("\nThe ball court, frame on the page's own thread [ms]; each other avatar's part of it");
   row('', [
     'avatars',
@@ -156,7 +193,6 @@ try {
   for (const [name, crowds] of Object.entries(frames.ball)) {
     for (const times of crowds) {
       const { avatars, min, mean, p50, p95, max, missed72, missed90, drawnP50, drawnP95 } = times;
-      const share = (value: number) => `${(100 * value).toFixed(1)} %`;
       row(name, [
         avatars,
         ...[min, mean, p50, p95, max].map((ms) => ms.toFixed(2)),
@@ -169,6 +205,11 @@ try {
       ]);
     }
   }
+}
+
+type Visit = Awaited<ReturnType<typeof measureVisit>>;
+
+function tellLoading(frames: PageResult, visit: Visit): void {
   const whole = (values: Readonly<Record<string, number>>) =>
     Object.entries(values)
       .map(([name, value]) => `${name} ${value.toFixed(0)}`)
@@ -179,7 +220,24 @@ try {
   console.log(`First body on the screen: ${visit.firstBodyMs} ms after opening the page (median of 3)`);
   const kilobytes = Object.entries(visit.bytes).map(([kind, size]) => `${kind} ${(size / 1000).toFixed(0)} kB`);
   console.log(`First visit, unpacked: ${kilobytes.join(', ')}`);
+}
+
+async function measureEverything(browser: Browser): Promise<void> {
+  const visit = await measureVisit(browser);
+  const frames = await measureFrames(browser);
+  const allocations = await measureAllocations(browser, { page: builtIn('dist'), bench: builtIn('.cache/bench') });
+  const result = { ...frames, ...visit, allocationBytes: allocations.bytes };
+  tellCosts(frames);
+  tellStages(frames);
+  tellArchery(frames);
+  tellCourt(frames);
+  tellLoading(frames, visit);
+  tellAllocations(allocations);
   if (options.json) writeFileSync(options.json, `${JSON.stringify(result, null, 2)}\n`);
+}
+
+try {
+  await (options.allocations ? measureWhereAllocated(browser) : measureEverything(browser));
 } finally {
   await browser.close();
 }

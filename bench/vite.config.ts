@@ -7,5 +7,10 @@ export default defineConfig({
   root: path('./page'),
   publicDir: path('../public'),
   worker: { format: 'es' },
-  build: { outDir: path('../.cache/bench'), emptyOutDir: true, target: 'es2022' },
+  build: {
+    outDir: path('../.cache/bench'),
+    emptyOutDir: true,
+    target: 'es2022',
+    rolldownOptions: { input: [path('./page/index.html'), path('./page/allocations.html')] },
+  },
 });

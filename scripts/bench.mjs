@@ -1,4 +1,6 @@
 // npm run bench [-- --json FILE]: what a frame costs, by estimator and by stage, in headless Chromium.
+// npm run bench -- --allocations [ik paper learned mirror archery ball3 ball8 stillScene]: only what frames leave to the collector, and which
+// functions leave it.
 import { resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { buildWhenStale } from './build.mjs';
@@ -6,18 +8,27 @@ import { ensureChromium } from './chromium.mjs';
 import { ensureInstalled } from './installation.mjs';
 import { main, root, run } from './run-command.mjs';
 
+const vite = (...options) => run('npx', ['vite', 'build', '--logLevel', 'warn', ...options], { cwd: root });
+/** Functions keep their names, and a map leads back to the sources. */
+const readable = ['--minify', 'false', '--sourcemap'];
+
 await main(async () => {
-  const { values } = parseArgs({ options: { json: { type: 'string' } } });
+  const { values, positionals } = parseArgs({
+    options: { json: { type: 'string' }, allocations: { type: 'boolean' } },
+    allowPositionals: true,
+  });
   await ensureInstalled();
   await ensureChromium();
-  await buildWhenStale();
-  const page = await run('npx', ['vite', 'build', '--config', 'bench/vite.config.ts', '--logLevel', 'warn'], {
-    cwd: root,
-  });
+  if (values.allocations) {
+    const { code } = await vite('--outDir', '.cache/bench-of-page', '--emptyOutDir', ...readable);
+    if (code !== 0) return code;
+  } else await buildWhenStale();
+  const page = await vite('--config', 'bench/vite.config.ts', ...(values.allocations ? readable : []));
   if (page.code !== 0) return page.code;
   const measure = ['--import', 'tsx', 'bench/main.ts'];
   // The path means what it means to the person who typed it.
   if (values.json) measure.push('--json', resolve(process.env.INIT_CWD ?? process.cwd(), values.json));
+  if (values.allocations) measure.push('--allocations', ...positionals);
   const { code } = await run(process.execPath, measure, { cwd: root });
   return code;
 });

@@ -70,10 +70,12 @@ export async function measureArchery(stage: ArcheryStage): Promise<Record<Estima
         const { frame, buttons } = round.play.act(round.frame / rateHz);
         const { state, bow, time, events, cues } = round.play.follow(frame, buttons);
         view.hear(events, cues);
-        avatar.apply(estimator.estimate(frame), frame.time);
+        const { pose, request } = estimator.update(frame);
+        avatar.apply(pose, frame.time);
         view.show(state, bow, time, frame.head);
+        mirror.reflect(renderer, arena.scene, camera);
         renderer.render(arena.scene, camera);
-        void estimator.prepare(frame);
+        void request?.ask();
         const ended = performance.now();
         gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
         round.frame += 1;

@@ -1,17 +1,16 @@
 import { createRemoteAvatars, type SeenPerson } from '../../src/avatar/remote-avatars';
 import { defaultCalibration } from '../../src/core/body/calibration';
-import { skeletonFromCalibration } from '../../src/core/body/skeleton';
-import { createEstimator } from '../../src/core/estimation/estimators';
 import { type EstimatorName, estimatorNames } from '../../src/core/estimation/pose-estimator';
 import { ballRules } from '../../src/core/games/ball/rules';
 import { composeTransforms, invertTransform } from '../../src/core/math/pose';
-import { decodePose, encodePose } from '../../src/core/protocol/pose-codec';
+import { decodePose } from '../../src/core/protocol/pose-codec';
 import { arenaFromFloorOf } from '../../src/core/room/seat-places';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
 import { createBallView } from '../../src/games/ball/ball-view';
 import { createRemotePlayers } from '../../src/net/remote-players';
 import type { ArcheryStage } from './archery';
 import { type FrameTimes, frameTimes } from './frame-times';
+import { createSenders } from './senders';
 
 /** Avatars in all, one's own among them, and what each of the others costs on the page's thread: median and p95 [ms per frame]. */
 export interface CourtTimes extends FrameTimes {
@@ -26,35 +25,6 @@ const settleFrames = 6;
 const countedFrames = 48;
 const rateHz = 60;
 const packetHz = 30;
-
-/** What others send: the actor's performance, everybody at another place of it, as packets. */
-function createSenders(count: number) {
-  const skeleton = skeletonFromCalibration(defaultCalibration);
-  const senders = Array.from({ length: count }, (_, index) => ({
-    seat: index + 1,
-    estimator: createEstimator('ik', defaultCalibration),
-    shift: 2.7 * index,
-  }));
-  return {
-    skeleton,
-    packetsAt: (time: number) =>
-      senders.map(({ seat, estimator, shift }) => {
-        const frame = actorFrame(time + shift, defaultCalibration);
-        const bytes = encodePose(
-          {
-            timeMs: Math.round(time * 1000) & 0xffff,
-            jump: false,
-            pose: estimator.estimate(frame),
-            grips: { left: 0, right: 0 },
-            curls: { left: null, right: null },
-          },
-          skeleton,
-        );
-        if (!bytes) throw new Error('a pose of the actor does not fit into a packet');
-        return { seat, bytes };
-      }),
-  };
-}
 
 /** The court with 1, 3, 8 and 16 avatars and each estimator for one's own: the paper's table 6, and more. */
 export async function measureCourt(
@@ -98,7 +68,8 @@ export async function measureCourt(
         if (due.length > 0) sent = Math.floor(time * packetHz);
         const started = performance.now();
         const frame = actorFrame(time, defaultCalibration);
-        avatar.apply(estimator.estimate(frame), frame.time);
+        const { pose, request } = estimator.update(frame);
+        avatar.apply(pose, frame.time);
         const receiving = performance.now();
         for (const { seat, bytes } of due) {
           const packet = decodePose(bytes, senders.skeleton);
@@ -125,11 +96,15 @@ export async function measureCourt(
           rotate: false,
           opening: null,
           aim: null,
+          secondsLeft: 90,
+          pageTime: time,
+          inRoom: true,
+          acting: true,
           paused: false,
           head: frame.head,
         });
         renderer.render(arena.scene, camera);
-        void estimator.prepare(frame);
+        void request?.ask();
         const ended = performance.now();
         gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
         const complete = people.length === avatars - 1 && people.every(({ id }) => others.jointsOf(id) !== null);

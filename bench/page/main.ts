@@ -1,7 +1,7 @@
 import { PerspectiveCamera } from 'three';
 import { createAfterFrame } from '../../src/after-frame';
 import { createAvatar } from '../../src/avatar/avatar';
-import { loadAvatar } from '../../src/avatar/load-avatar';
+import { parseAvatar } from '../../src/avatar/load-avatar';
 import { createMirror } from '../../src/avatar/mirror';
 import type { AvatarPose } from '../../src/core/body/avatar-pose';
 import { defaultCalibration } from '../../src/core/body/calibration';
@@ -101,13 +101,19 @@ async function measure(): Promise<PageResult> {
   const arena = createArena(renderer, 'low');
   // As the page has it where graphics are drawn in software.
   const mirror = createMirror({ distance: 1.5, resolution: 256, samples: 0 });
-  const avatar = createAvatar(await loadAvatar('/avatars/mannequin.vrm'));
+  const avatar = createAvatar(
+    await parseAvatar(await (await fetch('/avatars/mannequin.vrm')).arrayBuffer(), 'mannequin.vrm'),
+  );
   arena.scene.add(mirror.object, avatar.object);
   avatar.fitTo(defaultCalibration);
   const camera = new PerspectiveCamera(42, 480 / 270, 0.05, 90);
   camera.position.set(1.9, 1.5, 2.75);
   camera.lookAt(0, 1, -0.4);
 
+  const draw = () => {
+    mirror.reflect(renderer, arena.scene, camera);
+    renderer.render(arena.scene, camera);
+  };
   const timing = createFrameTiming(() => performance.now());
   const regressors: Partial<Record<Method, PoseRegressor>> = {};
   for (const name of estimatorNames.filter(needsRegressor)) {
@@ -139,21 +145,23 @@ async function measure(): Promise<PageResult> {
   let skinned: AvatarPose | null = null;
   const loop = createFrameLoop<never>(
     {
-      track: (timeMs) => actorFrame(timeMs / 1000, defaultCalibration),
+      resumed: () => undefined,
+      track: (time) => actorFrame(time, defaultCalibration),
       observe: () => undefined,
       estimator: () => estimators[method],
-      inferenceSettlesInFrame: () => false,
       afterwards: createAfterFrame(),
       skin(pose, frame) {
         avatar.apply(pose, frame.time);
         if (pose.body) skinned = pose;
       },
-      render: () => renderer.render(arena.scene, camera),
+      render: () => draw(),
       fail(error) {
         failure = error;
       },
     },
     timing,
+    // Every round is dated alike: the same motion for every method.
+    { frame: (timestampMs) => timestampMs / 1000, paused: false },
   );
 
   const gl = renderer.getContext();
@@ -176,9 +184,9 @@ async function measure(): Promise<PageResult> {
         withLaterNow = inFrameNow;
         // It solves a rig of its own; the avatar is skinned all the same, so that the frame is as much work.
         if (skinned) avatar.apply(skinned, frame.time);
-        renderer.render(arena.scene, camera);
+        draw();
       } else {
-        await loop(timeMs);
+        loop(timeMs);
         inFrameNow = spent.kinematics;
         withLaterNow = spent.features + spent.inference + spent.kinematics;
       }

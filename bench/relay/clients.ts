@@ -2,7 +2,7 @@
 import { WebSocket } from 'ws';
 import { defaultCalibration } from '../../src/core/body/calibration';
 import { skeletonFromCalibration } from '../../src/core/body/skeleton';
-import { createIk } from '../../src/core/estimation/ik';
+import { createIk } from '../../src/core/estimation/estimators';
 import { protocolVersion } from '../../src/core/protocol/messages';
 import { encodePose } from '../../src/core/protocol/pose-codec';
 import { decodeFrame } from '../../src/core/protocol/pose-frame';
@@ -13,7 +13,7 @@ import type { Heard, Load } from './conversation';
 function packet(): Uint8Array {
   const skeleton = skeletonFromCalibration(defaultCalibration);
   const frame = actorFrame(10, defaultCalibration);
-  const pose = createIk(defaultCalibration).estimate(frame);
+  const { pose } = createIk(defaultCalibration).update(frame);
   const bytes = encodePose(
     { timeMs: 0, jump: false, pose, grips: { left: 0, right: 0 }, curls: { left: null, right: null } },
     skeleton,

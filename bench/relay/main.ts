@@ -25,7 +25,7 @@ const seconds = Number(options.seconds);
 const bound = 20;
 /** Poses that arrive nowhere are no service: at least this share of those sent must reach the others. */
 const leastDelivered = 0.8;
-const secret = 'the bench signs its own passes with this';
+const secret = 'bench-kN3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gAzE4uV7iO';
 
 interface Row {
   readonly relay: RelaySort;
@@ -60,6 +60,8 @@ const start = (name: string): ChildProcess =>
       THREEPOINT_LOG_LEVEL: 'warn',
       THREEPOINT_POSES_PER_SECOND: '200',
       THREEPOINT_OPEN_SEATS: '16',
+      // All of the load comes from one address.
+      THREEPOINT_CONNECTIONS_PER_ADDRESS: '100000',
     },
   });
 const heard = <Message>(child: ChildProcess): Promise<Message> =>

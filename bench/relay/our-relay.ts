@@ -1,5 +1,6 @@
 // The relay as it ships, in a process of its own.
-import type { AddressInfo } from 'node:net';
+import { createDoor } from '../../server/door';
+import { createRouter, noPage } from '../../server/http/router';
 import { createRelay } from '../../server/relay';
 import { relayConfigurationFrom } from '../../server/relay-configuration';
 import { serve } from '../../server/web-server';
@@ -10,14 +11,16 @@ const tell = (answer: RelayAnswer): void => {
 };
 
 const configuration = relayConfigurationFrom(process.env);
-let relay: ReturnType<typeof createRelay> | null = null;
-const server = await serve((request, response) => void relay?.handle(request, response), {
+const door = createDoor({ perAddress: configuration.connectionsPerAddress, behindProxy: configuration.trustProxy });
+const relay = createRelay(configuration, configuration.secret ?? '', door);
+const server = await serve(createRouter([relay.service], noPage), {
   host: '127.0.0.1',
   port: 0,
+  upgrade: relay.upgrade,
+  door,
 });
-relay = createRelay(server.requests, configuration, configuration.secret ?? '');
 process.on('message', () => {
   const { user, system } = process.cpuUsage();
   tell({ cpuMicroseconds: user + system, rssBytes: process.memoryUsage.rss() });
 });
-tell({ port: (server.requests.address() as AddressInfo).port });
+tell({ port: server.port });
