@@ -1,19 +1,17 @@
 // Who may import whom (docs: the design's "Who may import whom"). Every rule says in its comment what it protects.
 // Type-only imports count too (tsPreCompilationDeps): a type from the wrong side is the first step of the wrong dependency.
 
-/**
- * Each folder of core and the folders of core it may know. Body and tracking stand side by side: a tracked pose is part of an
- * avatar's pose, and where an unseen hand rests depends on the body (no-cycles keeps their modules in order).
- */
+/** Each folder of core and the folders of core it may know, from the ground up. */
 const coreFolders = {
+  errors: [],
   math: [],
-  tracking: ['math', 'body'],
-  body: ['math', 'tracking'],
-  estimation: ['math', 'tracking', 'body'],
-  games: ['math', 'tracking'],
-  protocol: ['math', 'tracking', 'body', 'games'],
-  room: ['math', 'tracking', 'body', 'games', 'protocol'],
-  study: ['math', 'tracking', 'body', 'estimation'],
+  body: ['math'],
+  tracking: ['math', 'body', 'errors'],
+  estimation: ['math', 'body', 'tracking', 'errors'],
+  games: ['math', 'body', 'tracking'],
+  protocol: ['math', 'body', 'tracking', 'games'],
+  room: ['math', 'body', 'tracking', 'games', 'protocol', 'errors'],
+  study: ['math', 'body', 'tracking', 'estimation', 'errors'],
 };
 
 const coreRules = Object.entries(coreFolders).map(([folder, known]) => ({
@@ -30,7 +28,7 @@ const coreRules = Object.entries(coreFolders).map(([folder, known]) => ({
 /** `import 'three'` resolves into node_modules; a package that is not installed keeps its bare name. */
 const packagePath = (...names) => `(^|node_modules/)(${names.join('|')})(/|$)`;
 
-const adapters = 'xr|inference|avatar|scene|games|net|study|ui';
+const adapters = 'xr|inference|avatar|scene|net|ui';
 const testsAndTools = '^(tests|e2e|bench|scripts)/';
 
 export default {
@@ -79,31 +77,54 @@ export default {
     {
       name: 'adapters-are-strangers',
       comment:
-        'Adapters (one per outside thing) never know each other, or replacing one would mean changing another. main.ts and ' +
-        'the frame loop introduce them. All may use scene.',
+        'Adapters (one per outside thing) never know each other, or replacing one would mean changing another: the page ' +
+        'introduces them. All may use scene.',
       severity: 'error',
       from: { path: `^src/(${adapters})/` },
       to: { path: `^src/(${adapters})/`, pathNot: '^src/($1|scene)/' },
+    },
+    {
+      name: 'nothing-loose-in-src',
+      comment: 'A file belongs to a room, and the room says whom it may know.',
+      severity: 'error',
+      from: { path: `^src/(?!(core|${adapters}|app|pages|styles)/)` },
+      to: {},
+    },
+    {
+      name: 'adapters-know-no-page',
+      comment: 'Core and adapters are used by pages, ours and others; they never know the page they are used by.',
+      severity: 'error',
+      from: { path: `^src/(core|${adapters})/` },
+      to: { path: '^src/(app|pages)/' },
+    },
+    {
+      name: 'activities-are-strangers',
+      comment:
+        'A game, the studio and the study can each be taken away: they know neither each other nor the shell, which introduces them.',
+      severity: 'error',
+      from: { path: '^src/app/(archery|ball|study|studio)/' },
+      to: { path: '^src/app/', pathNot: '^src/app/$1/' },
     },
     {
       name: 'nobody-imports-main',
       comment: 'main.ts builds everything; who needs something from it should be given it.',
       severity: 'error',
       from: {},
-      to: { path: '^src/main\\.ts$' },
+      to: { path: '^src/app/main\\.ts$' },
     },
     {
-      name: 'only-main-runs-the-frame-loop',
-      comment: 'The frame loop is the top of one frame: adapters are called by it, never the other way round.',
+      name: 'pages-stand-alone',
+      comment:
+        "The experimenter's and the results page load in a moment: nothing of the body, the games or the page that plays them.",
       severity: 'error',
-      from: { path: `^src/(core|${adapters})/` },
-      to: { path: '^src/[^/]+\\.ts$' },
+      from: { path: '^src/pages/' },
+      to: { path: '^src/', pathNot: '^src/(pages|core|net|ui|styles)/' },
     },
     {
       name: 'three-draws',
       comment: "Three's vectors are live objects: they stay where things are drawn and are copied at the border.",
       severity: 'error',
-      from: { path: '^(src|server)/', pathNot: '^src/(xr|avatar|scene|games|ui)/|^src/main\\.ts$' },
+      from: { path: '^(src|server)/', pathNot: '^src/(xr|avatar|scene|ui|app)/' },
       to: { path: packagePath('three', '@types/three', '@pixiv/[^/]+') },
     },
     {

@@ -4,7 +4,7 @@ import { type Browser, chromium } from '@playwright/test';
 import { findChromium } from '../scripts/chromium.mjs';
 import { createPageHandler } from '../server/page';
 import { serve, type WebServer } from '../server/web-server';
-import { stageNames } from '../src/frame-timing';
+import { stageNames } from '../src/app/shell/frame-timing';
 import { type Allocations, builtIn, measureAllocations } from './allocations';
 import type { PageResult } from './page/main';
 

@@ -1,4 +1,4 @@
-import type { ArcheryProbe } from '../src/archery-play';
+import type { ArcheryProbe } from '../src/app/archery/archery-play';
 import { driveTime, holdAt } from './driven-time';
 import type { EmulatedHeadset, Rotation } from './emulated-headset';
 import { emulatedHeadset, frames } from './emulated-headset';

@@ -2,7 +2,7 @@ import { spawn } from 'node:child_process';
 import { createServer } from 'node:net';
 import { fileURLToPath } from 'node:url';
 import type { Browser } from '@playwright/test';
-import type { BallProbe } from '../src/ball-frame';
+import type { BallProbe } from '../src/app/ball/ball-frame';
 import { driveTime, goOn, holdAt } from './driven-time';
 import { emulatedHeadset } from './emulated-headset';
 import { enterVr, expect, keepPicture, open, probe, test } from './page-fixture';

@@ -3,8 +3,8 @@ import { fileURLToPath } from 'node:url';
 import { type Browser, test as base, type ConsoleMessage, expect, type Page, type Request } from '@playwright/test';
 import { createPageHandler } from '../server/page';
 import { serve } from '../server/web-server';
+import type { Probe } from '../src/app/shell/probe';
 import type { EstimatorName } from '../src/core/estimation/pose-estimator';
-import type { Probe } from '../src/probe';
 import { driveTime, letTimePass } from './driven-time';
 import { type EmulatedHeadset, emulatedHeadset, frames, type Point } from './emulated-headset';
 

@@ -6,7 +6,7 @@ import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { parsePlan, type StudyPlan } from '../src/core/study/plan';
 import type { ParticipantState } from '../src/core/study/study-api';
-import { studyLink } from '../src/study/study-link';
+import { studyLink } from '../src/net/study-link';
 
 export const experimenterToken = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 

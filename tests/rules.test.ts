@@ -76,11 +76,15 @@ describe('the import rules', () => {
     ['which needs nothing else', 'core-statistics-is-pure', { 'src/core/study/statistics.ts': "import 'valibot';" }],
     ['core imports no Node', 'core-is-pure', { 'src/core/math/a.ts': "import 'node:fs';" }],
     ['adapters do not meet', 'adapters-are-strangers', { 'src/ui/a.ts': "import '../xr/b';", 'src/xr/b.ts': empty }],
-    ['main is the top', 'nobody-imports-main', { 'src/frame-loop.ts': "import './main';", 'src/main.ts': empty }],
+    [
+      'main is the top',
+      'nobody-imports-main',
+      { 'src/app/shell/frame-loop.ts': "import './main';", 'src/app/main.ts': empty },
+    ],
     [
       'adapters do not call the loop',
       'only-main-runs-the-frame-loop',
-      { 'src/ui/a.ts': "import '../frame-loop';", 'src/frame-loop.ts': empty },
+      { 'src/ui/a.ts': "import '../frame-loop';", 'src/app/shell/frame-loop.ts': empty },
     ],
     ['three stays where things are drawn', 'three-draws', { 'src/net/a.ts': "import 'three';" }],
     [
@@ -89,7 +93,11 @@ describe('the import rules', () => {
       { 'src/inference/a.ts': "import type { Vector3 } from 'three';\nexport type A = Vector3;" },
     ],
     ['and its VRM loader', 'three-draws', { 'src/study/a.ts': "import '@pixiv/three-vrm';" }],
-    ['the runtime stays behind inference', 'onnxruntime-infers', { 'src/main.ts': "import 'onnxruntime-web/wasm';" }],
+    [
+      'the runtime stays behind inference',
+      'onnxruntime-infers',
+      { 'src/app/main.ts': "import 'onnxruntime-web/wasm';" },
+    ],
     ['sockets stay in net and server', 'socket-io-connects', { 'src/ui/a.ts': "import 'socket.io-client';" }],
     ['the database stays in one file', 'sqlite-stores', { 'server/a.ts': "import '@photostructure/sqlite';" }],
     [
@@ -127,7 +135,7 @@ describe('the import rules', () => {
       'src/avatar/mirror.ts':
         "import 'three';\nimport '@pixiv/three-vrm';\nimport '../scene/renderer';\nimport '../core/body/skeleton';",
       'src/inference/regressor.ts': "import 'onnxruntime-web/wasm';\nimport '../core/estimation/estimators';",
-      'src/main.ts': "import './avatar/mirror';\nimport './inference/regressor';",
+      'src/app/main.ts': "import './avatar/mirror';\nimport './inference/regressor';",
       'server/main.ts': "import 'node:http';\nimport '../src/core/math/vec3';",
     };
     expect(await brokenImportRules(allowed)).toEqual([]);

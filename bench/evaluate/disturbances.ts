@@ -1,8 +1,9 @@
+import type { TrackedPose } from '../../src/core/body/avatar-pose';
 import type { Side } from '../../src/core/body/joints';
 import { rotate, slerp } from '../../src/core/math/quat';
 import { nextRandom } from '../../src/core/math/random';
 import { add, lerp, type Vec3 } from '../../src/core/math/vec3';
-import type { TrackedPose, TrackingFrame } from '../../src/core/tracking/tracking-frame';
+import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
 import type { MeasuredFrame } from './measures';
 import { type RecordedFrame, type TruthJoint, truthJoints } from './recordings';
 

@@ -1,10 +1,11 @@
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import * as v from 'valibot';
+import type { TrackedPose } from '../../src/core/body/avatar-pose';
 import type { Calibration } from '../../src/core/body/calibration';
 import type { Quat } from '../../src/core/math/quat';
 import { type Vec3, vec3 } from '../../src/core/math/vec3';
-import type { TrackedPose, TrackingFrame } from '../../src/core/tracking/tracking-frame';
+import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
 
 /** What training/threepoint_training/recordings.py writes. */
 const indexSchema = v.object({

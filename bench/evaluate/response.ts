@@ -1,8 +1,9 @@
+import type { TrackedPose } from '../../src/core/body/avatar-pose';
 import type { Calibration } from '../../src/core/body/calibration';
 import { fromAxisAngle, identity, multiply, type Quat } from '../../src/core/math/quat';
 import { nextRandom } from '../../src/core/math/random';
 import { add, dot, length, normalise, scale, subtract, type Vec3, vec3 } from '../../src/core/math/vec3';
-import type { TrackedPose, TrackingFrame } from '../../src/core/tracking/tracking-frame';
+import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
 import type { Driver } from './drive';
 
 /** The calibration of the person who stands there. */

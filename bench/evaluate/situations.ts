@@ -1,9 +1,10 @@
+import type { TrackedPose } from '../../src/core/body/avatar-pose';
 import type { Calibration } from '../../src/core/body/calibration';
 import { invertTransform, type Transform, transformPoint, transformPose } from '../../src/core/math/pose';
 import { fromAxisAngle, multiply } from '../../src/core/math/quat';
 import { nextRandom } from '../../src/core/math/random';
 import { right, up, type Vec3, vec3 } from '../../src/core/math/vec3';
-import type { TrackedPose, TrackingFrame } from '../../src/core/tracking/tracking-frame';
+import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
 import {
   type Loss,
   loseHands,

@@ -1,4 +1,6 @@
 import { PerspectiveCamera } from 'three';
+import { createBallView } from '../../src/app/ball/ball-view';
+import { createStudio } from '../../src/app/studio/studio';
 import { createAvatar } from '../../src/avatar/avatar';
 import { parseAvatar } from '../../src/avatar/load-avatar';
 import { createRemoteAvatars, type SeenPerson } from '../../src/avatar/remote-avatars';
@@ -10,10 +12,8 @@ import { composeTransforms, invertTransform } from '../../src/core/math/pose';
 import { decodePose } from '../../src/core/protocol/pose-codec';
 import { arenaFromFloorOf } from '../../src/core/room/seat-places';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
-import { createBallView } from '../../src/games/ball/ball-view';
 import { loadRegressor } from '../../src/inference/load-regressor';
 import { createRemotePlayers } from '../../src/net/remote-players';
-import { createArena } from '../../src/scene/arena';
 import { createRenderer } from '../../src/scene/renderer';
 import { createSenders } from './senders';
 
@@ -53,11 +53,11 @@ function picture() {
   if (!canvas) throw new Error('no canvas');
   const renderer = createRenderer(canvas, 'low');
   renderer.setSize(480, 270, false);
-  const arena = createArena(renderer, 'low');
+  const studio = createStudio(renderer, 'low');
   const camera = new PerspectiveCamera(42, 480 / 270, 0.05, 90);
   camera.position.set(1.2, 2.1, 3.4);
   camera.lookAt(0, 0.9, -2.5);
-  return { arena, draw: () => renderer.render(arena.scene, camera) };
+  return { studio, draw: () => renderer.render(studio.scene, camera) };
 }
 
 function stillScene(): FrameOf {
@@ -66,16 +66,16 @@ function stillScene(): FrameOf {
 
 /** A court of eight: one's own body, and seven whose packets arrive. */
 async function crowd(): Promise<FrameOf> {
-  const { arena, draw } = picture();
+  const { studio, draw } = picture();
   const view = createBallView({ quality: 'low', balls: 20, onCaption: () => undefined });
   const floorFromArena = invertTransform(arenaFromFloorOf(0, bodies, null));
-  arena.setSurroundings(view.placed(floorFromArena));
+  studio.setSurroundings(view.placed(floorFromArena));
   const avatar = createAvatar(
     await parseAvatar(await (await fetch('/avatars/mannequin.vrm')).arrayBuffer(), 'mannequin.vrm'),
   );
   avatar.fitTo(defaultCalibration);
   const others = createRemoteAvatars(await (await fetch('/avatars/mannequin.vrm')).arrayBuffer(), 'mannequin.vrm');
-  arena.scene.add(avatar.object, others.object);
+  studio.scene.add(avatar.object, others.object);
   const estimator = createEstimator('ik', defaultCalibration);
   const senders = createSenders(bodies - 1);
   const skeleton = skeletonFromCalibration(defaultCalibration);

@@ -1,13 +1,13 @@
 import type { PerspectiveCamera, WebGLRenderer } from 'three';
-import { createArcheryPlay } from '../../src/archery-play';
+import { createArcheryPlay } from '../../src/app/archery/archery-play';
+import { createArcheryView } from '../../src/app/archery/archery-view';
+import type { Studio } from '../../src/app/studio/studio';
 import type { Avatar } from '../../src/avatar/avatar';
 import type { Mirror } from '../../src/avatar/mirror';
 import { defaultCalibration } from '../../src/core/body/calibration';
 import { type EstimatorName, estimatorNames, type PoseEstimator } from '../../src/core/estimation/pose-estimator';
 import { identity } from '../../src/core/math/quat';
 import { zero } from '../../src/core/math/vec3';
-import { createArcheryView } from '../../src/games/archery/archery-view';
-import type { Arena } from '../../src/scene/arena';
 import { type FrameTimes, frameTimes } from './frame-times';
 
 /** Frame times of a whole round as in the paper's table 5, and its result: all play the same one to its end. */
@@ -17,7 +17,7 @@ export interface RoundTimes extends FrameTimes {
 
 export interface ArcheryStage {
   readonly renderer: WebGLRenderer;
-  readonly arena: Arena;
+  readonly studio: Studio;
   readonly avatar: Avatar;
   readonly mirror: Mirror;
   readonly camera: PerspectiveCamera;
@@ -33,7 +33,7 @@ const longestRound = 40;
 
 /** The built-in archer plays one round with each estimator, block by block in turns. */
 export async function measureArchery(stage: ArcheryStage): Promise<Record<EstimatorName, RoundTimes>> {
-  const { renderer, arena, avatar, mirror, camera, estimators } = stage;
+  const { renderer, studio, avatar, mirror, camera, estimators } = stage;
   const settings = { bowSide: 'left', oneHanded: false, everyHitCounts: false } as const;
   const rounds = estimatorNames.map((name) => {
     const play = createArcheryPlay(
@@ -49,8 +49,8 @@ export async function measureArchery(stage: ArcheryStage): Promise<Record<Estima
     distances: (rounds[0]?.play.targets ?? []).map(({ distance }) => distance),
     onCaption: () => undefined,
   });
-  arena.setSurroundings(view.range);
-  arena.scene.add(view.bow);
+  studio.setSurroundings(view.range);
+  studio.scene.add(view.bow);
   mirror.place(1.95, -0.1, -1.3);
   camera.position.set(-1.35, 1.85, 3.3);
   camera.lookAt(0.15, 0.8, -2);
@@ -73,8 +73,8 @@ export async function measureArchery(stage: ArcheryStage): Promise<Record<Estima
         const { pose, request } = estimator.update(frame);
         avatar.apply(pose, frame.time);
         view.show(state, bow, time, frame.head);
-        mirror.reflect(renderer, arena.scene, camera);
-        renderer.render(arena.scene, camera);
+        mirror.reflect(renderer, studio.scene, camera);
+        renderer.render(studio.scene, camera);
         void request?.ask();
         const ended = performance.now();
         gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
@@ -87,7 +87,7 @@ export async function measureArchery(stage: ArcheryStage): Promise<Record<Estima
   }
   view.bow.removeFromParent();
   view.dispose();
-  arena.setSurroundings(null);
+  studio.setSurroundings(null);
   return Object.fromEntries(
     rounds.map(({ name, play, frame, thread, drawn }) => [
       name,

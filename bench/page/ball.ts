@@ -1,3 +1,4 @@
+import { createBallView } from '../../src/app/ball/ball-view';
 import { createRemoteAvatars, type SeenPerson } from '../../src/avatar/remote-avatars';
 import { defaultCalibration } from '../../src/core/body/calibration';
 import { type EstimatorName, estimatorNames } from '../../src/core/estimation/pose-estimator';
@@ -6,7 +7,6 @@ import { composeTransforms, invertTransform } from '../../src/core/math/pose';
 import { decodePose } from '../../src/core/protocol/pose-codec';
 import { arenaFromFloorOf } from '../../src/core/room/seat-places';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
-import { createBallView } from '../../src/games/ball/ball-view';
 import { createRemotePlayers } from '../../src/net/remote-players';
 import type { ArcheryStage } from './archery';
 import { type FrameTimes, frameTimes } from './frame-times';
@@ -30,15 +30,15 @@ const packetHz = 30;
 export async function measureCourt(
   stage: ArcheryStage & { readonly mannequin: ArrayBuffer },
 ): Promise<Record<EstimatorName, readonly CourtTimes[]>> {
-  const { renderer, arena, avatar, mirror, camera, estimators, mannequin } = stage;
+  const { renderer, studio, avatar, mirror, camera, estimators, mannequin } = stage;
   const view = createBallView({ quality: 'low', balls: 20, onCaption: () => undefined });
   const own = arenaFromFloorOf(0, 16, null);
   const floorFromArena = invertTransform(own);
-  arena.setSurroundings(view.placed(floorFromArena));
+  studio.setSurroundings(view.placed(floorFromArena));
   mirror.setVisible(false);
   const state = ballRules.start(['a', 'b', 'c'], 1);
   const others = createRemoteAvatars(mannequin, 'mannequin.vrm');
-  arena.scene.add(others.object);
+  studio.scene.add(others.object);
   camera.position.set(1.2, 2.1, 3.4);
   camera.lookAt(0, 0.9, -2.5);
   const gl = renderer.getContext();
@@ -103,7 +103,7 @@ export async function measureCourt(
           paused: false,
           head: frame.head,
         });
-        renderer.render(arena.scene, camera);
+        renderer.render(studio.scene, camera);
         void request?.ask();
         const ended = performance.now();
         gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
@@ -129,6 +129,6 @@ export async function measureCourt(
   }
   others.dispose();
   view.dispose();
-  arena.setSurroundings(null);
+  studio.setSurroundings(null);
   return results;
 }

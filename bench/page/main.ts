@@ -1,5 +1,8 @@
 import { PerspectiveCamera } from 'three';
-import { createAfterFrame } from '../../src/after-frame';
+import { createAfterFrame } from '../../src/app/shell/after-frame';
+import { createFrameLoop, withTiming } from '../../src/app/shell/frame-loop';
+import { createFrameTiming, type StageName, stageNames } from '../../src/app/shell/frame-timing';
+import { createStudio } from '../../src/app/studio/studio';
 import { createAvatar } from '../../src/avatar/avatar';
 import { parseAvatar } from '../../src/avatar/load-avatar';
 import { createMirror } from '../../src/avatar/mirror';
@@ -11,11 +14,8 @@ import { type EstimatorName, estimatorNames, type PoseEstimator } from '../../sr
 import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
 import { nextRandom } from '../../src/core/math/random';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
-import { createFrameLoop, withTiming } from '../../src/frame-loop';
-import { createFrameTiming, type StageName, stageNames } from '../../src/frame-timing';
 import { loadRegressor, parseContract } from '../../src/inference/load-regressor';
 import { createSession } from '../../src/inference/session';
-import { createArena } from '../../src/scene/arena';
 import { createRenderer } from '../../src/scene/renderer';
 import { measureArchery, type RoundTimes } from './archery';
 import { type CourtTimes, measureCourt } from './ball';
@@ -98,21 +98,21 @@ async function measure(): Promise<PageResult> {
   if (!canvas) throw new Error('no canvas');
   const renderer = createRenderer(canvas, 'low');
   renderer.setSize(480, 270, false);
-  const arena = createArena(renderer, 'low');
+  const studio = createStudio(renderer, 'low');
   // As the page has it where graphics are drawn in software.
   const mirror = createMirror({ distance: 1.5, resolution: 256, samples: 0 });
   const avatar = createAvatar(
     await parseAvatar(await (await fetch('/avatars/mannequin.vrm')).arrayBuffer(), 'mannequin.vrm'),
   );
-  arena.scene.add(mirror.object, avatar.object);
+  studio.scene.add(mirror.object, avatar.object);
   avatar.fitTo(defaultCalibration);
   const camera = new PerspectiveCamera(42, 480 / 270, 0.05, 90);
   camera.position.set(1.9, 1.5, 2.75);
   camera.lookAt(0, 1, -0.4);
 
   const draw = () => {
-    mirror.reflect(renderer, arena.scene, camera);
-    renderer.render(arena.scene, camera);
+    mirror.reflect(renderer, studio.scene, camera);
+    renderer.render(studio.scene, camera);
   };
   const timing = createFrameTiming(() => performance.now());
   const regressors: Partial<Record<Method, PoseRegressor>> = {};
@@ -220,9 +220,9 @@ async function measure(): Promise<PageResult> {
     await runRound(round, 'shown');
   }
   timing.listen(null);
-  const archery = await measureArchery({ renderer, arena, avatar, mirror, camera, estimators });
+  const archery = await measureArchery({ renderer, studio, avatar, mirror, camera, estimators });
   const mannequin = await (await fetch('/avatars/mannequin.vrm')).arrayBuffer();
-  const ball = await measureCourt({ renderer, arena, avatar, mirror, camera, estimators, mannequin });
+  const ball = await measureCourt({ renderer, studio, avatar, mirror, camera, estimators, mannequin });
   const told = (values: Record<Method, number[]>) =>
     Object.fromEntries(methods.map((name) => [name, quantiles(values[name])])) as Record<Method, Quantiles>;
   return {

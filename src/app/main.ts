@@ -1,34 +1,33 @@
-import { createActivities } from './activities';
-import { createAfterFrame } from './after-frame';
-import { createControls } from './controls';
-import { type Calibration, provisionalCalibration } from './core/body/calibration';
-import { createHeightWatch } from './core/body/height-watch';
-import { createEstimator } from './core/estimation/estimators';
-import { type Buttons, nothingPressed } from './core/games/button-presses';
-import type { TrackingFrame } from './core/tracking/tracking-frame';
-import { createEstimatorChoice } from './estimator-choice';
-import { createFrameLoop, withTiming } from './frame-loop';
-import { createFrameTiming } from './frame-timing';
-import { createHeadset } from './headset';
-import { joinStudy } from './join-study';
-import { createPageClock } from './page-clock';
-import { exposeProbe } from './probe';
-import { firstLine, reasonOf } from './reasons';
-import { createRecorder } from './recorder';
-import { affordableQuality } from './scene/renderer';
-import { createSettings } from './settings';
-import { createShownAvatar } from './shown-avatar';
-import { createStage, type Shot } from './stage';
-import type { StudyRun } from './study-run';
-import { pageElement } from './ui/element';
-import { createEnterButton } from './ui/enter-button';
-import { estimatorTexts } from './ui/estimator-texts';
-import { createMouseAim } from './ui/mouse-aim';
-import { createNotices } from './ui/notices';
-import { browserStorage, createPreferenceStore } from './ui/preferences';
-import { createProgress } from './ui/progress';
-import { readSwitches } from './ui/switches';
-import { createActor } from './xr/actor';
+import { type Calibration, provisionalCalibration } from '../core/body/calibration';
+import { firstLine, reasonOf } from '../core/errors/reasons';
+import { createEstimator } from '../core/estimation/estimators';
+import { type Buttons, nothingPressed } from '../core/games/button-presses';
+import { createHeightWatch } from '../core/tracking/height-watch';
+import { createPageClock } from '../core/tracking/page-clock';
+import type { TrackingFrame } from '../core/tracking/tracking-frame';
+import { affordableQuality } from '../scene/renderer';
+import { pageElement } from '../ui/element';
+import { createEnterButton } from '../ui/enter-button';
+import { createMouseAim } from '../ui/mouse-aim';
+import { createNotices } from '../ui/notices';
+import { createProgress } from '../ui/progress';
+import { createActor } from '../xr/actor';
+import { createActivities, type JoinedStudy } from './shell/activities';
+import { createAfterFrame } from './shell/after-frame';
+import { createControls } from './shell/controls';
+import { createEstimatorChoice } from './shell/estimator-choice';
+import { estimatorTexts } from './shell/estimator-texts';
+import { createFrameLoop, withTiming } from './shell/frame-loop';
+import { createFrameTiming } from './shell/frame-timing';
+import { createHeadset } from './shell/headset';
+import { joinStudy } from './shell/join-study';
+import { browserStorage, createPreferenceStore } from './shell/preferences';
+import { exposeProbe } from './shell/probe';
+import { createSettings } from './shell/settings';
+import { createShownAvatar } from './shell/shown-avatar';
+import { createStage, type Shot } from './shell/stage';
+import { readSwitches } from './shell/switches';
+import { createRecorder } from './studio/recorder';
 
 /** Where our own networks lie, on our own server. */
 const modelsAt = '/models/';
@@ -69,14 +68,14 @@ async function start(): Promise<void> {
 
   // Everything that travels starts at once; only then is anything built.
   const avatar = createShownAvatar({
-    scene: () => arena.scene,
+    scene: () => studio.scene,
     settings,
     body: bodyNow,
     notices,
     onChange: () => controls.show(),
   });
   const avatarArrives = avatar.openOwn((part) => progress.report('the avatar', part));
-  const inferenceArrives = import('./inference/load-regressor');
+  const inferenceArrives = import('../inference/load-regressor');
   inferenceArrives.catch(() => undefined);
 
   const timing = createFrameTiming(() => performance.now());
@@ -85,7 +84,7 @@ async function start(): Promise<void> {
   const quality = switches.quality ?? affordableQuality();
   document.body.classList.toggle('low-quality', quality === 'low');
   const stage = createStage(canvas, quality);
-  const { arena, view, renderer } = stage;
+  const { studio, view, renderer } = stage;
   mark('scene');
 
   const choice = createEstimatorChoice({
@@ -119,7 +118,7 @@ async function start(): Promise<void> {
   let buttons: Buttons = nothingPressed;
   let newestFrame: TrackingFrame | null = null;
   /** A study that the address asks for; it decides what is played and with which body. */
-  let study: StudyRun | null = null;
+  let study: JoinedStudy | null = null;
 
   /** The body that fits whoever moves: a recording brings its own person along. */
   function bodyNow(): Calibration {
@@ -156,7 +155,7 @@ async function start(): Promise<void> {
     heightWatch.reset();
     refit();
     controls.show();
-    study?.sessionChanged();
+    study?.run.sessionChanged();
   }
 
   const headset = createHeadset({
@@ -226,7 +225,7 @@ async function start(): Promise<void> {
     headset,
     avatar,
     activities,
-    study: () => study,
+    study: () => study?.run ?? null,
     calibrate,
     replays(body) {
       replayedBody = body;
@@ -250,7 +249,7 @@ async function start(): Promise<void> {
     buttons = nothingPressed;
     activities.begin(time);
     if (headset.worn) {
-      if (emulator && settings.actor && !study?.idle) {
+      if (emulator && settings.actor && !study?.run.idle) {
         // What the actor does now is seen with the next frame: the device froze this one before it called.
         const performed = perform(time);
         emulator.drive(performed.frame, performed.buttons);
@@ -270,7 +269,7 @@ async function start(): Promise<void> {
 
   /** Somebody who never calibrated is as tall as their headset hangs high, once it hangs there calmly. */
   function settle(frame: TrackingFrame): void {
-    if (store.preferences.calibration || study?.measured) return;
+    if (store.preferences.calibration || study?.run.measured) return;
     const height = headset.settledHeight(frame);
     if (height !== null) calibrate(provisionalCalibration(height), 'from the headset’s height', false);
   }
@@ -316,7 +315,7 @@ async function start(): Promise<void> {
       },
       render(time, frame) {
         frameCount += 1;
-        study?.frame(time, frame);
+        study?.run.frame(time, frame);
         if (headset.visibility === 'visible') controls.point();
         if (headset.turnByStick()) {
           stage.vignette.close(time);
@@ -368,7 +367,7 @@ async function start(): Promise<void> {
     headset.exit();
   });
   canvas.addEventListener('webglcontextrestored', () => {
-    arena.restore();
+    studio.restore();
     timing.reset();
     notices.withdraw(pictureLost);
     notices.show('info', 'The graphics device is back.');
@@ -408,7 +407,7 @@ async function start(): Promise<void> {
       },
       players: ball?.players() ?? [],
       game: archery?.probe() ?? ball?.probe() ?? null,
-      study: study?.probe() ?? null,
+      study: study?.run.probe() ?? null,
     };
   });
 
@@ -451,7 +450,7 @@ async function start(): Promise<void> {
       timing,
       calibrate: (calibration) => calibrate(calibration, 'measured', false),
     });
-    arena.scene.add(study.object);
+    studio.scene.add(study.run.object);
   }
   mark('estimator');
   progress.finish();

@@ -1,11 +1,10 @@
-import type { UpperBodyPose } from '../core/body/avatar-pose';
+import type { TrackedPose, UpperBodyPose } from '../core/body/avatar-pose';
 import { type JointName, jointNames, type Side } from '../core/body/joints';
 import { clamp } from '../core/math/damper';
 import { type MutablePose, makePose } from '../core/math/pose';
 import { copyQuat, type MutableQuat, quat, slerp } from '../core/math/quat';
 import { copyVec3, lerp, type MutableVec3, vec3 } from '../core/math/vec3';
 import type { FingerCurl, PosePacket } from '../core/protocol/pose-packet';
-import type { TrackedPose } from '../core/tracking/tracking-frame';
 
 /** What is drawn of a player in one frame. */
 export type Shown = Omit<PosePacket, 'timeMs' | 'jump'>;

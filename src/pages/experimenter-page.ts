@@ -1,13 +1,13 @@
-import './styles/document.css';
-import { checkedPlan, type Schedule, type StudyPlan, scheduleFor } from './core/study/plan';
-import type { ParticipantState, Receipt, StudyCommand, StudyListing } from './core/study/study-api';
-import { createExperimenterClient, type ExperimenterClient, ServerRefusal } from './study/study-client';
-import { studyLink } from './study/study-link';
-import { offerDownload } from './ui/downloads';
-import { button, element, pageElement } from './ui/element';
-import { forgetToken, keptToken, signInForm } from './ui/sign-in';
-import { studySelect } from './ui/study-select';
-import { tableNode } from './ui/table';
+import '../styles/document.css';
+import { checkedPlan, type Schedule, type StudyPlan, scheduleFor } from '../core/study/plan';
+import type { ParticipantState, Receipt, StudyCommand, StudyListing } from '../core/study/study-api';
+import { createExperimenterClient, type ExperimenterClient, ServerRefusal } from '../net/study-client';
+import { studyLink } from '../net/study-link';
+import { offerDownload } from '../ui/downloads';
+import { button, element, pageElement } from '../ui/element';
+import { forgetToken, keptToken, signInForm } from './sign-in';
+import { studySelect } from './study-select';
+import { tableNode } from './table';
 
 /** How often the states are asked for [ms]; a page that has been silent for longer than this is lost [s]. */
 const refreshEveryMs = 1500;

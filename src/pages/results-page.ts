@@ -1,11 +1,11 @@
-import './styles/document.css';
-import type { StudyListing } from './core/study/study-api';
-import { createExperimenterClient, type ExperimenterClient } from './study/study-client';
-import { openStudyFile } from './study/study-file';
-import { button, element, pageElement } from './ui/element';
-import { paperCheck, type ShownStudy, studyResults } from './ui/results-view';
-import { forgetToken, keptToken, signInForm } from './ui/sign-in';
-import { studySelect } from './ui/study-select';
+import '../styles/document.css';
+import type { StudyListing } from '../core/study/study-api';
+import { createExperimenterClient, type ExperimenterClient } from '../net/study-client';
+import { button, element, pageElement } from '../ui/element';
+import { paperCheck, type ShownStudy, studyResults } from './results-view';
+import { forgetToken, keptToken, signInForm } from './sign-in';
+import { openStudyFile } from './study-file';
+import { studySelect } from './study-select';
 
 const content = pageElement('content', HTMLElement);
 const reason = (error: unknown) => (error instanceof Error ? error.message : String(error));

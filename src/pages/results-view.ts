@@ -14,9 +14,9 @@ import type { Interval } from '../core/study/statistics';
 import type { StudyRecord } from '../core/study/study-record';
 import { answersIn, studyTables, trialsIn } from '../core/study/study-tables';
 import { type Table, tidyCsv } from '../core/study/tidy-csv';
+import { offerDownload } from '../ui/downloads';
+import { button, element } from '../ui/element';
 import { barChart, type ChartOptions, pairedChart, pngOf, svgText } from './charts';
-import { offerDownload } from './downloads';
-import { button, element } from './element';
 import { tableNode } from './table';
 
 /** What the results are computed from. */

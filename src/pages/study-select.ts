@@ -1,5 +1,5 @@
 import type { StudyListing } from '../core/study/study-api';
-import { element } from './element';
+import { element } from '../ui/element';
 
 /** The studies of a server, to choose one from; `choose` gets its id, or an empty text. `none`: what the list says without any. */
 export function studySelect(

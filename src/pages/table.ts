@@ -1,4 +1,4 @@
-import { element } from './element';
+import { element } from '../ui/element';
 
 /** A cell: text, or a node of one's own. */
 export type TableCell = string | Node;

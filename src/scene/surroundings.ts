@@ -41,3 +41,10 @@ export interface Surroundings {
   readonly object: Object3D;
   readonly lighting: Lighting;
 }
+
+/** Where places are put, one at a time. */
+export interface SurroundingsHost {
+  readonly scene: Scene;
+  /** Puts another place, with its own light and fog, where the usual one is; null brings that back. */
+  setSurroundings(surroundings: Surroundings | null): void;
+}

@@ -1,5 +1,9 @@
 import type { Calibration } from '../core/body/calibration';
-import { type GuidedCalibration, startGuidedCalibration, stepGuidedCalibration } from '../core/body/guided-calibration';
+import {
+  type GuidedCalibration,
+  startGuidedCalibration,
+  stepGuidedCalibration,
+} from '../core/tracking/guided-calibration';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import type { CalibrationStep } from './calibration-dialog';
 

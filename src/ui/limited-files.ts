@@ -1,4 +1,4 @@
-import { firstLine, reasonOf } from './reasons';
+import { firstLine, reasonOf } from '../core/errors/reasons';
 
 /** What a file is to be, with its article, and how much of it this page reads. */
 export interface FileKind {

@@ -1,10 +1,11 @@
 import type { XRDevice } from 'iwer';
+import type { TrackedPose } from '../core/body/avatar-pose';
 import type { Side } from '../core/body/joints';
 import { allReleased, type Buttons } from '../core/games/button-presses';
 import { composeTransforms, invertTransform, type Pose } from '../core/math/pose';
 import { fromAxes } from '../core/math/quat';
 import { vec3 } from '../core/math/vec3';
-import type { TrackedPose, TrackingFrame } from '../core/tracking/tracking-frame';
+import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import { gripFromWrist, type HandleFit, handleFit, wristFromGrip } from './grip-offsets';
 
 /** An emulated headset, in place of a device that is not there. */

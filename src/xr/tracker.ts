@@ -1,3 +1,4 @@
+import type { TrackedPose } from '../core/body/avatar-pose';
 import type { Side } from '../core/body/joints';
 import { allReleased, type HandButtons } from '../core/games/button-presses';
 import { smoothstep } from '../core/math/damper';
@@ -5,7 +6,7 @@ import type { Pose } from '../core/math/pose';
 import { conjugate, fromAxisAngle, multiply, rotate } from '../core/math/quat';
 import { distance, scale, subtract, up } from '../core/math/vec3';
 import { headingOf } from '../core/tracking/heading';
-import type { TrackedPose, TrackingFrame } from '../core/tracking/tracking-frame';
+import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import { handleFit, wristFromGrip } from './grip-offsets';
 
 /** Tips of thumb and index finger this near are a full pinch, this far are none [m]. */

@@ -8,7 +8,7 @@ import { compareAnswers } from '../../src/core/study/compare-conditions';
 import { comparisonTable, paperTable } from '../../src/core/study/result-tables';
 import { answersIn } from '../../src/core/study/study-tables';
 import { tidyCsv } from '../../src/core/study/tidy-csv';
-import { openStudyFile } from '../../src/study/study-file';
+import { openStudyFile } from '../../src/pages/study-file';
 import { paperPlan } from '../core/study/studies';
 
 const plan = simulatedPlan(paperPlan());

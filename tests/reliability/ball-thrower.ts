@@ -1,3 +1,4 @@
+import type { TrackedPose } from '../../src/core/body/avatar-pose';
 import { createBallGestures } from '../../src/core/games/ball/gestures';
 import { ballRules } from '../../src/core/games/ball/rules';
 import { rackPosition, stations } from '../../src/core/games/ball/stations';
@@ -6,7 +7,7 @@ import { wristAround } from '../../src/core/games/fist';
 import { invertTransform, transformPoint, transformPose } from '../../src/core/math/pose';
 import { identity } from '../../src/core/math/quat';
 import { type Vec3, vec3 } from '../../src/core/math/vec3';
-import type { TrackedPose, TrackingFrame } from '../../src/core/tracking/tracking-frame';
+import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
 import { leftThrower, told } from '../core/games/ball/playing';
 
 type Side = 'left' | 'right';

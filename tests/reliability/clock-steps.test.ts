@@ -1,20 +1,20 @@
 import { describe, expect, test } from 'vitest';
-import { createArcheryPlay, probeOf } from '../../src/archery-play';
-import { createBallPlay } from '../../src/ball-play';
+import { createArcheryPlay, probeOf } from '../../src/app/archery/archery-play';
+import { createBallPlay } from '../../src/app/ball/ball-play';
+import { createFrameLoop } from '../../src/app/shell/frame-loop';
+import { createFrameTiming } from '../../src/app/shell/frame-timing';
+import { createArcheryRunner } from '../../src/app/shell/study-archery';
+import { createRecorder } from '../../src/app/studio/recorder';
+import { type PlayedStep, playTrial } from '../../src/app/study/study-trial';
 import type { AvatarPose } from '../../src/core/body/avatar-pose';
 import { defaultCalibration } from '../../src/core/body/calibration';
 import { createEstimator } from '../../src/core/estimation/estimators';
 import { type Buttons, nothingPressed } from '../../src/core/games/button-presses';
 import { distance } from '../../src/core/math/vec3';
 import { actorFrame, actorLoopSeconds } from '../../src/core/tracking/actor-motion';
+import { createPageClock } from '../../src/core/tracking/page-clock';
 import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
-import { createFrameLoop } from '../../src/frame-loop';
-import { createFrameTiming } from '../../src/frame-timing';
 import { createLoopbackHost } from '../../src/net/loopback-connection';
-import { createPageClock } from '../../src/page-clock';
-import { createRecorder } from '../../src/recorder';
-import { createArcheryRunner } from '../../src/study-archery';
-import { type PlayedStep, playTrial } from '../../src/study-trial';
 import { measured } from './measured';
 
 const frameMs = 1000 / 72;

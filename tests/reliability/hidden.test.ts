@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest';
-import { createBallPlay } from '../../src/ball-play';
+import { createBallPlay } from '../../src/app/ball/ball-play';
 import { defaultCalibration } from '../../src/core/body/calibration';
 import { createEstimator } from '../../src/core/estimation/estimators';
 import { allReleased } from '../../src/core/games/button-presses';

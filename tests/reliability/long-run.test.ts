@@ -1,7 +1,7 @@
 import { setFlagsFromString } from 'node:v8';
 import { runInNewContext } from 'node:vm';
 import { expect, test } from 'vitest';
-import { createArcheryPlay } from '../../src/archery-play';
+import { createArcheryPlay } from '../../src/app/archery/archery-play';
 import { defaultCalibration } from '../../src/core/body/calibration';
 import { createEstimator } from '../../src/core/estimation/estimators';
 import { poseOf } from '../core/estimation/drawn';

@@ -1,4 +1,5 @@
 import { expect, test } from 'vitest';
+import type { TrackedPose } from '../../src/core/body/avatar-pose';
 import {
   armSpanFromFingertipSpan,
   type Calibration,
@@ -7,14 +8,14 @@ import {
   provisionalCalibration,
 } from '../../src/core/body/calibration';
 import { forwardKinematics } from '../../src/core/body/forward-kinematics';
-import { startGuidedCalibration, stepGuidedCalibration } from '../../src/core/body/guided-calibration';
 import { jointNames } from '../../src/core/body/joints';
 import { armLength, skeletonFromCalibration } from '../../src/core/body/skeleton';
 import { createEstimator } from '../../src/core/estimation/estimators';
 import { identity } from '../../src/core/math/quat';
 import { add, distance, subtract, type Vec3, vec3 } from '../../src/core/math/vec3';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
-import type { TrackedPose, TrackingFrame } from '../../src/core/tracking/tracking-frame';
+import { startGuidedCalibration, stepGuidedCalibration } from '../../src/core/tracking/guided-calibration';
+import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
 import { poseOf } from '../core/estimation/drawn';
 import { measured } from './measured';
 

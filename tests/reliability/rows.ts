@@ -100,8 +100,8 @@ export const faultRows = {
     tests: [
       'tests/reliability/comfort.test.ts',
       'tests/xr/tracker.test.ts',
-      'tests/games/archery/boards.test.ts',
-      'tests/games/archery/captions.test.ts',
+      'tests/app/archery/boards.test.ts',
+      'tests/app/archery/captions.test.ts',
       'tests/core/study/trial-log.test.ts',
     ],
     manual: ['Push a stick to the side: one step of 30°, dark edges for a moment, no nausea.'],
@@ -143,13 +143,17 @@ export const faultRows = {
     inject: 'Page time steps back or ahead by 5 or 20 s, and back again',
     sees: 'Rules, bodies, built-in players, playback of others, recordings and the log of a trial go on at once',
     target: 'no standstill; on by half a second at most; every frame once, in order',
-    tests: ['tests/reliability/clock-steps.test.ts', 'tests/page-clock.test.ts', 'tests/net/clock-sync.test.ts'],
+    tests: [
+      'tests/reliability/clock-steps.test.ts',
+      'tests/core/tracking/page-clock.test.ts',
+      'tests/net/clock-sync.test.ts',
+    ],
   },
   'avatar-missing': {
     inject: 'The address of an avatar answers 404, a web page, 61 MB, a compressed body, a body without bones',
     sees: 'Our own body stands there until another has arrived, and stays; a sentence says why; the panel offers *Back to ours*',
     target: 'our own body with the first picture, 5 of 5',
-    tests: ['e2e/avatar-address.spec.ts', 'tests/limited-files.test.ts'],
+    tests: ['e2e/avatar-address.spec.ts', 'tests/ui/limited-files.test.ts'],
   },
   'bad-input': {
     inject:
@@ -157,10 +161,10 @@ export const faultRows = {
     sees: 'A sentence in words, once; nothing is read, thrown or lost',
     target: '0 bytes read, 0 exceptions',
     tests: [
-      'tests/limited-files.test.ts',
+      'tests/ui/limited-files.test.ts',
       'tests/xr/frameless-events.test.ts',
-      'tests/ui/switches.test.ts',
-      'tests/ui/preferences.test.ts',
+      'tests/app/shell/switches.test.ts',
+      'tests/app/shell/preferences.test.ts',
     ],
   },
   'long-run': {

@@ -1,4 +1,5 @@
 import { expect, test } from 'vitest';
+import type { TrackedPose } from '../../src/core/body/avatar-pose';
 import { defaultCalibration } from '../../src/core/body/calibration';
 import { forwardKinematics } from '../../src/core/body/forward-kinematics';
 import { jointNames } from '../../src/core/body/joints';
@@ -9,7 +10,7 @@ import { type Transform, transformPose } from '../../src/core/math/pose';
 import { fromAxisAngle } from '../../src/core/math/quat';
 import { distance, up, vec3 } from '../../src/core/math/vec3';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
-import type { TrackedPose, TrackingFrame } from '../../src/core/tracking/tracking-frame';
+import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
 import { show } from '../core/estimation/drawn';
 import { openShippedModel } from '../core/estimation/shipped-models';
 import { measured } from './measured';

@@ -2,8 +2,8 @@ import type { RequestListener } from 'node:http';
 import { createServer } from 'node:http';
 import type { AddressInfo } from 'node:net';
 import { afterEach, describe, expect, test } from 'vitest';
-import { nameOf, readLimited } from '../src/limited-files';
-import { measured } from './reliability/measured';
+import { nameOf, readLimited } from '../../src/ui/limited-files';
+import { measured } from '../reliability/measured';
 
 const recording = { what: 'a recording', megabytes: 1 };
 const closing: (() => void)[] = [];

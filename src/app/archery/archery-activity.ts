@@ -1,23 +1,23 @@
+import type { Calibration } from '../../core/body/calibration';
+import type { Side } from '../../core/body/joints';
+import type { HapticPulse } from '../../core/games/archery/gestures';
+import type { Buttons } from '../../core/games/button-presses';
+import { identity } from '../../core/math/quat';
+import { type Vec3, zero } from '../../core/math/vec3';
+import type { TrackingFrame } from '../../core/tracking/tracking-frame';
+import type { Quality } from '../../scene/renderer';
+import type { SurroundingsHost } from '../../scene/surroundings';
 import { type ArcherySettings, createArcheryPlay, probeOf, roundOf } from './archery-play';
-import type { Calibration } from './core/body/calibration';
-import type { Side } from './core/body/joints';
-import type { HapticPulse } from './core/games/archery/gestures';
-import type { Buttons } from './core/games/button-presses';
-import { identity } from './core/math/quat';
-import { type Vec3, zero } from './core/math/vec3';
-import type { TrackingFrame } from './core/tracking/tracking-frame';
-import { createArcheryView } from './games/archery/archery-view';
-import { eventHaptics } from './games/archery/haptics';
-import { lineOf } from './games/archery/scoreboard-drawing';
-import type { Arena } from './scene/arena';
-import type { Quality } from './scene/renderer';
+import { createArcheryView } from './archery-view';
+import { eventHaptics } from './haptics';
+import { lineOf } from './scoreboard-drawing';
 
 /** The room's floor is the range's: its zone lies about the origin, the targets ahead. */
 const floorFromArena = { position: zero, orientation: identity };
 
 export interface ArcheryActivityOptions {
   readonly quality: Quality;
-  readonly arena: Pick<Arena, 'scene' | 'setSurroundings'>;
+  readonly surroundings: SurroundingsHost;
   readonly calibration: Calibration;
   settings(): ArcherySettings;
   /** Of the next round's layout. */
@@ -59,7 +59,7 @@ export interface ArcheryActivity {
 }
 
 export function createArcheryActivity(options: ArcheryActivityOptions): ArcheryActivity {
-  const { quality, arena, calibration, settings, seed, onCaption } = options;
+  const { quality, surroundings, calibration, settings, seed, onCaption } = options;
   const play = createArcheryPlay(calibration, settings, seed);
   const view = createArcheryView({
     quality,
@@ -67,8 +67,8 @@ export function createArcheryActivity(options: ArcheryActivityOptions): ArcheryA
     distances: play.targets.map(({ distance }) => distance),
     onCaption,
   });
-  arena.setSurroundings(view.range);
-  arena.scene.add(view.bow);
+  surroundings.setSurroundings(view.range);
+  surroundings.scene.add(view.bow);
 
   return {
     play,
@@ -97,7 +97,7 @@ export function createArcheryActivity(options: ArcheryActivityOptions): ArcheryA
     probe: () => play.newest && probeOf(play.newest),
     dispose() {
       view.bow.removeFromParent();
-      arena.setSurroundings(null);
+      surroundings.setSurroundings(null);
       view.dispose();
     },
   };

@@ -1,21 +1,21 @@
-import type { Calibration } from './core/body/calibration';
-import type { Side } from './core/body/joints';
-import { chestSpaceBody } from './core/body/skeleton';
-import { aimPoint } from './core/games/archery/aim-point';
-import { type Archer, createArcher } from './core/games/archery/archer-motion';
-import type { ArcheryAction, ArcheryEvent, ArcheryState, BowView } from './core/games/archery/archery-state';
+import type { Calibration } from '../../core/body/calibration';
+import type { Side } from '../../core/body/joints';
+import { chestSpaceBody } from '../../core/body/skeleton';
+import { aimPoint } from '../../core/games/archery/aim-point';
+import { type Archer, createArcher } from '../../core/games/archery/archer-motion';
+import type { ArcheryAction, ArcheryEvent, ArcheryState, BowView } from '../../core/games/archery/archery-state';
 import {
   type BowCue,
   createArcheryGestures,
   defaultArcheryGestureSettings,
   type HapticPulse,
-} from './core/games/archery/gestures';
-import { archeryRules, delayed, matchTime, secondsLeft } from './core/games/archery/rules';
-import { createSteeredArcher, type SteeredArcher } from './core/games/archery/steered-archer';
-import type { Buttons } from './core/games/button-presses';
-import { createMatch, type Match } from './core/games/match';
-import type { Vec3 } from './core/math/vec3';
-import type { TrackingFrame } from './core/tracking/tracking-frame';
+} from '../../core/games/archery/gestures';
+import { archeryRules, delayed, matchTime, secondsLeft } from '../../core/games/archery/rules';
+import { createSteeredArcher, type SteeredArcher } from '../../core/games/archery/steered-archer';
+import type { Buttons } from '../../core/games/button-presses';
+import { createMatch, type Match } from '../../core/games/match';
+import type { Vec3 } from '../../core/math/vec3';
+import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 
 /** What whoever plays may choose; asked for in every frame. */
 export interface ArcherySettings {

@@ -17,9 +17,9 @@ import {
   Vector3,
 } from 'three';
 import { walls } from '../../core/games/archery/rules';
+import { woodColor } from '../../scene/outdoors/wood';
 import { merged, painted } from '../../scene/painted-geometry';
 import { anisotropyOf, minFilterOf, type Quality } from '../../scene/renderer';
-import { woodColor } from '../outdoors/wood';
 import { field } from './field';
 
 /** One mesh of a net: cords along two edges of a square that repeats; far away it becomes an even veil. */

@@ -5,8 +5,8 @@ import type { Quat } from '../../core/math/quat';
 import { rotate } from '../../core/math/quat';
 import { add, type Vec3, vec3 } from '../../core/math/vec3';
 import { disposeTree } from '../../scene/dispose-tree';
+import { woodColor } from '../../scene/outdoors/wood';
 import { merged, painted } from '../../scene/painted-geometry';
-import { woodColor } from '../outdoors/wood';
 
 /** What holds the bow while nobody does; floor frame. */
 export interface BowStand {

@@ -1,9 +1,9 @@
 import { Group, Sprite, SpriteMaterial } from 'three';
 import type { ArcheryState, Landing } from '../../core/games/archery/archery-state';
 import { distance, type Vec3 } from '../../core/math/vec3';
+import { ink, signFont } from '../../scene/boards/lettering';
 import { createDrawnTexture } from '../../scene/drawn-texture';
 import type { Quality } from '../../scene/renderer';
-import { ink, signFont } from '../lettering';
 
 /** Points that rise from a target for a moment when it is hit; arena frame. */
 export interface ScorePops {

@@ -5,8 +5,8 @@ import { positionAt } from '../../core/games/ballistics';
 import { clamp } from '../../core/math/damper';
 import { invertTransform, type Pose, type Transform, transformPoint, transformPose } from '../../core/math/pose';
 import { length, type Vec3, vec3 } from '../../core/math/vec3';
-import { createSoundStage, type Player, type Recipe, type Recipes } from '../sound-stage';
-import { bell, chime, click, warning, whoosh } from '../synthesis';
+import { createSoundStage, type Player, type Recipe, type Recipes } from '../../scene/sound/sound-stage';
+import { bell, chime, click, warning, whoosh } from '../../scene/sound/synthesis';
 import { cueCaption, eventCaption } from './captions';
 import { creak, earth, rattle, thud, twang } from './synthesis';
 

@@ -1,30 +1,30 @@
-import { createRemoteAvatars } from './avatar/remote-avatars';
+import { createRemoteAvatars } from '../../avatar/remote-avatars';
+import type { AvatarPose } from '../../core/body/avatar-pose';
+import type { BallPulse } from '../../core/games/ball/gestures';
+import type { Performed } from '../../core/games/ball/player-postures';
+import { ballsLeft, defaultBallOptions } from '../../core/games/ball/rules';
+import type { BallSteering } from '../../core/games/ball/steered-players';
+import type { Buttons } from '../../core/games/button-presses';
+import type { Side } from '../../core/games/fist';
+import { type Pose, type Transform, transformPose } from '../../core/math/pose';
+import type { Vec3 } from '../../core/math/vec3';
+import type { TrackingFrame } from '../../core/tracking/tracking-frame';
+import { bannerText, connectionText } from '../../net/banner';
+import type { Connection, Visitor } from '../../net/connection';
+import type { Quality } from '../../scene/renderer';
+import type { SurroundingsHost } from '../../scene/surroundings';
+import type { BallRound } from './ball-bar';
 import type { BallFrame, BallProbe } from './ball-frame';
 import { type BallPlay, createBallPlay } from './ball-play';
-import type { AvatarPose } from './core/body/avatar-pose';
-import type { BallPulse } from './core/games/ball/gestures';
-import type { Performed } from './core/games/ball/player-postures';
-import { ballsLeft, defaultBallOptions } from './core/games/ball/rules';
-import type { BallSteering } from './core/games/ball/steered-players';
-import type { Buttons } from './core/games/button-presses';
-import type { Side } from './core/games/fist';
-import { type Pose, type Transform, transformPose } from './core/math/pose';
-import type { Vec3 } from './core/math/vec3';
-import type { TrackingFrame } from './core/tracking/tracking-frame';
-import { createBallView } from './games/ball/ball-view';
-import { ownName, type Standing, seatOfButton, waitingFor } from './games/ball/board-drawing';
-import { roleTexts, seatLooks } from './games/ball/court-plan';
-import { eventHaptics } from './games/ball/haptics';
-import { createMatchClock } from './games/ball/match-clock';
-import { bannerText, connectionText } from './net/banner';
-import type { Connection, Visitor } from './net/connection';
-import type { Arena } from './scene/arena';
-import type { Quality } from './scene/renderer';
-import type { BallRound } from './ui/ball-bar';
+import { createBallView } from './ball-view';
+import { ownName, type Standing, seatOfButton, waitingFor } from './board-drawing';
+import { roleTexts, seatLooks } from './court-plan';
+import { eventHaptics } from './haptics';
+import { createMatchClock } from './match-clock';
 
 export interface BallActivityOptions {
   readonly quality: Quality;
-  readonly arena: Pick<Arena, 'scene' | 'setSurroundings'>;
+  readonly surroundings: SurroundingsHost;
   /** The file of the body that others have. */
   readonly mannequin: ArrayBuffer;
   readonly visitor: Visitor;
@@ -85,11 +85,11 @@ export interface BallActivity {
 }
 
 export function createBallActivity(options: BallActivityOptions): BallActivity {
-  const { quality, arena, mannequin, onCaption } = options;
+  const { quality, surroundings, mannequin, onCaption } = options;
   const play = createBallPlay(options);
   const view = createBallView({ quality, balls: defaultBallOptions.balls, onCaption });
   const others = createRemoteAvatars(mannequin, 'mannequin.vrm');
-  arena.scene.add(view.own, others.object);
+  surroundings.scene.add(view.own, others.object);
   let placedAt: Transform<'floor', 'arena'> | null = null;
   let voided = 0;
   let notice: { readonly text: string; readonly until: number } | null = null;
@@ -101,7 +101,7 @@ export function createBallActivity(options: BallActivityOptions): BallActivity {
     const at = play.floorFromArena;
     if (at === placedAt) return;
     placedAt = at;
-    arena.setSurroundings(view.placed(at));
+    surroundings.setSurroundings(view.placed(at));
   }
 
   /** A built-in player moves the own body, with no person behind it. */
@@ -266,7 +266,7 @@ export function createBallActivity(options: BallActivityOptions): BallActivity {
     dispose() {
       play.leave();
       view.own.removeFromParent();
-      arena.setSurroundings(null);
+      surroundings.setSurroundings(null);
       others.dispose();
       view.dispose();
     },

@@ -1,5 +1,5 @@
-import { button, element } from './element';
-import { ballRulesText, rulesList } from './rules';
+import { button, element } from '../../ui/element';
+import { ballRulesText, rulesList } from '../../ui/rules';
 
 /** A match as the bar shows it. */
 export interface BallRound {

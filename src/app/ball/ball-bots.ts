@@ -1,20 +1,20 @@
-import type { Calibration } from './core/body/calibration';
-import { chestSpaceBody } from './core/body/skeleton';
-import { createEstimator } from './core/estimation/estimators';
-import type { PoseEstimator } from './core/estimation/pose-estimator';
-import type { BallAction, BallState } from './core/games/ball/ball-state';
-import type { Opening } from './core/games/ball/basket';
-import { type BallGestureFrame, type BallGestures, createBallGestures } from './core/games/ball/gestures';
-import { createHolder } from './core/games/ball/holder-motion';
-import type { Performed, PlayerBody } from './core/games/ball/player-postures';
-import { holderStation, stations } from './core/games/ball/stations';
-import { type BallBot, createThrower } from './core/games/ball/thrower-motion';
-import type { Buttons } from './core/games/button-presses';
-import type { Side } from './core/games/fist';
-import { identity } from './core/math/quat';
-import { zero } from './core/math/vec3';
-import type { TrackingFrame } from './core/tracking/tracking-frame';
-import type { Connection, RoomView, Visitor } from './net/connection';
+import type { Calibration } from '../../core/body/calibration';
+import { chestSpaceBody } from '../../core/body/skeleton';
+import { createEstimator } from '../../core/estimation/estimators';
+import type { PoseEstimator } from '../../core/estimation/pose-estimator';
+import type { BallAction, BallState } from '../../core/games/ball/ball-state';
+import type { Opening } from '../../core/games/ball/basket';
+import { type BallGestureFrame, type BallGestures, createBallGestures } from '../../core/games/ball/gestures';
+import { createHolder } from '../../core/games/ball/holder-motion';
+import type { Performed, PlayerBody } from '../../core/games/ball/player-postures';
+import { holderStation, stations } from '../../core/games/ball/stations';
+import { type BallBot, createThrower } from '../../core/games/ball/thrower-motion';
+import type { Buttons } from '../../core/games/button-presses';
+import type { Side } from '../../core/games/fist';
+import { identity } from '../../core/math/quat';
+import { zero } from '../../core/math/vec3';
+import type { TrackingFrame } from '../../core/tracking/tracking-frame';
+import type { Connection, RoomView, Visitor } from '../../net/connection';
 
 /** A built-in player moves at least this often, however slowly pictures come: a throw is over in a fifth of a second. */
 const movesPerSecond = 60;

@@ -1,7 +1,7 @@
-import type { RoomTerms } from './core/protocol/messages';
-import type { SignedSeat } from './core/study/study-api';
-import type { Connection, LocalClock, Visitor } from './net/connection';
-import { createLoopbackHost } from './net/loopback-connection';
+import type { RoomTerms } from '../../core/protocol/messages';
+import type { SignedSeat } from '../../core/study/study-api';
+import type { Connection, LocalClock, Visitor } from '../../net/connection';
+import { createLoopbackHost } from '../../net/loopback-connection';
 
 /** Makes one visitor's place in a room; `time`: the page's clock [s]. */
 export type Connect = (visitor: Visitor, time: number) => Connection;
@@ -18,7 +18,7 @@ function tabStorage(): Storage | undefined {
 
 /** The seat that a server assigns, of which it signs a pass; the pass is asked for anew when the first one has expired. */
 export async function assignedSeat(seat: () => Promise<SignedSeat>, clock: LocalClock): Promise<Connect> {
-  const [{ createSocketConnection }, first] = await Promise.all([import('./net/socket-connection'), seat()]);
+  const [{ createSocketConnection }, first] = await Promise.all([import('../../net/socket-connection'), seat()]);
   const pass = { token: async (afresh: boolean) => (afresh ? await seat() : first).token };
   return (visitor) => createSocketConnection({ url: location.origin, room: first.room, visitor, clock, pass });
 }
@@ -36,8 +36,8 @@ export async function connectionsFor(
     return createLoopbackHost({ kind: 'ball', seed, ball }).connect;
   }
   const [{ createSocketConnection }, { createRoomPass }] = await Promise.all([
-    import('./net/socket-connection'),
-    import('./net/room-pass'),
+    import('../../net/socket-connection'),
+    import('../../net/room-pass'),
   ]);
   const person = createRoomPass('', room, 'ball', tabStorage(), terms);
   return (visitor) =>

@@ -1,11 +1,11 @@
-import type { AvatarPose } from './core/body/avatar-pose';
-import type { Calibration } from './core/body/calibration';
-import type { BallEvent, BallRole, BallState } from './core/games/ball/ball-state';
-import { basketInHands, type Opening } from './core/games/ball/basket';
-import type { BallCue, BallPulse } from './core/games/ball/gestures';
-import { ballSecondsLeft, ballsLeft } from './core/games/ball/rules';
-import type { Launch } from './core/games/ballistics';
-import { fistOf, type Side } from './core/games/fist';
+import type { AvatarPose, TrackedPose } from '../../core/body/avatar-pose';
+import type { Calibration } from '../../core/body/calibration';
+import type { BallEvent, BallRole, BallState } from '../../core/games/ball/ball-state';
+import { basketInHands, type Opening } from '../../core/games/ball/basket';
+import type { BallCue, BallPulse } from '../../core/games/ball/gestures';
+import { ballSecondsLeft, ballsLeft } from '../../core/games/ball/rules';
+import type { Launch } from '../../core/games/ballistics';
+import { fistOf, type Side } from '../../core/games/fist';
 import {
   composeTransforms,
   type MutableTransform,
@@ -14,12 +14,12 @@ import {
   type Transform,
   transformPoint,
   transformPose,
-} from './core/math/pose';
-import { length, type MutableVec3, type Vec3, vec3 } from './core/math/vec3';
-import type { TrackedPose, TrackingFrame } from './core/tracking/tracking-frame';
-import { seatLooks } from './games/ball/court-plan';
-import type { Connection, ConnectionStatus, RoomView } from './net/connection';
-import type { RemotePlayer } from './net/remote-players';
+} from '../../core/math/pose';
+import { length, type MutableVec3, type Vec3, vec3 } from '../../core/math/vec3';
+import type { TrackingFrame } from '../../core/tracking/tracking-frame';
+import type { Connection, ConnectionStatus, RoomView } from '../../net/connection';
+import type { RemotePlayer } from '../../net/remote-players';
+import { seatLooks } from './court-plan';
 
 /** A person or bot at the court in one frame. Heads and fists are the same objects in every frame: copy what must stay. */
 export interface PlayerFrame {

@@ -1,3 +1,25 @@
+import type { AvatarPose } from '../../core/body/avatar-pose';
+import type { Calibration } from '../../core/body/calibration';
+import { createEstimator } from '../../core/estimation/estimators';
+import type { BallEvent } from '../../core/games/ball/ball-state';
+import type { BallCue, BallGestureFrame, BallGestures, BallPulse } from '../../core/games/ball/gestures';
+import type { Performed } from '../../core/games/ball/player-postures';
+import { holderStation } from '../../core/games/ball/stations';
+import {
+  type BallSteering,
+  createSteeredHolder,
+  createSteeredThrower,
+  type SteeredPlayer,
+} from '../../core/games/ball/steered-players';
+import type { BallBot } from '../../core/games/ball/thrower-motion';
+import type { Buttons } from '../../core/games/button-presses';
+import type { Side } from '../../core/games/fist';
+import { invertTransform, type Transform } from '../../core/math/pose';
+import { identity } from '../../core/math/quat';
+import { zero } from '../../core/math/vec3';
+import type { TrackingFrame } from '../../core/tracking/tracking-frame';
+import type { Connection, ConnectionStatus, RoomView, Visitor } from '../../net/connection';
+import { createRemotePlayers, type RemotePlayer } from '../../net/remote-players';
 import {
   actorFor,
   BallBots,
@@ -12,28 +34,6 @@ import {
   stationOf,
 } from './ball-bots';
 import { type BallFrame, type BallProbe, CourtPeople, probeOf } from './ball-frame';
-import type { AvatarPose } from './core/body/avatar-pose';
-import type { Calibration } from './core/body/calibration';
-import { createEstimator } from './core/estimation/estimators';
-import type { BallEvent } from './core/games/ball/ball-state';
-import type { BallCue, BallGestureFrame, BallGestures, BallPulse } from './core/games/ball/gestures';
-import type { Performed } from './core/games/ball/player-postures';
-import { holderStation } from './core/games/ball/stations';
-import {
-  type BallSteering,
-  createSteeredHolder,
-  createSteeredThrower,
-  type SteeredPlayer,
-} from './core/games/ball/steered-players';
-import type { BallBot } from './core/games/ball/thrower-motion';
-import type { Buttons } from './core/games/button-presses';
-import type { Side } from './core/games/fist';
-import { invertTransform, type Transform } from './core/math/pose';
-import { identity } from './core/math/quat';
-import { zero } from './core/math/vec3';
-import type { TrackingFrame } from './core/tracking/tracking-frame';
-import type { Connection, ConnectionStatus, RoomView, Visitor } from './net/connection';
-import { createRemotePlayers, type RemotePlayer } from './net/remote-players';
 
 /** A match and who plays it, apart from everything that is seen of it. */
 export interface BallPlay {

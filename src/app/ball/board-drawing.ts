@@ -1,8 +1,8 @@
 import type { BallEvent, BallState } from '../../core/games/ball/ball-state';
 import { ballsLeft } from '../../core/games/ball/rules';
-import { ink, paintCard, paintGround, signFont } from '../lettering';
-import { paintScoreHeading } from '../score-heading';
-import { paintButton, type SheetButton } from '../sheet';
+import { ink, paintCard, paintGround, signFont } from '../../scene/boards/lettering';
+import { paintScoreHeading } from '../../scene/boards/score-heading';
+import { paintButton, type SheetButton } from '../../scene/boards/sheet';
 import { roleTexts, seatLooks } from './court-plan';
 
 /** A player on a seat, as boards and labels write of them. */

@@ -2,7 +2,7 @@ import type { BallEvent, Refusal } from '../../core/games/ball/ball-state';
 import type { BallCue } from '../../core/games/ball/gestures';
 import type { Pose } from '../../core/math/pose';
 import type { Vec3 } from '../../core/math/vec3';
-import { directionOf } from '../directions';
+import { directionOf } from '../../scene/directions';
 import { nameOf, type Person } from './board-drawing';
 
 /** Who hears, and where the others are. */

@@ -1,8 +1,8 @@
 import { Group, Sprite, SpriteMaterial } from 'three';
 import { distance, type Vec3 } from '../../core/math/vec3';
+import { ink, signFont } from '../../scene/boards/lettering';
 import { createDrawnTexture } from '../../scene/drawn-texture';
 import type { Quality } from '../../scene/renderer';
-import { ink, signFont } from '../lettering';
 
 /** "+1" that rises from the basket for a moment at each catch; arena frame. */
 export interface CatchPops {

@@ -10,10 +10,10 @@ import {
   MeshLambertMaterial,
 } from 'three';
 import { ballRadius } from '../../core/games/ball/flight';
+import { createContactShadows } from '../../scene/outdoors/contact-shadows';
+import { createScatter } from '../../scene/outdoors/scatter';
+import { woodColor } from '../../scene/outdoors/wood';
 import { merged, painted } from '../../scene/painted-geometry';
-import { createContactShadows } from '../outdoors/contact-shadows';
-import { createScatter } from '../outdoors/scatter';
-import { woodColor } from '../outdoors/wood';
 import { court, seatLooks, trayOf } from './court-plan';
 
 const box = (w: number, h: number, d: number, x: number, y: number, z: number, color: string) =>

@@ -1,27 +1,29 @@
-import type { ArcheryActivity } from './archery-activity';
-import type { Performance } from './archery-play';
-import type { BallActivity } from './ball-activity';
-import type { Calibration } from './core/body/calibration';
-import type { Side } from './core/body/joints';
-import { type Buttons, nothingPressed } from './core/games/button-presses';
-import type { Vec3 } from './core/math/vec3';
-import type { TrackingFrame } from './core/tracking/tracking-frame';
+import type { Calibration } from '../../core/body/calibration';
+import type { Side } from '../../core/body/joints';
+import { firstLine, reasonOf } from '../../core/errors/reasons';
+import { type Buttons, nothingPressed } from '../../core/games/button-presses';
+import type { Vec3 } from '../../core/math/vec3';
+import type { PageClock } from '../../core/tracking/page-clock';
+import type { TrackingFrame } from '../../core/tracking/tracking-frame';
+import type { Quality } from '../../scene/renderer';
+import { readLimited } from '../../ui/limited-files';
+import type { MouseAim } from '../../ui/mouse-aim';
+import type { Notices } from '../../ui/notices';
+import type { Pulse } from '../../xr/haptics';
+import type { ArcheryActivity } from '../archery/archery-activity';
+import type { Performance } from '../archery/archery-play';
+import type { BallActivity } from '../ball/ball-activity';
+import type { StudyRun } from '../study/study-run';
+import type { TaskPlace } from '../study/task-runner';
 import type { Headset } from './headset';
-import { readLimited } from './limited-files';
-import type { PageClock } from './page-clock';
-import { firstLine, reasonOf } from './reasons';
-import type { Quality } from './scene/renderer';
+import type { ActivityName, Shooter } from './play-bar';
+import type { PreferenceStore } from './preferences';
 import type { Settings } from './settings';
 import { avatarFile, ownAvatarAt } from './shown-avatar';
 import type { Stage, Watched } from './stage';
-import type { TaskPlace } from './study/task-runner';
-import type { StudyRun } from './study-run';
-import type { MouseAim } from './ui/mouse-aim';
-import type { Notices } from './ui/notices';
-import type { ActivityName, Shooter } from './ui/play-bar';
-import type { PreferenceStore } from './ui/preferences';
-import type { Switches } from './ui/switches';
-import type { Pulse } from './xr/haptics';
+import type { ArcheryRunner } from './study-archery';
+import type { BallRunner } from './study-ball';
+import type { Switches } from './switches';
 
 /** The court's middle, where a spectator looks at first, floor frame. */
 const courtMiddle: Vec3 = { x: 0, y: 1, z: -2.4 };
@@ -33,6 +35,15 @@ interface Ray {
   readonly direction: Vec3;
 }
 
+/** A study on this page, and what it hears of the games it plays. */
+export interface JoinedStudy {
+  readonly run: StudyRun;
+  /** Every frame of the round on the page. */
+  readonly archery: Pick<ArcheryRunner, 'played'>;
+  /** Every frame of the match on the page. */
+  readonly ball: Pick<BallRunner, 'played'>;
+}
+
 export interface ActivitiesOptions {
   readonly quality: Quality;
   readonly switches: Switches;
@@ -40,7 +51,7 @@ export interface ActivitiesOptions {
   readonly store: PreferenceStore;
   readonly notices: Pick<Notices, 'show'>;
   readonly clock: PageClock;
-  readonly stage: Pick<Stage, 'arena' | 'view' | 'placeMirror'>;
+  readonly stage: Pick<Stage, 'studio' | 'view' | 'placeMirror'>;
   readonly mouse: MouseAim;
   readonly headset: Pick<Headset, 'worn' | 'emulator'>;
   /** Of whoever moves. */
@@ -48,7 +59,7 @@ export interface ActivitiesOptions {
   /** The newest tracked frame; null: none yet. */
   newestFrame(): TrackingFrame | null;
   /** null: nobody takes part in a study here. */
-  study(): StudyRun | null;
+  study(): JoinedStudy | null;
   /** The colours of a seat for the own body; null: the user's own. */
   wear(palette: string | null): void;
   onCaption(text: string): void;
@@ -101,7 +112,7 @@ export interface Activities {
 
 export function createActivities(options: ActivitiesOptions): Activities {
   const { quality, switches, settings, store, notices, mouse, headset, body, study, onCaption, onChange } = options;
-  const { arena, view, placeMirror } = options.stage;
+  const { studio, view, placeMirror } = options.stage;
   let archery: ArcheryActivity | null = null;
   let ball: BallActivity | null = null;
   let arriving = false;
@@ -163,10 +174,10 @@ export function createActivities(options: ActivitiesOptions): Activities {
   }
 
   async function openRange(): Promise<void> {
-    const { createArcheryActivity } = await import('./archery-activity');
+    const { createArcheryActivity } = await import('../archery/archery-activity');
     archery = createArcheryActivity({
       quality,
-      arena,
+      surroundings: studio,
       calibration: body(),
       settings: () => settings,
       seed: () => seed,
@@ -178,13 +189,13 @@ export function createActivities(options: ActivitiesOptions): Activities {
   async function openCourt(): Promise<void> {
     const place = studyPlace;
     const [{ createBallActivity }, { assignedSeat, connectionsFor }, mannequin] = await Promise.all([
-      import('./ball-activity'),
-      import('./ball-connections'),
+      import('../ball/ball-activity'),
+      import('../ball/ball-connections'),
       readLimited(ownAvatarAt, avatarFile),
     ]);
     ball = createBallActivity({
       quality,
-      arena,
+      surroundings: studio,
       mannequin,
       connect: place
         ? await assignedSeat(place.seat, options.clock)
@@ -229,7 +240,7 @@ export function createActivities(options: ActivitiesOptions): Activities {
     }
     settings.following = null;
     placeCamera();
-    arena.setMarkVisible(name() === 'studio');
+    studio.setMarkVisible(name() === 'studio');
     mirrorAside();
     steerByMouse();
     onCaption('');
@@ -303,18 +314,18 @@ export function createActivities(options: ActivitiesOptions): Activities {
     },
     begin: (time) => ball?.begin(time),
     act(time) {
-      if (study()?.idle) return null;
+      if (study()?.run.idle) return null;
       const player = ball?.act(time, !headset.worn);
       if (player || !archery) return player ?? null;
       if (!settings.mouse || headset.worn) return archery.play.act(time);
       return archery.play.steer(time, view.rayThrough(mouse.x, mouse.y), mouse);
     },
     play(frame, allButtons) {
-      const run = study();
-      const buttons = run?.idle ? nothingPressed : allButtons;
-      if (archery && !run?.paused) {
+      const joined = study();
+      const buttons = joined?.run.idle ? nothingPressed : allButtons;
+      if (archery && !joined?.run.paused) {
         const { haptics, taken, eventful } = archery.follow(frame, buttons);
-        if (archery.play.newest) run?.played(archery.play.newest);
+        if (archery.play.newest) joined?.archery.played(archery.play.newest);
         if (taken) {
           settings.bowSide = taken;
           store.remember({ bowSide: taken });
@@ -325,17 +336,17 @@ export function createActivities(options: ActivitiesOptions): Activities {
       }
       if (!ball) return [];
       const haptics = ball.follow(frame, buttons);
-      if (ball.play.newest) run?.playedBall(ball.play.newest);
+      if (ball.play.newest) joined?.ball.played(ball.play.newest);
       return haptics;
     },
     grip(side, buttons) {
-      if (!study()?.idle && archery?.holds(side)) return 1;
+      if (!study()?.run.idle && archery?.holds(side)) return 1;
       if (ball?.play.newest?.role === 'holder') return basketGrip;
       const { trigger, grip, pinch } = buttons[side];
       return Math.max(trigger, grip, pinch);
     },
     show(time, frame) {
-      if (archery && frame) archery.show(frame.head, !study()?.idle);
+      if (archery && frame) archery.show(frame.head, !study()?.run.idle);
       if (!ball) return;
       const eyes = watching() ? view.pose : (frame ?? options.newestFrame())?.head;
       ball.show(time, eyes ?? view.pose, frame !== null);

@@ -1,5 +1,4 @@
-import type { Activities } from './activities';
-import { palettes } from './avatar/palettes';
+import { palettes } from '../../avatar/palettes';
 import {
   armSpanFromFingertipSpan,
   armSpanRange,
@@ -10,36 +9,37 @@ import {
   fingertipSpanFromArmSpan,
   statureFromEyeHeight,
   statureRange,
-} from './core/body/calibration';
-import type { EstimatorName } from './core/estimation/pose-estimator';
-import type { TrackingFrame } from './core/tracking/tracking-frame';
+} from '../../core/body/calibration';
+import { firstLine, reasonOf } from '../../core/errors/reasons';
+import type { EstimatorName } from '../../core/estimation/pose-estimator';
+import type { TrackingFrame } from '../../core/tracking/tracking-frame';
+import { type ViewName, viewNames } from '../../scene/desktop-view';
+import { type CalibrationStep, createCalibrationDialog } from '../../ui/calibration-dialog';
+import { createCalibrationGuide } from '../../ui/calibration-guide';
+import { offerDownload } from '../../ui/downloads';
+import { acceptDroppedFiles } from '../../ui/dropped-files';
+import { pageElement } from '../../ui/element';
+import { createInvitation, type Invitation } from '../../ui/invitation';
+import { type FileKind, nameOf, readLimited } from '../../ui/limited-files';
+import type { Notices } from '../../ui/notices';
+import { createOverlay, type FrameReport } from '../../ui/overlay';
+import { listenToShortcuts } from '../../ui/shortcuts';
+import { createVrPointers } from '../../ui/vr-pointers';
+import type { Recorder } from '../studio/recorder';
+import type { StudyRun } from '../study/study-run';
+import type { Activities } from './activities';
 import type { EstimatorChoice } from './estimator-choice';
+import { estimatorOrder, estimatorTexts } from './estimator-texts';
 import { type FrameTiming, stageNames } from './frame-timing';
 import type { Headset } from './headset';
-import { type FileKind, nameOf, readLimited } from './limited-files';
-import { firstLine, reasonOf } from './reasons';
-import type { Recorder } from './recorder';
-import { type ViewName, viewNames } from './scene/desktop-view';
+import { createPanel } from './panel';
+import { createPlayBar } from './play-bar';
+import type { PreferenceStore } from './preferences';
 import type { Settings } from './settings';
 import type { ShownAvatar } from './shown-avatar';
 import type { Stage } from './stage';
-import type { StudyRun } from './study-run';
-import { type CalibrationStep, createCalibrationDialog } from './ui/calibration-dialog';
-import { createCalibrationGuide } from './ui/calibration-guide';
-import { offerDownload } from './ui/downloads';
-import { acceptDroppedFiles } from './ui/dropped-files';
-import { pageElement } from './ui/element';
-import { estimatorOrder, estimatorTexts } from './ui/estimator-texts';
-import { createInvitation, type Invitation } from './ui/invitation';
-import type { Notices } from './ui/notices';
-import { createOverlay, type FrameReport } from './ui/overlay';
-import { createPanel } from './ui/panel';
-import { createPlayBar } from './ui/play-bar';
-import type { PreferenceStore } from './ui/preferences';
-import { listenToShortcuts } from './ui/shortcuts';
-import type { Switches } from './ui/switches';
-import { createVrMenu } from './ui/vr-menu';
-import { createVrPointers } from './ui/vr-pointers';
+import type { Switches } from './switches';
+import { createVrMenu } from './vr-menu';
 
 /** Milliseconds between two looks at the ring buffers: fast enough to follow, slow enough to read. */
 const reportEveryMs = 250;
@@ -97,7 +97,7 @@ export interface Controls {
 export function createControls(options: ControlsOptions): Controls {
   const { switches, settings, store, notices, timing, stage, choice, recorder, headset, avatar, activities } = options;
   const { study, calibrate, recentre } = options;
-  const { arena, view } = stage;
+  const { studio, view } = stage;
 
   function remembered(change: Partial<Pick<Settings, 'mirror' | 'upperBodyOnly' | 'overlay' | 'largerText'>>): void {
     Object.assign(settings, change);
@@ -340,7 +340,7 @@ export function createControls(options: ControlsOptions): Controls {
     exit: headset.exit,
   });
   pointers.objects.visible = false;
-  arena.scene.add(menu.object, pointers.objects);
+  studio.scene.add(menu.object, pointers.objects);
 
   const overlay = createOverlay(pageElement('overlay', HTMLElement));
   const banner = pageElement('banner', HTMLElement);

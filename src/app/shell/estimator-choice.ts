@@ -1,7 +1,7 @@
-import type { Calibration } from './core/body/calibration';
-import type { EstimatorName, PoseEstimator } from './core/estimation/pose-estimator';
-import type { PoseRegressor } from './core/estimation/pose-regressor';
-import { reasonOf } from './reasons';
+import type { Calibration } from '../../core/body/calibration';
+import { reasonOf } from '../../core/errors/reasons';
+import type { EstimatorName, PoseEstimator } from '../../core/estimation/pose-estimator';
+import type { PoseRegressor } from '../../core/estimation/pose-regressor';
 
 /** The estimators that are nothing without their network. */
 const networks = ['paper', 'learned'] as const satisfies readonly EstimatorName[];

@@ -1,9 +1,9 @@
-import type { AvatarPose } from './core/body/avatar-pose';
-import type { InferenceRequest, PoseEstimator } from './core/estimation/pose-estimator';
-import type { PoseRegressor } from './core/estimation/pose-regressor';
-import type { TrackingFrame } from './core/tracking/tracking-frame';
+import type { AvatarPose } from '../../core/body/avatar-pose';
+import type { InferenceRequest, PoseEstimator } from '../../core/estimation/pose-estimator';
+import type { PoseRegressor } from '../../core/estimation/pose-regressor';
+import type { PageClock } from '../../core/tracking/page-clock';
+import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 import type { FrameTiming } from './frame-timing';
-import type { PageClock } from './page-clock';
 
 /** The parts of one frame; the loop calls each once, in this order. All of them hear the same time, the page clock's. */
 export interface FrameParts<DeviceFrame> {

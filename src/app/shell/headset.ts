@@ -1,16 +1,16 @@
-import { type Buttons, nothingPressed } from './core/games/button-presses';
-import type { TrackingFrame } from './core/tracking/tracking-frame';
-import { firstLine, reasonOf } from './reasons';
-import { easeEmulatedPicture, type Quality } from './scene/renderer';
+import { firstLine, reasonOf } from '../../core/errors/reasons';
+import { type Buttons, nothingPressed } from '../../core/games/button-presses';
+import type { TrackingFrame } from '../../core/tracking/tracking-frame';
+import { easeEmulatedPicture, type Quality } from '../../scene/renderer';
+import type { Notices } from '../../ui/notices';
+import { type Emulator, installEmulator } from '../../xr/emulator';
+import { giveFramesToEvents } from '../../xr/frameless-events';
+import { buzz, type Pulse } from '../../xr/haptics';
+import { describeXrSupport, requestVrSession } from '../../xr/session';
+import { createTracker, type Tracker } from '../../xr/tracker';
 import type { Settings } from './settings';
 import type { Stage } from './stage';
-import type { Notices } from './ui/notices';
-import type { Switches } from './ui/switches';
-import { type Emulator, installEmulator } from './xr/emulator';
-import { giveFramesToEvents } from './xr/frameless-events';
-import { buzz, type Pulse } from './xr/haptics';
-import { describeXrSupport, requestVrSession } from './xr/session';
-import { createTracker, type Tracker } from './xr/tracker';
+import type { Switches } from './switches';
 
 /** The rate [Hz] at which a window, and the emulator in it, draws. */
 const windowRateHz = 60;

@@ -1,11 +1,12 @@
-import type { Activities } from './activities';
-import type { Calibration } from './core/body/calibration';
+import type { Calibration } from '../../core/body/calibration';
+import type { Activities, JoinedStudy } from './activities';
 import type { EstimatorChoice } from './estimator-choice';
 import type { FrameTiming } from './frame-timing';
 import type { Headset } from './headset';
 import type { Settings } from './settings';
-import type { StudyRun } from './study-run';
-import type { Switches } from './ui/switches';
+import { createArcheryRunner } from './study-archery';
+import { createBallRunner } from './study-ball';
+import type { Switches } from './switches';
 
 /** Characters of the device's name that a record keeps. */
 const longestDeviceName = 160;
@@ -23,11 +24,31 @@ export interface JoinStudyOptions {
 }
 
 /** Takes part in a study: from now on it decides what is played and with which body. */
-export async function joinStudy(options: JoinStudyOptions): Promise<StudyRun> {
+export async function joinStudy(options: JoinStudyOptions): Promise<JoinedStudy> {
   const { asked, switches, settings, choice, headset, activities, timing, calibrate } = options;
-  const { createStudyRun } = await import('./study-run');
+  const { createStudyRun } = await import('../study/study-run');
   settings.startSignal = true;
-  return createStudyRun(asked, {
+  const archery = createArcheryRunner({
+    async goToArchery(seconds) {
+      settings.seconds = seconds;
+      await activities.goTo('archery');
+      if (!activities.archery) throw new Error('The archery range could not be opened.');
+      activities.resetRound();
+    },
+    startRound: activities.startRound,
+    resetRound: activities.resetRound,
+    assists: () => (settings.oneHanded ? ['one hand'] : []),
+  });
+  const ball = createBallRunner({
+    async goToBall(place) {
+      await activities.goToMatch(place);
+      if (!activities.ball) throw new Error('The ball court could not be opened.');
+    },
+    ball: () => activities.ball?.play ?? null,
+    leaveBall: () => void activities.goTo('studio'),
+  });
+  const run = createStudyRun(asked, {
+    runners: { archery, ball },
     enterVr: headset.enter,
     inSession: () => headset.worn,
     calibration: () => settings.calibration,
@@ -38,21 +59,6 @@ export async function joinStudy(options: JoinStudyOptions): Promise<StudyRun> {
       settings.actor = on && switches.actor;
     },
     setBowSide: activities.setBowSide,
-    async goToArchery(seconds) {
-      settings.seconds = seconds;
-      await activities.goTo('archery');
-      if (!activities.archery) throw new Error('The archery range could not be opened.');
-      activities.resetRound();
-    },
-    async goToBall(place) {
-      await activities.goToMatch(place);
-      if (!activities.ball) throw new Error('The ball court could not be opened.');
-    },
-    ball: () => activities.ball?.play ?? null,
-    leaveBall: () => void activities.goTo('studio'),
-    startRound: activities.startRound,
-    resetRound: activities.resetRound,
-    assists: () => (settings.oneHanded ? ['one hand'] : []),
     device: () => ({
       name: `${headset.emulator ? 'emulated headset in ' : ''}${navigator.userAgent}`.slice(0, longestDeviceName),
       refreshRateHz: headset.rateHz,
@@ -60,4 +66,5 @@ export async function joinStudy(options: JoinStudyOptions): Promise<StudyRun> {
     }),
     listenToFrames: timing.listen,
   });
+  return { run, archery, ball };
 }

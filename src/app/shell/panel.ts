@@ -1,6 +1,6 @@
-import type { EstimatorName } from '../core/estimation/pose-estimator';
-import type { ViewName } from '../scene/desktop-view';
-import { button, element } from './element';
+import type { EstimatorName } from '../../core/estimation/pose-estimator';
+import type { ViewName } from '../../scene/desktop-view';
+import { button, element } from '../../ui/element';
 import { estimatorOrder, estimatorTexts } from './estimator-texts';
 
 /** What the recorder is doing; seconds since its start, of how many. */

@@ -1,6 +1,6 @@
-import { type BallBarActions, type BallBarState, createBallBar } from './ball-bar';
-import { button, element } from './element';
-import { archeryRulesText, rulesList } from './rules';
+import { button, element } from '../../ui/element';
+import { archeryRulesText, rulesList } from '../../ui/rules';
+import { type BallBarActions, type BallBarState, createBallBar } from '../ball/ball-bar';
 
 /** What people do here: look at themselves in the studio, or play. */
 export const activityNames = ['studio', 'archery', 'ball'] as const;

@@ -1,6 +1,6 @@
 import * as v from 'valibot';
-import { calibrationComplaint } from '../core/body/calibration';
-import { estimatorNames } from '../core/estimation/pose-estimator';
+import { calibrationComplaint } from '../../core/body/calibration';
+import { estimatorNames } from '../../core/estimation/pose-estimator';
 
 const calibration = v.pipe(
   v.object({ eyeHeight: v.number(), armSpan: v.number(), gazePitch: v.optional(v.number()) }),

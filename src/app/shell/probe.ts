@@ -1,10 +1,10 @@
-import type { ArcheryProbe } from './archery-play';
-import type { PlayerProbe } from './ball-activity';
-import type { BallProbe } from './ball-frame';
-import type { Calibration } from './core/body/calibration';
-import type { EstimatorName } from './core/estimation/pose-estimator';
+import type { Calibration } from '../../core/body/calibration';
+import type { EstimatorName } from '../../core/estimation/pose-estimator';
+import type { ArcheryProbe } from '../archery/archery-play';
+import type { PlayerProbe } from '../ball/ball-activity';
+import type { BallProbe } from '../ball/ball-frame';
+import type { StudyProbe } from '../study/study-run';
 import type { FrameSummary } from './frame-timing';
-import type { StudyProbe } from './study-run';
 
 type Triple = readonly [number, number, number];
 

@@ -1,7 +1,7 @@
-import { type Calibration, defaultCalibration } from './core/body/calibration';
-import type { Side } from './core/body/joints';
-import type { PreferenceStore } from './ui/preferences';
-import type { Switches } from './ui/switches';
+import { type Calibration, defaultCalibration } from '../../core/body/calibration';
+import type { Side } from '../../core/body/joints';
+import type { PreferenceStore } from './preferences';
+import type { Switches } from './switches';
 
 /** What the user set, for this visit; whoever changes it brings it on the screen. */
 export interface Settings {

@@ -1,19 +1,19 @@
-import { type Avatar, createAvatar } from './avatar/avatar';
-import { avatarLimits } from './avatar/inspect-avatar';
-import { type LoadedAvatar, loadAvatar, parseAvatar } from './avatar/load-avatar';
-import { validateInWorker } from './avatar/validate-in-worker';
-import type { Calibration } from './core/body/calibration';
-import { type FileKind, nameOf, readLimited } from './limited-files';
-import { firstLine, reasonOf } from './reasons';
-import type { Arena } from './scene/arena';
+import { type Avatar, createAvatar } from '../../avatar/avatar';
+import { avatarLimits } from '../../avatar/inspect-avatar';
+import { type LoadedAvatar, loadAvatar, parseAvatar } from '../../avatar/load-avatar';
+import { validateInWorker } from '../../avatar/validate-in-worker';
+import type { Calibration } from '../../core/body/calibration';
+import { firstLine, reasonOf } from '../../core/errors/reasons';
+import { type FileKind, nameOf, readLimited } from '../../ui/limited-files';
+import type { Notices } from '../../ui/notices';
+import type { Studio } from '../studio/studio';
 import type { Settings } from './settings';
-import type { Notices } from './ui/notices';
 
 /** Where our own avatar lies, on our own server. */
 export const ownAvatarAt = '/avatars/mannequin.vrm';
 
 export interface ShownAvatarOptions {
-  scene(): Arena['scene'];
+  scene(): Studio['scene'];
   readonly settings: Pick<Settings, 'palette' | 'upperBodyOnly'>;
   /** Of the person who moves. */
   body(): Calibration;

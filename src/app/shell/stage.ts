@@ -1,16 +1,16 @@
-import type { Avatar } from './avatar/avatar';
-import { createDebugSkeleton } from './avatar/debug-skeleton';
-import { createHeadLoss } from './avatar/head-loss';
-import { createMirror } from './avatar/mirror';
-import type { Side } from './core/body/joints';
-import type { Pose } from './core/math/pose';
-import type { Vec3 } from './core/math/vec3';
-import type { TrackingFrame } from './core/tracking/tracking-frame';
-import { type Arena, createArena } from './scene/arena';
-import { createDesktopView, type DesktopView, type Insets } from './scene/desktop-view';
-import { createHeadsetCamera, createRenderer, fitToWindow, type Quality } from './scene/renderer';
-import { createVignette, type Vignette } from './scene/vignette';
-import { createVrCaptions } from './ui/vr-captions';
+import type { Avatar } from '../../avatar/avatar';
+import { createDebugSkeleton } from '../../avatar/debug-skeleton';
+import { createHeadLoss } from '../../avatar/head-loss';
+import { createMirror } from '../../avatar/mirror';
+import type { Side } from '../../core/body/joints';
+import type { Pose } from '../../core/math/pose';
+import type { Vec3 } from '../../core/math/vec3';
+import type { TrackingFrame } from '../../core/tracking/tracking-frame';
+import { createDesktopView, type DesktopView, type Insets } from '../../scene/desktop-view';
+import { createHeadsetCamera, createRenderer, fitToWindow, type Quality } from '../../scene/renderer';
+import { createVignette, type Vignette } from '../../scene/vignette';
+import { createVrCaptions } from '../../ui/vr-captions';
+import { createStudio, type Studio } from '../studio/studio';
 
 /** The user stands at the origin and looks along −Z, at the mirror [m]. */
 const mirrorDistance = 1.5;
@@ -46,7 +46,7 @@ export interface Shot {
 /** What is always there to be drawn, and the cameras it is drawn with. */
 export interface Stage {
   readonly renderer: ReturnType<typeof createRenderer>;
-  readonly arena: Arena;
+  readonly studio: Studio;
   readonly view: DesktopView;
   readonly vignette: Vignette;
   /** A line low before the eyes of a session; empty: none. */
@@ -63,7 +63,7 @@ export interface Stage {
 
 export function createStage(canvas: HTMLCanvasElement, quality: Quality): Stage {
   const renderer = createRenderer(canvas, quality);
-  const arena = createArena(renderer, quality);
+  const studio = createStudio(renderer, quality);
   const view = createDesktopView(canvas);
   const mirror = createMirror({
     distance: mirrorDistance,
@@ -74,12 +74,12 @@ export function createStage(canvas: HTMLCanvasElement, quality: Quality): Stage 
   const vignette = createVignette();
   const headsetCamera = createHeadsetCamera();
   const captions = createVrCaptions();
-  arena.scene.add(mirror.object, skeleton.object, vignette.object, captions.object);
+  studio.scene.add(mirror.object, skeleton.object, vignette.object, captions.object);
   let lastTime = 0;
 
   return {
     renderer,
-    arena,
+    studio,
     view,
     vignette,
     caption: captions.say,
@@ -99,8 +99,8 @@ export function createStage(canvas: HTMLCanvasElement, quality: Quality): Stage 
       const elapsed = Math.min(longestStep, Math.max(0, time - lastTime));
       lastTime = time;
       const hips = avatar?.jointPositions().hips;
-      if (watched) arena.follow(watched.pelvis.x, outOfSight);
-      else if (hips) arena.follow(hips.x, hips.z);
+      if (watched) studio.follow(watched.pelvis.x, outOfSight);
+      else if (hips) studio.follow(hips.x, hips.z);
       if (inSession) return;
       if (watched) view.update(watched.pelvis, watched.eyes, elapsed);
       else if (frame) {
@@ -122,8 +122,8 @@ export function createStage(canvas: HTMLCanvasElement, quality: Quality): Stage 
       const beforeIt = inside || view.camera.position.z > 0.1 - mirrorDistance;
       mirror.setVisible(wanted === 'always' || (wanted === 'unless-behind' && beforeIt));
       const camera = inSession ? headsetCamera : view.camera;
-      mirror.reflect(renderer, arena.scene, camera);
-      renderer.render(arena.scene, camera);
+      mirror.reflect(renderer, studio.scene, camera);
+      renderer.render(studio.scene, camera);
     },
   };
 }

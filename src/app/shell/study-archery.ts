@@ -1,6 +1,6 @@
-import type { ArcheryFrame } from './archery-play';
-import { matchTime } from './core/games/archery/rules';
-import type { TaskEnd, TaskEvent, TaskRunner } from './study/task-runner';
+import { matchTime } from '../../core/games/archery/rules';
+import type { ArcheryFrame } from '../archery/archery-play';
+import type { TaskEnd, TaskEvent, TaskRunner } from '../study/task-runner';
 
 /** What the study needs of the archery on the page. */
 export interface ArcheryHost {

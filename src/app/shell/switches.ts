@@ -1,7 +1,7 @@
 import * as v from 'valibot';
-import { type EstimatorName, estimatorNames } from '../core/estimation/pose-estimator';
-import { type ViewName, viewNames } from '../scene/desktop-view';
-import type { Quality } from '../scene/renderer';
+import { type EstimatorName, estimatorNames } from '../../core/estimation/pose-estimator';
+import { type ViewName, viewNames } from '../../scene/desktop-view';
+import type { Quality } from '../../scene/renderer';
 import { type ActivityName, activityNames } from './play-bar';
 
 /** What the address asks for; null: nothing asked, the page decides. Listed in docs/page.md. */

@@ -1,12 +1,12 @@
 import { Group } from 'three';
-import type { EstimatorName } from '../core/estimation/pose-estimator';
-import { type CalibrationStep, calibrationHeadline, calibrationInstruction } from './calibration-dialog';
+import type { EstimatorName } from '../../core/estimation/pose-estimator';
+import { type CalibrationStep, calibrationHeadline, calibrationInstruction } from '../../ui/calibration-dialog';
+import { type FrameReport, milliseconds, missedFrames } from '../../ui/overlay';
+import { createVrPanel, fillRounded, vrColors, vrFont, wrap } from '../../ui/vr-panel';
+import type { Pointer } from '../../ui/vr-pointers';
+import { createPanelTouch } from '../../ui/vr-touch';
 import { estimatorOrder, estimatorTexts } from './estimator-texts';
-import { type FrameReport, milliseconds, missedFrames } from './overlay';
 import type { ActivityName } from './play-bar';
-import { createVrPanel, fillRounded, vrColors, vrFont, wrap } from './vr-panel';
-import type { Pointer } from './vr-pointers';
-import { createPanelTouch } from './vr-touch';
 
 /** What the menu in the headset shows. */
 export interface VrMenuState {

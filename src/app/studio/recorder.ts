@@ -1,12 +1,12 @@
-import type { Calibration } from './core/body/calibration';
+import type { Calibration } from '../../core/body/calibration';
 import {
   parseRecording,
   type Recording,
   recordingDuration,
   sampleRecording,
   writeRecording,
-} from './core/tracking/recording';
-import type { TrackingFrame } from './core/tracking/tracking-frame';
+} from '../../core/tracking/recording';
+import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 
 /** Frames kept at most: a quarter of an hour at 120 Hz, some 50 MB. Longer recordings stop by themselves. */
 const most = 108_000;

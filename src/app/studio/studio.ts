@@ -17,9 +17,9 @@ import {
   SphereGeometry,
   type WebGLRenderer,
 } from 'three';
-import { createBlobShadow } from './blob-shadow';
-import type { Quality } from './renderer';
-import type { DistantLight, Lighting, Surroundings } from './surroundings';
+import { createBlobShadow } from '../../scene/blob-shadow';
+import type { Quality } from '../../scene/renderer';
+import type { DistantLight, Lighting, Surroundings } from '../../scene/surroundings';
 
 const horizon = new Color('#3a475d');
 const zenith = new Color('#121722');
@@ -31,7 +31,7 @@ const floorRadius = 24;
 const levelSquare = (size: number) => new PlaneGeometry(size, size).rotateX(-Math.PI / 2);
 
 /** Everything around the people: a floor, a sky, light. The floor is y = 0 of the floor frame. */
-export interface Arena {
+export interface Studio {
   readonly scene: Scene;
   /** Moves shadow and light along with whoever stands at (x, z) [m], floor frame. */
   follow(x: number, z: number): void;
@@ -158,7 +158,7 @@ const studioLighting = (quality: Quality): Lighting => ({
 });
 
 /** Builds the studio: floor, sky, light and shadow, all made here, nothing loaded. */
-export function createArena(renderer: WebGLRenderer, quality: Quality): Arena {
+export function createStudio(renderer: WebGLRenderer, quality: Quality): Studio {
   const scene = new Scene();
   scene.background = null;
   const fog = new Fog(horizon);

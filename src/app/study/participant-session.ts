@@ -1,6 +1,6 @@
-import type { Calibration } from '../core/body/calibration';
-import type { Side } from '../core/body/joints';
-import { type Schedule, type StudyStep, scheduleFor } from '../core/study/plan';
+import type { Calibration } from '../../core/body/calibration';
+import type { Side } from '../../core/body/joints';
+import { type Schedule, type StudyStep, scheduleFor } from '../../core/study/plan';
 import {
   advance,
   begin,
@@ -8,10 +8,10 @@ import {
   type Progress,
   type ProgressEvent,
   remainingSeconds,
-} from '../core/study/progress';
-import type { Claim, NumberedCommand, PlayedTogether, SignedSeat } from '../core/study/study-api';
-import type { StudyRecord } from '../core/study/study-record';
-import { type ParticipantClient, ServerRefusal, ServerUnreachable } from './study-client';
+} from '../../core/study/progress';
+import type { Claim, NumberedCommand, PlayedTogether, SignedSeat } from '../../core/study/study-api';
+import type { StudyRecord } from '../../core/study/study-record';
+import { type ParticipantClient, ServerRefusal, ServerUnreachable } from '../../net/study-client';
 import type { KeptMotion, KeptSession, StudyVault } from './study-vault';
 
 /** Where what was recorded is now. */

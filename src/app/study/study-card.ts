@@ -1,5 +1,5 @@
-import { type DemographicField, demographicFields } from '../core/study/questionnaires';
-import { button, element } from './element';
+import { type DemographicField, demographicFields } from '../../core/study/questionnaires';
+import { button, element } from '../../ui/element';
 import type { StudyScreen } from './study-screen';
 
 /** The study on the desktop: one card over the page. */

@@ -1,10 +1,10 @@
-import { scheduleFor } from './core/study/plan';
-import type { Progress } from './core/study/progress';
-import type { PublicStudy } from './core/study/study-api';
-import { reasonOf } from './reasons';
-import { createParticipantSession, isLater, type ParticipantSession, startSession } from './study/participant-session';
-import { type ParticipantClient, ServerRefusal, ServerUnreachable } from './study/study-client';
-import { type KeptSession, openStudyVault, type StudyVault } from './study/study-vault';
+import { reasonOf } from '../../core/errors/reasons';
+import { scheduleFor } from '../../core/study/plan';
+import type { Progress } from '../../core/study/progress';
+import type { PublicStudy } from '../../core/study/study-api';
+import { type ParticipantClient, ServerRefusal, ServerUnreachable } from '../../net/study-client';
+import { createParticipantSession, isLater, type ParticipantSession, startSession } from './participant-session';
+import { type KeptSession, openStudyVault, type StudyVault } from './study-vault';
 
 /** Whose session, of which study. */
 export interface Place {

@@ -1,24 +1,32 @@
-import './styles/study.css';
-import type { ArcheryFrame } from './archery-play';
-import type { BallFrame } from './ball-frame';
-import type { Calibration } from './core/body/calibration';
-import type { Side } from './core/body/joints';
-import type { EstimatorName } from './core/estimation/pose-estimator';
-import { rotate } from './core/math/quat';
-import { vec3 } from './core/math/vec3';
-import { placeOf } from './core/study/progress';
-import { randomFor } from './core/study/shuffle';
-import type { PublicStudy } from './core/study/study-api';
-import type { TrackingFrame } from './core/tracking/tracking-frame';
-import { neverBack } from './page-clock';
-import { reasonOf } from './reasons';
-import type { ParticipantSession } from './study/participant-session';
-import { createParticipantClient, ServerRefusal } from './study/study-client';
-import { invitationIn, studyLink } from './study/study-link';
-import type { TaskPlace, TaskRunner } from './study/task-runner';
-import { type ArcheryHost, createArcheryRunner } from './study-archery';
-import { type BallHost, createBallRunner } from './study-ball';
+import '../../styles/study.css';
+import type { Calibration } from '../../core/body/calibration';
+import type { Side } from '../../core/body/joints';
+import { reasonOf } from '../../core/errors/reasons';
+import type { EstimatorName } from '../../core/estimation/pose-estimator';
+import { rotate } from '../../core/math/quat';
+import { vec3 } from '../../core/math/vec3';
+import { placeOf } from '../../core/study/progress';
+import { randomFor } from '../../core/study/shuffle';
+import type { PublicStudy } from '../../core/study/study-api';
+import { neverBack } from '../../core/tracking/page-clock';
+import type { TrackingFrame } from '../../core/tracking/tracking-frame';
+import { createParticipantClient, ServerRefusal } from '../../net/study-client';
+import { invitationIn, studyLink } from '../../net/study-link';
+import type { CalibrationStep } from '../../ui/calibration-dialog';
+import { type CalibrationGuide, createCalibrationGuide } from '../../ui/calibration-guide';
+import type { Pointer } from '../../ui/vr-pointers';
+import type { ParticipantSession } from './participant-session';
+import {
+  consentForm,
+  createStudyCard,
+  demographicsForm,
+  lastWords,
+  lockedOutForm,
+  participantForm,
+  withdrawalForm,
+} from './study-card';
 import { forgetSession, type Opened, openSession } from './study-opening';
+import type { StudyScreen } from './study-screen';
 import { lockedOutScreen, type StudySituation, screenOf, screenQuestions } from './study-screens';
 import {
   type FinishedTrial,
@@ -28,23 +36,13 @@ import {
   playTrial,
   type TrialHost,
 } from './study-trial';
-import type { CalibrationStep } from './ui/calibration-dialog';
-import { type CalibrationGuide, createCalibrationGuide } from './ui/calibration-guide';
-import {
-  consentForm,
-  createStudyCard,
-  demographicsForm,
-  lastWords,
-  lockedOutForm,
-  participantForm,
-  withdrawalForm,
-} from './ui/study-card';
-import type { StudyScreen } from './ui/study-screen';
-import type { Pointer } from './ui/vr-pointers';
-import { createVrStudyPanel, type VrStudyPanel } from './ui/vr-study-panel';
+import type { TaskPlace, TaskRunner } from './task-runner';
+import { createVrStudyPanel, type VrStudyPanel } from './vr-study-panel';
 
 /** What the study needs of the page; the page decides how. */
-export interface StudyHost extends ArcheryHost, BallHost, TrialHost {
+export interface StudyHost extends TrialHost {
+  /** The games this page can play as tasks, by the name that plans call them. */
+  readonly runners: Readonly<Partial<Record<string, TaskRunner>>>;
   enterVr(): Promise<void>;
   inSession(): boolean;
   /** Of this participant, for this visit; not remembered for others. */
@@ -67,10 +65,6 @@ export interface StudyRun {
   readonly paused: boolean;
   /** Every frame drawn; null: the head was not seen. */
   frame(time: number, frame: TrackingFrame | null): void;
-  /** Every frame of the round on the page. */
-  played(frame: ArcheryFrame): void;
-  /** Every frame of the match on the page. */
-  playedBall(frame: BallFrame): void;
   point(pointers: readonly Pointer[]): void;
   sessionChanged(): void;
   probe(): StudyProbe;
@@ -109,9 +103,6 @@ export function createStudyRun(
   const client = createParticipantClient();
   const card = createStudyCard();
   const sheet = createVrStudyPanel();
-  const archery = createArcheryRunner(host);
-  const ball = createBallRunner(host);
-  const runners: Partial<Record<string, TaskRunner>> = { archery, ball };
 
   let session: ParticipantSession | null = null;
   let screen: StudyScreen | null = null;
@@ -143,7 +134,7 @@ export function createStudyRun(
 
   const runnerOf = (step: { readonly task: string }): TaskRunner | null => {
     const game = session?.plan.tasks.find(({ id }) => id === step.task)?.game;
-    return (game && runners[game]) ?? null;
+    return (game && host.runners[game]) ?? null;
   };
 
   /** Where a group meets: a room of its own for every trial of every run, on a seat that the server signs. */
@@ -477,8 +468,6 @@ export function createStudyRun(
       const finished = trial.follow(time, frame);
       if (finished) finishTrial(running, finished);
     },
-    played: (frame) => archery.played(frame),
-    playedBall: (frame) => ball.played(frame),
     point: (pointers) => sheet.point(pointers),
     sessionChanged() {
       // Whoever takes the headset off in the middle of a round has not played it.

@@ -1,9 +1,9 @@
-import { blindLabel, type StudyStep } from './core/study/plan';
-import type { ProgressEvent } from './core/study/progress';
-import { type Question, questionnaires, scale } from './core/study/questionnaires';
-import type { ParticipantSession, Safekeeping } from './study/participant-session';
-import { type CalibrationStep, calibrationHeadline, calibrationInstruction } from './ui/calibration-dialog';
-import type { ScreenButton, StudyScreen } from './ui/study-screen';
+import { blindLabel, type StudyStep } from '../../core/study/plan';
+import type { ProgressEvent } from '../../core/study/progress';
+import { type Question, questionnaires, scale } from '../../core/study/questionnaires';
+import { type CalibrationStep, calibrationHeadline, calibrationInstruction } from '../../ui/calibration-dialog';
+import type { ParticipantSession, Safekeeping } from './participant-session';
+import type { ScreenButton, StudyScreen } from './study-screen';
 
 /** Everything that decides what a participant sees. */
 export interface StudySituation {

@@ -1,11 +1,10 @@
-import type { Calibration } from './core/body/calibration';
-import type { EstimatorName } from './core/estimation/pose-estimator';
-import type { StudyStep } from './core/study/plan';
-import { createTrialLog, type TrialOutcome } from './core/study/trial-log';
-import { writeRecording } from './core/tracking/recording';
-import type { TrackingFrame } from './core/tracking/tracking-frame';
-import type { FrameListener } from './frame-timing';
-import type { TaskRunner } from './study/task-runner';
+import type { Calibration } from '../../core/body/calibration';
+import type { EstimatorName } from '../../core/estimation/pose-estimator';
+import type { StudyStep } from '../../core/study/plan';
+import { createTrialLog, type FrameListener, type TrialOutcome } from '../../core/study/trial-log';
+import { writeRecording } from '../../core/tracking/recording';
+import type { TrackingFrame } from '../../core/tracking/tracking-frame';
+import type { TaskRunner } from './task-runner';
 
 /** The steps that are played. */
 export type PlayedStep = Extract<StudyStep, { kind: 'trial' | 'tutorial' }>;

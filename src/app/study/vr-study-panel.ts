@@ -1,8 +1,8 @@
 import { Group, Vector3 } from 'three';
+import { createVrPanel, fillRounded, vrColors, vrFont, wrap } from '../../ui/vr-panel';
+import type { Pointer } from '../../ui/vr-pointers';
+import { createPanelTouch, type PanelTarget } from '../../ui/vr-touch';
 import type { ScreenButton, StudyScreen } from './study-screen';
-import { createVrPanel, fillRounded, vrColors, vrFont, wrap } from './vr-panel';
-import type { Pointer } from './vr-pointers';
-import { createPanelTouch, type PanelTarget } from './vr-touch';
 
 /** The study in the headset: one sheet at arm's length and a bit, with targets as big as a palm. */
 export interface VrStudyPanel {

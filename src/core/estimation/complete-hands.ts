@@ -1,3 +1,4 @@
+import type { TrackedPose } from '../body/avatar-pose';
 import { headJointOf } from '../body/head-joint';
 import type { Side } from '../body/joints';
 import { type ChestSpaceBody, sideSign } from '../body/skeleton';
@@ -28,7 +29,7 @@ import {
   type Vec3,
   vec3,
 } from '../math/vec3';
-import type { TrackedPose, TrackingFrame } from '../tracking/tracking-frame';
+import type { TrackingFrame } from '../tracking/tracking-frame';
 import { type BodyHeading, followBodyHeading, makeBodyHeading } from './body-heading';
 import { alongArc, type DirectionArc, directionArc, makeDirectionArc } from './direction-arc';
 import lostHand from './lost-hand.json';

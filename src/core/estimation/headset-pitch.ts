@@ -1,8 +1,8 @@
+import type { TrackedPose } from '../body/avatar-pose';
 import type { Calibration } from '../body/calibration';
 import { type MutablePose, makePose } from '../math/pose';
 import { fromAxisAngle, type MutableQuat, multiply, quat } from '../math/quat';
 import { copyVec3, right } from '../math/vec3';
-import type { TrackedPose } from '../tracking/tracking-frame';
 
 /** Takes the pitch of a headset that sits tilted on its wearer's head out of its pose. */
 export class HeadsetPitch {

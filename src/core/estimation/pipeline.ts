@@ -1,11 +1,11 @@
-import { type MutableUpperBodyPose, makeUpperBodyPose } from '../body/avatar-pose';
+import { type MutableUpperBodyPose, makeUpperBodyPose, type TrackedPose } from '../body/avatar-pose';
 import type { Calibration } from '../body/calibration';
 import { chestSpaceBody, skeletonFromCalibration } from '../body/skeleton';
 import { makePose, makeTransform, transformPose } from '../math/pose';
 import { rotate } from '../math/quat';
 import { vec3 } from '../math/vec3';
 import { floorFromHeading, headingFromFloor } from '../tracking/heading';
-import type { TrackedPose, TrackingFrame } from '../tracking/tracking-frame';
+import type { TrackingFrame } from '../tracking/tracking-frame';
 import { completeHands, makeCompleteHandsState, resetCompleteHands } from './complete-hands';
 import { composeBody } from './compose-body';
 import { filterJoints, makeFilterJointsState, resetFilterJoints } from './filter-joints';

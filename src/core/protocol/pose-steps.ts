@@ -1,8 +1,8 @@
+import type { TrackedPose } from '../body/avatar-pose';
 import type { Side } from '../body/joints';
 import { clamp } from '../math/damper';
 import type { MutablePose, Pose } from '../math/pose';
 import { add, type MutableVec3, setVec3, type Vec3, vec3 } from '../math/vec3';
-import type { TrackedPose } from '../tracking/tracking-frame';
 import {
   type DirectionSteps,
   fromQuatSteps,

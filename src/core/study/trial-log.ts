@@ -134,10 +134,13 @@ export function createDurationStatistics(): DurationStatistics {
 
 type Tracked = 'head' | 'leftHand' | 'rightHand';
 
+/** Hears of each frame the time spent by stage [ms], the whole under "frame", and whether the device showed it late. */
+export type FrameListener = (spentMs: Readonly<Record<string, number>>, late: boolean) => void;
+
 /** Collects one trial. Per frame it writes numbers; everything else is left to `finish`. */
 export interface TrialLog {
   /** One frame: milliseconds per stage, and whether it was shown late. */
-  frame(stages: Readonly<Record<string, number>>, late: boolean): void;
+  readonly frame: FrameListener;
   /** What was tracked at this second of the trial; times rise. */
   tracked(time: number, seen: Readonly<Record<Tracked, boolean>>): void;
   shot(): void;

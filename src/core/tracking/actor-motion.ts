@@ -1,10 +1,11 @@
+import type { TrackedPose } from '../body/avatar-pose';
 import type { Calibration } from '../body/calibration';
 import type { Side } from '../body/joints';
 import { chestSpaceBody, sideSign } from '../body/skeleton';
 import { clamp } from '../math/damper';
 import { fromAxes, fromAxisAngle, multiply, type Quat, rotate, slerp } from '../math/quat';
 import { add, addScaled, cross, distance, lerp, normalise, reject, scale, up, type Vec3, vec3 } from '../math/vec3';
-import type { TrackedPose, TrackingFrame } from './tracking-frame';
+import type { TrackingFrame } from './tracking-frame';
 
 /** A hand of a key pose, in the body's frame (yaw of the trunk), mirrored for the left: x is outward. */
 interface HandKey {

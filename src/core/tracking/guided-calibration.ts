@@ -1,12 +1,13 @@
+import type { TrackedPose } from '../body/avatar-pose';
+import { type Calibration, calibrationComplaint, steepestGazePitch } from '../body/calibration';
+import type { Side } from '../body/joints';
+import { sideSign, skeletonFromCalibration } from '../body/skeleton';
 import { clamp } from '../math/damper';
 import { transformPoint } from '../math/pose';
 import { rotate } from '../math/quat';
 import { add, addScaled, distance, forward, length, subtract, type Vec3, vec3 } from '../math/vec3';
-import { headingFromFloor } from '../tracking/heading';
-import type { TrackedPose, TrackingFrame } from '../tracking/tracking-frame';
-import { type Calibration, calibrationComplaint, steepestGazePitch } from './calibration';
-import type { Side } from './joints';
-import { sideSign, skeletonFromCalibration } from './skeleton';
+import { headingFromFloor } from './heading';
+import type { TrackingFrame } from './tracking-frame';
 
 /** The person stands straight, looks ahead and stretches both arms forward (or sideways) for this long. */
 export const measuringSeconds = 2;

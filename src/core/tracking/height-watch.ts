@@ -1,8 +1,8 @@
+import { type Calibration, calibrationComplaint, withEyeHeight } from '../body/calibration';
+import { skeletonFromCalibration } from '../body/skeleton';
 import { fromAxisAngle, rotate } from '../math/quat';
 import { right, zero } from '../math/vec3';
-import type { TrackingFrame } from '../tracking/tracking-frame';
-import { type Calibration, calibrationComplaint, withEyeHeight } from './calibration';
-import { skeletonFromCalibration } from './skeleton';
+import type { TrackingFrame } from './tracking-frame';
 
 /** Notices whoever stands taller than their calibration says. Smaller tells nothing: people crouch, slouch and sit. */
 export interface HeightWatch {

@@ -1,7 +1,8 @@
+import type { TrackedPose } from '../body/avatar-pose';
 import type { Calibration } from '../body/calibration';
 import { slerp } from '../math/quat';
 import { lerp } from '../math/vec3';
-import type { TrackedPose, TrackingFrame } from './tracking-frame';
+import type { TrackingFrame } from './tracking-frame';
 
 /** What was tracked over a while, as it was tracked: full precision, lost hands as null. */
 export interface Recording {

@@ -1,7 +1,4 @@
-import type { Pose } from '../math/pose';
-
-/** tracked: seen in this frame. emulated: the device guesses the position (WebXR `emulatedPosition`). */
-export type TrackedPose = Pose<'floor'> & { readonly tracking: 'tracked' | 'emulated' };
+import type { TrackedPose } from '../body/avatar-pose';
 
 /**
  * One frame of the three tracked points. Head: the viewer pose (origin between the eyes, −Z is the gaze).

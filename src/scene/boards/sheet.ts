@@ -1,6 +1,6 @@
 import { Matrix4, Mesh, MeshBasicMaterial, PlaneGeometry, Vector3 } from 'three';
-import { createDrawnTexture } from '../scene/drawn-texture';
-import type { Quality } from '../scene/renderer';
+import { createDrawnTexture } from '../drawn-texture';
+import type { Quality } from '../renderer';
 
 interface Point {
   readonly x: number;

@@ -1,6 +1,6 @@
 import { BoxGeometry, Group, Mesh, MeshBasicMaterial, MeshLambertMaterial, PlaneGeometry, type Texture } from 'three';
-import { merged, painted } from '../scene/painted-geometry';
-import { woodColor } from './outdoors/wood';
+import { woodColor } from '../outdoors/wood';
+import { merged, painted } from '../painted-geometry';
 
 export interface WoodenBoardShape {
   /** Of what is written on it [m]. */

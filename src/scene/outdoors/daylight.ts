@@ -1,7 +1,7 @@
 import { Quaternion, Vector3 } from 'three';
 import type { Transform } from '../../core/math/pose';
-import type { Quality } from '../../scene/renderer';
-import type { Lighting } from '../../scene/surroundings';
+import type { Quality } from '../renderer';
+import type { Lighting } from '../surroundings';
 import { createReflected } from './reflected';
 import { hazeColor } from './sky';
 

@@ -12,8 +12,8 @@ import {
   MeshLambertMaterial,
   Vector3,
 } from 'three';
-import { merged, painted } from '../../scene/painted-geometry';
-import type { Quality } from '../../scene/renderer';
+import { merged, painted } from '../painted-geometry';
+import type { Quality } from '../renderer';
 import { createScatter } from './scatter';
 import { hazeColor } from './sky';
 

@@ -1,5 +1,5 @@
 import { DataTexture, LinearFilter, RepeatWrapping, RGBAFormat } from 'three';
-import { anisotropyOf, minFilterOf, type Quality } from '../../scene/renderer';
+import { anisotropyOf, minFilterOf, type Quality } from '../renderer';
 
 /** Four noises that repeat without a seam: r wide, g fine (both sums of octaves), b grass blades, a one fine octave. */
 const side = 256;

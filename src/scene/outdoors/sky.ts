@@ -1,5 +1,5 @@
 import { BackSide, Color, Mesh, ShaderMaterial, SphereGeometry, type Texture, type Vector3 } from 'three';
-import type { Quality } from '../../scene/renderer';
+import type { Quality } from '../renderer';
 
 /** What the horizon fades into; the fog has the same colour. */
 export const hazeColor = '#dfe9ec';

@@ -1,5 +1,5 @@
-import { clamp } from '../core/math/damper';
-import { createScatter } from './outdoors/scatter';
+import { clamp } from '../../core/math/damper';
+import { createScatter } from '../outdoors/scatter';
 
 /** Sounds as samples in [−1, 1], made here; rate in samples per second. The same arguments make the same sound. */
 export type Samples = Float32Array<ArrayBuffer>;

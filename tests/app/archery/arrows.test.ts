@@ -1,11 +1,11 @@
 import { describe, expect, it } from 'vitest';
+import { arrowPose } from '../../../src/app/archery/arrow-pose';
+import { arrowGeometry, createArrows } from '../../../src/app/archery/arrows';
+import { createTrails } from '../../../src/app/archery/trails';
 import type { Arrow, Landing } from '../../../src/core/games/archery/archery-state';
 import { arrowLength } from '../../../src/core/games/archery/bow';
 import { positionAt, velocityAt } from '../../../src/core/games/ballistics';
 import { addScaled, distance, dot, normalise, reject, subtract, vec3 } from '../../../src/core/math/vec3';
-import { arrowPose } from '../../../src/games/archery/arrow-pose';
-import { arrowGeometry, createArrows } from '../../../src/games/archery/arrows';
-import { createTrails } from '../../../src/games/archery/trails';
 
 const release = { time: 2, position: vec3(0, 1.5, -0.8), velocity: vec3(1, 3, -30) };
 const after = 0.3;

@@ -1,12 +1,12 @@
 import { Color } from 'three';
 import { describe, expect, it } from 'vitest';
+import { onRestartButton } from '../../../src/app/archery/result-panel';
+import { arrowResult, boardText, maximumScore } from '../../../src/app/archery/scoreboard-drawing';
+import { ringColor, rings } from '../../../src/app/archery/target-rings';
+import { scoredBy } from '../../../src/app/archery/target-stands';
 import type { ArcheryState, Arrow, Landing } from '../../../src/core/games/archery/archery-state';
 import { archeryRules } from '../../../src/core/games/archery/rules';
 import { vec3 } from '../../../src/core/math/vec3';
-import { onRestartButton } from '../../../src/games/archery/result-panel';
-import { arrowResult, boardText, maximumScore } from '../../../src/games/archery/scoreboard-drawing';
-import { ringColor, rings } from '../../../src/games/archery/target-rings';
-import { scoredBy } from '../../../src/games/archery/target-stands';
 
 const shot = (id: number, landing: Partial<Landing> | null): Arrow => ({
   id,

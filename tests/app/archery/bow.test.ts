@@ -1,10 +1,10 @@
 import fc from 'fast-check';
 import { type BufferAttribute, Mesh } from 'three';
 import { describe, expect, it } from 'vitest';
+import { createBow } from '../../../src/app/archery/bow';
+import { stringBow } from '../../../src/app/archery/limb-shape';
 import { braceHeight, maximumDraw } from '../../../src/core/games/archery/bow';
 import { distance, vec3 } from '../../../src/core/math/vec3';
-import { createBow } from '../../../src/games/archery/bow';
-import { stringBow } from '../../../src/games/archery/limb-shape';
 import { fromEulerYxz } from '../../core/euler-angles';
 import { bowView } from './bow-view';
 

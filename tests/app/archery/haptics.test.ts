@@ -1,7 +1,7 @@
 import { describe, expect, it } from 'vitest';
+import { eventHaptics } from '../../../src/app/archery/haptics';
 import type { Arrow, Landing } from '../../../src/core/games/archery/archery-state';
 import { vec3 } from '../../../src/core/math/vec3';
-import { eventHaptics } from '../../../src/games/archery/haptics';
 
 const hit = (points: number, target: number | null = 1) => {
   const landing: Landing = {

@@ -1,15 +1,15 @@
 import { afterAll, expect, test } from 'vitest';
-import { type BallPlay, createBallPlay } from '../src/ball-play';
-import { defaultCalibration } from '../src/core/body/calibration';
-import { forwardKinematics } from '../src/core/body/forward-kinematics';
-import { skeletonFromCalibration } from '../src/core/body/skeleton';
-import { createEstimator } from '../src/core/estimation/estimators';
-import { allReleased, type Buttons } from '../src/core/games/button-presses';
-import { distance, type Vec3 } from '../src/core/math/vec3';
-import { createRoomPass } from '../src/net/room-pass';
-import { createSocketConnection } from '../src/net/socket-connection';
-import { poseOf } from './core/estimation/drawn';
-import { type RunningRelay, startRelay } from './server/running-relay';
+import { type BallPlay, createBallPlay } from '../../../src/app/ball/ball-play';
+import { defaultCalibration } from '../../../src/core/body/calibration';
+import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
+import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
+import { createEstimator } from '../../../src/core/estimation/estimators';
+import { allReleased, type Buttons } from '../../../src/core/games/button-presses';
+import { distance, type Vec3 } from '../../../src/core/math/vec3';
+import { createRoomPass } from '../../../src/net/room-pass';
+import { createSocketConnection } from '../../../src/net/socket-connection';
+import { poseOf } from '../../core/estimation/drawn';
+import { type RunningRelay, startRelay } from '../../server/running-relay';
 
 const released: Buttons = { left: allReleased, right: allReleased };
 const closing: (() => Promise<void>)[] = [];

@@ -1,13 +1,13 @@
 import { describe, expect, it } from 'vitest';
-import { type BallPlay, createBallPlay } from '../src/ball-play';
-import { defaultCalibration } from '../src/core/body/calibration';
-import { createEstimator } from '../src/core/estimation/estimators';
-import type { BallEvent, BallOptions } from '../src/core/games/ball/ball-state';
-import type { BallSteering } from '../src/core/games/ball/steered-players';
-import { allReleased, type Buttons } from '../src/core/games/button-presses';
-import { distance } from '../src/core/math/vec3';
-import { createLoopbackHost } from '../src/net/loopback-connection';
-import { poseOf } from './core/estimation/drawn';
+import { type BallPlay, createBallPlay } from '../../../src/app/ball/ball-play';
+import { defaultCalibration } from '../../../src/core/body/calibration';
+import { createEstimator } from '../../../src/core/estimation/estimators';
+import type { BallEvent, BallOptions } from '../../../src/core/games/ball/ball-state';
+import type { BallSteering } from '../../../src/core/games/ball/steered-players';
+import { allReleased, type Buttons } from '../../../src/core/games/button-presses';
+import { distance } from '../../../src/core/math/vec3';
+import { createLoopbackHost } from '../../../src/net/loopback-connection';
+import { poseOf } from '../../core/estimation/drawn';
 
 /** Half of what a headset draws: every frame costs a solved body for each player. */
 const usualHz = 36;

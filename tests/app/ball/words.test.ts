@@ -1,8 +1,4 @@
 import { describe, expect, it } from 'vitest';
-import type { BallEvent, BallPlace, BallState } from '../../../src/core/games/ball/ball-state';
-import { ballRules } from '../../../src/core/games/ball/rules';
-import { identity } from '../../../src/core/math/quat';
-import { vec3 } from '../../../src/core/math/vec3';
 import {
   catchesOf,
   lineOfEvent,
@@ -13,12 +9,16 @@ import {
   seatOfButton,
   waitingFor,
   waitingLine,
-} from '../../../src/games/ball/board-drawing';
-import { cueCaption, eventCaption } from '../../../src/games/ball/captions';
-import { eventHaptics } from '../../../src/games/ball/haptics';
-import { createMatchClock } from '../../../src/games/ball/match-clock';
-import { labelScale } from '../../../src/games/ball/name-labels';
-import { createSettling, settlingSeconds } from '../../../src/games/sheet';
+} from '../../../src/app/ball/board-drawing';
+import { cueCaption, eventCaption } from '../../../src/app/ball/captions';
+import { eventHaptics } from '../../../src/app/ball/haptics';
+import { createMatchClock } from '../../../src/app/ball/match-clock';
+import { labelScale } from '../../../src/app/ball/name-labels';
+import type { BallEvent, BallPlace, BallState } from '../../../src/core/games/ball/ball-state';
+import { ballRules } from '../../../src/core/games/ball/rules';
+import { identity } from '../../../src/core/math/quat';
+import { vec3 } from '../../../src/core/math/vec3';
+import { createSettling, settlingSeconds } from '../../../src/scene/boards/sheet';
 
 const person = (name: string, more: Partial<Person> = {}): Person => ({
   name,

@@ -1,11 +1,11 @@
 import { describe, expect, test } from 'vitest';
-import type { AvatarPose } from '../src/core/body/avatar-pose';
-import type { InferenceRequest, PoseEstimator } from '../src/core/estimation/pose-estimator';
-import type { PoseRegressor } from '../src/core/estimation/pose-regressor';
-import type { TrackingFrame } from '../src/core/tracking/tracking-frame';
-import { createFrameLoop, type FrameParts, withTiming } from '../src/frame-loop';
-import { createFrameTiming } from '../src/frame-timing';
-import { createPageClock } from '../src/page-clock';
+import { createFrameLoop, type FrameParts, withTiming } from '../../../src/app/shell/frame-loop';
+import { createFrameTiming } from '../../../src/app/shell/frame-timing';
+import type { AvatarPose } from '../../../src/core/body/avatar-pose';
+import type { InferenceRequest, PoseEstimator } from '../../../src/core/estimation/pose-estimator';
+import type { PoseRegressor } from '../../../src/core/estimation/pose-regressor';
+import { createPageClock } from '../../../src/core/tracking/page-clock';
+import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
 
 const head = {
   position: { x: 0, y: 1.6, z: 0 },

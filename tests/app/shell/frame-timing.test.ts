@@ -1,5 +1,5 @@
 import { describe, expect, test } from 'vitest';
-import { createFrameTiming } from '../src/frame-timing';
+import { createFrameTiming } from '../../../src/app/shell/frame-timing';
 
 /** A clock that a test turns by hand [ms]. */
 function handClock() {

@@ -1,8 +1,8 @@
 import { describe, expect, test } from 'vitest';
-import { defaultCalibration } from '../src/core/body/calibration';
-import { createSettings } from '../src/settings';
-import type { Preferences } from '../src/ui/preferences';
-import { readSwitches } from '../src/ui/switches';
+import type { Preferences } from '../../../src/app/shell/preferences';
+import { createSettings } from '../../../src/app/shell/settings';
+import { readSwitches } from '../../../src/app/shell/switches';
+import { defaultCalibration } from '../../../src/core/body/calibration';
 
 /** Settings of a visit with this address by a person whose browser remembers this. */
 const visit = (query: string, remembered: Preferences = {}) =>

@@ -1,12 +1,12 @@
 import { expect, test } from 'vitest';
-import { createBallPlay } from '../src/ball-play';
-import { defaultCalibration } from '../src/core/body/calibration';
-import { createEstimator } from '../src/core/estimation/estimators';
-import { allReleased, type Buttons } from '../src/core/games/button-presses';
-import { createLoopbackHost } from '../src/net/loopback-connection';
-import { createBallRunner } from '../src/study-ball';
-import { type FinishedTrial, type PlayedStep, type PlayedTrial, playTrial } from '../src/study-trial';
-import { poseOf } from './core/estimation/drawn';
+import { createBallPlay } from '../../../src/app/ball/ball-play';
+import { createBallRunner } from '../../../src/app/shell/study-ball';
+import { type FinishedTrial, type PlayedStep, type PlayedTrial, playTrial } from '../../../src/app/study/study-trial';
+import { defaultCalibration } from '../../../src/core/body/calibration';
+import { createEstimator } from '../../../src/core/estimation/estimators';
+import { allReleased, type Buttons } from '../../../src/core/games/button-presses';
+import { createLoopbackHost } from '../../../src/net/loopback-connection';
+import { poseOf } from '../../core/estimation/drawn';
 
 const released: Buttons = { left: allReleased, right: allReleased };
 const people = ['P01', 'P02', 'P03'];

@@ -1,6 +1,6 @@
 import { describe, expect, test } from 'vitest';
-import type { TrackingFrame } from '../src/core/tracking/tracking-frame';
-import { createRecorder } from '../src/recorder';
+import { createRecorder } from '../../../src/app/studio/recorder';
+import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
 
 const source = { device: 'emulated headset', rateHz: 72, calibration: { eyeHeight: 1.6, armSpan: 1.4 } };
 

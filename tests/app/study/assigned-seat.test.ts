@@ -1,14 +1,14 @@
 import { expect, onTestFinished, test, vi } from 'vitest';
-import { relayConfigurationFrom } from '../../server/relay-configuration';
-import { startServer } from '../../server/start';
-import { assignedSeat } from '../../src/ball-connections';
-import { scheduleFor } from '../../src/core/study/plan';
-import type { ParticipantState } from '../../src/core/study/study-api';
-import { createExperimenterClient, createParticipantClient } from '../../src/study/study-client';
-import { paperPlan } from '../core/study/studies';
-import { visitor } from '../net/people';
-import { testSecret, until } from '../server/running-relay';
-import { directoryWith } from '../temporary-directory';
+import { relayConfigurationFrom } from '../../../server/relay-configuration';
+import { startServer } from '../../../server/start';
+import { assignedSeat } from '../../../src/app/ball/ball-connections';
+import { scheduleFor } from '../../../src/core/study/plan';
+import type { ParticipantState } from '../../../src/core/study/study-api';
+import { createExperimenterClient, createParticipantClient } from '../../../src/net/study-client';
+import { paperPlan } from '../../core/study/studies';
+import { visitor } from '../../net/people';
+import { testSecret, until } from '../../server/running-relay';
+import { directoryWith } from '../../temporary-directory';
 
 const experimenterToken = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 const trial = { step: 'ball/1/trial-1', run: 1 };

@@ -1,23 +1,23 @@
 import 'fake-indexeddb/auto';
 import { join } from 'node:path';
 import { afterEach, expect, onTestFinished, test, vi } from 'vitest';
-import { createRouter, noPage } from '../../server/http/router';
-import { createStudyRoutes } from '../../server/study-routes';
-import { openStudyStore } from '../../server/study-store';
-import { serve, type WebServer } from '../../server/web-server';
-import { writeRecording } from '../../src/core/tracking/recording';
-import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
+import { createRouter, noPage } from '../../../server/http/router';
+import { createStudyRoutes } from '../../../server/study-routes';
+import { openStudyStore } from '../../../server/study-store';
+import { serve, type WebServer } from '../../../server/web-server';
 import {
   createParticipantSession,
   isLater,
   type ParticipantSession,
   startSession,
-} from '../../src/study/participant-session';
-import { createExperimenterClient, createParticipantClient } from '../../src/study/study-client';
-import { openStudyVault, type StudyVault } from '../../src/study/study-vault';
-import { outcomeOf, paperPlan, somebody } from '../core/study/studies';
-import { studySeats } from '../server/running-studies';
-import { directoryWith } from '../temporary-directory';
+} from '../../../src/app/study/participant-session';
+import { openStudyVault, type StudyVault } from '../../../src/app/study/study-vault';
+import { writeRecording } from '../../../src/core/tracking/recording';
+import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
+import { createExperimenterClient, createParticipantClient } from '../../../src/net/study-client';
+import { outcomeOf, paperPlan, somebody } from '../../core/study/studies';
+import { studySeats } from '../../server/running-studies';
+import { directoryWith } from '../../temporary-directory';
 
 const token = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 const plan = paperPlan();

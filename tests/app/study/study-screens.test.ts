@@ -1,10 +1,15 @@
 import { describe, expect, test } from 'vitest';
-import type { ProgressEvent } from '../src/core/study/progress';
-import { questionnaires } from '../src/core/study/questionnaires';
-import { createParticipantSession, startSession } from '../src/study/participant-session';
-import { createParticipantClient } from '../src/study/study-client';
-import { type ScreenActions, type StudySituation, safekeepingText, screenOf } from '../src/study-screens';
-import { outcomeOf, paperPlan, somebody } from './core/study/studies';
+import { createParticipantSession, startSession } from '../../../src/app/study/participant-session';
+import {
+  type ScreenActions,
+  type StudySituation,
+  safekeepingText,
+  screenOf,
+} from '../../../src/app/study/study-screens';
+import type { ProgressEvent } from '../../../src/core/study/progress';
+import { questionnaires } from '../../../src/core/study/questionnaires';
+import { createParticipantClient } from '../../../src/net/study-client';
+import { outcomeOf, paperPlan, somebody } from '../../core/study/studies';
 
 const plan = paperPlan();
 const consent = { type: 'consent', version: plan.consent.version, motion: false } as const;

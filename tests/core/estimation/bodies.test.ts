@@ -1,5 +1,6 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
+import type { TrackedPose } from '../../../src/core/body/avatar-pose';
 import type { Calibration } from '../../../src/core/body/calibration';
 import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
 import { estimatedJoints, type JointName, type Side } from '../../../src/core/body/joints';
@@ -26,7 +27,7 @@ import {
   type Vec3,
   vec3,
 } from '../../../src/core/math/vec3';
-import type { TrackedPose, TrackingFrame } from '../../../src/core/tracking/tracking-frame';
+import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
 import { cases } from '../../nightly';
 import { evenly, number, seed, standpoint } from '../arbitraries';
 import { fromEulerYxz } from '../euler-angles';

@@ -1,5 +1,6 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
+import type { TrackedPose } from '../../../src/core/body/avatar-pose';
 import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
 import { chestSpaceBody, skeletonFromCalibration } from '../../../src/core/body/skeleton';
 import {
@@ -11,7 +12,7 @@ import {
 import { createIk } from '../../../src/core/estimation/estimators';
 import { copyQuat, fromAxisAngle, identity, multiply, rotate } from '../../../src/core/math/quat';
 import { add, copyVec3, distance, length, up, type Vec3, vec3 } from '../../../src/core/math/vec3';
-import type { TrackedPose, TrackingFrame } from '../../../src/core/tracking/tracking-frame';
+import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
 import { number, seed } from '../arbitraries';
 import { poseOf } from './drawn';
 

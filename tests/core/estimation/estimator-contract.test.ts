@@ -1,6 +1,6 @@
 import fc from 'fast-check';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
-import type { AvatarPose } from '../../../src/core/body/avatar-pose';
+import type { AvatarPose, TrackedPose } from '../../../src/core/body/avatar-pose';
 import type { Calibration } from '../../../src/core/body/calibration';
 import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
 import { type JointName, jointNames, parentOf } from '../../../src/core/body/joints';
@@ -26,7 +26,7 @@ import {
   vec3,
 } from '../../../src/core/math/vec3';
 import { headingOf } from '../../../src/core/tracking/heading';
-import type { TrackedPose, TrackingFrame } from '../../../src/core/tracking/tracking-frame';
+import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
 import { number, rotation, seed, standpoint, vector } from '../arbitraries';
 import { type Joints, show, showAll } from './drawn';
 import { mirrorFrame, mirrorPoint, movingPerson, transformFrame, withHand } from './moving-person';

@@ -1,3 +1,4 @@
+import type { TrackedPose } from '../../../src/core/body/avatar-pose';
 import type { Calibration } from '../../../src/core/body/calibration';
 import type { Side } from '../../../src/core/body/joints';
 import { chestSpaceBody, sideSign } from '../../../src/core/body/skeleton';
@@ -5,7 +6,7 @@ import { type Frame, type Transform, transformPose } from '../../../src/core/mat
 import { fromAxes, fromAxisAngle, multiply, type Quat, rotate } from '../../../src/core/math/quat';
 import { nextRandom } from '../../../src/core/math/random';
 import { add, addScaled, cross, normalise, right, subtract, up, type Vec3, vec3 } from '../../../src/core/math/vec3';
-import type { TrackedPose, TrackingFrame } from '../../../src/core/tracking/tracking-frame';
+import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
 import { fromEulerYxz } from '../euler-angles';
 
 /** Where a person stands on the floor and which way they face at the start. */

@@ -1,4 +1,5 @@
 import fc from 'fast-check';
+import type { TrackedPose } from '../../../src/core/body/avatar-pose';
 import type { Calibration } from '../../../src/core/body/calibration';
 import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
 import { createIk } from '../../../src/core/estimation/estimators';
@@ -7,7 +8,7 @@ import { fromAxisAngle, multiply } from '../../../src/core/math/quat';
 import { up, vec3 } from '../../../src/core/math/vec3';
 import type { FingerCurl, PosePacket } from '../../../src/core/protocol/pose-packet';
 import { actorFrame } from '../../../src/core/tracking/actor-motion';
-import type { TrackedPose, TrackingFrame } from '../../../src/core/tracking/tracking-frame';
+import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
 import { number, rotation, standpoint, vector } from '../arbitraries';
 import { show } from '../estimation/drawn';
 import { movingPerson, transformFrame, withHand } from '../estimation/moving-person';

@@ -1,18 +1,19 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
+import type { TrackedPose } from '../../../src/core/body/avatar-pose';
 import type { Calibration } from '../../../src/core/body/calibration';
 import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
-import {
-  type GuidedCalibration,
-  startGuidedCalibration,
-  stepGuidedCalibration,
-} from '../../../src/core/body/guided-calibration';
 import { jointNames } from '../../../src/core/body/joints';
 import { armLength, skeletonFromCalibration } from '../../../src/core/body/skeleton';
 import { type Frame, type Pose, transformPose } from '../../../src/core/math/pose';
 import { fromAxisAngle, identity, multiply, type Quat, rotate } from '../../../src/core/math/quat';
 import { add, right, up, type Vec3, vec3 } from '../../../src/core/math/vec3';
-import type { TrackedPose, TrackingFrame } from '../../../src/core/tracking/tracking-frame';
+import {
+  type GuidedCalibration,
+  startGuidedCalibration,
+  stepGuidedCalibration,
+} from '../../../src/core/tracking/guided-calibration';
+import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
 import { number, seed, standpoint } from '../arbitraries';
 
 const pose = (position: Vec3, orientation: Quat = identity): TrackedPose => ({

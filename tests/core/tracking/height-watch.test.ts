@@ -7,10 +7,10 @@ import {
   provisionalCalibration,
   withEyeHeight,
 } from '../../../src/core/body/calibration';
-import { createHeightWatch } from '../../../src/core/body/height-watch';
 import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
 import { fromAxisAngle, identity, multiply, type Quat, rotate } from '../../../src/core/math/quat';
 import { right, subtract, up, vec3 } from '../../../src/core/math/vec3';
+import { createHeightWatch } from '../../../src/core/tracking/height-watch';
 import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
 import { number, seed } from '../arbitraries';
 

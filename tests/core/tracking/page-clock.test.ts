@@ -1,6 +1,6 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
-import { createPageClock, longestStep, neverBack } from '../src/page-clock';
+import { createPageClock, longestStep, neverBack } from '../../../src/core/tracking/page-clock';
 
 const frameMs = 1000 / 72;
 

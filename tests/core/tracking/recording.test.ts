@@ -1,5 +1,6 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
+import type { TrackedPose } from '../../../src/core/body/avatar-pose';
 import { slerp } from '../../../src/core/math/quat';
 import { distance, lerp, vec3 } from '../../../src/core/math/vec3';
 import {
@@ -9,7 +10,7 @@ import {
   sampleRecording,
   writeRecording,
 } from '../../../src/core/tracking/recording';
-import type { TrackedPose, TrackingFrame } from '../../../src/core/tracking/tracking-frame';
+import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
 import { number, rotation, seed, vector } from '../arbitraries';
 
 const tracked: fc.Arbitrary<TrackedPose> = fc.record({

@@ -1,3 +1,4 @@
+import type { TrackedPose } from '../../body/avatar-pose';
 import { clamp } from '../../math/damper';
 import { type Pose, type Transform, transformPose } from '../../math/pose';
 import { fromAxisAngle, identity, multiply, type Quat, rotate, slerp } from '../../math/quat';
@@ -15,7 +16,7 @@ import {
   vec3,
   zero,
 } from '../../math/vec3';
-import type { TrackedPose, TrackingFrame } from '../../tracking/tracking-frame';
+import type { TrackingFrame } from '../../tracking/tracking-frame';
 import { allReleased, type Button, type Buttons, type HandButtons } from '../button-presses';
 import { otherSide, type Side, wristAround } from '../fist';
 import { armShare, lookAlong, shoulderBehind, shoulderDrop, shoulderShare, yawOf } from '../posture';

@@ -1,3 +1,4 @@
+import type { TrackedPose } from '../../body/avatar-pose';
 import { clamp, damp, smoothingFactor, smoothstep } from '../../math/damper';
 import { type Pose, type Transform, transformPoint } from '../../math/pose';
 import { identity, rotate, rotationBetween, slerp } from '../../math/quat';
@@ -14,7 +15,7 @@ import {
   vec3,
   zero,
 } from '../../math/vec3';
-import type { TrackedPose, TrackingFrame } from '../../tracking/tracking-frame';
+import type { TrackingFrame } from '../../tracking/tracking-frame';
 import {
   allReleased,
   type Button,

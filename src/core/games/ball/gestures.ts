@@ -1,3 +1,4 @@
+import type { TrackedPose } from '../../body/avatar-pose';
 import {
   type MutablePose,
   makePose,
@@ -7,7 +8,7 @@ import {
   transformPose,
 } from '../../math/pose';
 import { copyVec3, distance, length, type MutableVec3, type Vec3, vec3 } from '../../math/vec3';
-import type { TrackedPose, TrackingFrame } from '../../tracking/tracking-frame';
+import type { TrackingFrame } from '../../tracking/tracking-frame';
 import {
   allReleased,
   type Button,

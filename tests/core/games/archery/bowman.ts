@@ -1,3 +1,4 @@
+import type { TrackedPose } from '../../../../src/core/body/avatar-pose';
 import type { BowView } from '../../../../src/core/games/archery/archery-state';
 import { arrowRestHeight, braceHeight } from '../../../../src/core/games/archery/bow';
 import {
@@ -10,7 +11,7 @@ import { allReleased, type Button, type Buttons, type HandButtons } from '../../
 import { otherSide, type Side, wristAround } from '../../../../src/core/games/fist';
 import { identity } from '../../../../src/core/math/quat';
 import { add, addScaled, cross, normalise, reject, up, type Vec3, vec3 } from '../../../../src/core/math/vec3';
-import type { TrackedPose, TrackingFrame } from '../../../../src/core/tracking/tracking-frame';
+import type { TrackingFrame } from '../../../../src/core/tracking/tracking-frame';
 
 /** What somebody does in one frame who holds the bow out and has the other hand on the line of the arrow. */
 export interface Posed {

@@ -1,5 +1,6 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
+import type { TrackedPose } from '../../../../src/core/body/avatar-pose';
 import type { BallAction, BallState } from '../../../../src/core/games/ball/ball-state';
 import { createBallGestures, holdSeconds } from '../../../../src/core/games/ball/gestures';
 import { createHandSpeed, throwWindow } from '../../../../src/core/games/ball/hand-speed';
@@ -10,7 +11,7 @@ import { fistOf, wristAround } from '../../../../src/core/games/fist';
 import { invertTransform, transformPoint, transformPose } from '../../../../src/core/math/pose';
 import { fromAxisAngle, identity } from '../../../../src/core/math/quat';
 import { add, addScaled, distance, scale, up, type Vec3, vec3 } from '../../../../src/core/math/vec3';
-import type { TrackedPose, TrackingFrame } from '../../../../src/core/tracking/tracking-frame';
+import type { TrackingFrame } from '../../../../src/core/tracking/tracking-frame';
 import { number, seed, vector } from '../../arbitraries';
 import { holder, leftThrower, told } from './playing';
 
