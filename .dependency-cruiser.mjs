@@ -8,7 +8,7 @@ const coreFolders = {
   body: ['math'],
   tracking: ['math', 'body', 'errors'],
   estimation: ['math', 'body', 'tracking', 'errors'],
-  games: ['math', 'body', 'tracking'],
+  games: ['math', 'tracking'],
   protocol: ['math', 'body', 'tracking', 'games'],
   room: ['math', 'body', 'tracking', 'games', 'protocol', 'errors'],
   study: ['math', 'body', 'tracking', 'estimation', 'errors'],

@@ -79,12 +79,37 @@ describe('the import rules', () => {
     [
       'main is the top',
       'nobody-imports-main',
-      { 'src/app/shell/frame-loop.ts': "import './main';", 'src/app/main.ts': empty },
+      { 'src/app/shell/frame-loop.ts': "import '../main';", 'src/app/main.ts': empty },
     ],
     [
-      'adapters do not call the loop',
-      'only-main-runs-the-frame-loop',
-      { 'src/ui/a.ts': "import '../frame-loop';", 'src/app/shell/frame-loop.ts': empty },
+      'adapters know no page',
+      'adapters-know-no-page',
+      { 'src/ui/a.ts': "import '../app/shell/frame-loop';", 'src/app/shell/frame-loop.ts': empty },
+    ],
+    [
+      'a game knows no shell',
+      'activities-are-strangers',
+      { 'src/app/ball/a.ts': "import '../shell/b';", 'src/app/shell/b.ts': empty },
+    ],
+    [
+      'the study knows no game',
+      'activities-are-strangers',
+      { 'src/app/study/a.ts': "import '../archery/b';", 'src/app/archery/b.ts': empty },
+    ],
+    [
+      'the results page loads no body',
+      'pages-stand-alone',
+      { 'src/pages/a.ts': "import '../avatar/b';", 'src/avatar/b.ts': empty },
+    ],
+    [
+      'a file has a room',
+      'nothing-loose-in-src',
+      { 'src/a.ts': "import './core/math/b';", 'src/core/math/b.ts': empty },
+    ],
+    [
+      'the body knows no tracking',
+      'core-body',
+      { 'src/core/body/a.ts': "import '../tracking/b';", 'src/core/tracking/b.ts': empty },
     ],
     ['three stays where things are drawn', 'three-draws', { 'src/net/a.ts': "import 'three';" }],
     [
@@ -92,7 +117,7 @@ describe('the import rules', () => {
       'three-draws',
       { 'src/inference/a.ts': "import type { Vector3 } from 'three';\nexport type A = Vector3;" },
     ],
-    ['and its VRM loader', 'three-draws', { 'src/study/a.ts': "import '@pixiv/three-vrm';" }],
+    ['and its VRM loader', 'three-draws', { 'src/net/a.ts': "import '@pixiv/three-vrm';" }],
     [
       'the runtime stays behind inference',
       'onnxruntime-infers',
@@ -135,7 +160,10 @@ describe('the import rules', () => {
       'src/avatar/mirror.ts':
         "import 'three';\nimport '@pixiv/three-vrm';\nimport '../scene/renderer';\nimport '../core/body/skeleton';",
       'src/inference/regressor.ts': "import 'onnxruntime-web/wasm';\nimport '../core/estimation/estimators';",
-      'src/app/main.ts': "import './avatar/mirror';\nimport './inference/regressor';",
+      'src/app/shell/stage.ts': "import '../studio/studio';\nimport '../../avatar/mirror';",
+      'src/app/studio/studio.ts': "import 'three';\nimport '../../scene/renderer';",
+      'src/app/main.ts': "import './shell/stage';\nimport '../inference/regressor';",
+      'src/pages/results-page.ts': "import '../core/study/plan';",
       'server/main.ts': "import 'node:http';\nimport '../src/core/math/vec3';",
     };
     expect(await brokenImportRules(allowed)).toEqual([]);

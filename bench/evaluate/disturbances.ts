@@ -1,7 +1,7 @@
-import type { TrackedPose } from '../../src/core/body/avatar-pose';
-import type { Side } from '../../src/core/body/joints';
+import type { TrackedPose } from '../../src/core/math/pose';
 import { rotate, slerp } from '../../src/core/math/quat';
 import { nextRandom } from '../../src/core/math/random';
+import type { Side } from '../../src/core/math/side';
 import { add, lerp, type Vec3 } from '../../src/core/math/vec3';
 import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
 import type { MeasuredFrame } from './measures';

@@ -1,3 +1,4 @@
+import { reasonOf } from '../../src/core/errors/reasons';
 import { createDriver, type MeasuredMethod } from './drive';
 import { addPiece, emptyGoldenTally, type GoldenFigures, goldenFigures, type StepPlaces } from './golden-figures';
 import { type KeptFrames, keepFrames } from './golden-frames';
@@ -88,7 +89,7 @@ async function work({ recordings, models, extent }: WorkerTask): Promise<void> {
       return;
     }
     driveRow(job, recordings, index, regressors).then(tell, (error: unknown) => {
-      console.error(`${job.row}: ${error instanceof Error ? error.message : error}`);
+      console.error(`${job.row}: ${reasonOf(error)}`);
       process.exit(1);
     });
   });

@@ -5,6 +5,7 @@ import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
 import * as v from 'valibot';
+import { reasonOf } from '../../src/core/errors/reasons';
 import { measuredMethods } from './drive';
 import { compareTables, type Difference, type GoldenTable } from './golden-figures';
 import { compareFrames, type FrameTable, readFrames, writeFrames } from './golden-frames';
@@ -216,6 +217,6 @@ async function main(): Promise<number> {
 }
 
 process.exitCode = await main().catch((error: unknown) => {
-  console.error(error instanceof Error ? error.message : error);
+  console.error(reasonOf(error));
   return 1;
 });

@@ -1,5 +1,6 @@
 import { writeFileSync } from 'node:fs';
 import { parseArgs } from 'node:util';
+import { reasonOf } from '../../src/core/errors/reasons';
 import { drive, type MeasuredMethod, measuredMethods } from './drive';
 import { addFigures, emptyCollection, figuresOf } from './figures';
 import {
@@ -198,6 +199,6 @@ function print(title: string, reports: Record<MeasuredMethod, Report>): void {
 }
 
 await main().catch((error: unknown) => {
-  console.error(error instanceof Error ? error.message : error);
+  console.error(reasonOf(error));
   process.exitCode = 1;
 });

@@ -1,8 +1,8 @@
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import * as v from 'valibot';
-import type { TrackedPose } from '../../src/core/body/avatar-pose';
 import type { Calibration } from '../../src/core/body/calibration';
+import type { TrackedPose } from '../../src/core/math/pose';
 import type { Quat } from '../../src/core/math/quat';
 import { type Vec3, vec3 } from '../../src/core/math/vec3';
 import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';

@@ -1,5 +1,5 @@
-import type { TrackedPose } from '../../src/core/body/avatar-pose';
 import type { Calibration } from '../../src/core/body/calibration';
+import type { TrackedPose } from '../../src/core/math/pose';
 import { fromAxisAngle, identity, multiply, type Quat } from '../../src/core/math/quat';
 import { nextRandom } from '../../src/core/math/random';
 import { add, dot, length, normalise, scale, subtract, type Vec3, vec3 } from '../../src/core/math/vec3';

@@ -1,6 +1,11 @@
-import type { TrackedPose } from '../../src/core/body/avatar-pose';
 import type { Calibration } from '../../src/core/body/calibration';
-import { invertTransform, type Transform, transformPoint, transformPose } from '../../src/core/math/pose';
+import {
+  invertTransform,
+  type TrackedPose,
+  type Transform,
+  transformPoint,
+  transformPose,
+} from '../../src/core/math/pose';
 import { fromAxisAngle, multiply } from '../../src/core/math/quat';
 import { nextRandom } from '../../src/core/math/random';
 import { right, up, type Vec3, vec3 } from '../../src/core/math/vec3';

@@ -1,6 +1,6 @@
 import type { VRM, VRMHumanBoneName } from '@pixiv/three-vrm';
 import { type Object3D, Quaternion, Vector3 } from 'three';
-import type { Side } from '../core/body/joints';
+import type { Side } from '../core/math/side';
 
 interface FingerBone {
   readonly node: Object3D;

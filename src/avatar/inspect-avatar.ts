@@ -1,4 +1,5 @@
 import * as v from 'valibot';
+import { reasonOf } from '../core/errors/reasons';
 import { imageSize } from './image-size';
 
 /** What a body from a file may cost: several times what avatars made for headsets have, far below what stalls one. */
@@ -92,7 +93,7 @@ export function inspectAvatar(bytes: Uint8Array, name: string): void {
   try {
     json = JSON.parse(chunks.json);
   } catch (error) {
-    throw new Error(`${name}: no VRM or GLB file (${error instanceof Error ? error.message : error})`);
+    throw new Error(`${name}: no VRM or GLB file (${reasonOf(error)})`);
   }
   for (const uri of urisIn(json)) {
     const shown = uri.slice(0, 60);

@@ -1,8 +1,8 @@
-import type { Side } from '../core/body/joints';
 import { sideSign } from '../core/body/skeleton';
 import { elbowCircle, elbowOnCircle, makeElbowCircle, poleAcross } from '../core/body/two-bone-ik';
 import type { Pose } from '../core/math/pose';
 import { fromAxes, fromAxisAngle, multiply, type Quat, quat, rotate } from '../core/math/quat';
+import type { Side } from '../core/math/side';
 import {
   add,
   addScaled,

@@ -1,5 +1,6 @@
 import { type VRM, VRMLoaderPlugin, VRMUtils } from '@pixiv/three-vrm';
 import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
+import { reasonOf } from '../core/errors/reasons';
 import { inspectAvatar } from './inspect-avatar';
 
 /** Bones without which there is no upper body to move. */
@@ -33,7 +34,7 @@ export async function loadAvatar(
   const file = new Uint8Array(bytes);
   inspectAvatar(file, name);
   const faults = await validate(file).catch((error: unknown) => {
-    throw new Error(`${name}: ${error instanceof Error ? error.message : error}`);
+    throw new Error(`${name}: ${reasonOf(error)}`);
   });
   if (faults.length > 0) throw new Error(`${name}: not valid glTF (${faults[0]})`);
   return parseAvatar(bytes, name);
@@ -45,7 +46,7 @@ export async function parseAvatar(bytes: ArrayBuffer, name: string): Promise<Loa
   const loader = new GLTFLoader();
   loader.register((parser) => new VRMLoaderPlugin(parser));
   const gltf = await loader.parseAsync(bytes, '').catch((error: unknown) => {
-    throw new Error(`${name}: no VRM or GLB file (${error instanceof Error ? error.message : error})`);
+    throw new Error(`${name}: no VRM or GLB file (${reasonOf(error)})`);
   });
   const vrm = gltf.userData.vrm as VRM | undefined;
   if (!vrm?.humanoid) throw new Error(`${name}: no humanoid in it; a VRM 0.x or 1.0 avatar is needed`);

@@ -1,9 +1,9 @@
 import { Group, type Mesh, type MeshBasicMaterial, type Object3D, type PlaneGeometry } from 'three';
 import type { AvatarPose } from '../core/body/avatar-pose';
 import type { Calibration } from '../core/body/calibration';
-import type { Side } from '../core/body/joints';
 import { type MutableTransform, makeTransform, type Transform, transformPoint } from '../core/math/pose';
 import { copyQuat } from '../core/math/quat';
+import type { Side } from '../core/math/side';
 import { copyVec3, type Vec3 } from '../core/math/vec3';
 import { createBlobShadow } from '../scene/blob-shadow';
 import { type Avatar, createAvatar } from './avatar';

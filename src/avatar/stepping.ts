@@ -1,6 +1,6 @@
-import type { Side } from '../core/body/joints';
 import { clamp, dampVec3, smoothstep } from '../core/math/damper';
 import { fromAxisAngle, quat, rotate } from '../core/math/quat';
+import type { Side } from '../core/math/side';
 import {
   add,
   addScaled,

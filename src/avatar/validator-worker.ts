@@ -1,3 +1,4 @@
+import { reasonOf } from '../core/errors/reasons';
 import { gltfFaults } from './validate-gltf';
 
 /** What comes back for a file: its faults, or why it could not be looked at. */
@@ -6,7 +7,6 @@ export type ValidatorAnswer = { readonly faults: readonly string[] } | { readonl
 self.addEventListener('message', ({ data: bytes }: MessageEvent<Uint8Array>) => {
   gltfFaults(bytes).then(
     (faults) => self.postMessage({ faults } satisfies ValidatorAnswer),
-    (error: unknown) =>
-      self.postMessage({ broken: error instanceof Error ? error.message : String(error) } satisfies ValidatorAnswer),
+    (error: unknown) => self.postMessage({ broken: reasonOf(error) } satisfies ValidatorAnswer),
   );
 });

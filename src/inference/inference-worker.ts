@@ -1,3 +1,4 @@
+import { reasonOf } from '../core/errors/reasons';
 import { createSession, type InferenceSession } from './session';
 import type { Answer, Question } from './worker-messages';
 
@@ -15,6 +16,6 @@ async function answer(question: Question): Promise<Answer> {
 
 self.addEventListener('message', ({ data: question }: MessageEvent<Question>) => {
   answer(question)
-    .catch((error: unknown) => ({ id: question.id, broken: error instanceof Error ? error.message : String(error) }))
+    .catch((error: unknown) => ({ id: question.id, broken: reasonOf(error) }))
     .then((answered) => self.postMessage(answered));
 });

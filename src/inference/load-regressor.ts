@@ -1,4 +1,5 @@
 import * as v from 'valibot';
+import { reasonOf } from '../core/errors/reasons';
 import type { ModelContract, PoseRegressor } from '../core/estimation/pose-regressor';
 import { learnedInputCount } from '../core/estimation/residual';
 import { createSession, type ExecutionProvider, type InferenceSession } from './session';
@@ -49,7 +50,7 @@ export function parseContract(file: string, text: string): ModelContract {
   try {
     json = JSON.parse(text);
   } catch (error) {
-    throw new Error(`${file}: no valid JSON (${error instanceof Error ? error.message : error})`);
+    throw new Error(`${file}: no valid JSON (${reasonOf(error)})`);
   }
   const result = v.safeParse(contractSchema, json);
   if (!result.success) {
@@ -109,13 +110,11 @@ export async function startRegressor(
     }
     return opened;
   }
-
-  const reason = (error: unknown) => (error instanceof Error ? error.message : String(error));
   try {
     session = await open(provider);
   } catch (error) {
     if (provider === 'wasm') throw named(contract.file, error);
-    onProviderFallback?.(`WebGPU does not run ${contract.file} (${reason(error)}): WebAssembly takes over.`);
+    onProviderFallback?.(`WebGPU does not run ${contract.file} (${reasonOf(error)}): WebAssembly takes over.`);
     session = await open('wasm').catch((second) => {
       throw named(contract.file, second);
     });
@@ -138,7 +137,7 @@ export async function startRegressor(
           .catch(() => open('wasm'))
           .then((opened) => {
             session = opened;
-            onProviderFallback?.(`The graphics device was lost (${reason(error)}): WebAssembly takes over.`);
+            onProviderFallback?.(`The graphics device was lost (${reasonOf(error)}): WebAssembly takes over.`);
             return opened;
           });
         return (await fallback).run(input, features, output.name);
@@ -155,7 +154,7 @@ export async function startRegressor(
 const fileName = (url: string): string => url.split(/[?#]/)[0]?.split('/').at(-1) ?? url;
 
 const named = (file: string, error: unknown): Error => {
-  const text = error instanceof Error ? error.message : String(error);
+  const text = reasonOf(error);
   return new Error(text.startsWith(file) ? text : `${file}: ${text}`);
 };
 
@@ -166,7 +165,7 @@ async function download(url: string, onProgress?: (share: number) => void): Prom
   try {
     response = await fetch(url);
   } catch (error) {
-    throw new Error(`${file}: could not be fetched (${error instanceof Error ? error.message : error})`);
+    throw new Error(`${file}: could not be fetched (${reasonOf(error)})`);
   }
   if (!response.ok) throw new Error(`${file}: the server answers ${response.status} ${response.statusText}`.trim());
   const reader = response.body?.getReader();

@@ -1,3 +1,4 @@
+import { reasonOf } from '../core/errors/reasons';
 import type { InferenceSession } from './session';
 import type { Answer, Question } from './worker-messages';
 
@@ -57,7 +58,7 @@ export async function createWorkerSession(model: Uint8Array): Promise<InferenceS
   worker.addEventListener('messageerror', () => breakDown('the worker for inference cannot be understood'));
 
   const tensors = await ask({ model }).catch((error: unknown) => {
-    breakDown(error instanceof Error ? error.message : String(error));
+    breakDown(reasonOf(error));
     throw error;
   });
   if (!('inputNames' in tensors)) throw new Error('the worker for inference answers what nobody asked');

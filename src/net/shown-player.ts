@@ -1,8 +1,9 @@
-import type { TrackedPose, UpperBodyPose } from '../core/body/avatar-pose';
-import { type JointName, jointNames, type Side } from '../core/body/joints';
+import type { UpperBodyPose } from '../core/body/avatar-pose';
+import { type JointName, jointNames } from '../core/body/joints';
 import { clamp } from '../core/math/damper';
-import { type MutablePose, makePose } from '../core/math/pose';
+import { type MutablePose, makePose, type TrackedPose } from '../core/math/pose';
 import { copyQuat, type MutableQuat, quat, slerp } from '../core/math/quat';
+import type { Side } from '../core/math/side';
 import { copyVec3, lerp, type MutableVec3, vec3 } from '../core/math/vec3';
 import type { FingerCurl, PosePacket } from '../core/protocol/pose-packet';
 

@@ -1,3 +1,4 @@
+import { reasonOf } from '../core/errors/reasons';
 import type { Progress } from '../core/study/progress';
 import type {
   Claim,
@@ -63,7 +64,7 @@ async function ask(
       signal: AbortSignal.timeout(patienceMs),
     });
   } catch (error) {
-    throw new ServerUnreachable(`the server does not answer (${error instanceof Error ? error.message : error})`);
+    throw new ServerUnreachable(`the server does not answer (${reasonOf(error)})`);
   }
   if (response.ok) return response;
   const said: unknown = await response.json().catch(() => null);
@@ -84,7 +85,7 @@ const answersOf = (origin: string) =>
     try {
       return (response.status === 204 ? null : await response.json()) as T;
     } catch (error) {
-      throw new ServerUnreachable(`the answer broke off (${error instanceof Error ? error.message : error})`);
+      throw new ServerUnreachable(`the answer broke off (${reasonOf(error)})`);
     }
   };
 

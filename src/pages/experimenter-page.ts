@@ -1,3 +1,4 @@
+import { reasonOf } from '../core/errors/reasons';
 import '../styles/document.css';
 import { checkedPlan, type Schedule, type StudyPlan, scheduleFor } from '../core/study/plan';
 import type { ParticipantState, Receipt, StudyCommand, StudyListing } from '../core/study/study-api';
@@ -14,7 +15,6 @@ const refreshEveryMs = 1500;
 const silentAfter = 12;
 
 const content = pageElement('content', HTMLElement);
-const reason = (error: unknown) => (error instanceof Error ? error.message : String(error));
 
 let client: ExperimenterClient | null = null;
 let listed: readonly StudyListing[] = [];
@@ -35,7 +35,7 @@ async function attempt(action: () => Promise<string | null>): Promise<void> {
     notice = (await action()) ?? '';
     complaint = '';
   } catch (error) {
-    complaint = reason(error);
+    complaint = reasonOf(error);
   }
   await refresh();
 }
@@ -45,7 +45,7 @@ async function signIn(token: string): Promise<string | null> {
   try {
     listed = await candidate.studies();
   } catch (error) {
-    return reason(error);
+    return reasonOf(error);
   }
   client = candidate;
   render();
@@ -66,7 +66,7 @@ async function open(id: string): Promise<void> {
     history.replaceState(null, '', address);
     complaint = '';
   } catch (error) {
-    complaint = reason(error);
+    complaint = reasonOf(error);
   }
   render();
 }

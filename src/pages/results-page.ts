@@ -1,3 +1,4 @@
+import { reasonOf } from '../core/errors/reasons';
 import '../styles/document.css';
 import type { StudyListing } from '../core/study/study-api';
 import { createExperimenterClient, type ExperimenterClient } from '../net/study-client';
@@ -8,7 +9,6 @@ import { openStudyFile } from './study-file';
 import { studySelect } from './study-select';
 
 const content = pageElement('content', HTMLElement);
-const reason = (error: unknown) => (error instanceof Error ? error.message : String(error));
 
 let client: ExperimenterClient | null = null;
 let listed: readonly StudyListing[] = [];
@@ -30,7 +30,7 @@ async function signIn(token: string): Promise<string | null> {
   try {
     listed = await candidate.studies();
   } catch (error) {
-    return reason(error);
+    return reasonOf(error);
   }
   client = candidate;
   render();
@@ -46,7 +46,7 @@ async function load(id: string): Promise<void> {
     history.replaceState(null, '', address);
     showStudy({ plan, simulated, records }, 'this server');
   } catch (error) {
-    complaint = reason(error);
+    complaint = reasonOf(error);
     render();
   }
 }
@@ -55,7 +55,7 @@ async function openFile(file: File): Promise<void> {
   try {
     showStudy(openStudyFile(new Uint8Array(await file.arrayBuffer())), file.name);
   } catch (error) {
-    complaint = `${file.name}: ${reason(error)}`;
+    complaint = `${file.name}: ${reasonOf(error)}`;
     render();
   }
 }
@@ -115,7 +115,7 @@ function results(): readonly Node[] {
   try {
     return [heading, where, ...conditionBar(shown), ...studyResults(shown, conditions)];
   } catch (error) {
-    return [heading, where, element('p', { class: 'complaint', role: 'alert' }, reason(error))];
+    return [heading, where, element('p', { class: 'complaint', role: 'alert' }, reasonOf(error))];
   }
 }
 

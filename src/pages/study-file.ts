@@ -1,4 +1,5 @@
 import { strFromU8, unzipSync } from 'fflate';
+import { reasonOf } from '../core/errors/reasons';
 import { checkedPlan, type StudyPlan } from '../core/study/plan';
 import { checkedRecord, type StudyRecord } from '../core/study/study-record';
 
@@ -25,7 +26,7 @@ export function openStudyFile(zip: Uint8Array): OpenedStudy {
       },
     });
   } catch (error) {
-    throw new Error(`This is no export of a study: ${error instanceof Error ? error.message : error}.`);
+    throw new Error(`This is no export of a study: ${reasonOf(error)}.`);
   }
   const json = (name: string): unknown => {
     const path = Object.keys(files).find((path) => path === name || path.endsWith(`/${name}`));
@@ -33,7 +34,7 @@ export function openStudyFile(zip: Uint8Array): OpenedStudy {
     try {
       return JSON.parse(strFromU8(files[path] as Uint8Array));
     } catch (error) {
-      throw new Error(`${path}: ${error instanceof Error ? error.message : error}`);
+      throw new Error(`${path}: ${reasonOf(error)}`);
     }
   };
   const plan = checkedPlan(json('plan.json'));
@@ -45,7 +46,7 @@ export function openStudyFile(zip: Uint8Array): OpenedStudy {
     try {
       return checkedRecord(record);
     } catch (error) {
-      throw new Error(`records.json: records[${index}]: ${error instanceof Error ? error.message : error}`);
+      throw new Error(`records.json: records[${index}]: ${reasonOf(error)}`);
     }
   });
   return { plan, records, simulated: 'simulated' in file && file.simulated === true };

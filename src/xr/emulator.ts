@@ -1,9 +1,8 @@
 import type { XRDevice } from 'iwer';
-import type { TrackedPose } from '../core/body/avatar-pose';
-import type { Side } from '../core/body/joints';
 import { allReleased, type Buttons } from '../core/games/button-presses';
-import { composeTransforms, invertTransform, type Pose } from '../core/math/pose';
+import { composeTransforms, invertTransform, type Pose, type TrackedPose } from '../core/math/pose';
 import { fromAxes } from '../core/math/quat';
+import type { Side } from '../core/math/side';
 import { vec3 } from '../core/math/vec3';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import { gripFromWrist, type HandleFit, handleFit, wristFromGrip } from './grip-offsets';

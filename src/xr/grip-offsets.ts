@@ -1,7 +1,7 @@
-import type { Side } from '../core/body/joints';
 import { sideSign } from '../core/body/skeleton';
 import type { Frame, Pose } from '../core/math/pose';
 import { conjugate, fromAxes, multiply, type Quat, rotate } from '../core/math/quat';
+import type { Side } from '../core/math/side';
 import { add, scale, subtract, type Vec3, vec3 } from '../core/math/vec3';
 
 /**

@@ -1,4 +1,4 @@
-import type { Side } from '../core/body/joints';
+import type { Side } from '../core/math/side';
 
 /** A buzz for one hand: strength 0 to 1, seconds. */
 export interface Pulse {

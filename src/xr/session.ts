@@ -1,3 +1,4 @@
+import { reasonOf } from '../core/errors/reasons';
 /** What the browser offers; `sentence` tells the user why not, or null. */
 export interface XrSupport {
   readonly kind: 'device' | 'none';
@@ -15,7 +16,7 @@ export async function describeXrSupport(): Promise<XrSupport> {
     const supported = await navigator.xr.isSessionSupported('immersive-vr');
     return supported ? { kind: 'device', sentence: null } : no('No headset is connected to this browser.');
   } catch (error) {
-    return no(`WebXR is not allowed here (${error instanceof Error ? error.message : error}).`);
+    return no(`WebXR is not allowed here (${reasonOf(error)}).`);
   }
 }
 

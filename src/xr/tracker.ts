@@ -1,9 +1,8 @@
-import type { TrackedPose } from '../core/body/avatar-pose';
-import type { Side } from '../core/body/joints';
 import { allReleased, type HandButtons } from '../core/games/button-presses';
 import { smoothstep } from '../core/math/damper';
-import type { Pose } from '../core/math/pose';
+import type { Pose, TrackedPose } from '../core/math/pose';
 import { conjugate, fromAxisAngle, multiply, rotate } from '../core/math/quat';
+import type { Side } from '../core/math/side';
 import { distance, scale, subtract, up } from '../core/math/vec3';
 import { headingOf } from '../core/tracking/heading';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';

@@ -2,9 +2,10 @@ import { defaultCalibration } from '../../src/core/body/calibration';
 import type { BallDeed, BallEvent } from '../../src/core/games/ball/ball-state';
 import { rackPosition, stations } from '../../src/core/games/ball/stations';
 import { gravity } from '../../src/core/games/ballistics';
-import { type Side, wristAround } from '../../src/core/games/fist';
+import { wristAround } from '../../src/core/games/fist';
 import { invertTransform, type Pose, transformPose } from '../../src/core/math/pose';
 import { identity } from '../../src/core/math/quat';
+import type { Side } from '../../src/core/math/side';
 import { add, addScaled, scale, subtract, type Vec3, vec3 } from '../../src/core/math/vec3';
 import type { Connection, ConnectionUpdate, ShownPose, Visitor } from '../../src/net/connection';
 

@@ -1,10 +1,9 @@
-import type { TrackedPose } from '../../src/core/body/avatar-pose';
 import { createBallGestures } from '../../src/core/games/ball/gestures';
 import { ballRules } from '../../src/core/games/ball/rules';
 import { rackPosition, stations } from '../../src/core/games/ball/stations';
 import { allReleased, type HandButtons } from '../../src/core/games/button-presses';
 import { wristAround } from '../../src/core/games/fist';
-import { invertTransform, transformPoint, transformPose } from '../../src/core/math/pose';
+import { invertTransform, type TrackedPose, transformPoint, transformPose } from '../../src/core/math/pose';
 import { identity } from '../../src/core/math/quat';
 import { type Vec3, vec3 } from '../../src/core/math/vec3';
 import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';

@@ -10,7 +10,7 @@ import { ballRules } from '../../src/core/games/ball/rules';
 import { stations } from '../../src/core/games/ball/stations';
 import { createThrower } from '../../src/core/games/ball/thrower-motion';
 import { allReleased } from '../../src/core/games/button-presses';
-import { otherSide, type Side } from '../../src/core/games/fist';
+import { otherSide, type Side } from '../../src/core/math/side';
 import { addScaled, normalise, reject, up, vec3 } from '../../src/core/math/vec3';
 import { bowman } from '../core/games/archery/bowman';
 import { playRound, steady } from '../core/games/archery/playing';

@@ -1,5 +1,4 @@
 import { expect, test } from 'vitest';
-import type { TrackedPose } from '../../src/core/body/avatar-pose';
 import {
   armSpanFromFingertipSpan,
   type Calibration,
@@ -11,6 +10,7 @@ import { forwardKinematics } from '../../src/core/body/forward-kinematics';
 import { jointNames } from '../../src/core/body/joints';
 import { armLength, skeletonFromCalibration } from '../../src/core/body/skeleton';
 import { createEstimator } from '../../src/core/estimation/estimators';
+import type { TrackedPose } from '../../src/core/math/pose';
 import { identity } from '../../src/core/math/quat';
 import { add, distance, subtract, type Vec3, vec3 } from '../../src/core/math/vec3';
 import { actorFrame } from '../../src/core/tracking/actor-motion';

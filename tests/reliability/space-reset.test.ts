@@ -1,12 +1,11 @@
 import { expect, test } from 'vitest';
-import type { TrackedPose } from '../../src/core/body/avatar-pose';
 import { defaultCalibration } from '../../src/core/body/calibration';
 import { forwardKinematics } from '../../src/core/body/forward-kinematics';
 import { jointNames } from '../../src/core/body/joints';
 import { skeletonFromCalibration } from '../../src/core/body/skeleton';
 import { createEstimator } from '../../src/core/estimation/estimators';
 import { estimatorNames } from '../../src/core/estimation/pose-estimator';
-import { type Transform, transformPose } from '../../src/core/math/pose';
+import { type TrackedPose, type Transform, transformPose } from '../../src/core/math/pose';
 import { fromAxisAngle } from '../../src/core/math/quat';
 import { distance, up, vec3 } from '../../src/core/math/vec3';
 import { actorFrame } from '../../src/core/tracking/actor-motion';

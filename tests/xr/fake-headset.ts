@@ -1,7 +1,7 @@
 import { vi } from 'vitest';
-import type { Side } from '../../src/core/body/joints';
 import { composeTransforms, invertTransform, type Pose, transformPose } from '../../src/core/math/pose';
 import { identity } from '../../src/core/math/quat';
+import type { Side } from '../../src/core/math/side';
 import { zero } from '../../src/core/math/vec3';
 
 type Place = Pose<'floor'>;

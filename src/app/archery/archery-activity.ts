@@ -1,9 +1,10 @@
 import type { Calibration } from '../../core/body/calibration';
-import type { Side } from '../../core/body/joints';
 import type { HapticPulse } from '../../core/games/archery/gestures';
 import type { Buttons } from '../../core/games/button-presses';
 import { identity } from '../../core/math/quat';
-import { type Vec3, zero } from '../../core/math/vec3';
+import type { Ray } from '../../core/math/ray';
+import type { Side } from '../../core/math/side';
+import { zero } from '../../core/math/vec3';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 import type { Quality } from '../../scene/renderer';
 import type { SurroundingsHost } from '../../scene/surroundings';
@@ -23,11 +24,6 @@ export interface ArcheryActivityOptions {
   /** Of the next round's layout. */
   seed(): number;
   onCaption(text: string): void;
-}
-
-interface Ray {
-  readonly origin: Vec3;
-  readonly direction: Vec3;
 }
 
 /** What a frame of play means to whoever plays. */

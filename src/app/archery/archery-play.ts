@@ -1,5 +1,4 @@
 import type { Calibration } from '../../core/body/calibration';
-import type { Side } from '../../core/body/joints';
 import { chestSpaceBody } from '../../core/body/skeleton';
 import { aimPoint } from '../../core/games/archery/aim-point';
 import { type Archer, createArcher } from '../../core/games/archery/archer-motion';
@@ -14,7 +13,8 @@ import { archeryRules, delayed, matchTime, secondsLeft } from '../../core/games/
 import { createSteeredArcher, type SteeredArcher } from '../../core/games/archery/steered-archer';
 import type { Buttons } from '../../core/games/button-presses';
 import { createMatch, type Match } from '../../core/games/match';
-import type { Vec3 } from '../../core/math/vec3';
+import type { Ray } from '../../core/math/ray';
+import type { Side } from '../../core/math/side';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 
 /** What whoever plays may choose; asked for in every frame. */
@@ -43,11 +43,6 @@ export interface ArcheryFrame {
 export interface Performance {
   readonly frame: TrackingFrame;
   readonly buttons: Buttons;
-}
-
-interface Ray {
-  readonly origin: Vec3;
-  readonly direction: Vec3;
 }
 
 /** A round and who plays it, apart from everything that is seen of it. */

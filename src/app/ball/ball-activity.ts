@@ -5,8 +5,9 @@ import type { Performed } from '../../core/games/ball/player-postures';
 import { ballsLeft, defaultBallOptions } from '../../core/games/ball/rules';
 import type { BallSteering } from '../../core/games/ball/steered-players';
 import type { Buttons } from '../../core/games/button-presses';
-import type { Side } from '../../core/games/fist';
 import { type Pose, type Transform, transformPose } from '../../core/math/pose';
+import type { Ray } from '../../core/math/ray';
+import type { Side } from '../../core/math/side';
 import type { Vec3 } from '../../core/math/vec3';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 import { bannerText, connectionText } from '../../net/banner';
@@ -48,11 +49,6 @@ export interface PlayerProbe {
   readonly opacity: number;
   /** Joints as drawn, own floor frame [m]. */
   readonly joints: Readonly<Record<string, readonly [number, number, number]>>;
-}
-
-interface Ray {
-  readonly origin: Vec3;
-  readonly direction: Vec3;
 }
 
 /** The ball game in the page: the court, the others' bodies, and one's own part in the match. */

@@ -10,8 +10,8 @@ import type { Performed, PlayerBody } from '../../core/games/ball/player-posture
 import { holderStation, stations } from '../../core/games/ball/stations';
 import { type BallBot, createThrower } from '../../core/games/ball/thrower-motion';
 import type { Buttons } from '../../core/games/button-presses';
-import type { Side } from '../../core/games/fist';
 import { identity } from '../../core/math/quat';
+import type { Side } from '../../core/math/side';
 import { zero } from '../../core/math/vec3';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 import type { Connection, RoomView, Visitor } from '../../net/connection';

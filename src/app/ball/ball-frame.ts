@@ -1,20 +1,22 @@
-import type { AvatarPose, TrackedPose } from '../../core/body/avatar-pose';
+import type { AvatarPose } from '../../core/body/avatar-pose';
 import type { Calibration } from '../../core/body/calibration';
 import type { BallEvent, BallRole, BallState } from '../../core/games/ball/ball-state';
 import { basketInHands, type Opening } from '../../core/games/ball/basket';
 import type { BallCue, BallPulse } from '../../core/games/ball/gestures';
 import { ballSecondsLeft, ballsLeft } from '../../core/games/ball/rules';
 import type { Launch } from '../../core/games/ballistics';
-import { fistOf, type Side } from '../../core/games/fist';
+import { fistOf } from '../../core/games/fist';
 import {
   composeTransforms,
   type MutableTransform,
   makePose,
   makeTransform,
+  type TrackedPose,
   type Transform,
   transformPoint,
   transformPose,
 } from '../../core/math/pose';
+import type { Side } from '../../core/math/side';
 import { length, type MutableVec3, type Vec3, vec3 } from '../../core/math/vec3';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 import type { Connection, ConnectionStatus, RoomView } from '../../net/connection';

@@ -13,9 +13,9 @@ import {
 } from '../../core/games/ball/steered-players';
 import type { BallBot } from '../../core/games/ball/thrower-motion';
 import type { Buttons } from '../../core/games/button-presses';
-import type { Side } from '../../core/games/fist';
 import { invertTransform, type Transform } from '../../core/math/pose';
 import { identity } from '../../core/math/quat';
+import type { Side } from '../../core/math/side';
 import { zero } from '../../core/math/vec3';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 import type { Connection, ConnectionStatus, RoomView, Visitor } from '../../net/connection';

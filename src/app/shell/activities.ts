@@ -1,7 +1,8 @@
 import type { Calibration } from '../../core/body/calibration';
-import type { Side } from '../../core/body/joints';
 import { firstLine, reasonOf } from '../../core/errors/reasons';
 import { type Buttons, nothingPressed } from '../../core/games/button-presses';
+import type { Ray } from '../../core/math/ray';
+import type { Side } from '../../core/math/side';
 import type { Vec3 } from '../../core/math/vec3';
 import type { PageClock } from '../../core/tracking/page-clock';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
@@ -29,11 +30,6 @@ import type { Switches } from './switches';
 const courtMiddle: Vec3 = { x: 0, y: 1, z: -2.4 };
 /** How far hands close that carry a basket: they lie round its rim. */
 const basketGrip = 0.8;
-
-interface Ray {
-  readonly origin: Vec3;
-  readonly direction: Vec3;
-}
 
 /** A study on this page, and what it hears of the games it plays. */
 export interface JoinedStudy {

@@ -1,5 +1,5 @@
 import { type Calibration, defaultCalibration } from '../../core/body/calibration';
-import type { Side } from '../../core/body/joints';
+import type { Side } from '../../core/math/side';
 import type { PreferenceStore } from './preferences';
 import type { Switches } from './switches';
 

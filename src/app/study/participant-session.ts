@@ -1,5 +1,6 @@
 import type { Calibration } from '../../core/body/calibration';
-import type { Side } from '../../core/body/joints';
+import { reasonOf } from '../../core/errors/reasons';
+import type { Side } from '../../core/math/side';
 import { type Schedule, type StudyStep, scheduleFor } from '../../core/study/plan';
 import {
   advance,
@@ -103,8 +104,6 @@ export function isLater(schedule: Schedule, known: Progress, here: Progress): bo
   return differing >= 0 && (there[differing] as number) > (local[differing] as number);
 }
 
-const sentence = (error: unknown) => (error instanceof Error ? error.message : String(error));
-
 /** `unsent`: what an earlier visit of this page left in the vault. */
 export function createParticipantSession(
   kept: KeptSession,
@@ -144,7 +143,7 @@ export function createParticipantSession(
         }
         storageFault = null;
       } catch (error) {
-        storageFault = sentence(error);
+        storageFault = reasonOf(error);
       }
       onChange();
     });
@@ -274,7 +273,7 @@ export function createParticipantSession(
       else if (error instanceof ServerRefusal) {
         refusal = error.message;
         lockedOut = error.status === 401;
-      } else storageFault = sentence(error);
+      } else storageFault = reasonOf(error);
     }
     onChange();
   }

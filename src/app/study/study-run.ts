@@ -1,6 +1,6 @@
+import type { Side } from '../../core/math/side';
 import '../../styles/study.css';
 import type { Calibration } from '../../core/body/calibration';
-import type { Side } from '../../core/body/joints';
 import { reasonOf } from '../../core/errors/reasons';
 import type { EstimatorName } from '../../core/estimation/pose-estimator';
 import { rotate } from '../../core/math/quat';

@@ -1,6 +1,6 @@
 import { type DBSchema, type IDBPDatabase, openDB } from 'idb';
 import type { Calibration } from '../../core/body/calibration';
-import type { Side } from '../../core/body/joints';
+import type { Side } from '../../core/math/side';
 import type { StudyPlan } from '../../core/study/plan';
 import type { Progress } from '../../core/study/progress';
 import type { StudyRecord } from '../../core/study/study-record';

@@ -1,6 +1,6 @@
 import { alignDirections, type MutableQuat, multiply, type Quat, rotate } from '../math/quat';
+import type { Side } from '../math/side';
 import { add, cross, type MutableVec3, subtract, type Vec3, vec3 } from '../math/vec3';
-import type { Side } from './joints';
 import { type Skeleton, wristFromHandBone } from './skeleton';
 
 /** Where an arm points in T-pose. */

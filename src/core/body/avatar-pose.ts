@@ -1,10 +1,7 @@
-import type { Pose } from '../math/pose';
+import type { TrackedPose } from '../math/pose';
 import { copyQuat, type MutableQuat, type Quat, quat } from '../math/quat';
 import { copyVec3, type MutableVec3, type Vec3, vec3 } from '../math/vec3';
 import { type JointName, jointNames } from './joints';
-
-/** tracked: seen in this frame. emulated: the device guesses the position (WebXR `emulatedPosition`). */
-export type TrackedPose = Pose<'floor'> & { readonly tracking: 'tracked' | 'emulated' };
 
 /** Rotations of the upper body's joints; every identity is the T-pose facing −Z. `hips` is relative to the floor frame. */
 export interface UpperBodyPose {

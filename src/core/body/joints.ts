@@ -51,5 +51,3 @@ export const estimatedJoints = [
 ] as const satisfies readonly JointName[];
 
 export type EstimatedJoint = (typeof estimatedJoints)[number];
-
-export type Side = 'left' | 'right';

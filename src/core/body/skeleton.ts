@@ -1,8 +1,9 @@
 import { fromAxisAngle, type Quat } from '../math/quat';
+import type { Side } from '../math/side';
 import { add, length, up, type Vec3, vec3 } from '../math/vec3';
 import proportions from './body-proportions.json';
 import type { Calibration } from './calibration';
-import type { JointName, Side } from './joints';
+import type { JointName } from './joints';
 import type { LimbBones } from './two-bone-ik';
 
 /**

@@ -1,6 +1,4 @@
-import type { TrackedPose } from '../body/avatar-pose';
 import { headJointOf } from '../body/head-joint';
-import type { Side } from '../body/joints';
 import { type ChestSpaceBody, sideSign } from '../body/skeleton';
 import { trapezoidalEasing } from '../math/damper';
 import {
@@ -10,11 +8,13 @@ import {
   makePose,
   makeTransform,
   type Pose,
+  type TrackedPose,
   type Transform,
   transformPose,
   untransformPoint,
 } from '../math/pose';
 import { conjugate, copyQuat, fromAxes, type MutableQuat, multiply, quat, rotate, slerp } from '../math/quat';
+import type { Side } from '../math/side';
 import {
   addScaled,
   copyVec3,

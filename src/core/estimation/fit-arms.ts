@@ -1,5 +1,4 @@
 import { alongArm, armBoneRotation, elbowHinge, handBoneRotation } from '../body/arm-rotations';
-import type { Side } from '../body/joints';
 import type { Skeleton } from '../body/skeleton';
 import { elbowCircle, elbowOnCircle, type LimbBones, makeElbowCircle } from '../body/two-bone-ik';
 import { clamp } from '../math/damper';
@@ -16,6 +15,7 @@ import {
   twistAngle,
   twistOf,
 } from '../math/quat';
+import type { Side } from '../math/side';
 import {
   addScaled,
   backward,

@@ -1,8 +1,8 @@
 import { clavicleRest, clavicleRoot } from '../body/arm-rotations';
-import type { Side } from '../body/joints';
 import type { Skeleton } from '../body/skeleton';
 import { clamp, smoothingFactor, smoothstep } from '../math/damper';
 import { alignDirections, limitAngle, type MutableQuat, multiply, quat, rotate, rotationBetween } from '../math/quat';
+import type { Side } from '../math/side';
 import {
   add,
   addScaled,

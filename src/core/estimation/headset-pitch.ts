@@ -1,6 +1,5 @@
-import type { TrackedPose } from '../body/avatar-pose';
 import type { Calibration } from '../body/calibration';
-import { type MutablePose, makePose } from '../math/pose';
+import { type MutablePose, makePose, type TrackedPose } from '../math/pose';
 import { fromAxisAngle, type MutableQuat, multiply, quat } from '../math/quat';
 import { copyVec3, right } from '../math/vec3';
 

@@ -1,3 +1,4 @@
+import { reasonOf } from '../errors/reasons';
 import type { PoseRegressor } from './pose-regressor';
 
 /** Latest-result inference: runs a regressor one at a time and hands over what it finished; nothing it does wrong gets out as an exception. */
@@ -55,7 +56,7 @@ export class LatestResult {
       this.#fault = null;
     } catch (error) {
       this.#failed();
-      this.#fault = `${contract.name}: ${error instanceof Error ? error.message : String(error)}`;
+      this.#fault = `${contract.name}: ${reasonOf(error)}`;
     }
   }
 }

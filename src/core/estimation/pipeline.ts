@@ -1,7 +1,7 @@
-import { type MutableUpperBodyPose, makeUpperBodyPose, type TrackedPose } from '../body/avatar-pose';
+import { type MutableUpperBodyPose, makeUpperBodyPose } from '../body/avatar-pose';
 import type { Calibration } from '../body/calibration';
 import { chestSpaceBody, skeletonFromCalibration } from '../body/skeleton';
-import { makePose, makeTransform, transformPose } from '../math/pose';
+import { makePose, makeTransform, type TrackedPose, transformPose } from '../math/pose';
 import { rotate } from '../math/quat';
 import { vec3 } from '../math/vec3';
 import { floorFromHeading, headingFromFloor } from '../tracking/heading';

@@ -1,10 +1,10 @@
 import { headJointOf } from '../body/head-joint';
-import type { Side } from '../body/joints';
 import { type ChestSpaceBody, sideSign } from '../body/skeleton';
 import { elbowCircle, elbowOnCircle, makeElbowCircle, poleAcross } from '../body/two-bone-ik';
 import { clamp } from '../math/damper';
 import { type MutablePose, makePose, type Pose } from '../math/pose';
 import { fromAxes, fromAxisAngle, quat, rotate, rotateInverse } from '../math/quat';
+import type { Side } from '../math/side';
 import {
   add,
   addScaled,

@@ -1,9 +1,9 @@
-import type { Side } from '../body/joints';
 import { sideSign } from '../body/skeleton';
 import { type ElbowCircle, poleAcross } from '../body/two-bone-ik';
 import { bisect } from '../math/bisection';
 import { clamp, smoothingFactor, smoothstep } from '../math/damper';
 import { fromAxes, quat, rotate, rotateInverse, rotationBetween } from '../math/quat';
+import type { Side } from '../math/side';
 import {
   addScaled,
   backward,

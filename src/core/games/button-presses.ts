@@ -1,4 +1,4 @@
-import type { Side } from './fist';
+import type { Side } from '../math/side';
 
 /** How far each button of a hand is pressed, 0 to 1. A controller has no pinch, a bare hand nothing but. */
 export interface HandButtons {

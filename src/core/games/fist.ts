@@ -1,10 +1,7 @@
 import type { Frame, Pose } from '../math/pose';
 import { fromAxes, type Quat, rotate } from '../math/quat';
+import type { Side } from '../math/side';
 import { add, cross, type MutableVec3, normalise, reject, scale, subtract, type Vec3, vec3 } from '../math/vec3';
-
-export type Side = 'left' | 'right';
-
-export const otherSide = (side: Side): Side => (side === 'left' ? 'right' : 'left');
 
 /** The middle of the fist in the wrist's frame [m]: 8 cm towards the knuckles, 2.5 cm towards the palm. */
 export const fistInWrist: Vec3 = vec3(0, -0.025, -0.08);

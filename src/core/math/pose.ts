@@ -17,6 +17,9 @@ export interface Pose<F extends Frame> {
   readonly [frame]?: F;
 }
 
+/** tracked: seen in this frame. emulated: the device guesses the position (WebXR `emulatedPosition`). */
+export type TrackedPose = Pose<'floor'> & { readonly tracking: 'tracked' | 'emulated' };
+
 /** A pose that its owner overwrites: an optional last argument `target`, as with `MutableVec3`. */
 export interface MutablePose<F extends Frame> extends Pose<F> {
   readonly position: MutableVec3;

@@ -1,12 +1,12 @@
 import { alongArm, clavicleRest, handBoneRotation } from '../body/arm-rotations';
 import type { UpperBodyPose } from '../body/avatar-pose';
 import type { JointPoses } from '../body/forward-kinematics';
-import type { Side } from '../body/joints';
 import type { Skeleton } from '../body/skeleton';
 import { elbowFlexion } from '../body/two-bone-ik';
 import { clamp } from '../math/damper';
 import type { Pose } from '../math/pose';
 import { angleBetween, conjugate, multiply, type Quat, quat, rotate, twistAngle, twistOf } from '../math/quat';
+import type { Side } from '../math/side';
 import {
   add,
   addScaled,

@@ -1,9 +1,10 @@
-import type { AvatarPose, TrackedPose, UpperBodyPose } from '../body/avatar-pose';
+import type { AvatarPose, UpperBodyPose } from '../body/avatar-pose';
 import { forwardKinematics, makeJointPoses } from '../body/forward-kinematics';
-import { jointNames, type Side } from '../body/joints';
+import { jointNames } from '../body/joints';
 import { type Skeleton, wristFromHandBone } from '../body/skeleton';
-import { type MutablePose, makePose, type Pose } from '../math/pose';
+import { type MutablePose, makePose, type Pose, type TrackedPose } from '../math/pose';
 import { conjugate, multiply, type Quat, quat } from '../math/quat';
+import type { Side } from '../math/side';
 import { copyVec3, isFiniteVec3 } from '../math/vec3';
 import { writeBodySteps } from './body-steps';
 import { readPacket, writePacket } from './pose-layout';

@@ -1,4 +1,4 @@
-import type { Side } from '../body/joints';
+import type { Side } from '../math/side';
 import { type BitReader, type BitWriter, createBitReader, createBitWriter } from './bits';
 import { longestPose, poseVersion } from './pose-packet';
 import {

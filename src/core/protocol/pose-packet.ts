@@ -1,5 +1,5 @@
 import type { AvatarPose } from '../body/avatar-pose';
-import type { Side } from '../body/joints';
+import type { Side } from '../math/side';
 
 /** Bumped with every change of the layout: a receiver shows nothing rather than nonsense. */
 export const poseVersion = 1;

@@ -1,7 +1,6 @@
-import type { TrackedPose } from '../body/avatar-pose';
-import type { Side } from '../body/joints';
 import { clamp } from '../math/damper';
-import type { MutablePose, Pose } from '../math/pose';
+import type { MutablePose, Pose, TrackedPose } from '../math/pose';
+import type { Side } from '../math/side';
 import { add, type MutableVec3, setVec3, type Vec3, vec3 } from '../math/vec3';
 import {
   type DirectionSteps,

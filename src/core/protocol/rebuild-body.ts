@@ -1,11 +1,11 @@
 import { alongArm, armBoneRotation, clavicleRest, elbowHinge, handBoneRotation } from '../body/arm-rotations';
 import type { UpperBodyPose } from '../body/avatar-pose';
 import { headJointOf } from '../body/head-joint';
-import type { Side } from '../body/joints';
 import type { Skeleton } from '../body/skeleton';
 import { elbowCircle, elbowOnCircle, makeElbowCircle, poleAcross } from '../body/two-bone-ik';
 import { makePose, type Pose } from '../math/pose';
 import { conjugate, copyQuat, fromAxisAngle, type MutableQuat, multiply, type Quat, quat, rotate } from '../math/quat';
+import type { Side } from '../math/side';
 import {
   add,
   addScaled,

@@ -1,9 +1,9 @@
-import type { TrackedPose } from '../body/avatar-pose';
 import type { Calibration } from '../body/calibration';
-import type { Side } from '../body/joints';
 import { chestSpaceBody, sideSign } from '../body/skeleton';
 import { clamp } from '../math/damper';
+import type { TrackedPose } from '../math/pose';
 import { fromAxes, fromAxisAngle, multiply, type Quat, rotate, slerp } from '../math/quat';
+import type { Side } from '../math/side';
 import { add, addScaled, cross, distance, lerp, normalise, reject, scale, up, type Vec3, vec3 } from '../math/vec3';
 import type { TrackingFrame } from './tracking-frame';
 

@@ -1,10 +1,9 @@
-import type { TrackedPose } from '../body/avatar-pose';
 import { type Calibration, calibrationComplaint, steepestGazePitch } from '../body/calibration';
-import type { Side } from '../body/joints';
 import { sideSign, skeletonFromCalibration } from '../body/skeleton';
 import { clamp } from '../math/damper';
-import { transformPoint } from '../math/pose';
+import { type TrackedPose, transformPoint } from '../math/pose';
 import { rotate } from '../math/quat';
+import type { Side } from '../math/side';
 import { add, addScaled, distance, forward, length, subtract, type Vec3, vec3 } from '../math/vec3';
 import { headingFromFloor } from './heading';
 import type { TrackingFrame } from './tracking-frame';

@@ -1,5 +1,5 @@
-import type { TrackedPose } from '../body/avatar-pose';
 import type { Calibration } from '../body/calibration';
+import type { TrackedPose } from '../math/pose';
 import { slerp } from '../math/quat';
 import { lerp } from '../math/vec3';
 import type { TrackingFrame } from './tracking-frame';

@@ -1,4 +1,4 @@
-import type { TrackedPose } from '../body/avatar-pose';
+import type { TrackedPose } from '../math/pose';
 
 /**
  * One frame of the three tracked points. Head: the viewer pose (origin between the eyes, −Z is the gaze).

@@ -1,17 +1,18 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
-import type { TrackedPose } from '../../../src/core/body/avatar-pose';
 import type { Calibration } from '../../../src/core/body/calibration';
 import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
-import { estimatedJoints, type JointName, type Side } from '../../../src/core/body/joints';
+import { estimatedJoints, type JointName } from '../../../src/core/body/joints';
 import { chestSpaceBody, skeletonFromCalibration } from '../../../src/core/body/skeleton';
 import { swivelAngle } from '../../../src/core/body/two-bone-ik';
 import { completeHands, makeCompleteHandsState } from '../../../src/core/estimation/complete-hands';
 import { createEstimator } from '../../../src/core/estimation/estimators';
 import { filterJoints, makeFilterJointsState } from '../../../src/core/estimation/filter-joints';
 import type { JointPositions } from '../../../src/core/estimation/joint-positions';
+import type { TrackedPose } from '../../../src/core/math/pose';
 import { angleBetween, fromAxisAngle, identity, multiply, rotate, twistAngle } from '../../../src/core/math/quat';
 import { nextRandom } from '../../../src/core/math/random';
+import type { Side } from '../../../src/core/math/side';
 import {
   add,
   addScaled,

@@ -1,6 +1,5 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
-import type { TrackedPose } from '../../../src/core/body/avatar-pose';
 import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
 import { chestSpaceBody, skeletonFromCalibration } from '../../../src/core/body/skeleton';
 import {
@@ -10,6 +9,7 @@ import {
   resetCompleteHands,
 } from '../../../src/core/estimation/complete-hands';
 import { createIk } from '../../../src/core/estimation/estimators';
+import type { TrackedPose } from '../../../src/core/math/pose';
 import { copyQuat, fromAxisAngle, identity, multiply, rotate } from '../../../src/core/math/quat';
 import { add, copyVec3, distance, length, up, type Vec3, vec3 } from '../../../src/core/math/vec3';
 import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';

@@ -1,6 +1,6 @@
 import fc from 'fast-check';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
-import type { AvatarPose, TrackedPose } from '../../../src/core/body/avatar-pose';
+import type { AvatarPose } from '../../../src/core/body/avatar-pose';
 import type { Calibration } from '../../../src/core/body/calibration';
 import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
 import { type JointName, jointNames, parentOf } from '../../../src/core/body/joints';
@@ -8,7 +8,7 @@ import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
 import { createEstimator, needsRegressor } from '../../../src/core/estimation/estimators';
 import { estimatorNames, type PoseEstimator } from '../../../src/core/estimation/pose-estimator';
 import type { PoseRegressor } from '../../../src/core/estimation/pose-regressor';
-import { transformPoint } from '../../../src/core/math/pose';
+import { type TrackedPose, transformPoint } from '../../../src/core/math/pose';
 import { fromAxisAngle, multiply, rotate, rotationBetween, swingTwist, twistAngle } from '../../../src/core/math/quat';
 import {
   add,

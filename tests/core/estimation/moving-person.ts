@@ -1,10 +1,9 @@
-import type { TrackedPose } from '../../../src/core/body/avatar-pose';
 import type { Calibration } from '../../../src/core/body/calibration';
-import type { Side } from '../../../src/core/body/joints';
 import { chestSpaceBody, sideSign } from '../../../src/core/body/skeleton';
-import { type Frame, type Transform, transformPose } from '../../../src/core/math/pose';
+import { type Frame, type TrackedPose, type Transform, transformPose } from '../../../src/core/math/pose';
 import { fromAxes, fromAxisAngle, multiply, type Quat, rotate } from '../../../src/core/math/quat';
 import { nextRandom } from '../../../src/core/math/random';
+import type { Side } from '../../../src/core/math/side';
 import { add, addScaled, cross, normalise, right, subtract, up, type Vec3, vec3 } from '../../../src/core/math/vec3';
 import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
 import { fromEulerYxz } from '../euler-angles';

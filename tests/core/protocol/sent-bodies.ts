@@ -1,9 +1,9 @@
 import fc from 'fast-check';
-import type { TrackedPose } from '../../../src/core/body/avatar-pose';
 import type { Calibration } from '../../../src/core/body/calibration';
 import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
 import { createIk } from '../../../src/core/estimation/estimators';
 import type { PoseEstimator } from '../../../src/core/estimation/pose-estimator';
+import type { TrackedPose } from '../../../src/core/math/pose';
 import { fromAxisAngle, multiply } from '../../../src/core/math/quat';
 import { up, vec3 } from '../../../src/core/math/vec3';
 import type { FingerCurl, PosePacket } from '../../../src/core/protocol/pose-packet';

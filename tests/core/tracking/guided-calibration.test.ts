@@ -1,11 +1,10 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
-import type { TrackedPose } from '../../../src/core/body/avatar-pose';
 import type { Calibration } from '../../../src/core/body/calibration';
 import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
 import { jointNames } from '../../../src/core/body/joints';
 import { armLength, skeletonFromCalibration } from '../../../src/core/body/skeleton';
-import { type Frame, type Pose, transformPose } from '../../../src/core/math/pose';
+import { type Frame, type Pose, type TrackedPose, transformPose } from '../../../src/core/math/pose';
 import { fromAxisAngle, identity, multiply, type Quat, rotate } from '../../../src/core/math/quat';
 import { add, right, up, type Vec3, vec3 } from '../../../src/core/math/vec3';
 import {

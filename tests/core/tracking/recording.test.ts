@@ -1,6 +1,6 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
-import type { TrackedPose } from '../../../src/core/body/avatar-pose';
+import type { TrackedPose } from '../../../src/core/math/pose';
 import { slerp } from '../../../src/core/math/quat';
 import { distance, lerp, vec3 } from '../../../src/core/math/vec3';
 import {

@@ -1,7 +1,7 @@
-import type { TrackedPose } from '../../body/avatar-pose';
 import { clamp } from '../../math/damper';
-import { type Pose, type Transform, transformPose } from '../../math/pose';
+import { type Pose, type TrackedPose, type Transform, transformPose } from '../../math/pose';
 import { fromAxisAngle, identity, multiply, type Quat, rotate, slerp } from '../../math/quat';
+import { otherSide, type Side } from '../../math/side';
 import {
   add,
   addScaled,
@@ -18,7 +18,7 @@ import {
 } from '../../math/vec3';
 import type { TrackingFrame } from '../../tracking/tracking-frame';
 import { allReleased, type Button, type Buttons, type HandButtons } from '../button-presses';
-import { otherSide, type Side, wristAround } from '../fist';
+import { wristAround } from '../fist';
 import { armShare, lookAlong, shoulderBehind, shoulderDrop, shoulderShare, yawOf } from '../posture';
 import { arrowRestHeight, braceHeight, maximumDraw } from './bow';
 import { releaseTowards } from './flight';

@@ -1,7 +1,8 @@
 import type { Pose } from '../../math/pose';
 import { fromAxes, rotate } from '../../math/quat';
+import type { Side } from '../../math/side';
 import { add, cross, normalise, reject, scale, type Vec3, vec3 } from '../../math/vec3';
-import { fistOf, type Side, thumbOf } from '../fist';
+import { fistOf, thumbOf } from '../fist';
 import { arrowRestHeight } from './bow';
 
 /** A bow that hangs in a fist, no arrow on it: −Z with the knuckles, +Y (the upper limb) with the thumb. */

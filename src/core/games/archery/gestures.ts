@@ -1,7 +1,7 @@
-import type { TrackedPose } from '../../body/avatar-pose';
 import { clamp, damp, smoothingFactor, smoothstep } from '../../math/damper';
-import { type Pose, type Transform, transformPoint } from '../../math/pose';
+import { type Pose, type TrackedPose, type Transform, transformPoint } from '../../math/pose';
 import { identity, rotate, rotationBetween, slerp } from '../../math/quat';
+import { otherSide, type Side } from '../../math/side';
 import {
   add,
   addScaled,
@@ -24,7 +24,7 @@ import {
   pressureOf,
   releasedBelow,
 } from '../button-presses';
-import { fistOf, otherSide, type Side } from '../fist';
+import { fistOf } from '../fist';
 import type { ArcheryAction, BowView } from './archery-state';
 import { arrowLength, braceHeight, maximumDraw, minimumDraw } from './bow';
 import { arrowRestOf, bowInHand, turnBow } from './bow-hand';

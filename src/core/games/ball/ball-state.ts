@@ -1,8 +1,8 @@
 import type { Pose } from '../../math/pose';
 import type { RandomState } from '../../math/random';
+import type { Side } from '../../math/side';
 import type { Vec3 } from '../../math/vec3';
 import type { Launch } from '../ballistics';
-import type { Side } from '../fist';
 
 /** What may differ between matches. */
 export interface BallOptions {

@@ -1,7 +1,8 @@
 import type { Frame, Pose } from '../../math/pose';
 import { rotate } from '../../math/quat';
+import type { Side } from '../../math/side';
 import { add, addScaled, length, lerp, normalise, reject, subtract, up, type Vec3, vec3 } from '../../math/vec3';
-import { fistOf, type Side, thumbOf } from '../fist';
+import { fistOf, thumbOf } from '../fist';
 import { basketRadius } from './flight';
 
 /** The opening of a basket: its middle, and the unit normal that looks out of it. */

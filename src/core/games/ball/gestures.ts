@@ -1,12 +1,13 @@
-import type { TrackedPose } from '../../body/avatar-pose';
 import {
   type MutablePose,
   makePose,
   makeTransform,
+  type TrackedPose,
   type Transform,
   transformPoint,
   transformPose,
 } from '../../math/pose';
+import type { Side } from '../../math/side';
 import { copyVec3, distance, length, type MutableVec3, type Vec3, vec3 } from '../../math/vec3';
 import type { TrackingFrame } from '../../tracking/tracking-frame';
 import {
@@ -18,7 +19,7 @@ import {
   pressureOf,
   releasedBelow,
 } from '../button-presses';
-import { fistOf, type Side } from '../fist';
+import { fistOf } from '../fist';
 import type { BallAction, BallDeed, BallEvent, BallState } from './ball-state';
 import { createHandSpeed, type HandSpeed } from './hand-speed';
 import { slowestThrow } from './rules';

@@ -1,11 +1,11 @@
-import type { TrackedPose } from '../../body/avatar-pose';
 import { clamp } from '../../math/damper';
-import { invertTransform, type Pose, type Transform, transformPoint } from '../../math/pose';
+import { invertTransform, type Pose, type TrackedPose, type Transform, transformPoint } from '../../math/pose';
 import { fromAxisAngle, multiply, type Quat, slerp } from '../../math/quat';
+import type { Side } from '../../math/side';
 import { add, lerp, normalise, subtract, up, type Vec3, vec3 } from '../../math/vec3';
 import type { TrackingFrame } from '../../tracking/tracking-frame';
 import { allReleased, type Button, type Buttons } from '../button-presses';
-import { type Side, wristAround } from '../fist';
+import { wristAround } from '../fist';
 import { armShare, shoulderBehind, shoulderDrop, shoulderShare, yawOf } from '../posture';
 
 /** Who plays, and where. */

@@ -1,5 +1,6 @@
+import type { Side } from '../../math/side';
 import { addScaled, distance, isFiniteVec3, length, type Vec3, vec3 } from '../../math/vec3';
-import { fistOf, type Side } from '../fist';
+import { fistOf } from '../fist';
 import type { GameRules } from '../game-rules';
 import type {
   BallAction,

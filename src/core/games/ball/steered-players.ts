@@ -1,9 +1,9 @@
 import { clamp, smoothingFactor } from '../../math/damper';
 import { transformPoint } from '../../math/pose';
 import { rotate } from '../../math/quat';
+import type { Side } from '../../math/side';
 import { add, addScaled, distance, normalise, scale, subtract, type Vec3, vec3 } from '../../math/vec3';
 import type { Launch } from '../ballistics';
-import type { Side } from '../fist';
 import { minimumJerk } from '../posture';
 import { createHolder } from './holder-motion';
 import { createPlayerPostures, mixPostures, type PlayerBody, type PlayerPosture } from './player-postures';

@@ -1,6 +1,6 @@
 import { clamp } from '../../math/damper';
+import { otherSide, type Side } from '../../math/side';
 import { add, addScaled, distance, length, normalise, scale, subtract, type Vec3, vec3 } from '../../math/vec3';
-import { otherSide, type Side } from '../fist';
 import type { Grasp, PlayerPosture, PlayerPostures } from './player-postures';
 
 /** The arm is this fast at once [m], then evenly fast for as long as a throw's speed is measured and a slow frame more [s]. */

@@ -1,8 +1,8 @@
 import { clamp } from '../../math/damper';
 import { nextRandom } from '../../math/random';
+import type { Side } from '../../math/side';
 import { add, addScaled, distance, lerp, scale, subtract, type Vec3, vec3 } from '../../math/vec3';
 import { gravity } from '../ballistics';
-import type { Side } from '../fist';
 import { minimumJerk } from '../posture';
 import type { BallState } from './ball-state';
 import {

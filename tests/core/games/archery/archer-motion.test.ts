@@ -6,9 +6,10 @@ import type { ArcheryState } from '../../../../src/core/games/archery/archery-st
 import { arrowSpeed } from '../../../../src/core/games/archery/bow';
 import { archeryRules } from '../../../../src/core/games/archery/rules';
 import type { Button } from '../../../../src/core/games/button-presses';
-import { fistOf, type Side } from '../../../../src/core/games/fist';
+import { fistOf } from '../../../../src/core/games/fist';
 import { angleBetween, fromAxisAngle, rotate } from '../../../../src/core/math/quat';
 import { nextRandom, type RandomState } from '../../../../src/core/math/random';
+import type { Side } from '../../../../src/core/math/side';
 import { add, distance, length, scale, subtract, up, vec3 } from '../../../../src/core/math/vec3';
 import { number, seed } from '../../arbitraries';
 import { playRound, steady } from './playing';

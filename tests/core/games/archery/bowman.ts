@@ -1,4 +1,3 @@
-import type { TrackedPose } from '../../../../src/core/body/avatar-pose';
 import type { BowView } from '../../../../src/core/games/archery/archery-state';
 import { arrowRestHeight, braceHeight } from '../../../../src/core/games/archery/bow';
 import {
@@ -8,8 +7,10 @@ import {
   type GestureFrame,
 } from '../../../../src/core/games/archery/gestures';
 import { allReleased, type Button, type Buttons, type HandButtons } from '../../../../src/core/games/button-presses';
-import { otherSide, type Side, wristAround } from '../../../../src/core/games/fist';
+import { wristAround } from '../../../../src/core/games/fist';
+import type { TrackedPose } from '../../../../src/core/math/pose';
 import { identity } from '../../../../src/core/math/quat';
+import { otherSide, type Side } from '../../../../src/core/math/side';
 import { add, addScaled, cross, normalise, reject, up, type Vec3, vec3 } from '../../../../src/core/math/vec3';
 import type { TrackingFrame } from '../../../../src/core/tracking/tracking-frame';
 

@@ -11,9 +11,10 @@ import {
 } from '../../../../src/core/games/archery/gestures';
 import { archeryRules } from '../../../../src/core/games/archery/rules';
 import { allReleased, type Button, createButtonPresses } from '../../../../src/core/games/button-presses';
-import { fistOf, otherSide, type Side, wristAround } from '../../../../src/core/games/fist';
+import { fistOf, wristAround } from '../../../../src/core/games/fist';
 import type { Transform } from '../../../../src/core/math/pose';
 import { fromAxisAngle, rotate } from '../../../../src/core/math/quat';
+import { otherSide, type Side } from '../../../../src/core/math/side';
 import {
   add,
   addScaled,

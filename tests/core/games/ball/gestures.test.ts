@@ -1,6 +1,5 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
-import type { TrackedPose } from '../../../../src/core/body/avatar-pose';
 import type { BallAction, BallState } from '../../../../src/core/games/ball/ball-state';
 import { createBallGestures, holdSeconds } from '../../../../src/core/games/ball/gestures';
 import { createHandSpeed, throwWindow } from '../../../../src/core/games/ball/hand-speed';
@@ -8,7 +7,7 @@ import { ballRules } from '../../../../src/core/games/ball/rules';
 import { rackPosition, stations } from '../../../../src/core/games/ball/stations';
 import { allReleased, type Button, type HandButtons } from '../../../../src/core/games/button-presses';
 import { fistOf, wristAround } from '../../../../src/core/games/fist';
-import { invertTransform, transformPoint, transformPose } from '../../../../src/core/math/pose';
+import { invertTransform, type TrackedPose, transformPoint, transformPose } from '../../../../src/core/math/pose';
 import { fromAxisAngle, identity } from '../../../../src/core/math/quat';
 import { add, addScaled, distance, scale, up, type Vec3, vec3 } from '../../../../src/core/math/vec3';
 import type { TrackingFrame } from '../../../../src/core/tracking/tracking-frame';

@@ -1,0 +1,4 @@
+/** Of the body, as the person says it: the wearer's left is `left`. */
+export type Side = 'left' | 'right';
+
+export const otherSide = (side: Side): Side => (side === 'left' ? 'right' : 'left');
