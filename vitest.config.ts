@@ -1,7 +1,7 @@
 import { defineConfig, type TestProjectConfiguration } from 'vitest/config';
 
 /** Tests of what keeps no state outside its own functions: files share a process and what they have loaded. */
-const stateless = 'tests/{core,games,study,ui}/**/*.test.ts';
+const stateless = 'tests/{core,ui,app/archery,app/study}/**/*.test.ts';
 
 /** Which tests run: 'day' leaves out what takes its time, 'full' runs that alone; asked for without a word, a file runs whole. */
 const tests = process.env.THREEPOINT_TESTS ?? 'all';

@@ -26,9 +26,9 @@ async function enterTheRange(page: Page, query = ''): Promise<EmulatedHeadset> {
 const patience = { timeout: 60_000 };
 
 for (const estimator of ['learned', 'ik', 'paper', 'hands-only'] as const) {
-  // The hands are the same whatever draws the body: one by day, the others by night.
-  const night = estimator === 'learned' ? '' : ' @nightly';
-  test(`${estimator}: the archer in the emulated headset wins 50 of 50${night}`, async ({ page }) => {
+  // The hands are the same with each body: one in full, the others by night.
+  const suite = estimator === 'learned' ? '@full' : '@nightly';
+  test(`${estimator}: the archer in the emulated headset wins 50 of 50 ${suite}`, async ({ page }) => {
     test.setTimeout(240_000);
     await enterTheRange(page, `&estimator=${estimator}`);
     expect((await probe(page)).estimator).toBe(estimator);
@@ -125,7 +125,7 @@ test('a person who leaves the zone is warned, and coming back is noticed @nightl
   await expect.poll(async () => (await round(page)).inZone).toBe(true);
 });
 
-test('hands are changed in the menu of the page, and remembered', async ({ page }) => {
+test('hands are changed in the menu of the page, and remembered @full', async ({ page }) => {
   await open(page, 'emulate&play=archery&seed=7&panel=off&quality=low');
   await expect.poll(async () => (await round(page)).bowSide).toBe('left');
   await page.getByText('Rules and hands').click();

@@ -29,7 +29,7 @@ const answers = {
   'plain.glb': [() => glb(plain()), /no humanoid in it/],
 } as const;
 
-test('an avatar of the address that does not arrive leaves our own body standing, and says why', async ({
+test('an avatar of the address that does not arrive leaves our own body standing, and says why @full', async ({
   page,
   complaints,
 }) => {

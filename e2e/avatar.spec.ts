@@ -40,7 +40,7 @@ test('a file that is no avatar is refused in a sentence, and ours stays', async 
   expect((await probe(page)).avatar.name).toBe(name);
 });
 
-test('a switch shows the upper body alone', async ({ page }) => {
+test('a switch shows the upper body alone @full', async ({ page }) => {
   await open(page, 'emulate&actor=off&quality=low');
   await keepPicture(page, 'full-body');
   await page.getByRole('tab', { name: 'Avatar' }).click();

@@ -48,7 +48,7 @@ test('one person with two bots plays a short match to its end, and again', async
   expect(again.score).toBeLessThanOrEqual(over.score);
 });
 
-test('in the emulated headset the built-in player throws with its tracked hands', async ({ page }) => {
+test('in the emulated headset the built-in player throws with its tracked hands @full', async ({ page }) => {
   await open(page, 'emulate&play=ball&panel=off&quality=low&estimator=ik&seed=5&balls=2&seconds=40');
   await emulatedHeadset(page);
   await enterVr(page);
@@ -65,7 +65,7 @@ test('a person who plays by hand is asked before a match begins, and can wait', 
   await until(page, ({ phase }) => phase === 'running');
 });
 
-test('without a headset a mouse takes a ball, aims and throws it', async ({ page }) => {
+test('without a headset a mouse takes a ball, aims and throws it @full', async ({ page }) => {
   await open(page, 'play=ball&panel=off&quality=low&estimator=ik&bots=on&seconds=600');
   await driveTime(page);
   // The built-in player has begun the match: a person who wants to play takes over.
@@ -85,7 +85,7 @@ test('without a headset a mouse takes a ball, aims and throws it', async ({ page
   await until(page, ({ ballsLeft }) => ballsLeft < 18);
 });
 
-test('a spectator sees three bots and follows one of them', async ({ page }) => {
+test('a spectator sees three bots and follows one of them @full', async ({ page }) => {
   await open(page, 'play=ball&spectate&bots=on&panel=off&quality=low&estimator=ik&seconds=60');
   await driveTime(page);
   await until(page, ({ phase }) => phase === 'running');

@@ -3,7 +3,7 @@ import { enterVr, expect, freshTest, joint, load, openWithHeadset, probe, test }
 
 const withHeadset = 'emulate&actor=off&quality=low';
 
-test('by hand: height and arm span are taken over, remembered after a reload, and forgotten on request', async ({
+test('by hand: height and arm span are taken over, remembered after a reload, and forgotten on request @full', async ({
   page,
 }) => {
   await openWithHeadset(page);
@@ -59,7 +59,7 @@ test('guided: standing still with the arms stretched forward measures the person
   expect((await probe(page)).calibration.eyeHeight).toBeCloseTo(1.72, 2);
 });
 
-test('a taller calibration makes a longer body under the same head', async ({ page }) => {
+test('a taller calibration makes a longer body under the same head @full', async ({ page }) => {
   const headset = await openWithHeadset(page, 'estimator=ik');
   await enterVr(page);
   const upright = { head: { position: [0, 1.7, 0], orientation: [0, 0, 0, 1] } } as const;
@@ -99,7 +99,7 @@ freshTest(
 );
 
 freshTest(
-  'worn: a person who typed a height and stands taller is told, and keeps the body that they asked for',
+  'worn: a person who typed a height and stands taller is told, and keeps the body that they asked for @full',
   async ({ page }) => {
     const headset = await openWithHeadset(page, 'estimator=ik');
     await page.getByRole('spinbutton', { name: 'Height in centimetres' }).fill('165');

@@ -40,7 +40,7 @@ function loseGraphics(page: Page): Promise<number> {
   );
 }
 
-test('a lost graphics device comes back with the game as it was: mirror, archery, ball', async ({
+test('a lost graphics device comes back with the game as it was: mirror, archery, ball @full', async ({
   page,
   complaints,
 }) => {

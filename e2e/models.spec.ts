@@ -27,7 +27,9 @@ const firstBody = (page: Page): Promise<{ readonly afterScript: number; readonly
   });
 
 for (const [fault, fulfil] of Object.entries(faults)) {
-  test(`a model that is ${fault}: IK takes over and the page says so`, async ({ page, complaints }) => {
+  // One by day: what tells the others apart is asked of load-regressor in unit tests.
+  const suite = fault === 'missing' ? '' : ' @full';
+  test(`a model that is ${fault}: IK takes over and the page says so${suite}`, async ({ page, complaints }) => {
     complaints.allow(/learned/, /404/);
     await page.route('**/models/learned*.onnx', fulfil);
     const headset = await openWithHeadset(page, 'estimator=learned');
@@ -51,7 +53,7 @@ test('without WebAssembly IK takes over and the page says so', async ({ page, co
   measured('no-wasm', { 'body drawn by IK': `${afterScript.toFixed(2)} s after the page's script began` });
 });
 
-test('without the worker that runs networks IK takes over and the page says so', async ({ page, complaints }) => {
+test('without the worker that runs networks IK takes over and the page says so @full', async ({ page, complaints }) => {
   complaints.allow(/worker/i, /404/, /learned|paper/);
   await page.route('**/inference-worker*.js', (route) => route.fulfill({ status: 404, body: 'Not found.' }));
   await openWithHeadset(page, 'estimator=learned');
@@ -69,7 +71,7 @@ test('a worker that dies while the network runs: IK takes over and the page says
   await expect(page.getByRole('alert').filter({ hasText: /does not answer/ })).toBeVisible();
 });
 
-test('WebGPU asked for and not there: WASM takes over, the network stays, and the page says so', async ({
+test('WebGPU asked for and not there: WASM takes over, the network stays, and the page says so @full', async ({
   page,
   complaints,
 }) => {

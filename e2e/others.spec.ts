@@ -28,7 +28,7 @@ test('a newcomer alone reads rules, what is waited for and a clock that stands a
   await keepPicture(page, 'ball-waiting');
 });
 
-test('a room has a link and a QR code to send; a page whose seat was taken over says so and takes it back', async ({
+test('a room has a link and a QR code to send; a page whose seat was taken over says so and takes it back @full', async ({
   page,
   complaints,
 }) => {

@@ -15,20 +15,20 @@ async function recordTheActor(page: Page): Promise<string> {
   return readFileSync(path, 'utf8');
 }
 
-// By day one that asks a network and one that asks none, the others by night.
+// In full one that asks a network and one that asks none, the others by night.
 const replays = {
-  '': [
+  '@full': [
     ['Hands only', 'hands-only'],
     ['Learned', 'learned'],
   ],
-  ' @nightly': [
+  '@nightly': [
     ['Inverse kinematics', 'ik'],
     ['Paper', 'paper'],
   ],
 } as const;
-for (const [night, estimators] of Object.entries(replays)) {
+for (const [suite, estimators] of Object.entries(replays)) {
   const names = estimators.map(([, name]) => name).join(' and ');
-  test(`a recording keeps full precision and replays through ${names}${night}`, async ({ page }) => {
+  test(`a recording keeps full precision and replays through ${names} ${suite}`, async ({ page }) => {
     const text = await recordTheActor(page);
     const digits = [...text.matchAll(/-?\d\.(\d+)/g)].map(([, decimals = '']) => decimals.length);
     expect(Math.max(...digits)).toBeGreaterThan(5);

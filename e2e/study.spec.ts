@@ -111,7 +111,7 @@ const tenHertz = { stepMs: 100 };
 const recordsOf = async (origin: string, id: string): Promise<readonly StudyRecord[]> =>
   ((await (await experimenter(origin).ask(`/${id}/records`)).json()) as { records: StudyRecord[] }).records;
 
-test('a participant from consent to the end, with a reload in a questionnaire while the server of the study is away', async ({
+test('a participant from consent to the end, with a reload in a questionnaire while the server of the study is away @full', async ({
   page,
   origin,
   complaints,
@@ -244,7 +244,7 @@ test('a participant from consent to the end, with a reload in a questionnaire wh
   await expect(page.getByRole('img', { name: /Archery: mean scores/ })).toBeVisible();
 });
 
-test('a link without its invitation asks for it, a wrong one is said, and the link of the experimenter’s page opens the place', async ({
+test('a link without its invitation asks for it, a wrong one is said, and the link of the experimenter’s page opens the place @full', async ({
   page,
   origin,
   complaints,
