@@ -4,6 +4,8 @@ import { join } from 'node:path';
 import { root, run, runQuietly, SetupError } from './run-command.mjs';
 
 const projectFile = join(root, 'training/pyproject.toml');
+/** Installs what pyproject.toml asks for; nothing needs it afterwards. */
+const uv = 'uv==0.9.11';
 const interpreters = ['python3', 'python3.13', 'python3.12', 'python3.11', 'python'];
 
 /** The lower bound of requires-python, as [major, minor]. */
@@ -55,6 +57,21 @@ for requirement in project.get('dependencies', []) + [r for extra in sys.argv[2:
 }
 
 /**
+ * By uv, which takes a quarter of pip's time; by pip itself where uv cannot be had or finds no registry (pip's own configuration may
+ * name one).
+ */
+async function installPackages(python, wanted) {
+  const pip = ['-m', 'pip', 'install', '--no-input', '--disable-pip-version-check', '--prefer-binary'];
+  const limits = { limitSeconds: 1800 };
+  if ((await runQuietly(python, [...pip, uv]))?.code === 0) {
+    if ((await run(python, ['-m', 'uv', 'pip', 'install', '--python', python, ...wanted], limits)).code === 0) return;
+    console.log('uv could not install them; pip tries.');
+  }
+  const { code } = await run(python, [...pip, ...wanted], limits);
+  if (code !== 0) throw new SetupError(`pip install failed with exit code ${code}; its messages are above.`);
+}
+
+/**
  * The path of a Python that has what training/pyproject.toml asks for, with its named extras; made in .cache on first use
  * and again when that file changes. Throws a SetupError that says what is missing.
  */
@@ -78,9 +95,7 @@ export async function pythonEnvironment({ extras = [] } = {}) {
     const python = pythonIn(unfinished);
     const wanted = await requirements(python, extras);
     console.log(`Installing Python packages: ${wanted.join(', ')} ...`);
-    const pip = ['-m', 'pip', 'install', '--no-input', '--disable-pip-version-check', '--prefer-binary', ...wanted];
-    const { code } = await run(python, pip, { limitSeconds: 1800 });
-    if (code !== 0) throw new SetupError(`pip install failed with exit code ${code}; its messages are above.`);
+    await installPackages(python, wanted);
     writeFileSync(join(unfinished, 'complete'), `${wanted.join('\n')}\n`);
     if (!existsSync(join(directory, 'complete'))) {
       rmSync(directory, { recursive: true, force: true });
