@@ -14,7 +14,8 @@ import { type EstimatorName, estimatorNames, type PoseEstimator } from '../../sr
 import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
 import { nextRandom } from '../../src/core/math/random';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
-import { loadRegressor, parseContract } from '../../src/inference/load-regressor';
+import { loadRegressor } from '../../src/inference/load-regressor';
+import { parseContract } from '../../src/inference/model-contract';
 import { createSession } from '../../src/inference/session';
 import { createRenderer } from '../../src/scene/renderer';
 import { measureArchery, type RoundTimes } from './archery';

@@ -2,7 +2,9 @@ import { readFileSync } from 'node:fs';
 import { createServer, type Server } from 'node:http';
 import type { AddressInfo } from 'node:net';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
-import { loadRegressor, parseContract } from '../../src/inference/load-regressor';
+import { loadPlainRegressor } from '../../src/inference/load-plain-regressor';
+import { loadRegressor } from '../../src/inference/load-regressor';
+import { parseContract } from '../../src/inference/model-contract';
 
 const model = (name: string) => readFileSync(new URL(`../../public/models/${name}`, import.meta.url));
 const contract = JSON.parse(model('learned.json').toString()) as Record<string, unknown>;
@@ -49,6 +51,46 @@ describe('a network that is what its contract says', () => {
     expect(output.every(Number.isFinite)).toBe(true);
     await regressor.dispose();
     await expect(regressor.run(new Float32Array(count))).rejects.toThrow(`${name}.onnx: already disposed of`);
+  });
+});
+
+describe('the learned network without a runtime', () => {
+  function serveWeights(bytes: Buffer, changes: Record<string, unknown> = {}): string {
+    files.clear();
+    files.set('/learned.json', JSON.stringify({ ...contract, ...changes }));
+    files.set('/learned.bin', bytes);
+    return `${base}/learned.json`;
+  }
+
+  test('loads, and answers at once', async () => {
+    const shares: number[] = [];
+    const url = serveWeights(model('learned.bin'));
+    const regressor = await loadPlainRegressor(url, { onProgress: (share) => shares.push(share) });
+    expect(regressor.provider).toBe('plain');
+    expect(shares.at(-1)).toBe(1);
+    const output = regressor.runNow?.(new Float32Array(176));
+    expect(output).toHaveLength(18);
+    expect(output?.every(Number.isFinite)).toBe(true);
+  });
+
+  test.each([
+    ['a bit changed', {}, (bytes: Buffer) => bytes.fill(1, 5000, 5001), /^learned\.bin: its SHA-256 begins/],
+    ['half of them', {}, (bytes: Buffer) => bytes.subarray(0, 4000), /^learned\.bin: 4000 bytes long, its contract/],
+    ['none named', { weights: undefined }, (bytes: Buffer) => bytes, /^learned\.json: names no weights/],
+    [
+      'none there',
+      { weights: { ...(contract.weights as object), file: 'gone.bin' } },
+      (bytes: Buffer) => bytes,
+      /^gone\.bin: the server answers 404/,
+    ],
+    [
+      'no list of tensors',
+      { weights: { ...(contract.weights as object), tensors: { a: 'x' } } },
+      (bytes: Buffer) => bytes,
+      /^learned\.json: weights\.tensors\.a: /,
+    ],
+  ])('weights with %s', async (_, changes, change, sentence) => {
+    await expect(loadPlainRegressor(serveWeights(change(model('learned.bin')), changes))).rejects.toThrow(sentence);
   });
 });
 

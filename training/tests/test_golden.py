@@ -11,6 +11,7 @@ from golden_file import assert_as_committed, committed
 from threepoint_training import golden
 from threepoint_training.chest_features import CHEST_FEATURES
 from threepoint_training.features import FEATURES
+from threepoint_training.flat_weights import flat_file
 from threepoint_training.residual import OUTPUTS
 from threepoint_training.splits import FOLDS
 
@@ -84,3 +85,10 @@ def test_weights_are_eight_bits_and_activations_are_not(name):
     assert large
     assert all(tensor.data_type == onnx.TensorProto.INT8 for tensor in large)
     assert not {"QuantizeLinear", "DynamicQuantizeLinear"} & {node.op_type for node in model.graph.node}
+
+
+def test_the_flat_weights_are_those_of_the_graph_beside_them():
+    stated = contract("learned")["weights"]
+    content, made = flat_file(onnx.load(MODELS / "learned.onnx"), "learned.bin")
+    assert (MODELS / stated["file"]).read_bytes() == content
+    assert stated == made

@@ -1,5 +1,6 @@
 """The whole pipeline on generated motion: npm run test:training. Needs PyTorch, so the module imports it only within tests."""
 
+import hashlib
 import json
 from dataclasses import replace
 
@@ -58,6 +59,9 @@ def test_the_pipeline_writes_a_model_that_keeps_its_contract(config, run, name):
     assert stated["trainedOn"]["people"]
     assert stated["bytes"] == (config.out / stated["file"]).stat().st_size
     assert all(set(errors) >= {"mean", "pelvis"} for errors in stated["errors"].values())
+    if name == "learned":
+        weights = stated["weights"]
+        assert weights["sha256"] == hashlib.sha256((config.out / weights["file"]).read_bytes()).hexdigest()
     session = onnxruntime.InferenceSession(config.out / stated["file"])
     given = np.random.default_rng(1).normal(size=stated["inputs"][0]["shape"]).astype(np.float32)
     (output,) = session.run([stated["outputs"][0]["name"]], {stated["inputs"][0]["name"]: given})

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from .chest_features import CHEST_FEATURES
 from .features import FEATURES
+from .flat_weights import flat_file
 from .quantise import quantise_weights, run
 from .residual import OUTPUTS
 
@@ -82,7 +83,7 @@ class ExportConfig:
 
 
 def main(config: ExportConfig, network: torch.nn.Module, examples: NDArray[np.float32]) -> dict[str, Any]:
-    """Writes NAME.onnx and NAME.json and returns the contract; examples, real inputs, measure what the 8 bits cost."""
+    """Writes NAME.onnx, NAME.json and, of the learned network, NAME.bin; returns the contract. examples, real inputs, measure what the 8 bits cost."""
     input_name, output_name = ("three_points", "joints") if config.name == "paper" else ("features", "corrections")
     exact = to_onnx(network, examples[:1], input_name, output_name)
     quantised = quantise_weights(exact)
@@ -99,11 +100,14 @@ def main(config: ExportConfig, network: torch.nn.Module, examples: NDArray[np.fl
 
 
 def _write(config: ExportConfig, out: Path, model: onnx.ModelProto, quantisation: dict[str, Any]) -> dict[str, Any]:
-    """Graph and contract into a folder."""
+    """Graph, contract and, where there is a forward pass without a runtime, flat weights into a folder."""
     content = model.SerializeToString()
     out.mkdir(parents=True, exist_ok=True)
     (out / f"{config.name}.onnx").write_bytes(content)
     contract = _contract(config, content, quantisation)
+    if config.name == "learned":
+        flat, contract["weights"] = flat_file(model, f"{config.name}.bin")
+        (out / f"{config.name}.bin").write_bytes(flat)
     (out / f"{config.name}.json").write_text(json.dumps(contract, indent=2, ensure_ascii=False) + "\n")
     return contract
 

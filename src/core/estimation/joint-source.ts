@@ -27,9 +27,11 @@ export interface JointSource {
   readonly network: JointNetwork | null;
 }
 
-/** A network that is asked after a frame and answers before a later one. */
+/** The network behind a joint source. */
 export interface JointNetwork {
-  /** Asks about this frame, unless a question is open; resolves when that is answered, however it ends. Never rejects. */
+  /** It answers within `joints`, in the frame that asks; false: it is asked after a frame and answers before a later one. */
+  readonly inFrame: boolean;
+  /** Not where it answers in the frame: asks about this frame, unless a question is open; resolves when that is answered, however it ends. Never rejects. */
   ask(solved: SolvedFrame): Promise<void>;
   /** The newest answer as joints [m], floor frame, moved along with this frame, before any filter; null before the first answer and after a fault. */
   answer(solved: SolvedFrame): MutableJointPositions | null;

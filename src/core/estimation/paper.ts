@@ -31,6 +31,7 @@ export function createPaper(regressor: PoseRegressor): JointSource {
   }
 
   const network: JointNetwork = {
+    inFrame: false,
     ask({ completed }) {
       if (inference.running) return inference.running;
       return inference.start(paperFeatures(completed.head, completed.leftHand, completed.rightHand, input));

@@ -88,7 +88,7 @@ export class Pipeline implements PoseEstimator {
     const { network } = source;
     this.#estimate = {
       pose: { head: noHead, leftHand: null, rightHand: null, body: makeUpperBodyPose() },
-      request: network && { ask: () => network.ask(this.state.solved) },
+      request: network && !network.inFrame ? { ask: () => network.ask(this.state.solved) } : null,
     };
   }
 

@@ -18,7 +18,7 @@ export interface InferenceRequest {
 export interface Estimate {
   /** Floor frame. Head and hands are the frame's own, whatever the network's age. */
   readonly pose: AvatarPose;
-  /** Null: the method has no network. */
+  /** Null: the method has no network, or one that has answered already. */
   readonly request: InferenceRequest | null;
 }
 

@@ -10,6 +10,16 @@ export interface TensorContract {
   readonly frame: 'floor' | 'heading' | 'chest';
 }
 
+/** A model's numbers in one flat file, for a forward pass without a runtime (training/threepoint_training/flat_weights.py). */
+export interface FlatWeights {
+  /** File name beside the contract, its size and SHA-256 (hex). */
+  readonly file: string;
+  readonly bytes: number;
+  readonly sha256: string;
+  /** Of each tensor its type and shape, as in `int8 192 176`, in the order in which they lie. */
+  readonly tensors: Readonly<Record<string, string>>;
+}
+
 /** The contract beside each model file: what goes in, what comes out, what it was trained on and how good it is. */
 export interface ModelContract {
   readonly name: 'paper' | 'learned';
@@ -32,14 +42,18 @@ export interface ModelContract {
   readonly seed: number;
   /** MPJPE [cm] by protocol and joint, as measured by the training run (docs/training.md). */
   readonly errors: Readonly<Record<string, Readonly<Record<string, number>>>>;
+  /** Absent: the model needs a runtime. */
+  readonly weights?: FlatWeights;
 }
 
 /** A network that maps one flat feature vector to one flat output vector. */
 export interface PoseRegressor {
   readonly contract: ModelContract;
-  /** Where it runs, for the overlay: 'wasm', 'webgpu'. */
+  /** Where it runs, for the overlay: 'wasm', 'webgpu', 'plain'. */
   readonly provider: string;
   /** features: as many numbers as the input tensor has elements, not to be overwritten until it settles. Rejects when the runtime fails. One run at a time. */
   run(features: Float32Array): Promise<Float32Array>;
+  /** The same at once, so that a frame has its own answer; absent where the network runs elsewhere. The numbers are overwritten by the next run. */
+  readonly runNow?: (features: Float32Array) => Float32Array;
   dispose(): Promise<void>;
 }

@@ -1,12 +1,12 @@
 import type { Calibration } from '../body/calibration';
 import { estimatedJoints } from '../body/joints';
-import { chestSpaceBody } from '../body/skeleton';
+import { type ChestSpaceBody, chestSpaceBody } from '../body/skeleton';
 import { smoothingFactor } from '../math/damper';
 import { transformPoint } from '../math/pose';
 import { add, copyVec3, lerp, scale, setVec3 } from '../math/vec3';
 import { chestFeatureCount, chestFeatures, headingFromChest } from './chest-features';
 import { FeatureWindow, featureCount, frameFeatures } from './features';
-import { copyJoints, makeJoints } from './joint-positions';
+import { copyJoints, type MutableJointPositions, makeJoints } from './joint-positions';
 import type { JointNetwork, JointSource, SolvedFrame } from './joint-source';
 import { LatestResult } from './latest-result';
 import type { PoseRegressor } from './pose-regressor';
@@ -23,88 +23,126 @@ export const learnedInputCount = (windowSeconds: readonly number[]): number =>
  * Our network: the residual of the IK solution, seen from the chest of the frame it was asked about. It is damped in the heading frame
  * and added to the IK of the current frame, so that neither the filter nor a late answer delays what follows head and hands.
  */
-export function createResidual(calibration: Calibration, regressor: PoseRegressor): JointSource {
-  const { windowSeconds, correctionHalfLife = defaultHalfLife } = regressor.contract;
-  let body = chestSpaceBody(calibration);
-  const window = new FeatureWindow(Math.max(...windowSeconds));
-  const input = new Float32Array(learnedInputCount(windowSeconds));
-  const seen = { left: false, right: false };
+class Residual implements JointSource, JointNetwork {
+  readonly #regressor: PoseRegressor;
+  readonly #window: FeatureWindow;
+  readonly #input: Float32Array;
+  readonly #seen = { left: false, right: false };
   /** The chest that the open question was asked from. */
-  const askedFrom = makeChestAxes();
+  readonly #askedFrom = makeChestAxes();
   /** The newest residual and its damped course [m], heading frame. */
-  const newest = makeJoints();
-  const damped = makeJoints();
-  const answered = makeJoints();
+  readonly #newest = makeJoints();
+  readonly #damped = makeJoints();
+  readonly #answered = makeJoints();
+  readonly #inference: LatestResult;
+  #body: ChestSpaceBody;
   /** Whether `newest` is an answer. */
-  let known = false;
+  #known = false;
 
-  function forget(): void {
-    copyJoints(nothing, newest);
-    known = false;
+  constructor(calibration: Calibration, regressor: PoseRegressor) {
+    const { windowSeconds } = regressor.contract;
+    this.#regressor = regressor;
+    this.#body = chestSpaceBody(calibration);
+    this.#window = new FeatureWindow(Math.max(...windowSeconds));
+    this.#input = new Float32Array(learnedInputCount(windowSeconds));
+    this.#inference = new LatestResult(
+      regressor,
+      (output) => this.#learn(output),
+      () => this.#forget(),
+    );
   }
 
-  const inference = new LatestResult(
-    regressor,
-    (output) => {
-      for (let index = 0; index < estimatedJoints.length; index++) {
-        const residual = newest[estimatedJoints[index]!];
-        setVec3(residual, output[3 * index]!, output[3 * index + 1]!, output[3 * index + 2]!);
-        scale(headingFromChest(askedFrom, residual, residual), body.eyeHeight, residual);
-      }
-      known = true;
-    },
-    forget,
-  );
-
-  function reset(): void {
-    window.clear();
-    inference.reset();
-    forget();
-    copyJoints(nothing, damped);
+  get network(): JointNetwork {
+    return this;
   }
 
-  const network: JointNetwork = {
-    ask({ time, completed, points, ik }: SolvedFrame) {
-      seen.left = completed.leftHand.source === 'tracked';
-      seen.right = completed.rightHand.source === 'tracked';
-      frameFeatures(points, seen, ik.joints, body, window.push(time));
-      if (inference.running) return inference.running;
-      window.read(windowSeconds, input);
-      chestFeatures(points, ik, body, input, input.length - chestFeatureCount);
-      copyVec3(ik.chest.x, askedFrom.x);
-      copyVec3(ik.chest.y, askedFrom.y);
-      copyVec3(ik.chest.z, askedFrom.z);
-      return inference.start(input);
-    },
-    answer({ ik, floorFromHeading }) {
-      if (!known) return null;
-      for (const joint of estimatedJoints) {
-        transformPoint(floorFromHeading, add(ik.joints[joint], newest[joint], answered[joint]), answered[joint]);
-      }
-      return answered;
-    },
-    get fault() {
-      return inference.fault;
-    },
-  };
+  get inFrame(): boolean {
+    return this.#regressor.runNow !== undefined;
+  }
 
-  return {
-    network,
-    reset,
-    calibrate(next) {
-      body = next;
-      reset();
-    },
-    joints({ ik, floorFromHeading }, deltaSeconds, target) {
-      // Without an answer IK stands alone, and what was there fades.
-      const share = smoothingFactor(correctionHalfLife, deltaSeconds);
-      for (let index = 0; index < estimatedJoints.length; index++) {
-        const joint = estimatedJoints[index]!;
-        const residual = lerp(damped[joint], newest[joint], share, damped[joint]);
-        transformPoint(floorFromHeading, add(ik.joints[joint], residual, target[joint]), target[joint]);
-      }
-    },
-  };
+  get fault(): string | null {
+    return this.#inference.fault;
+  }
+
+  calibrate(body: ChestSpaceBody): void {
+    this.#body = body;
+    this.reset();
+  }
+
+  reset(): void {
+    this.#window.clear();
+    this.#inference.reset();
+    this.#forget();
+    copyJoints(nothing, this.#damped);
+  }
+
+  ask(solved: SolvedFrame): Promise<void> {
+    this.#remember(solved);
+    if (this.#inference.running) return this.#inference.running;
+    this.#fillInput(solved);
+    return this.#inference.start(this.#input);
+  }
+
+  answer({ ik, floorFromHeading }: SolvedFrame): MutableJointPositions | null {
+    if (!this.#known) return null;
+    const answered = this.#answered;
+    for (const joint of estimatedJoints) {
+      transformPoint(floorFromHeading, add(ik.joints[joint], this.#newest[joint], answered[joint]), answered[joint]);
+    }
+    return answered;
+  }
+
+  joints(solved: SolvedFrame, deltaSeconds: number, target: MutableJointPositions): void {
+    const { runNow, contract } = this.#regressor;
+    if (runNow) {
+      this.#remember(solved);
+      this.#fillInput(solved);
+      this.#inference.answerNow(runNow, this.#input);
+    }
+    const { ik, floorFromHeading } = solved;
+    // Without an answer IK stands alone, and what was there fades.
+    const share = smoothingFactor(contract.correctionHalfLife ?? defaultHalfLife, deltaSeconds);
+    for (let index = 0; index < estimatedJoints.length; index++) {
+      const joint = estimatedJoints[index]!;
+      const residual = lerp(this.#damped[joint], this.#newest[joint], share, this.#damped[joint]);
+      transformPoint(floorFromHeading, add(ik.joints[joint], residual, target[joint]), target[joint]);
+    }
+  }
+
+  /** Takes the frame into the window. */
+  #remember({ time, completed, points, ik }: SolvedFrame): void {
+    const seen = this.#seen;
+    seen.left = completed.leftHand.source === 'tracked';
+    seen.right = completed.rightHand.source === 'tracked';
+    frameFeatures(points, seen, ik.joints, this.#body, this.#window.push(time));
+  }
+
+  /** Writes the network's input for the newest frame, and remembers the chest from which it asks. */
+  #fillInput({ points, ik }: SolvedFrame): void {
+    const input = this.#input;
+    this.#window.read(this.#regressor.contract.windowSeconds, input);
+    chestFeatures(points, ik, this.#body, input, input.length - chestFeatureCount);
+    copyVec3(ik.chest.x, this.#askedFrom.x);
+    copyVec3(ik.chest.y, this.#askedFrom.y);
+    copyVec3(ik.chest.z, this.#askedFrom.z);
+  }
+
+  #learn(output: Float32Array): void {
+    for (let index = 0; index < estimatedJoints.length; index++) {
+      const residual = this.#newest[estimatedJoints[index]!];
+      setVec3(residual, output[3 * index]!, output[3 * index + 1]!, output[3 * index + 2]!);
+      scale(headingFromChest(this.#askedFrom, residual, residual), this.#body.eyeHeight, residual);
+    }
+    this.#known = true;
+  }
+
+  #forget(): void {
+    copyJoints(nothing, this.#newest);
+    this.#known = false;
+  }
 }
+
+export const createResidual = (calibration: Calibration, regressor: PoseRegressor): JointSource =>
+  new Residual(calibration, regressor);
 
 const nothing = makeJoints();

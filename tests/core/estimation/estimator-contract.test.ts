@@ -30,7 +30,7 @@ import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
 import { number, rotation, seed, standpoint, vector } from '../arbitraries';
 import { type Joints, show, showAll } from './drawn';
 import { mirrorFrame, mirrorPoint, movingPerson, transformFrame, withHand } from './moving-person';
-import { openShippedModel } from './shipped-models';
+import { openPlainModel, openShippedModel } from './shipped-models';
 
 const rate = 1 / 60;
 
@@ -69,11 +69,17 @@ const apart = (a: Joints, b: Joints): number =>
 const factIf = (holds: boolean): ((fact: string, check: () => Promise<void>) => void) =>
   holds ? test : () => undefined;
 
-describe.each(estimatorNames)('%s', (name) => {
+/** Every estimator, those with a network on the page's runtime; and the learned one without a runtime. */
+const subjects = [
+  ...estimatorNames.map((name) => ({ label: name as string, name, plain: false })),
+  { label: 'learned, without a runtime', name: 'learned' as const, plain: true },
+];
+
+describe.each(subjects)('$label', ({ name, plain }) => {
   const wantsModel = needsRegressor(name);
   let regressor: PoseRegressor | null = null;
   beforeAll(async () => {
-    if (wantsModel) regressor = await openShippedModel(name);
+    if (wantsModel) regressor = plain ? openPlainModel() : await openShippedModel(name);
   });
   afterAll(() => regressor?.dispose());
 

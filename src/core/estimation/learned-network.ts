@@ -1,0 +1,120 @@
+import { estimatedJoints } from '../body/joints';
+import { readWeights, tensorOf } from './model-weights';
+import { Perceptron } from './perceptron';
+import type { ModelContract, PoseRegressor } from './pose-regressor';
+
+/** Joints that the trunk network corrects, in its order: left and right shoulder, chest joint, hips; three numbers each. */
+const trunkOutputs = 12;
+/** Reach, its length, axes of the hand, IK's elbow, the room's up, whether the hand is seen. */
+const armInputs = 17;
+/** Of these the columns that stand in the features: the length is computed, and the arm's own length only divides. */
+const armColumns = 17;
+const outputs = 3 * estimatedJoints.length;
+/** Inputs of zeros, with which a network is tried out, must not divide by zero. */
+const shortestArm = 1e-3;
+
+/**
+ * The learned network without a runtime (training/threepoint_training/model.py, CorrectionNetwork): features in, corrections of six joints out.
+ * A body and its mirror image go through the network together; the trunk's correction is the mean of both, each arm is computed as a right one.
+ */
+export class LearnedNetwork {
+  readonly #features: number;
+  readonly #trunk: Perceptron;
+  readonly #arm: Perceptron;
+  /** For the body, then for its mirror image: which feature each input is, and its sign. */
+  readonly #columns: Int32Array;
+  readonly #signs: Float64Array;
+  readonly #armColumns: Int32Array;
+  /** Both bodies before normalisation, which the arm's inputs are taken from. */
+  readonly #bodies: Float64Array;
+  readonly #output = new Float32Array(outputs);
+
+  /** Throws a sentence where contract and file do not go together. */
+  constructor(contract: ModelContract, bytes: Uint8Array) {
+    if (!contract.weights) throw new Error(`${contract.name}.json: names no weights for a run without a runtime`);
+    const weights = readWeights(contract.weights, bytes);
+    const features = contract.inputs[0]?.shape.at(-1) ?? 0;
+    this.#features = features;
+    this.#trunk = new Perceptron(weights, 'trunk', features, trunkOutputs);
+    this.#arm = new Perceptron(weights, 'arm', armInputs, 3);
+    this.#columns = Int32Array.from(tensorOf(weights, 'mirrorColumns', 2 * features));
+    this.#signs = Float64Array.from(tensorOf(weights, 'mirrorSigns', 2 * features));
+    this.#armColumns = Int32Array.from(tensorOf(weights, 'armColumns', armColumns));
+    const outside = (column: number) => column < 0 || column >= features;
+    if (this.#columns.some(outside) || this.#armColumns.some(outside)) {
+      throw new Error(`${contract.weights.file}: names columns beyond the ${features} features`);
+    }
+    this.#bodies = new Float64Array(2 * features);
+  }
+
+  /** Corrections [eye heights, chest frame] of the six estimated joints, overwritten by the next run. Makes no garbage. */
+  run(features: Float32Array): Float32Array {
+    const bodies = this.#bodies;
+    for (let index = 0; index < bodies.length; index++) {
+      bodies[index] = features[this.#columns[index]!]! * this.#signs[index]!;
+    }
+    this.#trunk.input.set(bodies);
+    const trunk = this.#trunk.run();
+    this.#correctTrunk(trunk, this.#trunk.stride);
+    this.#fillArm(0, 3);
+    this.#fillArm(1, 0);
+    const arm = this.#arm.run();
+    this.#correctElbows(arm, this.#arm.stride);
+    return this.#output;
+  }
+
+  /** Left and right shoulder, chest joint and hips: the mean of what is said of the body and, mirrored back, of its image. Elbows go with their shoulders. */
+  #correctTrunk(trunk: Float64Array, image: number): void {
+    const output = this.#output;
+    for (let joint = 0; joint < 4; joint++) {
+      // Left and right change places in the image.
+      const twin = joint < 2 ? 1 - joint : joint;
+      for (let axis = 0; axis < 3; axis++) {
+        const mirrored = (axis === 0 ? -1 : 1) * trunk[image + 3 * twin + axis]!;
+        output[3 * (joint + 2) + axis] = (trunk[3 * joint + axis]! + mirrored) / 2;
+      }
+    }
+    for (let index = 0; index < 6; index++) output[index] = output[6 + index]!;
+  }
+
+  /** The right arm of the body (0) or of its image (1), whose shoulder's correction stands at `shoulder` behind the left one's. */
+  #fillArm(body: 0 | 1, shoulder: 0 | 3): void {
+    const from = body * this.#features;
+    const to = body * armInputs;
+    const { input } = this.#arm;
+    const bodies = this.#bodies;
+    const columns = this.#armColumns;
+    const arm = Math.max(shortestArm, bodies[from + columns[armColumns - 1]!]!);
+    let squares = 0;
+    for (let axis = 0; axis < 3; axis++) {
+      const mirror = body === 1 && axis === 0 ? -1 : 1;
+      const shift = mirror * this.#output[6 + shoulder + axis]!;
+      const reach = bodies[from + columns[axis]!]! - shift / arm;
+      input[to + axis] = reach;
+      squares += reach * reach;
+    }
+    input[to + 3] = Math.sqrt(squares);
+    for (let index = 4; index < armInputs; index++) input[to + index] = bodies[from + columns[index - 1]!]!;
+  }
+
+  /** To each elbow what its arm adds; the left one was computed as the right one of the image. */
+  #correctElbows(arm: Float64Array, image: number): void {
+    const output = this.#output;
+    for (let axis = 0; axis < 3; axis++) {
+      output[axis] = output[axis]! + (axis === 0 ? -1 : 1) * arm[image + axis]!;
+      output[3 + axis] = output[3 + axis]! + arm[axis]!;
+    }
+  }
+}
+
+/** The learned network on the thread that asks, answered in the frame that asks: no runtime, no worker, nothing to wait for. */
+export function createPlainRegressor(contract: ModelContract, bytes: Uint8Array): PoseRegressor {
+  const network = new LearnedNetwork(contract, bytes);
+  return {
+    contract,
+    provider: 'plain',
+    run: (features) => Promise.resolve(network.run(features).slice()),
+    runNow: (features) => network.run(features),
+    dispose: () => Promise.resolve(),
+  };
+}

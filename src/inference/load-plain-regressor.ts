@@ -1,0 +1,27 @@
+import { createPlainRegressor } from '../core/estimation/learned-network';
+import type { PoseRegressor } from '../core/estimation/pose-regressor';
+import { fetchContract, fetchStated, named } from './model-files';
+
+export interface PlainLoadOptions {
+  /** Share [0, 1] of the weights that has arrived. */
+  readonly onProgress?: (share: number) => void;
+}
+
+/**
+ * The learned network without a runtime, ready to answer within a frame: contract and weights fetched, size and SHA-256 checked. Rejects with a
+ * sentence that says what is wrong with which file.
+ */
+export async function loadPlainRegressor(
+  contractUrl: string,
+  { onProgress }: PlainLoadOptions = {},
+): Promise<PoseRegressor> {
+  const contract = await fetchContract(contractUrl);
+  if (!contract.weights) throw new Error(`${contract.name}.json: names no weights for a run without a runtime`);
+  const { file } = contract.weights;
+  const bytes = await fetchStated(contractUrl, contract.weights, onProgress);
+  try {
+    return createPlainRegressor(contract, bytes);
+  } catch (error) {
+    throw named(file, error);
+  }
+}

@@ -1,0 +1,75 @@
+import { reasonOf } from '../core/errors/reasons';
+import type { ModelContract } from '../core/estimation/pose-regressor';
+import { parseContract } from './model-contract';
+
+/** What a contract says of a file beside it. */
+export type StatedFile = Pick<ModelContract, 'file' | 'bytes' | 'sha256'>;
+
+/** The contract at this address; rejects with a sentence that says what is wrong with which file. */
+export async function fetchContract(url: string): Promise<ModelContract> {
+  return parseContract(fileName(url), new TextDecoder().decode(await download(url)));
+}
+
+/** A file beside the contract at `contractUrl`, its size and SHA-256 checked; rejects with a sentence. onProgress: share [0, 1] that has arrived. */
+export async function fetchStated(
+  contractUrl: string,
+  stated: StatedFile,
+  onProgress?: (share: number) => void,
+): Promise<Uint8Array> {
+  const bytes = await download(beside(contractUrl, stated.file), onProgress);
+  await verify(stated, bytes);
+  return bytes;
+}
+
+/** The address of a file beside another; what follows `?` belongs to the other alone. */
+const beside = (url: string, file: string): string => url.replace(/[?#].*$/, '').replace(/[^/]*$/, file);
+
+const fileName = (url: string): string => url.split(/[?#]/)[0]?.split('/').at(-1) ?? url;
+
+/** The same error in a sentence that begins with the file's name. */
+export const named = (file: string, error: unknown): Error => {
+  const text = reasonOf(error);
+  return new Error(text.startsWith(file) ? text : `${file}: ${text}`);
+};
+
+/** The whole body of a response; anything but success throws a sentence. */
+async function download(url: string, onProgress?: (share: number) => void): Promise<Uint8Array> {
+  const file = fileName(url);
+  let response: Response;
+  try {
+    response = await fetch(url);
+  } catch (error) {
+    throw new Error(`${file}: could not be fetched (${reasonOf(error)})`);
+  }
+  if (!response.ok) throw new Error(`${file}: the server answers ${response.status} ${response.statusText}`.trim());
+  const reader = response.body?.getReader();
+  if (!reader) return new Uint8Array(await response.arrayBuffer());
+  const total = Number(response.headers.get('content-length')) || 0;
+  const pieces: Uint8Array[] = [];
+  let received = 0;
+  for (;;) {
+    const { done, value } = await reader.read();
+    if (done) break;
+    pieces.push(value);
+    received += value.length;
+    // A compressed body is longer than its header says.
+    if (total > 0) onProgress?.(Math.min(1, received / total));
+  }
+  onProgress?.(1);
+  const whole = new Uint8Array(received);
+  let offset = 0;
+  for (const piece of pieces) {
+    whole.set(piece, offset);
+    offset += piece.length;
+  }
+  return whole;
+}
+
+async function verify({ file, bytes, sha256 }: StatedFile, model: Uint8Array): Promise<void> {
+  if (model.length !== bytes) throw new Error(`${file}: ${model.length} bytes long, its contract says ${bytes}`);
+  const digest = new Uint8Array(await crypto.subtle.digest('SHA-256', model as Uint8Array<ArrayBuffer>));
+  const hex = Array.from(digest, (byte) => byte.toString(16).padStart(2, '0')).join('');
+  if (hex !== sha256) {
+    throw new Error(`${file}: its SHA-256 begins ${hex.slice(0, 12)}, its contract says ${sha256.slice(0, 12)}`);
+  }
+}
