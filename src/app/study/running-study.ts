@@ -1,0 +1,312 @@
+import type { Side } from '../../core/math/side';
+import { type ProgressEvent, placeOf } from '../../core/study/progress';
+import { randomFor } from '../../core/study/shuffle';
+import type { TrackingFrame } from '../../core/tracking/tracking-frame';
+import type { CalibrationStep } from '../../ui/calibration-dialog';
+import { type CalibrationGuide, createCalibrationGuide } from '../../ui/calibration-guide';
+import { ExchangeTimer } from './exchange-timer';
+import type { ParticipantSession } from './participant-session';
+import type { StudyHost } from './study-host';
+import type { StudyPage } from './study-page';
+import { lockedOutScreen, type ScreenActions, screenOf, screenQuestions } from './study-screens';
+import { type FinishedTrial, isPlayed, type PlayedStep, type PlayedTrial, playTrial } from './study-trial';
+import type { TaskPlace, TaskRunner } from './task-runner';
+import { TrialPreparation } from './trial-preparation';
+
+/** How often what is shown follows the clock [ms]. */
+const tickEveryMs = 250;
+
+/** The bow goes into the other hand. */
+const bowSideOf = (preferred: Side): Side => (preferred === 'left' ? 'right' : 'left');
+
+export interface RunningStudyOptions {
+  readonly host: StudyHost;
+  readonly page: StudyPage;
+  /** Removes everything of this participant from the device. */
+  readonly forget: () => Promise<void>;
+}
+
+/** A participant's session under way: shows what it is at, plays its trials and keeps the server informed. */
+export class RunningStudy {
+  readonly session: ParticipantSession;
+  readonly #host: StudyHost;
+  readonly #page: StudyPage;
+  readonly #forget: () => Promise<void>;
+  readonly #exchanges: ExchangeTimer;
+  readonly #preparation: TrialPreparation;
+  readonly #guide: CalibrationGuide;
+  readonly #actions: ScreenActions;
+  #trial: PlayedTrial | null = null;
+  /** Of the step at hand: the question shown, whether handing in failed for want of an answer, why the last wish changed nothing. */
+  #question = 0;
+  #triedToSubmit = false;
+  #refusal: string | null = null;
+  #shownStep = '';
+  /** null: no one is being measured. */
+  #calibration: CalibrationStep | null = null;
+
+  constructor(session: ParticipantSession, { host, page, forget }: RunningStudyOptions) {
+    this.session = session;
+    this.#host = host;
+    this.#page = page;
+    this.#forget = forget;
+    this.#exchanges = new ExchangeTimer(session, page.after);
+    this.#preparation = new TrialPreparation(
+      (step) => this.#load(step),
+      () => this.show(),
+    );
+    this.#guide = createCalibrationGuide({
+      onStep: (step) => {
+        this.#calibration = step;
+        this.show();
+      },
+      onMeasured: (calibration) => {
+        host.setCalibration(calibration);
+        this.#guide.cancel();
+        session.apply({ type: 'calibrated', calibration });
+      },
+      // What went wrong stays to be read until the participant measures again.
+      closesItself: () => false,
+    });
+    this.#actions = {
+      apply: (event) => this.#apply(event),
+      goTo: (index) => this.#goTo(index),
+      choose: (question, value) => this.#choose(question, value),
+      submit: () => this.#submit(),
+      calibrate: () => this.#guide.start(),
+      enterVr: () => void host.enterVr(),
+      prepareAgain: () => {
+        this.#preparation.forget();
+        this.show();
+      },
+    };
+  }
+
+  /** Whether a trial is being played; one that still waits for others is not. */
+  get playing(): boolean {
+    return this.#trial !== null && this.#trial.waitingFor === null;
+  }
+
+  /** Whether the round on the page stands still. */
+  get paused(): boolean {
+    return this.session.progress.paused || (this.#trial !== null && !this.#host.inSession());
+  }
+
+  /** Shows the step at hand, now and as time passes, and begins to talk to the server. */
+  begin(): void {
+    const { calibration, preferredHand } = this.session;
+    if (calibration) this.#host.setCalibration(calibration);
+    if (preferredHand) this.#host.setBowSide(bowSideOf(preferredHand));
+    this.show();
+    this.#tickLater();
+    void this.exchange();
+  }
+
+  /** Tells the server what is new and follows what the experimenter wants; resolves when that is over. */
+  exchange(): Promise<void> {
+    return this.#exchanges.exchange();
+  }
+
+  /** Every frame drawn; null: the head was not seen. */
+  frame(time: number, frame: TrackingFrame | null): void {
+    if (frame) this.#guide.observe(frame);
+    const finished = this.#trial?.follow(time, frame);
+    if (finished) this.#finishTrial(finished);
+  }
+
+  /** The headset was put on or taken off. */
+  sessionChanged(): void {
+    const { progress } = this.session;
+    const worn = this.#host.inSession();
+    // A round is void when the headset comes off in the middle of it.
+    if (!worn && progress.running && !progress.paused && this.#trial) {
+      this.session.apply({ type: 'reload' });
+      void this.exchange();
+    }
+    if (!worn) this.#guide.cancel();
+    this.show();
+  }
+
+  /** Shows what the session is at now, however it came there. */
+  show(): void {
+    const { session } = this;
+    const { display } = this.#page;
+    if (session.safekeeping.lockedOut) {
+      this.#showLockedOut();
+      return;
+    }
+    this.#settle();
+    if (session.withdrawalCode !== null) {
+      display.ask({ kind: 'code', code: session.withdrawalCode, noted: () => session.codeNoted() });
+    } else if (session.step.kind === 'demographics') {
+      display.ask({ kind: 'demographics', done: (answers) => this.#takeDemographics(answers) });
+    } else {
+      display.show(this.#screen(), this.#host.inSession());
+    }
+  }
+
+  #screen() {
+    return screenOf(
+      {
+        session: this.session,
+        inSession: this.#host.inSession(),
+        question: this.#question,
+        triedToSubmit: this.#triedToSubmit,
+        calibration: this.#calibration,
+        prepared: this.#preparation.of(this.session.step.id),
+        refusal: this.#refusal,
+        playing: this.#trial !== null,
+        waitingFor: this.#trial?.waitingFor ?? null,
+        standing: this.#trial?.standing ?? false,
+      },
+      this.#actions,
+    );
+  }
+
+  #showLockedOut(): void {
+    this.#dropTrial();
+    const { participant } = this.session.progress;
+    const anew = () => void this.#forget().then(() => this.#page.address.reload());
+    this.#page.display.ask(
+      { kind: 'locked-out', participant, unsent: this.session.safekeeping.unsent, anew },
+      this.#host.inSession() ? lockedOutScreen(this.session) : null,
+    );
+  }
+
+  #tickLater(): void {
+    this.#page.after(tickEveryMs, () => {
+      this.#tickLater();
+      if (this.session.step.kind === 'rest') this.session.apply({ type: 'tick' });
+      this.show();
+    });
+  }
+
+  /** What follows from where the session is now. */
+  #settle(): void {
+    const { step, progress, simulated } = this.session;
+    if (step.id !== this.#shownStep) this.#enterStep();
+    if (this.#trial && this.#trial.key !== this.#trialKey()) this.#dropTrial();
+    // With the headset off, a pause goes on until it is worn again.
+    this.#trial?.pause(progress.paused || !this.#host.inSession());
+    if (isPlayed(step)) this.#settleTrial(step);
+    if (step.kind !== 'consent') this.#host.setActor(simulated);
+  }
+
+  #enterStep(): void {
+    this.#shownStep = this.session.step.id;
+    this.#triedToSubmit = false;
+    this.#refusal = null;
+    this.#guide.cancel();
+    // After a reload a questionnaire goes on where the first answer is missing.
+    this.#question = Math.max(0, this.#firstOpenQuestion());
+  }
+
+  #settleTrial(step: PlayedStep): void {
+    if (!this.#preparation.of(step.id)) void this.#preparation.begin(step);
+    const { running, paused } = this.session.progress;
+    const ready = this.#preparation.of(step.id)?.state === 'ready';
+    if (running && !paused && !this.#trial && ready && this.#host.inSession()) this.#startTrial(step);
+  }
+
+  /** Loads the game and the body of a step, before it can be started. */
+  async #load(step: PlayedStep): Promise<void> {
+    const runner = this.#runnerOf(step);
+    if (!runner) throw new Error('This page cannot play the game of this task.');
+    await Promise.all([runner.prepare(this.#placeFor(step)), this.#host.chooseEstimator(step.estimator)]);
+    if (this.#host.estimator() !== step.estimator) throw new Error('The body of this round could not be loaded.');
+  }
+
+  #runnerOf(step: PlayedStep): TaskRunner | null {
+    const game = this.session.plan.tasks.find(({ id }) => id === step.task)?.game;
+    return (game && this.#host.runners[game]) ?? null;
+  }
+
+  /** Where a group meets: a room of its own for every trial of every run, on a seat that the server signs. */
+  #placeFor(step: PlayedStep): TaskPlace {
+    const { session } = this;
+    const run = session.progress.runs[`${step.task}/${step.block}`] ?? 1;
+    return {
+      seat: () => session.seat({ step: step.id, run }),
+      participant: session.progress.participant,
+      members: session.schedule.groups[step.task]?.members ?? [],
+      seconds: step.seconds,
+    };
+  }
+
+  /** Step, run and attempt of the trial at hand. */
+  #trialKey(): string {
+    const { schedule, progress, step } = this.session;
+    const place = placeOf(schedule, progress);
+    return `${step.id}@${place?.run}.${place?.attempt}`;
+  }
+
+  #startTrial(step: PlayedStep): void {
+    const runner = this.#runnerOf(step);
+    if (!runner) return;
+    const { plan, progress } = this.session;
+    const motion = progress.motion === true && plan.consent.motion !== null && step.kind === 'trial';
+    // The same round for each participant's first, second … trial: what differs between conditions is not the layout.
+    const repetition = step.kind === 'trial' ? step.repetition : 0;
+    const { seed } = randomFor(plan.seed, `layout of ${step.task} ${repetition}`);
+    this.#trial = playTrial(step, runner, this.#host, { key: this.#trialKey(), motion, seed: seed >>> 1 });
+    this.show();
+  }
+
+  #dropTrial(): void {
+    this.#trial?.abort();
+    this.#trial = null;
+  }
+
+  #finishTrial({ outcome, recording }: FinishedTrial): void {
+    const { session } = this;
+    const key = this.#trialKey();
+    this.#trial = null;
+    this.#refusal = session.apply({ type: 'trial-finished', outcome });
+    if (recording !== null && this.#refusal === null) session.keepMotion(`${key}:trial`, recording);
+    void this.exchange();
+  }
+
+  #apply(event: ProgressEvent): void {
+    this.#refusal = this.session.apply(event);
+    void this.exchange();
+    this.show();
+  }
+
+  #goTo(index: number): void {
+    this.#question = index;
+    this.show();
+  }
+
+  #choose(question: string, value: number): void {
+    this.#refusal = this.session.apply({ type: 'answer', question, value });
+    this.show();
+  }
+
+  #submit(): void {
+    const open = this.#firstOpenQuestion();
+    if (open < 0) {
+      this.#apply({ type: 'submit' });
+      return;
+    }
+    this.#triedToSubmit = true;
+    this.#goTo(open);
+  }
+
+  /** Index of the first question without an answer; −1: there is none. */
+  #firstOpenQuestion(): number {
+    const { draft } = this.session.progress;
+    return screenQuestions(this.session).findIndex(({ id }) => draft[id] === undefined);
+  }
+
+  /** Why the answers cannot be taken; null: they are. */
+  #takeDemographics(answers: Record<string, unknown>): string | null {
+    const complaint = this.session.apply({ type: 'demographics', demographics: answers });
+    if (complaint === null) {
+      void this.exchange();
+      const { preferredHand } = this.session;
+      if (preferredHand) this.#host.setBowSide(bowSideOf(preferredHand));
+    }
+    this.show();
+    return complaint;
+  }
+}

@@ -1,0 +1,39 @@
+import type { PublicStudy } from '../../core/study/study-api';
+
+/** Who takes part, and what shows that they were invited. */
+export interface Invited {
+  readonly participant: string;
+  readonly invitation: string;
+}
+
+/** What is filled in or read at the desk alone, never in the headset; `kind` names it for tools. */
+export type StudyForm =
+  | {
+      /** Asks for a participant's code and invitation, filled in as far as they are known. */
+      readonly kind: 'participant';
+      /** What was wrong with what the address says; null: nothing. */
+      readonly complaint: string | null;
+      readonly known: { readonly [Part in keyof Invited]: string | null };
+      /** Gets both in capitals. */
+      go(invited: Invited): void;
+    }
+  | {
+      readonly kind: 'consent';
+      readonly study: PublicStudy;
+      readonly participant: string;
+      /** Answers with a complaint; null: all went well. */
+      agree(motion: boolean): Promise<string | null>;
+      decline(): void;
+    }
+  | { readonly kind: 'declined'; readonly title: string }
+  /** Shown once: the code with which everything can be deleted. */
+  | { readonly kind: 'code'; readonly code: string; noted(): void }
+  | {
+      readonly kind: 'demographics';
+      /** Answers with a complaint, or null. */
+      done(answers: Record<string, unknown>): string | null;
+    }
+  /** The place is no longer this device's: the next participant here may begin anew. */
+  | { readonly kind: 'locked-out'; readonly participant: string; readonly unsent: number; anew(): void }
+  /** The study cannot go on here. */
+  | { readonly kind: 'fault'; readonly text: string };

@@ -1,0 +1,19 @@
+import type { Calibration } from '../../core/body/calibration';
+import type { EstimatorName } from '../../core/estimation/pose-estimator';
+import type { Side } from '../../core/math/side';
+import type { TrialHost } from './study-trial';
+import type { TaskRunner } from './task-runner';
+
+/** What the study needs of the page; the page decides how. */
+export interface StudyHost extends TrialHost {
+  /** The games this page can play as tasks, by the name that plans call them. */
+  readonly runners: Readonly<Partial<Record<string, TaskRunner>>>;
+  enterVr(): Promise<void>;
+  inSession(): boolean;
+  /** Of this participant, for this visit; not remembered for others. */
+  setCalibration(calibration: Calibration): void;
+  /** Resolves when it draws, or when it turned out that it cannot. */
+  chooseEstimator(name: EstimatorName): Promise<void>;
+  setActor(on: boolean): void;
+  setBowSide(side: Side): void;
+}
