@@ -197,6 +197,8 @@ export class RunningStudy {
     this.#triedToSubmit = false;
     this.#refusal = null;
     this.#guide.cancel();
+    // The guide's last word on an earlier measuring may have come when its step was over.
+    this.#calibration = null;
     // After a reload a questionnaire goes on where the first answer is missing.
     this.#question = Math.max(0, this.#firstOpenQuestion());
   }

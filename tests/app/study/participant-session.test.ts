@@ -1,10 +1,5 @@
 import 'fake-indexeddb/auto';
-import { join } from 'node:path';
-import { afterEach, expect, onTestFinished, test, vi } from 'vitest';
-import { createRouter, noPage } from '../../../server/http/router';
-import { createStudyRoutes } from '../../../server/study-routes';
-import { openStudyStore } from '../../../server/study-store';
-import { serve, type WebServer } from '../../../server/web-server';
+import { afterEach, expect, test, vi } from 'vitest';
 import {
   createParticipantSession,
   isLater,
@@ -14,52 +9,14 @@ import {
 import { openStudyVault, type StudyVault } from '../../../src/app/study/study-vault';
 import { writeRecording } from '../../../src/core/tracking/recording';
 import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
-import { createExperimenterClient, createParticipantClient } from '../../../src/net/study-client';
+import { createParticipantClient } from '../../../src/net/study-client';
 import { outcomeOf, paperPlan, somebody } from '../../core/study/studies';
-import { studySeats } from '../../server/running-studies';
-import { directoryWith } from '../../temporary-directory';
+import { studyServer } from './study-server';
 
-const token = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 const plan = paperPlan();
 const calibration = { eyeHeight: 1.62, armSpan: 1.4 };
 
 afterEach(() => vi.restoreAllMocks());
-
-/** The real server on a port; it can be taken away and put back on the same port. */
-async function studyServer() {
-  const store = openStudyStore(join(directoryWith(), 'studies.db'));
-  store.addStudy(plan, { simulated: false, at: 1e9 });
-  const routes = createStudyRoutes({
-    store,
-    experimenterToken: token,
-    seats: studySeats,
-    trustProxy: false,
-    onWrongGuess: () => undefined,
-    now: () => 1e9,
-    onFault: (error) => expect(error).toBe(null),
-  });
-  const listen = (port: number) => serve(createRouter([routes], noPage), { host: '127.0.0.1', port });
-  let server: WebServer | null = await listen(0);
-  const { port } = server;
-  const stop = async () => {
-    await server?.close();
-    server = null;
-  };
-  onTestFinished(async () => {
-    await stop();
-    store.close();
-  });
-  return {
-    origin: `http://127.0.0.1:${port}`,
-    store,
-    /** What the link of P01 says. */
-    invitation: store.overview('paper', 1e9)[0]?.invitation as string,
-    stop,
-    async restart() {
-      server = await listen(port);
-    },
-  };
-}
 
 let vaults = 0;
 
@@ -238,7 +195,7 @@ test('the experimenter’s commands are followed once, also across a reload; one
   const { store } = server;
   const { first, reload } = await device(server);
   toTheFirstQuestion(first);
-  const experimenter = createExperimenterClient(token, server.origin);
+  const { experimenter } = server;
   await experimenter.command('paper', 'P01', { type: 'pause' });
   await first.exchange();
   expect(first.progress.paused).toBe(true);
@@ -287,7 +244,7 @@ test('a device whose place was released stops, and can forget', async () => {
   toTheFirstQuestion(first);
   await first.exchange();
   expect(first.safekeeping.lockedOut).toBe(false);
-  await createExperimenterClient(token, server.origin).release('paper', 'P01');
+  await server.experimenter.release('paper', 'P01');
   await first.exchange();
   expect(first.safekeeping.lockedOut).toBe(true);
   await vault.forget('paper', 'P01');

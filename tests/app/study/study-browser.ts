@@ -1,0 +1,274 @@
+import 'fake-indexeddb/auto';
+import { IDBFactory } from 'fake-indexeddb';
+import { expect, onTestFinished, vi } from 'vitest';
+import type { Invited, StudyForm } from '../../../src/app/study/study-form';
+import type { StudyHost } from '../../../src/app/study/study-host';
+import type { StudyAddressBar, StudyDisplay, StudyPage } from '../../../src/app/study/study-page';
+import type { StudyScreen } from '../../../src/app/study/study-screen';
+import { StudyVisit } from '../../../src/app/study/study-visit';
+import type { TaskEnd, TaskEvent, TaskPlace, TaskRunner } from '../../../src/app/study/task-runner';
+import type { Calibration } from '../../../src/core/body/calibration';
+import type { EstimatorName } from '../../../src/core/estimation/pose-estimator';
+import type { Side } from '../../../src/core/math/side';
+import type { FrameListener } from '../../../src/core/study/trial-log';
+import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
+import { createParticipantClient } from '../../../src/net/study-client';
+import type { StudyServer } from './study-server';
+
+/** A clock that stands until the test lets time pass, and what is to be done by it. */
+class StandingClock {
+  #now = 1e9;
+  #due: { readonly at: number; readonly act: () => void }[] = [];
+
+  now = (): number => this.#now;
+
+  after = (delayMs: number, act: () => void): (() => void) => {
+    const timer = { at: this.#now + delayMs / 1000, act };
+    this.#due.push(timer);
+    return () => {
+      this.#due = this.#due.filter((other) => other !== timer);
+    };
+  };
+
+  pass(seconds: number): void {
+    const end = this.#now + seconds;
+    for (;;) {
+      const next = this.#due.filter(({ at }) => at <= end).toSorted((a, b) => a.at - b.at)[0];
+      if (!next) break;
+      this.#due = this.#due.filter((other) => other !== next);
+      this.#now = next.at;
+      next.act();
+    }
+    this.#now = end;
+  }
+}
+
+/** What is shown on the desk and in the headset; `reaches` and `until` wait for something to be shown. */
+export class ShownParts implements StudyDisplay {
+  form: StudyForm | null = null;
+  screen: StudyScreen | null = null;
+  /** The screen before the eyes of the participant who wears the headset. */
+  inHeadset: StudyScreen | null = null;
+  shown = 'opening';
+  #waiting: { readonly isTrue: (display: ShownParts) => boolean; readonly resolve: () => void }[] = [];
+
+  show(screen: StudyScreen | null, inHeadset: boolean): void {
+    this.form = null;
+    this.screen = screen;
+    this.inHeadset = inHeadset ? screen : null;
+    this.#note(screen?.id ?? 'playing');
+  }
+
+  ask(form: StudyForm, inHeadset: StudyScreen | null = null): void {
+    this.form = form;
+    this.screen = null;
+    this.inHeadset = inHeadset;
+    this.#note(form.kind);
+  }
+
+  reaches(id: string): Promise<void> {
+    return this.until(() => this.shown === id);
+  }
+
+  /** Resolves when something is shown of which this is true. */
+  until(isTrue: (display: ShownParts) => boolean): Promise<void> {
+    if (isTrue(this)) return Promise.resolve();
+    return new Promise((resolve) => this.#waiting.push({ isTrue, resolve }));
+  }
+
+  /** The form on the desk, which must be of this kind. */
+  asked<Kind extends StudyForm['kind']>(kind: Kind): Extract<StudyForm, { kind: Kind }> {
+    expect(this.shown).toBe(kind);
+    return this.form as Extract<StudyForm, { kind: Kind }>;
+  }
+
+  /** Presses a button of the screen. */
+  press(id: string): void {
+    const found = this.screen?.buttons.find((button) => button.id === id);
+    if (!found || found.look === 'off') throw new Error(`"${id}" cannot be pressed on the screen "${this.shown}"`);
+    found.act();
+  }
+
+  #note(id: string): void {
+    this.shown = id;
+    const waiting = this.#waiting;
+    this.#waiting = waiting.filter(({ isTrue }) => !isTrue(this));
+    for (const one of waiting) if (!this.#waiting.includes(one)) one.resolve();
+  }
+}
+
+/** A game of one shot: the test says when it hits and when the game is over. */
+export class OneShotGame implements TaskRunner {
+  readonly waitingFor = null;
+  readonly standing = false;
+  end: TaskEnd | null = null;
+  running = false;
+  paused = false;
+  /** Why the game cannot be loaded; null: it can. */
+  refusal: string | null = null;
+  readonly places: TaskPlace[] = [];
+  readonly seeds: number[] = [];
+  #happened: TaskEvent[] = [];
+
+  async prepare(place: TaskPlace): Promise<void> {
+    this.places.push(place);
+    if (this.refusal !== null) throw new Error(this.refusal);
+  }
+
+  start({ seed }: { readonly seed: number }): void {
+    this.seeds.push(seed);
+    this.running = true;
+    this.end = null;
+  }
+
+  hit(points: number): void {
+    this.#happened.push({ type: 'shot' }, { type: 'hit', time: 1, points });
+    this.end = { seconds: 5, ended: 'arrows', score: points, maximum: 50 };
+  }
+
+  take(): readonly TaskEvent[] {
+    const taken = this.#happened;
+    this.#happened = [];
+    return taken;
+  }
+
+  pause(on: boolean): void {
+    this.paused = on;
+  }
+
+  abort(): void {
+    this.running = false;
+    this.end = null;
+  }
+
+  assists(): readonly string[] {
+    return [];
+  }
+}
+
+/** The page around the study: a headset to be put on and taken off, bodies that load, two games. */
+class TestHost implements StudyHost {
+  readonly games = { archery: new OneShotGame(), ball: new OneShotGame() };
+  readonly runners = this.games;
+  worn = false;
+  measures: Calibration = { eyeHeight: 1.6, armSpan: 1.5 };
+  drawn: EstimatorName = 'hands-only';
+  /** Estimators that this page cannot load. */
+  readonly missing = new Set<EstimatorName>();
+  bowSide: Side | null = null;
+  actor: boolean | null = null;
+  #listener: FrameListener | null = null;
+
+  async enterVr(): Promise<void> {
+    this.worn = true;
+  }
+  inSession = (): boolean => this.worn;
+  calibration = (): Calibration => this.measures;
+  setCalibration(calibration: Calibration): void {
+    this.measures = calibration;
+  }
+  async chooseEstimator(name: EstimatorName): Promise<void> {
+    if (!this.missing.has(name)) this.drawn = name;
+  }
+  estimator = (): EstimatorName => this.drawn;
+  setActor(on: boolean): void {
+    this.actor = on;
+  }
+  setBowSide(side: Side): void {
+    this.bowSide = side;
+  }
+  device = () => ({ name: 'Test headset', refreshRateHz: 72, input: 'controllers' }) as const;
+  listenToFrames(listener: FrameListener | null): void {
+    this.#listener = listener;
+  }
+  drew(): void {
+    this.#listener?.({ frame: 5 }, false);
+  }
+}
+
+const ahead = { x: 0, y: 0, z: 0, w: 1 };
+
+/** A person of 1.6 m eye height who stretches both arms forward, as calibration wants it. */
+function stretched(time: number): TrackingFrame {
+  const hand = (x: number) =>
+    ({ position: { x, y: 1.33, z: -0.56 }, orientation: ahead, tracking: 'tracked' }) as const;
+  return {
+    time,
+    head: { position: { x: 0, y: 1.6, z: 0 }, orientation: ahead, tracking: 'tracked' },
+    leftHand: hand(-0.18),
+    rightHand: hand(0.18),
+  };
+}
+
+export type Tab = Awaited<ReturnType<ReturnType<typeof browser>['open']>>;
+
+/** A browser with its own storage, in which P01's place is opened; tabs share its storage and see each other's locks. */
+export function browser(server: StudyServer) {
+  vi.stubGlobal('indexedDB', new IDBFactory());
+  const locks = new Map<string, object>();
+  onTestFinished(() => void vi.unstubAllGlobals());
+
+  /** Loads the page with this address; without a word, that of the link of P01. */
+  async function open(link: Partial<{ [Part in keyof Invited]: string | null }> & { readonly study?: string } = {}) {
+    const tab = {};
+    const { participant = 'P01', invitation = server.invitation, study = server.plan.id } = link;
+    vi.stubGlobal('navigator', {
+      locks: {
+        async request(name: string, _: unknown, use: (lock: object | null) => unknown) {
+          const free = !locks.has(name);
+          if (free) locks.set(name, tab);
+          await use(free ? { name } : null);
+        },
+      },
+    });
+    const clock = new StandingClock();
+    const display = new ShownParts();
+    const host = new TestHost();
+    let go: (to: Invited | 'reload') => void = () => undefined;
+    const wentTo = new Promise<Invited | 'reload'>((resolve) => {
+      go = resolve;
+    });
+    const address: StudyAddressBar = {
+      invitation: () => invitation,
+      goTo: (place) => go(place),
+      reload: () => go('reload'),
+      reloadWhenChanged: () => undefined,
+    };
+    const page: StudyPage = { display, address, now: clock.now, after: clock.after };
+    const visit = new StudyVisit({ study, participant }, createParticipantClient(server.origin), host, page);
+    await visit.enter();
+    let frameTime = 100;
+    return {
+      visit,
+      display,
+      host,
+      /** Where the page is sent to, once it is. */
+      wentTo,
+      /** Resolves when the server has all there is now: an exchange under way may have begun before, a second one has not. */
+      async exchange(): Promise<void> {
+        await visit.exchange();
+        await visit.exchange();
+      },
+      /** Time passes by the clock, and nothing is drawn. */
+      pass: (seconds: number) => clock.pass(seconds),
+      /** So many seconds are drawn at 30 Hz. */
+      draw(seconds: number): void {
+        for (let i = 0; i < seconds * 30; i++) {
+          frameTime += 1 / 30;
+          clock.pass(1 / 30);
+          visit.frame(frameTime, stretched(frameTime));
+          host.drew();
+        }
+      },
+      wear(on: boolean): void {
+        host.worn = on;
+        visit.sessionChanged();
+      },
+      /** The page goes: the browser lets go of its locks. */
+      close(): void {
+        for (const [name, owner] of locks) if (owner === tab) locks.delete(name);
+      },
+    };
+  }
+  return { open };
+}

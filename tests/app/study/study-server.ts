@@ -1,0 +1,55 @@
+import { join } from 'node:path';
+import { expect, onTestFinished } from 'vitest';
+import { createRouter, noPage } from '../../../server/http/router';
+import { createStudyRoutes } from '../../../server/study-routes';
+import { openStudyStore } from '../../../server/study-store';
+import { serve, type WebServer } from '../../../server/web-server';
+import type { StudyPlan } from '../../../src/core/study/plan';
+import { createExperimenterClient } from '../../../src/net/study-client';
+import { paperPlan } from '../../core/study/studies';
+import { studySeats } from '../../server/running-studies';
+import { directoryWith } from '../../temporary-directory';
+
+const experimenterToken = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
+
+/** The real server with the paper's study, changed or not, on a port; it can be taken away and put back on the same port. */
+export async function studyServer(changes: Partial<StudyPlan> = {}) {
+  const store = openStudyStore(join(directoryWith(), 'studies.db'));
+  const plan = paperPlan(changes);
+  store.addStudy(plan, { simulated: false, at: 1e9 });
+  const routes = createStudyRoutes({
+    store,
+    experimenterToken,
+    seats: studySeats,
+    trustProxy: false,
+    onWrongGuess: () => undefined,
+    now: () => 1e9,
+    onFault: (error) => expect(error).toBe(null),
+  });
+  const listen = (port: number) => serve(createRouter([routes], noPage), { host: '127.0.0.1', port });
+  let server: WebServer | null = await listen(0);
+  const { port } = server;
+  const stop = async () => {
+    await server?.close();
+    server = null;
+  };
+  onTestFinished(async () => {
+    await stop();
+    store.close();
+  });
+  const origin = `http://127.0.0.1:${port}`;
+  return {
+    origin,
+    plan,
+    store,
+    experimenter: createExperimenterClient(experimenterToken, origin),
+    /** What the link of P01 says. */
+    invitation: store.overview(plan.id, 1e9)[0]?.invitation as string,
+    stop,
+    async restart() {
+      server = await listen(port);
+    },
+  };
+}
+
+export type StudyServer = Awaited<ReturnType<typeof studyServer>>;

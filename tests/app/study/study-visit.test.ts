@@ -1,0 +1,358 @@
+import { describe, expect, test } from 'vitest';
+import { openStudyVault } from '../../../src/app/study/study-vault';
+import { somebody } from '../../core/study/studies';
+import { browser, type Tab } from './study-browser';
+import { type StudyServer, studyServer } from './study-server';
+
+async function agree(tab: Tab, motion = false): Promise<void> {
+  expect(await tab.display.asked('consent').agree(motion)).toBeNull();
+  tab.display.asked('code').noted();
+}
+
+/** With the headset on, the participant is measured; the practice is loaded then. */
+async function measure(tab: Tab): Promise<void> {
+  tab.wear(true);
+  tab.display.press('calibrate');
+  tab.draw(6);
+  await canStart(tab);
+}
+
+const canStart = (tab: Tab) =>
+  tab.display.until(
+    ({ screen }) => screen?.buttons.some(({ id, look }) => id === 'start' && look === 'primary') ?? false,
+  );
+
+/** The practice or round that waits, from the start to its end. */
+function play(tab: Tab, points: number): void {
+  tab.display.press('start');
+  tab.draw(1);
+  tab.host.games.archery.hit(points);
+  tab.draw(3);
+}
+
+/** P01 in the headset before the first round, measured and practised. */
+async function beforeTheRound(server: StudyServer, motion = false) {
+  const device = browser(server);
+  const tab = await device.open();
+  await agree(tab, motion);
+  expect(tab.display.asked('demographics').done(somebody)).toBeNull();
+  await measure(tab);
+  play(tab, 10);
+  await canStart(tab);
+  expect(tab.visit.state().step).toBe('archery/1/trial-1');
+  return { device, tab };
+}
+
+/** The same, who has played the round and sits before its questions, the headset on. */
+async function beforeTheQuestions(server: StudyServer) {
+  const visit = await beforeTheRound(server);
+  play(visit.tab, 40);
+  expect(visit.tab.display.shown).toBe('rest');
+  visit.tab.pass(61);
+  expect(visit.tab.display.shown).toBe('question-Q1');
+  return visit;
+}
+
+const eventsOf = ({ store }: StudyServer) =>
+  store.records('paper').flatMap((record) => (record.kind === 'event' ? [record.body.type] : []));
+const trialsOf = ({ store }: StudyServer) =>
+  store.records('paper').flatMap((record) => (record.kind === 'trial' ? [record.body] : []));
+
+describe('the entrance', () => {
+  test('an address without a participant asks who takes part, and leads to the place that is told', async () => {
+    const tab = await browser(await studyServer()).open({ participant: null, invitation: null });
+    const form = tab.display.asked('participant');
+    expect(form).toMatchObject({ complaint: null, known: { participant: null, invitation: null } });
+    form.go({ participant: 'P02', invitation: 'AAAA-BBBB-CCCC-DDDD' });
+    expect(await tab.wentTo).toEqual({ participant: 'P02', invitation: 'AAAA-BBBB-CCCC-DDDD' });
+    expect(tab.visit.state()).toMatchObject({ screen: 'participant', step: null, running: false });
+  });
+
+  test('an address without an invitation asks for it and keeps the participant that it names', async () => {
+    const tab = await browser(await studyServer()).open({ invitation: null });
+    expect(tab.display.asked('participant').known).toEqual({ participant: 'P01', invitation: null });
+  });
+
+  test('a wrong invitation is said once consent is given, and the place stays free', async () => {
+    const server = await studyServer();
+    const tab = await browser(server).open({ invitation: 'AAAA-BBBB-CCCC-DDDD' });
+    expect(await tab.display.asked('consent').agree(false)).toBeNull();
+    expect(tab.display.asked('participant').complaint).toContain('not the invitation of P01');
+    expect(server.store.overview('paper', 1e9)[0]?.claimed).toBe(false);
+  });
+
+  test('who declines is thanked and leaves nothing, neither here nor on the server', async () => {
+    const server = await studyServer();
+    const tab = await browser(server).open();
+    tab.display.asked('consent').decline();
+    expect(tab.display.asked('declined').title).toBe(server.plan.title);
+    expect(server.store.overview('paper', 1e9)[0]?.claimed).toBe(false);
+    expect(await (await openStudyVault()).session('paper', 'P01')).toBeNull();
+  });
+
+  test('a study that the server does not have, and a server that does not answer, are said', async () => {
+    const server = await studyServer();
+    const elsewhere = await browser(server).open({ study: 'another' });
+    expect(elsewhere.display.asked('fault').text).toBe(
+      `There is no study "another" on this server. The experimenter's page begins one.`,
+    );
+    await server.stop();
+    const alone = await browser(server).open();
+    expect(alone.display.asked('fault').text).toContain('the server does not answer');
+  });
+
+  test('a second tab with the same place leads back to the first, until that is closed', async () => {
+    const device = browser(await studyServer());
+    const first = await device.open();
+    await agree(first);
+    const second = await device.open();
+    expect(second.display.asked('fault').text).toContain('P01 is open in another tab');
+    await first.exchange();
+    first.close();
+    const third = await device.open();
+    expect(third.display.shown).toBe('demographics');
+  });
+});
+
+describe('the participant', () => {
+  test('gets the bow in the other hand and the body that was measured, also after a reload', async () => {
+    const { device, tab } = await beforeTheRound(await studyServer());
+    const { bowSide, measures, actor } = tab.host;
+    expect(bowSide).toBe('left');
+    expect(measures.eyeHeight).toBeCloseTo(1.6, 1);
+    expect(actor).toBe(false);
+    expect(tab.visit.measured).toBe(true);
+    await tab.exchange();
+    tab.close();
+    const again = await device.open();
+    expect(again.host).toMatchObject({ bowSide, measures });
+    expect(again.visit.measured).toBe(true);
+  });
+
+  test('is measured anew before each block', async () => {
+    const { tab } = await beforeTheQuestions(await studyServer());
+    answer(tab, ['Q1', 'Q2', 'Q3', 'Q4', 'Q5', 'Q6', 'Q7']);
+    tab.display.press('submit');
+    expect(tab.display.shown).toBe('calibration');
+    await measure(tab);
+    expect(tab.visit.state().step).toBe('archery/2/trial-1');
+  });
+
+  test('is not measured any further when the headset comes off meanwhile', async () => {
+    const tab = await browser(await studyServer()).open();
+    await agree(tab);
+    tab.display.asked('demographics').done(somebody);
+    tab.wear(true);
+    tab.display.press('calibrate');
+    tab.draw(4);
+    expect(tab.display.shown).toBe('calibration-measuring');
+    tab.wear(false);
+    tab.draw(3);
+    expect(tab.display.shown).toBe('calibration-enter');
+    tab.wear(true);
+    expect(tab.display.shown).toBe('calibration');
+    expect(tab.visit.measured).toBe(false);
+  });
+
+  test('rests as long as the plan says, and the questions come by themselves', async () => {
+    const { tab } = await beforeTheRound(await studyServer());
+    play(tab, 40);
+    tab.pass(50);
+    expect(tab.display.shown).toBe('rest');
+    tab.pass(10);
+    expect(tab.display.shown).toBe('question-Q1');
+  });
+});
+
+describe('a round', () => {
+  test('that was played is on the server with its score, its frames and the movements, with consent to them', async () => {
+    const server = await studyServer();
+    const { tab } = await beforeTheRound(server, true);
+    play(tab, 40);
+    await tab.exchange();
+    const [practice, round] = trialsOf(server);
+    expect(practice?.condition).toBeNull();
+    expect(round).toMatchObject({ condition: tab.host.drawn, outcome: { score: 40, maximum: 50, ended: 'arrows' } });
+    expect(round?.outcome.frames.count).toBe(30);
+    expect(server.store.motion('paper').map(({ trial }) => trial)).toEqual(['archery/1/trial-1@1.1:trial']);
+    expect(tab.visit.state()).toMatchObject({ unsent: 0, unsaved: 0, online: true });
+  });
+
+  test('under way is void when the headset comes off in the middle of it, and is played again', async () => {
+    const server = await studyServer();
+    const { tab } = await beforeTheRound(server);
+    const { archery } = tab.host.games;
+    tab.display.press('start');
+    tab.draw(1);
+    expect(tab.visit.state()).toMatchObject({ screen: 'playing', running: true });
+    tab.wear(false);
+    expect(archery.running).toBe(false);
+    expect(tab.visit.idle).toBe(true);
+    expect(tab.display.shown).toBe('trial-enter');
+    // What the game still reports belongs to no trial.
+    archery.hit(50);
+    tab.draw(3);
+
+    tab.wear(true);
+    expect(tab.display.shown).toBe('trial-ready');
+    expect(tab.display.inHeadset?.text[0]).toBe('The last attempt was interrupted and does not count.');
+    play(tab, 20);
+    await tab.exchange();
+    expect(eventsOf(server)).toEqual(['interrupted']);
+    expect(trialsOf(server).map(({ place, outcome }) => [place.attempt, outcome.score])).toEqual([
+      [1, 10],
+      [2, 20],
+    ]);
+  });
+
+  test('stands in a pause, headset on or off, and goes on as the same attempt', async () => {
+    const server = await studyServer();
+    const { tab } = await beforeTheRound(server);
+    const { archery } = tab.host.games;
+    tab.display.press('start');
+    tab.draw(1);
+    await server.experimenter.command('paper', 'P01', { type: 'pause' });
+    await tab.exchange();
+    expect(tab.display.shown).toBe('paused');
+    expect(archery.paused).toBe(true);
+    expect(tab.visit.paused).toBe(true);
+    tab.wear(false);
+    tab.display.press('resume');
+    expect(tab.visit.paused).toBe(true);
+    tab.wear(true);
+    expect(tab.display.shown).toBe('playing');
+    expect(archery).toMatchObject({ paused: false, running: true });
+    archery.hit(30);
+    tab.draw(3);
+    await tab.exchange();
+    expect(trialsOf(server).map(({ place }) => place.attempt)).toEqual([1, 1]);
+    expect(eventsOf(server)).toEqual(['pause', 'resume']);
+  });
+
+  test('is started by the experimenter too, once the headset is on', async () => {
+    const server = await studyServer();
+    const { tab } = await beforeTheRound(server);
+    tab.wear(false);
+    await server.experimenter.command('paper', 'P01', { type: 'start' });
+    await tab.exchange();
+    expect(tab.host.games.archery.running).toBe(false);
+    tab.wear(true);
+    expect(tab.host.games.archery.running).toBe(true);
+    expect(tab.visit.idle).toBe(false);
+  });
+
+  test('lies alike in both conditions, and the practice does not', async () => {
+    const { tab } = await beforeTheQuestions(await studyServer());
+    answer(tab, ['Q1', 'Q2', 'Q3', 'Q4', 'Q5', 'Q6', 'Q7']);
+    tab.display.press('submit');
+    expect(tab.display.shown).toBe('calibration');
+    await measure(tab);
+    play(tab, 40);
+    const [practice, first, second] = tab.host.games.archery.seeds;
+    expect(second).toBe(first);
+    expect(practice).not.toBe(first);
+  });
+
+  test('whose game refuses says why, and can be prepared again', async () => {
+    const tab = await browser(await studyServer()).open();
+    await agree(tab);
+    tab.display.asked('demographics').done(somebody);
+    const { archery } = tab.host.games;
+    archery.refusal = 'The archery range could not be opened.';
+    tab.wear(true);
+    tab.display.press('calibrate');
+    tab.draw(6);
+    await tab.display.reaches('trial-failed');
+    expect(tab.display.inHeadset).toMatchObject({ text: ['The archery range could not be opened.'], trouble: true });
+    // Time alone changes nothing.
+    tab.pass(5);
+    expect(archery.places).toHaveLength(1);
+    archery.refusal = null;
+    tab.display.press('again');
+    await canStart(tab);
+    expect(archery.places).toHaveLength(2);
+  });
+
+  test('is not played with another body than the plan’s', async () => {
+    const { tab } = await beforeTheQuestions(await studyServer());
+    answer(tab, ['Q1', 'Q2', 'Q3', 'Q4', 'Q5', 'Q6', 'Q7']);
+    for (const { estimator } of (await studyServer()).plan.conditions) tab.host.missing.add(estimator);
+    tab.display.press('submit');
+    tab.display.press('calibrate');
+    tab.draw(6);
+    await tab.display.reaches('trial-failed');
+    expect(tab.display.screen?.text).toEqual(['The body of this round could not be loaded.']);
+  });
+});
+
+/** Gives every one of these questions the answer 4, each after the next. */
+function answer(tab: Tab, questions: readonly string[]): void {
+  for (const [index, id] of questions.entries()) {
+    expect(tab.display.shown).toBe(`question-${id}`);
+    tab.display.screen?.question?.choose(4);
+    if (index < questions.length - 1) tab.display.press('next');
+  }
+}
+
+describe('a questionnaire', () => {
+  test('goes on after a reload where the first answer is missing', async () => {
+    const { device, tab } = await beforeTheQuestions(await studyServer());
+    tab.display.screen?.question?.choose(3);
+    tab.display.press('next');
+    tab.display.press('next');
+    expect(tab.display.shown).toBe('question-Q3');
+    tab.display.screen?.question?.choose(5);
+    await tab.exchange();
+    tab.close();
+
+    const again = await device.open();
+    expect(again.display.shown).toBe('question-Q2');
+    expect(again.display.screen?.question?.all.map(({ state }) => state)).toEqual([
+      ...['answered', 'open', 'answered'],
+      ...['open', 'open', 'open', 'open'],
+    ]);
+  });
+
+  test('with a gap is not taken, and leads to the gap', async () => {
+    const { tab } = await beforeTheQuestions(await studyServer());
+    answer(tab, ['Q1', 'Q2', 'Q3']);
+    tab.display.screen?.question?.goTo(6);
+    tab.display.screen?.question?.choose(2);
+    tab.display.press('submit');
+    expect(tab.display.shown).toBe('question-Q4');
+    expect(tab.display.screen?.hint).toBe('* This question still needs an answer.');
+    expect(tab.visit.state().step).toBe('archery/1/questionnaire');
+  });
+
+  test('that is full is handed in, and the next block begins', async () => {
+    const server = await studyServer();
+    const { tab } = await beforeTheQuestions(server);
+    answer(tab, ['Q1', 'Q2', 'Q3', 'Q4', 'Q5', 'Q6', 'Q7']);
+    tab.display.press('submit');
+    expect(tab.display.shown).toBe('calibration');
+    await tab.exchange();
+    const answers = server.store.records('paper').find(({ kind }) => kind === 'answers');
+    expect(answers?.body).toMatchObject({ answers: { Q1: 4, Q2: 4, Q3: 4, Q4: 4, Q5: 4, Q6: 4, Q7: 4 } });
+  });
+});
+
+describe('a place that was released', () => {
+  test('drops the trial under way, says so in the headset, and offers to forget the session', async () => {
+    const server = await studyServer();
+    const { tab } = await beforeTheRound(server);
+    tab.display.press('start');
+    tab.draw(1);
+    await tab.exchange();
+    await server.experimenter.release('paper', 'P01');
+    await tab.exchange();
+    expect(tab.host.games.archery.running).toBe(false);
+    expect(tab.visit.idle).toBe(true);
+    expect(tab.display.inHeadset?.id).toBe('locked-out');
+    const form = tab.display.asked('locked-out');
+    expect(form).toMatchObject({ participant: 'P01', unsent: 0 });
+
+    form.anew();
+    expect(await tab.wentTo).toBe('reload');
+    expect(await (await openStudyVault()).session('paper', 'P01')).toBeNull();
+  });
+});
