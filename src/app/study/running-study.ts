@@ -153,7 +153,7 @@ export class RunningStudy {
         question: this.#question,
         triedToSubmit: this.#triedToSubmit,
         calibration: this.#calibration,
-        prepared: this.#preparation.of(this.session.step.id),
+        prepared: this.#preparation.of(this.#attempt()),
         refusal: this.#refusal,
         playing: this.#trial !== null,
         waitingFor: this.#trial?.waitingFor ?? null,
@@ -185,7 +185,7 @@ export class RunningStudy {
   #settle(): void {
     const { step, progress, simulated } = this.session;
     if (step.id !== this.#shownStep) this.#enterStep();
-    if (this.#trial && this.#trial.key !== this.#trialKey()) this.#dropTrial();
+    if (this.#trial && this.#trial.key !== this.#attempt()) this.#dropTrial();
     // With the headset off, a pause goes on until it is worn again.
     this.#trial?.pause(progress.paused || !this.#host.inSession());
     if (isPlayed(step)) this.#settleTrial(step);
@@ -204,9 +204,11 @@ export class RunningStudy {
   }
 
   #settleTrial(step: PlayedStep): void {
-    if (!this.#preparation.of(step.id)) void this.#preparation.begin(step);
+    const attempt = this.#attempt();
+    // Every attempt anew: a game that was put away when a trial became void is no longer there.
+    if (!this.#preparation.of(attempt)) void this.#preparation.begin(attempt, step);
     const { running, paused } = this.session.progress;
-    const ready = this.#preparation.of(step.id)?.state === 'ready';
+    const ready = this.#preparation.of(attempt)?.state === 'ready';
     if (running && !paused && !this.#trial && ready && this.#host.inSession()) this.#startTrial(step);
   }
 
@@ -235,8 +237,8 @@ export class RunningStudy {
     };
   }
 
-  /** Step, run and attempt of the trial at hand. */
-  #trialKey(): string {
+  /** Step, run and attempt at hand: when it changes under a trial, that trial is void. */
+  #attempt(): string {
     const { schedule, progress, step } = this.session;
     const place = placeOf(schedule, progress);
     return `${step.id}@${place?.run}.${place?.attempt}`;
@@ -250,7 +252,7 @@ export class RunningStudy {
     // The same round for each participant's first, second … trial: what differs between conditions is not the layout.
     const repetition = step.kind === 'trial' ? step.repetition : 0;
     const { seed } = randomFor(plan.seed, `layout of ${step.task} ${repetition}`);
-    this.#trial = playTrial(step, runner, this.#host, { key: this.#trialKey(), motion, seed: seed >>> 1 });
+    this.#trial = playTrial(step, runner, this.#host, { key: this.#attempt(), motion, seed: seed >>> 1 });
     this.show();
   }
 
@@ -261,10 +263,10 @@ export class RunningStudy {
 
   #finishTrial({ outcome, recording }: FinishedTrial): void {
     const { session } = this;
-    const key = this.#trialKey();
+    const attempt = this.#attempt();
     this.#trial = null;
     this.#refusal = session.apply({ type: 'trial-finished', outcome });
-    if (recording !== null && this.#refusal === null) session.keepMotion(`${key}:trial`, recording);
+    if (recording !== null && this.#refusal === null) session.keepMotion(`${attempt}:trial`, recording);
     void this.exchange();
   }
 

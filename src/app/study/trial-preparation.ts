@@ -8,11 +8,11 @@ export interface Prepared {
   readonly reason: string;
 }
 
-/** Gets one step after the other ready to be played; what an earlier step still loads no longer counts. */
+/** Gets one attempt after the other ready to be played; what an earlier one still loads no longer counts. */
 export class TrialPreparation {
   readonly #load: (step: PlayedStep) => Promise<void>;
   readonly #onChange: () => void;
-  #step: string | null = null;
+  #attempt: string | null = null;
   #prepared: Prepared | null = null;
 
   /** `load` rejects with a sentence; `onChange` hears when it succeeded or failed. */
@@ -21,14 +21,14 @@ export class TrialPreparation {
     this.#onChange = onChange;
   }
 
-  /** Of the step with this id; null: not asked for yet. */
-  of(step: string): Prepared | null {
-    return this.#step === step ? this.#prepared : null;
+  /** Of the attempt with this key; null: not asked for yet. */
+  of(attempt: string): Prepared | null {
+    return this.#attempt === attempt ? this.#prepared : null;
   }
 
-  async begin(step: PlayedStep): Promise<void> {
+  async begin(attempt: string, step: PlayedStep): Promise<void> {
     const loading: Prepared = { state: 'loading', reason: '' };
-    this.#step = step.id;
+    this.#attempt = attempt;
     this.#prepared = loading;
     let outcome: Prepared;
     try {
@@ -44,7 +44,7 @@ export class TrialPreparation {
 
   /** What is prepared, or was to be, is to be loaded again. */
   forget(): void {
-    this.#step = null;
+    this.#attempt = null;
     this.#prepared = null;
   }
 }

@@ -97,7 +97,7 @@ export class ShownParts implements StudyDisplay {
   }
 }
 
-/** A game of one shot: the test says when it hits and when the game is over. */
+/** A game of one shot: the test says when it hits, which ends it. What was put away must be prepared again, as the court must. */
 export class OneShotGame implements TaskRunner {
   readonly waitingFor = null;
   readonly standing = false;
@@ -108,20 +108,23 @@ export class OneShotGame implements TaskRunner {
   refusal: string | null = null;
   readonly places: TaskPlace[] = [];
   readonly seeds: number[] = [];
+  #here = false;
   #happened: TaskEvent[] = [];
 
   async prepare(place: TaskPlace): Promise<void> {
     this.places.push(place);
     if (this.refusal !== null) throw new Error(this.refusal);
+    this.#here = true;
   }
 
   start({ seed }: { readonly seed: number }): void {
     this.seeds.push(seed);
-    this.running = true;
+    this.running = this.#here;
     this.end = null;
   }
 
   hit(points: number): void {
+    if (!this.running) return;
     this.#happened.push({ type: 'shot' }, { type: 'hit', time: 1, points });
     this.end = { seconds: 5, ended: 'arrows', score: points, maximum: 50 };
   }
@@ -137,6 +140,7 @@ export class OneShotGame implements TaskRunner {
   }
 
   abort(): void {
+    this.#here = false;
     this.running = false;
     this.end = null;
   }

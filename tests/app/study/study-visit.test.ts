@@ -189,13 +189,10 @@ describe('a round', () => {
     expect(archery.running).toBe(false);
     expect(tab.visit.idle).toBe(true);
     expect(tab.display.shown).toBe('trial-enter');
-    // What the game still reports belongs to no trial.
-    archery.hit(50);
-    tab.draw(3);
-
     tab.wear(true);
     expect(tab.display.shown).toBe('trial-ready');
     expect(tab.display.inHeadset?.text[0]).toBe('The last attempt was interrupted and does not count.');
+    await canStart(tab);
     play(tab, 20);
     await tab.exchange();
     expect(eventsOf(server)).toEqual(['interrupted']);
@@ -227,6 +224,29 @@ describe('a round', () => {
     await tab.exchange();
     expect(trialsOf(server).map(({ place }) => place.attempt)).toEqual([1, 1]);
     expect(eventsOf(server)).toEqual(['pause', 'resume']);
+  });
+
+  test('of a block that the experimenter voids is loaded again for the block’s next run', async () => {
+    const server = await studyServer();
+    const { tab } = await beforeTheRound(server);
+    const { archery } = tab.host.games;
+    tab.display.press('start');
+    tab.draw(1);
+    await server.experimenter.command('paper', 'P01', {
+      type: 'void-block',
+      reason: 'a cable came loose',
+      repeat: true,
+    });
+    await tab.exchange();
+    expect(archery.running).toBe(false);
+    expect(tab.display.shown).toBe('calibration');
+    await measure(tab);
+    play(tab, 10);
+    await canStart(tab);
+    play(tab, 30);
+    await tab.exchange();
+    const rounds = trialsOf(server).filter(({ condition }) => condition !== null);
+    expect(rounds.map(({ place, outcome }) => [place.run, outcome.score])).toEqual([[2, 30]]);
   });
 
   test('is started by the experimenter too, once the headset is on', async () => {
