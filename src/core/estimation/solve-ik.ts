@@ -48,7 +48,8 @@ export interface ChestAxes {
   readonly z: MutableVec3;
 }
 
-export const makeChestAxes = (): ChestAxes => ({ x: vec3(0, 0, 0), y: vec3(0, 0, 0), z: vec3(0, 0, 0) });
+// Not in the order of a vector: see `Vec3` for why an object with vectors in it must not be written like one.
+export const makeChestAxes = (): ChestAxes => ({ z: vec3(0, 0, 0), y: vec3(0, 0, 0), x: vec3(0, 0, 0) });
 
 /** What inverse kinematics finds, heading frame. */
 export interface IkSolution {

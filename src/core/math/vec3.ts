@@ -1,4 +1,10 @@
-/** A point or direction; metres where it is a position. Right-handed, +Y up, −Z forward. */
+/**
+ * A point or direction; metres where it is a position. Right-handed, +Y up, −Z forward.
+ *
+ * V8 gives all literals `{ x, y, z }` of a program one hidden class. As long as only numbers are ever written into it, a vector's
+ * numbers are stored in place; one literal `{ x: schema, y: schema, z: schema }` anywhere makes every number stored in any vector an
+ * object of its own on the heap (tests/app/boxed-numbers.test.ts). The same holds for `Quat`.
+ */
 export interface Vec3 {
   readonly x: number;
   readonly y: number;

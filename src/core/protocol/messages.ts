@@ -13,8 +13,9 @@ const finiteWithin = (limit: number) => v.pipe(v.number(), v.finite(), v.minValu
 const wholeFrom = (min: number, max: number) => v.pipe(v.number(), v.integer(), v.minValue(min), v.maxValue(max));
 /** Seconds since a clock's zero, whatever that is: a century and a half. */
 const seconds = finiteWithin(5e9);
+/** Not in the order of a vector: see `Vec3` for why an object with schemas in it must not be written like one. */
 const vector = (limit: number) =>
-  v.strictObject({ x: finiteWithin(limit), y: finiteWithin(limit), z: finiteWithin(limit) });
+  v.strictObject({ z: finiteWithin(limit), y: finiteWithin(limit), x: finiteWithin(limit) });
 const side = v.picklist(['left', 'right']);
 const ball = wholeFrom(0, 19);
 const player = wholeFrom(0, 2);
