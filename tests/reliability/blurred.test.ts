@@ -28,7 +28,8 @@ function archerBehindMenu(pressure: number) {
   for (let i = 1; i <= 60; i++) frame(i / 120, 1);
   let bow = frame(0.5, 1);
   for (let i = 0; i < menuSeconds * 72; i++) bow = frame(0.5, 0, true);
-  const meanwhile = bow;
+  // The gestures overwrite the view with every frame.
+  const meanwhile = structuredClone(bow);
   for (let i = 0; i < 20; i++) bow = frame(0.5, pressure);
   return { bow, meanwhile, cues, shots: actions.filter((type) => type === 'release').length };
 }

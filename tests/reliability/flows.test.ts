@@ -1,7 +1,7 @@
 import { expect, test } from 'vitest';
 import { arrowRestHeight, braceHeight } from '../../src/core/games/archery/bow';
 import { releaseTowards } from '../../src/core/games/archery/flight';
-import { oneHandedDraw } from '../../src/core/games/archery/gestures';
+import { oneHandedDraw } from '../../src/core/games/archery/nocked-arrow';
 import { archeryRules } from '../../src/core/games/archery/rules';
 import type { BallAction, BallState } from '../../src/core/games/ball/ball-state';
 import { createBallGestures } from '../../src/core/games/ball/gestures';

@@ -7,7 +7,7 @@ export interface HandButtons {
   readonly pinch: number;
   /** What they belong to, where that is known. A hand that turns from one into the other lets go of everything. */
   readonly kind?: 'controller' | 'hand';
-  /** Which device of all that there ever were; absent where nobody tells them apart. */
+  /** Which device of all that there ever were; absent where they are not told apart. */
   readonly device?: number;
 }
 
@@ -23,6 +23,7 @@ export const pressedAt = 0.6;
 export const releasedBelow = 0.4;
 
 const names: readonly Button[] = ['trigger', 'grip', 'pinch'];
+const none: readonly never[] = [];
 
 /** How far a button is pressed, in [0, 1]; what is no number is not pressed. */
 export const pressureOf = (buttons: HandButtons, button: Button): number => {
@@ -44,36 +45,51 @@ export interface ButtonPresses {
   changedKind(side: Side): boolean;
 }
 
+/** What one hand held, and what held it. */
+class HandPresses {
+  changed = false;
+  #kind: HandButtons['kind'] = undefined;
+  #device: number | undefined = undefined;
+  /** Whether `#down` is known: the hand was seen in the last frame. */
+  #known = false;
+  readonly #down: Record<Button, boolean> = { trigger: false, grip: false, pinch: false };
+
+  follow(buttons: HandButtons, seen: boolean): readonly Button[] {
+    // What an unseen hand is, is as unknown as what it does.
+    const kind = seen ? buttons.kind : undefined;
+    const device = seen ? buttons.device : undefined;
+    const otherKind = kind !== undefined && this.#kind !== undefined && this.#kind !== kind;
+    // A controller that was off comes back as another device, to what it held: that alone is no change.
+    const otherDevice = device !== undefined && this.#device !== undefined && this.#device !== device;
+    this.changed = otherKind || otherDevice;
+    this.#kind = kind ?? this.#kind;
+    this.#device = device;
+    const compared = this.#known && !this.changed;
+    this.#known = seen;
+    return seen ? this.#press(buttons, compared) : none;
+  }
+
+  /** `compared`: what was down before is known. */
+  #press(buttons: HandButtons, compared: boolean): readonly Button[] {
+    let pressed: Button[] | null = null;
+    for (const name of names) {
+      const value = pressureOf(buttons, name);
+      const before = this.#down[name];
+      // A value between the thresholds of a hand that comes into sight may be a press that has not ended.
+      const after = value >= pressedAt || (value >= releasedBelow && (before || !compared));
+      this.#down[name] = after;
+      if (!compared || !after || before) continue;
+      pressed ??= [];
+      pressed.push(name);
+    }
+    return pressed ?? none;
+  }
+}
+
 export function createButtonPresses(): ButtonPresses {
-  const down: Record<Side, Record<Button, boolean> | null> = { left: null, right: null };
-  const kinds: Record<Side, HandButtons['kind']> = { left: undefined, right: undefined };
-  const devices: Record<Side, number | undefined> = { left: undefined, right: undefined };
-  const changed: Record<Side, boolean> = { left: false, right: false };
+  const hands = { left: new HandPresses(), right: new HandPresses() };
   return {
-    changedKind: (side) => changed[side],
-    follow(side, buttons, seen) {
-      // While nobody sees a hand, nobody knows what it is either.
-      const kind = seen ? buttons.kind : undefined;
-      const device = seen ? buttons.device : undefined;
-      const otherKind = kind !== undefined && kinds[side] !== undefined && kinds[side] !== kind;
-      // A controller that was off comes back as another device, to what it held: that alone is no change.
-      const otherDevice = device !== undefined && devices[side] !== undefined && devices[side] !== device;
-      changed[side] = otherKind || otherDevice;
-      kinds[side] = kind ?? kinds[side];
-      devices[side] = device;
-      const before = changed[side] ? null : down[side];
-      if (!seen) {
-        down[side] = null;
-        return [];
-      }
-      const after = { trigger: false, grip: false, pinch: false };
-      for (const name of names) {
-        const value = pressureOf(buttons, name);
-        // A value between the thresholds of a hand that comes into sight may be a press that has not ended.
-        after[name] = value >= pressedAt || (value >= releasedBelow && (before === null || before[name]));
-      }
-      down[side] = after;
-      return before ? names.filter((name) => after[name] && !before[name]) : [];
-    },
+    changedKind: (side) => hands[side].changed,
+    follow: (side, buttons, seen) => hands[side].follow(buttons, seen),
   };
 }

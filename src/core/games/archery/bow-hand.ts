@@ -1,28 +1,85 @@
-import type { Pose } from '../../math/pose';
-import { fromAxes, rotate } from '../../math/quat';
+import { type MutablePose, makePose, type Pose } from '../../math/pose';
+import { fromAxes, identity, quat, rotate, rotationBetween, slerp } from '../../math/quat';
 import type { Side } from '../../math/side';
-import { add, cross, normalise, reject, scale, type Vec3, vec3 } from '../../math/vec3';
+import {
+  add,
+  backward,
+  cross,
+  forward,
+  type MutableVec3,
+  normalise,
+  reject,
+  right,
+  scale,
+  up,
+  type Vec3,
+  vec3,
+} from '../../math/vec3';
 import { fistOf, thumbOf } from '../fist';
-import { arrowRestHeight } from './bow';
+import { arrowRestHeight, braceHeight } from './bow';
+
+const limb = vec3(0, 0, 0);
+const back = vec3(0, 0, 0);
+const aside = vec3(0, 0, 0);
+
+/** Points the bow whose limb and back are in the two vectors of this file, which are at right angles and of length 1. */
+const setOrientation = (bow: MutablePose<'floor'>): void => {
+  fromAxes(cross(limb, back, aside), limb, back, bow.orientation);
+};
 
 /** A bow that hangs in a fist, no arrow on it: −Z with the knuckles, +Y (the upper limb) with the thumb. */
-export function bowInHand(side: Side, wrist: Pose<'floor'>): Pose<'floor'> {
-  const upper = thumbOf(side, wrist.orientation);
-  const back = rotate(wrist.orientation, vec3(0, 0, 1));
-  return { position: fistOf(wrist), orientation: fromAxes(cross(upper, back), upper, back) };
+export function bowInHand(
+  side: Side,
+  wrist: Pose<'floor'>,
+  target: MutablePose<'floor'> = makePose<'floor'>(),
+): MutablePose<'floor'> {
+  thumbOf(side, wrist.orientation, limb);
+  rotate(wrist.orientation, backward, back);
+  setOrientation(target);
+  fistOf(wrist, target.position);
+  return target;
 }
 
 /** The bow turned so that its −Z is the unit `direction` and its upper limb is as near as may be to where it was. */
-export function turnBow(bow: Pose<'floor'>, direction: Vec3): Pose<'floor'> {
-  const back = scale(direction, -1);
-  const upper = normalise(
-    reject(rotate(bow.orientation, vec3(0, 1, 0)), back),
-    // The limb along the arrow: any limb at right angles to it.
-    normalise(cross(back, vec3(1, 0, 0)), vec3(0, 0, -1)),
-  );
-  return { position: bow.position, orientation: fromAxes(cross(upper, back), upper, back) };
+export function turnBow(
+  bow: Pose<'floor'>,
+  direction: Vec3,
+  target: MutablePose<'floor'> = makePose<'floor'>(),
+): MutablePose<'floor'> {
+  scale(direction, -1, back);
+  rotate(bow.orientation, up, limb);
+  reject(limb, back, limb);
+  // The limb along the arrow: any limb at right angles to it.
+  normalise(limb, normalise(cross(back, right, aside), forward, aside), limb);
+  setOrientation(target);
+  target.position.x = bow.position.x;
+  target.position.y = bow.position.y;
+  target.position.z = bow.position.z;
+  return target;
 }
 
+/** Where a bow points, unit. */
+export const forwardOf = (bow: Pose<'floor'>, target?: MutableVec3): MutableVec3 =>
+  rotate(bow.orientation, forward, target);
+
+const restInBow = vec3(0, arrowRestHeight, 0);
+const stringInBow = vec3(0, 0, braceHeight);
+
 /** Where the arrow passes the bow. */
-export const arrowRestOf = (bow: Pose<'floor'>): Vec3 =>
-  add(bow.position, rotate(bow.orientation, vec3(0, arrowRestHeight, 0)));
+export const arrowRestOf = (bow: Pose<'floor'>, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 =>
+  add(bow.position, rotate(bow.orientation, restInBow, target), target);
+
+const toNock = vec3(0, 0, 0);
+
+/** The nocking point of a bow with nothing on its string. */
+export const stringAtRest = (bow: Pose<'floor'>, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 =>
+  add(arrowRestOf(bow, target), rotate(bow.orientation, stringInBow, toNock), target);
+
+const arc = quat(0, 0, 0, 1);
+const turned = vec3(0, 0, 0);
+
+/** The unit vector on the shorter arc from a to b, `share` of the way. */
+export function turnTowards(a: Vec3, b: Vec3, share: number, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 {
+  rotate(slerp(identity, rotationBetween(a, b, arc), share, arc), a, turned);
+  return normalise(turned, a, target);
+}

@@ -80,7 +80,8 @@ export function bowman(changes: Partial<ArcheryGestureSettings> = {}, rateHz = 9
         left: { ...allReleased, ...pressed.left },
         right: { ...allReleased, ...pressed.right },
       };
-      const result = gestures.follow(posed(time, { bowSide: bowSide(), ...pose }), buttons);
+      // The gestures overwrite what they tell with every frame.
+      const result = structuredClone(gestures.follow(posed(time, { bowSide: bowSide(), ...pose }), buttons));
       frames.push(result);
       return result;
     },

@@ -2,13 +2,9 @@ import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import { arrowLength, arrowRestHeight, braceHeight, maximumDraw } from '../../../../src/core/games/archery/bow';
 import { releaseTowards } from '../../../../src/core/games/archery/flight';
-import {
-  createArcheryGestures,
-  defaultArcheryGestureSettings,
-  holdSeconds,
-  oneHandedDraw,
-  oneHandedDrawSpeed,
-} from '../../../../src/core/games/archery/gestures';
+import { createArcheryGestures, defaultArcheryGestureSettings } from '../../../../src/core/games/archery/gestures';
+import { holdSeconds } from '../../../../src/core/games/archery/held-bow';
+import { oneHandedDraw, oneHandedDrawSpeed } from '../../../../src/core/games/archery/nocked-arrow';
 import { archeryRules } from '../../../../src/core/games/archery/rules';
 import { allReleased, type Button, createButtonPresses } from '../../../../src/core/games/button-presses';
 import { fistOf, wristAround } from '../../../../src/core/games/fist';

@@ -63,7 +63,8 @@ export function playRound({ archer: body, seed = 1, options = {}, times, spoil }
   for (const time of times) {
     const played = archer.follow(time, match.state);
     const { frame, buttons } = spoil ? spoil(played.frame, played.buttons) : played;
-    const gesture = gestures.follow(frame, buttons);
+    // The gestures overwrite what they tell with every frame.
+    const gesture = structuredClone(gestures.follow(frame, buttons));
     round.frames.push(frame);
     round.gestures.push(gesture);
     round.cues.push(...gesture.cues);
