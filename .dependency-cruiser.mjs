@@ -75,6 +75,40 @@ export default {
       to: { pathNot: ['^src/core/', packagePath('@stdlib/stats-base-dists-[^/]+')] },
     },
     {
+      name: 'library-knows-no-page',
+      comment:
+        'src/lib is the public face: it introduces core, inference, xr, avatar and scene to each other, and the page is one of its consumers. ' +
+        "Of public/ it brings the learned network's contract.",
+      severity: 'error',
+      from: { path: '^src/lib/' },
+      to: {
+        path: '^(src|server|public)/',
+        pathNot: '^src/(lib|core|inference|xr|avatar|scene)/|^public/models/learned\\.json$',
+      },
+    },
+    {
+      name: 'library-parts-stay-apart',
+      comment:
+        'threepoint has neither three nor onnxruntime in it: what draws is reached through lib/three alone, the runtime through lib/onnx ' +
+        'and its worker alone; of inference the others take what fetches and computes without a runtime.',
+      severity: 'error',
+      from: { path: '^src/lib/', pathNot: '^src/lib/(three|onnx|onnx-worker)\\.ts$' },
+      to: {
+        path: '^src/(xr|avatar|scene|inference|lib/(three|onnx|onnx-worker))',
+        pathNot: '^src/inference/(load-plain-regressor|model-files)\\.ts$',
+      },
+    },
+    {
+      name: 'library-draws-without-runtime',
+      comment: 'Who draws with threepoint/three serves no runtime: it is threepoint/onnx that brings it.',
+      severity: 'error',
+      from: { path: '^src/lib/three\\.ts$' },
+      to: {
+        path: '^src/(inference|lib/onnx)',
+        pathNot: '^src/inference/(load-plain-regressor|model-files)\\.ts$',
+      },
+    },
+    {
       name: 'adapters-are-strangers',
       comment:
         'Adapters (one per outside thing) never know each other, or replacing one would mean changing another: the page ' +
@@ -87,15 +121,15 @@ export default {
       name: 'nothing-loose-in-src',
       comment: 'A file belongs to a room, and the room says whom it may know.',
       severity: 'error',
-      from: { path: `^src/(?!(core|${adapters}|app|pages|styles)/)` },
+      from: { path: `^src/(?!(core|${adapters}|lib|app|pages|styles)/)` },
       to: {},
     },
     {
       name: 'adapters-know-no-page',
-      comment: 'Core and adapters are used by pages, ours and others; they never know the page they are used by.',
+      comment: 'Core and adapters are used by the library and by pages; they know neither.',
       severity: 'error',
       from: { path: `^src/(core|${adapters})/` },
-      to: { path: '^src/(app|pages)/' },
+      to: { path: '^src/(app|pages|lib)/' },
     },
     {
       name: 'activities-are-strangers',
@@ -124,7 +158,7 @@ export default {
       name: 'three-draws',
       comment: "Three's vectors are live objects: they stay where things are drawn and are copied at the border.",
       severity: 'error',
-      from: { path: '^(src|server)/', pathNot: '^src/(xr|avatar|scene|ui|app)/' },
+      from: { path: '^(src|server)/', pathNot: '^src/(xr|avatar|scene|ui|app)/|^src/lib/three\\.ts$' },
       to: { path: packagePath('three', '@types/three', '@pixiv/[^/]+') },
     },
     {

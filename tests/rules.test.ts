@@ -87,6 +87,33 @@ describe('the import rules', () => {
       { 'src/ui/a.ts': "import '../app/shell/frame-loop';", 'src/app/shell/frame-loop.ts': empty },
     ],
     [
+      'the library knows no page',
+      'library-knows-no-page',
+      { 'src/lib/index.ts': "import '../app/shell/b';", 'src/app/shell/b.ts': empty },
+    ],
+    ['and no panel of one', 'library-knows-no-page', { 'src/lib/three.ts': "import '../ui/b';", 'src/ui/b.ts': empty }],
+    ['its face has no three', 'three-draws', { 'src/lib/index.ts': "import 'three';" }],
+    [
+      'not by way of an avatar',
+      'library-parts-stay-apart',
+      { 'src/lib/index.ts': "import '../avatar/b';", 'src/avatar/b.ts': empty },
+    ],
+    [
+      'nor a runtime',
+      'library-parts-stay-apart',
+      { 'src/lib/body.ts': "import '../inference/session';", 'src/inference/session.ts': empty },
+    ],
+    [
+      'which drawing does not need either',
+      'library-draws-without-runtime',
+      { 'src/lib/three.ts': "import './onnx';", 'src/lib/onnx.ts': empty },
+    ],
+    [
+      'adapters know no library',
+      'adapters-know-no-page',
+      { 'src/xr/a.ts': "import '../lib/body';", 'src/lib/body.ts': empty },
+    ],
+    [
       'a game knows no shell',
       'activities-are-strangers',
       { 'src/app/ball/a.ts': "import '../shell/b';", 'src/app/shell/b.ts': empty },
@@ -160,7 +187,11 @@ describe('the import rules', () => {
       'src/avatar/mirror.ts':
         "import 'three';\nimport '@pixiv/three-vrm';\nimport '../scene/renderer';\nimport '../core/body/skeleton';",
       'src/inference/regressor.ts': "import 'onnxruntime-web/wasm';\nimport '../core/estimation/estimators';",
-      'src/app/shell/stage.ts': "import '../studio/studio';\nimport '../../avatar/mirror';",
+      'src/lib/body.ts': "import '../core/estimation/estimators';\nimport '../inference/model-files';",
+      'src/inference/model-files.ts': empty,
+      'src/lib/three.ts': "import 'three';\nimport './body';\nimport '../avatar/mirror';",
+      'src/lib/onnx.ts': "import '../inference/regressor';",
+      'src/app/shell/stage.ts': "import '../../lib/body';\nimport '../studio/studio';\nimport '../../avatar/mirror';",
       'src/app/studio/studio.ts': "import 'three';\nimport '../../scene/renderer';",
       'src/app/main.ts': "import './shell/stage';\nimport '../inference/regressor';",
       'src/pages/results-page.ts': "import '../core/study/plan';",

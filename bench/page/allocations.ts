@@ -12,6 +12,7 @@ import { composeTransforms, invertTransform } from '../../src/core/math/pose';
 import { decodePose } from '../../src/core/protocol/pose-codec';
 import { arenaFromFloorOf } from '../../src/core/room/seat-places';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
+import { createInferenceWorker } from '../../src/inference/create-inference-worker';
 import { loadRegressor } from '../../src/inference/load-regressor';
 import { createRemotePlayers } from '../../src/net/remote-players';
 import { createRenderer } from '../../src/scene/renderer';
@@ -37,7 +38,8 @@ type FrameOf = (index: number) => void;
 
 /** Estimates alone, of frames that were there before. */
 async function estimates(name: 'ik' | 'paper' | 'learned'): Promise<FrameOf> {
-  const regressor = name === 'ik' ? null : await loadRegressor(`/models/${name}.json`, { thread: 'worker' });
+  const regressor =
+    name === 'ik' ? null : await loadRegressor(`/models/${name}.json`, { createWorker: createInferenceWorker });
   const estimator = createEstimator(name, defaultCalibration, regressor);
   const frames = Array.from({ length: preparedFrames }, (_, i) => actorFrame(i / rateHz, defaultCalibration));
   return (index) => {

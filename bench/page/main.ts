@@ -1,5 +1,4 @@
 import { PerspectiveCamera } from 'three';
-import { createAfterFrame } from '../../src/app/shell/after-frame';
 import { createFrameLoop, withTiming } from '../../src/app/shell/frame-loop';
 import { createFrameTiming, type StageName, stageNames } from '../../src/app/shell/frame-timing';
 import { createStudio } from '../../src/app/studio/studio';
@@ -14,9 +13,11 @@ import { type EstimatorName, estimatorNames, type PoseEstimator } from '../../sr
 import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
 import { nextRandom } from '../../src/core/math/random';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
+import { createInferenceWorker } from '../../src/inference/create-inference-worker';
 import { loadRegressor } from '../../src/inference/load-regressor';
 import { parseContract } from '../../src/inference/model-contract';
 import { createSession } from '../../src/inference/session';
+import { createAfterFrame } from '../../src/lib/after-frame';
 import { createRenderer } from '../../src/scene/renderer';
 import { measureArchery, type RoundTimes } from './archery';
 import { type CourtTimes, measureCourt } from './ball';
@@ -118,7 +119,10 @@ async function measure(): Promise<PageResult> {
   const timing = createFrameTiming(() => performance.now());
   const regressors: Partial<Record<Method, PoseRegressor>> = {};
   for (const name of estimatorNames.filter(needsRegressor)) {
-    regressors[name] = withTiming(await loadRegressor(`/models/${name}.json`, { thread: 'worker' }), timing);
+    regressors[name] = withTiming(
+      await loadRegressor(`/models/${name}.json`, { createWorker: createInferenceWorker }),
+      timing,
+    );
   }
   const estimators = Object.fromEntries(
     estimatorNames.map((name) => [name, createEstimator(name, defaultCalibration, regressors[name] ?? null)]),

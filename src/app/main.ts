@@ -5,6 +5,9 @@ import { type Buttons, nothingPressed } from '../core/games/button-presses';
 import { createHeightWatch } from '../core/tracking/height-watch';
 import { createPageClock } from '../core/tracking/page-clock';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
+import { createInferenceWorker } from '../inference/create-inference-worker';
+import { createAfterFrame } from '../lib/after-frame';
+import { createEstimatorChoice } from '../lib/estimator-choice';
 import { affordableQuality } from '../scene/renderer';
 import { pageElement } from '../ui/element';
 import { createEnterButton } from '../ui/enter-button';
@@ -13,9 +16,7 @@ import { createNotices } from '../ui/notices';
 import { createProgress } from '../ui/progress';
 import { createActor } from '../xr/actor';
 import { createActivities, type JoinedStudy } from './shell/activities';
-import { createAfterFrame } from './shell/after-frame';
 import { createControls } from './shell/controls';
-import { createEstimatorChoice } from './shell/estimator-choice';
 import { estimatorTexts } from './shell/estimator-texts';
 import { createFrameLoop, withTiming } from './shell/frame-loop';
 import { createFrameTiming } from './shell/frame-timing';
@@ -94,7 +95,7 @@ async function start(): Promise<void> {
       const { loadRegressor } = await inferenceArrives;
       const loaded = await loadRegressor(`${modelsAt}${name}.json`, {
         provider: switches.executionProvider,
-        thread: 'worker',
+        createWorker: createInferenceWorker,
         onProgress: (part) => progress.report('the network', 0.9 * part),
         onProviderFallback: (reason) => notices.show('warning', reason),
       });

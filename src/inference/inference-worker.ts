@@ -7,7 +7,7 @@ let session: InferenceSession | null = null;
 async function answer(question: Question): Promise<Answer> {
   const { id } = question;
   if ('model' in question) {
-    session = await createSession(question.model, 'wasm');
+    session = await createSession(question.model, 'wasm', { wasmPaths: question.wasmPaths });
     return { id, inputNames: session.inputNames, outputNames: session.outputNames };
   }
   if (!session) throw new Error('no model is open');

@@ -2,14 +2,16 @@ import { reasonOf } from '../core/errors/reasons';
 import type { ModelContract, PoseRegressor } from '../core/estimation/pose-regressor';
 import { outputNumbers } from './model-contract';
 import { fetchContract, fetchStated, named } from './model-files';
-import { createSession, type ExecutionProvider, type InferenceSession } from './session';
+import { createSession, type ExecutionProvider, type InferenceSession, type WasmPaths } from './session';
 import { createWorkerSession } from './worker-session';
 
 export interface LoadOptions {
   /** Where to run; 'webgpu' gives way to 'wasm' when it cannot. */
   readonly provider?: ExecutionProvider;
-  /** Where WebAssembly runs; the page's thread is for programs without workers. */
-  readonly thread?: 'worker' | 'page';
+  /** The worker in which WebAssembly runs (inference-worker.ts); absent: on the thread that loads, for programs without workers. */
+  readonly createWorker?: () => Worker;
+  /** Where the runtime's own files are served; absent: where the bundler put them. */
+  readonly wasmPaths?: WasmPaths;
   /** Share [0, 1] of the model file that has arrived. */
   readonly onProgress?: (share: number) => void;
   /** Why WebGPU was left for WASM, at load or when the device is lost later. */
@@ -29,7 +31,7 @@ export async function loadRegressor(contractUrl: string, options: LoadOptions = 
 export async function startRegressor(
   contract: ModelContract,
   model: Uint8Array,
-  { provider = 'wasm', thread = 'page', onProviderFallback }: LoadOptions = {},
+  { provider = 'wasm', createWorker, wasmPaths, onProviderFallback }: LoadOptions = {},
 ): Promise<PoseRegressor> {
   let session: InferenceSession | null = null;
   let fallback: Promise<InferenceSession> | null = null;
@@ -37,8 +39,10 @@ export async function startRegressor(
   const output = contract.outputs[0]!;
 
   async function open(where: ExecutionProvider, bundle = where): Promise<InferenceSession> {
-    const inWorker = thread === 'worker' && where === 'wasm' && bundle === 'wasm';
-    const opened = await (inWorker ? createWorkerSession(model) : createSession(model, where, bundle));
+    const inWorker = where === 'wasm' && bundle === 'wasm' ? createWorker : undefined;
+    const opened = await (inWorker
+      ? createWorkerSession(model, inWorker, wasmPaths)
+      : createSession(model, where, { bundle, wasmPaths }));
     if (!opened.inputNames.includes(input.name) || !opened.outputNames.includes(output.name)) {
       await opened.release();
       const has = `${opened.inputNames.join(', ')} → ${opened.outputNames.join(', ')}`;

@@ -10,16 +10,23 @@ export async function fetchContract(url: string): Promise<ModelContract> {
   return parseContract(fileName(url), new TextDecoder().decode(await download(url)));
 }
 
-/** A file beside the contract at `contractUrl`, its size and SHA-256 checked; rejects with a sentence. onProgress: share [0, 1] that has arrived. */
-export async function fetchStated(
-  contractUrl: string,
+/** A file of which a contract says this, its size and SHA-256 checked; rejects with a sentence. onProgress: share [0, 1] that has arrived. */
+export async function fetchFile(
+  url: string,
   stated: StatedFile,
   onProgress?: (share: number) => void,
 ): Promise<Uint8Array> {
-  const bytes = await download(beside(contractUrl, stated.file), onProgress);
+  const bytes = await download(url, onProgress);
   await verify(stated, bytes);
   return bytes;
 }
+
+/** The same where it lies beside its contract. */
+export const fetchStated = (
+  contractUrl: string,
+  stated: StatedFile,
+  onProgress?: (share: number) => void,
+): Promise<Uint8Array> => fetchFile(beside(contractUrl, stated.file), stated, onProgress);
 
 /** The address of a file beside another; what follows `?` belongs to the other alone. */
 const beside = (url: string, file: string): string => url.replace(/[?#].*$/, '').replace(/[^/]*$/, file);

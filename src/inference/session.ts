@@ -3,6 +3,15 @@ import type { TensorContract } from '../core/estimation/pose-regressor';
 
 export type ExecutionProvider = 'wasm' | 'webgpu';
 
+/** As the runtime's own `env.wasm.wasmPaths`: a folder, or the address of each file. */
+export type WasmPaths = string | { readonly wasm?: string; readonly mjs?: string };
+
+export interface SessionOptions {
+  /** Which of the runtime's bundles to load; default: the provider's own. */
+  readonly bundle?: ExecutionProvider | undefined;
+  readonly wasmPaths?: WasmPaths | undefined;
+}
+
 /** The part of a GPUDevice that tells of its end. */
 interface GraphicsDevice {
   readonly lost: Promise<{ readonly message: string; readonly reason: string }>;
@@ -25,12 +34,13 @@ export interface InferenceSession {
 export async function createSession(
   model: Uint8Array,
   provider: ExecutionProvider,
-  bundle: ExecutionProvider = provider,
+  { bundle = provider, wasmPaths }: SessionOptions = {},
 ): Promise<InferenceSession> {
   const ort = bundle === 'webgpu' ? await import('onnxruntime-web/webgpu') : await import('onnxruntime-web/wasm');
   // One thread: two on two cores made the slowest frames four times slower, and no cross-origin isolation is needed.
   ort.env.wasm.numThreads = 1;
   ort.env.wasm.proxy = false;
+  if (wasmPaths !== undefined) ort.env.wasm.wasmPaths = wasmPaths;
   ort.env.logLevel = 'error';
   const options: OrtSession.SessionOptions = {
     executionProviders: [provider],

@@ -1,8 +1,9 @@
 import type { TensorContract } from '../core/estimation/pose-regressor';
+import type { WasmPaths } from './session';
 
 /** What the page asks of the worker that runs a model: to open it, then to run it. */
 export type Question =
-  | { readonly id: number; readonly model: Uint8Array }
+  | { readonly id: number; readonly model: Uint8Array; readonly wasmPaths: WasmPaths | undefined }
   | { readonly id: number; readonly input: TensorContract; readonly features: Float32Array; readonly output: string };
 
 /** The answer to the question of that number. */

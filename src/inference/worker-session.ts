@@ -1,5 +1,5 @@
 import { reasonOf } from '../core/errors/reasons';
-import type { InferenceSession } from './session';
+import type { InferenceSession, WasmPaths } from './session';
 import type { Answer, Question } from './worker-messages';
 
 /** A question without its number. */
@@ -17,8 +17,12 @@ const patienceMs = 2500;
  * Opens a model in a worker of its own: what a frame pays for a run is to ask for it; the answer arrives between frames. Rejects when
  * there is no worker or it does not take the model; a worker that breaks or falls silent rejects every run from then on.
  */
-export async function createWorkerSession(model: Uint8Array): Promise<InferenceSession> {
-  const worker = new Worker(new URL('./inference-worker.ts', import.meta.url), { type: 'module' });
+export async function createWorkerSession(
+  model: Uint8Array,
+  createWorker: () => Worker,
+  wasmPaths?: WasmPaths,
+): Promise<InferenceSession> {
+  const worker = createWorker();
   const waiting = new Map<number, Waiting>();
   let broken: Error | null = null;
   // Opening takes as long as its download.
@@ -57,7 +61,7 @@ export async function createWorkerSession(model: Uint8Array): Promise<InferenceS
   worker.addEventListener('error', ({ message }) => breakDown(message || 'the worker for inference did not start'));
   worker.addEventListener('messageerror', () => breakDown('the worker for inference cannot be understood'));
 
-  const tensors = await ask({ model }).catch((error: unknown) => {
+  const tensors = await ask({ model, wasmPaths }).catch((error: unknown) => {
     breakDown(reasonOf(error));
     throw error;
   });

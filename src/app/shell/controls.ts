@@ -13,6 +13,7 @@ import {
 import { firstLine, reasonOf } from '../../core/errors/reasons';
 import type { EstimatorName } from '../../core/estimation/pose-estimator';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
+import type { EstimatorChoice } from '../../lib/estimator-choice';
 import { type ViewName, viewNames } from '../../scene/desktop-view';
 import { type CalibrationStep, createCalibrationDialog } from '../../ui/calibration-dialog';
 import { createCalibrationGuide } from '../../ui/calibration-guide';
@@ -28,7 +29,6 @@ import { createVrPointers } from '../../ui/vr-pointers';
 import type { Recorder } from '../studio/recorder';
 import type { StudyRun } from '../study/study-run';
 import type { Activities } from './activities';
-import type { EstimatorChoice } from './estimator-choice';
 import { estimatorOrder, estimatorTexts } from './estimator-texts';
 import { type FrameTiming, stageNames } from './frame-timing';
 import type { Headset } from './headset';

@@ -1,6 +1,6 @@
 import type { Calibration } from '../../core/body/calibration';
+import type { EstimatorChoice } from '../../lib/estimator-choice';
 import type { Activities, JoinedStudy } from './activities';
-import type { EstimatorChoice } from './estimator-choice';
 import type { FrameTiming } from './frame-timing';
 import type { Headset } from './headset';
 import type { Settings } from './settings';

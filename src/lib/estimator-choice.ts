@@ -1,13 +1,8 @@
-import type { Calibration } from '../../core/body/calibration';
-import { reasonOf } from '../../core/errors/reasons';
-import type { EstimatorName, PoseEstimator } from '../../core/estimation/pose-estimator';
-import type { PoseRegressor } from '../../core/estimation/pose-regressor';
-
-/** The estimators that are nothing without their network. */
-const networks = ['paper', 'learned'] as const satisfies readonly EstimatorName[];
-type NetworkName = (typeof networks)[number];
-
-const isNetwork = (name: EstimatorName): name is NetworkName => (networks as readonly string[]).includes(name);
+import type { Calibration } from '../core/body/calibration';
+import { reasonOf } from '../core/errors/reasons';
+import { type NetworkName, needsRegressor } from '../core/estimation/estimators';
+import type { EstimatorName, PoseEstimator } from '../core/estimation/pose-estimator';
+import type { PoseRegressor } from '../core/estimation/pose-regressor';
 
 export interface EstimatorChoiceOptions {
   readonly calibration: Calibration;
@@ -84,7 +79,7 @@ export function createEstimatorChoice(options: EstimatorChoiceOptions): Estimato
     async choose(name) {
       if (unavailable[name] !== undefined) return;
       wanted = name;
-      if (!isNetwork(name)) {
+      if (!needsRegressor(name)) {
         drawWith(name, null);
         return;
       }

@@ -1,7 +1,7 @@
 import { describe, expect, test } from 'vitest';
-import { createEstimatorChoice } from '../../../src/app/shell/estimator-choice';
-import type { EstimatorName, PoseEstimator } from '../../../src/core/estimation/pose-estimator';
-import type { PoseRegressor } from '../../../src/core/estimation/pose-regressor';
+import type { EstimatorName, PoseEstimator } from '../../src/core/estimation/pose-estimator';
+import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
+import { createEstimatorChoice } from '../../src/lib/estimator-choice';
 
 const head = {
   position: { x: 0, y: 1.6, z: 0 },

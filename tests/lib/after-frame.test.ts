@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest';
-import { createAfterFrame } from '../../../src/app/shell/after-frame';
+import { createAfterFrame } from '../../src/lib/after-frame';
 
 test('what a frame leaves for later is done after it, in order', async () => {
   const done: string[] = [];

@@ -1,0 +1,76 @@
+import { type Calibration, provisionalCalibration } from '../core/body/calibration';
+import { createHeightWatch } from '../core/tracking/height-watch';
+import type { TrackingFrame } from '../core/tracking/tracking-frame';
+
+/** Seconds of tracked frames after which the headset's height says something about its wearer. */
+const settleSeconds = 0.7;
+
+export interface HeightPolicyOptions {
+  /** The measures in force. */
+  calibration(): Calibration;
+  /** Whether the wearer has calibrated: what they measured stays, and they are told where it is too small. */
+  calibrated(): boolean;
+  /** Whether the height at which a session begins may stand for the wearer's. */
+  mayGuess(): boolean;
+  /** Whether a wearer may turn out to be taller than their measures. */
+  mayGrow(): boolean;
+  /** Other measures of a wearer who never calibrated: as high as the headset hangs, or grown because they stood up taller. */
+  onMeasured(calibration: Calibration, source: 'headset' | 'stood-taller'): void;
+  /** A wearer who calibrated stands this much taller than their calibration says [m]. Told once for each calibration. */
+  onTooSmall(difference: number): void;
+}
+
+/**
+ * How tall the wearer of a headset is taken to be. Without a calibration they are as tall as the headset hangs high once it hangs there
+ * calmly, and grow when they stand up straight; with one they are told where it is too small.
+ */
+export class HeightPolicy {
+  readonly #options: HeightPolicyOptions;
+  readonly #watch = createHeightWatch();
+  /** When the session's first frame was tracked [s]; 'done' once the height of the headset was taken. */
+  #settledSince: number | 'done' | null = null;
+  /** The calibration that its wearer has been told is too small. */
+  #toldTooSmall: Calibration | null = null;
+
+  constructor(options: HeightPolicyOptions) {
+    this.#options = options;
+  }
+
+  /** The headset was put on: its height is taken once more. */
+  begin(): void {
+    this.#settledSince = null;
+  }
+
+  /** The floor lies elsewhere, or another person may wear the headset. */
+  reset(): void {
+    this.#watch.reset();
+  }
+
+  /** Every tracked frame of a session. */
+  observe(frame: TrackingFrame): void {
+    const { calibrated, mayGuess, mayGrow } = this.#options;
+    if (!calibrated() && mayGuess()) this.#settle(frame);
+    if (mayGrow()) this.#grow(frame);
+  }
+
+  #settle({ time, head }: TrackingFrame): void {
+    if (this.#settledSince === 'done') return;
+    this.#settledSince ??= time;
+    if (time - this.#settledSince < settleSeconds) return;
+    this.#settledSince = 'done';
+    this.#options.onMeasured(provisionalCalibration(head.position.y), 'headset');
+  }
+
+  #grow(frame: TrackingFrame): void {
+    const calibration = this.#options.calibration();
+    if (calibration === this.#toldTooSmall) return;
+    const grown = this.#watch.observe(frame, calibration);
+    if (!grown) return;
+    if (!this.#options.calibrated()) {
+      this.#options.onMeasured(grown, 'stood-taller');
+      return;
+    }
+    this.#toldTooSmall = calibration;
+    this.#options.onTooSmall(grown.eyeHeight - calibration.eyeHeight);
+  }
+}

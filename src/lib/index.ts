@@ -1,0 +1,31 @@
+// "threepoint": a body from three tracked points, without three.js and without a DOM.
+export type { AvatarPose, UpperBodyPose } from '../core/body/avatar-pose';
+export { copyAvatarPose } from '../core/body/avatar-pose';
+export type { Calibration } from '../core/body/calibration';
+export {
+  armSpanFromFingertipSpan,
+  calibrationComplaint,
+  defaultCalibration,
+  eyeHeightFromStature,
+  provisionalCalibration,
+} from '../core/body/calibration';
+export type { JointPoses } from '../core/body/forward-kinematics';
+export { forwardKinematics, makeJointPoses } from '../core/body/forward-kinematics';
+export type { JointName } from '../core/body/joints';
+export { jointNames } from '../core/body/joints';
+export type { Skeleton } from '../core/body/skeleton';
+export { skeletonFromCalibration } from '../core/body/skeleton';
+export type { NetworkName } from '../core/estimation/estimators';
+export { createEstimator } from '../core/estimation/estimators';
+export type { Estimate, EstimatorName, InferenceRequest, PoseEstimator } from '../core/estimation/pose-estimator';
+export { estimatorNames } from '../core/estimation/pose-estimator';
+export type { ModelContract, PoseRegressor } from '../core/estimation/pose-regressor';
+export type { Pose, TrackedPose } from '../core/math/pose';
+export type { Quat } from '../core/math/quat';
+export type { Side } from '../core/math/side';
+export type { Vec3 } from '../core/math/vec3';
+export type { TrackingFrame } from '../core/tracking/tracking-frame';
+export type { BodyEvents, BodyOptions, CalibrationSource, TrackedPoint } from './body';
+export { Body } from './body';
+export type { LearnedOptions } from './load-learned';
+export { loadLearned } from './load-learned';

@@ -1,0 +1,219 @@
+// "threepoint/three": the body on an avatar of three.js, driven by a WebXR session.
+import { EventDispatcher, type Object3D, type WebGLRenderer } from 'three';
+import { type Avatar, createAvatar } from '../avatar/avatar';
+import { type BoneMap, parseAvatar } from '../avatar/load-avatar';
+import type { AvatarPose } from '../core/body/avatar-pose';
+import type { Calibration } from '../core/body/calibration';
+import { reasonOf } from '../core/errors/reasons';
+import type { EstimatorName } from '../core/estimation/pose-estimator';
+import { createPageClock } from '../core/tracking/page-clock';
+import type { TrackingFrame } from '../core/tracking/tracking-frame';
+import { createTracker, type Tracker } from '../xr/tracker';
+import { Body, type BodyOptions, type CalibrationSource, type TrackedPoint } from './body';
+import { loadLearned } from './load-learned';
+
+export type { Avatar } from '../avatar/avatar';
+export type { BoneMap } from '../avatar/load-avatar';
+
+export interface LoadAvatarOptions {
+  /** For a humanoid without VRM: the name of the file's node for each bone, in VRM's names. At rest it stands in a T-pose and faces +Z. */
+  readonly bones?: BoneMap;
+}
+
+/**
+ * An avatar from an address, a file or its bytes: VRM 0.x or 1.0, or a humanoid GLB with a map of its bones. Rejects with a sentence that names
+ * the file: not reached, no GLB, larger than `avatarLimits`, a bone missing.
+ */
+export async function loadAvatar(
+  source: string | URL | Blob | ArrayBuffer,
+  { bones }: LoadAvatarOptions = {},
+): Promise<Avatar> {
+  const { name, bytes } = await read(source);
+  return createAvatar(await parseAvatar(bytes, name, bones));
+}
+
+async function read(source: string | URL | Blob | ArrayBuffer): Promise<{ name: string; bytes: ArrayBuffer }> {
+  if (source instanceof ArrayBuffer) return { name: 'the avatar', bytes: source };
+  if (source instanceof Blob) {
+    return { name: source instanceof File ? source.name : 'the avatar', bytes: await source.arrayBuffer() };
+  }
+  const address = String(source);
+  const name = address.split(/[?#]/)[0]?.split('/').at(-1) || address;
+  const response = await fetch(address).catch((error: unknown) => {
+    throw new Error(`${name}: could not be fetched (${reasonOf(error)})`);
+  });
+  if (!response.ok) throw new Error(`${name}: the server answers ${response.status} ${response.statusText}`.trim());
+  return { name, bytes: await response.arrayBuffer() };
+}
+
+export interface BodyTrackerOptions extends Pick<BodyOptions, 'estimator' | 'calibration' | 'networks'> {
+  /** From `loadAvatar`; put `tracker.object` into the scene, or into what moves its cameras. */
+  readonly avatar: Avatar;
+  /** Where another contract of the learned network lies (.json), its weights beside it. */
+  readonly modelUrl?: string | URL;
+}
+
+export interface BodyTrackerEvents {
+  readonly calibrated: { readonly calibration: Calibration; readonly source: CalibrationSource };
+  readonly fallback: { readonly estimator: EstimatorName; readonly reason: string };
+  readonly lost: { readonly point: TrackedPoint };
+  readonly found: { readonly point: TrackedPoint };
+}
+
+/** What a session brings: how it is read, and the space it is read in. */
+interface Reading {
+  readonly session: XRSession;
+  readonly tracker: Tracker;
+  /** The space that `tracker` made last; where the renderer has another one, the page moved its wearer. */
+  space: XRReferenceSpace;
+  readonly base: XRReferenceSpace;
+}
+
+/**
+ * The wearer's own body in a page of three.js: reads head and hands of the renderer's session, estimates the body, bends the avatar.
+ * Call `update` in each animation frame before drawing.
+ */
+export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
+  readonly avatar: Avatar;
+  readonly #renderer: WebGLRenderer;
+  readonly #body: Body;
+  readonly #clock = createPageClock(() => performance.now());
+  #reading: Reading | null = null;
+  readonly #jumped = () => this.#body.jumped();
+
+  /** Throws a RangeError where the calibration is no person's. */
+  constructor(renderer: WebGLRenderer, { avatar, modelUrl, ...options }: BodyTrackerOptions) {
+    super();
+    this.avatar = avatar;
+    this.#renderer = renderer;
+    const networks =
+      modelUrl === undefined
+        ? {}
+        : { networks: (name: string) => (name === 'learned' ? loadLearned({ modelUrl }) : Promise.reject(noWeights)) };
+    this.#body = new Body({
+      ...networks,
+      ...options,
+      events: {
+        calibrated: (calibration, source) => {
+          avatar.fitTo(calibration);
+          this.dispatchEvent({ type: 'calibrated', calibration, source });
+        },
+        fallback: (estimator, reason) => this.dispatchEvent({ type: 'fallback', estimator, reason }),
+        lost: (point) => this.dispatchEvent({ type: 'lost', point }),
+        found: (point) => this.dispatchEvent({ type: 'found', point }),
+      },
+    });
+    avatar.fitTo(this.#body.calibration);
+    avatar.object.visible = false;
+  }
+
+  /** To be put into the scene; shown while there is a pose. */
+  get object(): Object3D {
+    return this.avatar.object;
+  }
+
+  /** Of the newest frame, floor frame [m]; overwritten by the next. null before the first tracked frame. */
+  get pose(): AvatarPose | null {
+    return this.#body.pose;
+  }
+
+  get calibration(): Calibration {
+    return this.#body.calibration;
+  }
+
+  /** What draws now: 'ik' while a network loads, and where it fails. */
+  get estimator(): EstimatorName {
+    return this.#body.estimator;
+  }
+
+  /** Resolves when this estimator draws, or when the event `fallback` told why it cannot. */
+  choose(estimator: EstimatorName): Promise<void> {
+    return this.#body.choose(estimator);
+  }
+
+  /** The wearer's measures [m], or 'auto'. Throws a RangeError where they are no person's. */
+  calibrate(calibration: Calibration | 'auto'): void {
+    this.#body.calibrate(calibration);
+  }
+
+  /**
+   * One animation frame: timeMs and frame as `setAnimationLoop` gives them. Without a session nothing moves and the avatar is hidden. Call it
+   * before any await of the frame. Throws an InvalidStateError where the frame is over.
+   */
+  update(timeMs: number, frame: XRFrame | null | undefined): void {
+    const time = this.#clock.frame(timeMs);
+    if (this.#clock.paused) this.#body.jumped();
+    const reading = this.#follow();
+    if (!reading || !frame) return;
+    this.#apply(reading.tracker.read(frame, time), time);
+  }
+
+  /** The same from head and wrists that the page has itself: a recording, another device. Floor frame [m, s]. */
+  follow(frame: TrackingFrame | null): void {
+    this.#apply(frame, frame?.time ?? 0);
+  }
+
+  /** The wearer stands at the floor's origin from now on and looks along −Z; the renderer's reference space moves along. */
+  recentre(): void {
+    this.#reading?.tracker.recentre();
+    this.#body.jumped();
+  }
+
+  /** Ends what it listens to and takes the avatar apart. */
+  dispose(): void {
+    this.#leave();
+    this.#body.dispose();
+    this.avatar.dispose();
+  }
+
+  #apply(tracked: TrackingFrame | null, time: number): void {
+    const pose = this.#body.update(tracked);
+    if (!tracked || !pose) return;
+    this.avatar.apply(pose, time);
+    this.avatar.object.visible = true;
+  }
+
+  /** How the renderer's session is read now; null: there is none. */
+  #follow(): Reading | null {
+    const { xr } = this.#renderer;
+    const session = xr.getSession();
+    const space = xr.getReferenceSpace();
+    if (this.#reading && this.#reading.session !== session) this.#leave();
+    if (!session || !space) return null;
+    if (!this.#reading) this.#enter(session, space);
+    else if (this.#reading.space !== space) {
+      // The page moved its wearer: a teleport or a turn of its own.
+      this.#leave(false);
+      this.#enter(session, space, false);
+    }
+    return this.#reading;
+  }
+
+  #enter(session: XRSession, space: XRReferenceSpace, begins = true): void {
+    const reading: Reading = {
+      session,
+      base: space,
+      space,
+      tracker: createTracker(session, space, (moved) => {
+        reading.space = moved;
+        this.#renderer.xr.setReferenceSpace(moved);
+      }),
+    };
+    space.addEventListener('reset', this.#jumped);
+    this.#reading = reading;
+    if (begins) this.#body.begin();
+    else this.#body.jumped();
+    this.avatar.setFirstPerson(true);
+  }
+
+  #leave(ends = true): void {
+    this.#reading?.base.removeEventListener('reset', this.#jumped);
+    this.#reading = null;
+    if (!ends) return;
+    this.#body.forgetPoints();
+    this.avatar.setFirstPerson(false);
+    this.avatar.object.visible = false;
+  }
+}
+
+const noWeights = new Error('modelUrl: the learned network alone runs without a runtime');

@@ -1,0 +1,158 @@
+import { describe, expect, test } from 'vitest';
+import type { Calibration } from '../../src/core/body/calibration';
+import { forwardKinematics } from '../../src/core/body/forward-kinematics';
+import { skeletonFromCalibration } from '../../src/core/body/skeleton';
+import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
+import { distance } from '../../src/core/math/vec3';
+import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
+import { Body, type BodyOptions } from '../../src/lib/body';
+import { movingPerson } from '../core/estimation/moving-person';
+import { openPlainModel } from '../core/estimation/shipped-models';
+
+const calibration: Calibration = { eyeHeight: 1.65, armSpan: 1.56 };
+const at = movingPerson(3, calibration, { x: 1, z: -0.5, yaw: 2 });
+
+/** A body whose every event is written down, and its networks loaded. */
+async function observed(options: BodyOptions = {}) {
+  const told: string[] = [];
+  const body = new Body({
+    networks: async () => openPlainModel(),
+    ...options,
+    events: {
+      calibrated: ({ eyeHeight }, source) => told.push(`calibrated ${eyeHeight.toFixed(2)} ${source}`),
+      fallback: (estimator, reason) => told.push(`fallback ${estimator} ${reason}`),
+      lost: (point) => told.push(`lost ${point}`),
+      found: (point) => told.push(`found ${point}`),
+    },
+  });
+  await body.choose(options.estimator ?? 'learned');
+  return { body, told };
+}
+
+/** Stands upright at this height of the eyes [m]. */
+const standing = (time: number, eyeHeight: number): TrackingFrame => ({
+  time,
+  head: { position: { x: 0, y: eyeHeight, z: 0 }, orientation: { x: 0, y: 0, z: 0, w: 1 }, tracking: 'tracked' },
+  leftHand: null,
+  rightHand: null,
+});
+
+describe('a body', () => {
+  test('follows three points: its wrists lie on the hands, by the network that was chosen', async () => {
+    const { body, told } = await observed({ calibration });
+    for (let frame = 0; frame < 30; frame++) {
+      const tracked = at(frame / 60);
+      const pose = body.update(tracked);
+      const joints = forwardKinematics(skeletonFromCalibration(calibration), pose!.body!);
+      expect(distance(joints.leftHand.position, tracked.leftHand!.position)).toBeLessThan(0.001);
+      expect(distance(joints.rightHand.position, tracked.rightHand!.position)).toBeLessThan(0.001);
+    }
+    expect(body.estimator).toBe('learned');
+    expect(told).toEqual(['found head', 'found left', 'found right']);
+  });
+
+  test('says once which point is lost and once that it is found', async () => {
+    const { body, told } = await observed({ calibration, estimator: 'ik' });
+    for (const frame of [at(0), at(1 / 60)]) body.update(frame);
+    told.length = 0;
+    for (let frame = 2; frame < 5; frame++) body.update({ ...at(frame / 60), leftHand: null });
+    for (let frame = 5; frame < 8; frame++) body.update(at(frame / 60));
+    expect(told).toEqual(['lost left', 'found left']);
+  });
+
+  test('keeps its pose while the head is not seen', async () => {
+    const { body, told } = await observed({ calibration });
+    const shown = JSON.stringify(body.update(at(0)));
+    expect(JSON.stringify(body.update(null))).toBe(shown);
+    expect(told.slice(-3)).toEqual(['lost head', 'lost left', 'lost right']);
+  });
+
+  test('is as tall as the headset hangs high, and grows when its wearer stands up', async () => {
+    const { body, told } = await observed({ estimator: 'ik' });
+    for (let frame = 0; frame < 60; frame++) body.update(standing(frame / 60, 1.6));
+    for (let frame = 60; frame < 240; frame++) body.update(standing(frame / 60, 1.7));
+    expect(told.filter((line) => line.startsWith('calibrated'))).toEqual([
+      'calibrated 1.60 headset',
+      'calibrated 1.70 stood-taller',
+    ]);
+    expect(body.calibration.eyeHeight).toBeCloseTo(1.7, 2);
+  });
+
+  test('keeps measures that it was given, however tall its wearer stands', async () => {
+    const { body, told } = await observed({ estimator: 'ik', calibration });
+    for (let frame = 0; frame < 240; frame++) body.update(standing(frame / 60, 1.72));
+    expect(told).toEqual(['found head']);
+    expect(body.calibration).toBe(calibration);
+  });
+
+  test('takes measures anew with another session, and as told', async () => {
+    const { body, told } = await observed({ estimator: 'ik' });
+    for (let frame = 0; frame < 60; frame++) body.update(standing(frame / 60, 1.6));
+    body.begin();
+    for (let frame = 60; frame < 120; frame++) body.update(standing(frame / 60, 1.5));
+    body.calibrate(calibration);
+    expect(told.filter((line) => line.startsWith('calibrated'))).toEqual([
+      'calibrated 1.60 headset',
+      'calibrated 1.50 headset',
+      'calibrated 1.65 given',
+    ]);
+  });
+
+  test('refuses measures of no person', async () => {
+    expect(() => new Body({ calibration: { eyeHeight: 165, armSpan: 156 } })).toThrow(RangeError);
+    const { body } = await observed({ estimator: 'ik' });
+    expect(() => body.calibrate({ eyeHeight: Number.NaN, armSpan: 1.5 })).toThrow(RangeError);
+  });
+});
+
+describe('a body whose network is not to be had', () => {
+  test('is drawn by inverse kinematics, and says why', async () => {
+    const { body, told } = await observed({ networks: async () => Promise.reject(new Error('learned.bin: gone')) });
+    expect(told).toEqual(['fallback learned learned.bin: gone']);
+    expect(body.update(at(0))?.body).not.toBeNull();
+    expect(body.estimator).toBe('ik');
+  });
+
+  test('goes over to it when the network breaks in a frame', async () => {
+    const plain = openPlainModel();
+    let broken = false;
+    const runNow = (features: Float32Array) => {
+      if (broken) throw new Error('out of memory');
+      return plain.runNow!(features);
+    };
+    const { body, told } = await observed({ calibration, networks: async () => ({ ...plain, runNow }) });
+    body.update(at(0));
+    expect(body.estimator).toBe('learned');
+    broken = true;
+    body.update(at(1 / 60));
+    expect(body.estimator).toBe('ik');
+    expect(told.at(-1)).toBe('fallback learned learned: out of memory');
+  });
+
+  test('the paper’s network asks for a runtime', async () => {
+    const told: string[] = [];
+    const body = new Body({ estimator: 'ik', events: { fallback: (name, reason) => told.push(`${name} ${reason}`) } });
+    await body.choose('paper');
+    expect(told).toEqual([expect.stringMatching(/^paper .*onnxNetworks/)]);
+    expect(body.estimator).toBe('ik');
+  });
+});
+
+test('a network that answers later is asked once a frame is over, about the newest frame alone', async () => {
+  const plain = openPlainModel();
+  let runs = 0;
+  const later: PoseRegressor = {
+    contract: plain.contract,
+    provider: 'later',
+    async run(features) {
+      runs += 1;
+      return plain.run(features);
+    },
+    dispose: async () => undefined,
+  };
+  const { body } = await observed({ calibration, networks: async () => later });
+  for (let frame = 0; frame < 3; frame++) body.update(at(frame / 60));
+  expect(runs).toBe(0);
+  await expect.poll(() => runs).toBe(1);
+  body.dispose();
+});
