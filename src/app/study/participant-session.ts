@@ -1,5 +1,4 @@
 import type { Calibration } from '../../core/body/calibration';
-import { reasonOf } from '../../core/errors/reasons';
 import type { Side } from '../../core/math/side';
 import { type Schedule, type StudyStep, scheduleFor } from '../../core/study/plan';
 import {
@@ -11,9 +10,10 @@ import {
   remainingSeconds,
 } from '../../core/study/progress';
 import type { Claim, NumberedCommand, PlayedTogether, SignedSeat } from '../../core/study/study-api';
-import type { StudyRecord } from '../../core/study/study-record';
 import { type ParticipantClient, ServerRefusal, ServerUnreachable } from '../../net/study-client';
-import type { KeptMotion, KeptSession, StudyVault } from './study-vault';
+import { sendRecords } from './send-records';
+import { SessionStore, type Unsent } from './session-store';
+import type { KeptSession, StudyVault } from './study-vault';
 
 /** Where what was recorded is now. */
 export interface Safekeeping {
@@ -68,10 +68,6 @@ export interface ParticipantSessionOptions {
   readonly onChange: () => void;
 }
 
-/** Bodies of the server are 512 KiB at most; a batch stays well below [characters, records]. */
-const longestBatch = 300_000;
-const largestBatch = 100;
-
 /** The first session of a participant on this device. */
 export function startSession(claim: Claim, study: string, participant: string): KeptSession {
   const schedule = scheduleFor(claim.plan, participant);
@@ -105,228 +101,174 @@ export function isLater(schedule: Schedule, known: Progress, here: Progress): bo
 }
 
 /** `unsent`: what an earlier visit of this page left in the vault. */
-export function createParticipantSession(
+export const createParticipantSession = (
   kept: KeptSession,
-  unsent: { readonly records: readonly StudyRecord[]; readonly motion: readonly KeptMotion[] },
-  { client, vault, now, onChange }: ParticipantSessionOptions,
-): ParticipantSession {
-  const { study, participant, token } = kept;
-  const schedule = scheduleFor(kept.plan, participant);
-  let session = kept;
-  const outbox = new Map(unsent.records.map((record) => [record.id, record]));
-  const motionOutbox = new Map(unsent.motion.map((motion) => [motion.trial, motion]));
-  /** Not in the vault yet. */
-  let unsaved: readonly StudyRecord[] = [];
-  const unsavedMotion = new Map<string, KeptMotion>();
-  let storageFault: string | null = vault ? null : 'this browser offers no storage';
-  let online = true;
-  let refusal: string | null = null;
-  let lockedOut = false;
-  let saving: Promise<void> = Promise.resolve();
-  let saved: KeptSession | null = kept;
-  let reported: Progress | null = null;
-  let exchanging: Promise<void> | null = null;
+  unsent: Unsent,
+  options: ParticipantSessionOptions,
+): ParticipantSession => new DeviceSession(kept, unsent, options);
 
-  /** One attempt after another; what fails stays unsaved and is tried again with the next. */
-  function save(): void {
-    saving = saving.then(async () => {
-      if (!vault || (unsaved.length === 0 && unsavedMotion.size === 0 && saved === session)) return;
-      const records = unsaved;
-      const current = session;
-      try {
-        await vault.save(current, records);
-        unsaved = unsaved.filter((record) => !records.includes(record));
-        saved = current;
-        for (const motion of [...unsavedMotion.values()]) {
-          await vault.saveMotion(study, participant, motion);
-          unsavedMotion.delete(motion.trial);
-        }
-        storageFault = null;
-      } catch (error) {
-        storageFault = reasonOf(error);
-      }
-      onChange();
+class DeviceSession implements ParticipantSession {
+  readonly schedule: Schedule;
+  readonly #client: ParticipantClient;
+  readonly #store: SessionStore;
+  readonly #now: () => number;
+  readonly #onChange: () => void;
+  #online = true;
+  #refusal: string | null = null;
+  #lockedOut = false;
+  /** The progress that the server was told last; null: none. */
+  #reported: Progress | null = null;
+  #exchanging: Promise<void> | null = null;
+
+  constructor(kept: KeptSession, unsent: Unsent, { client, vault, now, onChange }: ParticipantSessionOptions) {
+    this.schedule = scheduleFor(kept.plan, kept.participant);
+    this.#client = client;
+    this.#store = new SessionStore(kept, unsent, { vault, onChange });
+    this.#now = now;
+    this.#onChange = onChange;
+  }
+
+  get #session(): KeptSession {
+    return this.#store.session;
+  }
+
+  get plan() {
+    return this.#session.plan;
+  }
+
+  get simulated() {
+    return this.#session.simulated;
+  }
+
+  get progress() {
+    return this.#session.progress;
+  }
+
+  get step() {
+    return currentStep(this.schedule, this.progress);
+  }
+
+  get withdrawalCode() {
+    return this.#session.withdrawalCode;
+  }
+
+  get preferredHand() {
+    return this.#session.preferredHand;
+  }
+
+  get calibration() {
+    return this.#session.calibration;
+  }
+
+  get safekeeping(): Safekeeping {
+    const { unsent, unsaved, fault } = this.#store;
+    return {
+      unsent,
+      unsaved,
+      storageFault: fault,
+      online: this.#online,
+      refusal: this.#refusal,
+      lockedOut: this.#lockedOut,
+    };
+  }
+
+  remaining(): number | null {
+    return remainingSeconds(this.schedule, this.progress, this.#now());
+  }
+
+  apply(event: ProgressEvent): string | null {
+    return this.#applyAfter(event, this.#session.commandsSeen);
+  }
+
+  codeNoted(): void {
+    this.#store.change({ ...this.#session, withdrawalCode: null });
+  }
+
+  seat(trial: PlayedTogether): Promise<SignedSeat> {
+    const { study, participant, token } = this.#session;
+    return this.#client.seat(study, participant, token, trial);
+  }
+
+  keepMotion(trial: string, recording: string): void {
+    this.#store.keepMotion({ trial, recording });
+  }
+
+  exchange(): Promise<void> {
+    this.#exchanging ??= this.#exchangeOnce().finally(() => {
+      this.#exchanging = null;
     });
+    return this.#exchanging;
   }
 
-  function change(next: KeptSession, records: readonly StudyRecord[]): void {
-    session = next;
-    for (const record of records) outbox.set(record.id, record);
-    unsaved = [...unsaved, ...records];
-    save();
-    onChange();
+  settled(): Promise<void> {
+    return this.#store.settled();
   }
 
-  function apply(event: ProgressEvent, commandsSeen = session.commandsSeen): string | null {
-    const { progress, records, refusal: no } = advance(schedule, session.progress, event, now());
-    if (no !== null && commandsSeen === session.commandsSeen) return no;
-    if (progress === session.progress && records.length === 0 && commandsSeen === session.commandsSeen) return null;
-    const demographics = records.find((record) => record.kind === 'demographics');
-    const hand = demographics?.body.handedness;
-    change(
-      {
-        ...session,
-        progress,
-        commandsSeen,
-        ...(hand && { preferredHand: hand === 'left' ? 'left' : 'right' }),
-        ...(event.type === 'calibrated' && { calibration: event.calibration }),
-      },
-      records,
-    );
-    return no;
+  /** `commandsSeen`: number of the newest of the experimenter's commands, which may be this event. */
+  #applyAfter(event: ProgressEvent, commandsSeen: number): string | null {
+    const session = this.#session;
+    const commanded = commandsSeen !== session.commandsSeen;
+    const { progress, records, refusal } = advance(this.schedule, session.progress, event, this.#now());
+    if (refusal !== null && !commanded) return refusal;
+    if (progress === session.progress && records.length === 0 && !commanded) return null;
+    const hand = records.find((record) => record.kind === 'demographics')?.body.handedness;
+    const next = {
+      ...session,
+      progress,
+      commandsSeen,
+      ...(hand && { preferredHand: hand === 'left' ? ('left' as const) : ('right' as const) }),
+      ...(event.type === 'calibrated' && { calibration: event.calibration }),
+    };
+    this.#store.change(next, records);
+    return refusal;
   }
 
-  function nextBatch(left: ReadonlySet<string>): readonly StudyRecord[] {
-    const batch: StudyRecord[] = [];
-    let length = 0;
-    for (const record of outbox.values()) {
-      if (left.has(record.id)) continue;
-      length += JSON.stringify(record).length;
-      if (batch.length > 0 && (length > longestBatch || batch.length >= largestBatch)) break;
-      batch.push(record);
-    }
-    return batch;
-  }
-
-  async function acknowledge(ids: readonly string[]): Promise<void> {
-    for (const id of ids) outbox.delete(id);
-    unsaved = unsaved.filter(({ id }) => !ids.includes(id));
-    // Whatever the save under way still writes must be removed after it.
-    await saving;
-    await vault?.removeRecords(study, participant, ids);
-  }
-
-  /** What the server will not take stays in the outbox and is reported; it does not hold up the rest. */
-  async function sendRecords(): Promise<void> {
-    const refused = new Set<string>();
-    let reason: string | null = null;
-    for (let batch = nextBatch(refused); batch.length > 0; batch = nextBatch(refused)) {
-      let parts: readonly (readonly StudyRecord[])[] = [batch];
-      while (parts.length > 0) {
-        const [part = [], ...others] = parts;
-        parts = others;
-        try {
-          await acknowledge(await client.send(study, participant, token, part));
-          onChange();
-        } catch (error) {
-          if (!(error instanceof ServerRefusal) || error.status === 401) throw error;
-          if (part.length > 1) parts = part.map((record) => [record]);
-          else {
-            for (const { id } of part) refused.add(id);
-            reason = error.message;
-          }
-        }
-      }
-    }
-    refusal = reason;
-  }
-
-  async function sendAll(): Promise<void> {
-    await sendRecords();
-    for (const { trial, recording } of [...motionOutbox.values()]) {
-      await client.sendMotion(study, participant, token, trial, recording);
-      motionOutbox.delete(trial);
-      unsavedMotion.delete(trial);
-      await saving;
-      await vault?.removeMotion(study, participant, trial);
-      onChange();
-    }
-  }
-
-  /** Commands after the session's own state: each is followed once, even across a reload. */
-  function follow({ number, command }: NumberedCommand): void {
-    if (number <= session.commandsSeen) return;
-    const { step, running } = session.progress;
-    const event: ProgressEvent = command.type === 'start' ? { type: 'start' } : command;
-    const no = apply(event, number);
-    // The experimenter learns from the records why a command changed nothing.
-    if (no !== null && session.progress.motion !== null) {
-      apply({
-        type: 'remark',
-        text: `The command "${command.type}" changed nothing at ${step}${running ? ', running' : ''}: ${no}`,
-      });
-    }
-  }
-
-  async function exchangeOnce(): Promise<void> {
-    save();
+  async #exchangeOnce(): Promise<void> {
     // The server must not be ahead of the device: after a crash the device would tell it all again, and differently.
-    await saving;
+    await this.#store.save();
     try {
-      await sendAll();
-      // Before consent not even the step is reported.
-      if (session.progress.motion !== null) {
-        const { progress } = session;
-        await client.saveProgress(study, participant, token, progress);
-        reported = progress;
-      }
-      for (const command of await client.commands(study, participant, token, session.commandsSeen)) follow(command);
+      await this.#tellServer();
+      const { study, participant, token, commandsSeen } = this.#session;
+      for (const command of await this.#client.commands(study, participant, token, commandsSeen)) this.#follow(command);
       // What a command changed is reported at once: the experimenter waits for it.
-      if (session.progress !== reported && session.progress.motion !== null) {
-        await sendAll();
-        await client.saveProgress(study, participant, token, session.progress);
-        reported = session.progress;
-      }
-      online = true;
+      if (this.progress !== this.#reported) await this.#tellServer();
+      this.#online = true;
     } catch (error) {
-      if (error instanceof ServerUnreachable) online = false;
-      else if (error instanceof ServerRefusal) {
-        refusal = error.message;
-        lockedOut = error.status === 401;
-      } else storageFault = reasonOf(error);
+      this.#noteFault(error);
     }
-    onChange();
+    this.#onChange();
   }
 
-  return {
-    schedule,
-    plan: kept.plan,
-    simulated: kept.simulated,
-    get progress() {
-      return session.progress;
-    },
-    get step() {
-      return currentStep(schedule, session.progress);
-    },
-    get withdrawalCode() {
-      return session.withdrawalCode;
-    },
-    get preferredHand() {
-      return session.preferredHand;
-    },
-    get calibration() {
-      return session.calibration;
-    },
-    get safekeeping() {
-      const memoryAlone = vault ? unsaved.length + unsavedMotion.size : outbox.size + motionOutbox.size;
-      return {
-        unsent: outbox.size + motionOutbox.size,
-        unsaved: memoryAlone,
-        storageFault,
-        online,
-        refusal,
-        lockedOut,
-      };
-    },
-    remaining: () => remainingSeconds(schedule, session.progress, now()),
-    apply: (event) => apply(event),
-    codeNoted() {
-      change({ ...session, withdrawalCode: null }, []);
-    },
-    seat: (trial) => client.seat(study, participant, token, trial),
-    keepMotion(trial, recording) {
-      const motion = { trial, recording };
-      motionOutbox.set(trial, motion);
-      unsavedMotion.set(trial, motion);
-      save();
-      onChange();
-    },
-    exchange() {
-      exchanging ??= exchangeOnce().finally(() => {
-        exchanging = null;
-      });
-      return exchanging;
-    },
-    settled: () => saving,
-  };
+  /** Sends what is unsent, then where the participant is; before consent not even that. */
+  async #tellServer(): Promise<void> {
+    const { study, participant, token } = this.#session;
+    this.#refusal = await sendRecords(this.#store, (records) => this.#client.send(study, participant, token, records));
+    for (const { trial, recording } of this.#store.motion) {
+      await this.#client.sendMotion(study, participant, token, trial, recording);
+      await this.#store.acknowledgeMotion(trial);
+    }
+    const { progress } = this;
+    if (progress.motion === null) return;
+    await this.#client.saveProgress(study, participant, token, progress);
+    this.#reported = progress;
+  }
+
+  #noteFault(error: unknown): void {
+    if (error instanceof ServerUnreachable) this.#online = false;
+    else if (error instanceof ServerRefusal) {
+      this.#refusal = error.message;
+      this.#lockedOut = error.status === 401;
+    } else this.#store.noteFault(error);
+  }
+
+  /** Each command is followed once, even across a reload. */
+  #follow({ number, command }: NumberedCommand): void {
+    if (number <= this.#session.commandsSeen) return;
+    const { step, running, motion } = this.progress;
+    const refusal = this.#applyAfter(command, number);
+    // The experimenter learns from the records why a command changed nothing.
+    if (refusal === null || motion === null) return;
+    const where = `${step}${running ? ', running' : ''}`;
+    this.apply({ type: 'remark', text: `The command "${command.type}" changed nothing at ${where}: ${refusal}` });
+  }
 }
