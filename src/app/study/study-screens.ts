@@ -4,6 +4,8 @@ import { type Question, questionnaires, scale } from '../../core/study/questionn
 import { type CalibrationStep, calibrationHeadline, calibrationInstruction } from '../../ui/calibration-dialog';
 import type { ParticipantSession, Safekeeping } from './participant-session';
 import type { ScreenButton, StudyScreen } from './study-screen';
+import type { PlayedStep } from './study-trial';
+import type { Prepared } from './trial-preparation';
 
 /** Everything that decides what a participant sees. */
 export interface StudySituation {
@@ -13,16 +15,16 @@ export interface StudySituation {
   readonly question: number;
   /** Handing in failed for want of an answer. */
   readonly triedToSubmit: boolean;
-  /** null: nobody is being measured. */
+  /** null: no one is being measured. */
   readonly calibration: CalibrationStep | null;
   /** Of the step at hand; null: not asked for yet. */
-  readonly prepared: { readonly state: 'loading' | 'ready' | 'failed'; readonly reason: string } | null;
+  readonly prepared: Prepared | null;
   /** Why the last wish changed nothing; null: it did. */
   readonly refusal: string | null;
   readonly playing: boolean;
-  /** Others without whom a trial that was started cannot begin; null: nobody. */
+  /** Others without whom a trial that was started cannot begin; null: it waits for no one. */
   readonly waitingFor: string | null;
-  /** The game stands because somebody else of the group pauses. */
+  /** The game stands because another of the group pauses. */
   readonly standing: boolean;
 }
 
@@ -43,7 +45,7 @@ const clock = (seconds: number): string => {
 
 const counted = (count: number, one: string) => `${count} ${one}${count === 1 ? '' : 's'}`;
 
-/** Where answers are, in a sentence; the second part says whether somebody should worry. */
+/** Where answers are, in a sentence; the second part says whether they are in danger. */
 export function safekeepingText({
   unsent,
   unsaved,
@@ -95,12 +97,15 @@ export const lockedOutScreen = (session: ParticipantSession): StudyScreen => ({
   trouble: true,
 });
 
+/** What the screens of a step have in common, unless they say otherwise. */
+type ScreenBase = Pick<StudyScreen, 'kicker' | 'figure' | 'part' | 'question' | 'hint' | 'footnote' | 'trouble'>;
+
 /** The screen of the step at hand; null while the participant plays. */
 export function screenOf(situation: StudySituation, actions: ScreenActions): StudyScreen | null {
-  const { session, inSession, calibration, prepared, refusal, playing } = situation;
+  const { session, refusal } = situation;
   const { step, progress } = session;
   const [kept, worrying] = safekeepingText(session.safekeeping);
-  const base = {
+  const base: ScreenBase = {
     kicker: kickerOf(session, step),
     figure: null,
     part: null,
@@ -109,171 +114,223 @@ export function screenOf(situation: StudySituation, actions: ScreenActions): Stu
     footnote: session.simulated ? `SIMULATED · ${kept}` : kept,
     trouble: worrying,
   };
-  const pause: ScreenButton = {
-    id: 'pause',
-    label: 'Pause',
-    look: 'plain',
-    act: () => actions.apply({ type: 'pause' }),
-  };
-
-  if (progress.paused) {
-    return {
-      ...base,
-      id: 'paused',
-      title: 'Paused',
-      text: ['Nothing runs on. Take the headset off if you like.'],
-      buttons: [{ id: 'resume', label: 'Continue', look: 'primary', act: () => actions.apply({ type: 'resume' }) }],
-    };
-  }
-
-  const enter: ScreenButton = { id: 'enter', label: 'Enter VR', look: 'primary', act: actions.enterVr };
+  if (progress.paused) return pausedScreen(base, actions);
   switch (step.kind) {
-    case 'calibration': {
-      if (!inSession) {
-        return {
-          ...base,
-          id: 'calibration-enter',
-          title: 'Put on the headset',
-          text: [
-            'Press the button, put the headset on and take both controllers. You are measured first: it takes five seconds.',
-          ],
-          buttons: [enter, pause],
-        };
-      }
-      if (calibration) {
-        const failed = calibration.kind === 'failed';
-        return {
-          ...base,
-          id: `calibration-${calibration.kind}`,
-          title: failed ? 'Once more, please' : 'Stand still',
-          text: [failed ? calibration.text : calibrationInstruction],
-          figure: failed ? null : calibrationHeadline(calibration),
-          part: calibration.kind === 'measuring' ? calibration.part : null,
-          buttons: failed ? [{ id: 'calibrate', label: 'Measure again', look: 'primary', act: actions.calibrate }] : [],
-        };
-      }
-      return {
-        ...base,
-        id: 'calibration',
-        title: 'Your measures',
-        text: [
-          'Stand straight inside the marked zone, look ahead and stretch both arms forward when the countdown begins.',
-          'Point at the button and pull the trigger, or touch it.',
-        ],
-        buttons: [{ id: 'calibrate', label: 'Measure me', look: 'primary', act: actions.calibrate }, pause],
-      };
-    }
+    case 'calibration':
+      return calibrationScreen(base, situation, actions);
     case 'tutorial':
-    case 'trial': {
-      if (playing && inSession && situation.waitingFor !== null) {
-        return {
-          ...base,
-          id: 'waiting',
-          title: 'You are ready',
-          text: [
-            `It begins as soon as ${situation.waitingFor} ${/,| and /.test(situation.waitingFor) ? 'are' : 'is'} ready too.`,
-          ],
-          buttons: [pause],
-        };
-      }
-      if (playing && inSession && situation.standing) {
-        return {
-          ...base,
-          id: 'standing',
-          title: 'Paused',
-          text: ['Somebody of your group pauses. The game goes on where it stopped.'],
-          buttons: [],
-        };
-      }
-      if (playing && inSession) return null;
-      if (!inSession) {
-        return {
-          ...base,
-          id: 'trial-enter',
-          title: 'Put on the headset',
-          text: ['The next part is played in the headset.'],
-          buttons: [enter, pause],
-        };
-      }
-      if (prepared?.state === 'failed') {
-        return {
-          ...base,
-          id: 'trial-failed',
-          title: 'Please call the experimenter',
-          text: [prepared.reason],
-          trouble: true,
-          buttons: [{ id: 'again', label: 'Try again', look: 'primary', act: actions.prepareAgain }],
-        };
-      }
-      const task = session.plan.tasks.find(({ id }) => id === step.task);
-      const practice = step.kind === 'tutorial';
-      const ready = prepared?.state === 'ready' && !progress.running;
-      const rules =
-        task?.game === 'ball'
-          ? 'Two of you throw balls, the third catches them with the basket. Every ball in the basket is a point for all three.'
-          : 'Shoot up to five arrows at the four targets. Each target counts once; the farther, the more points.';
-      const again = progress.attempt > 1 ? ['The last attempt was interrupted and does not count.'] : [];
-      return {
-        ...base,
-        id: practice ? 'tutorial-ready' : 'trial-ready',
-        title: practice ? 'Practice' : 'Ready?',
-        text: [
-          ...again,
-          rules,
-          practice
-            ? `Try it for ${Math.round(step.seconds)} seconds. This does not count.`
-            : `You have ${Math.round(step.seconds)} seconds from the start. Stay inside the marked zone.`,
-        ],
-        buttons: [
-          {
-            id: 'start',
-            label: ready ? 'Start' : 'Loading …',
-            look: ready ? 'primary' : 'off',
-            act: () => actions.apply({ type: 'start' }),
-          },
-          pause,
-        ],
-      };
-    }
-    case 'rest': {
-      const left = session.remaining() ?? 0;
-      return {
-        ...base,
-        id: 'rest',
-        title: 'A rest',
-        text: ['Relax your arms. It goes on by itself.'],
-        figure: clock(left),
-        part: step.seconds > 0 ? 1 - left / step.seconds : 1,
-        buttons: [pause],
-      };
-    }
+    case 'trial':
+      return playedScreen(base, step, situation, actions);
+    case 'rest':
+      return restScreen(base, step, session, actions);
     case 'questionnaire':
-      return questionScreen(situation, actions, base);
-    case 'end': {
-      const sent = session.safekeeping.unsent === 0;
-      return {
-        ...base,
-        id: 'end',
-        kicker: session.plan.title,
-        title: 'Thank you',
-        text: [
-          'You have done everything.',
-          sent
-            ? 'All your answers have arrived. You can close this page.'
-            : 'Please keep this page open until your answers have arrived.',
-        ],
-        buttons: [],
-      };
-    }
+      return questionScreen(base, situation, actions);
+    case 'end':
+      return endScreen(base, session);
     default:
       return null;
   }
 }
 
+const pauseButton = (actions: ScreenActions): ScreenButton => ({
+  id: 'pause',
+  label: 'Pause',
+  look: 'plain',
+  act: () => actions.apply({ type: 'pause' }),
+});
+
+const enterButton = (actions: ScreenActions): ScreenButton => ({
+  id: 'enter',
+  label: 'Enter VR',
+  look: 'primary',
+  act: actions.enterVr,
+});
+
+const pausedScreen = (base: ScreenBase, actions: ScreenActions): StudyScreen => ({
+  ...base,
+  id: 'paused',
+  title: 'Paused',
+  text: ['Nothing runs on. Take the headset off if you like.'],
+  buttons: [{ id: 'resume', label: 'Continue', look: 'primary', act: () => actions.apply({ type: 'resume' }) }],
+});
+
+function calibrationScreen(
+  base: ScreenBase,
+  { inSession, calibration }: StudySituation,
+  actions: ScreenActions,
+): StudyScreen {
+  if (!inSession) {
+    return {
+      ...base,
+      id: 'calibration-enter',
+      title: 'Put on the headset',
+      text: [
+        'Press the button, put the headset on and take both controllers. You are measured first: it takes five seconds.',
+      ],
+      buttons: [enterButton(actions), pauseButton(actions)],
+    };
+  }
+  if (calibration) return measuringScreen(base, calibration, actions);
+  return {
+    ...base,
+    id: 'calibration',
+    title: 'Your measures',
+    text: [
+      'Stand straight inside the marked zone, look ahead and stretch both arms forward when the countdown begins.',
+      'Point at the button and pull the trigger, or touch it.',
+    ],
+    buttons: [{ id: 'calibrate', label: 'Measure me', look: 'primary', act: actions.calibrate }, pauseButton(actions)],
+  };
+}
+
+function measuringScreen(base: ScreenBase, calibration: CalibrationStep, actions: ScreenActions): StudyScreen {
+  const id = `calibration-${calibration.kind}`;
+  if (calibration.kind === 'failed') {
+    return {
+      ...base,
+      id,
+      title: 'Once more, please',
+      text: [calibration.text],
+      buttons: [{ id: 'calibrate', label: 'Measure again', look: 'primary', act: actions.calibrate }],
+    };
+  }
+  return {
+    ...base,
+    id,
+    title: 'Stand still',
+    text: [calibrationInstruction],
+    figure: calibrationHeadline(calibration),
+    part: calibration.kind === 'measuring' ? calibration.part : null,
+    buttons: [],
+  };
+}
+
+/** Of a round or a practice; null while it is played. */
+function playedScreen(
+  base: ScreenBase,
+  step: PlayedStep,
+  situation: StudySituation,
+  actions: ScreenActions,
+): StudyScreen | null {
+  const { inSession, playing, waitingFor, standing, prepared } = situation;
+  if (!inSession) {
+    return {
+      ...base,
+      id: 'trial-enter',
+      title: 'Put on the headset',
+      text: ['The next part is played in the headset.'],
+      buttons: [enterButton(actions), pauseButton(actions)],
+    };
+  }
+  if (playing && waitingFor !== null) {
+    const several = /,| and /.test(waitingFor);
+    return {
+      ...base,
+      id: 'waiting',
+      title: 'You are ready',
+      text: [`It begins as soon as ${waitingFor} ${several ? 'are' : 'is'} ready too.`],
+      buttons: [pauseButton(actions)],
+    };
+  }
+  if (playing && standing) {
+    return {
+      ...base,
+      id: 'standing',
+      title: 'Paused',
+      text: ['One of your group pauses. The game goes on where it stopped.'],
+      buttons: [],
+    };
+  }
+  if (playing) return null;
+  if (prepared?.state === 'failed') {
+    return {
+      ...base,
+      id: 'trial-failed',
+      title: 'Please call the experimenter',
+      text: [prepared.reason],
+      trouble: true,
+      buttons: [{ id: 'again', label: 'Try again', look: 'primary', act: actions.prepareAgain }],
+    };
+  }
+  return readyScreen(base, step, situation, actions);
+}
+
+function readyScreen(
+  base: ScreenBase,
+  step: PlayedStep,
+  { session, prepared }: StudySituation,
+  actions: ScreenActions,
+): StudyScreen {
+  const { progress, plan } = session;
+  const practice = step.kind === 'tutorial';
+  const ready = prepared?.state === 'ready' && !progress.running;
+  const rules =
+    plan.tasks.find(({ id }) => id === step.task)?.game === 'ball'
+      ? 'Two of you throw balls, the third catches them with the basket. Every ball in the basket is a point for all three.'
+      : 'Shoot up to five arrows at the four targets. Each target counts once; the farther, the more points.';
+  const again = progress.attempt > 1 ? ['The last attempt was interrupted and does not count.'] : [];
+  const seconds = Math.round(step.seconds);
+  return {
+    ...base,
+    id: practice ? 'tutorial-ready' : 'trial-ready',
+    title: practice ? 'Practice' : 'Ready?',
+    text: [
+      ...again,
+      rules,
+      practice
+        ? `Try it for ${seconds} seconds. This does not count.`
+        : `You have ${seconds} seconds from the start. Stay inside the marked zone.`,
+    ],
+    buttons: [
+      {
+        id: 'start',
+        label: ready ? 'Start' : 'Loading …',
+        look: ready ? 'primary' : 'off',
+        act: () => actions.apply({ type: 'start' }),
+      },
+      pauseButton(actions),
+    ],
+  };
+}
+
+function restScreen(
+  base: ScreenBase,
+  { seconds }: Extract<StudyStep, { kind: 'rest' }>,
+  session: ParticipantSession,
+  actions: ScreenActions,
+): StudyScreen {
+  const left = session.remaining() ?? 0;
+  return {
+    ...base,
+    id: 'rest',
+    title: 'A rest',
+    text: ['Relax your arms. It goes on by itself.'],
+    figure: clock(left),
+    part: seconds > 0 ? 1 - left / seconds : 1,
+    buttons: [pauseButton(actions)],
+  };
+}
+
+function endScreen(base: ScreenBase, { plan, safekeeping }: ParticipantSession): StudyScreen {
+  return {
+    ...base,
+    id: 'end',
+    kicker: plan.title,
+    title: 'Thank you',
+    text: [
+      'You have done everything.',
+      safekeeping.unsent === 0
+        ? 'All your answers have arrived. You can close this page.'
+        : 'Please keep this page open until your answers have arrived.',
+    ],
+    buttons: [],
+  };
+}
+
 function questionScreen(
+  base: ScreenBase,
   { session, question: index, triedToSubmit, refusal }: StudySituation,
   actions: ScreenActions,
-  base: Pick<StudyScreen, 'kicker' | 'figure' | 'part' | 'hint' | 'footnote' | 'trouble'>,
 ): StudyScreen {
   const questions = screenQuestions(session);
   const { draft } = session.progress;
@@ -311,7 +368,7 @@ function questionScreen(
     },
     buttons: [
       { id: 'back', label: 'Back', look: at === 0 ? 'off' : 'plain', act: () => actions.goTo(at - 1) },
-      { id: 'pause', label: 'Pause', look: 'plain', act: () => actions.apply({ type: 'pause' }) },
+      pauseButton(actions),
       last
         ? { id: 'submit', label: 'Hand in', look: 'primary', act: actions.submit }
         : { id: 'next', label: 'Next', look: 'primary', act: () => actions.goTo(at + 1) },

@@ -1,10 +1,10 @@
 import type { Calibration } from '../../core/body/calibration';
 import type { EstimatorName } from '../../core/estimation/pose-estimator';
 import type { StudyStep } from '../../core/study/plan';
-import { createTrialLog, type FrameListener, type TrialOutcome } from '../../core/study/trial-log';
+import { createTrialLog, type FrameListener, type TrialLog, type TrialOutcome } from '../../core/study/trial-log';
 import { writeRecording } from '../../core/tracking/recording';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
-import type { TaskRunner } from './task-runner';
+import type { TaskEnd, TaskRunner } from './task-runner';
 
 /** The steps that are played. */
 export type PlayedStep = Extract<StudyStep, { kind: 'trial' | 'tutorial' }>;
@@ -30,9 +30,9 @@ export interface FinishedTrial {
 export interface PlayedTrial {
   /** Step, run and attempt: when it changes under the trial, the trial is void. */
   readonly key: string;
-  /** Others without whom it cannot begin; null: nobody. */
+  /** Others without whom it cannot begin; null: it waits for no one. */
   readonly waitingFor: string | null;
-  /** The game's clock stands because somebody else of the group pauses. */
+  /** The game's clock stands because another of the group pauses. */
   readonly standing: boolean;
   /** Stops game and clock, or lets them go on; nothing is counted in between. */
   pause(on: boolean): void;
@@ -46,100 +46,127 @@ export interface PlayedTrial {
 const afterglow = 2.5;
 /** Tracked frames kept per trial: some 14 MB, below what the server takes at once. */
 const mostMotionFrames = 40_000;
-/** Eyes this far below where calibration found them are those of somebody who sat down [m]. */
+/** Eyes this far below where calibration found them are those of a person who sat down [m]. */
 const seatedDrop = 0.25;
 
-/** Gives the start signal. `motion`: whether tracked frames are kept; `seed` lays the trial out. */
-export function playTrial(
-  step: PlayedStep,
-  runner: TaskRunner,
-  host: TrialHost,
-  { key, motion, seed }: { readonly key: string; readonly motion: boolean; readonly seed: number },
-): PlayedTrial {
-  const log = createTrialLog(host.device(), host.calibration());
-  const frames: TrackingFrame[] | null = motion ? [] : null;
-  let startTime: number | null = null;
-  let lastTime = 0;
-  let endedAt: number | null = null;
-  let fellBack = false;
-  let paused = false;
-  /** For how long it stood in all [s], and since when it stands now. */
-  let stood = 0;
-  let stoppedAt: number | null = null;
+export interface TrialOptions {
+  readonly key: string;
+  /** Whether tracked frames are kept. */
+  readonly motion: boolean;
+  /** Lays the trial out. */
+  readonly seed: number;
+}
 
-  for (const name of runner.assists()) log.assist(name);
-  host.listenToFrames((spent, late) => {
-    if (!paused && !runner.standing && endedAt === null && runner.waitingFor === null) log.frame(spent, late);
-  });
-  runner.start({ seed, seconds: step.seconds });
+/** Gives the start signal. */
+export const playTrial = (step: PlayedStep, runner: TaskRunner, host: TrialHost, options: TrialOptions): PlayedTrial =>
+  new LoggedTrial(step, runner, host, options);
 
-  function putAway(): void {
-    host.listenToFrames(null);
-    runner.abort();
+class LoggedTrial implements PlayedTrial {
+  readonly key: string;
+  readonly #step: PlayedStep;
+  readonly #runner: TaskRunner;
+  readonly #host: TrialHost;
+  readonly #log: TrialLog;
+  /** null: none are kept. */
+  readonly #frames: TrackingFrame[] | null;
+  /** On the trial's clock, which stands in pauses [s]; null: not yet. */
+  #startTime: number | null = null;
+  #endedAt: number | null = null;
+  #lastTime = 0;
+  #fellBack = false;
+  #paused = false;
+  /** For how long the trial stood in all [s], and since when on the page's clock it stands now. */
+  #stood = 0;
+  #stoppedAt: number | null = null;
+
+  constructor(step: PlayedStep, runner: TaskRunner, host: TrialHost, { key, motion, seed }: TrialOptions) {
+    this.key = key;
+    this.#step = step;
+    this.#runner = runner;
+    this.#host = host;
+    this.#log = createTrialLog(host.device(), host.calibration());
+    this.#frames = motion ? [] : null;
+    for (const name of runner.assists()) this.#log.assist(name);
+    host.listenToFrames((spent, late) => {
+      if (!this.#stands && this.#endedAt === null && runner.waitingFor === null) this.#log.frame(spent, late);
+    });
+    runner.start({ seed, seconds: step.seconds });
   }
 
-  function finish(end: NonNullable<TaskRunner['end']>): FinishedTrial {
-    putAway();
-    const recorded = frames && frames.length > 0 ? frames : null;
-    const outcome = log.finish({ ...end, motionFrames: recorded?.length ?? 0 });
-    const { calibration } = outcome;
-    const recording =
-      recorded &&
-      writeRecording({
-        device: outcome.device.name,
-        rateHz: outcome.device.refreshRateHz ?? 60,
-        calibration,
-        frames: recorded,
-      });
-    return { outcome, recording };
+  get waitingFor(): string | null {
+    return this.#runner.waitingFor;
   }
 
-  return {
-    key,
-    get waitingFor() {
-      return runner.waitingFor;
-    },
-    get standing() {
-      return runner.standing;
-    },
-    pause(on) {
-      if (on === paused) return;
-      paused = on;
-      runner.pause(on);
-    },
-    follow(pageTime, frame) {
-      if (runner.waitingFor !== null) return null;
-      if (paused || runner.standing) {
-        stoppedAt ??= pageTime;
-        return null;
-      }
-      if (stoppedAt !== null) stood += pageTime - stoppedAt;
-      stoppedAt = null;
-      const time = pageTime - stood;
-      if (startTime === null) {
-        startTime = time;
-        const { eyeHeight } = host.calibration();
-        if ((frame?.head.position.y ?? eyeHeight) < eyeHeight - seatedDrop) log.assist('seated');
-      }
-      for (const event of runner.take()) {
-        if (event.type === 'shot') log.shot();
-        else log.event(event);
-      }
-      if (endedAt !== null) return runner.end && time - endedAt > afterglow ? finish(runner.end) : null;
-      log.tracked(time - startTime, {
-        head: frame !== null,
-        leftHand: frame?.leftHand != null,
-        rightHand: frame?.rightHand != null,
-      });
-      if (host.estimator() !== step.estimator && !fellBack) {
-        fellBack = true;
-        log.assist(`estimator fell back to ${host.estimator()}`);
-      }
-      if (frame && frames && frames.length < mostMotionFrames && time > lastTime) frames.push(frame);
-      lastTime = time;
-      if (runner.end) endedAt = time;
+  get standing(): boolean {
+    return this.#runner.standing;
+  }
+
+  pause(on: boolean): void {
+    if (on === this.#paused) return;
+    this.#paused = on;
+    this.#runner.pause(on);
+  }
+
+  follow(pageTime: number, frame: TrackingFrame | null): FinishedTrial | null {
+    if (this.#runner.waitingFor !== null) return null;
+    if (this.#stands) {
+      this.#stoppedAt ??= pageTime;
       return null;
-    },
-    abort: putAway,
-  };
+    }
+    if (this.#stoppedAt !== null) this.#stood += pageTime - this.#stoppedAt;
+    this.#stoppedAt = null;
+    const time = pageTime - this.#stood;
+    this.#startTime ??= this.#begin(time, frame);
+    for (const event of this.#runner.take()) {
+      if (event.type === 'shot') this.#log.shot();
+      else this.#log.event(event);
+    }
+    const { end } = this.#runner;
+    if (this.#endedAt !== null) return end && time - this.#endedAt > afterglow ? this.#finish(end) : null;
+    this.#note(time, frame);
+    if (end) this.#endedAt = time;
+    return null;
+  }
+
+  abort(): void {
+    this.#host.listenToFrames(null);
+    this.#runner.abort();
+  }
+
+  get #stands(): boolean {
+    return this.#paused || this.#runner.standing;
+  }
+
+  /** The first frame of the trial; returns its time. */
+  #begin(time: number, frame: TrackingFrame | null): number {
+    const { eyeHeight } = this.#host.calibration();
+    if ((frame?.head.position.y ?? eyeHeight) < eyeHeight - seatedDrop) this.#log.assist('seated');
+    return time;
+  }
+
+  /** What is seen and drawn in a frame of the trial. */
+  #note(time: number, frame: TrackingFrame | null): void {
+    this.#log.tracked(time - (this.#startTime ?? time), {
+      head: frame !== null,
+      leftHand: frame?.leftHand != null,
+      rightHand: frame?.rightHand != null,
+    });
+    const drawn = this.#host.estimator();
+    if (drawn !== this.#step.estimator && !this.#fellBack) {
+      this.#fellBack = true;
+      this.#log.assist(`estimator fell back to ${drawn}`);
+    }
+    const frames = this.#frames;
+    if (frame && frames && frames.length < mostMotionFrames && time > this.#lastTime) frames.push(frame);
+    this.#lastTime = time;
+  }
+
+  #finish(end: TaskEnd): FinishedTrial {
+    this.abort();
+    const frames = this.#frames ?? [];
+    const outcome = this.#log.finish({ ...end, motionFrames: frames.length });
+    const { device, calibration } = outcome;
+    const recorded = { device: device.name, rateHz: device.refreshRateHz ?? 60, calibration, frames };
+    return { outcome, recording: frames.length > 0 ? writeRecording(recorded) : null };
+  }
 }

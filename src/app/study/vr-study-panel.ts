@@ -1,15 +1,16 @@
 import { Group, Vector3 } from 'three';
-import { createVrPanel, fillRounded, vrColors, vrFont, wrap } from '../../ui/vr-panel';
+import { createVrPanel } from '../../ui/vr-panel';
 import type { Pointer } from '../../ui/vr-pointers';
-import { createPanelTouch, type PanelTarget } from '../../ui/vr-touch';
-import type { ScreenButton, StudyScreen } from './study-screen';
+import { createPanelTouch } from '../../ui/vr-touch';
+import type { StudyScreen } from './study-screen';
+import { height, paintSheet, pixelsPerMetre, type Target, targetsOf, width } from './study-sheet';
 
 /** The study in the headset: one sheet at arm's length and a bit, with targets as big as a palm. */
 export interface VrStudyPanel {
   readonly object: Group;
   /** null hides it. */
   show(screen: StudyScreen | null): void;
-  /** Puts the sheet where somebody with this head (floor frame) looks; call it with every frame. */
+  /** Puts the sheet where a person with this head (floor frame) looks; call it with every frame. */
   follow(head: {
     readonly position: { x: number; y: number; z: number };
     readonly forward: { x: number; z: number };
@@ -21,224 +22,106 @@ export interface VrStudyPanel {
   targets(): readonly { readonly id: string; readonly at: readonly [number, number, number] }[];
 }
 
-const width = 1200;
-const height = 880;
-const margin = 60;
-const inner = width - 2 * margin;
 /** How far before the eyes the sheet stands, how far below them its middle lies [m]. */
 const reach = 1.25;
 const below = 0.12;
-/** Whoever turns away further than this [rad] or steps away further than this [m] gets the sheet anew. */
+/** The sheet is placed anew before a person who turns [rad] or steps [m] further away than this. */
 const mostTurn = 0.7;
 const mostStep = 0.8;
 
-interface Target extends PanelTarget {
-  readonly kind: 'button' | 'scale' | 'dot';
-  readonly label: string;
-  readonly look: ScreenButton['look'] | 'chosen' | 'answered' | 'open' | 'missing' | 'here';
-  act(): void;
-}
+export const createVrStudyPanel = (): VrStudyPanel => new StudySheet();
 
-function targetsOf({ question, buttons }: StudyScreen): readonly Target[] {
-  const targets: Target[] = [];
-  if (question) {
-    const step = 52;
-    const left = width - margin - question.all.length * step;
-    for (const [index, { id, state }] of question.all.entries()) {
-      targets.push({
-        kind: 'dot',
-        id: `go-${id}`,
-        label: String(index + 1),
-        look: index + 1 === question.number ? 'here' : state,
-        at: [left + index * step, 40, 44, 44],
-        act: () => question.goTo(index),
-      });
-    }
-    const gap = 18;
-    const wide = (inner - gap * (question.scale.length - 1)) / question.scale.length;
-    for (const [index, { value, label }] of question.scale.entries()) {
-      targets.push({
-        kind: 'scale',
-        id: `answer-${value}`,
-        label,
-        look: question.answer === value ? 'chosen' : 'plain',
-        at: [margin + index * (wide + gap), 410, wide, 190],
-        act: () => question.choose(value),
-      });
-    }
+class StudySheet implements VrStudyPanel {
+  readonly object = new Group();
+  readonly #panel = createVrPanel(width, height, pixelsPerMetre);
+  readonly #touch = createPanelTouch(this.#panel);
+  readonly #centre = new Vector3();
+  #screen: StudyScreen | null = null;
+  #targets: readonly Target[] = [];
+  /** Those of the targets that can be pressed. */
+  #open: readonly Target[] = [];
+  #hovered: string | null = null;
+  #drawn = '';
+  #placed = false;
+
+  constructor() {
+    this.object.add(this.#panel.mesh);
+    this.object.visible = false;
   }
-  const gap = 24;
-  const wide = buttons.length === 1 ? 560 : (inner - gap * (buttons.length - 1)) / Math.max(1, buttons.length);
-  const left = buttons.length === 1 ? (width - wide) / 2 : margin;
-  for (const [index, { id, label, look, act }] of buttons.entries()) {
-    targets.push({ kind: 'button', id, label, look, at: [left + index * (wide + gap), 692, wide, 116], act });
+
+  get pointedAt(): string | null {
+    return this.#hovered;
   }
-  return targets;
-}
 
-const fillOf = (look: Target['look'], hovered: boolean): string => {
-  if (look === 'chosen') return vrColors.accent;
-  if (look === 'primary') return hovered ? '#ffc98e' : vrColors.accent;
-  if (look === 'answered') return 'rgba(255, 180, 104, 0.42)';
-  return hovered || look === 'here' ? vrColors.liftMore : vrColors.lift;
-};
+  show(screen: StudyScreen | null): void {
+    this.#screen = screen;
+    this.#targets = screen ? targetsOf(screen) : [];
+    this.#open = this.#targets.filter(({ look }) => look !== 'off');
+    if (!screen) this.#placed = false;
+    this.object.visible = this.#placed;
+    this.#redraw();
+  }
 
-export function createVrStudyPanel(): VrStudyPanel {
-  const panel = createVrPanel(width, height, 1000);
-  const object = new Group();
-  object.add(panel.mesh);
-  object.visible = false;
-  const touch = createPanelTouch(panel);
-  let screen: StudyScreen | null = null;
-  let targets: readonly Target[] = [];
-  let hovered: string | null = null;
-  let drawn = '';
-  let placed = false;
+  follow({ position, forward }: Parameters<VrStudyPanel['follow']>[0]): void {
+    if (!this.#screen) return;
+    const { object } = this;
+    const yaw = Math.atan2(-forward.x, -forward.z);
+    if (this.#placed && !this.#isLeft(position, yaw)) return;
+    object.rotation.y = yaw;
+    object.position.set(position.x - reach * Math.sin(yaw), position.y - below, position.z - reach * Math.cos(yaw));
+    this.#placed = true;
+    object.visible = true;
+  }
 
-  function paint(context: CanvasRenderingContext2D, shown: StudyScreen): void {
-    fillRounded(context, [2, 2, width - 4, height - 4], 48, 'rgba(18, 24, 35, 0.96)', vrColors.line);
-    context.textBaseline = 'middle';
-    context.textAlign = 'left';
-    context.fillStyle = shown.trouble ? '#ff8f7d' : vrColors.inkSoft;
-    context.font = `600 32px ${vrFont}`;
-    context.fillText(shown.kicker, margin, 64, shown.question ? 560 : inner);
-
-    context.fillStyle = vrColors.ink;
-    const { question } = shown;
-    if (question) {
-      context.font = `600 50px ${vrFont}`;
-      const lines = wrap(context, question.text, inner);
-      for (const [index, line] of lines.entries()) context.fillText(line, margin, 180 + index * 66);
-    } else {
-      context.font = `650 60px ${vrFont}`;
-      context.fillText(shown.title, margin, 150, inner);
-      context.font = `400 38px ${vrFont}`;
-      let y = 236;
-      for (const paragraph of shown.text) {
-        for (const line of wrap(context, paragraph, inner)) {
-          context.fillText(line, margin, y);
-          y += 52;
-        }
-        y += 14;
-      }
-      if (shown.figure !== null) {
-        context.textAlign = 'center';
-        context.fillStyle = vrColors.accent;
-        context.font = `650 ${shown.figure.length > 6 ? 84 : 170}px ${vrFont}`;
-        context.fillText(shown.figure, width / 2, Math.max(y + 90, 500));
-      }
-      if (shown.part !== null) {
-        fillRounded(context, [margin, 632, inner, 22], 11, vrColors.lift);
-        if (shown.part > 0)
-          fillRounded(context, [margin, 632, Math.max(22, inner * shown.part), 22], 11, vrColors.accent);
-      }
+  point(pointers: readonly Pointer[]): void {
+    if (!this.object.visible) {
+      for (const pointer of pointers) pointer.showRay(null);
+      return;
     }
+    const { pointedAt, pressed } = this.#touch.follow(pointers, this.#open);
+    this.#hovered = pointedAt?.id ?? null;
+    // One press, one action: the first may have changed the screen.
+    pressed[0]?.act();
+    this.#redraw();
+  }
 
-    context.textAlign = 'center';
-    for (const target of targets) {
-      const [x, y, w, h] = target.at;
-      const { kind, look, label } = target;
-      const over = target.id === hovered && look !== 'off';
-      fillRounded(
-        context,
-        [x, y, w, h],
-        kind === 'dot' ? 22 : 28,
-        fillOf(look, over),
-        look === 'missing' ? vrColors.accent : over ? vrColors.ink : undefined,
+  targets(): ReturnType<VrStudyPanel['targets']> {
+    if (!this.object.visible) return [];
+    const { mesh } = this.#panel;
+    mesh.updateWorldMatrix(true, false);
+    return this.#open.map(({ id, at: [x, y, w, h] }) => {
+      const {
+        x: across,
+        y: up,
+        z: deep,
+      } = mesh.localToWorld(
+        this.#centre.set((x + w / 2 - width / 2) / pixelsPerMetre, (height / 2 - y - h / 2) / pixelsPerMetre, 0),
       );
-      context.globalAlpha = look === 'off' ? 0.4 : 1;
-      context.fillStyle = look === 'chosen' || look === 'primary' ? vrColors.accentInk : vrColors.ink;
-      if (kind === 'scale') {
-        context.font = `650 72px ${vrFont}`;
-        context.fillText(target.id.replace('answer-', ''), x + w / 2, y + 76);
-        context.font = `500 34px ${vrFont}`;
-        context.fillText(label, x + w / 2, y + 148, w - 16);
-      } else {
-        context.font = `600 ${kind === 'dot' ? 24 : 44}px ${vrFont}`;
-        context.fillText(label, x + w / 2, y + h / 2 + 2, w - 20);
-      }
-      context.globalAlpha = 1;
-    }
-    if (shown.hint !== null) {
-      context.fillStyle = vrColors.accent;
-      context.font = `500 34px ${vrFont}`;
-      context.textAlign = 'left';
-      context.fillText(shown.hint, margin, 650, inner);
-    }
-    context.textAlign = 'left';
-    context.fillStyle = vrColors.inkSoft;
-    context.font = `400 26px ${vrFont}`;
-    context.fillText(shown.footnote, margin, 842, inner);
+      return { id, at: [across, up, deep] as const };
+    });
   }
 
-  function redraw(): void {
+  /** Whether a person at this place [m, floor frame] who looks this way [rad] has the sheet no longer before their eyes. */
+  #isLeft({ x, z }: { readonly x: number; readonly z: number }, yaw: number): boolean {
+    const { position, rotation } = this.object;
+    const turn = yaw - rotation.y;
+    // Where the person stood when the sheet was placed.
+    const fromX = position.x + reach * Math.sin(rotation.y);
+    const fromZ = position.z + reach * Math.cos(rotation.y);
+    return (
+      Math.abs(Math.atan2(Math.sin(turn), Math.cos(turn))) >= mostTurn || Math.hypot(fromX - x, fromZ - z) >= mostStep
+    );
+  }
+
+  #redraw(): void {
+    const screen = this.#screen;
     if (!screen) return;
-    const shown = screen;
     // A bar moves in hundredths: every upload of the texture costs.
-    const key = JSON.stringify([shown, hovered], (_, value) =>
+    const key = JSON.stringify([screen, this.#hovered], (_, value) =>
       typeof value === 'number' ? Math.round(value * 100) / 100 : value,
     );
-    if (key === drawn) return;
-    drawn = key;
-    panel.draw((context) => paint(context, shown));
+    if (key === this.#drawn) return;
+    this.#drawn = key;
+    this.#panel.draw((context) => paintSheet(context, screen, { targets: this.#targets, hovered: this.#hovered }));
   }
-
-  const centre = new Vector3();
-  return {
-    object,
-    show(next) {
-      if (!next) {
-        object.visible = false;
-        placed = false;
-        screen = null;
-        targets = [];
-        return;
-      }
-      screen = next;
-      targets = targetsOf(next);
-      object.visible = placed;
-      redraw();
-    },
-    follow({ position, forward }) {
-      if (!screen) return;
-      const yaw = Math.atan2(-forward.x, -forward.z);
-      const turned = Math.abs(Math.atan2(Math.sin(yaw - object.rotation.y), Math.cos(yaw - object.rotation.y)));
-      const facing = new Vector3(-Math.sin(object.rotation.y), 0, -Math.cos(object.rotation.y));
-      const stood = object.position.clone().addScaledVector(facing, -reach);
-      const stepped = Math.hypot(stood.x - position.x, stood.z - position.z);
-      if (placed && turned < mostTurn && stepped < mostStep) return;
-      object.rotation.y = yaw;
-      object.position.set(position.x - reach * Math.sin(yaw), position.y - below, position.z - reach * Math.cos(yaw));
-      placed = true;
-      object.visible = true;
-    },
-    point(pointers) {
-      if (!object.visible) {
-        for (const pointer of pointers) pointer.showRay(null);
-        return;
-      }
-      const { pointedAt, pressed } = touch.follow(
-        pointers,
-        targets.filter(({ look }) => look !== 'off'),
-      );
-      hovered = pointedAt?.id ?? null;
-      // One press, one action: the first may have changed the screen.
-      pressed[0]?.act();
-      redraw();
-    },
-    get pointedAt() {
-      return hovered;
-    },
-    targets() {
-      if (!object.visible) return [];
-      panel.mesh.updateWorldMatrix(true, false);
-      return targets
-        .filter(({ look }) => look !== 'off')
-        .map(({ id, at: [x, y, w, h] }) => {
-          centre.set((x + w / 2 - width / 2) / 1000, (height / 2 - y - h / 2) / 1000, 0);
-          panel.mesh.localToWorld(centre);
-          return { id, at: [centre.x, centre.y, centre.z] as const };
-        });
-    },
-  };
 }
