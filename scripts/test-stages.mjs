@@ -49,6 +49,15 @@ export const stages = {
       ),
     ],
   },
+  // The package, built as it is published: its parts, its types for every resolution of modules it is made for, what each entry weighs.
+  library: {
+    suite: 'day',
+    commands: () => [
+      [process.execPath, 'scripts/build-library.mjs'],
+      node('publint/src/cli.js', 'dist-library', '--strict'),
+      node('@arethetypeswrong/cli/dist/index.js', '--pack', 'dist-library', '--profile', 'esm-only', '--quiet'),
+    ],
+  },
   unit: {
     suite: 'day',
     runner: 'vitest',

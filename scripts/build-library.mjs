@@ -1,0 +1,158 @@
+// Builds the package “threepoint” into dist-library/: ESM with source maps, types, the learned network's weights, the models for the runtime,
+// the mannequin; and prints what each entry weighs. `npm pack ./dist-library` makes the tarball.
+import { copyFileSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { dirname, join } from 'node:path';
+import { pathToFileURL } from 'node:url';
+import { brotliCompressSync } from 'node:zlib';
+import { rolldown } from 'rolldown';
+import { main, root, run, SetupError } from './run-command.mjs';
+
+const out = join(root, 'dist-library');
+const entries = ['index', 'three', 'onnx', 'onnx-worker'];
+const own = JSON.parse(readFileSync(join(root, 'package.json'), 'utf8'));
+const version = (name) => own.dependencies[name];
+/** The next minor versions of a package keep what we use; three has no such promise, its peers say from which on it works. */
+const peers = {
+  '@pixiv/three-vrm': `^${version('@pixiv/three-vrm')}`,
+  'onnxruntime-web': `^${version('onnxruntime-web')}`,
+  three: `>=${version('three')}`,
+};
+const external = (id) => [...Object.keys(peers), 'valibot'].some((name) => id === name || id.startsWith(`${name}/`));
+
+/** Files of the package beside its code, and where they lie here. */
+const copied = {
+  'models/learned.bin': 'public/models/learned.bin',
+  'models/learned.json': 'public/models/learned.json',
+  'models/learned.onnx': 'public/models/learned.onnx',
+  'models/paper.json': 'public/models/paper.json',
+  'models/paper.onnx': 'public/models/paper.onnx',
+  'avatars/mannequin.vrm': 'public/avatars/mannequin.vrm',
+  LICENSE: 'LICENSE',
+  'README.md': 'docs/library.md',
+};
+
+const entry = (name) => ({ types: `./types/lib/${name}.d.ts`, default: `./${name}.js` });
+
+const manifest = {
+  name: own.name,
+  version: own.version,
+  description: own.description,
+  license: own.license,
+  keywords: ['webxr', 'three', 'avatar', 'vrm', 'inverse-kinematics', 'body-tracking'],
+  type: 'module',
+  sideEffects: ['./onnx-worker.js'],
+  exports: {
+    '.': entry('index'),
+    './three': entry('three'),
+    './onnx': entry('onnx'),
+    './onnx-worker': entry('onnx-worker'),
+    './models/*': './models/*',
+    './avatars/*': './avatars/*',
+    './package.json': './package.json',
+  },
+  // For tools that read no `exports`.
+  types: './types/lib/index.d.ts',
+  dependencies: { valibot: `^${version('valibot')}` },
+  peerDependencies: peers,
+  peerDependenciesMeta: { 'onnxruntime-web': { optional: true } },
+};
+
+/** In the package the weights lie beside the code: the sources' own way to them leads nowhere there. */
+const weightsBeside = {
+  name: 'weights-beside',
+  transform: {
+    filter: { id: /load-learned\.ts$/ },
+    handler(code) {
+      const moved = code.replace("'../../public/models/learned.bin'", "'./models/learned.bin'");
+      if (moved === code) throw new Error('load-learned.ts no longer states where the weights lie');
+      return { code: moved, map: null };
+    },
+  },
+};
+
+async function bundle(names) {
+  return rolldown({
+    input: Object.fromEntries(names.map((name) => [name, join(root, `src/lib/${name}.ts`)])),
+    cwd: root,
+    platform: 'browser',
+    external,
+    plugins: [weightsBeside],
+    tsconfig: join(root, 'tsconfig.json'),
+  });
+}
+
+/** Chunks lie beside the entries: what is stated relative to one is true of all. */
+const output = { format: 'esm', chunkFileNames: 'shared-[hash].js' };
+
+async function writeCode() {
+  const build = await bundle(entries);
+  await build.write({ ...output, dir: out, sourcemap: true });
+  await build.close();
+}
+
+/** Declarations of the compiler, a file for each module; Node's resolution wants the names of files in full. */
+async function writeTypes() {
+  const { code } = await run(process.execPath, ['node_modules/typescript/bin/tsc', '-p', 'tsconfig.library.json']);
+  if (code !== 0) throw new SetupError(`The library's types could not be written: exit code ${code}.`);
+  for (const file of readdirSync(join(out, 'types'), { recursive: true })) {
+    if (!file.endsWith('.d.ts')) continue;
+    const path = join(out, 'types', file);
+    writeFileSync(
+      path,
+      readFileSync(path, 'utf8').replace(/(\b(?:from|import)\s*\(?\s*['"])(\.{1,2}\/[^'"]+?)(?=['"])/g, '$1$2.js'),
+    );
+  }
+}
+
+function writeFiles() {
+  for (const [to, from] of Object.entries(copied)) {
+    mkdirSync(dirname(join(out, to)), { recursive: true });
+    copyFileSync(join(root, from), join(out, to));
+  }
+  writeFileSync(join(out, 'package.json'), `${JSON.stringify(manifest, null, 2)}\n`);
+}
+
+/** Bytes of an entry with all that it loads at once, minified, and the same as brotli; what it loads later or as a peer is not in it. */
+async function weigh(name) {
+  const build = await bundle([name]);
+  const { output: files } = await build.generate({ ...output, minify: true });
+  await build.close();
+  const needed = new Set();
+  const add = (file) => {
+    if (needed.has(file)) return;
+    needed.add(file);
+    for (const imported of files.find(({ fileName }) => fileName === file)?.imports ?? []) add(imported);
+  };
+  add(`${name}.js`);
+  const code = files.filter(({ fileName }) => needed.has(fileName)).map((file) => Buffer.from(file.code));
+  const size = (buffers) => buffers.reduce((sum, { length }) => sum + length, 0);
+  return { min: size(code), brotli: size(code.map((buffer) => brotliCompressSync(buffer))) };
+}
+
+export async function buildLibrary() {
+  rmSync(out, { recursive: true, force: true });
+  await writeCode();
+  await writeTypes();
+  writeFiles();
+}
+
+async function tellSizes() {
+  const kilobytes = (bytes) => `${(bytes / 1000).toFixed(1)} kB`.padStart(10);
+  console.log(`${''.padEnd(24)}${'min'.padStart(10)}${'brotli'.padStart(10)}`);
+  for (const name of entries) {
+    const { min, brotli } = await weigh(name);
+    const called = name === 'index' ? own.name : `${own.name}/${name}`;
+    console.log(`${called.padEnd(24)}${kilobytes(min)}${kilobytes(brotli)}`);
+  }
+  const weights = readFileSync(join(out, 'models/learned.bin'));
+  console.log(
+    `${'models/learned.bin'.padEnd(24)}${kilobytes(weights.length)}${kilobytes(brotliCompressSync(weights).length)}`,
+  );
+}
+
+if (import.meta.url === pathToFileURL(process.argv[1]).href) {
+  await main(async () => {
+    await buildLibrary();
+    await tellSizes();
+  });
+}
