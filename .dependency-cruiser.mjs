@@ -10,7 +10,8 @@ const coreFolders = {
   estimation: ['math', 'body', 'tracking', 'errors'],
   games: ['math', 'tracking'],
   protocol: ['math', 'body', 'tracking', 'games'],
-  room: ['math', 'body', 'tracking', 'games', 'protocol', 'errors'],
+  room: ['math', 'body', 'tracking', 'protocol', 'errors'],
+  'match-policies': ['math', 'games', 'protocol', 'room'],
   study: ['math', 'body', 'tracking', 'estimation', 'errors'],
 };
 
@@ -47,14 +48,17 @@ export default {
         'core runs in the page, in the server and in tests alike: no package, no Node module and no adapter, so that it ' +
         'can neither draw nor wait nor ask the time.',
       severity: 'error',
-      from: { path: '^src/core/', pathNot: '^src/core/study/|^src/core/protocol/(messages|ball-snapshot)\\.ts$' },
+      from: {
+        path: '^src/core/',
+        pathNot: '^src/core/study/|^src/core/protocol/(messages|ball-messages|ball-snapshot)\\.ts$',
+      },
       to: { pathNot: '^src/core/' },
     },
     {
       name: 'core-messages-are-checked',
       comment: 'As core-is-pure, with valibot: messages arrive from strangers and are checked field by field.',
       severity: 'error',
-      from: { path: '^src/core/protocol/(messages|ball-snapshot)\\.ts$' },
+      from: { path: '^src/core/protocol/(messages|ball-messages|ball-snapshot)\\.ts$' },
       to: { pathNot: ['^src/core/', packagePath('valibot')] },
     },
     {
@@ -107,6 +111,14 @@ export default {
         path: '^src/(inference|lib/onnx)',
         pathNot: '^src/inference/(load-plain-regressor|model-files)\\.ts$',
       },
+    },
+    {
+      name: 'room-reaches-no-game',
+      comment:
+        'The Room hosts any game: what is particular to one comes in as its MatchPolicy, not through a third module either.',
+      severity: 'error',
+      from: { path: '^src/core/room/' },
+      to: { path: '^src/core/games/', reachable: true },
     },
     {
       name: 'adapters-are-strangers',

@@ -104,7 +104,7 @@ export function createGuestMessages({ rooms, log, metrics, now }: GuestMessagesO
         counts.posesIgnored += 1;
         return;
       }
-      const result = rooms.get(guest.pass.room)?.room.receivePose(guest.id, bytes, now());
+      const result = rooms.get(guest.pass.room)?.room.onPose(guest.id, bytes, now());
       if (result === 'bad') bad(guest, 'pose');
       if (result !== 'taken') counts.posesIgnored += 1;
     },
@@ -113,8 +113,9 @@ export function createGuestMessages({ rooms, log, metrics, now }: GuestMessagesO
       if (guest.ended || !within(guest, guest.events)) return;
       const message = clientMessageFrom(value);
       if (message?.type === 'join') join(guest, message);
-      else if (message) rooms.get(guest.pass.room)?.room.receive(guest.id, message, now());
-      else if (isOtherVersion(value)) {
+      else if (message) {
+        if (rooms.get(guest.pass.room)?.room.onMessage(guest.id, message, now()) === 'bad') bad(guest, 'action');
+      } else if (isOtherVersion(value)) {
         log.info({ room: guest.pass.room, client: guest.id }, 'page of another version');
         dismiss(guest, 'old-page');
       } else bad(guest, 'message');

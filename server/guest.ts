@@ -1,6 +1,7 @@
 import type { Socket } from 'socket.io';
 import type { Farewell, RoomMessage } from '../src/core/protocol/messages';
 import { messageEvent } from '../src/core/protocol/small-frames';
+import type { HostedGame } from '../src/core/room/match-policy';
 import { type Budget, createBudget } from './budget';
 import type { RelayConfiguration } from './relay-configuration';
 import type { RelayCounts } from './relay-metrics';
@@ -50,7 +51,7 @@ export const createGuest = (
   ended: false,
 });
 
-export const tell = ({ socket }: Guest, message: RoomMessage): void => {
+export const tell = ({ socket }: Guest, message: RoomMessage<HostedGame>): void => {
   socket.emit(messageEvent, message);
 };
 

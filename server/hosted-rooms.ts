@@ -1,21 +1,23 @@
 import { randomBytes } from 'node:crypto';
 import type { Logger } from 'pino';
 import type { RoomMessage } from '../src/core/protocol/messages';
-import { createRoom, type Room, type RoomCensus } from '../src/core/room/room';
+import type { HostedGame } from '../src/core/room/match-policy';
+import { Room, type RoomCensus } from '../src/core/room/room';
 import { dismiss, type Guest, sendFrame, tell } from './guest';
 import type { RelayConfiguration } from './relay-configuration';
 import type { HostCensus, RelayMetrics } from './relay-metrics';
+import type { RoomKinds } from './room-kinds';
 import type { RoomPass } from './room-tokens';
 
 /** A room as others may know it; those whose places are assigned are known to their people alone. */
 export interface RoomListing extends Omit<RoomCensus, 'empty'> {
   readonly room: string;
-  readonly kind: Room['options']['kind'];
-  readonly phase: 'open' | 'ready' | 'running' | 'over';
+  readonly kind: string;
+  readonly phase: HostedGame['state']['phase'];
 }
 
 export interface HostedRoom {
-  readonly room: Room;
+  readonly room: Room<HostedGame>;
   /** Whether the lobby may show it. */
   readonly listed: boolean;
   /** Connections that have joined. */
@@ -28,7 +30,7 @@ export interface HostedRooms {
   readonly listings: readonly RoomListing[];
   readonly census: HostCensus;
   get(name: string): HostedRoom | undefined;
-  /** The room of this pass, made where there is none; null: there are too many. */
+  /** The room of this pass, made where there is none; null: there are too many, or its game is none of this server's. */
   enter(pass: RoomPass): HostedRoom | null;
   tick(): void;
   /** Closes rooms that have been empty for long; asked again and again, `now` in seconds. */
@@ -40,35 +42,30 @@ export interface HostedRooms {
 
 export interface HostedRoomsOptions {
   readonly configuration: RelayConfiguration;
+  readonly kinds: RoomKinds;
   readonly log: Logger;
   readonly metrics: RelayMetrics;
   /** Seconds, monotonic. */
   readonly now: () => number;
   /** To all who have joined the room of this name. */
-  readonly broadcast: (name: string, message: RoomMessage) => void;
+  readonly broadcast: (name: string, message: RoomMessage<HostedGame>) => void;
 }
 
 /** An empty room is kept this long [s]. */
 const emptyRoomSeconds = 5;
 
 /** Makes rooms: the first to come decides how long a round is, within what the server signed. */
-function roomMaker({ configuration, log, metrics, now, broadcast }: HostedRoomsOptions) {
+function roomMaker({ kinds, log, metrics, now, broadcast }: HostedRoomsOptions) {
   const epoch = randomBytes(6).toString('base64url');
   let made = 0;
-  return ({ room: id, kind, terms, assigned }: RoomPass): HostedRoom => {
-    const { pausable = false, ...ball } = terms;
+  return ({ room: id, kind, terms, assigned }: RoomPass): HostedRoom | null => {
+    const policy = kinds.get(kind)?.(terms);
+    if (!policy) return null;
     made += 1;
     const joined = new Map<string, Guest>();
-    const room = createRoom(
-      {
-        id,
-        kind,
-        epoch: `${epoch}${made}`,
-        seats: configuration.openSeats,
-        ball: { seconds: configuration.ballSeconds, ...ball },
-        pausable,
-        assigned: assigned !== null,
-      },
+    const room = new Room(
+      policy,
+      { id, epoch: `${epoch}${made}`, pausable: terms.pausable ?? false, assigned: assigned !== null },
       {
         send(to, message) {
           const guest = joined.get(to);
@@ -101,7 +98,7 @@ export function createHostedRooms(options: HostedRoomsOptions): HostedRooms {
       return [...rooms].flatMap(([room, { room: hosted, listed }]): readonly RoomListing[] => {
         if (!listed) return [];
         const { empty: _empty, ...census } = hosted.census;
-        return [{ room, kind: hosted.options.kind, phase: hosted.match?.phase ?? 'open', ...census }];
+        return [{ room, kind: hosted.kind, phase: hosted.match.phase, ...census }];
       });
     },
     get census() {
@@ -115,6 +112,7 @@ export function createHostedRooms(options: HostedRoomsOptions): HostedRooms {
       if (existing) return existing;
       if (rooms.size >= configuration.mostRooms) return null;
       const hosted = make(pass);
+      if (!hosted) return null;
       rooms.set(pass.room, hosted);
       return hosted;
     },

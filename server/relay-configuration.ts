@@ -18,8 +18,6 @@ export interface RelayConfiguration {
   /** Connections that one address may have open at once. */
   readonly connectionsPerAddress: number;
   readonly mostRooms: number;
-  /** Seats of an open room. */
-  readonly openSeats: number;
   /** Seconds of a ball game's round. */
   readonly ballSeconds: number;
   /** Believe what a proxy in front says of a client's address. */
@@ -49,7 +47,6 @@ export const relayEnvironment = `Environment of the relay (docs/relay.md):
   THREEPOINT_JOINS_PER_MINUTE   budget of new people of each address; default 5, on this machine itself 120
   THREEPOINT_CONNECTIONS_PER_ADDRESS  connections that one address may have open; default 256
   THREEPOINT_MOST_ROOMS         rooms in this process; default 500
-  THREEPOINT_OPEN_SEATS         seats of a room without a game, 1 to 16; default 16
   THREEPOINT_BALL_SECONDS       length of a round of the ball game; default 90
   THREEPOINT_TRUST_PROXY        1: a proxy stands in front and tells the clients' addresses; default 0
   THREEPOINT_REDIS_URL          redis://HOST:PORT of the lobby that several processes share
@@ -153,7 +150,6 @@ export function relayConfigurationFrom(environment: Environment): RelayConfigura
     // A class of thirty behind one address: six connections for the page and two WebSockets each.
     connectionsPerAddress: whole('THREEPOINT_CONNECTIONS_PER_ADDRESS', 256, 8, 1_000_000),
     mostRooms: whole('THREEPOINT_MOST_ROOMS', 500, 1, 100_000),
-    openSeats: whole('THREEPOINT_OPEN_SEATS', 16, 1, 16),
     ballSeconds: number('THREEPOINT_BALL_SECONDS', 90, 1, 3600),
     trustProxy: whole('THREEPOINT_TRUST_PROXY', 0, 0, 1) === 1,
     redisUrl,

@@ -1,17 +1,16 @@
 import { randomBytes } from 'node:crypto';
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname } from 'node:path';
-import { createAdapter } from '@socket.io/redis-adapter';
-import { pino } from 'pino';
-import { Adapter } from 'socket.io-adapter';
+import { type Logger, pino } from 'pino';
 import type { Door } from './door';
-import type { RoomListing } from './hosted-rooms';
 import type { Service } from './http/router';
 import { connectRedis, connectRedisPatiently, createOwnLobby, createRedisLobby } from './lobby';
+import { LobbyHall } from './lobby-hall';
 import type { RelayConfiguration } from './relay-configuration';
 import { createRelayMetrics, type RelayCensus } from './relay-metrics';
-import { createRelayRoutes } from './relay-routes';
+import { RelayRoutes } from './relay-routes';
 import { createRelayTransport } from './relay-transport';
+import { type RoomKinds, shippedRoomKinds } from './room-kinds';
 import { createRoomTokens } from './room-tokens';
 import { createSocketHost, type SocketHost } from './socket-host';
 import type { UpgradeListener } from './web-server';
@@ -26,10 +25,6 @@ export interface Relay {
   close(): Promise<void>;
 }
 
-const lobbyEveryMs = 1000;
-/** What the processes of a fleet tell each other: that a room is to end. */
-const endEvent = 'end-room';
-
 /** A secret kept in a file, so that tokens outlive a restart. */
 export function secretIn(path: string): string {
   if (existsSync(path)) {
@@ -42,8 +37,23 @@ export function secretIn(path: string): string {
   return secret;
 }
 
-/** Starts a relay; `secret` signs the tokens, `door` counts the connections of its server. */
-export function createRelay(configuration: RelayConfiguration, secret: string, door: Door): Relay {
+/** Connections to the Redis of a fleet; null: this process is alone. */
+function connectFleet({ redisUrl }: RelayConfiguration, log: Logger) {
+  if (!redisUrl) return null;
+  return {
+    own: connectRedis(redisUrl, log),
+    told: connectRedisPatiently(redisUrl, log),
+    heard: connectRedisPatiently(redisUrl, log),
+  };
+}
+
+/** Starts a relay; `secret` signs the tokens, `door` counts the connections of its server, `kinds` are the games of its rooms. */
+export function createRelay(
+  configuration: RelayConfiguration,
+  secret: string,
+  door: Door,
+  kinds: RoomKinds = shippedRoomKinds(configuration),
+): Relay {
   const log = pino({ level: configuration.logLevel, base: { node: process.pid } });
   const now = (): number => performance.now() / 1000;
   const node = randomBytes(6).toString('hex');
@@ -56,59 +66,27 @@ export function createRelay(configuration: RelayConfiguration, secret: string, d
   });
   const metrics = createRelayMetrics(census);
   const transport = createRelayTransport(configuration, { log, metrics });
-  const host = createSocketHost(transport, { configuration, tokens, log, metrics, now });
-  const connections = configuration.redisUrl
-    ? {
-        own: connectRedis(configuration.redisUrl, log),
-        told: connectRedisPatiently(configuration.redisUrl, log),
-        heard: connectRedisPatiently(configuration.redisUrl, log),
-      }
-    : null;
-  const lobby = connections ? createRedisLobby(connections.own, node, log) : createOwnLobby();
-
-  // Poses stay in the process that has the room; what Redis carries is the lobby alone.
-  if (connections) {
-    const shared = createAdapter(connections.told, connections.heard);
-    // socket.io calls it with new, and takes what it returns.
-    const adapterFor = function adapterFor(namespace: ConstructorParameters<typeof Adapter>[0]) {
-      return namespace.name === lobbyNamespace ? shared(namespace) : new Adapter(namespace);
-    };
-    host.io.adapter(adapterFor as never);
-  }
-  const hall = host.io.of(lobbyNamespace);
-  hall.on('connection', (socket) => {
-    void lobby.list().then((all) => socket.emit('rooms', all));
-    socket.onAny(() => socket.disconnect(true));
+  const host = createSocketHost(transport, { configuration, kinds, tokens, log, metrics, now });
+  const fleet = connectFleet(configuration, log);
+  const lobby = fleet ? createRedisLobby(fleet.own, node, log) : createOwnLobby();
+  const hall = new LobbyHall({
+    io: host.io,
+    lobby,
+    node,
+    channel: fleet,
+    rooms: () => host.rooms,
+    endRoom: (room) => void host.end(room),
   });
-
-  hall.on(endEvent, (room: string) => void host.end(room));
-  /** Alone, or with Redis out of reach, this process is all there is. */
-  const reachesAll = (): boolean => connections?.told.status === 'ready';
-  const endRoom = (room: string): void => {
-    host.end(room);
-    if (reachesAll()) hall.serverSideEmit(endEvent, room);
-  };
-
-  let told = '';
-  const timer = setInterval(() => {
-    const rooms: readonly RoomListing[] = host.rooms;
-    lobby.publish(rooms);
-    const text = JSON.stringify(rooms);
-    if (text === told) return;
-    told = text;
-    // What cannot be told now is told with the next change: without Redis nothing piles up.
-    (reachesAll() ? hall : hall.local).emit('node', { node, rooms });
-  }, lobbyEveryMs);
-
-  const service = createRelayRoutes({
+  const service = new RelayRoutes({
     configuration,
+    kinds,
     tokens,
     lobby,
     census,
     metrics,
     log,
-    endRoom,
-    redis: connections?.own ?? null,
+    endRoom: (room) => hall.endRoom(room),
+    redis: fleet?.own ?? null,
   });
   return {
     host,
@@ -118,15 +96,12 @@ export function createRelay(configuration: RelayConfiguration, secret: string, d
     service,
     upgrade: transport.upgrade,
     async close() {
-      clearInterval(timer);
+      hall.close();
       await host.close();
       await lobby.close();
-      connections?.told.disconnect();
-      connections?.heard.disconnect();
+      fleet?.told.disconnect();
+      fleet?.heard.disconnect();
       metrics.close();
     },
   };
 }
-
-/** Where a page hears of rooms that open, fill and close, in whichever process. */
-export const lobbyNamespace = '/lobby';

@@ -2,6 +2,7 @@ import type { Logger } from 'pino';
 import { RateLimiterMemory, RateLimiterRes } from 'rate-limiter-flexible';
 import type { Server, Socket } from 'socket.io';
 import { messageEvent, poseEvent } from '../src/core/protocol/small-frames';
+import type { HostedGame } from '../src/core/room/match-policy';
 import type { Room } from '../src/core/room/room';
 import { createGuest, dismiss, type Guest, isSlow } from './guest';
 import { createGuestMessages } from './guest-messages';
@@ -9,11 +10,14 @@ import { createHostedRooms, type RoomListing } from './hosted-rooms';
 import type { RelayConfiguration } from './relay-configuration';
 import type { HostCensus, RelayMetrics } from './relay-metrics';
 import type { RelayTransport } from './relay-transport';
+import type { RoomKinds } from './room-kinds';
 import type { RoomTokens } from './room-tokens';
 import { startTicking } from './tick';
 
 export interface SocketHostOptions {
   readonly configuration: RelayConfiguration;
+  /** The games that its rooms may be for. */
+  readonly kinds: RoomKinds;
   readonly tokens: RoomTokens;
   readonly log: Logger;
   readonly metrics: RelayMetrics;
@@ -27,7 +31,7 @@ export interface SocketHost {
   readonly rooms: readonly RoomListing[];
   readonly census: HostCensus;
   /** The room of this name, for tests and for the server's owner; null: there is none. */
-  room(name: string): Room | null;
+  room(name: string): Room<HostedGame> | null;
   /** Ends a room for all in it; false: there is none. */
   end(name: string): boolean;
   /** Tells all guests that the server stops, and ends all connections. */
@@ -40,12 +44,12 @@ const joinPatience = 5;
 const connectsPerMinute = 30;
 
 /** Lets sockets with a pass in, each person so often a minute. */
-function createGate({ tokens, metrics, log }: SocketHostOptions): Parameters<Server['use']>[0] {
+function createGate({ kinds, tokens, metrics, log }: SocketHostOptions): Parameters<Server['use']>[0] {
   const connects = new RateLimiterMemory({ points: connectsPerMinute, duration: 60 });
   async function refusalOf(socket: Socket): Promise<'refused' | 'too-often' | null> {
     const { token } = socket.handshake.auth as { token?: unknown };
     const pass = typeof token === 'string' ? await tokens.verify(token) : null;
-    if (!pass) {
+    if (!pass || !kinds.has(pass.kind)) {
       metrics.kicked('token');
       return 'refused';
     }
@@ -72,10 +76,11 @@ function createGate({ tokens, metrics, log }: SocketHostOptions): Parameters<Ser
 
 /** Serves rooms on the transport's WebSockets. */
 export function createSocketHost({ io, close }: RelayTransport, options: SocketHostOptions): SocketHost {
-  const { configuration, log, metrics, now } = options;
+  const { configuration, kinds, log, metrics, now } = options;
   const guests = new Set<Guest>();
   const rooms = createHostedRooms({
     configuration,
+    kinds,
     log,
     metrics,
     now,

@@ -1,4 +1,5 @@
 import { createHmac, randomBytes } from 'node:crypto';
+import { ballKind } from '../src/core/protocol/ball-messages';
 import { type StudyPlan, scheduleFor } from '../src/core/study/plan';
 import type { PlayedTogether, SignedSeat } from '../src/core/study/study-api';
 import { ValidationError } from '../src/core/study/validation';
@@ -33,7 +34,7 @@ export function createStudySeats(secret: string, tokens: Pick<RoomTokens, 'sign'
         // The same person on every device and after every reload: the seat is theirs.
         identity: watching ? randomBytes(12).toString('base64url') : nameOf('participant', plan.id, participant),
         room,
-        kind: 'ball',
+        kind: ballKind,
         terms: { seconds: played.seconds, pausable: true },
         assigned: watching
           ? { seat: null, name: 'Experimenter' }

@@ -56,6 +56,20 @@ describe('the import rules', () => {
       { 'src/core/estimation/a.ts': "import '../protocol/b';", 'src/core/protocol/b.ts': empty },
     ],
     [
+      'the Room knows no game',
+      'core-room',
+      { 'src/core/room/a.ts': "import '../games/ball/b';", 'src/core/games/ball/b.ts': empty },
+    ],
+    [
+      'not even by a detour',
+      'room-reaches-no-game',
+      {
+        'src/core/room/a.ts': "import '../protocol/b';",
+        'src/core/protocol/b.ts': "import '../games/ball/c';",
+        'src/core/games/ball/c.ts': empty,
+      },
+    ],
+    [
       'a new folder of core is asked about',
       'core-folders-are-known',
       { 'src/core/extra/a.ts': "import '../math/b';", 'src/core/math/b.ts': empty },

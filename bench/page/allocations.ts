@@ -10,12 +10,12 @@ import { createEstimator } from '../../src/core/estimation/estimators';
 import { ballRules } from '../../src/core/games/ball/rules';
 import { composeTransforms, invertTransform } from '../../src/core/math/pose';
 import { decodePose } from '../../src/core/protocol/pose-codec';
-import { arenaFromFloorOf } from '../../src/core/room/seat-places';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
 import { createInferenceWorker } from '../../src/inference/create-inference-worker';
 import { loadRegressor } from '../../src/inference/load-regressor';
 import { createRemotePlayers } from '../../src/net/remote-players';
 import { createRenderer } from '../../src/scene/renderer';
+import { arenaFromCirclePlace } from './circle';
 import { createSenders } from './senders';
 
 /** What is measured on this page; the real page is measured as it is. */
@@ -70,7 +70,7 @@ function stillScene(): FrameOf {
 async function crowd(): Promise<FrameOf> {
   const { studio, draw } = picture();
   const view = createBallView({ quality: 'low', balls: 20, onCaption: () => undefined });
-  const floorFromArena = invertTransform(arenaFromFloorOf(0, bodies, null));
+  const floorFromArena = invertTransform(arenaFromCirclePlace(0, bodies));
   studio.setSurroundings(view.placed(floorFromArena));
   const avatar = createAvatar(
     await parseAvatar(await (await fetch('/avatars/mannequin.vrm')).arrayBuffer(), 'mannequin.vrm'),
@@ -89,7 +89,7 @@ async function crowd(): Promise<FrameOf> {
   const players = createRemotePlayers();
   const attendants = [null, null, null];
   const placements = Array.from({ length: bodies }, (_, seat) =>
-    composeTransforms(floorFromArena, arenaFromFloorOf(seat, bodies, null)),
+    composeTransforms(floorFromArena, arenaFromCirclePlace(seat, bodies)),
   );
   return (index) => {
     const time = index / rateHz;

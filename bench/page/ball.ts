@@ -5,10 +5,10 @@ import { type EstimatorName, estimatorNames } from '../../src/core/estimation/po
 import { ballRules } from '../../src/core/games/ball/rules';
 import { composeTransforms, invertTransform } from '../../src/core/math/pose';
 import { decodePose } from '../../src/core/protocol/pose-codec';
-import { arenaFromFloorOf } from '../../src/core/room/seat-places';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
 import { createRemotePlayers } from '../../src/net/remote-players';
 import type { ArcheryStage } from './archery';
+import { arenaFromCirclePlace } from './circle';
 import { type FrameTimes, frameTimes } from './frame-times';
 import { createSenders } from './senders';
 
@@ -32,7 +32,7 @@ export async function measureCourt(
 ): Promise<Record<EstimatorName, readonly CourtTimes[]>> {
   const { renderer, studio, avatar, mirror, camera, estimators, mannequin } = stage;
   const view = createBallView({ quality: 'low', balls: 20, onCaption: () => undefined });
-  const own = arenaFromFloorOf(0, 16, null);
+  const own = arenaFromCirclePlace(0, 16);
   const floorFromArena = invertTransform(own);
   studio.setSurroundings(view.placed(floorFromArena));
   mirror.setVisible(false);
@@ -81,7 +81,7 @@ export async function measureCourt(
             calibration: defaultCalibration,
             palette: 'ember',
             pose,
-            placement: composeTransforms(floorFromArena, arenaFromFloorOf(seat, 16, null)),
+            placement: composeTransforms(floorFromArena, arenaFromCirclePlace(seat, 16)),
             grips,
             opacity,
           }),

@@ -1,9 +1,12 @@
-// The relay as it ships, in a process of its own.
+// The relay as it ships, in a process of its own; beside the ball game it hosts one with room for sixteen.
 import { createDoor } from '../../server/door';
 import { createRouter, noPage } from '../../server/http/router';
 import { createRelay } from '../../server/relay';
 import { relayConfigurationFrom } from '../../server/relay-configuration';
+import { shippedRoomKinds } from '../../server/room-kinds';
 import { serve } from '../../server/web-server';
+import { mostSeats } from '../../src/core/protocol/messages';
+import { countingKind, countingPolicy } from '../../tests/core/room/counting-game';
 import type { RelayAnswer } from './conversation';
 
 const tell = (answer: RelayAnswer): void => {
@@ -12,7 +15,8 @@ const tell = (answer: RelayAnswer): void => {
 
 const configuration = relayConfigurationFrom(process.env);
 const door = createDoor({ perAddress: configuration.connectionsPerAddress, behindProxy: configuration.trustProxy });
-const relay = createRelay(configuration, configuration.secret ?? '', door);
+const kinds = new Map([...shippedRoomKinds(configuration), [countingKind, () => countingPolicy(mostSeats)]]);
+const relay = createRelay(configuration, configuration.secret ?? '', door, kinds);
 const server = await serve(createRouter([relay.service], noPage), {
   host: '127.0.0.1',
   port: 0,

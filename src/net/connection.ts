@@ -1,7 +1,7 @@
 import type { Calibration } from '../core/body/calibration';
 import type { BallDeed, BallEvent, BallState } from '../core/games/ball/ball-state';
 import type { Transform } from '../core/math/pose';
-import type { Farewell, RoomKind, SeatRow } from '../core/protocol/messages';
+import type { Farewell, SeatInfo } from '../core/protocol/messages';
 import type { PosePacket } from '../core/protocol/pose-packet';
 
 /** This page's clock, that of the tracked frames [s]; it never goes back. */
@@ -26,16 +26,15 @@ export interface ConnectionStatus {
 /** The room as it is known here. */
 export interface RoomView {
   readonly id: string;
-  readonly kind: RoomKind;
   /** By seat number; null: free. */
-  readonly seats: readonly (SeatRow | null)[];
+  readonly seats: readonly (SeatInfo | null)[];
   /** Ours; null: a spectator. Also the player's index in the match. */
   readonly mySeat: number | null;
   readonly spectators: number;
   /** Roles move on by one seat with every rematch. */
   readonly rotate: boolean;
   /**
-   * The match with our own deeds as they will turn out if the rules allow them; null in an open room. Heads, hands and the basket are
+   * The match with our own actions as they will turn out if the rules allow them; null before the first welcome. Heads, hands and the basket are
    * not in it as they are now: poses are with the remote players, and the basket is in its holder's hands (`basketInHands`).
    */
   readonly match: BallState | null;
@@ -43,13 +42,13 @@ export interface RoomView {
   readonly delay: number | null;
   /** Seconds of the match minus seconds of this page's clock. */
   readonly matchAhead: number;
-  /** The match's clock stands because somebody stopped it. */
+  /** The match's clock stands because a player stopped it. */
   readonly paused: boolean;
   /** How many rounds were cut short because the room had forgotten them (its server was restarted). */
   readonly voided: number;
 }
 
-/** A pose packet of somebody else. */
+/** A pose packet of another player. */
 export interface ArrivedPose {
   readonly seat: number;
   readonly packet: PosePacket;
@@ -80,8 +79,8 @@ export interface Connection {
   update(time: number): ConnectionUpdate;
   /** Once a frame; sends 30 of them a second. `time`: of the tracked frame. Nothing while a spectator or not connected. */
   sendPose(time: number, shown: ShownPose): void;
-  /** A deed with a ball: shown at once, judged by the Room. */
-  act(deed: BallDeed): void;
+  /** An action with a ball: shown at once, judged by the Room. */
+  act(action: BallDeed): void;
   ready(ready: boolean): void;
   rotate(rotate: boolean): void;
   /** Wants the match's clock to stand; refused where the room's terms do not allow it. Said again after every return. */

@@ -1,17 +1,22 @@
-import type { BallAction } from '../core/games/ball/ball-state';
-import type { ClientMessage, RoomMessage } from '../core/protocol/messages';
-import { type ClientId, createRoom, type Room, type RoomOptions, type RoomRefusal } from '../core/room/room';
+import type { BallAction, BallOptions } from '../core/games/ball/ball-state';
+import { type BallGame, BallPolicy } from '../core/match-policies/ball-policy';
+import type { BallRoomMessage } from '../core/protocol/ball-messages';
+import type { ClientMessage } from '../core/protocol/messages';
+import { Room, type RoomOptions } from '../core/room/room';
+import type { ClientId, RoomRefusal } from '../core/room/room-outlet';
 import type { Connection, ConnectionStatus, Visitor } from './connection';
 import { createRoomSession, type RoomSession } from './room-session';
 
-/** A room in this page: for somebody alone, with bots if they like, and for tests. */
+/** A room of the ball game in this page: for a player alone, with bots if they like, and for tests. */
 export interface LoopbackHost {
-  readonly room: Room;
+  readonly room: Room<BallGame>;
   /** `now`: this page's clock [s]. */
   connect(visitor: Visitor, now: number): Connection;
 }
 
-export interface LoopbackOptions extends Partial<Omit<RoomOptions, 'kind'>>, Pick<RoomOptions, 'kind'> {
+export interface LoopbackOptions extends Partial<RoomOptions> {
+  readonly seed?: number;
+  readonly ball?: Partial<BallOptions>;
   refused?(refusal: RoomRefusal): void;
   stepped?(actions: readonly BallAction[]): void;
 }
@@ -22,21 +27,28 @@ interface Guest {
 }
 
 /** The Room is the one of the server, and as it is this page's own it may be paused. It ticks when its first guest of a frame asks for news. */
-export function createLoopbackHost({ refused, stepped, ...options }: LoopbackOptions): LoopbackHost {
+export function createLoopbackHost({
+  refused,
+  stepped,
+  seed = 0,
+  ball,
+  ...options
+}: LoopbackOptions = {}): LoopbackHost {
   const guests = new Map<ClientId, Guest>();
   let now = 0;
   let ticked = Number.NEGATIVE_INFINITY;
   let made = 0;
 
-  const room = createRoom(
+  const room = new Room<BallGame>(
+    new BallPolicy({ ...ball, seed }),
     { id: 'here', epoch: 'here', pausable: true, ...options },
     {
-      send: (to, message) => guests.get(to)?.session.hear(message, now),
-      broadcast(message: RoomMessage) {
-        for (const { session } of guests.values()) session.hear(message, now);
+      send: (to, message) => guests.get(to)?.session.onMessage(message, now),
+      broadcast(message: BallRoomMessage) {
+        for (const { session } of guests.values()) session.onMessage(message, now);
       },
       frame(bytes) {
-        for (const { session } of guests.values()) session.hearFrame(bytes, now);
+        for (const { session } of guests.values()) session.onFrame(bytes, now);
       },
       drop(client, reason) {
         guests.get(client)?.end(reason);
@@ -59,10 +71,10 @@ export function createLoopbackHost({ refused, stepped, ...options }: LoopbackOpt
         visitor,
         {
           message(message: ClientMessage) {
-            if (here() && message.type !== 'join') room.receive(client, message, now);
+            if (here() && message.type !== 'join') room.onMessage(client, message, now);
           },
           pose(bytes) {
-            if (here()) room.receivePose(client, bytes, now);
+            if (here()) room.onPose(client, bytes, now);
           },
         },
         true,
@@ -91,7 +103,7 @@ export function createLoopbackHost({ refused, stepped, ...options }: LoopbackOpt
           return session.update(now, here());
         },
         leave() {
-          if (here()) room.receive(client, { type: 'leave' }, now);
+          if (here()) room.onMessage(client, { type: 'leave' }, now);
         },
       };
     },

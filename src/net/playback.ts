@@ -1,4 +1,5 @@
 import { clamp, smoothingFactor, smoothstep } from '../core/math/damper';
+import { packetSecondsBetween } from '../core/protocol/packet-time';
 import type { PosePacket } from '../core/protocol/pose-packet';
 import { ShownPlayer } from './shown-player';
 import { TransitWindow } from './transit-window';
@@ -51,11 +52,6 @@ function intervalOf(samples: readonly Sample[]): number {
   const last = samples[samples.length - 1];
   return first && last && samples.length > 1 ? (last.time - first.time) / (samples.length - 1) : 1 / 30;
 }
-
-const unwrapAfter = (timeMs: number, last: Sample): number => {
-  const step = (((timeMs - last.packet.timeMs + 32768) % 65536) + 65536) % 65536;
-  return last.time + (step - 32768) / 1000;
-};
 
 /** Writes what is drawn of a player at a time of the sender's clock [s]; before the first packet: as that has it. */
 function sampleAt(samples: readonly Sample[], time: number, target: ShownPlayer): void {
@@ -128,7 +124,7 @@ export class Playback {
 
   receive(packet: PosePacket, arrivedAt: number): void {
     const last = this.samples[this.samples.length - 1];
-    let time = last ? unwrapAfter(packet.timeMs, last) : packet.timeMs / 1000;
+    let time = last ? last.time + packetSecondsBetween(last.packet.timeMs, packet.timeMs) : packet.timeMs / 1000;
     const silent = arrivedAt - this.heardAt > hideAfter;
     if (last && time <= last.time && !silent) return;
     if (last && silent) {

@@ -1,4 +1,4 @@
-import type { RoomKind, RoomTerms } from '../core/protocol/messages';
+import type { RoomTerms } from '../core/protocol/messages';
 
 /** The signed pass that lets a page into a room. */
 export interface RoomPass {
@@ -12,14 +12,8 @@ export interface Keep {
   setItem(key: string, value: string): void;
 }
 
-/** Asks the relay for a pass; the same person after a reload, in the same tab. `terms`: of the room, should nobody be in it yet. */
-export function createRoomPass(
-  base: string,
-  room: string,
-  kind: RoomKind,
-  keep?: Keep,
-  terms: RoomTerms = {},
-): RoomPass {
+/** Asks the relay for a pass; the same person after a reload, in the same tab. `kind`: the game. `terms`: of the room, for the first person in it. */
+export function createRoomPass(base: string, room: string, kind: string, keep?: Keep, terms: RoomTerms = {}): RoomPass {
   const key = `threepoint pass ${kind} ${room}`;
   let token = keep?.getItem(key) ?? null;
   let verified = false;

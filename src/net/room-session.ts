@@ -2,18 +2,18 @@ import type { Calibration } from '../core/body/calibration';
 import { type Skeleton, skeletonFromCalibration } from '../core/body/skeleton';
 import type { BallDeed, BallEvent, BallState } from '../core/games/ball/ball-state';
 import { answersDeed, followBallEvent, predictDeed, withMatchTime } from '../core/games/ball/replica';
+import { arenaFromSeatFloor } from '../core/games/ball/stations';
+import type { BallRoomMessage, SentBallGame } from '../core/protocol/ball-messages';
 import { unpackBall } from '../core/protocol/ball-snapshot';
 import {
   type ClientMessage,
   type Joining,
-  type RoomMessage,
-  type SeatRow,
-  unpackRow,
+  type SeatInfo,
+  unpackSeatInfo,
   type Welcome,
 } from '../core/protocol/messages';
 import { decodePose, encodePose } from '../core/protocol/pose-codec';
 import { decodeFrame } from '../core/protocol/pose-frame';
-import { arenaFromFloorOf } from '../core/room/seat-places';
 import { createClockSync } from './clock-sync';
 import type { ArrivedPose, Connection, ConnectionUpdate, RoomView, ShownPose, Visitor } from './connection';
 
@@ -27,8 +27,8 @@ export interface Wire {
 export interface RoomSession extends Omit<Connection, 'status' | 'leave' | 'update'> {
   /** What to say first on every new connection. */
   joining(): Joining;
-  hear(message: RoomMessage, now: number): void;
-  hearFrame(frame: Uint8Array, now: number): void;
+  onMessage(message: BallRoomMessage, now: number): void;
+  onFrame(frame: Uint8Array, now: number): void;
   /** This page's clock left out `seconds` of a pause that ended at `now`; the Room's went on. */
   paused(seconds: number, now: number): void;
   /** What came since the last call; asks for the time when that is due. */
@@ -46,9 +46,9 @@ const toMillimetres = ({ eyeHeight, armSpan }: Calibration): Calibration => ({
 });
 
 /** Mutable half of a RoomView. */
-interface Known extends Pick<Welcome, 'room' | 'epoch' | 'kind' | 'seat' | 'spectators' | 'rotate'> {
-  seats: (SeatRow | null)[];
-  zero: number;
+interface Known extends Pick<Welcome<SentBallGame>, 'room' | 'epoch' | 'seat' | 'spectators' | 'rotate'> {
+  seats: (SeatInfo | null)[];
+  matchStart: number;
   /** Second of the match at which its clock stands; null: it runs. */
   paused: number | null;
 }
@@ -80,7 +80,7 @@ export function createRoomSession(visitor: Visitor, wire: Wire, knowsClock = fal
   const ahead = (): number => (knowsClock ? 0 : clock.ahead);
   const matchAhead = (): number => {
     if (!known) return 0;
-    return known.paused === null ? ahead() - known.zero : known.paused - now;
+    return known.paused === null ? ahead() - known.matchStart : known.paused - now;
   };
 
   const predicted = (): BallState | null => {
@@ -90,26 +90,26 @@ export function createRoomSession(visitor: Visitor, wire: Wire, knowsClock = fal
     return seat === null ? state : pending.reduce((at, deed) => predictDeed(at, seat, deed), state);
   };
 
-  function setRow(seat: number, row: SeatRow | null): void {
+  function setSeatInfo(seat: number, info: SeatInfo | null): void {
     if (!known || seat >= known.seats.length) return;
     const before = known.seats[seat];
-    known.seats = known.seats.map((other, index) => (index === seat ? row : other));
+    known.seats = known.seats.map((other, index) => (index === seat ? info : other));
     if (
-      !row ||
-      before?.calibration.eyeHeight !== row.calibration.eyeHeight ||
-      before.calibration.armSpan !== row.calibration.armSpan
+      !info ||
+      before?.calibration.eyeHeight !== info.calibration.eyeHeight ||
+      before.calibration.armSpan !== info.calibration.armSpan
     ) {
-      skeletons[seat] = row && skeletonFromCalibration(row.calibration);
+      skeletons[seat] = info && skeletonFromCalibration(info.calibration);
     }
   }
 
-  function welcomed(message: Welcome): void {
-    const { room, epoch, kind, seat, spectators, rotate, zero, paused } = message;
+  function welcomed(message: Welcome<SentBallGame>): void {
+    const { room, epoch, seat, spectators, rotate, matchStart, paused } = message;
     const forgotten = known !== null && known.epoch !== epoch && confirmed?.phase === 'running';
-    const seats = message.seats.map(unpackRow);
-    known = { room, epoch, kind, seat, spectators, rotate, seats, zero: zero ?? 0, paused };
-    skeletons = seats.map((row) => row && skeletonFromCalibration(row.calibration));
-    confirmed = message.match && unpackBall(message.match);
+    const seats = message.seats.map(unpackSeatInfo);
+    known = { room, epoch, seat, spectators, rotate, seats, matchStart, paused };
+    skeletons = seats.map((info) => info && skeletonFromCalibration(info.calibration));
+    confirmed = unpackBall(message.match);
     pending = [];
     // Who returns to a server that has forgotten them asks for the same seat.
     if (seat !== null) wishes = { spectate: false, seat };
@@ -122,18 +122,18 @@ export function createRoomSession(visitor: Visitor, wire: Wire, knowsClock = fal
     if (pauseWish !== null && seat !== null) wire.message({ type: 'pause', pause: pauseWish });
   }
 
-  function hear(message: RoomMessage, at: number): void {
+  function onMessage(message: BallRoomMessage, at: number): void {
     now = Math.max(now, at);
     view = null;
     if (message.type === 'welcome') welcomed(message);
     else if (message.type === 'pong') clock.hear(message.sent, message.time, at);
-    else if (known) hearChange(known, message);
+    else if (known) onChange(known, message);
   }
 
-  function hearChange(room: Known, message: Exclude<RoomMessage, { type: 'welcome' | 'pong' }>): void {
+  function onChange(room: Known, message: Exclude<BallRoomMessage, { type: 'welcome' | 'pong' }>): void {
     switch (message.type) {
       case 'seat':
-        setRow(message.seat, unpackRow(message.row));
+        setSeatInfo(message.seat, unpackSeatInfo(message.info));
         news.push('seats');
         return;
       case 'seated':
@@ -147,13 +147,13 @@ export function createRoomSession(visitor: Visitor, wire: Wire, knowsClock = fal
         known = { ...room, spectators: message.spectators, rotate: message.rotate };
         return;
       case 'paused':
-        known = { ...room, zero: message.zero, paused: message.at };
+        known = { ...room, matchStart: message.matchStart, paused: message.at };
         return;
-      case 'zero':
-        known = { ...room, zero: message.zero };
+      case 'match-start':
+        known = { ...room, matchStart: message.matchStart };
         return;
       case 'match':
-        known = { ...room, zero: message.zero };
+        known = { ...room, matchStart: message.matchStart };
         confirmed = unpackBall(message.match);
         pending = [];
         news.push('match');
@@ -173,7 +173,6 @@ export function createRoomSession(visitor: Visitor, wire: Wire, knowsClock = fal
       if (!known) return null;
       view ??= {
         id: known.room,
-        kind: known.kind,
         seats: known.seats,
         mySeat: known.seat,
         spectators: known.spectators,
@@ -187,8 +186,8 @@ export function createRoomSession(visitor: Visitor, wire: Wire, knowsClock = fal
       return view;
     },
     joining: () => ({ name: visitor.name, calibration, bot: visitor.bot ?? false, ...wishes }),
-    hear,
-    hearFrame(frame, at) {
+    onMessage,
+    onFrame(frame, at) {
       // A bot looks at no one: it plays by what the match says.
       if (visitor.bot) return;
       const seatPoses = decodeFrame(frame);
@@ -219,11 +218,11 @@ export function createRoomSession(visitor: Visitor, wire: Wire, knowsClock = fal
       const bytes = encodePose({ ...shown, timeMs }, skeleton);
       if (bytes) wire.pose(bytes);
     },
-    act(deed) {
+    act(action) {
       if (!known || known.seat === null || !confirmed) return;
-      pending.push(deed);
+      pending.push(action);
       view = null;
-      wire.message({ type: 'deed', deed });
+      wire.message({ type: 'action', action });
     },
     ready: (ready) => wire.message({ type: 'ready', ready }),
     rotate: (rotate) => wire.message({ type: 'rotate', rotate }),
@@ -238,6 +237,6 @@ export function createRoomSession(visitor: Visitor, wire: Wire, knowsClock = fal
       skeleton = skeletonFromCalibration(calibration);
       if (known) wire.message({ type: 'calibration', calibration });
     },
-    arenaFromFloor: (seat) => arenaFromFloorOf(seat, known?.seats.length ?? 1, confirmed),
+    arenaFromFloor: (seat) => arenaFromSeatFloor(seat, confirmed),
   };
 }

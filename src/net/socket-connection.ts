@@ -1,5 +1,6 @@
 import { io } from 'socket.io-client';
-import { protocolVersion, roomMessageFrom } from '../core/protocol/messages';
+import { ballRoomMessageFrom } from '../core/protocol/ball-messages';
+import { protocolVersion } from '../core/protocol/messages';
 import { frameEvent, messageEvent, pageParser, poseEvent } from '../core/protocol/small-frames';
 import { createBackOff } from './back-off';
 import type { Connection, ConnectionStatus, LocalClock, Visitor } from './connection';
@@ -113,10 +114,10 @@ export function createSocketConnection(options: SocketConnectionOptions): Connec
   });
   socket.on('disconnect', () => failed(reason));
   socket.on(frameEvent, (bytes: unknown) => {
-    if (joined() && bytes instanceof Uint8Array) session.hearFrame(bytes, now());
+    if (joined() && bytes instanceof Uint8Array) session.onFrame(bytes, now());
   });
   socket.on(messageEvent, (value: unknown) => {
-    const message = roomMessageFrom(value);
+    const message = ballRoomMessageFrom(value);
     if (!message) return;
     if (message.type === 'farewell') {
       if (message.reason !== 'stopping') end(message.reason);
@@ -132,7 +133,7 @@ export function createSocketConnection(options: SocketConnectionOptions): Connec
       refusals = 0;
       backOff.succeeded();
     }
-    session.hear(message, now());
+    session.onMessage(message, now());
   });
   attempt();
 

@@ -108,7 +108,7 @@ describe.each(steps)('page time leaps by %d s, and back 4 s later', (step) => {
   });
 
   test('a ball game with two built-in players goes on, theirs included', () => {
-    const host = createLoopbackHost({ kind: 'ball', seed: 5, ball: { seconds: 60 } });
+    const host = createLoopbackHost({ seed: 5, ball: { seconds: 60 } });
     const play = createBallPlay({
       connect: host.connect,
       visitor: { name: 'Robin', calibration: defaultCalibration },

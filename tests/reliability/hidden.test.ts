@@ -34,7 +34,7 @@ function person(host: ReturnType<typeof createLoopbackHost>, name: string, seat:
 test('a headset taken off for 20 s: others see “away” at once when told, within 3 s when not; back, play resumes', () => {
   const rows: Record<string, string> = {};
   for (const told of [true, false]) {
-    const host = createLoopbackHost({ kind: 'ball', seed: 5 });
+    const host = createLoopbackHost({ seed: 5 });
     const ann = person(host, 'Ann', 0);
     const cal = person(host, 'Cal', 2);
     let time = 50;

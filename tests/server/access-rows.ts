@@ -151,7 +151,7 @@ export const socketRows: Readonly<Record<ClientMessage['type'] | 'pose' | 'unkno
   pause: { gives: 'a clock that stands', outcome: { ...seated, player: 'not-pausable' } },
   ping: { gives: 'the room’s time', outcome: all('taken') },
   leave: { gives: 'the own seat back', outcome: all('taken') },
-  deed: { gives: 'what hands do, as the rules judge it', outcome: seated },
+  action: { gives: 'what hands do, as the rules judge it', outcome: seated },
   unknown: { gives: 'nothing', outcome: all('ends') },
 };
 

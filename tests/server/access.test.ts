@@ -248,7 +248,7 @@ describe('a message to a room', () => {
     pause: { type: 'pause', pause: true },
     ping: { type: 'ping', sent: 7 },
     leave: { type: 'leave' },
-    deed: { type: 'deed', deed: { type: 'drop', sequence: 1, side: 'left' } },
+    action: { type: 'action', action: { type: 'drop', sequence: 1, side: 'left' } },
   };
   /** Reasons of admission; what the rules of a game refuse, everyone on a seat may try. */
   const reasons: readonly Outcome[] = ['no-seat', 'not-pausable', 'assigned'];

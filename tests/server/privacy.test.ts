@@ -107,7 +107,7 @@ test('a room hands out no pose that is older than two seconds', () => {
   const told = toldRoom();
   told.begin();
   const at = told.time;
-  told.room.receivePose('ann', packetAt(told.room, 0, fists(releaseOf(0)), told.time), told.time);
+  told.room.onPose('ann', packetAt(told.room.match, 0, fists(releaseOf(0)), told.time), told.time);
   told.pass(0.1, () => undefined);
   expect(told.frames.length).toBeGreaterThan(0);
   told.pass(2, () => undefined);

@@ -4,6 +4,7 @@ import { afterEach, describe, expect, test } from 'vitest';
 import { WebSocket } from 'ws';
 import { createRoomTokens } from '../../server/room-tokens';
 import { nextRandom } from '../../src/core/math/random';
+import { ballKind } from '../../src/core/protocol/ball-messages';
 import { protocolVersion } from '../../src/core/protocol/messages';
 import { createRemotePlayers } from '../../src/net/remote-players';
 import { createSocketConnection } from '../../src/net/socket-connection';
@@ -149,13 +150,14 @@ test('a connection that is gone for 5 s comes back to its seat with one snapshot
 
 test('500 clients reconnect at once', async () => {
   const clients = 500;
-  const environment = { THREEPOINT_OPEN_SEATS: '16', THREEPOINT_CONNECTIONS_PER_ADDRESS: '600' };
+  const environment = { THREEPOINT_CONNECTIONS_PER_ADDRESS: '600' };
   const relay = await relayApart(environment);
   const tokens = createRoomTokens(testSecret, () => Date.now() / 1000);
   const connections = await Promise.all(
     Array.from({ length: clients }, async (_, i) => {
-      const room = `open-${Math.floor(i / 16)}`;
-      const token = await tokens.issue(room, 'open');
+      // Three of a room play, the others watch.
+      const room = `meadow-${Math.floor(i / 16)}`;
+      const token = await tokens.issue(room, ballKind);
       return ending(
         createSocketConnection({
           url: relay.url,
@@ -190,7 +192,7 @@ test('500 clients reconnect at once', async () => {
   expect(lagP99Ms).toBeLessThan(100 + 20 * Math.max(0, machine.lagP99Ms - 10));
 }, 120_000);
 
-/** Somebody in an open room who sends thirty poses a second, and when they heard of others. */
+/** A player in a room of sixteen seats who sends thirty poses a second, and when they heard of others. */
 async function mover(url: string, room: string) {
   const guest = ending(await rawGuest(url, room), ({ socket }) => socket.disconnect());
   const welcome = guest.heard.find((message) => message.type === 'welcome')!;
@@ -215,9 +217,11 @@ async function mover(url: string, room: string) {
 test('a reader that stalls is kicked within 10 s, and the others do not notice', async () => {
   const relay = await relayApart();
   const movers: Awaited<ReturnType<typeof mover>>[] = [];
-  for (let i = 0; i < 6; i++) movers.push(await mover(relay.url, 'open-stall'));
-  const token = await tokenFor(relay.url, 'open-stall', 'open');
-  const stalled = new WebSocket(`${relay.url.replace('http', 'ws')}/relay/?EIO=4&transport=websocket&room=open-stall`);
+  for (let i = 0; i < 6; i++) movers.push(await mover(relay.url, 'counting-stall'));
+  const token = await tokenFor(relay.url, 'counting-stall');
+  const stalled = new WebSocket(
+    `${relay.url.replace('http', 'ws')}/relay/?EIO=4&transport=websocket&room=counting-stall`,
+  );
   endings.push(() => stalled.terminate());
   await new Promise<void>((resolve) => {
     stalled.on('message', (received: Buffer) => {
@@ -230,17 +234,17 @@ test('a reader that stalls is kicked within 10 s, and the others do not notice',
       } else if (text.includes('"welcome"')) resolve();
     });
   });
-  const seatRow = () =>
+  const slowSeat = () =>
     movers[0]!.heard.findLast((message) => message.type === 'seat' && message.seat === 6) as
-      | { readonly row: readonly unknown[] | null }
+      | { readonly info: readonly unknown[] | null }
       | undefined;
-  await until('the slow one seated', () => seatRow()?.row != null);
+  await until('the slow one seated', () => slowSeat()?.info != null);
   await until('fifteen frames each', () => movers.every(({ gaps }) => gaps.length >= 15));
   const before = await relay.measure();
   stalled.pause();
   const start = seconds();
   for (const { gaps } of movers) gaps.length = 0;
-  await until('the kick', () => seatRow()?.row?.[3] === 2, 12);
+  await until('the kick', () => slowSeat()?.info?.[3] === 2, 12);
   const kicked = seconds() - start;
   const after = await relay.measure();
   const gaps = movers.flatMap((moving) => moving.gaps);
@@ -262,8 +266,8 @@ describe('abuse', () => {
     const relay = await relayApart();
     const calm: number[] = [];
     const stormy: number[] = [];
-    const watcher = await mover(relay.url, 'open-calm');
-    const other = await mover(relay.url, 'open-calm');
+    const watcher = await mover(relay.url, 'counting-calm');
+    const other = await mover(relay.url, 'counting-calm');
     await until('thirty frames each', () => watcher.gaps.length >= 30 && other.gaps.length >= 30);
     calm.push(...watcher.gaps.splice(0), ...other.gaps.splice(0));
     const attacks: Record<string, (guest: Awaited<ReturnType<typeof rawGuest>>) => (() => void) | undefined> = {
@@ -294,7 +298,7 @@ describe('abuse', () => {
     };
     const figures: Record<string, number> = {};
     for (const [name, attack] of Object.entries(attacks)) {
-      const guest = await rawGuest(relay.url, 'open-calm');
+      const guest = await rawGuest(relay.url, 'counting-calm');
       const start = performance.now();
       const stop = attack(guest);
       await until(`an end of ${name}`, () => guest.closedAt !== null, 3);
@@ -311,12 +315,12 @@ describe('abuse', () => {
 
   test('more than ten events a second are not heard, and no connection is lost for a burst', async () => {
     const server = await relayHere();
-    const guest = ending(await rawGuest(server.url, 'open-burst'), ({ socket }) => socket.disconnect());
+    const guest = ending(await rawGuest(server.url, 'counting-burst'), ({ socket }) => socket.disconnect());
     for (let i = 0; i < 60; i++) guest.say({ type: 'ping', sent: i });
     const pongs = () => guest.heard.filter(({ type }) => type === 'pong').length;
     await until('ten answers', () => pongs() >= 10);
     // What came in the same burst has been answered or dropped once a guest who came later is answered.
-    const witness = ending(await rawGuest(server.url, 'open-burst'), ({ socket }) => socket.disconnect());
+    const witness = ending(await rawGuest(server.url, 'counting-burst'), ({ socket }) => socket.disconnect());
     witness.say({ type: 'ping', sent: 0 });
     await until('the answer to another', () => witness.heard.some(({ type }) => type === 'pong'));
     expect(pongs()).toBeLessThan(30);

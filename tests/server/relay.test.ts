@@ -1,4 +1,5 @@
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
+import type { BallState } from '../../src/core/games/ball/ball-state';
 import { atRack, fists, holding, opening, releaseOf } from '../net/people';
 import { arrive, type RunningRelay, startRelay, until } from './running-relay';
 
@@ -49,13 +50,13 @@ describe('a relay', () => {
         'the pause',
         all(({ connection }) => connection.room?.paused ?? false),
       );
-      const stands = server.relay.host.room('study')?.match?.tick ?? -1;
+      const stands = server.relay.host.room('study')?.match.tick ?? -1;
       const asSeen = people.map(({ match }) => match.tick);
       const heard = people.map(({ poses }) => poses.length);
       await until('each to have heard sixty more poses', () =>
         people.every(({ poses }, i) => poses.length > heard[i]! + 60),
       );
-      expect(server.relay.host.room('study')?.match?.tick).toBe(stands);
+      expect(server.relay.host.room('study')?.match.tick).toBe(stands);
       expect(people.map(({ match }) => match.tick)).toEqual(asSeen);
       ann.connection.pause(false);
       await until(
@@ -82,12 +83,13 @@ describe('a relay', () => {
       }
       await until('the match running', () => people.every(({ match }) => match.phase === 'running'));
       const thrower = people.find(({ seat }) => seat === 0)!;
+      const rightFist = () => (server.relay.host.room('game')?.match as BallState | undefined)?.players[0]?.right;
       thrower.place(atRack(0));
-      await until('the fist at the rack', () => server.relay.host.room('game')?.match?.players[0]?.right?.y === 0.925);
+      await until('the fist at the rack', () => rightFist()?.y === 0.925);
       thrower.grab(0);
       await until('the ball in hand', () => people.every(({ match }) => match.balls[0]?.on === 'hand'));
       thrower.place(fists(releaseOf(0)));
-      await until('the hand up', () => server.relay.host.room('game')?.match?.players[0]?.right?.y === 1.6);
+      await until('the hand up', () => rightFist()?.y === 1.6);
       thrower.toss(0, thrower.now());
       await until('a point', () => people.every(({ match }) => match.score === 1), 5);
       for (const { match } of [ann, ben, cal]) expect(match.balls[0]).toEqual({ on: 'basket', thrower: 0 });

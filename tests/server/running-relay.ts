@@ -3,18 +3,24 @@ import { createDoor } from '../../server/door';
 import { createRouter, noPage } from '../../server/http/router';
 import { createRelay } from '../../server/relay';
 import { relayConfigurationFrom } from '../../server/relay-configuration';
+import { shippedRoomKinds } from '../../server/room-kinds';
 import { serve } from '../../server/web-server';
 import { defaultCalibration } from '../../src/core/body/calibration';
 import { skeletonFromCalibration } from '../../src/core/body/skeleton';
 import { identity } from '../../src/core/math/quat';
 import { vec3 } from '../../src/core/math/vec3';
-import { protocolVersion, type RoomMessage, type RoomTerms } from '../../src/core/protocol/messages';
+import { type BallRoomMessage, ballKind } from '../../src/core/protocol/ball-messages';
+import { mostSeats, protocolVersion, type RoomTerms } from '../../src/core/protocol/messages';
 import { encodePose } from '../../src/core/protocol/pose-codec';
 import { messageEvent, pageParser } from '../../src/core/protocol/small-frames';
 import type { Visitor } from '../../src/net/connection';
 import { createRoomPass } from '../../src/net/room-pass';
 import { createSocketConnection } from '../../src/net/socket-connection';
+import { countingKind, countingPolicy } from '../core/room/counting-game';
 import { createPerson, visitor } from '../net/people';
+
+/** Rooms whose names begin so are of the tests' own game, with as many seats as there may be. */
+const kindOf = (room: string): string => (room.startsWith(countingKind) ? countingKind : ballKind);
 
 export const testSecret = 'tests-kN3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gAzE4uV7iO';
 
@@ -22,7 +28,8 @@ export const testSecret = 'tests-kN3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gAzE4uV7iO';
 export async function startRelay(environment: Record<string, string> = {}, port = 0) {
   const configuration = relayConfigurationFrom({ THREEPOINT_LOG_LEVEL: 'silent', ...environment });
   const door = createDoor({ perAddress: configuration.connectionsPerAddress, behindProxy: configuration.trustProxy });
-  const relay = createRelay(configuration, configuration.secret ?? testSecret, door);
+  const kinds = new Map([...shippedRoomKinds(configuration), [countingKind, () => countingPolicy(mostSeats)]]);
+  const relay = createRelay(configuration, configuration.secret ?? testSecret, door, kinds);
   const server = await serve(createRouter([relay.service], noPage), {
     host: '127.0.0.1',
     port,
@@ -62,12 +69,11 @@ export function arrive(
   { terms, ...more }: Partial<Visitor> & { readonly terms?: RoomTerms } = {},
   now = seconds,
 ) {
-  const kind = room.startsWith('open') ? 'open' : 'ball';
   const connection = createSocketConnection({
     url,
     room,
     visitor: visitor(name, more),
-    pass: createRoomPass(url, room, kind, undefined, terms),
+    pass: createRoomPass(url, room, kindOf(room), undefined, terms),
     clock: { now, leftOut: 0 },
   });
   const person = createPerson(connection);
@@ -114,8 +120,8 @@ export function poseBytes(timeMs: number, aside = 0): Uint8Array {
   return bytes;
 }
 
-export async function tokenFor(url: string, room: string, kind: 'ball' | 'open' = 'ball'): Promise<string> {
-  return createRoomPass(url, room, kind).token(false);
+export async function tokenFor(url: string, room: string): Promise<string> {
+  return createRoomPass(url, room, kindOf(room)).token(false);
 }
 
 /** A socket without our client behind it: for saying what no page of ours says. */
@@ -134,11 +140,10 @@ export function rawSocket(url: string, token: string, room: string, extraHeaders
 
 /** The same, joined; and what it heard. */
 export async function rawGuest(url: string, room: string, token?: string) {
-  const kind = room.startsWith('open') ? 'open' : 'ball';
-  const socket = rawSocket(url, token ?? (await tokenFor(url, room, kind)), room);
-  const heard: RoomMessage[] = [];
+  const socket = rawSocket(url, token ?? (await tokenFor(url, room)), room);
+  const heard: BallRoomMessage[] = [];
   let closedAt: number | null = null;
-  socket.on(messageEvent, (message: RoomMessage) => heard.push(message));
+  socket.on(messageEvent, (message: BallRoomMessage) => heard.push(message));
   socket.on('disconnect', () => {
     closedAt = performance.now();
   });

@@ -99,7 +99,7 @@ describe('the room of a trial', () => {
     const attempts: unknown[] = [
       { room, kind: 'ball' },
       { room: room.toUpperCase(), kind: 'ball' },
-      { room, kind: 'open' },
+      { room, kind: 'counting' },
       { room, kind: 'ball', token: (await seatOf('P01')).token },
       { room: 'meadow', kind: 'ball', assigned: { seat: 1, name: 'P02' } },
     ];

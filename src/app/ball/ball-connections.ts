@@ -33,7 +33,7 @@ export async function connectionsFor(
 ): Promise<Connect> {
   if (room === null) {
     const { pausable: _, ...ball } = terms;
-    return createLoopbackHost({ kind: 'ball', seed, ball }).connect;
+    return createLoopbackHost({ seed, ball }).connect;
   }
   const [{ createSocketConnection }, { createRoomPass }] = await Promise.all([
     import('../../net/socket-connection'),

@@ -24,7 +24,7 @@ function page(options: {
   steering?: () => BallSteering | null;
 }) {
   const { acting = true, bots = true, ball = {}, rateHz = usualHz } = options;
-  const host = createLoopbackHost({ kind: 'ball', seed: 3, ball });
+  const host = createLoopbackHost({ seed: 3, ball });
   const player: BallPlay = createBallPlay({
     connect: host.connect,
     visitor: {

@@ -29,7 +29,7 @@ const step = {
 
 /** Three participants of one group in one room, each page with its own trial, frame by frame. */
 async function group() {
-  const room = createLoopbackHost({ kind: 'ball', seed: 3, ball: { seconds } });
+  const room = createLoopbackHost({ seed: 3, ball: { seconds } });
   let time = 10;
   const pages = await Promise.all(
     people.map(async (participant, seat) => {

@@ -1,12 +1,13 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import { defaultCalibration } from '../../../src/core/body/calibration';
+import { ballActionFrom, ballRoomMessageFrom } from '../../../src/core/protocol/ball-messages';
 import {
+  type ClientMessage,
   clientMessageFrom,
-  packRow,
+  packSeatInfo,
   protocolVersion,
-  roomMessageFrom,
-  unpackRow,
+  unpackSeatInfo,
 } from '../../../src/core/protocol/messages';
 import { cleanName } from '../../../src/core/protocol/names';
 import { decodeFrame, encodeFrame } from '../../../src/core/protocol/pose-frame';
@@ -31,17 +32,25 @@ const throwing = {
   velocity: { x: 0, y: 3, z: -5 },
 };
 
+/** The message as a room of the ball game understands it; null: not at all. */
+function readInBallRoom(value: unknown): ClientMessage | null {
+  const message = clientMessageFrom(value);
+  if (message?.type !== 'action') return message;
+  const action = ballActionFrom(message.action);
+  return action && { type: 'action', action };
+}
+
 describe('control messages', () => {
   test('good ones are read as they are', () => {
     for (const message of [
       join,
       { type: 'ready', ready: true },
-      { type: 'deed', deed: throwing },
+      { type: 'action', action: throwing },
       { type: 'sit', seat: null },
       { type: 'pause', pause: true },
       { type: 'ping', sent: 1.5 },
     ]) {
-      expect(clientMessageFrom(JSON.parse(JSON.stringify(message)))).toEqual(message);
+      expect(readInBallRoom(JSON.parse(JSON.stringify(message)))).toEqual(message);
     }
   });
 
@@ -49,31 +58,32 @@ describe('control messages', () => {
     ['nothing', null],
     ['text', 'join'],
     ['an unknown type', { type: 'score', points: 20 }],
-    ['a field too many', { ...join, identity: 'somebody else' }],
+    ['a field too many', { ...join, identity: 'another person' }],
     ['a field too few', { type: 'ready' }],
     ['another version', { ...join, version: protocolVersion + 1 }],
     ['a seat that no room has', { type: 'sit', seat: 16 }],
     ['half a seat', { type: 'sit', seat: 0.5 }],
     ['a giant', { ...join, calibration: { eyeHeight: 40, armSpan: 1.5 } }],
     ['a name as long as a book', { ...join, name: 'a'.repeat(300) }],
-    ['a throw from nowhere', { type: 'deed', deed: { ...throwing, position: { x: Number.NaN, y: 0, z: 0 } } }],
-    ['a throw without end', { type: 'deed', deed: { ...throwing, velocity: { x: 1e300, y: 0, z: 0 } } }],
-    ['the throw of another player', { type: 'deed', deed: { ...throwing, player: 2 } }],
-    ['deed number zero', { type: 'deed', deed: { ...throwing, sequence: 0 } }],
+    ['a throw from nowhere', { type: 'action', action: { ...throwing, position: { x: Number.NaN, y: 0, z: 0 } } }],
+    ['a throw without end', { type: 'action', action: { ...throwing, velocity: { x: 1e300, y: 0, z: 0 } } }],
+    ['the throw of another player', { type: 'action', action: { ...throwing, player: 2 } }],
+    ['action number zero', { type: 'action', action: { ...throwing, sequence: 0 } }],
   ])('%s is refused', (_what, message) => {
-    expect(clientMessageFrom(message)).toBeNull();
+    expect(readInBallRoom(message)).toBeNull();
   });
 
-  test('no value at all makes either reader throw', () => {
+  test('no value at all makes a reader throw', () => {
     fc.assert(
       fc.property(fc.anything(), (value) => {
         clientMessageFrom(value);
-        roomMessageFrom(value);
+        ballActionFrom(value);
+        ballRoomMessageFrom(value);
       }),
     );
   });
 
-  test('a row of a seat survives packing, measures to the millimetre', () => {
+  test('what is known of a seat survives packing, measures to the millimetre', () => {
     fc.assert(
       fc.property(
         fc.record({
@@ -85,15 +95,15 @@ describe('control messages', () => {
           bot: fc.boolean(),
           presence: fc.constantFrom('here' as const, 'away' as const, 'gone' as const),
         }),
-        (row) => {
-          expect(unpackRow(JSON.parse(JSON.stringify(packRow(row))))).toEqual(row);
+        (info) => {
+          expect(unpackSeatInfo(JSON.parse(JSON.stringify(packSeatInfo(info))))).toEqual(info);
         },
       ),
     );
-    expect(unpackRow(packRow(null))).toBeNull();
+    expect(unpackSeatInfo(packSeatInfo(null))).toBeNull();
   });
 
-  test('names are plain, short text whatever somebody types', () => {
+  test('names are plain, short text by any input', () => {
     fc.assert(
       fc.property(fc.string({ unit: 'binary', maxLength: 200 }), (typed) => {
         const name = cleanName(typed);

@@ -1,6 +1,6 @@
 import { describe, expect, test } from 'vitest';
 import { ballMatchTime, ballSecondsLeft } from '../../../src/core/games/ball/rules';
-import { poseMemory } from '../../../src/core/room/room';
+import { poseMemory } from '../../../src/core/room/pose-claims';
 import { atRack, fists, holding, opening, releaseOf, velocityTo } from '../../net/people';
 import { toldRoom } from './told-room';
 
@@ -8,8 +8,8 @@ import { toldRoom } from './told-room';
 function playing() {
   const told = toldRoom({ pausable: true });
   told.begin();
-  const pause = (client: string, on: boolean) => told.room.receive(client, { type: 'pause', pause: on }, told.time);
-  const match = () => told.room.match!;
+  const pause = (client: string, on: boolean) => told.room.onMessage(client, { type: 'pause', pause: on }, told.time);
+  const match = () => told.room.match;
   return { told, pause, match };
 }
 
@@ -46,7 +46,7 @@ describe('a pause', () => {
     told.tick();
     const after = told.said.findLast((line) => line.message.type === 'paused')?.message;
     expect(after).toMatchObject({ type: 'paused', at: null });
-    expect(told.time - (after?.type === 'paused' ? after.zero : 0)).toBeCloseTo(at ?? -1, 1);
+    expect(told.time - (after?.type === 'paused' ? after.matchStart : 0)).toBeCloseTo(at ?? -1, 1);
     expect(told.join('eve', { spectate: true }).paused).toBeNull();
   });
 
@@ -54,12 +54,12 @@ describe('a pause', () => {
     const { told, pause, match } = playing();
     told.pose('ann', 0, atRack(0), told.time + 0.01);
     told.tick();
-    told.deed('ann', { type: 'grab', sequence: 1, side: 'right', ball: 0 });
+    told.act('ann', { type: 'grab', sequence: 1, side: 'right', ball: 0 });
     told.tick();
     told.pose('ann', 0, fists(releaseOf(0)), told.time);
     told.tick();
     const throwing = { position: releaseOf(0), velocity: velocityTo(releaseOf(0), opening, 1) };
-    told.deed('ann', { type: 'throw', sequence: 2, side: 'right', ball: 0, at: ballMatchTime(match()), ...throwing });
+    told.act('ann', { type: 'throw', sequence: 2, side: 'right', ball: 0, at: ballMatchTime(match()), ...throwing });
     told.pass(0.4, told.stand);
     pause('cal', true);
     told.pass(60, told.stand);
@@ -73,19 +73,19 @@ describe('a pause', () => {
     const { told, pause, match } = playing();
     told.pose('ann', 0, atRack(0), told.time + 0.01);
     told.tick();
-    told.deed('ann', { type: 'grab', sequence: 1, side: 'right', ball: 0 });
+    told.act('ann', { type: 'grab', sequence: 1, side: 'right', ball: 0 });
     told.tick();
     expect(match().balls[0]?.on).toBe('hand');
     pause('ben', true);
     told.pass(0.1);
     expect(match().balls[0]).toEqual({ on: 'rack' });
     told.pose('ann', 0, atRack(0), told.time + 0.01);
-    told.deed('ann', { type: 'grab', sequence: 2, side: 'right', ball: 0 });
+    told.act('ann', { type: 'grab', sequence: 2, side: 'right', ball: 0 });
     told.tick();
     expect(told.happened('refused')).toEqual([{ type: 'refused', player: 0, sequence: 2, reason: 'phase' }]);
     pause('ben', false);
     told.pass(0.1, () => told.pose('ann', 0, atRack(0), told.time + 0.01));
-    told.deed('ann', { type: 'grab', sequence: 3, side: 'right', ball: 0 });
+    told.act('ann', { type: 'grab', sequence: 3, side: 'right', ball: 0 });
     told.pass(0.1);
     expect(match().balls[0]).toEqual({ on: 'hand', player: 0, side: 'right' });
   });
@@ -113,7 +113,7 @@ describe('a pause', () => {
     expect(told.room.paused).toBe(false);
     pause('ben', true);
     told.tick();
-    told.room.receive('ben', { type: 'leave' }, told.time);
+    told.room.onMessage('ben', { type: 'leave' }, told.time);
     told.tick();
     expect(told.room.paused).toBe(false);
   });
@@ -121,24 +121,24 @@ describe('a pause', () => {
   test('that is asked for before the start stops the match as soon as it has begun', () => {
     const told = toldRoom({ pausable: true });
     for (const client of ['ann', 'ben', 'cal']) told.join(client, { name: client });
-    told.room.receive('ann', { type: 'pause', pause: true }, told.time);
+    told.room.onMessage('ann', { type: 'pause', pause: true }, told.time);
     told.pass(1, told.stand);
     expect(told.room.paused).toBe(false);
-    for (const client of ['ann', 'ben', 'cal']) told.room.receive(client, { type: 'ready', ready: true }, told.time);
+    for (const client of ['ann', 'ben', 'cal']) told.room.onMessage(client, { type: 'ready', ready: true }, told.time);
     told.pass(30, told.stand);
-    expect(told.room.match?.phase).toBe('running');
-    expect(ballSecondsLeft(told.room.match!)).toBeGreaterThan(89.9);
+    expect(told.room.match.phase).toBe('running');
+    expect(ballSecondsLeft(told.room.match)).toBeGreaterThan(89.9);
   });
 
   test('is refused where the terms of the room do not allow it, and to who only watches', () => {
     const told = toldRoom();
     told.begin();
-    told.room.receive('ann', { type: 'pause', pause: true }, told.time);
+    told.room.onMessage('ann', { type: 'pause', pause: true }, told.time);
     told.pass(1, told.stand);
     expect(told.room.paused).toBe(false);
     const { told: other } = playing();
     other.join('dot', { spectate: true });
-    other.room.receive('dot', { type: 'pause', pause: true }, other.time);
+    other.room.onMessage('dot', { type: 'pause', pause: true }, other.time);
     other.pass(1, other.stand);
     expect(other.room.paused).toBe(false);
     expect([...told.refusals, ...other.refusals].map(({ reason }) => reason)).toEqual(['not-pausable', 'no-seat']);
@@ -152,8 +152,8 @@ describe('a pause', () => {
     const before = longest();
     told.pass(60, () => {
       told.stand();
-      told.room.receive('ben', { type: 'ready', ready: true }, told.time);
-      told.deed('ben', { type: 'drop', sequence: 1, side: 'left' });
+      told.room.onMessage('ben', { type: 'ready', ready: true }, told.time);
+      told.act('ben', { type: 'drop', sequence: 1, side: 'left' });
     });
     pause('ann', false);
     told.pass(0.1);

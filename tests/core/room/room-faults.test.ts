@@ -3,14 +3,17 @@ import { describe, expect, test } from 'vitest';
 import type { BallDeed, BallState } from '../../../src/core/games/ball/ball-state';
 import { nextRandom } from '../../../src/core/math/random';
 import { addScaled, isFiniteVec3, vec3 } from '../../../src/core/math/vec3';
+import { ballRoomMessageFrom } from '../../../src/core/protocol/ball-messages';
 import { packBall, unpackBall } from '../../../src/core/protocol/ball-snapshot';
-import { clientMessageFrom, roomMessageFrom } from '../../../src/core/protocol/messages';
+import { clientMessageFrom, mostSeats } from '../../../src/core/protocol/messages';
 import { decodeFrame } from '../../../src/core/protocol/pose-frame';
 import { relayParser } from '../../../src/core/protocol/small-frames';
+import { Room } from '../../../src/core/room/room';
 import { atRack, fists, holding, opening, releaseOf, velocityTo } from '../../net/people';
 import { isNightly } from '../../nightly';
 import { tell } from '../../tell';
-import { packetAt, toldRoom } from './told-room';
+import { countingPolicy } from './counting-game';
+import { joining, packetAt, toldRoom } from './told-room';
 
 /** Numbers in [0, 1). */
 function chanceOf(seed: number): () => number {
@@ -33,10 +36,10 @@ test('fuzzed packets of every kind throw nothing and leave no NaN in any state',
   const pick = (count: number) => Math.floor(chance() * count);
   const told = toldRoom();
   told.begin();
-  const good = () => packetAt(told.room, 0, fists(vec3(chance() - 0.5, 0.5 + chance(), -chance())), told.time);
+  const good = () => packetAt(told.room.match, 0, fists(vec3(chance() - 0.5, 0.5 + chance(), -chance())), told.time);
   const words = [
     'type',
-    'deed',
+    'action',
     'grab',
     'throw',
     'ready',
@@ -66,7 +69,7 @@ test('fuzzed packets of every kind throw nothing and leave no NaN in any state',
     if (kind <= 1) {
       const mutated = good();
       for (let flips = pick(3); flips >= 0; flips--) mutated[pick(mutated.length)]! ^= 1 << pick(8);
-      if (told.room.receivePose('ann', chance() < 0.5 ? mutated : bytes, told.time) === 'taken') taken += 1;
+      if (told.room.onPose('ann', chance() < 0.5 ? mutated : bytes, told.time) === 'taken') taken += 1;
     } else if (kind === 2) {
       const value = { type: words[pick(words.length)], ...(jsonLike(0) as object | null) };
       const near: Record<string, unknown> = {
@@ -79,10 +82,11 @@ test('fuzzed packets of every kind throw nothing and leave no NaN in any state',
         Object.assign(near, { at: told.time - 1000, position: releaseOf(0), velocity: vec3(0, 0, -4 - 40 * chance()) });
       }
       if (chance() < 0.3) near[Object.keys(near)[pick(4)]!] = jsonLike(2);
-      const message = clientMessageFrom(chance() < 0.5 ? value : { type: 'deed', deed: near });
-      if (message) understood += 1;
-      if (message && message.type !== 'join' && message.type !== 'leave') told.room.receive('ann', message, told.time);
-      roomMessageFrom(value);
+      const message = clientMessageFrom(chance() < 0.5 ? value : { type: 'action', action: near });
+      const isHeard = message && message.type !== 'join' && message.type !== 'leave';
+      const isBad = isHeard && told.room.onMessage('ann', message, told.time) === 'bad';
+      if (message && !isBad) understood += 1;
+      ballRoomMessageFrom(value);
     } else if (kind === 3) {
       if (!decodeFrame(bytes)) refusedFrames += 1;
     } else {
@@ -97,7 +101,7 @@ test('fuzzed packets of every kind throw nothing and leave no NaN in any state',
     if (i % 20 === 0) told.tick();
   }
   expect(allFinite(told.room.match)).toBe(true);
-  for (const { head, left, right } of told.room.match!.players) {
+  for (const { head, left, right } of told.room.match.players) {
     for (const place of [head, left, right]) expect(place === null || isFiniteVec3(place)).toBe(true);
   }
   tell('fuzz', {
@@ -124,14 +128,14 @@ test('deeds told twice, out of order and again later score once', () => {
     let sequence = 0;
     for (let ball = 0; ball < balls / 2; ball++) {
       const grab: BallDeed = { type: 'grab', sequence: ++sequence, side: 'right', ball };
-      const at = () => told.time - told.welcomeOf('ann').zero!;
+      const at = () => told.time - told.welcomeOf('ann').matchStart;
       told.pose('ann', 0, atRack(ball, balls), told.time + 0.01);
       told.tick();
       const burst = (fresh: BallDeed) => {
         said.push(fresh);
         const again = Array.from({ length: 500 }, () => said[Math.floor(chance() * said.length)]!);
         for (const deed of [fresh, ...again]) {
-          told.deed('ann', deed);
+          told.act('ann', deed);
           sent += 1;
           if (chance() < 0.02) told.tick();
         }
@@ -154,7 +158,7 @@ test('deeds told twice, out of order and again later score once', () => {
     const catches = told.happened('caught');
     caught += catches.length;
     doubles += catches.length - new Set(catches.map(({ ball }) => ball)).size;
-    expect(told.room.match?.score).toBe(new Set(catches.map(({ ball }) => ball)).size);
+    expect(told.room.match.score).toBe(new Set(catches.map(({ ball }) => ball)).size);
   }
   tell('replayed deeds', { deeds: sent, rounds, catches: caught, 'double scores': doubles });
   expect(doubles).toBe(0);
@@ -177,11 +181,11 @@ describe('latency', () => {
     told.begin();
     told.pose('ann', 0, atRack(0), told.time + 0.01);
     told.tick();
-    told.deed('ann', { type: 'grab', sequence: 1, side: 'right', ball: 0 });
+    told.act('ann', { type: 'grab', sequence: 1, side: 'right', ball: 0 });
     told.tick();
     told.pose('ann', 0, fists(releaseOf(0)), told.time);
     const start = told.time;
-    const zero = told.welcomeOf('ann').zero!;
+    const { matchStart } = told.welcomeOf('ann');
     const underway: { readonly at: number; readonly send: () => void }[] = [];
     let lastCal = 0;
     const throwAt = start + 0.25;
@@ -190,10 +194,10 @@ describe('latency', () => {
       if (i % 2 === 0) {
         // TCP: nothing overtakes.
         lastCal = Math.max(lastCal, time + delay + jitter * late());
-        const bytes = packetAt(told.room, 2, holding(basketAt(time - start)), time);
-        underway.push({ at: lastCal, send: () => void told.room.receivePose('cal', bytes, told.time) });
-        const anns = packetAt(told.room, 0, fists(releaseOf(0)), time);
-        underway.push({ at: time + delay, send: () => void told.room.receivePose('ann', anns, told.time) });
+        const bytes = packetAt(told.room.match, 2, holding(basketAt(time - start)), time);
+        underway.push({ at: lastCal, send: () => void told.room.onPose('cal', bytes, told.time) });
+        const anns = packetAt(told.room.match, 0, fists(releaseOf(0)), time);
+        underway.push({ at: time + delay, send: () => void told.room.onPose('ann', anns, told.time) });
       }
       if (time <= throwAt && time + 1 / 60 > throwAt) {
         const deed: BallDeed = {
@@ -201,16 +205,16 @@ describe('latency', () => {
           sequence: 2,
           side: 'right',
           ball: 0,
-          at: throwAt - zero,
+          at: throwAt - matchStart,
           position: releaseOf(0),
           velocity: velocityTo(releaseOf(0), aim, flight),
         };
-        underway.push({ at: throwAt + delay + jitter * late(), send: () => told.deed('ann', deed) });
+        underway.push({ at: throwAt + delay + jitter * late(), send: () => told.act('ann', deed) });
       }
       for (const message of underway.filter(({ at }) => at <= time && at > time - 1 / 60)) message.send();
       told.tick();
     }
-    const place = told.room.match!.balls[0]!.on;
+    const place = told.room.match.balls[0]!.on;
     return place === 'basket'
       ? 'caught'
       : told.happened('bounced').some(({ off }) => off === 'basket')
@@ -239,7 +243,7 @@ describe('whoever comes at t = 60 s', () => {
     const told = toldRoom({ ball: { balls: 20 } });
     // The longest names there are.
     for (const client of ['ann', 'ben', 'cal']) told.join(client, { name: '\u{1f600}'.repeat(10) });
-    for (const client of ['ann', 'ben', 'cal']) told.room.receive(client, { type: 'ready', ready: true }, told.time);
+    for (const client of ['ann', 'ben', 'cal']) told.room.onMessage(client, { type: 'ready', ready: true }, told.time);
     told.stand();
     told.tick();
     let sequence = 0;
@@ -247,16 +251,16 @@ describe('whoever comes at t = 60 s', () => {
     for (let ball = 0; ball < 10; ball++) {
       told.pose('ann', 0, atRack(ball), told.time + 0.01);
       told.tick();
-      told.deed('ann', { type: 'grab', sequence: ++sequence, side: 'right', ball });
+      told.act('ann', { type: 'grab', sequence: ++sequence, side: 'right', ball });
       told.tick();
       told.stand();
       told.tick();
-      told.deed('ann', {
+      told.act('ann', {
         type: 'throw',
         sequence: ++sequence,
         side: 'right',
         ball,
-        at: told.time - told.welcomeOf('ann').zero!,
+        at: told.time - told.welcomeOf('ann').matchStart,
         position: releaseOf(0),
         velocity: vec3(1.2345678 - ball, 4.1234567, -3.1234567),
       });
@@ -266,7 +270,7 @@ describe('whoever comes at t = 60 s', () => {
     const welcome = told.welcomeOf('dot');
     const bytes = Buffer.byteLength(JSON.stringify(welcome));
     const known = unpackBall(welcome.match!)!;
-    const truth = told.room.match!;
+    const truth = told.room.match;
     expect(known.balls).toEqual(truth.balls);
     // JSON knows no −0.
     expect(known.basket).toEqual(JSON.parse(JSON.stringify(truth.basket)));
@@ -287,7 +291,7 @@ describe('whoever comes at t = 60 s', () => {
     fc.assert(
       fc.property(fc.array(launch, { minLength: 20, maxLength: 20 }), (launches) => {
         const state: BallState = {
-          ...told.room.match!,
+          ...told.room.match,
           tick: 3600 * 60,
           balls: launches.map((flight) => ({ on: 'air', launch: flight, thrower: 1, missed: true })),
         };
@@ -297,9 +301,25 @@ describe('whoever comes at t = 60 s', () => {
         expect(Buffer.byteLength(JSON.stringify(welcome))).toBeLessThanOrEqual(2048);
       }),
     );
-    const open = toldRoom({ kind: 'open', seats: 16 });
-    for (let i = 0; i < 16; i++) open.join(`c${i}`, { name: '\u{1f600}'.repeat(10) });
-    expect(Buffer.byteLength(JSON.stringify(open.welcomeOf('c15')))).toBeLessThanOrEqual(2048);
+  });
+
+  test('and of a room with as many seats as there may be', () => {
+    const sent: number[] = [];
+    const room = new Room(
+      countingPolicy(mostSeats),
+      { id: 'room', epoch: 'one' },
+      {
+        send: (_, message) => sent.push(Buffer.byteLength(JSON.stringify(message))),
+        broadcast: () => undefined,
+        frame: () => undefined,
+        drop: () => undefined,
+        refused: () => undefined,
+      },
+    );
+    for (let i = 0; i < mostSeats; i++) room.join(`c${i}`, `c${i}`, joining({ name: '\u{1f600}'.repeat(10) }), 1000);
+    expect(room.census.free).toBe(0);
+    expect(sent).toHaveLength(mostSeats);
+    expect(Math.max(...sent)).toBeLessThanOrEqual(2048);
   });
 });
 
@@ -310,10 +330,10 @@ test('5 s and 29 s of silence cost nothing: same seat, same score, one snapshot'
     told.begin();
     told.pose('ann', 0, atRack(0), told.time + 0.01);
     told.tick();
-    told.deed('ann', { type: 'grab', sequence: 1, side: 'right', ball: 0 });
+    told.act('ann', { type: 'grab', sequence: 1, side: 'right', ball: 0 });
     told.pass(0.1, told.stand);
-    const at = told.time - told.welcomeOf('ann').zero!;
-    told.deed('ann', {
+    const at = told.time - told.welcomeOf('ann').matchStart;
+    told.act('ann', {
       type: 'throw',
       sequence: 2,
       side: 'right',
@@ -323,7 +343,7 @@ test('5 s and 29 s of silence cost nothing: same seat, same score, one snapshot'
       velocity: velocityTo(releaseOf(0), opening, 1),
     });
     told.pass(1.5, told.stand);
-    expect(told.room.match?.score).toBe(1);
+    expect(told.room.match.score).toBe(1);
     told.room.disconnect('ann', told.time);
     told.pass(silence, told.stand);
     const before = told.said.length;
@@ -346,7 +366,7 @@ test('rooms that live for hours keep nothing: the same answer, no growth', () =>
   let rounds = 0;
   for (let second = 0; second < hours * 3600; second++) {
     told.pass(1, told.stand);
-    for (const client of ['ann', 'ben', 'cal']) told.room.receive(client, { type: 'ready', ready: true }, told.time);
+    for (const client of ['ann', 'ben', 'cal']) told.room.onMessage(client, { type: 'ready', ready: true }, told.time);
     if (second % 30 === 0) {
       told.room.disconnect('ben', told.time);
       told.join('ben', {}, 'ben');

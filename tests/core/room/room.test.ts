@@ -1,19 +1,21 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
-import type { BallState } from '../../../src/core/games/ball/ball-state';
+import type { BallDeed, BallState } from '../../../src/core/games/ball/ball-state';
 import { followBallEvent } from '../../../src/core/games/ball/replica';
 import { ballRules } from '../../../src/core/games/ball/rules';
+import { BallPolicy } from '../../../src/core/match-policies/ball-policy';
 import { vec3 } from '../../../src/core/math/vec3';
 import { packBall, unpackBall } from '../../../src/core/protocol/ball-snapshot';
-import { clientMessageFrom, protocolVersion, unpackRow } from '../../../src/core/protocol/messages';
+import { clientMessageFrom, protocolVersion, unpackSeatInfo } from '../../../src/core/protocol/messages';
 import { decodeFrame } from '../../../src/core/protocol/pose-frame';
-import { createRoom, seatHoldSeconds } from '../../../src/core/room/room';
+import { Room } from '../../../src/core/room/room';
+import { seatHoldSeconds } from '../../../src/core/room/seats';
 import { atRack, fists, opening, releaseOf, velocityTo } from '../../net/people';
 import { joining, packetAt, toldRoom } from './told-room';
 
 const presence = (told: ReturnType<typeof toldRoom>, seat: number) => {
-  const row = told.said.findLast(({ message }) => message.type === 'seat' && message.seat === seat)?.message;
-  return row?.type === 'seat' ? (unpackRow(row.row)?.presence ?? 'free') : undefined;
+  const seen = told.said.findLast(({ message }) => message.type === 'seat' && message.seat === seat)?.message;
+  return seen?.type === 'seat' ? (unpackSeatInfo(seen.info)?.presence ?? 'free') : undefined;
 };
 
 describe('seats', () => {
@@ -26,7 +28,7 @@ describe('seats', () => {
     });
     expect(rude).toMatchObject({ name: 'ab c \u{1f600} ab c \u{1f600} ab c \u{1f600}' });
     told.join('x', { name: '' });
-    expect(unpackRow(told.welcomeOf('x').seats[0]!)?.name).toBe('Player 1');
+    expect(unpackSeatInfo(told.welcomeOf('x').seats[0]!)?.name).toBe('Player 1');
   });
 
   test('a connection lost for less than 30 s gets its seat and score back, even with 16 others waiting', () => {
@@ -58,22 +60,22 @@ describe('seats', () => {
       told.begin();
       told.pose('ann', 0, atRack(0), told.time + 0.01);
       told.tick();
-      told.deed('ann', { type: 'grab', sequence: 1, side: 'right', ball: 0 });
+      told.act('ann', { type: 'grab', sequence: 1, side: 'right', ball: 0 });
       told.tick();
-      expect(told.room.match?.balls[0]?.on).toBe('hand');
+      expect(told.room.match.balls[0]?.on).toBe('hand');
       told.room.disconnect('ann', told.time);
       return told;
     };
     const hiccup = hold();
     hiccup.pass(2, hiccup.stand);
     hiccup.join('ann again', {}, 'ann');
-    expect(hiccup.room.match?.balls[0]?.on).toBe('hand');
+    expect(hiccup.room.match.balls[0]?.on).toBe('hand');
     const longer = hold();
     longer.pass(4, longer.stand);
-    expect(longer.room.match?.balls[0]?.on).toBe('rack');
+    expect(longer.room.match.balls[0]?.on).toBe('rack');
     longer.join('ann again', {}, 'ann');
     longer.tick();
-    expect(longer.room.match?.players[0]?.present).toBe(true);
+    expect(longer.room.match.players[0]?.present).toBe(true);
   });
 
   test('a second connection of the same person replaces the first', () => {
@@ -87,7 +89,7 @@ describe('seats', () => {
     const told = toldRoom();
     told.begin();
     told.join('dot', { spectate: true });
-    told.room.receive('dot', { type: 'sit', seat: 1 }, told.time);
+    told.room.onMessage('dot', { type: 'sit', seat: 1 }, told.time);
     expect(told.refusals).toMatchObject([{ client: 'dot', what: 'sit', reason: 'occupied' }]);
     expect(told.join('eve', { seat: 1 }).seat).toBeNull();
   });
@@ -95,9 +97,9 @@ describe('seats', () => {
   test('others learn that somebody is away: at once when told, within 3 s of silence, and at once of the return', () => {
     const told = toldRoom();
     told.begin();
-    told.room.receive('ann', { type: 'away', away: true }, told.time);
+    told.room.onMessage('ann', { type: 'away', away: true }, told.time);
     expect(presence(told, 0)).toBe('away');
-    told.room.receive('ann', { type: 'away', away: false }, told.time);
+    told.room.onMessage('ann', { type: 'away', away: false }, told.time);
     expect(presence(told, 0)).toBe('here');
     const quiet = () => {
       told.pose('ann', 0, fists(releaseOf(0)));
@@ -131,9 +133,9 @@ describe('seats', () => {
             live.set(who, `c${made}`);
             told.join(`c${made}`, { seat, spectate: what === 'watch', bot: what === 'bot' }, `person ${who}`);
           } else if (client && what === 'disconnect') told.room.disconnect(client, told.time);
-          else if (client && what === 'leave') told.room.receive(client, { type: 'leave' }, told.time);
-          else if (client && what === 'sit') told.room.receive(client, { type: 'sit', seat }, told.time);
-          else if (client && what === 'ready') told.room.receive(client, { type: 'ready', ready: true }, told.time);
+          else if (client && what === 'leave') told.room.onMessage(client, { type: 'leave' }, told.time);
+          else if (client && what === 'sit') told.room.onMessage(client, { type: 'sit', seat }, told.time);
+          else if (client && what === 'ready') told.room.onMessage(client, { type: 'ready', ready: true }, told.time);
           else told.tick(seconds);
           if (what === 'disconnect' || what === 'leave') live.delete(who);
           for (const { client: gone } of told.dropped) {
@@ -144,7 +146,7 @@ describe('seats', () => {
           expect(players + free).toBe(3);
           expect(players + bots).toBeLessThanOrEqual(3);
           expect(spectators).toBeLessThanOrEqual(live.size);
-          const present = told.room.match!.players.filter((player) => player.present).length;
+          const present = told.room.match.players.filter((player) => player.present).length;
           expect(present).toBeLessThanOrEqual(players + bots);
         }
       }),
@@ -159,9 +161,9 @@ describe('what the Room refuses', () => {
     told.begin();
     told.pose('ann', 0, atRack(0), told.time + 0.01);
     told.tick();
-    told.deed('ann', { type: 'grab', sequence: 1, side: 'right', ball: 0 });
+    told.act('ann', { type: 'grab', sequence: 1, side: 'right', ball: 0 });
     told.pass(0.1, told.stand);
-    expect(told.room.match?.balls[0]?.on).toBe('hand');
+    expect(told.room.match.balls[0]?.on).toBe('hand');
     return told;
   }
   const release = releaseOf(0);
@@ -175,62 +177,65 @@ describe('what the Room refuses', () => {
   ])('%s', (_what, change, reason) => {
     const told = holdingBall();
     const velocity = velocityTo(release, opening, 1);
-    told.deed('ann', { ...thrown, sequence: 2, at: 0, velocity, ...change });
+    told.act('ann', { ...thrown, sequence: 2, at: 0, velocity, ...change });
     told.tick();
-    expect(told.refusals).toMatchObject([{ client: 'ann', seat: 0, what: 'deed', reason }]);
-    expect(told.room.match?.balls[0]?.on).toBe('hand');
+    expect(told.refusals).toMatchObject([{ client: 'ann', seat: 0, what: 'action', reason }]);
+    expect(told.room.match.balls[0]?.on).toBe('hand');
     expect(told.happened('thrown')).toEqual([]);
   });
 
   test("another player's ball, and a message that names another seat", () => {
     const told = holdingBall();
-    told.deed('ben', { ...thrown, sequence: 1, at: 0, velocity: velocityTo(release, opening, 1) });
+    told.act('ben', { ...thrown, sequence: 1, at: 0, velocity: velocityTo(release, opening, 1) });
     told.tick();
     expect(told.refusals).toMatchObject([{ client: 'ben', seat: 1, reason: 'not-held' }]);
-    const named = { type: 'deed', deed: { type: 'drop', sequence: 2, side: 'right', player: 0 } };
-    expect(clientMessageFrom(named)).toBeNull();
-    expect(clientMessageFrom({ ...named, seat: 0, deed: { type: 'drop', sequence: 2, side: 'right' } })).toBeNull();
+    const drop: BallDeed = { type: 'drop', sequence: 2, side: 'right' };
+    const named: BallDeed & { player: number } = { ...drop, player: 0 };
+    expect(told.act('ben', named)).toBe('bad');
+    expect(clientMessageFrom({ type: 'action', action: drop, seat: 0 })).toBeNull();
+    told.tick();
+    expect(told.room.match.balls[0]).toEqual({ on: 'hand', player: 0, side: 'right' });
   });
 
   test('spectators who play, and clients that never joined', () => {
     const told = holdingBall();
     told.join('dot', { spectate: true });
-    told.deed('dot', { type: 'drop', sequence: 1, side: 'right' });
-    told.deed('nobody', { type: 'drop', sequence: 1, side: 'right' });
-    told.room.receive('dot', { type: 'ready', ready: true }, told.time);
+    told.act('dot', { type: 'drop', sequence: 1, side: 'right' });
+    told.act('nobody', { type: 'drop', sequence: 1, side: 'right' });
+    told.room.onMessage('dot', { type: 'ready', ready: true }, told.time);
     expect(told.refusals.map(({ reason }) => reason)).toEqual(['no-seat', 'not-joined', 'no-seat']);
     expect(told.pose('dot', 0, fists(release))).toBe('ignored');
   });
 
   test('a head that is suddenly elsewhere, unless its space was re-anchored; after a second it is believed', () => {
-    const told = toldRoom({ kind: 'open', seats: 4 });
+    const told = toldRoom();
     told.join('ann');
-    const at = (x: number) => packetAt(told.room, 0, fists(vec3(x, 1, 0)), told.time);
-    expect(told.room.receivePose('ann', at(0), told.time)).toBe('taken');
+    const at = (x: number) => packetAt(told.room.match, 0, fists(vec3(x, 1, 0)), told.time);
+    expect(told.room.onPose('ann', at(0), told.time)).toBe('taken');
     told.tick();
-    expect(told.room.receivePose('ann', at(0), told.time)).toBe('taken');
+    expect(told.room.onPose('ann', at(0), told.time)).toBe('taken');
     told.tick();
     // Bits 16 on after the header are the head's x: the same packet, 8 m aside.
     const moved = at(0);
     moved[4] = (moved[4]! + 0x20) & 0xff;
-    expect(told.room.receivePose('ann', moved, told.time)).toBe('ignored');
+    expect(told.room.onPose('ann', moved, told.time)).toBe('ignored');
     expect(told.refusals).toMatchObject([{ what: 'pose', reason: 'too-fast' }]);
     told.pass(1.1);
     const later = at(0);
     later[4] = (later[4]! + 0x20) & 0xff;
-    expect(told.room.receivePose('ann', later, told.time)).toBe('taken');
+    expect(told.room.onPose('ann', later, told.time)).toBe('taken');
   });
 
   test('poses that arrive twice, late or not at all like poses', () => {
-    const told = toldRoom({ kind: 'open', seats: 4 });
+    const told = toldRoom();
     told.join('ann');
-    const first = packetAt(told.room, 0, fists(vec3(0, 1, 0)), told.time);
+    const first = packetAt(told.room.match, 0, fists(vec3(0, 1, 0)), told.time);
     told.tick();
-    const second = packetAt(told.room, 0, fists(vec3(0, 1, 0)), told.time);
-    expect(told.room.receivePose('ann', second, told.time)).toBe('taken');
-    expect(told.room.receivePose('ann', second, told.time)).toBe('ignored');
-    expect(told.room.receivePose('ann', first, told.time)).toBe('ignored');
-    expect(told.room.receivePose('ann', new Uint8Array(40), told.time)).toBe('bad');
+    const second = packetAt(told.room.match, 0, fists(vec3(0, 1, 0)), told.time);
+    expect(told.room.onPose('ann', second, told.time)).toBe('taken');
+    expect(told.room.onPose('ann', second, told.time)).toBe('ignored');
+    expect(told.room.onPose('ann', first, told.time)).toBe('ignored');
+    expect(told.room.onPose('ann', new Uint8Array(40), told.time)).toBe('bad');
   });
 });
 
@@ -244,7 +249,7 @@ describe('a match in a room', () => {
         told.pose('ben', 1, atRack(ball, 4), told.time + 0.01);
         told.tick();
         const order = benFirst ? ['ben', 'ann'] : ['ann', 'ben'];
-        for (const client of order) told.deed(client, { type: 'grab', sequence: 1, side: 'right', ball });
+        for (const client of order) told.act(client, { type: 'grab', sequence: 1, side: 'right', ball });
         told.tick();
         const grabbed = told.happened('grabbed');
         const refused = told.said.filter(
@@ -253,7 +258,7 @@ describe('a match in a room', () => {
         expect(grabbed).toHaveLength(1);
         expect(grabbed[0]?.player).toBe(benFirst ? 1 : 0);
         expect(refused.map(({ to }) => to)).toEqual([order[1]]);
-        expect(told.room.match?.balls[ball]).toMatchObject({ on: 'hand', player: grabbed[0]?.player });
+        expect(told.room.match.balls[ball]).toMatchObject({ on: 'hand', player: grabbed[0]?.player });
       }),
     );
   });
@@ -263,10 +268,10 @@ describe('a match in a room', () => {
     told.begin();
     told.frames.length = 0;
     told.pose('ann', 0, fists(releaseOf(0)), told.time);
-    const newest = packetAt(told.room, 0, fists(opening), told.time + 0.005);
-    expect(told.room.receivePose('ann', newest, told.time + 0.005)).toBe('taken');
-    const cals = packetAt(told.room, 2, fists(opening), told.time + 0.005);
-    told.room.receivePose('cal', cals, told.time + 0.005);
+    const newest = packetAt(told.room.match, 0, fists(opening), told.time + 0.005);
+    expect(told.room.onPose('ann', newest, told.time + 0.005)).toBe('taken');
+    const cals = packetAt(told.room.match, 2, fists(opening), told.time + 0.005);
+    told.room.onPose('cal', cals, told.time + 0.005);
     told.tick();
     told.tick();
     expect(told.frames).toHaveLength(1);
@@ -280,12 +285,12 @@ describe('a match in a room', () => {
   test('a match clock that stood still says so, and its numbers go on', () => {
     const told = toldRoom();
     told.begin();
-    const { zero } = told.welcomeOf('ann');
-    const before = told.room.match!.tick;
+    const { matchStart } = told.welcomeOf('ann');
+    const before = told.room.match.tick;
     told.tick(20);
-    expect(told.room.match!.tick - before).toBeLessThan(5);
-    const moved = told.said.findLast(({ message }) => message.type === 'zero')?.message;
-    expect(moved?.type === 'zero' && moved.zero - zero!).toBeCloseTo(20, 1);
+    expect(told.room.match.tick - before).toBeLessThan(5);
+    const moved = told.said.findLast(({ message }) => message.type === 'match-start')?.message;
+    expect(moved?.type === 'match-start' && moved.matchStart - matchStart).toBeCloseTo(20, 1);
   });
 
   /** Any deeds at all, by anybody, with poses between them. */
@@ -310,15 +315,15 @@ describe('a match in a room', () => {
       const release = releaseOf(Math.min(seat, 1));
       if (what === 'reach') told.pose(who, seat, atRack(ball, 4), told.time + 0.005);
       else if (what === 'stand') told.pose(who, seat, fists(release), told.time + 0.005);
-      else if (what === 'grab') told.deed(who, { type: 'grab', sequence, side, ball });
-      else if (what === 'drop') told.deed(who, { type: 'drop', sequence, side });
+      else if (what === 'grab') told.act(who, { type: 'grab', sequence, side, ball });
+      else if (what === 'drop') told.act(who, { type: 'drop', sequence, side });
       else if (what === 'throw') {
-        const at = told.time - told.welcomeOf('ann').zero!;
+        const at = told.time - told.welcomeOf('ann').matchStart;
         const velocity = velocityTo(release, opening, seconds);
-        told.deed(who, { type: 'throw', sequence, side, ball, at, position: release, velocity });
+        told.act(who, { type: 'throw', sequence, side, ball, at, position: release, velocity });
       } else if (what === 'again') {
         for (const client of ['ann', 'ben', 'cal']) {
-          told.room.receive(client, { type: 'ready', ready: true }, told.time);
+          told.room.onMessage(client, { type: 'ready', ready: true }, told.time);
         }
       } else told.pass(seconds, () => told.pose('cal', 2, fists(opening)));
       told.tick();
@@ -333,7 +338,7 @@ describe('a match in a room', () => {
         told.begin();
         const followers: { state: BallState; heard: number }[] = [];
         play(told, happenings, () => {
-          const snapshot = unpackBall(JSON.parse(JSON.stringify(packBall(told.room.match!))));
+          const snapshot = unpackBall(JSON.parse(JSON.stringify(packBall(told.room.match))));
           followers.push({ state: snapshot!, heard: told.said.length });
         });
         for (const { state, heard } of followers) {
@@ -342,7 +347,7 @@ describe('a match in a room', () => {
             if (message.type === 'match') known = unpackBall(message.match)!;
             if (message.type === 'events') known = message.events.reduce(followBallEvent, known);
           }
-          const truth = told.room.match!;
+          const truth = told.room.match;
           expect(known.balls).toEqual(truth.balls);
           for (const key of ['score', 'phase', 'end', 'startedAt', 'options'] as const) {
             expect(known[key]).toEqual(truth[key]);
@@ -379,8 +384,9 @@ describe('a match in a room', () => {
 
 test('a room that ticks with nobody in it stays as it is', () => {
   const said: unknown[] = [];
-  const room = createRoom(
-    { id: 'r', epoch: 'e', kind: 'ball' },
+  const room = new Room(
+    new BallPolicy(),
+    { id: 'r', epoch: 'e' },
     {
       send: (_, message) => said.push(message),
       broadcast: (message) => said.push(message),

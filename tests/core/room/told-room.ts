@@ -1,10 +1,13 @@
 import { defaultCalibration } from '../../../src/core/body/calibration';
 import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
-import type { BallAction, BallDeed, BallEvent } from '../../../src/core/games/ball/ball-state';
-import { type Joining, type RoomMessage, roomMessageFrom } from '../../../src/core/protocol/messages';
+import type { BallAction, BallDeed, BallEvent, BallOptions, BallState } from '../../../src/core/games/ball/ball-state';
+import { arenaFromSeatFloor } from '../../../src/core/games/ball/stations';
+import { type BallGame, BallPolicy } from '../../../src/core/match-policies/ball-policy';
+import { type BallRoomMessage, ballRoomMessageFrom } from '../../../src/core/protocol/ball-messages';
+import type { Joining } from '../../../src/core/protocol/messages';
 import { encodePose } from '../../../src/core/protocol/pose-codec';
-import { createRoom, type Room, type RoomOptions, type RoomRefusal } from '../../../src/core/room/room';
-import { arenaFromFloorOf } from '../../../src/core/room/seat-places';
+import { Room, type RoomOptions } from '../../../src/core/room/room';
+import type { RoomRefusal } from '../../../src/core/room/room-outlet';
 import { fists, holding, opening, releaseOf, shownAt } from '../../net/people';
 
 const skeleton = skeletonFromCalibration(defaultCalibration);
@@ -20,29 +23,34 @@ export const joining = (more: Partial<Joining> = {}): Joining => ({
 
 type Wrists = ReturnType<typeof fists>;
 
-/** The packet of somebody on a seat with these wrists (arena frame), taken at this time of the room clock [s]. */
-export function packetAt(room: Room, seat: number, wrists: Wrists, time: number, seats = 3): Uint8Array {
-  const shown = shownAt({ arenaFromFloor: (index) => arenaFromFloorOf(index, seats, room.match) }, seat, wrists);
+/** The packet of a player on a seat with these wrists (arena frame of the ball game), taken at this time of the room clock [s]. */
+export function packetAt(match: BallState | null, seat: number, wrists: Wrists, time: number): Uint8Array {
+  const shown = shownAt({ arenaFromFloor: (index) => arenaFromSeatFloor(index, match) }, seat, wrists);
   const bytes = encodePose({ ...shown, timeMs: Math.round(time * 1000) & 0xffff }, skeleton);
   if (!bytes) throw new Error('the pose packet of the tests is not finite');
   return bytes;
 }
 
-/** A room that is told everything by a test, with all that it says. Every message is one that a page can read. */
-export function toldRoom(options: Partial<RoomOptions> = {}) {
-  const said: { readonly to: string; readonly message: RoomMessage }[] = [];
+interface ToldOptions extends Partial<RoomOptions> {
+  readonly ball?: Partial<BallOptions>;
+}
+
+/** A room of the ball game that a test tells everything, with all that it says. Every message is one that a page can read. */
+export function toldRoom({ ball, ...options }: ToldOptions = {}) {
+  const said: { readonly to: string; readonly message: BallRoomMessage }[] = [];
   const frames: Uint8Array[] = [];
   const dropped: { readonly client: string; readonly reason: string }[] = [];
   const refusals: RoomRefusal[] = [];
   const log: (readonly BallAction[])[] = [];
   let time = 1000;
-  const hear = (to: string, message: RoomMessage) => {
-    const read = roomMessageFrom(JSON.parse(JSON.stringify(message)));
+  const hear = (to: string, message: BallRoomMessage) => {
+    const read = ballRoomMessageFrom(JSON.parse(JSON.stringify(message)));
     if (!read) throw new Error(`no page can read this: ${JSON.stringify(message)}`);
     said.push({ to, message: read });
   };
-  const room = createRoom(
-    { id: 'room', epoch: 'one', kind: 'ball', ...options },
+  const room = new Room<BallGame>(
+    new BallPolicy(ball),
+    { id: 'room', epoch: 'one', ...options },
     {
       send: hear,
       broadcast: (message) => hear('all', message),
@@ -82,23 +90,23 @@ export function toldRoom(options: Partial<RoomOptions> = {}) {
       }
     },
     pose(client: string, seat: number, wrists: Wrists, at = time) {
-      return room.receivePose(client, packetAt(room, seat, wrists, at), time);
+      return room.onPose(client, packetAt(room.match, seat, wrists, at), time);
     },
-    deed(client: string, deed: BallDeed) {
-      room.receive(client, { type: 'deed', deed }, time);
+    act(client: string, action: BallDeed) {
+      return room.onMessage(client, { type: 'action', action }, time);
     },
     /** Ann and Ben throw, Cal holds the basket; all ready. */
     begin() {
       for (const client of ['ann', 'ben', 'cal']) told.join(client, { name: client });
-      for (const client of ['ann', 'ben', 'cal']) room.receive(client, { type: 'ready', ready: true }, time);
+      for (const client of ['ann', 'ben', 'cal']) room.onMessage(client, { type: 'ready', ready: true }, time);
       told.stand();
       told.tick();
       told.tick();
     },
     /** All three are seen where they begin. */
     stand() {
-      if (room.match?.players[0]?.present) told.pose('ann', 0, fists(releaseOf(0)));
-      if (room.match?.players[1]?.present) told.pose('ben', 1, fists(releaseOf(1)));
+      if (room.match.players[0]?.present) told.pose('ann', 0, fists(releaseOf(0)));
+      if (room.match.players[1]?.present) told.pose('ben', 1, fists(releaseOf(1)));
       told.pose('cal', 2, holding(opening));
     },
     events: () =>

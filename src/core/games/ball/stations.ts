@@ -1,6 +1,7 @@
 import type { Transform } from '../../math/pose';
 import { fromAxisAngle, identity } from '../../math/quat';
 import { type MutableVec3, setVec3, up, vec3 } from '../../math/vec3';
+import type { BallState } from './ball-state';
 import { ballRadius } from './flight';
 
 /** From each thrower to the basket holder, along the floor [m]. */
@@ -15,6 +16,11 @@ export const stations: readonly Transform<'arena', 'floor'>[] = [
   { position: vec3(aside, 0, 0), orientation: identity },
   { position: vec3(0, 0, -ahead), orientation: fromAxisAngle(up, Math.PI) },
 ];
+
+/** Where the floor of a seat lies in the arena: at its station in the match, or before any (null) at the station of its number. */
+export function arenaFromSeatFloor(seat: number, match: BallState | null): Transform<'arena', 'floor'> {
+  return stations[match?.players[seat]?.station ?? seat] ?? stations[0]!;
+}
 
 /** The station of the basket holder. */
 export const holderStation = 2;

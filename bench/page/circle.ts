@@ -1,0 +1,15 @@
+import type { Transform } from '../../src/core/math/pose';
+import { fromAxisAngle } from '../../src/core/math/quat';
+import { up, vec3 } from '../../src/core/math/vec3';
+
+/** Radius of the circle on which many bodies are placed [m]. */
+const radius = 2.5;
+
+/** Where the floor of each of so many bodies lies in the arena: on a circle, all facing its middle. */
+export function arenaFromCirclePlace(place: number, places: number): Transform<'arena', 'floor'> {
+  const angle = (2 * Math.PI * place) / places;
+  return {
+    position: vec3(radius * Math.sin(angle), 0, radius * Math.cos(angle)),
+    orientation: fromAxisAngle(up, angle),
+  };
+}

@@ -1,0 +1,34 @@
+import { createHash, timingSafeEqual } from 'node:crypto';
+import type { IncomingMessage } from 'node:http';
+import type { Logger } from 'pino';
+import { clientAddress } from './client-address';
+import { createGuessLimits, type GuessLimits, TooManyGuesses } from './guess-limits';
+import { HttpError } from './http/answer';
+import type { RelayConfiguration } from './relay-configuration';
+
+const digest = (text: string): Buffer => createHash('sha256').update(text).digest();
+
+/** Knows the holder of the admin's token, and limits how often an address may guess it. */
+export class AdminGuard {
+  readonly #configuration: RelayConfiguration;
+  readonly #guesses: GuessLimits;
+
+  constructor(configuration: RelayConfiguration, log: Logger) {
+    this.#configuration = configuration;
+    this.#guesses = createGuessLimits((guess) => log.warn(guess, 'wrong token of an admin'));
+  }
+
+  /** Whether the request brings the token; throws the answer 429 after too many wrong ones. */
+  async admits(request: IncomingMessage): Promise<boolean> {
+    const { adminToken, trustProxy } = this.#configuration;
+    const secret = /^Bearer (\S{1,256})$/.exec(request.headers.authorization ?? '')?.[1];
+    if (adminToken === null || secret === undefined) return false;
+    const guess = { what: 'token', address: clientAddress(request, trustProxy), of: null, secret } as const;
+    try {
+      return await this.#guesses.attempt(guess, () => timingSafeEqual(digest(secret), digest(adminToken)));
+    } catch (error) {
+      if (!(error instanceof TooManyGuesses)) throw error;
+      throw new HttpError(429, error.message, { headers: { 'retry-after': String(error.retryAfterSeconds) } });
+    }
+  }
+}

@@ -1,0 +1,64 @@
+import type { BallAction, BallDeed, BallEvent, BallOptions, BallState } from '../games/ball/ball-state';
+import { ballRules } from '../games/ball/rules';
+import { arenaFromSeatFloor, stations } from '../games/ball/stations';
+import { createMatch } from '../games/match';
+import type { Transform } from '../math/pose';
+import { ballActionFrom, ballKind, type SentBallGame } from '../protocol/ball-messages';
+import { type PackedBall, packBall } from '../protocol/ball-snapshot';
+import type { HostedMatch, MatchPolicy } from '../room/match-policy';
+
+/** The types of the ball game as a Room hosts it. */
+export interface BallGame extends SentBallGame {
+  readonly state: BallState;
+  readonly action: BallDeed;
+}
+
+export interface BallPolicyOptions extends Partial<BallOptions> {
+  readonly seed?: number;
+}
+
+/** The ball game as a Room hosts it: three seats, two throwers and the holder of the basket. */
+export class BallPolicy implements MatchPolicy<BallGame> {
+  readonly kind = ballKind;
+  readonly seats = stations.length;
+  readonly tickSeconds = ballRules.tickSeconds;
+  readonly #options: Partial<BallOptions>;
+  readonly #seed: number;
+
+  constructor({ seed = 0, ...options }: BallPolicyOptions = {}) {
+    this.#options = options;
+    this.#seed = seed;
+  }
+
+  start(rotation: number, onTick: (actions: readonly BallAction[]) => void): HostedMatch<BallGame> {
+    const players = stations.map((_, seat) => `seat ${seat}`);
+    const options = { ...this.#options, rotation: (this.#options.rotation ?? 0) + rotation };
+    return createMatch(ballRules, ballRules.start(players, this.#seed, options), { onTick });
+  }
+
+  /** A round needs a thrower and the holder; roles that move on bring both about sooner or later. */
+  mayRestart({ players }: BallState, rotate: boolean): boolean {
+    const roles = new Set(players.filter(({ present }) => present).map(({ role }) => role));
+    return rotate || roles.size === 2;
+  }
+
+  snapshot(state: BallState): PackedBall {
+    return packBall(state);
+  }
+
+  readAction(value: unknown): BallDeed | null {
+    return ballActionFrom(value);
+  }
+
+  refusalInPause(player: number, { sequence }: BallDeed): BallEvent {
+    return { type: 'refused', player, sequence, reason: 'phase' };
+  }
+
+  refusalOf(event: BallEvent): { readonly player: number; readonly reason: string } | null {
+    return event.type === 'refused' ? event : null;
+  }
+
+  arenaFromFloor(seat: number, state: BallState): Transform<'arena', 'floor'> {
+    return arenaFromSeatFloor(seat, state);
+  }
+}

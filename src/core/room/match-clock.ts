@@ -1,0 +1,143 @@
+import type { HostedGame, HostedMatch, MatchAction, MatchPolicy } from './match-policy';
+
+/** What a match's clock tells its Room. */
+export interface MatchClockListener<Game extends HostedGame> {
+  /** What happened in the match, oldest first; perhaps nothing. */
+  happened(events: readonly Game['event'][]): void;
+  /** The clock stands, or runs again. */
+  paused(): void;
+  /** The clock's start is elsewhere in the Room's time. */
+  shifted(): void;
+  /** Another match has begun. */
+  restarted(): void;
+  stepped(actions: readonly MatchAction<Game>[]): void;
+}
+
+/** A shift of the match's start by less than this [s] is rounding. */
+const leastShift = 1e-3;
+
+/** One match after another, each with its clock within the Room's time [s]: started, paused, stepped. */
+export class MatchClock<Game extends HostedGame> {
+  readonly #policy: MatchPolicy<Game>;
+  readonly #listener: MatchClockListener<Game>;
+  #match: HostedMatch<Game>;
+  /** Actions that wait for the next step. */
+  #waiting: MatchAction<Game>[] = [];
+  #begun = false;
+  #matchStart = 0;
+  /** For how long the clock has stood in all [s]. */
+  #pausedSeconds = 0;
+  /** Room time at which the clock was stopped; null: it runs. */
+  #stoppedAt: number | null = null;
+  #rotation = 0;
+  /** Roles move on by one seat with every match. */
+  rotate = false;
+
+  constructor(policy: MatchPolicy<Game>, listener: MatchClockListener<Game>) {
+    this.#policy = policy;
+    this.#listener = listener;
+    this.#match = this.#newMatch();
+  }
+
+  get state(): Game['state'] {
+    return this.#match.state;
+  }
+
+  /** Room time [s] at which the match's clock was at 0; it moves on with every second that the clock stands. */
+  get matchStart(): number {
+    return this.#matchStart;
+  }
+
+  get isPaused(): boolean {
+    return this.#stoppedAt !== null;
+  }
+
+  /** The second of the match at which its clock stands; null: it runs. */
+  get pausedAt(): number | null {
+    return this.#stoppedAt === null ? null : this.#stoppedAt - this.#matchStart;
+  }
+
+  /** The first time that the Room is told is the beginning of its first match; later ones change nothing. */
+  begin(time: number): void {
+    if (this.#begun) return;
+    this.#begun = true;
+    this.#matchStart = time;
+    this.#match.advance(this.#runningTime(time), []);
+  }
+
+  /** Keeps an action for the next step. */
+  add(action: MatchAction<Game>): void {
+    this.#waiting.push(action);
+  }
+
+  /** Steps the match as far as this time, unless its clock stands or, because the players want so, is stopped now. */
+  step(time: number, wantPause: boolean): void {
+    if (this.#stoppedAt !== null) {
+      if (wantPause) return;
+      this.#resume(time, this.#stoppedAt);
+    }
+    const stopping = wantPause && this.state.phase === 'running';
+    const due = this.#takeWaiting();
+    if (stopping) due.push({ type: 'pause' });
+    const tick = this.state.tick;
+    this.#listener.happened(this.#match.advance(this.#runningTime(time), due));
+    // Between two ticks of the match nothing is stepped: then it stops with the next one.
+    if (stopping && this.state.tick !== tick) {
+      this.#stoppedAt = time;
+      this.#listener.paused();
+      return;
+    }
+    this.#followHost(time);
+    this.#restartIfWanted(time);
+  }
+
+  #newMatch(): HostedMatch<Game> {
+    return this.#policy.start(this.#rotation, (actions) => this.#listener.stepped(actions));
+  }
+
+  /** The Room's time less the time that the match's clock has stood [s]. */
+  #runningTime(time: number): number {
+    return time - this.#pausedSeconds;
+  }
+
+  #takeWaiting(): MatchAction<Game>[] {
+    const waiting = this.#waiting;
+    this.#waiting = [];
+    return waiting;
+  }
+
+  #resume(time: number, stoppedAt: number): void {
+    this.#pausedSeconds += time - stoppedAt;
+    this.#matchStart += time - stoppedAt;
+    this.#stoppedAt = null;
+    this.#listener.paused();
+  }
+
+  /** A match cuts pauses of its host, which stepped nothing meanwhile, out of its time: then its start is later. */
+  #followHost(time: number): void {
+    const start = time - this.#match.lead - this.state.tick * this.#policy.tickSeconds;
+    if (Math.abs(start - this.#matchStart) <= leastShift) return;
+    this.#matchStart = start;
+    this.#listener.shifted();
+  }
+
+  /** Begins another match once all who are there want one and can play it. */
+  #restartIfWanted(time: number): void {
+    const before = this.state;
+    if (before.phase !== 'over') return;
+    const present = before.players.filter((player) => player.present);
+    if (present.length === 0 || !present.every(({ ready }) => ready)) return;
+    if (!this.#policy.mayRestart(before, this.rotate)) return;
+    if (this.rotate) this.#rotation += 1;
+    this.#match = this.#newMatch();
+    this.#matchStart = time;
+    before.players.forEach(({ present }, player) => {
+      if (!present) return;
+      this.add({ type: 'join', player });
+      this.add({ type: 'ready', player, ready: true });
+    });
+    const events = this.#match.advance(this.#runningTime(time), this.#takeWaiting());
+    this.#listener.restarted();
+    this.#listener.happened(events);
+  }
+}

@@ -1,0 +1,79 @@
+import type { Pose, Transform } from '../math/pose';
+import type { Vec3 } from '../math/vec3';
+
+/** What a Room reads of the state of any game. */
+export interface MatchState {
+  /** Ticks since the match was made. */
+  readonly tick: number;
+  readonly phase: 'ready' | 'running' | 'over';
+  /** By seat. */
+  readonly players: readonly { readonly present: boolean; readonly ready: boolean }[];
+}
+
+/** The types of a game that a Room can host. */
+export interface HostedGame {
+  readonly state: MatchState;
+  /** What a player does, as their page sends it. */
+  readonly action: object;
+  readonly event: object;
+  /** A state as it is sent. */
+  readonly snapshot: unknown;
+}
+
+/** What the Room itself tells the rules; a player is the number of a seat. */
+export type SeatAction =
+  | { readonly type: 'join'; readonly player: number }
+  | { readonly type: 'leave'; readonly player: number }
+  | { readonly type: 'ready'; readonly player: number; readonly ready: boolean }
+  /** Nothing has been heard of this player for so long that their pose is forgotten. */
+  | { readonly type: 'silent'; readonly player: number }
+  /** The match's clock is about to be stopped. */
+  | { readonly type: 'pause' }
+  | {
+      readonly type: 'pose';
+      readonly player: number;
+      /** Seconds of the match, by the player's own view of its clock. */
+      readonly at: number;
+      /** Arena frame. */
+      readonly head: Vec3;
+      /** Wrists, arena frame; null: not seen. */
+      readonly left: Pose<'arena'> | null;
+      readonly right: Pose<'arena'> | null;
+    };
+
+/** What the rules of a game hear: the Room, and each player's own actions with their seat. */
+export type MatchAction<Game extends HostedGame> = SeatAction | (Game['action'] & { readonly player: number });
+
+/** A match in progress, stepped in ticks of its own. */
+export interface HostedMatch<Game extends HostedGame> {
+  readonly state: Game['state'];
+  /** Seconds from the end of the last tick stepped to the time advanced to, mostly below 0. */
+  readonly lead: number;
+  /**
+   * Steps every tick that has begun by `time` [s, any monotonic clock; the first call is the start of tick 0] and returns what
+   * happened; the actions belong to the tick in which `time` lies.
+   */
+  advance(time: number, actions: readonly MatchAction<Game>[]): readonly Game['event'][];
+}
+
+/** All that a Room must know of the game that is played in it. */
+export interface MatchPolicy<Game extends HostedGame> {
+  /** The game's name, told to every page that joins. */
+  readonly kind: string;
+  readonly seats: number;
+  /** Seconds of the match that one tick takes. */
+  readonly tickSeconds: number;
+  /** A match that waits for its players. `rotation`: roles have moved on by this many seats; `onTick`: hears of each tick before it is stepped. */
+  start(rotation: number, onTick: (actions: readonly MatchAction<Game>[]) => void): HostedMatch<Game>;
+  /** Whether those present, who all want another match, can play one with their roles as they are or, if `rotate`, moved on. */
+  mayRestart(state: Game['state'], rotate: boolean): boolean;
+  snapshot(state: Game['state']): Game['snapshot'];
+  /** The action that a page sent, checked field by field; null: it is none of this game's. */
+  readAction(value: unknown): Game['action'] | null;
+  /** The event that refuses an action because the match's clock stands. */
+  refusalInPause(player: number, action: Game['action']): Game['event'];
+  /** Whose action this event refuses, and why; null: it is another event, for all to hear. */
+  refusalOf(event: Game['event']): { readonly player: number; readonly reason: string } | null;
+  /** Where the floor of a seat lies in the arena. */
+  arenaFromFloor(seat: number, state: Game['state']): Transform<'arena', 'floor'>;
+}

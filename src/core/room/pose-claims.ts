@@ -1,0 +1,83 @@
+import { distance, type Vec3 } from '../math/vec3';
+import { packetSecondsBetween } from '../protocol/packet-time';
+import type { PointsPacket } from '../protocol/pose-packet';
+
+/** A player's pose is forgotten this long after it was sent [s]: movements identify people. With a tick to spare of 2 s. */
+export const poseMemory = 1.9;
+/** No head moves faster [m/s] without saying that its space was re-anchored. */
+export const fastestHead = 20;
+/** A head may be moved this far [m] by rounding and by a hiccup of its device. */
+const headTolerance = 0.1;
+/** What was refused for its speed is believed after this [s]: a device that lost its place has found it again. */
+const disbeliefSeconds = 1;
+
+/** What one seat claims of its poses, and what of that is believed. Times are the room clock's [s]. */
+export class PoseClaims {
+  #heardAt: number;
+  /** The time that the newest packet gives itself. */
+  #packetTime: number | null = null;
+  /** Of the newest pose that is remembered, here or in the match; null: none is. */
+  #posedAt: number | null = null;
+  #head: Vec3 | null = null;
+  #fresh: Uint8Array | null = null;
+
+  constructor(time: number) {
+    this.#heardAt = time;
+  }
+
+  /** When the newest pose was believed, or another sign of life was given. */
+  get heardAt(): number {
+    return this.#heardAt;
+  }
+
+  /** When the newest pose was, by the sender's clock as far as it is believed; NaN before the first. */
+  get packetTime(): number {
+    return this.#packetTime ?? Number.NaN;
+  }
+
+  /** The player gave a sign of life other than a pose. */
+  heard(time: number): void {
+    this.#heardAt = time;
+  }
+
+  /** The player is back on another connection: nothing is compared with what the old one claimed. */
+  reconnected(time: number): void {
+    this.#heardAt = time;
+    this.#packetTime = null;
+    this.#head = null;
+  }
+
+  /** Takes a packet in, unless it is older than the newest one or its head is further from there than a person gets. */
+  take(packet: PointsPacket, bytes: Uint8Array, time: number): 'believed' | 'old' | 'too-fast' {
+    const packetTime = time + packetSecondsBetween(time * 1000, packet.timeMs);
+    const { position } = packet.pose.head;
+    if (time - this.#heardAt <= disbeliefSeconds && this.#packetTime !== null) {
+      const elapsed = packetTime - this.#packetTime;
+      if (elapsed <= 0) return 'old';
+      const reachable = headTolerance + fastestHead * elapsed;
+      if (this.#head && !packet.jump && distance(position, this.#head) > reachable) return 'too-fast';
+    }
+    this.#packetTime = packetTime;
+    this.#head = position;
+    this.#heardAt = time;
+    this.#posedAt = time;
+    // A packet is kept until the next tick and no longer: until then a receiver may still draw it.
+    this.#fresh = bytes.slice();
+    return 'believed';
+  }
+
+  /** The newest packet that has not been passed on yet, once. */
+  takeFresh(): Uint8Array | null {
+    const fresh = this.#fresh;
+    this.#fresh = null;
+    return fresh;
+  }
+
+  /** Forgets a pose that is older than `poseMemory`; true: it did so now. */
+  forgetOld(time: number): boolean {
+    if (this.#posedAt === null || time - this.#posedAt <= poseMemory) return false;
+    this.#posedAt = null;
+    this.#head = null;
+    return true;
+  }
+}

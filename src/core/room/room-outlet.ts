@@ -1,0 +1,39 @@
+import type { Farewell, RoomMessage } from '../protocol/messages';
+import type { HostedGame, MatchAction } from './match-policy';
+
+/** One connection; a person who comes back has another one. */
+export type ClientId = string;
+
+/** Why a Room refuses something; an action that the rules refuse has a reason of the game's. */
+export type RoomReason =
+  | 'too-fast'
+  | 'occupied'
+  | 'no-seat'
+  | 'not-joined'
+  | 'joined-already'
+  | 'not-pausable'
+  | 'assigned';
+
+/** Something that the Room would not do. */
+export interface RoomRefusal {
+  readonly client: ClientId;
+  readonly seat: number | null;
+  readonly what: 'pose' | 'action' | 'sit' | 'message';
+  /** A RoomReason, or one of the game's rules. */
+  readonly reason: string;
+}
+
+/** How a Room speaks. Called from within its methods, never at another time. */
+export interface RoomOutlet<Game extends HostedGame> {
+  /** Reliable and in order. */
+  send(to: ClientId, message: RoomMessage<Game>): void;
+  /** The same to all who have joined. */
+  broadcast(message: RoomMessage<Game>): void;
+  /** To all who have joined; worth nothing once there is a newer one. */
+  frame(bytes: Uint8Array): void;
+  /** The Room has forgotten this client. */
+  drop(client: ClientId, reason: Farewell): void;
+  refused(refusal: RoomRefusal): void;
+  /** The actions of every tick before it is stepped: enough to play a match again from its start. */
+  stepped?(actions: readonly MatchAction<Game>[]): void;
+}

@@ -1,0 +1,212 @@
+import type { Calibration } from '../body/calibration';
+import type { SeatInfo } from '../protocol/messages';
+import { encodeFrame, type SeatPose } from '../protocol/pose-frame';
+import type { SeatAction } from './match-policy';
+import { PoseClaims } from './pose-claims';
+import type { ClientId } from './room-outlet';
+
+/** Seats are held this long after a connection is lost [s]. */
+export const seatHoldSeconds = 30;
+/** A player who is silent or without connection for this long [s] is away; without connection they leave the match as well. */
+export const awayAfter = 2.5;
+
+/** A client who has joined. */
+export interface Client {
+  /** The person: the same on each of their connections. */
+  readonly identity: string;
+  readonly name: string;
+  readonly bot: boolean;
+  calibration: Calibration;
+}
+
+/** One seat that is taken, with what its player told of themselves. */
+export interface Seat {
+  readonly identity: string;
+  /** null: the connection is lost. */
+  client: ClientId | null;
+  name: string;
+  calibration: Calibration;
+  readonly bot: boolean;
+  /** Room time [s] of losing the connection. */
+  lostAt: number | null;
+  /** Present in the match, as the rules see it. */
+  playing: boolean;
+  declaredAway: boolean;
+  presence: SeatInfo['presence'];
+  /** The player wants the match's clock to stand. */
+  wantsPause: boolean;
+  readonly poses: PoseClaims;
+}
+
+/** What seats cause outside of them. */
+export interface SeatListener {
+  /** Others need to know how this seat is now. */
+  changed(seat: number): void;
+  /** The rules need to know. */
+  act(action: SeatAction): void;
+}
+
+/** How many sit where. */
+export interface SeatCensus {
+  readonly players: number;
+  readonly bots: number;
+  /** Seats that a person may take: empty, or a bot's. */
+  readonly free: number;
+}
+
+/** The seats of one room, who has them, and whether their players are there. */
+export class Seats {
+  readonly #seats: (Seat | null)[];
+  readonly #listener: SeatListener;
+
+  constructor(count: number, listener: SeatListener) {
+    this.#seats = Array.from({ length: count }, () => null);
+    this.#listener = listener;
+  }
+
+  get count(): number {
+    return this.#seats.length;
+  }
+
+  get census(): SeatCensus {
+    const taken = this.#seats.filter((seat) => seat !== null);
+    const bots = taken.filter(({ bot }) => bot).length;
+    return { players: taken.length - bots, bots, free: this.count - taken.length + bots };
+  }
+
+  get areEmpty(): boolean {
+    return this.#seats.every((seat) => seat === null);
+  }
+
+  /** Whether one of the players wants the match's clock to stand. */
+  get wantPause(): boolean {
+    return this.#seats.some((seat) => seat?.wantsPause);
+  }
+
+  /** As others know it; null: the seat is empty. */
+  infoOf(index: number): SeatInfo | null {
+    const seat = this.at(index);
+    return seat && { name: seat.name, calibration: seat.calibration, bot: seat.bot, presence: seat.presence };
+  }
+
+  at(index: number): Seat | null {
+    return this.#seats[index] ?? null;
+  }
+
+  /** The number of this client's seat; null: they watch. */
+  indexOf(client: ClientId): number | null {
+    for (let index = 0; index < this.#seats.length; index++) if (this.#seats[index]?.client === client) return index;
+    return null;
+  }
+
+  /** The number of the seat that is held for this person or taken by them; null: none is. */
+  heldBy(identity: string): number | null {
+    const index = this.#seats.findIndex((seat) => seat?.identity === identity);
+    return index < 0 ? null : index;
+  }
+
+  /** Whether a client may sit here: the seat is empty, or has a bot that gives way to a person. */
+  isFreeFor(index: number, bot: boolean): boolean {
+    if (index >= this.count) return false;
+    const seat = this.#seats[index];
+    return !seat || (seat.bot && !bot);
+  }
+
+  /** A seat for a client who asks for this one or for any; null: none. People take a bot's seat where no other is free. */
+  freeFor(wish: number | null, bot: boolean): number | null {
+    if (wish !== null && this.isFreeFor(wish, bot)) return wish;
+    const free = this.#seats.indexOf(null);
+    const index = free >= 0 || bot ? free : this.#seats.findIndex((seat) => seat?.bot);
+    return index < 0 ? null : index;
+  }
+
+  /** Sits a client down on a seat that is empty. */
+  take(index: number, client: ClientId, { identity, name, calibration, bot }: Client, time: number): void {
+    this.#seats[index] = {
+      identity,
+      client,
+      name: name || `Player ${index + 1}`,
+      calibration,
+      bot,
+      lostAt: null,
+      playing: true,
+      declaredAway: false,
+      presence: 'here',
+      wantsPause: false,
+      poses: new PoseClaims(time),
+    };
+    this.#listener.act({ type: 'join', player: index });
+    this.#listener.changed(index);
+  }
+
+  /** Gives the seat that was held for a person back to them, on their new connection. */
+  retake(index: number, client: ClientId, { name, calibration }: Client, time: number): void {
+    const seat = this.at(index);
+    if (!seat) return;
+    // To the rules a player who was away for long comes anew; within the grace nothing has happened.
+    if (!seat.playing) this.#listener.act({ type: 'join', player: index });
+    Object.assign(seat, { client, lostAt: null, playing: true, declaredAway: false, presence: 'here', calibration });
+    if (name) seat.name = name;
+    seat.poses.reconnected(time);
+    this.#listener.changed(index);
+  }
+
+  /** Holds the seat of a client whose connection is lost. Others are told with the presence that follows from it. */
+  hold(index: number, time: number): void {
+    const seat = this.at(index);
+    if (!seat) return;
+    seat.client = null;
+    seat.lostAt = time;
+  }
+
+  /** Empties a seat. */
+  vacate(index: number): void {
+    const seat = this.at(index);
+    if (!seat) return;
+    if (seat.playing) this.#listener.act({ type: 'leave', player: index });
+    this.#seats[index] = null;
+  }
+
+  /** Whether the player is there, at this time [s]. */
+  setPresence(index: number, time: number): void {
+    const seat = this.at(index);
+    if (!seat) return;
+    const silent = time - seat.poses.heardAt > awayAfter;
+    const presence = seat.client === null ? 'gone' : seat.declaredAway || silent ? 'away' : 'here';
+    if (presence === seat.presence) return;
+    seat.presence = presence;
+    this.#listener.changed(index);
+  }
+
+  /** Follows the time [s]: who has fallen silent, whose seat is held no longer. */
+  watch(time: number): void {
+    for (let index = 0; index < this.#seats.length; index++) {
+      const seat = this.#seats[index];
+      if (seat) this.#watchSeat(index, seat, time);
+    }
+  }
+
+  #watchSeat(index: number, seat: Seat, time: number): void {
+    this.setPresence(index, time);
+    if (seat.poses.forgetOld(time)) this.#listener.act({ type: 'silent', player: index });
+    if (seat.lostAt === null) return;
+    if (seat.playing && time - seat.lostAt > awayAfter) {
+      seat.playing = false;
+      this.#listener.act({ type: 'leave', player: index });
+    }
+    if (time - seat.lostAt > seatHoldSeconds) {
+      this.vacate(index);
+      this.#listener.changed(index);
+    }
+  }
+
+  /** The newest packet of each seat that has one, as one frame; null: there is none. */
+  takeFrame(): Uint8Array | null {
+    const poses: SeatPose[] = [];
+    for (let index = 0; index < this.#seats.length; index++) {
+      const bytes = this.#seats[index]?.poses.takeFresh();
+      if (bytes) poses.push({ seat: index, bytes });
+    }
+    return poses.length > 0 ? encodeFrame(poses) : null;
+  }
+}
