@@ -1,6 +1,5 @@
 import { sideSign } from '../body/skeleton';
 import { type ElbowCircle, poleAcross } from '../body/two-bone-ik';
-import { bisect } from '../math/bisection';
 import { clamp, smoothingFactor, smoothstep } from '../math/damper';
 import { fromAxes, quat, rotate, rotateInverse, rotationBetween } from '../math/quat';
 import type { Side } from '../math/side';
@@ -140,8 +139,10 @@ function nearestWithin(angle: number): number {
   return beyond(low) < beyond(high) ? low : high;
 }
 
-/** Angles are looked at in steps of this [rad], borders found to a sixty-fourth of it. */
-const swivelStep = Math.PI / 18;
+/** Angles are looked at in steps of 10°, borders found to a sixty-fourth of that, a part. */
+const partsPerStep = 64;
+const partsPerHalfTurn = 18 * partsPerStep;
+const swivelPart = Math.PI / partsPerHalfTurn;
 
 const side = vec3(0, 0, 0);
 const trunkUp = vec3(0, 0, 0);
@@ -186,9 +187,11 @@ function findClearSwivel(circle: ElbowCircle, { hips, chest, neck, rotations }: 
   return clear.high < Math.PI || clear.low > -Math.PI;
 }
 
-/** Whether an elbow at this angle is inside the trunk. */
-function isInside(angle: number): boolean {
-  const [cosine, sine] = [Math.cos(angle), Math.sin(angle)];
+/** Whether an elbow so many parts of a turn away is inside the trunk. Whole numbers: the engine hands them on without a box. */
+function isInside(parts: number): boolean {
+  const angle = parts * swivelPart;
+  const cosine = Math.cos(angle);
+  const sine = Math.sin(angle);
   return (
     squaredDistance(
       centre.x + towardsZero.x * cosine + towardsQuarter.x * sine,
@@ -198,13 +201,16 @@ function isInside(angle: number): boolean {
   );
 }
 
-const isInsideBackward = (angle: number): boolean => isInside(-angle);
-
 /** From 0 on in the direction of `sign`: the last clear angle. */
 function border(sign: 1 | -1): number {
-  const blocked = sign === 1 ? isInside : isInsideBackward;
-  for (let step = 1; step <= 18; step++) {
-    if (blocked(step * swivelStep)) return bisect((step - 1) * swivelStep, step * swivelStep, blocked, 6);
+  let blocked = partsPerStep;
+  while (blocked <= partsPerHalfTurn && !isInside(sign * blocked)) blocked += partsPerStep;
+  if (blocked > partsPerHalfTurn) return Math.PI;
+  let clearParts = blocked - partsPerStep;
+  while (blocked - clearParts > 1) {
+    const middle = (clearParts + blocked) >> 1;
+    if (isInside(sign * middle)) blocked = middle;
+    else clearParts = middle;
   }
-  return Math.PI;
+  return clearParts * swivelPart;
 }
