@@ -20,6 +20,10 @@ export interface AllocationBytes {
   readonly ball8: number;
   /** What three.js leaves for drawing an arena that nothing moves in. */
   readonly stillScene: number;
+  /** What of a frame is allocated below a call of three.js's renderer: its own, and what the browser makes of its calls. */
+  readonly threeAlone: Readonly<Record<'mirror' | 'archery' | 'ball3' | 'ball8', number>>;
+  /** Frames a second while it was measured: what rooms and sounds do by the clock is the more of a frame, the fewer there are. */
+  readonly frameRates: Readonly<Record<'mirror' | 'archery' | 'ball3', number>>;
 }
 
 /** A function of the page and what it leaves in a frame. */
@@ -47,11 +51,16 @@ interface SampledNode {
   readonly children: readonly SampledNode[];
 }
 
-/** Every allocation is sampled with a chance that makes one in so many bytes: some thousand samples of ten seconds at 10 kB a frame. */
+/** Every allocation is sampled with a chance that makes one in so many bytes: some thousand samples of these frames at 10 kB a frame. */
 const samplingInterval = 1024;
-const sampledSeconds = 10;
-/** Seconds before them: what runs in every frame is compiled by then, and what is loaded is loaded. */
+const sampledFrames = 480;
+/** A page whose clock runs on is measured over so many seconds at least: rooms tick by the clock. */
+const sampledSeconds = 8;
+/** Before them: what runs in every frame is compiled by then, what is loaded is loaded. A headset draws them in 13 seconds. */
+const warmUpFrames = 960;
 const warmUpSeconds = 8;
+/** Without a graphics device a frame may take a tenth of a second. */
+const longestWaitMs = 600_000;
 
 /** Folders of built pages, to find the map beside a script. */
 export interface BuiltPages {
@@ -61,8 +70,11 @@ export interface BuiltPages {
   readonly bench: string;
 }
 
-/** The sources behind a built script; null: no map was built. */
-function createMaps(folderOf: (url: URL) => string | null) {
+/** file:line in the sources of a place in a built script, both from 0. */
+type SourceOf = (url: string, line: number, column: number) => string;
+
+/** Finds sources by the maps that lie beside the scripts. */
+function createMaps(folderOf: (url: URL) => string | null): SourceOf {
   const maps = new Map<string, SourceMap | null>();
   const read = (url: string): SourceMap | null => {
     try {
@@ -75,7 +87,7 @@ function createMaps(folderOf: (url: URL) => string | null) {
       throw error;
     }
   };
-  return (url: string, line: number, column: number): string => {
+  return (url, line, column) => {
     if (url === '') return 'the engine';
     if (!maps.has(url)) maps.set(url, read(url));
     const entry = maps.get(url)?.findEntry(line, column);
@@ -84,28 +96,51 @@ function createMaps(folderOf: (url: URL) => string | null) {
   };
 }
 
+/** A function of a page and what was allocated in it. */
+interface SampledFunction {
+  readonly frame: SampledNode['callFrame'];
+  bytes: number;
+}
+
+interface Sample {
+  readonly frames: number;
+  readonly seconds: number;
+  readonly bytes: number;
+  /** Of them, below a call of three.js's renderer. */
+  readonly threeBytes: number;
+  readonly functions: readonly SampledFunction[];
+}
+
 /** What was allocated from the call of `during` until it is over, by function; objects that were collected meanwhile count too. */
-async function sample(session: CDPSession, during: () => Promise<number>) {
+async function sample(session: CDPSession, sourceOf: SourceOf, during: () => Promise<number>): Promise<Sample> {
   await session.send('HeapProfiler.enable');
   await session.send('HeapProfiler.startSampling', {
     samplingInterval,
     includeObjectsCollectedByMajorGC: true,
     includeObjectsCollectedByMinorGC: true,
   });
+  const began = performance.now();
   const frames = await during();
+  const seconds = (performance.now() - began) / 1000;
   const { profile } = await session.send('HeapProfiler.stopSampling');
-  const sizes = new Map<string, { readonly frame: SampledNode['callFrame']; bytes: number }>();
-  let total = 0;
-  const visit = ({ callFrame: frame, selfSize, children }: SampledNode): void => {
-    total += selfSize;
+  const functions = new Map<string, SampledFunction>();
+  let bytes = 0;
+  let threeBytes = 0;
+  const visit = ({ callFrame: frame, selfSize, children }: SampledNode, inThree: boolean): void => {
+    const here =
+      inThree ||
+      (frame.functionName.endsWith('render') &&
+        sourceOf(frame.url, frame.lineNumber, frame.columnNumber).startsWith('node_modules/three/build/'));
+    bytes += selfSize;
+    if (here) threeBytes += selfSize;
     const key = `${frame.functionName} ${frame.url}:${frame.lineNumber}:${frame.columnNumber}`;
-    const site = sizes.get(key) ?? { frame, bytes: 0 };
-    site.bytes += selfSize;
-    sizes.set(key, site);
-    for (const child of children) visit(child);
+    const one = functions.get(key) ?? { frame, bytes: 0 };
+    one.bytes += selfSize;
+    functions.set(key, one);
+    for (const child of children) visit(child, here);
   };
-  visit(profile.head as SampledNode);
-  return { perFrame: total / frames, frames, sizes: [...sizes.values()] };
+  visit(profile.head as SampledNode, false);
+  return { frames, seconds, bytes, threeBytes, functions: [...functions.values()] };
 }
 
 /** What lies on the way to the moment that is measured. */
@@ -115,10 +150,77 @@ const realPages = {
   ball3: { address: '?actor=on&play=ball&seed=7&seconds=600', phase: 'running' },
 } as const;
 
+const benchScenes: readonly AllocationScene[] = ['ik', 'paper', 'learned', 'ball8', 'stillScene'];
+
 const drawnFrames = (page: Page): Promise<number> =>
   page.evaluate(() => window.threepoint?.probe().frame.count ?? Number.NaN);
 
-const drawFor = (page: Page, seconds: number): Promise<void> => page.waitForTimeout(1000 * seconds);
+/** Draws the real page until so many frames are drawn, and for so many seconds at least; resolves to how many those were. */
+async function drawPage(page: Page, seconds: number, leastFrames: number): Promise<number> {
+  const before = await drawnFrames(page);
+  await page.waitForTimeout(1000 * seconds);
+  await page.waitForFunction((until) => (window.threepoint?.probe().frame.count ?? 0) >= until, before + leastFrames, {
+    timeout: longestWaitMs,
+    polling: 250,
+  });
+  return (await drawnFrames(page)) - before;
+}
+
+async function sampleRealPage(
+  page: Page,
+  session: CDPSession,
+  phase: string | null,
+  sourceOf: SourceOf,
+): Promise<Sample> {
+  await page.waitForFunction(
+    (until) => {
+      const now = window.threepoint?.probe();
+      return now?.ready && (until === null || now.game?.phase === until);
+    },
+    phase,
+    { timeout: 60_000, polling: 250 },
+  );
+  await drawPage(page, warmUpSeconds, warmUpFrames);
+  return sample(session, sourceOf, () => drawPage(page, sampledSeconds, sampledFrames));
+}
+
+async function sampleBenchPage(page: Page, session: CDPSession, sourceOf: SourceOf): Promise<Sample> {
+  await page.waitForFunction(() => window.runFrames ?? window.benchError, null, { timeout: 60_000 });
+  const run = (frames: number) =>
+    page.evaluate((frames) => {
+      if (!window.runFrames) throw new Error(window.benchError);
+      return window.runFrames(frames);
+    }, frames);
+  await run(warmUpFrames);
+  return sample(session, sourceOf, () => run(sampledFrames));
+}
+
+/** A page of its own for each: what one has compiled and collected is no concern of the next. */
+async function visit<T>(
+  browser: Browser,
+  address: string,
+  measure: (page: Page, session: CDPSession) => Promise<T>,
+): Promise<T> {
+  const context = await browser.newContext({ viewport: { width: 240, height: 135 } });
+  try {
+    const page = await context.newPage();
+    await page.goto(address);
+    return await measure(page, await context.newCDPSession(page));
+  } finally {
+    await context.close();
+  }
+}
+
+function sitesOf({ frames, functions }: Sample, sourceOf: SourceOf): AllocationSite[] {
+  return functions
+    .map(({ frame, bytes }) => ({
+      name: frame.functionName || '(anonymous)',
+      at: sourceOf(frame.url, frame.lineNumber, frame.columnNumber),
+      bytes: Math.round(bytes / frames),
+    }))
+    .filter(({ bytes }) => bytes > 0)
+    .sort((a, b) => b.bytes - a.bytes);
+}
 
 /** Measures what frames allocate; `only`: the names of what is measured, absent: all. */
 export async function measureAllocations(
@@ -135,72 +237,36 @@ export async function measureAllocations(
     return `http://127.0.0.1:${server.port}/`;
   };
   const sourceOf = createMaps((url) => folders.get(url.port) ?? null);
-  const bytes: Record<string, number> = {};
-  const sites: Record<string, AllocationSite[]> = {};
-  const keep = (name: string, { perFrame, frames, sizes }: Awaited<ReturnType<typeof sample>>) => {
-    bytes[name] = Math.round(perFrame);
-    sites[name] = sizes
-      .map(({ frame, bytes: size }) => ({
-        name: frame.functionName || '(anonymous)',
-        at: sourceOf(frame.url, frame.lineNumber, frame.columnNumber),
-        bytes: Math.round(size / frames),
-      }))
-      .filter(({ bytes: size }) => size > 0)
-      .sort((a, b) => b.bytes - a.bytes);
-  };
+  const samples = new Map<string, Sample>();
   const wanted = (name: string) => only === undefined || only.includes(name);
-  /** A page of its own for each: what one has compiled and collected is no concern of the next. */
-  const visit = async (address: string, measure: (page: Page, session: CDPSession) => Promise<void>) => {
-    const context = await browser.newContext({ viewport: { width: 480, height: 270 } });
-    try {
-      const page = await context.newPage();
-      await page.goto(address);
-      await measure(page, await context.newCDPSession(page));
-    } finally {
-      await context.close();
-    }
-  };
   try {
     const realPage = await open(built.page);
-    for (const [name, { address, phase }] of Object.entries(realPages)) {
-      if (!wanted(name)) continue;
-      await visit(`${realPage}${address}`, async (page, session) => {
-        await page.waitForFunction(
-          (until) => {
-            const now = window.threepoint?.probe();
-            return now?.ready && (until === null || now.game?.phase === until);
-          },
-          phase,
-          { timeout: 60_000, polling: 250 },
-        );
-        await drawFor(page, warmUpSeconds);
-        const sampled = await sample(session, async () => {
-          const before = await drawnFrames(page);
-          await drawFor(page, sampledSeconds);
-          return (await drawnFrames(page)) - before;
-        });
-        keep(name, sampled);
-      });
+    for (const [name, { address, phase }] of Object.entries(realPages).filter(([name]) => wanted(name))) {
+      const of = (page: Page, session: CDPSession) => sampleRealPage(page, session, phase, sourceOf);
+      samples.set(name, await visit(browser, `${realPage}${address}`, of));
     }
     const benchPage = await open(built.bench);
-    const scenes: readonly AllocationScene[] = ['ik', 'paper', 'learned', 'ball8', 'stillScene'];
-    for (const name of scenes) {
-      if (!wanted(name)) continue;
-      await visit(`${benchPage}allocations.html?scene=${name}`, async (page, session) => {
-        await page.waitForFunction(() => window.runFrames ?? window.benchError, null, { timeout: 60_000 });
-        const run = (seconds: number) =>
-          page.evaluate((seconds) => {
-            if (!window.runFrames) throw new Error(window.benchError);
-            return window.runFrames(seconds);
-          }, seconds);
-        await run(warmUpSeconds);
-        keep(name, await sample(session, () => run(sampledSeconds)));
-      });
+    for (const name of benchScenes.filter(wanted)) {
+      const of = (page: Page, session: CDPSession) => sampleBenchPage(page, session, sourceOf);
+      samples.set(name, await visit(browser, `${benchPage}allocations.html?scene=${name}`, of));
     }
   } finally {
     for (const server of servers) await server.close();
   }
-  const of = (name: string): number => bytes[name] ?? Number.NaN;
+  return summarise(samples, sourceOf);
+}
+
+function summarise(samples: ReadonlyMap<string, Sample>, sourceOf: SourceOf): Allocations {
+  const perFrame = (name: string, part: 'bytes' | 'threeBytes'): number => {
+    const sampled = samples.get(name);
+    return sampled ? Math.round(sampled[part] / sampled.frames) : Number.NaN;
+  };
+  const rate = (name: string): number => {
+    const sampled = samples.get(name);
+    return sampled ? Math.round(sampled.frames / sampled.seconds) : Number.NaN;
+  };
+  const of = (name: string) => perFrame(name, 'bytes');
+  const three = (name: string) => perFrame(name, 'threeBytes');
   return {
     bytes: {
       update: { ik: of('ik'), paper: of('paper'), learned: of('learned') },
@@ -209,8 +275,15 @@ export async function measureAllocations(
       ball3: of('ball3'),
       ball8: of('ball8'),
       stillScene: of('stillScene'),
+      threeAlone: {
+        mirror: three('mirror'),
+        archery: three('archery'),
+        ball3: three('ball3'),
+        ball8: three('ball8'),
+      },
+      frameRates: { mirror: rate('mirror'), archery: rate('archery'), ball3: rate('ball3') },
     },
-    sites,
+    sites: Object.fromEntries([...samples].map(([name, sampled]) => [name, sitesOf(sampled, sourceOf)])),
   };
 }
 

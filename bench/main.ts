@@ -99,10 +99,14 @@ const browser = await chromium.launch({
 const row = (label: string, cells: readonly (string | number)[]) =>
   console.log(`  ${label.padEnd(14)}${cells.map((cell) => String(cell).padStart(12)).join('')}`);
 
-function tellAllocations({ bytes: { update, ...frames } }: Allocations): void {
+function tellAllocations({ bytes: { update, threeAlone, frameRates, ...frames } }: Allocations): void {
   console.log('\nWhat a frame leaves to the collector [kB]');
+  row('', ['all', 'three.js', 'frames/s']);
+  const kilobytes = (bytes: number | undefined) => (bytes === undefined ? '' : (bytes / 1000).toFixed(1));
+  const ofThree: Readonly<Record<string, number | undefined>> = threeAlone;
+  const rates: Readonly<Record<string, number | undefined>> = frameRates;
   const measured = Object.entries({ ...update, ...frames }).filter(([, bytes]) => Number.isFinite(bytes));
-  for (const [name, bytes] of measured) row(name, [(bytes / 1000).toFixed(1)]);
+  for (const [name, bytes] of measured) row(name, [kilobytes(bytes), kilobytes(ofThree[name]), rates[name] ?? '']);
 }
 
 /** Where it comes from, down to where the rest is small change. */

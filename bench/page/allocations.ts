@@ -23,8 +23,8 @@ export type AllocationScene = 'ik' | 'paper' | 'learned' | 'ball8' | 'stillScene
 
 declare global {
   interface Window {
-    /** Draws or estimates for so long, once for each animation frame; resolves to how many those were. */
-    runFrames?: (seconds: number) => Promise<number>;
+    /** Draws or estimates so often, once for each animation frame; resolves to how often that was. */
+    runFrames?: (frames: number) => Promise<number>;
   }
 }
 
@@ -145,10 +145,9 @@ function frameOf(scene: string | null): Promise<FrameOf> | FrameOf {
 async function start(): Promise<void> {
   const draw = await frameOf(new URLSearchParams(location.search).get('scene'));
   let index = 0;
-  window.runFrames = (seconds) =>
+  window.runFrames = (frames) =>
     new Promise((resolve, reject) => {
-      const first = index;
-      const ends = performance.now() + 1000 * seconds;
+      const end = index + frames;
       const next = () => {
         try {
           draw(index);
@@ -157,8 +156,8 @@ async function start(): Promise<void> {
           return;
         }
         index += 1;
-        if (performance.now() < ends) requestAnimationFrame(next);
-        else resolve(index - first);
+        if (index < end) requestAnimationFrame(next);
+        else resolve(frames);
       };
       requestAnimationFrame(next);
     });
