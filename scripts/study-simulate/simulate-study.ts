@@ -1,5 +1,6 @@
+import { advance, type ProgressEvent } from '../../src/core/study/advance';
 import { participantsOf, type Schedule, type StudyPlan, type StudyStep, scheduleFor } from '../../src/core/study/plan';
-import { advance, begin, currentStep, type Progress, type ProgressEvent, resumed } from '../../src/core/study/progress';
+import { begin, currentStep, type Progress, resumed } from '../../src/core/study/progress';
 import { type Demographics, questionnaires } from '../../src/core/study/questionnaires';
 import type { StudyRecord } from '../../src/core/study/study-record';
 import type { TrialOutcome } from '../../src/core/study/trial-log';

@@ -1,5 +1,6 @@
 import type { Side } from '../../core/math/side';
-import { type ProgressEvent, placeOf } from '../../core/study/progress';
+import type { ProgressEvent } from '../../core/study/advance';
+import { placeOf } from '../../core/study/progress';
 import { randomFor } from '../../core/study/shuffle';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 import type { CalibrationStep } from '../../ui/calibration-dialog';

@@ -1,5 +1,5 @@
+import type { ProgressEvent } from '../../core/study/advance';
 import { blindLabel, type StudyStep } from '../../core/study/plan';
-import type { ProgressEvent } from '../../core/study/progress';
 import { type Question, questionnaires, scale } from '../../core/study/questionnaires';
 import { type CalibrationStep, calibrationHeadline, calibrationInstruction } from '../../ui/calibration-dialog';
 import type { ParticipantSession, Safekeeping } from './participant-session';

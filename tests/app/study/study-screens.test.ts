@@ -6,7 +6,7 @@ import {
   safekeepingText,
   screenOf,
 } from '../../../src/app/study/study-screens';
-import type { ProgressEvent } from '../../../src/core/study/progress';
+import type { ProgressEvent } from '../../../src/core/study/advance';
 import { questionnaires } from '../../../src/core/study/questionnaires';
 import { createParticipantClient } from '../../../src/net/study-client';
 import { outcomeOf, paperPlan, somebody } from '../../core/study/studies';

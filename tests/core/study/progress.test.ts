@@ -1,7 +1,8 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
+import type { ProgressEvent } from '../../../src/core/study/advance';
 import { scheduleFor } from '../../../src/core/study/plan';
-import { begin, elapsedSeconds, type ProgressEvent, remainingSeconds, resumed } from '../../../src/core/study/progress';
+import { begin, elapsedSeconds, remainingSeconds, resumed } from '../../../src/core/study/progress';
 import { checkedRecord } from '../../../src/core/study/study-record';
 import { seed } from '../arbitraries';
 import { outcomeOf, paperPlan, session, somebody } from './studies';

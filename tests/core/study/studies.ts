@@ -1,7 +1,8 @@
 import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
+import { advance, type ProgressEvent } from '../../../src/core/study/advance';
 import { parsePlan, type Schedule, type StudyPlan, type StudyStep } from '../../../src/core/study/plan';
-import { advance, begin, currentStep, type Progress, type ProgressEvent } from '../../../src/core/study/progress';
+import { begin, currentStep, type Progress } from '../../../src/core/study/progress';
 import { questionnaires } from '../../../src/core/study/questionnaires';
 import type { StudyRecord } from '../../../src/core/study/study-record';
 import { createTrialLog, type TrialOutcome } from '../../../src/core/study/trial-log';

@@ -1,0 +1,275 @@
+import type { Calibration } from '../body/calibration';
+import type { Schedule, StudyStep } from './plan';
+import { currentStep, elapsedSeconds, type Progress, placeOf } from './progress';
+import { checkedAnswers, checkedConsent, checkedDemographics, checkedDraft, questionnaires } from './questionnaires';
+import { type Place, recordVersion, type StudyEvent, type StudyRecord } from './study-record';
+import { checkedOutcome, type TrialOutcome } from './trial-log';
+import { checked, text, ValidationError } from './validation';
+
+/** What participant, experimenter, game or clock report. */
+export type ProgressEvent =
+  | { readonly type: 'consent'; readonly motion: boolean; readonly version: string }
+  | { readonly type: 'demographics'; readonly demographics: unknown }
+  | { readonly type: 'calibrated'; readonly calibration: Calibration }
+  /** Starts the tutorial or trial that waits. */
+  | { readonly type: 'start' }
+  | { readonly type: 'trial-finished'; readonly outcome: TrialOutcome }
+  | { readonly type: 'answer'; readonly question: string; readonly value: number }
+  /** Hands the questionnaire in. */
+  | { readonly type: 'submit' }
+  /** Time has passed. */
+  | { readonly type: 'tick' }
+  | { readonly type: 'pause' }
+  | { readonly type: 'resume' }
+  /** The present block counts for nothing; repeat: it starts again, otherwise the next one follows. */
+  | { readonly type: 'void-block'; readonly reason: string; readonly repeat: boolean }
+  | { readonly type: 'remark'; readonly text: string }
+  /** The page was loaded again: a trial that ran is lost and is tried again; everything else goes on. */
+  | { readonly type: 'reload' };
+
+/** What follows from an event. */
+export interface Advance {
+  readonly progress: Progress;
+  /** To be stored and sent, in this order. */
+  readonly records: readonly StudyRecord[];
+  /** Why nothing changed, for a person to read; null: the event was taken. */
+  readonly refusal: string | null;
+}
+
+type EventOf<Type extends ProgressEvent['type']> = Extract<ProgressEvent, { type: Type }>;
+
+/** What is taken in a pause too: the rest waits for its end. */
+const takenInPause: readonly ProgressEvent['type'][] = [
+  'resume',
+  'remark',
+  'void-block',
+  'trial-finished',
+  'reload',
+  'tick',
+];
+
+/** What an event makes of a session at `now` [s since 1970]. Events out of place change nothing and say why. */
+export function advance(schedule: Schedule, progress: Progress, event: ProgressEvent, now: number): Advance {
+  const at = new Moment(schedule, progress, now);
+  if (progress.paused && !takenInPause.includes(event.type)) return at.refused('the session is paused');
+  try {
+    return follow(at, event) ?? at.refused(`"${event.type}" has no place in the step "${at.step.id}"`);
+  } catch (error) {
+    if (!(error instanceof ValidationError)) throw error;
+    return at.refused(error.message);
+  }
+}
+
+/** null: the event has no place in this step. Throws a ValidationError where it says something that cannot be recorded. */
+function follow(at: Moment, event: ProgressEvent): Advance | null {
+  switch (event.type) {
+    case 'consent':
+      return consent(at, event);
+    case 'demographics':
+      return demographics(at, event);
+    case 'calibrated':
+      return calibrated(at, event);
+    case 'start':
+      return start(at);
+    case 'trial-finished':
+      return trialFinished(at, event);
+    case 'answer':
+      return answer(at, event);
+    case 'submit':
+      return submit(at);
+    case 'tick':
+      return tick(at);
+    case 'pause':
+      return pause(at);
+    case 'resume':
+      return resume(at);
+    case 'void-block':
+      return voidBlock(at, event);
+    case 'remark':
+      return remark(at, event);
+    case 'reload':
+      return reload(at);
+  }
+}
+
+/** A session at the moment of an event, and the ways in which it goes on. */
+class Moment {
+  readonly schedule: Schedule;
+  readonly progress: Progress;
+  /** Seconds since 1970. */
+  readonly now: number;
+  readonly step: StudyStep;
+  /** null: outside of the tasks. */
+  readonly place: Place | null;
+
+  constructor(schedule: Schedule, progress: Progress, now: number) {
+    this.schedule = schedule;
+    this.progress = progress;
+    this.now = now;
+    this.step = currentStep(schedule, progress);
+    this.place = placeOf(schedule, progress);
+  }
+
+  /** What every record of this moment says. */
+  get envelope() {
+    const { study, participant } = this.schedule;
+    return { version: recordVersion, study, participant, simulated: this.progress.simulated, at: this.now } as const;
+  }
+
+  /** The id of the record of this attempt at the step: sending it twice stores it once. */
+  recordId(kind: string): string {
+    const suffix = this.place ? `@${this.place.run}.${this.place.attempt}` : '';
+    return `${this.step.id}${suffix}:${kind}`;
+  }
+
+  refused(refusal: string): Advance {
+    return { progress: this.progress, records: [], refusal };
+  }
+
+  taken(progress: Progress, records: readonly StudyRecord[] = []): Advance {
+    return { progress, records, refusal: null };
+  }
+
+  /** With a record of what happened; before consent nothing is recorded, not even a pause. */
+  withEvent(next: Progress, body: StudyEvent): Advance {
+    if (next.motion === null) return this.taken(next);
+    const counted = { ...next, events: next.events + 1 };
+    return this.taken(counted, [{ ...this.envelope, kind: 'event', id: `event-${counted.events}`, body }]);
+  }
+
+  /** To the step after this one. */
+  moveOn(from: Progress, records: readonly StudyRecord[] = []): Advance {
+    return this.enter(from, this.schedule.steps[this.schedule.steps.indexOf(this.step) + 1] as StudyStep, records);
+  }
+
+  enter(from: Progress, step: StudyStep, records: readonly StudyRecord[]): Advance {
+    const entered = this.entered(from, step);
+    if (step.kind !== 'end') return this.taken(entered, records);
+    const finished = this.withEvent(entered, { type: 'finished' });
+    return this.taken(finished.progress, [...records, ...finished.records]);
+  }
+
+  /** Rests and questionnaires run from their first moment; games and calibration wait to be started. */
+  entered(from: Progress, step: StudyStep): Progress {
+    const running = step.kind === 'rest' || step.kind === 'questionnaire';
+    const since = running && !from.paused ? this.now : null;
+    return { ...from, step: step.id, running, since, elapsed: 0, draft: {}, attempt: 1 };
+  }
+}
+
+const isPlayed = (step: StudyStep) => step.kind === 'trial' || step.kind === 'tutorial';
+
+function consent(at: Moment, { version, motion }: EventOf<'consent'>): Advance | null {
+  if (at.step.kind !== 'consent') return null;
+  const body = checkedConsent({ version, given: true, motion, at: at.now }, at.schedule.consentVersion);
+  return at.moveOn({ ...at.progress, motion }, [{ ...at.envelope, kind: 'consent', id: 'consent', body }]);
+}
+
+function demographics(at: Moment, event: EventOf<'demographics'>): Advance | null {
+  if (at.step.kind !== 'demographics') return null;
+  const body = checkedDemographics(event.demographics);
+  return at.moveOn(at.progress, [{ ...at.envelope, kind: 'demographics', id: 'demographics', body }]);
+}
+
+function calibrated(at: Moment, { calibration }: EventOf<'calibrated'>): Advance | null {
+  const { place } = at;
+  if (at.step.kind !== 'calibration' || !place) return null;
+  const { eyeHeight, armSpan, gazePitch } = calibration;
+  const body = { place, eyeHeight, armSpan, ...(gazePitch !== undefined && { gazePitch }) };
+  return at.moveOn(at.progress, [{ ...at.envelope, kind: 'calibration', id: at.recordId('calibration'), body }]);
+}
+
+function start(at: Moment): Advance | null {
+  if (!isPlayed(at.step) || at.progress.running) return null;
+  return at.taken({ ...at.progress, running: true, since: at.now, elapsed: 0 });
+}
+
+function trialFinished(at: Moment, { outcome }: EventOf<'trial-finished'>): Advance | null {
+  const { step, place, progress } = at;
+  if ((step.kind !== 'trial' && step.kind !== 'tutorial') || !progress.running || !place) return null;
+  const body = {
+    place,
+    condition: step.kind === 'trial' ? step.condition : null,
+    estimator: step.estimator,
+    repetition: step.kind === 'trial' ? step.repetition : 1,
+    group: at.schedule.groups[step.task]?.number ?? 1,
+    outcome: checkedOutcome(outcome),
+  };
+  return at.moveOn(progress, [{ ...at.envelope, kind: 'trial', id: at.recordId('trial'), body }]);
+}
+
+function answer(at: Moment, { question, value }: EventOf<'answer'>): Advance | null {
+  const { step, progress } = at;
+  if (step.kind !== 'questionnaire') return null;
+  const draft = checkedDraft(questionnaires[step.questionnaire], { ...progress.draft, [question]: value });
+  return at.taken({ ...progress, draft: { ...draft } });
+}
+
+function submit(at: Moment): Advance | null {
+  const { step, place, progress } = at;
+  if (step.kind !== 'questionnaire' || !place) return null;
+  const answers = checkedAnswers(questionnaires[step.questionnaire], progress.draft);
+  const seconds = elapsedSeconds(progress, at.now);
+  const { estimator } = at.schedule.steps.find(
+    (other) => other.kind === 'trial' && other.task === step.task && other.block === step.block,
+  ) as Extract<StudyStep, { kind: 'trial' }>;
+  const body = {
+    place,
+    condition: step.condition,
+    estimator,
+    questionnaire: step.questionnaire,
+    answers: { ...answers },
+    seconds,
+    overtime: seconds > step.seconds,
+  };
+  return at.moveOn(progress, [{ ...at.envelope, kind: 'answers', id: at.recordId('answers'), body }]);
+}
+
+function tick(at: Moment): Advance {
+  const { step, progress } = at;
+  const over = step.kind === 'rest' && !progress.paused && elapsedSeconds(progress, at.now) >= step.seconds;
+  return over ? at.moveOn(progress) : at.taken(progress);
+}
+
+function pause(at: Moment): Advance | null {
+  const { step, progress } = at;
+  if (step.kind === 'end') return null;
+  const stopped = { ...progress, paused: true, since: null, elapsed: elapsedSeconds(progress, at.now) };
+  return at.withEvent(stopped, { type: 'pause' });
+}
+
+function resume(at: Moment): Advance | null {
+  const { progress } = at;
+  if (!progress.paused) return null;
+  return at.withEvent({ ...progress, paused: false, since: progress.running ? at.now : null }, { type: 'resume' });
+}
+
+function voidBlock(at: Moment, event: EventOf<'void-block'>): Advance | null {
+  if (!at.place) return null;
+  const { repeat } = event;
+  const { task, block, run } = at.place;
+  const { steps } = at.schedule;
+  const { runs } = at.progress;
+  const reason = checked(text(500), event.reason);
+  const ofBlock = (step: StudyStep) => 'task' in step && step.task === task && step.block === block;
+  const target = (repeat ? steps.find(ofBlock) : steps[steps.findLastIndex(ofBlock) + 1]) as StudyStep;
+  const next = {
+    ...at.progress,
+    runs: repeat ? { ...runs, [`${task}/${block}`]: run + 1 } : runs,
+    paused: false,
+  };
+  const voided = at.withEvent(next, { type: 'void-block', task, block, run, reason, repeat });
+  return at.enter(voided.progress, target, voided.records);
+}
+
+function remark(at: Moment, event: EventOf<'remark'>): Advance {
+  if (at.progress.motion === null) return at.refused('nothing is recorded before consent');
+  return at.withEvent(at.progress, { type: 'remark', text: checked(text(2000), event.text) });
+}
+
+function reload(at: Moment): Advance {
+  const { step, place, progress } = at;
+  if (!isPlayed(step) || !progress.running || !place) return at.withEvent(progress, { type: 'reload' });
+  const again = { ...progress, running: false, since: null, elapsed: 0, attempt: progress.attempt + 1 };
+  return at.withEvent(again, { type: 'interrupted', place, step: step.id });
+}
