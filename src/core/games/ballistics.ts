@@ -1,4 +1,4 @@
-import { addScaled, normalise, subtract, type Vec3, vec3 } from '../math/vec3';
+import { addScaled, type MutableVec3, normalise, setVec3, subtract, type Vec3, vec3 } from '../math/vec3';
 
 /** Downward [m/s²]. Nothing else acts on what flies: no drag, no wind. */
 export const gravity = 9.81;
@@ -10,28 +10,36 @@ export interface Launch {
 }
 
 /** Where it is after `seconds` of flight. */
-export const positionAt = ({ position, velocity }: Launch, seconds: number): Vec3 => {
-  const straight = addScaled(position, velocity, seconds);
-  return { ...straight, y: straight.y - 0.5 * gravity * seconds * seconds };
+export const positionAt = (
+  { position, velocity }: Launch,
+  seconds: number,
+  target: MutableVec3 = vec3(0, 0, 0),
+): MutableVec3 => {
+  addScaled(position, velocity, seconds, target);
+  target.y -= 0.5 * gravity * seconds * seconds;
+  return target;
 };
 
 /** How fast it is after `seconds` of flight [m/s]. */
-export const velocityAt = ({ velocity }: Launch, seconds: number): Vec3 => ({
-  ...velocity,
-  y: velocity.y - gravity * seconds,
-});
+export const velocityAt = ({ velocity }: Launch, seconds: number, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 =>
+  setVec3(target, velocity.x, velocity.y - gravity * seconds, velocity.z);
 
-/** Real roots of a·t² + b·t + c, ascending, without cancellation; a line where a vanishes, none where nothing crosses. */
-export function roots(a: number, b: number, c: number): readonly number[] {
+/**
+ * Real roots of a·t² + b·t + c, ascending, without cancellation; a line where a vanishes, none where nothing crosses. They are written
+ * into `target`.
+ */
+export function roots(a: number, b: number, c: number, target: number[] = []): readonly number[] {
+  target.length = 0;
   const discriminant = b * b - 4 * a * c;
-  if (discriminant < 0) return [];
+  if (discriminant < 0) return target;
   const q = -0.5 * (b + (b < 0 ? -1 : 1) * Math.sqrt(discriminant));
-  const found: number[] = [];
-  if (q !== 0) found.push(c / q);
+  if (q !== 0) target.push(c / q);
   // A coefficient this small is the rounding of an upright disc's normal: its root lies beyond every flight.
-  if (Math.abs(a) > 1e-12) found.push(q / a);
-  return found.sort((first, second) => first - second);
+  if (Math.abs(a) > 1e-12) target.push(q / a);
+  return target.sort(ascending);
 }
+
+const ascending = (first: number, second: number): number => first - second;
 
 /** Seconds until it comes down through this height [m]; 0 where it starts below, or there and does not rise. */
 export function fallsTo({ position, velocity }: Launch, height: number): number {
@@ -41,20 +49,28 @@ export function fallsTo({ position, velocity }: Launch, height: number): number 
   return velocity.y < 0 ? (2 * above) / (root - velocity.y) : (velocity.y + root) / gravity;
 }
 
+const offset = vec3(0, 0, 0);
+
 /**
  * The unit direction in which something at `from` must leave with `speed` [m/s] to pass through `target`: the flatter of the two
- * parabolas. null: out of reach at this speed.
+ * parabolas; written into `direction`. null: out of reach at this speed.
  */
-export function launchTowards(target: Vec3, from: Vec3, speed: number): Vec3 | null {
-  const to = subtract(target, from);
+export function launchTowards(
+  target: Vec3,
+  from: Vec3,
+  speed: number,
+  direction: MutableVec3 = vec3(0, 0, 0),
+): MutableVec3 | null {
+  const to = subtract(target, from, offset);
   const along = Math.hypot(to.x, to.z);
   const squared = speed * speed;
   if (along < 1e-9) {
-    return Math.abs(to.y) < 1e-9 || to.y < squared / (2 * gravity) ? vec3(0, to.y < 0 ? -1 : 1, 0) : null;
+    const within = Math.abs(to.y) < 1e-9 || to.y < squared / (2 * gravity);
+    return within ? setVec3(direction, 0, to.y < 0 ? -1 : 1, 0) : null;
   }
   const discriminant = squared * squared - gravity * (gravity * along * along + 2 * to.y * squared);
   if (discriminant < 0) return null;
   // tan of the elevation, in the form that does not cancel for fast arrows.
   const slope = (gravity * along * along + 2 * to.y * squared) / (along * (squared + Math.sqrt(discriminant)));
-  return normalise(vec3(to.x, slope * along, to.z));
+  return normalise(setVec3(direction, to.x, slope * along, to.z), undefined, direction);
 }

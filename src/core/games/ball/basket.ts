@@ -1,7 +1,22 @@
 import type { Frame, Pose } from '../../math/pose';
 import { rotate } from '../../math/quat';
 import type { Side } from '../../math/side';
-import { add, addScaled, length, lerp, normalise, reject, subtract, up, type Vec3, vec3 } from '../../math/vec3';
+import {
+  add,
+  addScaled,
+  down,
+  forward,
+  length,
+  lerp,
+  type MutableVec3,
+  normalise,
+  reject,
+  right as rightward,
+  subtract,
+  up,
+  type Vec3,
+  vec3,
+} from '../../math/vec3';
 import { fistOf, thumbOf } from '../fist';
 import { basketRadius } from './flight';
 
@@ -11,27 +26,52 @@ export interface Opening {
   readonly normal: Vec3;
 }
 
-/** Out of the palm, unit. */
-const palmOf = (hand: Pose<Frame>): Vec3 => rotate(hand.orientation, vec3(0, -1, 0));
+/** An opening that its owner overwrites. */
+export interface MutableOpening extends Opening {
+  readonly position: MutableVec3;
+  readonly normal: MutableVec3;
+}
+
+export const makeOpening = (): MutableOpening => ({ position: vec3(0, 0, 0), normal: vec3(0, 1, 0) });
+
+const fist = vec3(0, 0, 0);
+const otherFist = vec3(0, 0, 0);
+const across = vec3(0, 0, 0);
+const thumb = vec3(0, 0, 0);
+
+/** Of a basket in one hand. */
+function openingInHand(side: Side, hand: Pose<Frame>, { position, normal }: MutableOpening): void {
+  thumbOf(side, hand.orientation, normal);
+  // The palm, and where that looks along the thumb the knuckles.
+  reject(rotate(hand.orientation, down, across), normal, across);
+  normalise(across, rotate(hand.orientation, forward, thumb), across);
+  addScaled(fistOf(hand, fist), across, basketRadius, position);
+}
 
 /**
  * A basket held by its rim with both hands, palms inward and thumbs up, or with one, which is enough; hands in the basket's own
  * frame. It opens where the thumbs point. null: no hand is seen.
  */
-export function basketInHands(left: Pose<Frame> | null, right: Pose<Frame> | null): Opening | null {
-  const held = (side: Side, hand: Pose<Frame>): Opening => {
-    const normal = thumbOf(side, hand.orientation);
-    const inward = normalise(reject(palmOf(hand), normal), rotate(hand.orientation, vec3(0, 0, -1)));
-    return { position: addScaled(fistOf(hand), inward, basketRadius), normal };
-  };
-  if (!left || !right) return left ? held('left', left) : right && held('right', right);
-  const line = subtract(fistOf(right), fistOf(left));
-  const thumbs = add(thumbOf('left', left.orientation), thumbOf('right', right.orientation));
-  const across = normalise(line, vec3(1, 0, 0));
-  const normal = length(line) > 1e-3 ? reject(thumbs, across) : thumbs;
-  return {
-    position: lerp(fistOf(left), fistOf(right), 0.5),
-    // Thumbs that point at each other or apart say nothing: then upward.
-    normal: normalise(length(normal) > 1e-3 ? normal : reject(up, across), up),
-  };
+export function basketInHands(
+  left: Pose<Frame> | null,
+  right: Pose<Frame> | null,
+  target: MutableOpening = makeOpening(),
+): MutableOpening | null {
+  if (!left || !right) {
+    if (left) openingInHand('left', left, target);
+    else if (right) openingInHand('right', right, target);
+    return left || right ? target : null;
+  }
+  const { position, normal } = target;
+  fistOf(left, fist);
+  fistOf(right, otherFist);
+  const line = length(subtract(otherFist, fist, across));
+  normalise(across, rightward, across);
+  add(thumbOf('left', left.orientation, normal), thumbOf('right', right.orientation, thumb), normal);
+  if (line > 1e-3) reject(normal, across, normal);
+  // Thumbs that point at each other or apart say nothing: then upward.
+  if (!(length(normal) > 1e-3)) reject(up, across, normal);
+  normalise(normal, up, normal);
+  lerp(fist, otherFist, 0.5, position);
+  return target;
 }

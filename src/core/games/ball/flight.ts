@@ -2,18 +2,21 @@ import { clamp } from '../../math/damper';
 import {
   add,
   addScaled,
+  copyVec3,
   distance,
   dot,
   length,
   lerp,
+  type MutableVec3,
   normalise,
   reject,
   scale,
+  setVec3,
   subtract,
   type Vec3,
   vec3,
 } from '../../math/vec3';
-import { fallsTo, gravity, positionAt, velocityAt } from '../ballistics';
+import { fallsTo, positionAt, velocityAt } from '../ballistics';
 import type { Basket, TimedLaunch } from './ball-state';
 
 /** Of every ball [m]. */
@@ -33,15 +36,16 @@ const rollsBelow = 0.7;
 const rollSeconds = 1.1;
 
 /** Where a ball in the air is at a time [s of the match]; before its launch: where it set off. */
-export const ballInAir = (launch: TimedLaunch, time: number): Vec3 =>
-  positionAt(launch, Math.max(time - launch.time, 0));
+export const ballInAir = (launch: TimedLaunch, time: number, target?: MutableVec3): MutableVec3 =>
+  positionAt(launch, Math.max(time - launch.time, 0), target);
 
 /** Where a rolling ball is: it loses speed by the second and goes speed · rollSeconds in all. */
-export const ballOnFloor = (launch: TimedLaunch, time: number): Vec3 =>
+export const ballOnFloor = (launch: TimedLaunch, time: number, target?: MutableVec3): MutableVec3 =>
   addScaled(
     launch.position,
     launch.velocity,
     rollSeconds * (1 - Math.exp(-Math.max(time - launch.time, 0) / rollSeconds)),
+    target,
   );
 
 /** When a ball in the air touches the floor [s of the match]. */
@@ -52,60 +56,70 @@ export function floorBounceOf(
   launch: TimedLaunch,
   time: number,
 ): { readonly launch: TimedLaunch; readonly rolls: boolean } {
-  const position = { ...ballInAir(launch, time), y: ballRadius };
+  const position = ballInAir(launch, time);
+  position.y = ballRadius;
   const velocity = velocityAt(launch, time - launch.time);
   const upward = -velocity.y * floorBounce;
   const rolls = upward < rollsBelow;
-  return {
-    launch: {
-      time,
-      position,
-      velocity: vec3(velocity.x * floorGrip, rolls ? 0 : upward, velocity.z * floorGrip),
-    },
-    rolls,
-  };
+  setVec3(velocity, velocity.x * floorGrip, rolls ? 0 : upward, velocity.z * floorGrip);
+  return { launch: { time, position, velocity }, rolls };
+}
+
+/** An opening that its owner overwrites. */
+interface MutableOpening {
+  readonly position: MutableVec3;
+  readonly normal: MutableVec3;
 }
 
 /** The basket between two of its places, moved along the straight line and turned evenly. */
-function basketAt(from: Basket, to: Basket, time: number): Basket {
+function basketAt(from: Basket, to: Basket, time: number, target: MutableOpening): void {
   const share = to.at > from.at ? clamp((time - from.at) / (to.at - from.at), 0, 1) : 1;
-  return {
-    at: time,
-    position: lerp(from.position, to.position, share),
-    normal: normalise(lerp(from.normal, to.normal, share), to.normal),
-  };
+  lerp(from.position, to.position, share, target.position);
+  normalise(lerp(from.normal, to.normal, share, target.normal), to.normal, target.normal);
 }
 
 /** What the outside of the basket is to a ball: how far away, and which way out. */
 interface Nearness {
   /** From the ball's skin to the basket, or from its middle to the opening if that is next [m]; below 0: within. */
-  readonly far: number;
+  far: number;
   /** Unit: from the basket to the ball. */
-  readonly out: Vec3;
+  readonly out: MutableVec3;
   /** Above the opening: what comes further down is in. */
-  readonly overOpening: boolean;
+  overOpening: boolean;
 }
 
-function nearness(ball: Vec3, { position, normal }: Basket): Nearness {
-  const from = subtract(ball, position);
+// Memory of one call: a ball in the air is looked at in every tick.
+const outward = vec3(0, 0, 0);
+const sideways = vec3(0, 0, 0);
+const askew = vec3(0, 0, 0);
+
+function measure(ball: Vec3, { position, normal }: MutableOpening, near: Nearness): void {
+  const from = subtract(ball, position, outward);
   const height = dot(from, normal);
-  const sideways = reject(from, normal);
+  reject(from, normal, sideways);
   const radial = length(sideways);
-  const outward = normalise(sideways, vec3(normal.y, normal.z, normal.x));
-  if (height > 0 && radial <= basketRadius) return { far: height, out: normal, overOpening: true };
+  normalise(sideways, setVec3(askew, normal.y, normal.z, normal.x), outward);
+  near.overOpening = height > 0 && radial <= basketRadius;
+  if (near.overOpening) {
+    near.far = height;
+    copyVec3(normal, near.out);
+    return;
+  }
   // The nearest point of a closed cylinder that hangs under the opening.
   const beyond = radial - basketRadius;
   const above = Math.max(height, -basketDepth - height);
   if (beyond <= 0 && above <= 0) {
     // Inside the walls: the way out that is shorter.
-    return beyond > above
-      ? { far: beyond - ballRadius, out: outward, overOpening: false }
-      : { far: above - ballRadius, out: scale(normal, height > -basketDepth / 2 ? 1 : -1), overOpening: false };
+    near.far = Math.max(beyond, above) - ballRadius;
+    if (beyond > above) copyVec3(outward, near.out);
+    else scale(normal, height > -basketDepth / 2 ? 1 : -1, near.out);
+    return;
   }
   const aside = Math.max(beyond, 0);
   const over = Math.max(above, 0) * (height > 0 ? 1 : -1);
-  const away = addScaled(scale(outward, aside), normal, over);
-  return { far: length(away) - ballRadius, out: normalise(away, outward), overOpening: false };
+  addScaled(scale(outward, aside, near.out), normal, over, near.out);
+  near.far = length(near.out) - ballRadius;
+  normalise(near.out, outward, near.out);
 }
 
 /** A ball meets the basket. */
@@ -118,6 +132,27 @@ const touching = 5e-4;
 /** A ball that touches and parts is looked at again after this [s]. */
 const partingStep = 1 / 1000;
 
+/** The ball's middle and velocity. */
+const middle = vec3(0, 0, 0);
+const flown = vec3(0, 0, 0);
+const relative = vec3(0, 0, 0);
+const opening: MutableOpening = { position: vec3(0, 0, 0), normal: vec3(0, 0, 0) };
+const near: Nearness = { far: 0, out: vec3(0, 0, 0), overOpening: false };
+
+/** How fast ball and basket may come nearer to each other at most [m/s]. */
+function closingSpeed(launch: TimedLaunch, from: Basket, to: Basket, start: number, end: number): number {
+  const seconds = to.at - from.at;
+  const turning = Math.acos(clamp(dot(from.normal, to.normal), -1, 1));
+  // Everything of the basket within reach of the ball turns about the opening's middle.
+  const arm = Math.hypot(basketRadius, basketDepth) + ballRadius;
+  const basketSpeed = (distance(from.position, to.position) + 2 * turning * arm) / seconds;
+  const fastest = Math.max(
+    length(velocityAt(launch, start - launch.time, flown)),
+    length(velocityAt(launch, end - launch.time, flown)),
+  );
+  return fastest + basketSpeed + 1e-6;
+}
+
 /**
  * What happens first between a flying ball and the basket that moves from one place to another meanwhile; null: nothing. The ball's
  * middle going down through the opening is a catch; rim, walls and bottom bounce. Steps are as long as the distance allows at
@@ -127,50 +162,44 @@ export function meetsBasket(launch: TimedLaunch, from: Basket, to: Basket): Bask
   const start = Math.max(launch.time, from.at);
   const end = Math.min(to.at, touchesFloor(launch));
   if (!(end > start)) return null;
-  const seconds = to.at - from.at;
-  const turning = Math.acos(clamp(dot(from.normal, to.normal), -1, 1));
-  // Everything of the basket within reach of the ball turns about the opening's middle.
-  const arm = Math.hypot(basketRadius, basketDepth) + ballRadius;
-  const basketSpeed = (distance(from.position, to.position) + 2 * turning * arm) / seconds;
-  const fastest = Math.max(
-    length(velocityAt(launch, start - launch.time)),
-    length(velocityAt(launch, end - launch.time)),
-  );
-  const closing = fastest + basketSpeed + 1e-6;
-
+  const closing = closingSpeed(launch, from, to, start, end);
   let time = start;
   while (time < end) {
-    const ball = ballInAir(launch, time);
-    const before = nearness(ball, basketAt(from, to, time));
-    if (before.far <= touching) {
-      const velocity = subtract(velocityAt(launch, time - launch.time), basketVelocity(ball, from, to, time));
-      const into = dot(velocity, before.out);
-      if (before.overOpening && into < 0) return { kind: 'caught', time };
-      if (!before.overOpening && into < 0) {
-        const bounced = addScaled(velocityAt(launch, time - launch.time), before.out, -(1 + basketBounce) * into);
-        // From just outside, so that the same touch is not met again.
-        const position = addScaled(ball, before.out, 1.2 * touching - before.far);
-        return { kind: 'bounced', launch: { time, position, velocity: bounced } };
-      }
-      time += partingStep;
-    } else {
-      time += before.far / closing;
+    ballInAir(launch, time, middle);
+    basketAt(from, to, time, opening);
+    measure(middle, opening, near);
+    if (near.far > touching) {
+      time += near.far / closing;
+      continue;
     }
+    velocityAt(launch, time - launch.time, flown);
+    const into = dot(subtract(flown, basketVelocity(from, to), relative), near.out);
+    if (near.overOpening && into < 0) return { kind: 'caught', time };
+    if (!near.overOpening && into < 0) {
+      const velocity = addScaled(flown, near.out, -(1 + basketBounce) * into);
+      // From just outside, so that the same touch is not met again.
+      const position = addScaled(middle, near.out, 1.2 * touching - near.far);
+      return { kind: 'bounced', launch: { time, position, velocity } };
+    }
+    time += partingStep;
   }
   return null;
 }
 
-/** How fast the basket's body moves where the ball touches it. */
-function basketVelocity(ball: Vec3, from: Basket, to: Basket, time: number): Vec3 {
+const moved = vec3(0, 0, 0);
+const turning = vec3(0, 0, 0);
+const offset = vec3(0, 0, 0);
+const flat = vec3(0, 0, 0);
+
+/** How fast the basket's body moves where the ball touches it, both as they were measured last. */
+function basketVelocity(from: Basket, to: Basket): Vec3 {
   const seconds = to.at - from.at;
-  const moved = scale(subtract(to.position, from.position), 1 / seconds);
-  const { position, normal } = basketAt(from, to, time);
-  const turning = scale(subtract(to.normal, from.normal), 1 / seconds);
-  const offset = subtract(ball, position);
+  scale(subtract(to.position, from.position, moved), 1 / seconds, moved);
+  const { position, normal } = opening;
+  scale(subtract(to.normal, from.normal, turning), 1 / seconds, turning);
+  subtract(middle, position, offset);
   // A normal that changes by n' carries what lies at h·n + s along by h·n' − (s·n')·n.
   const height = dot(offset, normal);
-  return add(moved, addScaled(scale(turning, height), normal, -dot(reject(offset, normal), turning)));
+  const along = dot(reject(offset, normal, flat), turning);
+  return add(moved, addScaled(scale(turning, height, turning), normal, -along, turning), moved);
 }
-
-/** The speed [m/s] with which something sets off upward and ahead at 45° to come down at its own height this far away [m]. */
-export const speedForDistance = (metres: number): number => Math.sqrt(gravity * metres);

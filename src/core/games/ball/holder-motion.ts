@@ -1,9 +1,31 @@
 import { clamp, dampVec3 } from '../../math/damper';
-import { add, addScaled, distance, normalise, reject, scale, subtract, up, type Vec3, vec3 } from '../../math/vec3';
+import {
+  add,
+  addScaled,
+  copyVec3,
+  distance,
+  type MutableVec3,
+  normalise,
+  reject,
+  right,
+  scale,
+  setVec3,
+  subtract,
+  up,
+  type Vec3,
+  vec3,
+} from '../../math/vec3';
 import { fallsTo, velocityAt } from '../ballistics';
-import type { TimedLaunch } from './ball-state';
+import type { BallState, TimedLaunch } from './ball-state';
 import { ballInAir, basketRadius } from './flight';
-import { createPlayerPostures, type PlayerBody } from './player-postures';
+import {
+  createPlayerPostures,
+  type MutableGrasp,
+  makePosture,
+  type Performed,
+  type PlayerBody,
+  type PlayerPostures,
+} from './player-postures';
 import { ballMatchTime } from './rules';
 import type { BallBot, BotSight } from './thrower-motion';
 
@@ -16,86 +38,142 @@ const lean = 0.5;
 /** A ball further from the arms than this [m] is let go by. */
 const widest = 0.85;
 
-/**
- * Holds the basket before the belly and carries it to where the next ball comes down, stepping aside as far as needed. `told`: where
- * the opening is to be instead, own floor frame, when it waits at `home`.
- */
-export function createHolder(body: PlayerBody, told?: (home: Vec3) => Vec3): BallBot {
-  const postures = createPlayerPostures(body);
-  const { arm, eyes, inFloor } = postures;
+/** Where the opening is to be, own floor frame, when it waits at `home`; written into `target`. */
+export type HolderGoal = (home: Vec3, target: MutableVec3) => Vec3;
+
+/** How a basket opens that waits. */
+const waiting = normalise(vec3(0, 1, -0.25));
+const upright = scale(up, 1 - lean);
+const aheadOfEyes = vec3(0, -0.3, -2);
+
+// Memory of one call: a frame makes no garbage.
+const point = vec3(0, 0, 0);
+const wanted = vec3(0, 0, 0);
+const across = vec3(0, 0, 0);
+
+class Holder implements BallBot {
+  readonly #postures: PlayerPostures;
+  readonly #told: HolderGoal | undefined;
   /** Where the opening waits, and how far from there the arms alone carry it. */
-  const home = add(eyes, vec3(0, -0.62 * arm - 0.06, -0.82 * arm));
-  const comfort = 0.3 * arm;
+  readonly #home: Vec3;
+  readonly #level: Vec3;
+  readonly #comfort: number;
+  readonly #opening: MutableVec3;
+  readonly #soft: MutableVec3;
+  readonly #normal = copyVec3(waiting);
+  readonly #softNormal = copyVec3(waiting);
+  readonly #look: MutableVec3;
+  readonly #posture = makePosture();
+  readonly #goal = vec3(0, 0, 0);
+  /** Where and how the next ball comes down to the basket's height, floor frame. */
+  readonly #at = vec3(0, 0, 0);
+  readonly #into = vec3(0, 0, 0);
+  #lastTime: number | null = null;
 
-  let opening = home;
-  let soft = home;
-  let normal: Vec3 = normalise(vec3(0, 1, -0.25));
-  let softNormal = normal;
-  let standing = eyes;
-  let look = add(eyes, vec3(0, -0.3, -2));
-  let lastTime: number | null = null;
+  constructor(body: PlayerBody, told?: HolderGoal) {
+    this.#postures = createPlayerPostures(body);
+    this.#told = told;
+    const { arm, eyes } = this.#postures;
+    this.#home = add(eyes, vec3(0, -0.62 * arm - 0.06, -0.82 * arm));
+    this.#level = vec3(this.#home.x, 0, this.#home.z);
+    this.#comfort = 0.3 * arm;
+    this.#opening = copyVec3(this.#home);
+    this.#soft = copyVec3(this.#home);
+    this.#look = add(eyes, aheadOfEyes);
+  }
 
-  /** Where and how the next ball comes down to the basket's height, floor frame; null: none within reach. */
-  function nextBall({ state }: BotSight, now: number): { readonly at: Vec3; readonly into: Vec3 } | null {
-    let soonest: { readonly launch: TimedLaunch; readonly when: number } | null = null;
+  follow(time: number, { state }: BotSight): Performed {
+    const elapsed = this.#lastTime === null ? 0 : clamp(time - this.#lastTime, 0, 0.1);
+    this.#lastTime = time;
+    const comes = this.#findNextBall(state);
+    this.#carry(comes, elapsed);
+    this.#stand();
+    this.#watch(comes, state, elapsed);
+    const { left, right: rightHand } = this.#posture;
+    normalise(reject(right, this.#normal, across), undefined, across);
+    this.#grip(left, -1);
+    this.#grip(rightHand, 1);
+    return this.#postures.seen(this.#posture, time, 1, 1);
+  }
+
+  /** false: no ball comes down within reach. */
+  #findNextBall(state: BallState): boolean {
+    const now = ballMatchTime(state);
+    let next: TimedLaunch | null = null;
+    let soonest = Number.POSITIVE_INFINITY;
     for (const place of state.balls) {
       if (place.on !== 'air' || place.missed) continue;
       const { launch } = place;
-      const when = launch.time + fallsTo(launch, home.y);
-      if (when < now - 0.05 || (soonest && when >= soonest.when)) continue;
-      const at = inFloor(ballInAir(launch, when));
-      if (distance({ ...at, y: 0 }, { ...home, y: 0 }) > widest) continue;
-      soonest = { launch, when };
+      const when = launch.time + fallsTo(launch, this.#home.y);
+      if (when < now - 0.05 || when >= soonest) continue;
+      this.#postures.inFloor(ballInAir(launch, when, point), point);
+      if (distance(setVec3(point, point.x, 0, point.z), this.#level) > widest) continue;
+      next = launch;
+      soonest = when;
     }
-    if (!soonest) return null;
-    const { launch, when } = soonest;
-    const ahead = inFloor(add(ballInAir(launch, when), scale(velocityAt(launch, when - launch.time), 0.01)));
-    const at = inFloor(ballInAir(launch, when));
-    return { at, into: normalise(subtract(ahead, at)) };
+    if (!next) return false;
+    ballInAir(next, soonest, this.#at);
+    add(this.#at, scale(velocityAt(next, soonest - next.time, point), 0.01, point), point);
+    this.#postures.inFloor(point, point);
+    this.#postures.inFloor(this.#at, this.#at);
+    normalise(subtract(point, this.#at, this.#into), undefined, this.#into);
+    return true;
   }
 
-  return {
-    follow(time, sight) {
-      const elapsed = lastTime === null ? 0 : clamp(time - lastTime, 0, 0.1);
-      lastTime = time;
-      const ball = nextBall(sight, ballMatchTime(sight.state));
-      const goal = told?.(home) ?? ball?.at ?? home;
-      const wanted = ball ? normalise(add(scale(up, 1 - lean), scale(ball.into, -lean))) : normalise(vec3(0, 1, -0.25));
-      soft = dampVec3(soft, goal, moveHalfLife, elapsed);
-      opening = dampVec3(opening, soft, moveHalfLife, elapsed);
-      softNormal = dampVec3(softNormal, wanted, moveHalfLife, elapsed);
-      normal = normalise(dampVec3(normal, softNormal, moveHalfLife, elapsed));
-      // Arms first; what they lack the feet give.
-      const off = subtract(opening, home);
-      const level = { ...off, y: 0 };
-      const far = Math.hypot(level.x, level.z);
-      const step = far > comfort ? scale(level, (far - comfort) / far) : vec3(0, 0, 0);
-      standing = add(eyes, { ...step, y: clamp(off.y, -0.25, 0) * 0.6 });
-      const across = normalise(reject(vec3(1, 0, 0), normal));
-      look = dampVec3(
-        look,
-        ball ? lookPoint(sight, opening, inFloor) : add(standing, vec3(0, -0.3, -2)),
-        lookHalfLife,
-        elapsed,
-      );
-      const gripped = (sigma: number) => ({
-        fist: addScaled(opening, across, sigma * basketRadius),
-        // Hands come from the body: knuckles ahead and a little inward, thumbs out of the opening.
-        knuckles: normalise(reject(vec3(-0.35 * sigma, -0.2, -1), normal)),
-        thumb: normal,
-      });
-      return postures.seen(
-        { eyes: standing, gaze: postures.looking(standing, look), left: gripped(-1), right: gripped(1) },
-        time,
-        { left: 1, right: 1 },
-      );
-    },
-  };
+  /** The basket goes where the ball comes down, or where it is told to be, and turns towards the ball. */
+  #carry(comes: boolean, elapsed: number): void {
+    const goal = this.#told?.(this.#home, this.#goal) ?? (comes ? this.#at : this.#home);
+    if (comes) {
+      add(upright, scale(this.#into, -lean, wanted), wanted);
+      normalise(wanted, undefined, wanted);
+    } else copyVec3(waiting, wanted);
+    dampVec3(this.#soft, goal, moveHalfLife, elapsed, this.#soft);
+    dampVec3(this.#opening, this.#soft, moveHalfLife, elapsed, this.#opening);
+    dampVec3(this.#softNormal, wanted, moveHalfLife, elapsed, this.#softNormal);
+    dampVec3(this.#normal, this.#softNormal, moveHalfLife, elapsed, this.#normal);
+    normalise(this.#normal, undefined, this.#normal);
+  }
+
+  /** Arms first; what they lack the feet give. */
+  #stand(): void {
+    const { eyes } = this.#postures;
+    const off = subtract(this.#opening, this.#home, point);
+    const far = Math.hypot(off.x, off.z);
+    const share = far > this.#comfort ? (far - this.#comfort) / far : 0;
+    add(eyes, setVec3(off, off.x * share, clamp(off.y, -0.25, 0) * 0.6, off.z * share), this.#posture.eyes);
+  }
+
+  /** The eyes follow the ball in the air. */
+  #watch(comes: boolean, state: BallState, elapsed: number): void {
+    const { eyes, gaze } = this.#posture;
+    if (comes) this.#findFlying(state, point);
+    else add(eyes, aheadOfEyes, point);
+    dampVec3(this.#look, point, lookHalfLife, elapsed, this.#look);
+    this.#postures.looking(eyes, this.#look, gaze);
+  }
+
+  /** Where the first ball in the air is now, floor frame; with none: the opening. */
+  #findFlying(state: BallState, target: MutableVec3): void {
+    for (const place of state.balls) {
+      if (place.on !== 'air' || place.missed) continue;
+      this.#postures.inFloor(ballInAir(place.launch, ballMatchTime(state), target), target);
+      return;
+    }
+    copyVec3(this.#opening, target);
+  }
+
+  /** A hand at the rim, on the left (−1) or right of the opening. */
+  #grip({ fist, knuckles, thumb }: MutableGrasp, sign: -1 | 1): void {
+    addScaled(this.#opening, across, sign * basketRadius, fist);
+    // Hands come from the body: knuckles ahead and a little inward, thumbs out of the opening.
+    reject(setVec3(knuckles, -0.35 * sign, -0.2, -1), this.#normal, knuckles);
+    normalise(knuckles, undefined, knuckles);
+    copyVec3(this.#normal, thumb);
+  }
 }
 
-/** The eyes follow the ball in the air. */
-function lookPoint({ state }: BotSight, otherwise: Vec3, inFloor: (point: Vec3) => Vec3): Vec3 {
-  const now = ballMatchTime(state);
-  const flying = state.balls.find((place) => place.on === 'air' && !place.missed);
-  return flying?.on === 'air' ? inFloor(ballInAir(flying.launch, now)) : otherwise;
-}
+/**
+ * Holds the basket before the belly and carries it to where the next ball comes down, stepping aside as far as needed. `told`: where
+ * the opening is to be instead.
+ */
+export const createHolder = (body: PlayerBody, told?: HolderGoal): BallBot => new Holder(body, told);

@@ -1,18 +1,29 @@
 import { clamp } from '../../math/damper';
-import { invertTransform, type Pose, type TrackedPose, type Transform, transformPoint } from '../../math/pose';
-import { fromAxisAngle, multiply, type Quat, slerp } from '../../math/quat';
+import { invertTransform, type TrackedPose, type Transform, transformPoint } from '../../math/pose';
+import { copyQuat, fromAxisAngle, type MutableQuat, multiply, type Quat, quat, slerp } from '../../math/quat';
 import type { Side } from '../../math/side';
-import { add, lerp, normalise, subtract, up, type Vec3, vec3 } from '../../math/vec3';
+import {
+  add,
+  copyVec3,
+  lerp,
+  type MutableVec3,
+  normalise,
+  right,
+  subtract,
+  up,
+  type Vec3,
+  vec3,
+} from '../../math/vec3';
 import type { TrackingFrame } from '../../tracking/tracking-frame';
-import { allReleased, type Button, type Buttons } from '../button-presses';
+import { allReleased, type Button, type Buttons, type HandButtons } from '../button-presses';
 import { wristAround } from '../fist';
-import { armShare, shoulderBehind, shoulderDrop, shoulderShare, yawOf } from '../posture';
+import { armShare, makeTracked, shoulderBehind, shoulderDrop, shoulderShare, swayAt, yawOf } from '../posture';
 
 /** Who plays, and where. */
 export interface PlayerBody {
   /** Height of the eyes above the floor [m], standing or seated as the player is. */
   readonly eyeHeight: number;
-  /** Shoulder to wrist [m]. Default: that of somebody who stands with eyes at this height. */
+  /** Shoulder to wrist [m]. Default: that of a person who stands with eyes at this height. */
   readonly armLength?: number;
   readonly arenaFromFloor: Transform<'arena', 'floor'>;
   /** The button that takes and throws. */
@@ -34,7 +45,45 @@ export interface PlayerPosture {
   readonly right: Grasp;
 }
 
-/** Somebody who plays without a person, as a headset and two hands see it. */
+/** A grasp that its owner overwrites. */
+export interface MutableGrasp extends Grasp {
+  readonly fist: MutableVec3;
+  readonly knuckles: MutableVec3;
+  readonly thumb: MutableVec3;
+}
+
+/** A posture that its owner overwrites: an optional last argument `target`, as with vectors. */
+export interface MutablePosture extends PlayerPosture {
+  readonly eyes: MutableVec3;
+  readonly gaze: MutableQuat;
+  readonly left: MutableGrasp;
+  readonly right: MutableGrasp;
+}
+
+const makeGrasp = (): MutableGrasp => ({ fist: vec3(0, 0, 0), knuckles: vec3(0, 0, 0), thumb: vec3(0, 0, 0) });
+
+export const makePosture = (): MutablePosture => ({
+  eyes: vec3(0, 0, 0),
+  gaze: quat(0, 0, 0, 1),
+  left: makeGrasp(),
+  right: makeGrasp(),
+});
+
+function copyGrasp({ fist, knuckles, thumb }: Grasp, target: MutableGrasp): void {
+  copyVec3(fist, target.fist);
+  copyVec3(knuckles, target.knuckles);
+  copyVec3(thumb, target.thumb);
+}
+
+export function copyPosture(posture: PlayerPosture, target: MutablePosture = makePosture()): MutablePosture {
+  copyVec3(posture.eyes, target.eyes);
+  copyQuat(posture.gaze, target.gaze);
+  copyGrasp(posture.left, target.left);
+  copyGrasp(posture.right, target.right);
+  return target;
+}
+
+/** A player whom no person moves, as a headset and two hands see them: new objects in every frame, which may be kept. */
 export interface Performed {
   readonly frame: TrackingFrame;
   readonly buttons: Buttons;
@@ -44,38 +93,60 @@ export interface Performed {
 const mostYaw = 0.8;
 const mostPitch = 0.6;
 
-const mixGrasp = (a: Grasp, b: Grasp, share: number): Grasp => ({
-  fist: lerp(a.fist, b.fist, share),
-  knuckles: normalise(lerp(a.knuckles, b.knuckles, share)),
-  thumb: normalise(lerp(a.thumb, b.thumb, share)),
-});
+function mixGrasp(a: Grasp, b: Grasp, share: number, target: MutableGrasp): void {
+  lerp(a.fist, b.fist, share, target.fist);
+  normalise(lerp(a.knuckles, b.knuckles, share, target.knuckles), undefined, target.knuckles);
+  normalise(lerp(a.thumb, b.thumb, share, target.thumb), undefined, target.thumb);
+}
 
 /** On the way from one posture to another, floor frame. */
-export const mixPostures = (a: PlayerPosture, b: PlayerPosture, share: number): PlayerPosture => ({
-  eyes: lerp(a.eyes, b.eyes, share),
-  gaze: slerp(a.gaze, b.gaze, share),
-  left: mixGrasp(a.left, b.left, share),
-  right: mixGrasp(a.right, b.right, share),
-});
+export function mixPostures(
+  a: PlayerPosture,
+  b: PlayerPosture,
+  share: number,
+  target: MutablePosture = makePosture(),
+): MutablePosture {
+  lerp(a.eyes, b.eyes, share, target.eyes);
+  slerp(a.gaze, b.gaze, share, target.gaze);
+  mixGrasp(a.left, b.left, share, target.left);
+  mixGrasp(a.right, b.right, share, target.right);
+  return target;
+}
 
 /** What the postures of throwers and holders are made of. */
 export interface PlayerPostures {
   /** Shoulder to wrist [m]. */
   readonly arm: number;
-  /** Of the eyes of somebody who stands upright on the mark, floor frame. */
+  /** Of the eyes of a player who stands upright on the mark, floor frame. */
   readonly eyes: Vec3;
-  inFloor(pointInArena: Vec3): Vec3;
-  /** A shoulder of somebody who faces −Z with the eyes there. */
-  shoulder(side: Side, eyes: Vec3): Vec3;
+  inFloor(pointInArena: Vec3, target?: MutableVec3): MutableVec3;
+  /** A shoulder of a player who faces −Z with the eyes there. */
+  shoulder(side: Side, eyes: Vec3, target?: MutableVec3): MutableVec3;
   /** The gaze at a point from the eyes. */
-  looking(eyes: Vec3, at: Vec3): Quat;
+  looking(eyes: Vec3, at: Vec3, target?: MutableQuat): MutableQuat;
   /** A hand that hangs. */
-  hanging(side: Side, eyes: Vec3): Grasp;
-  /** Nobody stands still: the posture as a headset and two hands see it at a time [s], fists' pressures 0 to 1. */
-  seen(posture: PlayerPosture, time: number, pressures: Readonly<Record<Side, number>>): Performed;
+  hang(side: Side, eyes: Vec3, target: MutableGrasp): void;
+  /** The posture with its drift as a headset and two hands see it at a time [s], fists' pressures 0 to 1. */
+  seen(posture: PlayerPosture, time: number, leftPressure: number, rightPressure: number): Performed;
 }
 
-/** How somebody of this body stands at their station, facing −Z of their floor. */
+const signOf = (side: Side): -1 | 1 => (side === 'left' ? -1 : 1);
+
+/** How a hand hangs. */
+const hangingKnuckles = normalise(vec3(0, -1, -0.25));
+const hangingThumb = { left: normalise(vec3(-0.2 * -1, 0, -1)), right: normalise(vec3(-0.2, 0, -1)) };
+
+const sight = vec3(0, 0, 0);
+const nod = quat(0, 0, 0, 1);
+const drift = vec3(0, 0, 0);
+const drifted = vec3(0, 0, 0);
+
+const ofBothSides = <T>(make: (sign: -1 | 1) => T): Readonly<Record<Side, T>> => ({
+  left: make(signOf('left')),
+  right: make(signOf('right')),
+});
+
+/** How a player of this body stands at their station, facing −Z of their floor. */
 export function createPlayerPostures({
   eyeHeight,
   arenaFromFloor,
@@ -85,48 +156,46 @@ export function createPlayerPostures({
   const arm = armLength;
   const floorFromArena = invertTransform(arenaFromFloor);
   const half = (shoulderShare / armShare) * arm;
-  const sigma = (side: Side) => (side === 'left' ? -1 : 1);
-  const shoulder = (side: Side, eyes: Vec3): Vec3 =>
-    add(eyes, vec3(sigma(side) * half, -shoulderDrop * arm, shoulderBehind * arm));
+  const fromEyes = ofBothSides((sign) => vec3(sign * half, -shoulderDrop * arm, shoulderBehind * arm));
+  const hanging = ofBothSides((sign) => vec3(sign * 0.22 * arm, -1.02 * arm, -0.2 * arm));
+  const shoulder = (side: Side, eyes: Vec3, target?: MutableVec3): MutableVec3 => add(eyes, fromEyes[side], target);
+
+  function wrist(side: Side, { fist, knuckles, thumb }: Grasp): TrackedPose {
+    const pose = makeTracked();
+    wristAround<'floor'>(side, add(fist, drift, drifted), knuckles, thumb, pose);
+    return pose;
+  }
+
+  const pressing = (pressure: number): HandButtons => ({ ...allReleased, [button]: pressure });
+
   return {
     arm,
     eyes: vec3(0, eyeHeight, 0),
-    inFloor: (point) => transformPoint(floorFromArena, point),
+    inFloor: (point, target) => transformPoint(floorFromArena, point, target),
     shoulder,
-    looking(eyes, at) {
-      const { x, y, z } = subtract(at, eyes);
-      // Eyes do the rest: nobody turns the head over the shoulder to find a ball that lies beside them.
-      const yaw = clamp(yawOf(vec3(x, 0, z)), -mostYaw, mostYaw);
+    looking(eyes, at, target) {
+      const { x, y, z } = subtract(at, eyes, sight);
+      // Eyes do the rest: a player does not look over the shoulder for a ball that lies beside them.
+      const yaw = clamp(yawOf(sight), -mostYaw, mostYaw);
       const pitch = clamp(Math.atan2(y, Math.hypot(x, z)), -mostPitch, mostPitch);
-      return multiply(fromAxisAngle(up, yaw), fromAxisAngle(vec3(1, 0, 0), pitch));
+      const turn = fromAxisAngle(up, yaw, target);
+      return multiply(turn, fromAxisAngle(right, pitch, nod), turn);
     },
-    hanging: (side, eyes) => ({
-      fist: add(shoulder(side, eyes), vec3(sigma(side) * 0.22 * arm, -1.02 * arm, -0.2 * arm)),
-      knuckles: normalise(vec3(0, -1, -0.25)),
-      thumb: normalise(vec3(-0.2 * sigma(side), 0, -1)),
-    }),
-    seen(posture, time, pressures) {
-      const drift = vec3(
-        0.006 * Math.sin(time * 0.61),
-        0.002 * Math.sin(time * 1.5),
-        0.005 * Math.sin(time * 0.43 + 1),
-      );
-      const wrist = (side: Side): TrackedPose => {
-        const { fist, knuckles, thumb } = posture[side];
-        const held: Pose<'floor'> = wristAround(side, add(fist, drift), knuckles, thumb);
-        return { ...held, tracking: 'tracked' };
-      };
+    hang(side, eyes, target) {
+      add(shoulder(side, eyes, target.fist), hanging[side], target.fist);
+      copyVec3(hangingKnuckles, target.knuckles);
+      copyVec3(hangingThumb[side], target.thumb);
+    },
+    seen(posture, time, leftPressure, rightPressure) {
+      swayAt(time, drift);
+      const head = makeTracked();
+      add(posture.eyes, drift, head.position);
+      copyQuat(posture.gaze, head.orientation);
+      const leftHand = wrist('left', posture.left);
+      const rightHand = wrist('right', posture.right);
       return {
-        frame: {
-          time,
-          head: { position: add(posture.eyes, drift), orientation: posture.gaze, tracking: 'tracked' },
-          leftHand: wrist('left'),
-          rightHand: wrist('right'),
-        },
-        buttons: {
-          left: { ...allReleased, [button]: pressures.left },
-          right: { ...allReleased, [button]: pressures.right },
-        },
+        frame: { time, head, leftHand, rightHand },
+        buttons: { left: pressing(leftPressure), right: pressing(rightPressure) },
       };
     },
   };

@@ -1,135 +1,207 @@
 import { clamp } from '../../math/damper';
 import { otherSide, type Side } from '../../math/side';
-import { add, addScaled, distance, length, normalise, scale, subtract, type Vec3, vec3 } from '../../math/vec3';
-import type { Grasp, PlayerPosture, PlayerPostures } from './player-postures';
+import {
+  add,
+  addScaled,
+  copyVec3,
+  distance,
+  length,
+  type MutableVec3,
+  normalise,
+  scale,
+  setVec3,
+  subtract,
+  type Vec3,
+  vec3,
+} from '../../math/vec3';
+import { type MutablePosture, makePosture, type PlayerPosture, type PlayerPostures } from './player-postures';
 
-/** The arm is this fast at once [m], then evenly fast for as long as a throw's speed is measured and a slow frame more [s]. */
+/** The arm runs up over this way [m], then is evenly fast for as long as a throw's speed is measured and a slow frame more [s]. */
 const runUp = 0.24;
-const evenSeconds = 0.095;
-const lateSeconds = 0.02;
+const measuredSeconds = 0.095;
+const evenSeconds = measuredSeconds + 0.02;
 const slowDown = 0.24;
 
-/** An underarm throw of a given velocity; floor frame. */
-export interface SwungThrow {
+const outwardOf = (side: Side): -1 | 1 => (side === 'left' ? -1 : 1);
+
+/** An underarm throw of a given velocity; floor frame. Its owner may give it another velocity: then all of it changes. */
+export class SwungThrow {
+  readonly #postures: PlayerPostures;
+  readonly #moves: ThrowPostures;
+  readonly #wound = makePosture();
+  readonly #thrown = makePosture();
+  readonly #back = vec3(0, 0, 0);
+  /** Unit: where the ball sets off to. */
+  readonly #way = vec3(0, 0, 0);
+  readonly #point = vec3(0, 0, 0);
+  #speed = 0;
+  #runSeconds = 0;
+  #slowSeconds = 0;
+
+  constructor(postures: PlayerPostures, moves: ThrowPostures) {
+    this.#postures = postures;
+    this.#moves = moves;
+  }
+
   /** The arm swung back, ready to go. */
-  readonly wound: PlayerPosture;
+  get wound(): PlayerPosture {
+    return this.#wound;
+  }
+
   /** At its end. */
-  readonly thrown: PlayerPosture;
-  readonly seconds: number;
+  get thrown(): PlayerPosture {
+    return this.#thrown;
+  }
+
+  get seconds(): number {
+    return this.#runSeconds + evenSeconds + this.#slowSeconds;
+  }
+
   /** The hand opens after this many seconds of it. */
-  readonly releaseAt: number;
-  /** Where the fist is after so many seconds. */
-  swing(seconds: number): Vec3;
+  get releaseAt(): number {
+    return this.#runSeconds + measuredSeconds;
+  }
+
+  /** Makes it a throw with this velocity [m/s], eyes at a point. */
+  aim(side: Side, velocity: Vec3, at: Vec3): void {
+    this.#speed = length(velocity);
+    normalise(velocity, undefined, this.#way);
+    this.#runSeconds = (2 * runUp) / this.#speed;
+    this.#slowSeconds = (2 * slowDown) / this.#speed;
+    addScaled(this.#moves.release(side), this.#way, -(runUp + this.#speed * measuredSeconds), this.#back);
+    this.#wind(side, at);
+    this.#follow(side, at);
+  }
+
+  /**
+   * Where the fist is after so many seconds: from rest to the throw's speed, on at that speed until the ball has left the hand, then
+   * to rest.
+   */
+  swing(elapsed: number, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 {
+    const running = clamp(elapsed, 0, this.#runSeconds);
+    const evenly = clamp(elapsed - this.#runSeconds, 0, evenSeconds);
+    const slowing = clamp(elapsed - this.#runSeconds - evenSeconds, 0, this.#slowSeconds);
+    const along =
+      runUp * (running / this.#runSeconds) ** 2 +
+      this.#speed * evenly +
+      this.#speed * (slowing - (slowing * slowing) / (2 * this.#slowSeconds));
+    return addScaled(this.#back, this.#way, along, target);
+  }
+
+  #lean(target: MutablePosture, at: Vec3): void {
+    const { eyes } = this.#postures;
+    this.#moves.resting(at, target);
+    add(eyes, this.#point, target.eyes);
+    this.#postures.looking(target.eyes, at, target.gaze);
+  }
+
+  /** The body leans back, the throwing arm behind, the other one ahead. */
+  #wind(side: Side, at: Vec3): void {
+    const { arm, eyes } = this.#postures;
+    const wound = this.#wound;
+    const point = this.#point;
+    const outward = outwardOf(side);
+    setVec3(point, 0.03 * outward, -0.01, 0.06);
+    this.#lean(wound, at);
+    const hand = wound[side];
+    copyVec3(this.#back, hand.fist);
+    subtract(this.#back, this.#postures.shoulder(side, eyes, point), point);
+    normalise(
+      add(normalise(point, undefined, point), scale(this.#way, 0.6, hand.knuckles), point),
+      undefined,
+      hand.knuckles,
+    );
+    setPalmAhead(outward, hand.thumb);
+    const other = wound[otherSide(side)];
+    this.#postures.shoulder(otherSide(side), wound.eyes, other.fist);
+    add(other.fist, setVec3(point, -0.1 * outward, -0.55 * arm, -0.55 * arm), other.fist);
+    normalise(setVec3(point, 0, 0.1, -1), undefined, other.knuckles);
+    normalise(setVec3(point, 0.5 * outward, 0.8, 0), undefined, other.thumb);
+  }
+
+  /** The body leans ahead, the arm at the end of its swing. */
+  #follow(side: Side, at: Vec3): void {
+    const thrown = this.#thrown;
+    const outward = outwardOf(side);
+    setVec3(this.#point, -0.02 * outward, -0.03, -0.13);
+    this.#lean(thrown, at);
+    const hand = thrown[side];
+    this.swing(this.seconds, hand.fist);
+    copyVec3(this.#way, hand.knuckles);
+    setPalmAhead(outward, hand.thumb);
+  }
 }
 
-/** What throws are made of, for somebody who faces −Z of their floor; floor frame throughout. */
-export interface ThrowPostures {
+const setPalmAhead = (outward: -1 | 1, target: MutableVec3): MutableVec3 =>
+  normalise(setVec3(target, outward, 0.35, 0), undefined, target);
+
+// Memory of one call: a frame makes no garbage.
+const shoulder = vec3(0, 0, 0);
+const offset = vec3(0, 0, 0);
+
+/** What throws are made of, for a player who faces −Z of their floor; floor frame throughout. */
+export class ThrowPostures {
+  readonly #postures: PlayerPostures;
+  readonly #release: Readonly<Record<Side, Vec3>>;
+
+  constructor(postures: PlayerPostures) {
+    this.#postures = postures;
+    const { arm, eyes } = postures;
+    const releaseOf = (side: Side): Vec3 => add(postures.shoulder(side, eyes), vec3(0, 0.06 * arm, -0.72 * arm));
+    this.#release = { left: releaseOf('left'), right: releaseOf('right') };
+  }
+
   /** Arms down, eyes at a point. */
-  resting(at: Vec3): PlayerPosture;
+  resting(at: Vec3, target: MutablePosture = makePosture()): MutablePosture {
+    return this.#rest(this.#postures.eyes, at, target);
+  }
+
   /** The fist round a ball of the rack, the body leaning towards it as far as the arm is too short. */
-  reaching(side: Side, ball: Vec3): PlayerPosture;
+  reaching(side: Side, ball: Vec3, target: MutablePosture = makePosture()): MutablePosture {
+    const { arm, eyes } = this.#postures;
+    const longest = 0.97 * arm + 0.05;
+    this.#postures.shoulder(side, eyes, shoulder);
+    const missing = Math.max(0, distance(shoulder, ball) - longest);
+    const towards = normalise(subtract(ball, shoulder, offset), undefined, offset);
+    addScaled(eyes, towards, missing, target.eyes);
+    this.#rest(target.eyes, ball, target);
+    const hand = target[side];
+    copyVec3(ball, hand.fist);
+    subtract(ball, this.#postures.shoulder(side, target.eyes, shoulder), offset);
+    add(normalise(offset, undefined, offset), setVec3(shoulder, 0, -0.15, -0.4), offset);
+    normalise(offset, undefined, hand.knuckles);
+    setVec3(hand.thumb, -outwardOf(side), 0.25, 0);
+    return target;
+  }
+
   /** The ball before the chest, eyes at a point. */
-  carrying(side: Side, at: Vec3): PlayerPosture;
+  carrying(side: Side, at: Vec3, target: MutablePosture = makePosture()): MutablePosture {
+    const { arm, eyes } = this.#postures;
+    const outward = outwardOf(side);
+    this.resting(at, target);
+    const hand = target[side];
+    this.#postures.shoulder(side, eyes, hand.fist);
+    add(hand.fist, setVec3(offset, -0.05 * outward * arm, -0.42 * arm, -0.62 * arm), hand.fist);
+    normalise(setVec3(offset, -0.1 * outward, 0.15, -1), undefined, hand.knuckles);
+    normalise(setVec3(offset, 0.7 * outward, 0.7, 0), undefined, hand.thumb);
+    return target;
+  }
+
   /** Where a thrown ball leaves the hand. */
-  release(side: Side): Vec3;
-  /** A throw with this velocity [m/s], eyes at a point. */
-  throwing(side: Side, velocity: Vec3, at: Vec3): SwungThrow;
-}
+  release(side: Side): Vec3 {
+    return this.#release[side];
+  }
 
-/** The same posture with another grasp of one hand. */
-export const withHand = (posture: PlayerPosture, side: Side, grasp: Grasp): PlayerPosture => ({
-  ...posture,
-  [side]: grasp,
-});
+  /** A throw, to be aimed. */
+  makeThrow(): SwungThrow {
+    return new SwungThrow(this.#postures, this);
+  }
 
-export function createThrowPostures(postures: PlayerPostures): ThrowPostures {
-  const { arm, eyes } = postures;
-
-  const resting = (at: Vec3): PlayerPosture => ({
-    eyes,
-    gaze: postures.looking(eyes, at),
-    left: postures.hanging('left', eyes),
-    right: postures.hanging('right', eyes),
-  });
-
-  const outwardOf = (side: Side): number => (side === 'left' ? -1 : 1);
-  const release = (side: Side): Vec3 => add(postures.shoulder(side, eyes), vec3(0, 0.06 * arm, -0.72 * arm));
-
-  return {
-    resting,
-    reaching(side, ball) {
-      const longest = 0.97 * arm + 0.05;
-      const shoulder = postures.shoulder(side, eyes);
-      const missing = Math.max(0, distance(shoulder, ball) - longest);
-      const towards = normalise(subtract(ball, shoulder));
-      const leaned = addScaled(eyes, towards, missing);
-      const shoulderThere = postures.shoulder(side, leaned);
-      return withHand(
-        { ...resting(ball), eyes: leaned, gaze: postures.looking(leaned, ball), ...hangingFrom(leaned) },
-        side,
-        {
-          fist: ball,
-          knuckles: normalise(add(normalise(subtract(ball, shoulderThere)), vec3(0, -0.15, -0.4))),
-          thumb: vec3(-outwardOf(side), 0.25, 0),
-        },
-      );
-    },
-    carrying(side, at) {
-      const outward = outwardOf(side);
-      return withHand(resting(at), side, {
-        fist: add(postures.shoulder(side, eyes), vec3(-0.05 * outward * arm, -0.42 * arm, -0.62 * arm)),
-        knuckles: normalise(vec3(-0.1 * outward, 0.15, -1)),
-        thumb: normalise(vec3(0.7 * outward, 0.7, 0)),
-      });
-    },
-    release,
-    throwing(side, velocity, at) {
-      const outward = outwardOf(side);
-      const speed = length(velocity);
-      const way = normalise(velocity);
-      const runSeconds = (2 * runUp) / speed;
-      const even = evenSeconds + lateSeconds;
-      const slowSeconds = (2 * slowDown) / speed;
-      const seconds = runSeconds + even + slowSeconds;
-      const back = addScaled(release(side), way, -(runUp + speed * evenSeconds));
-      /** From rest to the throw's speed, on at that speed until the ball has left the hand, then to rest. */
-      const swing = (elapsed: number): Vec3 => {
-        const running = clamp(elapsed, 0, runSeconds);
-        const evenly = clamp(elapsed - runSeconds, 0, even);
-        const slowing = clamp(elapsed - runSeconds - even, 0, slowSeconds);
-        const along =
-          runUp * (running / runSeconds) ** 2 +
-          speed * evenly +
-          speed * (slowing - (slowing * slowing) / (2 * slowSeconds));
-        return addScaled(back, way, along);
-      };
-      const shoulder = postures.shoulder(side, eyes);
-      const leanBack = add(eyes, vec3(0.03 * outward, -0.01, 0.06));
-      const leanAhead = add(eyes, vec3(-0.02 * outward, -0.03, -0.13));
-      const palmAhead = normalise(vec3(outward, 0.35, 0));
-      const wound = withHand(
-        withHand({ ...resting(at), eyes: leanBack, gaze: postures.looking(leanBack, at) }, side, {
-          fist: back,
-          knuckles: normalise(add(normalise(subtract(back, shoulder)), scale(way, 0.6))),
-          thumb: palmAhead,
-        }),
-        otherSide(side),
-        {
-          fist: add(postures.shoulder(otherSide(side), leanBack), vec3(-0.1 * outward, -0.55 * arm, -0.55 * arm)),
-          knuckles: normalise(vec3(0, 0.1, -1)),
-          thumb: normalise(vec3(0.5 * outward, 0.8, 0)),
-        },
-      );
-      const thrown = withHand({ ...resting(at), eyes: leanAhead, gaze: postures.looking(leanAhead, at) }, side, {
-        fist: swing(seconds),
-        knuckles: way,
-        thumb: palmAhead,
-      });
-      return { wound, thrown, seconds, releaseAt: runSeconds + evenSeconds, swing };
-    },
-  };
-
-  function hangingFrom(from: Vec3): Pick<PlayerPosture, Side> {
-    return { left: postures.hanging('left', from), right: postures.hanging('right', from) };
+  #rest(eyes: Vec3, at: Vec3, target: MutablePosture): MutablePosture {
+    copyVec3(eyes, target.eyes);
+    this.#postures.looking(eyes, at, target.gaze);
+    this.#postures.hang('left', eyes, target.left);
+    this.#postures.hang('right', eyes, target.right);
+    return target;
   }
 }
