@@ -1,61 +1,49 @@
-import type { Calibration } from '../../core/body/calibration';
 import { firstLine, reasonOf } from '../../core/errors/reasons';
 import { type Buttons, nothingPressed } from '../../core/games/button-presses';
 import type { Ray } from '../../core/math/ray';
 import type { Side } from '../../core/math/side';
 import type { Vec3 } from '../../core/math/vec3';
-import type { PageClock } from '../../core/tracking/page-clock';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
-import type { Quality } from '../../scene/renderer';
-import { readLimited } from '../../ui/limited-files';
 import type { MouseAim } from '../../ui/mouse-aim';
 import type { Notices } from '../../ui/notices';
 import type { Pulse } from '../../xr/haptics';
 import type { ArcheryActivity } from '../archery/archery-activity';
 import type { Performance } from '../archery/archery-play';
 import type { BallActivity } from '../ball/ball-activity';
-import type { StudyRun } from '../study/study-run';
 import type { TaskPlace } from '../study/task-runner';
+import type { Games } from './games';
 import type { Headset } from './headset';
+import type { Measures } from './measures';
+import type { PageStudy } from './page-study';
 import type { ActivityName, Shooter } from './play-bar';
-import type { PreferenceStore } from './preferences';
-import type { Settings } from './settings';
-import { avatarFile, ownAvatarAt } from './shown-avatar';
+import type { Settings, SettingsWriter } from './settings';
 import type { Stage, Watched } from './stage';
-import type { ArcheryRunner } from './study-archery';
-import type { BallRunner } from './study-ball';
-import type { Switches } from './switches';
+import { wakeSound } from './wake-sound';
 
 /** The court's middle, where a spectator looks at first, floor frame. */
 const courtMiddle: Vec3 = { x: 0, y: 1, z: -2.4 };
 /** How far hands close that carry a basket: they lie round its rim. */
 const basketGrip = 0.8;
 
-/** A study on this page, and what it hears of the games it plays. */
-export interface JoinedStudy {
-  readonly run: StudyRun;
-  /** Every frame of the round on the page. */
-  readonly archery: Pick<ArcheryRunner, 'played'>;
-  /** Every frame of the match on the page. */
-  readonly ball: Pick<BallRunner, 'played'>;
-}
+/** A choice of hands or rules. */
+export type RuleChange = Partial<Pick<Settings, 'bowSide' | 'oneHanded' | 'everyHitCounts'>>;
 
 export interface ActivitiesOptions {
-  readonly quality: Quality;
-  readonly switches: Switches;
   readonly settings: Settings;
-  readonly store: PreferenceStore;
+  readonly writer: Pick<SettingsWriter, 'change' | 'keep'>;
   readonly notices: Pick<Notices, 'show'>;
-  readonly clock: PageClock;
-  readonly stage: Pick<Stage, 'studio' | 'view' | 'placeMirror'>;
+  readonly games: Games;
+  /** Of the first round's layout. */
+  readonly seed: number;
+  readonly stage: {
+    readonly studio: Pick<Stage['studio'], 'setMarkVisible'>;
+    readonly view: Pick<Stage['view'], 'setScene' | 'setOrbit' | 'pose' | 'rayThrough'>;
+    readonly placeMirror: Stage['placeMirror'];
+  };
   readonly mouse: MouseAim;
-  readonly headset: Pick<Headset, 'worn' | 'emulator'>;
-  /** Of whoever moves. */
-  body(): Calibration;
-  /** The newest tracked frame; null: none yet. */
-  newestFrame(): TrackingFrame | null;
-  /** null: nobody takes part in a study here. */
-  study(): JoinedStudy | null;
+  readonly headset: Pick<Headset, 'worn'>;
+  readonly measures: Pick<Measures, 'current'>;
+  readonly study: Pick<PageStudy, 'joined' | 'idle' | 'paused'>;
   /** The colours of a seat for the own body; null: the user's own. */
   wear(palette: string | null): void;
   onCaption(text: string): void;
@@ -65,299 +53,261 @@ export interface ActivitiesOptions {
 }
 
 /** What people do here: look at themselves in the studio, shoot on the range, or play on the court. Games load when first played. */
-export interface Activities {
-  readonly name: ActivityName;
-  /** On the way to a game that is still loading. */
-  readonly arriving: boolean;
-  readonly archery: ArcheryActivity | null;
-  readonly ball: BallActivity | null;
-  goTo(next: ActivityName): Promise<void>;
-  /** Into the room again that this page has left or lost. */
-  rejoin(): Promise<void>;
-  /** The court in a study's room, on this participant's seat. */
-  goToMatch(place: TaskPlace): Promise<void>;
-  /** Another round, where rounds are not a study's. */
-  restartRound(): void;
-  /** A study's round: this layout, this long [s], from its signal on. */
-  startRound(layout: number, seconds: number): void;
-  /** Makes the round on the page one that waits. */
-  resetRound(): void;
-  /** A change of hands or rules; a round under way goes on unless it is counted differently. */
-  rule(change: Partial<Pick<Settings, 'bowSide' | 'oneHanded' | 'everyHitCounts'>>): void;
-  /** A hand for the bow, for this visit. */
-  setBowSide(side: Side): void;
-  setSound(on: boolean): void;
-  /** The mouse or the actor plays, where nobody wears a headset. */
-  chooseShooter(shooter: Shooter): void;
-  /** With whom a spectator's camera goes; null: with nobody. */
-  follow(seat: number | null): void;
-  /** Whom the camera shows instead of an own body; null: there is one. */
-  watched(): Watched | null;
-  /** Once a frame, first. */
-  begin(time: number): void;
-  /** Head, hands and buttons of whoever plays by themselves, or by the mouse; null: nobody, here. */
-  act(time: number): Performance | null;
-  /** The tracked frame as play; what the hands feel of it. */
-  play(frame: TrackingFrame, buttons: Buttons): readonly Pulse[];
-  /** How far a hand is closed, 0 to 1. */
-  grip(side: Side, buttons: Buttons): number;
-  show(time: number, frame: TrackingFrame | null): void;
-  /** What a ray meets of a game's sheets: the distance [m]; null: nothing. `press`: does what it says. */
-  point(ray: Ray, press: boolean): number | null;
-}
-
-export function createActivities(options: ActivitiesOptions): Activities {
-  const { quality, switches, settings, store, notices, mouse, headset, body, study, onCaption, onChange } = options;
-  const { studio, view, placeMirror } = options.stage;
-  let archery: ArcheryActivity | null = null;
-  let ball: BallActivity | null = null;
-  let arriving = false;
+export class Activities {
+  readonly #options: ActivitiesOptions;
+  #archery: ArcheryActivity | null = null;
+  #ball: BallActivity | null = null;
+  #arriving = false;
   /** Where a study plays the ball game; null: where the address says. */
-  let studyPlace: TaskPlace | null = null;
-  let seed = switches.seed ?? Math.floor(performance.timeOrigin % 2 ** 31);
-  /** Whether the camera stands where somebody without a body watches from. */
-  let inTheStands = false;
-  let worn: string | null = null;
+  #studyPlace: TaskPlace | null = null;
+  #seed: number;
+  /** Whether the camera stands where a spectator watches from. */
+  #inTheStands = false;
+  /** The colours of the own seat, as far as the own body wears them. */
+  #worn: string | null = null;
+  #newestFrame: TrackingFrame | null = null;
 
-  const name = (): ActivityName => (archery ? 'archery' : ball ? 'ball' : 'studio');
-  const watching = () => ball !== null && !headset.worn && ball.play.newest !== null && ball.play.newest.me === null;
-  const mirrorAside = () => placeMirror(archery ? settings.bowSide : null);
-
-  function placeCamera(): void {
-    inTheStands = watching();
-    steerByMouse();
-    const inCourt = inTheStands && settings.following === null ? 'stands' : 'court';
-    view.setScene(archery ? 'range' : ball ? inCourt : 'studio');
+  constructor(options: ActivitiesOptions) {
+    this.#options = options;
+    this.#seed = options.seed;
   }
 
-  /** A mouse that aims does not turn the camera. */
-  function steerByMouse(): void {
-    const steering = (archery !== null || ball !== null) && settings.mouse && !headset.worn && !watching();
-    mouse.setEnabled(steering);
-    view.setOrbit(!steering);
+  get name(): ActivityName {
+    return this.#archery ? 'archery' : this.#ball ? 'ball' : 'studio';
   }
 
-  /** Browsers let a page sound only once somebody has touched it. */
-  function wakeSound({ sound }: Pick<ArcheryActivity | BallActivity, 'sound'>): void {
-    sound.setMuted(!settings.sound);
-    if (!settings.sound) return;
-    const silent = (error: unknown) => notices.show('info', `There is no sound: ${firstLine(reasonOf(error))}`);
-    const wake = () => void sound.unlock().catch(silent);
-    if (navigator.userActivation?.hasBeenActive) wake();
-    else for (const event of ['pointerdown', 'keydown']) window.addEventListener(event, wake, { once: true });
+  /** On the way to a game that is still loading. */
+  get arriving(): boolean {
+    return this.#arriving;
   }
 
-  function restart(): void {
-    // Whoever plays seated shoots at targets as high for the eyes as everybody's.
-    archery?.play.restart(body(), headset.worn ? options.newestFrame()?.head.position.y : undefined);
+  get archery(): ArcheryActivity | null {
+    return this.#archery;
+  }
+
+  get ball(): BallActivity | null {
+    return this.#ball;
+  }
+
+  async goTo(next: ActivityName): Promise<void> {
+    if (this.#arriving || next === this.name) return;
+    this.#leave();
+    if (next !== 'studio') await this.#open(next);
+    this.#options.writer.change({ following: null });
+    this.#placeCamera();
+    this.#options.stage.studio.setMarkVisible(this.name === 'studio');
+    this.#placeMirror();
+    this.#options.onCaption('');
+    this.#options.onArrival();
+  }
+
+  /** Into the room again that this page has left or lost. */
+  async rejoin(): Promise<void> {
+    if (!this.#ball || this.#arriving) return;
+    this.#leave();
+    await this.goTo('ball');
+  }
+
+  /** The court in a study's room, on this participant's seat. */
+  async goToMatch(place: TaskPlace): Promise<void> {
+    if (this.#ball) await this.goTo('studio');
+    this.#studyPlace = place;
+    await this.goTo('ball');
+  }
+
+  async #open(game: 'archery' | 'ball'): Promise<void> {
+    const { games, settings, notices, onChange } = this.#options;
+    const opening = { seed: () => this.#seed, place: this.#studyPlace };
+    this.#arriving = true;
+    onChange();
+    try {
+      if (game === 'archery') this.#archery = await games.archery(opening);
+      else this.#ball = await games.ball(opening);
+      const opened = this.#archery ?? this.#ball;
+      if (opened) wakeSound(opened.sound, settings.sound, notices);
+    } catch (error) {
+      const place = game === 'archery' ? 'The archery range' : 'The ball court';
+      notices.show('error', `${place} could not be opened: ${firstLine(reasonOf(error))}`);
+    }
+    this.#arriving = false;
+  }
+
+  #leave(): void {
+    this.#archery?.dispose();
+    this.#archery = null;
+    this.#ball?.dispose();
+    this.#ball = null;
+    this.#options.wear(null);
+    this.#worn = null;
+  }
+
+  /** Another round, where rounds are not a study's. */
+  restartRound(): void {
+    if (this.#options.study.joined) return;
+    this.#seed += 1;
+    this.resetRound();
+  }
+
+  /** A study's round: this layout, this long [s], from its signal on. */
+  startRound(layout: number, seconds: number): void {
+    this.#options.writer.change({ seconds, everyHitCounts: false });
+    this.#seed = layout;
+    this.resetRound();
+    this.#archery?.play.signal();
+  }
+
+  /** Makes the round on the page one that waits. */
+  resetRound(): void {
+    const { measures, headset, onCaption, onChange } = this.#options;
+    // A player who sits shoots at targets as high for the eyes as those of a player who stands.
+    const eyeHeight = headset.worn ? this.#newestFrame?.head.position.y : undefined;
+    this.#archery?.play.restart(measures.current, eyeHeight);
     onCaption('');
     onChange();
   }
 
-  function restartRound(): void {
-    if (study()) return;
-    seed += 1;
-    restart();
+  /** A change of hands or rules; a round under way goes on unless it is counted differently. */
+  rule(change: RuleChange): void {
+    const { writer, settings } = this.#options;
+    writer.keep(change);
+    this.#placeMirror();
+    if (change.everyHitCounts !== undefined || settings.actor) this.restartRound();
   }
 
-  function leave(): void {
-    archery?.dispose();
-    archery = null;
-    ball?.dispose();
-    ball = null;
-    options.wear(null);
-    worn = null;
+  /** A hand for the bow, for this visit. */
+  setBowSide(side: Side): void {
+    this.#options.writer.change({ bowSide: side });
+    this.#placeMirror();
   }
 
-  async function openRange(): Promise<void> {
-    const { createArcheryActivity } = await import('../archery/archery-activity');
-    archery = createArcheryActivity({
-      quality,
-      surroundings: studio,
-      calibration: body(),
-      settings: () => settings,
-      seed: () => seed,
-      onCaption,
-    });
-    wakeSound(archery);
+  setSound(on: boolean): void {
+    const { writer, notices } = this.#options;
+    writer.keep({ sound: on });
+    const game = this.#archery ?? this.#ball;
+    if (game) wakeSound(game.sound, on, notices);
   }
 
-  async function openCourt(): Promise<void> {
-    const place = studyPlace;
-    const [{ createBallActivity }, { assignedSeat, connectionsFor }, mannequin] = await Promise.all([
-      import('../ball/ball-activity'),
-      import('../ball/ball-connections'),
-      readLimited(ownAvatarAt, avatarFile),
-    ]);
-    ball = createBallActivity({
-      quality,
-      surroundings: studio,
-      mannequin,
-      connect: place
-        ? await assignedSeat(place.seat, options.clock)
-        : await connectionsFor(switches.room, {
-            seed,
-            clock: options.clock,
-            ...(switches.seconds && { seconds: switches.seconds }),
-            ...(switches.balls && { balls: switches.balls }),
-          }),
-      visitor: {
-        name: place?.participant || settings.name || settings.guestName,
-        calibration: body(),
-        ...(place && { seat: place.members.indexOf(place.participant) }),
-        ...(switches.spectate && { spectate: true }),
-      },
-      unnamed: !place && !settings.name,
-      bots: () => settings.bots && place === null,
-      acting: () => place === null && settings.actor && (!headset.worn || headset.emulator !== null),
-      steering: () =>
-        settings.mouse && !headset.worn
-          ? { ray: view.rayThrough(mouse.x, mouse.y), pressed: mouse.pressed, cancelled: mouse.cancelled }
-          : null,
-      seed,
-      onCaption,
-    });
-    wakeSound(ball);
+  /** The mouse or the actor plays, where no headset is worn. */
+  chooseShooter(shooter: Shooter): void {
+    this.#options.writer.change({ actor: true, mouse: shooter === 'mouse' });
+    this.#steerByMouse();
+    this.restartRound();
   }
 
-  async function goTo(next: ActivityName): Promise<void> {
-    if (arriving || next === name()) return;
-    leave();
-    if (next !== 'studio') {
-      arriving = true;
-      onChange();
-      try {
-        await (next === 'archery' ? openRange() : openCourt());
-      } catch (error) {
-        const place = next === 'archery' ? 'The archery range' : 'The ball court';
-        notices.show('error', `${place} could not be opened: ${firstLine(reasonOf(error))}`);
-      }
-      arriving = false;
+  /** With whom a spectator's camera goes; null: it is free. */
+  follow(seat: number | null): void {
+    this.#options.writer.change({ following: seat });
+    this.#placeCamera();
+  }
+
+  /** The floor lies elsewhere from one frame to the next: others see no way between. */
+  jumped(): void {
+    this.#ball?.play.jumped();
+  }
+
+  /** Whom the camera shows instead of an own body; null: there is one. */
+  watched(): Watched | null {
+    if (!this.#watching) return null;
+    const { settings, stage } = this.#options;
+    const followed = settings.following === null ? null : this.#ball?.bodyOf(settings.following);
+    return followed ?? { pelvis: courtMiddle, eyes: stage.view.pose };
+  }
+
+  /** Once a frame, first. */
+  begin(time: number): void {
+    this.#ball?.begin(time);
+  }
+
+  /** Head, hands and buttons of a built-in player, or of one whom the mouse steers; null: neither is here. */
+  act(time: number): Performance | null {
+    const { study, headset, settings, stage, mouse } = this.#options;
+    if (study.idle) return null;
+    const player = this.#ball?.act(time, !headset.worn);
+    if (player || !this.#archery) return player ?? null;
+    if (!settings.mouse || headset.worn) return this.#archery.play.act(time);
+    return this.#archery.play.steer(time, stage.view.rayThrough(mouse.x, mouse.y), mouse);
+  }
+
+  /** The tracked frame as play; what the hands feel of it. */
+  play(frame: TrackingFrame, allButtons: Buttons): readonly Pulse[] {
+    const { study } = this.#options;
+    this.#newestFrame = frame;
+    const buttons = study.idle ? nothingPressed : allButtons;
+    if (this.#archery && !study.paused) return this.#shoot(this.#archery, frame, buttons);
+    if (!this.#ball) return [];
+    const haptics = this.#ball.follow(frame, buttons);
+    const { newest } = this.#ball.play;
+    if (newest) study.joined?.ball.played(newest);
+    return haptics;
+  }
+
+  #shoot(archery: ArcheryActivity, frame: TrackingFrame, buttons: Buttons): readonly Pulse[] {
+    const { study, writer, onChange } = this.#options;
+    const { haptics, taken, eventful } = archery.follow(frame, buttons);
+    const { newest } = archery.play;
+    if (newest) study.joined?.archery.played(newest);
+    if (taken) {
+      writer.keep({ bowSide: taken });
+      this.#placeMirror();
     }
-    settings.following = null;
-    placeCamera();
-    studio.setMarkVisible(name() === 'studio');
-    mirrorAside();
-    steerByMouse();
-    onCaption('');
-    options.onArrival();
+    if (eventful) onChange();
+    return haptics;
   }
 
-  return {
-    get name() {
-      return name();
-    },
-    get arriving() {
-      return arriving;
-    },
-    get archery() {
-      return archery;
-    },
-    get ball() {
-      return ball;
-    },
-    goTo,
-    async rejoin() {
-      if (!ball || arriving) return;
-      leave();
-      await goTo('ball');
-    },
-    async goToMatch(place) {
-      if (ball) await goTo('studio');
-      studyPlace = place;
-      await goTo('ball');
-    },
-    restartRound,
-    startRound(layout, seconds) {
-      Object.assign(settings, { seconds, everyHitCounts: false });
-      seed = layout;
-      restart();
-      archery?.play.signal();
-    },
-    resetRound: restart,
-    rule(change) {
-      Object.assign(settings, change);
-      store.remember(change);
-      mirrorAside();
-      if (change.everyHitCounts !== undefined || settings.actor) restartRound();
-      onChange();
-    },
-    setBowSide(side) {
-      settings.bowSide = side;
-      mirrorAside();
-    },
-    setSound(on) {
-      settings.sound = on;
-      store.remember({ sound: on });
-      for (const game of [archery, ball]) if (game) wakeSound(game);
-      onChange();
-    },
-    chooseShooter(shooter) {
-      settings.actor = true;
-      settings.mouse = shooter === 'mouse';
-      steerByMouse();
-      restartRound();
-    },
-    follow(seat) {
-      settings.following = seat;
-      placeCamera();
-      onChange();
-    },
-    watched() {
-      if (!watching()) return null;
-      const followed = settings.following === null ? null : ball?.bodyOf(settings.following);
-      return followed ?? { pelvis: courtMiddle, eyes: view.pose };
-    },
-    begin: (time) => ball?.begin(time),
-    act(time) {
-      if (study()?.run.idle) return null;
-      const player = ball?.act(time, !headset.worn);
-      if (player || !archery) return player ?? null;
-      if (!settings.mouse || headset.worn) return archery.play.act(time);
-      return archery.play.steer(time, view.rayThrough(mouse.x, mouse.y), mouse);
-    },
-    play(frame, allButtons) {
-      const joined = study();
-      const buttons = joined?.run.idle ? nothingPressed : allButtons;
-      if (archery && !joined?.run.paused) {
-        const { haptics, taken, eventful } = archery.follow(frame, buttons);
-        if (archery.play.newest) joined?.archery.played(archery.play.newest);
-        if (taken) {
-          settings.bowSide = taken;
-          store.remember({ bowSide: taken });
-          mirrorAside();
-        }
-        if (eventful) onChange();
-        return haptics;
-      }
-      if (!ball) return [];
-      const haptics = ball.follow(frame, buttons);
-      if (ball.play.newest) joined?.ball.played(ball.play.newest);
-      return haptics;
-    },
-    grip(side, buttons) {
-      if (!study()?.run.idle && archery?.holds(side)) return 1;
-      if (ball?.play.newest?.role === 'holder') return basketGrip;
-      const { trigger, grip, pinch } = buttons[side];
-      return Math.max(trigger, grip, pinch);
-    },
-    show(time, frame) {
-      if (archery && frame) archery.show(frame.head, !study()?.run.idle);
-      if (!ball) return;
-      const eyes = watching() ? view.pose : (frame ?? options.newestFrame())?.head;
-      ball.show(time, eyes ?? view.pose, frame !== null);
-      if (worn !== ball.palette) {
-        worn = ball.palette;
-        options.wear(worn);
-      }
-      if (watching() !== inTheStands) placeCamera();
-    },
-    point(ray, press) {
-      if (!archery) return ball?.point(ray, press) ?? null;
-      const distance = archery.restartAt(ray);
-      archery.setHovered(distance !== null);
-      if (distance !== null && press) restartRound();
-      return distance;
-    },
-  };
+  /** How far a hand is closed, 0 to 1. */
+  grip(side: Side, buttons: Buttons): number {
+    if (!this.#options.study.idle && this.#archery?.holds(side)) return 1;
+    if (this.#ball?.play.newest?.role === 'holder') return basketGrip;
+    const { trigger, grip, pinch } = buttons[side];
+    return Math.max(trigger, grip, pinch);
+  }
+
+  /** Draws the newest frame of play; frame: what was tracked, null where nothing was. */
+  show(time: number, frame: TrackingFrame | null): void {
+    const { study, stage, wear } = this.#options;
+    if (this.#archery && frame) this.#archery.show(frame.head, !study.idle);
+    if (!this.#ball) return;
+    const eyes = this.#watching ? stage.view.pose : (frame ?? this.#newestFrame)?.head;
+    this.#ball.show(time, eyes ?? stage.view.pose, frame !== null);
+    if (this.#worn !== this.#ball.palette) {
+      this.#worn = this.#ball.palette;
+      wear(this.#worn);
+    }
+    if (this.#watching !== this.#inTheStands) this.#placeCamera();
+  }
+
+  /** What a ray meets of a game's sheets: the distance [m]; null: nothing. `press`: does what it says. */
+  point(ray: Ray, press: boolean): number | null {
+    if (!this.#archery) return this.#ball?.point(ray, press) ?? null;
+    const distance = this.#archery.restartAt(ray);
+    this.#archery.setHovered(distance !== null);
+    if (distance !== null && press) this.restartRound();
+    return distance;
+  }
+
+  get #watching(): boolean {
+    const newest = this.#ball?.play.newest ?? null;
+    return newest !== null && newest.me === null && !this.#options.headset.worn;
+  }
+
+  #placeMirror(): void {
+    const { stage, settings } = this.#options;
+    stage.placeMirror(this.#archery ? settings.bowSide : null);
+  }
+
+  #placeCamera(): void {
+    const { stage, settings } = this.#options;
+    this.#inTheStands = this.#watching;
+    this.#steerByMouse();
+    const inCourt = this.#inTheStands && settings.following === null ? 'stands' : 'court';
+    stage.view.setScene(this.#archery ? 'range' : this.#ball ? inCourt : 'studio');
+  }
+
+  /** A mouse that aims does not turn the camera. */
+  #steerByMouse(): void {
+    const { settings, headset, mouse, stage } = this.#options;
+    const steering = this.name !== 'studio' && settings.mouse && !headset.worn && !this.#watching;
+    mouse.setEnabled(steering);
+    stage.view.setOrbit(!steering);
+  }
 }

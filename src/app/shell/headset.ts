@@ -16,8 +16,6 @@ import type { Switches } from './switches';
 const windowRateHz = 60;
 /** What a headset draws at that does not say [Hz]. */
 const usualRateHz = 72;
-/** Seconds of tracked frames after which the headset's height says something about who wears it. */
-const settleSeconds = 0.7;
 /** How far one push of a stick turns [rad]. */
 const snapAngle = Math.PI / 6;
 
@@ -33,149 +31,156 @@ export interface HeadsetOptions {
   readonly switches: Pick<Switches, 'emulate'>;
   readonly settings: Pick<Settings, 'actor' | 'emulatorPanel'>;
   readonly notices: Pick<Notices, 'show'>;
-  onEnter(): void;
-  onLeave(): void;
+}
+
+/** What the page does when something happens to the session or to the emulator. */
+export interface HeadsetListener {
+  entered(): void;
+  left(): void;
   /** Entering failed; the notice is already there. */
-  onRefused(): void;
+  refused(): void;
   /** The floor lies elsewhere from one frame to the next. */
-  onJump(): void;
+  jumped(): void;
   /** The session went behind a menu of the device, or came back. */
-  onVisibility(state: XRVisibilityState): void;
-  /** The emulator is there now. */
-  onEmulator(): void;
+  visibilityChanged(state: XRVisibilityState): void;
+  /** The emulator is there now, or could not be loaded. */
+  emulatorChanged(): void;
 }
 
 interface Session {
   readonly xr: XRSession;
   readonly tracker: Tracker;
-  /** When the first frame was tracked [s]; 'done' once the height of the headset was taken. */
-  settledSince: number | 'done' | null;
 }
 
 /** The headset that is worn, real or emulated, and the session in it. */
-export interface Headset {
-  readonly worn: boolean;
-  readonly emulator: Emulator | null;
-  readonly visibility: XRVisibilityState | 'none';
-  readonly input: Tracker['input'] | null;
-  /** Of the device; null: it does not say, or there is none. */
-  readonly rateHz: number | null;
-  /** What frame times are measured against [Hz]. */
-  readonly pictureRateHz: number;
-  /** Asks the browser what there is; the emulator is loaded where it is wanted at once. */
-  prepare(): Promise<Readiness>;
-  /** Never rejects: what goes wrong becomes a notice. */
-  enter(): Promise<void>;
-  exit(): void;
-  /** The emulator where there is no headset, loaded when it is first needed; null and a notice where it fails. */
-  ensureEmulator(): Promise<Emulator | null>;
-  /** Head, hands and buttons as the device has them; null: the head is not seen. */
-  read(deviceFrame: XRFrame | undefined, time: number): TrackingFrame | null;
-  readonly buttons: Buttons;
-  /** The height of the eyes [m], once in a session, as soon as the headset has been worn calmly for a moment; else null. */
-  settledHeight(frame: TrackingFrame): number | null;
-  recentre(): void;
-  /** Turns whoever pushed a stick; whether somebody did. */
-  turnByStick(): boolean;
-  buzz(pulses: readonly Pulse[]): void;
-}
+export class Headset {
+  readonly #options: HeadsetOptions;
+  #listener: HeadsetListener | null = null;
+  #emulator: Emulator | null = null;
+  #session: Session | null = null;
+  /** There is a device: the emulator is not needed. */
+  #real = false;
 
-export function createHeadset(options: HeadsetOptions): Headset {
-  const { renderer, quality, switches, settings, notices } = options;
-  let emulator: Emulator | null = null;
-  let session: Session | null = null;
-  let real = false;
-
-  async function ensureEmulator(): Promise<Emulator | null> {
-    if (real || emulator) return emulator;
-    try {
-      emulator = await installEmulator();
-    } catch (error) {
-      notices.show('error', `The emulated headset could not be loaded: ${firstLine(reasonOf(error))}`);
-    }
-    options.onEmulator();
-    return emulator;
+  constructor(options: HeadsetOptions) {
+    this.#options = options;
   }
 
-  async function begin(): Promise<void> {
+  listen(listener: HeadsetListener): void {
+    this.#listener = listener;
+  }
+
+  get worn(): boolean {
+    return this.#session !== null;
+  }
+
+  get emulator(): Emulator | null {
+    return this.#emulator;
+  }
+
+  get visibility(): XRVisibilityState | 'none' {
+    return this.#session?.xr.visibilityState ?? 'none';
+  }
+
+  get input(): Tracker['input'] | null {
+    return this.#session?.tracker.input ?? null;
+  }
+
+  /** Of the device [Hz]; null: it does not say, or there is none. */
+  get rateHz(): number | null {
+    return this.#session?.xr.frameRate ?? (this.#emulator ? windowRateHz : null);
+  }
+
+  /** What frame times are measured against [Hz]. */
+  get pictureRateHz(): number {
+    return this.#session && !this.#emulator ? (this.#session.xr.frameRate ?? usualRateHz) : windowRateHz;
+  }
+
+  get buttons(): Buttons {
+    return this.#session?.tracker.buttons ?? nothingPressed;
+  }
+
+  /** Asks the browser what there is; the emulator is loaded where it is wanted at once. */
+  async prepare(): Promise<Readiness> {
+    const { switches, settings } = this.#options;
+    const support = await describeXrSupport();
+    this.#real = support.kind === 'device' && !switches.emulate;
+    if (switches.emulate || !settings.actor) await this.ensureEmulator();
+    return { real: this.#real, sentence: this.#real || switches.emulate ? null : support.sentence };
+  }
+
+  /** The emulator where there is no headset, loaded when it is first needed; null and a notice where it fails. */
+  async ensureEmulator(): Promise<Emulator | null> {
+    if (this.#real || this.#emulator) return this.#emulator;
+    try {
+      this.#emulator = await installEmulator();
+    } catch (error) {
+      this.#say(`The emulated headset could not be loaded: ${firstLine(reasonOf(error))}`);
+    }
+    this.#listener?.emulatorChanged();
+    return this.#emulator;
+  }
+
+  /** Never rejects: what goes wrong becomes a notice. */
+  async enter(): Promise<void> {
+    try {
+      if (!this.#real) {
+        const emulator = await this.ensureEmulator();
+        if (!emulator) return;
+        await emulator.setPanelVisible(this.#options.settings.emulatorPanel);
+      }
+      await this.#begin();
+    } catch (error) {
+      this.#say(`VR could not be entered: ${firstLine(reasonOf(error))}. The desktop view goes on.`);
+      this.#listener?.refused();
+      return;
+    }
+    this.#listener?.entered();
+  }
+
+  exit(): void {
+    void this.#session?.xr.end();
+  }
+
+  /** Head, hands and buttons as the device has them; null: the head is not seen. */
+  read(deviceFrame: XRFrame | undefined, time: number): TrackingFrame | null {
+    return this.#session && deviceFrame ? this.#session.tracker.read(deviceFrame, time) : null;
+  }
+
+  recentre(): void {
+    this.#session?.tracker.recentre();
+  }
+
+  /** Turns a wearer who pushed a stick; whether one was pushed. */
+  turnByStick(): boolean {
+    const pushed = this.#session?.tracker.takeTurn() ?? 0;
+    if (pushed !== 0) this.#session?.tracker.turn(pushed * snapAngle);
+    return pushed !== 0;
+  }
+
+  buzz(pulses: readonly Pulse[]): void {
+    if (this.#session) buzz(this.#session.xr, pulses);
+  }
+
+  async #begin(): Promise<void> {
+    const { renderer, quality, settings } = this.#options;
     const xr = await requestVrSession();
     giveFramesToEvents(xr);
     await renderer.xr.setSession(xr);
     const space = renderer.xr.getReferenceSpace();
     if (!space) throw new Error('the headset offers no floor to stand on (local-floor)');
-    if (emulator) easeEmulatedPicture(renderer, quality);
+    if (this.#emulator) easeEmulatedPicture(renderer, quality);
     const tracker = createTracker(xr, space, (moved) => renderer.xr.setReferenceSpace(moved));
-    session = { xr, tracker, settledSince: null };
+    this.#session = { xr, tracker };
     xr.addEventListener('end', () => {
-      session = null;
-      options.onLeave();
+      this.#session = null;
+      this.#listener?.left();
     });
-    xr.addEventListener('visibilitychange', () => options.onVisibility(xr.visibilityState));
-    space.addEventListener('reset', options.onJump);
-    if (!settings.actor) emulator?.release();
+    xr.addEventListener('visibilitychange', () => this.#listener?.visibilityChanged(xr.visibilityState));
+    space.addEventListener('reset', () => this.#listener?.jumped());
+    if (!settings.actor) this.#emulator?.release();
   }
 
-  return {
-    get worn() {
-      return session !== null;
-    },
-    get emulator() {
-      return emulator;
-    },
-    get visibility() {
-      return session?.xr.visibilityState ?? 'none';
-    },
-    get input() {
-      return session?.tracker.input ?? null;
-    },
-    get rateHz() {
-      return session?.xr.frameRate ?? (emulator ? windowRateHz : null);
-    },
-    get pictureRateHz() {
-      return session && !emulator ? (session.xr.frameRate ?? usualRateHz) : windowRateHz;
-    },
-    async prepare() {
-      const support = await describeXrSupport();
-      real = support.kind === 'device' && !switches.emulate;
-      if (switches.emulate || !settings.actor) await ensureEmulator();
-      return { real, sentence: real || switches.emulate ? null : support.sentence };
-    },
-    async enter() {
-      try {
-        if (!real) {
-          const there = await ensureEmulator();
-          if (!there) return;
-          await there.setPanelVisible(settings.emulatorPanel);
-        }
-        await begin();
-      } catch (error) {
-        notices.show('error', `VR could not be entered: ${firstLine(reasonOf(error))}. The desktop view goes on.`);
-        options.onRefused();
-        return;
-      }
-      options.onEnter();
-    },
-    exit: () => void session?.xr.end(),
-    ensureEmulator,
-    read: (deviceFrame, time) => (session && deviceFrame ? session.tracker.read(deviceFrame, time) : null),
-    get buttons() {
-      return session?.tracker.buttons ?? nothingPressed;
-    },
-    settledHeight({ time, head }) {
-      if (!session || session.settledSince === 'done') return null;
-      session.settledSince ??= time;
-      if (time - session.settledSince < settleSeconds) return null;
-      session.settledSince = 'done';
-      return head.position.y;
-    },
-    recentre: () => session?.tracker.recentre(),
-    turnByStick() {
-      const way = session?.tracker.takeTurn() ?? 0;
-      if (way !== 0) session?.tracker.turn(way * snapAngle);
-      return way !== 0;
-    },
-    buzz(pulses) {
-      if (session) buzz(session.xr, pulses);
-    },
-  };
+  #say(sentence: string): void {
+    this.#options.notices.show('error', sentence);
+  }
 }

@@ -1,12 +1,13 @@
-import type { Calibration } from '../../core/body/calibration';
 import type { EstimatorChoice } from '../../lib/estimator-choice';
-import type { Activities, JoinedStudy } from './activities';
+import type { Activities } from './activities';
 import type { FrameTiming } from './frame-timing';
 import type { Headset } from './headset';
-import type { Settings } from './settings';
+import type { JoinedStudy } from './page-study';
+import type { Settings, SettingsWriter } from './settings';
 import { createArcheryRunner } from './study-archery';
 import { createBallRunner } from './study-ball';
 import type { Switches } from './switches';
+import type { TrackedBody } from './tracked-body';
 
 /** Characters of the device's name that a record keeps. */
 const longestDeviceName = 160;
@@ -15,28 +16,28 @@ export interface JoinStudyOptions {
   readonly asked: NonNullable<Switches['study']>;
   readonly switches: Pick<Switches, 'actor'>;
   readonly settings: Settings;
+  readonly writer: Pick<SettingsWriter, 'change'>;
   readonly choice: EstimatorChoice;
   readonly headset: Headset;
   readonly activities: Activities;
   readonly timing: FrameTiming;
-  /** For this visit only. */
-  calibrate(calibration: Calibration): void;
+  readonly body: Pick<TrackedBody, 'calibrate'>;
 }
 
 /** Takes part in a study: from now on it decides what is played and with which body. */
 export async function joinStudy(options: JoinStudyOptions): Promise<JoinedStudy> {
-  const { asked, switches, settings, choice, headset, activities, timing, calibrate } = options;
+  const { asked, switches, settings, writer, choice, headset, activities, timing, body } = options;
   const { createStudyRun } = await import('../study/study-run');
-  settings.startSignal = true;
+  writer.change({ startSignal: true });
   const archery = createArcheryRunner({
     async goToArchery(seconds) {
-      settings.seconds = seconds;
+      writer.change({ seconds });
       await activities.goTo('archery');
       if (!activities.archery) throw new Error('The archery range could not be opened.');
       activities.resetRound();
     },
-    startRound: activities.startRound,
-    resetRound: activities.resetRound,
+    startRound: (seed, seconds) => activities.startRound(seed, seconds),
+    resetRound: () => activities.resetRound(),
     assists: () => (settings.oneHanded ? ['one hand'] : []),
   });
   const ball = createBallRunner({
@@ -49,16 +50,16 @@ export async function joinStudy(options: JoinStudyOptions): Promise<JoinedStudy>
   });
   const run = createStudyRun(asked, {
     runners: { archery, ball },
-    enterVr: headset.enter,
+    enterVr: () => headset.enter(),
     inSession: () => headset.worn,
     calibration: () => settings.calibration,
-    setCalibration: calibrate,
+    setCalibration: (calibration) => body.calibrate(calibration, 'measured'),
     chooseEstimator: (name) => choice.choose(name),
     estimator: () => choice.current.name,
     setActor(on) {
-      settings.actor = on && switches.actor;
+      writer.change({ actor: on && switches.actor });
     },
-    setBowSide: activities.setBowSide,
+    setBowSide: (side) => activities.setBowSide(side),
     device: () => ({
       name: `${headset.emulator ? 'emulated headset in ' : ''}${navigator.userAgent}`.slice(0, longestDeviceName),
       refreshRateHz: headset.rateHz,

@@ -1,12 +1,13 @@
 import { button, element } from '../../ui/element';
 import { archeryRulesText, rulesList } from '../../ui/rules';
+import { toggle } from '../../ui/toggle';
 import { type BallBarActions, type BallBarState, createBallBar } from '../ball/ball-bar';
 
 /** What people do here: look at themselves in the studio, or play. */
 export const activityNames = ['studio', 'archery', 'ball'] as const;
 export type ActivityName = (typeof activityNames)[number];
 
-/** Who shoots on the desktop: the built-in archer, the mouse, or whoever holds the (emulated) headset. */
+/** Who shoots on the desktop: the built-in archer, the mouse, or the person who holds the (emulated) headset. */
 export type Shooter = 'actor' | 'mouse' | 'headset';
 
 /** A round as the bar shows it. */
@@ -58,86 +59,92 @@ const activityTexts: Readonly<Record<ActivityName, string>> = {
   ball: 'Ball game',
 };
 
-/** The choice of what to do, and in a game its score and settings; below the masthead. */
-export function createPlayBar(region: HTMLElement, actions: PlayActions): PlayBar {
-  const activities = activityNames.map((name) => ({
-    name,
-    node: button(activityTexts[name], () => actions.goTo(name), { 'aria-pressed': 'false' }),
-  }));
+const mouseHint = 'Aim with the mouse, hold its button to draw, let go to shoot. Esc puts the arrow back.';
+
+/** Hands and rules of archery, folded away. */
+function createArcherySettings(actions: PlayActions) {
+  const rightBow = toggle('Bow in the right hand', (on) => actions.setBowSide(on ? 'right' : 'left'));
+  const oneHanded = toggle('One hand: hold to draw', (on) => actions.setOneHanded(on));
+  const everyHit = toggle('Every hit counts', (on) => actions.setEveryHitCounts(on));
+  const sound = toggle('Sound', (on) => actions.setSound(on));
+  return {
+    node: element(
+      'details',
+      {},
+      element('summary', {}, 'Rules and hands'),
+      rulesList(archeryRulesText),
+      ...[rightBow, oneHanded, everyHit, sound].map(({ node }) => node),
+    ),
+    show(state: PlayState) {
+      rightBow.input.checked = state.bowSide === 'right';
+      oneHanded.input.checked = state.oneHanded;
+      everyHit.input.checked = state.everyHitCounts;
+      sound.input.checked = state.sound;
+    },
+  };
+}
+
+/** Score, arrows and time of a round, and who shoots. */
+function createArcheryBar(actions: PlayActions) {
   const score = element('output', { class: 'score', 'aria-label': 'Score' });
   const arrows = element('span', { class: 'arrows' });
   const time = element('span', { class: 'time' });
-  const restart = button('New round', actions.restart);
+  const waiting = element('p', { class: 'waiting', role: 'status' });
   const shoot = button('Shoot with the mouse', () => actions.chooseShooter('mouse'), { class: 'primary' });
   const watch = button('Watch', () => actions.chooseShooter('actor'));
-  const check = (label: string, onChange: (on: boolean) => void) => {
-    const input = element('input', { type: 'checkbox', role: 'switch' });
-    input.addEventListener('change', () => onChange(input.checked));
-    return { input, node: element('label', { class: 'toggle' }, element('span', {}, label), input) };
-  };
-  const leftBow = check('Bow in the right hand', (on) => actions.setBowSide(on ? 'right' : 'left'));
-  const oneHanded = check('One hand: hold to draw', actions.setOneHanded);
-  const everyHit = check('Every hit counts', actions.setEveryHitCounts);
-  const sound = check('Sound', actions.setSound);
-  const hint = element('p', { class: 'hint' });
-  const waiting = element('p', { class: 'waiting', role: 'status' });
-  const settings = element(
-    'details',
-    {},
-    element('summary', {}, 'Rules and hands'),
-    rulesList(archeryRulesText),
-    leftBow.node,
-    oneHanded.node,
-    everyHit.node,
-    sound.node,
-  );
-  const game = element(
+  const restart = button('New round', () => actions.restart());
+  const hint = element('p', { class: 'hint' }, mouseHint);
+  const settings = createArcherySettings(actions);
+  const node = element(
     'div',
     { class: 'round' },
     element('div', { class: 'row board' }, score, arrows, time),
     waiting,
     element('div', { class: 'row' }, shoot, watch, restart),
     hint,
-    settings,
+    settings.node,
   );
-  const ball = createBallBar(actions.ball, actions.setSound);
-  const captions = element('p', { class: 'caption', role: 'status', 'aria-live': 'polite' });
-  region.append(
-    element(
-      'div',
-      { class: 'segments', role: 'group', 'aria-label': 'What to do' },
-      ...activities.map(({ node }) => node),
-    ),
-    game,
-    ball.node,
-    captions,
-  );
+  return {
+    node,
+    show(state: PlayState) {
+      const { round, shooter, inSession } = state;
+      node.hidden = round === null;
+      if (!round) return;
+      score.textContent = `${round.score} / ${round.of}`;
+      arrows.textContent = `${round.arrowsLeft} ${round.arrowsLeft === 1 ? 'arrow' : 'arrows'}`;
+      time.textContent = `${Math.ceil(round.secondsLeft)} s`;
+      // Said again, it would be announced again.
+      if (waiting.textContent !== (round.waiting ?? '')) waiting.textContent = round.waiting;
+      waiting.hidden = round.waiting === null;
+      restart.classList.toggle('primary', round.over);
+      shoot.hidden = inSession || shooter === 'mouse';
+      watch.hidden = shooter === 'actor';
+      hint.hidden = shooter !== 'mouse' || inSession;
+      settings.show(state);
+    },
+  };
+}
 
+/** The choice of what to do, and in a game its score and settings; below the masthead. */
+export function createPlayBar(region: HTMLElement, actions: PlayActions): PlayBar {
+  const activities = activityNames.map((name) => ({
+    name,
+    node: button(activityTexts[name], () => actions.goTo(name), { 'aria-pressed': 'false' }),
+  }));
+  const archery = createArcheryBar(actions);
+  const ball = createBallBar(actions.ball, (on) => actions.setSound(on));
+  const captions = element('p', { class: 'caption', role: 'status', 'aria-live': 'polite' });
+  const choice = { class: 'segments', role: 'group', 'aria-label': 'What to do' };
+  region.append(element('div', choice, ...activities.map(({ node }) => node)), archery.node, ball.node, captions);
   return {
     show(state) {
       for (const { name, node } of activities) {
         node.setAttribute('aria-pressed', String(name === state.activity));
         node.disabled = state.arriving;
       }
-      const { round } = state;
-      game.hidden = round === null;
-      captions.hidden = round === null && state.ball === null;
+      captions.hidden = state.round === null && state.ball === null;
+      archery.show(state);
       ball.show(state.ball, state.sound);
-      if (!round) return;
-      score.textContent = `${round.score} / ${round.of}`;
-      arrows.textContent = `${round.arrowsLeft} ${round.arrowsLeft === 1 ? 'arrow' : 'arrows'}`;
-      time.textContent = `${Math.ceil(round.secondsLeft)} s`;
-      if (waiting.textContent !== (round.waiting ?? '')) waiting.textContent = round.waiting;
-      waiting.hidden = round.waiting === null;
-      restart.classList.toggle('primary', round.over);
-      shoot.hidden = state.inSession || state.shooter === 'mouse';
-      watch.hidden = state.shooter === 'actor';
-      hint.hidden = state.shooter !== 'mouse' || state.inSession;
-      hint.textContent = 'Aim with the mouse, hold its button to draw, let go to shoot. Esc puts the arrow back.';
-      leftBow.input.checked = state.bowSide === 'right';
-      oneHanded.input.checked = state.oneHanded;
-      everyHit.input.checked = state.everyHitCounts;
-      sound.input.checked = state.sound;
     },
     caption(text) {
       captions.textContent = text;

@@ -1,10 +1,24 @@
 import type { Calibration } from '../../core/body/calibration';
 import type { EstimatorName } from '../../core/estimation/pose-estimator';
+import type { Vec3 } from '../../core/math/vec3';
+import type { TrackingFrame } from '../../core/tracking/tracking-frame';
+import type { EstimatorChoice } from '../../lib/estimator-choice';
+import type { Notices } from '../../ui/notices';
 import type { ArcheryProbe } from '../archery/archery-play';
 import type { PlayerProbe } from '../ball/ball-activity';
 import type { BallProbe } from '../ball/ball-frame';
+import type { Recorder } from '../studio/recorder';
 import type { StudyProbe } from '../study/study-run';
-import type { FrameSummary } from './frame-timing';
+import type { Activities } from './activities';
+import type { FrameSummary, FrameTiming } from './frame-timing';
+import type { Headset } from './headset';
+import type { Measures } from './measures';
+import type { PageLoading } from './page-loading';
+import type { PageStudy } from './page-study';
+import type { Settings } from './settings';
+import type { ShownAvatar } from './shown-avatar';
+import type { Stage } from './stage';
+import type { TrackingSource } from './tracking-source';
 
 type Triple = readonly [number, number, number];
 
@@ -50,6 +64,76 @@ export interface Probe {
   readonly game: ArcheryProbe | BallProbe | null;
   /** Where a study stands; null: there is none. */
   readonly study: StudyProbe | null;
+}
+
+/** The parts of the page that a probe reads. */
+export interface ProbeParts {
+  readonly loading: PageLoading;
+  readonly settings: Pick<Settings, 'calibrationSource'>;
+  readonly measures: Pick<Measures, 'current'>;
+  readonly notices: Pick<Notices, 'current'>;
+  readonly timing: Pick<FrameTiming, 'summary'>;
+  readonly frame: { readonly count: number };
+  readonly source: Pick<TrackingSource, 'newest'>;
+  readonly choice: Pick<EstimatorChoice, 'current' | 'regressor'>;
+  readonly avatar: Pick<ShownAvatar, 'current' | 'name'>;
+  readonly headset: Pick<Headset, 'worn' | 'visibility' | 'emulator'>;
+  readonly recorder: Pick<Recorder, 'mode' | 'frameCount' | 'seconds'>;
+  readonly activities: Pick<Activities, 'archery' | 'ball'>;
+  readonly study: Pick<PageStudy, 'run'>;
+  readonly stage: Pick<Stage, 'renderer' | 'view' | 'vignette'>;
+}
+
+const triple = ({ x, y, z }: Vec3): Triple => [x, y, z];
+
+function trackingOf(newest: TrackingFrame | null): Probe['tracking'] {
+  return (
+    newest && {
+      time: newest.time,
+      head: triple(newest.head.position),
+      leftHand: newest.leftHand && triple(newest.leftHand.position),
+      rightHand: newest.rightHand && triple(newest.rightHand.position),
+    }
+  );
+}
+
+function avatarOf({ current, name }: ProbeParts['avatar']): Probe['avatar'] {
+  const joints = Object.entries(current?.jointPositions() ?? {});
+  return { name, joints: Object.fromEntries(joints.map(([joint, at]) => [joint, triple(at)])) };
+}
+
+function drawingOf({ renderer, vignette }: ProbeParts['stage']): Probe['drawing'] {
+  return {
+    ...renderer.info.memory,
+    programs: renderer.info.programs?.length ?? 0,
+    darkness: vignette.darkness,
+  };
+}
+
+/** What the page is doing now. */
+export function readProbe(parts: ProbeParts): Probe {
+  const { loading, settings, measures, notices, timing, frame, source, choice, headset, recorder, study, stage } =
+    parts;
+  const { archery, ball } = parts.activities;
+  return {
+    ready: loading.ready,
+    activity: headset.worn ? 'vr' : loading.ready ? 'desktop' : 'loading',
+    estimator: choice.current.name,
+    provider: choice.regressor?.provider ?? 'none',
+    frame: { ...timing.summary(), count: frame.count },
+    avatar: avatarOf(parts.avatar),
+    tracking: trackingOf(source.newest),
+    calibration: { ...measures.current, source: settings.calibrationSource },
+    session: { state: headset.visibility, emulated: headset.emulator !== null },
+    view: stage.view.view,
+    recorder: { mode: recorder.mode, frames: recorder.frameCount, seconds: recorder.seconds },
+    notices: notices.current(),
+    loading: { ...loading.marks },
+    drawing: drawingOf(stage),
+    players: ball?.players() ?? [],
+    game: archery?.probe() ?? ball?.probe() ?? null,
+    study: study.run?.probe() ?? null,
+  };
 }
 
 declare global {

@@ -3,39 +3,39 @@ import type { Side } from '../../core/math/side';
 import type { PreferenceStore } from './preferences';
 import type { Switches } from './switches';
 
-/** What the user set, for this visit; whoever changes it brings it on the screen. */
+/** What the user set, for this visit. The object is live; a SettingsWriter alone changes it. */
 export interface Settings {
-  mirror: boolean;
-  upperBodyOnly: boolean;
-  debugSkeleton: boolean;
-  overlay: boolean;
+  readonly mirror: boolean;
+  readonly upperBodyOnly: boolean;
+  readonly debugSkeleton: boolean;
+  readonly overlay: boolean;
   /** Frame times inside the headset. */
-  vrOverlay: boolean;
-  largerText: boolean;
-  palette: string;
-  /** Somebody built in moves the body, where nobody else does. */
-  actor: boolean;
+  readonly vrOverlay: boolean;
+  readonly largerText: boolean;
+  readonly palette: string;
+  /** The built-in actor moves the body where no person does. */
+  readonly actor: boolean;
   /** In a game, without a headset: the mouse plays instead of the actor. */
-  mouse: boolean;
-  emulatorPanel: boolean;
-  bowSide: Side;
-  oneHanded: boolean;
-  everyHitCounts: boolean;
+  readonly mouse: boolean;
+  readonly emulatorPanel: boolean;
+  readonly bowSide: Side;
+  readonly oneHanded: boolean;
+  readonly everyHitCounts: boolean;
   /** Rounds wait for their signal, as a study's do; absent: the first arrow starts them too. */
-  startSignal?: boolean;
+  readonly startSignal?: boolean;
   /** Of a round, until the bell [s]; absent: as the game has it. */
-  seconds?: number;
-  sound: boolean;
-  bots: boolean;
+  readonly seconds?: number;
+  readonly sound: boolean;
+  readonly bots: boolean;
   /** As given by the player; empty: not given. */
-  name: string;
+  readonly name: string;
   /** What others call a player who has given no name. */
   readonly guestName: string;
   /** Whom a spectator's camera follows: a seat, or null: free. */
-  following: number | null;
-  calibration: Calibration;
+  readonly following: number | null;
+  readonly calibration: Calibration;
   /** Where the calibration comes from, in words. */
-  calibrationSource: string;
+  readonly calibrationSource: string;
 }
 
 /** What the address asks for, else what was remembered, else what suits most. */
@@ -63,4 +63,47 @@ export function createSettings(switches: Switches, { preferences }: Pick<Prefere
     calibration: preferences.calibration ?? defaultCalibration,
     calibrationSource: preferences.calibration ? 'remembered' : 'not calibrated yet',
   };
+}
+
+/** The settings that a browser keeps for later visits. */
+export type LastingSettings = Partial<
+  Pick<
+    Settings,
+    | 'mirror'
+    | 'upperBodyOnly'
+    | 'overlay'
+    | 'largerText'
+    | 'palette'
+    | 'bowSide'
+    | 'oneHanded'
+    | 'everyHitCounts'
+    | 'sound'
+    | 'bots'
+    | 'name'
+  >
+>;
+
+/** The one writer of the settings: every change is told, so that it comes on the screen. */
+export class SettingsWriter {
+  readonly #settings: Settings;
+  readonly #store: Pick<PreferenceStore, 'remember'>;
+  readonly #onChange: () => void;
+
+  constructor(settings: Settings, store: Pick<PreferenceStore, 'remember'>, onChange: () => void) {
+    this.#settings = settings;
+    this.#store = store;
+    this.#onChange = onChange;
+  }
+
+  /** For this visit. */
+  change(part: Partial<Settings>): void {
+    Object.assign(this.#settings, part);
+    this.#onChange();
+  }
+
+  /** For this visit and, on this device, for later ones. */
+  keep(part: LastingSettings): void {
+    this.#store.remember(part);
+    this.change(part);
+  }
 }

@@ -2,21 +2,20 @@ import { type Avatar, createAvatar } from '../../avatar/avatar';
 import { avatarLimits } from '../../avatar/inspect-avatar';
 import { type LoadedAvatar, loadAvatar, parseAvatar } from '../../avatar/load-avatar';
 import { validateInWorker } from '../../avatar/validate-in-worker';
-import type { Calibration } from '../../core/body/calibration';
 import { firstLine, reasonOf } from '../../core/errors/reasons';
 import { type FileKind, nameOf, readLimited } from '../../ui/limited-files';
 import type { Notices } from '../../ui/notices';
 import type { Studio } from '../studio/studio';
+import type { Measures } from './measures';
 import type { Settings } from './settings';
 
 /** Where our own avatar lies, on our own server. */
 export const ownAvatarAt = '/avatars/mannequin.vrm';
 
 export interface ShownAvatarOptions {
-  scene(): Studio['scene'];
+  readonly scene: Studio['scene'];
   readonly settings: Pick<Settings, 'palette' | 'upperBodyOnly'>;
-  /** Of the person who moves. */
-  body(): Calibration;
+  readonly measures: Pick<Measures, 'current'>;
   readonly notices: Pick<Notices, 'show'>;
   onChange(): void;
 }
@@ -24,6 +23,10 @@ export interface ShownAvatarOptions {
 /** A body from a file. */
 export const avatarFile: FileKind = { what: 'an avatar', megabytes: avatarLimits.megabytes };
 const ownName = 'Mannequin';
+
+/** The file of our own avatar, on its way; `onProgress` hears the share [0, 1] that has come. */
+export const fetchOwnAvatar = (onProgress?: (share: number) => void): Promise<ArrayBuffer> =>
+  readLimited(ownAvatarAt, avatarFile, onProgress);
 
 /** The avatar on the stage. One is shown at a time; another takes its place only when it has arrived whole. */
 export interface ShownAvatar {
@@ -34,8 +37,11 @@ export interface ShownAvatar {
   readonly own: boolean;
   /** What became of the avatar that was asked for last, in words: on its way, or refused; null: it is shown. */
   readonly pending: string | null;
-  /** Our own takes its place, or stays there; what is still on its way is not waited for. False and a notice where it cannot be had. */
-  openOwn(onProgress?: (share: number) => void): Promise<boolean>;
+  /**
+   * Our own takes its place, or stays there; what is still on its way is not waited for. `bytes`: its file, where that travels already.
+   * False and a notice where it cannot be had.
+   */
+  openOwn(bytes?: Promise<ArrayBuffer>): Promise<boolean>;
   /** Loads another; what goes wrong becomes a notice, and false. Of several the one asked for last is shown. */
   open(source: string | File): Promise<boolean>;
   /** One of our own avatar's palettes; null: the one the user chose. */
@@ -43,7 +49,7 @@ export interface ShownAvatar {
 }
 
 export function createShownAvatar(options: ShownAvatarOptions): ShownAvatar {
-  const { scene, settings, body, notices, onChange } = options;
+  const { scene, settings, measures, notices, onChange } = options;
   let avatar: Avatar | null = null;
   let name = ownName;
   let own = true;
@@ -61,10 +67,10 @@ export function createShownAvatar(options: ShownAvatarOptions): ShownAvatar {
     avatar = next;
     name = itsName;
     own = isOwn;
-    scene().add(avatar.object);
+    scene.add(avatar.object);
     wear(null);
     avatar.setUpperBodyOnly(settings.upperBodyOnly);
-    avatar.fitTo(body());
+    avatar.fitTo(measures.current);
   }
 
   /** Shows what `load` brings unless something that was asked for later has come before it. */
@@ -105,8 +111,7 @@ export function createShownAvatar(options: ShownAvatarOptions): ShownAvatar {
     get pending() {
       return pending;
     },
-    openOwn: (onProgress) =>
-      arrive(async () => parseAvatar(await readLimited(ownAvatarAt, avatarFile, onProgress), ownName), ownName, true),
+    openOwn: (bytes = fetchOwnAvatar()) => arrive(async () => parseAvatar(await bytes, ownName), ownName, true),
     open(source) {
       const itsName = nameOf(source);
       const load = async () => loadAvatar(await readLimited(source, avatarFile), itsName, validateInWorker);

@@ -1,0 +1,33 @@
+import type { EstimatorChoice } from '../../../lib/estimator-choice';
+import type { Notices } from '../../../ui/notices';
+import type { Recorder } from '../../studio/recorder';
+import type { Activities } from '../activities';
+import type { FrameTiming } from '../frame-timing';
+import type { Headset } from '../headset';
+import type { PageStudy } from '../page-study';
+import type { PreferenceStore } from '../preferences';
+import type { Settings, SettingsWriter } from '../settings';
+import type { ShownAvatar } from '../shown-avatar';
+import type { Stage } from '../stage';
+import type { Switches } from '../switches';
+import type { TrackedBody } from '../tracked-body';
+
+/** The parts of the page that its controls show and act on. */
+export interface ControlledParts {
+  readonly switches: Pick<Switches, 'room'>;
+  readonly settings: Settings;
+  readonly writer: Pick<SettingsWriter, 'change' | 'keep'>;
+  readonly store: Pick<PreferenceStore, 'remember'>;
+  readonly notices: Pick<Notices, 'show' | 'current'>;
+  readonly timing: Pick<FrameTiming, 'summary'>;
+  readonly stage: Pick<Stage, 'renderer' | 'studio' | 'view' | 'layOut' | 'setSkeletonVisible'>;
+  readonly choice: EstimatorChoice;
+  readonly recorder: Recorder;
+  readonly headset: Headset;
+  readonly avatar: ShownAvatar;
+  readonly activities: Activities;
+  readonly body: TrackedBody;
+  readonly study: Pick<PageStudy, 'run'>;
+  /** Something changed that is on the screen. */
+  onChange(): void;
+}

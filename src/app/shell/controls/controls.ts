@@ -1,0 +1,114 @@
+import type { TrackingFrame } from '../../../core/tracking/tracking-frame';
+import { acceptDroppedFiles } from '../../../ui/dropped-files';
+import { pageElement } from '../../../ui/element';
+import { createOverlay } from '../../../ui/overlay';
+import { createVrPointers } from '../../../ui/vr-pointers';
+import type { ControlledParts } from './controlled-parts';
+import { DesktopControls } from './desktop-controls';
+import { frameReport } from './frame-report';
+import { HeadsetControls } from './headset-controls';
+import { Measuring } from './measuring';
+import { OpenedFiles } from './opened-files';
+import { createPanelActions } from './panel-actions';
+import { PlayControls } from './play-controls';
+import { isNarrow, WindowLayout } from './window-layout';
+
+/** Milliseconds between two looks at the ring buffers: fast enough to follow, slow enough to read. */
+const reportEveryMs = 250;
+
+/** Everything a person can press, read or type, on the desktop and in the headset; it keeps no state of the page's own. */
+export class Controls {
+  readonly #parts: ControlledParts;
+  readonly #measuring: Measuring;
+  readonly #files: OpenedFiles;
+  readonly #play: PlayControls;
+  readonly #desktop: DesktopControls;
+  readonly #inHeadset: HeadsetControls;
+  readonly #layout: WindowLayout;
+  readonly #overlay = createOverlay(pageElement('overlay', HTMLElement));
+  /** Whether the panel was open when the headset was put on. */
+  #panelOpenBefore = false;
+
+  constructor(parts: ControlledParts) {
+    const { stage } = parts;
+    const panelRegion = pageElement('controls', HTMLElement);
+    this.#parts = parts;
+    this.#measuring = new Measuring(parts);
+    this.#files = new OpenedFiles(parts);
+    this.#play = new PlayControls(parts);
+    const measuring = this.#measuring;
+    const actions = createPanelActions({ ...parts, measuring, files: this.#files });
+    this.#desktop = new DesktopControls(panelRegion, { ...parts, measuring, actions });
+    const pointers = createVrPointers(stage.renderer);
+    this.#inHeadset = new HeadsetControls({ ...parts, measuring, actions, pointers });
+    this.#layout = new WindowLayout({ stage, panelRegion, panelOpen: () => this.#desktop.panelOpen });
+    stage.studio.scene.add(...this.#inHeadset.objects);
+    measuring.steps.listen(() => this.#inHeadset.show());
+    acceptDroppedFiles((file) => void this.#files.open(file));
+    setInterval(() => this.#report(), reportEveryMs);
+  }
+
+  /** Brings on the screen what the page is doing. */
+  show(): void {
+    const { settings, headset, activities, stage, avatar } = this.#parts;
+    document.body.classList.toggle('larger-text', settings.largerText);
+    document.body.classList.toggle('in-session', headset.worn);
+    document.body.classList.toggle('on-the-range', activities.name !== 'studio');
+    this.#overlay.setVisible(settings.overlay);
+    stage.setSkeletonVisible(settings.debugSkeleton);
+    avatar.current?.setUpperBodyOnly(settings.upperBodyOnly);
+    this.#desktop.show();
+    this.#play.show();
+    this.#inHeadset.show();
+  }
+
+  /** The headset is on: the menu is there, and the panel out of the way; or off again. */
+  setWorn(worn: boolean): void {
+    this.#inHeadset.setWorn(worn);
+    if (worn) this.#panelOpenBefore = this.#desktop.panelOpen;
+    else this.#measuring.cancel();
+    this.#desktop.setPanelOpen(!worn && this.#panelOpenBefore);
+  }
+
+  /** Where there is no place beside the picture, the panel stays closed until its button is pressed. */
+  setPanelOpen(open: boolean): void {
+    this.#desktop.setPanelOpen(open && !isNarrow());
+  }
+
+  /** What is heard, in words. */
+  caption(text: string): void {
+    this.#play.caption(text);
+  }
+
+  layOut(): void {
+    this.#layout.layOut();
+  }
+
+  /** Every tracked frame: its person may be measured. */
+  observe(frame: TrackingFrame): void {
+    this.#measuring.observe(frame);
+  }
+
+  /** Rays and finger tips in the headset. */
+  point(): void {
+    this.#inHeadset.point();
+  }
+
+  /** Replays a file of this device, or what an address answers. */
+  openRecording(source: string | File): Promise<void> {
+    return this.#files.openRecording(source);
+  }
+
+  /** What changes by itself: frame times, a replay's progress, a round. */
+  #report(): void {
+    const { choice, recorder, activities } = this.#parts;
+    choice.check();
+    const report = frameReport(this.#parts);
+    this.#overlay.show(report);
+    this.#inHeadset.showReport(report);
+    if (recorder.mode !== 'idle') this.show();
+    else if (activities.name !== 'studio') this.#play.show();
+    if (activities.ball) this.#inHeadset.show();
+    this.#play.showBanner();
+  }
+}

@@ -1,0 +1,95 @@
+import { palettes } from '../../../avatar/palettes';
+import {
+  armSpanRange,
+  fingertipSpanFromArmSpan,
+  statureFromEyeHeight,
+  statureRange,
+} from '../../../core/body/calibration';
+import { viewNames } from '../../../scene/desktop-view';
+import { listenToShortcuts, type Shortcuts } from '../../../ui/shortcuts';
+import { estimatorOrder } from '../estimator-texts';
+import { createPanel, type Panel, type PanelActions } from '../panel/panel';
+import type { PanelState } from '../panel/panel-state';
+import type { ControlledParts } from './controlled-parts';
+import type { Measuring } from './measuring';
+
+export interface DesktopControlsOptions extends ControlledParts {
+  readonly actions: PanelActions;
+  readonly measuring: Pick<Measuring, 'dialogVisible'>;
+}
+
+const centimetres = (metres: number): number => 100 * metres;
+
+/** The panel and the keys of the desktop page. */
+export class DesktopControls {
+  readonly #options: DesktopControlsOptions;
+  readonly #panel: Panel;
+
+  constructor(region: HTMLElement, options: DesktopControlsOptions) {
+    const { actions, headset, measuring, study } = options;
+    this.#options = options;
+    this.#panel = createPanel(
+      region,
+      {
+        palettes,
+        height: { min: centimetres(statureRange.min), max: centimetres(statureRange.max) },
+        armSpan: {
+          min: centimetres(fingertipSpanFromArmSpan(armSpanRange.min)),
+          max: centimetres(fingertipSpanFromArmSpan(armSpanRange.max)),
+        },
+      },
+      actions,
+    );
+    listenToShortcuts(this.#shortcuts(), () => !headset.worn && !measuring.dialogVisible && study.run === null);
+  }
+
+  get panelOpen(): boolean {
+    return this.#panel.open;
+  }
+
+  setPanelOpen(open: boolean): void {
+    this.#panel.setOpen(open);
+  }
+
+  show(): void {
+    this.#panel.show(this.#state());
+  }
+
+  #shortcuts(): Shortcuts {
+    const { actions, settings, stage } = this.#options;
+    const nextView = () => viewNames[(viewNames.indexOf(stage.view.view) + 1) % viewNames.length] ?? 'third-person';
+    const estimators = estimatorOrder.map((name, index) => [String(index + 1), () => actions.chooseEstimator(name)]);
+    return {
+      ...Object.fromEntries(estimators),
+      v: () => actions.chooseView(nextView()),
+      c: () => actions.calibrate(),
+      r: () => actions.recentre(),
+      m: () => actions.setMirror(!settings.mirror),
+      b: () => actions.setDebugSkeleton(!settings.debugSkeleton),
+      u: () => actions.setUpperBodyOnly(!settings.upperBodyOnly),
+      o: () => actions.setOverlay(!settings.overlay),
+      p: () => this.#panel.setOpen(!this.#panel.open),
+    };
+  }
+
+  #state(): PanelState {
+    const { settings, choice, stage, avatar, headset, recorder } = this.#options;
+    const { eyeHeight, armSpan } = settings.calibration;
+    return {
+      ...settings,
+      estimator: choice.wanted,
+      unavailable: choice.unavailable,
+      view: stage.view.view,
+      avatarName: avatar.current ? avatar.name : 'None yet',
+      avatarPending: avatar.pending,
+      ownAvatarOffered: !avatar.own || avatar.pending !== null || avatar.current === null,
+      palette: avatar.own ? settings.palette : null,
+      heightCm: centimetres(statureFromEyeHeight(eyeHeight)),
+      armSpanCm: centimetres(fingertipSpanFromArmSpan(armSpan)),
+      eyeHeightCm: centimetres(eyeHeight),
+      emulated: headset.emulator !== null,
+      inSession: headset.worn,
+      recorder,
+    };
+  }
+}

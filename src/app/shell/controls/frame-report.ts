@@ -1,0 +1,15 @@
+import type { FrameReport } from '../../../ui/overlay';
+import { estimatorTexts } from '../estimator-texts';
+import { stageNames } from '../frame-timing';
+import type { ControlledParts } from './controlled-parts';
+
+/** What frames cost over the last seconds, and what estimates the body in them. */
+export function frameReport({ timing, choice }: Pick<ControlledParts, 'timing' | 'choice'>): FrameReport {
+  const summary = timing.summary();
+  return {
+    ...summary,
+    stages: stageNames.map((name) => ({ name, ...summary.stages[name] })),
+    estimator: estimatorTexts[choice.current.name].label,
+    provider: choice.regressor?.provider ?? 'no network',
+  };
+}

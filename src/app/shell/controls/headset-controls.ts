@@ -1,0 +1,112 @@
+import type { EstimatorChoice } from '../../../lib/estimator-choice';
+import type { FrameReport } from '../../../ui/overlay';
+import type { VrPointers } from '../../../ui/vr-pointers';
+import type { Activities } from '../activities';
+import type { PanelActions } from '../panel/panel';
+import type { VrMenuActions, VrMenuState } from '../vr-menu/menu-buttons';
+import { VrMenu } from '../vr-menu/vr-menu';
+import type { ControlledParts } from './controlled-parts';
+import type { Measuring } from './measuring';
+
+/** How much larger the menu in the headset is for a user who wants larger text. */
+const largerMenu = 1.3;
+
+export interface HeadsetControlsOptions extends Pick<ControlledParts, 'settings' | 'writer' | 'notices' | 'study'> {
+  readonly pointers: VrPointers;
+  readonly choice: Pick<EstimatorChoice, 'current' | 'unavailable'>;
+  readonly activities: Pick<Activities, 'name' | 'archery' | 'ball' | 'goTo' | 'rule' | 'restartRound' | 'point'>;
+  readonly measuring: Pick<Measuring, 'step' | 'begin' | 'cancel'>;
+  readonly actions: Pick<PanelActions, 'chooseEstimator' | 'recentre' | 'exitVr'>;
+}
+
+/** What can be pressed in the headset: the menu, or a study's sheet in its place, and the sheets of a game. */
+export class HeadsetControls {
+  readonly #options: HeadsetControlsOptions;
+  readonly #menu: VrMenu;
+
+  constructor(options: HeadsetControlsOptions) {
+    this.#options = options;
+    this.#menu = new VrMenu(this.#menuActions());
+    options.pointers.objects.visible = false;
+  }
+
+  /** For the scene. */
+  get objects() {
+    return [this.#menu.object, this.#options.pointers.objects] as const;
+  }
+
+  /** The headset is on, or off again. A study's sheet takes the place of the menu. */
+  setWorn(worn: boolean): void {
+    const { study, pointers } = this.#options;
+    this.#menu.setVisible(worn && study.run === null);
+    pointers.objects.visible = worn;
+  }
+
+  show(): void {
+    this.#menu.object.scale.setScalar(this.#options.settings.largerText ? largerMenu : 1);
+    this.#menu.show(this.#state());
+  }
+
+  showReport(report: FrameReport): void {
+    this.#menu.showReport(report);
+  }
+
+  /** Rays and finger tips: the study or the menu first, then the sheets of a game. */
+  point(): void {
+    const { study, pointers, activities } = this.#options;
+    const hands = pointers.take();
+    if (study.run) {
+      study.run.point(hands);
+      return;
+    }
+    this.#menu.point(hands);
+    for (const { origin, direction, pressed, showRay } of hands) {
+      const distance = activities.point({ origin: { ...origin }, direction: { ...direction } }, pressed);
+      if (distance === null) continue;
+      showRay(distance);
+      // One hand's ray is lit; the other's would put the light out again.
+      break;
+    }
+  }
+
+  #menuActions(): VrMenuActions {
+    const { actions, activities, measuring, writer } = this.#options;
+    return {
+      chooseEstimator: (name) => actions.chooseEstimator(name),
+      calibrate: () => measuring.begin(),
+      cancelCalibration: () => measuring.cancel(),
+      recentre: () => actions.recentre(),
+      setOverlay: (on) => writer.change({ vrOverlay: on }),
+      goTo: (activity) => void activities.goTo(activity),
+      setBowSide: (side) => activities.rule({ bowSide: side }),
+      restart: () => activities.restartRound(),
+      ready: (on) => activities.ball?.play.ready(on),
+      exit: () => actions.exitVr(),
+    };
+  }
+
+  #state(): VrMenuState {
+    const { choice, settings, activities, measuring } = this.#options;
+    return {
+      estimator: choice.current.name,
+      unavailable: choice.unavailable,
+      calibration: measuring.step,
+      overlay: settings.vrOverlay,
+      activity: activities.name,
+      bowSide: settings.bowSide,
+      roundOver: activities.archery?.round()?.over ?? false,
+      ...this.#ballState(),
+    };
+  }
+
+  #ballState(): Pick<VrMenuState, 'ready' | 'notice'> {
+    const { activities, notices } = this.#options;
+    const { ball } = activities;
+    const round = ball?.round() ?? null;
+    const asked = round !== null && round.ended === null && round.seat !== null && round.phase !== 'running';
+    return {
+      ready: asked ? round.ready : null,
+      notice: ball?.banner() ?? notices.current().at(-1)?.text ?? round?.waiting ?? round?.connection ?? null,
+    };
+  }
+}

@@ -1,0 +1,70 @@
+import { firstLine, reasonOf } from '../../../core/errors/reasons';
+import type { EstimatorChoice } from '../../../lib/estimator-choice';
+import { type FileKind, nameOf, readLimited } from '../../../ui/limited-files';
+import type { Notices } from '../../../ui/notices';
+import type { Recorder } from '../../studio/recorder';
+import type { ShownAvatar } from '../shown-avatar';
+import type { TrackedBody } from '../tracked-body';
+
+/** Twice what the recorder keeps at most. */
+const recordingFile: FileKind = { what: 'a recording', megabytes: 100 };
+
+export interface OpenedFilesOptions {
+  readonly avatar: Pick<ShownAvatar, 'open' | 'openOwn' | 'name'>;
+  readonly recorder: Pick<Recorder, 'open' | 'replay'>;
+  readonly notices: Pick<Notices, 'show'>;
+  readonly choice: Pick<EstimatorChoice, 'reset'>;
+  readonly body: Pick<TrackedBody, 'replays' | 'refit'>;
+  onChange(): void;
+}
+
+/** Avatars and recordings that the user brings along, as files of this device or as addresses. */
+export class OpenedFiles {
+  readonly #options: OpenedFilesOptions;
+
+  constructor(options: OpenedFilesOptions) {
+    this.#options = options;
+  }
+
+  /** A file by its ending: a recording, else an avatar. Never rejects: what goes wrong becomes a notice. */
+  async open(file: File): Promise<void> {
+    if (/\.json$/i.test(file.name)) await this.openRecording(file);
+    else await this.openAvatar(file);
+  }
+
+  async openAvatar(source: string | File): Promise<void> {
+    const { avatar, notices } = this.#options;
+    if (await avatar.open(source)) notices.show('info', `${avatar.name} is your avatar now.`);
+  }
+
+  /** Ours, also after a reload. */
+  showOwnAvatar(): void {
+    const address = new URL(location.href);
+    address.searchParams.delete('avatar');
+    history.replaceState(null, '', address);
+    void this.#options.avatar.openOwn();
+  }
+
+  /** Replays what the file keeps, with the body of the person in it. Never rejects: what goes wrong becomes a notice. */
+  async openRecording(source: string | File): Promise<void> {
+    const { recorder, body, notices } = this.#options;
+    const name = nameOf(source);
+    try {
+      const recording = recorder.open(name, new TextDecoder().decode(await readLimited(source, recordingFile)));
+      body.replays(recording.calibration);
+      this.replay();
+    } catch (error) {
+      const reason = firstLine(reasonOf(error)).replace(`${name}: `, '');
+      notices.show('error', `${name} could not be replayed: ${reason}`);
+    }
+  }
+
+  /** The recording at hand, from its beginning. */
+  replay(): void {
+    const { recorder, choice, body, onChange } = this.#options;
+    recorder.replay();
+    choice.reset();
+    body.refit();
+    onChange();
+  }
+}

@@ -1,0 +1,110 @@
+import { armSpanFromFingertipSpan, calibrationComplaint, eyeHeightFromStature } from '../../../core/body/calibration';
+import { offerDownload } from '../../../ui/downloads';
+import type { PanelActions } from '../panel/panel';
+import type { AvatarActions, BodyActions, RecordingActions, ViewActions } from '../panel/panel-state';
+import type { ControlledParts } from './controlled-parts';
+import type { Measuring } from './measuring';
+import type { OpenedFiles } from './opened-files';
+
+export interface PanelActionsOptions extends ControlledParts {
+  readonly files: OpenedFiles;
+  readonly measuring: Pick<Measuring, 'start'>;
+}
+
+function bodyActions({ store, choice, notices, body, measuring }: PanelActionsOptions): BodyActions {
+  return {
+    chooseEstimator(name) {
+      store.remember({ estimator: name });
+      void choice.choose(name);
+    },
+    calibrate: () => measuring.start(),
+    setMeasures({ heightCm, armSpanCm }) {
+      const calibration = {
+        eyeHeight: eyeHeightFromStature(heightCm / 100),
+        armSpan: armSpanFromFingertipSpan(armSpanCm / 100),
+      };
+      const complaint = calibrationComplaint(calibration);
+      if (complaint) notices.show('warning', complaint);
+      else body.calibrateForGood(calibration, 'by hand');
+    },
+    resetCalibration: () => body.resetCalibration(),
+  };
+}
+
+function avatarActions({ writer, avatar, files }: PanelActionsOptions): AvatarActions {
+  return {
+    choosePalette(palette) {
+      writer.keep({ palette });
+      avatar.wear(null);
+    },
+    openAvatarFile: (file) => void files.open(file),
+    openAvatarUrl: (url) => void files.openAvatar(url),
+    showOwnAvatar: () => files.showOwnAvatar(),
+    setUpperBodyOnly: (upperBodyOnly) => writer.keep({ upperBodyOnly }),
+  };
+}
+
+function recordingActions(options: PanelActionsOptions): RecordingActions {
+  const { writer, settings, recorder, headset, timing, choice, body, files, onChange } = options;
+  return {
+    record() {
+      const driven = headset.emulator || !headset.worn ? 'emulated headset' : 'headset';
+      recorder.record({
+        device: !headset.worn && settings.actor ? 'actor' : driven,
+        rateHz: timing.summary().rateHz,
+        calibration: settings.calibration,
+      });
+      onChange();
+    },
+    stop() {
+      recorder.stop();
+      body.refit();
+      onChange();
+    },
+    replay: () => files.replay(),
+    download() {
+      const file = recorder.file();
+      if (file) offerDownload(file.name, 'application/json', file.text);
+    },
+    openRecording: (file) => void files.openRecording(file),
+    setLoop(on) {
+      recorder.setLoop(on);
+      onChange();
+    },
+    setActor(on) {
+      writer.change({ actor: on });
+      choice.reset();
+      // Without the actor a person must hold the headset: a real one, or the emulated one.
+      if (!on) void headset.ensureEmulator().then((emulator) => emulator?.release());
+    },
+    setEmulatorPanel(on) {
+      void headset.emulator?.setPanelVisible(on);
+      writer.change({ emulatorPanel: on });
+    },
+  };
+}
+
+function viewActions({ writer, stage, onChange }: PanelActionsOptions): ViewActions {
+  return {
+    chooseView(name) {
+      stage.view.setView(name);
+      onChange();
+    },
+    setMirror: (mirror) => writer.keep({ mirror }),
+    setDebugSkeleton: (debugSkeleton) => writer.change({ debugSkeleton }),
+    setOverlay: (overlay) => writer.keep({ overlay }),
+    setLargerText: (largerText) => writer.keep({ largerText }),
+  };
+}
+
+/** What the wishes of the panel do to the page. */
+export function createPanelActions(options: PanelActionsOptions): PanelActions {
+  return {
+    ...bodyActions(options),
+    ...avatarActions(options),
+    ...recordingActions(options),
+    ...viewActions(options),
+    recentre: () => options.body.recentre(),
+    exitVr: () => options.headset.exit(),
+  };
+}

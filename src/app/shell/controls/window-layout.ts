@@ -1,0 +1,51 @@
+import { pageElement } from '../../../ui/element';
+import type { Stage } from '../stage';
+
+/** Of a window [CSS pixels], up to which the controls lie below the picture instead of beside it. */
+const narrowest = 760;
+/** What the panel covers, with the gaps beside it [CSS pixels]. */
+const panelWidth = 352;
+/** Of a narrow window's height, what the panel covers. */
+const panelShare = 0.48;
+/** Between the body and the button that enters VR [CSS pixels]. */
+const besideEnter = 8;
+
+/** A window in which the panel has no place beside the picture. */
+export const isNarrow = (): boolean => window.innerWidth <= narrowest;
+
+export interface WindowLayoutOptions {
+  readonly stage: Pick<Stage, 'layOut'>;
+  /** Tells of the panel that opens or closes by an event, `toggle`. */
+  readonly panelRegion: HTMLElement;
+  panelOpen(): boolean;
+}
+
+/** Controls cover a part of the window: the body stands in the middle of the rest. */
+export class WindowLayout {
+  readonly #options: WindowLayoutOptions;
+  readonly #enter = pageElement('enter', HTMLElement);
+
+  constructor(options: WindowLayoutOptions) {
+    this.#options = options;
+    const layOut = () => this.layOut();
+    window.addEventListener('resize', layOut);
+    new ResizeObserver(layOut).observe(this.#enter);
+    options.panelRegion.addEventListener('toggle', layOut);
+  }
+
+  layOut(): void {
+    const { stage, panelOpen } = this.#options;
+    const narrow = isNarrow();
+    const open = panelOpen();
+    const right = narrow || !open ? 0 : panelWidth;
+    document.body.classList.toggle('panel-open', open);
+    document.body.style.setProperty('--panel-inset', `${right}px`);
+    stage.layOut({ left: 0, right, bottom: narrow && open ? window.innerHeight * panelShare : this.#coveredBelow() });
+  }
+
+  /** What the button that enters VR covers [CSS pixels]. */
+  #coveredBelow(): number {
+    if (this.#enter.offsetHeight === 0) return 0;
+    return window.innerHeight - this.#enter.getBoundingClientRect().top + besideEnter;
+  }
+}

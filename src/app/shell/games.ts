@@ -1,0 +1,103 @@
+import type { PageClock } from '../../core/tracking/page-clock';
+import type { Quality } from '../../scene/renderer';
+import type { MouseAim } from '../../ui/mouse-aim';
+import type { ArcheryActivity } from '../archery/archery-activity';
+import type { BallActivity } from '../ball/ball-activity';
+import type { Connect } from '../ball/ball-connections';
+import type { TaskPlace } from '../study/task-runner';
+import type { Headset } from './headset';
+import type { Measures } from './measures';
+import type { Settings } from './settings';
+import { fetchOwnAvatar } from './shown-avatar';
+import type { Stage } from './stage';
+import type { Switches } from './switches';
+
+type Connections = typeof import('../ball/ball-connections');
+
+export interface GamesOptions {
+  readonly quality: Quality;
+  readonly switches: Switches;
+  readonly settings: Settings;
+  readonly clock: PageClock;
+  readonly stage: Pick<Stage, 'studio' | 'view'>;
+  readonly mouse: MouseAim;
+  readonly headset: Pick<Headset, 'worn' | 'emulator'>;
+  readonly measures: Pick<Measures, 'current'>;
+  onCaption(text: string): void;
+}
+
+/** What a game is opened with. */
+export interface Opening {
+  /** Of the next round's or match's layout. */
+  seed(): number;
+  /** Where a study plays the ball game; null: where the address says. */
+  readonly place: TaskPlace | null;
+}
+
+/** Opens the games of this page, whose code is loaded when they are first played. Rejects where one cannot be opened. */
+export interface Games {
+  archery(opening: Pick<Opening, 'seed'>): Promise<ArcheryActivity>;
+  ball(opening: Opening): Promise<BallActivity>;
+}
+
+export class PageGames implements Games {
+  readonly #options: GamesOptions;
+
+  constructor(options: GamesOptions) {
+    this.#options = options;
+  }
+
+  async archery({ seed }: Pick<Opening, 'seed'>): Promise<ArcheryActivity> {
+    const { quality, settings, stage, measures, onCaption } = this.#options;
+    const { createArcheryActivity } = await import('../archery/archery-activity');
+    return createArcheryActivity({
+      quality,
+      surroundings: stage.studio,
+      calibration: measures.current,
+      settings: () => settings,
+      seed,
+      onCaption,
+    });
+  }
+
+  async ball({ seed, place }: Opening): Promise<BallActivity> {
+    const { quality, settings, switches, stage, mouse, headset, measures, onCaption } = this.#options;
+    const [{ createBallActivity }, connections, mannequin] = await Promise.all([
+      import('../ball/ball-activity'),
+      import('../ball/ball-connections'),
+      fetchOwnAvatar(),
+    ]);
+    return createBallActivity({
+      quality,
+      surroundings: stage.studio,
+      mannequin,
+      connect: await this.#connect(connections, seed(), place),
+      visitor: {
+        name: place?.participant || settings.name || settings.guestName,
+        calibration: measures.current,
+        ...(place && { seat: place.members.indexOf(place.participant) }),
+        ...(switches.spectate && { spectate: true }),
+      },
+      unnamed: !place && !settings.name,
+      bots: () => settings.bots && place === null,
+      acting: () => place === null && settings.actor && (!headset.worn || headset.emulator !== null),
+      steering: () =>
+        settings.mouse && !headset.worn
+          ? { ray: stage.view.rayThrough(mouse.x, mouse.y), pressed: mouse.pressed, cancelled: mouse.cancelled }
+          : null,
+      seed: seed(),
+      onCaption,
+    });
+  }
+
+  #connect(connections: Connections, seed: number, place: TaskPlace | null): Promise<Connect> {
+    const { switches, clock } = this.#options;
+    if (place) return connections.assignedSeat(place.seat, clock);
+    return connections.connectionsFor(switches.room, {
+      seed,
+      clock,
+      ...(switches.seconds && { seconds: switches.seconds }),
+      ...(switches.balls && { balls: switches.balls }),
+    });
+  }
+}

@@ -1,0 +1,135 @@
+import type { AvatarPose } from '../../core/body/avatar-pose';
+import { firstLine, reasonOf } from '../../core/errors/reasons';
+import type { PoseEstimator } from '../../core/estimation/pose-estimator';
+import type { Side } from '../../core/math/side';
+import type { TrackingFrame } from '../../core/tracking/tracking-frame';
+import { createAfterFrame } from '../../lib/after-frame';
+import type { EstimatorChoice } from '../../lib/estimator-choice';
+import type { Notices } from '../../ui/notices';
+import type { Recorder } from '../studio/recorder';
+import type { Activities } from './activities';
+import type { Controls } from './controls/controls';
+import type { FrameParts } from './frame-loop';
+import type { Headset } from './headset';
+import type { PageStudy } from './page-study';
+import type { Settings } from './settings';
+import type { ShownAvatar } from './shown-avatar';
+import type { Shot, Stage } from './stage';
+import type { TrackedBody } from './tracked-body';
+import type { TrackingSource } from './tracking-source';
+
+export interface PageFrameOptions {
+  readonly settings: Pick<Settings, 'mirror'>;
+  readonly notices: Pick<Notices, 'show'>;
+  readonly source: TrackingSource;
+  readonly body: TrackedBody;
+  readonly choice: Pick<EstimatorChoice, 'current'>;
+  readonly recorder: Pick<Recorder, 'observe'>;
+  readonly avatar: Pick<ShownAvatar, 'current'>;
+  readonly headset: Headset;
+  readonly activities: Activities;
+  readonly controls: Pick<Controls, 'observe' | 'point'>;
+  readonly study: Pick<PageStudy, 'run'>;
+  readonly stage: Pick<Stage, 'look' | 'draw' | 'vignette'>;
+}
+
+/** One frame of this page, part by part. */
+export class PageFrame implements FrameParts<XRFrame> {
+  readonly afterwards = createAfterFrame();
+  readonly #options: PageFrameOptions;
+  readonly #grips: Record<Side, number> = { left: 0, right: 0 };
+  #count = 0;
+  #lastFault = '';
+
+  constructor(options: PageFrameOptions) {
+    this.#options = options;
+  }
+
+  /** Frames drawn since the page opened. */
+  get count(): number {
+    return this.#count;
+  }
+
+  resumed(): void {
+    this.#options.body.jumped();
+  }
+
+  track(time: number, deviceFrame: XRFrame | undefined): TrackingFrame | null {
+    return this.#options.source.read(time, deviceFrame);
+  }
+
+  observe(frame: TrackingFrame): void {
+    const { recorder, controls, body, headset, activities, source } = this.#options;
+    recorder.observe(frame);
+    controls.observe(frame);
+    body.observe(frame);
+    headset.buzz(activities.play(frame, source.buttons));
+  }
+
+  estimator(): PoseEstimator {
+    return this.#options.choice.current;
+  }
+
+  skin(pose: AvatarPose, frame: TrackingFrame): void {
+    const { avatar, activities } = this.#options;
+    this.#closeHand('left');
+    this.#closeHand('right');
+    avatar.current?.apply(pose, frame.time);
+    activities.ball?.send(frame, pose, this.#grips);
+  }
+
+  render(time: number, frame: TrackingFrame | null): void {
+    const { study, stage, activities } = this.#options;
+    this.#count += 1;
+    study.run?.frame(time, frame);
+    this.#point();
+    this.#turn(time);
+    const shot = this.#shot(time, frame);
+    stage.look(shot);
+    activities.show(time, frame);
+    stage.draw(shot);
+  }
+
+  fail(error: unknown): void {
+    const text = firstLine(reasonOf(error));
+    if (text !== this.#lastFault) this.#options.notices.show('error', `A frame could not be drawn: ${text}`);
+    this.#lastFault = text;
+  }
+
+  #closeHand(side: Side): void {
+    const { activities, source, avatar } = this.#options;
+    this.#grips[side] = activities.grip(side, source.buttons);
+    avatar.current?.setGrip(side, this.#grips[side]);
+  }
+
+  /** Hands behind a menu of the device point at nothing. */
+  #point(): void {
+    const { headset, controls } = this.#options;
+    if (headset.visibility === 'visible') controls.point();
+  }
+
+  #turn(time: number): void {
+    const { headset, stage, body } = this.#options;
+    if (!headset.turnByStick()) return;
+    stage.vignette.close(time);
+    body.jumped();
+  }
+
+  #shot(time: number, frame: TrackingFrame | null): Shot {
+    const { avatar, headset, activities } = this.#options;
+    return {
+      time,
+      frame,
+      avatar: avatar.current,
+      inSession: headset.worn,
+      watched: activities.watched(),
+      mirror: this.#mirror(),
+    };
+  }
+
+  #mirror(): Shot['mirror'] {
+    const { settings, activities } = this.#options;
+    if (!settings.mirror || activities.name === 'ball') return 'never';
+    return activities.name === 'archery' ? 'always' : 'unless-behind';
+  }
+}

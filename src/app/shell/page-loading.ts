@@ -1,0 +1,44 @@
+import { createProgress, type Progress } from '../../ui/progress';
+
+/** The page on its way to the first body: the bar that people see, and when each step was reached, for tools. */
+export class PageLoading {
+  readonly #progress: Progress = createProgress([
+    { name: 'the avatar', weight: 3 },
+    { name: 'the network', weight: 3 },
+    { name: 'the first picture', weight: 1 },
+  ]);
+  readonly #marks: Record<string, number> = {};
+  #ready = false;
+
+  /** Everything asked for is there, or known not to come. */
+  get ready(): boolean {
+    return this.#ready;
+  }
+
+  /** Milliseconds from opening the page to each mark. */
+  get marks(): Readonly<Record<string, number>> {
+    return this.#marks;
+  }
+
+  mark(name: string): void {
+    this.#marks[name] ??= Math.round(performance.now());
+  }
+
+  /** How much of a step is done, 0 to 1. */
+  report(step: 'the avatar' | 'the network' | 'the first picture', part: number): void {
+    this.#progress.report(step, part);
+  }
+
+  /** The first body is on the screen. */
+  bodyShown(): void {
+    this.report('the first picture', 1);
+    this.#progress.showBody();
+    this.mark('firstBody');
+  }
+
+  finish(): void {
+    this.mark('estimator');
+    this.#progress.finish();
+    this.#ready = true;
+  }
+}

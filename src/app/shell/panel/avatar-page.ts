@@ -1,0 +1,86 @@
+import { button, element } from '../../../ui/element';
+import { fileButton } from '../../../ui/file-button';
+import { toggle } from '../../../ui/toggle';
+import type { AvatarActions, PanelPage, PanelState } from './panel-state';
+
+/** Colours of our own avatar. */
+export interface PaletteChoice {
+  readonly name: string;
+  readonly label: string;
+  readonly color: string;
+}
+
+/** The avatar that is shown, and the colours of ours. */
+function createShown(palettes: readonly PaletteChoice[], actions: AvatarActions) {
+  const name = element('p', { class: 'avatar-name' });
+  const pending = element('p', { class: 'hint', role: 'status' });
+  const own = button('Back to ours', () => actions.showOwnAvatar());
+  const swatches = palettes.map((palette) => {
+    const attributes = { class: 'swatch', 'aria-label': palette.label, title: palette.label };
+    const node = button('', () => actions.choosePalette(palette.name), attributes);
+    node.style.setProperty('--swatch', palette.color);
+    return { palette: palette.name, node };
+  });
+  const colours = { class: 'swatches', role: 'group', 'aria-label': 'Colours' };
+  return {
+    node: element(
+      'section',
+      {},
+      element('h2', {}, 'Avatar'),
+      name,
+      pending,
+      element('div', colours, ...swatches.map(({ node }) => node)),
+      own,
+    ),
+    show({ avatarName, avatarPending, ownAvatarOffered, palette: worn }: PanelState) {
+      name.textContent = avatarName;
+      pending.textContent = avatarPending;
+      pending.hidden = avatarPending === null;
+      own.hidden = !ownAvatarOffered;
+      for (const { palette, node } of swatches) {
+        node.setAttribute('aria-pressed', String(palette === worn));
+        node.disabled = worn === null;
+      }
+    },
+  };
+}
+
+/** Where another avatar comes from: a file of this device, or an address. */
+function otherAvatars(actions: AvatarActions): HTMLElement {
+  const address = element('input', {
+    type: 'url',
+    placeholder: 'https://…/avatar.vrm',
+    'aria-label': 'Address of a VRM or GLB',
+  });
+  const form = element('form', { class: 'row' }, address, element('button', { type: 'submit' }, 'Load'));
+  form.addEventListener('submit', (event) => {
+    event.preventDefault();
+    if (address.value) actions.openAvatarUrl(address.value);
+  });
+  return element(
+    'section',
+    {},
+    element('h2', {}, 'Another one'),
+    element('p', { class: 'hint' }, 'Any VRM avatar (0.x or 1.0): drop it on the page, or'),
+    element(
+      'div',
+      { class: 'row' },
+      ...fileButton('Open VRM file', '.vrm,.glb', (file) => actions.openAvatarFile(file)),
+    ),
+    form,
+  );
+}
+
+/** Which avatar the body wears, and how much of it. */
+export function createAvatarPage(palettes: readonly PaletteChoice[], actions: AvatarActions): PanelPage {
+  const shown = createShown(palettes, actions);
+  const upperBody = toggle('Upper body only', (on) => actions.setUpperBodyOnly(on));
+  return {
+    name: 'Avatar',
+    content: [shown.node, otherAvatars(actions), element('section', {}, upperBody.node)],
+    show(state) {
+      shown.show(state);
+      upperBody.input.checked = state.upperBodyOnly;
+    },
+  };
+}

@@ -1,0 +1,82 @@
+import type { EstimatorName } from '../../../core/estimation/pose-estimator';
+import type { ViewName } from '../../../scene/desktop-view';
+
+/** What the recorder is doing; seconds since its start, of how many. */
+export interface RecorderState {
+  readonly mode: 'idle' | 'recording' | 'replaying';
+  readonly seconds: number;
+  readonly duration: number;
+  readonly loop: boolean;
+  /** Name of the recording at hand; null: none. */
+  readonly name: string | null;
+}
+
+/** Everything the panel shows; it keeps no state of its own. */
+export interface PanelState {
+  readonly estimator: EstimatorName;
+  /** Why an estimator is not to be had; absent: it is. */
+  readonly unavailable: Partial<Readonly<Record<EstimatorName, string>>>;
+  readonly view: ViewName;
+  readonly mirror: boolean;
+  readonly upperBodyOnly: boolean;
+  readonly debugSkeleton: boolean;
+  readonly overlay: boolean;
+  readonly largerText: boolean;
+  readonly avatarName: string;
+  /** What became of an avatar that was asked for and is not shown; null: nothing to tell. */
+  readonly avatarPending: string | null;
+  /** Another avatar than ours is shown, or was wanted. */
+  readonly ownAvatarOffered: boolean;
+  /** Colours of our own avatar; null: another avatar is shown, which keeps its own. */
+  readonly palette: string | null;
+  readonly heightCm: number;
+  readonly armSpanCm: number;
+  readonly eyeHeightCm: number;
+  readonly calibrationSource: string;
+  readonly actor: boolean;
+  readonly emulated: boolean;
+  readonly emulatorPanel: boolean;
+  readonly recorder: RecorderState;
+  readonly inSession: boolean;
+}
+
+export interface BodyActions {
+  chooseEstimator(name: EstimatorName): void;
+  calibrate(): void;
+  setMeasures(measures: { readonly heightCm: number; readonly armSpanCm: number }): void;
+  resetCalibration(): void;
+}
+
+export interface AvatarActions {
+  choosePalette(name: string): void;
+  openAvatarFile(file: File): void;
+  openAvatarUrl(url: string): void;
+  showOwnAvatar(): void;
+  setUpperBodyOnly(on: boolean): void;
+}
+
+export interface RecordingActions {
+  record(): void;
+  stop(): void;
+  replay(): void;
+  download(): void;
+  openRecording(file: File): void;
+  setLoop(on: boolean): void;
+  setActor(on: boolean): void;
+  setEmulatorPanel(on: boolean): void;
+}
+
+export interface ViewActions {
+  chooseView(view: ViewName): void;
+  setMirror(on: boolean): void;
+  setDebugSkeleton(on: boolean): void;
+  setOverlay(on: boolean): void;
+  setLargerText(on: boolean): void;
+}
+
+/** A page of the panel, behind its tab. It shows a state and reports wishes; what happens is decided elsewhere. */
+export interface PanelPage {
+  readonly name: string;
+  readonly content: readonly Node[];
+  show(state: PanelState): void;
+}

@@ -1,0 +1,58 @@
+import { button, element } from '../../../ui/element';
+import { createTabs } from '../../../ui/tabs';
+import { createAvatarPage, type PaletteChoice } from './avatar-page';
+import { createBodyPage, type MeasureRanges } from './body-page';
+import type { AvatarActions, BodyActions, PanelState, RecordingActions, ViewActions } from './panel-state';
+import { createRecordingPage } from './recording-page';
+import { createViewPage } from './view-page';
+
+export interface PanelActions extends BodyActions, AvatarActions, RecordingActions, ViewActions {
+  recentre(): void;
+  exitVr(): void;
+}
+
+export interface PanelOptions extends MeasureRanges {
+  readonly palettes: readonly PaletteChoice[];
+}
+
+export interface Panel {
+  readonly open: boolean;
+  /** The region hears of it as an event, `toggle`. */
+  setOpen(open: boolean): void;
+  show(state: PanelState): void;
+}
+
+/** The controls of the desktop page, a page behind each tab. */
+export function createPanel(region: HTMLElement, options: PanelOptions, actions: PanelActions): Panel {
+  const pages = [
+    createBodyPage(options, actions),
+    createAvatarPage(options.palettes, actions),
+    createRecordingPage(actions),
+    createViewPage(actions),
+  ];
+  const content = element('div', { class: 'panel', id: 'panel' }, ...createTabs('Controls', pages));
+  const recentre = button('Recentre', () => actions.recentre(), { class: 'quiet' });
+  const exit = button('Exit VR', () => actions.exitVr(), { class: 'quiet' });
+  const opener = button('Controls', () => setOpen(content.hidden), {
+    class: 'quiet opener',
+    'aria-controls': 'panel',
+    'aria-expanded': 'true',
+  });
+  function setOpen(open: boolean): void {
+    content.hidden = !open;
+    opener.setAttribute('aria-expanded', String(open));
+    region.classList.toggle('closed', !open);
+    region.dispatchEvent(new Event('toggle'));
+  }
+  region.append(element('div', { class: 'panel-bar' }, exit, recentre, opener), content);
+  return {
+    get open() {
+      return !content.hidden;
+    },
+    setOpen,
+    show(state) {
+      exit.hidden = !state.inSession;
+      for (const page of pages) page.show(state);
+    },
+  };
+}

@@ -1,0 +1,78 @@
+import { button, element } from '../../../ui/element';
+import { fileButton } from '../../../ui/file-button';
+import { toggle } from '../../../ui/toggle';
+import type { PanelPage, PanelState, RecorderState, RecordingActions } from './panel-state';
+
+const seconds = (value: number): string => `${value.toFixed(1)} s`;
+
+/** What the recorder is doing, in words. */
+export function recorderText({ mode, name, seconds: passed, duration }: RecorderState): string {
+  if (mode === 'recording') return `Recording, ${seconds(passed)}`;
+  if (mode === 'replaying') return `Replaying ${name ?? ''}, ${seconds(passed)} of ${seconds(duration)}`;
+  return name ? `${name}, ${seconds(duration)}` : 'Nothing recorded yet.';
+}
+
+const about = 'Keeps what is tracked, in full precision, on this device; any recording replays through any estimator.';
+
+function createRecorderSection(actions: RecordingActions) {
+  const record = button('Record', () => actions.record(), { class: 'record' });
+  const stop = button('Stop', () => actions.stop());
+  const replay = button('Replay', () => actions.replay());
+  const download = button('Download', () => actions.download());
+  const text = element('p', { class: 'recorder-text', role: 'status' });
+  const bar = element('progress', { max: 1, value: 0, 'aria-label': 'Progress of the replay' });
+  const loop = toggle('Loop', (on) => actions.setLoop(on));
+  const open = fileButton('Open recording', '.json,application/json', (file) => actions.openRecording(file));
+  return {
+    node: element(
+      'section',
+      {},
+      element('h2', {}, 'Recorder'),
+      element('p', { class: 'hint' }, about),
+      element('div', { class: 'row' }, record, stop, replay, download),
+      text,
+      bar,
+      loop.node,
+      element('div', { class: 'row' }, ...open),
+    ),
+    show(recorder: RecorderState) {
+      const { mode, name, duration } = recorder;
+      record.disabled = mode === 'recording';
+      stop.disabled = mode === 'idle';
+      replay.disabled = mode === 'recording' || name === null;
+      download.disabled = mode === 'recording' || name === null;
+      bar.hidden = mode !== 'replaying';
+      bar.value = duration > 0 ? recorder.seconds / duration : 0;
+      text.textContent = recorderText(recorder);
+      loop.input.checked = recorder.loop;
+    },
+  };
+}
+
+/** Who or what moves the body where no headset is worn. */
+function createMovers(actions: RecordingActions) {
+  const actor = toggle('Actor moves the body', (on) => actions.setActor(on));
+  const emulatorPanel = toggle('Emulator controls', (on) => actions.setEmulatorPanel(on));
+  return {
+    node: element('section', {}, element('h2', {}, 'Who moves'), actor.node, emulatorPanel.node),
+    show(state: PanelState) {
+      actor.input.checked = state.actor;
+      emulatorPanel.input.checked = state.emulatorPanel;
+      emulatorPanel.node.hidden = !state.emulated;
+    },
+  };
+}
+
+/** Recordings, and what moves the body instead of a person. */
+export function createRecordingPage(actions: RecordingActions): PanelPage {
+  const recorder = createRecorderSection(actions);
+  const movers = createMovers(actions);
+  return {
+    name: 'Recording',
+    content: [recorder.node, movers.node],
+    show(state) {
+      recorder.show(state.recorder);
+      movers.show(state);
+    },
+  };
+}

@@ -1,0 +1,65 @@
+import { type ViewName, viewNames } from '../../../scene/desktop-view';
+import { button, element } from '../../../ui/element';
+import { toggle } from '../../../ui/toggle';
+import type { PanelPage, ViewActions } from './panel-state';
+
+const viewTexts: Readonly<Record<ViewName, string>> = {
+  'third-person': 'Third person',
+  front: 'Front',
+  'first-person': 'First person',
+};
+
+const keys: readonly (readonly [string, string])[] = [
+  ['1 – 4', 'estimator'],
+  ['V', 'next view'],
+  ['C', 'calibrate'],
+  ['R', 'recentre'],
+  ['M', 'mirror'],
+  ['B', 'debug skeleton'],
+  ['U', 'upper body only'],
+  ['O', 'frame times'],
+  ['P', 'this panel'],
+  ['Arrows, + −', 'camera, with the picture focused'],
+];
+
+const keysSection = (): HTMLElement =>
+  element(
+    'section',
+    {},
+    element('h2', {}, 'Keys'),
+    element(
+      'dl',
+      { class: 'keys' },
+      ...keys.flatMap(([key, what]) => [element('dt', {}, key), element('dd', {}, what)]),
+    ),
+  );
+
+/** From where the body is seen, and what is seen beside it. */
+export function createViewPage(actions: ViewActions): PanelPage {
+  const views = viewNames.map((view) => ({
+    view,
+    node: button(viewTexts[view], () => actions.chooseView(view), { 'aria-pressed': 'false' }),
+  }));
+  const mirror = toggle('Mirror', (on) => actions.setMirror(on));
+  const skeleton = toggle('Debug skeleton', (on) => actions.setDebugSkeleton(on));
+  const overlay = toggle('Frame times', (on) => actions.setOverlay(on));
+  const largerText = toggle('Larger text', (on) => actions.setLargerText(on));
+  const camera = element(
+    'section',
+    {},
+    element('h2', {}, 'Camera'),
+    element('div', { class: 'segments', role: 'group', 'aria-label': 'Camera' }, ...views.map(({ node }) => node)),
+    ...[mirror, skeleton, overlay, largerText].map(({ node }) => node),
+  );
+  return {
+    name: 'View',
+    content: [camera, keysSection()],
+    show(state) {
+      for (const { view, node } of views) node.setAttribute('aria-pressed', String(view === state.view));
+      mirror.input.checked = state.mirror;
+      skeleton.input.checked = state.debugSkeleton;
+      overlay.input.checked = state.overlay;
+      largerText.input.checked = state.largerText;
+    },
+  };
+}

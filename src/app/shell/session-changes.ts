@@ -1,0 +1,81 @@
+import type { DesktopView } from '../../scene/desktop-view';
+import type { Recorder } from '../studio/recorder';
+import type { Activities } from './activities';
+import type { Controls } from './controls/controls';
+import type { FrameTiming } from './frame-timing';
+import type { Headset, HeadsetListener } from './headset';
+import type { PageStudy } from './page-study';
+import type { TrackedBody } from './tracked-body';
+
+export interface SessionChangesOptions {
+  readonly headset: Pick<Headset, 'pictureRateHz'>;
+  readonly recorder: Pick<Recorder, 'stop'>;
+  readonly timing: FrameTiming;
+  readonly view: DesktopView;
+  readonly body: TrackedBody;
+  readonly activities: Pick<Activities, 'ball'>;
+  readonly controls: Pick<Controls, 'show' | 'setWorn' | 'layOut'>;
+  readonly study: Pick<PageStudy, 'run'>;
+}
+
+/** What the page does when a headset is put on, taken off, or changes under way. */
+export class SessionChanges implements HeadsetListener {
+  readonly #options: SessionChangesOptions;
+
+  constructor(options: SessionChangesOptions) {
+    this.#options = options;
+  }
+
+  entered(): void {
+    const { recorder, controls, body } = this.#options;
+    recorder.stop();
+    body.worn();
+    controls.setWorn(true);
+    this.#changed();
+  }
+
+  left(): void {
+    const { controls, view } = this.#options;
+    controls.setWorn(false);
+    view.setView(view.view);
+    controls.layOut();
+    this.#changed();
+  }
+
+  refused(): void {
+    this.#changed();
+  }
+
+  jumped(): void {
+    this.#options.body.jumped();
+  }
+
+  visibilityChanged(state: XRVisibilityState): void {
+    this.#hidden(state === 'hidden');
+  }
+
+  emulatorChanged(): void {
+    this.#options.controls.show();
+  }
+
+  /** The window of the page goes behind others, or comes back. */
+  followWindow(): void {
+    document.addEventListener('visibilitychange', () => this.#hidden(document.hidden));
+  }
+
+  /** No one sees the page: the others in a match are told, and frame times of before and after do not compare. */
+  #hidden(hidden: boolean): void {
+    this.#options.timing.reset();
+    this.#options.activities.ball?.play.away(hidden);
+  }
+
+  #changed(): void {
+    const { timing, headset, body, controls, study } = this.#options;
+    timing.setRate(headset.pictureRateHz);
+    timing.reset();
+    body.restart();
+    body.refit();
+    controls.show();
+    study.run?.sessionChanged();
+  }
+}

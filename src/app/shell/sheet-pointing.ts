@@ -1,0 +1,31 @@
+import type { DesktopView } from '../../scene/desktop-view';
+import type { Activities } from './activities';
+import type { Headset } from './headset';
+import type { PageStudy } from './page-study';
+
+export interface SheetPointingOptions {
+  readonly canvas: HTMLCanvasElement;
+  readonly view: Pick<DesktopView, 'rayThrough'>;
+  readonly headset: Pick<Headset, 'worn'>;
+  readonly study: Pick<PageStudy, 'joined'>;
+  readonly activities: Pick<Activities, 'point'>;
+}
+
+/** The mouse presses what the sheets of a game offer. A study's participant plays with the headset alone. */
+export function pressSheetsByMouse({ canvas, view, headset, study, activities }: SheetPointingOptions): void {
+  /** The distance [m] to the sheet under the mouse; null: none. */
+  function pointAt({ clientX, clientY }: MouseEvent, press: boolean): number | null {
+    if (headset.worn || study.joined) return null;
+    const { width, height } = canvas.getBoundingClientRect();
+    return activities.point(view.rayThrough((2 * clientX) / width - 1, 1 - (2 * clientY) / height), press);
+  }
+
+  /** Whether the mouse button went down on a sheet: a sheet that came under a throw is not meant. */
+  let pressing = false;
+  canvas.addEventListener('pointerdown', (event) => {
+    pressing = pointAt(event, false) !== null;
+  });
+  canvas.addEventListener('click', (event) => {
+    if (pressing) pointAt(event, true);
+  });
+}

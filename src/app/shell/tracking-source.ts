@@ -1,0 +1,77 @@
+import { type Buttons, nothingPressed } from '../../core/games/button-presses';
+import type { TrackingFrame } from '../../core/tracking/tracking-frame';
+import type { Actor } from '../../xr/actor';
+import type { Performance } from '../archery/archery-play';
+import type { Recorder } from '../studio/recorder';
+import type { Activities } from './activities';
+import type { Headset } from './headset';
+import type { PageStudy } from './page-study';
+import type { Settings } from './settings';
+
+export interface TrackingSourceOptions {
+  readonly settings: Pick<Settings, 'actor'>;
+  readonly headset: Pick<Headset, 'worn' | 'emulator' | 'read' | 'buttons'>;
+  readonly recorder: Pick<Recorder, 'sample'>;
+  readonly actor: Pick<Actor, 'frameAt'>;
+  readonly activities: Pick<Activities, 'begin' | 'act' | 'watched'>;
+  readonly study: Pick<PageStudy, 'idle'>;
+}
+
+/** Who moves the body: a session, a replay, a built-in player, the actor, or the emulator outside of a session. */
+export class TrackingSource {
+  readonly #options: TrackingSourceOptions;
+  #buttons: Buttons = nothingPressed;
+  #newest: TrackingFrame | null = null;
+
+  constructor(options: TrackingSourceOptions) {
+    this.#options = options;
+  }
+
+  /** What the hands of the newest frame press. */
+  get buttons(): Buttons {
+    return this.#buttons;
+  }
+
+  /** The newest tracked frame; null: none yet. */
+  get newest(): TrackingFrame | null {
+    return this.#newest;
+  }
+
+  /** Head and hands at this time [s], floor frame; null: the head is not seen. */
+  read(time: number, deviceFrame: XRFrame | undefined): TrackingFrame | null {
+    this.#buttons = nothingPressed;
+    this.#options.activities.begin(time);
+    const frame = this.#options.headset.worn ? this.#readSession(time, deviceFrame) : this.#readDesktop(time);
+    this.#newest = frame ?? this.#newest;
+    return frame;
+  }
+
+  #readSession(time: number, deviceFrame: XRFrame | undefined): TrackingFrame | null {
+    const { headset, settings, study } = this.#options;
+    if (headset.emulator && settings.actor && !study.idle) {
+      // What the actor does now is seen with the next frame: the device froze this one before it called.
+      const performed = this.#perform(time);
+      headset.emulator.drive(performed.frame, performed.buttons);
+    }
+    const tracked = headset.read(deviceFrame, time);
+    this.#buttons = headset.buttons;
+    return tracked;
+  }
+
+  #readDesktop(time: number): TrackingFrame | null {
+    const { recorder, activities, settings, headset } = this.#options;
+    const replayed = recorder.sample(time);
+    if (replayed) return replayed;
+    if (activities.watched()) return null;
+    if (!settings.actor && headset.emulator) return headset.emulator.read(time);
+    const performed = this.#perform(time);
+    this.#buttons = performed.buttons;
+    return performed.frame;
+  }
+
+  /** Needs no person: the players built into the games, else the actor. */
+  #perform(time: number): Performance {
+    const { activities, actor } = this.#options;
+    return activities.act(time) ?? { frame: actor.frameAt(time), buttons: nothingPressed };
+  }
+}

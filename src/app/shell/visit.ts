@@ -1,0 +1,25 @@
+import type { Notices } from '../../ui/notices';
+import { Emitter } from './emitter';
+import { browserStorage, createPreferenceStore, type PreferenceStore } from './preferences';
+import { createSettings, type Settings, SettingsWriter } from './settings';
+import { readSwitches, type Switches } from './switches';
+
+/** What a visit begins with: what the address asks for, and what this browser remembers. */
+export interface Visit {
+  readonly switches: Switches;
+  readonly store: PreferenceStore;
+  readonly settings: Settings;
+  readonly writer: SettingsWriter;
+  /** Something changed that is on the screen. */
+  readonly changes: Emitter;
+}
+
+/** Reads address and storage; what they say that this page does not understand becomes a notice. */
+export function beginVisit(notices: Notices): Visit {
+  const { switches, complaints } = readSwitches(location.search);
+  const store = createPreferenceStore(browserStorage(), (sentence) => notices.show('warning', sentence));
+  for (const complaint of [...complaints, store.complaint]) if (complaint) notices.show('warning', complaint);
+  const settings = createSettings(switches, store);
+  const changes = new Emitter();
+  return { switches, store, settings, changes, writer: new SettingsWriter(settings, store, changes.emit) };
+}

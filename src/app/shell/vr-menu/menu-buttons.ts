@@ -1,0 +1,112 @@
+import type { EstimatorName } from '../../../core/estimation/pose-estimator';
+import type { Side } from '../../../core/math/side';
+import type { CalibrationStep } from '../../../ui/calibration-dialog';
+import { estimatorOrder, estimatorTexts } from '../estimator-texts';
+import type { ActivityName } from '../play-bar';
+
+/** What the menu in the headset shows. */
+export interface VrMenuState {
+  readonly estimator: EstimatorName;
+  readonly unavailable: Partial<Readonly<Record<EstimatorName, string>>>;
+  readonly calibration: CalibrationStep | null;
+  readonly overlay: boolean;
+  readonly activity: ActivityName;
+  readonly bowSide: Side;
+  readonly roundOver: boolean;
+  /** In the ball game, before and after a match: whether one is ready; null: not asked. */
+  readonly ready: boolean | null;
+  /** A sentence to be read in the headset; null: none. */
+  readonly notice: string | null;
+}
+
+export interface VrMenuActions {
+  chooseEstimator(name: EstimatorName): void;
+  calibrate(): void;
+  cancelCalibration(): void;
+  recentre(): void;
+  setOverlay(on: boolean): void;
+  goTo(activity: ActivityName): void;
+  setBowSide(side: Side): void;
+  restart(): void;
+  ready(on: boolean): void;
+  exit(): void;
+}
+
+export interface MenuButton {
+  readonly id: string;
+  readonly label: string;
+  /** Left, top, width and height on the sheet [pixels]. */
+  readonly at: readonly [number, number, number, number];
+  readonly look: 'plain' | 'chosen' | 'off';
+  readonly act: () => void;
+}
+
+/** The sheet, and what is left free at its edges [pixels]. */
+export const menuWidth = 640;
+export const menuHeight = 1000;
+export const menuMargin = 36;
+
+const full = menuWidth - 2 * menuMargin;
+const gap = 16;
+const half = (full - gap) / 2;
+
+type Entry = readonly [id: string, label: string, act: () => void];
+
+/** The one button of a calibration under way. */
+function cancelButton(step: CalibrationStep, actions: VrMenuActions): MenuButton {
+  const over = step.kind === 'done' || step.kind === 'failed';
+  return {
+    id: 'cancel',
+    label: over ? 'Close' : 'Cancel',
+    at: [menuMargin, menuHeight - menuMargin - 96, full, 96],
+    look: 'plain',
+    act: () => actions.cancelCalibration(),
+  };
+}
+
+function estimatorButtons({ estimator, unavailable }: VrMenuState, actions: VrMenuActions): readonly MenuButton[] {
+  return estimatorOrder.map((name, index) => ({
+    id: name,
+    label: estimatorTexts[name].label,
+    at: [menuMargin, 116 + index * 104, full, 92],
+    look: unavailable[name] !== undefined ? 'off' : name === estimator ? 'chosen' : 'plain',
+    act: () => actions.chooseEstimator(name),
+  }));
+}
+
+/** Where one can go from here, and what one can do here. */
+function playEntries({ activity, ready, roundOver, bowSide }: VrMenuState, actions: VrMenuActions): readonly Entry[] {
+  const studio: Entry = ['studio', 'To the mirror', () => actions.goTo('studio')];
+  if (activity === 'studio')
+    return [
+      ['archery', 'Archery', () => actions.goTo('archery')],
+      ['ball', 'Ball game', () => actions.goTo('ball')],
+    ];
+  if (activity === 'ball')
+    return ready === null
+      ? [studio]
+      : [studio, ['ready', ready ? 'Wait for me' : 'Ready', () => actions.ready(!ready)]];
+  if (roundOver) return [studio, ['restart', 'New round', () => actions.restart()]];
+  const other = bowSide === 'left' ? 'right' : 'left';
+  return [studio, ['bow', `Bow: ${bowSide} hand`, () => actions.setBowSide(other)]];
+}
+
+/** What can be pressed on the menu now; targets as big as a palm. */
+export function menuButtons(state: VrMenuState, actions: VrMenuActions): readonly MenuButton[] {
+  if (state.calibration) return [cancelButton(state.calibration, actions)];
+  const entries: readonly Entry[] = [
+    ['calibrate', 'Calibrate', () => actions.calibrate()],
+    ['recentre', 'Recentre', () => actions.recentre()],
+    ['overlay', state.overlay ? 'Hide frame times' : 'Frame times', () => actions.setOverlay(!state.overlay)],
+    ['exit', 'Exit VR', () => actions.exit()],
+    ...playEntries(state, actions),
+  ];
+  return [
+    ...estimatorButtons(state, actions),
+    ...entries.map(([id, label, act], index): MenuButton => {
+      const x = menuMargin + (index % 2) * (half + gap);
+      const y = 560 + Math.floor(index / 2) * 112;
+      return { id, label, at: [x, y, half, 96], look: 'plain', act };
+    }),
+  ];
+}

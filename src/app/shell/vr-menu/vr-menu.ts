@@ -1,0 +1,83 @@
+import { Group } from 'three';
+import type { FrameReport } from '../../../ui/overlay';
+import { createVrPanel } from '../../../ui/vr-panel';
+import type { Pointer } from '../../../ui/vr-pointers';
+import { createPanelTouch } from '../../../ui/vr-touch';
+import { drawFrameTimes, frameTimesHeight, frameTimesWidth } from './frame-times-drawing';
+import {
+  type MenuButton,
+  menuButtons,
+  menuHeight,
+  menuWidth,
+  type VrMenuActions,
+  type VrMenuState,
+} from './menu-buttons';
+import { drawMenu } from './menu-drawing';
+
+const pixelsPerMetre = 1000;
+
+/** The menu right of the mirror and the frame times left of it. */
+export class VrMenu {
+  readonly object = new Group();
+  readonly #menu = createVrPanel(menuWidth, menuHeight, pixelsPerMetre);
+  readonly #frameTimes = createVrPanel(frameTimesWidth, frameTimesHeight, pixelsPerMetre);
+  readonly #touch = createPanelTouch(this.#menu);
+  readonly #actions: VrMenuActions;
+  #state: VrMenuState | null = null;
+  #buttons: readonly MenuButton[] = [];
+  /** The button that a hand points at. */
+  #hovered: string | null = null;
+  /** What the sheet shows, as a text that changes with it. */
+  #drawn = '';
+
+  constructor(actions: VrMenuActions) {
+    this.#actions = actions;
+    this.#menu.mesh.position.set(1.1, 1.3, -1.15);
+    this.#menu.mesh.rotation.y = -0.74;
+    this.#frameTimes.mesh.position.set(-1.1, 1.35, -1.15);
+    this.#frameTimes.mesh.rotation.y = 0.74;
+    this.object.add(this.#menu.mesh, this.#frameTimes.mesh);
+    this.object.visible = false;
+  }
+
+  setVisible(visible: boolean): void {
+    this.object.visible = visible;
+  }
+
+  show(state: VrMenuState): void {
+    this.#state = state;
+    this.#frameTimes.mesh.visible = state.overlay;
+    this.#redraw();
+  }
+
+  showReport(report: FrameReport): void {
+    if (!this.object.visible || !this.#frameTimes.mesh.visible) return;
+    this.#frameTimes.draw((context) => drawFrameTimes(context, report));
+  }
+
+  /** Follows the hands' rays and finger tips; a press or a touch on a button is its action. */
+  point(pointers: readonly Pointer[]): void {
+    if (!this.object.visible) {
+      for (const pointer of pointers) pointer.showRay(null);
+      return;
+    }
+    const usable = this.#buttons.filter(({ look }) => look !== 'off');
+    const { pointedAt, pressed } = this.#touch.follow(pointers, usable);
+    this.#hovered = pointedAt?.id ?? null;
+    for (const { act } of pressed) act();
+    this.#redraw();
+  }
+
+  #redraw(): void {
+    const state = this.#state;
+    if (!state) return;
+    // Tenths of the measuring are as fine as a hand-held bar needs; every texture upload costs.
+    const key = JSON.stringify([state, this.#hovered], (_, value) =>
+      typeof value === 'number' ? Math.ceil(value * 20) / 20 : value,
+    );
+    if (key === this.#drawn) return;
+    this.#drawn = key;
+    this.#buttons = menuButtons(state, this.#actions);
+    this.#menu.draw((context) => drawMenu(context, state, this.#buttons, this.#hovered));
+  }
+}
