@@ -1,5 +1,6 @@
 import type { PageClock } from '../../core/tracking/page-clock';
 import type { Quality } from '../../scene/renderer';
+import type { SurroundingsHost } from '../../scene/surroundings';
 import type { MouseAim } from '../../ui/mouse-aim';
 import type { ArcheryActivity } from '../archery/archery-activity';
 import type { BallActivity } from '../ball/ball-activity';
@@ -19,7 +20,7 @@ export interface GamesOptions {
   readonly switches: Switches;
   readonly settings: Settings;
   readonly clock: PageClock;
-  readonly stage: Pick<Stage, 'studio' | 'view'>;
+  readonly stage: { readonly studio: SurroundingsHost; readonly view: Pick<Stage['view'], 'rayThrough'> };
   readonly mouse: MouseAim;
   readonly headset: Pick<Headset, 'worn' | 'emulator'>;
   readonly measures: Pick<Measures, 'current'>;
