@@ -36,7 +36,8 @@ export function followBodyHeading(
   const confidence = headingConfidence(head);
   const steps = Math.ceil(Math.max(deltaSeconds, 0) / longestStep);
   const step = deltaSeconds / steps;
-  const [follow, settle] = [smoothingFactor(followHalfLife, step), smoothingFactor(settleHalfLife, step)];
+  const follow = smoothingFactor(followHalfLife, step);
+  const settle = smoothingFactor(settleHalfLife, step);
   let { yaw } = state;
   for (let i = 0; i < steps; i++) {
     const error = Math.atan2(Math.sin(heading - yaw), Math.cos(heading - yaw));

@@ -1,6 +1,6 @@
 import type { ChestSpaceBody } from '../body/skeleton';
 import { rotate } from '../math/quat';
-import { addScaled, dot, length, type MutableVec3, right, scale, subtract, up, type Vec3, vec3 } from '../math/vec3';
+import { dot, length, type MutableVec3, right, scale, setVec3, subtract, up, type Vec3, vec3 } from '../math/vec3';
 import type { ChestAxes, IkSolution, ThreePoints } from './solve-ik';
 
 /** Numbers of one frame in the chest frame; their order is in docs/estimation.md. */
@@ -8,19 +8,17 @@ export const chestFeatureCount = 38;
 
 /** A vector of the heading frame along the chest's axes. */
 function inChest({ x, y, z }: ChestAxes, v: Vec3, target: MutableVec3): MutableVec3 {
-  const [alongX, alongY, alongZ] = [dot(x, v), dot(y, v), dot(z, v)];
-  target.x = alongX;
-  target.y = alongY;
-  target.z = alongZ;
-  return target;
+  return setVec3(target, dot(x, v), dot(y, v), dot(z, v));
 }
 
 /** A vector of the chest frame in the heading frame. */
 export function headingFromChest({ x, y, z }: ChestAxes, v: Vec3, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 {
-  const [alongX, alongY, alongZ] = [v.x, v.y, v.z];
-  scale(x, alongX, target);
-  addScaled(target, y, alongY, target);
-  return addScaled(target, z, alongZ, target);
+  return setVec3(
+    target,
+    x.x * v.x + y.x * v.y + z.x * v.z,
+    x.y * v.x + y.y * v.y + z.y * v.z,
+    x.z * v.x + y.z * v.y + z.z * v.z,
+  );
 }
 
 const vector = vec3(0, 0, 0);

@@ -135,8 +135,8 @@ const clear = { low: -Math.PI + 0.5, high: Math.PI - 0.5 };
 function nearestWithin(angle: number): number {
   const { low, high } = clear;
   if (angle >= low && angle <= high) return angle;
-  const beyond = (from: number) => Math.abs(Math.atan2(Math.sin(angle - from), Math.cos(angle - from)));
-  return beyond(low) < beyond(high) ? low : high;
+  // The larger the cosine, the smaller the turn.
+  return Math.cos(angle - low) > Math.cos(angle - high) ? low : high;
 }
 
 /** Angles are looked at in steps of 10°, borders found to a sixty-fourth of that, a part. */

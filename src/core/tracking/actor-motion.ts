@@ -1,10 +1,24 @@
 import type { Calibration } from '../body/calibration';
-import { chestSpaceBody, sideSign } from '../body/skeleton';
+import { type ChestSpaceBody, chestSpaceBody, sideSign } from '../body/skeleton';
 import { clamp } from '../math/damper';
 import type { TrackedPose } from '../math/pose';
-import { fromAxes, fromAxisAngle, multiply, type Quat, rotate, slerp } from '../math/quat';
+import { fromAxes, fromAxisAngle, type MutableQuat, multiply, type Quat, quat, rotate, slerp } from '../math/quat';
 import type { Side } from '../math/side';
-import { add, addScaled, cross, distance, lerp, normalise, reject, scale, up, type Vec3, vec3 } from '../math/vec3';
+import {
+  add,
+  addScaled,
+  cross,
+  distance,
+  lerp,
+  type MutableVec3,
+  normalise,
+  reject,
+  scale,
+  setVec3,
+  up,
+  type Vec3,
+  vec3,
+} from '../math/vec3';
 import type { TrackingFrame } from './tracking-frame';
 
 /** A hand of a key pose, in the body's frame (yaw of the trunk), mirrored for the left: x is outward. */
@@ -129,45 +143,75 @@ export function actorFrame(timeSeconds: number, calibration: Calibration): Track
   // The trunk hangs under the head joint of a head that looks ahead, so that a glance moves no shoulder.
   const neck = addScaled(eyes, rotate(trunk, vec3(0, -body.eyesInHead.y - body.neckToHead.y, -body.eyesInHead.z)), 1);
 
-  const hand = (side: Side): TrackedPose => {
-    const sigma = sideSign(side);
-    const outward = ([x, y, z]: readonly [number, number, number]): Vec3 => vec3(sigma * x, y, z);
-    const shoulder = vec3(sigma * (body.clavicleRoot.x + body.clavicle.x), body.clavicle.y, 0.01 * e);
-    const reach = (key: HandKey): Vec3 => add(shoulder, scale(outward(key.at), body.arm * 0.97));
-    const turned = (key: HandKey): Quat => handOrientation(outward(key.knuckles), outward(key.back));
-    const a = reach(from[side]);
-    const b = reach(to[side]);
-    // Hands swing a little ahead on long ways: never through the trunk.
-    const bulge = vec3(0, 0, -0.22 * distance(a, b) * Math.sin(Math.PI * share) ** 2);
-    const tremor = vec3(
-      0.005 * Math.sin(timeSeconds * 1.1 + sigma),
-      0.004 * breath,
-      0.005 * Math.sin(timeSeconds * 0.9 + 2 * sigma),
-    );
-    const inTrunk = within(add(add(lerp(a, b, share), bulge), tremor), shoulder, body.arm * 0.985);
-    return {
-      position: add(neck, rotate(trunk, inTrunk)),
-      orientation: multiply(trunk, slerp(turned(from[side]), turned(to[side]), share)),
-      tracking: 'tracked',
-    };
-  };
+  const moment = { from, to, share, timeSeconds, body, shoulderAhead: 0.01 * e };
   return {
     time: timeSeconds,
     head: { position: eyes, orientation, tracking: 'tracked' },
-    leftHand: hand('left'),
-    rightHand: hand('right'),
+    leftHand: handAt('left', moment, neck, trunk),
+    rightHand: handAt('right', moment, neck, trunk),
   };
 }
 
-/** The wrist whose knuckles point one way and the back of whose hand faces another, as nearly as right angles allow. */
-function handOrientation(knuckles: Vec3, back: Vec3): Quat {
-  const z = scale(normalise(knuckles), -1);
-  const y = normalise(reject(back, z));
-  return fromAxes(cross(y, z), y, z);
+/** Between two keys, a share of the way from one to the other. */
+interface Moment {
+  readonly from: Key;
+  readonly to: Key;
+  readonly share: number;
+  readonly timeSeconds: number;
+  readonly body: ChestSpaceBody;
+  /** How far the shoulders lie behind the neck [m]. */
+  readonly shoulderAhead: number;
 }
 
-/** The point, or the nearest one at most `radius` [m] from the centre. */
-function within(point: Vec3, centre: Vec3, radius: number): Vec3 {
-  const far = distance(point, centre);
-  return far <= radius ? point : lerp(centre, point, radius / far);
+// Scratch of one hand.
+const shoulder = vec3(0, 0, 0);
+const reachFrom = vec3(0, 0, 0);
+const reachTo = vec3(0, 0, 0);
+const tremor = vec3(0, 0, 0);
+const knuckles = vec3(0, 0, 0);
+const back = vec3(0, 0, 0);
+const side = vec3(0, 0, 0);
+const turnedFrom = quat(0, 0, 0, 1);
+const turnedTo = quat(0, 0, 0, 1);
+
+function handAt(which: Side, moment: Moment, neck: Vec3, trunk: Quat): TrackedPose {
+  const { from, to, share, timeSeconds, body } = moment;
+  const sigma = sideSign(which);
+  setVec3(shoulder, sigma * (body.clavicleRoot.x + body.clavicle.x), body.clavicle.y, moment.shoulderAhead);
+  outward(sigma, from[which].at, reachFrom);
+  addScaled(shoulder, reachFrom, body.arm * 0.97, reachFrom);
+  outward(sigma, to[which].at, reachTo);
+  addScaled(shoulder, reachTo, body.arm * 0.97, reachTo);
+  // Hands swing a little ahead on long ways: never through the trunk.
+  const bulge = -0.22 * distance(reachFrom, reachTo) * Math.sin(Math.PI * share) ** 2;
+  setVec3(
+    tremor,
+    0.005 * Math.sin(timeSeconds * 1.1 + sigma),
+    0.004 * Math.sin(timeSeconds * 1.5),
+    0.005 * Math.sin(timeSeconds * 0.9 + 2 * sigma) + bulge,
+  );
+  const position = lerp(reachFrom, reachTo, share);
+  add(position, tremor, position);
+  const far = distance(position, shoulder);
+  const longest = body.arm * 0.985;
+  if (far > longest) lerp(shoulder, position, longest / far, position);
+  add(neck, rotate(trunk, position, position), position);
+  const orientation = slerp(
+    handOrientation(sigma, from[which], turnedFrom),
+    handOrientation(sigma, to[which], turnedTo),
+    share,
+  );
+  return { position, orientation: multiply(trunk, orientation, orientation), tracking: 'tracked' };
+}
+
+/** A direction of a key, whose x is outward, on a side. */
+const outward = (sigma: number, direction: readonly [number, number, number], target: MutableVec3): MutableVec3 =>
+  setVec3(target, sigma * direction[0], direction[1], direction[2]);
+
+/** The wrist whose knuckles point one way and the back of whose hand faces another, as nearly as right angles allow. */
+function handOrientation(sigma: number, key: HandKey, target: MutableQuat): MutableQuat {
+  scale(normalise(outward(sigma, key.knuckles, knuckles), undefined, knuckles), -1, knuckles);
+  reject(outward(sigma, key.back, back), knuckles, back);
+  normalise(back, undefined, back);
+  return fromAxes(cross(back, knuckles, side), back, knuckles, target);
 }
