@@ -1,9 +1,7 @@
 import {
   BoxGeometry,
   type Camera,
-  Frustum,
   Group,
-  Matrix4,
   Mesh,
   MeshStandardMaterial,
   type Object3D,
@@ -14,6 +12,7 @@ import {
 import { Reflector } from 'three/examples/jsm/objects/Reflector.js';
 import { eyeLayers } from '../scene/eye-layers';
 import { thirdPersonOnlyLayer } from './body-meshes';
+import { seesRectangle } from './sees-rectangle';
 
 export interface MirrorOptions {
   /** How far ahead of the floor's origin, along −Z, it stands [m]. */
@@ -54,9 +53,6 @@ const shader = {
     'vec4 base = sRGBTransferEOTF( texture2DProj( tDiffuse, vUv ) );',
   ),
 };
-
-const seen = new Frustum();
-const projection = new Matrix4();
 
 class StandingMirror implements Mirror {
   readonly object = new Group();
@@ -123,9 +119,7 @@ class StandingMirror implements Mirror {
     const glass = this.glasses[index]!;
     glass.visible = true;
     glass.updateWorldMatrix(true, false);
-    projection.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
-    seen.setFromProjectionMatrix(projection);
-    if (!seen.intersectsObject(glass)) return;
+    if (!seesRectangle(camera, glass.matrixWorld, this.width, this.height)) return;
     const target = glass.getRenderTarget();
     target.texture.colorSpace = renderer.outputColorSpace;
     // What holds the glass lies between it and the reflecting camera; clipping it away is not exact everywhere.
