@@ -2,9 +2,6 @@ import { reasonOf } from '../core/errors/reasons';
 import type { InferenceSession, WasmPaths } from './session';
 import type { Answer, Question } from './worker-messages';
 
-/** A question without its number. */
-type Asked = Question extends infer One ? (One extends Question ? Omit<One, 'id'> : never) : never;
-
 interface Waiting {
   readonly resolve: (answer: Answer) => void;
   readonly reject: (error: Error) => void;
@@ -43,12 +40,11 @@ export async function createWorkerSession(
     waiting.clear();
   }
 
-  function ask(question: Asked): Promise<Answer> {
+  function ask(question: Question): Promise<Answer> {
     if (broken) return Promise.reject(broken);
-    const id = asked++;
     return new Promise<Answer>((resolve, reject) => {
-      waiting.set(id, { resolve, reject });
-      worker.postMessage({ id, ...question });
+      waiting.set(question.id, { resolve, reject });
+      worker.postMessage(question);
     });
   }
 
@@ -61,19 +57,19 @@ export async function createWorkerSession(
   worker.addEventListener('error', ({ message }) => breakDown(message || 'the worker for inference did not start'));
   worker.addEventListener('messageerror', () => breakDown('the worker for inference cannot be understood'));
 
-  const tensors = await ask({ model, wasmPaths }).catch((error: unknown) => {
+  const tensors = await ask({ id: asked++, model, wasmPaths }).catch((error: unknown) => {
     breakDown(reasonOf(error));
     throw error;
   });
-  if (!('inputNames' in tensors)) throw new Error('the worker for inference answers what nobody asked');
+  if (!('inputNames' in tensors)) throw new Error('the worker for inference answers what no one asked');
   opened = true;
   return {
     provider: 'wasm',
     inputNames: tensors.inputNames,
     outputNames: tensors.outputNames,
     async run(input, features, output) {
-      const answer = await ask({ input, features, output });
-      if (!('numbers' in answer)) throw new Error('the worker for inference answers what nobody asked');
+      const answer = await ask({ id: asked++, input, features, output });
+      if (!('numbers' in answer)) throw new Error('the worker for inference answers what no one asked');
       return answer.numbers;
     },
     async release() {

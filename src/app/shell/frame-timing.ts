@@ -17,10 +17,19 @@ function push(ring: Ring, value: number): void {
   ring.count += 1;
 }
 
-/** The q-quantile of what a ring holds; NaN while it holds nothing. */
-function quantiles(ring: Ring, ...at: readonly number[]): number[] {
-  const sorted = ring.values.slice(0, Math.min(ring.count, length)).sort();
-  return at.map((q) => sorted[Math.min(sorted.length - 1, Math.floor(q * sorted.length))] ?? Number.NaN);
+/** Where quantiles sort what a ring holds: a page that shows them does so several times a second. */
+const sorted = new Float32Array(length);
+
+/** The medians and 95th percentiles of what a ring holds; NaN while it holds nothing. */
+function quantilesOf(ring: Ring): { readonly p50Ms: number; readonly p95Ms: number } {
+  const count = Math.min(ring.count, length);
+  if (count === 0) return { p50Ms: Number.NaN, p95Ms: Number.NaN };
+  // Behind what is held the buffer is full of what sorts last.
+  sorted.set(ring.values);
+  sorted.fill(Number.POSITIVE_INFINITY, count);
+  sorted.sort();
+  const at = (q: number): number => sorted[Math.min(count - 1, Math.floor(q * count))]!;
+  return { p50Ms: at(0.5), p95Ms: at(0.95) };
 }
 
 export interface FrameSummary {
@@ -48,7 +57,7 @@ export interface FrameTiming {
   /** Forgets what was: after a pause, a hidden page or another kind of frame nothing before is comparable. */
   reset(): void;
   summary(): FrameSummary;
-  /** Tells every frame from now on: what each stage and the whole ("frame") took [ms], and whether it came late; null: nobody listens. */
+  /** Tells every frame from now on: what each stage and the whole ("frame") took [ms], and whether it came late; null: no one listens. */
   listen(listener: FrameListener | null): void;
 }
 
@@ -89,7 +98,7 @@ export function createFrameTiming(now: () => number): FrameTiming {
     },
     end() {
       const whole = now() - started + afterwards;
-      for (const name of stageNames) push(rings[name], spent[name]);
+      for (let i = 0; i < stageNames.length; i++) push(rings[stageNames[i]!], spent[stageNames[i]!]);
       push(total, whole);
       if (listener) {
         Object.assign(told, spent);
@@ -98,7 +107,7 @@ export function createFrameTiming(now: () => number): FrameTiming {
       }
       inFrame = false;
       afterwards = 0;
-      for (const name of stageNames) spent[name] = 0;
+      for (let i = 0; i < stageNames.length; i++) spent[stageNames[i]!] = 0;
     },
     resume() {
       marked = now();
@@ -111,17 +120,15 @@ export function createFrameTiming(now: () => number): FrameTiming {
       lastTimestamp = Number.NaN;
     },
     summary() {
-      const [p50Ms = Number.NaN, p95Ms = Number.NaN] = quantiles(total, 0.5, 0.95);
-      const stages = Object.fromEntries(
-        stageNames.map((name) => {
-          const [p50 = Number.NaN, p95 = Number.NaN] = quantiles(rings[name], 0.5, 0.95);
-          return [name, { p50Ms: p50, p95Ms: p95 }];
-        }),
-      ) as Record<StageName, { p50Ms: number; p95Ms: number }>;
+      const stages = Object.fromEntries(stageNames.map((name) => [name, quantilesOf(rings[name])])) as Record<
+        StageName,
+        { p50Ms: number; p95Ms: number }
+      >;
       const frames = Math.min(intervals.count, length);
       const latest = latestMs();
-      const missed = intervals.values.slice(0, frames).filter((interval) => interval > latest).length;
-      return { p50Ms, p95Ms, stages, missed, frames, rateHz };
+      let missed = 0;
+      for (let i = 0; i < frames; i++) if (intervals.values[i]! > latest) missed += 1;
+      return { ...quantilesOf(total), stages, missed, frames, rateHz };
     },
     listen(next) {
       listener = next;
