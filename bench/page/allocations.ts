@@ -1,21 +1,14 @@
 import { PerspectiveCamera } from 'three';
-import { createBallView } from '../../src/app/ball/ball-view';
 import { createStudio } from '../../src/app/studio/studio';
 import { createAvatar } from '../../src/avatar/avatar';
 import { parseAvatar } from '../../src/avatar/load-avatar';
-import { createRemoteAvatars, type SeenPerson } from '../../src/avatar/remote-avatars';
 import { defaultCalibration } from '../../src/core/body/calibration';
-import { skeletonFromCalibration } from '../../src/core/body/skeleton';
 import { createEstimator } from '../../src/core/estimation/estimators';
-import { ballRules } from '../../src/core/games/ball/rules';
-import { composeTransforms, invertTransform } from '../../src/core/math/pose';
-import { decodePose } from '../../src/core/protocol/pose-codec';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
 import { createInferenceWorker } from '../../src/inference/create-inference-worker';
 import { loadRegressor } from '../../src/inference/load-regressor';
-import { createRemotePlayers } from '../../src/net/remote-players';
 import { createRenderer } from '../../src/scene/renderer';
-import { arenaFromCirclePlace } from './circle';
+import { Court } from './court';
 import { createSenders } from './senders';
 
 /** What is measured on this page; the real page is measured as it is. */
@@ -69,67 +62,23 @@ function stillScene(): FrameOf {
 /** A court of eight: one's own body, and seven whose packets arrive. */
 async function crowd(): Promise<FrameOf> {
   const { studio, draw } = picture();
-  const view = createBallView({ quality: 'low', balls: 20, onCaption: () => undefined });
-  const floorFromArena = invertTransform(arenaFromCirclePlace(0, bodies));
-  studio.setSurroundings(view.placed(floorFromArena));
-  const avatar = createAvatar(
-    await parseAvatar(await (await fetch('/avatars/mannequin.vrm')).arrayBuffer(), 'mannequin.vrm'),
-  );
+  const mannequin = await (await fetch('/avatars/mannequin.vrm')).arrayBuffer();
+  const court = new Court(studio, mannequin, bodies);
+  const avatar = createAvatar(await parseAvatar(mannequin, 'mannequin.vrm'));
   avatar.fitTo(defaultCalibration);
-  const others = createRemoteAvatars(await (await fetch('/avatars/mannequin.vrm')).arrayBuffer(), 'mannequin.vrm');
-  studio.scene.add(avatar.object, others.object);
+  studio.scene.add(avatar.object);
   const estimator = createEstimator('ik', defaultCalibration);
   const senders = createSenders(bodies - 1);
-  const skeleton = skeletonFromCalibration(defaultCalibration);
   const frames = Array.from({ length: preparedFrames }, (_, i) => actorFrame(i / rateHz, defaultCalibration));
-  const packets = Array.from({ length: (preparedFrames * packetHz) / rateHz }, (_, i) =>
-    senders.packetsAt(i / packetHz),
-  );
-  const state = ballRules.start(['a', 'b', 'c'], 1);
-  const players = createRemotePlayers();
-  const attendants = [null, null, null];
-  const placements = Array.from({ length: bodies }, (_, seat) =>
-    composeTransforms(floorFromArena, arenaFromCirclePlace(seat, bodies)),
-  );
+  const framesPerPacket = rateHz / packetHz;
+  const packets = Array.from({ length: preparedFrames / framesPerPacket }, (_, i) => senders.packetsAt(i / packetHz));
   return (index) => {
     const time = index / rateHz;
-    const frame = frames[index % preparedFrames];
-    const due = index % (rateHz / packetHz) === 0 ? packets[(index % preparedFrames) / (rateHz / packetHz)] : undefined;
-    if (!frame) return;
+    const frame = frames[index % preparedFrames]!;
     avatar.apply(estimator.update(frame).pose, time);
-    for (const { seat, bytes } of due ?? []) {
-      const packet = decodePose(bytes, skeleton);
-      // The recording begins anew now and then; the sender's clock goes on.
-      const timeMs = Math.round(time * 1000) & 0xffff;
-      if (packet) players.receive({ seat, packet: { ...packet, timeMs }, arrivedAt: time });
-    }
-    const people = players.follow(time).map(
-      ({ seat, pose, grips, opacity }): SeenPerson => ({
-        id: seat,
-        calibration: defaultCalibration,
-        palette: 'ember',
-        pose,
-        placement: placements[seat] ?? (floorFromArena as never),
-        grips,
-        opacity,
-      }),
-    );
-    others.show(people, time);
-    view.show({
-      state,
-      time,
-      attendants,
-      me: null,
-      rotate: false,
-      opening: null,
-      aim: null,
-      secondsLeft: 90,
-      pageTime: time,
-      inRoom: true,
-      acting: true,
-      paused: false,
-      head: frame.head,
-    });
+    if (index % framesPerPacket === 0) court.receive(packets[(index % preparedFrames) / framesPerPacket]!, time);
+    court.showOthers(time);
+    court.showCourt(time, frame.head);
     draw();
   };
 }

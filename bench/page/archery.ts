@@ -8,7 +8,7 @@ import { defaultCalibration } from '../../src/core/body/calibration';
 import { type EstimatorName, estimatorNames, type PoseEstimator } from '../../src/core/estimation/pose-estimator';
 import { identity } from '../../src/core/math/quat';
 import { zero } from '../../src/core/math/vec3';
-import { type FrameTimes, frameTimes } from './frame-times';
+import { type FrameTimes, frameTimes, nextFrame } from './frame-times';
 
 /** Frame times of a whole round as in the paper's table 5, and its result: all play the same one to its end. */
 export interface RoundTimes extends FrameTimes {
@@ -57,7 +57,6 @@ export async function measureArchery(stage: ArcheryStage): Promise<Record<Estima
 
   const gl = renderer.getContext();
   const pixel = new Uint8Array(4);
-  const nextFrame = () => new Promise<number>((resolve) => requestAnimationFrame(resolve));
   const running = () =>
     rounds.filter(({ play, frame }) => play.newest?.state.phase !== 'over' && frame < longestRound * rateHz);
   while (running().length > 0) {

@@ -1,3 +1,6 @@
+/** Resolves in the next animation frame. */
+export const nextFrame = (): Promise<number> => new Promise((resolve) => requestAnimationFrame(resolve));
+
 /** Frame times [ms]; missed: share of frames too late for that rate. */
 export interface FrameTimes {
   readonly min: number;

@@ -1,6 +1,6 @@
 import { PerspectiveCamera } from 'three';
 import { createFrameLoop, withTiming } from '../../src/app/shell/frame-loop';
-import { createFrameTiming, type StageName, stageNames } from '../../src/app/shell/frame-timing';
+import { createFrameTiming, type FrameTiming, type StageName, stageNames } from '../../src/app/shell/frame-timing';
 import { createStudio } from '../../src/app/studio/studio';
 import { createAvatar } from '../../src/avatar/avatar';
 import { parseAvatar } from '../../src/avatar/load-avatar';
@@ -22,6 +22,7 @@ import { createRenderer } from '../../src/scene/renderer';
 import { measureArchery, type RoundTimes } from './archery';
 import { type CourtTimes, measureCourt } from './ball';
 import { createCcdBody } from './ccd-body';
+import { nextFrame } from './frame-times';
 
 /** Blocks of one method alternate in a seeded order, so that whatever else the machine does meets all of them. */
 const blockFrames = 40;
@@ -94,8 +95,8 @@ async function openingCost(name: string): Promise<{ readonly create: number; rea
   return { create: created - started, first: ran - created };
 }
 
-async function measure(): Promise<PageResult> {
-  const costs = { learned: await openingCost('learned'), paper: await openingCost('paper') };
+/** What is drawn in every frame, as on the page. */
+async function openPicture() {
   const canvas = document.querySelector('canvas');
   if (!canvas) throw new Error('no canvas');
   const renderer = createRenderer(canvas, 'low');
@@ -103,20 +104,17 @@ async function measure(): Promise<PageResult> {
   const studio = createStudio(renderer, 'low');
   // As the page has it where graphics are drawn in software.
   const mirror = createMirror({ distance: 1.5, resolution: 256, samples: 0 });
-  const avatar = createAvatar(
-    await parseAvatar(await (await fetch('/avatars/mannequin.vrm')).arrayBuffer(), 'mannequin.vrm'),
-  );
+  const mannequin = await (await fetch('/avatars/mannequin.vrm')).arrayBuffer();
+  const avatar = createAvatar(await parseAvatar(mannequin, 'mannequin.vrm'));
   studio.scene.add(mirror.object, avatar.object);
   avatar.fitTo(defaultCalibration);
   const camera = new PerspectiveCamera(42, 480 / 270, 0.05, 90);
   camera.position.set(1.9, 1.5, 2.75);
   camera.lookAt(0, 1, -0.4);
+  return { renderer, studio, mirror, avatar, camera, mannequin };
+}
 
-  const draw = () => {
-    mirror.reflect(renderer, studio.scene, camera);
-    renderer.render(studio.scene, camera);
-  };
-  const timing = createFrameTiming(() => performance.now());
+async function openEstimators(timing: FrameTiming): Promise<Record<EstimatorName, PoseEstimator>> {
   const regressors: Partial<Record<Method, PoseRegressor>> = {};
   for (const name of estimatorNames.filter(needsRegressor)) {
     regressors[name] = withTiming(
@@ -124,130 +122,186 @@ async function measure(): Promise<PageResult> {
       timing,
     );
   }
-  const estimators = Object.fromEntries(
+  return Object.fromEntries(
     estimatorNames.map((name) => [name, createEstimator(name, defaultCalibration, regressors[name] ?? null)]),
   ) as Record<EstimatorName, PoseEstimator>;
-  const ccd = createCcdBody(skeletonFromCalibration(defaultCalibration));
+}
 
-  const empty = <Key extends string>(keys: readonly Key[]) =>
-    Object.fromEntries(keys.map((key) => [key, [] as number[]])) as Record<Key, number[]>;
-  const measured = Object.fromEntries(
+const empty = <Key extends string>(keys: readonly Key[]) =>
+  Object.fromEntries(keys.map((key) => [key, [] as number[]])) as Record<Key, number[]>;
+
+type Measured = Readonly<Record<'inFrame' | 'withLater' | 'whole' | 'thread', Record<Method, number[]>>>;
+
+/** Frames of every method in every condition. */
+class FrameBench {
+  readonly #picture: Awaited<ReturnType<typeof openPicture>>;
+  readonly #estimators: Record<EstimatorName, PoseEstimator>;
+  readonly #timing: FrameTiming;
+  readonly #ccd = createCcdBody(skeletonFromCalibration(defaultCalibration));
+  readonly #measured = Object.fromEntries(
     conditions.map((condition) => [
       condition,
       { inFrame: empty(methods), withLater: empty(methods), whole: empty(methods), thread: empty(methods) },
     ]),
-  ) as Record<Condition, Record<'inFrame' | 'withLater' | 'whole' | 'thread', Record<Method, number[]>>>;
-  const stages = Object.fromEntries(estimatorNames.map((name) => [name, empty(stageNames)])) as Record<
+  ) as Record<Condition, Measured>;
+  readonly #stages = Object.fromEntries(estimatorNames.map((name) => [name, empty(stageNames)])) as Record<
     EstimatorName,
     Record<StageName, number[]>
   >;
-  const spent = Object.fromEntries(stageNames.map((stage) => [stage, 0])) as Record<StageName, number>;
-  timing.listen((spentMs) => Object.assign(spent, spentMs));
-  let method: EstimatorName = 'ik';
-  let inFrameNow = 0;
-  let withLaterNow = 0;
-  let failure: unknown = null;
-  let skinned: AvatarPose | null = null;
-  const loop = createFrameLoop<never>(
-    {
-      resumed: () => undefined,
-      track: (time) => actorFrame(time, defaultCalibration),
-      observe: () => undefined,
-      estimator: () => estimators[method],
-      afterwards: createAfterFrame(),
-      skin(pose, frame) {
-        avatar.apply(pose, frame.time);
-        if (pose.body) skinned = pose;
-      },
-      render: () => draw(),
-      fail(error) {
-        failure = error;
-      },
-    },
-    timing,
-    // Every round is dated alike: the same motion for every method.
-    { frame: (timestampMs) => timestampMs / 1000, paused: false },
-  );
+  readonly #spent = Object.fromEntries(stageNames.map((stage) => [stage, 0])) as Record<StageName, number>;
+  readonly #loop: (timestampMs: number) => void;
+  readonly #pixel = new Uint8Array(4);
+  #method: EstimatorName = 'ik';
+  /** What the newest frame took [ms]. */
+  #inFrameMs = 0;
+  #withLaterMs = 0;
+  #failure: unknown = null;
+  #skinned: AvatarPose | null = null;
+  #random = { seed: 20230213 };
 
-  const gl = renderer.getContext();
-  const pixel = new Uint8Array(4);
-  const nextFrame = () => new Promise<number>((resolve) => requestAnimationFrame(resolve));
-  async function runBlock(name: Method, round: number, condition: Condition): Promise<void> {
-    const { inFrame, withLater, whole, thread } = measured[condition];
-    if (name !== 'ccdik') method = name;
-    for (const estimator of Object.values(estimators)) estimator.reset();
+  constructor(
+    picture: Awaited<ReturnType<typeof openPicture>>,
+    estimators: Record<EstimatorName, PoseEstimator>,
+    timing: FrameTiming,
+  ) {
+    this.#picture = picture;
+    this.#estimators = estimators;
+    this.#timing = timing;
+    this.#loop = this.#createLoop();
+  }
+
+  async run(): Promise<void> {
+    this.#timing.listen((spentMs) => Object.assign(this.#spent, spentMs));
+    for (let round = 0; round < rounds; round++) await this.#runRound(round, 'first');
+    for (let round = 0; round < rounds; round++) {
+      await this.#runRound(round, 'settled');
+      await this.#runRound(round, 'shown');
+    }
+    this.#timing.listen(null);
+  }
+
+  get costs(): Record<Condition, Costs> {
+    const told = (values: Record<Method, number[]>) =>
+      Object.fromEntries(methods.map((name) => [name, quantiles(values[name])])) as Record<Method, Quantiles>;
+    const costsOf = ({ inFrame, withLater, whole, thread }: Measured): Costs => ({
+      inFrameMs: told(inFrame),
+      withLaterMs: told(withLater),
+      frameMs: told(whole),
+      threadMs: told(thread),
+    });
+    return Object.fromEntries(conditions.map((condition) => [condition, costsOf(this.#measured[condition])])) as Record<
+      Condition,
+      Costs
+    >;
+  }
+
+  get stagesMs(): Record<EstimatorName, Record<StageName, number>> {
+    const medians = (name: EstimatorName) =>
+      Object.fromEntries(stageNames.map((stage) => [stage, quantiles(this.#stages[name][stage]).p50]));
+    return Object.fromEntries(estimatorNames.map((name) => [name, medians(name)])) as Record<
+      EstimatorName,
+      Record<StageName, number>
+    >;
+  }
+
+  #createLoop(): (timestampMs: number) => void {
+    return createFrameLoop<never>(
+      {
+        resumed: () => undefined,
+        track: (time) => actorFrame(time, defaultCalibration),
+        observe: () => undefined,
+        estimator: () => this.#estimators[this.#method],
+        afterwards: createAfterFrame(),
+        skin: (pose, frame) => {
+          this.#picture.avatar.apply(pose, frame.time);
+          if (pose.body) this.#skinned = pose;
+        },
+        render: () => this.#draw(),
+        fail: (error) => {
+          this.#failure = error;
+        },
+      },
+      this.#timing,
+      // Every round is dated alike: the same motion for every method.
+      { frame: (timestampMs) => timestampMs / 1000, paused: false },
+    );
+  }
+
+  #draw(): void {
+    const { mirror, renderer, studio, camera } = this.#picture;
+    mirror.reflect(renderer, studio.scene, camera);
+    renderer.render(studio.scene, camera);
+  }
+
+  async #runRound(round: number, condition: Condition): Promise<void> {
+    this.#picture.renderer.domElement.hidden = condition !== 'shown';
+    const order = methods.map((name) => {
+      const { value, state } = nextRandom(this.#random);
+      this.#random = state;
+      return { name, value };
+    });
+    for (const { name } of order.sort((a, b) => a.value - b.value)) await this.#runBlock(name, round, condition);
+  }
+
+  async #runBlock(name: Method, round: number, condition: Condition): Promise<void> {
+    const { inFrame, withLater, whole, thread } = this.#measured[condition];
+    const gl = this.#picture.renderer.getContext();
+    if (name !== 'ccdik') this.#method = name;
+    for (const estimator of Object.values(this.#estimators)) estimator.reset();
     for (let i = 0; i < settleFrames + blockFrames; i++) {
       await nextFrame();
       // The same motion for every method of a round: what a picture costs depends on what it shows.
       const timeMs = ((round * blockFrames + i) * 1000) / 60;
       const started = performance.now();
-      if (name === 'ccdik') {
-        const frame = actorFrame(timeMs / 1000, defaultCalibration);
-        const solving = performance.now();
-        ccd.solve(frame);
-        inFrameNow = performance.now() - solving;
-        withLaterNow = inFrameNow;
-        // It solves a rig of its own; the avatar is skinned all the same, so that the frame is as much work.
-        if (skinned) avatar.apply(skinned, frame.time);
-        draw();
-      } else {
-        loop(timeMs);
-        inFrameNow = spent.kinematics;
-        withLaterNow = spent.features + spent.inference + spent.kinematics;
-      }
-      if (failure) throw failure;
+      if (name === 'ccdik') this.#solveByCcd(timeMs);
+      else this.#estimate(timeMs);
+      if (this.#failure) throw this.#failure;
       const ended = performance.now();
       // Commands are only queued so far: asking for a pixel waits until all of them are drawn.
-      gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+      gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, this.#pixel);
       if (i < settleFrames) continue;
-      inFrame[name].push(inFrameNow);
-      withLater[name].push(withLaterNow);
+      inFrame[name].push(this.#inFrameMs);
+      withLater[name].push(this.#withLaterMs);
       thread[name].push(ended - started);
       whole[name].push(performance.now() - started);
       if (name === 'ccdik' || condition !== 'settled') continue;
-      for (const stage of stageNames) stages[name][stage].push(spent[stage]);
+      for (const stage of stageNames) this.#stages[name][stage].push(this.#spent[stage]);
     }
   }
 
-  let random = { seed: 20230213 };
-  async function runRound(round: number, condition: Condition): Promise<void> {
-    renderer.domElement.hidden = condition !== 'shown';
-    const order = methods.map((name) => {
-      const { value, state } = nextRandom(random);
-      random = state;
-      return { name, value };
-    });
-    for (const { name } of order.sort((a, b) => a.value - b.value)) await runBlock(name, round, condition);
+  #estimate(timeMs: number): void {
+    this.#loop(timeMs);
+    const { kinematics, features, inference } = this.#spent;
+    this.#inFrameMs = kinematics;
+    this.#withLaterMs = features + inference + kinematics;
   }
-  for (let round = 0; round < rounds; round++) await runRound(round, 'first');
-  for (let round = 0; round < rounds; round++) {
-    await runRound(round, 'settled');
-    await runRound(round, 'shown');
+
+  #solveByCcd(timeMs: number): void {
+    const frame = actorFrame(timeMs / 1000, defaultCalibration);
+    const solving = performance.now();
+    this.#ccd.solve(frame);
+    this.#inFrameMs = performance.now() - solving;
+    this.#withLaterMs = this.#inFrameMs;
+    // It solves a rig of its own; the avatar is skinned all the same, so that the frame is as much work.
+    if (this.#skinned) this.#picture.avatar.apply(this.#skinned, frame.time);
+    this.#draw();
   }
-  timing.listen(null);
-  const archery = await measureArchery({ renderer, studio, avatar, mirror, camera, estimators });
-  const mannequin = await (await fetch('/avatars/mannequin.vrm')).arrayBuffer();
-  const ball = await measureCourt({ renderer, studio, avatar, mirror, camera, estimators, mannequin });
-  const told = (values: Record<Method, number[]>) =>
-    Object.fromEntries(methods.map((name) => [name, quantiles(values[name])])) as Record<Method, Quantiles>;
+}
+
+async function measure(): Promise<PageResult> {
+  const opening = { learned: await openingCost('learned'), paper: await openingCost('paper') };
+  const picture = await openPicture();
+  const timing = createFrameTiming(() => performance.now());
+  const estimators = await openEstimators(timing);
+  const bench = new FrameBench(picture, estimators, timing);
+  await bench.run();
+  const archery = await measureArchery({ ...picture, estimators });
+  const ball = await measureCourt({ ...picture, estimators });
   return {
-    costs: Object.fromEntries(
-      conditions.map((condition) => {
-        const { inFrame, withLater, whole, thread } = measured[condition];
-        return [
-          condition,
-          { inFrameMs: told(inFrame), withLaterMs: told(withLater), frameMs: told(whole), threadMs: told(thread) },
-        ];
-      }),
-    ) as Record<Condition, Costs>,
-    stagesMs: Object.fromEntries(
-      estimatorNames.map((name) => [
-        name,
-        Object.fromEntries(stageNames.map((stage) => [stage, quantiles(stages[name][stage]).p50])),
-      ]),
-    ) as Record<EstimatorName, Record<StageName, number>>,
-    sessionCreateMs: { learned: costs.learned.create, paper: costs.paper.create },
-    firstInferenceMs: { learned: costs.learned.first, paper: costs.paper.first },
+    costs: bench.costs,
+    stagesMs: bench.stagesMs,
+    sessionCreateMs: { learned: opening.learned.create, paper: opening.paper.create },
+    firstInferenceMs: { learned: opening.learned.first, paper: opening.paper.first },
     frames: rounds * blockFrames,
     archery,
     ball,

@@ -13,7 +13,7 @@ export function createSenders(count: number) {
     shift: 2.7 * index,
   }));
   return {
-    skeleton,
+    count,
     packetsAt: (time: number) =>
       senders.map(({ seat, estimator, shift }) => {
         const frame = actorFrame(time + shift, defaultCalibration);

@@ -1,0 +1,113 @@
+import { createBallView } from '../../src/app/ball/ball-view';
+import type { Studio } from '../../src/app/studio/studio';
+import { createRemoteAvatars, type SeenPerson } from '../../src/avatar/remote-avatars';
+import { defaultCalibration } from '../../src/core/body/calibration';
+import { type Skeleton, skeletonFromCalibration } from '../../src/core/body/skeleton';
+import { ballRules } from '../../src/core/games/ball/rules';
+import { composeTransforms, invertTransform, type TrackedPose } from '../../src/core/math/pose';
+import { decodePose } from '../../src/core/protocol/pose-codec';
+import { createRemotePlayers } from '../../src/net/remote-players';
+import { arenaFromCirclePlace } from './circle';
+
+/** What arrived of one seat. */
+export interface ArrivedBytes {
+  readonly seat: number;
+  readonly bytes: Uint8Array;
+}
+
+type Writable<T> = { -readonly [Key in keyof T]: T[Key] };
+
+/** A ball court that stands still, one's own floor at the first of so many places, and the others on theirs. */
+export class Court {
+  readonly #studio: Studio;
+  readonly #view: ReturnType<typeof createBallView>;
+  readonly #others: ReturnType<typeof createRemoteAvatars>;
+  readonly #skeleton: Skeleton = skeletonFromCalibration(defaultCalibration);
+  readonly #seen: readonly Writable<SeenPerson>[];
+  readonly #people: SeenPerson[] = [];
+  readonly #shown: Writable<Parameters<ReturnType<typeof createBallView>['show']>[0]>;
+  #players = createRemotePlayers();
+
+  constructor(studio: Studio, mannequin: ArrayBuffer, places: number) {
+    this.#studio = studio;
+    const floorFromArena = invertTransform(arenaFromCirclePlace(0, places));
+    this.#view = createBallView({ quality: 'low', balls: 20, onCaption: () => undefined });
+    studio.setSurroundings(this.#view.placed(floorFromArena));
+    this.#others = createRemoteAvatars(mannequin, 'mannequin.vrm');
+    studio.scene.add(this.#others.object);
+    const grips = { left: 0, right: 0 };
+    const nowhere = { position: { x: 0, y: 1.6, z: 0 }, orientation: { x: 0, y: 0, z: 0, w: 1 } };
+    const head: TrackedPose = { ...nowhere, tracking: 'tracked' };
+    this.#seen = Array.from({ length: places }, (_, seat) => ({
+      id: seat,
+      calibration: defaultCalibration,
+      palette: 'ember',
+      pose: { head, leftHand: null, rightHand: null, body: null },
+      placement: composeTransforms(floorFromArena, arenaFromCirclePlace(seat, places)),
+      grips,
+      opacity: 1,
+    }));
+    this.#shown = {
+      state: ballRules.start(['a', 'b', 'c'], 1),
+      time: 0,
+      attendants: [null, null, null],
+      me: null,
+      rotate: false,
+      opening: null,
+      aim: null,
+      secondsLeft: 90,
+      pageTime: 0,
+      inRoom: true,
+      acting: true,
+      paused: false,
+      head: nowhere,
+    };
+  }
+
+  /** The others leave. */
+  clear(): void {
+    this.#players = createRemotePlayers();
+  }
+
+  /** Packets of the others, as if sent at this time [s]. */
+  receive(arrived: readonly ArrivedBytes[], time: number): void {
+    for (const { seat, bytes } of arrived) {
+      const packet = decodePose(bytes, this.#skeleton);
+      // A recording may begin anew; the sender's clock goes on.
+      const timeMs = Math.round(time * 1000) & 0xffff;
+      if (packet) this.#players.receive({ seat, packet: { ...packet, timeMs }, arrivedAt: time });
+    }
+  }
+
+  /** Bends the others to what was heard of them. */
+  showOthers(time: number): void {
+    this.#people.length = 0;
+    for (const { seat, pose, grips, opacity } of this.#players.follow(time)) {
+      const person = this.#seen[seat]!;
+      person.pose = pose;
+      person.grips = grips;
+      person.opacity = opacity;
+      this.#people.push(person);
+    }
+    this.#others.show(this.#people, time);
+  }
+
+  /** What stands about. */
+  showCourt(time: number, head: TrackedPose): void {
+    this.#shown.time = time;
+    this.#shown.pageTime = time;
+    this.#shown.head = head;
+    this.#view.show(this.#shown);
+  }
+
+  /** Whether so many others are drawn: bodies are made one after the other when they are first seen. */
+  shows(count: number): boolean {
+    return this.#people.length === count && this.#people.every(({ id }) => this.#others.jointsOf(id) !== null);
+  }
+
+  dispose(): void {
+    this.#others.dispose();
+    this.#view.dispose();
+    this.#studio.setSurroundings(null);
+  }
+}
