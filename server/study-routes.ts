@@ -12,10 +12,11 @@ import {
 import { parseRecording } from '../src/core/tracking/recording';
 import { type Answer, done, HttpError, json } from './http/answer';
 import { type Call, jsonOf, type Route, type Service } from './http/router';
+import { StoreRefusal } from './study-database';
 import { exportName, exportZip } from './study-export';
 import { createStudyGuard, type StudyAccess, type StudyGuard, type StudyGuardOptions } from './study-guard';
 import type { StudySeats } from './study-seats';
-import { StoreRefusal, type StudyStore } from './study-store';
+import type { StudyStore } from './study-store';
 
 export interface StudyRoutesOptions extends StudyGuardOptions {
   /** Signs participants into the rooms of their trials. */

@@ -1,0 +1,84 @@
+import type { Receipt } from '../src/core/study/study-api';
+import type { StudyCommands } from './study-commands';
+import type { StudyDatabase } from './study-database';
+import type { StudyMotion } from './study-motion';
+import type { StudyPlaces } from './study-places';
+import type { StudyPlans } from './study-plans';
+import type { StudyRecords } from './study-records';
+import { newCode } from './study-schema';
+
+interface ReceiptRow extends Omit<Receipt, 'motionFiles'> {
+  readonly motion_files: number;
+}
+
+const receiptOf = ({ number, study, participant, reason, records, motion_files, at }: ReceiptRow): Receipt => ({
+  number,
+  study,
+  participant,
+  reason,
+  records,
+  motionFiles: motion_files,
+  at,
+});
+
+export interface StudyDeletionParts {
+  readonly database: StudyDatabase;
+  readonly plans: StudyPlans;
+  readonly places: StudyPlaces;
+  readonly records: StudyRecords;
+  readonly motion: StudyMotion;
+  readonly commands: StudyCommands;
+}
+
+/** Deletes all that is stored of a participant, and keeps a receipt of it. */
+export class StudyDeletion {
+  readonly #parts: StudyDeletionParts;
+
+  constructor(parts: StudyDeletionParts) {
+    this.#parts = parts;
+  }
+
+  delete(study: string, participant: string, reason: Receipt['reason'], at: number): Receipt {
+    const { database, places, records, motion, commands } = this.#parts;
+    const receipt = database.transaction(() => {
+      const invitation = this.#invitationAfter(study, participant, reason);
+      const recordCount = records.delete(study, participant);
+      const motionFiles = motion.delete(study, participant);
+      commands.delete(study, participant);
+      places.clear(study, participant, invitation, reason === 'withdrawn');
+      return database.getOne<ReceiptRow>(
+        `INSERT INTO receipts (study, participant, reason, records, motion_files, at) VALUES (?, ?, ?, ?, ?, ?)
+         RETURNING *`,
+        ...[study, participant, reason, recordCount, motionFiles, at],
+      );
+    });
+    database.forgetDeleted();
+    return receiptOf(receipt);
+  }
+
+  /** Deletes everything of the participant who has this code; null: none has. */
+  withdraw(study: string, code: string, at: number): Receipt | null {
+    const participant = this.#parts.places.ownerOf(study, code);
+    return participant === null ? null : this.delete(study, participant, 'withdrawn', at);
+  }
+
+  /** Deletes what is past its retention date. */
+  deleteExpired(now: number): readonly Receipt[] {
+    return this.#parts.places
+      .expired(now)
+      .map(({ study, participant }) => this.delete(study, participant, 'retention', now));
+  }
+
+  receipts(study: string): readonly Receipt[] {
+    const rows = this.#parts.database.all<ReceiptRow>('SELECT * FROM receipts WHERE study = ? ORDER BY number', study);
+    return rows.map(receiptOf);
+  }
+
+  /** A participant who withdrew stays out; a place that the experimenter cleared may be taken anew, by a new invitation. */
+  #invitationAfter(study: string, participant: string, reason: Receipt['reason']): string | null {
+    const { plans, places } = this.#parts;
+    const { invitation } = places.get(study, participant);
+    if (reason !== 'experimenter') return null;
+    return plans.get(study).plan.entry === 'open' ? invitation : newCode();
+  }
+}
