@@ -5,16 +5,6 @@ import { dismiss, type Guest } from './guest';
 import type { HostedRooms } from './hosted-rooms';
 import type { RelayMetrics } from './relay-metrics';
 
-/** What guests say, on its way to their rooms. */
-export interface GuestMessages {
-  pose(guest: Guest, bytes: unknown): void;
-  message(guest: Guest, value: unknown): void;
-  /** The connection has ended. */
-  left(guest: Guest): void;
-  /** Ends the connection of a guest that harms others, at once. */
-  kick(guest: Guest, reason: 'misbehaved' | 'slow', because: string): void;
-}
-
 export interface GuestMessagesOptions {
   readonly rooms: HostedRooms;
   readonly log: Logger;
@@ -33,50 +23,75 @@ const isOtherVersion = (value: unknown): boolean => {
   return type === 'join' && typeof version === 'number' && version !== protocolVersion;
 };
 
-/** Lets through what is well formed and within its budget, and sends away who keeps sending anything else. */
-export function createGuestMessages({ rooms, log, metrics, now }: GuestMessagesOptions): GuestMessages {
-  const { counts } = metrics;
+/**
+ * What guests say, on its way to their rooms: what is well formed and within its budget is passed on, and a guest who keeps sending
+ * anything else is disconnected.
+ */
+export class GuestMessages {
+  readonly #options: GuestMessagesOptions;
 
-  function left({ id, pass }: Guest): void {
-    const hosted = rooms.get(pass.room);
-    hosted?.guests.delete(id);
-    hosted?.room.disconnect(id, now());
+  constructor(options: GuestMessagesOptions) {
+    this.#options = options;
   }
 
-  function kick(guest: Guest, reason: 'misbehaved' | 'slow', because: string): void {
+  onPose(guest: Guest, bytes: unknown): void {
+    const { rooms, metrics, now } = this.#options;
+    const { counts } = metrics;
+    counts.posesIn += 1;
     if (guest.ended) return;
-    metrics.kicked(because);
-    log.warn({ room: guest.pass.room, client: guest.id, because }, 'kicked');
-    left(guest);
+    if (!(bytes instanceof Uint8Array)) {
+      this.#countBad(guest, 'pose');
+      return;
+    }
+    counts.bytesIn += bytes.length;
+    if (!this.#isWithin(guest, guest.poses)) {
+      counts.posesIgnored += 1;
+      return;
+    }
+    const result = rooms.get(guest.pass.room)?.room.onPose(guest.id, bytes, now());
+    if (result === 'bad') this.#countBad(guest, 'pose');
+    if (result !== 'taken') counts.posesIgnored += 1;
+  }
+
+  onMessage(guest: Guest, value: unknown): void {
+    const { rooms, metrics, log, now } = this.#options;
+    metrics.counts.messagesIn += 1;
+    if (guest.ended || !this.#isWithin(guest, guest.events)) return;
+    const message = clientMessageFrom(value);
+    if (message?.type === 'join') this.#join(guest, message);
+    else if (message) {
+      const result = rooms.get(guest.pass.room)?.room.onMessage(guest.id, message, now());
+      if (result === 'bad') this.#countBad(guest, message.type);
+    } else if (isOtherVersion(value)) {
+      log.info({ room: guest.pass.room, client: guest.id }, 'page of another version');
+      dismiss(guest, 'old-page');
+    } else this.#countBad(guest, 'message');
+  }
+
+  /** The connection has ended. */
+  onEnd({ id, pass }: Guest): void {
+    const hosted = this.#options.rooms.get(pass.room);
+    hosted?.guests.delete(id);
+    hosted?.room.disconnect(id, this.#options.now());
+  }
+
+  /** Ends the connection of a guest that harms others, at once. */
+  kick(guest: Guest, reason: 'misbehaved' | 'slow', because: string): void {
+    if (guest.ended) return;
+    this.#options.metrics.kicked(because);
+    this.#options.log.warn({ room: guest.pass.room, client: guest.id, because }, 'kicked');
+    this.onEnd(guest);
     dismiss(guest, reason);
   }
 
-  function bad(guest: Guest, why: string): void {
-    guest.badMessages += 1;
-    log.info({ room: guest.pass.room, client: guest.id, why }, 'bad message');
-    if (guest.badMessages >= badMessagesAllowed) kick(guest, 'misbehaved', 'bad-messages');
-  }
-
-  /** Whether this message is still within what a client may send. */
-  function within(guest: Guest, budget: Budget): boolean {
-    const at = now();
-    if (!guest.flood.spend(at)) {
-      kick(guest, 'misbehaved', 'flood');
-      return false;
-    }
-    if (budget.spend(at)) return true;
-    if (budget.overdrawn > mostOverdrawn) kick(guest, 'misbehaved', 'budget');
-    return false;
-  }
-
-  function join(guest: Guest, { type: _type, version: _version, ...asked }: ClientMessage & { type: 'join' }): void {
+  #join(guest: Guest, { type: _type, version: _version, ...asked }: ClientMessage & { type: 'join' }): void {
     if (guest.joined) {
-      bad(guest, 'second join');
+      this.#countBad(guest, 'second join');
       return;
     }
-    const hosted = rooms.enter(guest.pass);
+    const hosted = this.#options.rooms.enter(guest.pass);
     if (!hosted) {
-      kick(guest, 'misbehaved', 'rooms-full');
+      this.kick(guest, 'misbehaved', 'rooms-full');
       return;
     }
     guest.joined = true;
@@ -86,39 +101,24 @@ export function createGuestMessages({ rooms, log, metrics, now }: GuestMessagesO
     const { identity, assigned } = guest.pass;
     // Where places are assigned, what the page asks for is not what it gets.
     const joining = assigned ? { ...asked, ...assigned, spectate: assigned.seat === null, bot: false } : asked;
-    hosted.room.join(guest.id, identity, joining, now());
+    hosted.room.join(guest.id, identity, joining, this.#options.now());
   }
 
-  return {
-    left,
-    kick,
-    pose(guest, bytes) {
-      counts.posesIn += 1;
-      if (guest.ended) return;
-      if (!(bytes instanceof Uint8Array)) {
-        bad(guest, 'pose');
-        return;
-      }
-      counts.bytesIn += bytes.length;
-      if (!within(guest, guest.poses)) {
-        counts.posesIgnored += 1;
-        return;
-      }
-      const result = rooms.get(guest.pass.room)?.room.onPose(guest.id, bytes, now());
-      if (result === 'bad') bad(guest, 'pose');
-      if (result !== 'taken') counts.posesIgnored += 1;
-    },
-    message(guest, value) {
-      counts.messagesIn += 1;
-      if (guest.ended || !within(guest, guest.events)) return;
-      const message = clientMessageFrom(value);
-      if (message?.type === 'join') join(guest, message);
-      else if (message) {
-        if (rooms.get(guest.pass.room)?.room.onMessage(guest.id, message, now()) === 'bad') bad(guest, 'action');
-      } else if (isOtherVersion(value)) {
-        log.info({ room: guest.pass.room, client: guest.id }, 'page of another version');
-        dismiss(guest, 'old-page');
-      } else bad(guest, 'message');
-    },
-  };
+  /** Whether this message is still within what a client may send. */
+  #isWithin(guest: Guest, budget: Budget): boolean {
+    const at = this.#options.now();
+    if (!guest.flood.spend(at)) {
+      this.kick(guest, 'misbehaved', 'flood');
+      return false;
+    }
+    if (budget.spend(at)) return true;
+    if (budget.overdrawn > mostOverdrawn) this.kick(guest, 'misbehaved', 'budget');
+    return false;
+  }
+
+  #countBad(guest: Guest, why: string): void {
+    guest.badMessages += 1;
+    this.#options.log.info({ room: guest.pass.room, client: guest.id, why }, 'bad message');
+    if (guest.badMessages >= badMessagesAllowed) this.kick(guest, 'misbehaved', 'bad-messages');
+  }
 }

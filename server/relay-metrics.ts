@@ -41,60 +41,73 @@ export interface RelayCensus extends HostCensus {
   readonly refusedConnections: number;
 }
 
+const countHelp = {
+  posesIn: ['poses_in', 'Pose packets received.'],
+  posesIgnored: ['poses_ignored', 'Pose packets that were old, unbelievable, or beyond the budget.'],
+  framesOut: ['frames_out', 'Frames of poses sent, one for each client.'],
+  framesDropped: ['frames_dropped', 'Frames of poses that a client was not ready for.'],
+  messagesIn: ['messages_in', 'Control messages received.'],
+  bytesIn: ['pose_bytes_in', 'Bytes of pose packets received.'],
+  bytesOut: ['frame_bytes_out', 'Bytes of frames of poses sent.'],
+} as const satisfies Record<keyof RelayCounts, readonly [name: string, help: string]>;
+
+const gaugeHelp = {
+  rooms: 'Rooms in this process.',
+  players: 'People on seats, held seats included.',
+  bots: 'Bots on seats.',
+  spectators: 'People who watch.',
+  sockets: 'WebSockets that are open, silent ones included.',
+  connections: 'Connections of any kind that are open, silent ones included.',
+} as const satisfies Partial<Record<keyof RelayCensus, string>>;
+
+const keysOf = <T extends object>(of: T): (keyof T)[] => Object.keys(of) as (keyof T)[];
+
+/** A counter that is kept elsewhere and read when the metrics are. */
+function addCounter(registry: Registry, name: string, help: string, count: () => number): void {
+  new Counter({
+    name: `threepoint_${name}_total`,
+    help,
+    registers: [registry],
+    collect() {
+      this.reset();
+      this.inc(count());
+    },
+  });
+}
+
+function addGauge(registry: Registry, name: string, help: string, value: () => number): void {
+  new Gauge({
+    name: `threepoint_${name}`,
+    help,
+    registers: [registry],
+    collect() {
+      this.set(value());
+    },
+  });
+}
+
+const zeroCounts = (): RelayCounts => ({
+  posesIn: 0,
+  posesIgnored: 0,
+  framesOut: 0,
+  framesDropped: 0,
+  messagesIn: 0,
+  bytesIn: 0,
+  bytesOut: 0,
+});
+
 export function createRelayMetrics(census: () => RelayCensus): RelayMetrics {
   const registry = new Registry();
   collectDefaultMetrics({ register: registry, prefix: 'threepoint_' });
   const registers = [registry];
-  const counts: RelayCounts = {
-    posesIn: 0,
-    posesIgnored: 0,
-    framesOut: 0,
-    framesDropped: 0,
-    messagesIn: 0,
-    bytesIn: 0,
-    bytesOut: 0,
-  };
-  const counter = (name: string, help: string, key: keyof RelayCounts) =>
-    new Counter({
-      name: `threepoint_${name}_total`,
-      help,
-      registers,
-      collect() {
-        this.reset();
-        this.inc(counts[key]);
-      },
-    });
-  counter('poses_in', 'Pose packets received.', 'posesIn');
-  counter('poses_ignored', 'Pose packets that were old, unbelievable, or beyond the budget.', 'posesIgnored');
-  counter('frames_out', 'Frames of poses sent, one for each client.', 'framesOut');
-  counter('frames_dropped', 'Frames of poses that a client was not ready for.', 'framesDropped');
-  counter('messages_in', 'Control messages received.', 'messagesIn');
-  counter('pose_bytes_in', 'Bytes of pose packets received.', 'bytesIn');
-  counter('frame_bytes_out', 'Bytes of frames of poses sent.', 'bytesOut');
-  const gauge = (name: keyof RelayCensus, help: string) =>
-    new Gauge({
-      name: `threepoint_${name}`,
-      help,
-      registers,
-      collect() {
-        this.set(census()[name]);
-      },
-    });
-  gauge('rooms', 'Rooms in this process.');
-  gauge('players', 'People on seats, held seats included.');
-  gauge('bots', 'Bots on seats.');
-  gauge('spectators', 'People who watch.');
-  gauge('sockets', 'WebSockets that are open, silent ones included.');
-  gauge('connections', 'Connections of any kind that are open, silent ones included.');
-  new Counter({
-    name: 'threepoint_connections_refused_total',
-    help: 'Connections refused because their address had too many.',
-    registers,
-    collect() {
-      this.reset();
-      this.inc(census().refusedConnections);
-    },
-  });
+  const counts = zeroCounts();
+  for (const key of keysOf(countHelp)) {
+    const [name, help] = countHelp[key];
+    addCounter(registry, name, help, () => counts[key]);
+  }
+  for (const key of keysOf(gaugeHelp)) addGauge(registry, key, gaugeHelp[key], () => census()[key]);
+  const refusedHelp = 'Connections refused because their address had too many.';
+  addCounter(registry, 'connections_refused', refusedHelp, () => census().refusedConnections);
   const kicks = new Counter({
     name: 'threepoint_kicks_total',
     help: 'Clients that were disconnected, by reason.',

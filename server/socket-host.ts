@@ -5,7 +5,7 @@ import { messageEvent, poseEvent } from '../src/core/protocol/small-frames';
 import type { HostedGame } from '../src/core/room/match-policy';
 import type { Room } from '../src/core/room/room';
 import { createGuest, dismiss, type Guest, isSlow } from './guest';
-import { createGuestMessages } from './guest-messages';
+import { GuestMessages } from './guest-messages';
 import { createHostedRooms, type RoomListing } from './hosted-rooms';
 import type { RelayConfiguration } from './relay-configuration';
 import type { HostCensus, RelayMetrics } from './relay-metrics';
@@ -38,7 +38,7 @@ export interface SocketHost {
   close(): Promise<void>;
 }
 
-/** Who has not joined a room this long after connecting is disconnected [s]. */
+/** A guest who has not joined a room this long after connecting is disconnected [s]. */
 const joinPatience = 5;
 /** Connections a minute that one person may make. */
 const connectsPerMinute = 30;
@@ -88,21 +88,21 @@ export function createSocketHost({ io, close }: RelayTransport, options: SocketH
       io.to(name).emit(messageEvent, message);
     },
   });
-  const heard = createGuestMessages({ rooms, log, metrics, now });
+  const messages = new GuestMessages({ rooms, log, metrics, now });
 
   io.use(createGate(options));
   io.on('connection', (socket) => {
     const guest = createGuest(socket, configuration, now());
     guests.add(guest);
-    socket.on(poseEvent, (bytes: unknown) => heard.pose(guest, bytes));
-    socket.on(messageEvent, (value: unknown) => heard.message(guest, value));
+    socket.on(poseEvent, (bytes: unknown) => messages.onPose(guest, bytes));
+    socket.on(messageEvent, (value: unknown) => messages.onMessage(guest, value));
     socket.onAny((event: string) => {
-      if (event !== poseEvent && event !== messageEvent) heard.kick(guest, 'misbehaved', 'unknown-event');
+      if (event !== poseEvent && event !== messageEvent) messages.kick(guest, 'misbehaved', 'unknown-event');
     });
     socket.on('disconnect', (reason) => {
       guest.ended = true;
       guests.delete(guest);
-      heard.left(guest);
+      messages.onEnd(guest);
       log.debug({ room: guest.pass.room, client: guest.id, reason }, 'disconnected');
     });
   });
@@ -115,9 +115,9 @@ export function createSocketHost({ io, close }: RelayTransport, options: SocketH
       swept = started;
       for (const guest of guests) {
         if (guest.ended) continue;
-        if (isSlow(guest, started)) heard.kick(guest, 'slow', 'slow');
+        if (isSlow(guest, started)) messages.kick(guest, 'slow', 'slow');
         else if (!guest.joined && started - guest.connectedAt > joinPatience)
-          heard.kick(guest, 'misbehaved', 'no-join');
+          messages.kick(guest, 'misbehaved', 'no-join');
       }
       rooms.sweep(started);
     }
