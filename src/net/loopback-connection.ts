@@ -1,11 +1,11 @@
 import type { BallAction, BallOptions } from '../core/games/ball/ball-state';
 import { type BallGame, BallPolicy } from '../core/match-policies/ball-policy';
 import type { BallRoomMessage } from '../core/protocol/ball-messages';
-import type { ClientMessage } from '../core/protocol/messages';
+import type { ClientMessage, Farewell } from '../core/protocol/messages';
 import { Room, type RoomOptions } from '../core/room/room';
 import type { ClientId, RoomRefusal } from '../core/room/room-outlet';
-import type { Connection, ConnectionStatus, Visitor } from './connection';
-import { createRoomSession, type RoomSession } from './room-session';
+import type { Connection, ConnectionStatus, ConnectionUpdate, Visitor } from './connection';
+import { RoomSession } from './room-session';
 
 /** A room of the ball game in this page: for a player alone, with bots if they like, and for tests. */
 export interface LoopbackHost {
@@ -21,91 +21,116 @@ export interface LoopbackOptions extends Partial<RoomOptions> {
   stepped?(actions: readonly BallAction[]): void;
 }
 
-interface Guest {
-  readonly session: RoomSession;
-  end(reason: ConnectionStatus['reason']): void;
+/** The Room is the one of the server, and as it is this page's own it may be paused. It ticks when its first guest of a frame asks for news. */
+export function createLoopbackHost(options: LoopbackOptions = {}): LoopbackHost {
+  const shared = new LoopbackRoom(options);
+  return {
+    room: shared.room,
+    connect: (visitor, now) => shared.connect(visitor, now),
+  };
 }
 
-/** The Room is the one of the server, and as it is this page's own it may be paused. It ticks when its first guest of a frame asks for news. */
-export function createLoopbackHost({
-  refused,
-  stepped,
-  seed = 0,
-  ball,
-  ...options
-}: LoopbackOptions = {}): LoopbackHost {
-  const guests = new Map<ClientId, Guest>();
-  let now = 0;
-  let ticked = Number.NEGATIVE_INFINITY;
-  let made = 0;
+class LoopbackRoom {
+  readonly room: Room<BallGame>;
+  readonly #guests = new Map<ClientId, LoopbackConnection>();
+  #now = 0;
+  #ticked = Number.NEGATIVE_INFINITY;
+  #made = 0;
 
-  const room = new Room<BallGame>(
-    new BallPolicy({ ...ball, seed }),
-    { id: 'here', epoch: 'here', pausable: true, ...options },
-    {
-      send: (to, message) => guests.get(to)?.session.onMessage(message, now),
-      broadcast(message: BallRoomMessage) {
-        for (const { session } of guests.values()) session.onMessage(message, now);
+  constructor({ refused, stepped, seed = 0, ball, ...options }: LoopbackOptions) {
+    this.room = new Room<BallGame>(
+      new BallPolicy({ ...ball, seed }),
+      { id: 'here', epoch: 'here', pausable: true, ...options },
+      {
+        send: (to, message) => this.#guests.get(to)?.hear(message, this.#now),
+        broadcast: (message) => {
+          for (const guest of this.#guests.values()) guest.hear(message, this.#now);
+        },
+        frame: (bytes) => {
+          for (const guest of this.#guests.values()) guest.see(bytes, this.#now);
+        },
+        drop: (client, reason) => {
+          this.#guests.get(client)?.end(reason);
+          this.#guests.delete(client);
+        },
+        refused: (refusal) => refused?.(refusal),
+        ...(stepped && { stepped }),
       },
-      frame(bytes) {
-        for (const { session } of guests.values()) session.onFrame(bytes, now);
-      },
-      drop(client, reason) {
-        guests.get(client)?.end(reason);
-        guests.delete(client);
-      },
-      refused: (refusal) => refused?.(refusal),
-      ...(stepped && { stepped }),
-    },
-  );
+    );
+  }
 
-  return {
-    room,
-    connect(visitor, time) {
-      now = Math.max(now, time);
-      made += 1;
-      const client = `guest ${made}`;
-      let status: ConnectionStatus = { phase: 'joined', attempt: 0, retryIn: null, reason: null };
-      const here = (): boolean => status.phase === 'joined';
-      const session = createRoomSession(
-        visitor,
-        {
-          message(message: ClientMessage) {
-            if (here() && message.type !== 'join') room.onMessage(client, message, now);
-          },
-          pose(bytes) {
-            if (here()) room.onPose(client, bytes, now);
-          },
-        },
-        true,
-      );
-      guests.set(client, {
-        session,
-        end(reason) {
-          status = { phase: 'ended', attempt: 0, retryIn: null, reason };
-        },
-      });
-      room.join(client, client, session.joining(), now);
-      return {
-        ...session,
-        get status() {
-          return status;
-        },
-        get room() {
-          return session.room;
-        },
-        update(frameTime) {
-          now = Math.max(now, frameTime);
-          if (now > ticked) {
-            ticked = now;
-            room.tick(now);
-          }
-          return session.update(now, here());
-        },
-        leave() {
-          if (here()) room.onMessage(client, { type: 'leave' }, now);
-        },
-      };
-    },
-  };
+  get now(): number {
+    return this.#now;
+  }
+
+  connect(visitor: Visitor, time: number): Connection {
+    this.#now = Math.max(this.#now, time);
+    this.#made += 1;
+    const client = `guest ${this.#made}`;
+    const guest = new LoopbackConnection(this, client, visitor);
+    this.#guests.set(client, guest);
+    guest.join();
+    return guest;
+  }
+
+  /** The page's clock has come to this time [s]. */
+  advance(time: number): void {
+    this.#now = Math.max(this.#now, time);
+    if (this.#now <= this.#ticked) return;
+    this.#ticked = this.#now;
+    this.room.tick(this.#now);
+  }
+}
+
+class LoopbackConnection extends RoomSession {
+  readonly #shared: LoopbackRoom;
+  readonly #client: ClientId;
+  #status: ConnectionStatus = { phase: 'joined', attempt: 0, retryIn: null, reason: null };
+
+  constructor(shared: LoopbackRoom, client: ClientId, visitor: Visitor) {
+    super(visitor, true);
+    this.#shared = shared;
+    this.#client = client;
+  }
+
+  get status(): ConnectionStatus {
+    return this.#status;
+  }
+
+  join(): void {
+    this.#shared.room.join(this.#client, this.#client, this.joining(), this.#shared.now);
+  }
+
+  hear(message: BallRoomMessage, now: number): void {
+    this.onMessage(message, now);
+  }
+
+  see(frame: Uint8Array, now: number): void {
+    this.onFrame(frame, now);
+  }
+
+  end(reason: Farewell): void {
+    this.#status = { phase: 'ended', attempt: 0, retryIn: null, reason };
+  }
+
+  update(time: number): ConnectionUpdate {
+    this.#shared.advance(time);
+    return this.takeUpdate(this.#shared.now, this.#isHere);
+  }
+
+  leave(): void {
+    this.transmit({ type: 'leave' });
+  }
+
+  protected transmit(message: ClientMessage): void {
+    if (this.#isHere && message.type !== 'join') this.#shared.room.onMessage(this.#client, message, this.#shared.now);
+  }
+
+  protected transmitPose(bytes: Uint8Array): void {
+    if (this.#isHere) this.#shared.room.onPose(this.#client, bytes, this.#shared.now);
+  }
+
+  get #isHere(): boolean {
+    return this.#status.phase === 'joined';
+  }
 }

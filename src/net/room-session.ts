@@ -1,43 +1,26 @@
 import type { Calibration } from '../core/body/calibration';
 import { type Skeleton, skeletonFromCalibration } from '../core/body/skeleton';
-import type { BallDeed, BallEvent, BallState } from '../core/games/ball/ball-state';
-import { answersDeed, followBallEvent, predictDeed, withMatchTime } from '../core/games/ball/replica';
-import { arenaFromSeatFloor } from '../core/games/ball/stations';
-import type { BallRoomMessage, SentBallGame } from '../core/protocol/ball-messages';
-import { unpackBall } from '../core/protocol/ball-snapshot';
-import {
-  type ClientMessage,
-  type Joining,
-  type SeatInfo,
-  unpackSeatInfo,
-  type Welcome,
-} from '../core/protocol/messages';
+import type { BallDeed, BallEvent } from '../core/games/ball/ball-state';
+import type { Transform } from '../core/math/pose';
+import type { BallRoomMessage } from '../core/protocol/ball-messages';
+import type { ClientMessage, Joining } from '../core/protocol/messages';
 import { decodePose, encodePose } from '../core/protocol/pose-codec';
 import { decodeFrame } from '../core/protocol/pose-frame';
 import { createClockSync } from './clock-sync';
-import type { ArrivedPose, Connection, ConnectionUpdate, RoomView, ShownPose, Visitor } from './connection';
-
-/** The way to the Room. */
-export interface Wire {
-  message(message: ClientMessage): void;
-  pose(bytes: Uint8Array): void;
-}
-
-/** A client's half of the protocol, whatever carries it. */
-export interface RoomSession extends Omit<Connection, 'status' | 'leave' | 'update'> {
-  /** What to say first on every new connection. */
-  joining(): Joining;
-  onMessage(message: BallRoomMessage, now: number): void;
-  onFrame(frame: Uint8Array, now: number): void;
-  /** This page's clock left out `seconds` of a pause that ended at `now`; the Room's went on. */
-  paused(seconds: number, now: number): void;
-  /** What came since the last call; asks for the time when that is due. */
-  update(now: number, connected: boolean): ConnectionUpdate;
-}
+import type {
+  ArrivedPose,
+  Connection,
+  ConnectionStatus,
+  ConnectionUpdate,
+  RoomView,
+  ShownPose,
+  Visitor,
+} from './connection';
+import { RoomReplica } from './room-replica';
 
 const poseSeconds = 1 / 30;
 
-/** The last frames while nobody asks (a hidden page) are not kept longer than this [packets]. */
+/** The last frames while no one asks (a hidden page) are not kept longer than this [packets]. */
 const mostWaiting = 256;
 
 const toMillimetres = ({ eyeHeight, armSpan }: Calibration): Calibration => ({
@@ -45,198 +28,188 @@ const toMillimetres = ({ eyeHeight, armSpan }: Calibration): Calibration => ({
   armSpan: Math.round(armSpan * 1000) / 1000,
 });
 
-/** Mutable half of a RoomView. */
-interface Known extends Pick<Welcome<SentBallGame>, 'room' | 'epoch' | 'seat' | 'spectators' | 'rotate'> {
-  seats: (SeatInfo | null)[];
-  matchStart: number;
-  /** Second of the match at which its clock stands; null: it runs. */
-  paused: number | null;
-}
-
-/** `knowsClock`: the Room's clock is this page's own. */
-export function createRoomSession(visitor: Visitor, wire: Wire, knowsClock = false): RoomSession {
-  const clock = createClockSync();
-  let calibration = toMillimetres(visitor.calibration);
-  let skeleton = skeletonFromCalibration(calibration);
-  let skeletons: (Skeleton | null)[] = [];
-  let known: Known | null = null;
-  /** What the Room has confirmed. */
-  let confirmed: BallState | null = null;
-  let pending: BallDeed[] = [];
-  let wishes: { spectate: boolean; seat: number | null } = {
-    spectate: visitor.spectate ?? false,
-    seat: visitor.seat ?? null,
-  };
+/** A client's half of the protocol. Each kind of connection carries it over a wire of its own, in `transmit` and `transmitPose`. */
+export abstract class RoomSession implements Connection {
+  readonly #visitor: Visitor;
+  /** The Room's clock is this page's own. */
+  readonly #knowsClock: boolean;
+  readonly #clock = createClockSync();
+  readonly #replica = new RoomReplica();
+  #calibration: Calibration;
+  #skeleton: Skeleton;
+  #wishes: { spectate: boolean; seat: number | null };
   /** Whether the clock is to stand; null: never asked for. */
-  let pauseWish: boolean | null = null;
-  let voided = 0;
-  let now = 0;
-  let nextPose = Number.NEGATIVE_INFINITY;
-  let events: BallEvent[] = [];
-  let poses: ArrivedPose[] = [];
-  let news: ConnectionUpdate['news'][number][] = [];
-  let view: RoomView | null = null;
+  #pauseWish: boolean | null = null;
+  #now = 0;
+  #nextPose = Number.NEGATIVE_INFINITY;
+  #events: BallEvent[] = [];
+  #poses: ArrivedPose[] = [];
+  #news: ConnectionUpdate['news'][number][] = [];
+  #view: RoomView | null = null;
 
-  const ahead = (): number => (knowsClock ? 0 : clock.ahead);
-  const matchAhead = (): number => {
-    if (!known) return 0;
-    return known.paused === null ? ahead() - known.matchStart : known.paused - now;
-  };
+  constructor(visitor: Visitor, knowsClock: boolean) {
+    this.#visitor = visitor;
+    this.#knowsClock = knowsClock;
+    this.#calibration = toMillimetres(visitor.calibration);
+    this.#skeleton = skeletonFromCalibration(this.#calibration);
+    this.#wishes = { spectate: visitor.spectate ?? false, seat: visitor.seat ?? null };
+  }
 
-  const predicted = (): BallState | null => {
-    const seat = known?.seat ?? null;
-    if (!confirmed) return null;
-    const state = withMatchTime(confirmed, now + matchAhead());
-    return seat === null ? state : pending.reduce((at, deed) => predictDeed(at, seat, deed), state);
-  };
+  abstract get status(): ConnectionStatus;
+  abstract update(time: number): ConnectionUpdate;
+  abstract leave(): void;
+  /** To the Room, in order; nothing while there is no connection. */
+  protected abstract transmit(message: ClientMessage): void;
+  protected abstract transmitPose(bytes: Uint8Array): void;
 
-  function setSeatInfo(seat: number, info: SeatInfo | null): void {
-    if (!known || seat >= known.seats.length) return;
-    const before = known.seats[seat];
-    known.seats = known.seats.map((other, index) => (index === seat ? info : other));
-    if (
-      !info ||
-      before?.calibration.eyeHeight !== info.calibration.eyeHeight ||
-      before.calibration.armSpan !== info.calibration.armSpan
-    ) {
-      skeletons[seat] = info && skeletonFromCalibration(info.calibration);
+  get room(): RoomView | null {
+    const { known } = this.#replica;
+    if (!known) return null;
+    this.#view ??= {
+      id: known.room,
+      seats: known.seats,
+      mySeat: known.seat,
+      spectators: known.spectators,
+      rotate: known.rotate,
+      match: this.#replica.predicted(this.#now + this.#matchAhead),
+      delay: this.#knowsClock ? null : this.#clock.delayAt(this.#now),
+      matchAhead: this.#matchAhead,
+      paused: known.paused !== null,
+      voided: this.#replica.voided,
+    };
+    return this.#view;
+  }
+
+  sendPose(time: number, shown: ShownPose): void {
+    if (this.#replica.mySeat === null || (time < this.#nextPose && !shown.jump)) return;
+    // Frames come at their own rate: on average thirty packets a second.
+    this.#nextPose = Math.max(this.#nextPose + poseSeconds, time + poseSeconds / 2);
+    const timeMs = Math.round((time + this.#ahead) * 1000) & 0xffff;
+    const bytes = encodePose({ ...shown, timeMs }, this.#skeleton);
+    if (bytes) this.transmitPose(bytes);
+  }
+
+  act(action: BallDeed): void {
+    if (!this.#replica.expect(action)) return;
+    this.#view = null;
+    this.transmit({ type: 'action', action });
+  }
+
+  ready(ready: boolean): void {
+    this.transmit({ type: 'ready', ready });
+  }
+
+  rotate(rotate: boolean): void {
+    this.transmit({ type: 'rotate', rotate });
+  }
+
+  pause(pause: boolean): void {
+    this.#pauseWish = pause;
+    if (this.#replica.mySeat !== null) this.transmit({ type: 'pause', pause });
+  }
+
+  away(away: boolean): void {
+    this.transmit({ type: 'away', away });
+  }
+
+  sit(seat: number | null): void {
+    this.transmit({ type: 'sit', seat });
+  }
+
+  calibrate(calibration: Calibration): void {
+    this.#calibration = toMillimetres(calibration);
+    this.#skeleton = skeletonFromCalibration(this.#calibration);
+    if (this.#replica.known) this.transmit({ type: 'calibration', calibration: this.#calibration });
+  }
+
+  arenaFromFloor(seat: number): Transform<'arena', 'floor'> {
+    return this.#replica.arenaFromFloor(seat);
+  }
+
+  /** What to say first on every new connection. */
+  protected joining(): Joining {
+    const { name, bot = false } = this.#visitor;
+    return { name, calibration: this.#calibration, bot, ...this.#wishes };
+  }
+
+  /** Takes a message of the Room in, heard at this time of the page's clock [s]. */
+  protected onMessage(message: BallRoomMessage, at: number): void {
+    this.#now = Math.max(this.#now, at);
+    this.#view = null;
+    switch (message.type) {
+      case 'pong':
+        this.#clock.hear(message.sent, message.time, at);
+        return;
+      case 'welcome':
+        if (this.#replica.onWelcome(message)) this.#news.push('voided');
+        this.#news.push('welcome');
+        // A player who returns to a server that has forgotten them asks for the same seat.
+        if (message.seat !== null) this.#wishes = { spectate: false, seat: message.seat };
+        // The room may have forgotten the wish, or have been told otherwise before the connection was lost.
+        if (this.#pauseWish !== null && message.seat !== null) this.transmit({ type: 'pause', pause: this.#pauseWish });
+        return;
+      default:
+        if (this.#replica.onChange(message)) this.#afterChange(message);
     }
   }
 
-  function welcomed(message: Welcome<SentBallGame>): void {
-    const { room, epoch, seat, spectators, rotate, matchStart, paused } = message;
-    const forgotten = known !== null && known.epoch !== epoch && confirmed?.phase === 'running';
-    const seats = message.seats.map(unpackSeatInfo);
-    known = { room, epoch, seat, spectators, rotate, seats, matchStart, paused };
-    skeletons = seats.map((info) => info && skeletonFromCalibration(info.calibration));
-    confirmed = unpackBall(message.match);
-    pending = [];
-    // Who returns to a server that has forgotten them asks for the same seat.
-    if (seat !== null) wishes = { spectate: false, seat };
-    if (forgotten) {
-      voided += 1;
-      news.push('voided');
+  /** Takes a frame of poses in, heard at this time of the page's clock [s]. */
+  protected onFrame(frame: Uint8Array, arrivedAt: number): void {
+    // A bot looks at no one: it plays by what the match says.
+    if (this.#visitor.bot) return;
+    for (const { seat, bytes } of decodeFrame(frame) ?? []) {
+      const skeleton = this.#replica.skeletonOf(seat);
+      if (!skeleton || seat === this.#replica.mySeat) continue;
+      const packet = decodePose(bytes, skeleton);
+      if (packet) this.#poses.push({ seat, packet, arrivedAt });
     }
-    news.push('welcome');
-    // The room may have forgotten it, or have been told otherwise before the connection was lost.
-    if (pauseWish !== null && seat !== null) wire.message({ type: 'pause', pause: pauseWish });
+    if (this.#poses.length > mostWaiting) this.#poses = this.#poses.slice(-mostWaiting);
   }
 
-  function onMessage(message: BallRoomMessage, at: number): void {
-    now = Math.max(now, at);
-    view = null;
-    if (message.type === 'welcome') welcomed(message);
-    else if (message.type === 'pong') clock.hear(message.sent, message.time, at);
-    else if (known) onChange(known, message);
+  /** This page's clock left out `seconds` of a pause that ended at `now`; the Room's went on. */
+  protected leaveOut(seconds: number, now: number): void {
+    this.#clock.paused(seconds, now);
   }
 
-  function onChange(room: Known, message: Exclude<BallRoomMessage, { type: 'welcome' | 'pong' }>): void {
+  /** What came since the last call; asks for the Room's time when that is due. */
+  protected takeUpdate(time: number, connected: boolean): ConnectionUpdate {
+    this.#now = time;
+    this.#view = null;
+    if (connected && !this.#knowsClock && this.#clock.due(time)) this.transmit({ type: 'ping', sent: time });
+    const since = { events: this.#events, poses: this.#poses, news: this.#news };
+    this.#events = [];
+    this.#poses = [];
+    this.#news = [];
+    return since;
+  }
+
+  #afterChange(message: BallRoomMessage): void {
     switch (message.type) {
       case 'seat':
-        setSeatInfo(message.seat, unpackSeatInfo(message.info));
-        news.push('seats');
+        this.#news.push('seats');
         return;
       case 'seated':
-        known = { ...room, seat: message.seat };
-        wishes = { spectate: message.seat === null, seat: message.seat };
-        pending = [];
-        news.push('seats');
-        if (pauseWish && message.seat !== null) wire.message({ type: 'pause', pause: true });
-        return;
-      case 'about':
-        known = { ...room, spectators: message.spectators, rotate: message.rotate };
-        return;
-      case 'paused':
-        known = { ...room, matchStart: message.matchStart, paused: message.at };
-        return;
-      case 'match-start':
-        known = { ...room, matchStart: message.matchStart };
+        this.#wishes = { spectate: message.seat === null, seat: message.seat };
+        this.#news.push('seats');
+        if (this.#pauseWish && message.seat !== null) this.transmit({ type: 'pause', pause: true });
         return;
       case 'match':
-        known = { ...room, matchStart: message.matchStart };
-        confirmed = unpackBall(message.match);
-        pending = [];
-        news.push('match');
+        this.#news.push('match');
         return;
       case 'events':
-        for (const event of message.events) {
-          const { seat } = room;
-          if (confirmed) confirmed = followBallEvent(confirmed, event);
-          if (seat !== null) pending = pending.filter((deed) => !answersDeed(event, seat, deed));
-          events.push(event);
-        }
+        this.#events.push(...message.events);
     }
   }
 
-  return {
-    get room() {
-      if (!known) return null;
-      view ??= {
-        id: known.room,
-        seats: known.seats,
-        mySeat: known.seat,
-        spectators: known.spectators,
-        rotate: known.rotate,
-        match: predicted(),
-        delay: knowsClock ? null : clock.delayAt(now),
-        matchAhead: matchAhead(),
-        paused: known.paused !== null,
-        voided,
-      };
-      return view;
-    },
-    joining: () => ({ name: visitor.name, calibration, bot: visitor.bot ?? false, ...wishes }),
-    onMessage,
-    onFrame(frame, at) {
-      // A bot looks at no one: it plays by what the match says.
-      if (visitor.bot) return;
-      const seatPoses = decodeFrame(frame);
-      for (const { seat, bytes } of seatPoses ?? []) {
-        const theirs = skeletons[seat];
-        if (!theirs || seat === known?.seat) continue;
-        const packet = decodePose(bytes, theirs);
-        if (packet) poses.push({ seat, packet, arrivedAt: at });
-      }
-      if (poses.length > mostWaiting) poses = poses.slice(-mostWaiting);
-    },
-    paused: clock.paused,
-    update(time, connected) {
-      now = time;
-      view = null;
-      if (connected && !knowsClock && clock.due(time)) wire.message({ type: 'ping', sent: time });
-      const since = { events, poses, news };
-      events = [];
-      poses = [];
-      news = [];
-      return since;
-    },
-    sendPose(time, shown: ShownPose) {
-      if (!known || known.seat === null || (time < nextPose && !shown.jump)) return;
-      // Frames come at their own rate: on average thirty packets a second.
-      nextPose = Math.max(nextPose + poseSeconds, time + poseSeconds / 2);
-      const timeMs = Math.round((time + ahead()) * 1000) & 0xffff;
-      const bytes = encodePose({ ...shown, timeMs }, skeleton);
-      if (bytes) wire.pose(bytes);
-    },
-    act(action) {
-      if (!known || known.seat === null || !confirmed) return;
-      pending.push(action);
-      view = null;
-      wire.message({ type: 'action', action });
-    },
-    ready: (ready) => wire.message({ type: 'ready', ready }),
-    rotate: (rotate) => wire.message({ type: 'rotate', rotate }),
-    pause(pause) {
-      pauseWish = pause;
-      if (known && known.seat !== null) wire.message({ type: 'pause', pause });
-    },
-    away: (away) => wire.message({ type: 'away', away }),
-    sit: (seat) => wire.message({ type: 'sit', seat }),
-    calibrate(measures) {
-      calibration = toMillimetres(measures);
-      skeleton = skeletonFromCalibration(calibration);
-      if (known) wire.message({ type: 'calibration', calibration });
-    },
-    arenaFromFloor: (seat) => arenaFromSeatFloor(seat, confirmed),
-  };
+  /** Seconds of the Room's clock minus seconds of this page's. */
+  get #ahead(): number {
+    return this.#knowsClock ? 0 : this.#clock.ahead;
+  }
+
+  /** Seconds of the match minus seconds of this page's clock. */
+  get #matchAhead(): number {
+    const { known } = this.#replica;
+    if (!known) return 0;
+    return known.paused === null ? this.#ahead - known.matchStart : known.paused - this.#now;
+  }
 }

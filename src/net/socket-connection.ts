@@ -1,11 +1,11 @@
-import { io } from 'socket.io-client';
+import { io, type Socket } from 'socket.io-client';
 import { ballRoomMessageFrom } from '../core/protocol/ball-messages';
-import { protocolVersion } from '../core/protocol/messages';
+import { type ClientMessage, protocolVersion } from '../core/protocol/messages';
 import { frameEvent, messageEvent, pageParser, poseEvent } from '../core/protocol/small-frames';
-import { createBackOff } from './back-off';
-import type { Connection, ConnectionStatus, LocalClock, Visitor } from './connection';
+import { type BackOff, createBackOff } from './back-off';
+import type { Connection, ConnectionStatus, ConnectionUpdate, LocalClock, Visitor } from './connection';
 import type { RoomPass } from './room-pass';
-import { createRoomSession } from './room-session';
+import { RoomSession } from './room-session';
 
 export interface SocketConnectionOptions {
   /** Origin of the relay: mostly the page's own. */
@@ -28,136 +28,164 @@ const patienceMs = 4000;
 const mostRefusals = 3;
 
 /** A place in a room on a relay. Connects at once, and again whenever the connection is lost, until it has ended. */
-export function createSocketConnection(options: SocketConnectionOptions): Connection {
-  const { url, room, visitor, pass, clock = runningTime } = options;
-  const now = () => clock.now();
-  const backOff = createBackOff(options.chance);
-  let phase: ConnectionStatus['phase'] = 'connecting';
-  let reason: ConnectionStatus['reason'] = null;
-  let retryAt: number | null = null;
-  let refusals = 0;
-  let waiting: ReturnType<typeof setTimeout> | null = null;
-  let joinedOnce = false;
-  let leftOut = clock.leftOut;
+export const createSocketConnection = (options: SocketConnectionOptions): Connection => new SocketConnection(options);
 
-  const socket = io(url, {
-    path: '/relay',
-    transports: ['websocket'],
-    parser: pageParser,
-    query: { room },
-    reconnection: false,
-    autoConnect: false,
-    forceNew: true,
-    timeout: patienceMs,
-  });
+class SocketConnection extends RoomSession {
+  readonly #pass: RoomPass;
+  readonly #clock: LocalClock;
+  readonly #backOff: BackOff;
+  readonly #socket: Socket;
+  #phase: ConnectionStatus['phase'] = 'connecting';
+  #reason: ConnectionStatus['reason'] = null;
+  /** When the next attempt will be made, by the page's clock [s]; null: one is under way, or none will be made. */
+  #retryAt: number | null = null;
+  #refusals = 0;
+  #waiting: ReturnType<typeof setTimeout> | null = null;
+  #joinedOnce = false;
+  #leftOut: number;
 
-  const joined = (): boolean => phase === 'joined';
-  const session = createRoomSession(visitor, {
-    message(message) {
-      if (joined()) socket.emit(messageEvent, message);
-    },
-    pose(bytes) {
-      if (joined()) socket.volatile.emit(poseEvent, bytes);
-    },
-  });
-
-  function wait(milliseconds: number, then: () => void): void {
-    if (waiting !== null) clearTimeout(waiting);
-    waiting = setTimeout(then, milliseconds);
+  constructor({ url, room, visitor, pass, clock = runningTime, chance }: SocketConnectionOptions) {
+    super(visitor, false);
+    this.#pass = pass;
+    this.#clock = clock;
+    this.#leftOut = clock.leftOut;
+    this.#backOff = createBackOff(chance);
+    this.#socket = io(url, {
+      path: '/relay',
+      transports: ['websocket'],
+      parser: pageParser,
+      query: { room },
+      reconnection: false,
+      autoConnect: false,
+      forceNew: true,
+      timeout: patienceMs,
+    });
+    this.#listen();
+    this.#attempt();
   }
 
-  function end(because: ConnectionStatus['reason']): void {
-    if (waiting !== null) clearTimeout(waiting);
-    waiting = null;
-    phase = 'ended';
-    reason = because;
-    retryAt = null;
-    socket.disconnect();
+  get status(): ConnectionStatus {
+    return {
+      phase: this.#phase,
+      attempt: this.#backOff.attempts,
+      retryIn: this.#retryAt === null ? null : Math.max(0, this.#retryAt - this.#clock.now()),
+      reason: this.#reason,
+    };
   }
 
-  /** After a failure of any kind: once more, later. */
-  function failed(because: ConnectionStatus['reason']): void {
-    if (phase === 'ended' || retryAt !== null) return;
-    phase = joinedOnce ? 'reconnecting' : 'connecting';
-    reason = because;
-    const seconds = backOff.next();
-    retryAt = now() + seconds;
-    // What is half open would answer into the next attempt.
-    socket.disconnect();
-    wait(seconds * 1000, attempt);
+  update(time: number): ConnectionUpdate {
+    const { leftOut } = this.#clock;
+    if (leftOut > this.#leftOut) this.leaveOut(leftOut - this.#leftOut, time);
+    this.#leftOut = leftOut;
+    return this.takeUpdate(time, this.#isJoined);
   }
 
-  function attempt(): void {
-    retryAt = null;
-    wait(patienceMs, () => failed('unreachable'));
-    pass.token(refusals > 0).then(
-      (token) => {
-        if (phase === 'ended' || retryAt !== null) return;
-        socket.auth = { token };
-        socket.connect();
-      },
-      () => failed('unreachable'),
-    );
+  leave(): void {
+    this.transmit({ type: 'leave' });
+    this.#end('left');
   }
 
-  socket.on('connect', () => {
-    socket.emit(messageEvent, { type: 'join', version: protocolVersion, ...session.joining() });
-  });
-  socket.on('connect_error', (error) => {
-    if (error.message !== 'refused') {
-      failed('unreachable');
+  protected transmit(message: ClientMessage): void {
+    if (this.#isJoined) this.#socket.emit(messageEvent, message);
+  }
+
+  protected transmitPose(bytes: Uint8Array): void {
+    if (this.#isJoined) this.#socket.volatile.emit(poseEvent, bytes);
+  }
+
+  get #isJoined(): boolean {
+    return this.#phase === 'joined';
+  }
+
+  /** An attempt that waits for its next try, or a connection that has ended, takes no answers. */
+  get #takesAnswers(): boolean {
+    return this.#phase !== 'ended' && this.#retryAt === null;
+  }
+
+  #listen(): void {
+    const socket = this.#socket;
+    socket.on('connect', () => {
+      socket.emit(messageEvent, { type: 'join', version: protocolVersion, ...this.joining() });
+    });
+    socket.on('connect_error', (error) => this.#onRefusal(error.message));
+    socket.on('disconnect', () => this.#retryLater(this.#reason));
+    socket.on(frameEvent, (bytes: unknown) => {
+      if (this.#isJoined && bytes instanceof Uint8Array) this.onFrame(bytes, this.#clock.now());
+    });
+    socket.on(messageEvent, (value: unknown) => this.#onValue(value));
+  }
+
+  #onRefusal(text: string): void {
+    if (text !== 'refused') {
+      this.#retryLater('unreachable');
       return;
     }
-    refusals += 1;
-    if (refusals >= mostRefusals) end('refused');
-    else failed('refused');
-  });
-  socket.on('disconnect', () => failed(reason));
-  socket.on(frameEvent, (bytes: unknown) => {
-    if (joined() && bytes instanceof Uint8Array) session.onFrame(bytes, now());
-  });
-  socket.on(messageEvent, (value: unknown) => {
+    this.#refusals += 1;
+    if (this.#refusals >= mostRefusals) this.#end('refused');
+    else this.#retryLater('refused');
+  }
+
+  #onValue(value: unknown): void {
     const message = ballRoomMessageFrom(value);
     if (!message) return;
     if (message.type === 'farewell') {
-      if (message.reason !== 'stopping') end(message.reason);
-      else reason = 'stopping';
+      if (message.reason !== 'stopping') this.#end(message.reason);
+      else this.#reason = 'stopping';
       return;
     }
-    if (message.type === 'welcome') {
-      if (waiting !== null) clearTimeout(waiting);
-      waiting = null;
-      phase = 'joined';
-      reason = null;
-      joinedOnce = true;
-      refusals = 0;
-      backOff.succeeded();
-    }
-    session.onMessage(message, now());
-  });
-  attempt();
+    if (message.type === 'welcome') this.#onJoined();
+    this.onMessage(message, this.#clock.now());
+  }
 
-  return {
-    ...session,
-    get room() {
-      return session.room;
-    },
-    get status() {
-      return {
-        phase,
-        attempt: backOff.attempts,
-        retryIn: retryAt === null ? null : Math.max(0, retryAt - now()),
-        reason,
-      };
-    },
-    update(time) {
-      if (clock.leftOut > leftOut) session.paused(clock.leftOut - leftOut, time);
-      leftOut = clock.leftOut;
-      return session.update(time, joined());
-    },
-    leave() {
-      if (joined()) socket.emit(messageEvent, { type: 'leave' });
-      end('left');
-    },
-  };
+  #onJoined(): void {
+    this.#stopWaiting();
+    this.#phase = 'joined';
+    this.#reason = null;
+    this.#joinedOnce = true;
+    this.#refusals = 0;
+    this.#backOff.succeeded();
+  }
+
+  #attempt(): void {
+    this.#retryAt = null;
+    this.#wait(patienceMs, () => this.#retryLater('unreachable'));
+    this.#pass.token(this.#refusals > 0).then(
+      (token) => {
+        if (!this.#takesAnswers) return;
+        this.#socket.auth = { token };
+        this.#socket.connect();
+      },
+      () => this.#retryLater('unreachable'),
+    );
+  }
+
+  /** After a failure of any kind: once more, later. */
+  #retryLater(because: ConnectionStatus['reason']): void {
+    if (!this.#takesAnswers) return;
+    this.#phase = this.#joinedOnce ? 'reconnecting' : 'connecting';
+    this.#reason = because;
+    const seconds = this.#backOff.next();
+    this.#retryAt = this.#clock.now() + seconds;
+    // What is half open would answer into the next attempt.
+    this.#socket.disconnect();
+    this.#wait(seconds * 1000, () => this.#attempt());
+  }
+
+  #end(because: ConnectionStatus['reason']): void {
+    this.#stopWaiting();
+    this.#phase = 'ended';
+    this.#reason = because;
+    this.#retryAt = null;
+    this.#socket.disconnect();
+  }
+
+  #wait(milliseconds: number, then: () => void): void {
+    this.#stopWaiting();
+    this.#waiting = setTimeout(then, milliseconds);
+  }
+
+  #stopWaiting(): void {
+    if (this.#waiting !== null) clearTimeout(this.#waiting);
+    this.#waiting = null;
+  }
 }

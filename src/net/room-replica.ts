@@ -1,0 +1,125 @@
+import { type Skeleton, skeletonFromCalibration } from '../core/body/skeleton';
+import type { BallDeed, BallEvent, BallState } from '../core/games/ball/ball-state';
+import { answersDeed, followBallEvent, predictDeed, withMatchTime } from '../core/games/ball/replica';
+import { arenaFromSeatFloor } from '../core/games/ball/stations';
+import type { Transform } from '../core/math/pose';
+import type { BallRoomMessage, SentBallGame } from '../core/protocol/ball-messages';
+import { unpackBall } from '../core/protocol/ball-snapshot';
+import { type SeatInfo, unpackSeatInfo, type Welcome } from '../core/protocol/messages';
+
+/** What a Room has said of itself. */
+export interface KnownRoom
+  extends Pick<Welcome<SentBallGame>, 'room' | 'epoch' | 'seat' | 'spectators' | 'rotate' | 'matchStart' | 'paused'> {
+  readonly seats: readonly (SeatInfo | null)[];
+}
+
+const sameMeasures = (a: SeatInfo, b: SeatInfo): boolean =>
+  a.calibration.eyeHeight === b.calibration.eyeHeight && a.calibration.armSpan === b.calibration.armSpan;
+
+const skeletonOf = (info: SeatInfo | null): Skeleton | null => info && skeletonFromCalibration(info.calibration);
+
+/** A Room of the ball game as a client knows it: what the Room has confirmed, and the client's own actions that it has not answered yet. */
+export class RoomReplica {
+  #known: KnownRoom | null = null;
+  #skeletons: (Skeleton | null)[] = [];
+  #confirmed: BallState | null = null;
+  #pending: BallDeed[] = [];
+  #voided = 0;
+
+  /** null: before the first welcome. */
+  get known(): KnownRoom | null {
+    return this.#known;
+  }
+
+  /** null: a spectator, or not welcomed yet. */
+  get mySeat(): number | null {
+    return this.#known?.seat ?? null;
+  }
+
+  /** How many rounds were cut short because the room had forgotten them. */
+  get voided(): number {
+    return this.#voided;
+  }
+
+  /** By the measures that the player on this seat told; null: the seat is empty. */
+  skeletonOf(seat: number): Skeleton | null {
+    return this.#skeletons[seat] ?? null;
+  }
+
+  arenaFromFloor(seat: number): Transform<'arena', 'floor'> {
+    return arenaFromSeatFloor(seat, this.#confirmed);
+  }
+
+  /** The match at this second, with the own actions as they will turn out if the rules allow them; null: none is known. */
+  predicted(matchTime: number): BallState | null {
+    if (!this.#confirmed) return null;
+    const state = withMatchTime(this.#confirmed, matchTime);
+    const seat = this.mySeat;
+    return seat === null ? state : this.#pending.reduce((at, action) => predictDeed(at, seat, action), state);
+  }
+
+  /** Counts on an action that is about to be sent; false: there is no match to act in. */
+  expect(action: BallDeed): boolean {
+    if (this.mySeat === null || !this.#confirmed) return false;
+    this.#pending.push(action);
+    return true;
+  }
+
+  /** The whole room, on joining and on returning; true: it has forgotten a round that was running. */
+  onWelcome(message: Welcome<SentBallGame>): boolean {
+    const { room, epoch, seat, spectators, rotate, matchStart, paused } = message;
+    const before = this.#known;
+    const forgotten = before !== null && before.epoch !== epoch && this.#confirmed?.phase === 'running';
+    const seats = message.seats.map(unpackSeatInfo);
+    this.#known = { room, epoch, seat, spectators, rotate, seats, matchStart, paused };
+    this.#skeletons = seats.map(skeletonOf);
+    this.#confirmed = unpackBall(message.match);
+    this.#pending = [];
+    if (forgotten) this.#voided += 1;
+    return forgotten;
+  }
+
+  /** A change of a room that is known; false: none is yet, and nothing was taken in. */
+  onChange(message: Exclude<BallRoomMessage, { type: 'welcome' | 'pong' }>): boolean {
+    if (!this.#known) return false;
+    switch (message.type) {
+      case 'seat':
+        this.#setSeatInfo(this.#known, message.seat, unpackSeatInfo(message.info));
+        break;
+      case 'seated':
+        this.#known = { ...this.#known, seat: message.seat };
+        this.#pending = [];
+        break;
+      case 'about':
+        this.#known = { ...this.#known, spectators: message.spectators, rotate: message.rotate };
+        break;
+      case 'paused':
+        this.#known = { ...this.#known, matchStart: message.matchStart, paused: message.at };
+        break;
+      case 'match-start':
+        this.#known = { ...this.#known, matchStart: message.matchStart };
+        break;
+      case 'match':
+        this.#known = { ...this.#known, matchStart: message.matchStart };
+        this.#confirmed = unpackBall(message.match);
+        this.#pending = [];
+        break;
+      case 'events':
+        for (const event of message.events) this.#follow(event);
+    }
+    return true;
+  }
+
+  #follow(event: BallEvent): void {
+    const seat = this.mySeat;
+    if (this.#confirmed) this.#confirmed = followBallEvent(this.#confirmed, event);
+    if (seat !== null) this.#pending = this.#pending.filter((action) => !answersDeed(event, seat, action));
+  }
+
+  #setSeatInfo(known: KnownRoom, seat: number, info: SeatInfo | null): void {
+    if (seat >= known.seats.length) return;
+    const before = known.seats[seat];
+    this.#known = { ...known, seats: known.seats.map((other, index) => (index === seat ? info : other)) };
+    if (!info || !before || !sameMeasures(before, info)) this.#skeletons[seat] = skeletonOf(info);
+  }
+}
