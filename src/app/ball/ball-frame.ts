@@ -3,7 +3,7 @@ import type { Calibration } from '../../core/body/calibration';
 import type { BallEvent, BallRole, BallState } from '../../core/games/ball/ball-state';
 import { basketInHands, type Opening } from '../../core/games/ball/basket';
 import type { BallCue, BallPulse } from '../../core/games/ball/gestures';
-import { ballSecondsLeft, ballsLeft } from '../../core/games/ball/rules';
+import { ballSecondsLeft, ballsLeft } from '../../core/games/ball/state-readings';
 import type { Launch } from '../../core/games/ballistics';
 import { fistOf } from '../../core/games/fist';
 import {

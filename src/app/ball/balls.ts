@@ -13,7 +13,7 @@ import {
 import type { BallState } from '../../core/games/ball/ball-state';
 import type { Opening } from '../../core/games/ball/basket';
 import { ballRadius, basketDepth, basketRadius } from '../../core/games/ball/flight';
-import { ballPosition } from '../../core/games/ball/rules';
+import { ballPosition } from '../../core/games/ball/state-readings';
 import { addScaled, dot, length, reject, subtract, type Vec3 } from '../../core/math/vec3';
 import { disposeTree } from '../../scene/dispose-tree';
 import { painted } from '../../scene/painted-geometry';

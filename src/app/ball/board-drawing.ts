@@ -1,5 +1,5 @@
 import type { BallEvent, BallState } from '../../core/games/ball/ball-state';
-import { ballsLeft } from '../../core/games/ball/rules';
+import { ballsLeft } from '../../core/games/ball/state-readings';
 import { ink, paintCard, paintGround, signFont } from '../../scene/boards/lettering';
 import { paintScoreHeading } from '../../scene/boards/score-heading';
 import { paintButton, type SheetButton } from '../../scene/boards/sheet';

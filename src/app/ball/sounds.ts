@@ -1,7 +1,7 @@
 import type { BallEvent, BallState } from '../../core/games/ball/ball-state';
 import { ballInAir } from '../../core/games/ball/flight';
 import type { BallCue } from '../../core/games/ball/gestures';
-import { ballSecondsLeft } from '../../core/games/ball/rules';
+import { ballSecondsLeft } from '../../core/games/ball/state-readings';
 import { holderStation, stations } from '../../core/games/ball/stations';
 import { clamp } from '../../core/math/damper';
 import { invertTransform, type Pose, type Transform, transformPoint, transformPose } from '../../core/math/pose';

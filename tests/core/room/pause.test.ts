@@ -1,5 +1,5 @@
 import { describe, expect, test } from 'vitest';
-import { ballMatchTime, ballSecondsLeft } from '../../../src/core/games/ball/rules';
+import { ballMatchTime, ballSecondsLeft } from '../../../src/core/games/ball/state-readings';
 import { poseMemory } from '../../../src/core/room/pose-claims';
 import { atRack, fists, holding, opening, releaseOf, velocityTo } from '../../net/people';
 import { toldRoom } from './told-room';

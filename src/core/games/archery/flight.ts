@@ -1,13 +1,7 @@
-import { addScaled, dot, length, scale, subtract, type Vec3 } from '../../math/vec3';
+import { addScaled, distance, dot, type MutableVec3, subtract, type Vec3, vec3 } from '../../math/vec3';
 import { fallsTo, gravity, type Launch, launchTowards, positionAt, roots } from '../ballistics';
 import type { Target } from './archery-state';
 import { arrowLength, arrowSpeed } from './bow';
-
-/** The launch of an arrow let go at this draw [m], its nock here, along a unit direction. */
-export const launchOf = (nock: Vec3, direction: Vec3, draw: number): Launch => ({
-  position: addScaled(nock, direction, arrowLength),
-  velocity: scale(direction, arrowSpeed(draw)),
-});
 
 /** A net across the range: upright, from the ground to `height`. Stops what comes from the inside. */
 export interface Wall {
@@ -28,12 +22,17 @@ export interface Hit {
   readonly target: number | null;
 }
 
+// Memory of one call: an arrow in the air is looked at in every tick.
+const point = vec3(0, 0, 0);
+const crossings: number[] = [];
+
 /** Seconds until the tip first goes through the disc from its painted side; null: it never does. */
 export function reachesTarget(launch: Launch, { centre, normal, radius }: Target): number | null {
   const towards = dot(normal, launch.velocity);
-  for (const time of roots(-0.5 * gravity * normal.y, towards, dot(normal, subtract(launch.position, centre)))) {
+  const away = dot(normal, subtract(launch.position, centre, point));
+  for (const time of roots(-0.5 * gravity * normal.y, towards, away, crossings)) {
     if (time < 0 || towards - gravity * normal.y * time >= 0) continue;
-    if (length(subtract(positionAt(launch, time), centre)) <= radius) return time;
+    if (distance(positionAt(launch, time, point), centre) <= radius) return time;
   }
   return null;
 }
@@ -47,7 +46,7 @@ export function reachesWall(launch: Launch, { axis, at, inward, height }: Wall):
   const approach = -launch.velocity[axis] * inward;
   if (inside < 0 || approach <= 0) return null;
   const time = inside / approach;
-  return positionAt(launch, time).y <= height ? time : null;
+  return positionAt(launch, time, point).y <= height ? time : null;
 }
 
 /** What the tip meets first on its parabola: solved, not stepped, so that nothing is ever too thin or too fast. */
@@ -57,23 +56,28 @@ export function firstHit(launch: Launch, targets: readonly Target[], walls: read
     const after = reachesWall(launch, wall);
     if (after !== null && after < first.after) first = { after, on: 'wall', target: null };
   }
-  targets.forEach((target, index) => {
-    const after = reachesTarget(launch, target);
-    if (after !== null && after < first.after) first = { after, on: 'target', target: index };
-  });
+  for (let target = 0; target < targets.length; target++) {
+    const after = reachesTarget(launch, targets[target]!);
+    if (after !== null && after < first.after) first = { after, on: 'target', target };
+  }
   return first;
 }
 
 /**
  * The unit direction in which an arrow whose nock is at `nock` must be released at this draw [m] to hit `target`: its tip lies
- * an arrow's length ahead along that direction. null: out of reach.
+ * an arrow's length ahead along that direction; written into `result`. null: out of reach.
  */
-export function releaseTowards(target: Vec3, nock: Vec3, draw: number): Vec3 | null {
+export function releaseTowards(
+  target: Vec3,
+  nock: Vec3,
+  draw: number,
+  result: MutableVec3 = vec3(0, 0, 0),
+): MutableVec3 | null {
   const speed = arrowSpeed(draw);
-  let direction = launchTowards(target, nock, speed);
+  let direction = launchTowards(target, nock, speed, result);
   // Each round shrinks the error by a tenth or more: the tip moves with the direction's small change alone.
   for (let round = 0; round < 12 && direction; round++) {
-    direction = launchTowards(target, addScaled(nock, direction, arrowLength), speed);
+    direction = launchTowards(target, addScaled(nock, direction, arrowLength, point), speed, result);
   }
   return direction;
 }

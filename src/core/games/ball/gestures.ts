@@ -21,8 +21,8 @@ import {
 } from '../button-presses';
 import { fistOf } from '../fist';
 import type { BallAction, BallDeed, BallEvent, BallState } from './ball-state';
+import { slowestThrow } from './deeds';
 import { createHandSpeed, type HandSpeed } from './hand-speed';
-import { slowestThrow } from './rules';
 import { rackPosition } from './stations';
 
 /** Who plays and how the match stands; asked for in every frame. */

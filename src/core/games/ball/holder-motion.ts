@@ -26,7 +26,7 @@ import {
   type PlayerBody,
   type PlayerPostures,
 } from './player-postures';
-import { ballMatchTime } from './rules';
+import { ballMatchTime } from './state-readings';
 import type { BallBot, BotSight } from './thrower-motion';
 
 /** Half the way to where the basket should be in this time [s], twice over: it starts softly. */

@@ -1,20 +1,13 @@
-import type { BallDeed, BallEvent, BallPlace, BallPlayer, BallState } from './ball-state';
-import { ballRules } from './rules';
-
-const withBall = (state: BallState, ball: number, place: BallPlace): BallState =>
-  ball < state.balls.length ? { ...state, balls: state.balls.map((other, i) => (i === ball ? place : other)) } : state;
-
-const withPlayer = (state: BallState, index: number, change: Partial<BallPlayer>): BallState => ({
-  ...state,
-  players: state.players.map((player, i) => (i === index ? { ...player, ...change } : player)),
-});
+import type { BallDeed, BallEvent, BallPlace, BallState } from './ball-state';
+import { withBall, withPlayer } from './state-changes';
+import { ballInHand, tickSeconds } from './state-readings';
 
 const throwerOf = (place: BallPlace | undefined): number =>
   place?.on === 'air' || place?.on === 'floor' ? place.thrower : 0;
 
 /**
  * The state after something that happened where the rules run: balls, score, phase and who is there follow from events alone. The
- * tick, heads, hands and the basket do not; whoever draws them has poses and a clock. An event that is heard twice changes nothing.
+ * tick, heads, hands and the basket do not; a page that draws them has poses and a clock. An event that is heard twice changes nothing.
  */
 export function followBallEvent(state: BallState, event: BallEvent): BallState {
   switch (event.type) {
@@ -65,9 +58,7 @@ export function followBallEvent(state: BallState, event: BallEvent): BallState {
 /** The state as it will be once the rules have heard of this deed, if they allow it: what a player sees of their own hands. */
 export function predictDeed(state: BallState, player: number, deed: BallDeed): BallState {
   if (state.phase !== 'running') return state;
-  const inHand = state.balls.findIndex(
-    (place) => place.on === 'hand' && place.player === player && place.side === deed.side,
-  );
+  const inHand = ballInHand(state, player, deed.side);
   switch (deed.type) {
     case 'grab':
       return inHand < 0 && state.balls[deed.ball]?.on === 'rack'
@@ -108,5 +99,5 @@ export function answersDeed(event: BallEvent, player: number, deed: BallDeed): b
 /** The tick that the rules have reached at this time of the match [s]; the state as far as that. */
 export const withMatchTime = (state: BallState, time: number): BallState => ({
   ...state,
-  tick: Math.max(0, Math.floor(time / ballRules.tickSeconds)),
+  tick: Math.max(0, Math.floor(time / tickSeconds)),
 });

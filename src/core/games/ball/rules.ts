@@ -1,68 +1,21 @@
-import type { Side } from '../../math/side';
-import { addScaled, distance, isFiniteVec3, length, type Vec3, vec3 } from '../../math/vec3';
+import { distance, isFiniteVec3, length, type MutableVec3, type Vec3, vec3 } from '../../math/vec3';
 import { fistOf } from '../fist';
 import type { GameRules } from '../game-rules';
-import type {
-  BallAction,
-  BallDeed,
-  BallEnd,
-  BallEvent,
-  BallOptions,
-  BallPlace,
-  BallPlayer,
-  BallState,
-  Basket,
-  Refusal,
-  TimedLaunch,
-} from './ball-state';
-import { basketInHands } from './basket';
-import { ballInAir, ballOnFloor, ballRadius, basketRadius, floorBounceOf, meetsBasket, touchesFloor } from './flight';
-import { holderStation, rackPosition, stations, zoneRadius } from './stations';
+import type { BallAction, BallEnd, BallEvent, BallOptions, BallPlayer, BallState, Basket, Refusal } from './ball-state';
+import { basketInHands, makeOpening } from './basket';
+import { decide } from './decided-flights';
+import { armReach, countOnce, deedOf, longestDelay } from './deeds';
+import { round, rounded, type Step, unchanged, withBall, withPlayer } from './state-changes';
+import { ballMatchTime, ballSecondsLeft, ballsLeft, tickSeconds } from './state-readings';
+import { holderStation, isInZone, stations } from './stations';
 
 /** The paper's game: 20 balls, 90 s. */
 export const defaultBallOptions: BallOptions = { balls: 20, seconds: 90, rotation: 0 };
 
-/** No hand throws a ball faster [m/s]; a professional's baseball does 45, an arm with a controller 15. */
-export const fastestThrow = 20;
-/** What leaves the hand more slowly [m/s] is let go of, not thrown: it goes back to the rack. */
-export const slowestThrow = 0.8;
-/** A fist takes a ball from this far [m]; clients ask for less. */
-export const grabReach = 0.35;
-/** A hand is at most this far from its head [m]. */
-export const armReach = 1.4;
-/** A ball leaves the hand at most this far from where the hand was last [m]: at 10 m/s it goes that far in 70 ms. */
-export const releaseReach = 0.7;
-/** What happened longer ago than this [s] happened now minus this. */
-export const longestDelay = 0.5;
 /** The holder's hands are waited for this long [s]; then the basket stands where it was. */
 export const basketPatience = 0.25;
 /** A basket faster than this [m/s] has jumped: nothing is caught on the way. */
 const fastestBasket = 12;
-
-const tickSeconds = 1 / 60;
-
-const round = (value: number): number => Math.round(value * 1e4) / 1e4;
-const rounded = ({ x, y, z }: Vec3): Vec3 => vec3(round(x), round(y), round(z));
-const roundedLaunch = ({ time, position, velocity }: TimedLaunch): TimedLaunch => ({
-  time: round(time),
-  position: rounded(position),
-  velocity: rounded(velocity),
-});
-
-/** Seconds of the match at the state's tick. */
-export const ballMatchTime = (state: BallState): number => state.tick * tickSeconds;
-
-/** Seconds until the bell: all of them before the start, 0 when it has rung. */
-export const ballSecondsLeft = (state: BallState): number =>
-  state.startedAt === null
-    ? state.options.seconds
-    : Math.max(0, state.options.seconds - (ballMatchTime(state) - state.startedAt));
-
-/** Balls that may still be caught. */
-export const ballsLeft = ({ balls }: BallState): number => balls.filter(isOpen).length;
-
-const isOpen = (place: BallPlace): boolean =>
-  place.on === 'rack' || place.on === 'hand' || (place.on === 'air' && !place.missed);
 
 function checkedOptions(options: Partial<BallOptions>): BallOptions {
   const { balls, seconds, rotation } = { ...defaultBallOptions, ...options };
@@ -74,40 +27,23 @@ function checkedOptions(options: Partial<BallOptions>): BallOptions {
   return { balls, seconds, rotation };
 }
 
-/** A basket before anybody holds it. */
+/** A basket before it is held. */
 const restingBasket: Basket = {
   at: 0,
-  position: rounded({ ...addScaled(stations[holderStation]!.position, vec3(0, 0, 1), 0.4), y: 1.1 }),
+  position: rounded(vec3(stations[holderStation]!.position.x, 1.1, stations[holderStation]!.position.z + 0.4)),
   normal: vec3(0, 1, 0),
 };
 
-type Step = { readonly state: BallState; readonly events: readonly BallEvent[] };
-
-const unchanged = (state: BallState): Step => ({ state, events: [] });
-
-const withPlayer = (state: BallState, index: number, change: Partial<BallPlayer>): BallState => ({
-  ...state,
-  players: state.players.map((player, i) => (i === index ? { ...player, ...change } : player)),
-});
-
-const withBall = (state: BallState, ball: number, place: BallPlace): BallState => ({
-  ...state,
-  balls: state.balls.map((other, i) => (i === ball ? place : other)),
-});
-
-/** The ball in somebody's hand; −1: none. */
-export const ballInHand = ({ balls }: BallState, player: number, side: Side): number =>
-  balls.findIndex((place) => place.on === 'hand' && place.player === player && place.side === side);
-
-/** Everything this player (or anybody) holds goes back to its rack. */
+/** What this player holds goes back to its rack; null: what any player holds. */
 function returnHeld(state: BallState, player: number | null): Step {
   let next = state;
   const events: BallEvent[] = [];
-  state.balls.forEach((place, ball) => {
-    if (place.on !== 'hand' || (player !== null && place.player !== player)) return;
+  for (let ball = 0; ball < state.balls.length; ball++) {
+    const place = state.balls[ball]!;
+    if (place.on !== 'hand' || (player !== null && place.player !== player)) continue;
     next = withBall(next, ball, { on: 'rack' });
     events.push({ type: 'returned', ball, player: place.player });
-  });
+  }
   return { state: next, events };
 }
 
@@ -142,155 +78,65 @@ function setReady(state: BallState, index: number, ready: boolean): Step {
   return { state: withPlayer(state, index, { ready }), events: [{ type: 'ready', player: index, ready }] };
 }
 
-/** Everybody who is there is ready, a thrower and the holder among them. */
+/** All players who are there are ready, a thrower and the holder among them. */
 function canStart({ players, phase }: BallState): boolean {
-  const there = players.filter(({ present }) => present);
-  return (
-    phase === 'ready' &&
-    there.every(({ ready }) => ready) &&
-    there.some(({ role }) => role === 'thrower') &&
-    there.some(({ role }) => role === 'holder')
-  );
+  if (phase !== 'ready') return false;
+  let throwers = 0;
+  let holders = 0;
+  for (const { present, ready, role } of players) {
+    if (!present) continue;
+    if (!ready) return false;
+    if (role === 'thrower') throwers += 1;
+    else holders += 1;
+  }
+  return throwers > 0 && holders > 0;
 }
 
-const inZone = (head: Vec3, station: number): boolean => {
-  const { x, z } = stations[station]!.position;
-  return Math.hypot(head.x - x, head.z - z) <= zoneRadius;
-};
+type PoseAction = Extract<BallAction, { type: 'pose' }>;
+
+// Memory of one call: every player's pose comes some thirty times a second.
+const fists = { left: vec3(0, 0, 0), right: vec3(0, 0, 0) };
+const opening = makeOpening();
+
+/** Writes the middle of a hand's fist into `fist`; false: the hand is not seen, or cannot be there. */
+function isReachable(hand: PoseAction['left'], head: Vec3, fist: MutableVec3): hand is NonNullable<PoseAction['left']> {
+  if (!hand) return false;
+  fistOf(hand, fist);
+  const { x, y, z, w } = hand.orientation;
+  return isFiniteVec3(fist) && Number.isFinite(x + y + z + w) && distance(fist, head) <= armReach;
+}
 
 /** Where a player is now. The holder's hands move the basket, and what it meets on the way is decided. */
-function pose(state: BallState, action: Extract<BallAction, { type: 'pose' }>): Step {
-  const player = state.players[action.player]!;
+function pose(state: BallState, action: PoseAction): Step {
+  const { player: index, head } = action;
+  const player = state.players[index]!;
   const now = ballMatchTime(state) + tickSeconds;
-  if (!player.present || !isFiniteVec3(action.head) || !Number.isFinite(action.at) || length(action.head) > 50) {
+  if (!player.present || !isFiniteVec3(head) || !Number.isFinite(action.at) || length(head) > 50) {
     return unchanged(state);
   }
   const at = round(Math.min(Math.max(action.at, now - longestDelay), now));
   if (at < player.at) return unchanged(state);
-  const reachable = (hand: typeof action.left) => {
-    if (!hand) return null;
-    const fist = fistOf(hand);
-    const { x, y, z, w } = hand.orientation;
-    return isFiniteVec3(fist) && Number.isFinite(x + y + z + w) && distance(fist, action.head) <= armReach
-      ? hand
-      : null;
-  };
-  const left = reachable(action.left);
-  const right = reachable(action.right);
-  const moved = withPlayer(state, action.player, {
+  const left = isReachable(action.left, head, fists.left) ? action.left : null;
+  const right = isReachable(action.right, head, fists.right) ? action.right : null;
+  const moved = withPlayer(state, index, {
     at,
-    head: rounded(action.head),
-    left: left && rounded(fistOf(left)),
-    right: right && rounded(fistOf(right)),
+    head: rounded(head),
+    left: left && rounded(fists.left),
+    right: right && rounded(fists.right),
   });
-  if (player.role !== 'holder') return { state: moved, events: [] };
-  const opening = inZone(action.head, player.station) ? basketInHands(left, right) : null;
-  if (!opening) return { state: moved, events: [] };
+  const holds = player.role === 'holder' && isInZone(head, player.station) && basketInHands(left, right, opening);
+  return holds ? carryBasket(moved, at) : unchanged(moved);
+}
+
+/** The basket comes to where its opening was seen at a time [s of the match]. */
+function carryBasket(state: BallState, at: number): Step {
   const held = { position: rounded(opening.position), normal: rounded(opening.normal) };
-  const before = moved.basket;
+  const before = state.basket;
   // A pose from before what is decided moves the basket, but not the past.
-  if (at <= before.at) return { state: { ...moved, basket: { ...held, at: before.at } }, events: [] };
+  if (at <= before.at) return unchanged({ ...state, basket: { ...held, at: before.at } });
   const jumped = distance(held.position, before.position) > fastestBasket * (at - before.at);
   const from = jumped ? { ...held, at: before.at } : before;
-  return decide({ ...moved, basket: from }, { ...held, at });
-}
-
-/** Follows every ball in the air while the basket moves from where it is to `to`. */
-function decide(state: BallState, to: Basket): Step {
-  const from = state.basket;
-  let next: BallState = { ...state, basket: to };
-  const events: BallEvent[] = [];
-  state.balls.forEach((first, ball) => {
-    let place = first;
-    while (place.on === 'air') {
-      const { thrower, launch } = place;
-      const meeting = place.missed ? null : meetsBasket(launch, from, to);
-      if (meeting?.kind === 'caught') {
-        place = { on: 'basket', thrower };
-        next = { ...next, score: next.score + 1 };
-        events.push({ type: 'caught', ball, player: thrower, at: round(meeting.time), score: next.score });
-      } else if (meeting) {
-        const bounced = settled(roundedLaunch(meeting.launch), launch);
-        place = { ...place, launch: bounced };
-        events.push({ type: 'bounced', ball, off: 'basket', launch: bounced });
-      } else {
-        const time = touchesFloor(launch);
-        if (time > to.at) break;
-        const { launch: after, rolls } = floorBounceOf(launch, Math.max(time, launch.time));
-        const bounced = settled(roundedLaunch(after), launch);
-        if (!place.missed) events.push({ type: 'missed', ball, player: thrower });
-        place = rolls
-          ? { on: 'floor', launch: bounced, thrower }
-          : { on: 'air', launch: bounced, thrower, missed: true };
-        events.push(
-          rolls ? { type: 'rolls', ball, launch: bounced } : { type: 'bounced', ball, off: 'floor', launch: bounced },
-        );
-      }
-    }
-    if (place !== first) next = withBall(next, ball, place);
-  });
-  return { state: next, events };
-}
-
-/** A bounce is never earlier than the flight before it, whatever the rounding, and each takes a little time. */
-const settled = (bounce: TimedLaunch, flight: TimedLaunch): TimedLaunch =>
-  bounce.time > flight.time ? bounce : { ...bounce, time: round(flight.time + 1e-4) };
-
-/** Whether this number is new; and the memory of it. */
-function countOnce({ sequence, seen }: BallPlayer, number: number): { sequence: number; seen: number } | null {
-  if (!(Number.isInteger(number) && number > 0 && number < 2 ** 31)) return null;
-  if (number > sequence) {
-    const shift = number - sequence;
-    return { sequence: number, seen: ((shift < 31 ? seen << shift : 0) | 1) & 0x7fffffff };
-  }
-  const age = sequence - number;
-  if (age >= 31 || (seen >> age) & 1) return null;
-  return { sequence, seen: seen | (1 << age) };
-}
-
-/** What the deed does, or why it does nothing. */
-function deedOf(state: BallState, index: number, deed: BallDeed): Step | Refusal {
-  const player = state.players[index]!;
-  const fist = player[deed.side];
-  if (state.phase !== 'running' || state.startedAt === null) return 'phase';
-  if (player.role !== 'thrower') return 'role';
-  const bell = state.startedAt + state.options.seconds;
-  if (deed.type === 'grab') {
-    const place = state.balls[deed.ball];
-    if (!place) return 'no-such-ball';
-    if (place.on !== 'rack') return 'taken';
-    if (ballInHand(state, index, deed.side) >= 0) return 'hand-full';
-    if (!fist || distance(fist, rackPosition(deed.ball, state.options.balls)) > grabReach) return 'reach';
-    if (ballMatchTime(state) >= bell) return 'time';
-    return {
-      state: withBall(state, deed.ball, { on: 'hand', player: index, side: deed.side }),
-      events: [{ type: 'grabbed', ball: deed.ball, player: index, side: deed.side }],
-    };
-  }
-  const ball = ballInHand(state, index, deed.side);
-  if (ball < 0) return 'not-held';
-  const back: Step = {
-    state: withBall(state, ball, { on: 'rack' }),
-    events: [{ type: 'returned', ball, player: index }],
-  };
-  if (deed.type === 'drop') return back;
-  if (ball !== deed.ball) return 'not-held';
-  const { position, velocity } = deed;
-  if (!isFiniteVec3(position) || !isFiniteVec3(velocity) || !Number.isFinite(deed.at)) return 'speed';
-  const speed = length(velocity);
-  if (speed > fastestThrow) return 'speed';
-  if (!player.head || !inZone(player.head, player.station)) return 'zone';
-  if (distance(position, player.head) > armReach) return 'reach';
-  if (fist && distance(position, fist) > releaseReach) return 'reach';
-  const now = ballMatchTime(state) + tickSeconds;
-  const time = Math.min(Math.max(deed.at, now - longestDelay, state.startedAt), now);
-  if (time >= bell) return 'time';
-  if (speed < slowestThrow) return back;
-  const launch = roundedLaunch({ time, position: { ...position, y: Math.max(position.y, ballRadius) }, velocity });
-  return {
-    state: withBall(state, ball, { on: 'air', launch, thrower: index, missed: false }),
-    events: [{ type: 'thrown', ball, player: index, launch }],
-  };
+  return decide({ ...state, basket: from }, { ...held, at });
 }
 
 function act(state: BallState, action: BallAction): Step {
@@ -329,8 +175,7 @@ function act(state: BallState, action: BallAction): Step {
 
 /** Why the round is over; null: it goes on. While a ball is in the air that may be caught, it does. */
 function roundEnd(state: BallState): BallEnd | null {
-  const flying = state.balls.some((place) => place.on === 'air' && !place.missed);
-  if (flying) return null;
+  for (const place of state.balls) if (place.on === 'air' && !place.missed) return null;
   if (ballsLeft(state) === 0) return 'balls';
   return ballSecondsLeft(state) <= 0 ? 'time' : null;
 }
@@ -405,22 +250,3 @@ export const ballRules: GameRules<BallState, BallAction, BallEvent, BallOptions>
     return { state: next, events };
   },
 };
-
-/** Where a ball is drawn at a time [s of the match]; in a hand: null, it goes with the hand; in the basket: at its bottom. */
-export function ballPosition(state: BallState, ball: number, time: number): Vec3 | null {
-  const place = state.balls[ball];
-  switch (place?.on) {
-    case 'rack':
-      return rackPosition(ball, state.options.balls);
-    case 'air': {
-      const position = ballInAir(place.launch, time);
-      return position.y >= ballRadius ? position : { ...position, y: ballRadius };
-    }
-    case 'floor':
-      return ballOnFloor(place.launch, time);
-    case 'basket':
-      return addScaled(state.basket.position, state.basket.normal, -basketRadius);
-    default:
-      return null;
-  }
-}

@@ -1,6 +1,6 @@
 import type { Transform } from '../../math/pose';
 import { fromAxisAngle, identity } from '../../math/quat';
-import { type MutableVec3, setVec3, up, vec3 } from '../../math/vec3';
+import { type MutableVec3, setVec3, up, type Vec3, vec3 } from '../../math/vec3';
 import type { BallState } from './ball-state';
 import { ballRadius } from './flight';
 
@@ -27,6 +27,12 @@ export const holderStation = 2;
 
 /** Every player stays this near to their own station [m]. */
 export const zoneRadius = 1.2;
+
+/** Whether a head is that near to a station; arena frame. */
+export function isInZone(head: Vec3, station: number): boolean {
+  const { x, z } = stations[station]!.position;
+  return Math.hypot(head.x - x, head.z - z) <= zoneRadius;
+}
 
 const rackHeight = 0.85;
 const spacing = 0.17;

@@ -28,7 +28,7 @@ import {
   type PlayerPosture,
   type PlayerPostures,
 } from './player-postures';
-import { ballInHand } from './rules';
+import { ballInHand } from './state-readings';
 import { rackPosition } from './stations';
 import { type SwungThrow, ThrowPostures } from './throw-postures';
 import { type BallBot, type BotSight, nearestBall } from './thrower-motion';

@@ -27,7 +27,7 @@ import {
   type PlayerPosture,
   type PlayerPostures,
 } from './player-postures';
-import { ballMatchTime } from './rules';
+import { ballMatchTime } from './state-readings';
 import { rackPosition, stations } from './stations';
 import { type SwungThrow, ThrowPostures } from './throw-postures';
 

@@ -2,16 +2,15 @@ import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import type { BallAction, BallEvent, BallState } from '../../../../src/core/games/ball/ball-state';
 import { basketInHands } from '../../../../src/core/games/ball/basket';
+import { armReach, fastestThrow } from '../../../../src/core/games/ball/deeds';
 import { ballRadius, basketRadius } from '../../../../src/core/games/ball/flight';
+import { ballRules } from '../../../../src/core/games/ball/rules';
 import {
-  armReach,
   ballMatchTime,
   ballPosition,
-  ballRules,
   ballSecondsLeft,
   ballsLeft,
-  fastestThrow,
-} from '../../../../src/core/games/ball/rules';
+} from '../../../../src/core/games/ball/state-readings';
 import { rackPosition, stations, throwingDistance } from '../../../../src/core/games/ball/stations';
 import { wristAround } from '../../../../src/core/games/fist';
 import { nextRandom } from '../../../../src/core/math/random';

@@ -1,0 +1,85 @@
+import { distance, isFiniteVec3, length } from '../../math/vec3';
+import type { BallDeed, BallPlayer, BallState, Refusal } from './ball-state';
+import { ballRadius } from './flight';
+import { roundedLaunch, type Step, withBall } from './state-changes';
+import { ballInHand, ballMatchTime, tickSeconds } from './state-readings';
+import { isInZone, rackPosition } from './stations';
+
+/** No hand throws a ball faster [m/s]; a professional's baseball does 45, an arm with a controller 15. */
+export const fastestThrow = 20;
+/** What leaves the hand more slowly [m/s] is let go of, not thrown: it goes back to the rack. */
+export const slowestThrow = 0.8;
+/** A fist takes a ball from this far [m]; clients ask for less. */
+export const grabReach = 0.35;
+/** A hand is at most this far from its head [m]. */
+export const armReach = 1.4;
+/** A ball leaves the hand at most this far from where the hand was last [m]: at 10 m/s it goes that far in 70 ms. */
+export const releaseReach = 0.7;
+/** What happened longer ago than this [s] happened now minus this. */
+export const longestDelay = 0.5;
+
+/** Whether this number is new; and the memory of it. */
+export function countOnce({ sequence, seen }: BallPlayer, number: number): { sequence: number; seen: number } | null {
+  if (!(Number.isInteger(number) && number > 0 && number < 2 ** 31)) return null;
+  if (number > sequence) {
+    const shift = number - sequence;
+    return { sequence: number, seen: ((shift < 31 ? seen << shift : 0) | 1) & 0x7fffffff };
+  }
+  const age = sequence - number;
+  if (age >= 31 || (seen >> age) & 1) return null;
+  return { sequence, seen: seen | (1 << age) };
+}
+
+/** What the deed does, or why it does nothing. */
+export function deedOf(state: BallState, index: number, deed: BallDeed): Step | Refusal {
+  if (state.phase !== 'running' || state.startedAt === null) return 'phase';
+  if (state.players[index]!.role !== 'thrower') return 'role';
+  if (deed.type === 'grab') return grab(state, index, deed, state.startedAt);
+  const ball = ballInHand(state, index, deed.side);
+  if (ball < 0) return 'not-held';
+  if (deed.type === 'drop') return putBack(state, index, ball);
+  return ball === deed.ball ? throwBall(state, index, deed, state.startedAt) : 'not-held';
+}
+
+const putBack = (state: BallState, player: number, ball: number): Step => ({
+  state: withBall(state, ball, { on: 'rack' }),
+  events: [{ type: 'returned', ball, player }],
+});
+
+type Grab = Extract<BallDeed, { type: 'grab' }>;
+
+function grab(state: BallState, player: number, { ball, side }: Grab, startedAt: number): Step | Refusal {
+  const fist = state.players[player]![side];
+  const place = state.balls[ball];
+  if (!place) return 'no-such-ball';
+  if (place.on !== 'rack') return 'taken';
+  if (ballInHand(state, player, side) >= 0) return 'hand-full';
+  if (!fist || distance(fist, rackPosition(ball, state.options.balls)) > grabReach) return 'reach';
+  if (ballMatchTime(state) >= startedAt + state.options.seconds) return 'time';
+  return {
+    state: withBall(state, ball, { on: 'hand', player, side }),
+    events: [{ type: 'grabbed', ball, player, side }],
+  };
+}
+
+type Throw = Extract<BallDeed, { type: 'throw' }>;
+
+function throwBall(state: BallState, player: number, deed: Throw, startedAt: number): Step | Refusal {
+  const { ball, side, position, velocity } = deed;
+  const { head, station, [side]: fist } = state.players[player]!;
+  if (!isFiniteVec3(position) || !isFiniteVec3(velocity) || !Number.isFinite(deed.at)) return 'speed';
+  const speed = length(velocity);
+  if (speed > fastestThrow) return 'speed';
+  if (!head || !isInZone(head, station)) return 'zone';
+  if (distance(position, head) > armReach) return 'reach';
+  if (fist && distance(position, fist) > releaseReach) return 'reach';
+  const now = ballMatchTime(state) + tickSeconds;
+  const time = Math.min(Math.max(deed.at, now - longestDelay, startedAt), now);
+  if (time >= startedAt + state.options.seconds) return 'time';
+  if (speed < slowestThrow) return putBack(state, player, ball);
+  const launch = roundedLaunch({ time, position: { ...position, y: Math.max(position.y, ballRadius) }, velocity });
+  return {
+    state: withBall(state, ball, { on: 'air', launch, thrower: player, missed: false }),
+    events: [{ type: 'thrown', ball, player, launch }],
+  };
+}

@@ -1,0 +1,33 @@
+import { type Vec3, vec3 } from '../../math/vec3';
+import type { BallEvent, BallPlace, BallPlayer, BallState, TimedLaunch } from './ball-state';
+
+/** A state and what happened on the way to it. */
+export type Step = { readonly state: BallState; readonly events: readonly BallEvent[] };
+
+const nothing: readonly never[] = [];
+
+export const unchanged = (state: BallState): Step => ({ state, events: nothing });
+
+/** What a state says is rounded: 0.1 mm or 0.1 ms. */
+export const round = (value: number): number => Math.round(value * 1e4) / 1e4;
+export const rounded = ({ x, y, z }: Vec3): Vec3 => vec3(round(x), round(y), round(z));
+export const roundedLaunch = ({ time, position, velocity }: TimedLaunch): TimedLaunch => ({
+  time: round(time),
+  position: rounded(position),
+  velocity: rounded(velocity),
+});
+
+/** The same list but for the one item. */
+function withItem<T>(items: readonly T[], index: number, item: T): readonly T[] {
+  const changed = items.slice();
+  if (index < changed.length) changed[index] = item;
+  return changed;
+}
+
+export function withPlayer(state: BallState, index: number, change: Partial<BallPlayer>): BallState {
+  const player = state.players[index];
+  return player ? { ...state, players: withItem(state.players, index, { ...player, ...change }) } : state;
+}
+
+export const withBall = (state: BallState, ball: number, place: BallPlace): BallState =>
+  ball < state.balls.length ? { ...state, balls: withItem(state.balls, ball, place) } : state;
