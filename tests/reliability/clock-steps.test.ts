@@ -4,7 +4,7 @@ import { createBallPlay } from '../../src/app/ball/ball-play';
 import { createFrameLoop } from '../../src/app/shell/frame-loop';
 import { createFrameTiming } from '../../src/app/shell/frame-timing';
 import { createArcheryRunner } from '../../src/app/shell/study-archery';
-import { createRecorder } from '../../src/app/studio/recorder';
+import { Recorder } from '../../src/app/studio/recorder';
 import { type PlayedStep, playTrial } from '../../src/app/study/study-trial';
 import type { AvatarPose } from '../../src/core/body/avatar-pose';
 import { defaultCalibration } from '../../src/core/body/calibration';
@@ -176,7 +176,7 @@ describe.each(steps)('page time leaps by %d s, and back 4 s later', (step) => {
   });
 
   test('a recording and the log of a trial have every frame once, in order', () => {
-    const recorder = createRecorder();
+    const recorder = new Recorder();
     const play = createArcheryPlay(
       defaultCalibration,
       () => ({ bowSide: 'left', oneHanded: false, everyHitCounts: false, startSignal: true }),

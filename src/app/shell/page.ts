@@ -7,7 +7,7 @@ import { pageElement } from '../../ui/element';
 import { createMouseAim } from '../../ui/mouse-aim';
 import type { Notices } from '../../ui/notices';
 import { createActor } from '../../xr/actor';
-import { createRecorder } from '../studio/recorder';
+import { Recorder } from '../studio/recorder';
 import { Activities } from './activities';
 import { Controls } from './controls/controls';
 import { Emitter } from './emitter';
@@ -51,7 +51,7 @@ function createGround({ visit, notices, loading }: PageOptions) {
   const stage = createStage(canvas, quality);
   loading.mark('scene');
 
-  const recorder = createRecorder();
+  const recorder = new Recorder();
   const measures = new Measures(settings, recorder);
   const onChange = changes.emit;
   const avatar = createShownAvatar({ scene: stage.studio.scene, settings, measures, notices, onChange });

@@ -11,122 +11,127 @@ import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 /** Frames kept at most: a quarter of an hour at 120 Hz, some 50 MB. Longer recordings stop by themselves. */
 const most = 108_000;
 
-/** Keeps tracked frames and plays them back; one recording at hand at a time. Times are seconds of whoever calls. */
-export interface Recorder {
-  readonly mode: 'idle' | 'recording' | 'replaying';
-  readonly loop: boolean;
-  /** Seconds since recording or replay began. */
-  readonly seconds: number;
-  /** Of the recording at hand [s]; 0 without one. */
-  readonly duration: number;
-  readonly frameCount: number;
-  /** null: no recording at hand. */
-  readonly name: string | null;
-  setLoop(loop: boolean): void;
-  /** A new recording; the one at hand is forgotten. */
-  record(source: { readonly device: string; readonly rateHz: number; readonly calibration: Calibration }): void;
-  /** Every tracked frame, recording or not. */
-  observe(frame: TrackingFrame): void;
-  /** Ends recording or replay. */
-  stop(): void;
-  /** Plays the recording at hand from its beginning; nothing happens without one. */
-  replay(): void;
-  /** The replay's frame at this time, dated at this time; null: nothing is replayed. */
-  sample(time: number): TrackingFrame | null;
-  /** Takes a recording from the text of a file; throws a sentence when it is none. */
-  open(name: string, text: string): Recording;
-  /** The file of the recording at hand; null without one. */
-  file(): { readonly name: string; readonly text: string } | null;
+/** What a new recording says of itself. */
+export interface RecordingSource {
+  readonly device: string;
+  readonly rateHz: number;
+  readonly calibration: Calibration;
 }
 
-export function createRecorder(): Recorder {
-  let mode: Recorder['mode'] = 'idle';
-  let loop = true;
-  let recording: Recording | null = null;
-  let name: string | null = null;
-  let frames: TrackingFrame[] = [];
-  let about: Omit<Recording, 'frames'> = { device: '', rateHz: 60, calibration: null };
-  let startTime: number | null = null;
-  let seconds = 0;
-  let count = 0;
+/** Keeps tracked frames and plays them back; one recording at hand at a time. Times are seconds of the caller's clock. */
+export class Recorder {
+  #mode: 'idle' | 'recording' | 'replaying' = 'idle';
+  #loop = true;
+  /** The recording at hand. */
+  #recording: Recording | null = null;
+  #name: string | null = null;
+  /** Of the recording that is being made. */
+  #frames: TrackingFrame[] = [];
+  #about: Omit<Recording, 'frames'> = { device: '', rateHz: 60, calibration: null };
+  /** When the replay began. */
+  #startTime: number | null = null;
+  #seconds = 0;
+  /** Recordings made so far. */
+  #count = 0;
 
-  function stop(): void {
-    if (mode === 'recording' && frames.length > 0) {
-      recording = { ...about, frames };
-      count += 1;
-      name = `recording-${count}.json`;
-    }
-    frames = [];
-    mode = 'idle';
-    seconds = 0;
-    startTime = null;
+  get mode(): 'idle' | 'recording' | 'replaying' {
+    return this.#mode;
   }
 
-  return {
-    get mode() {
-      return mode;
-    },
-    get loop() {
-      return loop;
-    },
-    get seconds() {
-      return seconds;
-    },
-    get duration() {
-      return recording ? recordingDuration(recording) : 0;
-    },
-    get frameCount() {
-      return mode === 'recording' ? frames.length : (recording?.frames.length ?? 0);
-    },
-    get name() {
-      return name;
-    },
-    setLoop(next) {
-      loop = next;
-    },
-    record(source) {
-      stop();
-      about = source;
-      recording = null;
-      name = null;
-      mode = 'recording';
-    },
-    observe(frame) {
-      if (mode !== 'recording') return;
-      const last = frames.at(-1);
-      if (last && frame.time <= last.time) return;
-      frames.push(frame);
-      seconds = frame.time - (frames[0]?.time ?? frame.time);
-      if (frames.length >= most) stop();
-    },
-    stop,
-    replay() {
-      if (!recording) return;
-      stop();
-      mode = 'replaying';
-    },
-    sample(time) {
-      const first = recording?.frames[0];
-      if (mode !== 'replaying' || !recording || !first) return null;
-      startTime ??= time;
-      const duration = recordingDuration(recording);
-      if (time - startTime > duration) {
-        if (loop) startTime = time;
-        else {
-          stop();
-          return null;
-        }
+  get loop(): boolean {
+    return this.#loop;
+  }
+
+  /** Seconds since recording or replay began. */
+  get seconds(): number {
+    return this.#seconds;
+  }
+
+  /** Of the recording at hand [s]; 0 without one. */
+  get duration(): number {
+    return this.#recording ? recordingDuration(this.#recording) : 0;
+  }
+
+  get frameCount(): number {
+    return this.#mode === 'recording' ? this.#frames.length : (this.#recording?.frames.length ?? 0);
+  }
+
+  /** null: no recording at hand. */
+  get name(): string | null {
+    return this.#name;
+  }
+
+  setLoop(loop: boolean): void {
+    this.#loop = loop;
+  }
+
+  /** A new recording; the one at hand is forgotten. */
+  record(source: RecordingSource): void {
+    this.stop();
+    this.#about = source;
+    this.#recording = null;
+    this.#name = null;
+    this.#mode = 'recording';
+  }
+
+  /** Every tracked frame, recording or not. */
+  observe(frame: TrackingFrame): void {
+    if (this.#mode !== 'recording') return;
+    const last = this.#frames.at(-1);
+    if (last && frame.time <= last.time) return;
+    this.#frames.push(frame);
+    this.#seconds = frame.time - (this.#frames[0]?.time ?? frame.time);
+    if (this.#frames.length >= most) this.stop();
+  }
+
+  /** Ends recording or replay. */
+  stop(): void {
+    if (this.#mode === 'recording' && this.#frames.length > 0) {
+      this.#recording = { ...this.#about, frames: this.#frames };
+      this.#count += 1;
+      this.#name = `recording-${this.#count}.json`;
+    }
+    this.#frames = [];
+    this.#mode = 'idle';
+    this.#seconds = 0;
+    this.#startTime = null;
+  }
+
+  /** Plays the recording at hand from its beginning; nothing happens without one. */
+  replay(): void {
+    if (!this.#recording) return;
+    this.stop();
+    this.#mode = 'replaying';
+  }
+
+  /** The replay's frame at this time, dated at this time; null: nothing is replayed. */
+  sample(time: number): TrackingFrame | null {
+    const recording = this.#recording;
+    const first = recording?.frames[0];
+    if (this.#mode !== 'replaying' || !recording || !first) return null;
+    this.#startTime ??= time;
+    if (time - this.#startTime > recordingDuration(recording)) {
+      if (!this.#loop) {
+        this.stop();
+        return null;
       }
-      seconds = time - startTime;
-      return { ...sampleRecording(recording, first.time + seconds), time };
-    },
-    open(fileName, text) {
-      const read = parseRecording(text);
-      stop();
-      recording = read;
-      name = fileName;
-      return read;
-    },
-    file: () => (recording && name ? { name, text: writeRecording(recording) } : null),
-  };
+      this.#startTime = time;
+    }
+    this.#seconds = time - this.#startTime;
+    return { ...sampleRecording(recording, first.time + this.#seconds), time };
+  }
+
+  /** Takes a recording from the text of a file; throws a sentence when it is none. */
+  open(name: string, text: string): Recording {
+    const recording = parseRecording(text);
+    this.stop();
+    this.#recording = recording;
+    this.#name = name;
+    return recording;
+  }
+
+  /** The file of the recording at hand; null without one. */
+  file(): { readonly name: string; readonly text: string } | null {
+    return this.#recording && this.#name ? { name: this.#name, text: writeRecording(this.#recording) } : null;
+  }
 }

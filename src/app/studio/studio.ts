@@ -2,24 +2,20 @@ import {
   BackSide,
   CircleGeometry,
   Color,
-  DirectionalLight,
-  Fog,
   Group,
-  HemisphereLight,
   Mesh,
   MeshBasicMaterial,
   MeshLambertMaterial,
   PlaneGeometry,
-  PMREMGenerator,
   RingGeometry,
   Scene,
   ShaderMaterial,
   SphereGeometry,
   type WebGLRenderer,
 } from 'three';
-import { createBlobShadow } from '../../scene/blob-shadow';
 import type { Quality } from '../../scene/renderer';
-import type { DistantLight, Lighting, Surroundings } from '../../scene/surroundings';
+import type { Lighting, Surroundings } from '../../scene/surroundings';
+import { Lights } from './lights';
 
 const horizon = new Color('#3a475d');
 const zenith = new Color('#121722');
@@ -33,7 +29,7 @@ const levelSquare = (size: number) => new PlaneGeometry(size, size).rotateX(-Mat
 /** Everything around the people: a floor, a sky, light. The floor is y = 0 of the floor frame. */
 export interface Studio {
   readonly scene: Scene;
-  /** Moves shadow and light along with whoever stands at (x, z) [m], floor frame. */
+  /** Moves shadow and light along with the person who stands at (x, z) [m], floor frame. */
   follow(x: number, z: number): void;
   /** Shows or hides the mark on the floor of the studio where to stand. */
   setMarkVisible(visible: boolean): void;
@@ -161,83 +157,17 @@ const studioLighting = (quality: Quality): Lighting => ({
 export function createStudio(renderer: WebGLRenderer, quality: Quality): Studio {
   const scene = new Scene();
   scene.background = null;
-  const fog = new Fog(horizon);
-  scene.fog = fog;
-  const key = new DirectionalLight();
-  const rim = new DirectionalLight();
-  const front = new DirectionalLight();
-  const fill = new HemisphereLight();
-  key.castShadow = quality === 'high';
-  key.shadow.bias = -0.0006;
-  key.shadow.normalBias = 0.015;
-
-  const blob = createBlobShadow();
+  const lights = new Lights(scene, renderer, quality);
   const mark = createMark();
   const studio = new Group();
   studio.add(createSky(), createFloor(), createGrid(), mark);
-  scene.add(studio, blob, key, key.target, rim, front, fill);
   const studioPlace: Surroundings = { object: studio, lighting: studioLighting(quality) };
+  scene.add(studio);
+  lights.set(studioPlace.lighting);
   let place = studioPlace;
-  const stand = { x: 0, z: 0 };
-
-  function aimKey(): void {
-    const { from } = place.lighting.key;
-    const { x, z } = place.lighting.shadow.centre ?? stand;
-    key.target.position.set(x, 0.9, z);
-    key.position.set(x + from[0], from[1], z + from[2]);
-  }
-
-  const setLight = (light: DirectionalLight, { color, intensity, from }: DistantLight) => {
-    light.color.set(color);
-    light.intensity = intensity;
-    light.position.set(...from);
-  };
-
-  function light(): void {
-    const { lighting } = place;
-    setLight(key, lighting.key);
-    setLight(rim, lighting.rim);
-    setLight(front, lighting.front);
-    fill.color.set(lighting.fill.sky);
-    fill.groundColor.set(lighting.fill.ground);
-    fill.intensity = lighting.fill.intensity;
-    fog.color.set(lighting.fog.color);
-    fog.near = lighting.fog.near;
-    fog.far = lighting.fog.far;
-    blob.material.opacity = lighting.contactShadow;
-    aimKey();
-    if (quality === 'low') return;
-    const { halfSize, resolution, softness } = lighting.shadow;
-    const { camera, mapSize } = key.shadow;
-    camera.left = camera.bottom = -halfSize;
-    camera.right = camera.top = halfSize;
-    camera.near = 1;
-    camera.far = 2 * Math.hypot(...lighting.key.from);
-    camera.updateProjectionMatrix();
-    key.shadow.radius = softness;
-    if (mapSize.width !== resolution) {
-      mapSize.set(resolution, resolution);
-      // The map of the other size is built again with the next picture.
-      key.shadow.map?.dispose();
-      key.shadow.map = null;
-    }
-    const generator = new PMREMGenerator(renderer);
-    scene.environment?.dispose();
-    scene.environment = generator.fromScene(lighting.reflected(), 0.03).texture;
-    scene.environmentIntensity = lighting.reflectedIntensity;
-    generator.dispose();
-  }
-  light();
-
   return {
     scene,
-    follow(x, z) {
-      blob.position.x = x;
-      blob.position.z = z;
-      stand.x = x;
-      stand.z = z;
-      aimKey();
-    },
+    follow: (x, z) => lights.follow(x, z),
     setMarkVisible(visible) {
       mark.visible = visible;
     },
@@ -247,8 +177,8 @@ export function createStudio(renderer: WebGLRenderer, quality: Quality): Studio 
       scene.remove(place.object);
       scene.add(next.object);
       place = next;
-      light();
+      lights.set(next.lighting);
     },
-    restore: light,
+    restore: () => lights.set(place.lighting),
   };
 }

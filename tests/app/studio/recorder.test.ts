@@ -1,5 +1,5 @@
 import { describe, expect, test } from 'vitest';
-import { createRecorder } from '../../../src/app/studio/recorder';
+import { Recorder } from '../../../src/app/studio/recorder';
 import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
 
 const source = { device: 'emulated headset', rateHz: 72, calibration: { eyeHeight: 1.6, armSpan: 1.4 } };
@@ -15,7 +15,7 @@ function frameAt(time: number): TrackingFrame {
 }
 
 function recorded(from: number, to: number) {
-  const recorder = createRecorder();
+  const recorder = new Recorder();
   recorder.record(source);
   for (let time = from; time < to; time += 1 / 64) recorder.observe(frameAt(time));
   recorder.stop();
@@ -24,7 +24,7 @@ function recorded(from: number, to: number) {
 
 describe('the recorder', () => {
   test('keeps nothing before it is asked to', () => {
-    const recorder = createRecorder();
+    const recorder = new Recorder();
     recorder.observe(frameAt(1));
     expect([recorder.name, recorder.file(), recorder.frameCount]).toEqual([null, null, 0]);
     recorder.replay();
@@ -53,7 +53,7 @@ describe('the recorder', () => {
   test('its file is read back to the bit', () => {
     const recorder = recorded(1 / 3, 1);
     const file = recorder.file();
-    const other = createRecorder();
+    const other = new Recorder();
     const read = other.open('copy.json', file?.text ?? '');
     expect(read.frames[0]).toEqual(frameAt(1 / 3));
     expect(read).toMatchObject({ device: source.device, rateHz: source.rateHz, calibration: source.calibration });

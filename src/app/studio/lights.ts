@@ -1,0 +1,102 @@
+import { Color, DirectionalLight, Fog, HemisphereLight, PMREMGenerator, type Scene, type WebGLRenderer } from 'three';
+import { createBlobShadow } from '../../scene/blob-shadow';
+import type { Quality } from '../../scene/renderer';
+import type { DistantLight, Lighting } from '../../scene/surroundings';
+
+/** How high above the floor the light that throws shadows aims [m]. */
+const aimHeight = 0.9;
+/** How blurred what surfaces reflect is to begin with [rad]. */
+const reflectionBlur = 0.03;
+
+function setLight(light: DirectionalLight, { color, intensity, from }: DistantLight): void {
+  light.color.set(color);
+  light.intensity = intensity;
+  light.position.set(...from);
+}
+
+/** The lights, the fog and the shadows of a scene: always the same ones, told anew for each place that people stand in. */
+export class Lights {
+  readonly #scene: Scene;
+  readonly #renderer: WebGLRenderer;
+  readonly #quality: Quality;
+  /** The one light that throws shadows. */
+  readonly #key = new DirectionalLight();
+  readonly #rim = new DirectionalLight();
+  readonly #front = new DirectionalLight();
+  readonly #fill = new HemisphereLight();
+  readonly #fog = new Fog(new Color());
+  readonly #blob = createBlobShadow();
+  /** Where the body stands, floor frame [m]. */
+  readonly #stand = { x: 0, z: 0 };
+  #lighting: Lighting | null = null;
+
+  constructor(scene: Scene, renderer: WebGLRenderer, quality: Quality) {
+    this.#scene = scene;
+    this.#renderer = renderer;
+    this.#quality = quality;
+    this.#key.castShadow = quality === 'high';
+    this.#key.shadow.bias = -0.0006;
+    this.#key.shadow.normalBias = 0.015;
+    scene.fog = this.#fog;
+    scene.add(this.#blob, this.#key, this.#key.target, this.#rim, this.#front, this.#fill);
+  }
+
+  /** Light and shadow go along with the person who stands at (x, z) [m], floor frame. */
+  follow(x: number, z: number): void {
+    this.#blob.position.x = x;
+    this.#blob.position.z = z;
+    this.#stand.x = x;
+    this.#stand.z = z;
+    if (this.#lighting) this.#aimKey(this.#lighting);
+  }
+
+  /** Lights another place; the same one again after the graphics device was lost. */
+  set(lighting: Lighting): void {
+    this.#lighting = lighting;
+    setLight(this.#key, lighting.key);
+    setLight(this.#rim, lighting.rim);
+    setLight(this.#front, lighting.front);
+    this.#fill.color.set(lighting.fill.sky);
+    this.#fill.groundColor.set(lighting.fill.ground);
+    this.#fill.intensity = lighting.fill.intensity;
+    this.#fog.color.set(lighting.fog.color);
+    this.#fog.near = lighting.fog.near;
+    this.#fog.far = lighting.fog.far;
+    this.#blob.material.opacity = lighting.contactShadow;
+    this.#aimKey(lighting);
+    if (this.#quality === 'low') return;
+    this.#setShadow(lighting);
+    this.#setReflections(lighting);
+  }
+
+  #aimKey({ key, shadow }: Lighting): void {
+    const [right, up, back] = key.from;
+    const { x, z } = shadow.centre ?? this.#stand;
+    this.#key.target.position.set(x, aimHeight, z);
+    this.#key.position.set(x + right, up, z + back);
+  }
+
+  #setShadow({ key, shadow: { halfSize, resolution, softness } }: Lighting): void {
+    const { shadow } = this.#key;
+    const { camera, mapSize } = shadow;
+    camera.left = camera.bottom = -halfSize;
+    camera.right = camera.top = halfSize;
+    camera.near = 1;
+    camera.far = 2 * Math.hypot(...key.from);
+    camera.updateProjectionMatrix();
+    shadow.radius = softness;
+    if (mapSize.width === resolution) return;
+    mapSize.set(resolution, resolution);
+    // The map of the other size is built again with the next picture.
+    shadow.map?.dispose();
+    shadow.map = null;
+  }
+
+  #setReflections({ reflected, reflectedIntensity }: Lighting): void {
+    const generator = new PMREMGenerator(this.#renderer);
+    this.#scene.environment?.dispose();
+    this.#scene.environment = generator.fromScene(reflected(), reflectionBlur).texture;
+    this.#scene.environmentIntensity = reflectedIntensity;
+    generator.dispose();
+  }
+}
