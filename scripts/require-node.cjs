@@ -1,4 +1,4 @@
-// Runs before everything else, on whatever Node there is: syntax of 2015, nothing installed yet.
+// Runs before everything else, on any Node there is: syntax of 2015, nothing installed yet.
 const { readFileSync } = require('fs');
 const { join } = require('path');
 

@@ -4,7 +4,7 @@ import { fileURLToPath } from 'node:url';
 /** The root of the repository, without a trailing slash. */
 export const root = fileURLToPath(new URL('..', import.meta.url)).replace(/[\\/]$/, '');
 
-/** A sentence for the person at the terminal; nobody needs its stack. */
+/** A sentence for the person at the terminal, who needs no stack. */
 export class SetupError extends Error {}
 
 /** Children still running, each the leader of its own process group, so that nothing outlives the script that started it. */
@@ -82,7 +82,7 @@ export async function runQuietly(command, args, options = {}) {
   }
 }
 
-/** npm passes a signal only to the shell between us: when that shell is gone, whoever ran `npm start` has stopped it. */
+/** npm passes a signal only to the shell between us: when that shell is gone, the user of `npm start` has stopped it. */
 function stopWithParent() {
   const parent = process.ppid;
   setInterval(() => {

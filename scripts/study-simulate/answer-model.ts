@@ -3,7 +3,7 @@ import type { RandomSource } from './random-source';
 
 /**
  * How a simulated participant answers: a leaning [scale points], the person's own, the question's, the condition's, the place's
- * in the order, and chance, rounded to the scale. Stated, not fitted: nobody's answers are imitated.
+ * in the order, and chance, rounded to the scale. Stated, not fitted: no person's answers are imitated.
  */
 export interface AnswerModel {
   /** Where answers lie without any effect, per question; others: `elsewhere`. */

@@ -3,7 +3,7 @@ import type { RandomSource } from './random-source';
 
 /**
  * How well simulated participants play, and how smoothly a simulated headset runs. Stated, not fitted: the numbers are chosen so
- * that scores lie inside the scale, and nobody's play is imitated.
+ * that scores lie inside the scale, and no person's play is imitated.
  */
 export interface PerformanceModel {
   /** Chance to hit each archery target with an arrow aimed at it, nearest first. */
@@ -54,7 +54,7 @@ export interface Player {
   readonly armSpan: number;
 }
 
-/** Somebody's skill and measures. */
+/** A simulated participant's skill and measures. */
 export function drawPlayer(model: PerformanceModel, random: RandomSource): Player {
   const eyeHeight = Math.min(1.9, Math.max(1.35, 1.58 + 0.09 * random.normal()));
   return { skill: model.skillDeviation * random.normal(), eyeHeight, armSpan: 0.945 * eyeHeight };

@@ -20,7 +20,7 @@ export interface SimulatedParticipant {
   readonly records: readonly StudyRecord[];
 }
 
-/** The plan under a name that nobody takes for a study of people. */
+/** The plan under a name that cannot be taken for a study of people. */
 export const simulatedPlan = (plan: StudyPlan): StudyPlan => ({
   ...plan,
   id: `${plan.id.slice(0, 37)}-simulated`,

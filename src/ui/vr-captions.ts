@@ -6,12 +6,12 @@ import { addScaled, forward, type Vec3, vec3 } from '../core/math/vec3';
 import { showToEyesAlone } from '../scene/eye-layers';
 import { createVrPanel, fillRounded, vrColors, vrFont } from './vr-panel';
 
-/** What is heard, in words, in the headset: a line low before the eyes for whoever plays without sound. */
+/** What is heard, in words, in the headset: a line low before the eyes for players without sound. */
 export interface VrCaptions {
   readonly object: Mesh;
   /** An empty text takes away what is said. */
   say(text: string): void;
-  /** At this time [s] before these eyes, floor frame; null: nobody is there to read. */
+  /** At this time [s] before these eyes, floor frame; null: no one reads. */
   show(time: number, eyes: Pose<'floor'> | null): void;
 }
 

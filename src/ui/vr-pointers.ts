@@ -22,7 +22,7 @@ export interface Pointer {
   showRay(distance: number | null): void;
 }
 
-/** Both hands' pointers, whichever input source they come from. */
+/** Both hands' pointers, of controllers and of bare hands alike. */
 export interface VrPointers {
   readonly objects: Group;
   /** The pointers of this frame; presses are handed out once. */

@@ -63,7 +63,7 @@ test('a headset taken off for 20 s: others see “away” at once when told, wit
     const before = cal.play.probe()?.balls.rack ?? 0;
     pass(10, true, () => (cal.play.probe()?.balls.rack ?? 0) < before);
     expect(cal.play.probe()?.balls.rack, 'Ann throws again').toBeLessThan(before);
-    rows[told ? '“away” when the page says so' : '“away” when nobody says so'] =
+    rows[told ? '“away” when the page says so' : '“away” when it does not say so'] =
       `after ${away.toFixed(2)} s, back after ${back.toFixed(2)} s`;
   }
   measured('hidden', rows);

@@ -48,7 +48,7 @@ export const faultRows = {
     target: 'within 1 s of the return',
     tests: ['tests/reliability/hidden.test.ts', 'tests/core/room/room.test.ts', 'e2e/entering-vr.spec.ts'],
     manual: [
-      'Take the headset off for twenty seconds in a ball game with somebody else: they see “away”; put it on: they see you.',
+      'Take the headset off for twenty seconds in a ball game with another player: they see “away”; put it on: they see you.',
     ],
   },
   controllers: {

@@ -62,7 +62,7 @@ describe('the guided calibration', () => {
     expect(steps.at(-1)).toMatchObject({ kind: 'failed', text: expect.stringMatching(/arms/) });
   });
 
-  test('cancelled half-way, it measures nobody', () => {
+  test('cancelled half-way, it measures no one', () => {
     const { guide, steps, measured, run } = guided();
     guide.start();
     run(0, 4);

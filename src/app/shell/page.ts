@@ -36,7 +36,7 @@ export interface PageOptions {
   readonly loading: PageLoading;
 }
 
-/** What every visit needs, whatever it is for: a stage, a body on it, and the headset that may move it. */
+/** What a visit needs for the studio and for every game: a stage, a body on it, and the headset that may move it. */
 function createGround({ visit, notices, loading }: PageOptions) {
   const { switches, settings, changes } = visit;
   const timing = createFrameTiming(() => performance.now());

@@ -23,7 +23,7 @@ const longestStep = 0.1;
 /** A pelvis hangs at this share of the eyes' height, where no body says better. */
 const pelvisShare = 0.58;
 
-/** Somebody to look at, floor frame. */
+/** A person to look at, floor frame. */
 export interface Watched {
   readonly pelvis: Vec3;
   readonly eyes: Pose<'floor'>;
@@ -39,7 +39,7 @@ export interface Shot {
   readonly inSession: boolean;
   /** Whom a camera without a body of its own looks at; null: there is a body. */
   readonly watched: Watched | null;
-  /** never; always; or only for a camera that does not stand behind the mirror: whoever looks from there wants to see the body. */
+  /** never; always; or only for a camera that does not stand behind the mirror: from there one wants to see the body. */
   readonly mirror: 'never' | 'always' | 'unless-behind';
 }
 
@@ -51,7 +51,7 @@ export interface Stage {
   readonly vignette: Vignette;
   /** A line low before the eyes of a session; empty: none. */
   caption(text: string): void;
-  /** Beside the range, for an archer whose bow is in this hand; null: ahead of whoever stands in the studio. */
+  /** Beside the range, for an archer whose bow is in this hand; null: ahead of the person in the studio. */
   placeMirror(bowSide: Side | null): void;
   setSkeletonVisible(visible: boolean): void;
   /** Fits picture and camera to the window; insets: what the controls cover [CSS pixels]. */

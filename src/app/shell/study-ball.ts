@@ -6,7 +6,7 @@ import type { TaskEnd, TaskEvent, TaskPlace, TaskRunner } from '../study/task-ru
 export interface BallHost {
   /** The court in this room of the relay, on this seat. */
   goToBall(place: TaskPlace): Promise<void>;
-  /** The match on the page; null: nobody is at the court. */
+  /** The match on the page; null: this page is not at the court. */
   ball(): BallPlay | null;
   leaveBall(): void;
 }
@@ -62,7 +62,7 @@ export function createBallRunner(host: BallHost): BallRunner {
       for (const event of events) {
         if (event.type === 'thrown' && event.player === me) happened.push({ type: 'shot' });
         if (event.type === 'missed' && event.player === me) happened.push({ type: 'miss', time: at, points: 0 });
-        // A point is the group's: it is a hit of whoever threw, and a catch for the others.
+        // A point is the group's: it is a hit of the thrower, and a catch for the others.
         if (event.type === 'caught')
           happened.push({ type: event.player === me ? 'hit' : 'catch', time: at, points: 1 });
       }

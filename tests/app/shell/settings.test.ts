@@ -47,7 +47,7 @@ describe('bots', () => {
     expect(visit('', { bots: false }).bots).toBe(false);
   });
 
-  test('stay away from a room where others may come, whatever was remembered, unless the address asks for them', () => {
+  test('stay away from a room where others may come, even if remembered, unless the address asks for them', () => {
     expect(visit('?room=garden', { bots: true }).bots).toBe(false);
     expect(visit('?room=garden&bots=on').bots).toBe(true);
     expect(visit('?bots=off', { bots: true }).bots).toBe(false);
