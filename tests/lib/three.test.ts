@@ -125,6 +125,22 @@ describe('a body in a session of three.js', () => {
     expect(told).toEqual(['found head', 'found left', 'found right']);
   });
 
+  test('of a device that never calls anything tracked, as emulators do, has its hands on the controllers too', async () => {
+    const { headset, tracker, run } = await begin({ calibration: defaultCalibration });
+    const guessed = { ...left, emulated: true };
+    headset.setInputs(controller('left', guessed), controller('right', right));
+    headset.putOn();
+    run(40);
+    const wrist = () => distance(tracker.avatar.jointPositions().leftHand!, tracker.pose!.leftHand!.position);
+    expect(wrist()).toBeLessThan(0.001);
+    // Once it has told, it is believed where it only guesses: the arm sinks to rest.
+    headset.setInputs(controller('left', left), controller('right', right));
+    run(2);
+    headset.setInputs(controller('left', guessed), controller('right', right));
+    run(400);
+    expect(wrist()).toBeGreaterThan(0.1);
+  });
+
   test('says which hand is lost and which is found', async () => {
     const { headset, run, told } = await begin({ calibration: defaultCalibration });
     headset.putOn();
