@@ -20,7 +20,7 @@ const wristInGrip = {
 export const wristName = { left: 'leftHand', right: 'rightHand' } as const;
 
 /** Where the wrist must be: the grip as iwer has it, and how a hand holds it. */
-async function wristByGrip(headset: EmulatedHeadset, side: Side): Promise<Point> {
+export async function wristByGrip(headset: EmulatedHeadset, side: Side): Promise<Point> {
   const { position, orientation } = await headset.grip(side);
   const [x, y, z] = rotated(orientation, wristInGrip[side]);
   return [position[0] + x, position[1] + y, position[2] + z];

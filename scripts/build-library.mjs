@@ -15,7 +15,7 @@ const version = (name) => own.dependencies[name];
 const peers = {
   '@pixiv/three-vrm': `^${version('@pixiv/three-vrm')}`,
   'onnxruntime-web': `^${version('onnxruntime-web')}`,
-  three: `>=${version('three')}`,
+  three: '>=0.184.0',
 };
 const external = (id) => [...Object.keys(peers), 'valibot'].some((name) => id === name || id.startsWith(`${name}/`));
 

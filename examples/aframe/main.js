@@ -1,0 +1,24 @@
+import AFRAME from 'aframe';
+import mannequin from 'threepoint/avatars/mannequin.vrm?url';
+import { BodyTracker, loadAvatar } from 'threepoint/three';
+
+AFRAME.registerComponent('self-avatar', {
+  schema: { src: { default: mannequin } },
+
+  async init() {
+    const { sceneEl, object3D } = this.el;
+    const avatar = await loadAvatar(this.data.src);
+    this.body = new BodyTracker(sceneEl.renderer, { avatar });
+    this.body.addEventListener('fallback', ({ reason }) => console.warn(reason));
+    object3D.add(this.body.object);
+    window.selfAvatar = this.body;
+  },
+
+  tick(timeMs) {
+    this.body?.update(timeMs, this.el.sceneEl.frame);
+  },
+
+  remove() {
+    this.body?.dispose();
+  },
+});

@@ -1,0 +1,35 @@
+import { Canvas, useFrame, useThree } from '@react-three/fiber';
+import { useEffect, useState } from 'react';
+import { createRoot } from 'react-dom/client';
+import { VRButton } from 'three/examples/jsm/webxr/VRButton.js';
+import mannequin from 'threepoint/avatars/mannequin.vrm?url';
+import { BodyTracker, loadAvatar } from 'threepoint/three';
+
+function SelfAvatar({ src = mannequin, onFallback = ({ reason }) => console.warn(reason) }) {
+  const renderer = useThree(({ gl }) => gl);
+  const [body, setBody] = useState(null);
+  useEffect(() => {
+    const arrives = loadAvatar(src).then((avatar) => new BodyTracker(renderer, { avatar }));
+    arrives.then((tracker) => {
+      tracker.addEventListener('fallback', onFallback);
+      window.selfAvatar = tracker;
+      setBody(tracker);
+    });
+    return () => arrives.then((tracker) => tracker.dispose());
+  }, [renderer, src, onFallback]);
+  useFrame((_state, _delta, frame) => body?.update(performance.now(), frame));
+  return body && <primitive object={body.object} />;
+}
+
+const enterVr = ({ gl }) => {
+  gl.xr.enabled = true;
+  document.body.append(VRButton.createButton(gl));
+};
+
+createRoot(document.getElementById('root')).render(
+  <Canvas camera={{ position: [0, 1.6, 2] }} onCreated={enterVr}>
+    <hemisphereLight intensity={3} />
+    <gridHelper args={[10, 10]} />
+    <SelfAvatar />
+  </Canvas>,
+);

@@ -1,0 +1,23 @@
+import { GridHelper, HemisphereLight, PerspectiveCamera, Scene, WebGLRenderer } from 'three';
+import { VRButton } from 'three/examples/jsm/webxr/VRButton.js';
+import avatarUrl from 'threepoint/avatars/mannequin.vrm?url';
+import { BodyTracker, loadAvatar } from 'threepoint/three';
+
+const renderer = new WebGLRenderer({ antialias: true });
+renderer.setSize(innerWidth, innerHeight);
+renderer.xr.enabled = true;
+document.body.append(renderer.domElement, VRButton.createButton(renderer));
+
+const scene = new Scene().add(new HemisphereLight(0xffffff, 0x666666, 3), new GridHelper(10, 10));
+const camera = new PerspectiveCamera(60, innerWidth / innerHeight, 0.05, 50);
+camera.position.set(0, 1.6, 2);
+
+const body = new BodyTracker(renderer, { avatar: await loadAvatar(avatarUrl) });
+body.addEventListener('fallback', ({ reason }) => console.warn(reason));
+scene.add(body.object);
+
+renderer.setAnimationLoop((timeMs, frame) => {
+  body.update(timeMs, frame);
+  renderer.render(scene, camera);
+});
+window.selfAvatar = body;
