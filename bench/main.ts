@@ -6,13 +6,14 @@ import { createPageHandler } from '../server/page';
 import { serve, type WebServer } from '../server/web-server';
 import { stageNames } from '../src/app/shell/frame-timing';
 import { type Allocations, builtIn, measureAllocations } from './allocations';
+import { type MeasuredNetwork, measureNetworks } from './networks';
 import type { PageResult } from './page/main';
 
 /** Bytes of the first visit, as sent and as unpacked. */
 type Bytes = Record<'app' | 'wasm' | 'models' | 'avatars', number>;
 
 const { values: options, positionals } = parseArgs({
-  options: { json: { type: 'string' }, allocations: { type: 'boolean' } },
+  options: { json: { type: 'string' }, allocations: { type: 'boolean' }, networks: { type: 'boolean' } },
   allowPositionals: true,
 });
 
@@ -90,6 +91,8 @@ const browser = await chromium.launch({
     '--no-sandbox',
     '--use-angle=swiftshader',
     '--enable-unsafe-swiftshader',
+    // Where there is a graphics device, or its software.
+    '--enable-unsafe-webgpu',
     '--disable-quic',
     '--disable-background-networking',
     '--disable-component-update',
@@ -127,6 +130,28 @@ async function measureWhereAllocated(browser: Browser): Promise<void> {
   tellSites(allocations);
   tellAllocations(allocations);
   if (options.json) writeFileSync(options.json, `${JSON.stringify(allocations, null, 2)}\n`);
+}
+
+/** By way to run it: what the learned network costs a page that does nothing else. */
+async function measureLearned(browser: Browser): Promise<Readonly<Record<string, MeasuredNetwork>>> {
+  const server = await serveIsolated(builtIn('.cache/bench'));
+  try {
+    const costs = await measureNetworks(browser, `http://127.0.0.1:${server.port}`);
+    console.log('\nThe learned network, by the way to run it');
+    row('', ['in frame p50', 'p95 [ms]', 'thread p50', 'p95 [ms]', 'first [ms]', 'kB', 'ran on']);
+    for (const [way, { inFrameMs, threadMs, firstBodyMs, bytes, provider }] of Object.entries(costs)) {
+      const times = [inFrameMs.p50, inFrameMs.p95, threadMs.p50, threadMs.p95].map((ms) => ms.toFixed(3));
+      row(way, [...times, firstBodyMs.toFixed(0), (bytes / 1000).toFixed(0), provider]);
+    }
+    return costs;
+  } finally {
+    await server.close();
+  }
+}
+
+async function measureNetworksAlone(browser: Browser): Promise<void> {
+  const networks = await measureLearned(browser);
+  if (options.json) writeFileSync(options.json, `${JSON.stringify({ networks }, null, 2)}\n`);
 }
 
 const share = (value: number) => `${(100 * value).toFixed(1)} %`;
@@ -230,7 +255,8 @@ async function measureEverything(browser: Browser): Promise<void> {
   const visit = await measureVisit(browser);
   const frames = await measureFrames(browser);
   const allocations = await measureAllocations(browser, { page: builtIn('dist'), bench: builtIn('.cache/bench') });
-  const result = { ...frames, ...visit, allocationBytes: allocations.bytes };
+  const networks = await measureLearned(browser);
+  const result = { ...frames, ...visit, allocationBytes: allocations.bytes, networks };
   tellCosts(frames);
   tellStages(frames);
   tellArchery(frames);
@@ -241,7 +267,8 @@ async function measureEverything(browser: Browser): Promise<void> {
 }
 
 try {
-  await (options.allocations ? measureWhereAllocated(browser) : measureEverything(browser));
+  if (options.networks) await measureNetworksAlone(browser);
+  else await (options.allocations ? measureWhereAllocated(browser) : measureEverything(browser));
 } finally {
   await browser.close();
 }

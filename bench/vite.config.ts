@@ -11,6 +11,8 @@ export default defineConfig({
     outDir: path('../.cache/bench'),
     emptyOutDir: true,
     target: 'es2022',
-    rolldownOptions: { input: [path('./page/index.html'), path('./page/allocations.html')] },
+    rolldownOptions: {
+      input: [path('./page/index.html'), path('./page/allocations.html'), path('./page/networks.html')],
+    },
   },
 });

@@ -1,6 +1,7 @@
 // npm run bench [-- --json FILE]: what a frame costs, by estimator and by stage, in headless Chromium.
 // npm run bench -- --allocations [ik paper learned mirror archery ball3 ball8 stillScene]: only what frames leave to the collector, and which
 // functions leave it.
+// npm run bench -- --networks: only the learned network, by each way to run it.
 import { resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { buildWhenStale } from './build.mjs';
@@ -14,7 +15,7 @@ const readable = ['--minify', 'false', '--sourcemap'];
 
 await main(async () => {
   const { values, positionals } = parseArgs({
-    options: { json: { type: 'string' }, allocations: { type: 'boolean' } },
+    options: { json: { type: 'string' }, allocations: { type: 'boolean' }, networks: { type: 'boolean' } },
     allowPositionals: true,
   });
   await ensureInstalled();
@@ -22,13 +23,14 @@ await main(async () => {
   if (values.allocations) {
     const { code } = await vite('--outDir', '.cache/bench-of-page', '--emptyOutDir', ...readable);
     if (code !== 0) return code;
-  } else await buildWhenStale();
+  } else if (!values.networks) await buildWhenStale();
   const page = await vite('--config', 'bench/vite.config.ts', ...(values.allocations ? readable : []));
   if (page.code !== 0) return page.code;
   const measure = ['--import', 'tsx', 'bench/main.ts'];
   // The path means what it means to the person who typed it.
   if (values.json) measure.push('--json', resolve(process.env.INIT_CWD ?? process.cwd(), values.json));
   if (values.allocations) measure.push('--allocations', ...positionals);
+  if (values.networks) measure.push('--networks');
   const { code } = await run(process.execPath, measure, { cwd: root });
   return code;
 });

@@ -1,0 +1,82 @@
+// The learned estimator alone, by one way to run its network (?way=…): what a page without graphics pays for it.
+import { defaultCalibration } from '../../src/core/body/calibration';
+import { createWithNetwork } from '../../src/core/estimation/estimators';
+import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
+import { actorFrame } from '../../src/core/tracking/actor-motion';
+import { createAfterFrame } from '../../src/lib/after-frame';
+import type { NetworkCost, NetworkWay } from '../networks';
+
+/** Frames that are measured, after those in which the engine compiles. */
+const measured = 600;
+const warmUp = 300;
+
+async function load(way: NetworkWay): Promise<PoseRegressor> {
+  const contractUrl = '/models/learned.json';
+  if (way === 'plain') {
+    const { loadPlainRegressor } = await import('../../src/inference/load-plain-regressor');
+    return loadPlainRegressor(contractUrl);
+  }
+  const [{ loadRegressor }, { createInferenceWorker }] = await Promise.all([
+    import('../../src/inference/load-regressor'),
+    import('../../src/inference/create-inference-worker'),
+  ]);
+  return loadRegressor(
+    contractUrl,
+    way === 'webgpu' ? { provider: 'webgpu' } : { createWorker: createInferenceWorker },
+  );
+}
+
+const quantile = (values: readonly number[], share: number): number =>
+  values.toSorted((a, b) => a - b)[Math.floor(share * values.length)] ?? Number.NaN;
+
+async function measure(way: NetworkWay): Promise<NetworkCost> {
+  const opened = performance.now();
+  const regressor = await load(way);
+  const estimator = createWithNetwork('learned', defaultCalibration, regressor);
+  const afterwards = createAfterFrame();
+  const inFrame: number[] = [];
+  const onThread: number[] = [];
+  let firstBodyMs = Number.NaN;
+  for (let frame = 0; frame < warmUp + measured; frame++) {
+    const timeMs = await new Promise<number>(requestAnimationFrame);
+    const tracked = actorFrame(timeMs / 1000, defaultCalibration);
+    const begun = performance.now();
+    const { request } = estimator.update(tracked);
+    const spent = performance.now() - begun;
+    // A frame that draws the network's own answer, not inverse kinematics alone.
+    const { network } = estimator.source;
+    if (Number.isNaN(firstBodyMs) && network?.answer(estimator.state.solved)) firstBodyMs = performance.now() - opened;
+    let later = 0;
+    if (request) {
+      await new Promise<void>((done) =>
+        afterwards(() => {
+          const asked = performance.now();
+          void request.ask();
+          later = performance.now() - asked;
+          done();
+        }),
+      );
+    }
+    if (frame < warmUp) continue;
+    inFrame.push(spent);
+    onThread.push(spent + later);
+  }
+  const told = (values: readonly number[]) => ({ p50: quantile(values, 0.5), p95: quantile(values, 0.95) });
+  return { provider: regressor.provider, inFrameMs: told(inFrame), threadMs: told(onThread), firstBodyMs };
+}
+
+declare global {
+  interface Window {
+    networkCost?: NetworkCost;
+    networkError?: string;
+  }
+}
+
+measure(new URLSearchParams(location.search).get('way') as NetworkWay).then(
+  (cost) => {
+    window.networkCost = cost;
+  },
+  (error: unknown) => {
+    window.networkError = String(error);
+  },
+);
