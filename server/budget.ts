@@ -1,4 +1,4 @@
-/** How much of something somebody may still do. Counting in this process alone: it is asked for every pose packet. */
+/** How many messages of one sort a client may still send. Counted in this process alone, as it is asked for every pose packet. */
 export interface Budget {
   /** Whether one more is within the budget at this time [s, monotonic]. */
   spend(now: number): boolean;

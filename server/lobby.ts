@@ -30,7 +30,7 @@ const commandTimeoutMs = 1000;
 
 const retryStrategy = (attempt: number): number => Math.min(200 * attempt, 2000);
 
-/** A connection that never makes anybody wait: without Redis its commands fail at once, and it comes back by itself. */
+/** A connection whose commands fail at once without Redis, so that no request waits for them; it comes back by itself. */
 export function connectRedis(url: string, log: Logger): Redis {
   return watched(
     new Redis(url, {
@@ -43,7 +43,7 @@ export function connectRedis(url: string, log: Logger): Redis {
   );
 }
 
-/** One whose commands wait until Redis is there, however long: nobody is told of a failure, as socket.io's adapter wants it. */
+/** A connection whose commands wait for Redis however long that takes, and never fail: what socket.io's adapter expects. */
 export function connectRedisPatiently(url: string, log: Logger): Redis {
   return watched(new Redis(url, { maxRetriesPerRequest: null, retryStrategy }), log);
 }

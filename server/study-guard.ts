@@ -40,7 +40,7 @@ export interface StudyGuard {
   withdrawing<T>(concerned: Omit<Concerned, 'participant'>, code: string, withdraw: () => T | null): Promise<T>;
 }
 
-/** Places of an open study that one address may take within an hour: whoever has its link could take them all otherwise. */
+/** Places of an open study that one address may take within an hour: a person who has the study's link could take them all otherwise. */
 export const openPlacesPerHour = 6;
 
 const digest = (secret: string) => createHash('sha256').update(secret).digest();

@@ -11,8 +11,8 @@ const first = 0.5;
 const longest = 3;
 
 /**
- * Twice as long after every failure, at most 3 s, each time between half and one and a half of that by chance: whoever lost the
- * same server at the same moment does not come back at the same moment. `chance` gives numbers in [0, 1).
+ * Twice as long after every failure, at most 3 s, each time between half and one and a half of that by chance: pages that
+ * lost a server at the same moment do not all come back to it at the same moment. `chance` gives numbers in [0, 1).
  */
 export function createBackOff(chance: () => number = Math.random): BackOff {
   let attempts = 0;

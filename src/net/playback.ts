@@ -128,7 +128,7 @@ export class Playback {
     const silent = arrivedAt - this.heardAt > hideAfter;
     if (last && time <= last.time && !silent) return;
     if (last && silent) {
-      // A player who was hidden comes back as they are now, whatever their clock says.
+      // A player who was hidden comes back as they are now, even if their clock has been set back.
       this.samples = [];
       this.transits.clear();
       this.behind = Number.NaN;

@@ -88,7 +88,7 @@ describe('a room in the page', () => {
     expect(ann.match.balls[0]).toMatchObject({ on: 'air', thrower: 0 });
   });
 
-  test('rolls a grab back that somebody else was faster with', () => {
+  test('rolls a grab back that another player was faster with', () => {
     const { ann, ben, begin, pass, people } = threeTogether();
     begin();
     // A ball in the middle that both reach.

@@ -24,7 +24,7 @@ const eyes = vec3(0, 1.6, 0);
 export const velocityTo = (from: Vec3, to: Vec3, seconds: number): Vec3 =>
   addScaled(scale(subtract(to, from), 1 / seconds), vec3(0, 1, 0), 0.5 * gravity * seconds);
 
-/** Somebody who stands where their seat is with their wrists at these places of the arena. */
+/** A player who stands where their seat is, with their wrists at these places of the arena. */
 export function shownAt(
   connection: Pick<Connection, 'arenaFromFloor'>,
   seat: number,

@@ -11,7 +11,7 @@ test('a link to a place says study and participant to the server, and the invita
   expect(invitationIn(link.hash)).toBe('G4F9-TMTZ-4S8W-GZ1P');
 });
 
-test('an address without an invitation has none, whatever else stands behind "#"', () => {
+test('an address without an invitation has none, even if something else stands behind "#"', () => {
   expect(studyLink({ study: 'paper', participant: null, invitation: null })).toBe('/?study=paper');
   for (const hash of ['', '#', '#top', '#invitation', '#invitation=']) expect(invitationIn(hash), hash).toBeNull();
 });

@@ -43,7 +43,7 @@ describe('the configuration', () => {
     expect(() => configurationFrom(args, environment)).toThrow(ConfigurationError);
   });
 
-  test('--help asks for help, whatever else is said', () => {
+  test('--help asks for help, beside any other option', () => {
     expect(configurationFrom(['--lan', '--help'], {})).toBe('help');
   });
 });

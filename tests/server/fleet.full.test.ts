@@ -116,11 +116,11 @@ describe.skipIf(missing)(
 
     test('players meet in their rooms whichever address they came through, and both processes have rooms', async () => {
       await until(
-        'everybody with their two others',
+        'each with their two others',
         () => people.every(({ connection }) => connection.room?.seats.every((row) => row?.presence === 'here')),
         30,
       );
-      await until('everybody seen by their two others', () =>
+      await until('each seen by their two others', () =>
         people.every(
           ({ poses, seat }) => new Set(poses.filter((pose) => pose.seat !== seat).map((pose) => pose.seat)).size === 2,
         ),
@@ -202,7 +202,7 @@ describe.skipIf(missing)(
         return { span, lost: (await dropped()) - before, without: rate(span), stood: delay.max / 1e9 };
       };
       let measured = await endure(() => stop(redis));
-      // Whoever does not read loses frames, Redis or not: where the machine stood still it is asked again.
+      // A page that does not read loses frames, Redis or not: where the machine stood still it is asked again.
       for (let again = 0; again < 3 && measured.lost > 0 && measured.stood > 0.2; again++) measured = await endure();
       const { span, lost, without } = measured;
       const degraded = await lobbyAt(proxies[0]!.url);
@@ -232,15 +232,15 @@ describe.skipIf(missing)(
       await relays[0]!.kill();
       const start = performance.now();
       await until('the lost to notice', () => people.some(({ connection }) => connection.status.phase !== 'joined'));
-      await until('everybody back', () => people.every(({ connection }) => connection.status.phase === 'joined'), 30);
+      await until('all back', () => people.every(({ connection }) => connection.status.phase === 'joined'), 30);
       const took = (performance.now() - start) / 1000;
-      await until('everybody with their others', () =>
+      await until('each with their others', () =>
         people
           .slice(0, 3 * rooms.length)
           .every(({ connection }) => connection.room?.seats.every((row) => row?.presence === 'here')),
       );
       tell('one process killed', {
-        'everybody back after [s]': took,
+        'all back after [s]': took,
         rooms: await metric(relays[1]!.url, 'threepoint_rooms'),
       });
       expect(took).toBeLessThan(isNightly ? 5 : 10);

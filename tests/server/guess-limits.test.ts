@@ -45,7 +45,7 @@ describe('guesses from one address', () => {
     expect(delays).toEqual([1, 2, 4, 8, 16, 32, 64]);
   });
 
-  test('do not wait longer because somebody does not wait: what was not looked at does not count', async () => {
+  test('do not wait longer because of guesses made too early: what was not looked at does not count', async () => {
     const { guess } = door();
     for (let i = 0; i < 6; i++) await guess(`wrong ${i}`);
     for (let i = 0; i < 500; i++) expect(await guess(`more ${i}`)).toBe(1);

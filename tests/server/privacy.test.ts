@@ -11,7 +11,7 @@ import { measured } from '../reliability/measured';
 import { directoryWith } from '../temporary-directory';
 import { arrive, startRelay, until } from './running-relay';
 
-/** Every file below a directory, whatever it is called. */
+/** Every file below a directory, of any name. */
 const filesIn = (directory: string): Buffer[] =>
   readdirSync(directory, { recursive: true, withFileTypes: true })
     .filter((entry) => entry.isFile())

@@ -34,7 +34,7 @@ const person = (...[url, room, name, more]: Parameters<typeof arrive>) =>
 /** Three people in a running match. */
 async function threePlay(urls: readonly string[], room = 'game') {
   const people = ['Ann', 'Ben', 'Cal'].map((name, i) => person(urls[i] ?? urls[0]!, room, name));
-  await until('everybody seated', () =>
+  await until('all seated', () =>
     people.every(({ connection }) => connection.room?.seats.every((row) => row?.presence === 'here')),
   );
   for (const someone of people) {
@@ -45,14 +45,12 @@ async function threePlay(urls: readonly string[], room = 'game') {
   return people;
 }
 
-test('the relay is killed in the middle of a game and restarted after 3 s: everybody is back, the round is marked void', async () => {
+test('the relay is killed in the middle of a game and restarted after 3 s: all players are back, the round is marked void', async () => {
   const relay = await relayApart();
   const people = await threePlay([relay.url]);
   const seats = people.map(({ seat }) => seat);
   await relay.kill();
-  await until('everybody to notice', () =>
-    people.every(({ connection }) => connection.status.phase === 'reconnecting'),
-  );
+  await until('all to notice', () => people.every(({ connection }) => connection.status.phase === 'reconnecting'));
   await pause(3);
   const again = await relayApart({}, relay.port);
   const restarted = performance.now();
@@ -170,15 +168,15 @@ test('500 clients reconnect at once', async () => {
     }),
   );
   const joined = () => connections.filter(({ status }) => status.phase === 'joined').length;
-  await until('everybody in', () => joined() === clients, 60);
+  await until('all in', () => joined() === clients, 60);
   // Beside them a relay with nothing to do: what keeps that one waiting is the machine.
   const idle = await relayApart();
   await relay.kill();
-  await until('everybody out', () => joined() === 0);
+  await until('all out', () => joined() === 0);
   const again = await relayApart(environment, relay.port);
   const start = seconds();
   await Promise.all([again.forget(), idle.forget()]);
-  await until('everybody back', () => joined() === clients, 60);
+  await until('all back', () => joined() === clients, 60);
   const took = seconds() - start;
   const [{ lagP99Ms, lagMaxMs }, machine] = await Promise.all([again.measure(), idle.measure()]);
   tell('500 reconnect', {
@@ -327,7 +325,7 @@ describe('abuse', () => {
     expect(guest.closedAt).toBeNull();
   });
 
-  test('whoever connects and says nothing is sent away', async () => {
+  test('a client that connects and says nothing is disconnected', async () => {
     const server = await relayHere();
     const token = await tokenFor(server.url, 'silent');
     const socket = new WebSocket(`${server.url.replace('http', 'ws')}/relay/?EIO=4&transport=websocket`);
@@ -363,7 +361,7 @@ test('twenty rooms that fill and empty again leave no timer, socket or listener 
     );
     expect(server.relay.census.sockets).toBe(60);
     for (const guest of guests) guest.say({ type: 'leave' });
-    await until('everybody gone', () => server.relay.census.sockets === 0);
+    await until('all gone', () => server.relay.census.sockets === 0);
     await until('every connection closed', () => guests.every(({ closedAt }) => closedAt !== null));
     await until('timers and sockets let go', () => handles() <= before + 3, 5);
     counts.push(handles());

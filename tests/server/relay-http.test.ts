@@ -34,7 +34,7 @@ describe('room tokens', () => {
     expect(await tokens.verifyRenewable(token)).toBeNull();
   });
 
-  test('are believed from nobody else', async () => {
+  test('are believed from no other address', async () => {
     const key = new TextEncoder().encode('another secret, also long enough to sign with');
     const forged = await new SignJWT({ room: 'amber', kind: 'ball' })
       .setProtectedHeader({ alg: 'HS256' })
@@ -151,7 +151,7 @@ describe('connecting', () => {
     expect(await refusal(await old.issue('amber', 'ball'))).toBe('refused');
   });
 
-  test('the room is the one of the token, whatever the address says', async () => {
+  test('the room is the one of the token, even where the address names another', async () => {
     const token = await tokenFor(server.url, 'heath');
     const guest = await rawGuest(server.url, 'birch', token);
     const welcome = guest.heard.find(({ type }) => type === 'welcome');

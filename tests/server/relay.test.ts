@@ -10,7 +10,7 @@ beforeAll(async () => {
 afterAll(() => server.close());
 
 describe('a relay', () => {
-  test('makes a room as the first to come asks for it, and as nobody after', async () => {
+  test('makes a room as the first to come asks for it, and as no one after', async () => {
     const ann = arrive(server.url, 'short', 'Ann', { terms: { seconds: 30, balls: 6 } });
     const people = [ann];
     try {
@@ -29,7 +29,7 @@ describe('a relay', () => {
     }
   });
 
-  test('stops the clock of a room that may be paused, and everybody is told', async () => {
+  test('stops the clock of a room that may be paused, and all are told', async () => {
     const people = ['Ann', 'Ben', 'Cal'].map((name) =>
       arrive(server.url, 'study', name, { terms: { seconds: 60, pausable: true } }),
     );

@@ -99,7 +99,7 @@ export function arrive(
 
 const skeleton = skeletonFromCalibration(defaultCalibration);
 
-/** A good pose packet at this time [ms]; somebody who stands still unless moved aside [m]. */
+/** A good pose packet at this time [ms], of a player who stands still, moved aside by so much [m]. */
 export function poseBytes(timeMs: number, aside = 0): Uint8Array {
   const bytes = encodePose(
     {

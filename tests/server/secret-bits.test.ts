@@ -16,7 +16,7 @@ describe('a secret', () => {
     expect(weaknessOf(secret)).toMatch(/^has some \d+ bits, and a secret that cannot be guessed needs 128/);
   });
 
-  test('of 32 drawn bytes is taken, whatever was drawn, in letters or in hexadecimal', () => {
+  test('of 32 drawn bytes is taken, for every draw, in letters or in hexadecimal', () => {
     for (let draw = 0; draw < 3000; draw++) {
       const drawn = createHash('sha256').update(`draw ${draw}`).digest().subarray(0, 32);
       for (const encoding of ['base64', 'base64url', 'hex'] as const) {

@@ -32,7 +32,7 @@ describe('a place in a study', () => {
     expect(taken(server)).toBe(0);
   });
 
-  test('is not taken by a page of another site, whatever it sends and knows', async () => {
+  test('is not taken by a page of another site, even one that knows the invitation', async () => {
     const server = await servedPaperStudy();
     const { ask, origin, invited } = server;
     const json = 'application/json';

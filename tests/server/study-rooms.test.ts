@@ -78,7 +78,7 @@ describe('the room of a trial', () => {
     stranger.socket.disconnect();
   });
 
-  test('lets each participant of the group onto their own seat, under their own code, whatever the page asks for', async () => {
+  test('lets each participant of the group onto their own seat, under their own code, even where the page asks for others', async () => {
     const people = [];
     for (const participant of group.toReversed()) people.unshift(await sitDown(participant));
     expect(people.map((one) => welcomeOf(one)?.seat)).toEqual([0, 1, 2]);

@@ -139,7 +139,7 @@ describe('a participant', () => {
 });
 
 describe('the experimenter', () => {
-  test('sees where everybody is and steers', async () => {
+  test('sees where each participant is and steers', async () => {
     const { ask, claim } = await servedPaperStudy();
     const token = await claim('P01');
     const { json } = await ask('GET', '/api/studies/paper/participants', { token: experimenter });
@@ -187,7 +187,7 @@ describe('the experimenter', () => {
     expect((await ask('GET', '/api/studies/paper/receipts', { token: experimenter })).json.receipts).toEqual([json]);
   });
 
-  test('is nobody where no token was set', async () => {
+  test('does not exist where no token was set', async () => {
     const { ask } = await servedStudies({ experimenterToken: null });
     expect((await ask('GET', '/api/studies', { token: experimenter })).status).toBe(401);
   });

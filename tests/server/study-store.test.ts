@@ -142,7 +142,7 @@ describe('the store', () => {
     expect(reopened.withdraw('paper', withdrawalCode as string, now)).toMatchObject({ participant: 'P02' });
   });
 
-  test('knows where everybody is', () => {
+  test('knows where each participant is', () => {
     const { store } = withPaperStudy();
     store.claim('paper', 'P02', now);
     store.saveProgress('paper', 'P02', { ...begin(scheduleFor(paperPlan(), 'P02')), step: 'consent' }, now);
@@ -163,7 +163,7 @@ describe('the store', () => {
 });
 
 describe('a place in the study', () => {
-  test('belongs to whoever claims it first', () => {
+  test('belongs to the first device that claims it', () => {
     const { store } = withPaperStudy();
     const { token } = store.claim('paper', 'P01', now);
     expect(() => store.claim('paper', 'P01', now)).toThrow('taken by another device');
@@ -247,7 +247,7 @@ describe('deleting', () => {
     expect(store.withdraw('paper', withdrawalCode as string, now)).toBeNull();
   });
 
-  test('takes o for 0 and l for 1 in a code, since nobody tells them apart', () => {
+  test('takes o for 0 and l for 1 in a code, since they look alike', () => {
     expect(normalisedCode('o1lI 23ab-cdef-ghjk')).toBe('0111-23AB-CDEF-GHJK');
   });
 

@@ -88,7 +88,7 @@ describe('the certificate', () => {
     expect(days).toBeLessThan(398);
   });
 
-  test('is kept while it serves, so that nobody is warned twice', async () => {
+  test('is kept while it serves, so that no browser warns twice', async () => {
     const directory = directoryWith();
     const first = await certificateFor(['192.168.7.20', '10.1.2.3'], directory, now);
     expect(await certificateFor(['192.168.7.20'], directory, now)).toEqual(first);

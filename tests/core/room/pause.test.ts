@@ -14,7 +14,7 @@ function playing() {
 }
 
 describe('a pause', () => {
-  test('stops the clock of the match for as long as anybody wants, and of nobody else', () => {
+  test('stops the clock of the match for as long as one player wants, and no other clock', () => {
     const { told, pause, match } = playing();
     told.pass(5, told.stand);
     pause('ann', true);
@@ -32,7 +32,7 @@ describe('a pause', () => {
     expect(ballSecondsLeft(match())).toBeCloseTo(left - 10, 1);
   });
 
-  test('is told with the second at which the clock stands, also to whoever comes meanwhile', () => {
+  test('is told with the second at which the clock stands, also to a page that comes meanwhile', () => {
     const { told, pause, match } = playing();
     told.pass(5, told.stand);
     pause('ann', true);
@@ -102,7 +102,7 @@ describe('a pause', () => {
     );
   });
 
-  test('ends when whoever wanted it gives the seat up or has lost it, not with a hiccup of the connection', () => {
+  test('ends when the player who wanted it gives the seat up or has lost it, not with a hiccup of the connection', () => {
     const { told, pause } = playing();
     pause('ann', true);
     told.tick();
@@ -161,7 +161,7 @@ describe('a pause', () => {
   });
 });
 
-describe('where somebody was', () => {
+describe('where a player was', () => {
   test('is forgotten within 2 s of silence, in the room and in the match; the seat is not', () => {
     const { told, match } = playing();
     told.pass(1, told.stand);
@@ -174,7 +174,7 @@ describe('where somebody was', () => {
     expect(told.time - silent).toBeGreaterThan(poseMemory - 0.1);
     expect(match().players[0]).toMatchObject({ present: true, left: null, right: null });
     expect(match().players[2]?.head).not.toBeNull();
-    // Not even the fault that compares with it: whoever comes back may stand anywhere.
+    // Not even the fault that compares with it: a player who comes back may stand anywhere.
     expect(told.pose('ann', 0, fists(releaseOf(0)))).toBe('taken');
     told.tick();
     expect(match().players[0]?.head).not.toBeNull();

@@ -238,7 +238,7 @@ describe('latency', () => {
   });
 });
 
-describe('whoever comes at t = 60 s', () => {
+describe('a page that comes at t = 60 s', () => {
   test('knows everything from one snapshot of at most 2 kB', () => {
     const told = toldRoom({ ball: { balls: 20 } });
     // The longest names there are.
