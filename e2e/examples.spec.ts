@@ -9,9 +9,17 @@ import { servePlainly } from './plain-server';
 
 const iwer = fileURLToPath(new URL('../node_modules/iwer/build/iwer.min.js', import.meta.url));
 
+/** An object of three.js, as far as it tells whether it is drawn. */
+interface Drawn {
+  readonly visible: boolean;
+  readonly parent: Drawn | null;
+  readonly isScene?: true;
+}
+
 /** What every example leaves at hand: the library's BodyTracker. */
 interface SelfAvatar {
   readonly pose: object | null;
+  readonly object: Drawn;
   readonly estimator: string;
   readonly avatar: { jointPositions(): Record<string, { x: number; y: number; z: number }> };
 }
@@ -75,12 +83,20 @@ test.describe('examples of the package @full', () => {
       const headset = await emulatedHeadset(page);
       await headset.place({
         head: { position: [0.2, 1.62, 0.1] },
-        left: { position: [-0.2, 1.2, -0.3] },
+        left: { position: [-0.05, 1.45, -0.3] },
         right: { position: [0.5, 1.5, -0.35] },
       });
       await page.locator('#VRButton:not([disabled]), .a-enter-vr-button').first().click();
       await expect.poll(() => page.evaluate(() => window.selfAvatar?.pose != null)).toBe(true);
       await expect.poll(() => page.evaluate(() => window.selfAvatar?.estimator)).toBe('learned');
+      // Through every parent up to the scene: poses alone would be right of a body that no one sees.
+      const drawn = () =>
+        page.evaluate(() => {
+          let object: Drawn | null | undefined = window.selfAvatar?.object;
+          while (object?.visible && !object.isScene) object = object.parent;
+          return object?.isScene === true && object.visible;
+        });
+      await expect.poll(drawn, { message: 'the body is in the scene and shown' }).toBe(true);
       for (const side of ['left', 'right'] as const) {
         const wanted = await wristByGrip(headset, side);
         await expect

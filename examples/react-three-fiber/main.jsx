@@ -5,18 +5,18 @@ import { VRButton } from 'three/examples/jsm/webxr/VRButton.js';
 import mannequin from 'threepoint/avatars/mannequin.vrm?url';
 import { BodyTracker, loadAvatar } from 'threepoint/three';
 
-function SelfAvatar({ src = mannequin, onFallback = ({ reason }) => console.warn(reason) }) {
+function SelfAvatar({ src = mannequin }) {
   const renderer = useThree(({ gl }) => gl);
   const [body, setBody] = useState(null);
   useEffect(() => {
     const arrives = loadAvatar(src).then((avatar) => new BodyTracker(renderer, { avatar }));
     arrives.then((tracker) => {
-      tracker.addEventListener('fallback', onFallback);
+      tracker.addEventListener('fallback', ({ reason }) => console.warn(reason));
       window.selfAvatar = tracker;
       setBody(tracker);
     });
     return () => arrives.then((tracker) => tracker.dispose());
-  }, [renderer, src, onFallback]);
+  }, [renderer, src]);
   useFrame((_state, _delta, frame) => body?.update(performance.now(), frame));
   return body && <primitive object={body.object} />;
 }
@@ -28,6 +28,7 @@ const enterVr = ({ gl }) => {
 
 createRoot(document.getElementById('root')).render(
   <Canvas camera={{ position: [0, 1.6, 2] }} onCreated={enterVr}>
+    <color attach="background" args={['#ccddee']} />
     <hemisphereLight intensity={3} />
     <gridHelper args={[10, 10]} />
     <SelfAvatar />

@@ -1,4 +1,4 @@
-import { GridHelper, HemisphereLight, PerspectiveCamera, Scene, WebGLRenderer } from 'three';
+import { Color, GridHelper, HemisphereLight, PerspectiveCamera, Scene, WebGLRenderer } from 'three';
 import { VRButton } from 'three/examples/jsm/webxr/VRButton.js';
 import avatarUrl from 'threepoint/avatars/mannequin.vrm?url';
 import { BodyTracker, loadAvatar } from 'threepoint/three';
@@ -9,6 +9,7 @@ renderer.xr.enabled = true;
 document.body.append(renderer.domElement, VRButton.createButton(renderer));
 
 const scene = new Scene().add(new HemisphereLight(0xffffff, 0x666666, 3), new GridHelper(10, 10));
+scene.background = new Color(0xccddee);
 const camera = new PerspectiveCamera(60, innerWidth / innerHeight, 0.05, 50);
 camera.position.set(0, 1.6, 2);
 
