@@ -1,17 +1,13 @@
 import { reasonOf } from '../core/errors/reasons';
 import '../styles/document.css';
-import type { StudyListing } from '../core/study/study-api';
-import { createExperimenterClient, type ExperimenterClient } from '../net/study-client';
 import { button, element, pageElement } from '../ui/element';
 import { paperCheck, type ShownStudy, studyResults } from './results-view';
-import { forgetToken, keptToken, signInForm } from './sign-in';
+import { StudyAccess } from './study-access';
 import { openStudyFile } from './study-file';
-import { studySelect } from './study-select';
 
 const content = pageElement('content', HTMLElement);
 
-let client: ExperimenterClient | null = null;
-let listed: readonly StudyListing[] = [];
+const access = new StudyAccess(() => render());
 let shown: (ShownStudy & { readonly source: string }) | null = null;
 let conditions: readonly [string, string] | null = null;
 let complaint = '';
@@ -25,25 +21,10 @@ function showStudy(study: ShownStudy, source: string): void {
   render();
 }
 
-async function signIn(token: string): Promise<string | null> {
-  const candidate = createExperimenterClient(token);
-  try {
-    listed = await candidate.studies();
-  } catch (error) {
-    return reasonOf(error);
-  }
-  client = candidate;
-  render();
-  return null;
-}
-
 async function load(id: string): Promise<void> {
-  if (!client || !id) return;
+  if (!access.client || !id) return;
   try {
-    const { plan, simulated, records } = await client.records(id);
-    const address = new URL(location.href);
-    address.searchParams.set('study', id);
-    history.replaceState(null, '', address);
+    const { plan, simulated, records } = await access.open(access.client, id);
     showStudy({ plan, simulated, records }, 'this server');
   } catch (error) {
     complaint = reasonOf(error);
@@ -67,19 +48,15 @@ function sourceBar(): HTMLElement {
     if (chosen) void openFile(chosen);
   });
   const fileField = element('label', {}, element('span', {}, 'Or an export (zip), from this computer'), file);
-  if (!client)
-    return element('section', { class: 'card' }, signInForm(signIn), element('div', { class: 'bar' }, fileField));
-  const select = studySelect(listed, shown?.plan.id, 'This server has no studies yet', (id) => void load(id));
+  if (!access.client)
+    return element('section', { class: 'card' }, access.form(), element('div', { class: 'bar' }, fileField));
   return element(
     'section',
     { class: 'card bar' },
-    element('label', {}, element('span', {}, 'Study'), select),
+    access.select(shown?.plan.id, 'This server has no studies yet', (id) => void load(id)),
     ...(shown ? [button('Refresh', () => void load(shown?.plan.id ?? ''))] : []),
     fileField,
-    button('Forget the token', () => {
-      forgetToken();
-      location.reload();
-    }),
+    access.forgetButton(),
   );
 }
 
@@ -130,8 +107,8 @@ function render(): void {
 
 async function start(): Promise<void> {
   render();
-  const token = keptToken();
-  if (token && (await signIn(token)) === null) await load(new URLSearchParams(location.search).get('study') ?? '');
+  const study = await access.resume();
+  if (study !== null) await load(study);
 }
 
 void start();

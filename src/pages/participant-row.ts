@@ -1,0 +1,151 @@
+import { type Schedule, type StudyPlan, scheduleFor } from '../core/study/plan';
+import type { ParticipantState, StudyCommand } from '../core/study/study-api';
+import { studyLink } from '../net/study-link';
+import { button, element } from '../ui/element';
+import type { TableRow } from './table';
+
+/** A page that has been silent for longer than this is lost [s]. */
+const silentAfter = 12;
+
+/** What an experimenter can do about a participant. */
+export interface ParticipantActions {
+  command(participant: string, command: StudyCommand): void;
+  voidBlock(participant: string): void;
+  remark(participant: string): void;
+  release(participant: string): void;
+  exportZip(participant: string): void;
+  remove(participant: string): void;
+  copyLink(participant: string, link: string): void;
+  reinvite(participant: string): void;
+}
+
+export const participantHeads = [
+  { text: 'Code' },
+  { text: 'State' },
+  { text: 'Step' },
+  { text: 'Left', numeric: true },
+  { text: 'Heard', title: 'When the page last reported', numeric: true },
+  { text: 'Records', numeric: true },
+  { text: '' },
+  { text: 'Order of conditions' },
+  { text: 'Page' },
+] as const;
+
+/** A participant's line in the table, as of `now` [s since 1970]. */
+export function participantRow(
+  state: ParticipantState,
+  plan: StudyPlan,
+  now: number,
+  actions: ParticipantActions,
+): TableRow {
+  const { participant, session, records } = state;
+  const schedule = scheduleFor(plan, participant);
+  const silence = session ? now - session.reportedAt : 0;
+  return {
+    look: silence > silentAfter ? 'stale' : '',
+    cells: [
+      participant,
+      stateBadge(state, silence),
+      session ? placeText(schedule, session.step) : '',
+      session?.remainingSeconds != null && session.kind !== 'end' ? clock(session.remainingSeconds) : '',
+      session ? heardText(silence) : '',
+      String(records),
+      actionsCell(state, actions),
+      element('div', { class: 'soft' }, ...orderTexts(schedule, plan).map((line) => element('div', {}, line))),
+      linkCell(plan.id, state, actions),
+    ],
+  };
+}
+
+const clock = (seconds: number) => `${Math.floor(seconds / 60)}:${String(Math.ceil(seconds) % 60).padStart(2, '0')}`;
+
+const heardText = (seconds: number) =>
+  seconds < 120
+    ? `${Math.max(0, Math.round(seconds))} s ago`
+    : seconds < 7200
+      ? `${Math.round(seconds / 60)} min ago`
+      : `${Math.round(seconds / 3600)} h ago`;
+
+/** "Archery, block 2 (ik), trial": the experimenter may know the condition. */
+function placeText(schedule: Schedule, id: string): string {
+  const step = schedule.steps.find((other) => other.id === id);
+  if (!step) return id;
+  if (!('task' in step)) return step.kind === 'end' ? 'finished' : step.kind;
+  const condition = schedule.steps.find(
+    (other) => other.kind === 'trial' && other.task === step.task && other.block === step.block,
+  );
+  const of = condition && 'condition' in condition ? ` (${condition.condition})` : '';
+  return `${step.task}, block ${step.block}${of}: ${step.kind}`;
+}
+
+function orderTexts(schedule: Schedule, of: StudyPlan): readonly string[] {
+  return of.tasks.map(({ id, groupSize }) => {
+    const blocks = schedule.steps.flatMap((step) =>
+      step.kind === 'trial' && step.task === id && step.repetition === 1 ? [step.condition] : [],
+    );
+    const group = schedule.groups[id];
+    const together =
+      groupSize > 1 && group ? ` with ${group.members.filter((name) => name !== schedule.participant).join(', ')}` : '';
+    return `${id}: ${blocks.join(' → ')}${together}`;
+  });
+}
+
+function stateBadge({ session, claimed, withdrawn }: ParticipantState, silence: number): HTMLElement {
+  const badge = (text: string, look = '') => element('span', { class: `badge ${look}` }, text);
+  if (withdrawn) return badge('withdrawn');
+  if (!session) return badge(claimed ? 'begins' : 'free');
+  if (session.kind === 'end') return badge('finished');
+  if (silence > silentAfter) return badge('no contact', 'lost');
+  if (session.paused) return badge('paused', 'paused');
+  return badge(session.running ? 'running' : 'waiting', 'live');
+}
+
+function actionsCell(
+  { participant, session, claimed, withdrawn, records }: ParticipantState,
+  actions: ParticipantActions,
+): HTMLElement {
+  const small = (label: string, act: () => void, disabled: boolean, look = '') =>
+    button(label, act, { class: `small ${look}`, disabled });
+  const active = session !== null && session.kind !== 'end' && !withdrawn;
+  const startable =
+    active && !session.paused && !session.running && (session.kind === 'trial' || session.kind === 'tutorial');
+  return element(
+    'div',
+    { class: 'row-actions' },
+    small('Start', () => actions.command(participant, { type: 'start' }), !startable),
+    session?.paused
+      ? small('Go on', () => actions.command(participant, { type: 'resume' }), !active)
+      : small('Pause', () => actions.command(participant, { type: 'pause' }), !active),
+    small('Void block …', () => actions.voidBlock(participant), !active || !session.step.includes('/')),
+    small('Remark …', () => actions.remark(participant), records === 0 || withdrawn),
+    small('Release', () => actions.release(participant), !claimed),
+    small('Export', () => actions.exportZip(participant), records === 0),
+    small('Delete …', () => actions.remove(participant), !claimed && records === 0, 'danger'),
+  );
+}
+
+/** The participant's page: to open here, to copy, and the invitation to type where a link cannot be sent. */
+function linkCell(
+  study: string,
+  { participant, invitation }: ParticipantState,
+  actions: ParticipantActions,
+): HTMLElement | string {
+  if (invitation === null) return '';
+  const link = studyLink({ study, participant, invitation });
+  return element(
+    'div',
+    {},
+    element(
+      'div',
+      { class: 'row-actions' },
+      element('a', { href: link, target: '_blank', rel: 'noopener' }, 'open'),
+      button('Copy', () => actions.copyLink(participant, link), { class: 'small', title: 'Copy the link' }),
+      button('New …', () => actions.reinvite(participant), { class: 'small', title: 'Make a new link' }),
+    ),
+    element(
+      'code',
+      { class: 'soft', title: 'The invitation: what the page asks for where it was not in the link' },
+      invitation,
+    ),
+  );
+}

@@ -1,0 +1,79 @@
+import { reasonOf } from '../core/errors/reasons';
+import type { RecordedStudy, StudyListing } from '../core/study/study-api';
+import { createExperimenterClient, type ExperimenterClient } from '../net/study-client';
+import { button, element } from '../ui/element';
+import { forgetToken, keptToken, signInForm } from './sign-in';
+import { studySelect } from './study-select';
+
+/** The studies of this server, as a page sees them whose visitor has given the experimenter's token. */
+export class StudyAccess {
+  readonly #onChange: () => void;
+  #client: ExperimenterClient | null = null;
+  #listed: readonly StudyListing[] = [];
+
+  /** `onChange` hears when the token has opened the server. */
+  constructor(onChange: () => void) {
+    this.#onChange = onChange;
+  }
+
+  /** null: no token has opened the server yet. */
+  get client(): ExperimenterClient | null {
+    return this.#client;
+  }
+
+  get listed(): readonly StudyListing[] {
+    return this.#listed;
+  }
+
+  /** Signs in with the token of this tab, where there is one; the answer is the study that the address asks for, null: none, or no token. */
+  async resume(): Promise<string | null> {
+    const token = keptToken();
+    if (token === null || (await this.#signIn(token)) !== null) return null;
+    return new URLSearchParams(location.search).get('study') || null;
+  }
+
+  /** Plan and records of a study, which the address asks for from now on. */
+  async open(client: ExperimenterClient, id: string): Promise<RecordedStudy> {
+    const recorded = await client.records(id);
+    const address = new URL(location.href);
+    address.searchParams.set('study', id);
+    history.replaceState(null, '', address);
+    return recorded;
+  }
+
+  /** Asks the server for its studies again. */
+  async list(client: ExperimenterClient): Promise<void> {
+    this.#listed = await client.studies();
+  }
+
+  /** Where the token is given. */
+  form(): HTMLElement {
+    return signInForm((token) => this.#signIn(token));
+  }
+
+  /** The list of studies; `none`: what it says without any. */
+  select(chosen: string | undefined, none: string, choose: (id: string) => void): HTMLElement {
+    const list = studySelect(this.#listed, chosen, none, choose);
+    return element('label', {}, element('span', {}, 'Study'), list);
+  }
+
+  forgetButton(): HTMLElement {
+    return button('Forget the token', () => {
+      forgetToken();
+      location.reload();
+    });
+  }
+
+  /** Answers with a complaint, or null where the token opens. */
+  async #signIn(token: string): Promise<string | null> {
+    const candidate = createExperimenterClient(token);
+    try {
+      await this.list(candidate);
+    } catch (error) {
+      return reasonOf(error);
+    }
+    this.#client = candidate;
+    this.#onChange();
+    return null;
+  }
+}
