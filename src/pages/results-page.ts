@@ -1,7 +1,8 @@
 import { reasonOf } from '../core/errors/reasons';
 import '../styles/document.css';
 import { button, element, pageElement } from '../ui/element';
-import { paperCheck, type ShownStudy, studyResults } from './results-view';
+import { paperCheck } from './paper-check';
+import { type ShownStudy, studyResults } from './results-view';
 import { StudyAccess } from './study-access';
 import { openStudyFile } from './study-file';
 

@@ -1,0 +1,26 @@
+import { questionnaires } from '../core/study/questionnaires';
+import type { Interval } from '../core/study/statistics';
+import { type Table, tidyCsv } from '../core/study/tidy-csv';
+import { offerDownload } from '../ui/downloads';
+import { button, element } from '../ui/element';
+
+/** Where there is no number. */
+export const none = '–';
+export const fixed = (value: number | null | undefined, digits: number) =>
+  value == null ? none : value.toFixed(digits).replace('-', '−');
+export const pText = (p: number | null | undefined) =>
+  p == null ? none : p < 0.0005 ? '< .001' : p.toFixed(3).replace(/^0/, '');
+const interval = (between: Interval | null | undefined, digits: number) =>
+  between ? `[${fixed(between.low, digits)}, ${fixed(between.high, digits)}]` : '';
+export const meanCell = (mean: number | undefined, between: Interval | null | undefined, digits: number): Node =>
+  element('div', {}, fixed(mean, digits), element('div', { class: 'soft interval' }, interval(between, digits)));
+
+/** The question of this id; undefined: there is none. */
+export const aboutOf = (id: string) =>
+  Object.values(questionnaires)
+    .flatMap(({ questions }) => questions)
+    .find((question) => question.id === id);
+
+/** Saves a table as `file`.csv. */
+export const csvButton = (table: Table, file: string) =>
+  button('CSV', () => offerDownload(`${file}.csv`, 'text/csv;charset=utf-8', tidyCsv(table)), { class: 'small' });
