@@ -1,4 +1,4 @@
-import type { XRDevice } from 'iwer';
+import type { XRDevice, XRDeviceConfig } from 'iwer';
 import { allReleased, type Buttons } from '../core/games/button-presses';
 import { composeTransforms, invertTransform, type Pose, type TrackedPose } from '../core/math/pose';
 import { fromAxes } from '../core/math/quat';
@@ -14,13 +14,15 @@ export interface Emulator {
   read(time: number): TrackingFrame;
   /** Puts headset and controllers where this frame's head and wrists are, to within 0.1 mm, and presses these buttons. */
   drive(frame: TrackingFrame, buttons?: Buttons): void;
-  /** Lets whoever steers the panel move headset and controllers again. */
+  /** Lets the panel move headset and controllers again. */
   release(): void;
   /** Shows or hides the developer's panel; it is loaded when first shown. */
   setPanelVisible(visible: boolean): Promise<void>;
 }
 
-/** Where a person of 1.70 m holds head and hands when nobody moves them yet. */
+const sides = ['left', 'right'] as const;
+
+/** Where a person of 1.70 m holds head and hands before anything moves them. */
 const rest = { head: vec3(0, 1.59, 0), left: vec3(-0.22, 1.1, -0.32), right: vec3(0.22, 1.1, -0.32) };
 
 /**
@@ -32,88 +34,92 @@ export async function installEmulator(): Promise<Emulator> {
   const device = new Device(metaQuest3, { stereoEnabled: false });
   device.installRuntime({ forceInstall: true });
   markAsTracked(device);
-  device.position.set(rest.head.x, rest.head.y, rest.head.z);
-  const config = metaQuest3.controllerConfig;
-  const profiles = config ? [config.profileId, ...config.fallbackProfileIds] : [];
-  const fit: HandleFit = handleFit(profiles);
+  return new EmulatedHeadset(device, metaQuest3.controllerConfig);
+}
+
+class EmulatedHeadset implements Emulator {
+  readonly device: XRDevice;
+  readonly #config: ControllerConfig;
+  readonly #fit: HandleFit;
+  #panel: Promise<void> | null = null;
+  #panelWanted = false;
+
+  constructor(device: XRDevice, config: ControllerConfig) {
+    this.device = device;
+    this.#config = config;
+    this.#fit = handleFit(config ? [config.profileId, ...config.fallbackProfileIds] : []);
+    device.position.set(rest.head.x, rest.head.y, rest.head.z);
+    for (const side of sides) {
+      const { x, y, z } = rest[side];
+      device.controllers[side]?.position.set(x, y, z);
+    }
+  }
+
+  read(time: number): TrackingFrame {
+    return {
+      time,
+      head: { ...copyPlace(this.device), tracking: 'tracked' },
+      leftHand: this.#readHand('left'),
+      rightHand: this.#readHand('right'),
+    };
+  }
+
+  drive(frame: TrackingFrame, buttons?: Buttons): void {
+    // Else the panel puts everything back where its mouse left it, in every frame.
+    this.device.controlMode = 'programmatic';
+    place(this.device, frame.head);
+    for (const side of sides) {
+      const wrist = side === 'left' ? frame.leftHand : frame.rightHand;
+      const controller = this.device.controllers[side];
+      if (!controller) continue;
+      controller.connected = wrist !== null;
+      const { trigger, grip: squeeze } = buttons?.[side] ?? allReleased;
+      controller.updateButtonValue('trigger', trigger);
+      controller.updateButtonValue('squeeze', squeeze);
+      if (!wrist) continue;
+      const grip = gripFromWrist<'floor'>(wrist, side, this.#fit);
+      const rayInGrip = invertTransform<'floor', 'floor'>(this.#gripInRay(side));
+      place(controller, composeTransforms<'floor', 'floor', 'floor'>(grip, rayInGrip));
+    }
+  }
+
+  release(): void {
+    this.device.controlMode = 'manual';
+  }
+
+  async setPanelVisible(visible: boolean): Promise<void> {
+    this.#panelWanted = visible;
+    // iwer lays the panel over the picture when a session begins, and stumbles at its end over one that came in between.
+    if (visible && !this.device.activeSession) {
+      this.#panel ??= import('@iwer/devui').then(({ DevUI }) => this.device.installDevUI(DevUI));
+    }
+    await this.#panel;
+    const container = this.device.devui?.devUIContainer;
+    if (container) container.hidden = !this.#panelWanted;
+  }
+
+  #readHand(side: Side): TrackedPose | null {
+    const controller = this.device.controllers[side];
+    if (!controller?.connected) return null;
+    const grip = composeTransforms<'floor', 'floor', 'floor'>(copyPlace(controller), this.#gripInRay(side));
+    return { ...wristFromGrip<'floor'>(grip, side, this.#fit), tracking: 'tracked' };
+  }
 
   /** iwer places controllers by their target ray; the grip lies where its configuration has it. */
-  const gripInRay = (side: Side): Pose<'floor'> => matrixPose(config?.layout[side]?.gripOffsetMatrix);
-  for (const side of ['left', 'right'] as const) {
-    const { x, y, z } = rest[side];
-    device.controllers[side]?.position.set(x, y, z);
+  #gripInRay(side: Side): Pose<'floor'> {
+    return matrixPose(this.#config?.layout[side]?.gripOffsetMatrix);
   }
+}
 
-  const copy = (target: {
-    readonly position: { x: number; y: number; z: number };
-    readonly quaternion: { x: number; y: number; z: number; w: number };
-  }): Pose<'floor'> => ({
-    position: vec3(target.position.x, target.position.y, target.position.z),
-    orientation: {
-      x: target.quaternion.x,
-      y: target.quaternion.y,
-      z: target.quaternion.z,
-      w: target.quaternion.w,
-    },
-  });
+const copyPlace = ({ position: p, quaternion: q }: Placed): Pose<'floor'> => ({
+  position: vec3(p.x, p.y, p.z),
+  orientation: { x: q.x, y: q.y, z: q.z, w: q.w },
+});
 
-  function readHand(side: Side): TrackedPose | null {
-    const controller = device.controllers[side];
-    if (!controller?.connected) return null;
-    const grip = composeTransforms<'floor', 'floor', 'floor'>(copy(controller), gripInRay(side));
-    return { ...wristFromGrip<'floor'>(grip, side, fit), tracking: 'tracked' };
-  }
-
-  function place(target: { readonly position: Setter3; readonly quaternion: Setter4 }, pose: Pose<'floor'>): void {
-    const { position: p, orientation: o } = pose;
-    target.position.set(p.x, p.y, p.z);
-    target.quaternion.set(o.x, o.y, o.z, o.w);
-  }
-
-  let panel: Promise<void> | null = null;
-  let panelWanted = false;
-  return {
-    device,
-    read: (time) => ({
-      time,
-      head: { ...copy(device), tracking: 'tracked' },
-      leftHand: readHand('left'),
-      rightHand: readHand('right'),
-    }),
-    drive(frame, buttons) {
-      // Else the panel puts everything back where its mouse left it, in every frame.
-      device.controlMode = 'programmatic';
-      place(device, frame.head);
-      for (const side of ['left', 'right'] as const) {
-        const wrist = side === 'left' ? frame.leftHand : frame.rightHand;
-        const controller = device.controllers[side];
-        if (!controller) continue;
-        controller.connected = wrist !== null;
-        const { trigger, grip: squeeze } = buttons?.[side] ?? allReleased;
-        controller.updateButtonValue('trigger', trigger);
-        controller.updateButtonValue('squeeze', squeeze);
-        if (!wrist) continue;
-        const grip = gripFromWrist<'floor'>(wrist, side, fit);
-        place(
-          controller,
-          composeTransforms<'floor', 'floor', 'floor'>(grip, invertTransform<'floor', 'floor'>(gripInRay(side))),
-        );
-      }
-    },
-    release() {
-      device.controlMode = 'manual';
-    },
-    async setPanelVisible(visible) {
-      panelWanted = visible;
-      // iwer lays the panel over the picture when a session begins, and stumbles at its end over one that came in between.
-      if (visible && !device.activeSession) {
-        panel ??= import('@iwer/devui').then(({ DevUI }) => device.installDevUI(DevUI));
-      }
-      await panel;
-      const container = device.devui?.devUIContainer;
-      if (container) container.hidden = !panelWanted;
-    },
-  };
+function place(target: { readonly position: Setter3; readonly quaternion: Setter4 }, pose: Pose<'floor'>): void {
+  const { position: p, orientation: o } = pose;
+  target.position.set(p.x, p.y, p.z);
+  target.quaternion.set(o.x, o.y, o.z, o.w);
 }
 
 /** iwer calls every position a guess (`emulatedPosition`) unless told otherwise, under a symbol; its controllers are seen. */
@@ -131,6 +137,15 @@ function markAsTracked(device: XRDevice): void {
     if (!key) throw new Error('iwer: expected a space to keep its state under the symbol @iwer/xr-space');
     (space as Record<symbol, { emulated: boolean }>)[key]!.emulated = false;
   }
+}
+
+/** Of controllers, as iwer describes a headset; undefined: it has none. */
+type ControllerConfig = XRDeviceConfig['controllerConfig'];
+
+/** What iwer places in the room. */
+interface Placed {
+  readonly position: { readonly x: number; readonly y: number; readonly z: number };
+  readonly quaternion: { readonly x: number; readonly y: number; readonly z: number; readonly w: number };
 }
 
 interface Setter3 {

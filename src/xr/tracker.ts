@@ -25,6 +25,8 @@ const more = (a: HandButtons, b: HandButtons): HandButtons => ({
   pinch: Math.max(a.pinch, b.pinch),
 });
 
+const sides = ['left', 'right'] as const;
+
 /** How a side is tracked at the moment. */
 export type InputKind = 'controller' | 'hand' | 'none';
 
@@ -54,139 +56,178 @@ const stickBack = 0.35;
  * reference space that drawing must use too, after each `recentre` and `turn`. When the device recentres by itself, what was turned
  * here before is forgotten. Behind a menu of the device (session not `visible`) no hand is read: it is busy there.
  */
-export function createTracker(
+export const createTracker = (
   session: XRSession,
   floor: XRReferenceSpace,
   onSpace?: (space: XRReferenceSpace) => void,
-): Tracker {
-  let space = floor;
-  let lastHead: Pose<'floor'> | null = null;
+): Tracker => new SessionTracker(session, floor, onSpace);
+
+class SessionTracker implements Tracker {
+  readonly kinds: Record<Side, InputKind> = { left: 'none', right: 'none' };
+  readonly buttons: Record<Side, HandButtons> = { left: allReleased, right: allReleased };
+  readonly #session: XRSession;
+  readonly #onSpace: ((space: XRReferenceSpace) => void) | undefined;
+  readonly #held = { controller: false, hand: false };
+  readonly #sticks = new TurningSticks();
   /** Devices in the order in which they came. */
-  const devices = new WeakMap<XRInputSource, number>();
-  let deviceCount = 0;
-  let pushed = false;
-  let turnWanted: -1 | 0 | 1 = 0;
+  readonly #devices = new WeakMap<XRInputSource, number>();
+  #deviceCount = 0;
+  #space: XRReferenceSpace;
+  #lastHead: Pose<'floor'> | null = null;
 
-  function deviceOf(source: XRInputSource): number {
-    const known = devices.get(source);
-    if (known !== undefined) return known;
-    deviceCount += 1;
-    devices.set(source, deviceCount);
-    return deviceCount;
+  constructor(session: XRSession, floor: XRReferenceSpace, onSpace?: (space: XRReferenceSpace) => void) {
+    this.#session = session;
+    this.#space = floor;
+    this.#onSpace = onSpace;
+    floor.addEventListener('reset', () => {
+      this.#lastHead = null;
+      if (this.#space !== floor) this.#moveTo(floor);
+    });
   }
 
-  function moveTo(next: XRReferenceSpace): void {
-    space = next;
-    onSpace?.(next);
+  get input(): Tracker['input'] {
+    const { controller, hand } = this.#held;
+    if (controller && hand) return 'mixed';
+    return hand ? 'hands' : 'controllers';
   }
-  floor.addEventListener('reset', () => {
-    lastHead = null;
-    if (space !== floor) moveTo(floor);
-  });
 
-  function watchSticks(): void {
-    const sideways = Array.from(session.inputSources, ({ gamepad }) => gamepad?.axes[2] ?? 0);
-    const furthest = sideways.reduce((most, x) => (Math.abs(x) > Math.abs(most) ? x : most), 0);
-    if (Math.abs(furthest) < stickBack) pushed = false;
-    else if (Math.abs(furthest) > stickPushed && !pushed) {
-      pushed = true;
-      turnWanted = furthest > 0 ? -1 : 1;
+  read(frame: XRFrame, time: number): TrackingFrame | null {
+    const viewer = frame.getViewerPose(this.#space);
+    const suspended = this.#session.visibilityState !== 'visible';
+    if (suspended) this.#sticks.waitForRelease();
+    else this.#sticks.watch(this.#session.inputSources);
+    const { left, right } = this.#readHands(frame, suspended);
+    const head = viewer && toTrackedPose(viewer);
+    if (!head) return null;
+    this.#lastHead = head;
+    return { time, head, leftHand: left, rightHand: right, ...(suspended && { suspended }) };
+  }
+
+  recentre(): void {
+    const head = this.#lastHead;
+    if (!head) return;
+    const turned = headingOf(head.orientation);
+    const origin = { ...head.position, y: 0 };
+    // The new space's origin in the old one: under the head, turned as it looks.
+    this.#moveTo(this.#space.getOffsetReferenceSpace(new XRRigidTransform({ ...origin, w: 1 }, turned)));
+    const toNew = conjugate(turned);
+    const position = rotate(toNew, scale(origin, -1));
+    this.#lastHead = { position: { ...position, y: head.position.y }, orientation: fromAxisAngle(up, 0) };
+  }
+
+  turn(angle: number): void {
+    const head = this.#lastHead;
+    if (!head) return;
+    const oldFromNew = fromAxisAngle(up, -angle);
+    const under = { ...head.position, y: 0 };
+    // The head stays where it is, and everything turns about it.
+    const origin = subtract(under, rotate(oldFromNew, under));
+    this.#moveTo(this.#space.getOffsetReferenceSpace(new XRRigidTransform({ ...origin, w: 1 }, oldFromNew)));
+    this.#lastHead = { ...head, orientation: multiply(conjugate(oldFromNew), head.orientation) };
+  }
+
+  takeTurn(): -1 | 0 | 1 {
+    return this.#sticks.take();
+  }
+
+  #moveTo(next: XRReferenceSpace): void {
+    this.#space = next;
+    this.#onSpace?.(next);
+  }
+
+  /** The wrists of this frame; kinds and buttons are those of this frame too. */
+  #readHands(frame: XRFrame, suspended: boolean): Record<Side, TrackedPose | null> {
+    const { kinds, buttons } = this;
+    const hands: Record<Side, TrackedPose | null> = { left: null, right: null };
+    for (const side of sides) {
+      kinds[side] = 'none';
+      buttons[side] = allReleased;
     }
+    if (suspended) return hands;
+    for (const source of this.#session.inputSources) {
+      const side = source.handedness;
+      if (side === 'none') continue;
+      const pose = this.#readHand(frame, source, side);
+      // A device may list a controller that lies on the table beside the hand that left it: what is seen wins.
+      if (pose && (hands[side] === null || pose.tracking === 'tracked')) hands[side] = pose;
+      const own = source.hand ? this.#pinched(frame, source.hand) : pressed(source.gamepad);
+      buttons[side] = { ...more(buttons[side], own), device: this.#deviceOf(source) };
+    }
+    for (const side of sides) {
+      const kind = kinds[side];
+      if (kind === 'none') continue;
+      this.#held[kind] = true;
+      buttons[side] = { ...buttons[side], kind };
+    }
+    return hands;
   }
-  const kinds: Record<Side, InputKind> = { left: 'none', right: 'none' };
-  const buttons: Record<Side, HandButtons> = { left: allReleased, right: allReleased };
-  const held = { controller: false, hand: false };
 
-  /** Thumb against index finger; the gamepad of a hand would only say so once it is over. */
-  function pinched(frame: XRFrame, hand: XRHand): HandButtons {
-    const tip = (name: 'thumb-tip' | 'index-finger-tip') => {
-      const joint = hand.get(name);
-      return joint && frame.getJointPose?.(joint, space)?.transform.position;
-    };
-    const thumb = tip('thumb-tip');
-    const index = tip('index-finger-tip');
-    if (!thumb || !index) return allReleased;
-    const gap = distance(thumb, index);
-    return { ...allReleased, pinch: Number.isFinite(gap) ? 1 - smoothstep(closedPinch, openPinch, gap) : 0 };
-  }
-
-  function readHand(frame: XRFrame, source: XRInputSource, side: Side): TrackedPose | null {
+  #readHand(frame: XRFrame, source: XRInputSource, side: Side): TrackedPose | null {
     const wrist = source.hand?.get('wrist');
     if (wrist) {
-      kinds[side] = 'hand';
-      const pose = frame.getJointPose?.(wrist, space);
+      this.kinds[side] = 'hand';
+      const pose = frame.getJointPose?.(wrist, this.#space);
       return pose ? toTrackedPose(pose) : null;
     }
     if (!source.gripSpace) return null;
-    kinds[side] = 'controller';
-    const grip = frame.getPose(source.gripSpace, space);
+    this.kinds[side] = 'controller';
+    const grip = frame.getPose(source.gripSpace, this.#space);
     if (!grip) return null;
     const tracked = toTrackedPose(grip);
     return tracked && { ...wristFromGrip(tracked, side, handleFit(source.profiles)), tracking: tracked.tracking };
   }
 
-  return {
-    kinds,
-    buttons,
-    get input() {
-      if (held.controller && held.hand) return 'mixed';
-      return held.hand ? 'hands' : 'controllers';
-    },
-    read(frame, time) {
-      const viewer = frame.getViewerPose(space);
-      const hands: Record<Side, TrackedPose | null> = { left: null, right: null };
-      for (const side of ['left', 'right'] as const) {
-        kinds[side] = 'none';
-        buttons[side] = allReleased;
-      }
-      const suspended = session.visibilityState !== 'visible';
-      if (suspended) pushed = true;
-      else watchSticks();
-      for (const source of suspended ? [] : session.inputSources) {
-        const side = source.handedness;
-        if (side === 'none') continue;
-        const pose = readHand(frame, source, side);
-        // A device may list a controller that lies on the table beside the hand that left it: what is seen wins.
-        if (pose && (hands[side] === null || pose.tracking === 'tracked')) hands[side] = pose;
-        const own = source.hand ? pinched(frame, source.hand) : pressed(source.gamepad);
-        buttons[side] = { ...more(buttons[side], own), device: deviceOf(source) };
-      }
-      for (const side of ['left', 'right'] as const) {
-        const kind = kinds[side];
-        if (kind === 'none') continue;
-        held[kind] = true;
-        buttons[side] = { ...buttons[side], kind };
-      }
-      const head = viewer && toTrackedPose(viewer);
-      if (!head) return null;
-      lastHead = head;
-      return { time, head, leftHand: hands.left, rightHand: hands.right, ...(suspended && { suspended }) };
-    },
-    recentre() {
-      if (!lastHead) return;
-      const turned = headingOf(lastHead.orientation);
-      const origin = { ...lastHead.position, y: 0 };
-      // The new space's origin in the old one: under the head, turned as it looks.
-      moveTo(space.getOffsetReferenceSpace(new XRRigidTransform({ ...origin, w: 1 }, turned)));
-      const toNew = conjugate(turned);
-      const position = rotate(toNew, scale(origin, -1));
-      lastHead = { position: { ...position, y: lastHead.position.y }, orientation: fromAxisAngle(up, 0) };
-    },
-    turn(angle) {
-      if (!lastHead) return;
-      const oldFromNew = fromAxisAngle(up, -angle);
-      const under = { ...lastHead.position, y: 0 };
-      // The head stays where it is, and everything turns about it.
-      const origin = subtract(under, rotate(oldFromNew, under));
-      moveTo(space.getOffsetReferenceSpace(new XRRigidTransform({ ...origin, w: 1 }, oldFromNew)));
-      lastHead = { ...lastHead, orientation: multiply(conjugate(oldFromNew), lastHead.orientation) };
-    },
-    takeTurn() {
-      const wanted = turnWanted;
-      turnWanted = 0;
-      return wanted;
-    },
-  };
+  /** Thumb against index finger; the gamepad of a hand would only say so once it is over. */
+  #pinched(frame: XRFrame, hand: XRHand): HandButtons {
+    const thumb = this.#fingerTip(frame, hand, 'thumb-tip');
+    const index = this.#fingerTip(frame, hand, 'index-finger-tip');
+    if (!thumb || !index) return allReleased;
+    const gap = distance(thumb, index);
+    return { ...allReleased, pinch: Number.isFinite(gap) ? 1 - smoothstep(closedPinch, openPinch, gap) : 0 };
+  }
+
+  #fingerTip(frame: XRFrame, hand: XRHand, name: 'thumb-tip' | 'index-finger-tip') {
+    const joint = hand.get(name);
+    return joint && frame.getJointPose?.(joint, this.#space)?.transform.position;
+  }
+
+  #deviceOf(source: XRInputSource): number {
+    const known = this.#devices.get(source);
+    if (known !== undefined) return known;
+    this.#deviceCount += 1;
+    this.#devices.set(source, this.#deviceCount);
+    return this.#deviceCount;
+  }
+}
+
+/** Turns by the sticks of a session's controllers: one push to the side is one turn. */
+class TurningSticks {
+  #pushed = false;
+  #wanted: -1 | 0 | 1 = 0;
+
+  watch(sources: XRInputSourceArray): void {
+    let furthest = 0;
+    for (const { gamepad } of sources) {
+      const sideways = gamepad?.axes[2] ?? 0;
+      if (Math.abs(sideways) > Math.abs(furthest)) furthest = sideways;
+    }
+    if (Math.abs(furthest) < stickBack) this.#pushed = false;
+    else if (Math.abs(furthest) > stickPushed && !this.#pushed) {
+      this.#pushed = true;
+      this.#wanted = furthest > 0 ? -1 : 1;
+    }
+  }
+
+  /** A stick that is pushed now turns only after it was back. */
+  waitForRelease(): void {
+    this.#pushed = true;
+  }
+
+  take(): -1 | 0 | 1 {
+    const wanted = this.#wanted;
+    this.#wanted = 0;
+    return wanted;
+  }
 }
 
 /** Copies the live objects of a frame; a pose with anything that is not finite counts as not seen. */
