@@ -69,119 +69,118 @@ function isAmong(people: readonly SeenPerson[], id: number): boolean {
 }
 
 /** `bytes`: of the mannequin's file. Bodies are made when they are first needed, one after the other, and kept for the next person who comes. */
-export function createRemoteAvatars(bytes: ArrayBuffer, name: string): RemoteAvatars {
-  const object = new Group();
-  object.name = 'other people';
-  const bodies: Body[] = [];
-  let making = false;
-  let disposed = false;
-  let failed: unknown = null;
+export const createRemoteAvatars = (bytes: ArrayBuffer, name: string): RemoteAvatars => new Mannequins(bytes, name);
 
-  async function make(): Promise<void> {
-    const avatar = createAvatar(await parseAvatar(bytes, name));
-    if (disposed) {
-      avatar.dispose();
-      return;
+class Mannequins implements RemoteAvatars {
+  readonly object = new Group();
+  readonly #bytes: ArrayBuffer;
+  readonly #name: string;
+  readonly #bodies: Body[] = [];
+  #making = false;
+  #disposed = false;
+  /** Why a body could not be made; null: each could. */
+  #failed: unknown = null;
+
+  constructor(bytes: ArrayBuffer, name: string) {
+    this.#bytes = bytes;
+    this.#name = name;
+    this.object.name = 'other people';
+  }
+
+  show(people: readonly SeenPerson[], time: number): void {
+    for (const person of people) {
+      const body = this.#bodyFor(person.id, people);
+      if (body) draw(body, person, time);
     }
-    const first = bodies[0];
-    if (first) shareGeometry(first.avatar.object, avatar.object);
-    const place = new Group();
-    const shadow = createBlobShadow();
-    place.visible = false;
-    place.add(avatar.object, shadow);
-    object.add(place);
-    bodies.push({
-      avatar,
-      place,
-      shadow,
-      id: null,
-      fitted: null,
-      palette: '',
-      opacity: 1,
-      placement: makeTransform(),
-    });
+    for (const body of this.#bodies) {
+      let there = false;
+      for (const { id, opacity } of people) there ||= id === body.id && opacity > 0;
+      body.place.visible = there;
+      if (!there) body.id = null;
+    }
+  }
+
+  jointsOf(id: number): Readonly<Record<string, Vec3>> | null {
+    const body = this.#bodies.find((candidate) => candidate.id === id);
+    if (!body) return null;
+    const joints = Object.entries(body.avatar.jointPositions());
+    return Object.fromEntries(joints.map(([joint, at]) => [joint, transformPoint(body.placement, at)]));
+  }
+
+  dispose(): void {
+    this.#disposed = true;
+    this.object.removeFromParent();
+    for (const { avatar, shadow } of this.#bodies) {
+      avatar.dispose();
+      shadow.geometry.dispose();
+      shadow.material.dispose();
+    }
   }
 
   /** The body of this number, or a free one; null while one is being made. */
-  function bodyFor(id: number, people: readonly SeenPerson[]): Body | null {
-    for (const body of bodies) if (body.id === id) return body;
-    for (const body of bodies) {
+  #bodyFor(id: number, people: readonly SeenPerson[]): Body | null {
+    for (const body of this.#bodies) if (body.id === id) return body;
+    for (const body of this.#bodies) {
       if (body.id !== null && isAmong(people, body.id)) continue;
       body.id = id;
       body.fitted = null;
       return body;
     }
-    if (failed) throw failed;
-    if (!making) {
-      making = true;
-      void make().then(
-        () => {
-          making = false;
-        },
-        (error: unknown) => {
-          failed = error;
-        },
-      );
-    }
+    if (this.#failed) throw this.#failed;
+    if (!this.#making) void this.#make();
     return null;
   }
 
-  function draw(body: Body, person: SeenPerson, time: number): void {
-    const { avatar, place, shadow } = body;
-    const { calibration, palette, pose, placement, grips, opacity } = person;
-    if (body.fitted?.eyeHeight !== calibration.eyeHeight || body.fitted.armSpan !== calibration.armSpan) {
-      avatar.fitTo(calibration);
-      body.fitted = calibration;
+  /** Never rejects: the next frame that wants a body throws why there is none. */
+  async #make(): Promise<void> {
+    this.#making = true;
+    try {
+      const avatar = createAvatar(await parseAvatar(this.#bytes, this.#name));
+      if (this.#disposed) avatar.dispose();
+      else this.#add(avatar);
+      this.#making = false;
+    } catch (error) {
+      this.#failed = error;
     }
-    if (body.palette !== palette) {
-      avatar.setPalette(palette);
-      body.palette = palette;
-    }
-    if (body.opacity !== opacity) {
-      avatar.setOpacity(opacity);
-      shadow.visible = opacity > 0.5;
-      body.opacity = opacity;
-    }
-    copyVec3(placement.position, body.placement.position);
-    copyQuat(placement.orientation, body.placement.orientation);
-    place.position.copy(placement.position);
-    place.quaternion.copy(placement.orientation);
-    avatar.setGrip('left', grips.left);
-    avatar.setGrip('right', grips.right);
-    avatar.apply(pose, time);
-    const { hips, head } = avatar.jointPositions();
-    const over = hips ?? head;
-    if (over) shadow.position.set(over.x, shadow.position.y, over.z);
   }
 
-  return {
-    object,
-    show(people, time) {
-      for (const person of people) {
-        const body = bodyFor(person.id, people);
-        if (body) draw(body, person, time);
-      }
-      for (const body of bodies) {
-        let there = false;
-        for (const { id, opacity } of people) there ||= id === body.id && opacity > 0;
-        body.place.visible = there;
-        if (!there) body.id = null;
-      }
-    },
-    jointsOf(id) {
-      const body = bodies.find((candidate) => candidate.id === id);
-      if (!body) return null;
-      const joints = Object.entries(body.avatar.jointPositions());
-      return Object.fromEntries(joints.map(([joint, at]) => [joint, transformPoint(body.placement, at)]));
-    },
-    dispose() {
-      disposed = true;
-      object.removeFromParent();
-      for (const { avatar, shadow } of bodies) {
-        avatar.dispose();
-        shadow.geometry.dispose();
-        shadow.material.dispose();
-      }
-    },
-  };
+  #add(avatar: Avatar): void {
+    const first = this.#bodies[0];
+    if (first) shareGeometry(first.avatar.object, avatar.object);
+    const place = new Group();
+    const shadow = createBlobShadow();
+    place.visible = false;
+    place.add(avatar.object, shadow);
+    this.object.add(place);
+    const free = { id: null, fitted: null, palette: '', opacity: 1, placement: makeTransform<'floor', 'floor'>() };
+    this.#bodies.push({ avatar, place, shadow, ...free });
+  }
+}
+
+function draw(body: Body, person: SeenPerson, time: number): void {
+  const { avatar, place, shadow } = body;
+  const { calibration, palette, pose, placement, grips, opacity } = person;
+  if (body.fitted?.eyeHeight !== calibration.eyeHeight || body.fitted.armSpan !== calibration.armSpan) {
+    avatar.fitTo(calibration);
+    body.fitted = calibration;
+  }
+  if (body.palette !== palette) {
+    avatar.setPalette(palette);
+    body.palette = palette;
+  }
+  if (body.opacity !== opacity) {
+    avatar.setOpacity(opacity);
+    shadow.visible = opacity > 0.5;
+    body.opacity = opacity;
+  }
+  copyVec3(placement.position, body.placement.position);
+  copyQuat(placement.orientation, body.placement.orientation);
+  place.position.copy(placement.position);
+  place.quaternion.copy(placement.orientation);
+  avatar.setGrip('left', grips.left);
+  avatar.setGrip('right', grips.right);
+  avatar.apply(pose, time);
+  const { hips, head } = avatar.jointPositions();
+  const over = hips ?? head;
+  if (over) shadow.position.set(over.x, shadow.position.y, over.z);
 }
