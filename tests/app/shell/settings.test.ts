@@ -1,6 +1,6 @@
 import { describe, expect, test } from 'vitest';
 import type { Preferences } from '../../../src/app/shell/preferences';
-import { createSettings } from '../../../src/app/shell/settings';
+import { createSettings, SettingsWriter } from '../../../src/app/shell/settings';
 import { readSwitches } from '../../../src/app/shell/switches';
 import { defaultCalibration } from '../../../src/core/body/calibration';
 
@@ -51,5 +51,36 @@ describe('bots', () => {
     expect(visit('?room=garden', { bots: true }).bots).toBe(false);
     expect(visit('?room=garden&bots=on').bots).toBe(true);
     expect(visit('?bots=off', { bots: true }).bots).toBe(false);
+  });
+});
+
+describe('the writer of the settings', () => {
+  function written() {
+    const settings = visit('');
+    const kept: unknown[] = [];
+    const mirrors: boolean[] = [];
+    const store = { remember: (part: object) => void kept.push(part) };
+    return {
+      settings,
+      kept,
+      mirrors,
+      writer: new SettingsWriter(settings, store, () => mirrors.push(settings.mirror)),
+    };
+  }
+
+  test('tells of every change once it is made, and remembers what lasts longer than a visit', () => {
+    const { settings, kept, mirrors, writer } = written();
+    writer.keep({ mirror: false });
+    expect(settings.mirror).toBe(false);
+    expect(mirrors).toEqual([false]);
+    expect(kept).toEqual([{ mirror: false }]);
+  });
+
+  test('forgets with the visit what is for the visit', () => {
+    const { settings, kept, mirrors, writer } = written();
+    writer.change({ debugSkeleton: true });
+    expect(settings.debugSkeleton).toBe(true);
+    expect(mirrors).toEqual([true]);
+    expect(kept).toEqual([]);
   });
 });

@@ -1,0 +1,214 @@
+import { Group, Vector3 } from 'three';
+import { afterAll, describe, expect, test, vi } from 'vitest';
+import { HeadsetControls } from '../../../src/app/shell/controls/headset-controls';
+import { PageStudy } from '../../../src/app/shell/page-study';
+import { createSettings, SettingsWriter } from '../../../src/app/shell/settings';
+import { readSwitches } from '../../../src/app/shell/switches';
+import { menuButtons, type VrMenuActions, type VrMenuState } from '../../../src/app/shell/vr-menu/menu-buttons';
+import { defaultCalibration } from '../../../src/core/body/calibration';
+import { createEstimator } from '../../../src/core/estimation/estimators';
+import type { CalibrationStep } from '../../../src/ui/calibration-dialog';
+import type { Pointer } from '../../../src/ui/vr-pointers';
+import { drawNowhere } from './drawing-in-node';
+
+drawNowhere();
+afterAll(() => vi.unstubAllGlobals());
+
+/** A hand that points from before the menu at this point of the world [m], its trigger just pressed. */
+function handAt(target: Vector3) {
+  const origin = new Vector3(0, 1.4, 0);
+  const shown: (number | null)[] = [];
+  const hand: Pointer = {
+    origin,
+    direction: target.clone().sub(origin).normalize(),
+    tip: null,
+    pressed: true,
+    showRay: (distance) => void shown.push(distance),
+  };
+  return { hand, shown };
+}
+
+/** The controls of a headset in the studio, and what their buttons asked for. */
+function headset() {
+  const settings = createSettings(readSwitches('').switches, { preferences: {} });
+  const writer = new SettingsWriter(settings, { remember: () => undefined }, () => undefined);
+  const done: string[] = [];
+  const study = new PageStudy();
+  const hands: Pointer[] = [];
+  let step: CalibrationStep | null = null;
+  const pointers = { objects: new Group(), take: () => hands };
+  const controls = new HeadsetControls({
+    ...{ settings, writer, study, pointers },
+    notices: { show: () => undefined, current: () => [] },
+    choice: { current: createEstimator('ik', defaultCalibration), unavailable: {} },
+    activities: {
+      ...{ name: 'studio', archery: null, ball: null },
+      goTo: async (name) => void done.push(`go to ${name}`),
+      rule: () => void done.push('rule'),
+      restartRound: () => void done.push('restart'),
+      point(_, press) {
+        done.push(press ? 'a sheet of the game is pressed' : 'a sheet of the game is pointed at');
+        return null;
+      },
+    },
+    measuring: {
+      get step() {
+        return step;
+      },
+      begin: () => void done.push('calibrate'),
+      cancel: () => void done.push('cancel'),
+    },
+    actions: {
+      chooseEstimator: (name) => void done.push(`estimate by ${name}`),
+      recentre: () => void done.push('recentre'),
+      exitVr: () => void done.push('exit'),
+    },
+  });
+  const [menu] = controls.objects;
+  return {
+    ...{ controls, study, done, hands, pointers, menu, settings },
+    measure(next: CalibrationStep | null) {
+      step = next;
+      controls.show();
+    },
+    /** Where the middle of this canvas point of the menu's sheet (640 × 1000) lies in the world. */
+    onMenu(x: number, y: number) {
+      menu.updateWorldMatrix(true, true);
+      const sheet = menu.children[0];
+      if (!sheet) throw new Error('the menu has no sheet');
+      return sheet.localToWorld(new Vector3((x - 320) / 1000, (500 - y) / 1000, 0));
+    },
+  };
+}
+
+/** A study whose sheet writes down the hands that point at it. */
+function studyOf(pointed: (readonly Pointer[])[]) {
+  const run = {
+    object: new Group() as never,
+    ...{ idle: true, measured: false, paused: false },
+    frame: () => undefined,
+    point: (pointers: readonly Pointer[]) => void pointed.push(pointers),
+    sessionChanged: () => undefined,
+    probe: () => {
+      throw new Error('not asked for here');
+    },
+  };
+  return { run, archery: { played: () => undefined }, ball: { played: () => undefined } };
+}
+
+describe('in the headset', () => {
+  test('the menu is there while it is worn, and hands point', () => {
+    const { controls, menu, pointers } = headset();
+    expect([menu.visible, pointers.objects.visible]).toEqual([false, false]);
+    controls.setWorn(true);
+    expect([menu.visible, pointers.objects.visible]).toEqual([true, true]);
+    controls.setWorn(false);
+    expect([menu.visible, pointers.objects.visible]).toEqual([false, false]);
+  });
+
+  test('a study’s sheet takes the place of the menu: it alone hears the hands', () => {
+    const { controls, study, menu, pointers, hands, done, onMenu } = headset();
+    const pointed: (readonly Pointer[])[] = [];
+    study.join(studyOf(pointed));
+    controls.setWorn(true);
+    controls.show();
+    expect([menu.visible, pointers.objects.visible]).toEqual([false, true]);
+    hands.push(handAt(onMenu(320, 162)).hand);
+    controls.point();
+    expect(pointed).toEqual([hands]);
+    expect(done).toEqual([]);
+  });
+
+  test('a trigger pulled at a button does what it says, and the ray ends there', () => {
+    const { controls, hands, done, onMenu } = headset();
+    controls.setWorn(true);
+    controls.show();
+    const { hand, shown } = handAt(onMenu(320, 162));
+    hands.push(hand);
+    controls.point();
+    expect(done).toContain('estimate by learned');
+    expect(shown.at(-1)).toBeCloseTo(1.6, 0);
+  });
+
+  test('larger text makes a larger menu', () => {
+    const { controls, settings, menu } = headset();
+    const writer = new SettingsWriter(settings, { remember: () => undefined }, () => controls.show());
+    writer.keep({ largerText: true });
+    expect(menu.scale.x).toBe(1.3);
+  });
+
+  test('while the wearer is measured nothing but Cancel can be pressed', () => {
+    const { controls, hands, done, onMenu, measure } = headset();
+    controls.setWorn(true);
+    measure({ kind: 'countdown', secondsLeft: 3 });
+    hands.push(handAt(onMenu(320, 162)).hand);
+    controls.point();
+    expect(done.filter((each) => !each.includes('sheet'))).toEqual([]);
+    hands[0] = handAt(onMenu(320, 916)).hand;
+    controls.point();
+    expect(done).toContain('cancel');
+  });
+});
+
+describe('the buttons of the menu', () => {
+  const studio: VrMenuState = {
+    ...{ estimator: 'ik', unavailable: {}, calibration: null, overlay: false, activity: 'studio' },
+    ...{ bowSide: 'left', roundOver: false, ready: null, notice: null },
+  };
+  const done: string[] = [];
+  const actions: VrMenuActions = {
+    chooseEstimator: (name) => void done.push(name),
+    calibrate: () => undefined,
+    cancelCalibration: () => undefined,
+    recentre: () => undefined,
+    setOverlay: (on) => void done.push(`overlay ${on}`),
+    goTo: () => undefined,
+    setBowSide: (side) => void done.push(`bow ${side}`),
+    restart: () => undefined,
+    ready: (on) => void done.push(`ready ${on}`),
+    exit: () => undefined,
+  };
+  const labels = (change: Partial<VrMenuState> = {}) =>
+    menuButtons({ ...studio, ...change }, actions).map(({ label }) => label);
+
+  test('lie apart and inside the sheet in every game', () => {
+    for (const activity of ['studio', 'archery', 'ball'] as const) {
+      const buttons = menuButtons({ ...studio, activity, ready: true }, actions);
+      expect(buttons.length).toBeGreaterThan(8);
+      for (const [index, { at }] of buttons.entries()) {
+        const [x, y, w, h] = at;
+        expect(Math.min(x, y, 640 - x - w, 900 - y - h)).toBeGreaterThanOrEqual(0);
+        for (const { at: other } of buttons.slice(index + 1)) {
+          const beside = other[0] >= x + w || other[0] + other[2] <= x;
+          const below = other[1] >= y + h || other[1] + other[3] <= y;
+          expect(beside || below).toBe(true);
+        }
+      }
+    }
+  });
+
+  test('offer what can be done here', () => {
+    expect(labels()).toEqual(expect.arrayContaining(['Archery', 'Ball game']));
+    expect(labels({ activity: 'archery' })).toEqual(expect.arrayContaining(['To the mirror', 'Bow: left hand']));
+    expect(labels({ activity: 'archery', roundOver: true })).toContain('New round');
+    expect(labels({ activity: 'ball', ready: false })).toContain('Ready');
+    expect(labels({ activity: 'ball', ready: true })).toContain('Wait for me');
+    expect(labels({ activity: 'ball' })).not.toContain('Ready');
+  });
+
+  test('that change something ask for the other state', () => {
+    const press = (id: string, change: Partial<VrMenuState>) =>
+      menuButtons({ ...studio, ...change }, actions)
+        .find((each) => each.id === id)
+        ?.act();
+    press('overlay', { overlay: true });
+    press('bow', { activity: 'archery', bowSide: 'right' });
+    press('ready', { activity: 'ball', ready: true });
+    expect(done).toEqual(['overlay false', 'bow left', 'ready false']);
+  });
+
+  test('an estimator that is not to be had is shown and cannot be pressed', () => {
+    const looks = menuButtons({ ...studio, unavailable: { learned: 'no network' } }, actions).map(({ look }) => look);
+    expect(looks.slice(0, 4)).toEqual(['off', 'chosen', 'plain', 'plain']);
+  });
+});

@@ -1,0 +1,117 @@
+import { describe, expect, test } from 'vitest';
+import { OpenedFiles } from '../../../src/app/shell/controls/opened-files';
+import { Recorder } from '../../../src/app/studio/recorder';
+import type { Calibration } from '../../../src/core/body/calibration';
+import { writeRecording } from '../../../src/core/tracking/recording';
+import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
+import type { Notice } from '../../../src/ui/notices';
+
+const person: Calibration = { eyeHeight: 1.72, armSpan: 1.7 };
+
+function frameAt(time: number): TrackingFrame {
+  const orientation = { x: 0, y: 0, z: 0, w: 1 };
+  const head = { position: { x: 0, y: 1.7, z: 0 }, orientation, tracking: 'tracked' } as const;
+  return { time, head, leftHand: null, rightHand: null };
+}
+
+/** A file of one second of this person. */
+const recordingFile = (name = 'walk.json') =>
+  new File(
+    [writeRecording({ device: 'a test', rateHz: 72, calibration: person, frames: [frameAt(1), frameAt(2)] })],
+    name,
+  );
+
+/** A file of this size [MB]; whether its bytes were asked for. */
+function largeFile(name: string, megabytes: number) {
+  const file = new File(['{}'], name);
+  const asked = { bytes: false };
+  Object.defineProperties(file, {
+    size: { value: megabytes * 2 ** 20 },
+    arrayBuffer: {
+      value: async () => {
+        asked.bytes = true;
+        return new ArrayBuffer(2);
+      },
+    },
+  });
+  return { file, asked };
+}
+
+/** The files of a page, with its real recorder; what they do to body and avatar is written down. */
+function files() {
+  const notices: Notice[] = [];
+  const done: string[] = [];
+  const opened: (string | File)[] = [];
+  const recorder = new Recorder();
+  const replayed: (Calibration | null)[] = [];
+  return {
+    notices,
+    done,
+    opened,
+    recorder,
+    replayed,
+    files: new OpenedFiles({
+      recorder,
+      notices: { show: (level, text) => void notices.push({ level, text }) },
+      avatar: {
+        name: 'robot.vrm',
+        async open(source) {
+          opened.push(source);
+          return true;
+        },
+        openOwn: async () => true,
+      },
+      choice: { reset: () => void done.push('filters begin again') },
+      body: {
+        replays: (calibration) => void replayed.push(calibration),
+        refit: () => void done.push(`fitted while ${recorder.mode}`),
+      },
+      onChange: () => void done.push('shown'),
+    }),
+  };
+}
+
+describe('a dropped file', () => {
+  test('that is a recording of 300 MB is refused by a sentence before it is read', async () => {
+    const { files: page, notices, recorder } = files();
+    const { file, asked } = largeFile('walk.json', 300);
+    await page.open(file);
+    expect(notices).toEqual([
+      {
+        level: 'error',
+        text: 'walk.json could not be replayed: more than 100 MB; a recording may have that at most',
+      },
+    ]);
+    expect(asked.bytes).toBe(false);
+    expect(recorder.mode).toBe('idle');
+  });
+
+  test('that is a recording is replayed at once, by the body of the person in it', async () => {
+    const { files: page, notices, recorder, replayed, done } = files();
+    await page.open(recordingFile());
+    expect(notices).toEqual([]);
+    expect(recorder.mode).toBe('replaying');
+    expect(recorder.name).toBe('walk.json');
+    expect(replayed).toEqual([person]);
+    expect(done).toEqual(['filters begin again', 'fitted while replaying', 'shown']);
+  });
+
+  test('that is no recording leaves what was replayed as it was', async () => {
+    const { files: page, notices, recorder, replayed } = files();
+    await page.open(recordingFile('walk.json'));
+    await page.open(new File(['{"frames": 3}'], 'other.JSON'));
+    expect(notices).toHaveLength(1);
+    expect(notices[0]?.text).toMatch(/^other\.JSON could not be replayed: /);
+    expect(recorder.name).toBe('walk.json');
+    expect(replayed).toHaveLength(1);
+  });
+
+  test('of any other name is opened as an avatar, and its name is told when it stands there', async () => {
+    const { files: page, notices, opened, recorder } = files();
+    const file = new File(['glTF'], 'robot.vrm');
+    await page.open(file);
+    expect(opened).toEqual([file]);
+    expect(recorder.mode).toBe('idle');
+    expect(notices).toEqual([{ level: 'info', text: 'robot.vrm is your avatar now.' }]);
+  });
+});
