@@ -2,7 +2,7 @@ import type { Pose } from '../core/math/pose';
 import { conjugate, rotate } from '../core/math/quat';
 import { subtract, type Vec3 } from '../core/math/vec3';
 
-/** Where a point is for somebody's head, in words; above and below do not matter. */
+/** Where a point lies as seen from a head, in words; above and below do not matter. */
 export function directionOf(head: Pose<'arena'>, point: Vec3): string {
   const seen = rotate(conjugate(head.orientation), subtract(point, head.position));
   const degrees = (Math.atan2(seen.x, -seen.z) * 180) / Math.PI;

@@ -26,7 +26,7 @@ function drawsInSoftware(context: WebGLRenderingContext | WebGL2RenderingContext
   return /swiftshader|llvmpipe|software/i.test(name);
 }
 
-/** The quality this machine can afford when nobody asked for one; throws where there is no WebGL 2. */
+/** The quality this machine can afford when none was asked for; throws where there is no WebGL 2. */
 export function affordableQuality(): Quality {
   const context = document.createElement('canvas').getContext('webgl2');
   if (!context)
@@ -53,7 +53,7 @@ export function createRenderer(canvas: HTMLCanvasElement, quality: Quality): Web
 /** Share of the window's pixels, in each direction, that are drawn in low quality. */
 const lowPixelShare = 0.66;
 
-/** An emulated headset draws into the whole window, whatever it costs: in low quality it gets fewer pixels. Call it in a session. */
+/** An emulated headset draws into the whole window, however large that is: in low quality it gets fewer pixels. Call it in a session. */
 export function easeEmulatedPicture(renderer: WebGLRenderer, quality: Quality): void {
   if (quality === 'high') return;
   const { domElement } = renderer;

@@ -26,10 +26,10 @@ export interface ArcheryActivityOptions {
   onCaption(text: string): void;
 }
 
-/** What a frame of play means to whoever plays. */
+/** What a frame of play means to the player. */
 export interface ArcheryMoment {
   readonly haptics: readonly HapticPulse[];
-  /** The hand that has just taken the bow; null: nobody took it. */
+  /** The hand that has just taken the bow; null: no hand took it. */
   readonly taken: Side | null;
   /** Score or clock may have changed. */
   readonly eventful: boolean;

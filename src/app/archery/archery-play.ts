@@ -17,7 +17,7 @@ import type { Ray } from '../../core/math/ray';
 import type { Side } from '../../core/math/side';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 
-/** What whoever plays may choose; asked for in every frame. */
+/** What the player may choose; asked for in every frame. */
 export interface ArcherySettings {
   readonly bowSide: Side;
   readonly oneHanded: boolean;
@@ -39,7 +39,7 @@ export interface ArcheryFrame {
   readonly haptics: readonly HapticPulse[];
 }
 
-/** Head, hands and buttons of somebody who plays. */
+/** Head, hands and buttons of a player. */
 export interface Performance {
   readonly frame: TrackingFrame;
   readonly buttons: Buttons;
@@ -55,9 +55,9 @@ export interface ArcheryPlay {
   follow(frame: TrackingFrame, buttons: Buttons): ArcheryFrame;
   /** Head, hands and buttons of the built-in archer at `time` [s]. */
   act(time: number): Performance;
-  /** The same of an archer who aims along a ray (arena frame; unit direction) as somebody at a desk tells it. */
+  /** The same of an archer who aims along a ray (arena frame; unit direction) as a person at a desk tells it. */
   steer(time: number, ray: Ray, wish: { readonly pressed: boolean; readonly cancelled: boolean }): Performance;
-  /** Another round, for somebody with these measures whose eyes are this high now [m], standing or seated. */
+  /** Another round, for a person with these measures whose eyes are this high now [m], standing or seated. */
   restart(calibration: Calibration, eyeHeight?: number): void;
   /** The start signal: the clock of a round that waits runs from the next frame on, not from the first arrow. */
   signal(): void;
@@ -75,7 +75,7 @@ export interface ArcheryProbe {
   readonly bowSide: Side | null;
   readonly stage: BowView['stage'] | null;
   readonly draw: number;
-  /** Where the middle of the string is, floor frame [m]; null: nobody holds the bow. */
+  /** Where the middle of the string is, floor frame [m]; null: no hand holds the bow. */
   readonly nockPoint: readonly [number, number, number] | null;
   readonly hits: readonly (number | null)[];
 }

@@ -25,7 +25,7 @@ export interface Arrows {
   dispose(): void;
 }
 
-/** More arrows than anybody shoots in a round; older ones make room. */
+/** More arrows than are shot in a round; older ones make room. */
 const capacity = 64;
 const shaftRadius = 0.0042;
 

@@ -8,7 +8,7 @@ import { disposeTree } from '../../scene/dispose-tree';
 import { woodColor } from '../../scene/outdoors/wood';
 import { merged, painted } from '../../scene/painted-geometry';
 
-/** What holds the bow while nobody does; floor frame. */
+/** What holds the bow while no hand does; floor frame. */
 export interface BowStand {
   readonly object: Group;
   /** Where the grip hangs [m]; null: the stand is put away. */

@@ -125,8 +125,8 @@ export function createBallActivity(options: BallActivityOptions): BallActivity {
     return [...haptics, ...eventHaptics(events, me, role)];
   }
 
-  const nobodies: BallFrame['bodies'] = [];
-  const nobody: Buttons = {
+  const noBodies: BallFrame['bodies'] = [];
+  const noButtons: Buttons = {
     left: { trigger: 0, grip: 0, pinch: 0 },
     right: { trigger: 0, grip: 0, pinch: 0 },
   };
@@ -150,9 +150,9 @@ export function createBallActivity(options: BallActivityOptions): BallActivity {
     follow: (frame, buttons) => follow(frame.time, frame, buttons),
     send: (frame, pose, grips) => play.send(frame, pose, grips),
     show(time, head, tracked) {
-      if (!tracked) follow(time, null, nobody);
+      if (!tracked) follow(time, null, noButtons);
       const seen = play.newest;
-      others.show(seen?.bodies ?? nobodies, time);
+      others.show(seen?.bodies ?? noBodies, time);
       if (!seen) return;
       const { state, me, rotate, opening, aim, paused, events, cues } = seen;
       const attendants = named(seen.players);

@@ -20,7 +20,7 @@ import { type BallSounds, createBallSounds } from './sounds';
 import { createWickerBasket } from './wicker-basket';
 import { createZoneRing } from './zone-ring';
 
-/** Somebody at the court as they are drawn in this frame. */
+/** A player at the court as they are drawn in this frame. */
 export interface Attendant extends Person {
   /** Arena frame; null: not to be seen now. */
   readonly head: Vec3 | null;
@@ -41,7 +41,7 @@ export interface BallScene {
   readonly rotate: boolean;
   /** The basket where its holder's hands are drawn; null: where it was last. Arena frame. */
   readonly opening: Opening | null;
-  /** How a ball would fly that is let go now, arena frame; null: nobody here aims with a mouse. */
+  /** How a ball would fly that is let go now, arena frame; null: no player here aims with a mouse. */
   readonly aim: Launch | null;
   /** The match's clock stands. */
   readonly paused: boolean;

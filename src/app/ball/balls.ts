@@ -23,7 +23,7 @@ import { createShadowDiscs } from './shadow-discs';
 /** All balls of a match, wherever they are; arena frame. */
 export interface Balls {
   readonly object: Object3D;
-  /** At a time of the match [s]; inHand: where the fist is that holds a ball; null: nobody sees it. */
+  /** At a time of the match [s]; inHand: where the fist is that holds a ball; null: it is not seen. */
   show(
     state: BallState,
     time: number,
@@ -126,7 +126,7 @@ export function createBalls(count: number, quality: Quality): Balls {
         }
         // A catch is told a moment later: until then the ball lies where it fell.
         if (place.on === 'air' && !place.missed && position) position = stoppedBy(opening, position);
-        // A full basket shows three layers of balls: those below them nobody sees.
+        // A full basket shows three layers of balls: those below them are hidden.
         if (!position || (place.on === 'basket' && caught > 15)) {
           mesh.setMatrixAt(index, gone);
           shadows.hide(ball);

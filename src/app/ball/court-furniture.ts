@@ -69,7 +69,7 @@ function planter(x: number, z: number, random: (low?: number, high?: number) => 
     const push = 0.93 + 0.12 * Math.sin(17 * position.getX(i) + 23 * position.getY(i) + 29 * position.getZ(i));
     position.setXYZ(i, position.getX(i) * push, position.getY(i) * push, position.getZ(i) * push);
   }
-  // Soft as a ball, whatever its corners.
+  // Shaded as soft as a ball, in spite of its corners.
   const normal = shrub.getAttribute('normal');
   for (let i = 0; i < position.count; i++) {
     const length = Math.hypot(position.getX(i), position.getY(i), position.getZ(i));

@@ -13,7 +13,7 @@ export const court = {
   padRadius: 0.46,
   holderZ: stations[holderStation]?.position.z ?? -throwingDistance,
   /**
-   * One board for the throwers, one for the holder, who is further away from it. Their middles are as high as it takes for nobody's
+   * One board for the throwers, one for the holder, who is further away from it. Their middles are as high as it takes for no one's
    * name to hide a line.
    */
   boards: [

@@ -2,7 +2,7 @@ import type { BallEvent, BallRole } from '../../core/games/ball/ball-state';
 import type { BallPulse } from '../../core/games/ball/gestures';
 
 /**
- * Pulses of what happens away from one's own hands: a catch is felt in the basket with both hands, and lightly by whoever threw; the
+ * Pulses of what happens away from one's own hands: a catch is felt in the basket with both hands, and lightly by the thrower; the
  * rim gives a knock; start and bell are felt by all. Taking and throwing are the gestures' own.
  */
 export function eventHaptics(events: readonly BallEvent[], me: number, role: BallRole): readonly BallPulse[] {

@@ -10,7 +10,7 @@ import { roleTexts, seatLooks } from './court-plan';
 /** Names and roles over heads; arena frame. */
 export interface NameLabels {
   readonly object: Group;
-  /** By player; null: nobody there, or nobody's to see (one's own). */
+  /** By player; null: no player is there, or it is one's own. */
   show(labels: readonly (Label | null)[]): void;
   dispose(): void;
 }

@@ -111,7 +111,7 @@ export function createBallSounds(onCaption: (text: string) => void, createContex
       }
       case 'caught':
         if (at) play('wicker', inFloor(at));
-        // The chime is for everybody: it rings half way.
+        // The chime is for all players: it rings half way.
         if (at) play(chimeName(event.score), lerp(inFloor(at), head.position, 0.5), 0.1);
         return;
       case 'bounced':

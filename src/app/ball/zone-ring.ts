@@ -3,10 +3,10 @@ import { zoneRadius } from '../../core/games/ball/stations';
 import { clamp } from '../../core/math/damper';
 import type { Vec3 } from '../../core/math/vec3';
 
-/** The edge of where throws and catches count: seen only by whoever comes near it; arena frame. */
+/** The edge of where throws and catches count: seen only by a player who comes near it; arena frame. */
 export interface ZoneRing {
   readonly mesh: Mesh;
-  /** The station's middle and one's own head; null: nobody plays. */
+  /** The station's middle and one's own head; null: a spectator. */
   show(station: Vec3 | null, head: Vec3): void;
 }
 

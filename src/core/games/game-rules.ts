@@ -1,5 +1,5 @@
 /**
- * A game as a reducer with a fixed tick: no clock, no chance from outside. Whoever hosts it decides when to step; the same
+ * A game as a reducer with a fixed tick: no clock, no chance from outside. Its host decides when to step; the same
  * actions in the same ticks always give the same states.
  */
 export interface GameRules<State, Action, Event, Options> {

@@ -17,7 +17,7 @@ export interface Daylight {
   readonly shadows: { readonly middle: Vector3; readonly halfSize: number };
 }
 
-/** A warm sun over a hazy horizon, in the floor frame of whoever stands in the arena. */
+/** A warm sun over a hazy horizon, in the floor frame of the viewer. */
 export function daylight(place: Daylight, { position, orientation }: Transform<'floor', 'arena'>): Lighting {
   const { quality, towardsSun, sunIntensity, skyIntensity, groundColor, shadows } = place;
   const high = quality === 'high';

@@ -62,7 +62,7 @@ function grassBlades(): Float32Array {
   return blades;
 }
 
-/** Built once for whoever draws ground and clouds; linear values, not colours. */
+/** Built once for both ground and clouds; linear values, not colours. */
 export function createNoiseTexture(quality: Quality): DataTexture {
   const pixels = new Uint8Array(side * side * 4);
   const blades = grassBlades();

@@ -58,7 +58,7 @@ describe('the scoreboard', () => {
     expect(boardText(withArrows([hit, shot(1, null)]), 4).line).toBe('Target at 8.5 m: +15');
   });
 
-  it('asks whoever left the deck to come back before it says anything else', () => {
+  it('asks an archer who left the deck to come back before it says anything else', () => {
     expect(boardText({ ...ready, inZone: false }, 0).line).toMatch(/back/);
   });
 
@@ -99,7 +99,7 @@ describe('the rings of a target', () => {
     return 0.2126 * r + 0.7152 * g + 0.0722 * b;
   };
 
-  it('differ in brightness from their neighbours at least three to one, whatever colours an eye sees', () => {
+  it('differ in brightness from their neighbours at least three to one, for every kind of colour vision', () => {
     for (let i = 1; i < rings.length; i++) {
       const [a, b] = [luminance(rings[i - 1]?.color ?? ''), luminance(rings[i]?.color ?? '')];
       expect((Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05)).toBeGreaterThan(3);

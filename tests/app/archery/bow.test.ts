@@ -87,7 +87,7 @@ describe('the bow', () => {
     expect(nearest(bow.stringPoints[2])).toBeLessThan(0.01);
   });
 
-  it('is not seen where nobody holds it', () => {
+  it('is not seen where no hand holds it', () => {
     const bow = createBow('low', braceHeight);
     bow.show(bowView(0.2));
     expect(bow.object.visible).toBe(true);

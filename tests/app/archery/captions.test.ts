@@ -51,7 +51,7 @@ describe('captions', () => {
     expect(directionOf(head, vec3(0.1, 0, 5))).toBe('behind you');
   });
 
-  it('say where the deck is for somebody who left it', () => {
+  it('say where the deck is for an archer who left it', () => {
     const away = { position: vec3(1, 1.6, 0), orientation: identity };
     expect(eventCaption({ type: 'left-zone' }, { targets, seconds: 70, head: away })).toBe(
       'You left the deck: it is to the left',
@@ -70,7 +70,7 @@ describe('sounds before the browser allows any', () => {
       floorFromArena: { position: vec3(0, 0, 0), orientation: identity },
       onCaption: (text) => captions.push(text),
       createContext: () => {
-        throw new Error('nobody unlocked the audio');
+        throw new Error('the audio was never unlocked');
       },
     });
     const state = archeryRules.start([], 1);

@@ -69,7 +69,7 @@ describe('a match', () => {
     );
   });
 
-  test('stands still while nobody looks, instead of catching up', () => {
+  test('stands still while it is not looked at, instead of catching up', () => {
     const match = begin();
     match.advance(0, []);
     match.advance(1, []);

@@ -1,7 +1,7 @@
 import { addScaled, distance, dot, subtract, type Vec3 } from '../../math/vec3';
 import type { Target } from './archery-state';
 
-/** How far somebody aims who points at the sky [m]. */
+/** How far away an archer aims who points at the sky [m]. */
 const farthest = 14;
 
 /**

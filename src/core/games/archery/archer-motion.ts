@@ -17,7 +17,7 @@ interface Movement {
   readonly waits?: boolean;
 }
 
-/** An archer who needs nobody: hands and buttons for a whole round. */
+/** The built-in archer: hands and buttons for a whole round. */
 export interface Archer {
   /** Head, hands (floor frame) and buttons at `time` [s, never falling], seeing the match as it stands then. */
   follow(time: number, state: ArcheryState): { readonly frame: TrackingFrame; readonly buttons: Buttons };

@@ -28,7 +28,7 @@ export interface ArcherBody {
   readonly bowSide: Side;
   /** Height of the eyes above the floor [m], standing or seated as the archer is. */
   readonly eyeHeight: number;
-  /** Shoulder to wrist [m]. Default: that of somebody who stands with eyes at this height. */
+  /** Shoulder to wrist [m]. Default: that of a person who stands with eyes at this height. */
   readonly armLength?: number;
   /** The button that the string hand presses. */
   readonly button?: Button;
@@ -105,7 +105,7 @@ export interface ArcherPostures {
   ): { readonly frame: TrackingFrame; readonly buttons: Buttons };
 }
 
-/** How somebody of this body stands, draws and lets go. */
+/** How an archer of this body stands, draws and lets go. */
 export function createArcherPostures(body: ArcherBody): ArcherPostures {
   const { bowSide, eyeHeight, button = 'trigger' } = body;
   const arm = body.armLength ?? armShare * eyeHeight;
@@ -116,7 +116,7 @@ export function createArcherPostures(body: ArcherBody): ArcherPostures {
   const aside = bowSide === 'left' ? 1 : -1;
   const eyes = vec3(0, eyeHeight, 0);
 
-  /** A vector given as (towards the string side, up, ahead) of somebody who faces this yaw. */
+  /** A vector given as (towards the string side, up, ahead) of an archer who faces this yaw. */
   const facing = (yaw: number, outward: number, upward: number, ahead: number): Vec3 =>
     rotate(fromAxisAngle(up, yaw), vec3(aside * outward, upward, -ahead));
 
@@ -229,7 +229,7 @@ export function createArcherPostures(body: ArcherBody): ArcherPostures {
     drawn,
     followedThrough,
     seen(now, time, pressure, swing) {
-      // Nobody stands still: head, bow and string hand drift together, millimetres.
+      // No archer stands still: head, bow and string hand drift together, millimetres.
       const drift = vec3(
         0.006 * Math.sin(time * 0.61),
         0.002 * Math.sin(time * 1.5),

@@ -11,7 +11,7 @@ export interface ArcheryOptions {
   readonly everyHitCounts: boolean;
   /** What makes the clock run: the first arrow or the start signal, whichever is first, or the signal alone. No arrow flies before it. */
   readonly startedBy: 'arrow' | 'signal';
-  /** Targets at the same angular height for somebody whose eyes are this high above the floor [m]. */
+  /** Targets at the same angular height for an archer whose eyes are this high above the floor [m]. */
   readonly eyeHeight: number;
 }
 

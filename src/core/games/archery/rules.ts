@@ -164,7 +164,7 @@ function stand(state: ArcheryState, head: Vec3): Step {
   };
 }
 
-/** Shoots, and starts a match that was ready; whatever no archer can have done changes nothing. */
+/** Shoots, and starts a match that was ready; a release that no archer can have made changes nothing. */
 function release(state: ArcheryState, action: Extract<ArcheryAction, { type: 'release' }>): Step {
   const { position, direction, draw, delay } = action;
   const possible =

@@ -5,7 +5,7 @@ import type { Buttons } from '../button-presses';
 import { minimumJerk, yawOf } from '../posture';
 import { type ArcherBody, createArcherPostures, mix, type Posture } from './archer-postures';
 
-/** What somebody at a desk wants of an archer. */
+/** What a person at a desk wants of an archer. */
 export interface Steering {
   /** The point of the arena to hit. */
   readonly target: Vec3;

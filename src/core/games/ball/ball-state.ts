@@ -87,7 +87,7 @@ export type BallAction =
   | { readonly type: 'ready'; readonly player: number; readonly ready: boolean }
   /** Nothing has been heard of this player for so long that where they were is forgotten. */
   | { readonly type: 'silent'; readonly player: number }
-  /** The clock is about to be stopped: no hand keeps a ball, and where everybody was is forgotten. */
+  /** The clock is about to be stopped: no hand keeps a ball, and where the players were is forgotten. */
   | { readonly type: 'pause' }
   | {
       readonly type: 'pose';
@@ -101,7 +101,7 @@ export type BallAction =
     }
   | (BallDeed & { readonly player: number });
 
-/** What a player does with a ball. Numbered by the player from 1: a number counts once, whatever arrives twice or out of order. */
+/** What a player does with a ball. Numbered by the player from 1: a number counts once, even if it arrives twice or out of order. */
 export type BallDeed =
   | { readonly type: 'grab'; readonly sequence: number; readonly side: Side; readonly ball: number }
   /** Back to the rack. */

@@ -30,13 +30,13 @@ describe('the built-in archer', () => {
     },
   );
 
-  test('wins whatever its height, seed, hand, button and frame rate, standing or seated', () => {
+  test('wins at any height, seed, hand, button and frame rate, standing or seated', () => {
     fc.assert(
       fc.property(
         fc.record({
           bowSide: fc.constantFrom<Side>('left', 'right'),
           eyeHeight: number(1.1, 1.9),
-          // A seated archer has the arms of somebody taller.
+          // A seated archer has the arms of a taller person.
           seated: fc.boolean(),
           button: fc.constantFrom<Button>('trigger', 'grip', 'pinch'),
         }),

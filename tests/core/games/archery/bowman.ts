@@ -14,7 +14,7 @@ import { otherSide, type Side } from '../../../../src/core/math/side';
 import { add, addScaled, cross, normalise, reject, up, type Vec3, vec3 } from '../../../../src/core/math/vec3';
 import type { TrackingFrame } from '../../../../src/core/tracking/tracking-frame';
 
-/** What somebody does in one frame who holds the bow out and has the other hand on the line of the arrow. */
+/** What an archer does in one frame who holds the bow out and has the other hand on the line of the arrow. */
 export interface Posed {
   readonly bowSide?: Side;
   /** Of the string hand behind brace height [m]; −0.16 is at the bow itself. */

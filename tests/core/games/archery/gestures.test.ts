@@ -139,13 +139,13 @@ describe('pressing', () => {
     expect(presses.follow('left', down, true)).toEqual(['trigger']);
     expect(presses.follow('left', down, false)).toEqual([]);
     expect(presses.follow('left', down, true)).toEqual([]);
-    // Half pressed may be the end of a press that nobody saw.
+    // Half pressed may be the end of a press that was not seen.
     expect(presses.follow('left', down, false)).toEqual([]);
     expect(presses.follow('left', { ...allReleased, trigger: 0.5 }, true)).toEqual([]);
     expect(presses.follow('left', down, true)).toEqual([]);
   });
 
-  test('the string hand lets go with the button that nocked, whatever the others do', () => {
+  test('the string hand lets go with the button that nocked, not with the others', () => {
     const archer = bowman();
     archer.drawTo(0.5, {}, 'grip');
     archer.frame({ draw: 0.5 }, { right: { grip: 1, trigger: 1 } });
@@ -250,7 +250,7 @@ describe('a hand that is lost', () => {
     expect(archer.releases).toEqual([]);
   });
 
-  test('leaves the bow where it was for a moment, then nobody holds it', () => {
+  test('leaves the bow where it was for a moment, then no hand holds it', () => {
     const archer = bowman();
     archer.hold({}, 0.2).hold({ lost: ['left'] }, 0.3);
     expect(distance(archer.bow!.bow.position, bowAt)).toBeLessThan(1e-9);
@@ -414,7 +414,7 @@ describe('hands', () => {
     archer.frame(atGrip, { right: { grip: 1 } });
     expect(archer.bow).toMatchObject({ bowSide: 'right', stage: 'empty' });
     expect(archer.frames.at(-1)!.cues).toMatchObject([{ type: 'taken', side: 'right' }]);
-    // Whoever remembers what was taken asks for what is.
+    // A page that remembers what was taken asks for what is.
     archer.set({ bowSide: 'right' });
     archer.hold({}, 0.1);
     expect(archer.bow).toMatchObject({ bowSide: 'right' });
@@ -531,7 +531,7 @@ describe('any hands at all', () => {
   );
   const pressure = fc.oneof(fc.constantFrom(0, 1), number(0, 1));
   const pressures = fc.record({ trigger: pressure, grip: fc.constant<number>(0), pinch: fc.constant<number>(0) });
-  /** Mostly somebody who nocks, draws and lets go in some order, with everything that can go wrong in between. */
+  /** Mostly an archer who nocks, draws and lets go in some order, with everything that can go wrong in between. */
   const moment = fc.record({
     seconds: fc.oneof({ weight: 8, arbitrary: number(0.005, 0.03) }, { weight: 1, arbitrary: number(-0.1, 1) }),
     frames: fc.integer({ min: 1, max: 8 }),

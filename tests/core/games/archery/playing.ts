@@ -17,7 +17,7 @@ import type { Buttons } from '../../../../src/core/games/button-presses';
 import { createMatch } from '../../../../src/core/games/match';
 import type { TrackingFrame } from '../../../../src/core/tracking/tracking-frame';
 
-/** What happened in a round that somebody played. */
+/** What happened in a round that was played. */
 export interface Round {
   readonly state: ArcheryState;
   readonly events: readonly ArcheryEvent[];

@@ -385,7 +385,7 @@ describe('what no archer can do', () => {
     expect(match.state.arrowsLeft).toBe(4);
   });
 
-  test('nothing that anybody sends breaks the state', () => {
+  test('nothing that is sent breaks the state', () => {
     const wild = fc.oneof(fc.double(), fc.constantFrom(Number.NaN, Number.POSITIVE_INFINITY, -1e308, 0, 1));
     const anywhere = fc.record({ x: wild, y: wild, z: wild });
     const action: fc.Arbitrary<ArcheryAction> = fc.oneof(
@@ -443,7 +443,7 @@ describe('the zone', () => {
   });
 });
 
-/** Ticks of somebody who moves about and shoots now and then, mostly well. */
+/** Ticks of an archer who moves about and shoots now and then, mostly well. */
 const playing = fc.array(
   fc.record({
     idle: fc.integer({ min: 20, max: 200 }),

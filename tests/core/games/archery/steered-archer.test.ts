@@ -4,7 +4,7 @@ import { archeryRules, delayed } from '../../../../src/core/games/archery/rules'
 import { createSteeredArcher, type Steering } from '../../../../src/core/games/archery/steered-archer';
 import { createMatch } from '../../../../src/core/games/match';
 
-/** Somebody with a mouse: what is held when, at 60 frames a second. */
+/** A person with a mouse: what is held when, at 60 frames a second. */
 function play(
   bowSide: 'left' | 'right',
   seconds: number,
@@ -28,7 +28,7 @@ function play(
 }
 
 describe.each(['left', 'right'] as const)('with the bow in the %s hand', (bowSide) => {
-  test('whoever points at the targets, holds and lets go scores with each', () => {
+  test('an archer who points at the targets, holds and lets go scores with each', () => {
     // Two seconds held, one and a half let go: an arrow lands before the next target is aimed at.
     const { state } = play(bowSide, 30, (time) => ({ pressed: time % 3.5 < 2, cancelled: false }));
     expect(state.score).toBe(50);

@@ -19,7 +19,7 @@ const floorFromArena = invertTransform(arenaFromFloor);
 const other = { left: 'right', right: 'left' } as const;
 type Side = 'left' | 'right';
 
-/** Somebody whose one fist is told, in the arena; the other hangs. */
+/** A player whose one fist is told, in the arena; the other hangs. */
 function throwing(options: { side?: Side; button?: Button; state?: BallState; player?: number } = {}) {
   const { side = 'right', button = 'trigger', player = leftThrower } = options;
   const match = told();
@@ -58,11 +58,11 @@ const ahead = transformPoint(arenaFromFloor, vec3(0.2, 1.5, -0.3));
 
 /** Takes ball 0 and carries it ahead. */
 function carrying(options: Parameters<typeof throwing>[0] = {}) {
-  const somebody = throwing(options);
-  somebody.frame(somebody.ball, 0);
-  const taken = somebody.frame(somebody.ball, 1);
-  for (let i = 0; i < 10; i++) somebody.frame(ahead, 1);
-  return { ...somebody, taken };
+  const player = throwing(options);
+  player.frame(player.ball, 0);
+  const taken = player.frame(player.ball, 1);
+  for (let i = 0; i < 10; i++) player.frame(ahead, 1);
+  return { ...player, taken };
 }
 
 describe('a hand', () => {
@@ -124,14 +124,14 @@ describe('a hand', () => {
   });
 
   test('whose device changes lets go', () => {
-    const somebody = throwing();
-    somebody.frame(somebody.ball, 0, 'controller');
-    somebody.frame(somebody.ball, 1, 'controller');
-    somebody.frame(ahead, 1, 'controller');
-    expect(somebody.deeds(somebody.frame(ahead, 1, 'hand')).map(({ type }) => type)).toEqual(['drop']);
+    const player = throwing();
+    player.frame(player.ball, 0, 'controller');
+    player.frame(player.ball, 1, 'controller');
+    player.frame(ahead, 1, 'controller');
+    expect(player.deeds(player.frame(ahead, 1, 'hand')).map(({ type }) => type)).toEqual(['drop']);
   });
 
-  test('lets go in a pause: nobody throws across a menu', () => {
+  test('lets go in a pause: no ball is thrown across a menu', () => {
     const { frame, deeds } = carrying();
     expect(deeds(frame(addScaled(ahead, vec3(0, 0, -1), 0.5), 0, undefined, 2)).map(({ type }) => type)).toEqual([
       'drop',
@@ -148,7 +148,7 @@ describe('a hand', () => {
 
   test('whose throw was refused lets go of the ball all the same, and can take another', () => {
     const { frame, aside, deeds, settings, ball } = carrying();
-    // Behind the line nobody throws.
+    // Behind the line no ball is thrown.
     aside.back = 1.4;
     for (let i = 1; i < 12; i++) frame(addScaled(ahead, vec3(0, 3, -4), i / 90), 1);
     expect(deeds(frame(addScaled(ahead, vec3(0, 3, -4), 12 / 90), 0)).map(({ type }) => type)).toEqual(['throw']);

@@ -44,7 +44,7 @@ export const inFront = add(stations[holder]!.position, vec3(0, 1.1, 0.45));
 export const velocityTo = (from: Vec3, to: Vec3, seconds: number): Vec3 =>
   addScaled(scale(subtract(to, from), 1 / seconds), vec3(0, 1, 0), 0.5 * gravity * seconds);
 
-/** A match told tick by tick, everybody there and ready unless told. */
+/** A match told tick by tick, all players there and ready unless told. */
 export function told(options: Partial<BallOptions> = {}, ready = true) {
   const events: BallEvent[] = [];
   const log: (readonly BallAction[])[] = [];

@@ -56,7 +56,7 @@ describe('the court', () => {
 });
 
 describe('a match', () => {
-  test('has 20 balls and 90 s, and starts when everybody is ready', () => {
+  test('has 20 balls and 90 s, and starts when all players are ready', () => {
     const match = told({}, false);
     expect(match.state.balls.length).toBe(20);
     match.step({ type: 'join', player: 0 }, { type: 'join', player: 1 }, { type: 'join', player: 2 });
@@ -160,7 +160,7 @@ describe('a match', () => {
     expect(match.state.score).toBe(1);
   });
 
-  test('takes the balls out of the hands of somebody who leaves, and knows them when they return', () => {
+  test('takes the balls out of the hands of a player who leaves, and knows them when they return', () => {
     const match = told();
     match.take(leftThrower, 2);
     match.step({ type: 'leave', player: leftThrower });
@@ -539,7 +539,7 @@ test('1,000 throws end the same at round trips of 0 to 200 ms as at none', () =>
   expect(same).toBeGreaterThanOrEqual(0.99 * throws);
 });
 
-test('what is decided stays decided, whatever times the poses tell', () => {
+test('what is decided stays decided, at all times that poses may tell', () => {
   fc.assert(
     fc.property(fc.array(number(-5, 5), { minLength: 1, maxLength: 20 }), (times) => {
       const match = told();

@@ -90,7 +90,7 @@ function playing(seat: number, steer: (seen: Seen) => BallSteering, others: 'idl
 const thrown = (state: BallState) => state.balls.filter(({ on }) => on !== 'rack' && on !== 'hand').length;
 
 describe.each([0, 1])('with a mouse on seat %i', (seat) => {
-  test('whoever holds until the dots end in the basket scores with most throws', () => {
+  test('a player who holds until the dots end in the basket scores with most throws', () => {
     const match = playing(seat, ({ state, player }) => {
       const basket = state.basket.position;
       const { aim } = player;
@@ -148,7 +148,7 @@ describe.each([0, 1])('with a mouse on seat %i', (seat) => {
     expect(match.state.balls.filter(({ on }) => on === 'hand')).toHaveLength(1);
   });
 
-  test('nobody throws who never presses', () => {
+  test('a player who never presses never throws', () => {
     const match = playing(seat, () => ({ ray: pointingAt(0, 1, -4.5), ...released }));
     match.pass(10);
     expect(thrown(match.state)).toBe(0);
@@ -157,7 +157,7 @@ describe.each([0, 1])('with a mouse on seat %i', (seat) => {
 });
 
 describe('with a mouse at the basket', () => {
-  test('whoever points at where the balls come down catches most of them', () => {
+  test('a player who points at where the balls come down catches most of them', () => {
     const home = vec3(0, 1, -0.5);
     const match = playing(
       2,
