@@ -2,6 +2,7 @@ import { readFileSync } from 'node:fs';
 import { SourceMap } from 'node:module';
 import { fileURLToPath } from 'node:url';
 import type { Browser, CDPSession, Page } from '@playwright/test';
+import { driveTime } from '../e2e/driven-time';
 import { createPageHandler } from '../server/page';
 import { serve, type WebServer } from '../server/web-server';
 import type { AllocationScene } from './page/allocations';
@@ -22,8 +23,6 @@ export interface AllocationBytes {
   readonly stillScene: number;
   /** What of a frame is allocated below a call of three.js's renderer: its own, and what the browser makes of its calls. */
   readonly threeAlone: Readonly<Record<'mirror' | 'archery' | 'ball3' | 'ball8', number>>;
-  /** Frames a second while it was measured: what rooms and sounds do by the clock is the more of a frame, the fewer there are. */
-  readonly frameRates: Readonly<Record<'mirror' | 'archery' | 'ball3', number>>;
 }
 
 /** A function of the page and what it leaves in a frame. */
@@ -53,14 +52,12 @@ interface SampledNode {
 
 /** Every allocation is sampled with a chance that makes one in so many bytes: some thousand samples of these frames at 10 kB a frame. */
 const samplingInterval = 1024;
-const sampledFrames = 480;
-/** A page whose clock runs on is measured over so many seconds at least: rooms tick by the clock. */
-const sampledSeconds = 8;
+const sampledFrames = 720;
 /** Before them: what runs in every frame is compiled by then, what is loaded is loaded. A headset draws them in 13 seconds. */
 const warmUpFrames = 960;
-const warmUpSeconds = 8;
-/** Without a graphics device a frame may take a tenth of a second. */
-const longestWaitMs = 600_000;
+/** The headset's whose frames they are: rooms and players tick by the clock. */
+const rateHz = 72;
+const longestWaitMs = 300_000;
 const askEveryMs = 3000;
 
 /** Folders of built pages, to find the map beside a script. */
@@ -112,7 +109,6 @@ interface SampledFunction {
 
 interface Sample {
   readonly frames: number;
-  readonly seconds: number;
   readonly bytes: number;
   /** Of them, below a call of three.js's renderer. */
   readonly threeBytes: number;
@@ -127,9 +123,7 @@ async function sample(session: CDPSession, sourceOf: SourceOf, during: () => Pro
     includeObjectsCollectedByMajorGC: true,
     includeObjectsCollectedByMinorGC: true,
   });
-  const began = performance.now();
   const frames = await during();
-  const seconds = (performance.now() - began) / 1000;
   const { profile } = await session.send('HeapProfiler.stopSampling');
   const functions = new Map<string, SampledFunction>();
   let bytes = 0;
@@ -153,7 +147,7 @@ async function sample(session: CDPSession, sourceOf: SourceOf, during: () => Pro
     for (const child of children) visit(child, frame, here);
   };
   visit(profile.head as SampledNode, null, false);
-  return { frames, seconds, bytes, threeBytes, functions: [...functions.values()] };
+  return { frames, bytes, threeBytes, functions: [...functions.values()] };
 }
 
 /** What lies on the way to the moment that is measured. */
@@ -168,18 +162,30 @@ const benchScenes: readonly AllocationScene[] = ['ik', 'paper', 'learned', 'ball
 const drawnFrames = (page: Page): Promise<number> =>
   page.evaluate(() => window.threepoint?.probe().frame.count ?? Number.NaN);
 
-/** Draws the real page until so many frames are drawn, and for so many seconds at least; resolves to how many those were. */
-async function drawPage(page: Page, seconds: number, leastFrames: number): Promise<number> {
+/** Waits until the real page has computed so many frames more; resolves to how many those were. */
+async function runPage(page: Page, leastFrames: number): Promise<number> {
   const before = await drawnFrames(page);
   const ends = performance.now() + longestWaitMs;
-  await page.waitForTimeout(1000 * seconds);
   for (;;) {
+    // Asking leaves garbage of its own: seldom.
+    await page.waitForTimeout(askEveryMs);
     const frames = (await drawnFrames(page)) - before;
     if (frames >= leastFrames) return frames;
     if (performance.now() > ends) throw new Error(`${frames} of ${leastFrames} frames were drawn`);
-    // Asking leaves garbage of its own: seldom.
-    await page.waitForTimeout(askEveryMs);
   }
+}
+
+/** From now on frames follow each other at once, a headset's interval apart by the page's clock, and the graphics device is given nothing. */
+async function driveFrames(page: Page): Promise<void> {
+  // tsx has functions keep their names by a function of its own, which the page does not have.
+  await page.evaluate('globalThis.__name = (named) => named');
+  await driveTime(page, 1000 / rateHz);
+  await page.evaluate(() => {
+    // Without arguments: collecting them would be garbage that no page makes.
+    const nothing = () => undefined;
+    for (const name of ['clear', 'drawArrays', 'drawElements', 'drawArraysInstanced', 'drawElementsInstanced'])
+      Object.assign(WebGL2RenderingContext.prototype, { [name]: nothing });
+  });
 }
 
 async function sampleRealPage(
@@ -188,16 +194,16 @@ async function sampleRealPage(
   phase: string | null,
   sourceOf: SourceOf,
 ): Promise<Sample> {
-  await page.waitForFunction(
-    (until) => {
-      const now = window.threepoint?.probe();
-      return now?.ready && (until === null || now.game?.phase === until);
-    },
-    phase,
-    { timeout: 60_000, polling: 250 },
-  );
-  await drawPage(page, warmUpSeconds, warmUpFrames);
-  return sample(session, sourceOf, () => drawPage(page, sampledSeconds, sampledFrames));
+  await page.waitForFunction(() => window.threepoint?.probe().ready, null, { timeout: 120_000, polling: 500 });
+  await driveFrames(page);
+  // Asked from here: frames that follow at once leave a timer of the page little room.
+  const phaseNow = () => page.evaluate(() => window.threepoint?.probe().game?.phase);
+  for (const ends = performance.now() + longestWaitMs; phase !== null && (await phaseNow()) !== phase; ) {
+    if (performance.now() > ends) throw new Error(`the game is ${await phaseNow()}, not ${phase}`);
+    await page.waitForTimeout(500);
+  }
+  await runPage(page, warmUpFrames);
+  return sample(session, sourceOf, () => runPage(page, sampledFrames));
 }
 
 async function sampleBenchPage(page: Page, session: CDPSession, sourceOf: SourceOf): Promise<Sample> {
@@ -278,10 +284,6 @@ function summarise(samples: ReadonlyMap<string, Sample>, sourceOf: SourceOf): Al
     const sampled = samples.get(name);
     return sampled ? Math.round(sampled[part] / sampled.frames) : Number.NaN;
   };
-  const rate = (name: string): number => {
-    const sampled = samples.get(name);
-    return sampled ? Math.round(sampled.frames / sampled.seconds) : Number.NaN;
-  };
   const of = (name: string) => perFrame(name, 'bytes');
   const three = (name: string) => perFrame(name, 'threeBytes');
   return {
@@ -298,7 +300,6 @@ function summarise(samples: ReadonlyMap<string, Sample>, sourceOf: SourceOf): Al
         ball3: three('ball3'),
         ball8: three('ball8'),
       },
-      frameRates: { mirror: rate('mirror'), archery: rate('archery'), ball3: rate('ball3') },
     },
     sites: Object.fromEntries([...samples].map(([name, sampled]) => [name, sitesOf(sampled, sourceOf)])),
   };

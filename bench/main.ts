@@ -13,9 +13,21 @@ import type { PageResult } from './page/main';
 type Bytes = Record<'app' | 'wasm' | 'models' | 'avatars', number>;
 
 const { values: options, positionals } = parseArgs({
-  options: { json: { type: 'string' }, allocations: { type: 'boolean' }, networks: { type: 'boolean' } },
+  options: {
+    json: { type: 'string' },
+    allocations: { type: 'boolean' },
+    networks: { type: 'boolean' },
+    rounds: { type: 'string' },
+  },
   allowPositionals: true,
 });
+
+/** What is measured without --allocations; named on the command line, only these. */
+const everyPart = ['frames', 'archery', 'ball', 'visit', 'allocations', 'networks'];
+const parts = options.allocations || positionals.length === 0 ? everyPart : positionals;
+const unknown = parts.filter((part) => !everyPart.includes(part));
+if (unknown.length > 0)
+  throw new Error(`bench: no part is called ${unknown.join(', ')}; there are ${everyPart.join(', ')}`);
 
 /** Finer clocks need isolation: without it performance.now() moves in steps of 0.1 ms. */
 function serveIsolated(folder: string): Promise<WebServer> {
@@ -34,7 +46,8 @@ async function measureFrames(browser: Browser): Promise<PageResult> {
   const server = await serveIsolated(builtIn('.cache/bench'));
   const page = await browser.newPage({ viewport: { width: 480, height: 270 } });
   try {
-    await page.goto(`http://127.0.0.1:${server.port}/`);
+    const asked = new URLSearchParams({ parts: parts.join(), ...(options.rounds && { rounds: options.rounds }) });
+    await page.goto(`http://127.0.0.1:${server.port}/?${asked}`);
     await page.waitForFunction(() => window.benchResult ?? window.benchError, null, { timeout: 1_800_000 });
     const { result, error } = await page.evaluate(() => ({ result: window.benchResult, error: window.benchError }));
     if (!result) throw new Error(`the bench page failed: ${error}`);
@@ -102,14 +115,13 @@ const browser = await chromium.launch({
 const row = (label: string, cells: readonly (string | number)[]) =>
   console.log(`  ${label.padEnd(14)}${cells.map((cell) => String(cell).padStart(12)).join('')}`);
 
-function tellAllocations({ bytes: { update, threeAlone, frameRates, ...frames } }: Allocations): void {
+function tellAllocations({ bytes: { update, threeAlone, ...frames } }: Allocations): void {
   console.log('\nWhat a frame leaves to the collector [kB]');
-  row('', ['all', 'three.js', 'frames/s']);
+  row('', ['all', 'three.js']);
   const kilobytes = (bytes: number | undefined) => (bytes === undefined ? '' : (bytes / 1000).toFixed(1));
   const ofThree: Readonly<Record<string, number | undefined>> = threeAlone;
-  const rates: Readonly<Record<string, number | undefined>> = frameRates;
   const measured = Object.entries({ ...update, ...frames }).filter(([, bytes]) => Number.isFinite(bytes));
-  for (const [name, bytes] of measured) row(name, [kilobytes(bytes), kilobytes(ofThree[name]), rates[name] ?? '']);
+  for (const [name, bytes] of measured) row(name, [kilobytes(bytes), kilobytes(ofThree[name])]);
 }
 
 /** Where it comes from, down to where the rest is small change. */
@@ -177,6 +189,18 @@ function tellCosts(frames: PageResult): void {
   }
 }
 
+/** What is promised of a frame, as ratios within this run: the machine's speed and its other work are in both. */
+function tellRatios({ costs: { settled } }: PageResult): void {
+  const { inFrameMs, threadMs } = settled;
+  console.log('\nRatios of the medians, after ten seconds');
+  row('', ['to CCD-IK', 'thread to IK']);
+  for (const name of ['ik', 'paper', 'learned'] as const)
+    row(name, [
+      (inFrameMs[name].p50 / inFrameMs.ccdik.p50).toFixed(2),
+      (threadMs[name].p50 / threadMs.ik.p50).toFixed(3),
+    ]);
+}
+
 function tellStages(frames: PageResult): void {
   console.log('\nStages, median, after ten seconds [ms]');
   row('', stageNames);
@@ -238,7 +262,7 @@ function tellCourt(frames: PageResult): void {
 
 type Visit = Awaited<ReturnType<typeof measureVisit>>;
 
-function tellLoading(frames: PageResult, visit: Visit): void {
+function tellLoading(frames: PageResult, visit: Visit | null): void {
   const whole = (values: Readonly<Record<string, number>>) =>
     Object.entries(values)
       .map(([name, value]) => `${name} ${value.toFixed(0)}`)
@@ -246,29 +270,37 @@ function tellLoading(frames: PageResult, visit: Visit): void {
   console.log(
     `\nSession creation [ms]: ${whole(frames.sessionCreateMs)}; first inference [ms]: ${whole(frames.firstInferenceMs)}`,
   );
+  if (!visit) return;
   console.log(`First body on the screen: ${visit.firstBodyMs} ms after opening the page (median of 3)`);
   const kilobytes = Object.entries(visit.bytes).map(([kind, size]) => `${kind} ${(size / 1000).toFixed(0)} kB`);
   console.log(`First visit, unpacked: ${kilobytes.join(', ')}`);
 }
 
-async function measureEverything(browser: Browser): Promise<void> {
-  const visit = await measureVisit(browser);
+async function measureParts(browser: Browser): Promise<void> {
+  const visit = parts.includes('visit') ? await measureVisit(browser) : null;
   const frames = await measureFrames(browser);
-  const allocations = await measureAllocations(browser, { page: builtIn('dist'), bench: builtIn('.cache/bench') });
-  const networks = await measureLearned(browser);
-  const result = { ...frames, ...visit, allocationBytes: allocations.bytes, networks };
-  tellCosts(frames);
-  tellStages(frames);
-  tellArchery(frames);
-  tellCourt(frames);
+  const built = { page: builtIn('dist'), bench: builtIn('.cache/bench') };
+  const allocations = parts.includes('allocations') ? await measureAllocations(browser, built) : null;
+  const networks = parts.includes('networks') ? await measureLearned(browser) : null;
+  const result = {
+    ...frames,
+    ...visit,
+    ...(allocations && { allocationBytes: allocations.bytes }),
+    ...(networks && { networks }),
+  };
+  if (parts.includes('frames')) tellCosts(frames);
+  if (parts.includes('frames')) tellRatios(frames);
+  if (parts.includes('frames')) tellStages(frames);
+  if (parts.includes('archery')) tellArchery(frames);
+  if (parts.includes('ball')) tellCourt(frames);
   tellLoading(frames, visit);
-  tellAllocations(allocations);
+  if (allocations) tellAllocations(allocations);
   if (options.json) writeFileSync(options.json, `${JSON.stringify(result, null, 2)}\n`);
 }
 
 try {
   if (options.networks) await measureNetworksAlone(browser);
-  else await (options.allocations ? measureWhereAllocated(browser) : measureEverything(browser));
+  else await (options.allocations ? measureWhereAllocated(browser) : measureParts(browser));
 } finally {
   await browser.close();
 }

@@ -1,4 +1,5 @@
-// npm run bench [-- --json FILE]: what a frame costs, by estimator and by stage, in headless Chromium.
+// npm run bench [-- --json FILE] [frames archery ball visit allocations networks] [--rounds N]: what a frame costs, by estimator and by stage, in
+// headless Chromium. Named parts only are measured; all of them take an hour on two cores without a graphics device, "frames --rounds 3" minutes.
 // npm run bench -- --allocations [ik paper learned mirror archery ball3 ball8 stillScene]: only what frames leave to the collector, and which
 // functions leave it.
 // npm run bench -- --networks: only the learned network, by each way to run it.
@@ -15,7 +16,12 @@ const readable = ['--minify', 'false', '--sourcemap'];
 
 await main(async () => {
   const { values, positionals } = parseArgs({
-    options: { json: { type: 'string' }, allocations: { type: 'boolean' }, networks: { type: 'boolean' } },
+    options: {
+      json: { type: 'string' },
+      allocations: { type: 'boolean' },
+      networks: { type: 'boolean' },
+      rounds: { type: 'string' },
+    },
     allowPositionals: true,
   });
   await ensureInstalled();
@@ -29,8 +35,10 @@ await main(async () => {
   const measure = ['--import', 'tsx', 'bench/main.ts'];
   // The path means what it means to the person who typed it.
   if (values.json) measure.push('--json', resolve(process.env.INIT_CWD ?? process.cwd(), values.json));
-  if (values.allocations) measure.push('--allocations', ...positionals);
+  if (values.rounds) measure.push('--rounds', values.rounds);
+  if (values.allocations) measure.push('--allocations');
   if (values.networks) measure.push('--networks');
+  measure.push(...positionals);
   const { code } = await run(process.execPath, measure, { cwd: root });
   return code;
 });

@@ -26,7 +26,7 @@ import { nextFrame } from './frame-times';
 
 /** Blocks of one method alternate in a seeded order, so that whatever else the machine does meets all of them. */
 const blockFrames = 40;
-const rounds = 12;
+const usualRounds = 12;
 const settleFrames = 10;
 
 /**
@@ -170,7 +170,7 @@ class FrameBench {
     this.#loop = this.#createLoop();
   }
 
-  async run(): Promise<void> {
+  async run(rounds: number): Promise<void> {
     this.#timing.listen((spentMs) => Object.assign(this.#spent, spentMs));
     for (let round = 0; round < rounds; round++) await this.#runRound(round, 'first');
     for (let round = 0; round < rounds; round++) {
@@ -293,10 +293,13 @@ async function measure(): Promise<PageResult> {
   const picture = await openPicture();
   const timing = createFrameTiming(() => performance.now());
   const estimators = await openEstimators(timing);
+  const asked = new URLSearchParams(location.search);
+  const parts = asked.get('parts')?.split(',') ?? ['frames', 'archery', 'ball'];
+  const rounds = Number(asked.get('rounds') ?? usualRounds);
   const bench = new FrameBench(picture, estimators, timing);
-  await bench.run();
-  const archery = await measureArchery({ ...picture, estimators });
-  const ball = await measureCourt({ ...picture, estimators });
+  if (parts.includes('frames')) await bench.run(rounds);
+  const archery = parts.includes('archery') ? await measureArchery({ ...picture, estimators }) : {};
+  const ball = parts.includes('ball') ? await measureCourt({ ...picture, estimators }) : {};
   return {
     costs: bench.costs,
     stagesMs: bench.stagesMs,
