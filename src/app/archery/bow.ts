@@ -9,16 +9,15 @@ import {
   Mesh,
   MeshLambertMaterial,
   MeshStandardMaterial,
-  Quaternion,
   ShaderMaterial,
   Vector3,
 } from 'three';
 import type { BowView } from '../../core/games/archery/archery-state';
-import { conjugate, rotate } from '../../core/math/quat';
-import { subtract, type Vec3, vec3 } from '../../core/math/vec3';
+import { conjugate, quat, rotate } from '../../core/math/quat';
+import { add, distance, lerp, subtract, type Vec3, vec3 } from '../../core/math/vec3';
 import { disposeTree } from '../../scene/dispose-tree';
 import type { Quality } from '../../scene/renderer';
-import { type LimbPoint, limbLine, limbPoints, limbRoot, stringBow } from './limb-shape';
+import { bendLimb, limbPoints, limbRoot, type MutableLimbPoint, makeLimb, stringBow } from './limb-shape';
 
 /** The bow in the archer's hand, in the frame of its BowView (floor). */
 export interface Bow {
@@ -27,7 +26,7 @@ export interface Bow {
   show(view: BowView | null): void;
   /** How far the limbs are bent now [rad]; grows with the draw. */
   readonly bend: number;
-  /** The string from the upper tip over the nock point to the lower tip, in the frame of the BowView. */
+  /** The string from the upper tip over the nock point to the lower tip, in the frame of the BowView; the same objects in every frame. */
   readonly stringPoints: readonly [Vec3, Vec3, Vec3];
   dispose(): void;
 }
@@ -115,7 +114,7 @@ const leather = new Color('#2c2320');
 const stitching = new Color('#c98f4a');
 
 /** A limb tapers towards its tip; its tip is of horn. */
-const limbSection = (point: LimbPoint, index: number): Section => {
+const limbSection = (point: MutableLimbPoint, index: number): LimbSection => {
   const along = index / (limbPoints - 1);
   const tip = along > 0.93;
   return {
@@ -173,7 +172,10 @@ function sweptGeometry(bodies: readonly { sections: readonly Section[]; down: bo
   return geometry;
 }
 
-const limbSections = (bend: number): Section[] => limbLine(bend).map(limbSection);
+type LimbSection = Section & MutableLimbPoint;
+
+/** A straight limb, to be bent. */
+const makeLimbSections = (): readonly LimbSection[] => makeLimb().map(limbSection);
 
 /** A cord along +Y that is never thinner than a pixel or so, near or far, yet no bar before the eyes. */
 function createStringMaterial(color: string, thickness: number): ShaderMaterial {
@@ -198,31 +200,31 @@ function createStringMaterial(color: string, thickness: number): ShaderMaterial 
 
 const yAxis = new Vector3(0, 1, 0);
 
+const along = new Vector3();
+
 /** Lays a unit cylinder along +Y between two points. */
 function stretch(mesh: Mesh, from: Vec3, to: Vec3): void {
-  const along = new Vector3(to.x - from.x, to.y - from.y, to.z - from.z);
+  along.set(to.x - from.x, to.y - from.y, to.z - from.z);
   const length = along.length();
   mesh.position.set((from.x + to.x) / 2, (from.y + to.y) / 2, (from.z + to.z) / 2);
-  mesh.quaternion.copy(new Quaternion().setFromUnitVectors(yAxis, along.normalize()));
+  mesh.quaternion.setFromUnitVectors(yAxis, along.normalize());
   mesh.scale.set(1, length, 1);
 }
 
-/** A recurve bow of walnut, maple and horn. braceHeight [m]: from the grip to the string at rest. */
-export function createBow(quality: Quality, braceHeight: number): Bow {
-  const strung = stringBow(braceHeight);
+/** What the bow is made of; the serving is wound round the string where the arrow sits. */
+function createBowParts(quality: Quality, limbSections: readonly LimbSection[]) {
   const material =
     quality === 'high'
       ? new MeshStandardMaterial({ vertexColors: true, roughness: 0.42, metalness: 0 })
       : new MeshLambertMaterial({ vertexColors: true });
   const fibre = createStringMaterial('#f3efe4', 1);
-  const riser = new Mesh(sweptGeometry([{ sections: riserSections(), down: false }]), material);
-  const atRest = limbSections(0);
-  const limbGeometry = sweptGeometry([
-    { sections: atRest, down: false },
-    { sections: atRest, down: true },
-  ]);
-  const limbs = new Mesh(limbGeometry, material);
   const cylinder = new CylinderGeometry(1, 1, 1, 6, 1, true);
+  const limbGeometry = sweptGeometry([
+    { sections: limbSections, down: false },
+    { sections: limbSections, down: true },
+  ]);
+  const riser = new Mesh(sweptGeometry([{ sections: riserSections(), down: false }]), material);
+  const limbs = new Mesh(limbGeometry, material);
   const upperString = new Mesh(cylinder, fibre);
   const lowerString = new Mesh(cylinder, fibre);
   const serving = new Mesh(cylinder, createStringMaterial('#3a2f2a', 1.6));
@@ -234,14 +236,25 @@ export function createBow(quality: Quality, braceHeight: number): Bow {
     mesh.frustumCulled = false;
   }
   object.visible = false;
+  return { object, riser, limbGeometry, upperString, lowerString, serving };
+}
 
+/** A recurve bow of walnut, maple and horn. braceHeight [m]: from the grip to the string at rest. */
+export function createBow(quality: Quality, braceHeight: number): Bow {
+  const strung = stringBow(braceHeight);
+  const sections = makeLimbSections();
+  bendLimb(0, sections);
+  const { object, riser, limbGeometry, upperString, lowerString, serving } = createBowParts(quality, sections);
   let bend = Number.NaN;
-  let points: readonly [Vec3, Vec3, Vec3] = [vec3(0, 0, 0), vec3(0, 0, 0), vec3(0, 0, 0)];
+  const stringPoints = [vec3(0, 0, 0), vec3(0, 0, 0), vec3(0, 0, 0)] as const;
+  const nock = vec3(0, 0, 0);
+  const served = vec3(0, 0, 0);
+  const fromBow = quat(0, 0, 0, 1);
 
   function bendLimbs(next: number): void {
     if (next === bend) return;
     bend = next;
-    const sections = limbSections(bend);
+    bendLimb(bend, sections);
     const position = limbGeometry.getAttribute('position') as BufferAttribute;
     const normal = limbGeometry.getAttribute('normal') as BufferAttribute;
     sweep(sections, false, position.array as Float32Array, normal.array as Float32Array, 0);
@@ -259,32 +272,23 @@ export function createBow(quality: Quality, braceHeight: number): Bow {
       object.quaternion.copy(orientation);
       // The arrow passes on the outer side of the hand: the window of a left-handed archer's bow is on the other side.
       riser.scale.x = view.bowSide === 'left' ? 1 : -1;
-      const nock = rotate(conjugate(orientation), subtract(view.nockPoint, position));
+      rotate(conjugate(orientation, fromBow), subtract(view.nockPoint, position, nock), nock);
       bendLimbs(strung.bendFor(nock));
       const { upper, lower } = strung.tips(bend);
       stretch(upperString, upper, nock);
       stretch(lowerString, lower, nock);
-      // The serving is wound round the string where the arrow sits; it follows the upper half of the bent string.
-      const nearby = (tip: Vec3) => {
-        const share = 0.035 / Math.hypot(tip.x - nock.x, tip.y - nock.y, tip.z - nock.z);
-        return vec3(
-          nock.x + (tip.x - nock.x) * share,
-          nock.y + (tip.y - nock.y) * share,
-          nock.z + (tip.z - nock.z) * share,
-        );
-      };
-      stretch(serving, nearby(upper), nock);
-      const outward = (at: Vec3): Vec3 => {
-        const turned = rotate(orientation, at);
-        return vec3(position.x + turned.x, position.y + turned.y, position.z + turned.z);
-      };
-      points = [outward(upper), outward(nock), outward(lower)];
+      // The serving follows the upper half of the bent string.
+      stretch(serving, lerp(nock, upper, 0.035 / distance(upper, nock), served), nock);
+      const [top, middle, bottom] = stringPoints;
+      add(position, rotate(orientation, upper, top), top);
+      add(position, rotate(orientation, nock, middle), middle);
+      add(position, rotate(orientation, lower, bottom), bottom);
     },
     get bend() {
       return bend;
     },
     get stringPoints() {
-      return points;
+      return stringPoints;
     },
     dispose() {
       object.removeFromParent();

@@ -1,5 +1,5 @@
 import { bisect } from '../../core/math/bisection';
-import { distance, type Vec3, vec3 } from '../../core/math/vec3';
+import { distance, type MutableVec3, setVec3, type Vec3, vec3 } from '../../core/math/vec3';
 
 /**
  * The shape of a recurve bow in its own frame: grip at the origin, +Y along the upper limb, −Z to the target, so that the string
@@ -12,6 +12,9 @@ export interface LimbPoint {
   readonly angle: number;
 }
 
+/** A point of a limb that its owner overwrites as the limb bends. */
+export type MutableLimbPoint = { -readonly [Key in keyof LimbPoint]: LimbPoint[Key] };
+
 /** Where the limbs leave the riser: y [m] above and below the grip. */
 export const limbRoot = 0.23;
 export const limbLength = 0.53;
@@ -23,9 +26,11 @@ const smooth = (from: number, to: number, value: number): number => {
   return t * t * (3 - 2 * t);
 };
 
-/** The centre line of the upper limb; `bend` [rad] is how much its tip has turned towards the archer. The lower limb is its mirror image. */
-export function limbLine(bend: number): readonly LimbPoint[] {
-  const points: LimbPoint[] = [];
+/**
+ * The centre line of the upper limb, written into `limbPoints` points; `bend` [rad] is how much its tip has turned towards the archer.
+ * The lower limb is its mirror image.
+ */
+export function bendLimb(bend: number, points: readonly MutableLimbPoint[]): void {
   let y = limbRoot;
   let z = 0;
   const step = limbLength / (limbPoints - 1);
@@ -33,18 +38,29 @@ export function limbLine(bend: number): readonly LimbPoint[] {
     const along = i / (limbPoints - 1);
     // Unbent the limb leans back and curls away again at its end; it bends most near its root.
     const angle = 0.08 + 0.5 * along - 1.05 * smooth(0.5, 1, along) + bend * along * (1.55 - 0.55 * along);
-    points.push({ y, z, angle });
+    const point = points[i];
+    if (point) {
+      point.y = y;
+      point.z = z;
+      point.angle = angle;
+    }
     y += Math.cos(angle) * step;
     z += Math.sin(angle) * step;
   }
-  return points;
 }
 
+export const makeLimb = (): readonly MutableLimbPoint[] =>
+  Array.from({ length: limbPoints }, () => ({ y: 0, z: 0, angle: 0 }));
+
+/** The limb whose tip is looked for. */
+const tried = makeLimb();
+
 /** Where the string is tied to the upper limb. */
-const tipOf = (bend: number): Vec3 => {
-  const tip = limbLine(bend)[limbPoints - 1] as LimbPoint;
-  return vec3(0, tip.y, tip.z);
-};
+function tipOf(bend: number, target: MutableVec3): MutableVec3 {
+  bendLimb(bend, tried);
+  const { y, z } = tried[limbPoints - 1] as LimbPoint;
+  return setVec3(target, 0, y, z);
+}
 
 /** The bend [rad], to a thousandth of a degree, beyond which a limb is bent too far. */
 const bendBefore = (tooFar: (bend: number) => boolean): number => bisect(leastBend, mostBend, tooFar, 21);
@@ -52,31 +68,44 @@ const bendBefore = (tooFar: (bend: number) => boolean): number => bisect(leastBe
 const leastBend = -0.5;
 const mostBend = 2.2;
 
-/** A strung bow: how far its limbs bend for wherever the middle of the string is held. */
+/** A strung bow: how far its limbs bend for each place at which the middle of the string is held. */
 export interface StrungBow {
   /** Of the whole string [m]. */
   readonly stringLength: number;
   /** Bend [rad] at which the string of this length reaches from tip to `nock` to tip; a string too short even for the most bend: the most bend. */
   bendFor(nock: Vec3): number;
-  /** The tips at a bend. */
-  tips(bend: number): { readonly upper: Vec3; readonly lower: Vec3 };
+  /** The tips at a bend: the same objects in every call. */
+  tips(bend: number): Tips;
+}
+
+/** Where the string is tied. */
+interface Tips {
+  readonly upper: MutableVec3;
+  readonly lower: MutableVec3;
 }
 
 /** Strings a bow so that at rest its string is a straight line `braceHeight` [m] before the grip. */
 export function stringBow(braceHeight: number): StrungBow {
-  const atRest = bendBefore((bend) => tipOf(bend).z > braceHeight);
-  const stringLength = 2 * tipOf(atRest).y;
-  const tips = (bend: number) => {
-    const upper = tipOf(bend);
-    return { upper, lower: vec3(0, -upper.y, upper.z) };
+  const found: Tips = { upper: vec3(0, 0, 0), lower: vec3(0, 0, 0) };
+  const { upper, lower } = found;
+  const tips = (bend: number): Tips => {
+    tipOf(bend, upper);
+    setVec3(lower, 0, -upper.y, upper.z);
+    return found;
+  };
+  const atRest = bendBefore((bend) => tips(bend).upper.z > braceHeight);
+  const stringLength = 2 * tips(atRest).upper.y;
+  let held: Vec3 = upper;
+  const isTooFar = (bend: number): boolean => {
+    tips(bend);
+    return distance(upper, held) + distance(lower, held) < stringLength;
   };
   return {
     stringLength,
     tips,
-    bendFor: (nock) =>
-      bendBefore((bend) => {
-        const { upper, lower } = tips(bend);
-        return distance(upper, nock) + distance(lower, nock) < stringLength;
-      }),
+    bendFor(nock) {
+      held = nock;
+      return bendBefore(isTooFar);
+    },
   };
 }
