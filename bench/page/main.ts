@@ -24,7 +24,7 @@ import { type CourtTimes, measureCourt } from './ball';
 import { createCcdBody } from './ccd-body';
 import { nextFrame } from './frame-times';
 
-/** Blocks of one method alternate in a seeded order, so that whatever else the machine does meets all of them. */
+/** Blocks of one method alternate in a seeded order, so that other work of the machine meets all of them. */
 const blockFrames = 40;
 const usualRounds = 12;
 const settleFrames = 10;

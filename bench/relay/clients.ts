@@ -135,7 +135,7 @@ async function play(load: Load): Promise<Heard> {
   const clients = rooms.flat();
   const period = 1000 / load.hz;
   const begin = performance.now();
-  // Nobody's frames keep step with anybody else's.
+  // No two clients' frames keep step.
   clients.forEach((client, i) => {
     client.due = begin + period * ((i * 0.618034) % 1);
   });

@@ -37,7 +37,7 @@ interface Row {
   readonly clients: number;
   readonly p50Ms: number;
   readonly p99Ms: number;
-  /** CPU time of the relay for each pose that reached somebody [µs]. */
+  /** CPU time of the relay for each pose that reached a client [µs]. */
   readonly cpuPerPoseUs: number;
   /** Share of a core. */
   readonly cpu: number;

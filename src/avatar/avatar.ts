@@ -19,7 +19,7 @@ import { type AvatarJoint, Rig } from './rig';
 /** A body on the screen. Poses are in the floor frame; so is `object`, which stays where it is put: at the floor's origin. */
 export interface Avatar {
   readonly object: Object3D;
-  /** Scales the rig to this body, limb by limb, whatever its own proportions. May be called again at any time. */
+  /** Scales the rig to this body, limb by limb, not by its own proportions. May be called again at any time. */
   fitTo(calibration: Calibration): void;
   /** Bends the body to a pose; time [s] on the clock of the tracking frames. */
   apply(pose: AvatarPose, time: number): void;

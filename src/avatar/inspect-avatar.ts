@@ -68,7 +68,7 @@ function chunksOf(bytes: Uint8Array): { readonly json: string; readonly binary: 
   return { json, binary: bytes.subarray(at + 8, at + 8 + view.getUint32(at, true)) };
 }
 
-/** Every address in the file: whatever is called `uri`, at any depth, extensions included. */
+/** Every address in the file: each value that is called `uri`, at any depth, extensions included. */
 function urisIn(value: unknown): string[] {
   if (Array.isArray(value)) return value.flatMap(urisIn);
   if (value === null || typeof value !== 'object') return [];
