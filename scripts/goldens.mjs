@@ -1,4 +1,4 @@
-// npm run goldens -- --mocap DIR [--write] [--quick] [--all] [--only ik] [--frames DIR] [--models DIR]: what the estimators say of recorded
+// npm run goldens -- --mocap DIR [--write] [--quick] [--all] [--only ROWS] [--frames DIR] [--models DIR]: what the estimators say of recorded
 // motion, compared with what tests/golden/estimates.json froze; with --write it is frozen anew.
 import { createHash } from 'node:crypto';
 import { existsSync, mkdirSync, readdirSync, readFileSync, renameSync, rmSync, statSync } from 'node:fs';
@@ -9,7 +9,7 @@ import { pythonEnvironment } from './python-environment.mjs';
 import { main, root, run, SetupError } from './run-command.mjs';
 
 const usage =
-  'npm run goldens -- --mocap DIR [--compare | --write] [--quick] [--all] [--only ESTIMATOR or ROW] [--frames DIR] [--models DIR]\n' +
+  'npm run goldens -- --mocap DIR [--compare | --write] [--quick] [--all] [--only ROWS] [--frames DIR] [--models DIR]\n' +
   'DIR holds the recordings that the goldens were frozen with; docs/evaluation.md says the rest.';
 const halfAnHour = 1800;
 

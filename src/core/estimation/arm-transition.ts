@@ -2,7 +2,19 @@ import type { LimbBones } from '../body/two-bone-ik';
 import { bisect } from '../math/bisection';
 import { clamp } from '../math/damper';
 import { quat, rotate, rotationBetween } from '../math/quat';
-import { addScaled, copyVec3, cross, distance, lerp, type MutableVec3, normalise, type Vec3, vec3 } from '../math/vec3';
+import {
+  add,
+  addScaled,
+  copyVec3,
+  cross,
+  distance,
+  lerp,
+  type MutableVec3,
+  normalise,
+  subtract,
+  type Vec3,
+  vec3,
+} from '../math/vec3';
 import { aimArc, alongArc, type DirectionArc, directionArc, makeDirectionArc, passArc } from './direction-arc';
 
 /** A transition takes so long [s] at least. */
@@ -55,11 +67,12 @@ export interface ArmGoal extends ArmDirections {
 export interface ArmTransition {
   /** Since the jump [s]; NaN: there is no transition. */
   age: number;
-  /** Beyond what the hand itself moves [m/s], now and at most; and how fast it changes [m/s²]. */
+  /** Beyond what the hand itself moves [m/s]. */
   speed: number;
-  topSpeed: number;
-  acceleration: number;
-  /** Where the hand belonged in the frame before, and where elbow and wrist were drawn [m]. */
+  /** The longest path [m] that elbow or wrist had to go since the jump: it says how fast they may. */
+  metres: number;
+  /** Where the shoulder was and the hand belonged in the frame before, and where elbow and wrist were drawn [m]. */
+  readonly shoulder: MutableVec3;
   readonly hand: MutableVec3;
   readonly elbow: MutableVec3;
   readonly wrist: MutableVec3;
@@ -70,8 +83,8 @@ export interface ArmTransition {
 export const makeArmTransition = (): ArmTransition => ({
   age: Number.NaN,
   speed: Number.NaN,
-  topSpeed: Number.NaN,
-  acceleration: Number.NaN,
+  metres: Number.NaN,
+  shoulder: vec3(0, 0, 0),
   hand: vec3(0, 0, 0),
   elbow: vec3(0, 0, 0),
   wrist: vec3(0, 0, 0),
@@ -118,35 +131,56 @@ function distanceAt(transition: ArmTransition, drawn: ArmDirections, goal: ArmGo
   return Math.max(distance(elbow, transition.elbow), distance(wrist, transition.wrist));
 }
 
-/** The share of the arcs up to which neither elbow nor wrist is further than this [m] from where it was drawn. */
+/**
+ * The share of the arcs up to which neither elbow nor wrist is further than this [m] from where it was drawn; where the shoulder has
+ * carried them further off than that at any share, the one at which they are nearest.
+ */
 function shareWithin(transition: ArmTransition, drawn: ArmDirections, goal: ArmGoal, metres: number): number {
-  let step = 0;
-  while (step <= pathSteps && distanceAt(transition, drawn, goal, step / pathSteps) <= metres) step += 1;
-  if (step === 0) return 0;
-  if (step > pathSteps) return 1;
+  let [nearest, least] = [0, distanceAt(transition, drawn, goal, 0)];
+  for (let step = 1; step <= pathSteps && (least > metres || nearest === step - 1); step++) {
+    const off = distanceAt(transition, drawn, goal, step / pathSteps);
+    if (off <= metres || off < least) [nearest, least] = [step, off];
+  }
+  if (least > metres || nearest === pathSteps) return nearest / pathSteps;
   const tooFar = (share: number): boolean => distanceAt(transition, drawn, goal, share) > metres;
-  return bisect((step - 1) / pathSteps, step / pathSteps, tooFar, 6);
+  return bisect(nearest / pathSteps, (nearest + 1) / pathSteps, tooFar, 6);
 }
 
 /** Begins a transition from the arm that was drawn to the one that belongs there. */
 export function startTransition(transition: ArmTransition, drawn: ArmDirections, goal: ArmGoal): void {
   directionArc(drawn.upperArm, goal.upperArm, goal.outside, transition.upperArm);
   directionArc(drawn.forearm, goal.forearm, goal.outside, transition.forearm);
-  const seconds = Math.max(shortestSeconds, goal.seconds);
-  const metres = pathLength(transition, drawn, goal);
   transition.age = 0;
   transition.speed = 0;
-  transition.topSpeed = Math.min(fastest, metres / (seconds * (1 - ramp)));
-  transition.acceleration = transition.topSpeed / (seconds * ramp);
+  transition.metres = 0;
+  remember(transition, drawn, goal);
+}
+
+/** Notes where shoulder and goal are in this frame and where elbow and wrist are drawn. */
+function remember(transition: ArmTransition, drawn: ArmDirections, goal: ArmGoal): void {
+  copyVec3(goal.shoulder, transition.shoulder);
   copyVec3(goal.hand, transition.hand);
   placeJoints(drawn.upperArm, drawn.forearm, goal);
   copyVec3(elbow, transition.elbow);
   copyVec3(wrist, transition.wrist);
 }
 
+/** A hand that is seen belongs to a place in the room, one that sinks to a place beside the body: what was noted goes along with that. */
+function carry(transition: ArmTransition, { shoulder, seconds }: ArmGoal): void {
+  if (seconds === 0) return;
+  subtract(shoulder, transition.shoulder, bone);
+  add(transition.hand, bone, transition.hand);
+  add(transition.elbow, bone, transition.elbow);
+  add(transition.wrist, bone, transition.wrist);
+}
+
 /** How far [m] elbow and wrist may go in this frame: up to the speed evenly, evenly down to a stand, and along with the goal. */
 function stepOf(transition: ArmTransition, toGo: number, goal: ArmGoal, deltaSeconds: number): number {
-  const { acceleration, topSpeed, hand } = transition;
+  const { hand } = transition;
+  const seconds = Math.max(shortestSeconds, goal.seconds);
+  transition.metres = Math.max(transition.metres, toGo);
+  const topSpeed = Math.min(fastest, transition.metres / (seconds * (1 - ramp)));
+  const acceleration = topSpeed / (seconds * ramp);
   const slowing = Math.sqrt(2 * acceleration * toGo);
   transition.speed = Math.min(transition.speed + acceleration * deltaSeconds, topSpeed, slowing);
   return distance(goal.hand, hand) + transition.speed * deltaSeconds;
@@ -166,6 +200,7 @@ export function followTransition(
   }
   const passed = Math.max(deltaSeconds, 0);
   transition.age += passed;
+  carry(transition, goal);
   aimArc(upperArm, drawn.upperArm, goal.upperArm);
   aimArc(forearm, drawn.forearm, goal.forearm);
   const toGo = pathLength(transition, drawn, goal);
@@ -174,12 +209,9 @@ export function followTransition(
   const least = Math.min(1, (transition.speed * passed) / Math.max(3 * toGo, 1e-9));
   const hurry = goal.seconds === 0 ? clamp((transition.age - hurrySeconds) / (longestSeconds - hurrySeconds), 0, 1) : 0;
   const share = Math.max(hurry, least, shareWithin(transition, drawn, goal, step));
-  copyVec3(goal.hand, transition.hand);
   if (share === 1 && transition.age >= shortestSeconds) transition.age = Number.NaN;
   goAlong(transition, goal, drawn, share);
-  placeJoints(drawn.upperArm, drawn.forearm, goal);
-  copyVec3(elbow, transition.elbow);
-  copyVec3(wrist, transition.wrist);
+  remember(transition, drawn, goal);
 }
 
 /** Turns the drawn bones by a share of the arcs, and the hinge with them. */

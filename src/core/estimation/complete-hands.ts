@@ -37,7 +37,7 @@ import lostHand from './lost-hand.json';
 /** Most losses are shorter than a hand is held; of the longer ones most come back near where they were, so it goes to rest slowly. */
 const { holdSeconds, restSeconds, hanging, lowestRest } = lostHand;
 /** Confidence falls from 1 to 0, and rises again, in so long [s]: in a lost hand it is gone long before that rests, for nothing hurries after a guess. */
-const confidenceSeconds = 0.3;
+export const confidenceSeconds = 0.3;
 /** A hand that is seen again so far [m] from where it was taken to be has jumped: no confidence is left in what follows it. */
 const jumpMetres = 0.1;
 

@@ -1,9 +1,9 @@
 import { estimatedJoints } from '../body/joints';
-import { smoothingFactor } from '../math/damper';
+import { smoothingFactor, trapezoidalEasing } from '../math/damper';
 import type { Pose } from '../math/pose';
-import { add, addScaled, copyVec3, length, lerp, type MutableVec3, setVec3, subtract, vec3 } from '../math/vec3';
+import { add, addScaled, copyVec3, length, lerp, type MutableVec3, scale, setVec3, subtract, vec3 } from '../math/vec3';
 import { headingConfidence } from '../tracking/heading';
-import type { CompletedFrame, CompletedHand } from './complete-hands';
+import { type CompletedFrame, type CompletedHand, confidenceSeconds } from './complete-hands';
 import { type JointPositions, type MutableJointPositions, makeJoints } from './joint-positions';
 
 /** Half-life [s] of the joints about the head: a tenth of a degree of noise in the headset moves hips by a millimetre. */
@@ -26,6 +26,10 @@ export interface FilterJointsState {
   /** The headset's filtered position [m] and velocity [m/s], floor frame. */
   readonly position: MutableVec3;
   readonly velocity: MutableVec3;
+  /** What the joints jumped by when a hand was seen again [m], floor axes: it is taken back within `settleSeconds`, of which so many are left. */
+  readonly jump: MutableJointPositions;
+  settleSeconds: number;
+  secondsLeft: number;
   readonly joints: MutableJointPositions;
 }
 
@@ -34,6 +38,9 @@ export const makeFilterJointsState = (): FilterJointsState => ({
   relative: makeJoints(),
   position: vec3(0, 0, 0),
   velocity: vec3(0, 0, 0),
+  jump: makeJoints(),
+  settleSeconds: 0,
+  secondsLeft: 0,
   joints: makeJoints(),
 });
 
@@ -53,6 +60,31 @@ function followHead({ position, velocity }: FilterJointsState, head: Pose<'floor
 /** That a hand does not make joints jump: one that is lost goes slowly. */
 const confidenceIn = ({ source, confidence }: CompletedHand): number => (source === 'tracked' ? confidence : 1);
 
+/** How long [s] joints take to settle after a hand that is seen again in this frame: as long as its confidence takes to return. */
+const settlesIn = ({ source, jumped, confidence }: CompletedHand): number =>
+  jumped && source === 'tracked' ? confidenceSeconds * (1 - confidence) : 0;
+
+/** When a hand is seen again, notes by how much the joints jump; its elbow, half-way to it, goes along with half of its shoulder's. */
+function followJumps(
+  state: FilterJointsState,
+  joints: JointPositions,
+  { head, leftHand, rightHand }: CompletedFrame,
+  deltaSeconds: number,
+): void {
+  const seconds = Math.max(settlesIn(leftHand), settlesIn(rightHand));
+  state.secondsLeft = Math.max(state.secondsLeft - deltaSeconds, 0);
+  if (seconds === 0) return;
+  state.secondsLeft = Math.max(seconds, state.secondsLeft);
+  state.settleSeconds = state.secondsLeft;
+  for (let index = 0; index < estimatedJoints.length; index++) {
+    const joint = estimatedJoints[index]!;
+    subtract(joints[joint], head.position, goal);
+    subtract(state.relative[joint], goal, state.jump[joint]);
+  }
+  if (leftHand.jumped) scale(state.jump.leftUpperArm, 0.5, state.jump.leftLowerArm);
+  if (rightHand.jumped) scale(state.jump.rightUpperArm, 0.5, state.jump.rightLowerArm);
+}
+
 /** Goes to the goal by `share`, but no further than `most` [m]. */
 function followJoint(joint: MutableVec3, share: number, most: number): void {
   subtract(lerp(joint, goal, share, step), joint, step);
@@ -68,21 +100,25 @@ function followJoint(joint: MutableVec3, share: number, most: number): void {
 export function filterJoints(
   state: FilterJointsState,
   joints: JointPositions,
-  { head, leftHand, rightHand }: CompletedFrame,
+  completed: CompletedFrame,
   deltaSeconds: number,
 ): MutableJointPositions {
+  const { head, leftHand, rightHand } = completed;
   const confidence = Math.min(headingConfidence(head.orientation), confidenceIn(leftHand), confidenceIn(rightHand));
-  const speed = doubtfulTrunkSpeed + (trunkSpeed - doubtfulTrunkSpeed) * confidence;
+  const most = (doubtfulTrunkSpeed + (trunkSpeed - doubtfulTrunkSpeed) * confidence) * Math.max(deltaSeconds, 0);
   const share = smoothingFactor(jointHalfLife, deltaSeconds);
   if (state.known) followHead(state, head, deltaSeconds);
   else copyVec3(head.position, state.position);
+  followJumps(state, joints, completed, deltaSeconds);
+  const left = state.secondsLeft > 0 ? trapezoidalEasing(0, state.settleSeconds, state.secondsLeft) : 0;
   for (let index = 0; index < estimatedJoints.length; index++) {
     const joint = estimatedJoints[index]!;
     const relative = state.relative[joint];
     const hand = joint === 'leftLowerArm' ? leftHand : joint === 'rightLowerArm' ? rightHand : null;
     subtract(joints[joint], head.position, goal);
+    if (left > 0) addScaled(goal, state.jump[joint], left, goal);
     if (!state.known || hand?.jumped) copyVec3(goal, relative);
-    else followJoint(relative, share, hand ? Number.POSITIVE_INFINITY : speed * Math.max(deltaSeconds, 0));
+    else followJoint(relative, share, hand ? Number.POSITIVE_INFINITY : most);
     add(state.position, relative, state.joints[joint]);
   }
   state.known = true;
@@ -92,5 +128,6 @@ export function filterJoints(
 /** Forgets the past: the next frame is the first. */
 export function resetFilterJoints(state: FilterJointsState): void {
   state.known = false;
+  state.secondsLeft = 0;
   setVec3(state.velocity, 0, 0, 0);
 }
