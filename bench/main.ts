@@ -16,7 +16,6 @@ const { values: options, positionals } = parseArgs({
   options: {
     json: { type: 'string' },
     allocations: { type: 'boolean' },
-    networks: { type: 'boolean' },
     rounds: { type: 'string' },
   },
   allowPositionals: true,
@@ -161,11 +160,6 @@ async function measureLearned(browser: Browser): Promise<Readonly<Record<string,
   }
 }
 
-async function measureNetworksAlone(browser: Browser): Promise<void> {
-  const networks = await measureLearned(browser);
-  if (options.json) writeFileSync(options.json, `${JSON.stringify({ networks }, null, 2)}\n`);
-}
-
 const share = (value: number) => `${(100 * value).toFixed(1)} %`;
 
 /** By method: within the frame, with what it leaves for later, and the whole. */
@@ -299,8 +293,7 @@ async function measureParts(browser: Browser): Promise<void> {
 }
 
 try {
-  if (options.networks) await measureNetworksAlone(browser);
-  else await (options.allocations ? measureWhereAllocated(browser) : measureParts(browser));
+  await (options.allocations ? measureWhereAllocated(browser) : measureParts(browser));
 } finally {
   await browser.close();
 }

@@ -2,7 +2,6 @@
 // headless Chromium. Named parts only are measured; all of them take an hour on two cores without a graphics device, "frames --rounds 3" minutes.
 // npm run bench -- --allocations [ik paper learned mirror archery ball3 ball8 stillScene]: only what frames leave to the collector, and which
 // functions leave it.
-// npm run bench -- --networks: only the learned network, by each way to run it.
 import { resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { buildWhenStale } from './build.mjs';
@@ -19,7 +18,6 @@ await main(async () => {
     options: {
       json: { type: 'string' },
       allocations: { type: 'boolean' },
-      networks: { type: 'boolean' },
       rounds: { type: 'string' },
     },
     allowPositionals: true,
@@ -29,7 +27,7 @@ await main(async () => {
   if (values.allocations) {
     const { code } = await vite('--outDir', '.cache/bench-of-page', '--emptyOutDir', ...readable);
     if (code !== 0) return code;
-  } else if (!values.networks) await buildWhenStale();
+  } else await buildWhenStale();
   const page = await vite('--config', 'bench/vite.config.ts', ...(values.allocations ? readable : []));
   if (page.code !== 0) return page.code;
   const measure = ['--import', 'tsx', 'bench/main.ts'];
@@ -37,7 +35,6 @@ await main(async () => {
   if (values.json) measure.push('--json', resolve(process.env.INIT_CWD ?? process.cwd(), values.json));
   if (values.rounds) measure.push('--rounds', values.rounds);
   if (values.allocations) measure.push('--allocations');
-  if (values.networks) measure.push('--networks');
   measure.push(...positionals);
   const { code } = await run(process.execPath, measure, { cwd: root });
   return code;
