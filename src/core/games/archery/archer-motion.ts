@@ -23,24 +23,25 @@ export interface Archer {
   follow(time: number, state: ArcheryState): { readonly frame: TrackingFrame; readonly buttons: Buttons };
 }
 
+/** Nearest first; with nothing left to score that counts once, the one worth most. */
+function chosen(state: ArcheryState): Target | null {
+  if (state.phase === 'over' || state.arrowsLeft === 0) return null;
+  const scored = (index: number) => state.arrows.some(({ landing }) => landing?.target === index);
+  const open = state.targets.filter((_, index) => !scored(index)).sort((a, b) => a.distance - b.distance);
+  const best = [...state.targets].sort((a, b) => b.points - a.points);
+  return open[0] ?? (state.options.everyHitCounts ? (best[0] ?? null) : null);
+}
+
 /** Stands at the zone's middle, shoots at every target that has not scored, nearest first, then rests. Deterministic. */
 export function createArcher(body: ArcherBody): Archer {
-  const { eyes, resting, ready, drawn, followedThrough, seen } = createArcherPostures(body);
-
-  /** Nearest first; with nothing left to score that counts once, the one worth most. */
-  function chosen(state: ArcheryState): Target | null {
-    if (state.phase === 'over' || state.arrowsLeft === 0) return null;
-    const scored = (index: number) => state.arrows.some(({ landing }) => landing?.target === index);
-    const open = state.targets.filter((_, index) => !scored(index)).sort((a, b) => a.distance - b.distance);
-    const best = [...state.targets].sort((a, b) => b.points - a.points);
-    return open[0] ?? (state.options.everyHitCounts ? (best[0] ?? null) : null);
-  }
+  const postures = createArcherPostures(body);
+  const { eyes } = postures;
 
   /** A whole shot: take an arrow, nock, raise and begin to draw, draw, aim, let go, follow through. */
   function shotAt(target: Target): Movement[] {
     const yaw = yawOf(subtract(target.centre, eyes));
-    const full = drawn(target.centre);
-    const taking = ready(yaw);
+    const full = postures.drawn(target.centre);
+    const taking = postures.ready(yaw);
     const nocking: Posture = { ...taking, onString: 1 };
     const raised: Posture = {
       ...full,
@@ -51,7 +52,7 @@ export function createArcher(body: ArcherBody): Archer {
       },
       trunkYaw: (taking.trunkYaw + full.trunkYaw) / 2,
     };
-    const after = followedThrough(full);
+    const after = postures.followedThrough(full);
     return [
       { to: taking, seconds: 0.9, pressure: 0, arc: 0.04 },
       { to: nocking, seconds: 0.7, pressure: 0, arc: 0.1 },
@@ -65,7 +66,7 @@ export function createArcher(body: ArcherBody): Archer {
     ];
   }
 
-  let from: Posture = resting(0);
+  let from: Posture = postures.resting(0);
   let fromPressure = 0;
   let began = 0;
   let plan: Movement[] = [];
@@ -81,7 +82,7 @@ export function createArcher(body: ArcherBody): Archer {
         if (!target && idle) return;
         if (idle) began = time;
         idle = target === null;
-        plan = target ? shotAt(target) : [{ to: resting(0), seconds: 1.2, pressure: 0, arc: 0.04 }];
+        plan = target ? shotAt(target) : [{ to: postures.resting(0), seconds: 1.2, pressure: 0, arc: 0.04 }];
         continue;
       }
       if (time - began < current.seconds) return;
@@ -105,7 +106,7 @@ export function createArcher(body: ArcherBody): Archer {
       const pressure = current ? fromPressure + (current.pressure - fromPressure) * share : fromPressure;
 
       const swing = (current?.arc ?? 0) * Math.sin(Math.PI * share) ** 2;
-      return seen(now, time, pressure, swing);
+      return postures.seen(now, time, pressure, swing);
     },
   };
 }

@@ -6,9 +6,11 @@ import {
   add,
   addScaled,
   dot,
+  forward,
   lerp,
   normalise,
   reject,
+  right,
   scale,
   subtract,
   up,
@@ -19,7 +21,16 @@ import {
 import type { TrackingFrame } from '../../tracking/tracking-frame';
 import { allReleased, type Button, type Buttons, type HandButtons } from '../button-presses';
 import { wristAround } from '../fist';
-import { armShare, lookAlong, shoulderBehind, shoulderDrop, shoulderShare, yawOf } from '../posture';
+import {
+  armShare,
+  lookAlong,
+  makeTracked,
+  shoulderBehind,
+  shoulderDrop,
+  shoulderShare,
+  swayAt,
+  yawOf,
+} from '../posture';
 import { arrowRestHeight, braceHeight, maximumDraw } from './bow';
 import { releaseTowards } from './flight';
 
@@ -81,6 +92,12 @@ export const mix = (a: Posture, b: Posture, share: number): Posture => ({
   onString: a.onString + (b.onString - a.onString) * share,
 });
 
+/** An archer as a headset and two hands see them: new objects in every frame, which may be kept. */
+export interface Performance {
+  readonly frame: TrackingFrame;
+  readonly buttons: Buttons;
+}
+
 /** The postures of one archer, and what they look like to a headset and two hands. */
 export interface ArcherPostures {
   /** Of the eyes, standing at the zone's middle, arena frame. */
@@ -97,169 +114,193 @@ export interface ArcherPostures {
    * Head, hands (floor frame) and buttons in a posture at a time [s]; pressure: of the string hand's button, 0 to 1; swing: how far
    * that hand is off its way, outward [m].
    */
-  seen(
-    posture: Posture,
-    time: number,
-    pressure: number,
-    swing: number,
-  ): { readonly frame: TrackingFrame; readonly buttons: Buttons };
+  seen(posture: Posture, time: number, pressure: number, swing: number): Performance;
 }
 
 /** How an archer of this body stands, draws and lets go. */
-export function createArcherPostures(body: ArcherBody): ArcherPostures {
-  const { bowSide, eyeHeight, button = 'trigger' } = body;
-  const arm = body.armLength ?? armShare * eyeHeight;
-  const shoulders = (shoulderShare / armShare) * arm;
-  const floorFromArena = body.floorFromArena ?? { position: zero, orientation: identity };
-  const stringSide = otherSide(bowSide);
+class BodyPostures implements ArcherPostures {
+  readonly eyes: Vec3;
+  readonly #bowSide: Side;
+  readonly #stringSide: Side;
+  readonly #button: Button;
+  readonly #arm: number;
+  readonly #halfShoulders: number;
+  readonly #floorFromArena: Transform<'floor', 'arena'>;
   /** Towards the string hand's side, as a factor of +X. */
-  const aside = bowSide === 'left' ? 1 : -1;
-  const eyes = vec3(0, eyeHeight, 0);
+  readonly #aside: -1 | 1;
 
-  /** A vector given as (towards the string side, up, ahead) of an archer who faces this yaw. */
-  const facing = (yaw: number, outward: number, upward: number, ahead: number): Vec3 =>
-    rotate(fromAxisAngle(up, yaw), vec3(aside * outward, upward, -ahead));
-
-  /** The thumb of the hand on the string: leaning inward, as it does with an elbow behind the arrow rather than under it. */
-  const hooked = (direction: Vec3): Vec3 => facing(yawOf(direction), -Math.sin(elbowLift), Math.cos(elbowLift), 0);
-
-  /** A shoulder from the eyes: the trunk turns under a neck that lies behind the eyes along the gaze's yaw. */
-  function shoulderOf(side: Side, gaze: Quat, trunkYaw: number): Vec3 {
-    const neck = facing(yawOf(rotate(gaze, vec3(0, 0, -1))), 0, -shoulderDrop * arm, -shoulderBehind * arm);
-    return add(neck, facing(trunkYaw, side === stringSide ? shoulders : -shoulders, 0, 0));
+  constructor({
+    bowSide,
+    eyeHeight,
+    button = 'trigger',
+    armLength = armShare * eyeHeight,
+    floorFromArena,
+  }: ArcherBody) {
+    this.eyes = vec3(0, eyeHeight, 0);
+    this.#bowSide = bowSide;
+    this.#stringSide = otherSide(bowSide);
+    this.#button = button;
+    this.#arm = armLength;
+    this.#halfShoulders = (shoulderShare / armShare) * armLength;
+    this.#floorFromArena = floorFromArena ?? { position: zero, orientation: identity };
+    this.#aside = bowSide === 'left' ? 1 : -1;
   }
 
   /** Standing about, the bow low before the thigh, facing this yaw. */
-  function resting(yaw: number): Posture {
+  resting(yaw: number): Posture {
+    const arm = this.#arm;
     const gaze = fromAxisAngle(up, yaw);
-    const trunkYaw = yaw - aside * 0.2;
-    const bow = shoulderOf(bowSide, gaze, trunkYaw);
-    const string = shoulderOf(stringSide, gaze, trunkYaw);
+    const trunkYaw = yaw - this.#aside * 0.2;
+    const bow = this.#shoulderOf(this.#bowSide, gaze, trunkYaw);
+    const string = this.#shoulderOf(this.#stringSide, gaze, trunkYaw);
     return {
       gaze,
       trunkYaw,
       hold: {
-        arrowRest: add(bow, facing(yaw, -0.05 * arm, -0.8 * arm, 0.42 * arm)),
-        direction: normalise(facing(yaw, -0.1, -0.75, 0.65)),
+        arrowRest: add(bow, this.#facing(yaw, -0.05 * arm, -0.8 * arm, 0.42 * arm)),
+        direction: normalise(this.#facing(yaw, -0.1, -0.75, 0.65)),
         draw: 0,
       },
       free: {
-        fist: add(string, facing(yaw, 0.2 * arm, -0.98 * arm, 0.14 * arm)),
-        knuckles: facing(yaw, 0, -1, 0.15),
-        thumb: facing(yaw, -0.15, 0, 1),
+        fist: add(string, this.#facing(yaw, 0.2 * arm, -0.98 * arm, 0.14 * arm)),
+        knuckles: this.#facing(yaw, 0, -1, 0.15),
+        thumb: this.#facing(yaw, -0.15, 0, 1),
       },
       onString: 0,
     };
   }
 
   /** The bow up at the chest, pointing low towards the target, its string within reach of the other hand. */
-  function ready(yaw: number): Posture {
-    const gaze = multiply(fromAxisAngle(up, yaw - aside * 0.12), fromAxisAngle(vec3(1, 0, 0), -0.3));
-    const trunkYaw = yaw - aside * readyTurn;
-    const bow = shoulderOf(bowSide, gaze, trunkYaw);
-    const before = resting(yaw);
+  ready(yaw: number): Posture {
+    const arm = this.#arm;
+    const gaze = multiply(fromAxisAngle(up, yaw - this.#aside * 0.12), fromAxisAngle(right, -0.3));
+    const trunkYaw = yaw - this.#aside * readyTurn;
+    const bow = this.#shoulderOf(this.#bowSide, gaze, trunkYaw);
+    const string = this.#shoulderOf(this.#stringSide, gaze, trunkYaw);
     return {
       gaze,
       trunkYaw,
       hold: {
-        arrowRest: add(bow, facing(yaw, 0.3 * arm, -0.34 * arm, 0.68 * arm)),
-        direction: normalise(facing(yaw, -0.15, -0.3, 1)),
+        arrowRest: add(bow, this.#facing(yaw, 0.3 * arm, -0.34 * arm, 0.68 * arm)),
+        direction: normalise(this.#facing(yaw, -0.15, -0.3, 1)),
         draw: 0,
       },
       // Between belt quiver and string the free hand is where an arrow is taken.
       free: {
-        ...before.free,
-        fist: add(shoulderOf(stringSide, gaze, trunkYaw), facing(yaw, 0.16 * arm, -0.88 * arm, 0.02 * arm)),
+        ...this.resting(yaw).free,
+        fist: add(string, this.#facing(yaw, 0.16 * arm, -0.88 * arm, 0.02 * arm)),
       },
       onString: 0,
     };
   }
 
   /** Full draw at a target: the nock beside the chin, the bow arm nearly straight, the arrow where it must point to hit. */
-  function drawn(target: Vec3): Posture {
-    const to = subtract(target, eyes);
+  drawn(target: Vec3): Posture {
+    const arm = this.#arm;
+    const to = subtract(target, this.eyes);
     const yaw = yawOf(to);
     const gaze = lookAlong(to);
-    const trunkYaw = yaw - aside * drawnTurn;
-    const nock = facing(yaw, 0.14 * arm, -0.17 * arm, 0.16 * arm);
-    const shoulder = shoulderOf(bowSide, gaze, trunkYaw);
+    const trunkYaw = yaw - this.#aside * drawnTurn;
+    const nock = this.#facing(yaw, 0.14 * arm, -0.17 * arm, 0.16 * arm);
+    const shoulder = this.#shoulderOf(this.#bowSide, gaze, trunkYaw);
+    const atNock = add(this.eyes, nock);
     let draw = 0.4;
     let direction = normalise(to);
     // Draw and direction depend on each other, a little: a longer draw is faster and flies flatter.
     for (let round = 0; round < 6; round++) {
-      direction = releaseTowards(target, add(eyes, nock), draw) ?? normalise(to);
-      const wrist = wristAround(bowSide, zero, direction, up).position;
-      const upper = normalise(reject(up, direction));
-      // From the shoulder to the wrist: start + direction·length, as long as a nearly straight arm.
-      const start = add(subtract(nock, shoulder), addScaled(wrist, upper, -arrowRestHeight));
-      const along = dot(start, direction);
-      const room = (0.97 * arm) ** 2 - dot(start, start) + along * along;
-      draw = clamp(Math.sqrt(Math.max(0, room)) - along - braceHeight, 0.2, maximumDraw);
+      direction = releaseTowards(target, atNock, draw) ?? normalise(to);
+      draw = this.#drawOf(nock, shoulder, direction);
     }
     return {
       gaze,
       trunkYaw,
       hold: { arrowRest: addScaled(nock, direction, braceHeight + draw), direction, draw },
-      free: { fist: nock, knuckles: direction, thumb: hooked(direction) },
+      free: { fist: nock, knuckles: direction, thumb: this.#hooked(direction) },
       onString: 1,
     };
   }
 
   /** The bow where it was, the string at rest, the string hand gone on backward: a moment after the release. */
-  function followedThrough(shot: Posture): Posture {
+  followedThrough(shot: Posture): Posture {
     const { arrowRest, direction, draw } = shot.hold;
     const nock = addScaled(arrowRest, direction, -braceHeight - draw);
-    const back = rotate(fromAxisAngle(up, 0.5 * aside), scale(direction, -1));
+    const back = rotate(fromAxisAngle(up, 0.5 * this.#aside), scale(direction, -1));
     return {
       ...shot,
-      free: { fist: addScaled(nock, back, 0.12 * arm), knuckles: direction, thumb: hooked(direction) },
+      free: { fist: addScaled(nock, back, 0.12 * this.#arm), knuckles: direction, thumb: this.#hooked(direction) },
       onString: 0,
     };
   }
 
-  const inFloor = (pose: Pose<'arena'>): TrackedPose => ({
-    ...transformPose(floorFromArena, pose),
-    tracking: 'tracked',
-  });
+  seen(now: Posture, time: number, pressure: number, swing: number): Performance {
+    const head = add(this.eyes, swayAt(time));
+    const bowHand = this.#inFloor(head, this.#bowWrist(now));
+    const stringHand = this.#inFloor(head, this.#stringWrist(now, swing));
+    const pressed: HandButtons = { ...allReleased, [this.#button]: pressure };
+    const left = this.#bowSide === 'left';
+    return {
+      frame: {
+        time,
+        head: this.#inFloor(zero, { position: head, orientation: now.gaze }),
+        leftHand: left ? bowHand : stringHand,
+        rightHand: left ? stringHand : bowHand,
+      },
+      buttons: { left: left ? allReleased : pressed, right: left ? pressed : allReleased },
+    };
+  }
 
-  return {
-    eyes,
-    resting,
-    ready,
-    drawn,
-    followedThrough,
-    seen(now, time, pressure, swing) {
-      // No archer stands still: head, bow and string hand drift together, millimetres.
-      const drift = vec3(
-        0.006 * Math.sin(time * 0.61),
-        0.002 * Math.sin(time * 1.5),
-        0.005 * Math.sin(time * 0.43 + 1),
-      );
-      const head = add(eyes, drift);
-      const { arrowRest, direction, draw } = now.hold;
-      const upper = normalise(reject(up, direction));
-      const bowWrist = wristAround<'arena'>(bowSide, addScaled(arrowRest, upper, -arrowRestHeight), direction, up);
-      const nock = addScaled(arrowRest, direction, -braceHeight - draw);
-      const stringWrist = wristAround<'arena'>(
-        stringSide,
-        add(lerp(now.free.fist, nock, now.onString), facing(now.trunkYaw, swing, 0, 0)),
-        lerp(now.free.knuckles, direction, now.onString),
-        lerp(now.free.thumb, hooked(direction), now.onString),
-      );
-      const atHead = (wrist: Pose<'arena'>): TrackedPose =>
-        inFloor({ position: add(head, wrist.position), orientation: wrist.orientation });
-      const hands = { [bowSide]: atHead(bowWrist), [stringSide]: atHead(stringWrist) } as Record<Side, TrackedPose>;
-      const pressed: HandButtons = { ...allReleased, [button]: pressure };
-      const buttons = { [bowSide]: allReleased, [stringSide]: pressed } as Record<Side, HandButtons>;
-      return {
-        frame: {
-          time,
-          head: inFloor({ position: head, orientation: now.gaze }),
-          leftHand: hands.left,
-          rightHand: hands.right,
-        },
-        buttons,
-      };
-    },
-  };
+  /** A vector given as (towards the string side, up, ahead) of an archer who faces this yaw. */
+  #facing(yaw: number, outward: number, upward: number, ahead: number): Vec3 {
+    return rotate(fromAxisAngle(up, yaw), vec3(this.#aside * outward, upward, -ahead));
+  }
+
+  /** The thumb of the hand on the string: leaning inward, as it does with an elbow behind the arrow rather than under it. */
+  #hooked(direction: Vec3): Vec3 {
+    return this.#facing(yawOf(direction), -Math.sin(elbowLift), Math.cos(elbowLift), 0);
+  }
+
+  /** A shoulder from the eyes: the trunk turns under a neck that lies behind the eyes along the gaze's yaw. */
+  #shoulderOf(side: Side, gaze: Quat, trunkYaw: number): Vec3 {
+    const arm = this.#arm;
+    const half = this.#halfShoulders;
+    const neck = this.#facing(yawOf(rotate(gaze, forward)), 0, -shoulderDrop * arm, -shoulderBehind * arm);
+    return add(neck, this.#facing(trunkYaw, side === this.#stringSide ? half : -half, 0, 0));
+  }
+
+  /** The draw [m] at which the bow arm is nearly straight. */
+  #drawOf(nock: Vec3, shoulder: Vec3, direction: Vec3): number {
+    const wrist = wristAround(this.#bowSide, zero, direction, up).position;
+    const upper = normalise(reject(up, direction));
+    // From the shoulder to the wrist: start + direction·length, as long as a nearly straight arm.
+    const start = add(subtract(nock, shoulder), addScaled(wrist, upper, -arrowRestHeight));
+    const along = dot(start, direction);
+    const room = (0.97 * this.#arm) ** 2 - dot(start, start) + along * along;
+    return clamp(Math.sqrt(Math.max(0, room)) - along - braceHeight, 0.2, maximumDraw);
+  }
+
+  #bowWrist({ hold: { arrowRest, direction } }: Posture): Pose<'arena'> {
+    const upper = normalise(reject(up, direction));
+    return wristAround<'arena'>(this.#bowSide, addScaled(arrowRest, upper, -arrowRestHeight), direction, up);
+  }
+
+  #stringWrist({ hold, free, onString, trunkYaw }: Posture, swing: number): Pose<'arena'> {
+    const { arrowRest, direction, draw } = hold;
+    const nock = addScaled(arrowRest, direction, -braceHeight - draw);
+    return wristAround<'arena'>(
+      this.#stringSide,
+      add(lerp(free.fist, nock, onString), this.#facing(trunkYaw, swing, 0, 0)),
+      lerp(free.knuckles, direction, onString),
+      lerp(free.thumb, this.#hooked(direction), onString),
+    );
+  }
+
+  /** A pose that is given from `origin`, in the room. */
+  #inFloor(origin: Vec3, { position, orientation }: Pose<'arena'>): TrackedPose {
+    const seen = makeTracked();
+    add(origin, position, seen.position);
+    transformPose(this.#floorFromArena, { position: seen.position, orientation }, seen);
+    return seen;
+  }
 }
+
+export const createArcherPostures = (body: ArcherBody): ArcherPostures => new BodyPostures(body);

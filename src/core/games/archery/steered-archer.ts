@@ -34,7 +34,8 @@ type Phase = 'ready' | 'nocking' | 'grabbing' | 'drawing' | 'loosing' | 'followi
 
 /** Stands at the zone's middle; every posture is that of the built-in archer, so the gestures see no difference. */
 export function createSteeredArcher(body: ArcherBody): SteeredArcher {
-  const { eyes, ready, drawn, followedThrough, seen } = createArcherPostures(body);
+  const postures = createArcherPostures(body);
+  const { eyes } = postures;
   let phase: Phase = 'ready';
   let began = 0;
   let last: number | null = null;
@@ -53,9 +54,9 @@ export function createSteeredArcher(body: ArcherBody): SteeredArcher {
     follow(time, { target, pressed, cancelled }) {
       aim = aim === null || last === null ? target : dampVec3(aim, target, aimHalfLife, time - last);
       last = time;
-      const taking = ready(yawOf(subtract(aim, eyes)));
+      const taking = postures.ready(yawOf(subtract(aim, eyes)));
       const nocking: Posture = { ...taking, onString: 1 };
-      const full = drawn(aim);
+      const full = postures.drawn(aim);
       const done = (seconds: number): number => minimumJerk(clamp((time - began) / seconds, 0, 1));
       const over = (seconds: number): boolean => time - began >= seconds;
 
@@ -76,7 +77,7 @@ export function createSteeredArcher(body: ArcherBody): SteeredArcher {
         enter('returning', time);
       } else if (phase === 'loosing' && over(looseSeconds)) enter('following', time);
       else if (phase === 'following' && over(followSeconds)) {
-        left = followedThrough(mix(nocking, full, share));
+        left = postures.followedThrough(mix(nocking, full, share));
         enter('returning', time);
         // A new shot begins with a new press.
       } else if (phase === 'returning' && over(returnSeconds) && !pressed) enter('ready', time);
@@ -84,21 +85,21 @@ export function createSteeredArcher(body: ArcherBody): SteeredArcher {
       const bent = mix(nocking, full, share);
       switch (phase) {
         case 'nocking':
-          return seen(mix(taking, nocking, done(nockSeconds)), time, 0, 0);
+          return postures.seen(mix(taking, nocking, done(nockSeconds)), time, 0, 0);
         case 'grabbing':
-          return seen(nocking, time, done(grabSeconds), 0);
+          return postures.seen(nocking, time, done(grabSeconds), 0);
         case 'drawing':
-          return seen(bent, time, 1, 0);
+          return postures.seen(bent, time, 1, 0);
         case 'lowering':
-          return seen(mix(nocking, full, share * (1 - done(returnSeconds))), time, 1, 0);
+          return postures.seen(mix(nocking, full, share * (1 - done(returnSeconds))), time, 1, 0);
         case 'loosing':
-          return seen(bent, time, 1 - done(looseSeconds), 0);
+          return postures.seen(bent, time, 1 - done(looseSeconds), 0);
         case 'following':
-          return seen(mix(bent, followedThrough(bent), done(followSeconds)), time, 0, 0);
+          return postures.seen(mix(bent, postures.followedThrough(bent), done(followSeconds)), time, 0, 0);
         case 'returning':
-          return seen(mix(left ?? taking, taking, done(returnSeconds)), time, 0, 0);
+          return postures.seen(mix(left ?? taking, taking, done(returnSeconds)), time, 0, 0);
         default:
-          return seen(taking, time, 0, 0);
+          return postures.seen(taking, time, 0, 0);
       }
     },
   };
