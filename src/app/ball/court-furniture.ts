@@ -16,7 +16,10 @@ import { woodColor } from '../../scene/outdoors/wood';
 import { merged, painted } from '../../scene/painted-geometry';
 import { court, seatLooks, trayOf } from './court-plan';
 
-const box = (w: number, h: number, d: number, x: number, y: number, z: number, color: string) =>
+/** Width, height, depth, or where the middle is [m]. */
+type Triple = readonly [number, number, number];
+
+const box = ([w, h, d]: Triple, [x, y, z]: Triple, color: string) =>
   painted(new BoxGeometry(w, h, d).translate(x, y, z), color);
 
 /** A tray on four legs with a rim in its thrower's colour. */
@@ -27,25 +30,21 @@ function rack(side: 0 | 1, balls: number): BufferGeometry[] {
   const legs = [-1, 1].flatMap((i) =>
     [-1, 1].map((j) =>
       box(
-        0.045,
-        top - 0.03,
-        0.045,
-        x + i * (width / 2 - 0.04),
-        (top - 0.03) / 2,
-        z + j * (depth / 2 - 0.04),
+        [0.045, top - 0.03, 0.045],
+        [x + i * (width / 2 - 0.04), (top - 0.03) / 2, z + j * (depth / 2 - 0.04)],
         woodColor(i + 2 * j),
       ),
     ),
   );
   return [
     ...legs,
-    box(width, 0.03, depth, x, top - 0.016, z, '#6b4c33'),
-    box(width + 0.03, 0.05, 0.022, x, top + 0.012, z - depth / 2, rim),
-    box(width + 0.03, 0.05, 0.022, x, top + 0.012, z + depth / 2, rim),
-    box(0.022, 0.05, depth, x - width / 2, top + 0.012, z, rim),
-    box(0.022, 0.05, depth, x + width / 2, top + 0.012, z, rim),
+    box([width, 0.03, depth], [x, top - 0.016, z], '#6b4c33'),
+    box([width + 0.03, 0.05, 0.022], [x, top + 0.012, z - depth / 2], rim),
+    box([width + 0.03, 0.05, 0.022], [x, top + 0.012, z + depth / 2], rim),
+    box([0.022, 0.05, depth], [x - width / 2, top + 0.012, z], rim),
+    box([0.022, 0.05, depth], [x + width / 2, top + 0.012, z], rim),
     // A shelf ties the legs together.
-    box(width - 0.06, 0.02, depth - 0.06, x, 0.26, z, woodColor(3)),
+    box([width - 0.06, 0.02, depth - 0.06], [x, 0.26, z], woodColor(3)),
   ];
 }
 
