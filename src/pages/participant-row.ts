@@ -111,7 +111,7 @@ function actionsCell(
     active && !session.paused && !session.running && (session.kind === 'trial' || session.kind === 'tutorial');
   return element(
     'div',
-    { class: 'row-actions' },
+    { class: 'row-actions commands' },
     small('Start', () => actions.command(participant, { type: 'start' }), !startable),
     session?.paused
       ? small('Go on', () => actions.command(participant, { type: 'resume' }), !active)
@@ -137,7 +137,7 @@ function linkCell(
     {},
     element(
       'div',
-      { class: 'row-actions' },
+      { class: 'row-actions link' },
       element('a', { href: link, target: '_blank', rel: 'noopener' }, 'open'),
       button('Copy', () => actions.copyLink(participant, link), { class: 'small', title: 'Copy the link' }),
       button('New …', () => actions.reinvite(participant), { class: 'small', title: 'Make a new link' }),
