@@ -22,7 +22,7 @@ export type Motion = (typeof motions)[number];
 type Truth = MeasuredFrame['truth'];
 type Points = Readonly<Record<TruthJoint, readonly [number, number, number]>>;
 
-/** Axes of somebody's shoulders, origin half-way between them; right-handed, −z forward, floor frame [m]. */
+/** Axes of a person's shoulders, origin half-way between them; right-handed, −z forward, floor frame [m]. */
 interface ShoulderFrame {
   readonly origin: Vec3;
   readonly right: Vec3;

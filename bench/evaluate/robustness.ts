@@ -183,7 +183,7 @@ function errorOf(frame: MeasuredFrame | undefined, joint: (typeof estimatedJoint
   return distance(estimated, frame.truth[joint]) * 100;
 }
 
-/** Steps into the frames [from, to), in centimetres per 1/60 s whatever the rate. */
+/** Steps into the frames [from, to), in centimetres per 1/60 s at any rate. */
 function addSteps(
   tally: StepTally,
   lossy: readonly MeasuredFrame[],

@@ -2,7 +2,7 @@ import { type Calibration, defaultCalibration } from '../core/body/calibration';
 import { actorFrame } from '../core/tracking/actor-motion';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 
-/** Somebody who moves when nobody wears a headset. */
+/** Moves in place of a person while no one wears a headset. */
 export interface Actor {
   /** Where head and hands of this performance are at a time [s] on any clock that runs on. */
   frameAt(time: number): TrackingFrame;

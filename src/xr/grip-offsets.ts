@@ -38,7 +38,7 @@ const fits: Readonly<Record<string, HandleFit>> = {
   'windows-mixed-reality': { ahead: 0.08, below: 0.028, lean: degrees(35) },
 };
 
-/** For profiles that nobody listed: most handles follow Touch. */
+/** For profiles that are not listed: most handles follow Touch. */
 export const genericFit: HandleFit = { ahead: 0.08, below: 0.025, lean: degrees(45) };
 
 /** The fit of the first of an input source's profiles that is known. */

@@ -7,7 +7,7 @@ export interface Pulse {
   readonly seconds: number;
 }
 
-/** Buzzes whatever the hands hold; what cannot buzz stays silent. */
+/** Buzzes what the hands hold; what cannot buzz stays silent. */
 export function buzz(session: XRSession, pulses: readonly Pulse[]): void {
   for (const { side, strength, seconds } of pulses) {
     for (const { handedness, gamepad } of session.inputSources) {

@@ -74,7 +74,7 @@ describe('behind a menu of the device', () => {
 });
 
 describe('which hand it is', () => {
-  test('is told by handedness, whatever the order, and a swap is another device on each side', () => {
+  test('is told by handedness, in any order, and a swap is another device on each side', () => {
     const { read, setInputs, tracker } = tracked();
     setInputs(controller('right', right), controller('left', left));
     expect(read()).toMatchObject({ leftHand: {}, rightHand: {} });

@@ -37,7 +37,7 @@ export interface StudyScreen {
   /** Told above the buttons, in the accent colour; null: nothing. */
   readonly hint: string | null;
   readonly buttons: readonly ScreenButton[];
-  /** Small, at the foot: where answers are kept, or that somebody is simulated. */
+  /** Small, at the foot: where answers are kept, or that the participant is simulated. */
   readonly footnote: string;
   /** Trouble rather than information. */
   readonly trouble: boolean;

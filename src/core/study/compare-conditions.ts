@@ -10,7 +10,7 @@ import {
 } from './statistics';
 import { type AnswerRow, refuseMixture, type TrialRow } from './study-tables';
 
-/** Somebody or something left out, and why: results state it. */
+/** A participant or an answer left out, and why: results state it. */
 export interface Exclusion {
   readonly participant: string;
   /** What it concerns: a question or a task. */
@@ -23,7 +23,7 @@ export interface Comparison {
   /** "Q1", or the id of a task. */
   readonly of: string;
   readonly unit: 'answer' | 'points' | 'percent';
-  /** null: nobody has both. */
+  /** null: no participant has both. */
   readonly first: MeanSummary | null;
   readonly second: MeanSummary | null;
   /** The pairs, in the order of the participants (or groups): for paired plots. */
@@ -81,7 +81,7 @@ interface Observation {
   readonly value: number;
 }
 
-/** The mean of what somebody has under each condition, for those who have both; the others are named. */
+/** The mean of what each has under either condition, for those who have both; the others are named. */
 function paired(
   observations: readonly Observation[],
   conditions: readonly [string, string],

@@ -108,7 +108,7 @@ export function checkedPlan(value: unknown): StudyPlan {
   if (plan.orders === 'all' && plan.conditions.length > mostOrdersListed) {
     throw new ValidationError(
       'orders',
-      `all orders of ${plan.conditions.length} conditions are more than anybody can run: expected williams`,
+      `all orders of ${plan.conditions.length} conditions are more than a study can run: expected williams`,
     );
   }
   plan.tasks.forEach(({ groupSize }, index) => {

@@ -107,7 +107,7 @@ export const frameTimeTable = (rows: readonly FrameTimeRow[], simulated: boolean
     number('max', 'ms', 'Longest.'),
     number('mean', 'ms', 'Mean over all frames.'),
     number('worst_p95', 'ms', "Largest of the trials' 95th percentiles."),
-    number('missed', '', 'Frames shown late, whatever the stage.'),
+    number('missed', '', 'Frames shown late, in any stage.'),
   ],
   rows: rows.map(({ minMs, maxMs, meanMs, worstP95Ms, ...rest }) => ({
     simulated,

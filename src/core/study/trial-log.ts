@@ -27,7 +27,7 @@ const outcomeSchema = v.object({
   version: v.literal(trialVersion, `expected ${trialVersion}, the version that this program reads`),
   /** From the start signal to the end. */
   seconds: duration,
-  /** Why it was over; stopped: somebody ended it early. */
+  /** Why it was over; stopped: it was ended early. */
   ended: v.picklist(
     ['arrows', 'targets', 'balls', 'time', 'stopped'],
     'expected arrows, targets, balls, time or stopped',

@@ -41,7 +41,7 @@ test('participants who were invited meet in the room of their trial, each on the
     group.map(async (participant) => {
       const { token } = await client.claim('paper', participant, invitationOf(participant));
       const connect = await assignedSeat(() => client.seat('paper', participant, token, trial), clock);
-      return connect(visitor('whatever the page says'), clock.now());
+      return connect(visitor('what the page says'), clock.now());
     }),
   );
   onTestFinished(() => {

@@ -10,7 +10,7 @@ import { openStudyVault, type StudyVault } from '../../../src/app/study/study-va
 import { writeRecording } from '../../../src/core/tracking/recording';
 import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
 import { createParticipantClient } from '../../../src/net/study-client';
-import { outcomeOf, paperPlan, somebody } from '../../core/study/studies';
+import { aWomanOf26, outcomeOf, paperPlan } from '../../core/study/studies';
 import { studyServer } from './study-server';
 
 const plan = paperPlan();
@@ -63,7 +63,7 @@ async function device({ origin, invitation }: { readonly origin: string; readonl
 function toTheFirstQuestion(session: ParticipantSession, motion = false): void {
   const said = [
     session.apply({ type: 'consent', motion, version: plan.consent.version }),
-    session.apply({ type: 'demographics', demographics: somebody }),
+    session.apply({ type: 'demographics', demographics: aWomanOf26 }),
     session.apply({ type: 'calibrated', calibration }),
     session.apply({ type: 'start' }),
     session.apply({ type: 'trial-finished', outcome: outcomeOf(10) }),

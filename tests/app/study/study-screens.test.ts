@@ -9,11 +9,11 @@ import {
 import type { ProgressEvent } from '../../../src/core/study/advance';
 import { questionnaires } from '../../../src/core/study/questionnaires';
 import { createParticipantClient } from '../../../src/net/study-client';
-import { outcomeOf, paperPlan, somebody } from '../../core/study/studies';
+import { aWomanOf26, outcomeOf, paperPlan } from '../../core/study/studies';
 
 const plan = paperPlan();
 const consent = { type: 'consent', version: plan.consent.version, motion: false } as const;
-const demographics = { type: 'demographics', demographics: somebody } as const;
+const demographics = { type: 'demographics', demographics: aWomanOf26 } as const;
 const measured = { type: 'calibrated', calibration: { eyeHeight: 1.62, armSpan: 1.5 } } as const;
 
 /** A participant of the paper's study on a device without storage and without a server, after these events; the clock stands. */
@@ -148,7 +148,7 @@ describe('a participant who plays', () => {
 });
 
 describe('a participant with a pause', () => {
-  test('sees that alone, whatever else there was, until it is over', () => {
+  test('sees that and nothing else until it is over', () => {
     const one = participant(consent, demographics);
     one
       .screen()

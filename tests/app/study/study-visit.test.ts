@@ -1,6 +1,6 @@
 import { describe, expect, test } from 'vitest';
 import { openStudyVault } from '../../../src/app/study/study-vault';
-import { somebody } from '../../core/study/studies';
+import { aWomanOf26 } from '../../core/study/studies';
 import { browser, type Tab } from './study-browser';
 import { type StudyServer, studyServer } from './study-server';
 
@@ -35,7 +35,7 @@ async function beforeTheRound(server: StudyServer, motion = false) {
   const device = browser(server);
   const tab = await device.open();
   await agree(tab, motion);
-  expect(tab.display.asked('demographics').done(somebody)).toBeNull();
+  expect(tab.display.asked('demographics').done(aWomanOf26)).toBeNull();
   await measure(tab);
   play(tab, 10);
   await canStart(tab);
@@ -141,7 +141,7 @@ describe('the participant', () => {
   test('is not measured any further when the headset comes off meanwhile', async () => {
     const tab = await browser(await studyServer()).open();
     await agree(tab);
-    tab.display.asked('demographics').done(somebody);
+    tab.display.asked('demographics').done(aWomanOf26);
     tab.wear(true);
     tab.display.press('calibrate');
     tab.draw(4);
@@ -276,7 +276,7 @@ describe('a round', () => {
   test('whose game refuses says why, and can be prepared again', async () => {
     const tab = await browser(await studyServer()).open();
     await agree(tab);
-    tab.display.asked('demographics').done(somebody);
+    tab.display.asked('demographics').done(aWomanOf26);
     const { archery } = tab.host.games;
     archery.refusal = 'The archery range could not be opened.';
     tab.wear(true);

@@ -34,7 +34,7 @@ describe('measures of people', () => {
   });
 });
 
-describe('what is somebody’s body', () => {
+describe('what is a person’s body', () => {
   test('ordinary people, small children and giants are', () => {
     expect(calibrationComplaint(defaultCalibration)).toBeNull();
     for (const stature of [1.02, 1.2, 1.5, 1.7, 1.9, 2.1, 2.28]) {
@@ -55,7 +55,7 @@ describe('what is somebody’s body', () => {
   });
 });
 
-describe('before anyone has calibrated', () => {
+describe('before the first calibration', () => {
   test('who stands is as tall as they stand', () => {
     expect(provisionalCalibration(1.72).eyeHeight).toBe(1.72);
     expect(provisionalCalibration(1.45).eyeHeight).toBe(1.45);

@@ -25,7 +25,7 @@ describe('the calibrated skeleton', () => {
     }
   });
 
-  test('at rest somebody stands upright in T-pose: eyes at eye height, arms as wide as they span, face to −Z', () => {
+  test('at rest a person stands upright in T-pose: eyes at eye height, arms as wide as they span, face to −Z', () => {
     fc.assert(
       fc.property(body, (calibration) => {
         const skeleton = skeletonFromCalibration(calibration);

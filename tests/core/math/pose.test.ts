@@ -15,7 +15,7 @@ import { rotation, seed, vector } from '../arbitraries';
 const transform = fc.record({ position: vector(5), orientation: rotation });
 
 describe('transforms', () => {
-  test('a hand ahead of somebody who faces left is on the left of the floor', () => {
+  test('a hand ahead of a person who faces left is on the left of the floor', () => {
     const floorFromHeading: Transform<'floor', 'heading'> = {
       position: vec3(2, 0, 1),
       orientation: fromAxisAngle(up, Math.PI / 2),

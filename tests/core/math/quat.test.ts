@@ -90,7 +90,7 @@ describe('rotations', () => {
     );
   });
 
-  test('slerp takes the shorter arc, evenly, whatever the signs', () => {
+  test('slerp takes the shorter arc, evenly, with any signs', () => {
     fc.assert(
       fc.property(rotation, rotation, number(0, 1), (a, b, t) => {
         const angle = angleBetween(a, b);
@@ -166,7 +166,7 @@ describe('toBeSameRotationAs', () => {
     expect(turned).not.toBeSameRotationAs(q, 1);
   });
 
-  test('NaN and what is not of length 1 are nobody’s rotation', () => {
+  test('NaN and what is not of length 1 are no rotation', () => {
     expect({ ...q, x: Number.NaN }).not.toBeSameRotationAs(q, 180);
     expect({ x: 0, y: 0, z: 0, w: 2 }).not.toBeSameRotationAs(identity, 180);
   });

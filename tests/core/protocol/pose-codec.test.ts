@@ -14,7 +14,7 @@ import { longestPose, type PosePacket, poseVersion } from '../../../src/core/pro
 import { isNightly } from '../../nightly';
 import { seed } from '../arbitraries';
 import { openShippedModel } from '../estimation/shipped-models';
-import { packetOf, someoneSent } from './sent-bodies';
+import { packetOf, senders } from './sent-bodies';
 
 const degrees = 180 / Math.PI;
 const sides = ['left', 'right'] as const;
@@ -36,15 +36,15 @@ const everyNumber = (value: unknown): number[] =>
       ? Object.values(value).flatMap(everyNumber)
       : [];
 
-/** What the receiver may be off by, for anybody in any movement, hands seen, lost, guessed, coming back, out of reach or wrung. */
+/** What the receiver may be off by, for any person in any movement, hands seen, lost, guessed, coming back, out of reach or wrung. */
 async function measure(
   worst: ReturnType<typeof worstOf>,
   create: Parameters<typeof packetOf>[1] | undefined,
   numRuns: number,
 ): Promise<void> {
   await fc.assert(
-    fc.asyncProperty(someoneSent, async (someone) => {
-      const { packet, skeleton } = await packetOf(someone, create);
+    fc.asyncProperty(senders, async (sender) => {
+      const { packet, skeleton } = await packetOf(sender, create);
       const bytes = encodePose(packet, skeleton)!;
       worst.take('bytes', bytes.length);
       const back = decodePose(bytes, skeleton)!;
@@ -110,8 +110,8 @@ describe('a body on the wire', () => {
 
   test('keeps the lengths of its bones', async () => {
     await fc.assert(
-      fc.asyncProperty(someoneSent, async (someone) => {
-        const { packet, skeleton } = await packetOf(someone);
+      fc.asyncProperty(senders, async (sender) => {
+        const { packet, skeleton } = await packetOf(sender);
         const joints = forwardKinematics(skeleton, decodePose(encodePose(packet, skeleton)!, skeleton)!.pose.body!);
         for (const joint of jointNames) {
           const parent = parentOf[joint];
@@ -126,9 +126,9 @@ describe('a body on the wire', () => {
 
   test('costs 57 bytes while a controller holds each hand: 1.7 kB/s at 30 Hz', async () => {
     await fc.assert(
-      fc.asyncProperty(someoneSent, async (someone) => {
+      fc.asyncProperty(senders, async (sender) => {
         const { packet, skeleton } = await packetOf({
-          ...someone,
+          ...sender,
           actor: true,
           fates: { left: 'seen', right: 'seen' },
           curls: { left: null, right: null },
@@ -141,8 +141,8 @@ describe('a body on the wire', () => {
 
   test('that is sent again as it was received arrives within the same bounds', async () => {
     await fc.assert(
-      fc.asyncProperty(someoneSent, async (someone) => {
-        const { packet, skeleton } = await packetOf(someone);
+      fc.asyncProperty(senders, async (sender) => {
+        const { packet, skeleton } = await packetOf(sender);
         const once = decodePose(encodePose(packet, skeleton)!, skeleton)!;
         const twice = decodePose(encodePose(once, skeleton)!, skeleton)!;
         expect(distance(once.pose.head.position, twice.pose.head.position)).toBeLessThan(1e-9);
@@ -159,7 +159,7 @@ describe('a body on the wire', () => {
 
 const skeleton = skeletonFromCalibration(defaultCalibration);
 
-/** Somebody who shows no body: the head at rest, the left hand lost, the right one guessed. */
+/** A person who shows no body: the head at rest, the left hand lost, the right one guessed. */
 const handsOnly: PosePacket = {
   timeMs: 0x1234,
   jump: false,
@@ -246,7 +246,7 @@ describe('bytes', () => {
     }
   });
 
-  test('of another version are nobody', () => {
+  test('of another version are no pose', () => {
     const bytes = encodePose(handsOnly, skeleton)!;
     for (let version = 0; version < 16; version++) {
       const other = Uint8Array.from(bytes);
@@ -255,7 +255,7 @@ describe('bytes', () => {
     }
   });
 
-  test('that are too few, too many or not filled up with zeros are nobody', () => {
+  test('that are too few, too many or not filled up with zeros are no pose', () => {
     const bytes = encodePose(handsOnly, skeleton)!;
     for (let length = 0; length < bytes.length; length++) {
       expect(decodePose(bytes.slice(0, length), skeleton)).toBeNull();
@@ -266,7 +266,7 @@ describe('bytes', () => {
     expect(decodePose(unclean, skeleton)).toBeNull();
   });
 
-  test('that say what cannot be are nobody: a third kind of tracking, fingers of a lost hand, a free arm without a body', () => {
+  test('that say what cannot be are no pose: a third kind of tracking, fingers of a lost hand, a free arm without a body', () => {
     const bytes = encodePose(handsOnly, skeleton)!;
     const withBits = (...bits: number[]) => {
       const changed = Uint8Array.from(bytes);
@@ -279,7 +279,7 @@ describe('bytes', () => {
     expect(withBits(10)).toBeNull();
   });
 
-  test('are none at all for somebody who is not a number', () => {
+  test('are none at all for a person who is not a number', () => {
     const { head } = handsOnly.pose;
     const nowhere = { ...head, position: vec3(Number.NaN, 1, 0) };
     expect(encodePose({ ...handsOnly, pose: { ...handsOnly.pose, head: nowhere } }, skeleton)).toBeNull();
@@ -298,7 +298,7 @@ describe('bytes', () => {
   });
 });
 
-test('100,000 bad packets (a million at night) decode to null or to somebody finite, and throw nothing', async () => {
+test('100,000 bad packets (a million at night) decode to null or to a finite pose, and throw nothing', async () => {
   const cases = isNightly ? 1_000_000 : 100_000;
   let random = { seed };
   const chance = (): number => {
@@ -308,8 +308,8 @@ test('100,000 bad packets (a million at night) decode to null or to somebody fin
   };
   const below = (end: number): number => Math.floor(chance() * end);
   const good: Uint8Array[] = [];
-  for (const someone of fc.sample(someoneSent, { seed, numRuns: 60 })) {
-    const { packet, skeleton: own } = await packetOf(someone);
+  for (const sender of fc.sample(senders, { seed, numRuns: 60 })) {
+    const { packet, skeleton: own } = await packetOf(sender);
     good.push(encodePose(packet, own)!);
   }
   good.push(encodePose(handsOnly, skeleton)!);
@@ -341,9 +341,9 @@ test('100,000 bad packets (a million at night) decode to null or to somebody fin
       .flatMap((hand) => (hand ? [hand.orientation] : []))
       .concat(Object.values(pose.pose.body?.localRotations ?? {}));
     const unit = turns.every(({ x, y, z, w }) => Math.abs(Math.hypot(x, y, z, w) - 1) < 1e-6);
-    if (!finite || !unit) throw new Error(`nobody's pose from ${bytes}`);
+    if (!finite || !unit) throw new Error(`an impossible pose from ${bytes}`);
   }
-  console.log(`pose codec: ${cases} fuzzed packets, ${accepted} decoded to somebody, 0 thrown`);
+  console.log(`pose codec: ${cases} fuzzed packets, ${accepted} decoded to a pose, 0 thrown`);
   expect(accepted).toBeGreaterThan(cases / 20);
   expect(accepted).toBeLessThan(cases);
 });

@@ -32,7 +32,7 @@ const curl = fc.option(
 );
 
 /** A person of any size anywhere, turned anyhow, in the middle of an actor's or a random movement, both hands with a fate. */
-export const someoneSent = fc.record({
+export const senders = fc.record({
   calibration: calibrationOf,
   motion: fc.integer({ min: 1 }),
   actor: fc.boolean(),
@@ -47,11 +47,11 @@ export const someoneSent = fc.record({
   curls: fc.record({ left: curl, right: curl }),
 });
 
-export type Someone = typeof someoneSent extends fc.Arbitrary<infer T> ? T : never;
+export type Sender = typeof senders extends fc.Arbitrary<infer T> ? T : never;
 
 /** The frames up to the one that is sent. */
-export function framesOf(someone: Someone): readonly TrackingFrame[] {
-  const { calibration, motion, actor, standpoint: at, start, fates, away, turned } = someone;
+export function framesOf(sender: Sender): readonly TrackingFrame[] {
+  const { calibration, motion, actor, standpoint: at, start, fates, away, turned } = sender;
   const person = movingPerson(motion, calibration, at);
   const place = { position: vec3(at.x, 0, at.z), orientation: fromAxisAngle(up, at.yaw) };
   const frameAt = (time: number): TrackingFrame =>
@@ -73,28 +73,28 @@ export function framesOf(someone: Someone): readonly TrackingFrame[] {
       }[fates[side]];
       frame = withHand(frame, side, changed);
     }
-    return someone.headEmulated ? { ...frame, head: { ...frame.head, tracking: 'emulated' as const } } : frame;
+    return sender.headEmulated ? { ...frame, head: { ...frame.head, tracking: 'emulated' as const } } : frame;
   });
 }
 
 /** What a person sends whose body this estimator solves (IK unless told). */
 export async function packetOf(
-  someone: Someone,
+  sender: Sender,
   create: (calibration: Calibration) => PoseEstimator = createIk,
 ): Promise<{ packet: PosePacket; skeleton: ReturnType<typeof skeletonFromCalibration> }> {
-  const estimator = create(someone.calibration);
+  const estimator = create(sender.calibration);
   let pose: PosePacket['pose'] | null = null;
-  for (const frame of framesOf(someone)) {
+  for (const frame of framesOf(sender)) {
     pose = await show(estimator, frame);
   }
   return {
     packet: {
-      timeMs: Math.round(someone.start * 1000) % 65536,
-      jump: someone.jump,
+      timeMs: Math.round(sender.start * 1000) % 65536,
+      jump: sender.jump,
       pose: pose!,
-      grips: someone.grips,
-      curls: someone.curls,
+      grips: sender.grips,
+      curls: sender.curls,
     },
-    skeleton: skeletonFromCalibration(someone.calibration),
+    skeleton: skeletonFromCalibration(sender.calibration),
   };
 }

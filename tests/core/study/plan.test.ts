@@ -84,7 +84,7 @@ describe('the order of conditions', () => {
     expect(Object.values(counts(orderNames(plan, ball))).toSorted()).toEqual([2, 3]);
   });
 
-  test('comes equally often, every order, whatever the seed', () => {
+  test('comes equally often, every order, with any seed', () => {
     fc.assert(
       fc.property(
         fc.nat(2 ** 31 - 1),
@@ -148,7 +148,7 @@ describe('the order of conditions', () => {
     },
   );
 
-  test('is shared by those who play together, and nobody plays twice', () => {
+  test('is shared by those who play together, and no one plays twice', () => {
     const plan = paperPlan();
     const groups = groupsOf(plan, 3);
     expect(groups.flat().toSorted()).toEqual(participantsOf(plan));
@@ -210,7 +210,7 @@ describe('a study file with a mistake', () => {
       'mine.json: tasks[1].repetitions: expected a whole number',
     ],
     [
-      'a field that nobody reads',
+      'a field that is not read',
       (plan) => {
         plan.tasks[0].restSecond = 60;
       },
@@ -273,7 +273,7 @@ describe('a study file with a mistake', () => {
     expect(() => parsePlan('{', 'mine.json')).toThrow('mine.json: this is no JSON');
   });
 
-  test('and somebody who is not in it has no schedule', () => {
+  test('and a participant who is not in it has no schedule', () => {
     expect(() => scheduleFor(paperPlan(), 'P16')).toThrow('P01 to P15, not P16');
   });
 });

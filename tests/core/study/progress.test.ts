@@ -5,7 +5,7 @@ import { scheduleFor } from '../../../src/core/study/plan';
 import { begin, elapsedSeconds, remainingSeconds, resumed } from '../../../src/core/study/progress';
 import { checkedRecord } from '../../../src/core/study/study-record';
 import { seed } from '../arbitraries';
-import { outcomeOf, paperPlan, session, somebody } from './studies';
+import { aWomanOf26, outcomeOf, paperPlan, session } from './studies';
 
 const schedule = scheduleFor(paperPlan(), 'P02');
 
@@ -30,7 +30,7 @@ describe('a session', () => {
 
   test('records nothing before consent', () => {
     const one = session(schedule);
-    expect(one.tell({ type: 'demographics', demographics: somebody })).not.toBeNull();
+    expect(one.tell({ type: 'demographics', demographics: aWomanOf26 })).not.toBeNull();
     expect(one.tell({ type: 'pause' })).toBeNull();
     expect(one.tell({ type: 'resume' })).toBeNull();
     expect(one.tell({ type: 'reload' })).toBeNull();
@@ -259,7 +259,7 @@ describe('a stored session', () => {
   });
 
   test.each<[string, object, string]>([
-    ['of somebody else', { participant: 'P03' }, 'participant: the stored session is of P03, not of P02'],
+    ['of another participant', { participant: 'P03' }, 'participant: the stored session is of P03, not of P02'],
     ['of another study', { study: 'other' }, 'study: the stored session is of other, not of paper'],
     ['at a step that is none', { step: 'archery/9/trial-1' }, 'step: the schedule of P02 has no step'],
     ['of a later program', { version: 2 }, 'version: expected 1'],

@@ -9,7 +9,7 @@ import {
   scale,
   unanswered,
 } from '../../../src/core/study/questionnaires';
-import { somebody } from './studies';
+import { aWomanOf26 } from './studies';
 
 const { archery, ball } = questionnaires;
 
@@ -46,15 +46,15 @@ describe('the questionnaires', () => {
 
 describe('demographics', () => {
   test('are what the paper asked for, and the preferred hand', () => {
-    expect(checkedDemographics(somebody)).toEqual(somebody);
-    expect(demographicFields.map(({ id }) => id).toSorted()).toEqual(Object.keys(somebody).toSorted());
+    expect(checkedDemographics(aWomanOf26)).toEqual(aWomanOf26);
+    expect(demographicFields.map(({ id }) => id).toSorted()).toEqual(Object.keys(aWomanOf26).toSorted());
   });
 
   test('every choice of the form is accepted', () => {
     for (const field of demographicFields) {
       if (field.kind !== 'choice') continue;
       for (const { value } of field.options)
-        expect(() => checkedDemographics({ ...somebody, [field.id]: value })).not.toThrow();
+        expect(() => checkedDemographics({ ...aWomanOf26, [field.id]: value })).not.toThrow();
     }
   });
 
@@ -66,7 +66,7 @@ describe('demographics', () => {
     ['major', 'x'.repeat(81)],
     ['handedness', undefined],
   ])('%s = %o is refused by name', (field, value) => {
-    expect(() => checkedDemographics({ ...somebody, [field]: value })).toThrow(`${field}: `);
+    expect(() => checkedDemographics({ ...aWomanOf26, [field]: value })).toThrow(`${field}: `);
   });
 });
 

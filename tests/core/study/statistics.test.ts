@@ -114,7 +114,7 @@ describe("Wilcoxon's signed-rank test", () => {
     expect(Math.abs((counted.p as number) - (approximate.p as number))).toBeLessThan(0.001);
   });
 
-  test('says nothing where nobody differs', () => {
+  test('says nothing where no pair differs', () => {
     expect(signedRankTest([3, 4], [3, 4])).toMatchObject({ n: 0, zeros: 2, p: null, effect: null });
   });
 

@@ -18,7 +18,7 @@ export const paperPlan = (changes: Partial<StudyPlan> = {}): StudyPlan => ({
   ...changes,
 });
 
-export const somebody = {
+export const aWomanOf26 = {
   gender: 'woman',
   age: 26,
   major: 'Computer science',
@@ -74,7 +74,7 @@ export function session(schedule: Schedule, simulated = false) {
       };
       now += 1;
       if (step.kind === 'consent') tell({ type: 'consent', version: schedule.consentVersion, motion: false });
-      else if (step.kind === 'demographics') tell({ type: 'demographics', demographics: somebody });
+      else if (step.kind === 'demographics') tell({ type: 'demographics', demographics: aWomanOf26 });
       else if (step.kind === 'calibration') tell({ type: 'calibrated', calibration: { eyeHeight: 1.6, armSpan: 1.5 } });
       else if (step.kind === 'tutorial' || step.kind === 'trial') {
         tell({ type: 'start' });

@@ -13,7 +13,7 @@ const completed = (participant: string, simulated = false) => {
 };
 
 describe('the tables of a study', () => {
-  test('have a row per answer and per trial, for everybody', () => {
+  test('have a row per answer and per trial, for every participant', () => {
     const tables = new Map(
       studyTables(participantsOf(plan).flatMap((participant) => completed(participant))).map((table) => [
         table.name,

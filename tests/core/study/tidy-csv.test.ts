@@ -9,7 +9,7 @@ const tableOf = (...cells: Table['rows'][number][string][]): Table => ({
   rows: cells.map((remark) => ({ remark })),
 });
 
-/** A reader as RFC 4180 describes it, so that what we write is read by somebody else's rules. */
+/** A reader as RFC 4180 describes it, so that what we write is read by rules that are not ours. */
 function readCsv(csv: string): string[][] {
   const rows: string[][] = [];
   let row: string[] = [];

@@ -21,7 +21,7 @@ const pose = (position: Vec3, orientation: Quat = identity): TrackedPose => ({
   tracking: 'tracked',
 });
 
-/** Somebody of this body, upright at the origin, with both arms straight along `direction` (right side) from the shoulders. */
+/** A person of this body, upright at the origin, with both arms straight along `direction` (right side) from the shoulders. */
 function stretched(
   calibration: Calibration,
   direction: 'forward' | 'sideways',
@@ -116,7 +116,7 @@ describe('the guided calibration', () => {
     expect(stepGuidedCalibration(state, { ...still, time: 99 })).toBe(state);
   });
 
-  test('one hand that is nobody’s does not matter', () => {
+  test('one hand that is no person’s does not matter', () => {
     const state = guide(() => ({ ...stretched(person, 'forward'), leftHand: null }));
     expect(state.kind).toBe('done');
   });
@@ -232,7 +232,7 @@ describe('the guided calibration', () => {
       expect(state.calibration.gazePitch).toBeCloseTo(Math.PI / 12, 6);
     });
 
-    test('is not measured on somebody who reads a sheet beside them', () => {
+    test('is not measured on a person who reads a sheet beside them', () => {
       const state = worn(-0.2, -0.2);
       if (state.kind !== 'done') throw new Error('not measured');
       expect(state.calibration).not.toHaveProperty('gazePitch');

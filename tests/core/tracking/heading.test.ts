@@ -17,7 +17,7 @@ describe('the heading', () => {
     );
   });
 
-  test('does not turn round when somebody looks up past the zenith', () => {
+  test('does not turn round when a person looks up past the zenith', () => {
     for (const pitch of [1.4, 1.55, 1.6, 1.75]) {
       expect(headingOf(fromEulerYxz(vec3(pitch, 0.5, 0)))).toBeSameRotationAs(fromAxisAngle(up, 0.5), 1e-4);
     }

@@ -24,7 +24,7 @@ const frameAt = (time: number, height: number, orientation: Quat = identity): Tr
   rightHand: null,
 });
 
-/** Somebody's eye height [m] at a time [s], for that many seconds. */
+/** A person's eye height [m] at a time [s], for that many seconds. */
 const motion = (seconds: number, heightAt: (time: number) => number, hz = rateHz): TrackingFrame[] =>
   Array.from({ length: Math.round(seconds * hz) }, (_, row) => frameAt(row / hz, heightAt(row / hz)));
 
@@ -46,8 +46,8 @@ function wear(frames: readonly TrackingFrame[], calibration: Calibration, watch 
   return worn;
 }
 
-describe('whoever stands taller than was calibrated', () => {
-  test('is as tall as they stand within two seconds, at any rate and whatever they look at', () => {
+describe('a person who stands taller than was calibrated', () => {
+  test('is as tall as they stand within two seconds, at any rate, with the eyes on anything', () => {
     fc.assert(
       fc.property(
         number(1.2, 1.9),
@@ -99,14 +99,14 @@ describe('whoever stands taller than was calibrated', () => {
     expect(grown.eyeHeight).toBeCloseTo(1.05 * person.eyeHeight, 6);
   });
 
-  test('has longer arms where nobody measured them', () => {
+  test('has longer arms where they were not measured', () => {
     const frames = motion(2, () => 1.7);
     const grown = wear(frames, provisionalCalibration(1.62)).at(-1)!;
     expect(grown.armSpan).toBeCloseTo(provisionalCalibration(1.7).armSpan, 9);
   });
 });
 
-describe('nobody grows', () => {
+describe('no one grows', () => {
   const eyes = person.eyeHeight;
   const looksUp = fromAxisAngle(right, Math.PI / 3);
   const liftedEyes = eyes + liftOf(looksUp, person);
@@ -136,7 +136,7 @@ describe('nobody grows', () => {
     expect(Math.max(...heights)).toBeLessThan((eyes * 13) / 12);
   });
 
-  test('to what nobody measures', () => {
+  test('to what no one measures', () => {
     const giant = { eyeHeight: 0.98 * eyeHeightRange.max, armSpan: 0.9 * eyeHeightRange.max };
     expect(
       wear(

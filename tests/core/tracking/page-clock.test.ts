@@ -15,7 +15,7 @@ function timesOf(stamps: readonly number[]): readonly number[] {
 }
 
 describe('the page’s clock', () => {
-  test('whatever time stamps come, it goes on with every frame, and by half a second at most', () => {
+  test('with any time stamps it goes on with every frame, and by half a second at most', () => {
     const steps = fc.oneof(
       { weight: 8, arbitrary: fc.double({ min: 5, max: 40, noNaN: true }) },
       fc.double({ min: -1e7, max: 1e7, noNaN: true }),

@@ -42,7 +42,7 @@ const recording: fc.Arbitrary<Recording> = fc.record({
     }),
 });
 
-/** JSON knows no −0; nobody's hand does either. */
+/** JSON knows no −0; no one's hand does either. */
 const withoutNegativeZero = (value: unknown): unknown =>
   typeof value === 'number'
     ? value + 0
