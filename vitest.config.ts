@@ -18,7 +18,7 @@ export default defineConfig({
   test: {
     setupFiles: ['tests/property-runs.ts', 'tests/matchers/to-be-same-rotation-as.ts'],
     // A property with many runs on a busy machine is slow, not wrong.
-    testTimeout: 30_000,
+    testTimeout: 120_000,
     // One for each core: much of the time is spent waiting for servers and sockets.
     maxWorkers: '100%',
     slowTestThreshold: 5_000,

@@ -1,9 +1,10 @@
-import { expect, keepPicture, open, probe, test } from './page-fixture';
+import { expect, freshTest, keepPicture, open, probe, test } from './page-fixture';
 import { serveStudies } from './study-server';
 
 type Page = Parameters<typeof open>[0];
 
 test.use({ viewport: { width: 900, height: 560 } });
+freshTest.use({ viewport: { width: 900, height: 560 } });
 
 const bar = (page: Page) => page.getByRole('region', { name: 'Play' });
 
@@ -28,61 +29,64 @@ test('a newcomer alone reads rules, what is waited for and a clock that stands a
   await keepPicture(page, 'ball-waiting');
 });
 
-test('a room has a link and a QR code to send; a page whose seat was taken over says so and takes it back @full', async ({
-  page,
-  complaints,
-}) => {
-  test.setTimeout(240_000);
-  const server = await serveStudies();
-  // Another server than the one of the other tests: nothing else is asked for.
-  complaints.allow(new RegExp(`asked ${server.origin}:`));
-  try {
-    const joined = (of: Page) =>
-      of.waitForFunction(
-        () => {
-          const now = window.threepoint?.probe();
-          return now?.ready === true && now.game?.name === 'ball' && now.game.connection === 'joined';
-        },
-        undefined,
-        { timeout: 90_000 },
-      );
-    await page.goto(`${server.origin}/?play=ball&panel=off&quality=low&estimator=ik&bots=off`);
-    await page.waitForFunction(() => window.threepoint?.probe().game?.name === 'ball', undefined, { timeout: 60_000 });
-    await page.getByRole('button', { name: 'Play with others' }).click();
-    const dialog = page.getByRole('dialog', { name: 'Play with others' });
-    await expect(dialog.getByRole('img', { name: 'QR code of the link' })).toBeVisible({ timeout: 60_000 });
-    const link = await dialog.getByLabel('Link for the others').inputValue();
-    expect(link).toMatch(new RegExp(`^${server.origin}/\\?play=ball&room=[a-z]{6}$`));
-    await keepPicture(page, 'ball-invitation');
-    await dialog.getByRole('button', { name: 'Close' }).click();
-    await joined(page);
-    await expect(bar(page)).toContainText(/Connection (good|fair|poor), \d/);
+// A page of its own: it goes on asking this server when the server is gone.
+freshTest(
+  'a room has a link and a QR code to send; a page whose seat was taken over says so and takes it back @full',
+  async ({ page, complaints }) => {
+    test.setTimeout(240_000);
+    const server = await serveStudies();
+    // Another server than the one of the other tests: nothing else is asked for.
+    complaints.allow(new RegExp(`asked ${server.origin}:`));
+    try {
+      const joined = (of: Page) =>
+        of.waitForFunction(
+          () => {
+            const now = window.threepoint?.probe();
+            return now?.ready === true && now.game?.name === 'ball' && now.game.connection === 'joined';
+          },
+          undefined,
+          { timeout: 90_000 },
+        );
+      await page.goto(`${server.origin}/?play=ball&panel=off&quality=low&estimator=ik&bots=off`);
+      await page.waitForFunction(() => window.threepoint?.probe().game?.name === 'ball', undefined, {
+        timeout: 60_000,
+      });
+      await page.getByRole('button', { name: 'Play with others' }).click();
+      const dialog = page.getByRole('dialog', { name: 'Play with others' });
+      await expect(dialog.getByRole('img', { name: 'QR code of the link' })).toBeVisible({ timeout: 60_000 });
+      const link = await dialog.getByLabel('Link for the others').inputValue();
+      expect(link).toMatch(new RegExp(`^${server.origin}/\\?play=ball&room=[a-z]{6}$`));
+      await keepPicture(page, 'ball-invitation');
+      await dialog.getByRole('button', { name: 'Close' }).click();
+      await joined(page);
+      await expect(bar(page)).toContainText(/Connection (good|fair|poor), \d/);
 
-    const pass = await page.evaluate(() => JSON.stringify({ ...sessionStorage }));
-    const other = await page.context().newPage();
-    await other.addInitScript((kept) => {
-      for (const [key, value] of Object.entries(JSON.parse(kept))) sessionStorage.setItem(key, String(value));
-    }, pass);
-    await other.goto(`${link}&panel=off&quality=low&estimator=ik`);
-    await joined(other);
-    await page.bringToFront();
-    await expect(bar(page)).toContainText('You opened this room somewhere else');
-    await expect(bar(page).getByRole('button', { name: 'Watch' })).toBeDisabled();
-    await expect(bar(page).getByRole('button', { name: 'Play with the mouse' })).toBeDisabled();
-    for (const covered of ['#masthead h1', '#play', '.panel-bar']) {
-      expect(await overlap(page, '#banner', covered), covered).toBe(false);
+      const pass = await page.evaluate(() => JSON.stringify({ ...sessionStorage }));
+      const other = await page.context().newPage();
+      await other.addInitScript((kept) => {
+        for (const [key, value] of Object.entries(JSON.parse(kept))) sessionStorage.setItem(key, String(value));
+      }, pass);
+      await other.goto(`${link}&panel=off&quality=low&estimator=ik`);
+      await joined(other);
+      await page.bringToFront();
+      await expect(bar(page)).toContainText('You opened this room somewhere else');
+      await expect(bar(page).getByRole('button', { name: 'Watch' })).toBeDisabled();
+      await expect(bar(page).getByRole('button', { name: 'Play with the mouse' })).toBeDisabled();
+      for (const covered of ['#masthead h1', '#play', '.panel-bar']) {
+        expect(await overlap(page, '#banner', covered), covered).toBe(false);
+      }
+      await keepPicture(page, 'ball-taken-over');
+      await bar(page).getByRole('button', { name: 'Take over again' }).click();
+      await joined(page);
+      await expect(bar(page).getByRole('button', { name: 'Watch' })).toBeEnabled();
+      await other.bringToFront();
+      await expect(bar(other).getByRole('button', { name: 'Take over again' })).toBeVisible();
+      await other.close();
+    } finally {
+      await server.close();
     }
-    await keepPicture(page, 'ball-taken-over');
-    await bar(page).getByRole('button', { name: 'Take over again' }).click();
-    await joined(page);
-    await expect(bar(page).getByRole('button', { name: 'Watch' })).toBeEnabled();
-    await other.bringToFront();
-    await expect(bar(other).getByRole('button', { name: 'Take over again' })).toBeVisible();
-    await other.close();
-  } finally {
-    await server.close();
-  }
-});
+  },
+);
 
 test('at 900 × 560 nothing lies over the name, the line below it, the choice of places or Recentre', async ({
   page,
