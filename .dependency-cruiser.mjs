@@ -152,7 +152,7 @@ export default {
       to: { path: '^src/app/', pathNot: '^src/app/$1/' },
     },
     {
-      name: 'nobody-imports-main',
+      name: 'main-is-imported-by-none',
       comment: 'main.ts builds everything; who needs something from it should be given it.',
       severity: 'error',
       from: {},
@@ -218,7 +218,7 @@ export default {
     },
     {
       name: 'page-runs-in-a-browser',
-      comment: "The page has no Node: a built-in module here would only fail in somebody's browser.",
+      comment: "The page has no Node: a built-in module here would only fail in a user's browser.",
       severity: 'error',
       from: { path: '^src/' },
       to: { dependencyTypes: ['core'] },

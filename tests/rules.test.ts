@@ -92,7 +92,7 @@ describe('the import rules', () => {
     ['adapters do not meet', 'adapters-are-strangers', { 'src/ui/a.ts': "import '../xr/b';", 'src/xr/b.ts': empty }],
     [
       'main is the top',
-      'nobody-imports-main',
+      'main-is-imported-by-none',
       { 'src/app/shell/frame-loop.ts': "import '../main';", 'src/app/main.ts': empty },
     ],
     [

@@ -1,4 +1,4 @@
-/** Prints a figure that a test has measured, for whoever reads its output. */
+/** Prints a figure that a test has measured, for the reader of its output. */
 export const tell = (row: string, figures: Readonly<Record<string, string | number>>): void =>
   console.log(
     `${row}: ${Object.entries(figures)

@@ -6,7 +6,7 @@ import { gltfFaults } from '../../src/avatar/validate-gltf';
 import { measured } from '../reliability/measured';
 import { changed, type GltfJson, mannequin } from './glb';
 
-const look = (bytes: ArrayBuffer) => inspectAvatar(new Uint8Array(bytes), 'somebody.vrm');
+const look = (bytes: ArrayBuffer) => inspectAvatar(new Uint8Array(bytes), 'person.vrm');
 
 /** The first bytes of a PNG of this size. */
 function png(width: number, height: number): Uint8Array {
@@ -31,7 +31,7 @@ const withPictures = (count: number, picture: Uint8Array): ArrayBuffer =>
 
 const first = <Item>(items: readonly Item[]): Item => items[0] as Item;
 
-/** What somebody may try, and the sentence for it. */
+/** What a user may try, and the sentence for it. */
 const attempts: readonly (readonly [string, () => ArrayBuffer, RegExp])[] = [
   ['more bytes than a headset takes', () => new ArrayBuffer(61 * 2 ** 20), /61 MB; an avatar may have 60 at most/],
   [
@@ -156,7 +156,7 @@ afterAll(() =>
 
 describe('an avatar from a file', () => {
   test.each(attempts)('with %s is refused, by name and limit', (_, file, sentence) => {
-    expect(() => look(file())).toThrow(/^somebody\.vrm: /);
+    expect(() => look(file())).toThrow(/^person\.vrm: /);
     expect(() => look(file())).toThrow(sentence);
   });
 
@@ -165,7 +165,7 @@ describe('an avatar from a file', () => {
     expect(() => look(withPictures(20, png(2048, 1024)))).not.toThrow();
   });
 
-  test('is looked at in milliseconds, whatever it says it holds', () => {
+  test('is looked at in milliseconds, also where it claims to hold more', () => {
     const file = first(attempts.filter(([name]) => name.startsWith('accessors')))[1]();
     const before = process.memoryUsage().arrayBuffers;
     expect(() => look(file)).toThrow();
@@ -194,11 +194,11 @@ describe('a compressed body', () => {
   test.each(['EXT_meshopt_compression', 'KHR_meshopt_compression', 'KHR_draco_mesh_compression', 'KHR_texture_basisu'])(
     '%s is refused in one sentence, before the loader begins',
     async (extension) => {
-      const sentence = `somebody.vrm: is compressed (${extension}); this page reads avatars that are saved without compression`;
+      const sentence = `person.vrm: is compressed (${extension}); this page reads avatars that are saved without compression`;
       const rejections: unknown[] = [];
       const heard = (reason: unknown) => void rejections.push(reason);
       process.on('unhandledRejection', heard);
-      await expect(parseAvatar(compressed(extension), 'somebody.vrm')).rejects.toThrow(sentence);
+      await expect(parseAvatar(compressed(extension), 'person.vrm')).rejects.toThrow(sentence);
       await new Promise((resolve) => setImmediate(resolve));
       process.off('unhandledRejection', heard);
       expect(rejections).toEqual([]);
@@ -215,7 +215,7 @@ describe('a compressed body', () => {
 });
 
 /** As the page opens files, with the validator that its worker runs. */
-const opened = (bytes: ArrayBuffer) => loadAvatar(bytes, 'somebody.vrm', gltfFaults);
+const opened = (bytes: ArrayBuffer) => loadAvatar(bytes, 'person.vrm', gltfFaults);
 
 /** Well within every limit, and wrong all the same. */
 const broken: readonly (readonly [string, (json: GltfJson) => void])[] = [
@@ -243,13 +243,13 @@ const broken: readonly (readonly [string, (json: GltfJson) => void])[] = [
 
 describe('the Khronos validator', () => {
   test.each(broken)('refuses %s', async (_, change) => {
-    await expect(opened(changed(change))).rejects.toThrow(/^somebody\.vrm: not valid glTF \(/);
+    await expect(opened(changed(change))).rejects.toThrow(/^person\.vrm: not valid glTF \(/);
     refused += 1;
   });
 
   test('takes ours', async () => {
     expect(await gltfFaults(new Uint8Array(mannequin()))).toEqual([]);
-    expect((await opened(mannequin())).name).toBe('somebody.vrm');
+    expect((await opened(mannequin())).name).toBe('person.vrm');
   });
 
   test('is not asked what the limits have refused', async () => {
@@ -259,7 +259,7 @@ describe('the Khronos validator', () => {
       return [];
     };
     for (const [, file] of attempts) {
-      await expect(loadAvatar(file(), 'somebody.vrm', validate)).rejects.toThrow('somebody.vrm');
+      await expect(loadAvatar(file(), 'person.vrm', validate)).rejects.toThrow('person.vrm');
       refused += 1;
     }
     expect(asked).toBe(0);

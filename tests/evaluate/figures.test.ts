@@ -8,7 +8,7 @@ import { person, recordedMotion } from './recorded-motion';
 
 type Truth = MeasuredFrame['truth'];
 
-/** Somebody upright with the wrists right, up and forward of the shoulders' middle [m], turned by yaw and standing anywhere. */
+/** A person upright with the wrists right, up and forward of the shoulders' middle [m], turned by yaw and standing anywhere. */
 function standing(left: Vec3, right: Vec3, yaw = 0, leanSideways = 0): Truth {
   const shoulders = vec3(leanSideways, 1.4, 0);
   const hand = ({ x, y, z }: Vec3) => add(shoulders, vec3(x, y, -z));
@@ -37,7 +37,7 @@ describe('the six motions', () => {
     ['lift', vec3(-0.15, 0.45, 0.2), vec3(0.15, 0.45, 0.2)],
     ['right hand in front', vec3(-0.2, -0.5, 0.05), vec3(0.15, 0, 0.55)],
     ['folded arms', vec3(0.12, -0.25, 0.2), vec3(-0.12, -0.25, 0.2)],
-  ] as const)('%s is known by the wrists, whichever way somebody faces', (motion, left, right) => {
+  ] as const)('%s is known by the wrists, whichever way the person faces', (motion, left, right) => {
     for (const yaw of [0, 1, 3, -2]) expect(nearest(standing(left, right, yaw))).toBe(motion);
   });
 

@@ -78,7 +78,7 @@ describe('the choice of clips', () => {
 });
 
 describe('a whole run', () => {
-  const clips = [{ name: 'walk', person: 'somebody', frames: 220 }];
+  const clips = [{ name: 'walk', person: 'a-walker', frames: 220 }];
   const load = ({ name, frames }: (typeof clips)[number]) => ({
     name,
     calibration: person,

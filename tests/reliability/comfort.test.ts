@@ -30,7 +30,7 @@ const contrast = (a: readonly number[], b: readonly number[]): number => {
   return (light + 0.05) / (dark + 0.05);
 };
 
-test('text stands out from what it is written on, whatever colours an eye sees', () => {
+test('text stands out from what it is written on, for every kind of colour vision', () => {
   const least = Math.min(
     contrast(colour('ink'), colour('glass')),
     contrast(colour('ink-soft'), colour('glass')),

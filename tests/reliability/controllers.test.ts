@@ -20,7 +20,7 @@ test('off for a moment and on again as another device of the same hand: what it 
   expect(thrower.held.right).toBe(0);
 });
 
-test('both off: nothing stays in a hand that nobody has', () => {
+test('both off: nothing stays in a hand that is gone', () => {
   const thrower = ballThrower().carry(1).hold(null, null, 1);
   expect(thrower.held).toEqual({ left: null, right: null });
   expect(thrower.state.balls[0]).toEqual({ on: 'rack' });

@@ -22,7 +22,7 @@ const people = [1.03, 1.4, 1.6, 1.8, 2.06].flatMap((eyeHeight) => [
   { eyeHeight: 0.72 * eyeHeight, armLength: 0.355 * eyeHeight },
 ]);
 
-test('archery: everybody finishes a round with 50 of 50, with either hand, standing or seated', () => {
+test('archery: each person finishes a round with 50 of 50, with either hand, standing or seated', () => {
   let finished = 0;
   let played = 0;
   for (const body of people) {
@@ -98,7 +98,7 @@ function ballMatch(eyeHeight: number, oneHanded: { readonly player: number; read
   return { state, thrown };
 }
 
-test('the ball game: everybody throws and catches, seated too; with one hand it is finished as well', () => {
+test('the ball game: each person throws and catches, seated too; with one hand it is finished as well', () => {
   let finished = 0;
   let played = 0;
   const figures: Record<string, string> = {};

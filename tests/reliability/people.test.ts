@@ -107,7 +107,7 @@ test.each([
 
 test('a floor half a metre too low: no one is measured wrongly; with the height typed, the body fits', () => {
   const lower = () => -0.5;
-  // Stretched arms under a head that is too high look like the bent ones of somebody taller.
+  // Stretched arms under a head that is too high look like the bent ones of a taller person.
   for (const body of statures.map(bodyOf)) expect(measuredInTwoSeconds(body, lower())).toMatch(/type your height/);
   const seen = worn(lower, (body) => body);
   expect(seen.pelvis).toBeGreaterThan(0);

@@ -6,7 +6,7 @@ import { measured } from './measured';
 
 const source = new URL('../../src/', import.meta.url);
 
-/** What somebody may call themselves. */
+/** Names that people may give themselves. */
 const names = [
   '<img src=x onerror=alert(1)>',
   '<script>alert(1)</script>',
@@ -39,7 +39,7 @@ test('no code of the page turns text into markup', () => {
 test('an exported table carries no formula', () => {
   const table = {
     name: 'answers',
-    columns: [{ name: 'remark', type: 'text', description: 'What somebody typed.' }],
+    columns: [{ name: 'remark', type: 'text', description: 'What the participant typed.' }],
     rows: names.map((remark) => ({ remark })),
   } as unknown as Parameters<typeof tidyCsv>[0];
   const cells = tidyCsv(table).split(/\r?\n/).slice(1).filter(Boolean);

@@ -26,7 +26,7 @@ def test_the_same_seed_makes_the_same_people():
     assert np.abs(first.positions - other.positions).max() > 0.1
 
 
-def test_somebody_moves_smoothly_and_stays_above_the_floor():
+def test_a_generated_person_moves_smoothly_and_stays_above_the_floor():
     joints, rotations = generate_clip(np.random.default_rng(2), 600, PERSON)
     assert joints[..., 1].min() > 0.1
     assert joints[:, JOINTS.index("head"), 1].max() < 1.8

@@ -5,13 +5,13 @@ export interface Calibration {
   /** Distance [m] from wrist to wrist, arms stretched out sideways. */
   readonly armSpan: number;
   /**
-   * How far up [rad] the headset points when its wearer looks straight ahead: it sits tilted on nearly everybody. Absent: not
+   * How far up [rad] the headset points when its wearer looks straight ahead: it sits tilted on nearly every wearer. Absent: not
    * measured, and taken for level.
    */
   readonly gazePitch?: number | undefined;
 }
 
-/** The steepest tilt of a headset that is believed [rad]; whoever seems to wear it steeper was not looking ahead. */
+/** The steepest tilt of a headset that is believed [rad]; a wearer who seems to wear it steeper was not looking ahead. */
 export const steepestGazePitch = Math.PI / 12;
 
 // Height of the eyes above the floor as a share of stature: Drillis & Contini, Body Segment Parameters (1966); ANSUR II agrees
@@ -25,13 +25,13 @@ const ARM_SPAN_PER_EYE_HEIGHT = 0.945;
 // Fingertip span equals stature within 3 % on average (Drillis & Contini; ANSUR II).
 const ARM_SPAN_PER_FINGERTIP_SPAN = ARM_SPAN_PER_EYE_HEIGHT * EYE_HEIGHT_PER_STATURE;
 
-/** Eye height [m] of somebody of this stature [m] without shoes. */
+/** Eye height [m] of a person of this stature [m] without shoes. */
 export const eyeHeightFromStature = (stature: number): number => stature * EYE_HEIGHT_PER_STATURE;
 
 /** The inverse of `eyeHeightFromStature`. */
 export const statureFromEyeHeight = (eyeHeight: number): number => eyeHeight / EYE_HEIGHT_PER_STATURE;
 
-/** Wrist to wrist [m] of somebody who measures this much [m] from fingertip to fingertip. */
+/** Wrist to wrist [m] of a person who measures this much [m] from fingertip to fingertip. */
 export const armSpanFromFingertipSpan = (fingertipSpan: number): number => fingertipSpan * ARM_SPAN_PER_FINGERTIP_SPAN;
 
 /** The inverse of `armSpanFromFingertipSpan`. */
@@ -57,7 +57,7 @@ export const defaultCalibration: Calibration = {
   armSpan: armSpanFromFingertipSpan(1.7),
 };
 
-/** Why these numbers are nobody's body, in a sentence; null where they are somebody's. */
+/** Why these numbers are no person's body, in a sentence; null where they can be. */
 export function calibrationComplaint({ eyeHeight, armSpan }: Calibration): string | null {
   const told = (value: number) => `${value.toFixed(2)} m`;
   // Written so that NaN is refused too.
@@ -74,11 +74,11 @@ export function calibrationComplaint({ eyeHeight, armSpan }: Calibration): strin
     : null;
 }
 
-// Below it somebody sits or the floor is wrong; a child that low needs the guided calibration.
+// Below it the person sits or the floor is wrong; a child that low needs the guided calibration.
 const LOWEST_STANDING_ADULT = 1.35;
 
 /**
- * A body for somebody who has not calibrated, from the headset's height [m] above the floor: taken for the eye height where
+ * A body for a wearer who has not calibrated, from the headset's height [m] above the floor: taken for the eye height where
  * an adult could stand so tall; otherwise (seated, wrong floor) the default body.
  */
 export function provisionalCalibration(headHeight: number): Calibration {

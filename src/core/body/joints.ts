@@ -40,7 +40,7 @@ export const parentOf: Readonly<Record<JointName, JointName | null>> = {
   rightHand: 'rightLowerArm',
 };
 
-/** The six joints nobody tracks, in the order of every tensor: what the networks estimate and the tables report. */
+/** The six joints that no device tracks, in the order of every tensor: what the networks estimate and the tables report. */
 export const estimatedJoints = [
   'leftLowerArm',
   'rightLowerArm',

@@ -205,7 +205,7 @@ export function followTransition(
   aimArc(forearm, drawn.forearm, goal.forearm);
   const toGo = pathLength(transition, drawn, goal);
   const step = stepOf(transition, toGo, goal, passed);
-  // Whatever the shoulder does, the arm goes on; one whose goal runs away is drawn to it in the end.
+  // The arm goes on while the shoulder moves; one whose goal runs away is drawn to it in the end.
   const least = Math.min(1, (transition.speed * passed) / Math.max(3 * toGo, 1e-9));
   const hurry = goal.seconds === 0 ? clamp((transition.age - hurrySeconds) / (longestSeconds - hurrySeconds), 0, 1) : 0;
   const share = Math.max(hurry, least, shareWithin(transition, drawn, goal, step));

@@ -16,7 +16,7 @@ export interface InferenceRequest {
 
 /** What one frame shows, and what it wants to know. The estimator owns both and overwrites them with the next frame. */
 export interface Estimate {
-  /** Floor frame. Head and hands are the frame's own, whatever the network's age. */
+  /** Floor frame. Head and hands are the frame's own, however old the network's answer is. */
   readonly pose: AvatarPose;
   /** Null: the method has no network, or one that has answered already. */
   readonly request: InferenceRequest | null;

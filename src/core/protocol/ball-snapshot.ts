@@ -21,7 +21,7 @@ const place = v.union([
 const phases = ['ready', 'running', 'over'] as const;
 const ends = ['balls', 'time'] as const;
 
-/** A match of the ball game in few bytes: what somebody who arrives late needs to see and to follow it. */
+/** A match of the ball game in few bytes: what a player who arrives late needs to see and to follow it. */
 export const packedBallSchema = v.strictObject({
   /** Balls, seconds, rotation. */
   o: v.tuple([whole, finite, v.pipe(v.number(), v.integer())]),

@@ -126,10 +126,10 @@ function pointsOf(): PointsPacket {
   };
 }
 
-/** What a relay needs: the whole packet checked, head and hands read; null for bad bytes, whatever they are. */
+/** What a relay needs: the whole packet checked, head and hands read; null for bytes that are no packet. */
 export const decodePoints = (bytes: Uint8Array): PointsPacket | null => (readPacket(bytes, steps) ? pointsOf() : null);
 
-/** The packet as it was sent, up to rounding; null for bad bytes, whatever they are. The skeleton is the sender's. */
+/** The packet as it was sent, up to rounding; null for bytes that are no packet. The skeleton is the sender's. */
 export function decodePose(bytes: Uint8Array, skeleton: Skeleton): PosePacket | null {
   if (!readPacket(bytes, steps)) return null;
   const points = pointsOf();

@@ -26,7 +26,7 @@ export function encodeFrame(poses: readonly SeatPose[]): Uint8Array {
   return frame;
 }
 
-/** The packets of a frame, their bytes in its memory; null for bad bytes, whatever they are. What a packet says is not looked at. */
+/** The packets of a frame, their bytes in its memory; null for bytes that are no frame. What a packet says is not looked at. */
 export function decodeFrame(frame: Uint8Array): readonly SeatPose[] | null {
   if (frame[0] !== frameVersion) return null;
   const poses: SeatPose[] = [];

@@ -14,7 +14,7 @@ export type FingerCurl = readonly [number, number, number, number, number];
 export interface PosePacket {
   /** When the frame was, by the sender's clock [ms], modulo 65 536. */
   readonly timeMs: number;
-  /** true: the sender's frame of reference changed; nobody interpolates from the packet before. */
+  /** true: the sender's frame of reference changed; no one may interpolate from the packet before. */
   readonly jump: boolean;
   readonly pose: AvatarPose;
   /** How far each hand is closed, 0 to 1. */

@@ -65,7 +65,7 @@ const overhead: HandKey = { at: [0.16, 0.92, -0.2], knuckles: [0, 1, -0.1], back
 const aside: HandKey = { at: [0.93, 0.06, -0.12], knuckles: [1, 0, -0.05], back: [0, 1, 0] };
 const lowAhead: HandKey = { at: [0.12, -0.62, -0.6], knuckles: [0, -0.35, -1], back: [0.6, 0.75, 0] };
 
-/** Half a minute of somebody who shows what the body can do. It ends as it began. */
+/** Half a minute of an actor who shows what the body can do. It ends as it began. */
 const keys: readonly Key[] = [
   { time: 0, left: hanging, right: hanging },
   { time: 1.2, left: hanging, right: hanging, look: 8 },

@@ -4,26 +4,26 @@ import { fromAxisAngle, rotate } from '../math/quat';
 import { right, zero } from '../math/vec3';
 import type { TrackingFrame } from './tracking-frame';
 
-/** Notices whoever stands taller than their calibration says. Smaller tells nothing: people crouch, slouch and sit. */
+/** Notices a wearer who stands taller than the calibration says. Smaller tells nothing: people crouch, slouch and sit. */
 export interface HeightWatch {
   /**
    * Once a frame, with the calibration in force: the same, grown, in the frame that proves it too small; else null. Another
    * object is another calibration, unless it is the one that was returned.
    */
   observe(frame: TrackingFrame, calibration: Calibration): Calibration | null;
-  /** Forgets how high the headset was: the floor lies elsewhere, or somebody else wears it. */
+  /** Forgets how high the headset was: the floor lies elsewhere, or another person wears it. */
   reset(): void;
 }
 
 /** Seconds at a height that prove it: longer than anybody jumps. */
 const provingSeconds = 1.25;
-/** [m] by which eyes rise and sink in that time while somebody stands or walks. */
+/** [m] by which eyes rise and sink in that time while a person stands or walks. */
 const calmRange = 0.04;
 /** As a part of the eye height: shoes, and a headset that was put on anew. */
 const deadZone = 0.02;
-/** The same once something grew: what was measured is wrong then, and whoever straightens up is followed. */
+/** The same once something grew: what was measured is wrong then, and a wearer who straightens up is followed. */
 const grownDeadZone = 0.005;
-/** As a part of the eye height that was measured: whoever rises further stands on something. */
+/** As a part of the eye height that was measured: a wearer who rises further stands on something. */
 const mostGrowth = 0.08;
 /** A longer one [s] between two frames hides what happened in it. */
 const longestGap = 0.5;
@@ -55,7 +55,7 @@ export function createHeightWatch(): HeightWatch {
     stand = null;
   }
 
-  /** How high [m] the eyes would be if the head were level: looking up lifts a headset and makes nobody taller. */
+  /** How high [m] the eyes would be if the head were level: looking up lifts a headset and makes no one taller. */
   function levelHeight({ position, orientation }: TrackingFrame['head']): number {
     return position.y - rotate(orientation, eyesInHeadset).y + levelRise;
   }
@@ -83,7 +83,7 @@ export function createHeightWatch(): HeightWatch {
   };
 }
 
-/** The stand with one more frame; one that begins with it, where the head moved or nobody looked for a while. */
+/** The stand with one more frame; one that begins with it, where the head moved or was not seen for a while. */
 function prolonged(stand: CalmStand | null, time: number, height: number): CalmStand {
   const begun: CalmStand = { since: time, until: time, lowest: height, highest: height };
   if (!stand || time < stand.until || time - stand.until > longestGap) return begun;

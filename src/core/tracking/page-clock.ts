@@ -7,7 +7,7 @@ const shortestStep = 1 / 1000;
 
 /**
  * The page's one time [s]: games, estimators, playback of the others and the log of a study all count in it. It never goes back and never
- * leaps, whatever the time stamps do: devices change between clocks of their own, systems set theirs, tabs sleep.
+ * leaps when the time stamps do: devices change between clocks of their own, systems set theirs, tabs sleep.
  */
 export interface PageClock {
   /**

@@ -11,6 +11,6 @@ export interface TrackingFrame {
   /** null: not seen. Never a pose at the origin. */
   readonly leftHand: TrackedPose | null;
   readonly rightHand: TrackedPose | null;
-  /** The device shows something of its own before the page: no hand is for the page, and whoever holds something goes on holding it. */
+  /** The device shows something of its own before the page: no hand is for the page, and a player who holds something goes on holding it. */
   readonly suspended?: true;
 }

@@ -31,7 +31,7 @@ describe('the recorder', () => {
     expect(recorder.sample(5)).toBeNull();
   });
 
-  test('what was recorded is replayed at the time of whoever watches', () => {
+  test('what was recorded is replayed at the viewer’s time', () => {
     const recorder = recorded(10, 12);
     recorder.replay();
     expect(recorder.sample(100)?.head.position.x).toBeCloseTo(10, 6);
