@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import quaternion
-from .kinematic_limits import LOST_HAND
+from .kinematic_limits import LOST_HAND, TRAPEZOIDAL_RAMP
 from .skeleton import load_proportions
 
 Array = NDArray[np.float64]
@@ -33,7 +33,7 @@ def complete_hands(positions: Array, rotations: Array, unseen: Array, eye_height
 
 def _trapezoidal_easing(share: Array) -> Array:
     """From 0 to 1: constant acceleration for a fifth of the time, constant speed, constant deceleration (src/core/math/damper.ts)."""
-    ramp, t = 0.2, np.clip(share, 0.0, 1.0)
+    ramp, t = TRAPEZOIDAL_RAMP, np.clip(share, 0.0, 1.0)
     slow, fast = 2 * ramp * (1 - ramp), (t - ramp / 2) / (1 - ramp)
     return np.where(t < ramp, t**2 / slow, np.where(t > 1 - ramp, 1 - (1 - t) ** 2 / slow, fast))
 

@@ -13,7 +13,7 @@ from torch import Tensor
 
 from .chest_features import ARM_COLUMNS, ARMS, CHEST_FEATURES, CHEST_HEAD_AXES
 from .features import ARM_LENGTH, IK_JOINTS
-from .kinematic_limits import REACH, TORSO, TORSO_EXTREME
+from .kinematic_limits import LIMB, REACH, TORSO, TORSO_EXTREME
 from .skeleton import load_proportions, rest_offsets
 from .swivel_limiter import ElbowCircles, Trunk, limit_swivel
 
@@ -40,10 +40,10 @@ def as_the_page_fits(eye_height: float) -> FittingConfig:
     """All that the page does, for a body of this eye height [m]."""
     return FittingConfig(
         reach_passes=REACH["anatomicalPasses"] + REACH["extremePasses"],
-        reach=REACH["straightest"],
+        reach=LIMB["straightest"],
         least_missing=1e-5 / eye_height,
-        straightest=REACH["straightest"],
-        most_bent=1e-4 / eye_height,
+        straightest=LIMB["straightest"],
+        most_bent=LIMB["mostBent"] / eye_height,
         swivel_limiter=True,
     )
 

@@ -11,5 +11,7 @@ IK: dict[str, Any] = _LIMITS["ik"]
 TORSO: dict[str, float] = _LIMITS["torso"]
 TORSO_EXTREME: dict[str, float] = _LIMITS["torsoExtreme"]
 REACH: dict[str, Any] = _LIMITS["reach"]
+LIMB: dict[str, float] = json.loads((_CORE / "body/limb-limits.json").read_text())
+TRAPEZOIDAL_RAMP: float = json.loads((_CORE / "math/easing.json").read_text())["trapezoidalRamp"]
 TRUNK_CAPSULE: dict[str, float] = _LIMITS["trunkCapsule"]
 LOST_HAND: dict[str, Any] = json.loads((_CORE / "estimation/lost-hand.json").read_text())

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .kinematic_limits import LIMB
+
 Array = NDArray[np.float64]
 
 PROPORTIONS_FILE = Path(__file__).parents[2] / "src/core/body/body-proportions.json"
-SHORTEST_ARM = 0.15  # of the eye height
 
 
 def load_proportions() -> dict[str, Any]:
@@ -41,7 +42,7 @@ def body_from_calibration(eye_height: Array, arm_span: Array, proportions: dict[
     e = np.asarray(eye_height, np.float64)[..., None]
     span = np.asarray(arm_span, np.float64)[..., None]
     zero = np.zeros_like(e)
-    arm = np.maximum((span - 2 * (p["clavicleRoot"] + p["clavicle"][0]) * e) / 2, SHORTEST_ARM * e)
+    arm = np.maximum((span - 2 * (p["clavicleRoot"] + p["clavicle"][0]) * e) / 2, LIMB["shortestArm"] * e)
     root = np.concatenate([p["clavicleRoot"] * e, zero, zero], -1)
     clavicle = np.concatenate([p["clavicle"][0] * e, p["clavicle"][1] * e, -p["clavicle"][2] * e], -1)
     return Body(

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from . import quaternion
 from .kinematic_limits import IK as LIMITS
+from .kinematic_limits import LIMB
 from .skeleton import Body
 
 Array = NDArray[np.float64]
@@ -125,9 +126,9 @@ def two_bone_elbow(shoulder: Array, wrist: Array, upper_arm: Array, forearm: Arr
     axis = np.where(distance > 1e-9, axis / np.maximum(distance, 1e-9), -chest[..., :, 1])
     across = pole - _dot(pole, axis) * axis
     for substitute in (-chest[..., :, 1], chest[..., :, 2]):
-        short = np.linalg.norm(across, axis=-1, keepdims=True) < 1e-4
+        short = np.linalg.norm(across, axis=-1, keepdims=True) < LIMB["undefinedPole"]
         across = np.where(short, substitute - _dot(substitute, axis) * axis, across)
     across = normalise(across)
-    reach = np.clip(distance, np.abs(upper_arm - forearm) + 1e-4, (upper_arm + forearm) * (1 - 1e-5))
+    reach = np.clip(distance, np.abs(upper_arm - forearm) + LIMB["mostBent"], (upper_arm + forearm) * LIMB["straightest"])
     along = (upper_arm**2 - forearm**2 + reach**2) / (2 * reach)
     return shoulder + along * axis + np.sqrt(np.maximum(upper_arm**2 - along**2, 0)) * across

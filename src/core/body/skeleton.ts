@@ -4,6 +4,7 @@ import { add, length, up, type Vec3, vec3 } from '../math/vec3';
 import proportions from './body-proportions.json';
 import type { Calibration } from './calibration';
 import type { JointName } from './joints';
+import { shortestArm } from './limb-limits.json';
 import type { LimbBones } from './two-bone-ik';
 
 /**
@@ -24,10 +25,10 @@ export const wristFromHandBone: Readonly<Record<Side, Quat>> = {
   right: fromAxisAngle(up, Math.PI / 2),
 };
 
-/** Shoulder to wrist [m], at least 0.15 eye heights however small the span. */
+/** Shoulder to wrist [m], at least `shortestArm` eye heights however small the span. */
 export function armLength({ eyeHeight, armSpan }: Calibration): number {
   const shoulders = 2 * (proportions.clavicleRoot + proportions.clavicle[0]!) * eyeHeight;
-  return Math.max((armSpan - shoulders) / 2, 0.15 * eyeHeight);
+  return Math.max((armSpan - shoulders) / 2, shortestArm * eyeHeight);
 }
 
 const leanForward = (angle: number, v: Vec3): Vec3 => {

@@ -11,6 +11,7 @@ import {
   type Vec3,
   vec3,
 } from '../math/vec3';
+import limits from './limb-limits.json';
 
 /** The lengths [m] of a limb's two bones. */
 export interface LimbBones {
@@ -54,7 +55,7 @@ export function elbowCircle(
 ): ElbowCircle {
   const { axis, centre } = target;
   subtract(wrist, shoulder, axis);
-  const span = clamp(length(axis), Math.abs(upper - lower) + 1e-4, (upper + lower) * (1 - 1e-5));
+  const span = clamp(length(axis), Math.abs(upper - lower) + limits.mostBent, (upper + lower) * limits.straightest);
   normalise(axis, fallbackAxis, axis);
   const along = (upper * upper - lower * lower + span * span) / (2 * span);
   target.span = span;
@@ -71,8 +72,8 @@ export function poleAcross(
   target: MutableVec3 = vec3(0, 0, 0),
 ): MutableVec3 {
   reject(pole, axis, target);
-  if (length(target) < 1e-4) reject(fallbacks[0], axis, target);
-  if (length(target) < 1e-4) reject(fallbacks[1], axis, target);
+  if (length(target) < limits.undefinedPole) reject(fallbacks[0], axis, target);
+  if (length(target) < limits.undefinedPole) reject(fallbacks[1], axis, target);
   return normalise(target, fallbacks[0], target);
 }
 

@@ -1,4 +1,5 @@
 import { clavicleRest, clavicleRoot } from '../body/arm-rotations';
+import limbLimits from '../body/limb-limits.json';
 import type { Skeleton } from '../body/skeleton';
 import { clamp, smoothingFactor, smoothstep } from '../math/damper';
 import { alignDirections, limitAngle, type MutableQuat, multiply, quat, rotate, rotationBetween } from '../math/quat';
@@ -29,14 +30,11 @@ import type { CompletedFrame, CompletedHand } from './complete-hands';
 import type { JointPositions } from './joint-positions';
 import limits from './kinematic-limits.json';
 
-const { torso: shares } = limits;
+const { torso: shares, torsoExtreme: extreme } = limits;
+const { anatomicalPasses, extremePasses } = limits.reach;
 
 /** How far the clavicle swings and the neck bends from rest against the thorax [rad]. */
 type TorsoLimits = Readonly<Record<'clavicleSwing' | 'neckBend', number>>;
-/** For the one frame in fifty thousand whose wrist lies further away than anatomy allows: the hand on the controller comes first. */
-const extreme: TorsoLimits = { clavicleSwing: 1.2, neckBend: 1.8 };
-/** The trunk is placed anew so often at most until both arms reach their hands; then the limits widen, for so many more. */
-const [anatomicalPasses, extremePasses] = [8, 24];
 /** No trunk leans further [m] on its way to what is wanted: the limits of clavicle and neck are met before. */
 const furthestLean = 0.6;
 
@@ -151,7 +149,7 @@ export function torsoBones(skeleton: Skeleton): TorsoBones {
     neckLength: length(offsets.head),
     shouldersFromNeck: subtract(lerp(left, rightShoulder, 0.5), offsets.neck),
     shoulderWidth: 2 * rightShoulder.x,
-    reach: (length(offsets.rightLowerArm) + length(offsets.rightHand)) * (1 - 1e-5),
+    reach: (length(offsets.rightLowerArm) + length(offsets.rightHand)) * limbLimits.straightest,
   };
 }
 

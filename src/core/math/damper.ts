@@ -1,3 +1,4 @@
+import easing from './easing.json';
 import { lerp, type MutableVec3, type Vec3 } from './vec3';
 
 /**
@@ -31,7 +32,7 @@ export function smoothstep(start: number, end: number, value: number): number {
  * and falls evenly over the last fifth. At most 1.25 times the mean speed, where smoothstep has 1.5.
  */
 export function trapezoidalEasing(start: number, end: number, value: number): number {
-  const ramp = 0.2;
+  const ramp = easing.trapezoidalRamp;
   const t = Math.max(0, Math.min(1, (value - start) / (end - start)));
   if (t > 1 - ramp) return 1 - (1 - t) ** 2 / (2 * ramp * (1 - ramp));
   return t < ramp ? (t * t) / (2 * ramp * (1 - ramp)) : (t - ramp / 2) / (1 - ramp);
