@@ -1,5 +1,6 @@
-import { createRemoteAvatars } from '../../avatar/remote-avatars';
+import { createRemoteAvatars, type RemoteAvatars } from '../../avatar/remote-avatars';
 import type { AvatarPose } from '../../core/body/avatar-pose';
+import type { BallState } from '../../core/games/ball/ball-state';
 import type { BallPulse } from '../../core/games/ball/gestures';
 import type { Performed } from '../../core/games/ball/player-postures';
 import { defaultBallOptions } from '../../core/games/ball/rules';
@@ -18,8 +19,8 @@ import type { SurroundingsHost } from '../../scene/surroundings';
 import type { BallRound } from './ball-bar';
 import type { BallFrame, BallProbe } from './ball-frame';
 import { type BallPlay, createBallPlay } from './ball-play';
-import { createBallView } from './ball-view';
-import { ownName, type Standing, seatOfButton, waitingFor } from './board-drawing';
+import { type BallView, createBallView } from './ball-view';
+import { type LobbyButton, ownName, seatOfButton, waitingFor } from './board-drawing';
 import { roleTexts, seatLooks } from './court-plan';
 import { eventHaptics } from './haptics';
 import { createMatchClock } from './match-clock';
@@ -55,7 +56,7 @@ export interface PlayerProbe {
 /** The ball game in the page: the court, the others' bodies, and one's own part in the match. */
 export interface BallActivity {
   readonly play: BallPlay;
-  readonly sound: ReturnType<typeof createBallView>['sound'];
+  readonly sound: BallView['sound'];
   /** Once a frame, first. */
   begin(time: number): void;
   /** Head, hands and buttons of the built-in player on the own seat; null: no seat. */
@@ -81,191 +82,244 @@ export interface BallActivity {
   dispose(): void;
 }
 
-export function createBallActivity(options: BallActivityOptions): BallActivity {
-  const { quality, surroundings, mannequin, onCaption } = options;
-  const play = createBallPlay(options);
-  const view = createBallView({ quality, balls: defaultBallOptions.balls, onCaption });
-  const others = createRemoteAvatars(mannequin, 'mannequin.vrm');
-  surroundings.scene.add(view.own, others.object);
-  let placedAt: Transform<'floor', 'arena'> | null = null;
-  let voided = 0;
-  let notice: { readonly text: string; readonly until: number } | null = null;
-  let now = 0;
-  const clock = createMatchClock();
+type Players = BallFrame['players'];
 
-  /** The court turns round the viewer: again with every change of seat. */
-  function place(): void {
-    const at = play.floorFromArena;
-    if (at === placedAt) return;
-    placedAt = at;
-    surroundings.setSurroundings(view.placed(at));
+const noBodies: BallFrame['bodies'] = [];
+const noButtons: Buttons = {
+  left: { trigger: 0, grip: 0, pinch: 0 },
+  right: { trigger: 0, grip: 0, pinch: 0 },
+};
+/** How long a notice of a voided match stands [s]. */
+const noticeSeconds = 8;
+const voidedNotice = 'The server was restarted: this round does not count. A new one can begin.';
+
+const triple = ({ x, y, z }: Vec3): readonly [number, number, number] => [x, y, z];
+
+const roleOf = (state: BallState, player: number): string => roleTexts[state.players[player]?.station ?? player] ?? '';
+
+/** The seats of a match as the bar lists them. */
+const placesOf = (state: BallState, players: Players): BallRound['people'] =>
+  players.map((player, seat) => ({
+    seat,
+    name: player?.name ?? 'free',
+    role: roleOf(state, seat),
+    free: player === null || (player.bot && !player.me),
+  }));
+
+export const createBallActivity = (options: BallActivityOptions): BallActivity => new CourtActivity(options);
+
+class CourtActivity implements BallActivity {
+  readonly play: BallPlay;
+  readonly sound: BallView['sound'];
+  readonly #options: BallActivityOptions;
+  readonly #view: BallView;
+  readonly #others: RemoteAvatars;
+  readonly #clock = createMatchClock();
+  /** What `#named` gives; used again by its next call. */
+  readonly #written: Players[number][] = [];
+  #placedAt: Transform<'floor', 'arena'> | null = null;
+  /** How many matches the server has voided, as far as is known here. */
+  #voided = 0;
+  #notice: { readonly text: string; readonly until: number } | null = null;
+  #now = 0;
+
+  constructor(options: BallActivityOptions) {
+    const { quality, surroundings, mannequin, onCaption } = options;
+    this.#options = options;
+    this.play = createBallPlay(options);
+    this.#view = createBallView({ quality, balls: defaultBallOptions.balls, onCaption });
+    this.sound = this.#view.sound;
+    this.#others = createRemoteAvatars(mannequin, 'mannequin.vrm');
+    surroundings.scene.add(this.#view.own, this.#others.object);
+    this.#place();
+  }
+
+  begin(time: number): void {
+    this.#now = time;
+    this.play.begin(time);
+    this.#place();
+    const voided = this.play.room?.voided ?? 0;
+    if (voided > this.#voided) this.#notice = { text: voidedNotice, until: time + noticeSeconds };
+    this.#voided = voided;
+  }
+
+  act(time: number, catchUp: boolean): Performed | null {
+    return this.play.act(time, catchUp);
+  }
+
+  follow(frame: TrackingFrame, buttons: Buttons): readonly BallPulse[] {
+    return this.#follow(frame.time, frame, buttons);
+  }
+
+  send(frame: TrackingFrame, pose: AvatarPose, grips: Readonly<Record<Side, number>>): void {
+    this.play.send(frame, pose, grips);
+  }
+
+  show(time: number, head: Pose<'floor'>, tracked: boolean): void {
+    if (!tracked) this.#follow(time, null, noButtons);
+    const seen = this.play.newest;
+    this.#others.show(seen?.bodies ?? noBodies, time);
+    if (!seen) return;
+    const { state, me, rotate, opening, aim, paused, events, cues } = seen;
+    this.#view.show({
+      state,
+      time: seen.time,
+      attendants: this.#named(seen.players),
+      me,
+      rotate,
+      opening,
+      aim,
+      paused,
+      secondsLeft: this.#clock.secondsLeft,
+      head,
+      pageTime: time,
+      inRoom: !this.#ended,
+      acting: this.#acting,
+    });
+    this.#view.hear(events, cues);
+  }
+
+  point({ origin, direction }: Ray, press: boolean): number | null {
+    const { lobby } = this.#view;
+    const hit = this.#ended ? null : lobby.buttonAt(origin, direction);
+    lobby.setHovered(hit?.id ?? null);
+    if (!hit) return null;
+    if (press) this.#press(hit.id);
+    return hit.distance;
+  }
+
+  get palette(): string | null {
+    const seen = this.play.newest;
+    const station = seen && seen.me !== null ? seen.state.players[seen.me]?.station : undefined;
+    return station === undefined ? null : (seatLooks[station]?.palette ?? null);
+  }
+
+  bodyOf(seat: number): ReturnType<BallActivity['bodyOf']> {
+    const body = this.play.newest?.bodies.find(({ id }) => id === seat);
+    const pelvis = this.#others.jointsOf(seat)?.hips;
+    if (!body || !pelvis) return null;
+    const { position, orientation } = body.pose.head;
+    const eyes = transformPose(body.placement, { position, orientation });
+    return { pelvis, eyes };
+  }
+
+  get seats(): readonly number[] {
+    return this.play.newest?.bodies.map(({ id }) => id) ?? [];
+  }
+
+  round(): BallRound | null {
+    const seen = this.play.newest;
+    if (!seen) return null;
+    const { state, me, rotate, spectators, paused } = seen;
+    const players = this.#named(seen.players);
+    const own = me === null ? null : state.players[me];
+    return {
+      phase: state.phase,
+      score: state.score,
+      of: state.options.balls,
+      ballsLeft: ballsLeft(state),
+      secondsLeft: this.#clock.secondsLeft,
+      seconds: state.options.seconds,
+      paused,
+      waiting: this.#waiting(seen, players),
+      connection: this.#connection(),
+      ended: this.#ended ? (bannerText(this.play.status) ?? 'The connection has ended.') : null,
+      throws: own?.role === 'thrower',
+      role: me === null ? 'Watching' : roleOf(state, me),
+      seat: me,
+      ready: own?.ready ?? false,
+      rotate,
+      spectators,
+      people: placesOf(state, players),
+    };
+  }
+
+  banner(): string | null {
+    const notice = this.#notice;
+    return bannerText(this.play.status) ?? (notice && this.#now < notice.until ? notice.text : null);
+  }
+
+  probe(): BallProbe | null {
+    const seen = this.play.probe();
+    return seen && { ...seen, secondsLeft: this.#clock.secondsLeft };
+  }
+
+  players(): readonly PlayerProbe[] {
+    const seen = this.play.newest;
+    return (seen?.bodies ?? []).flatMap(({ id, opacity }): PlayerProbe[] => {
+      const player = seen?.players[id];
+      if (!player) return [];
+      const { name, bot, presence } = player;
+      const drawn = Object.entries(this.#others.jointsOf(id) ?? {});
+      const joints = Object.fromEntries(drawn.map(([joint, at]) => [joint, triple(at)] as const));
+      return [{ seat: id, name, bot, presence, opacity, joints }];
+    });
+  }
+
+  dispose(): void {
+    this.play.leave();
+    this.#view.own.removeFromParent();
+    this.#options.surroundings.setSurroundings(null);
+    this.#others.dispose();
+    this.#view.dispose();
   }
 
   /** A built-in player moves the own body, with no person behind it. */
-  const acting = () => options.acting() && !options.steering();
-  const ended = () => play.status.phase === 'ended';
-
-  const writtenOf: BallFrame['players'][number][] = [];
-  /** The players as they are written of on this page; the list lasts until the next call. */
-  function named(players: BallFrame['players']): BallFrame['players'] {
-    if (!options.unnamed) return players;
-    writtenOf.length = players.length;
-    players.forEach((player, i) => {
-      writtenOf[i] = player?.me ? { ...player, name: ownName } : player;
-    });
-    return writtenOf;
+  get #acting(): boolean {
+    return this.#options.acting() && !this.#options.steering();
   }
 
-  function follow(time: number, frame: TrackingFrame | null, buttons: Buttons): readonly BallPulse[] {
-    const seen = play.follow(time, frame, buttons);
+  /** This page is in the room no longer. */
+  get #ended(): boolean {
+    return this.play.status.phase === 'ended';
+  }
+
+  /** The court turns round the viewer: again with every change of seat. */
+  #place(): void {
+    const at = this.play.floorFromArena;
+    if (at === this.#placedAt) return;
+    this.#placedAt = at;
+    this.#options.surroundings.setSurroundings(this.#view.placed(at));
+  }
+
+  /** The players as they are written of on this page; the list lasts until the next call. */
+  #named(players: Players): Players {
+    if (!this.#options.unnamed) return players;
+    const written = this.#written;
+    written.length = players.length;
+    players.forEach((player, i) => {
+      written[i] = player?.me ? { ...player, name: ownName } : player;
+    });
+    return written;
+  }
+
+  #follow(time: number, frame: TrackingFrame | null, buttons: Buttons): readonly BallPulse[] {
+    const seen = this.play.follow(time, frame, buttons);
     if (!seen) return [];
-    clock.follow(seen.state);
+    this.#clock.follow(seen.state);
     const { me, role, events, haptics } = seen;
     if (me === null || role === null || events.length === 0) return haptics;
     return [...haptics, ...eventHaptics(events, me, role)];
   }
 
-  const noBodies: BallFrame['bodies'] = [];
-  const noButtons: Buttons = {
-    left: { trigger: 0, grip: 0, pinch: 0 },
-    right: { trigger: 0, grip: 0, pinch: 0 },
-  };
+  /** Does what a button of the lobby's sheet says. */
+  #press(id: LobbyButton): void {
+    const seat = seatOfButton(id);
+    const seen = this.play.newest;
+    if (seat !== null) this.play.sit(seat);
+    else if (id === 'rotate') this.play.rotate(!(seen?.rotate ?? false));
+    else this.play.ready(!(seen && seen.me !== null && seen.state.players[seen.me]?.ready));
+  }
 
-  const triple = ({ x, y, z }: Vec3): readonly [number, number, number] => [x, y, z];
+  #waiting({ state, me, rotate }: BallFrame, people: Players): string | null {
+    if (this.#ended) return null;
+    const seconds = Math.ceil(this.#clock.secondsLeft);
+    return waitingFor({ state, seconds, people, me, rotate, acting: this.#acting });
+  }
 
-  place();
-  return {
-    play,
-    sound: view.sound,
-    begin(time) {
-      now = time;
-      play.begin(time);
-      place();
-      const times = play.room?.voided ?? 0;
-      if (times > voided)
-        notice = { text: 'The server was restarted: this round does not count. A new one can begin.', until: time + 8 };
-      voided = times;
-    },
-    act: (time, catchUp) => play.act(time, catchUp),
-    follow: (frame, buttons) => follow(frame.time, frame, buttons),
-    send: (frame, pose, grips) => play.send(frame, pose, grips),
-    show(time, head, tracked) {
-      if (!tracked) follow(time, null, noButtons);
-      const seen = play.newest;
-      others.show(seen?.bodies ?? noBodies, time);
-      if (!seen) return;
-      const { state, me, rotate, opening, aim, paused, events, cues } = seen;
-      const attendants = named(seen.players);
-      view.show({
-        state,
-        time: seen.time,
-        attendants,
-        me,
-        rotate,
-        opening,
-        aim,
-        paused,
-        secondsLeft: clock.secondsLeft,
-        head,
-        pageTime: time,
-        inRoom: !ended(),
-        acting: acting(),
-      });
-      view.hear(events, cues);
-    },
-    point({ origin, direction }, press) {
-      const hit = ended() ? null : view.lobby.buttonAt(origin, direction);
-      view.lobby.setHovered(hit?.id ?? null);
-      if (!hit) return null;
-      if (press) {
-        const seat = seatOfButton(hit.id);
-        const seen = play.newest;
-        if (seat !== null) play.sit(seat);
-        else if (hit.id === 'rotate') play.rotate(!(seen?.rotate ?? false));
-        else play.ready(!(seen && seen.me !== null && seen.state.players[seen.me]?.ready));
-      }
-      return hit.distance;
-    },
-    get palette() {
-      const seen = play.newest;
-      const station = seen && seen.me !== null ? seen.state.players[seen.me]?.station : undefined;
-      return station === undefined ? null : (seatLooks[station]?.palette ?? null);
-    },
-    bodyOf(seat) {
-      const body = play.newest?.bodies.find(({ id }) => id === seat);
-      const joints = others.jointsOf(seat);
-      const pelvis = joints?.hips;
-      if (!body || !pelvis) return null;
-      const { position, orientation } = body.pose.head;
-      const eyes = transformPose(body.placement, { position, orientation });
-      return { pelvis, eyes };
-    },
-    get seats() {
-      return play.newest?.bodies.map(({ id }) => id) ?? [];
-    },
-    round() {
-      const seen = play.newest;
-      if (!seen) return null;
-      const { state, me, rotate, spectators } = seen;
-      const players = named(seen.players);
-      const standing: Standing = {
-        state,
-        seconds: Math.ceil(clock.secondsLeft),
-        people: players,
-        me,
-        rotate,
-        acting: acting(),
-      };
-      const delay = play.room?.delay ?? null;
-      const roleOf = (player: number): string => roleTexts[state.players[player]?.station ?? player] ?? '';
-      return {
-        phase: state.phase,
-        score: state.score,
-        of: state.options.balls,
-        ballsLeft: ballsLeft(state),
-        secondsLeft: clock.secondsLeft,
-        seconds: state.options.seconds,
-        paused: seen.paused,
-        waiting: ended() ? null : waitingFor(standing),
-        connection: delay === null || ended() ? null : connectionText(delay),
-        ended: ended() ? (bannerText(play.status) ?? 'The connection has ended.') : null,
-        throws: me !== null && state.players[me]?.role === 'thrower',
-        role: me === null ? 'Watching' : roleOf(me),
-        seat: me,
-        ready: me !== null && (state.players[me]?.ready ?? false),
-        rotate,
-        spectators,
-        people: players.map((player, seat) => ({
-          seat,
-          name: player?.name ?? 'free',
-          role: roleOf(seat),
-          free: player === null || (player.bot && !player.me),
-        })),
-      };
-    },
-    banner() {
-      return bannerText(play.status) ?? (notice && now < notice.until ? notice.text : null);
-    },
-    probe() {
-      const seen = play.probe();
-      return seen && { ...seen, secondsLeft: clock.secondsLeft };
-    },
-    players() {
-      const seen = play.newest;
-      return (seen?.bodies ?? []).flatMap(({ id, opacity }): PlayerProbe[] => {
-        const player = seen?.players[id];
-        if (!player) return [];
-        const { name, bot, presence } = player;
-        const joints = Object.entries(others.jointsOf(id) ?? {}).map(([joint, at]) => [joint, triple(at)] as const);
-        return [{ seat: id, name, bot, presence, opacity, joints: Object.fromEntries(joints) }];
-      });
-    },
-    dispose() {
-      play.leave();
-      view.own.removeFromParent();
-      surroundings.setSurroundings(null);
-      others.dispose();
-      view.dispose();
-    },
-  };
+  /** How good the connection is, in words; null: it has ended, or the room is in this page. */
+  #connection(): string | null {
+    const delay = this.play.room?.delay ?? null;
+    return delay === null || this.#ended ? null : connectionText(delay);
+  }
 }
