@@ -86,9 +86,9 @@ const start: Record<SceneName, Record<Exclude<ViewName, 'first-person'>, Outlook
 };
 const firstPersonFov = 78;
 
-/** Orbit by mouse, touch and arrow keys around the body, a front view, and the view through the body's own eyes. */
-export function createDesktopView(canvas: HTMLCanvasElement): DesktopView {
-  const camera = new PerspectiveCamera(42, 1, 0.05, 90);
+const up = new Vector3(0, 1, 0);
+
+function createControls(camera: PerspectiveCamera, canvas: HTMLCanvasElement): OrbitControls {
   const controls = new OrbitControls(camera, canvas);
   controls.enableDamping = true;
   controls.dampingFactor = 0.12;
@@ -97,114 +97,157 @@ export function createDesktopView(canvas: HTMLCanvasElement): DesktopView {
   controls.maxDistance = 7;
   controls.minPolarAngle = 0.15;
   controls.maxPolarAngle = Math.PI / 2 + 0.12;
-  const raycaster = new Raycaster();
-  const target = new Vector3(0, 1, 0);
-  let view: ViewName = 'third-person';
-  let scene: SceneName = 'studio';
-  let orbit = true;
-  let insets: Insets = { left: 0, right: 0, bottom: 0 };
+  return controls;
+}
 
-  function place(): void {
-    if (view === 'first-person') return;
-    const { offset: wide, aim, fov } = start[scene][view];
-    const free = Math.max(1, window.innerWidth - insets.left - insets.right) / window.innerHeight;
+/** Turns the arm that holds the camera by an arrow key, or changes its length by plus and minus; false: the key means nothing here. */
+function moveArm(arm: Vector3, key: string): boolean {
+  const right = new Vector3().crossVectors(up, arm).normalize();
+  const elevation = Math.asin(arm.y / arm.length());
+  if (key === 'ArrowLeft') arm.applyAxisAngle(up, -keyStep);
+  else if (key === 'ArrowRight') arm.applyAxisAngle(up, keyStep);
+  else if (key === 'ArrowUp' && elevation < 1.3) arm.applyAxisAngle(right, -keyStep);
+  else if (key === 'ArrowDown' && elevation > -0.1) arm.applyAxisAngle(right, keyStep);
+  else if (key === '+' || key === '=') arm.multiplyScalar(0.92);
+  else if (key === '-') arm.multiplyScalar(1.08);
+  else return false;
+  return true;
+}
+
+/** Orbit by mouse, touch and arrow keys around the body, a front view, and the view through the body's own eyes. */
+export const createDesktopView = (canvas: HTMLCanvasElement): DesktopView => new DesktopCamera(canvas);
+
+class DesktopCamera implements DesktopView {
+  readonly camera = new PerspectiveCamera(42, 1, 0.05, 90);
+  readonly #controls: OrbitControls;
+  readonly #raycaster = new Raycaster();
+  /** The body's pelvis, as the camera follows it. */
+  readonly #target = new Vector3(0, 1, 0);
+  /** Where the target was a frame ago. */
+  readonly #before = new Vector3();
+  #view: ViewName = 'third-person';
+  #scene: SceneName = 'studio';
+  #orbit = true;
+  #insets: Insets = { left: 0, right: 0, bottom: 0 };
+
+  constructor(canvas: HTMLCanvasElement) {
+    this.#controls = createControls(this.camera, canvas);
+    canvas.addEventListener('keydown', (event) => this.#pressed(event));
+    this.#place();
+    this.#project();
+  }
+
+  get pose(): Pose<'floor'> {
+    const { position, quaternion } = this.camera;
+    return {
+      position: { x: position.x, y: position.y, z: position.z },
+      orientation: { x: quaternion.x, y: quaternion.y, z: quaternion.z, w: quaternion.w },
+    };
+  }
+
+  get view(): ViewName {
+    return this.#view;
+  }
+
+  setView(view: ViewName): void {
+    this.#view = view;
+    this.setOrbit(this.#orbit);
+    if (view === 'first-person') this.camera.fov = firstPersonFov;
+    this.#place();
+    this.#project();
+  }
+
+  setScene(scene: SceneName): void {
+    this.#scene = scene;
+    this.#controls.enablePan = scene === 'stands';
+    this.#controls.maxDistance = scene === 'stands' ? 14 : 7;
+    this.#place();
+    this.#project();
+  }
+
+  setOrbit(on: boolean): void {
+    this.#orbit = on;
+    this.#controls.enabled = on && this.#view !== 'first-person';
+  }
+
+  setInsets(insets: Insets): void {
+    this.#insets = insets;
+    this.#project();
+  }
+
+  resize(): void {
+    this.#project();
+  }
+
+  recentre(): void {
+    this.#place();
+  }
+
+  rayThrough(x: number, y: number): { readonly origin: Vec3; readonly direction: Vec3 } {
+    this.#raycaster.setFromCamera(new Vector2(x, y), this.camera);
+    const { origin, direction } = this.#raycaster.ray;
+    return { origin: { ...origin }, direction: { ...direction } };
+  }
+
+  update(pelvis: Point, { position, orientation }: Eyes, elapsed: number): void {
+    const { camera } = this;
+    if (this.#view === 'first-person') {
+      camera.position.set(position.x, position.y, position.z);
+      camera.quaternion.set(orientation.x, orientation.y, orientation.z, orientation.w);
+      return;
+    }
+    const part = 1 - 0.5 ** (elapsed / followHalfLife);
+    const target = this.#target;
+    const before = this.#before.copy(target);
+    target.x += (pelvis.x - target.x) * part;
+    target.y += (pelvis.y - target.y) * part;
+    target.z += (pelvis.z - target.z) * part;
+    camera.position.add(target).sub(before);
+    this.#controls.target.add(target).sub(before);
+    this.#controls.update();
+  }
+
+  /** Puts the camera where the view begins. */
+  #place(): void {
+    if (this.#view === 'first-person') return;
+    const { camera } = this;
+    const { left, right } = this.#insets;
+    const { offset: wide, aim, fov } = start[this.#scene][this.#view];
+    const free = Math.max(1, window.innerWidth - left - right) / window.innerHeight;
     // A narrow window shows the mirror only where it stands behind the body.
     const offset = wide.clone();
     if (free < 0.8) offset.x *= 0.6;
     // A narrow window sees less to the sides: step back until the body and the mirror fit.
     const distance = Math.max(1, Math.min(1.35, 1 / Math.max(free, 0.1)));
     camera.fov = fov;
-    camera.up.set(0, 1, 0);
-    controls.target.copy(target).add(aim);
-    camera.position.copy(target).addScaledVector(offset, distance);
-    controls.update();
+    camera.up.copy(up);
+    this.#controls.target.copy(this.#target).add(aim);
+    camera.position.copy(this.#target).addScaledVector(offset, distance);
+    this.#controls.update();
   }
 
-  function project(): void {
+  /** Fits the picture to the window and centres the body in what the controls leave of it. */
+  #project(): void {
+    const { camera } = this;
+    const { left, right, bottom } = this.#insets;
     const width = window.innerWidth;
     const height = window.innerHeight;
+    const whole = this.#view === 'first-person';
     camera.aspect = width / height;
-    const shiftX = view === 'first-person' ? 0 : (insets.right - insets.left) / 2;
-    const shiftY = view === 'first-person' ? 0 : insets.bottom / 2;
+    const shiftX = whole ? 0 : (right - left) / 2;
+    const shiftY = whole ? 0 : bottom / 2;
     // What is left above a tall sheet of controls still holds the whole body.
-    camera.zoom = view === 'first-person' ? 1 : Math.min(1, (1 - insets.bottom / height) / 0.75);
+    camera.zoom = whole ? 1 : Math.min(1, (1 - bottom / height) / 0.75);
     camera.setViewOffset(width, height, shiftX, shiftY, width, height);
     camera.updateProjectionMatrix();
   }
 
-  canvas.addEventListener('keydown', (event) => {
-    if (view === 'first-person' || event.ctrlKey || event.metaKey || event.altKey) return;
-    const arm = camera.position.clone().sub(controls.target);
-    const right = new Vector3(0, 1, 0).cross(arm).normalize();
-    const elevation = Math.asin(arm.y / arm.length());
-    if (event.key === 'ArrowLeft') arm.applyAxisAngle(camera.up, -keyStep);
-    else if (event.key === 'ArrowRight') arm.applyAxisAngle(camera.up, keyStep);
-    else if (event.key === 'ArrowUp' && elevation < 1.3) arm.applyAxisAngle(right, -keyStep);
-    else if (event.key === 'ArrowDown' && elevation > -0.1) arm.applyAxisAngle(right, keyStep);
-    else if (event.key === '+' || event.key === '=') arm.multiplyScalar(0.92);
-    else if (event.key === '-') arm.multiplyScalar(1.08);
-    else return;
+  #pressed(event: KeyboardEvent): void {
+    if (this.#view === 'first-person' || event.ctrlKey || event.metaKey || event.altKey) return;
+    const { target } = this.#controls;
+    const arm = this.camera.position.clone().sub(target);
+    if (!moveArm(arm, event.key)) return;
     event.preventDefault();
-    camera.position.copy(controls.target).add(arm);
-  });
-
-  place();
-  project();
-  return {
-    camera,
-    get pose() {
-      const { position, quaternion } = camera;
-      return {
-        position: { x: position.x, y: position.y, z: position.z },
-        orientation: { x: quaternion.x, y: quaternion.y, z: quaternion.z, w: quaternion.w },
-      };
-    },
-    rayThrough(x, y) {
-      raycaster.setFromCamera(new Vector2(x, y), camera);
-      const { origin, direction } = raycaster.ray;
-      return { origin: { ...origin }, direction: { ...direction } };
-    },
-    get view() {
-      return view;
-    },
-    setView(next) {
-      view = next;
-      controls.enabled = orbit && view !== 'first-person';
-      if (view === 'first-person') camera.fov = firstPersonFov;
-      place();
-      project();
-    },
-    setScene(next) {
-      scene = next;
-      controls.enablePan = scene === 'stands';
-      controls.maxDistance = scene === 'stands' ? 14 : 7;
-      place();
-      project();
-    },
-    setOrbit(on) {
-      orbit = on;
-      controls.enabled = orbit && view !== 'first-person';
-    },
-    setInsets(next) {
-      insets = next;
-      project();
-    },
-    resize: project,
-    recentre: place,
-    update(pelvis, eyes, elapsed) {
-      if (view === 'first-person') {
-        camera.position.set(eyes.position.x, eyes.position.y, eyes.position.z);
-        camera.quaternion.set(eyes.orientation.x, eyes.orientation.y, eyes.orientation.z, eyes.orientation.w);
-        return;
-      }
-      const part = 1 - 0.5 ** (elapsed / followHalfLife);
-      const before = target.clone();
-      target.x += (pelvis.x - target.x) * part;
-      target.y += (pelvis.y - target.y) * part;
-      target.z += (pelvis.z - target.z) * part;
-      camera.position.add(target).sub(before);
-      controls.target.add(target).sub(before);
-      controls.update();
-    },
-  };
+    this.camera.position.copy(target).add(arm);
+  }
 }
