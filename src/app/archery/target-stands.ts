@@ -7,6 +7,7 @@ import {
   Float32BufferAttribute,
   Group,
   InstancedMesh,
+  type Material,
   Matrix4,
   Mesh,
   MeshBasicMaterial,
@@ -19,7 +20,7 @@ import type { ArcheryState, Target } from '../../core/games/archery/archery-stat
 import { clamp } from '../../core/math/damper';
 import { ink, signFont } from '../../scene/boards/lettering';
 import { disposeTree } from '../../scene/dispose-tree';
-import { createDrawnTexture } from '../../scene/drawn-texture';
+import { createDrawnTexture, type DrawnTexture } from '../../scene/drawn-texture';
 import { createContactShadows } from '../../scene/outdoors/contact-shadows';
 import { woodColor } from '../../scene/outdoors/wood';
 import { merged, painted } from '../../scene/painted-geometry';
@@ -143,12 +144,14 @@ function plateGeometry(target: Target, row: number, rows: number): BufferGeometr
   return geometry.applyMatrix4(placeOf(target));
 }
 
+interface Score {
+  readonly points: number;
+  /** When the last arrow hit, in the match's time [s]. */
+  readonly at: number;
+}
+
 /** What a target scored so far, and when last; null: nothing yet. */
-export function scoredBy(
-  state: ArcheryState,
-  target: number,
-  time: number,
-): { readonly points: number; readonly at: number } | null {
+export function scoredBy(state: ArcheryState, target: number, time: number): Score | null {
   let points = 0;
   let at = Number.NEGATIVE_INFINITY;
   for (const { landing } of state.arrows) {
@@ -193,105 +196,150 @@ const lit = new Color('#ffe9a6');
 const untouched = new Color('#ffffff');
 const done = new Color('#b0b0b0');
 
-export function createTargetStands(quality: Quality): TargetStands {
-  const object = new Group();
-  object.name = 'targets';
-  const wood = new MeshLambertMaterial({ vertexColors: true });
-  const face = new MeshLambertMaterial({ map: createRingTexture(quality) });
-  const glow = new MeshBasicMaterial({ color: '#ffffff' });
-  const plates = createDrawnTexture(cell.width, cell.height * 4, quality);
-  const plateMaterial = new MeshBasicMaterial({ map: plates.texture });
+/** The painted sides, in the order of the targets. */
+function createFaces(count: number, material: Material): InstancedMesh {
+  const faces = new InstancedMesh(new CircleGeometry(1, 56), material, count);
+  faces.receiveShadow = true;
+  return faces;
+}
 
-  let built: readonly Target[] = [];
-  let builtAs = '';
-  let shownPlates = '';
-  let faces: InstancedMesh | null = null;
-  let rims: InstancedMesh | null = null;
-  let shadows: Mesh | null = null;
+/** The rings round the faces, in the order of the targets. */
+function createRims(count: number, material: Material, quality: Quality): InstancedMesh {
+  const [around, along] = quality === 'high' ? [10, 64] : [4, 36];
+  return new InstancedMesh(new TorusGeometry(1.012, 0.021, around, along), material, count);
+}
 
-  function build(targets: readonly Target[]): void {
-    // The other materials stay for the next stands; the shadows have their own, and a texture.
-    if (shadows) disposeTree(shadows);
-    for (const child of [...object.children]) {
-      object.remove(child);
+const createShadows = (targets: readonly Target[]): Mesh =>
+  createContactShadows(
+    targets.map(({ centre, normal, radius }) => ({
+      x: centre.x - normal.x * 0.25,
+      z: centre.z - normal.z * 0.25,
+      width: radius * 3,
+      depth: 1.5,
+    })),
+  );
+
+/** How much larger the rim of a disc is, by the seconds since it was hit. */
+const swellAt = (since: number): number => {
+  const share = since / pulseSeconds;
+  return share < 1 ? 1 + 0.09 * Math.sin(share * Math.PI) * (1 - share) : 1;
+};
+
+function changed(mesh: InstancedMesh): void {
+  mesh.instanceMatrix.needsUpdate = true;
+  if (mesh.instanceColor) mesh.instanceColor.needsUpdate = true;
+  mesh.computeBoundingSphere();
+}
+
+export const createTargetStands = (quality: Quality): TargetStands => new Stands(quality);
+
+class Stands implements TargetStands {
+  readonly object = new Group();
+  readonly #quality: Quality;
+  readonly #wood = new MeshLambertMaterial({ vertexColors: true });
+  readonly #face: MeshLambertMaterial;
+  readonly #glow = new MeshBasicMaterial({ color: '#ffffff' });
+  readonly #plates: DrawnTexture;
+  readonly #plateMaterial: MeshBasicMaterial;
+  readonly #size = new Matrix4();
+  #built: readonly Target[] = [];
+  /** The targets that stand, in writing. */
+  #builtAs = '';
+  /** The points on the plates, in writing. */
+  #shownPlates = '';
+  /** Null as long as there are no targets, as rims and shadows are. */
+  #faces: InstancedMesh | null = null;
+  #rims: InstancedMesh | null = null;
+  #shadows: Mesh | null = null;
+
+  constructor(quality: Quality) {
+    this.#quality = quality;
+    this.object.name = 'targets';
+    this.#face = new MeshLambertMaterial({ map: createRingTexture(quality) });
+    this.#plates = createDrawnTexture(cell.width, cell.height * 4, quality);
+    this.#plateMaterial = new MeshBasicMaterial({ map: this.#plates.texture });
+  }
+
+  show(state: ArcheryState, time: number): void {
+    const { targets } = state;
+    this.#setTargets(targets);
+    const faces = this.#faces;
+    const rims = this.#rims;
+    if (!faces || !rims) return;
+    const scores = targets.map((_, index) => scoredBy(state, index, time));
+    for (const [index, target] of targets.entries()) {
+      const score = scores[index] ?? null;
+      const place = placeOf(target);
+      this.#placeFace(faces, index, target, place);
+      this.#placeRim(rims, index, target, place, score && time - score.at);
+      faces.setColorAt(index, score ? done : untouched);
+      rims.setColorAt(index, score ? lit : unlit);
+    }
+    changed(faces);
+    changed(rims);
+    this.#showPlates(targets, scores);
+  }
+
+  dispose(): void {
+    this.object.removeFromParent();
+    disposeTree(this.object);
+    this.#plates.texture.dispose();
+  }
+
+  /** A state that travelled or was replayed has other objects for the same targets: those stay as they stand. */
+  #setTargets(targets: readonly Target[]): void {
+    if (targets === this.#built) return;
+    this.#built = targets;
+    const key = JSON.stringify(targets);
+    if (key === this.#builtAs) return;
+    this.#builtAs = key;
+    this.#clear();
+    if (targets.length > 0) this.#build(targets);
+  }
+
+  /** Takes the stands away; the materials stay for the next ones, but for the shadows', which have their own and a texture. */
+  #clear(): void {
+    if (this.#shadows) disposeTree(this.#shadows);
+    for (const child of [...this.object.children]) {
+      this.object.remove(child);
       if (child instanceof Mesh) child.geometry.dispose();
       if (child instanceof InstancedMesh) child.dispose();
     }
-    shownPlates = '';
-    faces = rims = shadows = null;
-    if (targets.length === 0) return;
-    const stands = new Mesh(merged(targets.flatMap(standGeometry)), wood);
-    stands.castShadow = stands.receiveShadow = true;
-    faces = new InstancedMesh(new CircleGeometry(1, 56), face, targets.length);
-    faces.receiveShadow = true;
-    rims = new InstancedMesh(
-      new TorusGeometry(1.012, 0.021, quality === 'high' ? 10 : 4, quality === 'high' ? 64 : 36),
-      glow,
-      targets.length,
-    );
-    shadows = createContactShadows(
-      targets.map(({ centre, normal, radius }) => ({
-        x: centre.x - normal.x * 0.25,
-        z: centre.z - normal.z * 0.25,
-        width: radius * 3,
-        depth: 1.5,
-      })),
-    );
-    const signs = new Mesh(
-      merged(targets.map((target, row) => plateGeometry(target, row, targets.length))),
-      plateMaterial,
-    );
-    object.add(stands, faces, rims, signs, shadows);
+    this.#shownPlates = '';
+    this.#faces = this.#rims = this.#shadows = null;
   }
 
-  const place = new Matrix4();
-  const size = new Matrix4();
+  #build(targets: readonly Target[]): void {
+    const count = targets.length;
+    const stands = new Mesh(merged(targets.flatMap(standGeometry)), this.#wood);
+    stands.castShadow = stands.receiveShadow = true;
+    this.#faces = createFaces(count, this.#face);
+    this.#rims = createRims(count, this.#glow, this.#quality);
+    this.#shadows = createShadows(targets);
+    const plates = merged(targets.map((target, row) => plateGeometry(target, row, count)));
+    this.object.add(stands, this.#faces, this.#rims, new Mesh(plates, this.#plateMaterial), this.#shadows);
+  }
 
-  return {
-    object,
-    show(state, time) {
-      if (state.targets !== built) {
-        // A state that travelled or was replayed has other objects for the same targets.
-        built = state.targets;
-        const key = JSON.stringify(built);
-        if (key !== builtAs) build(built);
-        builtAs = key;
-      }
-      if (!faces || !rims) return;
-      const scores = state.targets.map((_, index) => scoredBy(state, index, time));
-      for (const [index, target] of state.targets.entries()) {
-        const score = scores[index] ?? null;
-        place.copy(placeOf(target));
-        faces.setMatrixAt(index, size.makeScale(target.radius, target.radius, 1).premultiply(place));
-        faces.setColorAt(index, score ? done : untouched);
-        const since = score ? (time - score.at) / pulseSeconds : 1;
-        const swell = since < 1 ? 1 + 0.09 * Math.sin(since * Math.PI) * (1 - since) : 1;
-        const thick = target.radius * swell * (score ? 1.012 : 1);
-        rims.setMatrixAt(
-          index,
-          size.makeScale(thick, thick, score ? target.radius * 1.5 : target.radius).premultiply(place),
-        );
-        rims.setColorAt(index, score ? lit : unlit);
-      }
-      for (const mesh of [faces, rims]) {
-        mesh.instanceMatrix.needsUpdate = true;
-        if (mesh.instanceColor) mesh.instanceColor.needsUpdate = true;
-        mesh.computeBoundingSphere();
-      }
-      const wanted = JSON.stringify(scores.map((score) => score?.points ?? null));
-      if (wanted === shownPlates) return;
-      shownPlates = wanted;
-      plates.draw((context) => {
-        context.scale(1, 4 / state.targets.length);
-        for (const [row, { points }] of state.targets.entries())
-          paintPlate(context, row, points, scores[row]?.points ?? null);
-        context.resetTransform();
-      });
-    },
-    dispose() {
-      object.removeFromParent();
-      disposeTree(object);
-      plates.texture.dispose();
-    },
-  };
+  #placeFace(faces: InstancedMesh, index: number, { radius }: Target, place: Matrix4): void {
+    faces.setMatrixAt(index, this.#size.makeScale(radius, radius, 1).premultiply(place));
+  }
+
+  /** `since`: the seconds since the target was hit; null: it was not. */
+  #placeRim(rims: InstancedMesh, index: number, { radius }: Target, place: Matrix4, since: number | null): void {
+    const hit = since !== null;
+    const wide = radius * (hit ? swellAt(since) * 1.012 : 1);
+    const deep = hit ? radius * 1.5 : radius;
+    rims.setMatrixAt(index, this.#size.makeScale(wide, wide, deep).premultiply(place));
+  }
+
+  #showPlates(targets: readonly Target[], scores: readonly (Score | null)[]): void {
+    const wanted = JSON.stringify(scores.map((score) => score?.points ?? null));
+    if (wanted === this.#shownPlates) return;
+    this.#shownPlates = wanted;
+    this.#plates.draw((context) => {
+      context.scale(1, 4 / targets.length);
+      for (const [row, { points }] of targets.entries()) paintPlate(context, row, points, scores[row]?.points ?? null);
+      context.resetTransform();
+    });
+  }
 }
