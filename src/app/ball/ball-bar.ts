@@ -1,5 +1,6 @@
 import { button, element } from '../../ui/element';
 import { ballRulesText, rulesList } from '../../ui/rules';
+import { toggle } from '../../ui/toggle';
 
 /** A match as the bar shows it. */
 export interface BallRound {
@@ -70,6 +71,9 @@ export interface BallBarActions {
   steer(on: boolean): void;
 }
 
+/** This page is in the room no longer. */
+const isOut = (round: BallRound | null): boolean => (round?.ended ?? null) !== null;
+
 /** A button for a seat; null: for none. */
 interface Offer {
   readonly seat: number | null;
@@ -98,18 +102,11 @@ function createOffers(attributes: Record<string, string>) {
   };
 }
 
-/** A labelled switch. */
-function createCheck(label: string, onChange: (on: boolean) => void) {
-  const input = element('input', { type: 'checkbox', role: 'switch' });
-  input.addEventListener('change', () => onChange(input.checked));
-  return { input, node: element('label', { class: 'toggle' }, element('span', {}, label), input) };
-}
-
 /** Who plays and by which rules, folded away. */
 function createPlayers(actions: BallBarActions, setSound: (on: boolean) => void) {
-  const bots = createCheck('Bots take free places', actions.setBots);
-  const rotate = createCheck('Swap roles after each match', actions.rotate);
-  const sound = createCheck('Sound', setSound);
+  const bots = toggle('Bots take free places', actions.setBots);
+  const rotate = toggle('Swap roles after each match', actions.rotate);
+  const sound = toggle('Sound', setSound);
   const name = element('input', { type: 'text', maxlength: 24, autocomplete: 'nickname', 'aria-label': 'Your name' });
   name.addEventListener('change', () => actions.setName(name.value));
   const rules = element('div');
@@ -134,7 +131,7 @@ function createPlayers(actions: BallBarActions, setSound: (on: boolean) => void)
       }
       bots.input.checked = botsOn;
       rotate.input.checked = round?.rotate ?? false;
-      rotate.input.disabled = round?.seat === null || (round?.ended ?? null) !== null;
+      rotate.input.disabled = round?.seat === null || isOut(round);
       sound.input.checked = soundOn;
       name.placeholder = guestName;
       if (document.activeElement !== name) name.value = given;
@@ -152,99 +149,124 @@ function whereText({ round, room }: BallBarState): string {
   return [place, round.role, watching, round.connection].filter(Boolean).join(' · ');
 }
 
-/** Score, places and settings of the ball game, beside the picture. */
-export function createBallBar(actions: BallBarActions, setSound: (on: boolean) => void) {
+/** Balls in the basket, balls left, and the time. */
+function createScore() {
   const score = element('output', { class: 'score', 'aria-label': 'Score' });
   const left = element('span', { class: 'arrows' });
   const time = element('span', { class: 'time' });
-  const where = element('p', { class: 'hint' });
-  const waiting = element('p', { class: 'waiting', role: 'status' });
+  return {
+    node: element('div', { class: 'row board' }, score, left, time),
+    show(round: BallRound | null): void {
+      score.textContent = round ? `${round.score} / ${round.of}` : '–';
+      left.textContent = round ? `${round.ballsLeft} ${round.ballsLeft === 1 ? 'ball' : 'balls'}` : '';
+      const seconds = round ? `${Math.ceil(round.secondsLeft)} s` : '';
+      time.textContent = round?.paused ? `${seconds}, paused` : seconds;
+    },
+  };
+}
+
+/** What can be pressed now; where this page is in the room no longer, nothing but the way back. */
+function createDeeds(actions: BallBarActions) {
+  let isReady = false;
   const ready = button('Ready', () => actions.ready(!isReady), { class: 'primary' });
   const rejoin = button('Take over again', actions.rejoin, { class: 'primary' });
   const watch = button('Watch', () => actions.sit(null));
   const steer = button('Play with the mouse', () => actions.steer(true), { class: 'primary' });
   const rest = button('Let the built-in player play', () => actions.steer(false));
   const hint = element('p', { class: 'hint' });
+  return {
+    node: element('div', { class: 'row' }, rejoin, ready, steer, rest, watch),
+    /** How a mouse plays. */
+    hint,
+    show({ round, acting, mouse }: BallBarState): void {
+      const out = isOut(round);
+      const seated = round !== null && round.seat !== null;
+      isReady = round?.ready ?? false;
+      rejoin.hidden = !out;
+      ready.hidden = !seated || round.phase === 'running' || acting;
+      ready.textContent = isReady ? 'Wait for me' : round?.phase === 'over' ? 'Play again' : 'Ready';
+      ready.classList.toggle('primary', !isReady && !out);
+      steer.hidden = !seated || mouse !== false;
+      steer.classList.toggle('primary', !out);
+      rest.hidden = !seated || mouse !== true;
+      watch.hidden = !seated;
+      for (const deed of [ready, steer, rest, watch]) deed.disabled = out;
+      hint.hidden = !seated || mouse !== true || out;
+      hint.textContent = round?.throws
+        ? 'Point at the basket and hold the button: the ring shows where the ball will come down. Let go when it is green. Esc: not yet.'
+        : 'Point at where the basket is to be; it turns towards the balls by itself.';
+    },
+  };
+}
+
+/** The places that are free, and for a spectator the players to follow. */
+function createSeats(actions: BallBarActions) {
   const places = createOffers({ class: 'places', role: 'group', 'aria-label': 'Places' });
   const cameras = createOffers({ class: 'segments', role: 'group', 'aria-label': 'Camera' });
+  const sit = ({ seat, role }: BallRound['people'][number]): Offer => ({
+    seat,
+    label: `Play as ${role.toLowerCase()}`,
+    act: () => actions.sit(seat),
+  });
+  const camera = (label: string, seat: number | null, following: number | null): Offer => ({
+    seat,
+    label,
+    act: () => actions.follow(seat),
+    pressed: seat === following,
+  });
+  return {
+    places: places.node,
+    cameras: cameras.node,
+    show({ round, following }: BallBarState): void {
+      const free = round && round.phase !== 'running' ? round.people.filter((person) => person.free) : [];
+      places.show(free.map(sit), isOut(round));
+      const followed = round?.seat === null ? round.people.filter(({ name }) => name !== 'free') : null;
+      cameras.show(
+        followed
+          ? [camera('Free', null, following), ...followed.map(({ seat, name }) => camera(name, seat, following))]
+          : [],
+      );
+    },
+  };
+}
+
+/** Score, places and settings of the ball game, beside the picture. */
+export function createBallBar(actions: BallBarActions, setSound: (on: boolean) => void) {
+  const score = createScore();
+  const where = element('p', { class: 'hint' });
+  const waiting = element('p', { class: 'waiting', role: 'status' });
+  const seats = createSeats(actions);
+  const deeds = createDeeds(actions);
   const openRoom = button('Play with others', actions.openRoom);
   const invite = button('Invite others', actions.invite);
   const players = createPlayers(actions, setSound);
   const node = element(
     'div',
     { class: 'round' },
-    element('div', { class: 'row board' }, score, left, time),
+    score.node,
     where,
     waiting,
-    places.node,
-    cameras.node,
-    element('div', { class: 'row' }, rejoin, ready, steer, rest, watch),
-    hint,
+    seats.places,
+    seats.cameras,
+    deeds.node,
+    deeds.hint,
     element('div', { class: 'row' }, openRoom, invite),
     players.node,
   );
   node.hidden = true;
-  let isReady = false;
-
-  function showScore(round: BallRound | null): void {
-    score.textContent = round ? `${round.score} / ${round.of}` : '–';
-    left.textContent = round ? `${round.ballsLeft} ${round.ballsLeft === 1 ? 'ball' : 'balls'}` : '';
-    const seconds = round ? `${Math.ceil(round.secondsLeft)} s` : '';
-    time.textContent = round?.paused ? `${seconds}, paused` : seconds;
-  }
-
-  /** What can be pressed now; where this page is in the room no longer, nothing but the way back. */
-  function showDeeds({ round, acting, mouse }: BallBarState): void {
-    const out = (round?.ended ?? null) !== null;
-    const seated = round !== null && round.seat !== null;
-    isReady = round?.ready ?? false;
-    rejoin.hidden = !out;
-    ready.hidden = !seated || round.phase === 'running' || acting;
-    ready.textContent = isReady ? 'Wait for me' : round?.phase === 'over' ? 'Play again' : 'Ready';
-    ready.classList.toggle('primary', !isReady && !out);
-    steer.hidden = !seated || mouse !== false;
-    steer.classList.toggle('primary', !out);
-    rest.hidden = !seated || mouse !== true;
-    watch.hidden = !seated;
-    for (const deed of [ready, steer, rest, watch]) deed.disabled = out;
-    hint.hidden = !seated || mouse !== true || out;
-    hint.textContent = round?.throws
-      ? 'Point at the basket and hold the button: the ring shows where the ball will come down. Let go when it is green. Esc: not yet.'
-      : 'Point at where the basket is to be; it turns towards the balls by itself.';
-  }
-
-  function showPeople({ round, following }: BallBarState): void {
-    const out = (round?.ended ?? null) !== null;
-    const free = round && round.phase !== 'running' ? round.people.filter((person) => person.free) : [];
-    const sit = ({ seat, role }: BallRound['people'][number]) => ({
-      seat,
-      label: `Play as ${role.toLowerCase()}`,
-      act: () => actions.sit(seat),
-    });
-    places.show(free.map(sit), out);
-    const followed = round?.seat === null ? round.people.filter(({ name }) => name !== 'free') : null;
-    const camera = (label: string, seat: number | null) => ({
-      seat,
-      label,
-      act: () => actions.follow(seat),
-      pressed: seat === following,
-    });
-    cameras.show(followed ? [camera('Free', null), ...followed.map(({ seat, name }) => camera(name, seat))] : []);
-  }
-
   return {
     node,
     show(state: BallBarState | null, soundOn: boolean): void {
       node.hidden = state === null;
       if (!state) return;
       const { round, room } = state;
-      showScore(round);
+      score.show(round);
       where.textContent = whereText(state);
       const sentence = round?.ended ?? round?.waiting ?? null;
       if (waiting.textContent !== (sentence ?? '')) waiting.textContent = sentence;
       waiting.hidden = sentence === null;
-      showDeeds(state);
-      showPeople(state);
+      deeds.show(state);
+      seats.show(state);
       openRoom.hidden = room !== null;
       invite.hidden = room === null;
       players.show(state, soundOn);
