@@ -1,8 +1,9 @@
 import {
+  type BufferGeometry,
   Group,
   InstancedMesh,
+  type Material,
   Matrix4,
-  type Mesh,
   MeshLambertMaterial,
   MeshStandardMaterial,
   type Object3D,
@@ -10,7 +11,8 @@ import {
   SphereGeometry,
   Vector3,
 } from 'three';
-import type { BallState } from '../../core/games/ball/ball-state';
+import type { BallPlace, BallState, TimedLaunch } from '../../core/games/ball/ball-state';
+
 import type { Opening } from '../../core/games/ball/basket';
 import { ballRadius, basketDepth, basketRadius } from '../../core/games/ball/flight';
 import { ballPosition } from '../../core/games/ball/state-readings';
@@ -18,18 +20,16 @@ import { addScaled, dot, length, reject, subtract, type Vec3 } from '../../core/
 import { disposeTree } from '../../scene/dispose-tree';
 import { painted } from '../../scene/painted-geometry';
 import type { Quality } from '../../scene/renderer';
-import { createShadowDiscs } from './shadow-discs';
+import { createShadowDiscs, type ShadowDiscs } from './shadow-discs';
+
+/** Where the fist is that holds a ball; null: it is not seen. */
+type InHand = (player: number, side: 'left' | 'right') => Vec3 | null;
 
 /** All balls of a match, wherever they are; arena frame. */
 export interface Balls {
   readonly object: Object3D;
-  /** At a time of the match [s]; inHand: where the fist is that holds a ball; null: it is not seen. */
-  show(
-    state: BallState,
-    time: number,
-    inHand: (player: number, side: 'left' | 'right') => Vec3 | null,
-    opening: Opening | null,
-  ): void;
+  /** At a time of the match [s]. */
+  show(state: BallState, time: number, inHand: InHand, opening: Opening | null): void;
   dispose(): void;
 }
 
@@ -66,84 +66,122 @@ function stoppedBy(opening: Opening | null, position: Vec3): Vec3 {
   return addScaled(position, opening.normal, deepest - height);
 }
 
-export function createBalls(count: number, quality: Quality): Balls {
-  const object = new Group();
-  object.name = 'balls';
-  const perLook = Math.ceil(count / 2);
-  const material =
-    quality === 'high'
-      ? new MeshStandardMaterial({ vertexColors: true, roughness: 0.55 })
-      : new MeshLambertMaterial({ vertexColors: true });
-  const meshes = looks.map((look) => {
-    const mesh = new InstancedMesh(geometryOf(look, quality), material, perLook);
-    mesh.castShadow = mesh.receiveShadow = true;
-    mesh.frustumCulled = false;
-    return mesh;
-  });
-  const shadows = createShadowDiscs(count);
-  object.add(...meshes, shadows.object);
-  const matrix = new Matrix4();
-  const at = new Vector3();
-  const turn = new Quaternion();
-  const axis = new Vector3();
-  const one = new Vector3(1, 1, 1);
-  const gone = new Matrix4().makeScale(0, 0, 0);
-  const basketTurn = new Quaternion();
-  const upward = new Vector3(0, 1, 0);
+const createMaterial = (quality: Quality) =>
+  quality === 'high'
+    ? new MeshStandardMaterial({ vertexColors: true, roughness: 0.55 })
+    : new MeshLambertMaterial({ vertexColors: true });
 
-  /** A ball that flies tumbles forward; one that rolls turns as far as it has gone. */
-  function turned(state: BallState, ball: number, time: number, position: Vec3): void {
-    const place = state.balls[ball];
-    turn.setFromAxisAngle(axis.set(0.6, 0.2, 0.77).normalize(), ball * 1.9);
-    if (place?.on !== 'air' && place?.on !== 'floor') return;
-    const { velocity, position: from } = place.launch;
-    axis.set(velocity.z, 0, -velocity.x);
-    if (axis.lengthSq() < 1e-6) return;
-    axis.normalize();
-    const angle =
-      place.on === 'air'
-        ? Math.min(9, 1.6 * length(velocity)) * Math.max(0, time - place.launch.time)
-        : Math.hypot(position.x - from.x, position.z - from.z) / ballRadius;
-    turn.premultiply(new Quaternion().setFromAxisAngle(axis, angle));
+function createMesh(geometry: BufferGeometry, material: Material, count: number): InstancedMesh {
+  const mesh = new InstancedMesh(geometry, material, count);
+  mesh.castShadow = mesh.receiveShadow = true;
+  mesh.frustumCulled = false;
+  return mesh;
+}
+
+/** How far a ball has turned that was let go so: one that flies tumbles, one that rolls turns as far as it has gone [rad]. */
+function turnedBy(
+  on: 'air' | 'floor',
+  { velocity, position: from, time: since }: TimedLaunch,
+  time: number,
+  to: Vec3,
+): number {
+  if (on === 'floor') return Math.hypot(to.x - from.x, to.z - from.z) / ballRadius;
+  return Math.min(9, 1.6 * length(velocity)) * Math.max(0, time - since);
+}
+
+/** A full basket shows three layers of balls: those below them are hidden. */
+const mostInBasket = 15;
+const gone = new Matrix4().makeScale(0, 0, 0);
+const one = new Vector3(1, 1, 1);
+const upward = new Vector3(0, 1, 0);
+
+export const createBalls = (count: number, quality: Quality): Balls => new MatchBalls(count, quality);
+
+class MatchBalls implements Balls {
+  readonly object = new Group();
+  readonly #perLook: number;
+  /** The balls of the first rack and those of the second. */
+  readonly #meshes: readonly [InstancedMesh, InstancedMesh];
+  readonly #shadows: ShadowDiscs;
+  readonly #matrix = new Matrix4();
+  readonly #at = new Vector3();
+  readonly #turn = new Quaternion();
+  readonly #axis = new Vector3();
+  readonly #rolled = new Quaternion();
+  readonly #basketTurn = new Quaternion();
+
+  constructor(count: number, quality: Quality) {
+    this.#perLook = Math.ceil(count / 2);
+    const material = createMaterial(quality);
+    const [first, second] = looks;
+    this.#meshes = [
+      createMesh(geometryOf(first, quality), material, this.#perLook),
+      createMesh(geometryOf(second, quality), material, this.#perLook),
+    ];
+    this.#shadows = createShadowDiscs(count);
+    this.object.name = 'balls';
+    this.object.add(...this.#meshes, this.#shadows.object);
   }
 
-  return {
-    object,
-    show(state, time, inHand, opening) {
-      let caught = 0;
-      state.balls.forEach((place, ball) => {
-        const mesh = meshes[ball < perLook ? 0 : 1] as Mesh as InstancedMesh;
-        const index = ball % perLook;
-        let position = ballPosition(state, ball, time);
-        if (place.on === 'hand') position = inHand(place.player, place.side);
-        if (place.on === 'basket') {
-          const [x, y, z] = placeInBasket(caught);
-          caught += 1;
-          const held = opening ?? state.basket;
-          basketTurn.setFromUnitVectors(upward, at.copy(held.normal));
-          at.set(x, y, z).applyQuaternion(basketTurn).add(held.position);
-          position = { x: at.x, y: at.y, z: at.z };
-        }
-        // A catch is told a moment later: until then the ball lies where it fell.
-        if (place.on === 'air' && !place.missed && position) position = stoppedBy(opening, position);
-        // A full basket shows three layers of balls: those below them are hidden.
-        if (!position || (place.on === 'basket' && caught > 15)) {
-          mesh.setMatrixAt(index, gone);
-          shadows.hide(ball);
-          return;
-        }
-        turned(state, ball, time, position);
-        mesh.setMatrixAt(index, matrix.compose(at.copy(position), turn, one));
-        if (place.on === 'air' || place.on === 'floor') shadows.put(ball, position);
-        else shadows.hide(ball);
-      });
-      for (const mesh of meshes) mesh.instanceMatrix.needsUpdate = true;
-      shadows.update();
-    },
-    dispose() {
-      object.removeFromParent();
-      for (const mesh of meshes) mesh.dispose();
-      disposeTree(object);
-    },
-  };
+  show(state: BallState, time: number, inHand: InHand, opening: Opening | null): void {
+    let caught = 0;
+    for (let ball = 0; ball < state.balls.length; ball++) {
+      const place = state.balls[ball]!;
+      let position: Vec3 | null;
+      if (place.on === 'hand') position = inHand(place.player, place.side);
+      else if (place.on === 'basket') {
+        position = caught < mostInBasket ? this.#inBasket(caught, opening ?? state.basket) : null;
+        caught += 1;
+      } else position = ballPosition(state, ball, time);
+      // A catch is told a moment later: until then the ball lies where it fell.
+      if (place.on === 'air' && !place.missed && position) position = stoppedBy(opening, position);
+      if (position) this.#put(ball, place, position, time);
+      else this.#hide(ball);
+    }
+    for (const mesh of this.#meshes) mesh.instanceMatrix.needsUpdate = true;
+    this.#shadows.update();
+  }
+
+  dispose(): void {
+    this.object.removeFromParent();
+    for (const mesh of this.#meshes) mesh.dispose();
+    disposeTree(this.object);
+  }
+
+  /** Where the ball lies that was caught after this many others. */
+  #inBasket(index: number, { position, normal }: Opening): Vec3 {
+    const [x, y, z] = placeInBasket(index);
+    const at = this.#at;
+    this.#basketTurn.setFromUnitVectors(upward, at.copy(normal));
+    at.set(x, y, z).applyQuaternion(this.#basketTurn).add(position);
+    return { x: at.x, y: at.y, z: at.z };
+  }
+
+  #put(ball: number, place: BallPlace, position: Vec3, time: number): void {
+    this.#setTurn(ball, place, position, time);
+    this.#setMatrix(ball, this.#matrix.compose(this.#at.copy(position), this.#turn, one));
+    if (place.on === 'air' || place.on === 'floor') this.#shadows.put(ball, position);
+    else this.#shadows.hide(ball);
+  }
+
+  #hide(ball: number): void {
+    this.#setMatrix(ball, gone);
+    this.#shadows.hide(ball);
+  }
+
+  #setMatrix(ball: number, matrix: Matrix4): void {
+    this.#meshes[ball < this.#perLook ? 0 : 1].setMatrixAt(ball % this.#perLook, matrix);
+  }
+
+  /** Each ball lies turned in its own way; one on its way turns about the axis across it. */
+  #setTurn(ball: number, place: BallPlace, position: Vec3, time: number): void {
+    const axis = this.#axis;
+    this.#turn.setFromAxisAngle(axis.set(0.6, 0.2, 0.77).normalize(), ball * 1.9);
+    if (place.on !== 'air' && place.on !== 'floor') return;
+    const { velocity } = place.launch;
+    axis.set(velocity.z, 0, -velocity.x);
+    if (axis.lengthSq() < 1e-6) return;
+    const angle = turnedBy(place.on, place.launch, time, position);
+    this.#turn.premultiply(this.#rolled.setFromAxisAngle(axis.normalize(), angle));
+  }
 }
