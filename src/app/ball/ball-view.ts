@@ -9,13 +9,13 @@ import type { Vec3 } from '../../core/math/vec3';
 import type { Quality } from '../../scene/renderer';
 import type { Surroundings } from '../../scene/surroundings';
 import { createAimArc } from './aim-arc';
-import { createBalls } from './balls';
+import { type Balls, createBalls } from './balls';
 import { lineOfEvent, type Person, type Standing, waitingLine } from './board-drawing';
-import { createBoards } from './boards';
-import { createCatchPops } from './catch-pops';
-import { createCourt } from './court';
+import { type Boards, createBoards } from './boards';
+import { type CatchPops, createCatchPops } from './catch-pops';
+import { type Court, createCourt } from './court';
 import { createLobbySheet, type LobbySheet } from './lobby-sheet';
-import { createNameLabels } from './name-labels';
+import { createNameLabels, type NameLabels } from './name-labels';
 import { type BallSounds, createBallSounds } from './sounds';
 import { createWickerBasket } from './wicker-basket';
 import { createZoneRing } from './zone-ring';
@@ -80,91 +80,111 @@ export interface BallViewOptions {
 /** The last sentence stays on the board this long [s]. */
 const lineSeconds = 3;
 
-export function createBallView({ quality, balls: count, onCaption }: BallViewOptions): BallView {
-  const court = createCourt(quality, count);
-  const balls = createBalls(count, quality);
-  const basket = createWickerBasket();
-  const boards = createBoards(quality);
-  const pops = createCatchPops(quality);
-  const names = createNameLabels(stations.length, quality);
-  const ring = createZoneRing();
-  const arc = createAimArc();
-  const lobby = createLobbySheet(quality);
-  const sounds = createBallSounds(onCaption);
-  court.object.add(balls.object, basket.object, boards.object, pops.object, names.object, ring.mesh, arc.object);
-  let floorFromArena: Transform<'floor', 'arena'> = {
-    position: { x: 0, y: 0, z: 0 },
-    orientation: { x: 0, y: 0, z: 0, w: 1 },
-  };
-  let shown: BallScene | null = null;
-  let line = { text: '', until: Number.NEGATIVE_INFINITY };
+const origin: Transform<'floor', 'arena'> = {
+  position: { x: 0, y: 0, z: 0 },
+  orientation: { x: 0, y: 0, z: 0, w: 1 },
+};
+const unseenFists: Attendant['fists'] = { left: null, right: null };
 
-  return {
-    placed(next) {
-      floorFromArena = next;
-      return court.placed(next);
-    },
-    own: lobby.object,
-    lobby,
-    sound: sounds,
-    show(scene) {
-      shown = scene;
-      const { state, time, attendants, me, rotate, head } = scene;
-      const eyes = transformPoint(invertTransform(floorFromArena), head.position);
-      sounds.listen(head, floorFromArena);
-      const opening = scene.opening ?? state.basket;
-      basket.show(opening);
-      arc.show(scene.aim, opening);
-      balls.show(state, time, (player, side) => attendants[player]?.fists[side] ?? null, opening);
-      pops.show(time, eyes);
-      const people = attendants.map(
-        (person): Person | null =>
-          person && { name: person.name, bot: person.bot, presence: person.presence, me: person.me },
-      );
-      const standing: Standing = {
-        state,
-        seconds: Math.ceil(scene.secondsLeft),
-        people,
-        me,
-        rotate,
-        acting: scene.acting,
-      };
-      const said = time < line.until && state.phase === 'running' ? line.text : waitingLine(standing);
-      boards.show(standing, scene.paused ? 'Paused' : said);
-      lobby.show(standing, head.position.y, scene.pageTime, scene.inRoom);
-      names.show(
-        attendants.map((person, player) => {
-          const station = state.players[player]?.station ?? player;
-          const head = person?.head;
-          const known = people[player];
-          return known && head && !known.me ? { person: known, station, head, opacity: person.opacity } : null;
-        }),
-      );
-      const station = me === null ? null : (state.players[me]?.station ?? null);
-      ring.show(station === null ? null : (stations[station]?.position ?? null), eyes);
-    },
-    hear(events, cues) {
-      if (!shown) return;
-      const { state, time, attendants, me } = shown;
-      for (const event of events) {
-        const text = lineOfEvent(event, attendants);
-        if (text) line = { text, until: time + lineSeconds };
-        if (event.type === 'caught') pops.add((shown.opening ?? state.basket).position, time);
-      }
-      const mine = me === null ? null : (attendants[me] ?? null);
-      sounds.hear({
-        state,
-        time,
-        events,
-        cues,
-        me,
-        people: attendants,
-        fists: mine?.fists ?? { left: null, right: null },
-      });
-    },
-    dispose() {
-      lobby.dispose();
-      for (const part of [sounds, balls, basket, boards, pops, names, arc, court]) part.dispose();
-    },
-  };
+/** What is written of a player, and no more: a sign is drawn anew when any of it changes. */
+const writtenOf = (attendant: Attendant | null): Person | null =>
+  attendant && { name: attendant.name, bot: attendant.bot, presence: attendant.presence, me: attendant.me };
+
+const stationOf = ({ players }: BallState, me: number | null): number | null =>
+  me === null ? null : (players[me]?.station ?? null);
+
+export const createBallView = (options: BallViewOptions): BallView => new CourtView(options);
+
+class CourtView implements BallView {
+  readonly own: Group;
+  readonly lobby: LobbySheet;
+  readonly sound: BallSounds;
+  readonly #court: Court;
+  readonly #balls: Balls;
+  readonly #basket = createWickerBasket();
+  readonly #boards: Boards;
+  readonly #pops: CatchPops;
+  readonly #names: NameLabels;
+  readonly #ring = createZoneRing();
+  readonly #arc = createAimArc();
+  #floorFromArena = origin;
+  #shown: BallScene | null = null;
+  /** What happened last, in a sentence, and until when in the match it is on the board. */
+  #line = { text: '', until: Number.NEGATIVE_INFINITY };
+
+  constructor({ quality, balls, onCaption }: BallViewOptions) {
+    this.#court = createCourt(quality, balls);
+    this.#balls = createBalls(balls, quality);
+    this.#boards = createBoards(quality);
+    this.#pops = createCatchPops(quality);
+    this.#names = createNameLabels(stations.length, quality);
+    this.lobby = createLobbySheet(quality);
+    this.own = this.lobby.object;
+    this.sound = createBallSounds(onCaption);
+    const standing = [this.#balls, this.#basket, this.#boards, this.#pops, this.#names];
+    this.#court.object.add(...standing.map(({ object }) => object), this.#ring.mesh, this.#arc.object);
+  }
+
+  placed(floorFromArena: Transform<'floor', 'arena'>): Surroundings {
+    this.#floorFromArena = floorFromArena;
+    return this.#court.placed(floorFromArena);
+  }
+
+  show(scene: BallScene): void {
+    this.#shown = scene;
+    const { state, time, attendants, me, rotate, head, acting } = scene;
+    const eyes = transformPoint(invertTransform(this.#floorFromArena), head.position);
+    this.sound.listen(head, this.#floorFromArena);
+    this.#showBalls(scene);
+    this.#pops.show(time, eyes);
+    const people = attendants.map(writtenOf);
+    const standing: Standing = { state, seconds: Math.ceil(scene.secondsLeft), people, me, rotate, acting };
+    this.#boards.show(standing, scene.paused ? 'Paused' : this.#said(standing, time));
+    this.lobby.show(standing, head.position.y, scene.pageTime, scene.inRoom);
+    this.#showNames(scene, people);
+    const station = stationOf(state, me);
+    this.#ring.show(station === null ? null : (stations[station]?.position ?? null), eyes);
+  }
+
+  hear(events: readonly BallEvent[], cues: readonly BallCue[]): void {
+    if (!this.#shown) return;
+    const { state, time, attendants: people, me, opening } = this.#shown;
+    for (const event of events) {
+      const text = lineOfEvent(event, people);
+      if (text) this.#line = { text, until: time + lineSeconds };
+      if (event.type === 'caught') this.#pops.add((opening ?? state.basket).position, time);
+    }
+    const mine = me === null ? null : people[me];
+    this.sound.hear({ state, time, events, cues, me, people, fists: mine?.fists ?? unseenFists });
+  }
+
+  dispose(): void {
+    this.lobby.dispose();
+    const signs = [this.#boards, this.#pops, this.#names];
+    for (const part of [this.sound, this.#balls, this.#basket, ...signs, this.#arc, this.#court]) part.dispose();
+  }
+
+  #showBalls({ state, time, attendants, opening: held, aim }: BallScene): void {
+    const opening = held ?? state.basket;
+    this.#basket.show(opening);
+    this.#arc.show(aim, opening);
+    this.#balls.show(state, time, (player, side) => attendants[player]?.fists[side] ?? null, opening);
+  }
+
+  /** What the board says while the clock goes on: what happened a moment ago, or what the match waits for. */
+  #said(standing: Standing, time: number): string {
+    const { text, until } = this.#line;
+    return time < until && standing.state.phase === 'running' ? text : waitingLine(standing);
+  }
+
+  #showNames({ state, attendants }: BallScene, people: readonly (Person | null)[]): void {
+    this.#names.show(
+      attendants.map((attendant, player) => {
+        const person = people[player];
+        if (!attendant?.head || !person || person.me) return null;
+        const { head, opacity } = attendant;
+        return { person, station: state.players[player]?.station ?? player, head, opacity };
+      }),
+    );
+  }
 }
