@@ -1,4 +1,4 @@
-import type { BallEvent, BallState } from '../../core/games/ball/ball-state';
+import type { BallEvent, BallState, TimedLaunch } from '../../core/games/ball/ball-state';
 import { ballInAir } from '../../core/games/ball/flight';
 import type { BallCue } from '../../core/games/ball/gestures';
 import { ballSecondsLeft } from '../../core/games/ball/state-readings';
@@ -6,7 +6,13 @@ import { holderStation, stations } from '../../core/games/ball/stations';
 import { clamp } from '../../core/math/damper';
 import { invertTransform, type Pose, type Transform, transformPoint, transformPose } from '../../core/math/pose';
 import { add, length, lerp, type Vec3, vec3 } from '../../core/math/vec3';
-import { createSoundStage, type Player, type Recipe, type Recipes } from '../../scene/sound/sound-stage';
+import {
+  createSoundStage,
+  type Player,
+  type Recipe,
+  type Recipes,
+  type SoundStage,
+} from '../../scene/sound/sound-stage';
 import { bell, chime, click, warning, whoosh } from '../../scene/sound/synthesis';
 import type { Person } from './board-drawing';
 import { cueCaption, eventCaption, type Hearing } from './captions';
@@ -78,88 +84,125 @@ export function placeOf(event: BallEvent, state: BallState): Vec3 | null {
   }
 }
 
-export function createBallSounds(onCaption: (text: string) => void, createContext?: () => AudioContext): BallSounds {
-  const stage = createSoundStage(recipes, createContext);
-  let floorFromArena: Transform<'floor', 'arena'> = {
+export const createBallSounds = (onCaption: (text: string) => void, createContext?: () => AudioContext): BallSounds =>
+  new CourtSounds(onCaption, createContext);
+
+class CourtSounds implements BallSounds {
+  readonly #onCaption: (text: string) => void;
+  readonly #stage: SoundStage;
+  #floorFromArena: Transform<'floor', 'arena'> = {
     position: vec3(0, 0, 0),
     orientation: { x: 0, y: 0, z: 0, w: 1 },
   };
-  let head: Pose<'floor'> = { position: vec3(0, 1.6, 0), orientation: { x: 0, y: 0, z: 0, w: 1 } };
-  let ticked = 0;
-  const inFloor = (point: Vec3) => transformPoint(floorFromArena, point);
+  #head: Pose<'floor'> = { position: vec3(0, 1.6, 0), orientation: { x: 0, y: 0, z: 0, w: 1 } };
+  /** The second before the bell that ticked last; 0: none did. */
+  #ticked = 0;
 
-  function playEvent(event: BallEvent, { state, me }: Heard, { context, play }: Player): void {
+  constructor(onCaption: (text: string) => void, createContext?: () => AudioContext) {
+    this.#onCaption = onCaption;
+    this.#stage = createSoundStage(recipes, createContext);
+  }
+
+  unlock(): Promise<void> {
+    return this.#stage.unlock();
+  }
+
+  hear(heard: Heard): void {
+    const playing = this.#stage.player;
+    const { state, events, cues, people, me, fists } = heard;
+    const head = transformPose(invertTransform(this.#floorFromArena), this.#head);
+    const hearing: Hearing = { head, me, people, seconds: state.options.seconds };
+    for (const cue of cues) {
+      this.#caption(cueCaption(cue));
+      if (playing) this.#playCue(cue, fists, playing);
+    }
+    for (const event of events) {
+      this.#caption(eventCaption(event, placeOf(event, state), hearing));
+      if (playing) this.#playEvent(event, heard, playing);
+    }
+    this.#tick(state, playing);
+  }
+
+  listen(head: Pose<'floor'>, floorFromArena: Transform<'floor', 'arena'>): void {
+    this.#head = head;
+    this.#floorFromArena = floorFromArena;
+    this.#stage.listen(head);
+  }
+
+  setVolume(volume: number): void {
+    this.#stage.setVolume(volume);
+  }
+
+  setMuted(on: boolean): void {
+    this.#stage.setMuted(on);
+  }
+
+  dispose(): void {
+    this.#stage.dispose();
+  }
+
+  #inFloor(point: Vec3): Vec3 {
+    return transformPoint(this.#floorFromArena, point);
+  }
+
+  #caption(text: string | null): void {
+    if (text) this.#onCaption(text);
+  }
+
+  /** The last ten seconds tick. */
+  #tick(state: BallState, playing: Player | null): void {
+    const left = state.phase === 'running' ? Math.ceil(ballSecondsLeft(state)) : 0;
+    if (playing && left > 0 && left <= 10 && left !== this.#ticked) playing.play('tick', this.#inFloor(boardAt));
+    this.#ticked = left;
+  }
+
+  #playCue({ type, side }: BallCue, fists: Heard['fists'], { play }: Player): void {
+    const at = fists[side];
+    if (!at) return;
+    if (type === 'grabbed' || type === 'dropped') play('click', this.#inFloor(at));
+    else if (type === 'slipped') play('warning', this.#inFloor(at));
+  }
+
+  #playEvent(event: BallEvent, { state, me }: Heard, playing: Player): void {
+    const { play } = playing;
     const at = placeOf(event, state);
     switch (event.type) {
       case 'started':
-        play('whistle', inFloor(boardAt));
+        play('whistle', this.#inFloor(boardAt));
         return;
       case 'ended':
-        play('bell', inFloor(boardAt), 0.2);
+        play('bell', this.#inFloor(boardAt), 0.2);
         return;
-      case 'thrown': {
-        const { panner } = play('whoosh', inFloor(event.launch.position));
-        // It goes along with the ball.
-        for (let step = 1; step <= 4; step++) {
-          const after = step * 0.15;
-          const there = inFloor(ballInAir(event.launch, event.launch.time + after));
-          panner.positionX.linearRampToValueAtTime(there.x, context.currentTime + after);
-          panner.positionY.linearRampToValueAtTime(there.y, context.currentTime + after);
-          panner.positionZ.linearRampToValueAtTime(there.z, context.currentTime + after);
-        }
+      case 'thrown':
+        this.#playFlight(event.launch, playing);
+        return;
+      case 'caught':
+        if (at) play('wicker', this.#inFloor(at));
+        // The chime is for all players: it rings half way.
+        if (at) play(chimeName(event.score), lerp(this.#inFloor(at), this.#head.position, 0.5), 0.1);
+        return;
+      case 'bounced': {
+        const name = event.off === 'basket' ? 'knock' : bounceName(length(event.launch.velocity) / 6);
+        if (at) play(name, this.#inFloor(at));
         return;
       }
-      case 'caught':
-        if (at) play('wicker', inFloor(at));
-        // The chime is for all players: it rings half way.
-        if (at) play(chimeName(event.score), lerp(inFloor(at), head.position, 0.5), 0.1);
-        return;
-      case 'bounced':
-        if (at) play(event.off === 'basket' ? 'knock' : bounceName(length(event.launch.velocity) / 6), inFloor(at));
-        return;
       case 'grabbed':
-        if (at && event.player !== me) play('click', inFloor(at));
+        if (at && event.player !== me) play('click', this.#inFloor(at));
         return;
       case 'refused':
-        if (event.player === me && event.reason !== 'seen-before') play('warning', head.position);
+        if (event.player === me && event.reason !== 'seen-before') play('warning', this.#head.position);
     }
   }
 
-  return {
-    unlock: stage.unlock,
-    hear(heard) {
-      const playing = stage.player;
-      const { state, events, cues, people, me, fists } = heard;
-      const hearing: Hearing = {
-        head: transformPose(invertTransform(floorFromArena), head),
-        me,
-        people,
-        seconds: state.options.seconds,
-      };
-      for (const cue of cues) {
-        const text = cueCaption(cue);
-        if (text) onCaption(text);
-        const at = fists[cue.side];
-        if (playing && at && (cue.type === 'grabbed' || cue.type === 'dropped')) playing.play('click', inFloor(at));
-        if (playing && at && cue.type === 'slipped') playing.play('warning', inFloor(at));
-      }
-      for (const event of events) {
-        const text = eventCaption(event, placeOf(event, state), hearing);
-        if (text) onCaption(text);
-        if (playing) playEvent(event, heard, playing);
-      }
-      // The last ten seconds tick.
-      const left = state.phase === 'running' ? Math.ceil(ballSecondsLeft(state)) : 0;
-      if (playing && left > 0 && left <= 10 && left !== ticked) playing.play('tick', inFloor(boardAt));
-      ticked = left;
-    },
-    listen(next, placed) {
-      head = next;
-      floorFromArena = placed;
-      stage.listen(next);
-    },
-    setVolume: stage.setVolume,
-    setMuted: stage.setMuted,
-    dispose: stage.dispose,
-  };
+  /** A whoosh that goes along with the ball. */
+  #playFlight(launch: TimedLaunch, { context, play }: Player): void {
+    const { panner } = play('whoosh', this.#inFloor(launch.position));
+    for (let step = 1; step <= 4; step++) {
+      const after = step * 0.15;
+      const there = this.#inFloor(ballInAir(launch, launch.time + after));
+      panner.positionX.linearRampToValueAtTime(there.x, context.currentTime + after);
+      panner.positionY.linearRampToValueAtTime(there.y, context.currentTime + after);
+      panner.positionZ.linearRampToValueAtTime(there.z, context.currentTime + after);
+    }
+  }
 }
