@@ -4,8 +4,14 @@ import type { BowCue } from '../../core/games/archery/gestures';
 import { positionAt } from '../../core/games/ballistics';
 import { clamp } from '../../core/math/damper';
 import { invertTransform, type Pose, type Transform, transformPoint, transformPose } from '../../core/math/pose';
-import { length, type Vec3, vec3 } from '../../core/math/vec3';
-import { createSoundStage, type Player, type Recipe, type Recipes } from '../../scene/sound/sound-stage';
+import { length, lerp, type Vec3, vec3 } from '../../core/math/vec3';
+import {
+  createSoundStage,
+  type Player,
+  type Recipe,
+  type Recipes,
+  type SoundStage,
+} from '../../scene/sound/sound-stage';
 import { bell, chime, click, warning, whoosh } from '../../scene/sound/synthesis';
 import { cueCaption, eventCaption } from './captions';
 import { creak, earth, rattle, thud, twang } from './synthesis';
@@ -52,90 +58,113 @@ const recipes: Recipes = new Map<string, Recipe>([
   ...[5, 10, 15, 20].map((points): [string, Recipe] => [chimeName(points), (rate) => chime(rate, points)]),
 ]);
 
-export function createSounds({ floorFromArena, onCaption, createContext }: SoundsOptions): Sounds {
-  const arenaFromFloor = invertTransform(floorFromArena);
-  const inFloor = (point: Vec3) => transformPoint(floorFromArena, point);
-  const stage = createSoundStage(recipes, createContext);
-  let head: Pose<'floor'> = { position: vec3(0, 1.6, 0), orientation: { x: 0, y: 0, z: 0, w: 1 } };
-  /** The sound of each arrow in the air. */
-  const flying = new Map<number, AudioBufferSourceNode>();
-  let creaked = false;
+type Landed = Extract<ArcheryEvent, { type: 'landed' }>;
 
-  const drawShare = (draw: number) => Math.round(clamp(draw / maximumDraw, 0, 1) * drawSteps) / drawSteps;
+const shareOf = (draw: number): number => Math.round(clamp(draw / maximumDraw, 0, 1) * drawSteps) / drawSteps;
+
+function playCue({ type, position, draw }: BowCue, { play }: Player): void {
+  if (type === 'creak') play(creakName(shareOf(draw)), position);
+  else if (type === 'released') play(twangName(shareOf(draw)), position);
+  else if (type === 'nocked' || type === 'taken' || type === 'cancelled') play('click', position);
+  else if (type === 'lost') play('warning', position);
+}
+
+export const createSounds = (options: SoundsOptions): Sounds => new RangeSounds(options);
+
+class RangeSounds implements Sounds {
+  readonly #floorFromArena: Transform<'floor', 'arena'>;
+  readonly #arenaFromFloor: Transform<'arena', 'floor'>;
+  readonly #onCaption: (text: string) => void;
+  readonly #stage: SoundStage;
+  /** The sound of each arrow in the air. */
+  readonly #flying = new Map<number, AudioBufferSourceNode>();
+  #head: Pose<'floor'> = { position: vec3(0, 1.6, 0), orientation: { x: 0, y: 0, z: 0, w: 1 } };
+  /** The bow's creaking was said in this draw. */
+  #creaked = false;
+
+  constructor({ floorFromArena, onCaption, createContext }: SoundsOptions) {
+    this.#floorFromArena = floorFromArena;
+    this.#arenaFromFloor = invertTransform(floorFromArena);
+    this.#onCaption = onCaption;
+    this.#stage = createSoundStage(recipes, createContext);
+  }
+
+  unlock(): Promise<void> {
+    return this.#stage.unlock();
+  }
+
+  hear({ targets, options }: ArcheryState, events: readonly ArcheryEvent[], cues: readonly BowCue[]): void {
+    const playing = this.#stage.player;
+    const head = transformPose(this.#arenaFromFloor, this.#head);
+    for (const cue of cues) {
+      this.#captionCue(cue);
+      if (playing) playCue(cue, playing);
+    }
+    for (const event of events) {
+      this.#onCaption(eventCaption(event, { targets, seconds: options.seconds, head }));
+      if (playing) this.#playEvent(event, playing);
+    }
+  }
+
+  listen(head: Pose<'floor'>): void {
+    this.#head = head;
+    this.#stage.listen(head);
+  }
+
+  setVolume(volume: number): void {
+    this.#stage.setVolume(volume);
+  }
+
+  setMuted(on: boolean): void {
+    this.#stage.setMuted(on);
+  }
+
+  dispose(): void {
+    this.#stage.dispose();
+  }
+
+  #inFloor(point: Vec3): Vec3 {
+    return transformPoint(this.#floorFromArena, point);
+  }
+
+  /** A bow creaks many times in a draw; it is said once. */
+  #captionCue(cue: BowCue): void {
+    if (cue.type === 'creak' && this.#creaked) return;
+    if (cue.type === 'creak') this.#creaked = true;
+    else if (cue.type === 'nocked' || cue.type === 'released' || cue.type === 'cancelled') this.#creaked = false;
+    const text = cueCaption(cue);
+    if (text) this.#onCaption(text);
+  }
+
+  #playEvent(event: ArcheryEvent, playing: Player): void {
+    if (event.type === 'released') this.#playFlight(event.arrow, playing);
+    else if (event.type === 'landed') this.#playLanding(event, playing);
+    else if (event.type === 'ended') playing.play('bell', this.#inFloor(vec3(-2, 2.4, -4)), 0.35);
+    else if (event.type === 'left-zone') playing.play('warning', this.#inFloor(vec3(0, 0.3, 0)));
+  }
 
   /** A whoosh that goes along with the arrow. */
-  function follow({ id, release }: Arrow, { context, play }: Player): void {
-    const { source, panner } = play('whoosh', inFloor(release.position));
+  #playFlight({ id, release }: Arrow, { context, play }: Player): void {
+    const { source, panner } = play('whoosh', this.#inFloor(release.position));
     const speed = length(release.velocity);
     for (let step = 1; step <= 4; step++) {
       const after = (step / 4) * Math.min(0.7, 14 / speed);
-      const at = inFloor(positionAt(release, after));
+      const at = this.#inFloor(positionAt(release, after));
       panner.positionX.linearRampToValueAtTime(at.x, context.currentTime + after);
       panner.positionY.linearRampToValueAtTime(at.y, context.currentTime + after);
       panner.positionZ.linearRampToValueAtTime(at.z, context.currentTime + after);
     }
-    flying.set(id, source);
-    source.addEventListener('ended', () => flying.delete(id));
+    this.#flying.set(id, source);
+    source.addEventListener('ended', () => this.#flying.delete(id));
   }
 
-  function playEvent(event: ArcheryEvent, playing: Player): void {
-    const { play } = playing;
-    if (event.type === 'released') follow(event.arrow, playing);
-    else if (event.type === 'landed') {
-      flying.get(event.arrow.id)?.stop();
-      const { on, points, position } = event.landing;
-      const at = inFloor(position);
-      if (on === 'target') play('thud', at);
-      else if (on === 'ground') play('earth', at);
-      else play('rattle', at);
-      // The chime is for the archer: it rings half way.
-      const near = {
-        x: (at.x + head.position.x) / 2,
-        y: (at.y + head.position.y) / 2,
-        z: (at.z + head.position.z) / 2,
-      };
-      if (points > 0) play(chimeName(points), near, 0.12);
-    } else if (event.type === 'ended') play('bell', inFloor(vec3(-2, 2.4, -4)), 0.35);
-    else if (event.type === 'left-zone') play('warning', inFloor(vec3(0, 0.3, 0)));
+  #playLanding({ arrow, landing }: Landed, { play }: Player): void {
+    this.#flying.get(arrow.id)?.stop();
+    const at = this.#inFloor(landing.position);
+    if (landing.on === 'target') play('thud', at);
+    else if (landing.on === 'ground') play('earth', at);
+    else play('rattle', at);
+    // The chime is for the archer: it rings half way.
+    if (landing.points > 0) play(chimeName(landing.points), lerp(at, this.#head.position, 0.5), 0.12);
   }
-
-  function playCue({ type, position, draw }: BowCue, { play }: Player): void {
-    const share = drawShare(draw);
-    if (type === 'creak') play(creakName(share), position);
-    else if (type === 'released') play(twangName(share), position);
-    else if (type === 'nocked' || type === 'taken' || type === 'cancelled') play('click', position);
-    else if (type === 'lost') play('warning', position);
-  }
-
-  /** A bow creaks many times in a draw; it is said once. */
-  function captionCue(cue: BowCue): void {
-    if (cue.type === 'creak' && creaked) return;
-    if (cue.type === 'creak') creaked = true;
-    else if (cue.type === 'nocked' || cue.type === 'released' || cue.type === 'cancelled') creaked = false;
-    const text = cueCaption(cue);
-    if (text) onCaption(text);
-  }
-
-  return {
-    unlock: stage.unlock,
-    hear(state, events, cues) {
-      const playing = stage.player;
-      const headInArena = transformPose(arenaFromFloor, head);
-      for (const cue of cues) {
-        captionCue(cue);
-        if (playing) playCue(cue, playing);
-      }
-      for (const event of events) {
-        onCaption(eventCaption(event, { targets: state.targets, seconds: state.options.seconds, head: headInArena }));
-        if (playing) playEvent(event, playing);
-      }
-    },
-    listen(next) {
-      head = next;
-      stage.listen(next);
-    },
-    setVolume: stage.setVolume,
-    setMuted: stage.setMuted,
-    dispose: stage.dispose,
-  };
 }
