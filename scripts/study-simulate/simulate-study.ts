@@ -41,6 +41,7 @@ const drawDemographics = (random: RandomSource): Demographics => ({
 });
 
 type GameStep = Extract<StudyStep, { kind: 'trial' | 'tutorial' }>;
+type QuestionnaireStep = Extract<StudyStep, { kind: 'questionnaire' }>;
 
 /** Seconds between the starts of two participants. */
 const slotSeconds = 7200;
@@ -57,99 +58,153 @@ export function simulateStudy(
   seed: number,
   at: number,
 ): readonly SimulatedParticipant[] {
-  const { performance, answers } = models;
-  const players = new Map<string, Player>(
-    participantsOf(plan).map((participant) => [
-      participant,
-      drawPlayer(performance, randomSource(seed, `player ${participant}`)),
-    ]),
+  const rounds = new SimulatedRounds(plan, models.performance, seed);
+  return participantsOf(plan).map((participant, index) =>
+    new SimulatedSession(rounds, models, participant, at + index * slotSeconds).run(),
   );
+}
+
+/** The players of a study and what their trials bring. */
+class SimulatedRounds {
+  readonly plan: StudyPlan;
+  readonly seed: number;
+  readonly #performance: PerformanceModel;
+  readonly #players: ReadonlyMap<string, Player>;
+
+  constructor(plan: StudyPlan, performance: PerformanceModel, seed: number) {
+    this.plan = plan;
+    this.seed = seed;
+    this.#performance = performance;
+    this.#players = new Map(
+      participantsOf(plan).map((participant) => [
+        participant,
+        drawPlayer(performance, randomSource(seed, `player ${participant}`)),
+      ]),
+    );
+  }
+
+  playerOf(participant: string): Player {
+    return this.#players.get(participant) as Player;
+  }
 
   /** What a trial brings; those who play together draw the same round. */
-  function outcomeOf(schedule: Schedule, step: GameStep, run: number, attempt: number): TrialOutcome {
-    const task = plan.tasks.find(({ id }) => id === step.task);
-    const group = schedule.groups[step.task];
+  outcomeOf({ participant, groups }: Schedule, step: GameStep, run: number, attempt: number): TrialOutcome {
+    const task = this.plan.tasks.find(({ id }) => id === step.task);
+    const group = groups[step.task];
     if (!task || !group) throw new Error(`the plan has no task "${step.task}"`);
-    const { members } = group;
     const circumstances = {
       estimator: step.estimator,
       condition: step.kind === 'trial' ? step.condition : null,
       block: step.block,
       seconds: step.seconds,
     };
-    const playing = members.map((member) => players.get(member) as Player);
     if (task.game === 'archery') {
-      const random = randomSource(seed, `${schedule.participant} ${step.id} ${run} ${attempt}`);
-      return drawArchery(performance, players.get(schedule.participant) as Player, circumstances, random);
+      const random = randomSource(this.seed, `${participant} ${step.id} ${run} ${attempt}`);
+      return drawArchery(this.#performance, this.playerOf(participant), circumstances, random);
     }
-    const random = randomSource(seed, `${members.join(' ')} ${step.id}`);
-    return drawBall(performance, playing, circumstances, random)[members.indexOf(schedule.participant)] as TrialOutcome;
+    const { members } = group;
+    const playing = members.map((member) => this.playerOf(member));
+    const random = randomSource(this.seed, `${members.join(' ')} ${step.id}`);
+    return drawBall(this.#performance, playing, circumstances, random)[members.indexOf(participant)] as TrialOutcome;
+  }
+}
+
+/** One participant from the consent to the end. */
+class SimulatedSession {
+  readonly #rounds: SimulatedRounds;
+  readonly #models: SimulationModels;
+  readonly #schedule: Schedule;
+  readonly #random: RandomSource;
+  /** What sets this participant's answers apart from others'. */
+  readonly #person: number;
+  readonly #records: StudyRecord[] = [];
+  #progress: Progress;
+  /** Seconds since 1970. */
+  #now: number;
+
+  constructor(rounds: SimulatedRounds, models: SimulationModels, participant: string, at: number) {
+    const { plan, seed } = rounds;
+    this.#rounds = rounds;
+    this.#models = models;
+    this.#schedule = scheduleFor(plan, participant);
+    this.#random = randomSource(seed, `session ${participant}`);
+    this.#person = drawPerson(models.answers, randomSource(seed, `person ${participant}`));
+    this.#progress = begin(this.#schedule, true);
+    this.#now = at;
   }
 
-  return participantsOf(plan).map((participant, index): SimulatedParticipant => {
-    const schedule = scheduleFor(plan, participant);
-    const random = randomSource(seed, `session ${participant}`);
-    const person = drawPerson(answers, randomSource(seed, `person ${participant}`));
-    const player = players.get(participant) as Player;
-    const records: StudyRecord[] = [];
-    let progress = begin(schedule, true);
-    let now = at + index * slotSeconds;
-    const tell = (event: ProgressEvent) => {
-      const next = advance(schedule, progress, event, now);
-      if (next.refusal) throw new Error(`${participant}, ${progress.step}: ${next.refusal}`);
-      progress = next.progress;
-      records.push(...next.records);
-    };
+  run(): SimulatedParticipant {
+    const { participant } = this.#schedule;
     for (let steps = 0; steps < mostSteps; steps++) {
-      const step = currentStep(schedule, progress);
-      if (step.kind === 'end') return { participant, progress, records };
-      now += 5 + Math.round(10 * random.uniform());
-      switch (step.kind) {
-        case 'consent':
-          tell({ type: 'consent', version: schedule.consentVersion, motion: false });
-          break;
-        case 'demographics':
-          tell({ type: 'demographics', demographics: drawDemographics(random) });
-          break;
-        case 'calibration':
-          tell({ type: 'calibrated', calibration: { eyeHeight: player.eyeHeight, armSpan: player.armSpan } });
-          break;
-        case 'rest':
-          now += step.seconds;
-          tell({ type: 'tick' });
-          break;
-        case 'tutorial':
-        case 'trial': {
-          tell({ type: 'start' });
-          if (random.uniform() < performance.mishaps.reload) {
-            now += 10;
-            progress = resumed(schedule, JSON.stringify(progress));
-            tell({ type: 'reload' });
-            break;
-          }
-          const run = progress.runs[`${step.task}/${step.block}`] ?? 1;
-          const outcome = outcomeOf(schedule, step, run, progress.attempt);
-          now += outcome.seconds;
-          tell({ type: 'trial-finished', outcome });
-          // A group's block is voided for all or none; alone, mishaps are one's own.
-          const alone = schedule.groups[step.task]?.members.length === 1;
-          if (step.kind === 'trial' && alone && random.uniform() < performance.mishaps.voided) {
-            tell({ type: 'void-block', reason: 'simulated mishap', repeat: true });
-          }
-          break;
-        }
-        case 'questionnaire': {
-          const { condition, block } = step;
-          const drawn = drawAnswers(answers, questionnaires[step.questionnaire], { person, condition, block }, random);
-          for (const [question, value] of Object.entries(drawn)) {
-            now += 4 + Math.round(8 * random.uniform());
-            tell({ type: 'answer', question, value });
-          }
-          tell({ type: 'submit' });
-          break;
-        }
-      }
+      const step = currentStep(this.#schedule, this.#progress);
+      if (step.kind === 'end') return { participant, progress: this.#progress, records: this.#records };
+      this.#now += 5 + Math.round(10 * this.#random.uniform());
+      this.#take(step);
     }
     throw new Error(`${participant} does not come to an end`);
-  });
+  }
+
+  #tell(event: ProgressEvent): void {
+    const next = advance(this.#schedule, this.#progress, event, this.#now);
+    if (next.refusal) throw new Error(`${this.#schedule.participant}, ${this.#progress.step}: ${next.refusal}`);
+    this.#progress = next.progress;
+    this.#records.push(...next.records);
+  }
+
+  #take(step: StudyStep): void {
+    switch (step.kind) {
+      case 'consent':
+        this.#tell({ type: 'consent', version: this.#schedule.consentVersion, motion: false });
+        break;
+      case 'demographics':
+        this.#tell({ type: 'demographics', demographics: drawDemographics(this.#random) });
+        break;
+      case 'calibration': {
+        const { eyeHeight, armSpan } = this.#rounds.playerOf(this.#schedule.participant);
+        this.#tell({ type: 'calibrated', calibration: { eyeHeight, armSpan } });
+        break;
+      }
+      case 'rest':
+        this.#now += step.seconds;
+        this.#tell({ type: 'tick' });
+        break;
+      case 'tutorial':
+      case 'trial':
+        this.#play(step);
+        break;
+      case 'questionnaire':
+        this.#answer(step);
+        break;
+    }
+  }
+
+  #play(step: GameStep): void {
+    const { mishaps } = this.#models.performance;
+    this.#tell({ type: 'start' });
+    if (this.#random.uniform() < mishaps.reload) {
+      this.#now += 10;
+      this.#progress = resumed(this.#schedule, JSON.stringify(this.#progress));
+      this.#tell({ type: 'reload' });
+      return;
+    }
+    const run = this.#progress.runs[`${step.task}/${step.block}`] ?? 1;
+    const outcome = this.#rounds.outcomeOf(this.#schedule, step, run, this.#progress.attempt);
+    this.#now += outcome.seconds;
+    this.#tell({ type: 'trial-finished', outcome });
+    // A group's block is voided for all or none; alone, mishaps are one's own.
+    const alone = this.#schedule.groups[step.task]?.members.length === 1;
+    if (step.kind === 'trial' && alone && this.#random.uniform() < mishaps.voided) {
+      this.#tell({ type: 'void-block', reason: 'simulated mishap', repeat: true });
+    }
+  }
+
+  #answer({ condition, block, questionnaire }: QuestionnaireStep): void {
+    const about = { person: this.#person, condition, block };
+    const drawn = drawAnswers(this.#models.answers, questionnaires[questionnaire], about, this.#random);
+    for (const [question, value] of Object.entries(drawn)) {
+      this.#now += 4 + Math.round(8 * this.#random.uniform());
+      this.#tell({ type: 'answer', question, value });
+    }
+    this.#tell({ type: 'submit' });
+  }
 }
