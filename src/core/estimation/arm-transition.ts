@@ -2,19 +2,7 @@ import type { LimbBones } from '../body/two-bone-ik';
 import { bisect } from '../math/bisection';
 import { clamp } from '../math/damper';
 import { quat, rotate, rotationBetween } from '../math/quat';
-import {
-  add,
-  addScaled,
-  copyVec3,
-  cross,
-  distance,
-  lerp,
-  type MutableVec3,
-  normalise,
-  subtract,
-  type Vec3,
-  vec3,
-} from '../math/vec3';
+import { addScaled, copyVec3, cross, distance, lerp, type MutableVec3, normalise, type Vec3, vec3 } from '../math/vec3';
 import { aimArc, alongArc, type DirectionArc, directionArc, makeDirectionArc, passArc } from './direction-arc';
 
 /** A transition takes so long [s] at least. */
@@ -71,8 +59,7 @@ export interface ArmTransition {
   speed: number;
   /** The longest path [m] that elbow or wrist had to go since the jump: it says how fast they may. */
   metres: number;
-  /** Where the shoulder was and the hand belonged in the frame before, and where elbow and wrist were drawn [m]. */
-  readonly shoulder: MutableVec3;
+  /** Where the hand belonged in the frame before, and where elbow and wrist were drawn [m]. */
   readonly hand: MutableVec3;
   readonly elbow: MutableVec3;
   readonly wrist: MutableVec3;
@@ -84,7 +71,6 @@ export const makeArmTransition = (): ArmTransition => ({
   age: Number.NaN,
   speed: Number.NaN,
   metres: Number.NaN,
-  shoulder: vec3(0, 0, 0),
   hand: vec3(0, 0, 0),
   elbow: vec3(0, 0, 0),
   wrist: vec3(0, 0, 0),
@@ -156,22 +142,12 @@ export function startTransition(transition: ArmTransition, drawn: ArmDirections,
   remember(transition, drawn, goal);
 }
 
-/** Notes where shoulder and goal are in this frame and where elbow and wrist are drawn. */
+/** Notes where the hand belongs in this frame and where elbow and wrist are drawn. */
 function remember(transition: ArmTransition, drawn: ArmDirections, goal: ArmGoal): void {
-  copyVec3(goal.shoulder, transition.shoulder);
   copyVec3(goal.hand, transition.hand);
   placeJoints(drawn.upperArm, drawn.forearm, goal);
   copyVec3(elbow, transition.elbow);
   copyVec3(wrist, transition.wrist);
-}
-
-/** A hand that is seen belongs to a place in the room, one that sinks to a place beside the body: what was noted goes along with that. */
-function carry(transition: ArmTransition, { shoulder, seconds }: ArmGoal): void {
-  if (seconds === 0) return;
-  subtract(shoulder, transition.shoulder, bone);
-  add(transition.hand, bone, transition.hand);
-  add(transition.elbow, bone, transition.elbow);
-  add(transition.wrist, bone, transition.wrist);
 }
 
 /** How far [m] elbow and wrist may go in this frame: up to the speed evenly, evenly down to a stand, and along with the goal. */
@@ -200,7 +176,6 @@ export function followTransition(
   }
   const passed = Math.max(deltaSeconds, 0);
   transition.age += passed;
-  carry(transition, goal);
   aimArc(upperArm, drawn.upperArm, goal.upperArm);
   aimArc(forearm, drawn.forearm, goal.forearm);
   const toGo = pathLength(transition, drawn, goal);

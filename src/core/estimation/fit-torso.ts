@@ -35,7 +35,7 @@ const { anatomicalPasses, extremePasses } = limits.reach;
 
 /** How far the clavicle swings and the neck bends from rest against the thorax [rad]. */
 type TorsoLimits = Readonly<Record<'clavicleSwing' | 'neckBend', number>>;
-/** No trunk leans further [m] on its way to what is wanted: the limits of clavicle and neck are met before. */
+/** No trunk leans further [m] after a hand that it does not reach at once: the limits of clavicle and neck are met before. */
 const furthestLean = 0.6;
 
 /** A trunk leans after a hand that comes back, and straightens after one that is lost, at most this fast [m/s]. */
@@ -67,22 +67,12 @@ export interface TorsoPose {
 interface Lean {
   /** As far as the hand is missed. */
   readonly wanted: MutableVec3;
-  /** As far as the trunk leans, and no further than any does; while it is `settled` it leans as far as is wanted. */
+  readonly wantedBefore: MutableVec3;
+  /** As far as the trunk leans. */
   readonly offset: MutableVec3;
-  /** False from the loss of the hand until the trunk leans after it again as far as is wanted. */
-  settled: boolean;
-  /** From the arm's reach to the hand [m], under a trunk that does not lean; and how far the lean may go in this frame [m]. */
-  missing: number;
-  step: number;
 }
 
-const makeLean = (): Lean => ({
-  wanted: vec3(0, 0, 0),
-  offset: vec3(0, 0, 0),
-  settled: false,
-  missing: Number.NaN,
-  step: Number.NaN,
-});
+const makeLean = (): Lean => ({ wanted: vec3(0, 0, 0), wantedBefore: vec3(0, 0, 0), offset: vec3(0, 0, 0) });
 
 export interface FitTorsoState {
   /** False before the first frame. */
@@ -92,8 +82,6 @@ export interface FitTorsoState {
   readonly shoulderLine: MutableVec3;
   readonly lineBefore: MutableVec3;
   readonly lean: Readonly<Record<Side, Lean>>;
-  /** The limits are those of `extreme`; they narrow again when both leans have settled. */
-  widened: boolean;
 }
 
 export const makeFitTorsoState = (): FitTorsoState => ({
@@ -115,7 +103,6 @@ export const makeFitTorsoState = (): FitTorsoState => ({
   shoulderLine: vec3(1, 0, 0),
   lineBefore: vec3(1, 0, 0),
   lean: { left: makeLean(), right: makeLean() },
-  widened: false,
 });
 
 /** What the fitting of the torso needs of a skeleton, measured once. */
@@ -190,28 +177,21 @@ export function fitTorso(
   rotate(headingOf(frame.head.orientation, rotation), right, headingRight);
   setVec3(lean.left.wanted, 0, 0, 0);
   setVec3(lean.right.wanted, 0, 0, 0);
-  let within: TorsoLimits = limits.torso;
   for (let pass = 0; pass <= anatomicalPasses + extremePasses; pass++) {
-    if (pass > anatomicalPasses) within = extreme;
+    const within = pass > anatomicalPasses ? extreme : limits.torso;
     add(joints.leftUpperArm, lean.left.wanted, targets.left);
     add(joints.rightUpperArm, lean.right.wanted, targets.right);
     placeThorax(state, goal, within);
-    if (pass === 0) {
-      limitLean(lean.left, state, pose.shoulders.left, frame.leftHand, goal);
-      limitLean(lean.right, state, pose.shoulders.right, frame.rightHand, goal);
-    }
     const pulledLeft = pull(lean.left, pose.shoulders.left, frame.leftHand, bones);
     const pulledRight = pull(lean.right, pose.shoulders.right, frame.rightHand, bones);
     if (!pulledLeft && !pulledRight) break;
   }
-  followLean(lean.left);
-  followLean(lean.right);
-  const settled = lean.left.settled && lean.right.settled;
-  state.widened = within === extreme || (state.widened && !settled);
-  if (!settled) {
+  const leansLeft = followLean(lean.left, frame.leftHand, state.known, deltaSeconds);
+  const leansRight = followLean(lean.right, frame.rightHand, state.known, deltaSeconds);
+  if (!leansLeft || !leansRight) {
     add(joints.leftUpperArm, lean.left.offset, targets.left);
     add(joints.rightUpperArm, lean.right.offset, targets.right);
-    placeThorax(state, goal, state.widened ? extreme : limits.torso);
+    placeThorax(state, goal, limits.torso);
   }
   placeSpine(state, goal);
   copyVec3(state.shoulderLine, state.lineBefore);
@@ -230,34 +210,27 @@ function pull({ wanted }: Lean, shoulder: Vec3, { position, source }: CompletedH
 }
 
 /**
- * How far a lean may go in this frame: after a hand that is lost or has come back no faster than people lean, beyond what the hand
- * itself goes out of reach.
+ * Leans as far as is wanted, but after a hand that was lost or has come back no faster than people do; then only what is wanted
+ * anew is had at once. False: the lean is not yet what is wanted.
  */
-function limitLean(
-  lean: Lean,
-  { known }: FitTorsoState,
-  shoulder: Vec3,
-  { position, source, confidence }: CompletedHand,
-  { bones, deltaSeconds }: TorsoGoal,
-): void {
-  const missing = Math.max(distance(position, shoulder) - bones.reach, 0);
-  const confident = source === 'tracked' && confidence === 1;
-  if (!confident) lean.settled = false;
-  const grown = confident ? Math.max(missing - lean.missing, 0) : 0;
-  lean.step = known && !lean.settled ? leanSpeed * Math.max(deltaSeconds, 0) + grown : Number.POSITIVE_INFINITY;
-  lean.missing = missing;
-}
-
-/** Leans on by its step; once it leans as far as is wanted, or as any trunk does, it is settled. */
-function followLean(lean: Lean): void {
-  const { wanted, offset, step } = lean;
-  const leant = length(wanted);
-  if (leant > furthestLean) scale(wanted, furthestLean / leant, a);
-  else copyVec3(wanted, a);
-  const toGo = distance(a, offset);
-  lean.settled = toGo <= step;
-  if (lean.settled) copyVec3(a, offset);
-  else lerp(offset, a, step / toGo, offset);
+function followLean(
+  { wanted, wantedBefore, offset }: Lean,
+  hand: CompletedHand,
+  known: boolean,
+  deltaSeconds: number,
+): boolean {
+  const anew = hand.source === 'tracked' && hand.confidence === 1 ? distance(wanted, wantedBefore) : 0;
+  const most = known ? leanSpeed * Math.max(deltaSeconds, 0) + anew : Number.POSITIVE_INFINITY;
+  copyVec3(wanted, wantedBefore);
+  if (distance(wanted, offset) <= most) {
+    copyVec3(wanted, offset);
+    return true;
+  }
+  const leant = length(offset);
+  if (leant > furthestLean) scale(offset, furthestLean / leant, offset);
+  const far = distance(wanted, offset);
+  lerp(offset, wanted, Math.min(1, most / far), offset);
+  return false;
 }
 
 /** The shoulders' line: never faster than `turnSpeed`, and slowly where the shoulders are estimated close together. */
@@ -356,5 +329,4 @@ function hangHips(chest: Vec3, goal: Vec3, lowerBack: number, hips: MutableVec3)
 /** Forgets the past: the next frame is the first. */
 export function resetFitTorso(state: FitTorsoState): void {
   state.known = false;
-  state.widened = false;
 }
