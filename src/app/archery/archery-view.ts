@@ -11,7 +11,7 @@ import { createBow } from './bow';
 import { createBowStand, hangingBow } from './bow-stand';
 import { createRange, type Range } from './range';
 import { createResultPanel, type ResultPanel } from './result-panel';
-import { createScorePops } from './score-pops';
+import { ScorePops } from './score-pops';
 import { createScoreboard } from './scoreboard';
 import { createSounds, type Sounds } from './sounds';
 import { createTargetStands } from './target-stands';
@@ -52,7 +52,7 @@ export function createArcheryView({ quality, floorFromArena, distances, onCaptio
   const arrows = createArrows(arrowLength);
   const trails = createTrails(arrowLength);
   const scoreboard = createScoreboard(quality);
-  const pops = createScorePops(quality);
+  const pops = new ScorePops(quality);
   const result = createResultPanel(quality);
   const sounds = createSounds({ floorFromArena, onCaption });
   let shown: ArcheryState | null = null;

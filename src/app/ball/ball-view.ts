@@ -12,7 +12,7 @@ import { createAimArc } from './aim-arc';
 import { type Balls, createBalls } from './balls';
 import { lineOfEvent, type Person, type Standing, waitingLine } from './board-drawing';
 import { type Boards, createBoards } from './boards';
-import { type CatchPops, createCatchPops } from './catch-pops';
+import { CatchPops } from './catch-pops';
 import { type Court, createCourt } from './court';
 import { createLobbySheet, type LobbySheet } from './lobby-sheet';
 import { createNameLabels, type NameLabels } from './name-labels';
@@ -116,7 +116,7 @@ class CourtView implements BallView {
     this.#court = createCourt(quality, balls);
     this.#balls = createBalls(balls, quality);
     this.#boards = createBoards(quality);
-    this.#pops = createCatchPops(quality);
+    this.#pops = new CatchPops(quality);
     this.#names = createNameLabels(stations.length, quality);
     this.lobby = createLobbySheet(quality);
     this.own = this.lobby.object;

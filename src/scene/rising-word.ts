@@ -1,0 +1,73 @@
+import { Sprite, SpriteMaterial } from 'three';
+import { distance, type Vec3 } from '../core/math/vec3';
+import { ink, signFont } from './boards/lettering';
+import { createDrawnTexture } from './drawn-texture';
+import type { Quality } from './renderer';
+
+/** Height of the letters, as a share of the distance from which they are read. */
+const apparentSize = 0.055;
+
+/** How a word rises. */
+export interface RisingWordOptions {
+  readonly quality: Quality;
+  /** How long it is seen [s]. */
+  readonly seconds: number;
+  /** Where it begins, above its place [heights of its letters]. */
+  readonly lift: number;
+}
+
+/** A word that rises from a place for a moment and fades, over everything, as large for every reader. */
+export class RisingWord {
+  readonly object: Sprite;
+  readonly #options: RisingWordOptions;
+  readonly #drawn: ReturnType<typeof createDrawnTexture>;
+  #text = '';
+
+  constructor(options: RisingWordOptions) {
+    this.#options = options;
+    this.#drawn = createDrawnTexture(256, 128, options.quality);
+    const map = this.#drawn.texture;
+    this.object = new Sprite(
+      new SpriteMaterial({ map, transparent: true, depthTest: false, fog: false, toneMapped: false }),
+    );
+    this.object.renderOrder = 6;
+    this.object.visible = false;
+  }
+
+  /** Drawn anew only where the text is another. */
+  write(text: string, colour: string): void {
+    if (text === this.#text) return;
+    this.#text = text;
+    this.#drawn.draw((context) => {
+      context.textAlign = 'center';
+      context.textBaseline = 'middle';
+      context.font = `800 100px ${signFont}`;
+      context.lineWidth = 18;
+      context.lineJoin = 'round';
+      context.strokeStyle = ink.accentInk;
+      context.strokeText(text, 128, 68);
+      context.fillStyle = colour;
+      context.fillText(text, 128, 68);
+    });
+  }
+
+  /** At this place, arena frame, so long [s] after it began; before that and after its time it is hidden. `eyes`: of the reader. */
+  show(place: Vec3, age: number, eyes: Vec3): void {
+    const share = age / this.#options.seconds;
+    this.object.visible = share >= 0 && share < 1;
+    if (!this.object.visible) return;
+    const size = apparentSize * distance(place, eyes);
+    this.object.position.set(place.x, place.y + size * (this.#options.lift + 1.8 * (1 - (1 - share) ** 2)), place.z);
+    this.object.scale.set(2 * size, size, 1);
+    this.object.material.opacity = Math.min(1, 3 * (1 - share));
+  }
+
+  hide(): void {
+    this.object.visible = false;
+  }
+
+  dispose(): void {
+    this.object.material.dispose();
+    this.#drawn.texture.dispose();
+  }
+}
