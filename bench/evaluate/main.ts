@@ -39,24 +39,48 @@ function progress(share: number, what = 'robustness'): void {
   process.stderr.write(share < 1 ? `\r  ${what} ${Math.round(100 * share)} %   ` : '\r\x1b[K');
 }
 
-async function main(): Promise<void> {
-  const { recordings, models, json, robustness, figures, fp32 } = options;
-  if (!recordings || !models)
-    throw new Error('evaluate: --recordings and --models are needed; `npm run evaluate` gives them');
+/** What the evaluation is asked to read, and whom it is about. */
+interface Corpus {
+  readonly recordings: string;
+  readonly index: ReturnType<typeof readIndex>;
+  readonly regressors: Awaited<ReturnType<typeof loadRegressors>>;
+  /** The same networks before they were made int8; null: not asked for. */
+  readonly exactRegressors: Awaited<ReturnType<typeof loadRegressors>> | null;
+  readonly people: readonly string[];
+  /** People that a network was trained on. */
+  readonly seen: ReadonlySet<string>;
+  readonly unseen: readonly string[];
+}
+
+async function readCorpus(recordings: string, models: string, fp32: string | undefined): Promise<Corpus> {
   const index = readIndex(recordings);
   const regressors = await loadRegressors(models);
   const seen = new Set([...regressors.values()].flatMap(({ contract }) => contract.trainedOn.people));
+  const people = [...new Set(index.clips.map(({ person }) => person))].sort();
   const exactRegressors = fp32 ? await loadRegressors(fp32) : null;
-  const exact = new Map<MeasuredMethod, Measures>();
-  const listed = [...new Set(index.clips.map(({ person }) => person))].sort();
-  const unseen = listed.filter((person) => !seen.has(person));
-  // What is shown and compared are people never trained on, as long as there are any.
-  const judged = new Set(unseen.length > 0 ? unseen : listed);
-  const collection = emptyCollection();
+  const unseen = people.filter((person) => !seen.has(person));
+  return { recordings, index, regressors, exactRegressors, people, seen, unseen };
+}
 
+/** Who is shown and compared: people never trained on, as long as there are any. */
+const judgedOf = ({ people, unseen }: Corpus): ReadonlySet<string> => new Set(unseen.length > 0 ? unseen : people);
+
+interface Measured {
+  readonly byPerson: ReadonlyMap<string, Record<MeasuredMethod, Measures>>;
+  readonly exact: ReadonlyMap<MeasuredMethod, Measures>;
+  readonly collection: ReturnType<typeof emptyCollection>;
+  readonly frames: number;
+}
+
+/** Drives every method through every clip. */
+async function measureClips(corpus: Corpus): Promise<Measured> {
+  const { recordings, index, regressors, exactRegressors } = corpus;
+  const judged = judgedOf(corpus);
   const byPerson = new Map<string, Record<MeasuredMethod, Measures>>();
-  let done = 0;
+  const exact = new Map<MeasuredMethod, Measures>();
+  const collection = emptyCollection();
   const total = index.clips.reduce((sum, clip) => sum + clip.frames, 0);
+  let done = 0;
   for (const clip of index.clips) {
     const calibration = calibrationOf(index, clip.person);
     const person = byPerson.get(clip.person) ?? {
@@ -72,7 +96,7 @@ async function main(): Promise<void> {
       addClip(person[name], driven[name], index.rateHz);
     }
     if (judged.has(clip.person)) {
-      if (figures) addFigures(collection, clip.name, driven, index.rateHz);
+      if (options.figures) addFigures(collection, clip.name, driven, index.rateHz);
       for (const [name, regressor] of exactRegressors ?? []) {
         const measures = exact.get(name) ?? emptyMeasures();
         addClip(measures, await drive(name, calibration, regressor, frames), index.rateHz);
@@ -82,18 +106,21 @@ async function main(): Promise<void> {
     done += clip.frames;
     progress(done / total, clip.name);
   }
+  return { byPerson, exact, collection, frames: total };
+}
 
-  const people = listed;
+/** The measures as reports, of everyone, of those never trained on and of each person. */
+function resultOf({ index, people, seen, unseen }: Corpus, { byPerson, exact, frames }: Measured) {
   const over = (who: readonly string[]): Record<MeasuredMethod, Report> =>
     Object.fromEntries(
       measuredMethods.map((name) => [name, report(merge(who.flatMap((person) => byPerson.get(person)?.[name] ?? [])))]),
     ) as Record<MeasuredMethod, Report>;
-  const result = {
+  return {
     corpus: {
       clips: index.clips.length,
       people: people.length,
-      frames: total,
-      seconds: Number((total / index.rateHz).toFixed(1)),
+      frames,
+      seconds: Number((frames / index.rateHz).toFixed(1)),
     },
     estimators: over(people),
     ...(unseen.length > 0 && unseen.length < people.length
@@ -105,14 +132,15 @@ async function main(): Promise<void> {
       : {}),
     problems: index.problems,
   };
+}
 
+function printResult({ index, people, seen, unseen }: Corpus, result: ReturnType<typeof resultOf>): void {
   console.log(
     `\n${result.corpus.clips} clips, ${result.corpus.people} people, ${(result.corpus.seconds / 60).toFixed(1)} minutes at ${index.rateHz} Hz`,
   );
   for (const problem of index.problems) console.log(`  ${problem}`);
-  const told = (who: readonly string[]) =>
-    who.map((person) => (seen.has(person) ? `${person} (seen)` : person)).join(', ');
-  print(`All: ${told(people)}`, result.estimators);
+  const named = people.map((person) => (seen.has(person) ? `${person} (seen)` : person)).join(', ');
+  print(`All: ${named}`, result.estimators);
   if (result.unseen) print(`Never trained on: ${unseen.join(', ')}`, result.unseen);
   for (const person of people) {
     const own = result.people[person];
@@ -128,25 +156,39 @@ async function main(): Promise<void> {
         `fp32 ${mpjpeCm.mean.toFixed(3)} cm, ${jerkRatio.toFixed(3)} ×`,
     );
   }
-  if (figures) writeFileSync(figures, `${JSON.stringify(figuresOf(collection, index.rateHz))}\n`);
-  const disturbed = robustness
-    ? await measureRobustness(
-        measuredMethods,
-        chooseClips(
-          index.clips.filter(({ person }) => judged.has(person)),
-          robustnessFrames,
-        ),
-        (clip) => ({
-          name: clip.name,
-          calibration: calibrationOf(index, clip.person),
-          frames: readClip(recordings, index, clip),
-        }),
-        regressors,
-        index.rateHz,
-        progress,
-      )
-    : null;
-  if (disturbed) console.log(robustnessText(disturbed, index.rateHz));
+}
+
+/** The judged clips again, each with one thing wrong. */
+function measureDisturbed(corpus: Corpus) {
+  const { recordings, index, regressors } = corpus;
+  const judged = judgedOf(corpus);
+  const clips = index.clips.filter(({ person }) => judged.has(person));
+  return measureRobustness(
+    measuredMethods,
+    chooseClips(clips, robustnessFrames),
+    (clip) => ({
+      name: clip.name,
+      calibration: calibrationOf(index, clip.person),
+      frames: readClip(recordings, index, clip),
+    }),
+    regressors,
+    index.rateHz,
+    progress,
+  );
+}
+
+async function main(): Promise<void> {
+  const { recordings, models, json, robustness, figures, fp32 } = options;
+  if (!recordings || !models)
+    throw new Error('evaluate: --recordings and --models are needed; `npm run evaluate` gives them');
+  const corpus = await readCorpus(recordings, models, fp32);
+  const measured = await measureClips(corpus);
+  const result = resultOf(corpus, measured);
+  printResult(corpus, result);
+  const { rateHz } = corpus.index;
+  if (figures) writeFileSync(figures, `${JSON.stringify(figuresOf(measured.collection, rateHz))}\n`);
+  const disturbed = robustness ? await measureDisturbed(corpus) : null;
+  if (disturbed) console.log(robustnessText(disturbed, rateHz));
   const complete = { ...result, ...(disturbed ? { robustness: disturbed } : {}) };
   if (json) writeFileSync(json, `${JSON.stringify(complete, null, 2)}\n`);
 }
