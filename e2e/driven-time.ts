@@ -12,6 +12,8 @@ declare global {
       drawn(): Promise<void>;
       /** Holds time after the first frame in which the game shows this. */
       holdAt(shows: object): Promise<void>;
+      /** Holds time at the frame at hand. */
+      hold(): void;
       goOn(): void;
       end(): void;
     };
@@ -120,6 +122,9 @@ export const driveTime = (page: Page, stepMs = usualStepMs): Promise<void> =>
           held = false;
           goOn();
         }),
+      hold() {
+        held = true;
+      },
       goOn() {
         held = false;
         goOn();
@@ -142,6 +147,12 @@ export const driveTime = (page: Page, stepMs = usualStepMs): Promise<void> =>
 /** Lets driven time go on until the game shows this, and holds it there. */
 export const holdAt = <Game extends NonNullable<Probe['game']>>(page: Page, shows: Partial<Game>): Promise<void> =>
   page.evaluate((shows) => window.drivenTime?.holdAt(shows), shows as object);
+
+/** Stands still until time passes again: a page that no test looks at neither computes nor draws frames beside the one that is looked at. */
+export async function rest(page: Page): Promise<void> {
+  await driveTime(page);
+  await page.evaluate(() => window.drivenTime?.hold());
+}
 
 /** Lets time that is held go on. */
 export const goOn = (page: Page): Promise<void> => page.evaluate(() => window.drivenTime?.goOn());

@@ -5,7 +5,7 @@ import { createPageHandler } from '../server/page';
 import { serve } from '../server/web-server';
 import type { Probe } from '../src/app/shell/probe';
 import type { EstimatorName } from '../src/core/estimation/pose-estimator';
-import { driveTime, letTimePass } from './driven-time';
+import { driveTime, letTimePass, rest } from './driven-time';
 import { type EmulatedHeadset, emulatedHeadset, frames, type Point } from './emulated-headset';
 
 export { expect };
@@ -262,6 +262,7 @@ export const test = base.extend<{ complaints: ExpectedComplaints }, { origin: st
   page: async ({ sharedPage, viewport }, use) => {
     if (viewport) await sharedPage.setViewportSize(viewport);
     await use(sharedPage);
+    await rest(sharedPage);
     await sharedPage.unrouteAll();
   },
 
