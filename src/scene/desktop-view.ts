@@ -1,7 +1,7 @@
 import { PerspectiveCamera, Raycaster, Vector2, Vector3 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import type { Pose } from '../core/math/pose';
-import type { Vec3 } from '../core/math/vec3';
+import type { Ray } from '../core/math/ray';
 
 export const viewNames = ['third-person', 'front', 'first-person'] as const;
 /** third-person: orbits the body from behind. front: from where the mirror hangs. first-person: through the eyes. */
@@ -49,7 +49,7 @@ export interface DesktopView {
   /** Back to where the view began. */
   recentre(): void;
   /** The ray through a point of the window (from −1 to 1, right and up); unit direction, floor frame. */
-  rayThrough(x: number, y: number): { readonly origin: Vec3; readonly direction: Vec3 };
+  rayThrough(x: number, y: number): Ray;
   /** Where the body is now (its pelvis and eyes, floor frame); elapsed [s] since the last call. */
   update(pelvis: Point, eyes: Eyes, elapsed: number): void;
 }
@@ -183,7 +183,7 @@ class DesktopCamera implements DesktopView {
     this.#place();
   }
 
-  rayThrough(x: number, y: number): { readonly origin: Vec3; readonly direction: Vec3 } {
+  rayThrough(x: number, y: number): Ray {
     this.#raycaster.setFromCamera(new Vector2(x, y), this.camera);
     const { origin, direction } = this.#raycaster.ray;
     return { origin: { ...origin }, direction: { ...direction } };

@@ -35,7 +35,7 @@ function createPlayer(context: AudioContext, recipes: Recipes) {
     const known = buffers.get(name);
     if (known) return known;
     const recipe = recipes.get(name);
-    if (!recipe) throw new Error(`games/sound-stage: there is no sound ${name}`);
+    if (!recipe) throw new Error(`sound-stage: there is no sound ${name}`);
     const samples = recipe(context.sampleRate);
     const made = context.createBuffer(1, samples.length, context.sampleRate);
     made.copyToChannel(samples, 0);

@@ -36,7 +36,7 @@ import { type BallBot, type BotSight, nearestBall } from './thrower-motion';
 /** What a person at a desk wants of a player: a mouse in the place of two hands. Own floor frame. */
 export interface BallSteering {
   /** Unit direction. */
-  readonly ray: { readonly origin: Vec3; readonly direction: Vec3 };
+  readonly ray: Ray;
   /** A thrower swings back for as long as this is true, the longer the further the ball goes, and then throws. */
   readonly pressed: boolean;
   /** true: the arm comes down again, the ball in hand. */
