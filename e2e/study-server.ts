@@ -93,7 +93,7 @@ export function experimenter(origin: string) {
         participants: readonly ParticipantState[];
       };
       const invitation = participants.find((one) => one.participant === participant)?.invitation ?? null;
-      return origin + studyLink({ study, participant, invitation }).replace('#', `${switches}#`);
+      return new URL(studyLink({ study, participant, invitation }).replace('#', `${switches}#`), origin).href;
     },
     async begin(plan: StudyPlan, simulated: boolean): Promise<void> {
       const response = await ask('', 'POST', { plan, simulated });

@@ -12,7 +12,7 @@ export interface Keep {
   setItem(key: string, value: string): void;
 }
 
-/** Asks the relay for a pass; the same person after a reload, in the same tab. `kind`: the game. `terms`: of the room, for the first person in it. */
+/** Asks the relay at `base` for a pass; the same person after a reload, in the same tab. `kind`: the game. `terms`: of the room, for the first person in it. */
 export function createRoomPass(base: string, room: string, kind: string, keep?: Keep, terms: RoomTerms = {}): RoomPass {
   const key = `threepoint pass ${kind} ${room}`;
   let token = keep?.getItem(key) ?? null;

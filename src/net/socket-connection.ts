@@ -8,7 +8,7 @@ import type { RoomPass } from './room-pass';
 import { RoomSession } from './room-session';
 
 export interface SocketConnectionOptions {
-  /** Origin of the relay: mostly the page's own. */
+  /** Where the relay is, no slash at its end: mostly the folder of the page. */
   readonly url: string;
   /** Proxies find the process that has the room by this name. */
   readonly room: string;
@@ -50,8 +50,9 @@ class SocketConnection extends RoomSession {
     this.#clock = clock;
     this.#leftOut = clock.leftOut;
     this.#backOff = createBackOff(chance);
-    this.#socket = io(url, {
-      path: '/relay',
+    const { origin, pathname } = new URL(url);
+    this.#socket = io(origin, {
+      path: `${pathname.replace(/\/$/, '')}/relay`,
       transports: ['websocket'],
       parser: pageParser,
       query: { room },

@@ -45,15 +45,16 @@ const usualPatienceMs = 15_000;
 /** While a person waits before an empty page. */
 const shortPatienceMs = 4000;
 
+/** `server`: the folder of its page, no slash at its end. */
 async function ask(
-  origin: string,
+  server: string,
   path: string,
   { method = 'GET', token, body, text, patienceMs = usualPatienceMs }: Asked,
 ): Promise<Response> {
   const content = text ?? (body === undefined ? undefined : JSON.stringify(body));
   let response: Response;
   try {
-    response = await fetch(`${origin}/api/studies${path}`, {
+    response = await fetch(`${server}/api/studies${path}`, {
       method,
       headers: {
         ...(token && { authorization: `Bearer ${token}` }),
@@ -78,10 +79,10 @@ async function ask(
   throw new ServerRefusal(response.status, sentence, typeof field === 'string' ? field : null);
 }
 
-/** Asks a server for JSON; the origin is empty for the page's own server. */
-const answersOf = (origin: string) =>
+/** Asks a server for JSON. */
+const answersOf = (server: string) =>
   async function answer<T>(path: string, asked: Asked = {}): Promise<T> {
-    const response = await ask(origin, path, asked);
+    const response = await ask(server, path, asked);
     try {
       return (response.status === 204 ? null : await response.json()) as T;
     } catch (error) {
@@ -108,8 +109,8 @@ export interface ParticipantClient {
   seat(study: string, participant: string, token: string, trial: PlayedTogether): Promise<SignedSeat>;
 }
 
-export function createParticipantClient(origin = ''): ParticipantClient {
-  const answer = answersOf(origin);
+export function createParticipantClient(server: string): ParticipantClient {
+  const answer = answersOf(server);
   return {
     study: (study) => answer(of(study)),
     claim: (study, participant, invitation) =>
@@ -157,8 +158,8 @@ export interface ExperimenterClient {
   delete(study: string, participant: string): Promise<Receipt>;
 }
 
-export function createExperimenterClient(token: string, origin = ''): ExperimenterClient {
-  const answer = answersOf(origin);
+export function createExperimenterClient(token: string, server: string): ExperimenterClient {
+  const answer = answersOf(server);
   return {
     studies: async () => (await answer<{ studies: StudyListing[] }>('', { token })).studies,
     addStudy: (plan, simulated) => answer('', { method: 'POST', token, body: { plan, simulated } }),
@@ -175,7 +176,7 @@ export function createExperimenterClient(token: string, origin = ''): Experiment
     release: (study, participant) => answer(`${of(study, participant)}/release`, { method: 'POST', token }),
     reinvite: (study, participant) => answer(`${of(study, participant)}/invitation`, { method: 'POST', token }),
     async export(study, participant) {
-      const response = await ask(origin, `${of(study, participant)}/export`, { token });
+      const response = await ask(server, `${of(study, participant)}/export`, { token });
       const name = /filename="([^"]+)"/.exec(response.headers.get('content-disposition') ?? '')?.[1];
       return { name: name ?? `${study}.zip`, zip: await response.blob() };
     },

@@ -8,10 +8,10 @@ export interface StudyAddress {
 
 const name = 'invitation';
 
-/** The link to a place in a study. The invitation stands behind "#", which browsers send to no server and proxies never log. */
+/** The link to a place in a study, relative to the folder of the page. The invitation stands behind "#", which browsers send to no server and proxies never log. */
 export function studyLink({ study, participant, invitation }: StudyAddress): string {
   const query = new URLSearchParams({ study, ...(participant !== null && { participant }) });
-  return `/?${query}${invitation === null ? '' : `#${new URLSearchParams({ [name]: invitation })}`}`;
+  return `./?${query}${invitation === null ? '' : `#${new URLSearchParams({ [name]: invitation })}`}`;
 }
 
 /** The invitation behind "#" of an address; null: it holds none. */

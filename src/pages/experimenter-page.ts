@@ -5,6 +5,7 @@ import type { StudyCommand } from '../core/study/study-api';
 import { type ExperimenterClient, ServerRefusal } from '../net/study-client';
 import { offerDownload } from '../ui/downloads';
 import { element, pageElement } from '../ui/element';
+import { pageFolder } from '../ui/page-folder';
 import {
   type NewStudy,
   newStudyCard,
@@ -146,7 +147,7 @@ class ExperimenterPage {
   }
 
   #copyLink(participant: string, link: string): Promise<void> {
-    const address = new URL(link, location.origin).href;
+    const address = new URL(link, `${pageFolder()}/`).href;
     return this.#attempt(async () => {
       try {
         await navigator.clipboard.writeText(address);
@@ -261,7 +262,11 @@ class ExperimenterPage {
 }
 
 const anotherStudy = () =>
-  element('p', { style: 'margin-top:24px' }, element('a', { href: '/experimenter' }, 'Begin or open another study'));
+  element(
+    'p',
+    { style: 'margin-top:24px' },
+    element('a', { href: './experimenter.html' }, 'Begin or open another study'),
+  );
 
 /** Builds a table anew and gives the focus back to the button of the same row and label that had it. */
 function keepingFocus(content: HTMLElement, build: () => void): void {

@@ -1,6 +1,7 @@
 import type { StudyPlan } from '../core/study/plan';
 import type { ParticipantState, Receipt } from '../core/study/study-api';
 import { button, element } from '../ui/element';
+import { pageFolder } from '../ui/page-folder';
 import { type ParticipantActions, participantHeads, participantRow } from './participant-row';
 import { tableNode } from './table';
 
@@ -47,7 +48,7 @@ function studyHead({ plan, simulated, retentionUntil }: OpenStudy, actions: Stud
       'div',
       { class: 'bar', style: 'margin-top:12px' },
       button('Export all', actions.exportAll, { class: 'primary' }),
-      element('a', { href: `/results?study=${plan.id}` }, 'Results'),
+      element('a', { href: `./results.html?study=${plan.id}` }, 'Results'),
     ),
   ];
 }
@@ -75,7 +76,7 @@ export function newStudyCard(begin: (study: NewStudy) => void): HTMLElement {
     const [chosen] = file.files ?? [];
     if (chosen) begin({ name: chosen.name, simulated: simulated.checked, json: () => chosen.text() });
   });
-  const paper = async () => (await fetch('/studies/paper.json')).text();
+  const paper = async () => (await fetch(`${pageFolder()}/studies/paper.json`)).text();
   return element(
     'section',
     { class: 'card' },

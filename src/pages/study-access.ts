@@ -2,6 +2,7 @@ import { reasonOf } from '../core/errors/reasons';
 import type { RecordedStudy, StudyListing } from '../core/study/study-api';
 import { createExperimenterClient, type ExperimenterClient } from '../net/study-client';
 import { button, element } from '../ui/element';
+import { pageFolder } from '../ui/page-folder';
 import { forgetToken, keptToken, signInForm } from './sign-in';
 import { studySelect } from './study-select';
 
@@ -66,7 +67,7 @@ export class StudyAccess {
 
   /** Answers with a complaint, or null where the token opens. */
   async #signIn(token: string): Promise<string | null> {
-    const candidate = createExperimenterClient(token);
+    const candidate = createExperimenterClient(token, pageFolder());
     try {
       await this.list(candidate);
     } catch (error) {

@@ -1,4 +1,5 @@
 import { button, element } from './element';
+import { pageFolder } from './page-folder';
 
 /** Offers the address of a room: as a link to copy, and as a QR code for a device with a camera. */
 export interface Invitation {
@@ -7,8 +8,7 @@ export interface Invitation {
 }
 
 /** The address of a room of the ball game on this page's server. */
-export const roomAddress = (room: string, origin: string): string =>
-  `${origin}/?play=ball&room=${encodeURIComponent(room)}`;
+const roomAddress = (room: string): string => `${pageFolder()}/?play=ball&room=${encodeURIComponent(room)}`;
 
 /** Whether other devices can open an address of this host. */
 const onlyHere = (hostname: string): boolean => /^(localhost|.*\.localhost|127\..*|\[::1\])$/.test(hostname);
@@ -75,7 +75,7 @@ export function createInvitation(): Invitation {
 
   return {
     open(room) {
-      const address = roomAddress(room, location.origin);
+      const address = roomAddress(room);
       link.value = address;
       said.textContent = onlyHere(location.hostname)
         ? 'This address works on this computer only. For other devices start the server with --lan and open the https:// address that it prints.'

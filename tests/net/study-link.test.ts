@@ -4,14 +4,15 @@ import { invitationIn, studyLink } from '../../src/net/study-link';
 test('a link to a place says study and participant to the server, and the invitation to the page alone', () => {
   const link = new URL(
     studyLink({ study: 'paper', participant: 'P07', invitation: 'G4F9-TMTZ-4S8W-GZ1P' }),
-    'https://a.example',
+    'https://a.example/threepoint/',
   );
+  expect(link.pathname).toBe('/threepoint/');
   expect(link.search).toBe('?study=paper&participant=P07');
   expect(link.search).not.toContain('G4F9');
   expect(invitationIn(link.hash)).toBe('G4F9-TMTZ-4S8W-GZ1P');
 });
 
 test('an address without an invitation has none, even if something else stands behind "#"', () => {
-  expect(studyLink({ study: 'paper', participant: null, invitation: null })).toBe('/?study=paper');
+  expect(studyLink({ study: 'paper', participant: null, invitation: null })).toBe('./?study=paper');
   for (const hash of ['', '#', '#top', '#invitation', '#invitation=']) expect(invitationIn(hash), hash).toBeNull();
 });

@@ -2,6 +2,7 @@ import type { RoomTerms } from '../../core/protocol/messages';
 import type { SignedSeat } from '../../core/study/study-api';
 import type { Connection, LocalClock, Visitor } from '../../net/connection';
 import { createLoopbackHost } from '../../net/loopback-connection';
+import { pageFolder } from '../../ui/page-folder';
 
 /** Makes one visitor's place in a room; `time`: the page's clock [s]. */
 export type Connect = (visitor: Visitor, time: number) => Connection;
@@ -20,7 +21,7 @@ function tabStorage(): Storage | undefined {
 export async function assignedSeat(seat: () => Promise<SignedSeat>, clock: LocalClock): Promise<Connect> {
   const [{ createSocketConnection }, first] = await Promise.all([import('../../net/socket-connection'), seat()]);
   const pass = { token: async (afresh: boolean) => (afresh ? await seat() : first).token };
-  return (visitor) => createSocketConnection({ url: location.origin, room: first.room, visitor, clock, pass });
+  return (visitor) => createSocketConnection({ url: pageFolder(), room: first.room, visitor, clock, pass });
 }
 
 /**
@@ -39,14 +40,15 @@ export async function connectionsFor(
     import('../../net/socket-connection'),
     import('../../net/room-pass'),
   ]);
-  const person = createRoomPass('', room, 'ball', tabStorage(), terms);
+  const server = pageFolder();
+  const person = createRoomPass(server, room, 'ball', tabStorage(), terms);
   return (visitor) =>
     createSocketConnection({
-      url: location.origin,
+      url: server,
       room,
       visitor,
       clock,
       // Each bot is a guest of its own.
-      pass: visitor.bot ? createRoomPass('', room, 'ball') : person,
+      pass: visitor.bot ? createRoomPass(server, room, 'ball') : person,
     });
 }

@@ -1,13 +1,14 @@
 import type { PoseRegressor } from '../../core/estimation/pose-regressor';
 import { createInferenceWorker } from '../../inference/create-inference-worker';
 import type { Notices } from '../../ui/notices';
+import { pageFolder } from '../../ui/page-folder';
 import { withTiming } from './frame-loop';
 import type { FrameTiming } from './frame-timing';
 import type { PageLoading } from './page-loading';
 import type { Switches } from './switches';
 
-/** Where our own networks lie, on our own server. */
-const modelsAt = '/models/';
+/** Where our own networks lie: beside the page. */
+const contractAt = (name: string): string => `${pageFolder()}/models/${name}.json`;
 /** Of the waiting for a network, what its download takes. */
 const downloadShare = 0.9;
 
@@ -26,7 +27,7 @@ export function createNetworkLoader(options: NetworkLoadingOptions): (name: stri
   inferenceArrives.catch(() => undefined);
   return async (name) => {
     const { loadRegressor } = await inferenceArrives;
-    const loaded = await loadRegressor(`${modelsAt}${name}.json`, {
+    const loaded = await loadRegressor(contractAt(name), {
       provider,
       createWorker: createInferenceWorker,
       onProgress: (part) => loading.report('the network', downloadShare * part),

@@ -5,12 +5,10 @@ import { validateInWorker } from '../../avatar/validate-in-worker';
 import { firstLine, reasonOf } from '../../core/errors/reasons';
 import { type FileKind, nameOf, readLimited } from '../../ui/limited-files';
 import type { Notices } from '../../ui/notices';
+import { pageFolder } from '../../ui/page-folder';
 import type { Studio } from '../studio/studio';
 import type { Measures } from './measures';
 import type { Settings } from './settings';
-
-/** Where our own avatar lies, on our own server. */
-export const ownAvatarAt = '/avatars/mannequin.vrm';
 
 export interface ShownAvatarOptions {
   readonly scene: Studio['scene'];
@@ -24,9 +22,9 @@ export interface ShownAvatarOptions {
 export const avatarFile: FileKind = { what: 'an avatar', megabytes: avatarLimits.megabytes };
 const ownName = 'Mannequin';
 
-/** The file of our own avatar, on its way; `onProgress` hears the share [0, 1] that has come. */
+/** The file of our own avatar, which lies beside the page, on its way; `onProgress` hears the share [0, 1] that has come. */
 export const fetchOwnAvatar = (onProgress?: (share: number) => void): Promise<ArrayBuffer> =>
-  readLimited(ownAvatarAt, avatarFile, onProgress);
+  readLimited(`${pageFolder()}/avatars/mannequin.vrm`, avatarFile, onProgress);
 
 /** The avatar on the stage. One is shown at a time; another takes its place only when it has arrived whole. */
 export interface ShownAvatar {

@@ -5,6 +5,7 @@ import { neverBack } from '../../core/tracking/page-clock';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 import { createParticipantClient } from '../../net/study-client';
 import { invitationIn, studyLink } from '../../net/study-link';
+import { pageFolder } from '../../ui/page-folder';
 import type { Pointer } from '../../ui/vr-pointers';
 import { createStudyCard, type StudyCard } from './study-card';
 import type { StudyHost } from './study-host';
@@ -69,7 +70,7 @@ const addressBarOf = (study: string): StudyAddressBar => ({
   goTo(place) {
     const address = new URL(location.href);
     address.searchParams.set('participant', place.participant);
-    address.hash = new URL(studyLink({ study, ...place }), location.origin).hash;
+    address.hash = new URL(studyLink({ study, ...place }), location.href).hash;
     if (address.href === location.href) location.reload();
     else location.assign(address);
   },
@@ -83,7 +84,7 @@ const addressBarOf = (study: string): StudyAddressBar => ({
 export function createStudyRun(asked: AskedStudy, host: StudyHost): StudyRun {
   document.body.classList.add('in-study');
   const sheet = createVrStudyPanel();
-  const visit = new StudyVisit(asked, createParticipantClient(), host, {
+  const visit = new StudyVisit(asked, createParticipantClient(pageFolder()), host, {
     display: createDisplay(createStudyCard(), sheet),
     address: addressBarOf(asked.study),
     now: nowSeconds,

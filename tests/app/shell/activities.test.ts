@@ -19,6 +19,8 @@ import type { Notice } from '../../../src/ui/notices';
 import { drawNowhere } from './drawing-in-node';
 
 drawNowhere();
+// Nothing is served there.
+vi.stubGlobal('location', { href: 'http://127.0.0.1:9/' });
 afterAll(() => vi.unstubAllGlobals());
 
 const ahead = { x: 0, y: 0, z: 0, w: 1 };

@@ -27,7 +27,7 @@ test('participants who were invited meet in the room of their trial, each on the
   });
   onTestFinished(() => server.close());
   const origin = `http://127.0.0.1:${server.port}`;
-  vi.stubGlobal('location', { origin });
+  vi.stubGlobal('location', { href: `${origin}/?play=ball` });
   onTestFinished(() => void vi.unstubAllGlobals());
 
   const experimenter = createExperimenterClient(experimenterToken, origin);
