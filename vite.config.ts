@@ -1,7 +1,31 @@
 import { fileURLToPath } from 'node:url';
-import { defineConfig } from 'vite';
+import { defineConfig, type Plugin } from 'vite';
+import { contentSecurityPolicy } from './server/security-headers';
+
+/**
+ * Says the server's policy in the pages themselves, for hosts that send no headers of ours. Without frame-ancestors, which browsers read in
+ * a header alone. Pages under development have none: the development server's own scripts would break it.
+ */
+const policyInPages: Plugin = {
+  name: 'policy-in-pages',
+  apply: 'build',
+  transformIndexHtml: () => [
+    {
+      tag: 'meta',
+      attrs: {
+        'http-equiv': 'Content-Security-Policy',
+        content: contentSecurityPolicy.replace(/; frame-ancestors [^;]*/, ''),
+      },
+      injectTo: 'head-prepend',
+    },
+    { tag: 'meta', attrs: { name: 'referrer', content: 'no-referrer' }, injectTo: 'head-prepend' },
+  ],
+};
 
 export default defineConfig({
+  // Where the page is served from: any folder, unless `npm run build -- --base` names one (scripts/build.mjs).
+  base: './',
+  plugins: [policyInPages],
   resolve: {
     alias: {
       '@stdlib/assert-has-generator-support': fileURLToPath(

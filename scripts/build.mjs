@@ -1,8 +1,8 @@
 import { createHash } from 'node:crypto';
 import { existsSync, readdirSync, readFileSync, statSync, writeFileSync } from 'node:fs';
-import { join, relative } from 'node:path';
+import { join, relative, resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
-import { promisify } from 'node:util';
+import { parseArgs, promisify } from 'node:util';
 import { brotliCompress, constants, gzip } from 'node:zlib';
 import { main, root, run, SetupError } from './run-command.mjs';
 
@@ -16,9 +16,13 @@ const sources = [
   'package-lock.json',
   'public',
   'src',
+  'server/security-headers.ts',
   'scripts/build.mjs',
 ];
-const stampFile = join(root, 'dist/.source-hash');
+const stampFile = '.source-hash';
+
+/** Where the built page lies when nothing else is asked for, and where it may be served from: any folder. */
+const usual = { base: './', out: join(root, 'dist') };
 
 /** Text and machine code shrink; pictures and quantised weights do not. */
 const compressible = /\.(html|js|css|json|svg|wasm|txt|vrm|glb|webmanifest)$/;
@@ -31,8 +35,37 @@ function filesUnder(path) {
     .flatMap((name) => filesUnder(join(path, name)));
 }
 
-function sourceHash() {
-  const hash = createHash('sha256');
+/** What `npm run build -- …` asks for: the folder that the page is served from, and where its files go. A SetupError says what is wrong with it. */
+export function buildOptions(args) {
+  let values;
+  try {
+    ({ values } = parseArgs({ args, options: { base: { type: 'string' }, out: { type: 'string' } } }));
+  } catch (error) {
+    throw new SetupError(
+      `${error.message} npm run build takes --base (a folder such as /threepoint/) and --out (a directory).`,
+    );
+  }
+  const { base = usual.base, out } = values;
+  if (!/^(\.\/|\/([\w~-][\w.~-]*\/)*)$/.test(base)) {
+    throw new SetupError(
+      `--base ${base || '""'}: expected the path of a folder with a slash at either end, such as /threepoint/, or ./ for a page that runs from any folder.`,
+    );
+  }
+  return { base, out: out === undefined ? usual.out : emptied(out) };
+}
+
+/** A directory that a build may empty: a new one, an empty one, or that of a build before. */
+function emptied(out) {
+  if (out === '') throw new SetupError('--out "": expected a directory for the built page.');
+  const directory = resolve(root, out);
+  if (existsSync(directory) && readdirSync(directory).length > 0 && !existsSync(join(directory, stampFile))) {
+    throw new SetupError(`--out ${out}: there are files in it that no build has put there; a build would delete them.`);
+  }
+  return directory;
+}
+
+function sourceHash(base) {
+  const hash = createHash('sha256').update(`${base}\0`);
   for (const file of sources.flatMap((source) => filesUnder(join(root, source)))) {
     hash
       .update(`${relative(root, file)}\0`)
@@ -59,22 +92,25 @@ async function precompress(directory) {
   );
 }
 
-/** Builds dist/ from the sources, whether or not it is stale. */
-export async function build() {
-  const hash = sourceHash();
-  const { code } = await run(process.execPath, ['node_modules/vite/bin/vite.js', 'build', '--logLevel', 'warn']);
+/** Builds the page from the sources, whether or not it is stale. */
+export async function build({ base, out } = usual) {
+  const hash = sourceHash(base);
+  const vite = ['node_modules/vite/bin/vite.js', 'build', '--logLevel', 'warn'];
+  const { code } = await run(process.execPath, [...vite, '--base', base, '--outDir', out, '--emptyOutDir']);
   if (code !== 0) throw new SetupError(`The build failed with exit code ${code}; its messages are above.`);
-  await precompress(join(root, 'dist'));
-  writeFileSync(stampFile, hash);
+  await precompress(out);
+  writeFileSync(join(out, stampFile), hash);
 }
 
 /** Builds dist/ when it was not built from exactly these sources. */
 export async function buildWhenStale() {
-  if (existsSync(stampFile) && readFileSync(stampFile, 'utf8') === sourceHash()) return;
+  const stamp = join(usual.out, stampFile);
+  if (existsSync(stamp) && readFileSync(stamp, 'utf8') === sourceHash(usual.base)) return;
   const start = performance.now();
   console.log('Building the page ...');
   await build();
   console.log(`Built in ${((performance.now() - start) / 1000).toFixed(1)} s.`);
 }
 
-if (import.meta.url === pathToFileURL(process.argv[1]).href) await main(build);
+if (import.meta.url === pathToFileURL(process.argv[1]).href)
+  await main(() => build(buildOptions(process.argv.slice(2))));
