@@ -82,6 +82,8 @@ function basketAt(from: Basket, to: Basket, time: number, target: MutableOpening
 interface Nearness {
   /** From the ball's skin to the basket, or from its middle to the opening if that is next [m]; below 0: within. */
   far: number;
+  /** How far the ball can go at least before it meets either, or the rim on its way out over it [m]. */
+  free: number;
   /** Unit: from the basket to the ball. */
   readonly out: MutableVec3;
   /** Above the opening: what comes further down is in. */
@@ -102,6 +104,8 @@ function measure(ball: Vec3, { position, normal }: MutableOpening, near: Nearnes
   near.overOpening = height > 0 && radial <= basketRadius;
   if (near.overOpening) {
     near.far = height;
+    // On its way out the skin meets the rim where the middle is no higher over it than the ball's radius.
+    near.free = Math.min(height, Math.max(height - ballRadius, basketRadius - radial));
     copyVec3(normal, near.out);
     return;
   }
@@ -110,7 +114,7 @@ function measure(ball: Vec3, { position, normal }: MutableOpening, near: Nearnes
   const above = Math.max(height, -basketDepth - height);
   if (beyond <= 0 && above <= 0) {
     // Inside the walls: the way out that is shorter.
-    near.far = Math.max(beyond, above) - ballRadius;
+    near.far = near.free = Math.max(beyond, above) - ballRadius;
     if (beyond > above) copyVec3(outward, near.out);
     else scale(normal, height > -basketDepth / 2 ? 1 : -1, near.out);
     return;
@@ -118,7 +122,7 @@ function measure(ball: Vec3, { position, normal }: MutableOpening, near: Nearnes
   const aside = Math.max(beyond, 0);
   const over = Math.max(above, 0) * (height > 0 ? 1 : -1);
   addScaled(scale(outward, aside, near.out), normal, over, near.out);
-  near.far = length(near.out) - ballRadius;
+  near.far = near.free = length(near.out) - ballRadius;
   normalise(near.out, outward, near.out);
 }
 
@@ -137,7 +141,7 @@ const middle = vec3(0, 0, 0);
 const flown = vec3(0, 0, 0);
 const relative = vec3(0, 0, 0);
 const opening: MutableOpening = { position: vec3(0, 0, 0), normal: vec3(0, 0, 0) };
-const near: Nearness = { far: 0, out: vec3(0, 0, 0), overOpening: false };
+const near: Nearness = { far: 0, free: 0, out: vec3(0, 0, 0), overOpening: false };
 
 /** How fast ball and basket may come nearer to each other at most [m/s]. */
 function closingSpeed(launch: TimedLaunch, from: Basket, to: Basket, start: number, end: number): number {
@@ -169,7 +173,7 @@ export function meetsBasket(launch: TimedLaunch, from: Basket, to: Basket): Bask
     basketAt(from, to, time, opening);
     measure(middle, opening, near);
     if (near.far > touching) {
-      time += near.far / closing;
+      time += Math.max(near.free, touching) / closing;
       continue;
     }
     velocityAt(launch, time - launch.time, flown);

@@ -26,7 +26,7 @@ import {
   type Vec3,
   vec3,
 } from '../../../../src/core/math/vec3';
-import { direction, number, seed, vector } from '../../arbitraries';
+import { direction, evenly, seed, vector } from '../../arbitraries';
 
 const still = (position: Vec3, normal = vec3(0, 1, 0), seconds = 5): [Basket, Basket] => [
   { at: 0, position, normal },
@@ -89,12 +89,12 @@ describe('a basket that moves', () => {
   const through = fc
     .record({
       normal: direction.filter(({ y }) => y > 0.2),
-      place: fc.tuple(number(0, 0.95), number(-Math.PI, Math.PI)),
+      place: fc.tuple(evenly(0, 0.95), evenly(-Math.PI, Math.PI)),
       basketVelocity: vector(4),
-      into: number(0.5, 15),
+      into: evenly(0.5, 15),
       sideways: vector(3),
-      before: number(0.001, 1 / 30),
-      after: number(0.001, 1 / 30),
+      before: evenly(0.001, 1 / 30),
+      after: evenly(0.001, 1 / 30),
     })
     .map(({ normal, place: [share, angle], basketVelocity, into, sideways, before, after }) => {
       const u = normalise(cross(normal, Math.abs(normal.x) < 0.8 ? vec3(1, 0, 0) : vec3(0, 0, 1)));
@@ -139,7 +139,7 @@ describe('a basket that moves', () => {
     const scene = fc.record({
       start: vector(0.6).map((v) => add(v, vec3(0, 1.9, 0))),
       noise: vector(3),
-      seconds: number(0.02, 0.06),
+      seconds: evenly(0.02, 0.06),
       opening: vector(0.25).map((v) => add(v, vec3(0, 1.5, 0))),
       moved: vector(0.15),
       normal: direction.filter(({ y }) => y > 0),
@@ -209,7 +209,7 @@ describe('a basket that moves', () => {
 describe('the floor', () => {
   test('is touched by the skin of the ball, not by its middle', () => {
     fc.assert(
-      fc.property(vector(8), number(0.2, 2), (velocity, height) => {
+      fc.property(vector(8), evenly(0.2, 2), (velocity, height) => {
         const launch: TimedLaunch = { time: 3, position: vec3(1, height, 2), velocity };
         expect(ballInAir(launch, touchesFloor(launch)).y).toBeCloseTo(ballRadius, 9);
       }),
