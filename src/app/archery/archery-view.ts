@@ -4,8 +4,9 @@ import { arrowLength, braceHeight } from '../../core/games/archery/bow';
 import type { BowCue } from '../../core/games/archery/gestures';
 import { invertTransform, type Pose, type Transform, transformPoint } from '../../core/math/pose';
 import { rotate } from '../../core/math/quat';
-import { addScaled, type Vec3 } from '../../core/math/vec3';
+import { addScaled, type Vec3, vec3 } from '../../core/math/vec3';
 import type { Quality } from '../../scene/renderer';
+import { makeArrowPose } from './arrow-pose';
 import { createArrows } from './arrows';
 import { createBow } from './bow';
 import { createBowStand, hangingBow } from './bow-stand';
@@ -56,6 +57,8 @@ export function createArcheryView({ quality, floorFromArena, distances, onCaptio
   const result = createResultPanel(quality);
   const sounds = createSounds({ floorFromArena, onCaption });
   let shown: ArcheryState | null = null;
+  const onString = makeArrowPose();
+  const eyes = vec3(0, 0, 0);
   const bow = createBow(quality, braceHeight);
   const stand = createBowStand(floorFromArena.orientation);
   const handheld = new Group();
@@ -70,17 +73,15 @@ export function createArcheryView({ quality, floorFromArena, distances, onCaptio
       shown = state;
       sounds.listen(head);
       const nocked = bowView?.arrow;
-      const direction = nocked && rotate(arenaFromFloor.orientation, nocked.direction);
-      const nock = nocked && transformPoint(arenaFromFloor, nocked.nock);
-      const eyes = transformPoint(arenaFromFloor, head.position);
+      if (nocked) {
+        const { tip, direction } = onString;
+        rotate(arenaFromFloor.orientation, nocked.direction, direction);
+        addScaled(transformPoint(arenaFromFloor, nocked.nock, tip), direction, arrowLength, tip);
+      }
+      transformPoint(arenaFromFloor, head.position, eyes);
       stands.show(state, matchTime);
-      const shot = state.arrows.filter(({ release }) => release.time <= matchTime);
-      arrows.show(
-        shot,
-        matchTime,
-        nock && direction ? { tip: addScaled(nock, direction, arrowLength), direction } : null,
-      );
-      trails.show(shot, matchTime, eyes);
+      arrows.show(state.arrows, matchTime, nocked ? onString : null);
+      trails.show(state.arrows, matchTime, eyes);
       pops.show(state, matchTime, eyes);
       scoreboard.show(state, matchTime);
       result.show(state, matchTime);

@@ -1,6 +1,6 @@
 import type { Arrow } from '../../core/games/archery/archery-state';
 import { positionAt, velocityAt } from '../../core/games/ballistics';
-import { addScaled, cross, normalise, scale, up, type Vec3, vec3 } from '../../core/math/vec3';
+import { addScaled, cross, type MutableVec3, normalise, right, scale, up, type Vec3, vec3 } from '../../core/math/vec3';
 
 /** Where an arrow is drawn: its tip and the unit direction it points in; arena frame. */
 export interface ArrowPose {
@@ -8,24 +8,46 @@ export interface ArrowPose {
   readonly direction: Vec3;
 }
 
+/** One that its owner overwrites. */
+export interface MutableArrowPose extends ArrowPose {
+  readonly tip: MutableVec3;
+  readonly direction: MutableVec3;
+}
+
+export const makeArrowPose = (): MutableArrowPose => ({ tip: vec3(0, 0, 0), direction: vec3(0, 0, -1) });
+
 /** How deep a tip goes into what it hits [m]. */
 const depth = { target: 0.085, ground: 0.07, wall: 0.2 } as const;
 
 /** Seconds in which half of the wobble dies away, its swings per second, and its first swing [rad]. */
 const wobble = { halfLife: 0.09, frequency: 15, angle: 0.055 };
 
-/** The arrow's pose at a time of the match: on its parabola until it lands, then stuck where it landed, trembling for a moment. */
-export function arrowPose({ id, release, landing }: Arrow, time: number): ArrowPose {
+const side = vec3(0, 0, 0);
+const rise = vec3(0, 0, 0);
+
+/**
+ * The arrow's pose at a time of the match, written into `target`: on its parabola until it lands, then stuck where it landed, trembling for
+ * a moment.
+ */
+export function arrowPose(
+  { id, release, landing }: Arrow,
+  time: number,
+  target: MutableArrowPose = makeArrowPose(),
+): MutableArrowPose {
+  const { tip, direction } = target;
   if (!landing || time < landing.time) {
     const after = Math.max(0, time - release.time);
-    return { tip: positionAt(release, after), direction: normalise(velocityAt(release, after)) };
+    positionAt(release, after, tip);
+    normalise(velocityAt(release, after, direction), undefined, direction);
+    return target;
   }
   const since = time - landing.time;
   const swing = wobble.angle * 0.5 ** (since / wobble.halfLife) * Math.sin(2 * Math.PI * wobble.frequency * since);
-  const side = normalise(cross(landing.direction, up), vec3(1, 0, 0));
-  const rise = cross(side, landing.direction);
+  normalise(cross(landing.direction, up, side), right, side);
+  cross(side, landing.direction, rise);
   const turn = id * 2.4;
-  const aside = addScaled(scale(side, Math.cos(turn)), rise, Math.sin(turn));
-  const direction = normalise(addScaled(landing.direction, aside, swing));
-  return { tip: addScaled(landing.position, direction, depth[landing.on]), direction };
+  const aside = addScaled(scale(side, Math.cos(turn), side), rise, Math.sin(turn), side);
+  normalise(addScaled(landing.direction, aside, swing, direction), undefined, direction);
+  addScaled(landing.position, direction, depth[landing.on], tip);
+  return target;
 }

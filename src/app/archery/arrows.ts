@@ -13,12 +13,12 @@ import {
 import type { Arrow } from '../../core/games/archery/archery-state';
 import { disposeTree } from '../../scene/dispose-tree';
 import { merged, painted } from '../../scene/painted-geometry';
-import { type ArrowPose, arrowPose } from './arrow-pose';
+import { type ArrowPose, arrowPose, makeArrowPose } from './arrow-pose';
 
 /** All arrows that can be seen, drawn in one call; arena frame. */
 export interface Arrows {
   readonly object: InstancedMesh;
-  /** Arrows shot at a time of the match [s], and one on the string; null: none there. */
+  /** Arrows shot by a time of the match [s], in order, and one on the string; null: none there. */
   show(arrows: readonly Arrow[], time: number, nocked: ArrowPose | null): void;
   /** The pose drawn for the i-th arrow now shown; the nocked one comes last. */
   poseAt(index: number): { readonly tip: Vector3; readonly direction: Vector3 };
@@ -98,6 +98,7 @@ export function createArrows(length: number): Arrows {
   const place = new Vector3();
   const heading = new Vector3();
   const size = new Vector3(1, 1, 1);
+  const pose = makeArrowPose();
 
   function set(index: number, { tip, direction }: ArrowPose): void {
     turn.setFromUnitVectors(minusZ, heading.copy(direction));
@@ -107,12 +108,15 @@ export function createArrows(length: number): Arrows {
   return {
     object,
     show(arrows, time, nocked) {
-      const seen = arrows.slice(-(capacity - 1));
-      seen.forEach((arrow, index) => {
-        set(index, arrowPose(arrow, time));
-      });
-      if (nocked) set(seen.length, nocked);
-      object.count = seen.length + (nocked ? 1 : 0);
+      let count = 0;
+      for (let i = Math.max(0, arrows.length - capacity + 1); i < arrows.length; i++) {
+        const arrow = arrows[i]!;
+        if (arrow.release.time > time) continue;
+        set(count, arrowPose(arrow, time, pose));
+        count += 1;
+      }
+      if (nocked) set(count, nocked);
+      object.count = count + (nocked ? 1 : 0);
       object.instanceMatrix.needsUpdate = true;
     },
     poseAt(index) {

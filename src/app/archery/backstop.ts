@@ -4,7 +4,6 @@ import {
   Color,
   CylinderGeometry,
   DataTexture,
-  DoubleSide,
   Group,
   LinearFilter,
   Mesh,
@@ -17,6 +16,7 @@ import {
   Vector3,
 } from 'three';
 import { walls } from '../../core/games/archery/rules';
+import { bothSides } from '../../scene/both-sides';
 import { woodColor } from '../../scene/outdoors/wood';
 import { merged, painted } from '../../scene/painted-geometry';
 import { anisotropyOf, minFilterOf, type Quality } from '../../scene/renderer';
@@ -70,7 +70,7 @@ function createNets(quality: Quality): Group {
       transparent: true,
       opacity: wall.axis === 'z' ? 0.75 : 0.34,
       depthWrite: false,
-      side: DoubleSide,
+      ...bothSides,
     });
     nets.add(new Mesh(geometry, material));
   }

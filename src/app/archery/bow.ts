@@ -75,7 +75,8 @@ function sweep(
       positions[at + 2] = z + cosine * depth;
       const nx = corner.nx / halfWidth;
       const nz = corner.nz / halfDepth;
-      const long = Math.hypot(nx, nz);
+      // Math.hypot is handed its numbers in boxes.
+      const long = Math.sqrt(nx * nx + nz * nz);
       normals[at] = nx / long;
       normals[at + 1] = (sign * -sine * nz) / long;
       normals[at + 2] = (cosine * nz) / long;

@@ -1,6 +1,6 @@
 import { Group } from 'three';
 import type { ArcheryState } from '../../core/games/archery/archery-state';
-import { buttonUnder, createSheet, type SheetSize } from '../../scene/boards/sheet';
+import { buttonUnder, createSheet, type SheetContent, type SheetSize } from '../../scene/boards/sheet';
 import { disposeTree } from '../../scene/dispose-tree';
 import type { Quality } from '../../scene/renderer';
 import { paintResult, restartButton, resultSize } from './scoreboard-drawing';
@@ -34,21 +34,27 @@ export function createResultPanel(quality: Quality): ResultPanel {
   object.position.z = -2.1;
   const sheet = createSheet<'restart'>(size, quality);
   object.add(sheet.mesh);
+  /** Of the newest result. Arrows of a round that is over are the same objects from frame to frame. */
+  let content: SheetContent<'restart'> | null = null;
+  let of: ArcheryState | null = null;
+
+  function contentOf(state: ArcheryState): SheetContent<'restart'> {
+    if (content && of?.arrows === state.arrows && of.score === state.score && of.end === state.end) return content;
+    of = state;
+    content = {
+      key: JSON.stringify([state.score, state.end, state.arrows]),
+      buttons: [restartButton],
+      paint: (context, hovered) => paintResult(context, state, hovered !== null),
+    };
+    return content;
+  }
+
   return {
     object,
     show(state, time) {
       // A little below the eyes, standing or seated.
       object.position.y = state.options.eyeHeight - 0.18;
-      sheet.show(
-        state.phase === 'over'
-          ? {
-              key: JSON.stringify([state.score, state.end, state.arrows]),
-              buttons: [restartButton],
-              paint: (context, hovered) => paintResult(context, state, hovered !== null),
-            }
-          : null,
-        time,
-      );
+      sheet.show(state.phase === 'over' ? contentOf(state) : null, time);
     },
     restartAt: (origin, direction) => sheet.buttonAt(origin, direction)?.distance ?? null,
     setHovered: (on) => sheet.setHovered(on ? 'restart' : null),

@@ -95,11 +95,12 @@ class RangeSounds implements Sounds {
 
   hear({ targets, options }: ArcheryState, events: readonly ArcheryEvent[], cues: readonly BowCue[]): void {
     const playing = this.#stage.player;
-    const head = transformPose(this.#arenaFromFloor, this.#head);
     for (const cue of cues) {
       this.#captionCue(cue);
       if (playing) playCue(cue, playing);
     }
+    if (events.length === 0) return;
+    const head = transformPose(this.#arenaFromFloor, this.#head);
     for (const event of events) {
       this.#onCaption(eventCaption(event, { targets, seconds: options.seconds, head }));
       if (playing) this.#playEvent(event, playing);

@@ -145,38 +145,41 @@ function plateGeometry(target: Target, row: number, rows: number): BufferGeometr
 }
 
 interface Score {
-  readonly points: number;
-  /** When the last arrow hit, in the match's time [s]. */
-  readonly at: number;
+  /** 0: nothing yet. */
+  points: number;
+  /** When the last arrow hit, in the match's time [s]; −∞: none did. */
+  at: number;
 }
 
-/** What a target scored so far, and when last; null: nothing yet. */
-export function scoredBy(state: ArcheryState, target: number, time: number): Score | null {
-  let points = 0;
-  let at = Number.NEGATIVE_INFINITY;
+const makeScore = (): Score => ({ points: 0, at: Number.NEGATIVE_INFINITY });
+
+/** What a target scored by a time of the match [s], and when last, written into `score`. */
+export function scoredBy(state: ArcheryState, target: number, time: number, score: Score = makeScore()): Score {
+  score.points = 0;
+  score.at = Number.NEGATIVE_INFINITY;
   for (const { landing } of state.arrows) {
     if (!landing || landing.target !== target || landing.points === 0 || landing.time > time) continue;
-    points += landing.points;
-    at = Math.max(at, landing.time);
+    score.points += landing.points;
+    score.at = Math.max(score.at, landing.time);
   }
-  return points > 0 ? { points, at } : null;
+  return score;
 }
 
 /** A plate: dark with the points it is worth, or light with a tick and the points it gave. */
-function paintPlate(context: CanvasRenderingContext2D, row: number, points: number, scored: number | null): void {
+function paintPlate(context: CanvasRenderingContext2D, row: number, points: number, scored: number): void {
   const y = row * cell.height;
   context.save();
   context.translate(0, y);
-  context.fillStyle = scored === null ? ink.board : ink.accent;
+  context.fillStyle = scored === 0 ? ink.board : ink.accent;
   context.fillRect(0, 0, cell.width, cell.height);
-  context.strokeStyle = scored === null ? ink.text : ink.accentInk;
+  context.strokeStyle = scored === 0 ? ink.text : ink.accentInk;
   context.lineWidth = 6;
   context.strokeRect(9, 9, cell.width - 18, cell.height - 18);
-  context.fillStyle = scored === null ? ink.text : ink.accentInk;
+  context.fillStyle = scored === 0 ? ink.text : ink.accentInk;
   context.textAlign = 'center';
   context.textBaseline = 'middle';
   context.font = `800 108px ${signFont}`;
-  if (scored === null) context.fillText(String(points), cell.width / 2, cell.height / 2 + 8);
+  if (scored === 0) context.fillText(String(points), cell.width / 2, cell.height / 2 + 8);
   else {
     context.fillText(String(scored), cell.width * 0.64, cell.height / 2 + 8);
     context.strokeStyle = ink.accentInk;
@@ -245,8 +248,10 @@ class Stands implements TargetStands {
   #built: readonly Target[] = [];
   /** The targets that stand, in writing. */
   #builtAs = '';
-  /** The points on the plates, in writing. */
-  #shownPlates = '';
+  /** Of each target: where it stands, what it has scored, and the points on its plate; no points where nothing is painted yet. */
+  #places: readonly Matrix4[] = [];
+  #scores: readonly Score[] = [];
+  #onPlates: number[] = [];
   /** Null as long as there are no targets, as rims and shadows are. */
   #faces: InstancedMesh | null = null;
   #rims: InstancedMesh | null = null;
@@ -266,18 +271,20 @@ class Stands implements TargetStands {
     const faces = this.#faces;
     const rims = this.#rims;
     if (!faces || !rims) return;
-    const scores = targets.map((_, index) => scoredBy(state, index, time));
-    for (const [index, target] of targets.entries()) {
-      const score = scores[index] ?? null;
-      const place = placeOf(target);
-      this.#placeFace(faces, index, target, place);
-      this.#placeRim(rims, index, target, place, score && time - score.at);
-      faces.setColorAt(index, score ? done : untouched);
-      rims.setColorAt(index, score ? lit : unlit);
+    for (let index = 0; index < targets.length; index++) {
+      const { radius } = targets[index]!;
+      const score = scoredBy(state, index, time, this.#scores[index]);
+      const hit = score.points > 0;
+      const place = this.#places[index]!;
+      faces.setMatrixAt(index, this.#size.makeScale(radius, radius, 1).premultiply(place));
+      const wide = hit ? radius * swellAt(time - score.at) * 1.012 : radius;
+      rims.setMatrixAt(index, this.#size.makeScale(wide, wide, hit ? radius * 1.5 : radius).premultiply(place));
+      faces.setColorAt(index, hit ? done : untouched);
+      rims.setColorAt(index, hit ? lit : unlit);
     }
     changed(faces);
     changed(rims);
-    this.#showPlates(targets, scores);
+    this.#showPlates(targets);
   }
 
   dispose(): void {
@@ -305,12 +312,14 @@ class Stands implements TargetStands {
       if (child instanceof Mesh) child.geometry.dispose();
       if (child instanceof InstancedMesh) child.dispose();
     }
-    this.#shownPlates = '';
+    this.#onPlates = [];
     this.#faces = this.#rims = this.#shadows = null;
   }
 
   #build(targets: readonly Target[]): void {
     const count = targets.length;
+    this.#places = targets.map(placeOf);
+    this.#scores = targets.map(makeScore);
     const stands = new Mesh(merged(targets.flatMap(standGeometry)), this.#wood);
     stands.castShadow = stands.receiveShadow = true;
     this.#faces = createFaces(count, this.#face);
@@ -320,25 +329,18 @@ class Stands implements TargetStands {
     this.object.add(stands, this.#faces, this.#rims, new Mesh(plates, this.#plateMaterial), this.#shadows);
   }
 
-  #placeFace(faces: InstancedMesh, index: number, { radius }: Target, place: Matrix4): void {
-    faces.setMatrixAt(index, this.#size.makeScale(radius, radius, 1).premultiply(place));
-  }
-
-  /** `since`: the seconds since the target was hit; null: it was not. */
-  #placeRim(rims: InstancedMesh, index: number, { radius }: Target, place: Matrix4, since: number | null): void {
-    const hit = since !== null;
-    const wide = radius * (hit ? swellAt(since) * 1.012 : 1);
-    const deep = hit ? radius * 1.5 : radius;
-    rims.setMatrixAt(index, this.#size.makeScale(wide, wide, deep).premultiply(place));
-  }
-
-  #showPlates(targets: readonly Target[], scores: readonly (Score | null)[]): void {
-    const wanted = JSON.stringify(scores.map((score) => score?.points ?? null));
-    if (wanted === this.#shownPlates) return;
-    this.#shownPlates = wanted;
+  #showPlates(targets: readonly Target[]): void {
+    let changed = false;
+    for (let row = 0; row < targets.length; row++) {
+      const { points } = this.#scores[row]!;
+      if (points === this.#onPlates[row]) continue;
+      this.#onPlates[row] = points;
+      changed = true;
+    }
+    if (!changed) return;
     this.#plates.draw((context) => {
       context.scale(1, 4 / targets.length);
-      for (const [row, { points }] of targets.entries()) paintPlate(context, row, points, scores[row]?.points ?? null);
+      for (const [row, { points }] of targets.entries()) paintPlate(context, row, points, this.#onPlates[row]!);
       context.resetTransform();
     });
   }

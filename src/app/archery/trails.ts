@@ -1,9 +1,10 @@
-import { BufferAttribute, BufferGeometry, DoubleSide, DynamicDrawUsage, Mesh, ShaderMaterial } from 'three';
+import { BufferAttribute, BufferGeometry, DynamicDrawUsage, Mesh, ShaderMaterial } from 'three';
 import type { Arrow } from '../../core/games/archery/archery-state';
 import { smoothstep } from '../../core/math/damper';
-import { add, addScaled, cross, distance, normalise, scale, subtract, up, type Vec3 } from '../../core/math/vec3';
+import { add, addScaled, cross, distance, normalise, scale, subtract, up, type Vec3, vec3 } from '../../core/math/vec3';
+import { bothSides } from '../../scene/both-sides';
 import { disposeTree } from '../../scene/dispose-tree';
-import { arrowPose } from './arrow-pose';
+import { arrowPose, makeArrowPose } from './arrow-pose';
 
 /** Bright ribbons behind arrows in flight; arena frame. */
 export interface Trails {
@@ -39,7 +40,7 @@ export function createTrails(arrowLength: number): Trails {
   const material = new ShaderMaterial({
     transparent: true,
     depthWrite: false,
-    side: DoubleSide,
+    ...bothSides,
     fog: false,
     vertexShader: `attribute float strength; varying float alpha;
       void main() {
@@ -57,20 +58,25 @@ export function createTrails(arrowLength: number): Trails {
   object.frustumCulled = false;
   object.renderOrder = 4;
 
+  const pose = makeArrowPose();
+  const middle = vec3(0, 0, 0);
+  const aside = vec3(0, 0, 0);
+  const edge = vec3(0, 0, 0);
+
   function lay(trail: number, arrow: Arrow, time: number, head: Vec3): void {
     const end = arrow.landing?.time ?? Number.POSITIVE_INFINITY;
     for (let i = 0; i < points; i++) {
       const share = i / (points - 1);
       const past = Math.max(arrow.release.time, Math.min(end - 1e-6, time - memory * share));
-      const { tip, direction } = arrowPose(arrow, past);
-      const middle = addScaled(tip, direction, -arrowLength);
-      const across = normalise(cross(direction, subtract(middle, head)), up);
-      const aside = scale(across, (width / 2) * (1 - 0.7 * share));
+      const { tip, direction } = arrowPose(arrow, past, pose);
+      addScaled(tip, direction, -arrowLength, middle);
+      normalise(cross(direction, subtract(middle, head, aside), aside), up, aside);
+      scale(aside, (width / 2) * (1 - 0.7 * share), aside);
       const at = (trail * points + i) * 2;
-      const left = add(middle, aside);
-      const right = subtract(middle, aside);
-      positions.setXYZ(at, left.x, left.y, left.z);
-      positions.setXYZ(at + 1, right.x, right.y, right.z);
+      add(middle, aside, edge);
+      positions.setXYZ(at, edge.x, edge.y, edge.z);
+      subtract(middle, aside, edge);
+      positions.setXYZ(at + 1, edge.x, edge.y, edge.z);
       // Right before the eyes a ribbon would be a veil.
       const strength = (1 - share) * smoothstep(0.9, 3, distance(middle, head));
       strengths.setX(at, strength);
@@ -81,14 +87,15 @@ export function createTrails(arrowLength: number): Trails {
   return {
     object,
     show(arrows, time, head) {
-      const flying = arrows
-        .filter(({ release, landing }) => time >= release.time && (!landing || time < landing.time + memory))
-        .slice(-most);
-      flying.forEach((arrow, trail) => {
-        lay(trail, arrow, time, head);
-      });
-      geometry.setDrawRange(0, flying.length * (points - 1) * 6);
-      if (flying.length > 0) positions.needsUpdate = strengths.needsUpdate = true;
+      let trails = 0;
+      for (let i = arrows.length - 1; i >= 0 && trails < most; i--) {
+        const arrow = arrows[i]!;
+        if (time < arrow.release.time || (arrow.landing && time >= arrow.landing.time + memory)) continue;
+        lay(trails, arrow, time, head);
+        trails += 1;
+      }
+      geometry.setDrawRange(0, trails * (points - 1) * 6);
+      if (trails > 0) positions.needsUpdate = strengths.needsUpdate = true;
     },
     dispose() {
       object.removeFromParent();

@@ -2,7 +2,6 @@ import {
   BoxGeometry,
   type BufferGeometry,
   Color,
-  DoubleSide,
   Group,
   Mesh,
   MeshBasicMaterial,
@@ -10,6 +9,7 @@ import {
   PlaneGeometry,
   ShaderMaterial,
 } from 'three';
+import { bothSides } from '../../scene/both-sides';
 import { merged, painted } from '../../scene/painted-geometry';
 import { field } from './field';
 
@@ -64,7 +64,7 @@ function createFence(): Mesh<BufferGeometry, ShaderMaterial> {
   const material = new ShaderMaterial({
     transparent: true,
     depthWrite: false,
-    side: DoubleSide,
+    ...bothSides,
     fog: false,
     uniforms: {
       pulse: { value: 1 },

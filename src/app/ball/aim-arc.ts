@@ -1,5 +1,4 @@
 import {
-  DoubleSide,
   Group,
   InstancedMesh,
   Matrix4,
@@ -13,6 +12,7 @@ import {
 import type { Opening } from '../../core/games/ball/basket';
 import { ballRadius, basketRadius } from '../../core/games/ball/flight';
 import { fallsTo, type Launch, positionAt } from '../../core/games/ballistics';
+import { bothSides } from '../../scene/both-sides';
 import { disposeTree } from '../../scene/dispose-tree';
 
 /** The way that a ball would go if it were thrown now, and where it would come down; arena frame. */
@@ -39,7 +39,7 @@ export function createAimArc(): AimArc {
   const seen = { transparent: true, opacity: 0.9, depthWrite: false, depthTest: false, fog: false, toneMapped: false };
   const material = new MeshBasicMaterial({ color: beside, ...seen });
   const path = new InstancedMesh(new SphereGeometry(1, 10, 8), material, dots);
-  const ringMaterial = new MeshBasicMaterial({ color: beside, side: DoubleSide, ...seen });
+  const ringMaterial = new MeshBasicMaterial({ color: beside, ...bothSides, ...seen });
   const ring = new Mesh(new RingGeometry(basketRadius - 0.06, basketRadius, 40).rotateX(-Math.PI / 2), ringMaterial);
   for (const part of [path, ring]) {
     part.frustumCulled = false;

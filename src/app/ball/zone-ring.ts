@@ -1,7 +1,8 @@
-import { DoubleSide, Mesh, MeshBasicMaterial, RingGeometry } from 'three';
+import { Mesh, MeshBasicMaterial, RingGeometry } from 'three';
 import { zoneRadius } from '../../core/games/ball/stations';
 import { clamp } from '../../core/math/damper';
 import type { Vec3 } from '../../core/math/vec3';
+import { bothSides } from '../../scene/both-sides';
 
 /** The edge of where throws and catches count: seen only by a player who comes near it; arena frame. */
 export interface ZoneRing {
@@ -18,7 +19,7 @@ export function createZoneRing(): ZoneRing {
     color: '#ff9d1f',
     transparent: true,
     opacity: 0,
-    side: DoubleSide,
+    ...bothSides,
     depthWrite: false,
   });
   const mesh = new Mesh(new RingGeometry(zoneRadius - 0.05, zoneRadius, 96).rotateX(-Math.PI / 2), material);

@@ -91,15 +91,17 @@ export function createSheet<Id extends string>(size: SheetSize, quality: Quality
   mesh.visible = false;
   let shown: SheetContent<Id> | null = null;
   let hovered: Id | null = null;
-  let drawn = '';
+  /** What was painted last; null: nothing yet. */
+  let drawnKey: string | null = null;
+  let drawnHovered: Id | null = null;
   const settling = createSettling();
 
   function redraw(): void {
     if (!shown) return;
     const content = shown;
-    const key = JSON.stringify([content.key, hovered]);
-    if (key === drawn) return;
-    drawn = key;
+    if (content.key === drawnKey && hovered === drawnHovered) return;
+    drawnKey = content.key;
+    drawnHovered = hovered;
     draw((context) => content.paint(context, hovered));
   }
 

@@ -1,6 +1,6 @@
 import type { Pose } from '../../core/math/pose';
 import { rotate } from '../../core/math/quat';
-import { type Vec3, vec3 } from '../../core/math/vec3';
+import { forward, up, type Vec3, vec3 } from '../../core/math/vec3';
 
 /** Makes a sound's samples at a rate [1/s]. */
 export type Recipe = (rate: number) => Float32Array<ArrayBuffer>;
@@ -74,28 +74,28 @@ function createPlayer(context: AudioContext, recipes: Recipes) {
 /** What plays while the audio runs. */
 export type Player = ReturnType<typeof createPlayer>;
 
+const ahead = vec3(0, 0, 0);
+const upward = vec3(0, 0, 0);
+
 function placeListener({ listener, currentTime }: AudioContext, head: Pose<'floor'>): void {
   const { x, y, z } = head.position;
-  const ahead = rotate(head.orientation, vec3(0, 0, -1));
-  const upward = rotate(head.orientation, vec3(0, 1, 0));
+  rotate(head.orientation, forward, ahead);
+  rotate(head.orientation, up, upward);
   // Some browsers only have the older methods.
   if (!listener.positionX) {
     listener.setPosition(x, y, z);
     listener.setOrientation(ahead.x, ahead.y, ahead.z, upward.x, upward.y, upward.z);
     return;
   }
-  const values = [
-    [listener.positionX, x],
-    [listener.positionY, y],
-    [listener.positionZ, z],
-    [listener.forwardX, ahead.x],
-    [listener.forwardY, ahead.y],
-    [listener.forwardZ, ahead.z],
-    [listener.upX, upward.x],
-    [listener.upY, upward.y],
-    [listener.upZ, upward.z],
-  ] as const;
-  for (const [parameter, value] of values) parameter.setValueAtTime(value, currentTime);
+  listener.positionX.setValueAtTime(x, currentTime);
+  listener.positionY.setValueAtTime(y, currentTime);
+  listener.positionZ.setValueAtTime(z, currentTime);
+  listener.forwardX.setValueAtTime(ahead.x, currentTime);
+  listener.forwardY.setValueAtTime(ahead.y, currentTime);
+  listener.forwardZ.setValueAtTime(ahead.z, currentTime);
+  listener.upX.setValueAtTime(upward.x, currentTime);
+  listener.upY.setValueAtTime(upward.y, currentTime);
+  listener.upZ.setValueAtTime(upward.z, currentTime);
 }
 
 export function createSoundStage(

@@ -85,10 +85,10 @@ describe('a target stand', () => {
       shot(0, { on: 'target', target: 1, points: 10 }),
       shot(1, { on: 'target', target: 1, points: 10 }),
     ]);
-    expect(scoredBy(state, 1, 0.2)).toBeNull();
-    expect(scoredBy(state, 1, 1)?.points).toBe(10);
-    expect(scoredBy(state, 1, 5)?.points).toBe(20);
-    expect(scoredBy(state, 0, 5)).toBeNull();
+    expect(scoredBy(state, 1, 0.2).points).toBe(0);
+    expect(scoredBy(state, 1, 1).points).toBe(10);
+    expect(scoredBy(state, 1, 5).points).toBe(20);
+    expect(scoredBy(state, 0, 5).points).toBe(0);
   });
 });
 

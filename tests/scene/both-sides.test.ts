@@ -1,0 +1,26 @@
+import { DoubleSide, type Material, Mesh, type Object3D } from 'three';
+import { expect, test } from 'vitest';
+import { createBackstop } from '../../src/app/archery/backstop';
+import { createTrails } from '../../src/app/archery/trails';
+import { createZone } from '../../src/app/archery/zone';
+import { createAimArc } from '../../src/app/ball/aim-arc';
+import { createZoneRing } from '../../src/app/ball/zone-ring';
+
+test('what is transparent and seen from both sides is drawn in one pass, so that its program is not looked up anew in every frame', () => {
+  const drawn: Object3D[] = [
+    createBackstop('low'),
+    createTrails(0.7).object,
+    createZone().object,
+    createAimArc().object,
+    createZoneRing().mesh,
+  ];
+  const seen: Material[] = [];
+  for (const object of drawn)
+    object.traverse((part) => {
+      if (part instanceof Mesh) seen.push(...[part.material].flat());
+    });
+  const both = seen.filter(({ transparent, side }) => transparent && side === DoubleSide);
+  // Three nets, trails, the zone's fence, the ring that is aimed at, the ring about a station.
+  expect(both).toHaveLength(7);
+  for (const material of both) expect(material.forceSinglePass).toBe(true);
+});
