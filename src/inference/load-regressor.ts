@@ -66,28 +66,31 @@ export async function startRegressor(
     });
   }
 
+  /** On a graphics device, or where that is lost in WebAssembly. */
+  async function runOnDevice(device: InferenceSession, features: Float32Array): Promise<Float32Array> {
+    try {
+      return await device.run(input, features, output.name);
+    } catch (error) {
+      // A lost device takes its session along; WASM needs nothing of it, and the loaded bundle has it.
+      fallback ??= open('wasm', 'webgpu')
+        .catch(() => open('wasm'))
+        .then((opened) => {
+          session = opened;
+          onProviderFallback?.(`The graphics device was lost (${reasonOf(error)}): WebAssembly takes over.`);
+          return opened;
+        });
+      return (await fallback).run(input, features, output.name);
+    }
+  }
+
   return {
     contract,
     get provider() {
       return session?.provider ?? 'none';
     },
-    async run(features) {
-      const current = session;
-      if (current === null) throw new Error(`${contract.file}: already disposed of`);
-      try {
-        return await current.run(input, features, output.name);
-      } catch (error) {
-        if (current.provider !== 'webgpu') throw error;
-        // A lost device takes its session along; WASM needs nothing of it, and the loaded bundle has it.
-        fallback ??= open('wasm', 'webgpu')
-          .catch(() => open('wasm'))
-          .then((opened) => {
-            session = opened;
-            onProviderFallback?.(`The graphics device was lost (${reasonOf(error)}): WebAssembly takes over.`);
-            return opened;
-          });
-        return (await fallback).run(input, features, output.name);
-      }
+    run(features) {
+      if (session === null) return Promise.reject(new Error(`${contract.file}: already disposed of`));
+      return session.provider === 'webgpu' ? runOnDevice(session, features) : session.run(input, features, output.name);
     },
     async dispose() {
       const closing = session;

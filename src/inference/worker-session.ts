@@ -10,6 +10,11 @@ interface Waiting {
 /** A worker that is silent for so long [ms], or twice as long, has died. */
 const patienceMs = 2500;
 
+function numbersOf(answer: Answer): Float32Array {
+  if (!('numbers' in answer)) throw new Error('the worker for inference answers what no one asked');
+  return answer.numbers;
+}
+
 /**
  * Opens a model in a worker of its own: what a frame pays for a run is to ask for it; the answer arrives between frames. Rejects when
  * there is no worker or it does not take the model; a worker that breaks or falls silent rejects every run from then on.
@@ -67,11 +72,7 @@ export async function createWorkerSession(
     provider: 'wasm',
     inputNames: tensors.inputNames,
     outputNames: tensors.outputNames,
-    async run(input, features, output) {
-      const answer = await ask({ id: asked++, input, features, output });
-      if (!('numbers' in answer)) throw new Error('the worker for inference answers what no one asked');
-      return answer.numbers;
-    },
+    run: (input, features, output) => ask({ id: asked++, input, features, output }).then(numbersOf),
     async release() {
       breakDown('already released');
     },

@@ -13,7 +13,8 @@ const local = (parent: Quat, child: Quat, target: MutableQuat): MutableQuat =>
 /** Writes the rotations of every joint against its parent's, from those of trunk, arms and head in the floor frame. */
 export function composeBody(torso: TorsoPose, arms: FitArmsState, head: Quat, body: MutableUpperBodyPose): void {
   const { rotations: r, clavicles } = torso;
-  const [left, rightArm] = [arms.left.rotations, arms.right.rotations];
+  const left = arms.left.rotations;
+  const rightArm = arms.right.rotations;
   const to = body.localRotations;
   copyVec3(torso.hips, body.hipsPosition);
   copyQuat(r.hips, to.hips);

@@ -42,7 +42,7 @@ import type { CompletedFrame, CompletedHand } from './complete-hands';
 import type { TorsoPose } from './fit-torso';
 import type { JointPositions } from './joint-positions';
 import { restSeconds } from './lost-hand.json';
-import { type EstimatedPole, estimatedPole, limitSwivel, type SwivelState } from './swivel-limiter';
+import { type EstimatedPole, estimatedPole, limitSwivel, type SwivelLimits, type SwivelState } from './swivel-limiter';
 
 /** How far a wrist bends against the forearm [rad]: 90°, the extreme of flexion. */
 const wristLimit = Math.PI / 2;
@@ -121,6 +121,17 @@ const pole = vec3(0, 0, 0);
 const circle = makeElbowCircle();
 const wantedPole: EstimatedPole = { direction: vec3(0, 0, 0), confidence: Number.NaN };
 const fallbackPoles: readonly [MutableVec3, MutableVec3] = [vec3(0, 0, 0), vec3(0, 0, 0)];
+/** IK's pole, then the first of those. */
+const ikPoles: [Vec3, Vec3] = [fallbackPoles[0], fallbackPoles[0]];
+const estimated = { shoulder: wrist as Vec3, elbow: elbow as Vec3, wrist: wrist as Vec3 };
+/** Of the arm at hand. */
+const limits: Mutable<Omit<SwivelLimits, 'torso'>> & { torso: TorsoPose | null } = {
+  side: 'left',
+  torso: null,
+  armLength: Number.NaN,
+  confidence: Number.NaN,
+  deltaSeconds: Number.NaN,
+};
 const goal: Mutable<ArmGoal> & { readonly outside: MutableVec3 } = {
   ...makeArmDirections(),
   shoulder: wrist,
@@ -187,22 +198,17 @@ function placeElbow(
   rotate(floorFromChest, downAndBack[side], fallbackPoles[0]);
   rotate(floorFromChest, backward, fallbackPoles[1]);
   elbowCircle(shoulder, wrist, bones, fallbackPoles[0], circle);
-  const estimatedShoulder = side === 'left' ? joints.leftUpperArm : joints.rightUpperArm;
-  const estimatedElbow = side === 'left' ? joints.leftLowerArm : joints.rightLowerArm;
-  estimatedPole(
-    { shoulder: estimatedShoulder, elbow: estimatedElbow, wrist: completed.position },
-    circle,
-    [poles[side], fallbackPoles[0]],
-    wantedPole,
-  );
-  const { confidence } = completed;
-  limitSwivel(
-    before?.known ? before : null,
-    wantedPole,
-    circle,
-    { side, torso, armLength, confidence, deltaSeconds },
-    pole,
-  );
+  estimated.shoulder = side === 'left' ? joints.leftUpperArm : joints.rightUpperArm;
+  estimated.elbow = side === 'left' ? joints.leftLowerArm : joints.rightLowerArm;
+  estimated.wrist = completed.position;
+  ikPoles[0] = poles[side];
+  estimatedPole(estimated, circle, ikPoles, wantedPole);
+  limits.side = side;
+  limits.torso = torso;
+  limits.armLength = armLength;
+  limits.confidence = completed.confidence;
+  limits.deltaSeconds = deltaSeconds;
+  limitSwivel(before?.known ? before : null, wantedPole, circle, limits as SwivelLimits, pole);
   elbowOnCircle(circle, pole, elbow);
 }
 

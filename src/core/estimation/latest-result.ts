@@ -8,6 +8,8 @@ export class LatestResult {
   readonly #finished: (output: Float32Array) => void;
   readonly #failed: () => void;
   #running: Promise<void> | null = null;
+  /** The newest run has not settled. */
+  #open = false;
   #fault: string | null = null;
   #epoch = 0;
 
@@ -21,7 +23,7 @@ export class LatestResult {
 
   /** The run under way, if there is one; none may be started beside it. */
   get running(): Promise<void> | null {
-    return this.#running;
+    return this.#open ? this.#running : null;
   }
 
   /** What went wrong last, until a run succeeds. */
@@ -31,9 +33,9 @@ export class LatestResult {
 
   /** Starts a run; resolves when it is finished, however it ends. `features` may be overwritten then. */
   start(features: Float32Array): Promise<void> {
-    this.#running ??= this.#run(features).finally(() => {
-      this.#running = null;
-    });
+    if (this.#open && this.#running) return this.#running;
+    this.#open = true;
+    this.#running = this.#run(features);
     return this.#running;
   }
 
@@ -58,6 +60,8 @@ export class LatestResult {
       if (startedIn === this.#epoch) this.#take(output);
     } catch (error) {
       this.#refuse(error);
+    } finally {
+      this.#open = false;
     }
   }
 

@@ -128,7 +128,8 @@ export function solveIk(points: ThreePoints, body: ChestSpaceBody, target: IkSol
 
 /** 1. Chest yaw: turned by the hands. */
 function turnChest(): void {
-  const [acrossWeight = 0, middleWeight = 0] = parameters.yaw;
+  const acrossWeight = parameters.yaw[0]!;
+  const middleWeight = parameters.yaw[1]!;
   const aheadX = acrossWeight * across.z + middleWeight * middle.x;
   const aheadZ = -1 - acrossWeight * across.x + middleWeight * middle.z;
   const most = bounds.yawSaturation;
