@@ -2,7 +2,7 @@ import { readFileSync } from 'node:fs';
 import { SourceMap } from 'node:module';
 import { fileURLToPath } from 'node:url';
 import type { Browser, CDPSession, Page } from '@playwright/test';
-import { driveTime } from '../e2e/driven-time';
+import { driveTime, pass } from '../e2e/driven-time';
 import { createPageHandler } from '../server/page';
 import { serve, type WebServer } from '../server/web-server';
 import type { AllocationScene } from './page/allocations';
@@ -53,12 +53,13 @@ interface SampledNode {
 /** Every allocation is sampled with a chance that makes one in so many bytes: some thousand samples of these frames at 10 kB a frame. */
 const samplingInterval = 1024;
 const sampledFrames = 720;
-/** Before them: what runs in every frame is compiled by then, what is loaded is loaded. A headset draws them in 13 seconds. */
-const warmUpFrames = 960;
+/** Before them: what runs in every frame is compiled by then, what is loaded is loaded. A headset draws them in 27 seconds. */
+const warmUpFrames = 1920;
 /** The headset's whose frames they are: rooms and players tick by the clock. */
 const rateHz = 72;
 const longestWaitMs = 300_000;
-const askEveryMs = 3000;
+/** A game that does not begin within so many seconds of its own does not begin. */
+const longestStart = 60;
 
 /** Folders of built pages, to find the map beside a script. */
 export interface BuiltPages {
@@ -150,37 +151,39 @@ async function sample(session: CDPSession, sourceOf: SourceOf, during: () => Pro
   return { frames, bytes, threeBytes, functions: [...functions.values()] };
 }
 
-/** What lies on the way to the moment that is measured. */
+/** What is played on the real page, and what is pressed before frames are sampled. */
 const realPages = {
-  mirror: { address: '?actor=on&seed=7', phase: null },
-  archery: { address: '?actor=on&play=archery&seed=7&seconds=600', phase: 'running' },
-  ball3: { address: '?actor=on&play=ball&seed=7&seconds=600', phase: 'running' },
+  mirror: { address: '?actor=on&seed=7', plays: false, press: null },
+  // A round has fewer frames than warm up and are sampled.
+  archery: { address: '?actor=on&play=archery&seed=7&seconds=600', plays: true, press: 'New round' },
+  ball3: { address: '?actor=on&play=ball&seed=7&seconds=600', plays: true, press: null },
 } as const;
+type RealPage = (typeof realPages)[keyof typeof realPages];
 
 const benchScenes: readonly AllocationScene[] = ['ik', 'paper', 'learned', 'ball8', 'stillScene'];
 
-const drawnFrames = (page: Page): Promise<number> =>
-  page.evaluate(() => window.threepoint?.probe().frame.count ?? Number.NaN);
+const phaseOf = (page: Page): Promise<string | undefined> =>
+  page.evaluate(() => window.threepoint?.probe().game?.phase);
 
-/** Waits until the real page has computed so many frames more; resolves to how many those were. */
-async function runPage(page: Page, leastFrames: number): Promise<number> {
-  const before = await drawnFrames(page);
-  const ends = performance.now() + longestWaitMs;
-  for (;;) {
-    // Asking leaves garbage of its own: seldom.
-    await page.waitForTimeout(askEveryMs);
-    const frames = (await drawnFrames(page)) - before;
-    if (frames >= leastFrames) return frames;
-    if (performance.now() > ends) throw new Error(`${frames} of ${leastFrames} frames were drawn`);
-  }
+/** Lets the page compute so many frames; resolves to how many those were. */
+async function runPage(page: Page, frames: number): Promise<number> {
+  const late = AbortSignal.timeout(longestWaitMs);
+  await Promise.race([
+    pass(page, frames),
+    new Promise((_, reject) => {
+      late.addEventListener('abort', () => reject(new Error(`${frames} frames took longer than ${longestWaitMs} ms`)));
+    }),
+  ]);
+  return frames;
 }
 
-/** From now on frames follow each other at once, a headset's interval apart by the page's clock, and the graphics device is given nothing. */
+/** Holds the page's time; frames that pass from now on follow each other at once, a headset's interval apart, and are given to no graphics device. */
 async function driveFrames(page: Page): Promise<void> {
   // tsx has functions keep their names by a function of its own, which the page does not have.
   await page.evaluate('globalThis.__name = (named) => named');
   await driveTime(page, 1000 / rateHz);
   await page.evaluate(() => {
+    window.drivenTime?.hold();
     // Without arguments: collecting them would be garbage that no page makes.
     const nothing = () => undefined;
     for (const name of ['clear', 'drawArrays', 'drawElements', 'drawArraysInstanced', 'drawElementsInstanced'])
@@ -191,19 +194,30 @@ async function driveFrames(page: Page): Promise<void> {
 async function sampleRealPage(
   page: Page,
   session: CDPSession,
-  phase: string | null,
+  { plays, press }: RealPage,
   sourceOf: SourceOf,
 ): Promise<Sample> {
   await page.waitForFunction(() => window.threepoint?.probe().ready, null, { timeout: 120_000, polling: 500 });
   await driveFrames(page);
-  // Asked from here: frames that follow at once leave a timer of the page little room.
-  const phaseNow = () => page.evaluate(() => window.threepoint?.probe().game?.phase);
-  for (const ends = performance.now() + longestWaitMs; phase !== null && (await phaseNow()) !== phase; ) {
-    if (performance.now() > ends) throw new Error(`the game is ${await phaseNow()}, not ${phase}`);
-    await page.waitForTimeout(500);
+  for (let second = 0; plays && (await phaseOf(page)) !== 'running'; second++) {
+    if (second === longestStart) throw new Error(`the game is ${await phaseOf(page)} after ${second} s, not running`);
+    await runPage(page, rateHz);
   }
   await runPage(page, warmUpFrames);
-  return sample(session, sourceOf, () => runPage(page, sampledFrames));
+  if (press) {
+    // Not by a click of the mouse: that waits for frames, and time is held.
+    await page.evaluate((press) => {
+      const found = [...document.querySelectorAll('button')].find(({ textContent }) => textContent === press);
+      if (!found) throw new Error(`there is no button ${press}`);
+      found.click();
+    }, press);
+    // What is built for it is no frame's.
+    await runPage(page, rateHz);
+  }
+  const sampled = await sample(session, sourceOf, () => runPage(page, sampledFrames));
+  if (plays && (await phaseOf(page)) !== 'running')
+    throw new Error(`the game was ${await phaseOf(page)} before its frames were sampled`);
+  return sampled;
 }
 
 async function sampleBenchPage(page: Page, session: CDPSession, sourceOf: SourceOf): Promise<Sample> {
@@ -264,9 +278,9 @@ export async function measureAllocations(
   const wanted = (name: string) => only === undefined || only.includes(name);
   try {
     const realPage = await open(built.page);
-    for (const [name, { address, phase }] of Object.entries(realPages).filter(([name]) => wanted(name))) {
-      const of = (page: Page, session: CDPSession) => sampleRealPage(page, session, phase, sourceOf);
-      samples.set(name, await visit(browser, `${realPage}${address}`, of));
+    for (const [name, played] of Object.entries(realPages).filter(([name]) => wanted(name))) {
+      const of = (page: Page, session: CDPSession) => sampleRealPage(page, session, played, sourceOf);
+      samples.set(name, await visit(browser, `${realPage}${played.address}`, of));
     }
     const benchPage = await open(built.bench);
     for (const name of benchScenes.filter(wanted)) {

@@ -15,6 +15,8 @@ declare global {
       /** Holds time at the frame at hand. */
       hold(): void;
       goOn(): void;
+      /** Lets so many frames pass and holds time again. */
+      pass(frames: number): Promise<void>;
       end(): void;
     };
   }
@@ -45,6 +47,7 @@ export const driveTime = (page: Page, stepMs = usualStepMs): Promise<void> =>
     };
     let held = false;
     let hold: { readonly shows: object; resolve(): void } | null = null;
+    let passing: { frames: number; resolve(): void } | null = null;
 
     const asked = new Map<number, FrameRequestCallback>();
     // The browser's own handles count from 1.
@@ -95,6 +98,14 @@ export const driveTime = (page: Page, stepMs = usualStepMs): Promise<void> =>
         hold.resolve();
         hold = null;
       }
+      if (passing) {
+        passing.frames -= 1;
+        if (passing.frames <= 0) {
+          held = true;
+          passing.resolve();
+          passing = null;
+        }
+      }
       goOn();
     };
 
@@ -129,6 +140,12 @@ export const driveTime = (page: Page, stepMs = usualStepMs): Promise<void> =>
         held = false;
         goOn();
       },
+      pass: (frames) =>
+        new Promise((resolve) => {
+          passing = { frames, resolve };
+          held = false;
+          goOn();
+        }),
       end() {
         Object.assign(prototype, own);
         // The page's clock neither goes back nor leaps: what it is ahead or behind it stays.
@@ -153,6 +170,10 @@ export async function rest(page: Page): Promise<void> {
   await driveTime(page);
   await page.evaluate(() => window.drivenTime?.hold());
 }
+
+/** Lets so many frames pass and holds time after them. */
+export const pass = (page: Page, frames: number): Promise<void> =>
+  page.evaluate((frames) => window.drivenTime?.pass(frames), frames);
 
 /** Lets time that is held go on. */
 export const goOn = (page: Page): Promise<void> => page.evaluate(() => window.drivenTime?.goOn());

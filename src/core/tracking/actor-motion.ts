@@ -114,6 +114,14 @@ const minimumJerk = (t: number): number => t * t * t * (10 - 15 * t + 6 * t * t)
 
 const radians = (degrees: number): number => (degrees * Math.PI) / 180;
 
+/** The newest performer: an actor is asked for one body frame after frame. */
+let performer: { readonly calibration: Calibration; readonly body: ChestSpaceBody } | null = null;
+
+function bodyOf(calibration: Calibration): ChestSpaceBody {
+  if (performer?.calibration !== calibration) performer = { calibration, body: chestSpaceBody(calibration) };
+  return performer.body;
+}
+
 /**
  * Head and wrists at a time [s] of an endless performance by this body, floor frame, standing about the origin and facing −Z at
  * first. Smooth in position and speed; hands stay within reach.
@@ -121,14 +129,14 @@ const radians = (degrees: number): number => (degrees * Math.PI) / 180;
 export function actorFrame(timeSeconds: number, calibration: Calibration): TrackingFrame {
   const loops = Math.floor(timeSeconds / actorLoopSeconds);
   const time = timeSeconds - loops * actorLoopSeconds;
-  let next = keys.findIndex((key) => key.time > time);
-  if (next < 1) next = keys.length - 1;
+  let next = 1;
+  while (next < keys.length - 1 && keys[next]!.time <= time) next += 1;
   const from = keys[next - 1] as Key;
   const to = keys[next] as Key;
   const share = minimumJerk(clamp((time - from.time) / (to.time - from.time), 0, 1));
   const mixed = (a = 0, b = 0): number => a + (b - a) * share;
 
-  const body = chestSpaceBody(calibration);
+  const body = bodyOf(calibration);
   const e = calibration.eyeHeight;
   const breath = Math.sin(timeSeconds * 1.5);
   const drift = vec3(0.012 * Math.sin(timeSeconds * 0.61), 0.003 * breath, 0.01 * Math.sin(timeSeconds * 0.43 + 1));
