@@ -28,8 +28,8 @@ const commands = (file: string): string[] =>
     ...(strategy?.matrix.include ?? []).map(({ command }) => command),
   ]);
 
-test('there is one for every change and one for every night', () => {
-  expect(files).toEqual(expect.arrayContaining(['ci.yml', 'nightly.yml']));
+test('there is one for every change, one for every night and one that publishes the page', () => {
+  expect(files).toEqual(expect.arrayContaining(['ci.yml', 'nightly.yml', 'pages.yml']));
 });
 
 describe.each(files)('%s', (file) => {
@@ -79,4 +79,16 @@ test('a red night opens an issue', () => {
   expect(issue).toMatchObject({ needs: 'measure', permissions: { issues: 'write' } });
   expect(issue?.if).toContain('failure()');
   expect(issue?.steps[0]?.run).toContain('gh issue create');
+});
+
+test('only what ci has passed is published, in the folder of the repository, by a job that may do nothing else', () => {
+  const { on } = parse(text(`${folder}/pages.yml`)) as {
+    on: { workflow_run: { workflows: string[]; branches: string[] } };
+  };
+  expect(on.workflow_run).toMatchObject({ workflows: ['ci'], branches: ['main'] });
+  const [build, publish] = jobs('pages.yml');
+  expect(build?.if).toContain("workflow_run.conclusion == 'success'");
+  expect(commands('pages.yml')).toContain('npm run build -- --base "$FOLDER/"');
+  expect(publish).toMatchObject({ needs: 'build', permissions: { pages: 'write', 'id-token': 'write' } });
+  expect(Object.keys(publish?.permissions ?? {})).toHaveLength(2);
 });
