@@ -201,9 +201,9 @@ export interface ExpectedComplaints {
   allow(...patterns: RegExp[]): void;
 }
 
-/** A page that says where its policy is broken. */
-async function newPage(browser: Browser, origin: string): Promise<Page> {
-  const context = await browser.newContext({ baseURL: origin });
+/** A page in a context of its own that says where its policy is broken. Addresses are relative to `base`. */
+export async function newPage(browser: Browser, base: string): Promise<Page> {
+  const context = await browser.newContext({ baseURL: base });
   const page = await context.newPage();
   await page.addInitScript(() => {
     document.addEventListener('securitypolicyviolation', (event) => {
@@ -213,8 +213,8 @@ async function newPage(browser: Browser, origin: string): Promise<Page> {
   return page;
 }
 
-/** Hears what a page complains about until it is stopped; the texts fill as they come. */
-function listen(page: Page, origin: string): { readonly heard: readonly string[]; stop(): void } {
+/** Hears what a page complains about until it is stopped, requests for what is not below `home` included; the texts fill as they come. */
+export function listen(page: Page, home: string): { readonly heard: readonly string[]; stop(): void } {
   const heard: string[] = [];
   const onConsole = (message: ConsoleMessage) => {
     // A blocked resource shows as an error of the console too: violations of the policy land here.
@@ -222,8 +222,8 @@ function listen(page: Page, origin: string): { readonly heard: readonly string[]
   };
   const onError = (error: Error) => heard.push(`exception: ${error.stack ?? error.message}`);
   const onRequest = (request: Request) => {
-    const url = new URL(request.url());
-    if (!['data:', 'blob:'].includes(url.protocol) && url.origin !== origin) heard.push(`asked ${url.origin}: ${url}`);
+    const { protocol, href, origin } = new URL(request.url());
+    if (!['data:', 'blob:'].includes(protocol) && !href.startsWith(home)) heard.push(`asked ${origin}: ${href}`);
   };
   page.on('console', onConsole).on('pageerror', onError).on('request', onRequest);
   return {
@@ -268,7 +268,7 @@ export const test = base.extend<{ complaints: ExpectedComplaints }, { origin: st
 
   complaints: [
     async ({ page, origin }, use) => {
-      const { heard, stop } = listen(page, origin);
+      const { heard, stop } = listen(page, `${origin}/`);
       const allowed: RegExp[] = [];
       await use({ allow: (...patterns) => allowed.push(...patterns) });
       stop();

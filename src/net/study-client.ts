@@ -28,6 +28,16 @@ export class ServerRefusal extends Error {
   }
 }
 
+/** Where studies cannot be had, in a sentence. */
+export const noStudiesHere = 'Studies need a threepoint server, and this page comes from a host without one.';
+
+/** What answered is no server of ours: it knows nothing of studies, and says so in no words of ours. */
+export class NoStudyServer extends ServerRefusal {
+  constructor(status: number) {
+    super(status, noStudiesHere);
+  }
+}
+
 /** There was no answer: no network, no server, or one that broke off. Trying again later may help. */
 export class ServerUnreachable extends Error {}
 
@@ -69,10 +79,9 @@ async function ask(
   }
   if (response.ok) return response;
   const said: unknown = await response.json().catch(() => null);
-  const sentence =
-    typeof said === 'object' && said !== null && 'error' in said
-      ? String(said.error)
-      : `the server says ${response.status}`;
+  const ours = typeof said === 'object' && said !== null && 'error' in said;
+  if (!ours && response.status === 404) throw new NoStudyServer(response.status);
+  const sentence = ours ? String(said.error) : `the server says ${response.status}`;
   // Proxies say these while the server is away; the server itself means 5xx as "nothing was acknowledged".
   if (response.status >= 500 && response.status !== 507) throw new ServerUnreachable(sentence);
   const field = typeof said === 'object' && said !== null && 'field' in said ? said.field : null;

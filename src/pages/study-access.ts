@@ -1,6 +1,7 @@
 import { reasonOf } from '../core/errors/reasons';
 import type { RecordedStudy, StudyListing } from '../core/study/study-api';
-import { createExperimenterClient, type ExperimenterClient } from '../net/study-client';
+import { ServerPresence } from '../net/server-presence';
+import { createExperimenterClient, type ExperimenterClient, noStudiesHere } from '../net/study-client';
 import { button, element } from '../ui/element';
 import { pageFolder } from '../ui/page-folder';
 import { forgetToken, keptToken, signInForm } from './sign-in';
@@ -9,10 +10,11 @@ import { studySelect } from './study-select';
 /** The studies of this server, as a page sees them whose visitor has given the experimenter's token. */
 export class StudyAccess {
   readonly #onChange: () => void;
+  readonly #server = new ServerPresence(pageFolder(), () => undefined);
   #client: ExperimenterClient | null = null;
   #listed: readonly StudyListing[] = [];
 
-  /** `onChange` hears when the token has opened the server. */
+  /** `onChange` hears when the token has opened the server, and when there turns out to be none. */
   constructor(onChange: () => void) {
     this.#onChange = onChange;
   }
@@ -28,6 +30,9 @@ export class StudyAccess {
 
   /** Signs in with the token of this tab, where there is one; the answer is the study that the address asks for, null: none, or no token. */
   async resume(): Promise<string | null> {
+    void this.#server.known().then((state) => {
+      if (state === 'none') this.#onChange();
+    });
     const token = keptToken();
     if (token === null || (await this.#signIn(token)) !== null) return null;
     return new URLSearchParams(location.search).get('study') || null;
@@ -47,9 +52,11 @@ export class StudyAccess {
     this.#listed = await client.studies();
   }
 
-  /** Where the token is given. */
+  /** Where the token is given; on a host without a server, a sentence in its place. */
   form(): HTMLElement {
-    return signInForm((token) => this.#signIn(token));
+    if (this.#server.state !== 'none') return signInForm((token) => this.#signIn(token));
+    const ask = button('Ask again', () => void this.#server.ask().then(() => this.#onChange()));
+    return element('div', { class: 'bar' }, element('p', { role: 'status' }, noStudiesHere), ask);
   }
 
   /** The list of studies; `none`: what it says without any. */

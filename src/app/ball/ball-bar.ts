@@ -1,3 +1,4 @@
+import type { ServerState } from '../../net/server-presence';
 import { button, element } from '../../ui/element';
 import { ballRulesText, rulesList } from '../../ui/rules';
 import { toggle } from '../../ui/toggle';
@@ -41,6 +42,8 @@ export interface BallBarState {
   readonly round: BallRound | null;
   /** null: in this page alone. */
   readonly room: string | null;
+  /** Who could host a room for others. */
+  readonly server: ServerState;
   readonly bots: boolean;
   /** A built-in player moves the own body: no person is there to be asked. */
   readonly acting: boolean;
@@ -61,6 +64,8 @@ export interface BallBarActions {
   setName(name: string): void;
   /** Opens a room where others can come too. */
   openRoom(): void;
+  /** Looks for the server once more. */
+  askServer(): void;
   /** Shows what to send to others so that they come. */
   invite(): void;
   /** Into the room again that this page is in no longer. */
@@ -230,6 +235,36 @@ function createSeats(actions: BallBarActions) {
   };
 }
 
+/** Why there are no rooms for others; null: there are, or nothing is known yet. */
+const serverTexts: Readonly<Record<ServerState, string | null>> = {
+  unknown: null,
+  asked: null,
+  here: null,
+  none: 'This page comes from a host without a threepoint server: there are no rooms for others. Alone, with bots, you can play.',
+  silent: 'Rooms for others are on the server, which does not answer now.',
+};
+
+/** The way to others: a room for them, or why there is none. */
+function createCompany(actions: BallBarActions) {
+  const openRoom = button('Play with others', actions.openRoom);
+  const invite = button('Invite others', actions.invite);
+  const said = element('p', { class: 'hint', role: 'status' });
+  const ask = button('Ask again', actions.askServer);
+  return {
+    node: element('div', { class: 'company' }, said, element('div', { class: 'row' }, openRoom, invite, ask)),
+    show({ room, server }: BallBarState): void {
+      // In a room the banner says what is the matter with its server.
+      const text = room === null ? serverTexts[server] : null;
+      if (said.textContent !== (text ?? '')) said.textContent = text;
+      said.hidden = text === null;
+      openRoom.hidden = room !== null || text !== null;
+      openRoom.disabled = server !== 'here';
+      invite.hidden = room === null;
+      ask.hidden = text === null;
+    },
+  };
+}
+
 /** Score, places and settings of the ball game, beside the picture. */
 export function createBallBar(actions: BallBarActions, setSound: (on: boolean) => void) {
   const score = createScore();
@@ -237,8 +272,7 @@ export function createBallBar(actions: BallBarActions, setSound: (on: boolean) =
   const waiting = element('p', { class: 'waiting', role: 'status' });
   const seats = createSeats(actions);
   const deeds = createDeeds(actions);
-  const openRoom = button('Play with others', actions.openRoom);
-  const invite = button('Invite others', actions.invite);
+  const company = createCompany(actions);
   const players = createPlayers(actions, setSound);
   const node = element(
     'div',
@@ -250,7 +284,7 @@ export function createBallBar(actions: BallBarActions, setSound: (on: boolean) =
     seats.cameras,
     deeds.node,
     deeds.hint,
-    element('div', { class: 'row' }, openRoom, invite),
+    company.node,
     players.node,
   );
   node.hidden = true;
@@ -259,7 +293,7 @@ export function createBallBar(actions: BallBarActions, setSound: (on: boolean) =
     show(state: BallBarState | null, soundOn: boolean): void {
       node.hidden = state === null;
       if (!state) return;
-      const { round, room } = state;
+      const { round } = state;
       score.show(round);
       where.textContent = whereText(state);
       const sentence = round?.ended ?? round?.waiting ?? null;
@@ -267,8 +301,7 @@ export function createBallBar(actions: BallBarActions, setSound: (on: boolean) =
       waiting.hidden = sentence === null;
       deeds.show(state);
       seats.show(state);
-      openRoom.hidden = room !== null;
-      invite.hidden = room === null;
+      company.show(state);
       players.show(state, soundOn);
     },
   };

@@ -1,4 +1,5 @@
 import type { PageClock } from '../../core/tracking/page-clock';
+import type { ServerPresence } from '../../net/server-presence';
 import type { Quality } from '../../scene/renderer';
 import type { SurroundingsHost } from '../../scene/surroundings';
 import type { MouseAim } from '../../ui/mouse-aim';
@@ -24,6 +25,7 @@ export interface GamesOptions {
   readonly mouse: MouseAim;
   readonly headset: Pick<Headset, 'worn' | 'emulator'>;
   readonly measures: Pick<Measures, 'current'>;
+  readonly server: Pick<ServerPresence, 'known'>;
   onCaption(text: string): void;
 }
 
@@ -91,10 +93,12 @@ export class PageGames implements Games {
     });
   }
 
-  #connect(connections: Connections, seed: number, place: TaskPlace | null): Promise<Connect> {
-    const { switches, clock } = this.#options;
+  async #connect(connections: Connections, seed: number, place: TaskPlace | null): Promise<Connect> {
+    const { switches, clock, server } = this.#options;
     if (place) return connections.assignedSeat(place.seat, clock);
-    return connections.connectionsFor(switches.room, {
+    // A server that is silent is waited for; where there is none, the match is in this page.
+    const hosted = switches.room !== null && (await server.known()) !== 'none';
+    return connections.connectionsFor(hosted ? switches.room : null, {
       seed,
       clock,
       ...(switches.seconds && { seconds: switches.seconds }),

@@ -2,10 +2,12 @@ import { firstLine } from '../../core/errors/reasons';
 import { createEstimator } from '../../core/estimation/estimators';
 import { createPageClock } from '../../core/tracking/page-clock';
 import { createEstimatorChoice } from '../../lib/estimator-choice';
+import { ServerPresence } from '../../net/server-presence';
 import { affordableQuality } from '../../scene/renderer';
 import { pageElement } from '../../ui/element';
 import { createMouseAim } from '../../ui/mouse-aim';
 import type { Notices } from '../../ui/notices';
+import { pageFolder } from '../../ui/page-folder';
 import { createActor } from '../../xr/actor';
 import { Recorder } from '../studio/recorder';
 import { Activities } from './activities';
@@ -75,6 +77,7 @@ function createPlay({ visit, notices }: PageOptions, ground: ReturnType<typeof c
   const { switches, settings, writer, store, changes } = visit;
   const { canvas, quality, stage, measures, avatar, choice, headset, recorder } = ground;
   const study = new PageStudy();
+  const server = new ServerPresence(pageFolder(), changes.emit);
   const actor = createActor();
   const clock = createPageClock(() => performance.now());
   const mouse = createMouseAim(canvas);
@@ -85,7 +88,7 @@ function createPlay({ visit, notices }: PageOptions, ground: ReturnType<typeof c
     settings,
     writer,
     notices,
-    games: new PageGames({ quality, switches, settings, clock, stage, mouse, headset, measures, onCaption }),
+    games: new PageGames({ quality, switches, settings, clock, stage, mouse, headset, measures, server, onCaption }),
     seed: switches.seed ?? Math.floor(performance.timeOrigin % 2 ** 31),
     stage,
     mouse,
@@ -110,7 +113,7 @@ function createPlay({ visit, notices }: PageOptions, ground: ReturnType<typeof c
     },
   });
   const source = new TrackingSource({ settings, headset, recorder, actor, activities, study });
-  return { study, clock, activities, captions, arrivals, body, source };
+  return { study, server, clock, activities, captions, arrivals, body, source };
 }
 
 /** Builds the parts of the page and introduces them to each other. */
@@ -120,10 +123,10 @@ export function createPage(options: PageOptions) {
   const ground = createGround(options);
   const play = createPlay(options, ground);
   const { canvas, timing, stage, recorder, measures, avatar, choice, headset } = ground;
-  const { study, activities, body, source } = play;
+  const { study, server, activities, body, source } = play;
   const controls = new Controls({
     ...{ switches, settings, writer, store, notices, onChange: visit.changes.emit },
-    ...{ timing, stage, choice, recorder, headset, avatar, activities, body, study },
+    ...{ timing, stage, choice, recorder, headset, avatar, activities, body, study, server },
   });
   const sessions = new SessionChanges({
     headset,

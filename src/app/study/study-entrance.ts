@@ -1,5 +1,5 @@
 import { reasonOf } from '../../core/errors/reasons';
-import { ServerRefusal } from '../../net/study-client';
+import { NoStudyServer, ServerRefusal } from '../../net/study-client';
 import type { ParticipantSession } from './participant-session';
 import type { Opened } from './study-opening';
 import type { StudyPage } from './study-page';
@@ -49,7 +49,7 @@ export class StudyEntrance {
   }
 
   #faultText(error: unknown): string {
-    return error instanceof ServerRefusal && error.status === 404
+    return error instanceof ServerRefusal && error.status === 404 && !(error instanceof NoStudyServer)
       ? `There is no study "${this.#study}" on this server. The experimenter's page begins one.`
       : reasonOf(error);
   }

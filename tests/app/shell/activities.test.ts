@@ -13,6 +13,7 @@ import type { Side } from '../../../src/core/math/side';
 import { vec3 } from '../../../src/core/math/vec3';
 import { createPageClock } from '../../../src/core/tracking/page-clock';
 import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
+import { ServerPresence } from '../../../src/net/server-presence';
 import type { SceneName } from '../../../src/scene/desktop-view';
 import type { Surroundings } from '../../../src/scene/surroundings';
 import type { Notice } from '../../../src/ui/notices';
@@ -81,6 +82,7 @@ function page() {
     ...{ ...common, writer, study, seed: 5 },
     games: new PageGames({
       ...{ ...common, switches, quality: 'low', clock: createPageClock(() => 0), onCaption: () => undefined },
+      server: new ServerPresence('http://127.0.0.1:9', () => undefined),
     }),
     notices: { show: (level, text) => void notices.push({ level, text }) },
     wear: () => undefined,

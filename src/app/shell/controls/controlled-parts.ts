@@ -1,4 +1,5 @@
 import type { EstimatorChoice } from '../../../lib/estimator-choice';
+import type { ServerPresence } from '../../../net/server-presence';
 import type { Notices } from '../../../ui/notices';
 import type { Recorder } from '../../studio/recorder';
 import type { Activities } from '../activities';
@@ -28,6 +29,7 @@ export interface ControlledParts {
   readonly activities: Activities;
   readonly body: TrackedBody;
   readonly study: Pick<PageStudy, 'run'>;
+  readonly server: ServerPresence;
   /** Something changed that is on the screen. */
   onChange(): void;
 }

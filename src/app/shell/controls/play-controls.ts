@@ -6,7 +6,7 @@ import type { ControlledParts } from './controlled-parts';
 
 export type PlayControlsOptions = Pick<
   ControlledParts,
-  'switches' | 'settings' | 'writer' | 'notices' | 'headset' | 'activities'
+  'switches' | 'settings' | 'writer' | 'notices' | 'headset' | 'activities' | 'study' | 'server'
 >;
 
 /** Of an address that has just opened a room for others. */
@@ -41,6 +41,8 @@ export class PlayControls {
   }
 
   show(): void {
+    const { activities, study, server } = this.#options;
+    if (activities.ball && !study.run) void server.known();
     this.#bar.show(this.#state());
   }
 
@@ -78,11 +80,19 @@ export class PlayControls {
         notices.show('info', 'The others see your new name when you join the next time.');
       },
       openRoom: () => location.assign(`?play=ball&room=${newRoomName()}${invitingHash}`),
+      askServer: () => void this.#askServer(),
       invite: () => this.#invite(),
       rejoin: () => void activities.rejoin(),
       follow: (seat) => activities.follow(seat),
       steer: (on) => activities.chooseShooter(on ? 'mouse' : 'actor'),
     };
+  }
+
+  /** A server that is found takes this page into the room of its address. */
+  async #askServer(): Promise<void> {
+    const { server, switches, activities } = this.#options;
+    const { state: before } = server;
+    if ((await server.ask()) === 'here' && before === 'none' && switches.room) await activities.rejoin();
   }
 
   #invite(): void {
@@ -108,11 +118,12 @@ export class PlayControls {
   }
 
   #ballState(): BallBarState | null {
-    const { settings, switches, headset, activities } = this.#options;
+    const { settings, switches, headset, activities, server } = this.#options;
     if (!activities.ball) return null;
     return {
       round: activities.ball.round(),
-      room: switches.room,
+      room: server.state === 'none' ? null : switches.room,
+      server: server.state,
       bots: settings.bots,
       acting: settings.actor && !settings.mouse && !headset.worn,
       mouse: headset.worn || !settings.actor ? null : settings.mouse,

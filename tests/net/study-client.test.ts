@@ -1,0 +1,21 @@
+import { expect, test } from 'vitest';
+import { createParticipantClient, NoStudyServer, ServerRefusal, ServerUnreachable } from '../../src/net/study-client';
+import { answeringHost, says } from './answering-host';
+
+const clientOf = async (status: number, body: string) =>
+  createParticipantClient((await answeringHost(says(status, body))).folder);
+
+test('a host of files is told from a server that has no such study', async () => {
+  const files = await clientOf(404, '<h1>Not found</h1>');
+  await expect(files.study('paper')).rejects.toThrow(NoStudyServer);
+  await expect(files.study('paper')).rejects.toThrow('this page comes from a host without one');
+  const server = await clientOf(404, '{"error":"there is no study \\"paper\\"","field":null}');
+  await expect(server.study('paper')).rejects.toThrow(ServerRefusal);
+  await expect(server.study('paper')).rejects.not.toThrow(NoStudyServer);
+});
+
+test('a server that is away for now is unreachable, whatever its proxy says', async () => {
+  for (const body of ['<h1>Bad gateway</h1>', '{"error":"starting"}']) {
+    await expect((await clientOf(502, body)).study('paper')).rejects.toThrow(ServerUnreachable);
+  }
+});
