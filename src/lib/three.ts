@@ -67,27 +67,6 @@ interface Reading {
   /** The space that `tracker` made last; where the renderer has another one, the page moved its wearer. */
   space: XRReferenceSpace;
   readonly base: XRReferenceSpace;
-  /** Which points the device has called tracked in this session. */
-  readonly told: Record<TrackedPoint, boolean>;
-}
-
-/**
- * A point that was never called tracked in a session is of a device that does not tell tracked from guessed: emulators, controllers without
- * cameras. What it says is believed, rather than leave an arm hanging.
- */
-function believed(frame: TrackingFrame | null, { told }: Reading): TrackingFrame | null {
-  if (!frame) return null;
-  const { head, leftHand, rightHand } = frame;
-  told.head ||= head.tracking === 'tracked';
-  told.left ||= leftHand?.tracking === 'tracked';
-  told.right ||= rightHand?.tracking === 'tracked';
-  if (told.head && (told.left || !leftHand) && (told.right || !rightHand)) return frame;
-  return {
-    ...frame,
-    head: told.head ? head : { ...head, tracking: 'tracked' },
-    leftHand: told.left ? leftHand : leftHand && { ...leftHand, tracking: 'tracked' },
-    rightHand: told.right ? rightHand : rightHand && { ...rightHand, tracking: 'tracked' },
-  };
 }
 
 /**
@@ -166,7 +145,7 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
     if (this.#clock.paused) this.#body.jumped();
     const reading = this.#follow();
     if (!reading || !frame) return;
-    this.#apply(believed(reading.tracker.read(frame, time), reading), time);
+    this.#apply(reading.tracker.read(frame, time), time);
   }
 
   /** The same from head and wrists that the page has itself: a recording, another device. Floor frame [m, s]. */
@@ -215,7 +194,6 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
       session,
       base: space,
       space,
-      told: { head: false, left: false, right: false },
       tracker: createTracker(session, space, (moved) => {
         reading.space = moved;
         this.#renderer.xr.setReferenceSpace(moved);

@@ -6,6 +6,7 @@ import type { Side } from '../core/math/side';
 import { distance, scale, subtract, up } from '../core/math/vec3';
 import { headingOf } from '../core/tracking/heading';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
+import { Belief } from './believed';
 import { handleFit, wristFromGrip } from './grip-offsets';
 
 /** Tips of thumb and index finger this near are a full pinch, this far are none [m]. */
@@ -69,6 +70,7 @@ class SessionTracker implements Tracker {
   readonly #onSpace: ((space: XRReferenceSpace) => void) | undefined;
   readonly #held = { controller: false, hand: false };
   readonly #sticks = new TurningSticks();
+  readonly #belief = new Belief();
   /** Devices in the order in which they came. */
   readonly #devices = new WeakMap<XRInputSource, number>();
   #deviceCount = 0;
@@ -100,7 +102,7 @@ class SessionTracker implements Tracker {
     const head = viewer && toTrackedPose(viewer);
     if (!head) return null;
     this.#lastHead = head;
-    return { time, head, leftHand: left, rightHand: right, ...(suspended && { suspended }) };
+    return this.#belief.of({ time, head, leftHand: left, rightHand: right, ...(suspended && { suspended }) });
   }
 
   recentre(): void {

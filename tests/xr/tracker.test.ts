@@ -43,10 +43,23 @@ describe('poses', () => {
 
   test('of hands: null is not seen, emulated says so, what is no number is not seen', () => {
     const { read, setInputs } = tracked();
+    setInputs(controller('left', left), controller('right', right));
+    read();
     setInputs(controller('left', null), controller('right', { ...right, emulated: true }));
     expect(read()).toMatchObject({ leftHand: null, rightHand: { tracking: 'emulated' } });
     setInputs(controller('left', at(0, Number.POSITIVE_INFINITY, 0)), bareHand('right', right));
     expect(read()).toMatchObject({ leftHand: null, rightHand: { tracking: 'tracked' } });
+  });
+
+  test('of a device that never calls a point tracked are taken as seen, each point by itself, until it has told', () => {
+    const { read, setInputs } = tracked();
+    const guessed = [left, right].map((place) => ({ ...place, emulated: true })) as [typeof left, typeof right];
+    setInputs(controller('left', guessed[0]), controller('right', guessed[1]));
+    expect(read()).toMatchObject({ leftHand: { tracking: 'tracked' }, rightHand: { tracking: 'tracked' } });
+    setInputs(controller('left', left), controller('right', guessed[1]));
+    read();
+    setInputs(controller('left', guessed[0]), controller('right', guessed[1]));
+    expect(read()).toMatchObject({ leftHand: { tracking: 'emulated' }, rightHand: { tracking: 'tracked' } });
   });
 
   test('are copies: what the device does with its own objects later changes nothing', () => {
