@@ -1,5 +1,5 @@
 import { PerspectiveCamera } from 'three';
-import { createFrameLoop, withTiming } from '../../src/app/shell/frame-loop';
+import { createFrameLoop } from '../../src/app/shell/frame-loop';
 import { createFrameTiming, type FrameTiming, type StageName, stageNames } from '../../src/app/shell/frame-timing';
 import { createStudio } from '../../src/app/studio/studio';
 import { createAvatar } from '../../src/avatar/avatar';
@@ -8,7 +8,7 @@ import { createMirror } from '../../src/avatar/mirror';
 import type { AvatarPose } from '../../src/core/body/avatar-pose';
 import { defaultCalibration } from '../../src/core/body/calibration';
 import { skeletonFromCalibration } from '../../src/core/body/skeleton';
-import { createEstimator, needsRegressor } from '../../src/core/estimation/estimators';
+import { createEstimator, type NetworkName, needsRegressor } from '../../src/core/estimation/estimators';
 import { type EstimatorName, estimatorNames, type PoseEstimator } from '../../src/core/estimation/pose-estimator';
 import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
 import { nextRandom } from '../../src/core/math/random';
@@ -17,7 +17,7 @@ import { createInferenceWorker } from '../../src/inference/create-inference-work
 import { loadRegressor } from '../../src/inference/load-regressor';
 import { parseContract } from '../../src/inference/model-contract';
 import { createSession } from '../../src/inference/session';
-import { createAfterFrame } from '../../src/lib/after-frame';
+import { Body } from '../../src/lib/body';
 import { createRenderer } from '../../src/scene/renderer';
 import { measureArchery, type RoundTimes } from './archery';
 import { type CourtTimes, measureCourt } from './ball';
@@ -114,17 +114,37 @@ async function openPicture() {
   return { renderer, studio, mirror, avatar, camera, mannequin };
 }
 
-async function openEstimators(timing: FrameTiming): Promise<Record<EstimatorName, PoseEstimator>> {
+/** For games, which ask their network themselves. */
+async function openEstimators(): Promise<Record<EstimatorName, PoseEstimator>> {
   const regressors: Partial<Record<Method, PoseRegressor>> = {};
-  for (const name of estimatorNames.filter(needsRegressor)) {
-    regressors[name] = withTiming(
-      await loadRegressor(`/models/${name}.json`, { createWorker: createInferenceWorker }),
-      timing,
-    );
-  }
+  for (const name of estimatorNames.filter(needsRegressor)) regressors[name] = await loadNetwork(name);
   return Object.fromEntries(
     estimatorNames.map((name) => [name, createEstimator(name, defaultCalibration, regressors[name] ?? null)]),
   ) as Record<EstimatorName, PoseEstimator>;
+}
+
+const loadNetwork = (name: NetworkName): Promise<PoseRegressor> =>
+  loadRegressor(`/models/${name}.json`, { createWorker: createInferenceWorker });
+
+/** Every round is dated alike: the same motion for every method. */
+const roundClock = { frame: (timestampMs: number) => timestampMs / 1000, paused: false };
+
+/** A body for each method, as the page has one. */
+async function openBodies(timing: FrameTiming): Promise<Record<EstimatorName, Body>> {
+  const bodies: Partial<Record<EstimatorName, Body>> = {};
+  for (const name of estimatorNames) {
+    const body = new Body({
+      estimator: 'ik',
+      calibration: defaultCalibration,
+      networks: loadNetwork,
+      clock: roundClock,
+      timing,
+    });
+    await body.choose(name);
+    if (body.estimator !== name) throw new Error(`${name}: ${body.unavailable[name]}`);
+    bodies[name] = body;
+  }
+  return bodies as Record<EstimatorName, Body>;
 }
 
 const empty = <Key extends string>(keys: readonly Key[]) =>
@@ -135,7 +155,7 @@ type Measured = Readonly<Record<'inFrame' | 'withLater' | 'whole' | 'thread', Re
 /** Frames of every method in every condition. */
 class FrameBench {
   readonly #picture: Awaited<ReturnType<typeof openPicture>>;
-  readonly #estimators: Record<EstimatorName, PoseEstimator>;
+  readonly #bodies: Record<EstimatorName, Body>;
   readonly #timing: FrameTiming;
   readonly #ccd = createCcdBody(skeletonFromCalibration(defaultCalibration));
   readonly #measured = Object.fromEntries(
@@ -161,11 +181,11 @@ class FrameBench {
 
   constructor(
     picture: Awaited<ReturnType<typeof openPicture>>,
-    estimators: Record<EstimatorName, PoseEstimator>,
+    bodies: Record<EstimatorName, Body>,
     timing: FrameTiming,
   ) {
     this.#picture = picture;
-    this.#estimators = estimators;
+    this.#bodies = bodies;
     this.#timing = timing;
     this.#loop = this.#createLoop();
   }
@@ -207,11 +227,9 @@ class FrameBench {
   #createLoop(): (timestampMs: number) => void {
     return createFrameLoop<never>(
       {
-        resumed: () => undefined,
         track: (time) => actorFrame(time, defaultCalibration),
         observe: () => undefined,
-        estimator: () => this.#estimators[this.#method],
-        afterwards: createAfterFrame(),
+        estimate: (frame) => this.#bodies[this.#method].update(frame, defaultCalibration),
         skin: (pose, frame) => {
           this.#picture.avatar.apply(pose, frame.time);
           if (pose.body) this.#skinned = pose;
@@ -221,9 +239,8 @@ class FrameBench {
           this.#failure = error;
         },
       },
+      roundClock,
       this.#timing,
-      // Every round is dated alike: the same motion for every method.
-      { frame: (timestampMs) => timestampMs / 1000, paused: false },
     );
   }
 
@@ -247,7 +264,7 @@ class FrameBench {
     const { inFrame, withLater, whole, thread } = this.#measured[condition];
     const gl = this.#picture.renderer.getContext();
     if (name !== 'ccdik') this.#method = name;
-    for (const estimator of Object.values(this.#estimators)) estimator.reset();
+    for (const body of Object.values(this.#bodies)) body.jumped();
     for (let i = 0; i < settleFrames + blockFrames; i++) {
       await nextFrame();
       // The same motion for every method of a round: what a picture costs depends on what it shows.
@@ -292,12 +309,14 @@ async function measure(): Promise<PageResult> {
   const opening = { learned: await openingCost('learned'), paper: await openingCost('paper') };
   const picture = await openPicture();
   const timing = createFrameTiming(() => performance.now());
-  const estimators = await openEstimators(timing);
   const asked = new URLSearchParams(location.search);
   const parts = asked.get('parts')?.split(',') ?? ['frames', 'archery', 'ball'];
   const rounds = Number(asked.get('rounds') ?? usualRounds);
-  const bench = new FrameBench(picture, estimators, timing);
+  const bodies = await openBodies(timing);
+  const bench = new FrameBench(picture, bodies, timing);
   if (parts.includes('frames')) await bench.run(rounds);
+  for (const body of Object.values(bodies)) await body.dispose();
+  const estimators = await openEstimators();
   const archery = parts.includes('archery') ? await measureArchery({ ...picture, estimators }) : {};
   const ball = parts.includes('ball') ? await measureCourt({ ...picture, estimators }) : {};
   return {

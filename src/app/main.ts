@@ -28,11 +28,11 @@ async function offerSessions(headset: Headset, button: EnterButton): Promise<voi
 }
 
 /** Lets frames be drawn; the panel is as the address asks. */
-function run({ controls, stage, frame, timing, clock }: Page, { switches }: Visit): void {
+function run({ controls, stage, frame, body, timing }: Page, { switches }: Visit): void {
   controls.setPanelOpen(switches.panel);
   if (switches.view) stage.view.setView(switches.view);
   controls.layOut();
-  const loop = createFrameLoop<XRFrame>(frame, timing, clock);
+  const loop = createFrameLoop<XRFrame>(frame, body, timing);
   stage.renderer.setAnimationLoop((timestampMs, deviceFrame) => loop(timestampMs, deviceFrame ?? undefined));
 }
 
@@ -64,7 +64,7 @@ async function start(): Promise<void> {
   const visit = beginVisit(notices);
   const { switches, store } = visit;
   const page = createPage({ visit, notices, loading });
-  const { avatar, choice, controls, headset, activities, timing } = page;
+  const { avatar, body, controls, headset, activities, timing } = page;
 
   // Ours stands there until another has arrived, and stays where that does not.
   if (switches.avatar) void avatar.open(switches.avatar);
@@ -73,7 +73,7 @@ async function start(): Promise<void> {
 
   // The way to the first body: the chosen network loads beside the avatar, and IK draws until it is there.
   const sessionsOffered = offerSessions(headset, enterButton);
-  const chosen = choice.choose(switches.estimator ?? store.preferences.estimator ?? 'learned');
+  const chosen = body.choose(switches.estimator ?? store.preferences.estimator ?? 'learned');
   void chosen.then(() => loading.report('the network', 1));
   await showFirstBody(page, loading);
   if (switches.replay) void controls.openRecording(switches.replay);

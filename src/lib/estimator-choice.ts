@@ -30,6 +30,8 @@ export interface EstimatorChoice {
   reset(): void;
   /** Gives up on an estimator whose network has failed while running; call it now and then. */
   check(): void;
+  /** Lets every network go that was loaded, and those that still arrive. Nothing is told from then on. */
+  dispose(): Promise<void>;
 }
 
 export function createEstimatorChoice(options: EstimatorChoiceOptions): EstimatorChoice {
@@ -39,6 +41,7 @@ export function createEstimatorChoice(options: EstimatorChoiceOptions): Estimato
   let wanted: EstimatorName = 'ik';
   let current = options.create('ik', calibration);
   let regressor: PoseRegressor | null = null;
+  let disposed = false;
 
   function drawWith(name: EstimatorName, network: PoseRegressor | null): void {
     current = network ? options.create(name, calibration, network) : options.create(name, calibration);
@@ -47,7 +50,7 @@ export function createEstimatorChoice(options: EstimatorChoiceOptions): Estimato
   }
 
   function giveUp(name: EstimatorName, error: unknown): void {
-    if (unavailable[name] !== undefined) return;
+    if (disposed || unavailable[name] !== undefined) return;
     unavailable[name] = reasonOf(error);
     if (wanted === name) wanted = 'ik';
     if (current.name === name) drawWith('ik', null);
@@ -77,7 +80,7 @@ export function createEstimatorChoice(options: EstimatorChoiceOptions): Estimato
       return unavailable;
     },
     async choose(name) {
-      if (unavailable[name] !== undefined) return;
+      if (disposed || unavailable[name] !== undefined) return;
       wanted = name;
       if (!needsRegressor(name)) {
         drawWith(name, null);
@@ -86,7 +89,7 @@ export function createEstimatorChoice(options: EstimatorChoiceOptions): Estimato
       try {
         const loaded = await network(name);
         // While it loaded, the user may have thought of something else, or it may have failed at its first run.
-        if (wanted === name && unavailable[name] === undefined) drawWith(name, loaded);
+        if (!disposed && wanted === name && unavailable[name] === undefined) drawWith(name, loaded);
       } catch (error) {
         giveUp(name, error);
       }
@@ -99,6 +102,14 @@ export function createEstimatorChoice(options: EstimatorChoiceOptions): Estimato
     check() {
       const fault = current.fault();
       if (fault !== null) giveUp(current.name, fault);
+    },
+    async dispose() {
+      disposed = true;
+      current = options.create('ik', calibration);
+      regressor = null;
+      for (const arriving of await Promise.allSettled(loading.values())) {
+        if (arriving.status === 'fulfilled') await arriving.value.dispose();
+      }
     },
   };
 }

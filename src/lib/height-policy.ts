@@ -10,10 +10,8 @@ export interface HeightPolicyOptions {
   calibration(): Calibration;
   /** Whether the wearer has calibrated: what they measured stays, and they are told where it is too small. */
   calibrated(): boolean;
-  /** Whether the height at which a session begins may stand for the wearer's. */
-  mayGuess(): boolean;
   /** Whether a wearer may turn out to be taller than their measures. */
-  mayGrow(): boolean;
+  readonly grows: boolean;
   /** Other measures of a wearer who never calibrated: as high as the headset hangs, or grown because they stood up taller. */
   onMeasured(calibration: Calibration, source: 'headset' | 'stood-taller'): void;
   /** A wearer who calibrated stands this much taller than their calibration says [m]. Told once for each calibration. */
@@ -46,11 +44,10 @@ export class HeightPolicy {
     this.#watch.reset();
   }
 
-  /** Every tracked frame of a session. */
+  /** Every tracked frame of the wearer's. */
   observe(frame: TrackingFrame): void {
-    const { calibrated, mayGuess, mayGrow } = this.#options;
-    if (!calibrated() && mayGuess()) this.#settle(frame);
-    if (mayGrow()) this.#grow(frame);
+    if (!this.#options.calibrated()) this.#settle(frame);
+    if (this.#options.grows) this.#grow(frame);
   }
 
   #settle({ time, head }: TrackingFrame): void {

@@ -6,10 +6,10 @@ import type { AvatarPose } from '../core/body/avatar-pose';
 import type { Calibration } from '../core/body/calibration';
 import { reasonOf } from '../core/errors/reasons';
 import type { EstimatorName } from '../core/estimation/pose-estimator';
-import { createPageClock } from '../core/tracking/page-clock';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import { createTracker, type Tracker } from '../xr/tracker';
-import { Body, type BodyOptions, type CalibrationSource, type TrackedPoint } from './body';
+import type { CalibrationSource, TrackedPoint } from './bare-body';
+import { Body, type BodyOptions } from './body';
 import { loadLearned } from './load-learned';
 
 export type { Avatar } from '../avatar/avatar';
@@ -46,7 +46,7 @@ async function read(source: string | URL | Blob | ArrayBuffer): Promise<{ name: 
   return { name, bytes: await response.arrayBuffer() };
 }
 
-export interface BodyTrackerOptions extends Pick<BodyOptions, 'estimator' | 'calibration' | 'networks'> {
+export interface BodyTrackerOptions extends Omit<BodyOptions, 'events'> {
   /** From `loadAvatar`; put `tracker.object` into the scene, or into what moves its cameras. */
   readonly avatar: Avatar;
   /** Where another contract of the learned network lies (.json), its weights beside it. */
@@ -55,7 +55,10 @@ export interface BodyTrackerOptions extends Pick<BodyOptions, 'estimator' | 'cal
 
 export interface BodyTrackerEvents {
   readonly calibrated: { readonly calibration: Calibration; readonly source: CalibrationSource };
+  readonly outgrown: { readonly difference: number };
   readonly fallback: { readonly estimator: EstimatorName; readonly reason: string };
+  readonly changed: object;
+  readonly jumped: object;
   readonly lost: { readonly point: TrackedPoint };
   readonly found: { readonly point: TrackedPoint };
 }
@@ -75,11 +78,11 @@ interface Reading {
  */
 export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   readonly avatar: Avatar;
+  /** What is estimated, without session and avatar: what was wanted, what cannot be had, where the network runs. */
+  readonly body: Body;
   readonly #renderer: WebGLRenderer;
-  readonly #body: Body;
-  readonly #clock = createPageClock(() => performance.now());
   #reading: Reading | null = null;
-  readonly #jumped = () => this.#body.jumped();
+  readonly #jumped = () => this.body.jumped();
 
   /** Throws a RangeError where the calibration is no person's. */
   constructor(renderer: WebGLRenderer, { avatar, modelUrl, ...options }: BodyTrackerOptions) {
@@ -90,7 +93,7 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
       modelUrl === undefined
         ? {}
         : { networks: (name: string) => (name === 'learned' ? loadLearned({ modelUrl }) : Promise.reject(noWeights)) };
-    this.#body = new Body({
+    this.body = new Body({
       ...networks,
       ...options,
       events: {
@@ -98,12 +101,15 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
           avatar.fitTo(calibration);
           this.dispatchEvent({ type: 'calibrated', calibration, source });
         },
+        outgrown: (difference) => this.dispatchEvent({ type: 'outgrown', difference }),
+        changed: () => this.dispatchEvent({ type: 'changed' }),
+        jumped: () => this.dispatchEvent({ type: 'jumped' }),
         fallback: (estimator, reason) => this.dispatchEvent({ type: 'fallback', estimator, reason }),
         lost: (point) => this.dispatchEvent({ type: 'lost', point }),
         found: (point) => this.dispatchEvent({ type: 'found', point }),
       },
     });
-    avatar.fitTo(this.#body.calibration);
+    avatar.fitTo(this.body.calibration);
     avatar.object.visible = false;
   }
 
@@ -114,26 +120,26 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
 
   /** Of the newest frame, floor frame [m]; overwritten by the next. null before the first tracked frame. */
   get pose(): AvatarPose | null {
-    return this.#body.pose;
+    return this.body.pose;
   }
 
   get calibration(): Calibration {
-    return this.#body.calibration;
+    return this.body.calibration;
   }
 
   /** What draws now: 'ik' while a network loads, and where it fails. */
   get estimator(): EstimatorName {
-    return this.#body.estimator;
+    return this.body.estimator;
   }
 
   /** Resolves when this estimator draws, or when the event `fallback` told why it cannot. */
   choose(estimator: EstimatorName): Promise<void> {
-    return this.#body.choose(estimator);
+    return this.body.choose(estimator);
   }
 
   /** The wearer's measures [m], or 'auto'. Throws a RangeError where they are no person's. */
   calibrate(calibration: Calibration | 'auto'): void {
-    this.#body.calibrate(calibration);
+    this.body.calibrate(calibration);
   }
 
   /**
@@ -141,35 +147,37 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
    * before any await of the frame. Throws an InvalidStateError where the frame is over.
    */
   update(timeMs: number, frame: XRFrame | null | undefined): void {
-    const time = this.#clock.frame(timeMs);
-    if (this.#clock.paused) this.#body.jumped();
+    const time = this.body.frame(timeMs);
     const reading = this.#follow();
     if (!reading || !frame) return;
-    this.#apply(reading.tracker.read(frame, time), time);
+    this.#apply(reading.tracker.read(frame, time), null);
   }
 
-  /** The same from head and wrists that the page has itself: a recording, another device. Floor frame [m, s]. */
-  follow(frame: TrackingFrame | null): void {
-    this.#apply(frame, frame?.time ?? 0);
+  /**
+   * The same from head and wrists that the page has itself, floor frame [m, s]: of another device of the wearer's, or of a stand-in with these
+   * measures (an actor, a recording).
+   */
+  follow(frame: TrackingFrame | null, standIn: Calibration | null = null): void {
+    this.#apply(frame, standIn);
   }
 
   /** The wearer stands at the floor's origin from now on and looks along −Z; the renderer's reference space moves along. */
   recentre(): void {
     this.#reading?.tracker.recentre();
-    this.#body.jumped();
+    this.body.jumped();
   }
 
-  /** Ends what it listens to and takes the avatar apart. */
-  dispose(): void {
+  /** Ends what it listens to and takes the avatar apart; resolves when every network is let go that was loaded for it. */
+  dispose(): Promise<void> {
     this.#leave();
-    this.#body.dispose();
     this.avatar.dispose();
+    return this.body.dispose();
   }
 
-  #apply(tracked: TrackingFrame | null, time: number): void {
-    const pose = this.#body.update(tracked);
+  #apply(tracked: TrackingFrame | null, standIn: Calibration | null): void {
+    const pose = this.body.update(tracked, standIn);
     if (!tracked || !pose) return;
-    this.avatar.apply(pose, time);
+    this.avatar.apply(pose, tracked.time);
     this.avatar.object.visible = true;
   }
 
@@ -201,8 +209,8 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
     };
     space.addEventListener('reset', this.#jumped);
     this.#reading = reading;
-    if (begins) this.#body.begin();
-    else this.#body.jumped();
+    if (begins) this.body.begin();
+    else this.body.jumped();
     this.avatar.setFirstPerson(true);
   }
 
@@ -210,7 +218,7 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
     this.#reading?.base.removeEventListener('reset', this.#jumped);
     this.#reading = null;
     if (!ends) return;
-    this.#body.forgetPoints();
+    this.body.forgetPoints();
     this.avatar.setFirstPerson(false);
     this.avatar.object.visible = false;
   }

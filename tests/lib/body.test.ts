@@ -1,5 +1,5 @@
 import { describe, expect, test } from 'vitest';
-import type { Calibration } from '../../src/core/body/calibration';
+import { type Calibration, defaultCalibration } from '../../src/core/body/calibration';
 import { forwardKinematics } from '../../src/core/body/forward-kinematics';
 import { skeletonFromCalibration } from '../../src/core/body/skeleton';
 import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
@@ -20,6 +20,7 @@ async function observed(options: BodyOptions = {}) {
     ...options,
     events: {
       calibrated: ({ eyeHeight }, source) => told.push(`calibrated ${eyeHeight.toFixed(2)} ${source}`),
+      outgrown: (difference) => told.push(`outgrown by ${difference.toFixed(2)}`),
       fallback: (estimator, reason) => told.push(`fallback ${estimator} ${reason}`),
       lost: (point) => told.push(`lost ${point}`),
       found: (point) => told.push(`found ${point}`),
@@ -81,8 +82,28 @@ describe('a body', () => {
   test('keeps measures that it was given, however tall its wearer stands', async () => {
     const { body, told } = await observed({ estimator: 'ik', calibration });
     for (let frame = 0; frame < 240; frame++) body.update(standing(frame / 60, 1.72));
-    expect(told).toEqual(['found head']);
+    expect(told, 'and says once that they are too small').toEqual(['found head', 'outgrown by 0.07']);
     expect(body.calibration).toBe(calibration);
+  });
+
+  test('that is told not to grow does not, and says nothing of it', async () => {
+    const given = await observed({ estimator: 'ik', calibration, grows: false });
+    const guessed = await observed({ estimator: 'ik', grows: false });
+    for (let frame = 0; frame < 60; frame++) guessed.body.update(standing(frame / 60, 1.6));
+    for (let frame = 60; frame < 300; frame++) {
+      given.body.update(standing(frame / 60, 1.72));
+      guessed.body.update(standing(frame / 60, 1.7));
+    }
+    expect(given.told).toEqual(['found head']);
+    expect(guessed.told).toEqual(['found head', 'calibrated 1.60 headset']);
+  });
+
+  test('forgets measures that it was given when they are to be found out again', async () => {
+    const { body, told } = await observed({ estimator: 'ik', calibration });
+    body.calibrate('auto');
+    expect(body.calibration).toBe(defaultCalibration);
+    for (let frame = 0; frame < 60; frame++) body.update(standing(frame / 60, 1.7));
+    expect(told).toEqual(['calibrated 1.59 default', 'found head', 'calibrated 1.70 headset']);
   });
 
   test('takes measures anew with another session, and as told', async () => {
@@ -103,6 +124,58 @@ describe('a body', () => {
     const { body } = await observed({ estimator: 'ik' });
     expect(() => body.calibrate({ eyeHeight: Number.NaN, armSpan: 1.5 })).toThrow(RangeError);
   });
+});
+
+describe('a body that another moves', () => {
+  const other: Calibration = { eyeHeight: 1.5, armSpan: 1.4 };
+
+  test('has their measures meanwhile, learns nothing of its wearer, and is the wearer’s again', async () => {
+    const { body, told } = await observed({ estimator: 'ik' });
+    for (let frame = 0; frame < 120; frame++) body.update(standing(frame / 60, 1.7), other);
+    expect(body.calibration).toBe(other);
+    expect(body.wearerCalibration).toBe(defaultCalibration);
+    for (let frame = 120; frame < 200; frame++) body.update(standing(frame / 60, 1.62));
+    expect(told).toEqual([
+      'found head',
+      'calibrated 1.50 stand-in',
+      'calibrated 1.59 stand-in',
+      'calibrated 1.62 headset',
+    ]);
+  });
+
+  test('keeps measures that its wearer is given meanwhile for when they are back', async () => {
+    const { body } = await observed({ estimator: 'ik', calibration });
+    body.update(at(0), other);
+    const measured: Calibration = { eyeHeight: 1.7, armSpan: 1.6 };
+    body.calibrate(measured);
+    expect(body.calibration).toBe(other);
+    body.update(at(1 / 60));
+    expect(body.calibration).toBe(measured);
+  });
+
+  test('is where they are in their first frame: nothing is drawn on the way', async () => {
+    let jumps = 0;
+    const body = new Body({ estimator: 'ik', calibration, events: { jumped: () => (jumps += 1) } });
+    for (let frame = 0; frame < 30; frame++) body.update(at(frame / 60));
+    expect(jumps).toBe(0);
+    const elsewhere = standing(0.5, 1.5);
+    const shown = JSON.stringify(body.update(elsewhere, other));
+    const fresh = new Body({ estimator: 'ik', calibration: other });
+    expect(JSON.stringify(fresh.update(elsewhere))).toBe(shown);
+    body.update(standing(0.52, 1.5), other);
+    expect(jumps).toBe(1);
+  });
+});
+
+test('time is its own: after a pause a body begins anew, half a second on', () => {
+  let jumps = 0;
+  const body = new Body({ estimator: 'ik', events: { jumped: () => (jumps += 1) } });
+  const first = body.frame(5000);
+  expect(body.frame(5020) - first).toBeCloseTo(0.02);
+  expect(jumps).toBe(0);
+  expect(body.frame(65_020) - first).toBeCloseTo(0.52);
+  expect(jumps).toBe(1);
+  expect(body.frame(10) - first).toBeGreaterThan(0.52);
 });
 
 describe('a body whose network is not to be had', () => {
@@ -138,21 +211,69 @@ describe('a body whose network is not to be had', () => {
   });
 });
 
-test('a network that answers later is asked once a frame is over, about the newest frame alone', async () => {
+/** The learned network as a runtime brings it: it answers later, and `begun` is what it does before. */
+function answeringLater(begun: () => void = () => undefined) {
   const plain = openPlainModel();
-  let runs = 0;
-  const later: PoseRegressor = {
-    contract: plain.contract,
+  const disposed: string[] = [];
+  const network = (name: string): PoseRegressor => ({
+    contract: { ...plain.contract, name: name as 'learned' },
     provider: 'later',
     async run(features) {
-      runs += 1;
+      begun();
+      await Promise.resolve();
       return plain.run(features);
     },
-    dispose: async () => undefined,
-  };
-  const { body } = await observed({ calibration, networks: async () => later });
-  for (let frame = 0; frame < 3; frame++) body.update(at(frame / 60));
-  expect(runs).toBe(0);
-  await expect.poll(() => runs).toBe(1);
-  body.dispose();
+    dispose: async () => void disposed.push(name),
+  });
+  return { network, disposed };
+}
+
+describe('a network that answers later', () => {
+  test('is asked once a frame is over, about the newest frame alone', async () => {
+    let runs = 0;
+    const { network } = answeringLater(() => {
+      runs += 1;
+    });
+    const { body } = await observed({ calibration, networks: async (name) => network(name) });
+    for (let frame = 0; frame < 3; frame++) body.update(at(frame / 60));
+    expect(runs).toBe(0);
+    await expect.poll(() => runs).toBe(1);
+    expect(body.provider).toBe('later');
+  });
+
+  test('is measured where a page measures: features until it is asked, inference until it waits', async () => {
+    const marks: string[] = [];
+    const { network } = answeringLater(() => void marks.push('runs'));
+    const { body } = await observed({
+      calibration,
+      networks: async (name) => network(name),
+      timing: { resume: () => void marks.push('resume'), mark: (part) => void marks.push(part) },
+    });
+    body.update(at(0));
+    expect(marks, 'nothing of it lies in the frame').toEqual([]);
+    await expect.poll(() => marks).toEqual(['resume', 'features', 'runs', 'inference', 'features']);
+  });
+
+  test('is let go with the body, as is one that was chosen before and one that still arrives', async () => {
+    const { network, disposed } = answeringLater();
+    let arrive: () => void = () => undefined;
+    const arriving = new Promise<void>((resolve) => {
+      arrive = resolve;
+    });
+    const { body, told } = await observed({
+      calibration,
+      async networks(name) {
+        if (name === 'paper') await arriving;
+        return network(name);
+      },
+    });
+    await body.choose('ik');
+    const chosen = body.choose('paper');
+    const over = body.dispose();
+    arrive();
+    await Promise.all([chosen, over]);
+    expect(disposed.toSorted()).toEqual(['learned', 'paper']);
+    expect(body.estimator).toBe('ik');
+    expect(told).toEqual([]);
+  });
 });

@@ -8,12 +8,12 @@ import { Recorder } from '../../src/app/studio/recorder';
 import { type PlayedStep, playTrial } from '../../src/app/study/study-trial';
 import type { AvatarPose } from '../../src/core/body/avatar-pose';
 import { defaultCalibration } from '../../src/core/body/calibration';
-import { createEstimator } from '../../src/core/estimation/estimators';
 import { type Buttons, nothingPressed } from '../../src/core/games/button-presses';
 import { distance } from '../../src/core/math/vec3';
 import { actorFrame, actorLoopSeconds } from '../../src/core/tracking/actor-motion';
 import { createPageClock } from '../../src/core/tracking/page-clock';
 import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
+import { Body } from '../../src/lib/body';
 import { createLoopbackHost } from '../../src/net/loopback-connection';
 import { measured } from './measured';
 
@@ -32,25 +32,24 @@ interface Part {
 function page(part: Part) {
   let stamp = 30_000;
   let buttons = nothingPressed;
-  const estimator = createEstimator('ik', defaultCalibration);
+  const clock = createPageClock(() => stamp);
+  const body = new Body({ estimator: 'ik', calibration: defaultCalibration, clock });
   const faults: unknown[] = [];
   const loop = createFrameLoop<never>(
     {
-      resumed: () => estimator.reset(),
       track(time) {
         const performed = part.track ? part.track(time) : null;
         buttons = performed?.buttons ?? nothingPressed;
         return performed?.frame ?? actorFrame(time, defaultCalibration);
       },
       observe: (frame) => part.observe?.(frame, buttons),
-      estimator: () => estimator,
-      afterwards: () => undefined,
+      estimate: (frame) => body.update(frame),
       skin: (pose, frame) => part.skin?.(pose, frame),
       render: (time, frame) => part.render?.(time, frame),
       fail: (error) => void faults.push(error),
     },
+    body,
     createFrameTiming(() => stamp),
-    createPageClock(() => stamp),
   );
   return {
     faults,

@@ -53,12 +53,12 @@ describe('poses', () => {
 
   test('of a device that never calls a point tracked are taken as seen, each point by itself, until it has told', () => {
     const { read, setInputs } = tracked();
-    const guessed = [left, right].map((place) => ({ ...place, emulated: true })) as [typeof left, typeof right];
-    setInputs(controller('left', guessed[0]), controller('right', guessed[1]));
+    const guessed = { left: { ...left, emulated: true }, right: { ...right, emulated: true } };
+    setInputs(controller('left', guessed.left), controller('right', guessed.right));
     expect(read()).toMatchObject({ leftHand: { tracking: 'tracked' }, rightHand: { tracking: 'tracked' } });
-    setInputs(controller('left', left), controller('right', guessed[1]));
+    setInputs(controller('left', left), controller('right', guessed.right));
     read();
-    setInputs(controller('left', guessed[0]), controller('right', guessed[1]));
+    setInputs(controller('left', guessed.left), controller('right', guessed.right));
     expect(read()).toMatchObject({ leftHand: { tracking: 'emulated' }, rightHand: { tracking: 'tracked' } });
   });
 

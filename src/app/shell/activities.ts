@@ -4,6 +4,7 @@ import type { Ray } from '../../core/math/ray';
 import type { Side } from '../../core/math/side';
 import type { Vec3 } from '../../core/math/vec3';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
+import type { BareBody } from '../../lib/bare-body';
 import type { MouseAim } from '../../ui/mouse-aim';
 import type { Notices } from '../../ui/notices';
 import type { Pulse } from '../../xr/haptics';
@@ -13,7 +14,6 @@ import type { BallActivity } from '../ball/ball-activity';
 import type { TaskPlace } from '../study/task-runner';
 import type { Games } from './games';
 import type { Headset } from './headset';
-import type { Measures } from './measures';
 import type { PageStudy } from './page-study';
 import type { ActivityName, Shooter } from './play-bar';
 import type { Settings, SettingsWriter } from './settings';
@@ -42,7 +42,7 @@ export interface ActivitiesOptions {
   };
   readonly mouse: MouseAim;
   readonly headset: Pick<Headset, 'worn'>;
-  readonly measures: Pick<Measures, 'current'>;
+  readonly body: Pick<BareBody, 'calibration'>;
   readonly study: Pick<PageStudy, 'joined' | 'idle' | 'paused'>;
   /** The colours of a seat for the own body; null: the user's own. */
   wear(palette: string | null): void;
@@ -158,10 +158,10 @@ export class Activities {
 
   /** Makes the round on the page one that waits. */
   resetRound(): void {
-    const { measures, headset, onCaption, onChange } = this.#options;
+    const { body, headset, onCaption, onChange } = this.#options;
     // A player who sits shoots at targets as high for the eyes as those of a player who stands.
     const eyeHeight = headset.worn ? this.#newestFrame?.head.position.y : undefined;
-    this.#archery?.play.restart(measures.current, eyeHeight);
+    this.#archery?.play.restart(body.calibration, eyeHeight);
     onCaption('');
     onChange();
   }

@@ -1,4 +1,5 @@
 import type { PageClock } from '../../core/tracking/page-clock';
+import type { BareBody } from '../../lib/bare-body';
 import type { ServerPresence } from '../../net/server-presence';
 import type { Quality } from '../../scene/renderer';
 import type { SurroundingsHost } from '../../scene/surroundings';
@@ -8,7 +9,6 @@ import type { BallActivity } from '../ball/ball-activity';
 import type { Connect } from '../ball/ball-connections';
 import type { TaskPlace } from '../study/task-runner';
 import type { Headset } from './headset';
-import type { Measures } from './measures';
 import type { Settings } from './settings';
 import { fetchOwnAvatar } from './shown-avatar';
 import type { Stage } from './stage';
@@ -24,7 +24,7 @@ export interface GamesOptions {
   readonly stage: { readonly studio: SurroundingsHost; readonly view: Pick<Stage['view'], 'rayThrough'> };
   readonly mouse: MouseAim;
   readonly headset: Pick<Headset, 'worn' | 'emulator'>;
-  readonly measures: Pick<Measures, 'current'>;
+  readonly body: Pick<BareBody, 'calibration'>;
   readonly server: Pick<ServerPresence, 'known'>;
   onCaption(text: string): void;
 }
@@ -51,12 +51,12 @@ export class PageGames implements Games {
   }
 
   async archery({ seed }: Pick<Opening, 'seed'>): Promise<ArcheryActivity> {
-    const { quality, settings, stage, measures, onCaption } = this.#options;
+    const { quality, settings, stage, body, onCaption } = this.#options;
     const { createArcheryActivity } = await import('../archery/archery-activity');
     return createArcheryActivity({
       quality,
       surroundings: stage.studio,
-      calibration: measures.current,
+      calibration: body.calibration,
       settings: () => settings,
       seed,
       onCaption,
@@ -64,7 +64,7 @@ export class PageGames implements Games {
   }
 
   async ball({ seed, place }: Opening): Promise<BallActivity> {
-    const { quality, settings, switches, stage, mouse, headset, measures, onCaption } = this.#options;
+    const { quality, settings, switches, stage, mouse, headset, body, onCaption } = this.#options;
     const [{ createBallActivity }, connections, mannequin] = await Promise.all([
       import('../ball/ball-activity'),
       import('../ball/ball-connections'),
@@ -77,7 +77,7 @@ export class PageGames implements Games {
       connect: await this.#connect(connections, seed(), place),
       visitor: {
         name: place?.participant || settings.name || settings.guestName,
-        calibration: measures.current,
+        calibration: body.calibration,
         ...(place && { seat: place.members.indexOf(place.participant) }),
         ...(switches.spectate && { spectate: true }),
       },

@@ -1,4 +1,4 @@
-import type { EstimatorChoice } from '../../lib/estimator-choice';
+import type { BareBody } from '../../lib/bare-body';
 import type { Activities } from './activities';
 import type { FrameTiming } from './frame-timing';
 import type { Headset } from './headset';
@@ -7,7 +7,7 @@ import type { Settings, SettingsWriter } from './settings';
 import { createArcheryRunner } from './study-archery';
 import { createBallRunner } from './study-ball';
 import type { Switches } from './switches';
-import type { TrackedBody } from './tracked-body';
+import type { Wearer } from './wearer';
 
 /** Characters of the device's name that a record keeps. */
 const longestDeviceName = 160;
@@ -17,16 +17,16 @@ export interface JoinStudyOptions {
   readonly switches: Pick<Switches, 'actor'>;
   readonly settings: Settings;
   readonly writer: Pick<SettingsWriter, 'change'>;
-  readonly choice: EstimatorChoice;
   readonly headset: Headset;
   readonly activities: Activities;
   readonly timing: FrameTiming;
-  readonly body: Pick<TrackedBody, 'calibrate'>;
+  readonly body: Pick<BareBody, 'choose' | 'estimator' | 'wearerCalibration'>;
+  readonly wearer: Pick<Wearer, 'calibrate'>;
 }
 
 /** Takes part in a study: from now on it decides what is played and with which body. */
 export async function joinStudy(options: JoinStudyOptions): Promise<JoinedStudy> {
-  const { asked, switches, settings, writer, choice, headset, activities, timing, body } = options;
+  const { asked, switches, settings, writer, headset, activities, timing, body, wearer } = options;
   const { createStudyRun } = await import('../study/study-run');
   writer.change({ startSignal: true });
   const archery = createArcheryRunner({
@@ -52,10 +52,10 @@ export async function joinStudy(options: JoinStudyOptions): Promise<JoinedStudy>
     runners: { archery, ball },
     enterVr: () => headset.enter(),
     inSession: () => headset.worn,
-    calibration: () => settings.calibration,
-    setCalibration: (calibration) => body.calibrate(calibration, 'measured'),
-    chooseEstimator: (name) => choice.choose(name),
-    estimator: () => choice.current.name,
+    calibration: () => body.wearerCalibration,
+    setCalibration: (calibration) => wearer.calibrate(calibration, 'measured'),
+    chooseEstimator: (name) => body.choose(name),
+    estimator: () => body.estimator,
     setActor(on) {
       writer.change({ actor: on && switches.actor });
     },

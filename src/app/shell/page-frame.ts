@@ -1,10 +1,8 @@
 import type { AvatarPose } from '../../core/body/avatar-pose';
 import { firstLine, reasonOf } from '../../core/errors/reasons';
-import type { PoseEstimator } from '../../core/estimation/pose-estimator';
 import type { Side } from '../../core/math/side';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
-import { createAfterFrame } from '../../lib/after-frame';
-import type { EstimatorChoice } from '../../lib/estimator-choice';
+import type { BareBody } from '../../lib/bare-body';
 import type { Notices } from '../../ui/notices';
 import type { Recorder } from '../studio/recorder';
 import type { Activities } from './activities';
@@ -15,15 +13,13 @@ import type { PageStudy } from './page-study';
 import type { Settings } from './settings';
 import type { ShownAvatar } from './shown-avatar';
 import type { Shot, Stage } from './stage';
-import type { TrackedBody } from './tracked-body';
 import type { TrackingSource } from './tracking-source';
 
 export interface PageFrameOptions {
   readonly settings: Pick<Settings, 'mirror'>;
   readonly notices: Pick<Notices, 'show'>;
   readonly source: TrackingSource;
-  readonly body: TrackedBody;
-  readonly choice: Pick<EstimatorChoice, 'current'>;
+  readonly body: Pick<BareBody, 'update' | 'jumped'>;
   readonly recorder: Pick<Recorder, 'observe'>;
   readonly avatar: Pick<ShownAvatar, 'current'>;
   readonly headset: Headset;
@@ -35,7 +31,6 @@ export interface PageFrameOptions {
 
 /** One frame of this page, part by part. */
 export class PageFrame implements FrameParts<XRFrame> {
-  readonly afterwards = createAfterFrame();
   readonly #options: PageFrameOptions;
   readonly #grips: Record<Side, number> = { left: 0, right: 0 };
   #count = 0;
@@ -50,24 +45,20 @@ export class PageFrame implements FrameParts<XRFrame> {
     return this.#count;
   }
 
-  resumed(): void {
-    this.#options.body.jumped();
-  }
-
   track(time: number, deviceFrame: XRFrame | undefined): TrackingFrame | null {
     return this.#options.source.read(time, deviceFrame);
   }
 
   observe(frame: TrackingFrame): void {
-    const { recorder, controls, body, headset, activities, source } = this.#options;
+    const { recorder, controls, headset, activities, source } = this.#options;
     recorder.observe(frame);
     controls.observe(frame);
-    body.observe(frame);
     headset.buzz(activities.play(frame, source.buttons));
   }
 
-  estimator(): PoseEstimator {
-    return this.#options.choice.current;
+  estimate(frame: TrackingFrame | null): AvatarPose | null {
+    const { body, source } = this.#options;
+    return body.update(frame, source.standIn);
   }
 
   skin(pose: AvatarPose, frame: TrackingFrame): void {

@@ -39,9 +39,4 @@ export class PageStudy {
   get paused(): boolean {
     return this.run?.paused ?? false;
   }
-
-  /** A study has measured its participant: no guess may take the place of that. */
-  get measured(): boolean {
-    return this.run?.measured ?? false;
-  }
 }

@@ -1,7 +1,7 @@
+import type { Calibration } from '../../core/body/calibration';
 import { firstLine } from '../../core/errors/reasons';
-import { createEstimator } from '../../core/estimation/estimators';
 import { createPageClock } from '../../core/tracking/page-clock';
-import { createEstimatorChoice } from '../../lib/estimator-choice';
+import { BareBody, type CalibrationSource } from '../../lib/bare-body';
 import { ServerPresence } from '../../net/server-presence';
 import { affordableQuality } from '../../scene/renderer';
 import { pageElement } from '../../ui/element';
@@ -14,10 +14,9 @@ import { Activities } from './activities';
 import { Controls } from './controls/controls';
 import { Emitter } from './emitter';
 import { estimatorTexts } from './estimator-texts';
-import { createFrameTiming } from './frame-timing';
+import { createFrameTiming, type FrameTiming } from './frame-timing';
 import { PageGames } from './games';
 import { Headset } from './headset';
-import { Measures } from './measures';
 import { createNetworkLoader } from './network-loading';
 import { surviveLostGraphics } from './page-faults';
 import { PageFrame } from './page-frame';
@@ -28,9 +27,9 @@ import { SessionChanges } from './session-changes';
 import { pressSheetsByMouse } from './sheet-pointing';
 import { createShownAvatar, fetchOwnAvatar } from './shown-avatar';
 import { createStage } from './stage';
-import { TrackedBody } from './tracked-body';
 import { TrackingSource } from './tracking-source';
 import type { Visit } from './visit';
+import { Wearer } from './wearer';
 
 export interface PageOptions {
   readonly visit: Visit;
@@ -38,14 +37,44 @@ export interface PageOptions {
   readonly loading: PageLoading;
 }
 
+/** The body that head and hands move, and what is told of it to parts of the page that are built later. */
+function createBody({ visit, notices, loading }: PageOptions, timing: FrameTiming) {
+  const { switches, store, changes } = visit;
+  const clock = createPageClock(() => performance.now());
+  const calibrated = new Emitter<[calibration: Calibration, source: CalibrationSource]>();
+  const outgrown = new Emitter<[difference: number]>();
+  const jumps = new Emitter();
+  const body = new BareBody({
+    estimator: 'ik',
+    calibration: store.preferences.calibration ?? 'auto',
+    // A study measures its participants itself.
+    grows: switches.study === null,
+    networks: createNetworkLoader({ provider: switches.executionProvider, notices, loading }),
+    clock,
+    timing,
+    events: {
+      calibrated: calibrated.emit,
+      outgrown: outgrown.emit,
+      jumped: jumps.emit,
+      changed: changes.emit,
+      fallback(name, reason) {
+        const { label } = estimatorTexts[name];
+        notices.show('warning', `${label} could not be used (${firstLine(reason)}): inverse kinematics takes over.`);
+      },
+    },
+  });
+  return { body, clock, calibrated, outgrown, jumps };
+}
+
 /** What a visit needs for the studio and for every game: a stage, a body on it, and the headset that may move it. */
-function createGround({ visit, notices, loading }: PageOptions) {
+function createGround(options: PageOptions) {
+  const { visit, notices, loading } = options;
   const { switches, settings, changes } = visit;
   const timing = createFrameTiming(() => performance.now());
 
   // Everything that travels starts at once; only then is anything built.
   const ownAvatar = fetchOwnAvatar((part) => loading.report('the avatar', part));
-  const load = createNetworkLoader({ provider: switches.executionProvider, timing, notices, loading });
+  const ground = createBody(options, timing);
 
   const canvas = pageElement('stage', HTMLCanvasElement);
   const quality = switches.quality ?? affordableQuality();
@@ -54,32 +83,21 @@ function createGround({ visit, notices, loading }: PageOptions) {
   loading.mark('scene');
 
   const recorder = new Recorder();
-  const measures = new Measures(settings, recorder);
+  const { body } = ground;
   const onChange = changes.emit;
-  const avatar = createShownAvatar({ scene: stage.studio.scene, settings, measures, notices, onChange });
+  const avatar = createShownAvatar({ scene: stage.studio.scene, settings, body, notices, onChange });
   const avatarShown = avatar.openOwn(ownAvatar);
-  const choice = createEstimatorChoice({
-    calibration: settings.calibration,
-    create: createEstimator,
-    load,
-    onChange,
-    onFault(name, reason) {
-      const { label } = estimatorTexts[name];
-      notices.show('warning', `${label} could not be used (${firstLine(reason)}): inverse kinematics takes over.`);
-    },
-  });
   const headset = new Headset({ renderer: stage.renderer, quality, switches, settings, notices });
-  return { canvas, quality, timing, stage, recorder, measures, avatar, avatarShown, choice, headset };
+  return { ...ground, canvas, quality, timing, stage, recorder, avatar, avatarShown, headset };
 }
 
 /** What people do on that stage: the games, and the body that plays them. */
 function createPlay({ visit, notices }: PageOptions, ground: ReturnType<typeof createGround>) {
   const { switches, settings, writer, store, changes } = visit;
-  const { canvas, quality, stage, measures, avatar, choice, headset, recorder } = ground;
+  const { canvas, quality, stage, body, clock, avatar, headset, recorder } = ground;
   const study = new PageStudy();
   const server = new ServerPresence(pageFolder(), changes.emit);
   const actor = createActor();
-  const clock = createPageClock(() => performance.now());
   const mouse = createMouseAim(canvas);
   const captions = new Emitter<[text: string]>();
   const arrivals = new Emitter();
@@ -88,32 +106,30 @@ function createPlay({ visit, notices }: PageOptions, ground: ReturnType<typeof c
     settings,
     writer,
     notices,
-    games: new PageGames({ quality, switches, settings, clock, stage, mouse, headset, measures, server, onCaption }),
+    games: new PageGames({ quality, switches, settings, clock, stage, mouse, headset, body, server, onCaption }),
     seed: switches.seed ?? Math.floor(performance.timeOrigin % 2 ** 31),
     stage,
     mouse,
     headset,
-    measures,
+    body,
     study,
     wear: avatar.wear,
     onCaption,
     onArrival: arrivals.emit,
     onChange: changes.emit,
   });
-  const body = new TrackedBody({
-    ...{ measures, choice, headset, view: stage.view, settings, writer, store, notices, study },
-    inStudy: switches.study !== null,
-    follower: {
-      calibrate(calibration) {
-        actor.calibrate(calibration);
-        activities.ball?.play.calibrate(calibration);
-        avatar.current?.fitTo(calibration);
-      },
-      jumped: () => activities.jumped(),
-    },
+  const wearer = new Wearer({ body, headset, view: stage.view, writer, store, notices });
+  const source = new TrackingSource({ settings, headset, recorder, body, actor, activities, study });
+  actor.calibrate(body.calibration);
+  ground.calibrated.listen((calibration, source) => {
+    wearer.measured(source);
+    actor.calibrate(calibration);
+    activities.ball?.play.calibrate(calibration);
+    avatar.current?.fitTo(calibration);
   });
-  const source = new TrackingSource({ settings, headset, recorder, actor, activities, study });
-  return { study, server, clock, activities, captions, arrivals, body, source };
+  ground.outgrown.listen((difference) => wearer.outgrown(difference));
+  ground.jumps.listen(() => activities.jumped());
+  return { study, server, activities, captions, arrivals, wearer, source };
 }
 
 /** Builds the parts of the page and introduces them to each other. */
@@ -122,11 +138,11 @@ export function createPage(options: PageOptions) {
   const { switches, settings, writer, store } = visit;
   const ground = createGround(options);
   const play = createPlay(options, ground);
-  const { canvas, timing, stage, recorder, measures, avatar, choice, headset } = ground;
-  const { study, server, activities, body, source } = play;
+  const { body, canvas, timing, stage, recorder, avatar, headset } = ground;
+  const { study, server, activities, wearer, source } = play;
   const controls = new Controls({
     ...{ switches, settings, writer, store, notices, onChange: visit.changes.emit },
-    ...{ timing, stage, choice, recorder, headset, avatar, activities, body, study, server },
+    ...{ timing, stage, recorder, headset, avatar, activities, body, wearer, study, server },
   });
   const sessions = new SessionChanges({
     headset,
@@ -139,7 +155,7 @@ export function createPage(options: PageOptions) {
     study,
   });
   const frame = new PageFrame({
-    ...{ settings, notices, source, body, choice, recorder, avatar, headset, activities, controls, study, stage },
+    ...{ settings, notices, source, body, recorder, avatar, headset, activities, controls, study, stage },
   });
 
   headset.listen(sessions);
@@ -153,13 +169,13 @@ export function createPage(options: PageOptions) {
   play.arrivals.listen(() => {
     recorder.stop();
     if (activities.name !== 'studio') controls.setPanelOpen(false);
-    choice.reset();
+    body.jumped();
     timing.reset();
     controls.show();
   });
   pressSheetsByMouse({ canvas, view: stage.view, headset, study, activities });
   surviveLostGraphics({ canvas, notices, headset, studio: stage.studio, timing });
-  const probed = { loading, settings, measures, notices, timing, frame, source, choice, avatar, headset, recorder };
+  const probed = { loading, settings, notices, timing, frame, source, body, avatar, headset, recorder };
   exposeProbe(() => readProbe({ ...probed, activities, study, stage }));
   return { ...ground, ...play, controls, frame };
 }

@@ -2,7 +2,7 @@ import type { Calibration } from '../../core/body/calibration';
 import type { EstimatorName } from '../../core/estimation/pose-estimator';
 import type { Vec3 } from '../../core/math/vec3';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
-import type { EstimatorChoice } from '../../lib/estimator-choice';
+import type { BareBody } from '../../lib/bare-body';
 import type { Notices } from '../../ui/notices';
 import type { ArcheryProbe } from '../archery/archery-play';
 import type { PlayerProbe } from '../ball/ball-activity';
@@ -12,7 +12,6 @@ import type { StudyProbe } from '../study/study-run';
 import type { Activities } from './activities';
 import type { FrameSummary, FrameTiming } from './frame-timing';
 import type { Headset } from './headset';
-import type { Measures } from './measures';
 import type { PageLoading } from './page-loading';
 import type { PageStudy } from './page-study';
 import type { Settings } from './settings';
@@ -70,12 +69,11 @@ export interface Probe {
 export interface ProbeParts {
   readonly loading: PageLoading;
   readonly settings: Pick<Settings, 'calibrationSource'>;
-  readonly measures: Pick<Measures, 'current'>;
   readonly notices: Pick<Notices, 'current'>;
   readonly timing: Pick<FrameTiming, 'summary'>;
   readonly frame: { readonly count: number };
   readonly source: Pick<TrackingSource, 'newest'>;
-  readonly choice: Pick<EstimatorChoice, 'current' | 'regressor'>;
+  readonly body: Pick<BareBody, 'estimator' | 'provider' | 'calibration'>;
   readonly avatar: Pick<ShownAvatar, 'current' | 'name'>;
   readonly headset: Pick<Headset, 'worn' | 'visibility' | 'emulator'>;
   readonly recorder: Pick<Recorder, 'mode' | 'frameCount' | 'seconds'>;
@@ -112,18 +110,17 @@ function drawingOf({ renderer, vignette }: ProbeParts['stage']): Probe['drawing'
 
 /** What the page is doing now. */
 export function readProbe(parts: ProbeParts): Probe {
-  const { loading, settings, measures, notices, timing, frame, source, choice, headset, recorder, study, stage } =
-    parts;
+  const { loading, settings, notices, timing, frame, source, body, headset, recorder, study, stage } = parts;
   const { archery, ball } = parts.activities;
   return {
     ready: loading.ready,
     activity: headset.worn ? 'vr' : loading.ready ? 'desktop' : 'loading',
-    estimator: choice.current.name,
-    provider: choice.regressor?.provider ?? 'none',
+    estimator: body.estimator,
+    provider: body.provider ?? 'none',
     frame: { ...timing.summary(), count: frame.count },
     avatar: avatarOf(parts.avatar),
     tracking: trackingOf(source.newest),
-    calibration: { ...measures.current, source: settings.calibrationSource },
+    calibration: { ...body.calibration, source: settings.calibrationSource },
     session: { state: headset.visibility, emulated: headset.emulator !== null },
     view: stage.view.view,
     recorder: { mode: recorder.mode, frames: recorder.frameCount, seconds: recorder.seconds },

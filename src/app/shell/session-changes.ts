@@ -1,3 +1,4 @@
+import type { BareBody } from '../../lib/bare-body';
 import type { DesktopView } from '../../scene/desktop-view';
 import type { Recorder } from '../studio/recorder';
 import type { Activities } from './activities';
@@ -5,14 +6,13 @@ import type { Controls } from './controls/controls';
 import type { FrameTiming } from './frame-timing';
 import type { Headset, HeadsetListener } from './headset';
 import type { PageStudy } from './page-study';
-import type { TrackedBody } from './tracked-body';
 
 export interface SessionChangesOptions {
   readonly headset: Pick<Headset, 'pictureRateHz'>;
   readonly recorder: Pick<Recorder, 'stop'>;
   readonly timing: FrameTiming;
   readonly view: DesktopView;
-  readonly body: TrackedBody;
+  readonly body: Pick<BareBody, 'begin' | 'jumped'>;
   readonly activities: Pick<Activities, 'ball'>;
   readonly controls: Pick<Controls, 'show' | 'setWorn' | 'layOut'>;
   readonly study: Pick<PageStudy, 'run'>;
@@ -29,7 +29,7 @@ export class SessionChanges implements HeadsetListener {
   entered(): void {
     const { recorder, controls, body } = this.#options;
     recorder.stop();
-    body.worn();
+    body.begin();
     controls.setWorn(true);
     this.#changed();
   }
@@ -73,8 +73,7 @@ export class SessionChanges implements HeadsetListener {
     const { timing, headset, body, controls, study } = this.#options;
     timing.setRate(headset.pictureRateHz);
     timing.reset();
-    body.restart();
-    body.refit();
+    body.jumped();
     controls.show();
     study.run?.sessionChanged();
   }

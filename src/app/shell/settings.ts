@@ -1,4 +1,3 @@
-import { type Calibration, defaultCalibration } from '../../core/body/calibration';
 import type { Side } from '../../core/math/side';
 import type { PreferenceStore } from './preferences';
 import type { Switches } from './switches';
@@ -33,8 +32,7 @@ export interface Settings {
   readonly guestName: string;
   /** Whom a spectator's camera follows: a seat, or null: free. */
   readonly following: number | null;
-  readonly calibration: Calibration;
-  /** Where the calibration comes from, in words. */
+  /** Where the user's measures come from, in words. */
   readonly calibrationSource: string;
 }
 
@@ -60,7 +58,6 @@ export function createSettings(switches: Switches, { preferences }: Pick<Prefere
     name: switches.name ?? preferences.name ?? '',
     guestName: `Guest ${10 + ((crypto.getRandomValues(new Uint8Array(1))[0] ?? 0) % 90)}`,
     following: null,
-    calibration: preferences.calibration ?? defaultCalibration,
     calibrationSource: preferences.calibration ? 'remembered' : 'not calibrated yet',
   };
 }

@@ -3,17 +3,17 @@ import { avatarLimits } from '../../avatar/inspect-avatar';
 import { type LoadedAvatar, loadAvatar, parseAvatar } from '../../avatar/load-avatar';
 import { validateInWorker } from '../../avatar/validate-in-worker';
 import { firstLine, reasonOf } from '../../core/errors/reasons';
+import type { BareBody } from '../../lib/bare-body';
 import { type FileKind, nameOf, readLimited } from '../../ui/limited-files';
 import type { Notices } from '../../ui/notices';
 import { pageFolder } from '../../ui/page-folder';
 import type { Studio } from '../studio/studio';
-import type { Measures } from './measures';
 import type { Settings } from './settings';
 
 export interface ShownAvatarOptions {
   readonly scene: Studio['scene'];
   readonly settings: Pick<Settings, 'palette' | 'upperBodyOnly'>;
-  readonly measures: Pick<Measures, 'current'>;
+  readonly body: Pick<BareBody, 'calibration'>;
   readonly notices: Pick<Notices, 'show'>;
   onChange(): void;
 }
@@ -47,7 +47,7 @@ export interface ShownAvatar {
 }
 
 export function createShownAvatar(options: ShownAvatarOptions): ShownAvatar {
-  const { scene, settings, measures, notices, onChange } = options;
+  const { scene, settings, body, notices, onChange } = options;
   let avatar: Avatar | null = null;
   let name = ownName;
   let own = true;
@@ -68,7 +68,7 @@ export function createShownAvatar(options: ShownAvatarOptions): ShownAvatar {
     scene.add(avatar.object);
     wear(null);
     avatar.setUpperBodyOnly(settings.upperBodyOnly);
-    avatar.fitTo(measures.current);
+    avatar.fitTo(body.calibration);
   }
 
   /** Shows what `load` brings unless something that was asked for later has come before it. */

@@ -1,5 +1,7 @@
+import type { Calibration } from '../../core/body/calibration';
 import { type Buttons, nothingPressed } from '../../core/games/button-presses';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
+import type { BareBody } from '../../lib/bare-body';
 import type { Actor } from '../../xr/actor';
 import type { Performance } from '../archery/archery-play';
 import type { Recorder } from '../studio/recorder';
@@ -11,7 +13,8 @@ import type { Settings } from './settings';
 export interface TrackingSourceOptions {
   readonly settings: Pick<Settings, 'actor'>;
   readonly headset: Pick<Headset, 'worn' | 'emulator' | 'read' | 'buttons'>;
-  readonly recorder: Pick<Recorder, 'sample'>;
+  readonly recorder: Pick<Recorder, 'sample' | 'person'>;
+  readonly body: Pick<BareBody, 'wearerCalibration'>;
   readonly actor: Pick<Actor, 'frameAt'>;
   readonly activities: Pick<Activities, 'begin' | 'act' | 'watched'>;
   readonly study: Pick<PageStudy, 'idle'>;
@@ -30,6 +33,12 @@ export class TrackingSource {
   /** What the hands of the newest frame press. */
   get buttons(): Buttons {
     return this.#buttons;
+  }
+
+  /** The measures of who moves the body where that is no wearer of a headset: of the person in a recording, else the user's. null: a wearer does. */
+  get standIn(): Calibration | null {
+    const { headset, recorder, body } = this.#options;
+    return headset.worn ? null : (recorder.person ?? body.wearerCalibration);
   }
 
   /** The newest tracked frame; null: none yet. */

@@ -38,6 +38,11 @@ export class Recorder {
     return this.#mode;
   }
 
+  /** Measures of the person in the recording that is replayed; null: nothing is, or it does not say. */
+  get person(): Calibration | null {
+    return this.#mode === 'replaying' ? (this.#recording?.calibration ?? null) : null;
+  }
+
   get loop(): boolean {
     return this.#loop;
   }

@@ -19,8 +19,6 @@ export interface StudyRun {
   readonly object: VrStudyPanel['object'];
   /** No trial is being played: hands that point at the sheet draw no bow. */
   readonly idle: boolean;
-  /** Whether the participant's body has been measured: no guess may take its place. */
-  readonly measured: boolean;
   /** Whether the round on the page stands still. */
   readonly paused: boolean;
   /** Every frame drawn; null: the head was not seen. */
@@ -99,9 +97,6 @@ export function createStudyRun(asked: AskedStudy, host: StudyHost): StudyRun {
     object: sheet.object,
     get idle() {
       return visit.idle;
-    },
-    get measured() {
-      return visit.measured;
     },
     get paused() {
       return visit.paused;

@@ -54,11 +54,6 @@ export class StudyVisit {
     return !this.#running?.playing;
   }
 
-  /** Whether the participant's body has been measured: no guess may take its place. */
-  get measured(): boolean {
-    return this.#running?.session.calibration != null;
-  }
-
   /** Whether the round on the page stands still. */
   get paused(): boolean {
     return this.#running?.paused ?? false;

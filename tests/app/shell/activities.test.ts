@@ -77,7 +77,7 @@ function page() {
   };
   const headset = { worn: false, emulator: null };
   const study = new PageStudy();
-  const common = { settings, stage, mouse, headset, measures: { current: defaultCalibration } };
+  const common = { settings, stage, mouse, headset, body: { calibration: defaultCalibration } };
   const activities = new Activities({
     ...{ ...common, writer, study, seed: 5 },
     games: new PageGames({

@@ -5,8 +5,6 @@ import { PageStudy } from '../../../src/app/shell/page-study';
 import { createSettings, SettingsWriter } from '../../../src/app/shell/settings';
 import { readSwitches } from '../../../src/app/shell/switches';
 import { menuButtons, type VrMenuActions, type VrMenuState } from '../../../src/app/shell/vr-menu/menu-buttons';
-import { defaultCalibration } from '../../../src/core/body/calibration';
-import { createEstimator } from '../../../src/core/estimation/estimators';
 import type { CalibrationStep } from '../../../src/ui/calibration-dialog';
 import type { Pointer } from '../../../src/ui/vr-pointers';
 import { drawNowhere } from './drawing-in-node';
@@ -40,7 +38,7 @@ function headset() {
   const controls = new HeadsetControls({
     ...{ settings, writer, study, pointers },
     notices: { show: () => undefined, current: () => [] },
-    choice: { current: createEstimator('ik', defaultCalibration), unavailable: {} },
+    body: { estimator: 'ik', unavailable: {} },
     activities: {
       ...{ name: 'studio', archery: null, ball: null },
       goTo: async (name) => void done.push(`go to ${name}`),

@@ -43,13 +43,11 @@ function files() {
   const done: string[] = [];
   const opened: (string | File)[] = [];
   const recorder = new Recorder();
-  const replayed: (Calibration | null)[] = [];
   return {
     notices,
     done,
     opened,
     recorder,
-    replayed,
     files: new OpenedFiles({
       recorder,
       notices: { show: (level, text) => void notices.push({ level, text }) },
@@ -61,11 +59,7 @@ function files() {
         },
         openOwn: async () => true,
       },
-      choice: { reset: () => void done.push('filters begin again') },
-      body: {
-        replays: (calibration) => void replayed.push(calibration),
-        refit: () => void done.push(`fitted while ${recorder.mode}`),
-      },
+      body: { jumped: () => void done.push(`the body begins anew while ${recorder.mode}`) },
       onChange: () => void done.push('shown'),
     }),
   };
@@ -87,23 +81,25 @@ describe('a dropped file', () => {
   });
 
   test('that is a recording is replayed at once, by the body of the person in it', async () => {
-    const { files: page, notices, recorder, replayed, done } = files();
+    const { files: page, notices, recorder, done } = files();
     await page.open(recordingFile());
     expect(notices).toEqual([]);
     expect(recorder.mode).toBe('replaying');
     expect(recorder.name).toBe('walk.json');
-    expect(replayed).toEqual([person]);
-    expect(done).toEqual(['filters begin again', 'fitted while replaying', 'shown']);
+    expect(recorder.person).toEqual(person);
+    expect(done).toEqual(['the body begins anew while replaying', 'shown']);
+    recorder.stop();
+    expect(recorder.person).toBeNull();
   });
 
   test('that is no recording leaves what was replayed as it was', async () => {
-    const { files: page, notices, recorder, replayed } = files();
+    const { files: page, notices, recorder } = files();
     await page.open(recordingFile('walk.json'));
     await page.open(new File(['{"frames": 3}'], 'other.JSON'));
     expect(notices).toHaveLength(1);
     expect(notices[0]?.text).toMatch(/^other\.JSON could not be replayed: /);
     expect(recorder.name).toBe('walk.json');
-    expect(replayed).toHaveLength(1);
+    expect(recorder.mode).toBe('replaying');
   });
 
   test('of any other name is opened as an avatar, and its name is told when it stands there', async () => {

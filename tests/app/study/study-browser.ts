@@ -150,12 +150,15 @@ export class OneShotGame implements TaskRunner {
   }
 }
 
+/** Of the page before a study has measured anyone. */
+export const unmeasured: Calibration = { eyeHeight: 1.6, armSpan: 1.5 };
+
 /** The page around the study: a headset to be put on and taken off, bodies that load, two games. */
 class TestHost implements StudyHost {
   readonly games = { archery: new OneShotGame(), ball: new OneShotGame() };
   readonly runners = this.games;
   worn = false;
-  measures: Calibration = { eyeHeight: 1.6, armSpan: 1.5 };
+  measures: Calibration = unmeasured;
   drawn: EstimatorName = 'hands-only';
   /** Estimators that this page cannot load. */
   readonly missing = new Set<EstimatorName>();

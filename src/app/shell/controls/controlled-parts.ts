@@ -1,4 +1,4 @@
-import type { EstimatorChoice } from '../../../lib/estimator-choice';
+import type { BareBody } from '../../../lib/bare-body';
 import type { ServerPresence } from '../../../net/server-presence';
 import type { Notices } from '../../../ui/notices';
 import type { Recorder } from '../../studio/recorder';
@@ -11,7 +11,7 @@ import type { Settings, SettingsWriter } from '../settings';
 import type { ShownAvatar } from '../shown-avatar';
 import type { Stage } from '../stage';
 import type { Switches } from '../switches';
-import type { TrackedBody } from '../tracked-body';
+import type { Wearer } from '../wearer';
 
 /** The parts of the page that its controls show and act on. */
 export interface ControlledParts {
@@ -22,12 +22,12 @@ export interface ControlledParts {
   readonly notices: Pick<Notices, 'show' | 'current'>;
   readonly timing: Pick<FrameTiming, 'summary'>;
   readonly stage: Pick<Stage, 'renderer' | 'studio' | 'view' | 'layOut' | 'setSkeletonVisible'>;
-  readonly choice: EstimatorChoice;
+  readonly body: BareBody;
   readonly recorder: Recorder;
   readonly headset: Headset;
   readonly avatar: ShownAvatar;
   readonly activities: Activities;
-  readonly body: TrackedBody;
+  readonly wearer: Wearer;
   readonly study: Pick<PageStudy, 'run'>;
   readonly server: ServerPresence;
   /** Something changed that is on the screen. */

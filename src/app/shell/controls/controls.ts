@@ -101,8 +101,7 @@ export class Controls {
 
   /** What changes by itself: frame times, a replay's progress, a round. */
   #report(): void {
-    const { choice, recorder, activities } = this.#parts;
-    choice.check();
+    const { recorder, activities } = this.#parts;
     const report = frameReport(this.#parts);
     this.#overlay.show(report);
     this.#inHeadset.showReport(report);

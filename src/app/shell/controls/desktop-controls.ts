@@ -73,12 +73,12 @@ export class DesktopControls {
   }
 
   #state(): PanelState {
-    const { settings, choice, stage, avatar, headset, recorder } = this.#options;
-    const { eyeHeight, armSpan } = settings.calibration;
+    const { settings, body, stage, avatar, headset, recorder } = this.#options;
+    const { eyeHeight, armSpan } = body.wearerCalibration;
     return {
       ...settings,
-      estimator: choice.wanted,
-      unavailable: choice.unavailable,
+      estimator: body.wanted,
+      unavailable: body.unavailable,
       view: stage.view.view,
       avatarName: avatar.current ? avatar.name : 'None yet',
       avatarPending: avatar.pending,

@@ -4,12 +4,12 @@ import { stageNames } from '../frame-timing';
 import type { ControlledParts } from './controlled-parts';
 
 /** What frames cost over the last seconds, and what estimates the body in them. */
-export function frameReport({ timing, choice }: Pick<ControlledParts, 'timing' | 'choice'>): FrameReport {
+export function frameReport({ timing, body }: Pick<ControlledParts, 'timing' | 'body'>): FrameReport {
   const summary = timing.summary();
   return {
     ...summary,
     stages: stageNames.map((name) => ({ name, ...summary.stages[name] })),
-    estimator: estimatorTexts[choice.current.name].label,
-    provider: choice.regressor?.provider ?? 'no network',
+    estimator: estimatorTexts[body.estimator].label,
+    provider: body.provider ?? 'no network',
   };
 }

@@ -1,4 +1,4 @@
-import type { EstimatorChoice } from '../../../lib/estimator-choice';
+import type { BareBody } from '../../../lib/bare-body';
 import type { FrameReport } from '../../../ui/overlay';
 import type { VrPointers } from '../../../ui/vr-pointers';
 import type { Activities } from '../activities';
@@ -13,7 +13,7 @@ const largerMenu = 1.3;
 
 export interface HeadsetControlsOptions extends Pick<ControlledParts, 'settings' | 'writer' | 'notices' | 'study'> {
   readonly pointers: VrPointers;
-  readonly choice: Pick<EstimatorChoice, 'current' | 'unavailable'>;
+  readonly body: Pick<BareBody, 'estimator' | 'unavailable'>;
   readonly activities: Pick<Activities, 'name' | 'archery' | 'ball' | 'goTo' | 'rule' | 'restartRound' | 'point'>;
   readonly measuring: Pick<Measuring, 'step' | 'begin' | 'cancel'>;
   readonly actions: Pick<PanelActions, 'chooseEstimator' | 'recentre' | 'exitVr'>;
@@ -86,10 +86,10 @@ export class HeadsetControls {
   }
 
   #state(): VrMenuState {
-    const { choice, settings, activities, measuring } = this.#options;
+    const { body, settings, activities, measuring } = this.#options;
     return {
-      estimator: choice.current.name,
-      unavailable: choice.unavailable,
+      estimator: body.estimator,
+      unavailable: body.unavailable,
       calibration: measuring.step,
       overlay: settings.vrOverlay,
       activity: activities.name,

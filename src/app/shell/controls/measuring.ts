@@ -4,7 +4,7 @@ import { type CalibrationGuide, createCalibrationGuide } from '../../../ui/calib
 import { Emitter } from '../emitter';
 import type { ControlledParts } from './controlled-parts';
 
-export type MeasuringOptions = Pick<ControlledParts, 'headset' | 'settings' | 'notices' | 'body'>;
+export type MeasuringOptions = Pick<ControlledParts, 'headset' | 'settings' | 'notices' | 'wearer'>;
 
 /** The guided calibration of this page: told by a dialog on the desktop, by the menu in the headset. */
 export class Measuring {
@@ -16,7 +16,7 @@ export class Measuring {
   #step: CalibrationStep | null = null;
 
   constructor(options: MeasuringOptions) {
-    const { headset, body } = options;
+    const { headset, wearer } = options;
     this.#options = options;
     this.#dialog = createCalibrationDialog(
       () => this.cancel(),
@@ -24,7 +24,7 @@ export class Measuring {
     );
     this.#guide = createCalibrationGuide({
       onStep: (step) => this.#show(step),
-      onMeasured: (calibration) => body.calibrateForGood(calibration, 'measured'),
+      onMeasured: (calibration) => wearer.calibrateForGood(calibration, 'measured'),
       closesItself: () => headset.worn,
     });
   }

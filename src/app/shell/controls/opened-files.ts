@@ -1,10 +1,9 @@
 import { firstLine, reasonOf } from '../../../core/errors/reasons';
-import type { EstimatorChoice } from '../../../lib/estimator-choice';
+import type { BareBody } from '../../../lib/bare-body';
 import { type FileKind, nameOf, readLimited } from '../../../ui/limited-files';
 import type { Notices } from '../../../ui/notices';
 import type { Recorder } from '../../studio/recorder';
 import type { ShownAvatar } from '../shown-avatar';
-import type { TrackedBody } from '../tracked-body';
 
 /** Twice what the recorder keeps at most. */
 const recordingFile: FileKind = { what: 'a recording', megabytes: 100 };
@@ -13,8 +12,7 @@ export interface OpenedFilesOptions {
   readonly avatar: Pick<ShownAvatar, 'open' | 'openOwn' | 'name'>;
   readonly recorder: Pick<Recorder, 'open' | 'replay'>;
   readonly notices: Pick<Notices, 'show'>;
-  readonly choice: Pick<EstimatorChoice, 'reset'>;
-  readonly body: Pick<TrackedBody, 'replays' | 'refit'>;
+  readonly body: Pick<BareBody, 'jumped'>;
   onChange(): void;
 }
 
@@ -47,11 +45,10 @@ export class OpenedFiles {
 
   /** Replays what the file keeps, with the body of the person in it. Never rejects: what goes wrong becomes a notice. */
   async openRecording(source: string | File): Promise<void> {
-    const { recorder, body, notices } = this.#options;
+    const { recorder, notices } = this.#options;
     const name = nameOf(source);
     try {
-      const recording = recorder.open(name, new TextDecoder().decode(await readLimited(source, recordingFile)));
-      body.replays(recording.calibration);
+      recorder.open(name, new TextDecoder().decode(await readLimited(source, recordingFile)));
       this.replay();
     } catch (error) {
       const reason = firstLine(reasonOf(error)).replace(`${name}: `, '');
@@ -61,10 +58,9 @@ export class OpenedFiles {
 
   /** The recording at hand, from its beginning. */
   replay(): void {
-    const { recorder, choice, body, onChange } = this.#options;
+    const { recorder, body, onChange } = this.#options;
     recorder.replay();
-    choice.reset();
-    body.refit();
+    body.jumped();
     onChange();
   }
 }

@@ -11,11 +11,11 @@ export interface PanelActionsOptions extends ControlledParts {
   readonly measuring: Pick<Measuring, 'start'>;
 }
 
-function bodyActions({ store, choice, notices, body, measuring }: PanelActionsOptions): BodyActions {
+function bodyActions({ store, body, notices, wearer, measuring }: PanelActionsOptions): BodyActions {
   return {
     chooseEstimator(name) {
       store.remember({ estimator: name });
-      void choice.choose(name);
+      void body.choose(name);
     },
     calibrate: () => measuring.start(),
     setMeasures({ heightCm, armSpanCm }) {
@@ -25,9 +25,9 @@ function bodyActions({ store, choice, notices, body, measuring }: PanelActionsOp
       };
       const complaint = calibrationComplaint(calibration);
       if (complaint) notices.show('warning', complaint);
-      else body.calibrateForGood(calibration, 'by hand');
+      else wearer.calibrateForGood(calibration, 'by hand');
     },
-    resetCalibration: () => body.resetCalibration(),
+    resetCalibration: () => wearer.resetCalibration(),
   };
 }
 
@@ -45,20 +45,19 @@ function avatarActions({ writer, avatar, files }: PanelActionsOptions): AvatarAc
 }
 
 function recordingActions(options: PanelActionsOptions): RecordingActions {
-  const { writer, settings, recorder, headset, timing, choice, body, files, onChange } = options;
+  const { writer, settings, recorder, headset, timing, body, files, onChange } = options;
   return {
     record() {
       const driven = headset.emulator || !headset.worn ? 'emulated headset' : 'headset';
       recorder.record({
         device: !headset.worn && settings.actor ? 'actor' : driven,
         rateHz: timing.summary().rateHz,
-        calibration: settings.calibration,
+        calibration: body.wearerCalibration,
       });
       onChange();
     },
     stop() {
       recorder.stop();
-      body.refit();
       onChange();
     },
     replay: () => files.replay(),
@@ -73,7 +72,7 @@ function recordingActions(options: PanelActionsOptions): RecordingActions {
     },
     setActor(on) {
       writer.change({ actor: on });
-      choice.reset();
+      body.jumped();
       // Without the actor a person must hold the headset: a real one, or the emulated one.
       if (!on) void headset.ensureEmulator().then((emulator) => emulator?.release());
     },
@@ -104,7 +103,7 @@ export function createPanelActions(options: PanelActionsOptions): PanelActions {
     ...avatarActions(options),
     ...recordingActions(options),
     ...viewActions(options),
-    recentre: () => options.body.recentre(),
+    recentre: () => options.wearer.recentre(),
     exitVr: () => options.headset.exit(),
   };
 }

@@ -1,0 +1,75 @@
+import type { Calibration } from '../../core/body/calibration';
+import type { BareBody, CalibrationSource } from '../../lib/bare-body';
+import type { DesktopView } from '../../scene/desktop-view';
+import type { Notices } from '../../ui/notices';
+import type { Headset } from './headset';
+import type { PreferenceStore } from './preferences';
+import type { SettingsWriter } from './settings';
+
+/** Where measures come from that the headset suggests. */
+const sourceTexts: Partial<Readonly<Record<CalibrationSource, string>>> = {
+  headset: 'from the headset’s height',
+  'stood-taller': 'corrected, because you stood taller',
+};
+
+export interface WearerOptions {
+  readonly body: Pick<BareBody, 'calibrate' | 'jumped'>;
+  readonly headset: Pick<Headset, 'worn' | 'recentre'>;
+  readonly view: Pick<DesktopView, 'recentre'>;
+  readonly writer: Pick<SettingsWriter, 'change'>;
+  readonly store: Pick<PreferenceStore, 'remember'>;
+  readonly notices: Pick<Notices, 'show'>;
+}
+
+/** The user of the page: where their measures come from, in words, whether those last, and where they stand. */
+export class Wearer {
+  readonly #options: WearerOptions;
+
+  constructor(options: WearerOptions) {
+    this.#options = options;
+  }
+
+  /** These measures from now on; where they come from, in words. They last for this visit. */
+  calibrate(calibration: Calibration, source: string): void {
+    const { body, writer } = this.#options;
+    body.calibrate(calibration);
+    writer.change({ calibrationSource: source });
+  }
+
+  /** As `calibrate`, and remembered for later visits. */
+  calibrateForGood(calibration: Calibration, source: string): void {
+    this.#options.store.remember({ calibration });
+    this.calibrate(calibration, source);
+  }
+
+  /** Forgets the user's measures. */
+  resetCalibration(): void {
+    const { body, writer, store } = this.#options;
+    store.remember({ calibration: undefined });
+    body.calibrate('auto');
+    writer.change({ calibrationSource: 'not calibrated yet' });
+  }
+
+  /** The body found out other measures by itself. */
+  measured(source: CalibrationSource): void {
+    const text = sourceTexts[source];
+    if (text) this.#options.writer.change({ calibrationSource: text });
+  }
+
+  /** The user stands this much taller [m] than they told. */
+  outgrown(difference: number): void {
+    const centimetres = Math.round(100 * difference);
+    this.#options.notices.show(
+      'info',
+      `You stand ${centimetres} cm taller than your calibration says: you may want to calibrate again.`,
+    );
+  }
+
+  /** The user goes back to where a visit begins. */
+  recentre(): void {
+    const { headset, view, body } = this.#options;
+    if (headset.worn) headset.recentre();
+    else view.recentre();
+    body.jumped();
+  }
+}

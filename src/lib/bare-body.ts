@@ -1,0 +1,259 @@
+import type { AvatarPose } from '../core/body/avatar-pose';
+import { type Calibration, calibrationComplaint, defaultCalibration } from '../core/body/calibration';
+import { createEstimator, type NetworkName } from '../core/estimation/estimators';
+import type { EstimatorName, InferenceRequest } from '../core/estimation/pose-estimator';
+import type { PoseRegressor } from '../core/estimation/pose-regressor';
+import { createPageClock, type PageClock } from '../core/tracking/page-clock';
+import type { TrackingFrame } from '../core/tracking/tracking-frame';
+import { createAfterFrame } from './after-frame';
+import { type AskTiming, withTiming } from './ask-timing';
+import { createEstimatorChoice, type EstimatorChoice } from './estimator-choice';
+import { HeightPolicy } from './height-policy';
+
+/** A point that a headset tracks. */
+export type TrackedPoint = 'head' | 'left' | 'right';
+const trackedPoints = ['head', 'left', 'right'] as const;
+
+/**
+ * Where a body's measures come from: told by the page, the height at which a session began, a wearer who stood up taller, a stand-in who
+ * moves the body instead of the wearer (or the wearer again), or nowhere yet.
+ */
+export type CalibrationSource = 'given' | 'headset' | 'stood-taller' | 'stand-in' | 'default';
+
+/** What a page may want to know of a body; each is called within one of the body's methods, or when a network has loaded. */
+export interface BodyEvents {
+  /** Other measures of who moves the body, from the next frame on. */
+  calibrated?(calibration: Calibration, source: CalibrationSource): void;
+  /** The wearer stands this much taller [m] than the measures that were given, which stay. Once for each calibration. */
+  outgrown?(difference: number): void;
+  /** This estimator is not to be had, and why: inverse kinematics draws instead. */
+  fallback?(estimator: EstimatorName, reason: string): void;
+  /** `estimator`, `provider` or `unavailable` is another. */
+  changed?(): void;
+  /** The body begins anew where it is next: nothing may be drawn, sent or scored on the way there. */
+  jumped?(): void;
+  /** No longer tracked: the head's body stands still, a hand's arm sinks to rest. */
+  lost?(point: TrackedPoint): void;
+  /** Tracked, for the first time or again. */
+  found?(point: TrackedPoint): void;
+}
+
+export interface BareBodyOptions {
+  /** Default: 'learned', which is inverse kinematics until its weights have arrived. */
+  readonly estimator?: EstimatorName;
+  /** 'auto' (default): from the height of the headset, and grown when its wearer stands up taller. */
+  readonly calibration?: Calibration | 'auto';
+  /** Whether a wearer may turn out taller than their measures (default): those of 'auto' grow then, of given ones `outgrown` tells. */
+  readonly grows?: boolean;
+  /** Brings a network by name; rejects with a sentence. `onnxNetworks` of threepoint/onnx brings both. */
+  readonly networks: (name: NetworkName) => Promise<PoseRegressor>;
+  /** The time of `frame`, for pages that share one clock. Default: a clock of the body's own. */
+  readonly clock?: Pick<PageClock, 'frame' | 'paused'>;
+  /** Told what is done after a frame, where frame times are measured. */
+  readonly timing?: AskTiming;
+  readonly events?: BodyEvents;
+}
+
+/** Throws where these are no person's measures. */
+function checked(calibration: Calibration): Calibration {
+  const complaint = calibrationComplaint(calibration);
+  if (complaint) throw new RangeError(complaint);
+  return calibration;
+}
+
+/**
+ * One wearer's body from three tracked points: estimator, fallback to inverse kinematics, a height that settles, points that are lost and found.
+ * A frame is `frame`, then `update`. Told where its networks come from, it has the code of none in it; Body brings the learned one along.
+ */
+export class BareBody {
+  readonly #choice: EstimatorChoice;
+  readonly #height: HeightPolicy;
+  #events: BodyEvents;
+  readonly #clock: Pick<PageClock, 'frame' | 'paused'>;
+  readonly #timing: AskTiming | null;
+  readonly #seen: Record<TrackedPoint, boolean> = { head: false, left: false, right: false };
+  #afterFrame: ((task: () => void) => void) | null = null;
+  /** In force: the wearer's, or those of a stand-in. */
+  #calibration: Calibration;
+  #wearer: Calibration;
+  #given: boolean;
+  /** Who moved the body in the newest frame; null: the wearer. */
+  #standIn: Calibration | null = null;
+  #pose: AvatarPose | null = null;
+  /** The newest frame's question to a network that answers later. */
+  #request: InferenceRequest | null = null;
+  readonly #askNow = () => {
+    const request = this.#request;
+    this.#request = null;
+    if (!request) return;
+    this.#timing?.resume();
+    void request.ask();
+    this.#timing?.mark('features');
+  };
+
+  /** Throws a RangeError where the calibration is no person's. */
+  constructor(options: BareBodyOptions) {
+    const { estimator = 'learned', calibration = 'auto', networks, timing = null } = options;
+    this.#events = options.events ?? {};
+    this.#clock = options.clock ?? createPageClock(() => performance.now());
+    this.#timing = timing;
+    this.#given = calibration !== 'auto';
+    this.#wearer = calibration === 'auto' ? defaultCalibration : checked(calibration);
+    this.#calibration = this.#wearer;
+    this.#choice = createEstimatorChoice({
+      calibration: this.#calibration,
+      create: createEstimator,
+      load: timing ? async (name) => withTiming(await networks(name), timing) : networks,
+      onChange: () => this.#events.changed?.(),
+      onFault: (name, reason) => this.#events.fallback?.(name, reason),
+    });
+    this.#height = new HeightPolicy({
+      calibration: () => this.#wearer,
+      calibrated: () => this.#given,
+      grows: options.grows ?? true,
+      onMeasured: (measured, source) => this.#measure(measured, source),
+      onTooSmall: (difference) => this.#events.outgrown?.(difference),
+    });
+    void this.#choice.choose(estimator);
+  }
+
+  /** Of the newest frame, floor frame [m]; overwritten by the next: `copyAvatarPose` keeps one. null before the first. */
+  get pose(): AvatarPose | null {
+    return this.#pose;
+  }
+
+  /** Of who moves the body now: the wearer, or a stand-in. */
+  get calibration(): Calibration {
+    return this.#calibration;
+  }
+
+  /** The wearer's, also while a stand-in moves the body. */
+  get wearerCalibration(): Calibration {
+    return this.#wearer;
+  }
+
+  /** What draws now: inverse kinematics while a network loads, and where it fails. */
+  get estimator(): EstimatorName {
+    return this.#choice.current.name;
+  }
+
+  /** What was chosen, which may still be loading. */
+  get wanted(): EstimatorName {
+    return this.#choice.wanted;
+  }
+
+  /** What cannot be had, and why. */
+  get unavailable(): Partial<Readonly<Record<EstimatorName, string>>> {
+    return this.#choice.unavailable;
+  }
+
+  /** Where the network of the estimator runs: 'plain', 'wasm', 'webgpu'; null: it has none. */
+  get provider(): string | null {
+    return this.#choice.regressor?.provider ?? null;
+  }
+
+  /** Resolves when this estimator draws, or when `fallback` told why it cannot. */
+  choose(estimator: EstimatorName): Promise<void> {
+    return this.#choice.choose(estimator);
+  }
+
+  /** Measures of the wearer [m], or 'auto', which forgets what was known of them. Throws a RangeError where they are no person's. */
+  calibrate(calibration: Calibration | 'auto'): void {
+    const given = calibration !== 'auto';
+    const measures = given ? checked(calibration) : defaultCalibration;
+    this.#given = given;
+    if (!given) this.#height.begin();
+    this.#measure(measures, given ? 'given' : 'default');
+  }
+
+  /** A headset was put on: its height is taken anew. */
+  begin(): void {
+    this.#height.begin();
+    this.jumped();
+  }
+
+  /** The floor lies elsewhere from one frame to the next (recentre, teleport, pause): nothing may be drawn on the way. */
+  jumped(): void {
+    this.#choice.reset();
+    this.#height.reset();
+    this.#events.jumped?.();
+  }
+
+  /**
+   * Begins an animation frame that the browser dates `timestampMs`: its time [s], which never goes back and leaps half a second at most, for
+   * the frame of tracking that follows. After a pause the body has jumped.
+   */
+  frame(timestampMs: number): number {
+    const time = this.#clock.frame(timestampMs);
+    if (this.#clock.paused) this.jumped();
+    return time;
+  }
+
+  /**
+   * One frame of tracking [m, s], floor frame; null: the head is not seen, and the pose stays. `standIn`: the measures of another who moves the
+   * body in this frame, as an actor or a recording does; theirs are in force then, and nothing is learnt of the wearer. Returns the body's pose,
+   * null before the first frame. Never waits, never returns NaN; throws only what an event's listener throws.
+   */
+  update(frame: TrackingFrame | null, standIn: Calibration | null = null): AvatarPose | null {
+    this.#notice('head', frame !== null);
+    this.#notice('left', frame?.leftHand != null);
+    this.#notice('right', frame?.rightHand != null);
+    if (frame === null) return this.#pose;
+    if (standIn !== this.#standIn) this.#handOver(standIn);
+    if (standIn === null) this.#height.observe(frame);
+    const { pose, request } = this.#choice.current.update(frame);
+    this.#pose = pose;
+    if (request) this.#askLater(request);
+    this.#choice.check();
+    return pose;
+  }
+
+  /** Nothing is told from now on; resolves when every network is let go that was loaded for this body. */
+  dispose(): Promise<void> {
+    this.#events = {};
+    this.#request = null;
+    return this.#choice.dispose();
+  }
+
+  /** Forgets which points were seen, without a word: another session begins. */
+  forgetPoints(): void {
+    for (const point of trackedPoints) this.#seen[point] = false;
+  }
+
+  /** Another moves the body from this frame on: with their measures, and without a way from the one to the other. */
+  #handOver(standIn: Calibration | null): void {
+    this.#standIn = standIn;
+    this.jumped();
+    this.#fit(standIn ?? this.#wearer, 'stand-in');
+  }
+
+  /** Other measures of the wearer; they wait while one with measures of their own stands in. */
+  #measure(calibration: Calibration, source: CalibrationSource): void {
+    const inForce = this.#calibration === this.#wearer;
+    this.#wearer = calibration;
+    if (inForce) this.#fit(calibration, source);
+  }
+
+  #fit(calibration: Calibration, source: CalibrationSource): void {
+    if (calibration === this.#calibration) return;
+    this.#calibration = calibration;
+    this.#choice.calibrate(calibration);
+    this.#events.calibrated?.(calibration, source);
+  }
+
+  #notice(point: TrackedPoint, seen: boolean): void {
+    if (this.#seen[point] === seen) return;
+    this.#seen[point] = seen;
+    if (seen) this.#events.found?.(point);
+    else this.#events.lost?.(point);
+  }
+
+  /** Asks a network that answers later once the picture is on its way; a newer frame's question takes the place of one that still waits. */
+  #askLater(request: InferenceRequest): void {
+    const waits = this.#request !== null;
+    this.#request = request;
+    if (waits) return;
+    this.#afterFrame ??= createAfterFrame();
+    this.#afterFrame(this.#askNow);
+  }
+}
