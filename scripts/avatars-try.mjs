@@ -1,0 +1,71 @@
+// npm run avatars:try -- DIR [--out OUT]: opens each avatar of a folder as the page does and writes a sheet of pictures beside its name: T-pose,
+// reach up, bow drawn, crouch, wave, and what the wearer sees. What is refused is told with its reason. OUT is DIR/sheets unless told.
+import { mkdirSync, readdirSync, statSync, writeFileSync } from 'node:fs';
+import { basename, extname, join, resolve } from 'node:path';
+import { parseArgs } from 'node:util';
+import { ensureChromium } from './chromium.mjs';
+import { ensureInstalled } from './installation.mjs';
+import { main, root, SetupError } from './run-command.mjs';
+
+const usage = 'npm run avatars:try -- DIR [--out OUT]';
+
+function options() {
+  const { values, positionals } = parseArgs({ options: { out: { type: 'string' } }, allowPositionals: true });
+  const [given] = positionals;
+  if (given === undefined) throw new SetupError(`avatars:try: a folder with avatars is needed\n${usage}`);
+  // Paths mean what they mean to the person who typed them.
+  const from = process.env.INIT_CWD ?? process.cwd();
+  const folder = resolve(from, given);
+  if (!statSync(folder, { throwIfNoEntry: false })?.isDirectory()) {
+    throw new SetupError(`avatars:try: ${folder}: no such folder\n${usage}`);
+  }
+  return { folder, out: values.out ? resolve(from, values.out) : join(folder, 'sheets') };
+}
+
+/** A server of the page and of the folder's files, on a free port of this machine. */
+async function startServer(folder) {
+  const { createServer } = await import('vite');
+  const server = await createServer({
+    root,
+    configFile: join(root, 'vite.config.ts'),
+    logLevel: 'warn',
+    server: { host: '127.0.0.1', port: 0, hmr: false, watch: null, fs: { allow: [root, folder] } },
+  });
+  await server.listen();
+  return server;
+}
+
+await main(async () => {
+  const { folder, out } = options();
+  await ensureInstalled();
+  const executablePath = await ensureChromium();
+  const files = readdirSync(folder).filter((name) => /\.(vrm|glb|fbx)$/i.test(name));
+  if (files.length === 0) throw new SetupError(`avatars:try: ${folder} holds no .vrm, .glb or .fbx file`);
+  mkdirSync(out, { recursive: true });
+  const server = await startServer(folder);
+  const { chromium } = await import('@playwright/test');
+  const browser = await chromium.launch({
+    executablePath,
+    args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader'],
+  });
+  try {
+    const page = await browser.newPage();
+    page.on('pageerror', (error) => console.log(`  ${error.message}`));
+    await page.goto(`${server.resolvedUrls.local[0]}scripts/avatars-try/sheet.html`);
+    await page.waitForFunction(() => 'makeSheet' in window);
+    for (const file of files.sort()) {
+      const address = `/@fs/${join(folder, file).replace(/^\//, '')}`;
+      const { picture, refused, loadMs } = await page.evaluate(
+        ([address, name]) => window.makeSheet(address, name),
+        [address, file],
+      );
+      writeFileSync(join(out, `${basename(file, extname(file))}.png`), Buffer.from(picture.split(',')[1], 'base64'));
+      console.log(refused ? `- ${refused}` : `+ ${file} in ${Math.round(loadMs)} ms`);
+    }
+  } finally {
+    await browser.close();
+    await server.close();
+  }
+  console.log(`${files.length} sheets in ${out}`);
+  return 0;
+});

@@ -1,0 +1,125 @@
+// The page of `npm run avatars:try`: one file in, a sheet of pictures out.
+import { AmbientLight, Color, DirectionalLight, GridHelper, PerspectiveCamera, Scene, WebGLRenderer } from 'three';
+import { type Avatar, createAvatar } from '../../src/avatar/avatar';
+import { thirdPersonOnlyLayer } from '../../src/avatar/body-meshes';
+import { loadAvatar } from '../../src/avatar/load-avatar';
+import { validateInWorker } from '../../src/avatar/validate-in-worker';
+import { defaultCalibration } from '../../src/core/body/calibration';
+import { reasonOf } from '../../src/core/errors/reasons';
+import { createIk } from '../../src/core/estimation/estimators';
+import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
+import { postures } from './postures';
+
+/** A picture [pixels] on the sheet, and the line of text above all. */
+const width = 330;
+const height = 430;
+const headline = 34;
+/** So long [s] a posture is held before its picture, and how often [Hz] it is drawn until then. */
+const heldSeconds = 2;
+const rateHz = 30;
+
+export interface Sheet {
+  /** A data: address of a PNG. */
+  readonly picture: string;
+  /** null: the file was opened. */
+  readonly refused: string | null;
+  /** [ms] from bytes to a body, and the longest task of the page's thread on the way. */
+  readonly loadMs: number;
+}
+
+declare global {
+  interface Window {
+    makeSheet(address: string, name: string): Promise<Sheet>;
+  }
+}
+
+const renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
+renderer.setSize(width, height, false);
+
+function createScene(): Scene {
+  const scene = new Scene();
+  scene.background = new Color('#cfd6de');
+  const sun = new DirectionalLight('#ffffff', 2.4);
+  sun.position.set(1, 3, -2.5);
+  scene.add(new AmbientLight('#ffffff', 1.3), sun, new GridHelper(4, 8, '#8b95a1', '#b3bcc6'));
+  return scene;
+}
+
+/** Holds a posture until filters, feet and hair have come to rest. */
+function hold(avatar: Avatar, frame: TrackingFrame, from: number): void {
+  const estimator = createIk(defaultCalibration);
+  for (let step = 0; step < heldSeconds * rateHz; step++) {
+    const time = from + step / rateHz;
+    avatar.apply(estimator.update({ ...frame, time }).pose, time);
+  }
+}
+
+function fromOutside(): PerspectiveCamera {
+  const camera = new PerspectiveCamera(38, width / height, 0.05, 20);
+  camera.position.set(-0.7, 1.25, -3.1);
+  camera.lookAt(0, 1.02, 0);
+  camera.layers.enable(thirdPersonOnlyLayer);
+  return camera;
+}
+
+/** What the wearer sees who looks down at the own hands. */
+function fromInside({ position }: TrackingFrame['head']): PerspectiveCamera {
+  const camera = new PerspectiveCamera(95, width / height, 0.02, 20);
+  camera.position.set(position.x, position.y, position.z);
+  camera.rotation.x = -0.75;
+  return camera;
+}
+
+function shoot(
+  sheet: CanvasRenderingContext2D,
+  scene: Scene,
+  camera: PerspectiveCamera,
+  at: number,
+  text: string,
+): void {
+  renderer.render(scene, camera);
+  sheet.drawImage(renderer.domElement, at * width, headline);
+  sheet.fillText(text, at * width + 8, headline + 20);
+}
+
+async function draw(sheet: CanvasRenderingContext2D, address: string, name: string): Promise<number> {
+  const bytes = await (await fetch(address)).arrayBuffer();
+  const began = performance.now();
+  const avatar = createAvatar(await loadAvatar(bytes, name, validateInWorker));
+  const loadMs = performance.now() - began;
+  const scene = createScene();
+  scene.add(avatar.object);
+  avatar.fitTo(defaultCalibration);
+  const outside = fromOutside();
+  for (const [index, { name: posture, frame }] of postures.entries()) {
+    avatar.setFirstPerson(false);
+    hold(avatar, frame, index * 10);
+    shoot(sheet, scene, outside, index, posture);
+    if (posture !== 'crouch') continue;
+    avatar.setFirstPerson(true);
+    shoot(sheet, scene, fromInside(frame.head), postures.length, 'own eyes, crouched');
+  }
+  avatar.dispose();
+  return loadMs;
+}
+
+window.makeSheet = async (address, name) => {
+  const canvas = document.createElement('canvas');
+  canvas.width = width * (postures.length + 1);
+  canvas.height = headline + height;
+  const sheet = canvas.getContext('2d');
+  if (!sheet) throw new Error('no 2D canvas');
+  sheet.fillStyle = '#ffffff';
+  sheet.fillRect(0, 0, canvas.width, canvas.height);
+  sheet.fillStyle = '#20242a';
+  sheet.font = '15px sans-serif';
+  let refused: string | null = null;
+  let loadMs = 0;
+  try {
+    loadMs = await draw(sheet, address, name);
+  } catch (error) {
+    refused = reasonOf(error);
+  }
+  sheet.fillText(refused ?? name, 8, 23, canvas.width - 16);
+  return { picture: canvas.toDataURL('image/png'), refused, loadMs };
+};
