@@ -14,6 +14,7 @@ import { BodyMeshes } from './body-meshes';
 import { Fingers } from './fingers';
 import { Legs } from './legs';
 import type { LoadedAvatar } from './load-avatar';
+import { OwnTrunk } from './own-trunk';
 import { type AvatarJoint, Rig } from './rig';
 
 /** A body on the screen. Poses are in the floor frame; so is `object`, which stays where it is put: at the floor's origin. */
@@ -47,6 +48,7 @@ class VrmAvatar implements Avatar {
   readonly object = new Group();
   private readonly vrm: LoadedAvatar['vrm'];
   private readonly rig: Rig;
+  private readonly trunk: OwnTrunk;
   private readonly legs: Legs;
   private readonly fingers: Fingers;
   private readonly meshes: BodyMeshes;
@@ -60,11 +62,11 @@ class VrmAvatar implements Avatar {
     this.vrm = vrm;
     this.object.name = 'avatar';
     this.object.add(vrm.scene);
-    vrm.humanoid.resetRawPose();
     vrm.humanoid.autoUpdateHumanBones = false;
     vrm.firstPerson?.setup();
     this.object.updateMatrixWorld(true);
     this.rig = new Rig(vrm);
+    this.trunk = new OwnTrunk(this.rig);
     this.legs = new Legs(this.rig);
     this.fingers = new Fingers(vrm);
     this.meshes = new BodyMeshes(vrm, this.rig.bones);
@@ -75,9 +77,9 @@ class VrmAvatar implements Avatar {
     this.skeleton = skeletonFromCalibration(calibration);
     const hipsPosition = this.skeleton.restOffsets.hips;
     const tPose = forwardKinematics(this.skeleton, { hipsPosition, localRotations: upright });
-    const headHeight = this.rig.rest('head')?.y ?? 1.5;
     // Rig to body, the same in all directions; limbs add their own stretch.
-    const scale = tPose.head.position.y / Math.max(headHeight, 0.1);
+    const scale = tPose.head.position.y / (this.rig.rest('head')?.y ?? 1.5);
+    this.trunk.fit(tPose, scale);
     this.rig.fit(tPose, this.legs.fit(tPose.hips.position.y, scale), scale);
   }
 
@@ -93,6 +95,7 @@ class VrmAvatar implements Avatar {
 
   private applyBody(body: UpperBodyPose, deltaSeconds: number): void {
     const joints = forwardKinematics(this.skeleton, body, this.joints);
+    this.trunk.apply(joints);
     for (let i = 0; i < jointNames.length; i++) {
       const name = jointNames[i]!;
       const { position, orientation } = joints[name];

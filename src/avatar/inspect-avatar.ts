@@ -68,6 +68,12 @@ function chunksOf(bytes: Uint8Array): { readonly json: string; readonly binary: 
   return { json, binary: bytes.subarray(at + 8, at + 8 + view.getUint32(at, true)) };
 }
 
+/** Binary FBX begins with these words, FBX as text with any. */
+const isFbx = (bytes: Uint8Array, name: string): boolean =>
+  new TextDecoder().decode(bytes.subarray(0, 18)) === 'Kaydara FBX Binary' || /\.fbx$/i.test(name);
+const fbxAdvice =
+  'is an FBX file, which this page does not read; Blender makes a GLB of it: File › Import › FBX, then File › Export › glTF 2.0 (.glb)';
+
 /** Every address in the file: each value that is called `uri`, at any depth, extensions included. */
 function urisIn(value: unknown): string[] {
   if (Array.isArray(value)) return value.flatMap(urisIn);
@@ -86,6 +92,7 @@ export function inspectAvatar(bytes: Uint8Array, name: string): void {
     if (!(has <= may)) throw new Error(`${name}: ${told(has)} ${what}; an avatar may have ${told(may)} at most`);
   };
   limit('MB', bytes.length / 2 ** 20, avatarLimits.megabytes);
+  if (isFbx(bytes, name)) throw new Error(`${name}: ${fbxAdvice}`);
   const chunks = chunksOf(bytes);
   if (!chunks) throw new Error(`${name}: no VRM or GLB file (it does not begin as one, or is cut short)`);
   limit('MB of description', chunks.json.length / 2 ** 20, mostJsonMegabytes);

@@ -23,8 +23,13 @@ interface RigBone {
   readonly restPosition: Vector3;
   /** The node's actual parent, which need not be a human bone, in the frame of the parent bone at rest (or of the rig). */
   readonly fromParentBone: Matrix4;
-  /** Stretch along the bone, in its own frame, and the uniform scale of the rig. */
+  /** What scales lie above the node in the file (centimetres, a mirror), in its own frame. */
+  readonly restScale: Matrix4;
+  /** Stretch along the bone, in its own frame, the uniform scale of the rig, and that of the file. */
   readonly stretch: Matrix4;
+  /** Where the far end lies, in its own frame: a unit vector; and how far [m] on the rig as scaled. */
+  readonly direction: Vector3;
+  ownLength: number;
   /** World matrix of this frame. */
   readonly world: Matrix4;
   /** Where it is drawn in this frame, floor frame [m]. */
@@ -70,6 +75,7 @@ const mostStretch = 3;
 const leastStretch = 0.3;
 
 const unitScale = new Vector3(1, 1, 1);
+const scaling = new Vector3();
 const position = new Vector3();
 const rotation = new Quaternion();
 const above = new Matrix4();
@@ -82,6 +88,8 @@ export class Rig {
   readonly joints: Partial<Record<AvatarJoint, Vec3>> = {};
   /** Constraints read positions and rotations; drawing needs the matrices alone. */
   private readonly constrained: boolean;
+  /** From the rig at rest to the body. */
+  private scale = 1;
 
   constructor(vrm: VRM) {
     this.bones = readRig(vrm);
@@ -103,28 +111,38 @@ export class Rig {
     legs: { readonly upper: number; readonly lower: number },
     scale: number,
   ): void {
-    for (const [name, { restPosition, restRotation, stretch }] of this.bones) {
+    this.scale = scale;
+    for (const [name, bone] of this.bones) {
+      const { restPosition, restRotation, direction } = bone;
       const end = farEnd[name];
       const endPosition = end && this.rest(end);
-      if (!endPosition) {
-        setStretch(stretch, unitY, 1, scale);
-        continue;
+      bone.ownLength = endPosition ? restPosition.distanceTo(endPosition) * scale : 0;
+      if (endPosition) {
+        direction
+          .subVectors(endPosition, restPosition)
+          .normalize()
+          .applyQuaternion(rotation.copy(restRotation).invert());
       }
-      const own = restPosition.distanceTo(endPosition) * scale;
       const wanted =
-        name in joints && end in joints
+        end && name in joints && end in joints
           ? distance(joints[name as JointName].position, joints[end as JointName].position)
           : name.endsWith('UpperLeg')
             ? legs.upper
             : name.endsWith('LowerLeg')
               ? legs.lower
-              : own;
+              : bone.ownLength;
       // The trunk's vertebrae are short and lie differently in every rig: stretched, they would tear; moved apart, they bend.
-      const fixed = trunkBones.has(name) || own <= 1e-4;
-      const factor = fixed ? 1 : Math.min(mostStretch, Math.max(leastStretch, wanted / own));
-      const direction = endPosition.clone().sub(restPosition).normalize();
-      setStretch(stretch, direction.applyQuaternion(restRotation.clone().invert()), factor, scale);
+      this.reach(name, trunkBones.has(name) ? bone.ownLength : wanted);
     }
+  }
+
+  /** Stretches a bone to this length [m] along itself, as far as skin bears it. */
+  reach(name: AvatarJoint, length: number): void {
+    const bone = this.bones.get(name);
+    if (!bone) return;
+    const { stretch, direction, ownLength, restScale } = bone;
+    const factor = ownLength <= 1e-4 ? 1 : Math.min(mostStretch, Math.max(leastStretch, length / ownLength));
+    setStretch(stretch, direction, factor, this.scale).multiply(restScale);
   }
 
   /**
@@ -163,10 +181,8 @@ export class Rig {
   }
 }
 
-const unitY = new Vector3(0, 1, 0);
-
 /** scale·(1 + (factor − 1)·d·dᵀ): longer along a direction only. */
-function setStretch(target: Matrix4, d: Vector3, factor: number, uniform: number): void {
+function setStretch(target: Matrix4, d: Vector3, factor: number, uniform: number): Matrix4 {
   const k = factor - 1;
   target.set(
     1 + k * d.x * d.x, k * d.x * d.y, k * d.x * d.z, 0,
@@ -174,7 +190,7 @@ function setStretch(target: Matrix4, d: Vector3, factor: number, uniform: number
     k * d.x * d.z, k * d.y * d.z, 1 + k * d.z * d.z, 0,
     0, 0, 0, 1,
   ); // biome-ignore format: a matrix
-  target.multiply(new Matrix4().makeScale(uniform, uniform, uniform));
+  return target.scale(scaling.setScalar(uniform));
 }
 
 function readRig(vrm: VRM): Map<AvatarJoint, RigBone> {
@@ -187,11 +203,19 @@ function readRig(vrm: VRM): Map<AvatarJoint, RigBone> {
     while (above && !nodes.has(above)) above = above.parent;
     const parent = (above && nodes.get(above)) ?? null;
     const actualParent = node.parent?.matrixWorld ?? new Matrix4();
+    const restRotation = node.getWorldQuaternion(new Quaternion());
     const target: RigBone = {
       node,
       parent,
-      restRotation: node.getWorldQuaternion(new Quaternion()),
+      restRotation,
       restPosition: node.getWorldPosition(new Vector3()),
+      restScale: new Matrix4()
+        .makeRotationFromQuaternion(restRotation)
+        .invert()
+        .multiply(node.matrixWorld)
+        .setPosition(0, 0, 0),
+      direction: new Vector3(0, 1, 0),
+      ownLength: 0,
       fromParentBone: parent ? parent.node.matrixWorld.clone().invert().multiply(actualParent) : actualParent.clone(),
       stretch: new Matrix4(),
       world: new Matrix4(),

@@ -23,9 +23,7 @@ export function sortByPart(
     return part === 'hips' ? hips : skinParts.indexOf(part);
   });
   const place = new Vector3();
-  const positions = geometry.getAttribute('position');
-  const height = (vertex: number): number =>
-    place.fromBufferAttribute(positions, vertex).applyMatrix4(mesh.matrixWorld).y;
+  const height = (vertex: number): number => mesh.getVertexPosition(vertex, place).applyMatrix4(mesh.matrixWorld).y;
   const vertexPart = (vertex: number): number => {
     const sums = [0, 0, 0, 0, 0];
     for (let slot = 0; slot < 4; slot++) {

@@ -2,7 +2,8 @@ import { validateBytes } from 'gltf-validator';
 
 /**
  * Faults that spoil at most the look of a surface and that exporters of avatars are known for: bounds rounded otherwise, normals
- * and weights a little off their length. They pass; so do extensions the validator does not know, as VRM's own.
+ * and weights a little off their length, a stride told where none need be (three.js reads it rightly). They pass; so do extensions the
+ * validator does not know, as VRM's own.
  */
 const pardoned = [
   'ACCESSOR_MIN_MISMATCH',
@@ -10,6 +11,8 @@ const pardoned = [
   'ACCESSOR_VECTOR3_NON_UNIT',
   'ACCESSOR_WEIGHTS_NON_NORMALIZED',
   'ACCESSOR_INVALID_SIGN',
+  'SKIN_IBM_ACCESSOR_WITH_BYTESTRIDE',
+  'ANIMATION_SAMPLER_ACCESSOR_WITH_BYTESTRIDE',
   'UNSUPPORTED_EXTENSION',
 ];
 const information = 2;

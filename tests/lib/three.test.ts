@@ -171,12 +171,12 @@ describe('an avatar', () => {
     vi.stubGlobal('self', globalThis);
   });
 
-  /** The mannequin as other programs write it: no VRM, its nodes called otherwise. */
+  /** The mannequin as other programs write it: no VRM, its nodes called as nothing else is. */
   const bones: Record<string, string> = {};
   const foreign = changed((json) => {
     for (const [bone, { node }] of Object.entries(json.extensions.VRMC_vrm?.humanoid.humanBones ?? {})) {
-      bones[bone] = `rig:${bone}`;
-      json.nodes[node]!.name = `rig:${bone}`;
+      bones[bone] = `part ${node}`;
+      json.nodes[node]!.name = `part ${node}`;
     }
     json.extensions = {};
     json.extensionsUsed = [];

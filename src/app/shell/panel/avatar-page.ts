@@ -61,11 +61,15 @@ function otherAvatars(actions: AvatarActions): HTMLElement {
     'section',
     {},
     element('h2', {}, 'Another one'),
-    element('p', { class: 'hint' }, 'Any VRM avatar (0.x or 1.0): drop it on the page, or'),
+    element(
+      'p',
+      { class: 'hint' },
+      'Any VRM (0.x or 1.0), or a humanoid GLB (Mixamo, Ready Player Me, Avaturn, VRoid, Unreal, Rigify, Character Creator): drop it on the page, or',
+    ),
     element(
       'div',
       { class: 'row' },
-      ...fileButton('Open VRM file', '.vrm,.glb', (file) => actions.openAvatarFile(file)),
+      ...fileButton('Open VRM or GLB', '.vrm,.glb,.fbx', (file) => actions.openAvatarFile(file)),
     ),
     form,
   );

@@ -1,0 +1,55 @@
+import { Matrix4, type Object3D, type SkinnedMesh } from 'three';
+
+/** A posed bone lies further than this from where its skin was bound to it [share of the body's size, and of a turn]. */
+const posed = 1e-3;
+
+/** Where each bone lay when its skin was bound to it, in one space for all skins. */
+function bindMatrices(scene: Object3D): Map<Object3D, Matrix4> {
+  const bound = new Map<Object3D, Matrix4>();
+  scene.traverse((node) => {
+    if (!('isSkinnedMesh' in node)) return;
+    const { bones, boneInverses } = (node as SkinnedMesh).skeleton;
+    const own = bones.map((bone, index) => [bone, boneInverses[index]?.clone().invert()] as const);
+    // Two skins may have been bound in two spaces; a bone they share tells from one to the other.
+    const shared = own.find(([bone, matrix]) => bound.has(bone) && matrix && matrix.determinant() !== 0);
+    const across = new Matrix4();
+    if (shared?.[1]) across.multiplyMatrices(bound.get(shared[0]) as Matrix4, shared[1].clone().invert());
+    for (const [bone, matrix] of own) if (matrix && !bound.has(bone)) bound.set(bone, matrix.premultiply(across));
+  });
+  return bound;
+}
+
+const difference = (a: Matrix4, b: Matrix4): number => {
+  let most = 0;
+  for (const [index, value] of a.elements.entries()) most = Math.max(most, Math.abs(value - (b.elements[index] ?? 0)));
+  return most;
+};
+
+/**
+ * Puts the bones of a scene back to where they were when the skin was bound to them, where the file shows another pose (the first picture of
+ * an animation): the bind pose is a T or an A, the other can be any. A file whose bones stand as bound is left as it is.
+ */
+export function restoreBindPose(scene: Object3D): void {
+  scene.updateMatrixWorld(true);
+  const bound = bindMatrices(scene);
+  // From the space of the binding to the scene: the same for all bones of a body that stands as bound.
+  const spaces = [...bound].map(([bone, matrix]) => bone.matrixWorld.clone().multiply(matrix.clone().invert()));
+  const [first] = spaces;
+  if (!first) return;
+  const size = Math.max(1e-9, ...first.elements.slice(0, 12).map(Math.abs));
+  if (
+    spaces.every(
+      (space) => difference(space, first) <= posed * Math.max(size, ...first.elements.slice(12, 15).map(Math.abs)),
+    )
+  )
+    return;
+  scene.traverse((node) => {
+    const matrix = bound.get(node);
+    if (matrix?.elements.every(Number.isFinite)) {
+      const parent = node.parent?.matrixWorld ?? new Matrix4();
+      node.matrix.multiplyMatrices(parent.clone().invert(), matrix);
+      node.matrix.decompose(node.position, node.quaternion, node.scale);
+    }
+    node.updateWorldMatrix(false, false);
+  });
+}

@@ -1,0 +1,48 @@
+import {
+  BufferAttribute,
+  type BufferGeometry,
+  type InterleavedBufferAttribute,
+  type Mesh,
+  type Object3D,
+  type TypedArray,
+} from 'three';
+
+type Attribute = BufferAttribute | InterleavedBufferAttribute;
+
+/** The same numbers in an array of their own; several attributes of one buffer stay several. */
+function unravelled(attribute: InterleavedBufferAttribute): BufferAttribute {
+  const { count, itemSize, normalized, offset } = attribute;
+  const { array, stride } = attribute.data;
+  const plain = new (array.constructor as new (length: number) => TypedArray)(count * itemSize);
+  for (let vertex = 0; vertex < count; vertex++) {
+    const from = vertex * stride + offset;
+    for (let item = 0; item < itemSize; item++) plain[vertex * itemSize + item] = array[from + item] as number;
+  }
+  return new BufferAttribute(plain, itemSize, normalized);
+}
+
+/**
+ * Gives each attribute of a scene's meshes an array of its own, and each geometry an index: files may interleave attributes in one buffer and
+ * leave indices out, and what cuts meshes into parts reads plain arrays. Meshes that shared an attribute still do.
+ */
+export function makeGeometryPlain(scene: Object3D): void {
+  const known = new Map<Attribute, BufferAttribute>();
+  const plain = (attribute: Attribute): BufferAttribute => {
+    if (!('isInterleavedBufferAttribute' in attribute)) return attribute;
+    const made = known.get(attribute) ?? unravelled(attribute);
+    known.set(attribute, made);
+    return made;
+  };
+  scene.traverse((node) => {
+    if (!('isMesh' in node)) return;
+    const geometry = (node as Mesh).geometry as BufferGeometry;
+    for (const [name, attribute] of Object.entries(geometry.attributes)) geometry.setAttribute(name, plain(attribute));
+    for (const [name, targets] of Object.entries(geometry.morphAttributes)) {
+      geometry.morphAttributes[name as 'position'] = (targets as Attribute[]).map(plain);
+    }
+    if (!geometry.index) {
+      const { count } = geometry.getAttribute('position');
+      geometry.setIndex(Array.from({ length: count }, (_, index) => index));
+    }
+  });
+}

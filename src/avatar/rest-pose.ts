@@ -1,0 +1,238 @@
+import type { VRM } from '@pixiv/three-vrm';
+import { Matrix4, type Object3D, Quaternion, Vector3 } from 'three';
+import type { BoneName } from './bone-names';
+import { boneNode } from './humanoid';
+
+// From here on a body at rest faces +Z, as a VRM does: its left is +X.
+const left = new Vector3(1, 0, 0);
+const right = new Vector3(-1, 0, 0);
+const up = new Vector3(0, 1, 0);
+const down = new Vector3(0, -1, 0);
+
+/** A body leans or slouches less than this when it rests [rad]: more is a scene that was turned. */
+const mostLean = 0.6;
+/** Bodies that are smaller or larger [m] than any are taken for bodies in another unit, and made as tall as this one. */
+const smallest = 0.4;
+const largest = 4;
+const usual = 1.6;
+/** The ankle above the sole [share of the height to the head joint]. */
+const ankleShare = 0.065;
+/** From this on a limb counts as not straight [rad]. */
+const armBend = 0.03;
+const handBend = 0.1;
+const legBend = 0.05;
+const handRoll = 0.15;
+
+const at = (node: Object3D): Vector3 => new Vector3().setFromMatrixPosition(node.matrixWorld);
+
+/** All rotations that take axes to axes. */
+function axisRotations(): Matrix4[] {
+  const units = [left, right, up, down, new Vector3(0, 0, 1), new Vector3(0, 0, -1)];
+  return units.flatMap((x) =>
+    units.filter((y) => x.dot(y) === 0).map((y) => new Matrix4().makeBasis(x, y, x.clone().cross(y)).transpose()),
+  );
+}
+
+/** How far two rotations lie apart [rad]. */
+const between = (a: Matrix4, b: Matrix4): number =>
+  new Quaternion().setFromRotationMatrix(a).angleTo(new Quaternion().setFromRotationMatrix(b));
+
+/** The rotation that stands a body up and turns it to +Z: by right angles where that will do, because bodies lean a little. */
+function standing(hips: Vector3, head: Vector3, toLeft: Vector3): Matrix4 {
+  const y = head.clone().sub(hips).normalize();
+  const x = toLeft.clone().addScaledVector(y, -toLeft.dot(y)).normalize();
+  const exact = new Matrix4().makeBasis(x, y, x.clone().cross(y)).transpose();
+  const [nearest = exact] = axisRotations().sort((a, b) => between(a, exact) - between(b, exact));
+  return between(nearest, exact) < mostLean ? nearest : exact;
+}
+
+/** A body's bones while its rest is settled: turned and moved in the world, whatever hangs between them. */
+class Resting {
+  constructor(
+    readonly vrm: VRM,
+    readonly name: string,
+  ) {}
+
+  /** null: the body has no such bone. */
+  node(bone: BoneName): Object3D | null {
+    return boneNode(this.vrm, bone);
+  }
+
+  at(bone: BoneName): Vector3 | null {
+    const node = this.node(bone);
+    return node && at(node);
+  }
+
+  /** Turns a bone, and what hangs from it, about its own joint; bones of the list that hang elsewhere move along. */
+  turn(bones: readonly BoneName[], rotation: Quaternion): void {
+    const nodes = bones.flatMap((bone) => this.node(bone) ?? []);
+    const [pivot] = nodes;
+    if (!pivot) return;
+    const centre = at(pivot);
+    const move = new Matrix4()
+      .makeTranslation(centre)
+      .multiply(new Matrix4().makeRotationFromQuaternion(rotation))
+      .multiply(new Matrix4().makeTranslation(centre.negate()));
+    const wanted = nodes.map((node) => move.clone().multiply(node.matrixWorld));
+    for (const [index, node] of nodes.entries()) setWorld(node, wanted[index] as Matrix4);
+  }
+
+  complain(what: string): never {
+    throw new Error(`${this.name}: ${what}`);
+  }
+}
+
+function setWorld(node: Object3D, world: Matrix4): void {
+  const parent = node.parent?.matrixWorld ?? new Matrix4();
+  node.matrix.multiplyMatrices(parent.clone().invert(), world);
+  node.matrix.decompose(node.position, node.quaternion, node.scale);
+  node.updateWorldMatrix(false, true);
+}
+
+const upperBody = ['hips', 'spine', 'head', 'leftUpperArm', 'leftLowerArm', 'leftHand'] as const;
+
+function demandFinite(body: Resting): void {
+  for (const bone of [...upperBody, 'rightUpperArm', 'rightLowerArm', 'rightHand'] as const) {
+    const node = body.node(bone);
+    if (node && !node.matrixWorld.elements.every(Number.isFinite))
+      body.complain(`the joint of ${bone} lies nowhere (${at(node).toArray().join(', ')})`);
+  }
+}
+
+/** Throws where joints lie as no body's do: on top of one another, or an arm longer than the body. */
+function demandBody(body: Resting): void {
+  const head = body.at('head')!;
+  const hips = body.at('hips')!;
+  const trunk = head.distanceTo(hips);
+  const limbs: readonly (readonly [BoneName, BoneName])[] = [
+    ['leftUpperArm', 'leftLowerArm'],
+    ['leftLowerArm', 'leftHand'],
+    ['rightUpperArm', 'rightLowerArm'],
+    ['rightLowerArm', 'rightHand'],
+  ];
+  for (const [from, to] of limbs) {
+    const share = body.at(from)!.distanceTo(body.at(to)!) / trunk;
+    if (share > 0.02 && share < 5) continue;
+    const part = `${Number(share.toPrecision(2))} times as far from ${from} as the head from the hips`;
+    body.complain(`its joints are no body’s: ${to} lies ${part}`);
+  }
+}
+
+/** Whether the skin is drawn as in a mirror, by a scale below zero. */
+function mirrored(body: Resting): boolean {
+  return body.node('hips')!.matrixWorld.determinant() < 0;
+}
+
+/** Moves, turns and scales the whole scene so that the body stands on the floor, faces +Z, and is of a body's size. */
+function stand(body: Resting): void {
+  const { scene } = body.vrm;
+  const apply = (matrix: Matrix4) => setWorld(scene, matrix.multiply(scene.matrixWorld));
+  if (mirrored(body)) apply(new Matrix4().makeScale(-1, 1, 1));
+  const hips = body.at('hips')!;
+  const head = body.at('head')!;
+  const toLeft = body.at('leftUpperArm')!.sub(body.at('rightUpperArm')!);
+  const trunk = head.distanceTo(hips);
+  if (!(trunk > 0) || !(toLeft.length() > trunk * 0.01))
+    body.complain('its joints lie all in one place: is the scene scaled to nothing?');
+  const turned = standing(hips, head, toLeft);
+  if (between(turned, new Matrix4()) > 1e-6) apply(turned);
+  const size = body.at('head')!.y - lowest(body);
+  if (!(size > smallest && size < largest)) apply(new Matrix4().makeScale(usual / size, usual / size, usual / size));
+}
+
+/** The height [m] of the soles, as far as bones tell: a body without legs has its floor where one with legs would. */
+function lowest(body: Resting): number {
+  const head = body.at('head')!.y;
+  const feet = [body.at('leftFoot'), body.at('rightFoot')].flatMap((foot) => foot?.y ?? []);
+  if (feet.length === 0) return head - 2.6 * (head - body.at('hips')!.y);
+  const ankle = Math.min(...feet);
+  return ankle - (head - ankle) * ankleShare;
+}
+
+/** Puts the soles on the floor where they are off it by more than shoes are thick, and the pelvis over the middle of it. */
+function putOnFloor(body: Resting): void {
+  const floor = lowest(body);
+  const hips = body.at('hips')!;
+  const near = (body.at('head')!.y - floor) * 0.06;
+  const move = new Vector3(hips.x, Math.abs(floor) < near ? 0 : floor, Math.abs(hips.z) < near ? 0 : hips.z).negate();
+  const { scene } = body.vrm;
+  if (move.length() > 1e-4) setWorld(scene, new Matrix4().makeTranslation(move).multiply(scene.matrixWorld));
+}
+
+const sideBones = (side: 'left' | 'right', names: readonly string[]): BoneName[] =>
+  names.map((name) => `${side}${name}` as BoneName);
+const handBones = (['Thumb', 'Index', 'Middle', 'Ring', 'Little'] as const).flatMap((finger) =>
+  (finger === 'Thumb' ? ['Metacarpal', 'Proximal', 'Distal'] : ['Proximal', 'Intermediate', 'Distal']).map(
+    (phalanx) => finger + phalanx,
+  ),
+);
+
+/** Turns the first of `bones` so that it points along `way`, if it is off by more than `least` [rad]. */
+function point(body: Resting, bones: readonly BoneName[], to: Vector3 | null, way: Vector3, least: number): void {
+  const from = body.at(bones[0]!);
+  if (!from || !to) return;
+  const direction = to.clone().sub(from).normalize();
+  if (!(direction.angleTo(way) > least)) return;
+  body.turn(bones, new Quaternion().setFromUnitVectors(direction, way));
+}
+
+/** The middle of where the fingers begin; null: the hand has none. */
+function knuckles(body: Resting, side: 'left' | 'right'): Vector3 | null {
+  const roots = sideBones(side, ['IndexProximal', 'MiddleProximal', 'RingProximal', 'LittleProximal']);
+  const found = roots.flatMap((root) => body.at(root) ?? []);
+  if (found.length === 0) return null;
+  return found.reduce((sum, root) => sum.add(root), new Vector3()).divideScalar(found.length);
+}
+
+/** Straight out to the side, palms down: what every rotation of a pose is counted from. */
+function straightenArm(body: Resting, side: 'left' | 'right'): void {
+  const out = side === 'left' ? left : right;
+  const hand = sideBones(side, ['Hand', ...handBones]);
+  const lowerArm = sideBones(side, ['LowerArm']).concat(hand);
+  const upperArm = sideBones(side, ['UpperArm']).concat(lowerArm);
+  point(body, upperArm, body.at(lowerArm[0]!), out, armBend);
+  point(body, lowerArm, body.at(hand[0]!), out, armBend);
+  point(body, hand, knuckles(body, side), out, handBend);
+  const index = body.at(`${side}IndexProximal`);
+  const little = body.at(`${side}LittleProximal`) ?? body.at(`${side}RingProximal`);
+  if (!index || !little) return;
+  // Palm down, the index finger lies ahead of the others.
+  const across = index.sub(little);
+  const roll = Math.atan2(across.y, across.z);
+  if (Math.abs(roll) > handRoll) body.turn(hand, new Quaternion().setFromAxisAngle(left, roll));
+}
+
+/** Straight down, the feet as they stood. */
+function straightenLeg(body: Resting, side: 'left' | 'right'): void {
+  const foot = sideBones(side, ['Foot', 'Toes']);
+  const lowerLeg = sideBones(side, ['LowerLeg']).concat(foot);
+  const upperLeg = sideBones(side, ['UpperLeg']).concat(lowerLeg);
+  const node = body.node(foot[0]!);
+  const stood = node?.getWorldQuaternion(new Quaternion());
+  point(body, upperLeg, body.at(lowerLeg[0]!), down, legBend);
+  point(body, lowerLeg, body.at(foot[0]!), down, legBend);
+  if (!node || !stood) return;
+  const back = stood.multiply(node.getWorldQuaternion(new Quaternion()).invert());
+  if (2 * Math.acos(Math.min(1, Math.abs(back.w))) > 1e-3) body.turn(foot, back);
+}
+
+/**
+ * Brings a body from a file to the rest that a rig is read from: upright on the floor, of a body's size, facing +Z, arms straight out to the
+ * sides with palms down, legs straight down; whatever its scene was scaled and turned by. Throws a sentence that names the file where the
+ * joints are no body's.
+ */
+export function settleRest(vrm: VRM, name: string): void {
+  const body = new Resting(vrm, name);
+  vrm.scene.updateMatrixWorld(true);
+  demandFinite(body);
+  stand(body);
+  demandFinite(body);
+  demandBody(body);
+  for (const side of ['left', 'right'] as const) {
+    straightenArm(body, side);
+    straightenLeg(body, side);
+  }
+  putOnFloor(body);
+  vrm.nodeConstraintManager?.setInitState();
+  vrm.springBoneManager?.reset();
+}
