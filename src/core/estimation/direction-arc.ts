@@ -14,9 +14,7 @@ import { addScaled, dot, lerp, type MutableVec3, normalise, reject, type Vec3, v
 export interface DirectionArc {
   readonly first: MutableQuat;
   readonly second: MutableQuat;
-  /** Of the whole path [rad]. */
-  angle: number;
-  /** The first leg's share of it. */
+  /** The first leg's share of the whole path. */
   share: number;
   /** The direction by whose way the path leads, unit; a path that is not roundabout leads straight to its end. */
   readonly via: MutableVec3;
@@ -26,7 +24,6 @@ export interface DirectionArc {
 export const makeDirectionArc = (): DirectionArc => ({
   first: quat(0, 0, 0, 1),
   second: quat(0, 0, 0, 1),
-  angle: Number.NaN,
   share: Number.NaN,
   via: vec3(0, 0, 0),
   roundabout: false,
@@ -56,7 +53,6 @@ export function aimArc(arc: DirectionArc, from: Vec3, to: Vec3): DirectionArc {
   const { first, second, via, roundabout } = arc;
   const a = angleBetween(identity, rotationBetween(from, roundabout ? via : to, first));
   const b = roundabout ? angleBetween(identity, rotationBetween(via, to, second)) : 0;
-  arc.angle = a + b;
   arc.share = a + b > 0 ? a / (a + b) : 1;
   return arc;
 }
