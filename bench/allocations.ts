@@ -55,6 +55,8 @@ const samplingInterval = 1024;
 const sampledFrames = 720;
 /** Before them: what runs in every frame is compiled by then, what is loaded is loaded. A headset draws them in 27 seconds. */
 const warmUpFrames = 1920;
+/** A match of the ball game is over after 35 seconds: all balls are thrown. */
+const shortWarmUpFrames = 960;
 /** The headset's whose frames they are: rooms and players tick by the clock. */
 const rateHz = 72;
 const longestWaitMs = 300_000;
@@ -153,10 +155,15 @@ async function sample(session: CDPSession, sourceOf: SourceOf, during: () => Pro
 
 /** What is played on the real page, and what is pressed before frames are sampled. */
 const realPages = {
-  mirror: { address: '?actor=on&seed=7', plays: false, press: null },
+  mirror: { address: '?actor=on&seed=7', plays: false, press: null, warmUp: warmUpFrames },
   // A round has fewer frames than warm up and are sampled.
-  archery: { address: '?actor=on&play=archery&seed=7&seconds=600', plays: true, press: 'New round' },
-  ball3: { address: '?actor=on&play=ball&seed=7&seconds=600', plays: true, press: null },
+  archery: {
+    address: '?actor=on&play=archery&seed=7&seconds=600',
+    plays: true,
+    press: 'New round',
+    warmUp: warmUpFrames,
+  },
+  ball3: { address: '?actor=on&play=ball&seed=7&seconds=600', plays: true, press: null, warmUp: shortWarmUpFrames },
 } as const;
 type RealPage = (typeof realPages)[keyof typeof realPages];
 
@@ -194,16 +201,17 @@ async function driveFrames(page: Page): Promise<void> {
 async function sampleRealPage(
   page: Page,
   session: CDPSession,
-  { plays, press }: RealPage,
+  { address, plays, press, warmUp }: RealPage,
   sourceOf: SourceOf,
 ): Promise<Sample> {
   await page.waitForFunction(() => window.threepoint?.probe().ready, null, { timeout: 120_000, polling: 500 });
   await driveFrames(page);
   for (let second = 0; plays && (await phaseOf(page)) !== 'running'; second++) {
-    if (second === longestStart) throw new Error(`the game is ${await phaseOf(page)} after ${second} s, not running`);
+    if (second === longestStart)
+      throw new Error(`${address}: the game is ${await phaseOf(page)} after ${second} s, not running`);
     await runPage(page, rateHz);
   }
-  await runPage(page, warmUpFrames);
+  await runPage(page, warmUp);
   if (press) {
     // Not by a click of the mouse: that waits for frames, and time is held.
     await page.evaluate((press) => {
@@ -216,7 +224,7 @@ async function sampleRealPage(
   }
   const sampled = await sample(session, sourceOf, () => runPage(page, sampledFrames));
   if (plays && (await phaseOf(page)) !== 'running')
-    throw new Error(`the game was ${await phaseOf(page)} before its frames were sampled`);
+    throw new Error(`${address}: the game was ${await phaseOf(page)} before all its frames were sampled`);
   return sampled;
 }
 
