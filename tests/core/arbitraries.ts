@@ -13,7 +13,7 @@ export const evenly = (min: number, max: number): fc.Arbitrary<number> =>
   fc.integer({ min: 0, max: 2 ** 30 }).map((part) => min + (max - min) * (part / 2 ** 30));
 
 export const vector = (size: number): fc.Arbitrary<Vec3> =>
-  fc.tuple(number(-size, size), number(-size, size), number(-size, size)).map(([x, y, z]) => vec3(x, y, z));
+  fc.tuple(evenly(-size, size), evenly(-size, size), evenly(-size, size)).map(([x, y, z]) => vec3(x, y, z));
 
 /** Directions of length 1, the axes among them. */
 export const direction: fc.Arbitrary<Vec3> = fc.oneof(
@@ -25,7 +25,7 @@ export const direction: fc.Arbitrary<Vec3> = fc.oneof(
 export const rotation: fc.Arbitrary<Quat> = fc
   .tuple(
     direction,
-    fc.oneof(number(-Math.PI, Math.PI), fc.constantFrom(0, Math.PI / 2, Math.PI, -Math.PI / 2, 1e-9)),
+    fc.oneof(evenly(-Math.PI, Math.PI), fc.constantFrom(0, Math.PI / 2, Math.PI, -Math.PI / 2, 1e-9)),
     fc.boolean(),
   )
   .map(([axis, angle, flipped]) => {
@@ -35,9 +35,9 @@ export const rotation: fc.Arbitrary<Quat> = fc
 
 /** Rotations near to none: at most `angle` [rad] about any axis. */
 export const smallRotation = (angle: number): fc.Arbitrary<Quat> =>
-  fc.tuple(direction, number(-angle, angle)).map(([axis, turn]) => fromAxisAngle(axis, turn));
+  fc.tuple(direction, evenly(-angle, angle)).map(([axis, turn]) => fromAxisAngle(axis, turn));
 
 /** Where and which way round a person stands: properties never start at the origin facing −Z. */
-export const standpoint = fc.record({ x: number(-3, 3), z: number(-3, 3), yaw: number(-Math.PI, Math.PI) });
+export const standpoint = fc.record({ x: evenly(-3, 3), z: evenly(-3, 3), yaw: evenly(-Math.PI, Math.PI) });
 
 export const composed = (...rotations: Quat[]): Quat => normaliseQuat(rotations.reduce((a, b) => multiply(a, b)));

@@ -5,10 +5,10 @@ import { jointNames, parentOf } from '../../../src/core/body/joints';
 import { armLength, skeletonFromCalibration } from '../../../src/core/body/skeleton';
 import { fromAxisAngle, identity, type Quat } from '../../../src/core/math/quat';
 import { add, distance, length, up, vec3 } from '../../../src/core/math/vec3';
-import { number, rotation, seed, vector } from '../arbitraries';
+import { evenly, rotation, seed, vector } from '../arbitraries';
 
 const body = fc
-  .tuple(number(0.95, 2.15), number(0.75, 1.1))
+  .tuple(evenly(0.95, 2.15), evenly(0.75, 1.1))
   .map(([eyeHeight, ratio]) => ({ eyeHeight, armSpan: eyeHeight * ratio }));
 
 const pose = (rotationOf: (joint: string) => Quat) =>

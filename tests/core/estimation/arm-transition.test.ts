@@ -23,7 +23,7 @@ import {
   type Vec3,
   vec3,
 } from '../../../src/core/math/vec3';
-import { number, seed } from '../arbitraries';
+import { evenly, seed } from '../arbitraries';
 
 const bones: LimbBones = { upper: 0.28, lower: 0.26 };
 /** Where an arm passes that swings all the way round: to the right and ahead. */
@@ -32,7 +32,7 @@ const outside = normalise(vec3(1, -0.2, -1));
 const fastest = 2.25;
 
 const direction = fc
-  .record({ x: number(-1, 1), y: number(-1, 1), z: number(-1, 1) })
+  .record({ x: evenly(-1, 1), y: evenly(-1, 1), z: evenly(-1, 1) })
   .filter((v) => length(v) > 0.1)
   .map((v) => normalise(v as Vec3));
 const arm = fc.record({ upperArm: direction, forearm: direction }).map(({ upperArm, forearm }): ArmDirections => {
@@ -145,7 +145,7 @@ describe('an arm whose hand has jumped', () => {
 
   test('ends on a goal that moves meanwhile, without a step', () => {
     fc.assert(
-      fc.property(arm, arm, number(-2, 2), (from, goal, turning) => {
+      fc.property(arm, arm, evenly(-2, 2), (from, goal, turning) => {
         const goalAt = (time: number) => turned(turning * time, goal);
         const { arms, duration } = drawn(from, goalAt, 60, 2.5);
         expect(distance(wristOf(arms.at(-1)!), wristOf(goalAt((arms.length - 1) / 60)))).toBeLessThan(1e-9);

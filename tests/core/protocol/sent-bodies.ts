@@ -9,12 +9,12 @@ import { up, vec3 } from '../../../src/core/math/vec3';
 import type { FingerCurl, PosePacket } from '../../../src/core/protocol/pose-packet';
 import { actorFrame } from '../../../src/core/tracking/actor-motion';
 import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
-import { number, rotation, standpoint, vector } from '../arbitraries';
+import { evenly, rotation, standpoint, vector } from '../arbitraries';
 import { show } from '../estimation/drawn';
 import { movingPerson, transformFrame, withHand } from '../estimation/moving-person';
 
 export const calibrationOf = fc
-  .tuple(number(0.95, 2.1), number(0.82, 1.05))
+  .tuple(evenly(0.95, 2.1), evenly(0.82, 1.05))
   .map(([eyeHeight, ratio]): Calibration => ({ eyeHeight, armSpan: eyeHeight * ratio }));
 
 /** What happens to a hand on the way to the frame that is sent. */
@@ -27,7 +27,7 @@ const rate = 1 / 60;
 const framesBefore = 18;
 
 const curl = fc.option(
-  fc.tuple(number(0, 1), number(0, 1), number(0, 1), number(0, 1), number(0, 1)) as fc.Arbitrary<FingerCurl>,
+  fc.tuple(evenly(0, 1), evenly(0, 1), evenly(0, 1), evenly(0, 1), evenly(0, 1)) as fc.Arbitrary<FingerCurl>,
   { nil: null },
 );
 
@@ -37,13 +37,13 @@ export const senders = fc.record({
   motion: fc.integer({ min: 1 }),
   actor: fc.boolean(),
   standpoint,
-  start: number(0, 100),
+  start: evenly(0, 100),
   fates: fc.record({ left: fate, right: fate }),
   away: vector(0.9),
   turned: rotation,
   jump: fc.boolean(),
   headEmulated: fc.boolean(),
-  grips: fc.record({ left: number(0, 1), right: number(0, 1) }),
+  grips: fc.record({ left: evenly(0, 1), right: evenly(0, 1) }),
   curls: fc.record({ left: curl, right: curl }),
 });
 

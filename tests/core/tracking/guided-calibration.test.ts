@@ -13,7 +13,7 @@ import {
   stepGuidedCalibration,
 } from '../../../src/core/tracking/guided-calibration';
 import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
-import { number, seed, standpoint } from '../arbitraries';
+import { evenly, seed, standpoint } from '../arbitraries';
 
 const pose = (position: Vec3, orientation: Quat = identity): TrackedPose => ({
   position,
@@ -67,7 +67,7 @@ const refused = (state: GuidedCalibration): string => {
 describe('the guided calibration', () => {
   test.each(['forward', 'sideways'] as const)('finds height and span of who stretches both arms %s', (direction) => {
     const bodies = fc
-      .tuple(number(1, 2.1), number(0.88, 1.02))
+      .tuple(evenly(1, 2.1), evenly(0.88, 1.02))
       .map(([eyeHeight, ratio]) => ({ eyeHeight, armSpan: eyeHeight * ratio }));
     fc.assert(
       fc.property(bodies, standpoint, (calibration, { x, z, yaw }) => {

@@ -11,7 +11,7 @@ import { angleBetween, fromAxisAngle, rotate } from '../../../../src/core/math/q
 import { nextRandom, type RandomState } from '../../../../src/core/math/random';
 import type { Side } from '../../../../src/core/math/side';
 import { add, distance, length, scale, subtract, up, vec3 } from '../../../../src/core/math/vec3';
-import { number, seed } from '../../arbitraries';
+import { evenly, seed } from '../../arbitraries';
 import { playRound, steady } from './playing';
 
 const rates = [72, 80, 90, 120] as const;
@@ -35,13 +35,13 @@ describe('the built-in archer', () => {
       fc.property(
         fc.record({
           bowSide: fc.constantFrom<Side>('left', 'right'),
-          eyeHeight: number(1.1, 1.9),
+          eyeHeight: evenly(1.1, 1.9),
           // A seated archer has the arms of a taller person.
           seated: fc.boolean(),
           button: fc.constantFrom<Button>('trigger', 'grip', 'pinch'),
         }),
         fc.integer(),
-        fc.oneof(fc.constantFrom(...rates), number(45, 144)),
+        fc.oneof(fc.constantFrom(...rates), evenly(45, 144)),
         ({ seated, ...standing }, matchSeed, rate) => {
           const archer: ArcherBody = seated
             ? { ...standing, eyeHeight: standing.eyeHeight * 0.72, armLength: 0.36 * standing.eyeHeight }

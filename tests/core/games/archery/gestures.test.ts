@@ -23,7 +23,7 @@ import {
   up,
   vec3,
 } from '../../../../src/core/math/vec3';
-import { number, rotation, seed, vector } from '../../arbitraries';
+import { evenly, rotation, seed, vector } from '../../arbitraries';
 import { bowAt, bowman, posed } from './bowman';
 
 const sides: readonly Side[] = ['left', 'right'];
@@ -369,7 +369,7 @@ describe('the aim', () => {
 describe('hands', () => {
   test('mirrored archers shoot mirrored arrows', () => {
     fc.assert(
-      fc.property(vector(0.4), number(0.3, 0.65), number(-0.12, 0.12), (aside, draw, off) => {
+      fc.property(vector(0.4), evenly(0.3, 0.65), evenly(-0.12, 0.12), (aside, draw, off) => {
         const shots = sides.map((bowSide) => {
           const mirror = bowSide === 'left' ? 1 : -1;
           const direction = normalise(vec3(mirror * aside.x, aside.y, -1));
@@ -523,19 +523,19 @@ describe('one hand', () => {
 describe('any hands at all', () => {
   const anyHand = fc.option(
     fc.record({
-      position: fc.record({ x: number(-0.6, 0.6), y: number(0.9, 1.7), z: number(-0.9, 0.3) }),
+      position: fc.record({ x: evenly(-0.6, 0.6), y: evenly(0.9, 1.7), z: evenly(-0.9, 0.3) }),
       orientation: rotation,
       tracking: fc.constantFrom('tracked' as const, 'tracked' as const, 'emulated' as const),
     }),
     { nil: null },
   );
-  const pressure = fc.oneof(fc.constantFrom(0, 1), number(0, 1));
+  const pressure = fc.oneof(fc.constantFrom(0, 1), evenly(0, 1));
   const pressures = fc.record({ trigger: pressure, grip: fc.constant<number>(0), pinch: fc.constant<number>(0) });
   /** Mostly an archer who nocks, draws and lets go in some order, with everything that can go wrong in between. */
   const moment = fc.record({
-    seconds: fc.oneof({ weight: 8, arbitrary: number(0.005, 0.03) }, { weight: 1, arbitrary: number(-0.1, 1) }),
+    seconds: fc.oneof({ weight: 8, arbitrary: evenly(0.005, 0.03) }, { weight: 1, arbitrary: evenly(-0.1, 1) }),
     frames: fc.integer({ min: 1, max: 8 }),
-    draw: fc.oneof(fc.constantFrom(0, 0.02, 0.5), number(-0.3, 0.9)),
+    draw: fc.oneof(fc.constantFrom(0, 0.02, 0.5), evenly(-0.3, 0.9)),
     wild: fc.oneof(
       { weight: 12, arbitrary: fc.constant(null) },
       { weight: 1, arbitrary: fc.record({ leftHand: anyHand, rightHand: anyHand }) },
@@ -560,7 +560,7 @@ describe('any hands at all', () => {
     .record({
       side: fc.constantFrom<Side>('left', 'right'),
       oneHanded: fc.constantFrom(false, false, true),
-      draw: number(0.1, 0.8),
+      draw: evenly(0.1, 0.8),
       chance: fc.array(fc.tuple(fc.integer({ min: 0, max: 3 }), moment), { maxLength: 3 }),
     })
     .map(({ side, oneHanded, draw, chance }): Moment[] => {

@@ -30,7 +30,7 @@ import {
   type Vec3,
   vec3,
 } from '../../../../src/core/math/vec3';
-import { number, seed } from '../../arbitraries';
+import { evenly, seed } from '../../arbitraries';
 
 const { tickSeconds } = archeryRules;
 
@@ -114,7 +114,7 @@ describe('the range', () => {
 
   test('shows the same picture to seated eyes', () => {
     fc.assert(
-      fc.property(fc.integer(), number(1, 2.2), number(1, 2.2), (matchSeed, a, b) => {
+      fc.property(fc.integer(), evenly(1, 2.2), evenly(1, 2.2), (matchSeed, a, b) => {
         const elevations = (eyeHeight: number) =>
           start({ eyeHeight }, matchSeed).targets.map(({ centre, distance: far }) => (centre.y - eyeHeight) / far);
         elevations(a).forEach((elevation, i) => {
@@ -133,10 +133,10 @@ describe('the range', () => {
     fc.assert(
       fc.property(
         fc.integer(),
-        number(-zone.width / 2, zone.width / 2),
-        number(-zone.depth / 2, zone.depth / 2),
-        number(1, 2),
-        number(0.7, 1.1),
+        evenly(-zone.width / 2, zone.width / 2),
+        evenly(-zone.depth / 2, zone.depth / 2),
+        evenly(1, 2),
+        evenly(0.7, 1.1),
         (matchSeed, x, z, eyeHeight, stoop) => {
           const eyes = vec3(x, eyeHeight * stoop, z);
           const seen = start({ eyeHeight }, matchSeed).targets.map(({ centre, radius }) => {
@@ -448,10 +448,10 @@ const playing = fc.array(
   fc.record({
     idle: fc.integer({ min: 20, max: 200 }),
     target: fc.integer({ min: 0, max: 3 }),
-    miss: fc.record({ x: number(-0.7, 0.7), y: number(-0.7, 0.7), z: fc.constant(0) }),
-    draw: number(0.3, maximumDraw),
-    delay: number(0, tickSeconds * 0.999),
-    head: fc.record({ x: number(-0.7, 0.7), y: number(1.2, 1.8), z: number(-0.6, 0.6) }),
+    miss: fc.record({ x: evenly(-0.7, 0.7), y: evenly(-0.7, 0.7), z: fc.constant(0) }),
+    draw: evenly(0.3, maximumDraw),
+    delay: evenly(0, tickSeconds * 0.999),
+    head: fc.record({ x: evenly(-0.7, 0.7), y: evenly(1.2, 1.8), z: evenly(-0.6, 0.6) }),
   }),
   { minLength: 1, maxLength: 8 },
 );
@@ -459,7 +459,7 @@ const playing = fc.array(
 describe('a recorded match', () => {
   test('replays to the same state, by way of JSON and from any tick on', () => {
     fc.assert(
-      fc.property(fc.integer(), playing, number(0, 1), (matchSeed, moves, cut) => {
+      fc.property(fc.integer(), playing, evenly(0, 1), (matchSeed, moves, cut) => {
         const first = start({ seconds: 12 }, matchSeed);
         const ticks: ArcheryAction[][] = [];
         const states: ArcheryState[] = [first];

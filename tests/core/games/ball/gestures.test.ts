@@ -11,7 +11,7 @@ import { invertTransform, type TrackedPose, transformPoint, transformPose } from
 import { fromAxisAngle, identity } from '../../../../src/core/math/quat';
 import { add, addScaled, distance, scale, up, type Vec3, vec3 } from '../../../../src/core/math/vec3';
 import type { TrackingFrame } from '../../../../src/core/tracking/tracking-frame';
-import { number, seed, vector } from '../../arbitraries';
+import { evenly, seed, vector } from '../../arbitraries';
 import { holder, leftThrower, told } from './playing';
 
 const arenaFromFloor = stations[leftThrower]!;
@@ -189,7 +189,7 @@ describe('the speed of a hand', () => {
       fc.property(
         vector(10),
         fc.constantFrom(60, 72, 80, 90, 120),
-        fc.array(fc.record({ kept: fc.integer({ min: 0, max: 9 }), jitter: number(-0.3, 0.3) }), {
+        fc.array(fc.record({ kept: fc.integer({ min: 0, max: 9 }), jitter: evenly(-0.3, 0.3) }), {
           minLength: 40,
           maxLength: 40,
         }),
@@ -249,7 +249,7 @@ describe('the speed of a hand', () => {
 
   test('turns with the person', () => {
     fc.assert(
-      fc.property(vector(5), number(-Math.PI, Math.PI), (velocity, yaw) => {
+      fc.property(vector(5), evenly(-Math.PI, Math.PI), (velocity, yaw) => {
         const turn = { position: vec3(1, 0, 2), orientation: fromAxisAngle(up, yaw) };
         const there = (time: number) => transformPoint(turn, scale(velocity, time));
         const turned = transformPoint({ ...turn, position: vec3(0, 0, 0) }, velocity);

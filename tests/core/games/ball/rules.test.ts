@@ -15,7 +15,7 @@ import { rackPosition, stations, throwingDistance } from '../../../../src/core/g
 import { wristAround } from '../../../../src/core/games/fist';
 import { nextRandom } from '../../../../src/core/math/random';
 import { add, distance, length, type Vec3, vec3 } from '../../../../src/core/math/vec3';
-import { number, seed, vector } from '../../arbitraries';
+import { evenly, seed, vector } from '../../arbitraries';
 import {
   headOf,
   hold,
@@ -259,7 +259,7 @@ describe('what no body can do is refused', () => {
     fc.assert(
       fc.property(
         vector(1).filter((v) => length(v) > 0.01),
-        number(1.001, 1e6),
+        evenly(1.001, 1e6),
         (v, factor) => {
           const speed = (fastestThrow * factor) / length(v);
           const velocity = vec3(v.x * speed, v.y * speed, v.z * speed);
@@ -342,7 +342,7 @@ describe('what no body can do is refused', () => {
 describe('the basket', () => {
   test('hangs between two hands that hold it by its rim, and opens where the thumbs point', () => {
     fc.assert(
-      fc.property(vector(2), number(-Math.PI, Math.PI), number(-0.8, 0.8), (centre, yaw, tilt) => {
+      fc.property(vector(2), evenly(-Math.PI, Math.PI), evenly(-0.8, 0.8), (centre, yaw, tilt) => {
         const across = vec3(Math.cos(yaw), 0, -Math.sin(yaw));
         const ahead = vec3(-Math.sin(yaw), 0, -Math.cos(yaw));
         const thumb = vec3(ahead.x * Math.sin(tilt), Math.cos(tilt), ahead.z * Math.sin(tilt));
@@ -541,7 +541,7 @@ test('1,000 throws end the same at round trips of 0 to 200 ms as at none', () =>
 
 test('what is decided stays decided, at all times that poses may tell', () => {
   fc.assert(
-    fc.property(fc.array(number(-5, 5), { minLength: 1, maxLength: 20 }), (times) => {
+    fc.property(fc.array(evenly(-5, 5), { minLength: 1, maxLength: 20 }), (times) => {
       const match = told();
       for (const at of times) {
         const before = match.state.basket.at;
