@@ -29,19 +29,28 @@ const playwright = (tests) => async (report) => {
 
 /**
  * Each stage: the commands it consists of (report: where its runner leaves the outcome), its runner, how long it may take, and the suite it
- * belongs to: 'day' (npm test), 'full' (npm run test:full), 'training', 'nightly'.
+ * belongs to: 'day' (npm test), 'full' (npm run test:full), 'training', 'nightly'. `singleCore`: it keeps one core busy, so that another of
+ * its kind can run beside it.
  */
 export const stages = {
   types: {
     suite: 'day',
+    singleCore: true,
     commands: () => [
       node('typescript/bin/tsc', '--noEmit'),
       node('typescript/bin/tsc', '--noEmit', '-p', 'tsconfig.core.json'),
     ],
   },
-  lint: { suite: 'day', commands: () => [node('@biomejs/biome/bin/biome', 'check', '.')] },
+  python: {
+    suite: 'day',
+    singleCore: true,
+    runner: 'pytest',
+    commands: (report) => pytest({ extras: [], marker: 'not training', report }),
+  },
+  lint: { suite: 'day', singleCore: true, commands: () => [node('@biomejs/biome/bin/biome', 'check', '.')] },
   dependencies: {
     suite: 'day',
+    singleCore: true,
     commands: () => [
       node(
         ...['dependency-cruiser/bin/dependency-cruise.mjs', '--config', '.dependency-cruiser.mjs'],
@@ -52,6 +61,7 @@ export const stages = {
   // The package, built as it is published: its parts, its types for every resolution of modules it is made for, what each entry weighs.
   library: {
     suite: 'day',
+    singleCore: true,
     commands: () => [
       [process.execPath, 'scripts/build-library.mjs'],
       node('publint/src/cli.js', 'dist-library', '--strict'),
@@ -62,11 +72,6 @@ export const stages = {
     suite: 'day',
     runner: 'vitest',
     commands: (report) => vitest('day', report),
-  },
-  python: {
-    suite: 'day',
-    runner: 'pytest',
-    commands: (report) => pytest({ extras: [], marker: 'not training', report }),
   },
   e2e: { suite: 'day', runner: 'playwright', commands: playwright('day') },
   'unit-full': { suite: 'full', runner: 'vitest', commands: (report) => vitest('full', report) },

@@ -1,6 +1,7 @@
 // npm test: installs what is missing, runs every stage whether or not one before it failed, and ends with one line that
 // counts the tests. Arguments name stages, or a whole suite (day, full, training, nightly), to run those alone.
 import { mkdirSync, rmSync } from 'node:fs';
+import { availableParallelism } from 'node:os';
 import { join } from 'node:path';
 import { ensureInstalled } from './installation.mjs';
 import { main, root, run, SetupError } from './run-command.mjs';
@@ -11,28 +12,54 @@ const reports = join(root, 'artifacts/test-reports');
 
 const seconds = (start) => `${((performance.now() - start) / 1000).toFixed(1)} s`;
 
-async function runStage(name) {
+const heading = (name) => `\n── ${name} ${'─'.repeat(Math.max(3, 70 - name.length))}`;
+
+/** Runs one stage. `quiet`: its output is kept and printed whole at its end, for stages that run side by side. */
+async function runStage(name, { quiet = false } = {}) {
   const { commands, runner, limitSeconds = 600 } = stages[name];
   const report = join(reports, `${name}.${runner === 'pytest' ? 'xml' : 'json'}`);
   const problems = [];
   const start = performance.now();
-  console.log(`\n── ${name} ${'─'.repeat(Math.max(3, 70 - name.length))}`);
+  const kept = [heading(name)];
+  if (!quiet) console.log(kept[0]);
   try {
     for (const [command, ...args] of await commands(report)) {
-      const { code, timedOut } = await run(command, args, { limitSeconds });
+      const { code, timedOut, output } = await run(command, args, { limitSeconds, capture: quiet });
+      kept.push(output);
       if (timedOut) problems.push(`stopped after ${limitSeconds} s`);
       else if (code !== 0) problems.push(`exit code ${code}`);
     }
   } catch (error) {
-    console.error(error instanceof SetupError ? error.message : error);
+    kept.push(error instanceof SetupError ? error.message : error.stack);
+    if (!quiet) console.error(kept.at(-1));
     problems.push(error.message.split('\n')[0]);
   }
+  if (quiet) console.log(kept.join('\n').trimEnd());
   const results = (runner && readResults(runner, report)) ?? { passed: 0, failed: 0, skipped: 0 };
   if (results.failed === 0 && runner && results.passed === 0) problems.push('no test ran');
   // A stage that failed without a failing test (types, lint, a crash) counts as one, so that the last line cannot hide it.
   if (results.failed === 0 && problems.length > 0) results.failed = 1;
   if (results.failed > 0 && problems.length === 0) problems.push(`${results.failed} failed`);
   return { name, results, problems, counted: Boolean(runner), time: seconds(start) };
+}
+
+/**
+ * Runs stages in their order. Neighbours that keep one core busy run side by side, as many as there are cores; every other stage has the
+ * machine to itself.
+ */
+async function runStages(names) {
+  const outcomes = [];
+  const waiting = [...names];
+  while (waiting.length > 0) {
+    const alone = waiting.findIndex((name) => !stages[name].singleCore);
+    const beside = waiting.splice(0, alone === -1 ? waiting.length : alone);
+    const lane = async () => {
+      for (let name = beside.shift(); name; name = beside.shift()) outcomes.push(await runStage(name, { quiet: true }));
+    };
+    await Promise.all(Array.from({ length: Math.min(availableParallelism(), beside.length) }, lane));
+    if (waiting.length > 0) outcomes.push(await runStage(waiting.shift()));
+  }
+  return outcomes;
 }
 
 function printSummary(outcomes, start) {
@@ -61,7 +88,5 @@ await main(async () => {
   await ensureInstalled();
   rmSync(reports, { recursive: true, force: true });
   mkdirSync(reports, { recursive: true });
-  const outcomes = [];
-  for (const name of chosen) outcomes.push(await runStage(name));
-  return printSummary(outcomes, start);
+  return printSummary(await runStages(chosen), start);
 });
