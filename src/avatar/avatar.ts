@@ -11,15 +11,19 @@ import { identity, type Quat, quat } from '../core/math/quat';
 import type { Side } from '../core/math/side';
 import { type Vec3, vec3 } from '../core/math/vec3';
 import { BodyMeshes } from './body-meshes';
+import { Face } from './face';
 import { Fingers } from './fingers';
 import { Legs } from './legs';
 import type { LoadedAvatar } from './load-avatar';
 import { OwnTrunk } from './own-trunk';
 import { type AvatarJoint, Rig } from './rig';
+import { Springs } from './springs';
 
 /** A body on the screen. Poses are in the floor frame; so is `object`, which stays where it is put: at the floor's origin. */
 export interface Avatar {
   readonly object: Object3D;
+  /** How high its head reaches when it stands upright [m]. */
+  readonly height: number;
   /** Scales the rig to this body, limb by limb, not by its own proportions. May be called again at any time. */
   fitTo(calibration: Calibration): void;
   /** Bends the body to a pose; time [s] on the clock of the tracking frames. */
@@ -42,6 +46,8 @@ export interface Avatar {
 const averageBody: Calibration = { eyeHeight: 1.59, armSpan: 1.5 };
 /** A pause of the page moves feet no further than this [s]. */
 const longestStep = 0.25;
+/** Bodies made so far: each blinks at times of its own. */
+let made = 0;
 const upright = Object.fromEntries(jointNames.map((name) => [name, identity])) as Record<JointName, Quat>;
 
 class VrmAvatar implements Avatar {
@@ -52,7 +58,10 @@ class VrmAvatar implements Avatar {
   private readonly legs: Legs;
   private readonly fingers: Fingers;
   private readonly meshes: BodyMeshes;
+  private readonly springs: Springs;
+  private readonly face: Face;
   private skeleton: Skeleton = skeletonFromCalibration(averageBody);
+  private scale = 1;
   private lastTime: number | null = null;
   private readonly joints = makeJointPoses();
   private readonly headJoint = vec3(0, 0, 0);
@@ -70,7 +79,14 @@ class VrmAvatar implements Avatar {
     this.legs = new Legs(this.rig);
     this.fingers = new Fingers(vrm);
     this.meshes = new BodyMeshes(vrm, this.rig.bones);
+    this.springs = new Springs(vrm);
+    made += 1;
+    this.face = new Face(vrm, made);
     this.fitTo(averageBody);
+  }
+
+  get height(): number {
+    return this.meshes.top * this.scale;
   }
 
   fitTo(calibration: Calibration): void {
@@ -79,8 +95,11 @@ class VrmAvatar implements Avatar {
     const tPose = forwardKinematics(this.skeleton, { hipsPosition, localRotations: upright });
     // Rig to body, the same in all directions; limbs add their own stretch.
     const scale = tPose.head.position.y / (this.rig.rest('head')?.y ?? 1.5);
+    this.scale = scale;
     this.trunk.fit(tPose, scale);
     this.rig.fit(tPose, this.legs.fit(tPose.hips.position.y, scale), scale);
+    // The file's own size is what its scene was before it was settled.
+    this.springs.scaleTo(scale * Math.abs(this.vrm.scene.scale.x));
   }
 
   apply(pose: AvatarPose, time: number): void {
@@ -90,7 +109,16 @@ class VrmAvatar implements Avatar {
     if (this.meshes.show(shown)) this.rig.forgetJoints();
     if (pose.body) this.applyBody(pose.body, deltaSeconds);
     else this.applyHands(pose);
-    this.vrm.update(deltaSeconds);
+    this.live(pose.head, deltaSeconds);
+  }
+
+  /** What moves by itself under a head that is here: eyes, lids, hair, and what the file ties to bones. */
+  private live({ position, orientation }: AvatarPose['head'], deltaSeconds: number): void {
+    const { vrm } = this;
+    this.face.update(orientation, deltaSeconds);
+    vrm.nodeConstraintManager?.update();
+    this.springs.update(this.object, position, orientation, deltaSeconds);
+    for (const material of vrm.materials ?? []) (material as { update?(seconds: number): void }).update?.(deltaSeconds);
   }
 
   private applyBody(body: UpperBodyPose, deltaSeconds: number): void {

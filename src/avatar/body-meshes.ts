@@ -1,5 +1,14 @@
 import type { VRM } from '@pixiv/three-vrm';
-import { Color, type Material, type Mesh, MeshStandardMaterial, type Object3D, SkinnedMesh } from 'three';
+import {
+  Box3,
+  Color,
+  type Material,
+  type Mesh,
+  MeshStandardMaterial,
+  type Object3D,
+  SkinnedMesh,
+  Vector3,
+} from 'three';
 import { palettes } from './palettes';
 import type { Rig } from './rig';
 import { type SkinPart, sortByPart } from './skin-parts';
@@ -56,6 +65,28 @@ function readMeshes(vrm: VRM, bones: Rig['bones']): AvatarMesh[] {
   return result;
 }
 
+/** So many corners of a head are looked at for its height: hair ends in many. */
+const mostCorners = 1500;
+
+/** How high the head's skin and what hangs on it reach at rest [m], in the rig's own frame. */
+function topOf(meshes: readonly AvatarMesh[], head: Object3D | undefined): number {
+  let top = 0;
+  const place = new Vector3();
+  for (const { mesh, ends } of meshes) {
+    if (mesh instanceof SkinnedMesh && ends) {
+      const step = Math.max(1, Math.ceil((ends.head - ends.hands) / mostCorners));
+      for (let corner = ends.hands; corner < ends.head; corner += step) {
+        const vertex = mesh.geometry.index?.getX(corner) ?? 0;
+        top = Math.max(top, mesh.getVertexPosition(vertex, place).applyMatrix4(mesh.matrixWorld).y);
+      }
+    } else if (head && isBelow(mesh, head)) top = Math.max(top, new Box3().setFromObject(mesh).max.y);
+  }
+  return top;
+}
+
+const isBelow = (node: Object3D | null, above: Object3D): boolean =>
+  node !== null && (node === above || isBelow(node.parent, above));
+
 function materialsOf(mesh: Mesh): Material[] {
   return Array.isArray(mesh.material) ? mesh.material : [mesh.material];
 }
@@ -65,6 +96,8 @@ export type Shown = 'body' | 'hands' | 'nothing';
 
 /** The skin of an avatar: which of it is drawn, for which eyes, in which colours. */
 export class BodyMeshes {
+  /** The top of the head at rest [m], in the rig's own frame. */
+  readonly top: number;
   private readonly meshes: readonly AvatarMesh[];
   private readonly looks = new Map<Material, { readonly transparent: boolean; readonly opacity: number }>();
   private shown: Shown = 'nothing';
@@ -74,6 +107,7 @@ export class BodyMeshes {
 
   constructor(vrm: VRM, bones: Rig['bones']) {
     this.meshes = readMeshes(vrm, bones);
+    this.top = topOf(this.meshes, bones.get('head')?.node);
     this.showParts();
     this.showLayers();
   }

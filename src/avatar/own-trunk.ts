@@ -152,7 +152,9 @@ export class OwnTrunk {
     { clavicle, upperArm, lowerArm, root: fromNeck, along }: Shoulder,
     joints: MutableJointPoses,
   ): void {
-    const [collar, arm, elbow] = [joints[clavicle], joints[upperArm], joints[lowerArm].position];
+    const collar = joints[clavicle];
+    const arm = joints[upperArm];
+    const elbow = joints[lowerArm].position;
     copyVec3(arm.position, given);
     add(neck, rotate(joints.upperChest.orientation, fromNeck, root), root);
     add(root, rotate(collar.orientation, along, own), own);

@@ -52,10 +52,14 @@ export interface DesktopView {
   rayThrough(x: number, y: number): Ray;
   /** Where the body is now (its pelvis and eyes, floor frame); elapsed [s] since the last call. */
   update(pelvis: Point, eyes: Eyes, elapsed: number): void;
+  /** How high the body's head reaches [m]: what is taller than people are is seen whole too. */
+  setHeight(height: number): void;
 }
 
 /** Seconds in which the camera makes half the way to a body that walks. */
 const followHalfLife = 0.35;
+/** What is no taller [m] is seen whole from where the view begins. */
+const tallest = 1.95;
 /** Radians a press of an arrow key turns the camera. */
 const keyStep = Math.PI / 36;
 
@@ -125,6 +129,8 @@ class DesktopCamera implements DesktopView {
   readonly #target = new Vector3(0, 1, 0);
   /** Where the target was a frame ago. */
   readonly #before = new Vector3();
+  /** How far above the pelvis the camera aims [m], for a head that is larger than people's. */
+  #rise = 0;
   #view: ViewName = 'third-person';
   #scene: SceneName = 'studio';
   #orbit = true;
@@ -189,6 +195,10 @@ class DesktopCamera implements DesktopView {
     return { origin: { ...origin }, direction: { ...direction } };
   }
 
+  setHeight(height: number): void {
+    this.#rise = Math.max(0, height - tallest) / 2;
+  }
+
   update(pelvis: Point, { position, orientation }: Eyes, elapsed: number): void {
     const { camera } = this;
     if (this.#view === 'first-person') {
@@ -200,7 +210,7 @@ class DesktopCamera implements DesktopView {
     const target = this.#target;
     const before = this.#before.copy(target);
     target.x += (pelvis.x - target.x) * part;
-    target.y += (pelvis.y - target.y) * part;
+    target.y += (pelvis.y + this.#rise - target.y) * part;
     target.z += (pelvis.z - target.z) * part;
     camera.position.add(target).sub(before);
     this.#controls.target.add(target).sub(before);

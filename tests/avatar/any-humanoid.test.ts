@@ -267,6 +267,15 @@ describe('a body of other proportions', () => {
     expect(apart(joints.leftUpperArm, joints.rightUpperArm)).toBeLessThan(0.34);
   });
 
+  test('is as high as the top of its head, whatever unit it was made in', async () => {
+    for (const unit of [1, 100]) {
+      const body = await opened({ nameOf: vroid, unit });
+      hold(body.avatar, 1);
+      const top = Math.max(...skinAt(body, 'head').map(({ y }) => y));
+      expect(Math.abs(body.avatar.height - top)).toBeLessThan(0.08);
+    }
+  });
+
   test('its first person is its body without the head, in one piece', async () => {
     for (const interleaved of [false, true]) {
       const { avatar } = await opened({ nameOf: vroid, interleaved });

@@ -99,6 +99,7 @@ export function createStage(canvas: HTMLCanvasElement, quality: Quality): Stage 
       const elapsed = Math.min(longestStep, Math.max(0, time - lastTime));
       lastTime = time;
       const hips = avatar?.jointPositions().hips;
+      view.setHeight(avatar?.height ?? 0);
       if (watched) studio.follow(watched.pelvis.x, outOfSight);
       else if (hips) studio.follow(hips.x, hips.z);
       if (inSession) return;

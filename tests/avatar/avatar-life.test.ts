@@ -1,0 +1,135 @@
+import { type Object3D, Quaternion, Vector3 } from 'three';
+import { describe, expect, test } from 'vitest';
+import { type Avatar, createAvatar } from '../../src/avatar/avatar';
+import { type LoadedAvatar, parseAvatar } from '../../src/avatar/load-avatar';
+import { type Calibration, defaultCalibration } from '../../src/core/body/calibration';
+import { createIk } from '../../src/core/estimation/estimators';
+import { fromAxisAngle, identity } from '../../src/core/math/quat';
+import { up } from '../../src/core/math/vec3';
+import { poseOf } from '../core/estimation/drawn';
+import { changed } from './glb';
+
+/** The mannequin with two strands of hair on springs, eyes on bones, and lids. */
+const living = (): ArrayBuffer =>
+  changed((json) => {
+    const vrm = json.extensions.VRMC_vrm as unknown as Record<string, Record<string, unknown>>;
+    const bones = vrm.humanoid?.humanBones as Record<string, { node: number }>;
+    const head = json.nodes[bones.head!.node]!;
+    const put = (name: string, translation: number[], children: number[] = []) =>
+      json.nodes.push({ name, translation, ...(children.length > 0 && { children }) }) - 1;
+    const tip = put('strand tip', [0, -0.1, -0.03]);
+    const middle = put('strand middle', [0, 0, -0.12], [tip]);
+    const root = put('strand root', [0, 0.1, -0.1], [middle]);
+    const [left, right] = [put('left eye', [0.03, 0.06, 0.08]), put('right eye', [-0.03, 0.06, 0.08])];
+    head.children = [...(head.children ?? []), root, left, right];
+    bones.leftEye = { node: left };
+    bones.rightEye = { node: right };
+    const range = { inputMaxValue: 90, outputScale: 90 };
+    vrm.lookAt = {
+      ...{ type: 'bone', offsetFromHeadBone: [0, 0.06, 0], rangeMapHorizontalInner: range },
+      ...{ rangeMapHorizontalOuter: range, rangeMapVerticalDown: range, rangeMapVerticalUp: range },
+    };
+    vrm.expressions = { preset: { blink: { isBinary: false } } };
+    const joint = (node: number) => ({ node, hitRadius: 0.02, stiffness: 1, gravityPower: 0.6, dragForce: 0.4 });
+    json.extensions.VRMC_springBone = {
+      specVersion: '1.0',
+      springs: [{ joints: [joint(root), joint(middle), joint(tip)] }],
+    };
+    json.extensionsUsed = [...json.extensionsUsed, 'VRMC_springBone'];
+  });
+
+async function opened(body: Calibration = defaultCalibration): Promise<{ loaded: LoadedAvatar; avatar: Avatar }> {
+  const loaded = await parseAvatar(living(), 'living.vrm');
+  const avatar = createAvatar(loaded);
+  avatar.fitTo(body);
+  return { loaded, avatar };
+}
+
+/** Stands for so long with the head this far aside [m] and turned by so much [rad]; frames at 72 Hz. */
+function stand(avatar: Avatar, from: number, seconds: number, place = { aside: 0, yaw: 0 }, body = defaultCalibration) {
+  const ik = createIk(body);
+  let time = from;
+  for (; time < from + seconds; time += 1 / 72) {
+    const head = {
+      position: { x: place.aside, y: body.eyeHeight, z: 0 },
+      orientation: place.yaw === 0 ? identity : fromAxisAngle(up, place.yaw),
+      tracking: 'tracked' as const,
+    };
+    avatar.apply(poseOf(ik, { time, head, leftHand: null, rightHand: null }), time);
+  }
+  return time;
+}
+
+const strandOf = (avatar: Avatar): Quaternion => {
+  const root = avatar.object.getObjectByName('strand_root') as Object3D;
+  return root.quaternion.clone();
+};
+
+describe('hair', () => {
+  test('hangs alike on a child and on a giant', async () => {
+    const [child, giant] = [
+      { eyeHeight: 1.05, armSpan: 0.95 },
+      { eyeHeight: 2.05, armSpan: 2.0 },
+    ];
+    const [small, large] = [await opened(child), await opened(giant)];
+    stand(small.avatar, 0, 3, undefined, child);
+    stand(large.avatar, 0, 3, undefined, giant);
+    const [a, b] = [strandOf(small.avatar), strandOf(large.avatar)];
+    expect(a.angleTo(new Quaternion())).toBeGreaterThan(0.1);
+    expect(a.angleTo(b)).toBeLessThan(0.02);
+  });
+
+  test('swings when its wearer steps aside, and does not when the floor is moved under the wearer', async () => {
+    const { avatar } = await opened();
+    let time = stand(avatar, 0, 3);
+    const still = strandOf(avatar);
+    time = stand(avatar, time, 0.1, { aside: 0.2, yaw: 0 });
+    expect(strandOf(avatar).angleTo(still)).toBeGreaterThan(0.02);
+    time = stand(avatar, time, 3, { aside: 0.2, yaw: 0 });
+    stand(avatar, time, 1 / 72, { aside: 5, yaw: 0 });
+    const carried = avatar.object.getObjectByName('strand_root') as Object3D;
+    avatar.object.updateMatrixWorld(true);
+    const tip = avatar.object.getObjectByName('strand_tip') as Object3D;
+    const apart = tip.getWorldPosition(new Vector3()).distanceTo(carried.getWorldPosition(new Vector3()));
+    expect(apart).toBeLessThan(0.4);
+    // At rest at once: nothing of five metres is in it.
+    expect(strandOf(avatar).angleTo(new Quaternion())).toBeLessThan(1e-6);
+  });
+});
+
+/** How far an eye is turned to the left of the head [degrees]. */
+function eyeYaw({ loaded }: { loaded: LoadedAvatar }): number {
+  return loaded.vrm.lookAt?.yaw ?? Number.NaN;
+}
+
+describe('eyes', () => {
+  test('stay on what they look at while the head turns a little, and leap to where it faces when it turns on', async () => {
+    const body = await opened();
+    let time = stand(body.avatar, 0, 1);
+    expect(eyeYaw(body)).toBeCloseTo(0, 3);
+    // To the left by 8 degrees: the eyes are still to the right of it.
+    time = stand(body.avatar, time, 0.1, { aside: 0, yaw: (8 * Math.PI) / 180 });
+    expect(eyeYaw(body)).toBeCloseTo(-8, 1);
+    stand(body.avatar, time, 0.1, { aside: 0, yaw: (20 * Math.PI) / 180 });
+    expect(eyeYaw(body)).toBeCloseTo(0, 3);
+  });
+
+  test('blink now and then, and are open most of the time', async () => {
+    const { loaded, avatar } = await opened();
+    let blinks = 0;
+    let shut = 0;
+    let before = 0;
+    let time = 0;
+    for (let i = 0; i < 60 * 30; i++) {
+      time = stand(avatar, time, 1 / 72);
+      const closed = loaded.vrm.expressionManager?.getValue('blink') ?? 0;
+      if (closed > 0.5 && before <= 0.5) blinks += 1;
+      if (closed > 0.5) shut += 1;
+      before = closed;
+    }
+    const seconds = (60 * 30) / 72;
+    expect(blinks).toBeGreaterThanOrEqual(seconds / 7);
+    expect(blinks).toBeLessThanOrEqual(seconds / 2);
+    expect(shut).toBeLessThan(60 * 30 * 0.1);
+  });
+});
