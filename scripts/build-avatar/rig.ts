@@ -1,3 +1,5 @@
+import averageHand from '../../src/core/body/hand-geometry.json';
+import type { FingerName } from '../../src/core/body/hand-shape';
 import { type JointName, parentOf } from '../../src/core/body/joints';
 import { skeletonFromCalibration } from '../../src/core/body/skeleton';
 import type { Point } from './signed-distance';
@@ -47,49 +49,26 @@ interface Finger {
   readonly radius: number;
 }
 
-const straight = (dy: number, dz: number): Point => {
-  const l = Math.hypot(1, dy, dz);
-  return [1 / l, dy / l, dz / l];
+const unit = (x: number, y: number, z: number): Point => {
+  const l = Math.hypot(x, y, z);
+  return [x / l, y / l, z / l];
 };
 
+/** A finger of the average hand (towards the thumb, up, ahead of the wrist), in the mannequin's axes. */
+function fingerOf(name: FingerName): Finger {
+  const { knuckle, direction, lengths, radius } = averageHand[name];
+  const [out, above, ahead] = knuckle as [number, number, number];
+  return {
+    name: name[0]!.toUpperCase() + name.slice(1),
+    knuckle: [armJoints.wrist + ahead, armHeight + above, out],
+    lengths: lengths as [number, number, number],
+    direction: unit(1, direction[1]!, direction[0]!),
+    radius,
+  };
+}
+
 /** Five separate fingers; the thumb lies forward and a little below, as in a hand at ease. */
-export const fingers: readonly Finger[] = [
-  {
-    name: 'Index',
-    knuckle: [0.787, armHeight, 0.031],
-    lengths: [0.04, 0.025, 0.019],
-    direction: straight(-0.03, 0.06),
-    radius: 0.0098,
-  },
-  {
-    name: 'Middle',
-    knuckle: [0.791, armHeight + 0.001, 0.0095],
-    lengths: [0.044, 0.028, 0.02],
-    direction: straight(-0.03, 0.01),
-    radius: 0.0101,
-  },
-  {
-    name: 'Ring',
-    knuckle: [0.786, armHeight, -0.0125],
-    lengths: [0.041, 0.026, 0.019],
-    direction: straight(-0.03, -0.04),
-    radius: 0.0096,
-  },
-  {
-    name: 'Little',
-    knuckle: [0.777, armHeight - 0.002, -0.033],
-    lengths: [0.033, 0.02, 0.017],
-    direction: straight(-0.03, -0.1),
-    radius: 0.0085,
-  },
-  {
-    name: 'Thumb',
-    knuckle: [0.72, armHeight - 0.008, 0.027],
-    lengths: [0.042, 0.032, 0.026],
-    direction: straight(-0.16, 0.85),
-    radius: 0.0118,
-  },
-];
+export const fingers: readonly Finger[] = (['index', 'middle', 'ring', 'little', 'thumb'] as const).map(fingerOf);
 
 /** Names of a finger's three joints in VRM 1.0. */
 export const phalanges = (finger: string): readonly [string, string, string] =>

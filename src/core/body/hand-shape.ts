@@ -1,0 +1,178 @@
+import { clamp } from '../math/damper';
+import type { Side } from '../math/side';
+
+export const fingerNames = ['thumb', 'index', 'middle', 'ring', 'little'] as const;
+
+export type FingerName = (typeof fingerNames)[number];
+
+/**
+ * How one finger is bent [rad], in the wrist's frame (docs/frames.md). Its first bone (the thumb's: the metacarpal) points
+ * (sin spread, −cos spread · sin knuckle, −cos spread · cos knuckle), x towards the thumb's side, y out of the back of the hand.
+ * The two bones beyond are bent against the one before, about an axis that the first bone carries along.
+ */
+export interface FingerBend {
+  /** Of the first bone towards the palm, from the direction of the knuckles. */
+  readonly knuckle: number;
+  /** Of the first bone towards the thumb's side. */
+  readonly spread: number;
+  readonly middle: number;
+  readonly end: number;
+}
+
+/** The fingers of one hand, left or right: the two are mirror images with the same numbers. */
+export interface HandShape extends Readonly<Record<FingerName, FingerBend>> {
+  /** How far the tips of thumb and index finger close on each other, 0 to 1: they touch. */
+  readonly pinch: number;
+}
+
+/** How the fingers of each hand are bent; null: not known. */
+export type Fingers = Readonly<Record<Side, HandShape | null>>;
+
+export const unknownFingers: Fingers = { left: null, right: null };
+
+/** The same fingers in objects of their own: to be kept. */
+export const copyFingers = ({ left, right }: Fingers): Fingers => ({
+  left: left && copyHandShape(left),
+  right: right && copyHandShape(right),
+});
+
+export type MutableFingerBend = { -readonly [Key in keyof FingerBend]: FingerBend[Key] };
+
+/** A hand that its owner overwrites. */
+export interface MutableHandShape extends Readonly<Record<FingerName, MutableFingerBend>> {
+  pinch: number;
+}
+
+const bend = (knuckle: number, spread: number, middle: number, end: number): MutableFingerBend => ({
+  knuckle,
+  spread,
+  middle,
+  end,
+});
+
+/** Fingers straight, thumb beside them; for buffers. */
+export const makeHandShape = (): MutableHandShape => ({
+  thumb: bend(0.35, 0.65, 0.05, 0.05),
+  index: bend(0.02, 0.08, 0.02, 0.02),
+  middle: bend(0.02, 0, 0.02, 0.02),
+  ring: bend(0.02, -0.08, 0.02, 0.02),
+  little: bend(0.02, -0.18, 0.02, 0.02),
+  pinch: 0,
+});
+
+/** A flat hand. */
+export const flatHand: HandShape = makeHandShape();
+
+/** A hand at ease: each finger a little more bent than the one before. */
+export const relaxedHand: HandShape = {
+  thumb: bend(0.5, 0.52, 0.12, 0.2),
+  index: bend(0.26, 0.06, 0.34, 0.18),
+  middle: bend(0.34, 0, 0.42, 0.22),
+  ring: bend(0.4, -0.05, 0.46, 0.24),
+  little: bend(0.44, -0.12, 0.48, 0.24),
+  pinch: 0,
+};
+
+/** Fingers in the palm, the thumb across them. */
+export const closedHand: HandShape = {
+  thumb: bend(0.86, 0.2, 0.62, 0.75),
+  index: bend(1.3, 0.02, 1.72, 1.05),
+  middle: bend(1.34, 0, 1.74, 1.1),
+  ring: bend(1.36, -0.02, 1.74, 1.1),
+  little: bend(1.36, -0.06, 1.7, 1.05),
+  pinch: 0,
+};
+
+export function copyBend(from: FingerBend, target: MutableFingerBend): MutableFingerBend {
+  target.knuckle = from.knuckle;
+  target.spread = from.spread;
+  target.middle = from.middle;
+  target.end = from.end;
+  return target;
+}
+
+export function copyHandShape(from: HandShape, target: MutableHandShape = makeHandShape()): MutableHandShape {
+  for (let i = 0; i < fingerNames.length; i++) copyBend(from[fingerNames[i]!], target[fingerNames[i]!]);
+  target.pinch = from.pinch;
+  return target;
+}
+
+/** From a (t = 0) to b (t = 1); target may be one of them. */
+export function mixBend(a: FingerBend, b: FingerBend, t: number, target: MutableFingerBend): MutableFingerBend {
+  target.knuckle = a.knuckle + (b.knuckle - a.knuckle) * t;
+  target.spread = a.spread + (b.spread - a.spread) * t;
+  target.middle = a.middle + (b.middle - a.middle) * t;
+  target.end = a.end + (b.end - a.end) * t;
+  return target;
+}
+
+/** From a (t = 0) to b (t = 1), finger by finger; target may be one of them. */
+export function mixHandShape(
+  a: HandShape,
+  b: HandShape,
+  t: number,
+  target: MutableHandShape = makeHandShape(),
+): MutableHandShape {
+  for (let i = 0; i < fingerNames.length; i++) {
+    const name = fingerNames[i]!;
+    mixBend(a[name], b[name], t, target[name]);
+  }
+  target.pinch = a.pinch + (b.pinch - a.pinch) * t;
+  return target;
+}
+
+/** How far each part of a hand is closed, 0 at ease to 1 as in a fist. */
+export interface HandClosing {
+  readonly thumb: number;
+  readonly index: number;
+  /** Middle, ring and little finger. */
+  readonly rest: number;
+  readonly pinch: number;
+}
+
+const share = (value: number): number => (value > 0 ? Math.min(value, 1) : 0);
+
+/** A pinch: thumb and index finger meet before the palm, the others stay at ease. */
+const pinchedThumb = bend(0.82, 0.14, 0.18, 0.42);
+const pinchedIndex = bend(0.98, 0.03, 0.72, 0.3);
+
+/** The hand of a player whose fingers are not seen, by what they press. */
+export function shapeOfClosing(closing: HandClosing, target: MutableHandShape = makeHandShape()): MutableHandShape {
+  const rest = share(closing.rest);
+  target.pinch = share(closing.pinch);
+  mixBend(relaxedHand.thumb, closedHand.thumb, share(closing.thumb), target.thumb);
+  mixBend(relaxedHand.index, closedHand.index, share(closing.index), target.index);
+  mixBend(target.thumb, pinchedThumb, target.pinch, target.thumb);
+  mixBend(target.index, pinchedIndex, target.pinch, target.index);
+  mixBend(relaxedHand.middle, closedHand.middle, rest, target.middle);
+  mixBend(relaxedHand.ring, closedHand.ring, rest, target.ring);
+  mixBend(relaxedHand.little, closedHand.little, rest, target.little);
+  return target;
+}
+
+/** Whether every number of a finger is one. */
+export const isFiniteBend = ({ knuckle, spread, middle, end }: FingerBend): boolean =>
+  Number.isFinite(knuckle + spread + middle + end);
+
+/** Whether every number of a hand is one. */
+export function isFiniteHand(shape: HandShape): boolean {
+  for (let i = 0; i < fingerNames.length; i++) if (!isFiniteBend(shape[fingerNames[i]!])) return false;
+  return Number.isFinite(shape.pinch);
+}
+
+/** No joint is bent further than a hand's [rad], whatever was tracked or sent. */
+const limits = {
+  knuckle: { low: -0.7, high: 1.9 },
+  spread: { low: -0.7, high: 1.3 },
+  middle: { low: -0.5, high: 2.1 },
+  end: { low: -0.6, high: 1.7 },
+} as const;
+
+/** Keeps each joint within a hand's limits; what is no number stays as it is. */
+export function limitBend(from: FingerBend, target: MutableFingerBend): MutableFingerBend {
+  target.knuckle = clamp(from.knuckle, limits.knuckle.low, limits.knuckle.high);
+  target.spread = clamp(from.spread, limits.spread.low, limits.spread.high);
+  target.middle = clamp(from.middle, limits.middle.low, limits.middle.high);
+  target.end = clamp(from.end, limits.end.low, limits.end.high);
+  return target;
+}
