@@ -1,4 +1,5 @@
 import type { Calibration } from '../../core/body/calibration';
+import { copyFingers } from '../../core/body/hand-shape';
 import {
   parseRecording,
   type Recording,
@@ -84,7 +85,7 @@ export class Recorder {
     if (this.#mode !== 'recording') return;
     const last = this.#frames.at(-1);
     if (last && frame.time <= last.time) return;
-    this.#frames.push(frame);
+    this.#frames.push(frame.fingers ? { ...frame, fingers: copyFingers(frame.fingers) } : frame);
     this.#seconds = frame.time - (this.#frames[0]?.time ?? frame.time);
     if (this.#frames.length >= most) this.stop();
   }

@@ -44,6 +44,9 @@ export interface PlayedTrial {
 
 /** The end of a round is seen before the sheet comes [s]. */
 const afterglow = 2.5;
+/** What participants agree to have kept is the motion of head and wrists. */
+const withoutFingers = ({ fingers: _, ...frame }: TrackingFrame): TrackingFrame => frame;
+
 /** Tracked frames kept per trial: some 14 MB, below what the server takes at once. */
 const mostMotionFrames = 40_000;
 /** Eyes this far below where calibration found them are those of a person who sat down [m]. */
@@ -157,7 +160,8 @@ class LoggedTrial implements PlayedTrial {
       this.#log.assist(`estimator fell back to ${drawn}`);
     }
     const frames = this.#frames;
-    if (frame && frames && frames.length < mostMotionFrames && time > this.#lastTime) frames.push(frame);
+    if (frame && frames && frames.length < mostMotionFrames && time > this.#lastTime)
+      frames.push(withoutFingers(frame));
     this.#lastTime = time;
   }
 

@@ -1,4 +1,6 @@
 import type { Calibration } from '../body/calibration';
+import { type Fingers, fingerNames, type HandShape, limitBend, makeHandShape, mixHandShape } from '../body/hand-shape';
+import { clamp } from '../math/damper';
 import type { TrackedPose } from '../math/pose';
 import { slerp } from '../math/quat';
 import { lerp } from '../math/vec3';
@@ -17,9 +19,27 @@ export interface Recording {
 }
 
 const format = 'threepoint-recording';
-const version = 1;
+const version = 2;
+/** Of an older format: frames without fingers. */
+const fingerlessVersion = 1;
 
 const poseColumns = 7;
+/** Five fingers of four joints and a pinch. */
+const bendColumns = 21;
+const columns =
+  'time [s]; head, left hand, right hand: position [m], orientation xyzw, tracking; where known, fingers of the left hand, of the right: ' +
+  'knuckle, spread, middle, end [rad] from thumb to little finger, pinch';
+
+/** A hand's angles to a ten-thousandth of a radian. */
+const bends = (shape: HandShape | null): readonly number[] | null =>
+  shape &&
+  [
+    ...fingerNames.flatMap((name) => {
+      const { knuckle, spread, middle, end } = shape[name];
+      return [knuckle, spread, middle, end];
+    }),
+    shape.pinch,
+  ].map((angle) => Math.round(1e4 * angle) / 1e4);
 
 /** The text of a recording file: JSON with one frame per line. */
 export function writeRecording({ device, rateHz, calibration, frames }: Recording): string {
@@ -30,23 +50,25 @@ export function writeRecording({ device, rateHz, calibration, frames }: Recordin
       ...[tracked.orientation.x, tracked.orientation.y, tracked.orientation.z, tracked.orientation.w],
       tracked.tracking,
     ];
-  const lines = frames.map(({ time, head, leftHand, rightHand }) =>
-    JSON.stringify([time, pose(head), pose(leftHand), pose(rightHand)]),
-  );
-  return `${header.slice(0, -1)},"columns":"time [s]; head, left hand, right hand: position [m], orientation xyzw, tracking","frames":[\n${lines.join(',\n')}\n]}\n`;
+  const lines = frames.map(({ time, head, leftHand, rightHand, fingers }) => {
+    const poses = [time, pose(head), pose(leftHand), pose(rightHand)];
+    return JSON.stringify(fingers ? [...poses, bends(fingers.left), bends(fingers.right)] : poses);
+  });
+  return `${header.slice(0, -1)},"columns":"${columns}","frames":[\n${lines.join(',\n')}\n]}\n`;
 }
 
 /** The recording in the text of a file; throws a sentence that says which line or frame is wrong, and why. */
 export function parseRecording(text: string): Recording {
   const file = parseJson(text);
   if (!isRecord(file) || file.format !== format) throw new Error('This is no recording of threepoint.');
-  if (file.version !== version) {
-    throw new Error(`The recording has version ${String(file.version)}; this page reads version ${version}.`);
+  if (file.version !== version && file.version !== fingerlessVersion) {
+    throw new Error(`The recording has version ${String(file.version)}; this page reads versions 1 and ${version}.`);
   }
   if (typeof file.device !== 'string') throw new Error('The recording does not say its device.');
   if (!isFiniteNumber(file.rateHz) || file.rateHz <= 0) throw new Error('The recording does not say its rate in Hz.');
   if (!Array.isArray(file.frames) || file.frames.length === 0) throw new Error('The recording has no frames.');
-  const frames = file.frames.map(parseFrame);
+  const mayHaveFingers = file.version === version;
+  const frames = file.frames.map((frame, index) => parseFrame(frame, index, mayHaveFingers));
   for (let i = 1; i < frames.length; i++) {
     if (frames[i]!.time <= frames[i - 1]!.time) {
       throw new Error(`Frame ${i + 1} of the recording is not later than the one before it.`);
@@ -93,12 +115,14 @@ function parseCalibration(value: unknown): Calibration | null {
   throw new Error('The recording’s calibration is neither null nor an eye height and an arm span in metres.');
 }
 
-function parseFrame(value: unknown, index: number): TrackingFrame {
+function parseFrame(value: unknown, index: number, mayHaveFingers: boolean): TrackingFrame {
   const where = `Frame ${index + 1} of the recording`;
-  if (!Array.isArray(value) || value.length !== 4) {
-    throw new Error(`${where} is not a time, a head, a left hand and a right hand.`);
+  const withFingers = mayHaveFingers && Array.isArray(value) && value.length === 6;
+  if (!Array.isArray(value) || (value.length !== 4 && !withFingers)) {
+    const fingers = mayHaveFingers ? ', with the fingers of both or without' : '';
+    throw new Error(`${where} is not a time, a head, a left hand and a right hand${fingers}.`);
   }
-  const [time, head, leftHand, rightHand] = value;
+  const [time, head, leftHand, rightHand, leftFingers, rightFingers] = value;
   if (!isFiniteNumber(time)) throw new Error(`${where} has no time.`);
   if (head === null) throw new Error(`${where} has no head.`);
   return {
@@ -106,6 +130,12 @@ function parseFrame(value: unknown, index: number): TrackingFrame {
     head: parsePose(head, `${where}: the head`),
     leftHand: leftHand === null ? null : parsePose(leftHand, `${where}: the left hand`),
     rightHand: rightHand === null ? null : parsePose(rightHand, `${where}: the right hand`),
+    ...(withFingers && {
+      fingers: {
+        left: leftFingers === null ? null : parseBends(leftFingers, `${where}: the fingers of the left hand`),
+        right: rightFingers === null ? null : parseBends(rightFingers, `${where}: the fingers of the right hand`),
+      },
+    }),
   };
 }
 
@@ -122,6 +152,19 @@ function parsePose(value: unknown, what: string): TrackedPose {
   if (Math.abs(Math.hypot(x!, y!, z!, w!) - 1) > 1e-3)
     throw new Error(`${what} has an orientation of a length other than 1.`);
   return { position: { x: px!, y: py!, z: pz! }, orientation, tracking };
+}
+
+function parseBends(value: unknown, what: string): HandShape {
+  if (!Array.isArray(value) || value.length !== bendColumns || !value.every(isFiniteNumber)) {
+    throw new Error(`${what} are not ${bendColumns} finite numbers.`);
+  }
+  const shape = makeHandShape();
+  for (const [i, name] of fingerNames.entries()) {
+    const [knuckle, spread, middle, end] = value.slice(4 * i, 4 * i + 4) as [number, number, number, number];
+    limitBend({ knuckle, spread, middle, end }, shape[name]);
+  }
+  shape.pinch = clamp(value[bendColumns - 1] as number, 0, 1);
+  return shape;
 }
 
 /** Seconds from the first frame to the last. */
@@ -149,7 +192,13 @@ export function sampleRecording({ frames }: Recording, time: number): TrackingFr
     head: interpolate(before.head, after.head, share),
     leftHand: hand(before.leftHand, after.leftHand),
     rightHand: hand(before.rightHand, after.rightHand),
+    ...(before.fingers && { fingers: mixFingers(before.fingers, after.fingers ?? before.fingers, share) }),
   };
+}
+
+function mixFingers(a: Fingers, b: Fingers, share: number): Fingers {
+  const hand = (from: HandShape | null, to: HandShape | null) => from && to && mixHandShape(from, to, share);
+  return { left: hand(a.left, b.left), right: hand(a.right, b.right) };
 }
 
 const interpolate = (a: TrackedPose, b: TrackedPose, share: number): TrackedPose => ({

@@ -1,3 +1,4 @@
+import type { Fingers } from '../body/hand-shape';
 import type { TrackedPose } from '../math/pose';
 
 /**
@@ -11,6 +12,8 @@ export interface TrackingFrame {
   /** null: not seen. Never a pose at the origin. */
   readonly leftHand: TrackedPose | null;
   readonly rightHand: TrackedPose | null;
+  /** Absent: of neither hand known. In memory of the tracker's own, which the next frame overwrites: copy what must stay. */
+  readonly fingers?: Fingers;
   /** The device shows something of its own before the page: no hand is for the page, and a player who holds something goes on holding it. */
   readonly suspended?: true;
 }

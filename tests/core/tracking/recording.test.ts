@@ -1,5 +1,6 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
+import { flatHand } from '../../../src/core/body/hand-shape';
 import type { TrackedPose } from '../../../src/core/math/pose';
 import { slerp } from '../../../src/core/math/quat';
 import { distance, lerp, vec3 } from '../../../src/core/math/vec3';
@@ -19,6 +20,18 @@ const tracked: fc.Arbitrary<TrackedPose> = fc.record({
   tracking: fc.constantFrom<TrackedPose['tracking'][]>('tracked', 'emulated'),
 });
 
+/** An angle as a file has it: to a ten-thousandth of a radian. */
+const angle = fc.integer({ min: -4000, max: 12_000 }).map((steps) => steps / 1e4);
+const bend = fc.record({ knuckle: angle, spread: angle, middle: angle, end: angle });
+const hand = fc.record({
+  thumb: bend,
+  index: bend,
+  middle: bend,
+  ring: bend,
+  little: bend,
+  pinch: fc.integer({ min: 0, max: 10_000 }).map((steps) => steps / 1e4),
+});
+
 const recording: fc.Arbitrary<Recording> = fc.record({
   device: fc.string(),
   rateHz: number(1, 144),
@@ -30,6 +43,7 @@ const recording: fc.Arbitrary<Recording> = fc.record({
         head: tracked,
         leftHand: fc.option(tracked),
         rightHand: fc.option(tracked),
+        fingers: fc.option(fc.record({ left: fc.option(hand), right: fc.option(hand) }), { nil: undefined }),
       }),
       { minLength: 1, maxLength: 8 },
     )
@@ -37,7 +51,8 @@ const recording: fc.Arbitrary<Recording> = fc.record({
       let time = 1000 / 3;
       return frames.map(({ step, ...frame }): TrackingFrame => {
         time += step;
-        return { time, ...frame };
+        const { fingers, ...poses } = frame;
+        return { time, ...poses, ...(fingers && { fingers }) };
       });
     }),
 });
@@ -65,6 +80,12 @@ const some: Recording = {
   })),
 };
 
+/** One frame of a left hand that pinches half, and a right hand whose fingers are not seen. */
+const withFingers = writeRecording({
+  ...some,
+  frames: [{ ...some.frames[0]!, fingers: { left: { ...flatHand, pinch: 0.5 }, right: null } }],
+});
+
 describe('a recording', () => {
   test('comes back from its file to the last bit, lost hands as null', () => {
     fc.assert(
@@ -77,16 +98,24 @@ describe('a recording', () => {
 
   test('is JSON with a frame per line', () => {
     const text = writeRecording(some);
-    expect(JSON.parse(text)).toMatchObject({ format: 'threepoint-recording', version: 1, rateHz: 72 });
+    expect(JSON.parse(text)).toMatchObject({ format: 'threepoint-recording', version: 2, rateHz: 72 });
     expect(text.trimEnd().split('\n').length).toBe(some.frames.length + 2);
   });
 
+  test('of version 1, which knew no fingers, still opens', () => {
+    const old = writeRecording(some).replace('"version":2', '"version":1');
+    expect(parseRecording(old)).toEqual(some);
+  });
+
   test.each([
+    ['fingers that are too few', withFingers.replace(',0.5],', '],'), /Frame 1 .*fingers of the left hand.*21/],
+    ['a bend that is no number', withFingers.replace('0.5],', '"bent"],'), /Frame 1 .*fingers of the left hand.*21/],
+    ['fingers in a file of version 1', withFingers.replace('"version":2', '"version":1'), /Frame 1 .*is not a time/],
     ['nothing', '', /no JSON/],
     ['prose', 'Dear Sir', /no JSON/],
     ['other JSON', '{"photos": []}', /no recording of threepoint/],
     ['an array', '[]', /no recording of threepoint/],
-    ['a later version', writeRecording(some).replace('"version":1', '"version":7'), /version 7/],
+    ['a later version', writeRecording(some).replace('"version":2', '"version":7'), /version 7/],
     ['no frames', '{"format":"threepoint-recording","version":1,"device":"","rateHz":60,"frames":[]}', /no frames/],
     ['no rate', writeRecording(some).replace('"rateHz":72', '"rateHz":"often"'), /rate/],
     ['a damaged line', writeRecording(some).replace('[5.1,', '[5.1 oops,'), /line 3 is damaged/],
