@@ -2,6 +2,7 @@ import { createBallView } from '../../src/app/ball/ball-view';
 import type { Studio } from '../../src/app/studio/studio';
 import { createRemoteAvatars, type SeenPerson } from '../../src/avatar/remote-avatars';
 import { defaultCalibration } from '../../src/core/body/calibration';
+import { unknownFingers } from '../../src/core/body/hand-shape';
 import { type Skeleton, skeletonFromCalibration } from '../../src/core/body/skeleton';
 import { ballRules } from '../../src/core/games/ball/rules';
 import { composeTransforms, invertTransform, type TrackedPose } from '../../src/core/math/pose';
@@ -35,7 +36,6 @@ export class Court {
     studio.setSurroundings(this.#view.placed(floorFromArena));
     this.#others = createRemoteAvatars(mannequin, 'mannequin.vrm');
     studio.scene.add(this.#others.object);
-    const grips = { left: 0, right: 0 };
     const nowhere = { position: { x: 0, y: 1.6, z: 0 }, orientation: { x: 0, y: 0, z: 0, w: 1 } };
     const head: TrackedPose = { ...nowhere, tracking: 'tracked' };
     this.#seen = Array.from({ length: places }, (_, seat) => ({
@@ -44,7 +44,7 @@ export class Court {
       palette: 'ember',
       pose: { head, leftHand: null, rightHand: null, body: null },
       placement: composeTransforms(floorFromArena, arenaFromCirclePlace(seat, places)),
-      grips,
+      fingers: unknownFingers,
       opacity: 1,
     }));
     this.#shown = {
@@ -82,10 +82,10 @@ export class Court {
   /** Bends the others to what was heard of them. */
   showOthers(time: number): void {
     this.#people.length = 0;
-    for (const { seat, pose, grips, opacity } of this.#players.follow(time)) {
+    for (const { seat, pose, fingers, opacity } of this.#players.follow(time)) {
       const person = this.#seen[seat]!;
       person.pose = pose;
-      person.grips = grips;
+      person.fingers = fingers;
       person.opacity = opacity;
       this.#people.push(person);
     }

@@ -1,4 +1,5 @@
 import { defaultCalibration } from '../../src/core/body/calibration';
+import { relaxedHand } from '../../src/core/body/hand-shape';
 import { skeletonFromCalibration } from '../../src/core/body/skeleton';
 import { createEstimator } from '../../src/core/estimation/estimators';
 import { encodePose } from '../../src/core/protocol/pose-codec';
@@ -22,8 +23,7 @@ export function createSenders(count: number) {
             timeMs: Math.round(time * 1000) & 0xffff,
             jump: false,
             pose: estimator.update(frame).pose,
-            grips: { left: 0, right: 0 },
-            curls: { left: null, right: null },
+            fingers: { left: relaxedHand, right: relaxedHand },
           },
           skeleton,
         );

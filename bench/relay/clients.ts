@@ -1,6 +1,7 @@
 // The load, in a process of its own: lean clients that speak WebSocket without socket.io's client, so that the relay is what is measured.
 import { WebSocket } from 'ws';
 import { defaultCalibration } from '../../src/core/body/calibration';
+import { relaxedHand } from '../../src/core/body/hand-shape';
 import { skeletonFromCalibration } from '../../src/core/body/skeleton';
 import { createIk } from '../../src/core/estimation/estimators';
 import { protocolVersion } from '../../src/core/protocol/messages';
@@ -15,7 +16,7 @@ function packet(): Uint8Array {
   const frame = actorFrame(10, defaultCalibration);
   const { pose } = createIk(defaultCalibration).update(frame);
   const bytes = encodePose(
-    { timeMs: 0, jump: false, pose, grips: { left: 0, right: 0 }, curls: { left: null, right: null } },
+    { timeMs: 0, jump: false, pose, fingers: { left: relaxedHand, right: relaxedHand } },
     skeleton,
   );
   if (!bytes) throw new Error('bench/relay: the actor has no finite pose');

@@ -4,6 +4,7 @@ import { handBoneRotation } from '../core/body/arm-rotations';
 import type { AvatarPose, UpperBodyPose } from '../core/body/avatar-pose';
 import type { Calibration } from '../core/body/calibration';
 import { forwardKinematics, makeJointPoses } from '../core/body/forward-kinematics';
+import type { HandShape } from '../core/body/hand-shape';
 import { headJointOf } from '../core/body/head-joint';
 import { type JointName, jointNames } from '../core/body/joints';
 import { type Skeleton, skeletonFromCalibration } from '../core/body/skeleton';
@@ -35,8 +36,8 @@ export interface Avatar {
   setPalette(name: string): void;
   /** 1: solid. Less: a ghost that things behind it shine through. */
   setOpacity(opacity: number): void;
-  /** How far each hand's fingers are closed, 0 open to 1 a fist. */
-  setGrip(side: Side, closed: number): void;
+  /** How a hand's fingers are bent from the next `apply` on; null: they are not seen, keep their bend for a while and relax. Copied. */
+  setFingers(side: Side, shape: HandShape | null): void;
   /** Where the joints of the bones are drawn, floor frame [m]; only bones that the rig has. The same object in every frame: copy what must stay. */
   jointPositions(): Readonly<Partial<Record<AvatarJoint, Vec3>>>;
   dispose(): void;
@@ -109,6 +110,7 @@ class VrmAvatar implements Avatar {
     if (this.meshes.show(shown)) this.rig.forgetJoints();
     if (pose.body) this.applyBody(pose.body, deltaSeconds);
     else this.applyHands(pose);
+    this.fingers.update(deltaSeconds);
     this.live(pose.head, deltaSeconds);
   }
 
@@ -165,8 +167,8 @@ class VrmAvatar implements Avatar {
     this.meshes.setOpacity(opacity);
   }
 
-  setGrip(side: Side, closed: number): void {
-    this.fingers.close(side, closed);
+  setFingers(side: Side, shape: HandShape | null): void {
+    this.fingers.set(side, shape);
   }
 
   jointPositions(): Readonly<Partial<Record<AvatarJoint, Vec3>>> {

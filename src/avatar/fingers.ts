@@ -1,74 +1,93 @@
-import type { VRM, VRMHumanBoneName } from '@pixiv/three-vrm';
-import { type Object3D, Quaternion, Vector3 } from 'three';
+import type { VRM } from '@pixiv/three-vrm';
+import { closePinch } from '../core/body/close-pinch';
+import { FingerMemory } from '../core/body/finger-memory';
+import { fingerFrames, type HandGeometry, makeFingerFrames } from '../core/body/hand-geometry';
+import { copyHandShape, type HandShape, makeHandShape } from '../core/body/hand-shape';
+import { conjugate, multiply, quat } from '../core/math/quat';
 import type { Side } from '../core/math/side';
+import { ofSide, type RigFinger, type RigHand, readHand } from './finger-bones';
 
-interface FingerBone {
-  readonly node: Object3D;
-  readonly side: Side;
-  readonly rest: Quaternion;
-  /** In the bone's own frame: the axis about which it closes. */
-  readonly axis: Vector3;
-  /** Angle [rad] of a closed fist. */
-  readonly share: number;
-}
+const sides = ['left', 'right'] as const;
 
-function readFingers(vrm: VRM): FingerBone[] {
-  const result: FingerBone[] = [];
-  for (const side of ['left', 'right'] as const) {
-    const sigma = side === 'left' ? 1 : -1;
-    for (const finger of ['Thumb', 'Index', 'Middle', 'Ring', 'Little']) {
-      const phalanges =
-        finger === 'Thumb'
-          ? ([
-              ['Metacarpal', 0.35],
-              ['Proximal', 0.6],
-              ['Distal', 0.8],
-            ] as const)
-          : ([
-              ['Proximal', 1.25],
-              ['Intermediate', 1.55],
-              ['Distal', 1.0],
-            ] as const);
-      for (const [phalanx, share] of phalanges) {
-        const node = vrm.humanoid.getRawBoneNode(`${side}${finger}${phalanx}` as VRMHumanBoneName);
-        if (!node) continue;
-        // At rest the rig faces +Z, its left fingers along +X, palms down: fingers close about Z, the thumb towards the palm.
-        const axis = finger === 'Thumb' ? new Vector3(0.35, sigma, 0).normalize() : new Vector3(0, 0, -sigma);
-        const world = node.getWorldQuaternion(new Quaternion());
-        result.push({ node, side, rest: node.quaternion.clone(), axis: axis.applyQuaternion(world.invert()), share });
-      }
+const frames = makeFingerFrames();
+/** How each bone of a finger has turned since the rest pose. */
+const turned = makeFingerFrames();
+const against = quat(0, 0, 0, 1);
+const carried = quat(0, 0, 0, 1);
+
+/** One hand's fingers on a rig. */
+class HandFingers {
+  readonly #side: Side;
+  readonly #rig: RigHand;
+  readonly #memory = new FingerMemory();
+  readonly #seen = makeHandShape();
+  #isSeen = false;
+  /** What is drawn: on a rig of other proportions a pinch takes other angles. */
+  readonly #shown = makeHandShape();
+  /** What the bones were bent to last. */
+  readonly #bent = makeHandShape();
+  #begun = false;
+
+  constructor(vrm: VRM, side: Side) {
+    this.#side = side;
+    this.#rig = readHand(vrm, side);
+  }
+
+  get geometry(): HandGeometry | null {
+    return this.#rig.geometry;
+  }
+
+  set(shape: HandShape | null): void {
+    this.#isSeen = shape !== null;
+    if (shape) copyHandShape(shape, this.#seen);
+  }
+
+  update(deltaSeconds: number): void {
+    copyHandShape(this.#memory.follow(this.#isSeen ? this.#seen : null, deltaSeconds), this.#shown);
+    if (this.#rig.geometry) closePinch(this.#shown, this.#rig.geometry);
+    for (const finger of this.#rig.fingers) if (this.#changed(finger)) this.#bend(finger);
+    copyHandShape(this.#shown, this.#bent);
+    this.#begun = true;
+  }
+
+  #changed({ name }: RigFinger): boolean {
+    const [a, b] = [this.#shown[name], this.#bent[name]];
+    return !this.#begun || a.knuckle !== b.knuckle || a.spread !== b.spread || a.middle !== b.middle || a.end !== b.end;
+  }
+
+  #bend({ name, bones, fromRest }: RigFinger): void {
+    fingerFrames(name, this.#shown[name], frames);
+    for (let i = 0; i < 3; i++) multiply(frames[i as 0], fromRest[i as 0], turned[i as 0]);
+    for (const { node, index, carrier, before, after } of bones) {
+      if (carrier === null) ofSide(this.#side, turned[index], against);
+      else ofSide(this.#side, multiply(conjugate(turned[carrier], carried), turned[index], carried), against);
+      multiply(before, multiply(against, after, against), against);
+      node.quaternion.set(against.x, against.y, against.z, against.w);
     }
   }
-  return result;
 }
 
-/** Fingers of a hand at ease [share of the way to a fist]. */
-const relaxedCurl = 0.22;
-
-/** The fingers of both hands, relaxed at first. */
+/** The fingers of both hands, at ease at first. */
 export class Fingers {
-  private readonly bones: readonly FingerBone[];
-  private readonly grip: Record<Side, number> = { left: relaxedCurl, right: relaxedCurl };
+  readonly #hands: Readonly<Record<Side, HandFingers>>;
 
   constructor(vrm: VRM) {
-    this.bones = readFingers(vrm);
-    this.bend('left');
-    this.bend('right');
+    this.#hands = { left: new HandFingers(vrm, 'left'), right: new HandFingers(vrm, 'right') };
+    this.update(0);
   }
 
-  /** How far a hand is closed, 0 to 1 a fist; at ease it is closed a little. */
-  close(side: Side, closed: number): void {
-    const grip = Math.max(relaxedCurl, Math.min(1, closed));
-    if (grip === this.grip[side]) return;
-    this.grip[side] = grip;
-    this.bend(side);
+  /** What is seen of a hand from now on; null: nothing. Copied. */
+  set(side: Side, shape: HandShape | null): void {
+    this.#hands[side].set(shape);
   }
 
-  private bend(bent: Side): void {
-    for (const { node, rest, axis, side, share } of this.bones) {
-      if (side === bent) node.quaternion.copy(rest).multiply(turn.setFromAxisAngle(axis, share * this.grip[side]));
-    }
+  /** Bends the bones, so long after the last time [s]. */
+  update(deltaSeconds: number): void {
+    for (const side of sides) this.#hands[side].update(deltaSeconds);
+  }
+
+  /** Of the rig, in its own metres; null: it lacks a bone of a finger. */
+  geometry(side: Side): HandGeometry | null {
+    return this.#hands[side].geometry;
   }
 }
-
-const turn = new Quaternion();

@@ -1,9 +1,9 @@
 import { Group, type Mesh, type MeshBasicMaterial, type Object3D, type PlaneGeometry } from 'three';
 import type { AvatarPose } from '../core/body/avatar-pose';
 import type { Calibration } from '../core/body/calibration';
+import type { Fingers } from '../core/body/hand-shape';
 import { type MutableTransform, makeTransform, type Transform, transformPoint } from '../core/math/pose';
 import { copyQuat } from '../core/math/quat';
-import type { Side } from '../core/math/side';
 import { copyVec3, type Vec3 } from '../core/math/vec3';
 import { createBlobShadow } from '../scene/blob-shadow';
 import { type Avatar, createAvatar } from './avatar';
@@ -19,7 +19,7 @@ export interface SeenPerson {
   readonly pose: AvatarPose;
   /** Where their floor lies in this room. */
   readonly placement: Transform<'floor', 'floor'>;
-  readonly grips: Readonly<Record<Side, number>>;
+  readonly fingers: Fingers;
   /** 1: live. Less: a ghost. */
   readonly opacity: number;
 }
@@ -159,7 +159,7 @@ class Mannequins implements RemoteAvatars {
 
 function draw(body: Body, person: SeenPerson, time: number): void {
   const { avatar, place, shadow } = body;
-  const { calibration, palette, pose, placement, grips, opacity } = person;
+  const { calibration, palette, pose, placement, fingers, opacity } = person;
   if (body.fitted?.eyeHeight !== calibration.eyeHeight || body.fitted.armSpan !== calibration.armSpan) {
     avatar.fitTo(calibration);
     body.fitted = calibration;
@@ -177,8 +177,8 @@ function draw(body: Body, person: SeenPerson, time: number): void {
   copyQuat(placement.orientation, body.placement.orientation);
   place.position.copy(placement.position);
   place.quaternion.copy(placement.orientation);
-  avatar.setGrip('left', grips.left);
-  avatar.setGrip('right', grips.right);
+  avatar.setFingers('left', fingers.left);
+  avatar.setFingers('right', fingers.right);
   avatar.apply(pose, time);
   const { hips, head } = avatar.jointPositions();
   const over = hips ?? head;

@@ -178,6 +178,8 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   #apply(tracked: TrackingFrame | null, standIn: Calibration | null): void {
     const pose = this.body.update(tracked, standIn);
     if (!tracked || !pose) return;
+    this.avatar.setFingers('left', tracked.fingers?.left ?? null);
+    this.avatar.setFingers('right', tracked.fingers?.right ?? null);
     this.avatar.apply(pose, tracked.time);
     this.avatar.object.visible = true;
   }

@@ -8,8 +8,7 @@ export interface RemotePlayer {
   readonly seat: number;
   /** Floor frame of their seat. */
   readonly pose: AvatarPose;
-  readonly grips: PosePacket['grips'];
-  readonly curls: PosePacket['curls'];
+  readonly fingers: PosePacket['fingers'];
   /** 1: live. Less: a ghost, because nothing was heard of them for a while. */
   readonly opacity: number;
 }
@@ -33,8 +32,8 @@ interface Seated {
 
 function seated(seat: number): Seated {
   const playback = new Playback();
-  const { pose, grips, curls } = playback.shown;
-  return { playback, remote: { seat, pose, grips, curls, opacity: 1 } };
+  const { pose, fingers } = playback.shown;
+  return { playback, remote: { seat, pose, fingers, opacity: 1 } };
 }
 
 export function createRemotePlayers(): RemotePlayers {

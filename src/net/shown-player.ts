@@ -1,11 +1,17 @@
 import type { UpperBodyPose } from '../core/body/avatar-pose';
+import {
+  copyHandShape,
+  type HandShape,
+  type MutableHandShape,
+  makeHandShape,
+  mixHandShape,
+} from '../core/body/hand-shape';
 import { type JointName, jointNames } from '../core/body/joints';
-import { clamp } from '../core/math/damper';
 import { type MutablePose, makePose, type TrackedPose } from '../core/math/pose';
 import { copyQuat, type MutableQuat, quat, slerp } from '../core/math/quat';
 import type { Side } from '../core/math/side';
 import { copyVec3, lerp, type MutableVec3, vec3 } from '../core/math/vec3';
-import type { FingerCurl, PosePacket } from '../core/protocol/pose-packet';
+import type { PosePacket } from '../core/protocol/pose-packet';
 
 /** What is drawn of a player in one frame. */
 export type Shown = Omit<PosePacket, 'timeMs' | 'jump'>;
@@ -29,8 +35,6 @@ const makeBody = (): MutableBody => ({
   >,
 });
 
-const mixNumber = (a: number, b: number, t: number): number => a + (b - a) * t;
-
 /** A buffer for what is drawn of a player, from one packet or between two; parts of it may be one of the sources. */
 export class ShownPlayer implements Shown {
   readonly pose: {
@@ -39,43 +43,34 @@ export class ShownPlayer implements Shown {
     rightHand: MutableTrackedPose | null;
     body: MutableBody | null;
   };
-  readonly grips: Record<Side, number> = { left: 0, right: 0 };
-  readonly curls: Record<Side, FingerCurl | null> = { left: null, right: null };
+  readonly fingers: Record<Side, HandShape | null> = { left: null, right: null };
   private readonly hands: Readonly<Record<Side, MutableTrackedPose>> = { left: makeTracked(), right: makeTracked() };
   private readonly body = makeBody();
-  private readonly fingers = { left: [0, 0, 0, 0, 0], right: [0, 0, 0, 0, 0] } as const satisfies Record<
-    Side,
-    number[]
-  >;
+  private readonly shapes = { left: makeHandShape(), right: makeHandShape() };
 
   constructor() {
     this.pose = { head: makeTracked(), leftHand: null, rightHand: null, body: null };
   }
 
   /** As it is there. */
-  copy({ pose, grips, curls }: Shown): this {
+  copy({ pose, fingers }: Shown): this {
     copyTracked(pose.head, this.pose.head);
     this.pose.leftHand = pose.leftHand && copyTracked(pose.leftHand, this.hands.left);
     this.pose.rightHand = pose.rightHand && copyTracked(pose.rightHand, this.hands.right);
     this.pose.body = pose.body && copyBody(pose.body, this.body);
-    this.grips.left = grips.left;
-    this.grips.right = grips.right;
-    this.curls.left = curls.left && copyCurl(curls.left, this.fingers.left);
-    this.curls.right = curls.right && copyCurl(curls.right, this.fingers.right);
+    this.fingers.left = fingers.left && copyHandShape(fingers.left, this.shapes.left);
+    this.fingers.right = fingers.right && copyHandShape(fingers.right, this.shapes.right);
     return this;
   }
 
   /** From a (t = 0) to b (t = 1), and on beyond b. */
   mix(a: Shown, b: Shown, t: number): this {
-    const within = Math.min(t, 1);
     mixTracked(a.pose.head, b.pose.head, t, this.pose.head);
     this.pose.leftHand = mixHand(a.pose.leftHand, b.pose.leftHand, t, this.hands.left);
     this.pose.rightHand = mixHand(a.pose.rightHand, b.pose.rightHand, t, this.hands.right);
     this.pose.body = mixBody(a.pose.body, b.pose.body, t, this.body);
-    this.grips.left = mixNumber(a.grips.left, b.grips.left, within);
-    this.grips.right = mixNumber(a.grips.right, b.grips.right, within);
-    this.curls.left = mixCurl(a.curls.left, b.curls.left, within, this.fingers.left);
-    this.curls.right = mixCurl(a.curls.right, b.curls.right, within, this.fingers.right);
+    this.fingers.left = mixFingers(a.fingers.left, b.fingers.left, t, this.shapes.left);
+    this.fingers.right = mixFingers(a.fingers.right, b.fingers.right, t, this.shapes.right);
     return this;
   }
 }
@@ -128,18 +123,13 @@ function mixBody(a: UpperBodyPose | null, b: UpperBodyPose | null, t: number, ta
   return target;
 }
 
-type MutableCurl = [number, number, number, number, number];
-
-function copyCurl(from: FingerCurl, target: MutableCurl): MutableCurl {
-  for (let i = 0; i < 5; i++) target[i] = from[i]!;
-  return target;
-}
-
-function mixCurl(a: FingerCurl | null, b: FingerCurl | null, t: number, target: MutableCurl): MutableCurl | null {
-  if (!a || !b) {
-    const held = t < 1 ? a : b;
-    return held && copyCurl(held, target);
-  }
-  for (let i = 0; i < 5; i++) target[i] = clamp(mixNumber(a[i]!, b[i]!, t), 0, 1);
-  return target;
+function mixFingers(
+  a: HandShape | null,
+  b: HandShape | null,
+  t: number,
+  target: MutableHandShape,
+): MutableHandShape | null {
+  if (a && b) return mixHandShape(a, b, Math.min(t, 1), target);
+  const held = t < 1 ? a : b;
+  return held && copyHandShape(held, target);
 }

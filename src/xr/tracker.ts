@@ -1,17 +1,16 @@
+import type { HandShape } from '../core/body/hand-shape';
 import { allReleased, type HandButtons } from '../core/games/button-presses';
-import { smoothstep } from '../core/math/damper';
 import type { Pose, TrackedPose } from '../core/math/pose';
 import { conjugate, fromAxisAngle, multiply, rotate } from '../core/math/quat';
 import type { Side } from '../core/math/side';
-import { distance, scale, subtract, up } from '../core/math/vec3';
+import { scale, subtract, up } from '../core/math/vec3';
 import { headingOf } from '../core/tracking/heading';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import { Belief } from './believed';
+import { ControllerFingers } from './controller-fingers';
 import { handleFit, wristFromGrip } from './grip-offsets';
-
-/** Tips of thumb and index finger this near are a full pinch, this far are none [m]. */
-const closedPinch = 0.012;
-const openPinch = 0.05;
+import { HandReader } from './hand-reader';
+import { toTrackedPose } from './tracked-pose';
 
 /** WebXR's standard mapping: the first button is the trigger, the second the squeeze. */
 const pressed = (gamepad: Gamepad | undefined): HandButtons => ({
@@ -71,6 +70,9 @@ class SessionTracker implements Tracker {
   readonly #held = { controller: false, hand: false };
   readonly #sticks = new TurningSticks();
   readonly #belief = new Belief();
+  readonly #fingers: Record<Side, HandShape | null> = { left: null, right: null };
+  readonly #handReaders = { left: new HandReader('left'), right: new HandReader('right') };
+  readonly #controllerFingers = { left: new ControllerFingers(), right: new ControllerFingers() };
   /** Devices in the order in which they came. */
   readonly #devices = new WeakMap<XRInputSource, number>();
   #deviceCount = 0;
@@ -98,11 +100,12 @@ class SessionTracker implements Tracker {
     const suspended = this.#session.visibilityState !== 'visible';
     if (suspended) this.#sticks.waitForRelease();
     else this.#sticks.watch(this.#session.inputSources);
-    const { left, right } = this.#readHands(frame, suspended);
+    const { left, right } = this.#readHands(frame, suspended, time);
     const head = viewer && toTrackedPose(viewer);
     if (!head) return null;
     this.#lastHead = head;
-    return this.#belief.of({ time, head, leftHand: left, rightHand: right, ...(suspended && { suspended }) });
+    const poses = { time, head, leftHand: left, rightHand: right, fingers: this.#fingers };
+    return this.#belief.of({ ...poses, ...(suspended && { suspended }) });
   }
 
   recentre(): void {
@@ -138,22 +141,26 @@ class SessionTracker implements Tracker {
   }
 
   /** The wrists of this frame; kinds and buttons are those of this frame too. */
-  #readHands(frame: XRFrame, suspended: boolean): Record<Side, TrackedPose | null> {
+  #readHands(frame: XRFrame, suspended: boolean, time: number): Record<Side, TrackedPose | null> {
     const { kinds, buttons } = this;
+    const fingers = this.#fingers;
     const hands: Record<Side, TrackedPose | null> = { left: null, right: null };
     for (const side of sides) {
       kinds[side] = 'none';
       buttons[side] = allReleased;
+      fingers[side] = null;
     }
     if (suspended) return hands;
     for (const source of this.#session.inputSources) {
       const side = source.handedness;
       if (side === 'none') continue;
-      const pose = this.#readHand(frame, source, side);
+      const pose = this.#readHand(frame, source, side, time);
       // A device may list a controller that lies on the table beside the hand that left it: what is seen wins.
-      if (pose && (hands[side] === null || pose.tracking === 'tracked')) hands[side] = pose;
-      const own = source.hand ? this.#pinched(frame, source.hand) : pressed(source.gamepad);
-      buttons[side] = { ...more(buttons[side], own), device: this.#deviceOf(source) };
+      if (pose && (hands[side] === null || pose.tracking === 'tracked')) {
+        hands[side] = pose;
+        fingers[side] = this.#shapeOf(source, side, time);
+      }
+      buttons[side] = { ...more(buttons[side], this.#pressedBy(source, side)), device: this.#deviceOf(source) };
     }
     for (const side of sides) {
       const kind = kinds[side];
@@ -164,12 +171,10 @@ class SessionTracker implements Tracker {
     return hands;
   }
 
-  #readHand(frame: XRFrame, source: XRInputSource, side: Side): TrackedPose | null {
-    const wrist = source.hand?.get('wrist');
-    if (wrist) {
+  #readHand(frame: XRFrame, source: XRInputSource, side: Side, time: number): TrackedPose | null {
+    if (source.hand?.get('wrist')) {
       this.kinds[side] = 'hand';
-      const pose = frame.getJointPose?.(wrist, this.#space);
-      return pose ? toTrackedPose(pose) : null;
+      return this.#handReaders[side].read(frame, source.hand, this.#space, time);
     }
     if (!source.gripSpace) return null;
     this.kinds[side] = 'controller';
@@ -179,18 +184,15 @@ class SessionTracker implements Tracker {
     return tracked && { ...wristFromGrip(tracked, side, handleFit(source.profiles)), tracking: tracked.tracking };
   }
 
-  /** Thumb against index finger; the gamepad of a hand would only say so once it is over. */
-  #pinched(frame: XRFrame, hand: XRHand): HandButtons {
-    const thumb = this.#fingerTip(frame, hand, 'thumb-tip');
-    const index = this.#fingerTip(frame, hand, 'index-finger-tip');
-    if (!thumb || !index) return allReleased;
-    const gap = distance(thumb, index);
-    return { ...allReleased, pinch: Number.isFinite(gap) ? 1 - smoothstep(closedPinch, openPinch, gap) : 0 };
+  /** What a source that was just read presses: of a bare hand the pinch; its gamepad would only say so once it is over. */
+  #pressedBy(source: XRInputSource, side: Side): HandButtons {
+    if (!source.hand) return pressed(source.gamepad);
+    const { pinch } = this.#handReaders[side];
+    return Number.isNaN(pinch) ? allReleased : { ...allReleased, pinch };
   }
 
-  #fingerTip(frame: XRFrame, hand: XRHand, name: 'thumb-tip' | 'index-finger-tip') {
-    const joint = hand.get(name);
-    return joint && frame.getJointPose?.(joint, this.#space)?.transform.position;
+  #shapeOf(source: XRInputSource, side: Side, time: number): HandShape {
+    return source.hand ? this.#handReaders[side].shape : this.#controllerFingers[side].read(source.gamepad, time);
   }
 
   #deviceOf(source: XRInputSource): number {
@@ -230,15 +232,4 @@ class TurningSticks {
     this.#wanted = 0;
     return wanted;
   }
-}
-
-/** Copies the live objects of a frame; a pose with anything that is not finite counts as not seen. */
-function toTrackedPose(pose: XRPose): TrackedPose | null {
-  const { position: p, orientation: o } = pose.transform;
-  if (![p.x, p.y, p.z, o.x, o.y, o.z, o.w].every(Number.isFinite)) return null;
-  return {
-    position: { x: p.x, y: p.y, z: p.z },
-    orientation: { x: o.x, y: o.y, z: o.z, w: o.w },
-    tracking: pose.emulatedPosition ? 'emulated' : 'tracked',
-  };
 }

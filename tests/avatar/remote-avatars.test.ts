@@ -4,6 +4,7 @@ import { describe, expect, test } from 'vitest';
 import { createRemoteAvatars, type RemoteAvatars, type SeenPerson } from '../../src/avatar/remote-avatars';
 import { defaultCalibration } from '../../src/core/body/calibration';
 import { forwardKinematics } from '../../src/core/body/forward-kinematics';
+import { unknownFingers } from '../../src/core/body/hand-shape';
 import { skeletonFromCalibration } from '../../src/core/body/skeleton';
 import { createIk } from '../../src/core/estimation/estimators';
 import { transformPoint } from '../../src/core/math/pose';
@@ -22,7 +23,7 @@ const person = (id: number, more: Partial<SeenPerson> = {}): SeenPerson => ({
   palette: 'ember',
   pose: poseOf(estimator, actorFrame(9.5, defaultCalibration)),
   placement: { position: vec3(id, 0, -2 * id), orientation: fromAxisAngle(up, 0.7 * id) },
-  grips: { left: 0, right: 0 },
+  fingers: unknownFingers,
   opacity: 1,
   ...more,
 });

@@ -1,4 +1,5 @@
 import { defaultCalibration } from '../../src/core/body/calibration';
+import { unknownFingers } from '../../src/core/body/hand-shape';
 import type { BallDeed, BallEvent } from '../../src/core/games/ball/ball-state';
 import { rackPosition, stations } from '../../src/core/games/ball/stations';
 import { gravity } from '../../src/core/games/ballistics';
@@ -43,8 +44,7 @@ export function shownAt(
       rightHand: hand('right'),
       body: null,
     },
-    grips: { left: 0, right: 0 },
-    curls: { left: null, right: null },
+    fingers: unknownFingers,
   };
 }
 

@@ -1,5 +1,6 @@
 import { describe, expect, test } from 'vitest';
 import { defaultCalibration } from '../../src/core/body/calibration';
+import { unknownFingers } from '../../src/core/body/hand-shape';
 import { createIk } from '../../src/core/estimation/estimators';
 import { identity } from '../../src/core/math/quat';
 import { nextRandom } from '../../src/core/math/random';
@@ -28,8 +29,7 @@ function walker(time: number, more: Partial<PosePacket> = {}, lostLeft = false):
       rightHand: at(time + 0.3, 1),
       body: null,
     },
-    grips: { left: 0, right: 0 },
-    curls: { left: null, right: null },
+    fingers: unknownFingers,
     ...more,
   };
 }

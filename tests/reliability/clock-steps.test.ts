@@ -8,6 +8,7 @@ import { Recorder } from '../../src/app/studio/recorder';
 import { type PlayedStep, playTrial } from '../../src/app/study/study-trial';
 import type { AvatarPose } from '../../src/core/body/avatar-pose';
 import { defaultCalibration } from '../../src/core/body/calibration';
+import { unknownFingers } from '../../src/core/body/hand-shape';
 import { type Buttons, nothingPressed } from '../../src/core/games/button-presses';
 import { distance } from '../../src/core/math/vec3';
 import { actorFrame, actorLoopSeconds } from '../../src/core/tracking/actor-motion';
@@ -129,7 +130,7 @@ describe.each(steps)('page time leaps by %d s, and back 4 s later', (step) => {
           opacity = Math.min(opacity, body.opacity);
         }
       },
-      skin: (pose, frame) => play.send(frame, pose, { left: 0, right: 0 }),
+      skin: (pose, frame) => play.send(frame, pose, unknownFingers),
     });
     for (let i = 0; i < 40 && play.probe()?.phase !== 'running'; i++) run(0.25);
     expect(play.probe()?.phase).toBe('running');

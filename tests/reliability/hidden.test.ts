@@ -1,6 +1,7 @@
 import { expect, test } from 'vitest';
 import { createBallPlay } from '../../src/app/ball/ball-play';
 import { defaultCalibration } from '../../src/core/body/calibration';
+import { unknownFingers } from '../../src/core/body/hand-shape';
 import { createEstimator } from '../../src/core/estimation/estimators';
 import { allReleased } from '../../src/core/games/button-presses';
 import { createLoopbackHost } from '../../src/net/loopback-connection';
@@ -25,7 +26,7 @@ function person(host: ReturnType<typeof createLoopbackHost>, name: string, seat:
       play.begin(time);
       const performed = play.act(time);
       const seen = play.follow(time, performed?.frame ?? null, performed?.buttons ?? released);
-      if (performed) play.send(performed.frame, poseOf(estimator, performed.frame), { left: 0, right: 0 });
+      if (performed) play.send(performed.frame, poseOf(estimator, performed.frame), unknownFingers);
       return seen;
     },
   };

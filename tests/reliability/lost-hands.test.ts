@@ -1,6 +1,7 @@
 import { expect, test } from 'vitest';
 import { defaultCalibration } from '../../src/core/body/calibration';
 import { forwardKinematics } from '../../src/core/body/forward-kinematics';
+import { unknownFingers } from '../../src/core/body/hand-shape';
 import { skeletonFromCalibration } from '../../src/core/body/skeleton';
 import { createEstimator } from '../../src/core/estimation/estimators';
 import { distance, type Vec3, vec3 } from '../../src/core/math/vec3';
@@ -70,7 +71,7 @@ test('others learn of it: null and emulated arrive as they are', () => {
   for (const how of ['null', 'emulated'] as const) {
     const frame = spoiled(0.6, 'left', how, 1);
     const pose = poseOf(createEstimator('ik', defaultCalibration), frame);
-    const packet = { timeMs: 1, jump: false, pose, grips: { left: 0, right: 0 }, curls: { left: null, right: null } };
+    const packet = { timeMs: 1, jump: false, pose, fingers: unknownFingers };
     const bytes = encodePose(packet, skeleton);
     const arrived = bytes && decodePose(bytes, skeleton);
     expect(arrived?.pose.leftHand?.tracking ?? null).toBe(how === 'null' ? null : 'emulated');

@@ -6,6 +6,7 @@ import { relayConfigurationFrom } from '../../server/relay-configuration';
 import { shippedRoomKinds } from '../../server/room-kinds';
 import { serve } from '../../server/web-server';
 import { defaultCalibration } from '../../src/core/body/calibration';
+import { unknownFingers } from '../../src/core/body/hand-shape';
 import { skeletonFromCalibration } from '../../src/core/body/skeleton';
 import { identity } from '../../src/core/math/quat';
 import { vec3 } from '../../src/core/math/vec3';
@@ -111,8 +112,7 @@ export function poseBytes(timeMs: number, aside = 0): Uint8Array {
         rightHand: { position: vec3(aside + 0.2, 1.1, -0.2), orientation: identity, tracking: 'tracked' },
         body: null,
       },
-      grips: { left: 0, right: 0 },
-      curls: { left: null, right: null },
+      fingers: unknownFingers,
     },
     skeleton,
   );

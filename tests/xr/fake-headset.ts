@@ -1,11 +1,11 @@
 import { vi } from 'vitest';
 import { composeTransforms, invertTransform, type Pose, transformPose } from '../../src/core/math/pose';
-import { identity } from '../../src/core/math/quat';
+import { identity, rotate } from '../../src/core/math/quat';
 import type { Side } from '../../src/core/math/side';
-import { zero } from '../../src/core/math/vec3';
+import { type Vec3, vec3, zero } from '../../src/core/math/vec3';
 
 type Place = Pose<'floor'>;
-type Seen = (Place & { readonly emulated?: boolean }) | null;
+export type Seen = (Place & { readonly emulated?: boolean }) | null;
 
 /** A space of a device that is told where everything is: its origin in the room. */
 class Space extends EventTarget {
@@ -27,12 +27,12 @@ class RigidTransform {
   }
 }
 
-interface Input {
+export interface Input {
   readonly handedness: XRHandedness;
   readonly profiles: readonly string[];
   readonly gripSpace: { at: Seen };
   readonly hand?: Map<string, { at: Seen }>;
-  readonly gamepad: { readonly buttons: { value: number }[]; readonly axes: number[] };
+  readonly gamepad: { readonly buttons: { value: number; touched?: boolean }[]; readonly axes: number[] };
 }
 
 /** A headset as WebXR shows it, for tests: every pose is told, and may be null, emulated or no number. */
@@ -49,10 +49,24 @@ export function fakeHeadset() {
   const frame = {
     getViewerPose: (space: Space) => poseIn(space, head),
     getPose: (of: { at: Seen }, space: Space) => poseIn(space, of.at),
-    getJointPose: (of: { at: Seen }, space: Space) => poseIn(space, of.at),
+    getJointPose: (of: { at: Seen }, space: Space) => {
+      asked.joints += 1;
+      return poseIn(space, of.at);
+    },
+    fillPoses: (spaces: readonly { at: Seen }[], space: Space, matrices: Float32Array) => {
+      asked.fills += 1;
+      const poses = spaces.map((of) => poseIn(space, of.at));
+      matrices.fill(Number.NaN);
+      if (poses.includes(null)) return false;
+      for (const [i, pose] of poses.entries()) matrices.set(matrixOf(pose!.transform), 16 * i);
+      return true;
+    },
   };
+  /** How often the page asked for single joints, and for all of a hand. */
+  const asked = { joints: 0, fills: 0 };
   return {
     session: session as unknown as XRSession,
+    asked,
     floor: floor as unknown as XRReferenceSpace,
     frame: frame as unknown as XRFrame,
     setHead(at: Seen) {
@@ -70,6 +84,17 @@ export function fakeHeadset() {
       floor.dispatchEvent(new Event('reset'));
     },
   };
+}
+
+/** Column by column, as WebXR writes it. */
+function matrixOf({ position, orientation }: Place): readonly number[] {
+  const column = (axis: Vec3, last: number) => [axis.x, axis.y, axis.z, last];
+  return [
+    ...column(rotate(orientation, vec3(1, 0, 0)), 0),
+    ...column(rotate(orientation, vec3(0, 1, 0)), 0),
+    ...column(rotate(orientation, vec3(0, 0, 1)), 0),
+    ...column(position, 1),
+  ];
 }
 
 export function controller(handedness: Side, at: Seen, trigger = 0): Input {

@@ -1,5 +1,6 @@
 import { createRemoteAvatars, type RemoteAvatars } from '../../avatar/remote-avatars';
 import type { AvatarPose } from '../../core/body/avatar-pose';
+import type { Fingers } from '../../core/body/hand-shape';
 import type { BallState } from '../../core/games/ball/ball-state';
 import type { BallPulse } from '../../core/games/ball/gestures';
 import type { Performed } from '../../core/games/ball/player-postures';
@@ -9,7 +10,6 @@ import type { BallSteering } from '../../core/games/ball/steered-players';
 import type { Buttons } from '../../core/games/button-presses';
 import { type Pose, type Transform, transformPose } from '../../core/math/pose';
 import type { Ray } from '../../core/math/ray';
-import type { Side } from '../../core/math/side';
 import type { Vec3 } from '../../core/math/vec3';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 import { bannerText, connectionText } from '../../net/banner';
@@ -63,7 +63,7 @@ export interface BallActivity {
   act(time: number, catchUp: boolean): Performed | null;
   /** The tracked frame as play: what it means is heard at once, what it feels like comes back. */
   follow(frame: TrackingFrame, buttons: Buttons): readonly BallPulse[];
-  send(frame: TrackingFrame, pose: AvatarPose, grips: Readonly<Record<Side, number>>): void;
+  send(frame: TrackingFrame, pose: AvatarPose, fingers: Fingers): void;
   /** Draws the match; head: the eyes and ears of the viewer, own floor frame. `tracked`: whether `follow` was called for this frame. */
   show(time: number, head: Pose<'floor'>, tracked: boolean): void;
   /** What a ray meets on the sheet before and after a match: the distance [m]; null: nothing. `press`: does what it says. */
@@ -151,8 +151,8 @@ class CourtActivity implements BallActivity {
     return this.#follow(frame.time, frame, buttons);
   }
 
-  send(frame: TrackingFrame, pose: AvatarPose, grips: Readonly<Record<Side, number>>): void {
-    this.play.send(frame, pose, grips);
+  send(frame: TrackingFrame, pose: AvatarPose, fingers: Fingers): void {
+    this.play.send(frame, pose, fingers);
   }
 
   show(time: number, head: Pose<'floor'>, tracked: boolean): void {

@@ -1,3 +1,4 @@
+import { fingersOfButtons } from '../../avatar/pressed-fingers';
 import type { Calibration } from '../../core/body/calibration';
 import { chestSpaceBody } from '../../core/body/skeleton';
 import { createEstimator } from '../../core/estimation/estimators';
@@ -11,7 +12,6 @@ import { holderStation, stations } from '../../core/games/ball/stations';
 import { type BallBot, createThrower } from '../../core/games/ball/thrower-motion';
 import type { Buttons } from '../../core/games/button-presses';
 import { identity } from '../../core/math/quat';
-import type { Side } from '../../core/math/side';
 import { zero } from '../../core/math/vec3';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 import type { Connection, RoomView, Visitor } from '../../net/connection';
@@ -45,11 +45,6 @@ export function actorFor(station: number, calibration: Calibration, seed: number
   const body = bodyAt(station, calibration);
   return station === holderStation ? createHolder(body) : createThrower(body, seed + 31 * station);
 }
-
-const gripsOf = (buttons: Buttons): Record<Side, number> => {
-  const closed = ({ trigger, grip, pinch }: Buttons[Side]) => Math.max(trigger, grip, pinch);
-  return { left: closed(buttons.left), right: closed(buttons.right) };
-};
 
 /** What built-in players know of the court besides the state of the match. */
 export interface CourtSight {
@@ -106,8 +101,6 @@ export interface Mover {
   readonly estimator: PoseEstimator;
 }
 
-const noCurls = { left: null, right: null };
-
 /** One moment of a built-in player: deeds, and the solved body to the others. */
 export function moveOnce(
   { line, gestures, actor, estimator }: Mover,
@@ -118,7 +111,7 @@ export function moveOnce(
   if (!seen?.match || seen.mySeat === null) return null;
   const { frame, buttons } = performedAt(actor, moment, seen.match, seen.mySeat, sight);
   const { pose } = estimator.update(frame);
-  line.sendPose(moment, { jump: false, pose, grips: gripsOf(buttons), curls: noCurls });
+  line.sendPose(moment, { jump: false, pose, fingers: fingersOfButtons(buttons) });
   return play(line, gestures, frame, buttons);
 }
 

@@ -1,5 +1,6 @@
 import type { AvatarPose } from '../../core/body/avatar-pose';
 import type { Calibration } from '../../core/body/calibration';
+import { type Fingers, unknownFingers } from '../../core/body/hand-shape';
 import type { BallEvent, BallRole, BallState } from '../../core/games/ball/ball-state';
 import { basketInHands, type Opening } from '../../core/games/ball/basket';
 import type { BallCue, BallPulse } from '../../core/games/ball/gestures';
@@ -47,7 +48,7 @@ export interface BodyFrame {
   readonly palette: string;
   readonly pose: AvatarPose;
   readonly placement: Transform<'floor', 'floor'>;
-  readonly grips: Readonly<Record<Side, number>>;
+  readonly fingers: Fingers;
   readonly opacity: number;
 }
 
@@ -196,7 +197,7 @@ export class CourtPeople {
         body.station = player?.station ?? seat;
         body.palette = seatLooks[body.station]?.palette ?? 'porcelain';
         body.pose = there.pose;
-        body.grips = there.grips;
+        body.fingers = there.fingers;
         body.opacity = there.opacity;
         composeTransforms(floorFromArena, arenaFromFloor, body.placement);
         this.bodies.push(body);
@@ -254,7 +255,7 @@ const makeSeatView = (seat: number): SeatView => ({
     palette: '',
     pose: { head: { ...makePose<'floor'>(), tracking: 'emulated' }, leftHand: null, rightHand: null, body: null },
     placement: makeTransform(),
-    grips: { left: 0, right: 0 },
+    fingers: unknownFingers,
     opacity: 0,
   },
   head: vec3(0, 0, 0),

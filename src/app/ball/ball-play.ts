@@ -1,5 +1,6 @@
 import type { AvatarPose } from '../../core/body/avatar-pose';
 import type { Calibration } from '../../core/body/calibration';
+import type { Fingers } from '../../core/body/hand-shape';
 import { createEstimator } from '../../core/estimation/estimators';
 import type { BallEvent } from '../../core/games/ball/ball-state';
 import type { BallCue, BallGestureFrame, BallGestures, BallPulse } from '../../core/games/ball/gestures';
@@ -52,7 +53,7 @@ export interface BallPlay {
   /** The tracked frame and its buttons become play; null frame: no one is seen, or a spectator. */
   follow(time: number, frame: TrackingFrame | null, buttons: Buttons): BallFrame | null;
   /** The solved body of this frame, for the others. */
-  send(frame: TrackingFrame, pose: AvatarPose, grips: Readonly<Record<Side, number>>): void;
+  send(frame: TrackingFrame, pose: AvatarPose, fingers: Fingers): void;
   /** The space was re-anchored: others see a jump and no streak. */
   jumped(): void;
   ready(on: boolean): void;
@@ -86,7 +87,6 @@ const idle: BallSteering = {
 const nowhere: Transform<'floor', 'arena'> = { position: zero, orientation: identity };
 const connecting: ConnectionStatus = { phase: 'connecting', attempt: 0, retryIn: null, reason: null };
 const emptyHands: Readonly<Record<Side, number | null>> = { left: null, right: null };
-const noCurls = { left: null, right: null };
 /** A result that a person may want to read stands this long before a built-in player wants another round [s]. */
 const rematchAfter = 7;
 
@@ -227,9 +227,9 @@ class MatchPlay implements BallPlay {
     return this.newest;
   }
 
-  send(frame: TrackingFrame, pose: AvatarPose, grips: Readonly<Record<Side, number>>): void {
+  send(frame: TrackingFrame, pose: AvatarPose, fingers: Fingers): void {
     if (this.room?.mySeat === null) return;
-    this.connection?.sendPose(frame.time, { jump: this.jump, pose, grips, curls: noCurls });
+    this.connection?.sendPose(frame.time, { jump: this.jump, pose, fingers });
     this.jump = false;
   }
 

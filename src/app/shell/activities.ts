@@ -1,3 +1,4 @@
+import { type MutableHandShape, shapeOfClosing } from '../../core/body/hand-shape';
 import { firstLine, reasonOf } from '../../core/errors/reasons';
 import { type Buttons, nothingPressed } from '../../core/games/button-presses';
 import type { Ray } from '../../core/math/ray';
@@ -254,12 +255,13 @@ export class Activities {
     return haptics;
   }
 
-  /** How far a hand is closed, 0 to 1. */
-  grip(side: Side, buttons: Buttons): number {
-    if (!this.#options.study.idle && this.#archery?.holds(side)) return 1;
-    if (this.#ball?.play.newest?.role === 'holder') return basketGrip;
-    const { trigger, grip, pinch } = buttons[side];
-    return Math.max(trigger, grip, pinch);
+  /** Closes a hand round what it holds; false: it holds nothing. */
+  grasp(side: Side, target: MutableHandShape): boolean {
+    const bow = !this.#options.study.idle && this.#archery?.holds(side);
+    if (!bow && this.#ball?.play.newest?.role !== 'holder') return false;
+    const closed = bow ? 1 : basketGrip;
+    shapeOfClosing({ thumb: closed, index: closed, rest: closed, pinch: 0 }, target);
+    return true;
   }
 
   /** Draws the newest frame of play; frame: what was tracked, null where nothing was. */

@@ -1,4 +1,6 @@
+import { shapeOfButtons } from '../../avatar/pressed-fingers';
 import type { AvatarPose } from '../../core/body/avatar-pose';
+import { type HandShape, makeHandShape } from '../../core/body/hand-shape';
 import { firstLine, reasonOf } from '../../core/errors/reasons';
 import type { Side } from '../../core/math/side';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
@@ -32,7 +34,8 @@ export interface PageFrameOptions {
 /** One frame of this page, part by part. */
 export class PageFrame implements FrameParts<XRFrame> {
   readonly #options: PageFrameOptions;
-  readonly #grips: Record<Side, number> = { left: 0, right: 0 };
+  readonly #fingers: Record<Side, HandShape | null> = { left: null, right: null };
+  readonly #shapes = { left: makeHandShape(), right: makeHandShape() };
   #count = 0;
   #lastFault = '';
 
@@ -63,10 +66,10 @@ export class PageFrame implements FrameParts<XRFrame> {
 
   skin(pose: AvatarPose, frame: TrackingFrame): void {
     const { avatar, activities } = this.#options;
-    this.#closeHand('left');
-    this.#closeHand('right');
+    this.#bendFingers('left', frame);
+    this.#bendFingers('right', frame);
     avatar.current?.apply(pose, frame.time);
-    activities.ball?.send(frame, pose, this.#grips);
+    activities.ball?.send(frame, pose, this.#fingers);
   }
 
   render(time: number, frame: TrackingFrame | null): void {
@@ -87,10 +90,14 @@ export class PageFrame implements FrameParts<XRFrame> {
     this.#lastFault = text;
   }
 
-  #closeHand(side: Side): void {
+  /** What a hand holds closes it; else its fingers are as tracked, or as the buttons of a hand say whose fingers no device sees. */
+  #bendFingers(side: Side, { fingers }: TrackingFrame): void {
     const { activities, source, avatar } = this.#options;
-    this.#grips[side] = activities.grip(side, source.buttons);
-    avatar.current?.setGrip(side, this.#grips[side]);
+    const target = this.#shapes[side];
+    const held = activities.grasp(side, target) ? target : null;
+    const shape = held ?? (fingers ? fingers[side] : shapeOfButtons(source.buttons[side], target));
+    this.#fingers[side] = shape;
+    avatar.current?.setFingers(side, shape);
   }
 
   /** Hands behind a menu of the device point at nothing. */

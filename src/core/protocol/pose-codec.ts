@@ -1,5 +1,6 @@
 import type { AvatarPose, UpperBodyPose } from '../body/avatar-pose';
 import { forwardKinematics, makeJointPoses } from '../body/forward-kinematics';
+import { isFiniteHand } from '../body/hand-shape';
 import { jointNames } from '../body/joints';
 import { type Skeleton, wristFromHandBone } from '../body/skeleton';
 import { type MutablePose, makePose, type Pose, type TrackedPose } from '../math/pose';
@@ -7,20 +8,10 @@ import { conjugate, multiply, type Quat, quat } from '../math/quat';
 import type { Side } from '../math/side';
 import { copyVec3, isFiniteVec3 } from '../math/vec3';
 import { writeBodySteps } from './body-steps';
+import { handShapeOf, toFingerSteps } from './finger-steps';
 import { readPacket, writePacket } from './pose-layout';
-import type { FingerCurl, PointsPacket, PosePacket } from './pose-packet';
-import {
-  type CurlSteps,
-  curlBits,
-  gripBits,
-  handPose,
-  handSteps,
-  headPosition,
-  headSteps,
-  levels,
-  makePacketSteps,
-  trackedBits,
-} from './pose-steps';
+import type { PointsPacket, PosePacket } from './pose-packet';
+import { handPose, handSteps, headPosition, headSteps, makePacketSteps, trackedBits } from './pose-steps';
 import { fromQuatSteps } from './quantise';
 import { placeBody } from './rebuild-body';
 
@@ -63,17 +54,16 @@ export function encodePose(packet: PosePacket, skeleton: Skeleton): Uint8Array |
   writeHand('right', packet, rightHand);
   steps.hasBody = body !== null;
   if (body) writeBodySteps({ body, joints, head: headAsSent, hands: handsAsSent }, skeleton, steps.body);
-  writeCurl('left', packet, leftHand);
-  writeCurl('right', packet, rightHand);
+  writeFingers('left', packet, leftHand);
+  writeFingers('right', packet, rightHand);
   return writePacket(steps);
 }
 
-function writeHand(side: Side, { grips, pose: { body } }: PosePacket, hand: TrackedPose | null): void {
+function writeHand(side: Side, { pose: { body } }: PosePacket, hand: TrackedPose | null): void {
   const target = steps.hands[side];
   // A lost hand's place is taken by the wrist that the body shows instead.
   const shown = hand ?? (body ? wristOf(side) : null);
   target.tracking = hand?.tracking ?? 'lost';
-  target.grip = levels(grips[side], gripBits);
   target.placed = shown !== null;
   if (!shown) return;
   handSteps(headAsSent.position, shown, target.at);
@@ -88,13 +78,13 @@ function wristOf(side: Side): Pose<'floor'> {
   return bodyWrist;
 }
 
-/** After the body: fingers of a hand that its arm has not caught up with are unknown. */
-function writeCurl(side: Side, { curls }: PosePacket, hand: TrackedPose | null): void {
-  const target = steps.curls[side];
-  const fingers = curls[side];
-  target.known = fingers !== null && hand !== null && !(steps.hasBody && steps.body.arms[side].free);
-  if (!target.known || !fingers) return;
-  for (let i = 0; i < fingers.length; i++) target.fingers[i] = levels(fingers[i]!, curlBits);
+/** After the body: fingers of a hand that its arm has not caught up with are unknown, and so are those that are no numbers. */
+function writeFingers(side: Side, { fingers }: PosePacket, hand: TrackedPose | null): void {
+  const target = steps.fingers[side];
+  const shape = fingers[side];
+  target.known = false;
+  if (!shape || !hand || !isFiniteHand(shape) || (steps.hasBody && steps.body.arms[side].free)) return;
+  toFingerSteps(shape, target);
 }
 
 /** A new pose of a hand in `steps`; null: lost. */
@@ -106,23 +96,15 @@ function handOf(side: Side, head: Pose<'floor'>): TrackedPose | null {
   return hand;
 }
 
-const curlOf = ({ known, fingers }: CurlSteps): FingerCurl | null => {
-  const share = (i: 0 | 1 | 2 | 3 | 4): number => fingers[i] / (2 ** curlBits - 1);
-  return known ? [share(0), share(1), share(2), share(3), share(4)] : null;
-};
-
 /** What `steps` tell, the body apart. */
 function pointsOf(): PointsPacket {
-  const { timeMs, jump, head: headNumbers, headTracking, hands, curls } = steps;
+  const { timeMs, jump, head: headNumbers, headTracking } = steps;
   const position = headPosition(headNumbers.position);
   const head = { position, orientation: fromQuatSteps(headNumbers.orientation, trackedBits), tracking: headTracking };
-  const most = 2 ** gripBits - 1;
   return {
     timeMs,
     jump,
     pose: { head, leftHand: handOf('left', head), rightHand: handOf('right', head), body: null },
-    grips: { left: hands.left.grip / most, right: hands.right.grip / most },
-    curls: { left: curlOf(curls.left), right: curlOf(curls.right) },
   };
 }
 
@@ -133,11 +115,12 @@ export const decodePoints = (bytes: Uint8Array): PointsPacket | null => (readPac
 export function decodePose(bytes: Uint8Array, skeleton: Skeleton): PosePacket | null {
   if (!readPacket(bytes, steps)) return null;
   const points = pointsOf();
-  if (!steps.hasBody) return points;
-  const { timeMs, jump, pose, grips, curls } = points;
+  const { timeMs, jump, pose } = points;
+  const fingers = { left: handShapeOf(steps.fingers.left), right: handShapeOf(steps.fingers.right) };
+  if (!steps.hasBody) return { timeMs, jump, pose, fingers };
   const { head, leftHand, rightHand } = pose;
   handPose(head.position, steps.hands.left.at, handsAsSent.left);
   handPose(head.position, steps.hands.right.at, handsAsSent.right);
   const body = placeBody(head, handsAsSent, steps.body, skeleton);
-  return { timeMs, jump, pose: { head, leftHand, rightHand, body }, grips, curls };
+  return { timeMs, jump, pose: { head, leftHand, rightHand, body }, fingers };
 }

@@ -1,15 +1,14 @@
 import type { Side } from '../math/side';
 import { type BitReader, type BitWriter, createBitReader, createBitWriter } from './bits';
+import { fingerFields } from './finger-steps';
 import { longestPose, poseVersion } from './pose-packet';
 import {
   type BodySteps,
   bodyBitsFor,
-  curlBits,
   directionBits,
   flexionBits,
   forearmBits,
   freeHandBits,
-  gripBits,
   handBits,
   headBits,
   heightBits,
@@ -32,13 +31,13 @@ const readFlag = (): boolean => reader.read(1) === 1;
 
 /** The bytes of a packet. */
 export function writePacket(packet: PacketSteps): Uint8Array {
-  const { head, hands, curls, body, hasBody } = packet;
+  const { head, hands, fingers, body, hasBody } = packet;
   writer.clear();
   writer.write(poseVersion, 4);
   writeFlag(packet.jump);
   writeFlag(hasBody);
   writeFlag(packet.headTracking === 'tracked');
-  for (const side of sides) writeFlag(curls[side].known);
+  for (const side of sides) writeFlag(fingers[side].known);
   for (const side of sides) writeFlag(hasBody && body.arms[side].free);
   for (const side of sides) writer.write(trackings.indexOf(hands[side].tracking), 2);
   writer.write(packet.timeMs, 16);
@@ -47,15 +46,15 @@ export function writePacket(packet: PacketSteps): Uint8Array {
   writeStep(writer, head.position.z, headBits);
   writeQuat(writer, head.orientation, trackedBits);
   for (const side of sides) {
-    const { placed, at, grip } = hands[side];
-    writer.write(grip, gripBits);
+    const { placed, at } = hands[side];
     if (!placed) continue;
     writeVec(writer, at.position, handBits);
     writeQuat(writer, at.orientation, trackedBits);
   }
   for (const side of sides) {
-    const { known, fingers } = curls[side];
-    if (known) for (const finger of fingers) writer.write(finger, curlBits);
+    const { known, levels } = fingers[side];
+    if (!known) continue;
+    for (let i = 0; i < fingerFields.length; i++) writer.write(levels[i]!, fingerFields[i]!.bits);
   }
   if (hasBody) writeBody(writer, body);
   return writer.bytes();
@@ -88,11 +87,11 @@ export function readPacket(bytes: Uint8Array, packet: PacketSteps): boolean {
   if (bytes.length > longestPose) return false;
   reader.open(bytes);
   if (reader.read(4) !== poseVersion) return false;
-  const { hands, curls, body } = packet;
+  const { hands, fingers, body } = packet;
   packet.jump = readFlag();
   packet.hasBody = readFlag();
   packet.headTracking = readFlag() ? 'tracked' : 'emulated';
-  for (const side of sides) curls[side].known = readFlag();
+  for (const side of sides) fingers[side].known = readFlag();
   for (const side of sides) body.arms[side].free = readFlag();
   for (const side of sides) {
     const tracking = trackings[reader.read(2)];
@@ -103,12 +102,13 @@ export function readPacket(bytes: Uint8Array, packet: PacketSteps): boolean {
   for (const side of sides) {
     const { free } = body.arms[side];
     if (free && !packet.hasBody) return false;
-    if (curls[side].known && (free || hands[side].tracking === 'lost')) return false;
+    if (fingers[side].known && (free || hands[side].tracking === 'lost')) return false;
   }
   if (!readHead(packet) || !readHand(packet, 'left') || !readHand(packet, 'right')) return false;
   for (const side of sides) {
-    const { known, fingers } = curls[side];
-    if (known) for (let i = 0; i < fingers.length; i++) fingers[i] = reader.read(curlBits);
+    const { known, levels } = fingers[side];
+    if (!known) continue;
+    for (let i = 0; i < fingerFields.length; i++) levels[i] = reader.read(fingerFields[i]!.bits);
   }
   return (!packet.hasBody || readBody(reader, body)) && reader.ended();
 }
@@ -127,7 +127,6 @@ function readHead({ head: { position, orientation } }: PacketSteps): boolean {
 
 function readHand({ hands, hasBody }: PacketSteps, side: Side): boolean {
   const hand = hands[side];
-  hand.grip = reader.read(gripBits);
   hand.placed = hand.tracking !== 'lost' || hasBody;
   if (!hand.placed) return true;
   const position = readVec(reader, handBits, hand.at.position);

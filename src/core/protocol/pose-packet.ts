@@ -1,14 +1,11 @@
 import type { AvatarPose } from '../body/avatar-pose';
-import type { Side } from '../math/side';
+import type { Fingers } from '../body/hand-shape';
 
 /** Bumped with every change of the layout: a receiver shows nothing rather than nonsense. */
-export const poseVersion = 1;
+export const poseVersion = 2;
 
 /** No packet is longer [bytes]. */
 export const longestPose = 64;
-
-/** How far each finger is bent, 0 straight to 1 in the palm; thumb first. */
-export type FingerCurl = readonly [number, number, number, number, number];
 
 /** What one packet says. All poses in the sender's floor frame. */
 export interface PosePacket {
@@ -17,11 +14,11 @@ export interface PosePacket {
   /** true: the sender's frame of reference changed; no one may interpolate from the packet before. */
   readonly jump: boolean;
   readonly pose: AvatarPose;
-  /** How far each hand is closed, 0 to 1. */
-  readonly grips: Readonly<Record<Side, number>>;
-  /** null: unknown (a controller, a lost hand, or one that its arm has not caught up with). */
-  readonly curls: Readonly<Record<Side, FingerCurl | null>>;
+  /** How the fingers are bent; null: unknown (a lost hand, or one that its arm has not caught up with). */
+  readonly fingers: Fingers;
 }
 
-/** Head and hands of a packet, floor frame, without the body. */
-export type PointsPacket = Omit<PosePacket, 'pose'> & { readonly pose: AvatarPose & { readonly body: null } };
+/** Head and hands of a packet, floor frame, without body and fingers. */
+export type PointsPacket = Omit<PosePacket, 'pose' | 'fingers'> & {
+  readonly pose: AvatarPose & { readonly body: null };
+};

@@ -2,6 +2,7 @@ import { clamp } from '../math/damper';
 import type { MutablePose, Pose, TrackedPose } from '../math/pose';
 import type { Side } from '../math/side';
 import { add, type MutableVec3, setVec3, type Vec3, vec3 } from '../math/vec3';
+import { type FingerSteps, makeFingerSteps } from './finger-steps';
 import {
   type DirectionSteps,
   fromQuatSteps,
@@ -26,8 +27,6 @@ export const lowestHead = -1;
 export const handBits = 13;
 /** Of head and hands: 0.1° at most. */
 export const trackedBits = 11;
-export const gripBits = 4;
-export const curlBits = 3;
 export const forearmBits = 6;
 export const swivelBits = 9;
 /** A clavicle swings ±1.3 rad about each of two axes. */
@@ -39,8 +38,8 @@ export const freeHandBits = 6;
 /** How far a wrist is drawn beyond the hand, or before it, along its arm: multiples of this [m]. */
 export const stretchBits = 5;
 export const stretchUnit = 0.0001;
-/** What is left for the trunk when both arms have wrists of their own, and otherwise. */
-export const trunkBitsFor = (freeArms: number): number => (freeArms === 2 ? 8 : 10);
+/** What is left for the trunk when one arm has a wrist of its own, when both have, and otherwise. */
+export const trunkBitsFor = (freeArms: number): number => 10 - freeArms;
 export const clavicleBitsFor = (freeArms: number): number => (freeArms === 2 ? 8 : 9);
 export const twistBitsFor = (freeArms: number): number => (freeArms === 2 ? 6 : 7);
 /** A forearm twists a quarter turn either way. */
@@ -116,17 +115,9 @@ export interface HandSteps {
   /** Whether it is anywhere: a lost hand is where the body's wrist is. */
   placed: boolean;
   readonly at: PoseSteps;
-  grip: number;
 }
 
-const makeHandSteps = (): HandSteps => ({ tracking: 'lost', placed: false, at: makePoseSteps(), grip: 0 });
-
-export interface CurlSteps {
-  known: boolean;
-  readonly fingers: [number, number, number, number, number];
-}
-
-const makeCurlSteps = (): CurlSteps => ({ known: false, fingers: [0, 0, 0, 0, 0] });
+const makeHandSteps = (): HandSteps => ({ tracking: 'lost', placed: false, at: makePoseSteps() });
 
 /** A whole packet as whole numbers: a buffer, in which what a flag denies means nothing. */
 export interface PacketSteps {
@@ -135,7 +126,7 @@ export interface PacketSteps {
   headTracking: TrackedPose['tracking'];
   readonly head: PoseSteps;
   readonly hands: Readonly<Record<Side, HandSteps>>;
-  readonly curls: Readonly<Record<Side, CurlSteps>>;
+  readonly fingers: Readonly<Record<Side, FingerSteps>>;
   hasBody: boolean;
   readonly body: BodySteps;
 }
@@ -146,7 +137,7 @@ export const makePacketSteps = (): PacketSteps => ({
   headTracking: 'tracked',
   head: makePoseSteps(),
   hands: { left: makeHandSteps(), right: makeHandSteps() },
-  curls: { left: makeCurlSteps(), right: makeCurlSteps() },
+  fingers: { left: makeFingerSteps(), right: makeFingerSteps() },
   hasBody: false,
   body: {
     bits: bitsByFreeArms[0]!,

@@ -2,6 +2,7 @@ import { afterAll, expect, test } from 'vitest';
 import { type BallPlay, createBallPlay } from '../../../src/app/ball/ball-play';
 import { defaultCalibration } from '../../../src/core/body/calibration';
 import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
+import { unknownFingers } from '../../../src/core/body/hand-shape';
 import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
 import { createEstimator } from '../../../src/core/estimation/estimators';
 import { allReleased, type Buttons } from '../../../src/core/games/button-presses';
@@ -50,7 +51,7 @@ function comeIn(port: number, name: string, options: { spectate?: boolean; bots?
       play.begin(time);
       const performed = options.spectate ? null : play.act(time);
       const seen = play.follow(time, performed?.frame ?? null, performed?.buttons ?? released);
-      if (performed) play.send(performed.frame, poseOf(estimator, performed.frame), { left: 0, right: 0 });
+      if (performed) play.send(performed.frame, poseOf(estimator, performed.frame), unknownFingers);
       for (const { id, calibration, pose } of seen?.bodies ?? []) {
         if (!pose.body) continue;
         const elbow = forwardKinematics(skeletonFromCalibration(calibration), pose.body).rightLowerArm.position;

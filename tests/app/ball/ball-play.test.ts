@@ -1,6 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import { type BallPlay, createBallPlay } from '../../../src/app/ball/ball-play';
 import { defaultCalibration } from '../../../src/core/body/calibration';
+import { unknownFingers } from '../../../src/core/body/hand-shape';
 import { createEstimator } from '../../../src/core/estimation/estimators';
 import type { BallEvent, BallOptions } from '../../../src/core/games/ball/ball-state';
 import type { BallSteering } from '../../../src/core/games/ball/steered-players';
@@ -47,7 +48,7 @@ function page(options: {
     const performed = acting ? player.act(time) : null;
     const seen = player.follow(time, performed?.frame ?? null, performed?.buttons ?? released);
     events.push(...(seen?.events ?? []));
-    if (performed) player.send(performed.frame, poseOf(estimator, performed.frame), { left: 0, right: 0 });
+    if (performed) player.send(performed.frame, poseOf(estimator, performed.frame), unknownFingers);
     return seen;
   };
   return {

@@ -3,6 +3,7 @@ import { createBallPlay } from '../../../src/app/ball/ball-play';
 import { createBallRunner } from '../../../src/app/shell/study-ball';
 import { type FinishedTrial, type PlayedStep, type PlayedTrial, playTrial } from '../../../src/app/study/study-trial';
 import { defaultCalibration } from '../../../src/core/body/calibration';
+import { unknownFingers } from '../../../src/core/body/hand-shape';
 import { createEstimator } from '../../../src/core/estimation/estimators';
 import { allReleased, type Buttons } from '../../../src/core/games/button-presses';
 import { createLoopbackHost } from '../../../src/net/loopback-connection';
@@ -73,7 +74,7 @@ async function group() {
           play.begin(time);
           const performed = play.act(time);
           play.follow(time, performed?.frame ?? null, performed?.buttons ?? released);
-          if (performed) play.send(performed.frame, poseOf(estimator, performed.frame), { left: 0, right: 0 });
+          if (performed) play.send(performed.frame, poseOf(estimator, performed.frame), unknownFingers);
           if (play.newest) runner.played(play.newest);
           timeFrame?.();
           if (!finished) finished = trial?.follow(time, performed?.frame ?? null) ?? null;

@@ -2,6 +2,7 @@ import fc from 'fast-check';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
 import { defaultCalibration } from '../../../src/core/body/calibration';
 import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
+import { flatHand, relaxedHand, unknownFingers } from '../../../src/core/body/hand-shape';
 import { jointNames, parentOf } from '../../../src/core/body/joints';
 import { skeletonFromCalibration, wristFromHandBone } from '../../../src/core/body/skeleton';
 import { createEstimator } from '../../../src/core/estimation/estimators';
@@ -9,6 +10,7 @@ import type { PoseRegressor } from '../../../src/core/estimation/pose-regressor'
 import { angleBetween, identity, multiply } from '../../../src/core/math/quat';
 import { nextRandom } from '../../../src/core/math/random';
 import { distance, vec3 } from '../../../src/core/math/vec3';
+import { fingerFields } from '../../../src/core/protocol/finger-steps';
 import { decodePoints, decodePose, encodePose } from '../../../src/core/protocol/pose-codec';
 import { longestPose, type PosePacket, poseVersion } from '../../../src/core/protocol/pose-packet';
 import { isNightly } from '../../nightly';
@@ -60,8 +62,7 @@ async function measure(
       const sent = forwardKinematics(skeleton, packet.pose.body!);
       const shown = forwardKinematics(skeleton, back.pose.body!);
       for (const side of sides) {
-        expect(Math.abs(back.grips[side] - packet.grips[side])).toBeLessThanOrEqual(1 / 30 + 1e-9);
-        const [curl, shownCurl] = [packet.curls[side], back.curls[side]];
+        const [bent, shownBent] = [packet.fingers[side], back.fingers[side]];
         const hand = packet.pose[`${side}Hand`];
         const wrist = sent[`${side}Hand`];
         // An arm on its way back stays bent a little: in its last frames it is a millimetre short of its hand.
@@ -69,10 +70,12 @@ async function measure(
         const turned = hand && angleBetween(multiply(hand.orientation, wristFromHandBone[side]), wrist.orientation);
         if (caught && turned! < 0.01) {
           worst.take('wrists at their hands [mm]', 1000 * distance(wrist.position, shown[`${side}Hand`].position));
-          expect(shownCurl === null).toBe(curl === null);
+          expect(shownBent === null).toBe(bent === null);
         }
-        for (const [i, finger] of (shownCurl ?? []).entries()) {
-          expect(Math.abs(finger - curl![i]!)).toBeLessThanOrEqual(1 / 14 + 1e-9);
+        if (!bent || !shownBent) continue;
+        for (const { bits, low, high, read } of fingerFields) {
+          const sentBend = Math.max(low, Math.min(high, read(bent)));
+          expect(Math.abs(read(shownBent) - sentBend)).toBeLessThanOrEqual((high - low) / 2 / (2 ** bits - 1) + 1e-9);
         }
       }
       for (const joint of jointNames) {
@@ -124,7 +127,7 @@ describe('a body on the wire', () => {
     );
   });
 
-  test('costs 57 bytes while a controller holds each hand and no wrist would break: 1.7 kB/s at 30 Hz', async () => {
+  test('costs 64 bytes with the fingers of both hands, and 56 without while no wrist would break: 1.9 and 1.7 kB/s at 30 Hz', async () => {
     let unbroken = 0;
     await fc.assert(
       fc.asyncProperty(senders, async (sender) => {
@@ -132,7 +135,7 @@ describe('a body on the wire', () => {
           ...sender,
           actor: true,
           fates: { left: 'seen', right: 'seen' },
-          curls: { left: null, right: null },
+          fingers: { left: relaxedHand, right: relaxedHand },
         });
         const sent = forwardKinematics(skeleton, packet.pose.body!);
         const asHeld = sides.every((side) => {
@@ -140,7 +143,9 @@ describe('a body on the wire', () => {
           return angleBetween(bone, sent[`${side}Hand`].orientation) < 0.01;
         });
         if (asHeld) unbroken += 1;
-        expect(encodePose(packet, skeleton)!.length).toBeLessThanOrEqual(asHeld ? 57 : longestPose);
+        expect(encodePose(packet, skeleton)!.length).toBeLessThanOrEqual(longestPose);
+        const fingerless = encodePose({ ...packet, fingers: unknownFingers }, skeleton)!;
+        expect(fingerless.length).toBeLessThanOrEqual(asHeld ? 56 : longestPose);
       }),
       { seed, numRuns: 200 },
     );
@@ -181,8 +186,7 @@ const handsOnly: PosePacket = {
     },
     body: null,
   },
-  grips: { left: 0, right: 1 },
-  curls: { left: null, right: null },
+  fingers: { left: null, right: { ...flatHand, index: { knuckle: 1.45, spread: 0, middle: 1.75, end: 1.085 } } },
 };
 
 const bytesOf = (bits: readonly string[]): number[] =>
@@ -197,11 +201,11 @@ const binary = (value: number, bits: number): string => value.toString(2).padSta
 describe('bytes', () => {
   test('are those of docs/protocol.md, bit by bit', () => {
     const expected = bytesOf([
-      '0001', // version 1
+      '0010', // version 2
       '0', // no jump
       '0', // no body
       '1', // head tracked
-      '00', // no curls
+      '01', // fingers of the right hand alone
       '00', // no free arms
       '00', // left hand lost
       '01', // right hand emulated
@@ -211,23 +215,27 @@ describe('bytes', () => {
       binary(32767 - 4000, 16), // head z
       '11', // w is largest
       ...[1023, 1023, 1023].map((zero) => binary(zero, 11)),
-      '0000', // left grip open
-      '1111', // right grip closed
       binary(4095 + 400, 13), // right hand from the head: 0.2 m
       binary(4095 - 1000, 13), // -0.5 m
       binary(4095 - 1000, 13), // -0.5 m
       '11', // w, which is as large as y
       ...[1023, 2046, 1023].map((part) => binary(part, 11)),
+      ...[binary(2, 3), binary(5, 3), binary(1, 3)], // thumb: palmward, spread, bent
+      ...[binary(15, 4), binary(15, 4)], // index finger: knuckle and middle joint in the palm
+      ...[binary(1, 4), binary(1, 4), binary(1, 4)], // middle, ring and little finger
+      binary(0, 4), // no pinch
     ]);
     expect([...encodePose(handsOnly, skeleton)!]).toEqual(expected);
-    expect(expected.length).toBe(25);
+    expect(expected.length).toBe(28);
     const back = decodePose(Uint8Array.from(expected), skeleton)!;
     expect(distance(back.pose.head.position, handsOnly.pose.head.position)).toBeLessThan(1e-9);
     expect(distance(back.pose.rightHand!.position, handsOnly.pose.rightHand!.position)).toBeLessThan(1e-9);
     expect(back.pose.leftHand).toBeNull();
     expect(back.pose.rightHand!.orientation).toBeSameRotationAs(handsOnly.pose.rightHand!.orientation, 1e-4);
     expect(back.pose.body).toBeNull();
-    expect(back.grips).toEqual({ left: 0, right: 1 });
+    expect(back.fingers.left).toBeNull();
+    expect(back.fingers.right!.index.knuckle).toBeCloseTo(1.45, 9);
+    expect(back.fingers.right!.middle.middle).toBeLessThan(0.05);
   });
 
   test('of a T-pose are these, until the version changes', () => {
@@ -245,7 +253,7 @@ describe('bytes', () => {
     };
     const hex = [...encodePose(packet, skeleton)!].map((byte) => byte.toString(16).padStart(2, '0')).join('');
     expect(hex).toBe(
-      '16000000ffff43d7ef0dffbff7fe0a1f73a43637ffff9fffd77dce90d8dff8007ffbfeffbffbfeffbffbfeffbfefdfbfdff5a7deff7fa91f78',
+      '26000000ffff43d7ef0dffbff7fea1f73a43637ffff9ffd77dce90d8dff8007ffbfeffbffbfeffbffbfeffbfefdfbfdff5a7deff7fa91f78',
     );
     const shown = forwardKinematics(skeleton, decodePose(encodePose(packet, skeleton)!, skeleton)!.pose.body!);
     const sent = forwardKinematics(skeleton, body);
@@ -270,7 +278,7 @@ describe('bytes', () => {
     }
     expect(decodePose(Uint8Array.from([...bytes, 0]), skeleton)).toBeNull();
     const unclean = Uint8Array.from(bytes);
-    unclean[24]! |= 1;
+    unclean[27]! |= 1;
     expect(decodePose(unclean, skeleton)).toBeNull();
   });
 

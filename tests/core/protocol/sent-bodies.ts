@@ -6,7 +6,7 @@ import type { PoseEstimator } from '../../../src/core/estimation/pose-estimator'
 import type { TrackedPose } from '../../../src/core/math/pose';
 import { fromAxisAngle, multiply } from '../../../src/core/math/quat';
 import { up, vec3 } from '../../../src/core/math/vec3';
-import type { FingerCurl, PosePacket } from '../../../src/core/protocol/pose-packet';
+import type { PosePacket } from '../../../src/core/protocol/pose-packet';
 import { actorFrame } from '../../../src/core/tracking/actor-motion';
 import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
 import { evenly, rotation, standpoint, vector } from '../arbitraries';
@@ -26,8 +26,14 @@ const rate = 1 / 60;
 /** Frames before the one that is sent: an arm is on its way to rest, or back. */
 const framesBefore = 18;
 
-const curl = fc.option(
-  fc.tuple(evenly(0, 1), evenly(0, 1), evenly(0, 1), evenly(0, 1), evenly(0, 1)) as fc.Arbitrary<FingerCurl>,
+const bend = fc.record({
+  knuckle: evenly(-0.3, 1.6),
+  spread: evenly(-0.3, 0.9),
+  middle: evenly(-0.1, 1.9),
+  end: evenly(-0.1, 1.2),
+});
+const hand = fc.option(
+  fc.record({ thumb: bend, index: bend, middle: bend, ring: bend, little: bend, pinch: evenly(0, 1) }),
   { nil: null },
 );
 
@@ -43,8 +49,7 @@ export const senders = fc.record({
   turned: rotation,
   jump: fc.boolean(),
   headEmulated: fc.boolean(),
-  grips: fc.record({ left: evenly(0, 1), right: evenly(0, 1) }),
-  curls: fc.record({ left: curl, right: curl }),
+  fingers: fc.record({ left: hand, right: hand }),
 });
 
 export type Sender = typeof senders extends fc.Arbitrary<infer T> ? T : never;
@@ -92,8 +97,7 @@ export async function packetOf(
       timeMs: Math.round(sender.start * 1000) % 65536,
       jump: sender.jump,
       pose: pose!,
-      grips: sender.grips,
-      curls: sender.curls,
+      fingers: sender.fingers,
     },
     skeleton: skeletonFromCalibration(sender.calibration),
   };

@@ -1,0 +1,17 @@
+import { type HandShape, type MutableHandShape, makeHandShape, shapeOfClosing } from '../core/body/hand-shape';
+import { type Buttons, type HandButtons, pressureOf } from '../core/games/button-presses';
+import type { Side } from '../core/math/side';
+
+/** The fingers of a hand of which only its buttons are known: a built-in player's, a mouse's. */
+export function shapeOfButtons(buttons: HandButtons, target: MutableHandShape = makeHandShape()): MutableHandShape {
+  const trigger = pressureOf(buttons, 'trigger');
+  const grip = pressureOf(buttons, 'grip');
+  const closed = Math.max(trigger, grip);
+  return shapeOfClosing({ thumb: closed, index: closed, rest: closed, pinch: pressureOf(buttons, 'pinch') }, target);
+}
+
+/** The same for both hands, new. */
+export const fingersOfButtons = ({ left, right }: Buttons): Record<Side, HandShape> => ({
+  left: shapeOfButtons(left),
+  right: shapeOfButtons(right),
+});

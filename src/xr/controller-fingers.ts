@@ -1,0 +1,99 @@
+import {
+  closedHand,
+  copyBend,
+  type FingerBend,
+  type HandShape,
+  type MutableHandShape,
+  makeHandShape,
+  mixBend,
+} from '../core/body/hand-shape';
+import { smoothingFactor } from '../core/math/damper';
+
+/** WebXR's standard mapping of buttons. */
+const triggerButton = 0;
+const squeezeButton = 1;
+/** Touchpad, stick, the two buttons of the face and the rest beside them: what lies under the thumb. */
+const thumbButtons = [2, 3, 4, 5, 6] as const;
+
+/** A finger goes half of the way to where a button says it is in this time [s]: a touch is there or not. */
+const halfLife = 0.035;
+
+const bend = (knuckle: number, spread: number, middle: number, end: number): FingerBend => ({
+  knuckle,
+  spread,
+  middle,
+  end,
+});
+
+/** Round a handle of 3.5 cm. */
+const heldMiddle = bend(0.82, 0, 1.12, 0.62);
+const heldRing = bend(0.88, -0.03, 1.14, 0.62);
+const heldLittle = bend(0.92, -0.08, 1.1, 0.6);
+/** On the trigger; beside it, straight ahead. */
+const indexOnTrigger = bend(0.5, 0.04, 0.72, 0.36);
+const indexAhead = bend(0.12, 0.06, 0.1, 0.06);
+const indexPressed = bend(0.8, 0.03, 1.3, 0.75);
+/** On the controller's face; stretched away from it. */
+const thumbOnFace = bend(0.62, 0.3, 0.34, 0.4);
+const thumbUp = bend(0.12, 0.62, -0.05, -0.1);
+
+/** The fingers of a hand that holds a controller, by what they press and touch. */
+export class ControllerFingers {
+  /** Overwritten by the next `read`. */
+  readonly shape: HandShape;
+  readonly #shape: MutableHandShape = makeHandShape();
+  /** How far the index finger is off the trigger, and the thumb off the face: 0 on it, 1 away. */
+  #pointing = 0;
+  #thumbAway = 0;
+  /** Whether this controller has ever told a touch from a press. */
+  #capacitive = false;
+  #lastTime: number | null = null;
+
+  constructor() {
+    this.shape = this.#shape;
+  }
+
+  /** `time` [s] on the clock of the frames. */
+  read(gamepad: Gamepad | undefined, time: number): HandShape {
+    const share = this.#lastTime === null ? 1 : smoothingFactor(halfLife, time - this.#lastTime);
+    this.#lastTime = time;
+    const trigger = gamepad?.buttons[triggerButton];
+    const onTrigger = touches(trigger);
+    let onFace = false;
+    for (const index of thumbButtons) {
+      const button = gamepad?.buttons[index];
+      onFace ||= touches(button);
+      this.#capacitive ||= touchesOnly(button);
+    }
+    this.#capacitive ||= touchesOnly(trigger);
+    // Of a controller that feels no touch nothing is known: the fingers lie on it.
+    this.#pointing += ((this.#capacitive && !onTrigger ? 1 : 0) - this.#pointing) * share;
+    this.#thumbAway += ((this.#capacitive && !onFace ? 1 : 0) - this.#thumbAway) * share;
+    this.#bend(pressure(trigger), pressure(gamepad?.buttons[squeezeButton]));
+    return this.#shape;
+  }
+
+  #bend(trigger: number, squeeze: number): void {
+    const { thumb, index, middle, ring, little } = this.#shape;
+    mixBend(heldMiddle, closedHand.middle, squeeze, middle);
+    mixBend(heldRing, closedHand.ring, squeeze, ring);
+    mixBend(heldLittle, closedHand.little, squeeze, little);
+    mixBend(indexPressed, closedHand.index, squeeze, index);
+    mixBend(indexOnTrigger, index, trigger, index);
+    mixBend(index, indexAhead, this.#pointing * (1 - trigger), index);
+    copyBend(thumbOnFace, thumb);
+    mixBend(thumb, closedHand.thumb, Math.min(trigger, squeeze), thumb);
+    mixBend(thumb, thumbUp, this.#thumbAway, thumb);
+    this.#shape.pinch = 0;
+  }
+}
+
+const touches = (button: GamepadButton | undefined): boolean => (button?.touched ?? false) || pressure(button) > 0;
+
+const touchesOnly = (button: GamepadButton | undefined): boolean =>
+  (button?.touched ?? false) && !button?.pressed && pressure(button) === 0;
+
+const pressure = (button: GamepadButton | undefined): number => {
+  const value = button?.value ?? 0;
+  return value > 0 ? Math.min(value, 1) : 0;
+};

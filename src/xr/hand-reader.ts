@@ -1,0 +1,138 @@
+import { FingerMemory } from '../core/body/finger-memory';
+import { type HandJoints, makeHandJoints, setHandJoint, shapeOfJoints } from '../core/body/hand-joints';
+import { type FingerName, type HandShape, type MutableHandShape, makeHandShape } from '../core/body/hand-shape';
+import { type MutablePose, makePose, type TrackedPose } from '../core/math/pose';
+import { fromAxes } from '../core/math/quat';
+import type { Side } from '../core/math/side';
+import { isFiniteVec3, setVec3, vec3 } from '../core/math/vec3';
+import { toTrackedPose } from './tracked-pose';
+
+/** WebXR's hand input, of which the types know a part; not every browser has it. */
+interface FillingFrame {
+  /** Writes a column-major 4×4 matrix for each space; false, and NaN everywhere, where any of them is not seen. */
+  readonly fillPoses?: (spaces: readonly XRSpace[], base: XRSpace, matrices: Float32Array) => boolean;
+}
+
+/** A joint of WebXR's hand that the fingers follow. */
+interface FollowedJoint {
+  readonly name: XRHandJoint;
+  readonly finger: FingerName;
+  readonly joint: 0 | 1 | 2 | 3;
+}
+
+const jointsOf = (finger: FingerName, names: readonly XRHandJoint[]): readonly FollowedJoint[] =>
+  names.map((name, joint) => ({ name, finger, joint: joint as FollowedJoint['joint'] }));
+
+const longFinger = (finger: FingerName, prefix: 'index' | 'middle' | 'ring' | 'pinky'): readonly FollowedJoint[] =>
+  jointsOf(finger, [
+    `${prefix}-finger-phalanx-proximal`,
+    `${prefix}-finger-phalanx-intermediate`,
+    `${prefix}-finger-phalanx-distal`,
+    `${prefix}-finger-tip`,
+  ]);
+
+/** The wrist comes first in the buffers, then these. The metacarpals of the long fingers lie in the palm, which is one piece. */
+const followed: readonly FollowedJoint[] = [
+  ...jointsOf('thumb', ['thumb-metacarpal', 'thumb-phalanx-proximal', 'thumb-phalanx-distal', 'thumb-tip']),
+  ...longFinger('index', 'index'),
+  ...longFinger('middle', 'middle'),
+  ...longFinger('ring', 'ring'),
+  ...longFinger('little', 'pinky'),
+];
+
+/** Reads one tracked hand: wrist and fingers of a frame by one call of `fillPoses`, into memory of its own. */
+export class HandReader {
+  /** Of the last `read` that found a wrist; overwritten by the next. Fingers that were not seen kept their bend. */
+  readonly shape: HandShape;
+  readonly #side: Side;
+  readonly #memory = new FingerMemory();
+  readonly #joints: HandJoints = makeHandJoints();
+  readonly #seen: MutableHandShape = makeHandShape();
+  readonly #matrices = new Float32Array(16 * (1 + followed.length));
+  readonly #wrist: MutablePose<'floor'> = makePose<'floor'>();
+  readonly #at = vec3(0, 0, 0);
+  #hand: XRHand | null = null;
+  /** Of that hand, in the order of `#matrices`; fewer where the device lacks joints. */
+  #spaces: XRJointSpace[] = [];
+  #lastTime: number | null = null;
+
+  constructor(side: Side) {
+    this.#side = side;
+    this.shape = this.#memory.shape;
+  }
+
+  /** The pinch of this frame, before anything is held; NaN: thumb or index finger is not seen. */
+  get pinch(): number {
+    return this.#seen.pinch;
+  }
+
+  /** The wrist, floor frame; null: the hand is not seen. `time` [s] on the clock of the frames. */
+  read(frame: XRFrame, hand: XRHand, space: XRReferenceSpace, time: number): TrackedPose | null {
+    if (hand !== this.#hand) this.#follow(hand);
+    const filled = this.#fill(frame, space);
+    const wrist = filled ? this.#filledWrist() : this.#ask(frame, hand, space);
+    if (!wrist) {
+      this.#seen.pinch = Number.NaN;
+      return null;
+    }
+    const deltaSeconds = this.#lastTime === null ? 0 : Math.max(0, time - this.#lastTime);
+    this.#lastTime = time;
+    this.#memory.follow(shapeOfJoints(this.#joints, this.#seen), deltaSeconds);
+    return wrist;
+  }
+
+  #follow(hand: XRHand): void {
+    this.#hand = hand;
+    this.#spaces = [];
+    for (const name of ['wrist' as XRHandJoint, ...followed.map((joint) => joint.name)]) {
+      const space = hand.get(name);
+      if (space) this.#spaces.push(space);
+    }
+  }
+
+  /** All joints at once; false where the device cannot, or does not see all of them. */
+  #fill(frame: XRFrame, space: XRReferenceSpace): boolean {
+    const { fillPoses } = frame as FillingFrame;
+    if (!fillPoses || this.#spaces.length !== 1 + followed.length) return false;
+    return fillPoses.call(frame, this.#spaces, space, this.#matrices);
+  }
+
+  #filledWrist(): TrackedPose | null {
+    const m = this.#matrices;
+    setVec3(axisX, m[0]!, m[1]!, m[2]!);
+    setVec3(axisY, m[4]!, m[5]!, m[6]!);
+    setVec3(axisZ, m[8]!, m[9]!, m[10]!);
+    const { position, orientation } = this.#wrist;
+    setVec3(position, m[12]!, m[13]!, m[14]!);
+    fromAxes(axisX, axisY, axisZ, orientation);
+    if (!isFiniteVec3(position) || !Number.isFinite(orientation.x + orientation.y + orientation.z + orientation.w)) {
+      return null;
+    }
+    for (let i = 0; i < followed.length; i++) {
+      const at = 16 * (1 + i) + 12;
+      setVec3(this.#at, m[at]!, m[at + 1]!, m[at + 2]!);
+      setHandJoint(this.#joints, followed[i]!, this.#wrist, this.#side, this.#at);
+    }
+    return { position: { ...position }, orientation: { ...orientation }, tracking: 'tracked' };
+  }
+
+  /** Joint by joint: the device has no `fillPoses`, or sees only some of them. */
+  #ask(frame: XRFrame, hand: XRHand, space: XRReferenceSpace): TrackedPose | null {
+    const wristJoint = hand.get('wrist' as XRHandJoint);
+    const found = wristJoint && frame.getJointPose?.(wristJoint, space);
+    const wrist = found ? toTrackedPose(found) : null;
+    if (!wrist) return null;
+    for (let i = 0; i < followed.length; i++) {
+      const joint = hand.get(followed[i]!.name);
+      const at = joint && frame.getJointPose?.(joint, space)?.transform.position;
+      if (at) setVec3(this.#at, at.x, at.y, at.z);
+      else setVec3(this.#at, Number.NaN, Number.NaN, Number.NaN);
+      setHandJoint(this.#joints, followed[i]!, wrist, this.#side, this.#at);
+    }
+    return wrist;
+  }
+}
+
+const axisX = vec3(0, 0, 0);
+const axisY = vec3(0, 0, 0);
+const axisZ = vec3(0, 0, 0);
