@@ -1,5 +1,5 @@
 import { Scene } from 'three';
-import { afterAll, describe, expect, test, vi } from 'vitest';
+import { describe, expect, test, vi } from 'vitest';
 import { Activities } from '../../../src/app/shell/activities';
 import { PageGames } from '../../../src/app/shell/games';
 import { PageStudy } from '../../../src/app/shell/page-study';
@@ -20,9 +20,6 @@ import type { Notice } from '../../../src/ui/notices';
 import { drawNowhere } from './drawing-in-node';
 
 drawNowhere();
-// Nothing is served there.
-vi.stubGlobal('location', { href: 'http://127.0.0.1:9/' });
-afterAll(() => vi.unstubAllGlobals());
 
 const ahead = { x: 0, y: 0, z: 0, w: 1 };
 
@@ -146,6 +143,8 @@ describe('going to a game', () => {
   });
 
   test('a court whose bodies cannot be fetched is told in a sentence, and the studio stays', async () => {
+    // Nothing is served there.
+    vi.stubGlobal('location', { href: 'http://127.0.0.1:9/' });
     const { activities, notices, seen } = page();
     await activities.goTo('ball');
     expect(activities.name).toBe('studio');

@@ -1,4 +1,4 @@
-import { vi } from 'vitest';
+import { afterAll } from 'vitest';
 
 /** A 2D context that takes every call and draws nothing. */
 function deafContext(): unknown {
@@ -9,9 +9,12 @@ function deafContext(): unknown {
   });
 }
 
-/** Node has no canvas: what is drawn on one here is drawn nowhere, so that views can be built whose pictures are not the matter. */
+/**
+ * Node has no canvas: what is drawn on one here is drawn nowhere, so that views can be built whose pictures are not the matter. Until the
+ * file's tests are over: stubs of vitest are taken back before each test, and views are built for several.
+ */
 export function drawNowhere(): void {
-  vi.stubGlobal('document', {
-    createElement: () => ({ width: 0, height: 0, getContext: deafContext }),
-  });
+  const page = { createElement: () => ({ width: 0, height: 0, getContext: deafContext }) };
+  Object.defineProperty(globalThis, 'document', { configurable: true, value: page });
+  afterAll(() => void Reflect.deleteProperty(globalThis, 'document'));
 }
