@@ -66,6 +66,7 @@ export const stages = {
       [process.execPath, 'scripts/build-library.mjs'],
       node('publint/src/cli.js', 'dist-library', '--strict'),
       node('@arethetypeswrong/cli/dist/index.js', '--pack', 'dist-library', '--profile', 'esm-only', '--quiet'),
+      [process.execPath, 'scripts/check-library-types.mjs'],
     ],
   },
   unit: {

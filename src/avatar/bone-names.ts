@@ -1,14 +1,19 @@
-import type { VRMHumanBoneName } from '@pixiv/three-vrm';
-
-/** VRM's name of a bone. */
-export type BoneName = `${VRMHumanBoneName}`;
-/** VRM's names of bones, and what a file calls their nodes. */
-export type BoneMap = Readonly<Partial<Record<BoneName, string>>>;
+import type { Side } from '../core/math/side';
 
 type SideNames = 'Shoulder' | 'UpperArm' | 'LowerArm' | 'Hand' | 'UpperLeg' | 'LowerLeg' | 'Foot' | 'Toes' | 'Eye';
 type CentreBone = 'hips' | 'spine' | 'chest' | 'upperChest' | 'neck' | 'head' | 'jaw';
 const fingerNames = ['Thumb', 'Index', 'Middle', 'Ring', 'Little'] as const;
 type Finger = (typeof fingerNames)[number];
+
+/** VRM's name of a bone. In words of our own: the declarations of @pixiv/three-vrm cannot be read where modules are resolved as Node does. */
+export type BoneName =
+  | CentreBone
+  | `${Side}${
+      | SideNames
+      | `Thumb${'Metacarpal' | 'Proximal' | 'Distal'}`
+      | `${Exclude<Finger, 'Thumb'>}${'Proximal' | 'Intermediate' | 'Distal'}`}`;
+/** VRM's names of bones, and what a file calls their nodes. */
+export type BoneMap = Readonly<Partial<Record<BoneName, string>>>;
 
 /** How programs of one kind call the bones of a body. A space stands for whatever parts the words: nothing, `_`, `.`, `-` or a blank. */
 interface Naming {

@@ -1,0 +1,61 @@
+// Every entry of the package in TypeScript: compiled against the packed package by `npm test`, run by no page.
+import type { Scene, WebGLRenderer } from 'three';
+import {
+  type AvatarPose,
+  BareBody,
+  Body,
+  type BodyEvents,
+  type Calibration,
+  createPageClock,
+  forwardKinematics,
+  loadLearned,
+  type PoseRegressor,
+  skeletonFromCalibration,
+  type TrackingFrame,
+} from 'threepoint';
+import { type OnnxOptions, onnxNetworks } from 'threepoint/onnx';
+import 'threepoint/onnx-worker';
+import { type Avatar, BodyTracker, type BodyTrackerEvents, loadAvatar } from 'threepoint/three';
+
+/** With three.js, its session and an avatar. */
+export async function inTheHeadset(renderer: WebGLRenderer, scene: Scene): Promise<BodyTracker> {
+  const avatar: Avatar = await loadAvatar('/avatars/me.glb', { bones: { hips: 'Hips', head: 'Head' } });
+  const body = new BodyTracker(renderer, { avatar, estimator: 'learned', calibration: 'auto', grows: false });
+  body.addEventListener('calibrated', ({ calibration, source }) => console.log(calibration.eyeHeight, source));
+  body.addEventListener('fallback', ({ estimator, reason }: BodyTrackerEvents['fallback']) =>
+    console.log(estimator, reason),
+  );
+  body.addEventListener('lost', ({ point }) => console.log(point));
+  scene.add(body.object);
+  renderer.setAnimationLoop((timeMs, frame) => {
+    body.update(timeMs, frame);
+    const elbow: number | undefined = body.avatar.jointPositions().leftLowerArm?.y;
+    console.log(elbow, body.body.provider);
+  });
+  return body;
+}
+
+/** Without three.js, by the runtime, with a clock that the page shares and frame times that it measures. */
+export function withoutThree(options: OnnxOptions, recorded: TrackingFrame, person: Calibration): number | undefined {
+  const events: BodyEvents = { jumped: () => console.log('jumped'), outgrown: (difference) => console.log(difference) };
+  const body = new BareBody({
+    estimator: 'paper',
+    networks: onnxNetworks(options),
+    clock: createPageClock(() => performance.now()),
+    timing: { resume: () => undefined, mark: (part: 'features' | 'inference') => console.log(part) },
+    events,
+  });
+  const time = body.frame(performance.now());
+  const pose: AvatarPose | null = body.update({ ...recorded, time }, person);
+  return pose?.body
+    ? forwardKinematics(skeletonFromCalibration(body.calibration), pose.body).head.position.y
+    : undefined;
+}
+
+/** The default: the learned network without a runtime, or another one that the page has. */
+export async function byDefault(): Promise<Body> {
+  const network: PoseRegressor = await loadLearned({ onProgress: (share) => console.log(share) });
+  const body = new Body({ networks: async () => network });
+  await body.dispose();
+  return body;
+}

@@ -1,0 +1,65 @@
+// Compiles examples/consumer.ts against the packed package, as bundlers and as Node resolve modules, strictly, declarations included.
+import { copyFileSync, mkdirSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { main, root, run, runQuietly, SetupError } from './run-command.mjs';
+
+const folder = join(root, 'artifacts/library-consumer');
+const resolutions = [
+  { module: 'preserve', moduleResolution: 'bundler' },
+  { module: 'node16', moduleResolution: 'node16' },
+];
+
+/** The package as `npm install` lays it down; its peers are found in the repository's own packages. */
+async function unpack() {
+  const modules = join(folder, 'node_modules');
+  rmSync(folder, { recursive: true, force: true });
+  mkdirSync(modules, { recursive: true });
+  const packed = await runQuietly('npm', ['pack', join(root, 'dist-library'), '--pack-destination', folder]);
+  const tarball = readdirSync(folder).find((file) => file.endsWith('.tgz'));
+  if (packed?.code !== 0 || !tarball) throw new SetupError(`npm pack failed:\n${packed?.output ?? 'npm is not there'}`);
+  const name = 'threepoint';
+  mkdirSync(join(modules, name));
+  const unpacked = await runQuietly('tar', [
+    '-xzf',
+    join(folder, tarball),
+    '-C',
+    join(modules, name),
+    '--strip-components=1',
+  ]);
+  if (unpacked?.code !== 0)
+    throw new SetupError(`${tarball} could not be unpacked:\n${unpacked?.output ?? 'tar is not there'}`);
+}
+
+/** Faults in declarations of three-vrm are its own: they name files without extensions, which Node's resolution wants. */
+const foreign = /^node_modules[\\/]@pixiv[\\/]/;
+
+/** What the compiler finds wrong of ours and of the page's. */
+async function compile(config) {
+  const { code, output } = await run(process.execPath, ['node_modules/typescript/bin/tsc', '-p', config], {
+    capture: true,
+  });
+  const faults = output.split(/\n(?=\S)/).filter((fault) => fault.trim() !== '' && !foreign.test(fault));
+  if (code !== 0 && !/error TS/.test(output)) throw new SetupError(`The compiler broke down:\n${output}`);
+  return faults;
+}
+
+await main(async () => {
+  await unpack();
+  copyFileSync(join(root, 'examples/consumer.ts'), join(folder, 'consumer.ts'));
+  writeFileSync(join(folder, 'package.json'), '{ "type": "module" }');
+  for (const resolution of resolutions) {
+    const config = join(folder, `tsconfig.${resolution.moduleResolution}.json`);
+    const compilerOptions = {
+      ...resolution,
+      ...{ target: 'es2022', lib: ['es2022', 'dom', 'dom.iterable'], types: [], noEmit: true },
+      ...{ strict: true, exactOptionalPropertyTypes: true, noUncheckedIndexedAccess: true, skipLibCheck: false },
+    };
+    writeFileSync(config, JSON.stringify({ compilerOptions, files: ['consumer.ts'] }));
+    const faults = await compile(config);
+    if (faults.length > 0) {
+      throw new SetupError(
+        `A page with moduleResolution ${resolution.moduleResolution} does not compile:\n${faults.join('\n')}`,
+      );
+    }
+  }
+});
