@@ -17,6 +17,7 @@ const { values: options, positionals } = parseArgs({
     json: { type: 'string' },
     allocations: { type: 'boolean' },
     rounds: { type: 'string' },
+    device: { type: 'boolean' },
   },
   allowPositionals: true,
 });
@@ -103,8 +104,9 @@ const browser = await chromium.launch({
     '--no-sandbox',
     '--use-angle=swiftshader',
     '--enable-unsafe-swiftshader',
-    // Where there is a graphics device, or its software.
+    // In software, so that every machine has it; on the machine's own graphics device where that is asked for.
     '--enable-unsafe-webgpu',
+    ...(options.device ? [] : ['--use-webgpu-adapter=swiftshader']),
     '--disable-quic',
     '--disable-background-networking',
     '--disable-component-update',

@@ -1,5 +1,6 @@
 // npm run bench [-- --json FILE] [frames archery ball visit allocations networks] [--rounds N]: what a frame costs, by estimator and by stage, in
 // headless Chromium. Named parts only are measured; all of them take an hour on two cores without a graphics device, "frames --rounds 3" minutes.
+// npm run bench -- networks --device: WebGPU on the machine's graphics device instead of in software.
 // npm run bench -- --allocations [ik paper learned mirror archery ball3 ball8 stillScene]: only what frames leave to the collector, and which
 // functions leave it.
 import { resolve } from 'node:path';
@@ -19,6 +20,7 @@ await main(async () => {
       json: { type: 'string' },
       allocations: { type: 'boolean' },
       rounds: { type: 'string' },
+      device: { type: 'boolean' },
     },
     allowPositionals: true,
   });
@@ -35,6 +37,7 @@ await main(async () => {
   if (values.json) measure.push('--json', resolve(process.env.INIT_CWD ?? process.cwd(), values.json));
   if (values.rounds) measure.push('--rounds', values.rounds);
   if (values.allocations) measure.push('--allocations');
+  if (values.device) measure.push('--device');
   measure.push(...positionals);
   const { code } = await run(process.execPath, measure, { cwd: root });
   return code;

@@ -62,7 +62,22 @@ async function measure(way: NetworkWay): Promise<NetworkCost> {
     onThread.push(spent + later);
   }
   const told = (values: readonly number[]) => ({ p50: quantile(values, 0.5), p95: quantile(values, 0.95) });
-  return { provider: regressor.provider, inFrameMs: told(inFrame), threadMs: told(onThread), firstBodyMs };
+  const device = regressor.provider === 'webgpu' ? ` (${await graphicsDevice()})` : '';
+  return {
+    provider: `${regressor.provider}${device}`,
+    inFrameMs: told(inFrame),
+    threadMs: told(onThread),
+    firstBodyMs,
+  };
+}
+
+/** What WebGPU computes on, in the browser's words. */
+async function graphicsDevice(): Promise<string> {
+  const { gpu } = navigator as unknown as {
+    readonly gpu?: { requestAdapter(): Promise<{ readonly info: Readonly<Record<string, string>> } | null> };
+  };
+  const { vendor, architecture, description } = (await gpu?.requestAdapter())?.info ?? {};
+  return [vendor, architecture, description].filter(Boolean).join(' ') || 'unnamed';
 }
 
 declare global {
