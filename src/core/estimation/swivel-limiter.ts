@@ -143,6 +143,9 @@ function nearestWithin(angle: number): number {
 const partsPerStep = 64;
 const partsPerHalfTurn = 18 * partsPerStep;
 const swivelPart = Math.PI / partsPerHalfTurn;
+/** Of whole steps from none to half a turn: most of the angles that are looked at. */
+const stepCosines = Float64Array.from({ length: 19 }, (_, step) => Math.cos(step * partsPerStep * swivelPart));
+const stepSines = Float64Array.from({ length: 19 }, (_, step) => Math.sin(step * partsPerStep * swivelPart));
 
 const side = vec3(0, 0, 0);
 const trunkUp = vec3(0, 0, 0);
@@ -189,9 +192,10 @@ function findClearSwivel(circle: ElbowCircle, { hips, chest, neck, rotations }: 
 
 /** Whether an elbow so many parts of a turn away is inside the trunk. Whole numbers: the engine hands them on without a box. */
 function isInside(parts: number): boolean {
-  const angle = parts * swivelPart;
-  const cosine = Math.cos(angle);
-  const sine = Math.sin(angle);
+  const step = Math.abs(parts) / partsPerStep;
+  const whole = Number.isInteger(step);
+  const cosine = whole ? stepCosines[step]! : Math.cos(parts * swivelPart);
+  const sine = whole ? Math.sign(parts) * stepSines[step]! : Math.sin(parts * swivelPart);
   return (
     squaredDistance(
       centre.x + towardsZero.x * cosine + towardsQuarter.x * sine,
