@@ -38,7 +38,7 @@ const conditions = ['first', 'settled', 'shown'] as const;
 type Condition = (typeof conditions)[number];
 
 const methods = [...estimatorNames, 'ccdik'] as const;
-type Method = (typeof methods)[number];
+export type Method = (typeof methods)[number];
 
 interface Quantiles {
   readonly p50: number;
@@ -60,6 +60,8 @@ interface Costs {
 
 export interface PageResult {
   readonly costs: Readonly<Record<Condition, Costs>>;
+  /** Medians of the blocks, settled, in the order of the rounds: those of a round are pairs. */
+  readonly blocks: Readonly<Record<'inFrameMs' | 'threadMs', Readonly<Record<Method, readonly number[]>>>>;
   /** Medians, settled. */
   readonly stagesMs: Readonly<Record<EstimatorName, Readonly<Record<StageName, number>>>>;
   readonly sessionCreateMs: Readonly<Record<string, number>>;
@@ -150,6 +152,18 @@ async function openBodies(timing: FrameTiming): Promise<Record<EstimatorName, Bo
 const empty = <Key extends string>(keys: readonly Key[]) =>
   Object.fromEntries(keys.map((key) => [key, [] as number[]])) as Record<Key, number[]>;
 
+/** Of each method the median of every block. */
+const blockMedians = (values: Record<Method, number[]>): Record<Method, number[]> =>
+  Object.fromEntries(
+    methods.map((name) => [
+      name,
+      Array.from(
+        { length: values[name].length / blockFrames },
+        (_, block) => quantiles(values[name].slice(block * blockFrames, (block + 1) * blockFrames)).p50,
+      ),
+    ]),
+  ) as Record<Method, number[]>;
+
 type Measured = Readonly<Record<'inFrame' | 'withLater' | 'whole' | 'thread', Record<Method, number[]>>>;
 
 /** Frames of every method in every condition. */
@@ -213,6 +227,11 @@ class FrameBench {
       Condition,
       Costs
     >;
+  }
+
+  get blocks(): PageResult['blocks'] {
+    const { inFrame, thread } = this.#measured.settled;
+    return { inFrameMs: blockMedians(inFrame), threadMs: blockMedians(thread) };
   }
 
   get stagesMs(): Record<EstimatorName, Record<StageName, number>> {
@@ -321,6 +340,7 @@ async function measure(): Promise<PageResult> {
   const ball = parts.includes('ball') ? await measureCourt({ ...picture, estimators }) : {};
   return {
     costs: bench.costs,
+    blocks: bench.blocks,
     stagesMs: bench.stagesMs,
     sessionCreateMs: { learned: opening.learned.create, paper: opening.paper.create },
     firstInferenceMs: { learned: opening.learned.first, paper: opening.paper.first },

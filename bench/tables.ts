@@ -1,0 +1,159 @@
+import { stageNames } from '../src/app/shell/frame-timing';
+import type { Allocations } from './allocations';
+import type { MeasuredNetwork } from './networks';
+import type { PageResult } from './page/main';
+import { type PairedRatio, pairedRatio } from './paired-ratio';
+
+/** What opening the real page afresh took, and what had to travel for it, as unpacked. */
+export interface Visit {
+  /** Until the first body is on the screen [ms]: median of three. */
+  readonly firstBodyMs: number;
+  readonly bytes: Readonly<Record<'app' | 'wasm' | 'models' | 'avatars', number>>;
+}
+
+const row = (label: string, cells: readonly (string | number)[]) =>
+  console.log(`  ${label.padEnd(14)}${cells.map((cell) => String(cell).padStart(12)).join('')}`);
+
+export function tellAllocations({ bytes: { update, threeAlone, ...frames } }: Allocations): void {
+  console.log('\nWhat a frame leaves to the collector [kB]');
+  row('', ['all', 'three.js']);
+  const kilobytes = (bytes: number | undefined) => (bytes === undefined ? '' : (bytes / 1000).toFixed(1));
+  const ofThree: Readonly<Record<string, number | undefined>> = threeAlone;
+  const measured = Object.entries({ ...update, ...frames }).filter(([, bytes]) => Number.isFinite(bytes));
+  for (const [name, bytes] of measured) row(name, [kilobytes(bytes), kilobytes(ofThree[name])]);
+}
+
+/** Where it comes from, down to where the rest is small change. */
+export function tellSites({ sites }: Allocations): void {
+  for (const [name, places] of Object.entries(sites)) {
+    console.log(`\n${name}: the functions that leave most [bytes a frame]`);
+    for (const { name: site, at, bytes } of places.slice(0, 40))
+      console.log(`  ${String(bytes).padStart(8)}  ${site.padEnd(36)} ${at}`);
+  }
+}
+
+export function tellNetworks(costs: Readonly<Record<string, MeasuredNetwork>>): void {
+  console.log('\nThe learned network, by the way to run it');
+  row('', ['in frame p50', 'p95 [ms]', 'thread p50', 'p95 [ms]', 'first [ms]', 'kB', 'ran on']);
+  for (const [way, { inFrameMs, threadMs, firstBodyMs, bytes, provider }] of Object.entries(costs)) {
+    const times = [inFrameMs.p50, inFrameMs.p95, threadMs.p50, threadMs.p95].map((ms) => ms.toFixed(3));
+    row(way, [...times, firstBodyMs.toFixed(0), (bytes / 1000).toFixed(0), provider]);
+  }
+}
+
+const share = (value: number) => `${(100 * value).toFixed(1)} %`;
+
+/** By method: within the frame, with what it leaves for later, and the whole. */
+export function tellCosts(frames: PageResult): void {
+  const { first, settled, shown } = frames.costs;
+  for (const [title, table] of [
+    ['In the animation frame, after ten seconds of it [ms]', settled.inFrameMs],
+    ['The same in the first ten seconds [ms]', first.inFrameMs],
+    ['The same after them, while the browser shows the canvas [ms]', shown.inFrameMs],
+    ["With what it leaves for after the frame on the page's thread, after ten seconds [ms]", settled.withLaterMs],
+    ['The same in the first ten seconds [ms]', first.withLaterMs],
+    ['Whole frame, until the picture is drawn [ms]', settled.frameMs],
+    ["Of it, on the page's own thread [ms]", settled.threadMs],
+    ['Whole frame, while the browser shows the canvas [ms]', shown.frameMs],
+    ["Of it, on the page's own thread [ms]", shown.threadMs],
+  ] as const) {
+    console.log(`\n${title}, ${frames.frames} frames each`);
+    row('', ['p50', 'p95', 'p99']);
+    for (const [name, { p50, p95, p99 }] of Object.entries(table))
+      row(name, [p50.toFixed(3), p95.toFixed(3), p99.toFixed(3)]);
+  }
+}
+
+const compared = ['ik', 'paper', 'learned'] as const;
+
+/** What is promised of a frame, as ratios within this run, round by round: the machine's speed and its other work are in both. */
+export function ratiosOf({ blocks: { inFrameMs, threadMs } }: PageResult) {
+  const to = (costs: typeof inFrameMs, other: 'ccdik' | 'ik') =>
+    Object.fromEntries(compared.map((name) => [name, pairedRatio(costs[name], costs[other])])) as Record<
+      (typeof compared)[number],
+      PairedRatio
+    >;
+  return { inFrameToCcdIk: to(inFrameMs, 'ccdik'), threadToIk: to(threadMs, 'ik') };
+}
+
+export function tellRatios({ inFrameToCcdIk, threadToIk }: ReturnType<typeof ratiosOf>): void {
+  const { pairs } = inFrameToCcdIk.ik;
+  console.log(`\nRatios of the blocks' medians after ten seconds, with 95 % confidence; ${pairs} pairs`);
+  row('', ['to CCD-IK', 'from', 'to', 'thread to IK', 'from', 'to']);
+  const cells = ({ ratio, low, high }: PairedRatio, digits: number) =>
+    [ratio, low, high].map((value) => value.toFixed(digits));
+  for (const name of compared) row(name, [...cells(inFrameToCcdIk[name], 2), ...cells(threadToIk[name], 3)]);
+}
+
+export function tellStages(frames: PageResult): void {
+  console.log('\nStages, median, after ten seconds [ms]');
+  row('', stageNames);
+  for (const [name, stages] of Object.entries(frames.stagesMs))
+    row(
+      name,
+      stageNames.map((stage) => stages[stage].toFixed(3)),
+    );
+}
+
+export function tellArchery(frames: PageResult): void {
+  console.log("\nA round of archery, frame on the page's own thread [ms]; missed: share later than that rate allows");
+  row('', ['min', 'mean', 'p50', 'p95', 'max', '72 Hz', '90 Hz', 'drawn p50', 'drawn p95', 'points']);
+  for (const [name, times] of Object.entries(frames.archery)) {
+    const { min, mean, p50, p95, max, missed72, missed90, drawnP50, drawnP95, score } = times;
+    row(name, [
+      ...[min, mean, p50, p95, max].map((ms) => ms.toFixed(2)),
+      share(missed72),
+      share(missed90),
+      drawnP50.toFixed(1),
+      drawnP95.toFixed(1),
+      score,
+    ]);
+  }
+}
+
+export function tellCourt(frames: PageResult): void {
+  console.log("\nThe ball court, frame on the page's own thread [ms]; each other avatar's part of it");
+  row('', [
+    'avatars',
+    'min',
+    'mean',
+    'p50',
+    'p95',
+    'max',
+    '72 Hz',
+    '90 Hz',
+    'drawn p50',
+    'drawn p95',
+    'each p50',
+    'p95',
+  ]);
+  for (const [name, crowds] of Object.entries(frames.ball)) {
+    for (const times of crowds) {
+      const { avatars, min, mean, p50, p95, max, missed72, missed90, drawnP50, drawnP95 } = times;
+      row(name, [
+        avatars,
+        ...[min, mean, p50, p95, max].map((ms) => ms.toFixed(2)),
+        share(missed72),
+        share(missed90),
+        drawnP50.toFixed(1),
+        drawnP95.toFixed(1),
+        times.perRemoteMs?.toFixed(3) ?? '–',
+        times.perRemoteP95Ms?.toFixed(3) ?? '–',
+      ]);
+    }
+  }
+}
+
+export function tellOpening({ sessionCreateMs, firstInferenceMs }: PageResult): void {
+  const whole = (values: Readonly<Record<string, number>>) =>
+    Object.entries(values)
+      .map(([name, value]) => `${name} ${value.toFixed(0)}`)
+      .join(', ');
+  console.log(`\nSession creation [ms]: ${whole(sessionCreateMs)}; first inference [ms]: ${whole(firstInferenceMs)}`);
+}
+
+export function tellVisit({ firstBodyMs, bytes }: Visit): void {
+  console.log(`\nFirst body on the screen: ${firstBodyMs} ms after opening the page (median of 3)`);
+  const kilobytes = Object.entries(bytes).map(([kind, size]) => `${kind} ${(size / 1000).toFixed(0)} kB`);
+  console.log(`First visit, unpacked: ${kilobytes.join(', ')}`);
+}
