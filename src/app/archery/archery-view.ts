@@ -6,6 +6,7 @@ import { invertTransform, type Pose, type Transform, transformPoint } from '../.
 import { rotate } from '../../core/math/quat';
 import { addScaled, type Vec3, vec3 } from '../../core/math/vec3';
 import type { Quality } from '../../scene/renderer';
+import type { AudibleStage } from '../../scene/sound/sound-stage';
 import { makeArrowPose } from './arrow-pose';
 import { createArrows } from './arrows';
 import { createBow } from './bow';
@@ -14,7 +15,7 @@ import { createRange, type Range } from './range';
 import { createResultPanel, type ResultPanel } from './result-panel';
 import { ScorePops } from './score-pops';
 import { createScoreboard } from './scoreboard';
-import { createSounds, type Sounds } from './sounds';
+import { createSounds } from './sounds';
 import { createTargetStands } from './target-stands';
 import { createTrails } from './trails';
 
@@ -32,7 +33,7 @@ export interface ArcheryView {
   show(state: ArcheryState, bow: BowView | null, matchTime: number, head: Pose<'floor'>, rest?: Vec3 | null): void;
   /** Plays and captions what happened since the last frame; cues of the bow are in the floor frame. */
   hear(events: readonly ArcheryEvent[], cues: readonly BowCue[]): void;
-  readonly sound: Pick<Sounds, 'unlock' | 'setVolume' | 'setMuted'>;
+  readonly sound: AudibleStage;
   dispose(): void;
 }
 
@@ -68,7 +69,7 @@ export function createArcheryView({ quality, floorFromArena, distances, onCaptio
     range,
     bow: handheld,
     result,
-    sound: sounds,
+    sound: sounds.stage,
     show(state, bowView, matchTime, head, rest = null) {
       shown = state;
       sounds.listen(head);

@@ -6,6 +6,7 @@ import { clamp } from '../../core/math/damper';
 import { invertTransform, type Pose, type Transform, transformPoint, transformPose } from '../../core/math/pose';
 import { length, lerp, type Vec3, vec3 } from '../../core/math/vec3';
 import {
+  type AudibleStage,
   createSoundStage,
   type Player,
   type Recipe,
@@ -18,15 +19,12 @@ import { creak, earth, rattle, thud, twang } from './synthesis';
 
 /** What is heard of archery: from where it happens, and in words. */
 export interface Sounds {
-  /** Starts the audio; a browser allows it only within a user's gesture. Captions come without it. Rejects where there is no audio. */
-  unlock(): Promise<void>;
+  /** Where it plays: to be unlocked, captions come without it. */
+  readonly stage: AudibleStage;
   /** Plays and captions what happened in this frame; cues are in the floor frame, events in the arena frame. */
   hear(state: ArcheryState, events: readonly ArcheryEvent[], cues: readonly BowCue[]): void;
   /** Where the ears are, floor frame. */
   listen(head: Pose<'floor'>): void;
-  /** 0 silent to 1. */
-  setVolume(volume: number): void;
-  setMuted(on: boolean): void;
   dispose(): void;
 }
 
@@ -75,7 +73,7 @@ class RangeSounds implements Sounds {
   readonly #floorFromArena: Transform<'floor', 'arena'>;
   readonly #arenaFromFloor: Transform<'arena', 'floor'>;
   readonly #onCaption: (text: string) => void;
-  readonly #stage: SoundStage;
+  readonly stage: SoundStage;
   /** The sound of each arrow in the air. */
   readonly #flying = new Map<number, AudioBufferSourceNode>();
   #head: Pose<'floor'> = { position: vec3(0, 1.6, 0), orientation: { x: 0, y: 0, z: 0, w: 1 } };
@@ -86,15 +84,11 @@ class RangeSounds implements Sounds {
     this.#floorFromArena = floorFromArena;
     this.#arenaFromFloor = invertTransform(floorFromArena);
     this.#onCaption = onCaption;
-    this.#stage = createSoundStage(recipes, createContext);
-  }
-
-  unlock(): Promise<void> {
-    return this.#stage.unlock();
+    this.stage = createSoundStage(recipes, createContext);
   }
 
   hear({ targets, options }: ArcheryState, events: readonly ArcheryEvent[], cues: readonly BowCue[]): void {
-    const playing = this.#stage.player;
+    const playing = this.stage.player;
     for (const cue of cues) {
       this.#captionCue(cue);
       if (playing) playCue(cue, playing);
@@ -109,19 +103,11 @@ class RangeSounds implements Sounds {
 
   listen(head: Pose<'floor'>): void {
     this.#head = head;
-    this.#stage.listen(head);
-  }
-
-  setVolume(volume: number): void {
-    this.#stage.setVolume(volume);
-  }
-
-  setMuted(on: boolean): void {
-    this.#stage.setMuted(on);
+    this.stage.listen(head);
   }
 
   dispose(): void {
-    this.#stage.dispose();
+    this.stage.dispose();
   }
 
   #inFloor(point: Vec3): Vec3 {
@@ -145,16 +131,9 @@ class RangeSounds implements Sounds {
   }
 
   /** A whoosh that goes along with the arrow. */
-  #playFlight({ id, release }: Arrow, { context, play }: Player): void {
-    const { source, panner } = play('whoosh', this.#inFloor(release.position));
-    const speed = length(release.velocity);
-    for (let step = 1; step <= 4; step++) {
-      const after = (step / 4) * Math.min(0.7, 14 / speed);
-      const at = this.#inFloor(positionAt(release, after));
-      panner.positionX.linearRampToValueAtTime(at.x, context.currentTime + after);
-      panner.positionY.linearRampToValueAtTime(at.y, context.currentTime + after);
-      panner.positionZ.linearRampToValueAtTime(at.z, context.currentTime + after);
-    }
+  #playFlight({ id, release }: Arrow, { playAlong }: Player): void {
+    const seconds = Math.min(0.7, 14 / length(release.velocity));
+    const source = playAlong('whoosh', seconds, (after) => this.#inFloor(positionAt(release, after)));
     this.#flying.set(id, source);
     source.addEventListener('ended', () => this.#flying.delete(id));
   }

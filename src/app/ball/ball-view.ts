@@ -7,6 +7,7 @@ import type { Launch } from '../../core/games/ballistics';
 import { invertTransform, type Pose, type Transform, transformPoint } from '../../core/math/pose';
 import type { Vec3 } from '../../core/math/vec3';
 import type { Quality } from '../../scene/renderer';
+import type { AudibleStage } from '../../scene/sound/sound-stage';
 import type { Surroundings } from '../../scene/surroundings';
 import { createAimArc } from './aim-arc';
 import { type Balls, createBalls } from './balls';
@@ -66,7 +67,7 @@ export interface BallView {
   show(scene: BallScene): void;
   /** Plays, captions and writes on the board what happened since the last frame. After `show`. */
   hear(events: readonly BallEvent[], cues: readonly BallCue[]): void;
-  readonly sound: Pick<BallSounds, 'unlock' | 'setVolume' | 'setMuted'>;
+  readonly sound: AudibleStage;
   dispose(): void;
 }
 
@@ -98,7 +99,8 @@ export const createBallView = (options: BallViewOptions): BallView => new CourtV
 class CourtView implements BallView {
   readonly own: Group;
   readonly lobby: LobbySheet;
-  readonly sound: BallSounds;
+  readonly sound: AudibleStage;
+  readonly #sounds: BallSounds;
   readonly #court: Court;
   readonly #balls: Balls;
   readonly #basket = createWickerBasket();
@@ -120,7 +122,8 @@ class CourtView implements BallView {
     this.#names = createNameLabels(stations.length, quality);
     this.lobby = createLobbySheet(quality);
     this.own = this.lobby.object;
-    this.sound = createBallSounds(onCaption);
+    this.#sounds = createBallSounds(onCaption);
+    this.sound = this.#sounds.stage;
     const standing = [this.#balls, this.#basket, this.#boards, this.#pops, this.#names];
     this.#court.object.add(...standing.map(({ object }) => object), this.#ring.mesh, this.#arc.object);
   }
@@ -134,7 +137,7 @@ class CourtView implements BallView {
     this.#shown = scene;
     const { state, time, attendants, me, rotate, head, acting } = scene;
     const eyes = transformPoint(invertTransform(this.#floorFromArena), head.position);
-    this.sound.listen(head, this.#floorFromArena);
+    this.#sounds.listen(head, this.#floorFromArena);
     this.#showBalls(scene);
     this.#pops.show(time, eyes);
     const people = attendants.map(writtenOf);
@@ -155,13 +158,13 @@ class CourtView implements BallView {
       if (event.type === 'caught') this.#pops.add((opening ?? state.basket).position, time);
     }
     const mine = me === null ? null : people[me];
-    this.sound.hear({ state, time, events, cues, me, people, fists: mine?.fists ?? unseenFists });
+    this.#sounds.hear({ state, time, events, cues, me, people, fists: mine?.fists ?? unseenFists });
   }
 
   dispose(): void {
     this.lobby.dispose();
     const signs = [this.#boards, this.#pops, this.#names];
-    for (const part of [this.sound, this.#balls, this.#basket, ...signs, this.#arc, this.#court]) part.dispose();
+    for (const part of [this.#sounds, this.#balls, this.#basket, ...signs, this.#arc, this.#court]) part.dispose();
   }
 
   #showBalls({ state, time, attendants, opening: held, aim }: BallScene): void {

@@ -7,6 +7,7 @@ import { clamp } from '../../core/math/damper';
 import { invertTransform, type Pose, type Transform, transformPoint, transformPose } from '../../core/math/pose';
 import { add, length, lerp, type Vec3, vec3 } from '../../core/math/vec3';
 import {
+  type AudibleStage,
   createSoundStage,
   type Player,
   type Recipe,
@@ -20,14 +21,11 @@ import { bounce, caughtInWicker, knock, tick, whistle } from './synthesis';
 
 /** What is heard of the ball game: from where it happens, and in words. */
 export interface BallSounds {
-  /** Starts the audio; a browser allows it only within a user's gesture. Captions come without it. Rejects where there is no audio. */
-  unlock(): Promise<void>;
+  /** Where it plays: to be unlocked, captions come without it. */
+  readonly stage: AudibleStage;
   hear(heard: Heard): void;
   /** Where the ears are, floor frame. */
   listen(head: Pose<'floor'>, floorFromArena: Transform<'floor', 'arena'>): void;
-  /** 0 silent to 1. */
-  setVolume(volume: number): void;
-  setMuted(on: boolean): void;
   dispose(): void;
 }
 
@@ -89,7 +87,7 @@ export const createBallSounds = (onCaption: (text: string) => void, createContex
 
 class CourtSounds implements BallSounds {
   readonly #onCaption: (text: string) => void;
-  readonly #stage: SoundStage;
+  readonly stage: SoundStage;
   #floorFromArena: Transform<'floor', 'arena'> = {
     position: vec3(0, 0, 0),
     orientation: { x: 0, y: 0, z: 0, w: 1 },
@@ -100,15 +98,11 @@ class CourtSounds implements BallSounds {
 
   constructor(onCaption: (text: string) => void, createContext?: () => AudioContext) {
     this.#onCaption = onCaption;
-    this.#stage = createSoundStage(recipes, createContext);
-  }
-
-  unlock(): Promise<void> {
-    return this.#stage.unlock();
+    this.stage = createSoundStage(recipes, createContext);
   }
 
   hear(heard: Heard): void {
-    const playing = this.#stage.player;
+    const playing = this.stage.player;
     const { state, events, cues, people, me, fists } = heard;
     const head = transformPose(invertTransform(this.#floorFromArena), this.#head);
     const hearing: Hearing = { head, me, people, seconds: state.options.seconds };
@@ -126,19 +120,11 @@ class CourtSounds implements BallSounds {
   listen(head: Pose<'floor'>, floorFromArena: Transform<'floor', 'arena'>): void {
     this.#head = head;
     this.#floorFromArena = floorFromArena;
-    this.#stage.listen(head);
-  }
-
-  setVolume(volume: number): void {
-    this.#stage.setVolume(volume);
-  }
-
-  setMuted(on: boolean): void {
-    this.#stage.setMuted(on);
+    this.stage.listen(head);
   }
 
   dispose(): void {
-    this.#stage.dispose();
+    this.stage.dispose();
   }
 
   #inFloor(point: Vec3): Vec3 {
@@ -195,14 +181,7 @@ class CourtSounds implements BallSounds {
   }
 
   /** A whoosh that goes along with the ball. */
-  #playFlight(launch: TimedLaunch, { context, play }: Player): void {
-    const { panner } = play('whoosh', this.#inFloor(launch.position));
-    for (let step = 1; step <= 4; step++) {
-      const after = step * 0.15;
-      const there = this.#inFloor(ballInAir(launch, launch.time + after));
-      panner.positionX.linearRampToValueAtTime(there.x, context.currentTime + after);
-      panner.positionY.linearRampToValueAtTime(there.y, context.currentTime + after);
-      panner.positionZ.linearRampToValueAtTime(there.z, context.currentTime + after);
-    }
+  #playFlight(launch: TimedLaunch, { playAlong }: Player): void {
+    playAlong('whoosh', 0.6, (after) => this.#inFloor(ballInAir(launch, launch.time + after)));
   }
 }

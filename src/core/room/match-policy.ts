@@ -1,5 +1,5 @@
-import type { Pose, Transform } from '../math/pose';
-import type { Vec3 } from '../math/vec3';
+import type { Transform } from '../math/pose';
+import type { SeatAction } from '../tracking/seat-action';
 
 /** What a Room reads of the state of any game. */
 export interface MatchState {
@@ -19,27 +19,6 @@ export interface HostedGame {
   /** A state as it is sent. */
   readonly snapshot: unknown;
 }
-
-/** What the Room itself tells the rules; a player is the number of a seat. */
-export type SeatAction =
-  | { readonly type: 'join'; readonly player: number }
-  | { readonly type: 'leave'; readonly player: number }
-  | { readonly type: 'ready'; readonly player: number; readonly ready: boolean }
-  /** Nothing has been heard of this player for so long that their pose is forgotten. */
-  | { readonly type: 'silent'; readonly player: number }
-  /** The match's clock is about to be stopped. */
-  | { readonly type: 'pause' }
-  | {
-      readonly type: 'pose';
-      readonly player: number;
-      /** Seconds of the match, by the player's own view of its clock. */
-      readonly at: number;
-      /** Arena frame. */
-      readonly head: Vec3;
-      /** Wrists, arena frame; null: not seen. */
-      readonly left: Pose<'arena'> | null;
-      readonly right: Pose<'arena'> | null;
-    };
 
 /** What the rules of a game hear: the Room, and each player's own actions with their seat. */
 export type MatchAction<Game extends HostedGame> = SeatAction | (Game['action'] & { readonly player: number });

@@ -1,7 +1,7 @@
 import type { Calibration } from '../body/calibration';
 import type { SeatInfo } from '../protocol/messages';
 import { encodeFrame, type SeatPose } from '../protocol/pose-frame';
-import type { SeatAction } from './match-policy';
+import type { SeatAction } from '../tracking/seat-action';
 import { PoseClaims } from './pose-claims';
 import type { ClientId } from './room-outlet';
 

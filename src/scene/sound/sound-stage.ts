@@ -21,6 +21,9 @@ export interface SoundStage {
   dispose(): void;
 }
 
+/** What the page itself does with a stage. */
+export type AudibleStage = Pick<SoundStage, 'unlock' | 'setVolume' | 'setMuted'>;
+
 /** Seconds in which volume and mute fade. */
 const fadeSeconds = 0.03;
 
@@ -51,8 +54,7 @@ function createPlayer(context: AudioContext, recipes: Recipes) {
     }
   }
 
-  /** Starts a sound at a point of the floor frame; the panner goes when the sound has ended. */
-  function play(name: string, at: Vec3, delay = 0): { source: AudioBufferSourceNode; panner: PannerNode } {
+  function start(name: string, at: Vec3, delay: number): { source: AudioBufferSourceNode; panner: PannerNode } {
     const source = context.createBufferSource();
     source.buffer = buffer(name);
     const panner = context.createPanner();
@@ -68,7 +70,25 @@ function createPlayer(context: AudioContext, recipes: Recipes) {
     source.start(context.currentTime + delay);
     return { source, panner };
   }
-  return { context, master, warm, play };
+
+  /** Starts a sound at a point of the floor frame, `delay` [s] from now. */
+  function play(name: string, at: Vec3, delay = 0): void {
+    start(name, at, delay);
+  }
+
+  /** Starts one that goes along with something for so long [s]: where that is so many seconds from now, floor frame. */
+  function playAlong(name: string, seconds: number, placeAfter: (after: number) => Vec3): AudioBufferSourceNode {
+    const { source, panner } = start(name, placeAfter(0), 0);
+    for (let step = 1; step <= 4; step++) {
+      const after = (step / 4) * seconds;
+      const at = placeAfter(after);
+      panner.positionX.linearRampToValueAtTime(at.x, context.currentTime + after);
+      panner.positionY.linearRampToValueAtTime(at.y, context.currentTime + after);
+      panner.positionZ.linearRampToValueAtTime(at.z, context.currentTime + after);
+    }
+    return source;
+  }
+  return { context, master, warm, play, playAlong };
 }
 
 /** What plays while the audio runs. */

@@ -1,7 +1,7 @@
-import type { Pose } from '../../math/pose';
 import type { RandomState } from '../../math/random';
 import type { Side } from '../../math/side';
 import type { Vec3 } from '../../math/vec3';
+import type { SeatAction } from '../../tracking/seat-action';
 import type { Launch } from '../ballistics';
 
 /** What may differ between matches. */
@@ -80,26 +80,8 @@ export interface BallState {
   readonly basket: Basket;
 }
 
-/** Player is an index. `at`: seconds of the match, by the player's own view of its clock. */
-export type BallAction =
-  | { readonly type: 'join'; readonly player: number }
-  | { readonly type: 'leave'; readonly player: number }
-  | { readonly type: 'ready'; readonly player: number; readonly ready: boolean }
-  /** Nothing has been heard of this player for so long that where they were is forgotten. */
-  | { readonly type: 'silent'; readonly player: number }
-  /** The clock is about to be stopped: no hand keeps a ball, and where the players were is forgotten. */
-  | { readonly type: 'pause' }
-  | {
-      readonly type: 'pose';
-      readonly player: number;
-      readonly at: number;
-      /** Arena frame. */
-      readonly head: Vec3;
-      /** Wrists, arena frame; null: not seen. */
-      readonly left: Pose<'arena'> | null;
-      readonly right: Pose<'arena'> | null;
-    }
-  | (BallDeed & { readonly player: number });
+/** What the rules hear: the Room, and each player's own deeds. */
+export type BallAction = SeatAction | (BallDeed & { readonly player: number });
 
 /** What a player does with a ball. Numbered by the player from 1: a number counts once, even if it arrives twice or out of order. */
 export type BallDeed =
