@@ -1,12 +1,10 @@
 import fc from 'fast-check';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
-import type { AvatarPose } from '../../../src/core/body/avatar-pose';
 import type { Calibration } from '../../../src/core/body/calibration';
-import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
 import { type JointName, jointNames, parentOf } from '../../../src/core/body/joints';
 import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
 import { createEstimator, needsRegressor } from '../../../src/core/estimation/estimators';
-import { estimatorNames, type PoseEstimator } from '../../../src/core/estimation/pose-estimator';
+import type { PoseEstimator } from '../../../src/core/estimation/pose-estimator';
 import type { PoseRegressor } from '../../../src/core/estimation/pose-regressor';
 import { type TrackedPose, transformPoint } from '../../../src/core/math/pose';
 import {
@@ -34,54 +32,22 @@ import {
   vec3,
 } from '../../../src/core/math/vec3';
 import { headingOf } from '../../../src/core/tracking/heading';
-import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
 import { evenly, rotation, seed, standpoint, vector } from '../arbitraries';
+import {
+  apart,
+  calibrationOf,
+  everyNumber,
+  factIf,
+  jointsOf,
+  person,
+  rate,
+  showSecond,
+  subjects,
+  times,
+} from './contract-subjects';
 import { type Joints, show, showAll } from './drawn';
-import { mirrorFrame, mirrorPoint, movingPerson, transformFrame, withHand } from './moving-person';
+import { mirrorFrame, mirrorPoint, transformFrame, withHand } from './moving-person';
 import { openPlainModel, openShippedModel } from './shipped-models';
-
-const rate = 1 / 60;
-
-const calibrationOf = fc
-  .tuple(evenly(1, 2.1), evenly(0.86, 1.02))
-  .map(([eyeHeight, ratio]): Calibration => ({ eyeHeight, armSpan: eyeHeight * ratio }));
-
-/** A person of any size, standing anywhere, turned anyhow, in the middle of a movement. */
-const person = fc
-  .record({ motion: fc.integer(), calibration: calibrationOf, standpoint, start: evenly(0, 100) })
-  .map((one) => ({ ...one, at: movingPerson(one.motion, one.calibration, one.standpoint) }));
-
-const jointsOf = (pose: AvatarPose, calibration: Calibration): Joints => {
-  if (pose.body === null) throw new Error('this estimator shows no body');
-  return forwardKinematics(skeletonFromCalibration(calibration), pose.body);
-};
-
-/** The second frame of a motion: the first in which a network's answer is drawn. */
-const showSecond = (estimator: PoseEstimator, at: (time: number) => TrackingFrame, time: number): Promise<AvatarPose> =>
-  showAll(estimator, [at(time - rate), at(time)]);
-
-const times = (start: number, count: number, step = rate): number[] =>
-  Array.from({ length: count }, (_, i) => start + i * step);
-
-const everyNumber = (value: unknown): number[] =>
-  typeof value === 'number'
-    ? [value]
-    : typeof value === 'object' && value !== null
-      ? Object.values(value).flatMap(everyNumber)
-      : [];
-
-const apart = (a: Joints, b: Joints): number =>
-  Math.max(...jointNames.map((joint) => distance(a[joint].position, b[joint].position)));
-
-/** A fact about some estimators; for the others there is no test, rather than one that is skipped. */
-const factIf = (holds: boolean): ((fact: string, check: () => Promise<void>) => void) =>
-  holds ? test : () => undefined;
-
-/** Every estimator, those with a network on the page's runtime; and the learned one without a runtime. */
-const subjects = [
-  ...estimatorNames.map((name) => ({ label: name as string, name, plain: false })),
-  { label: 'learned, without a runtime', name: 'learned' as const, plain: true },
-];
 
 describe.each(subjects)('$label', ({ name, plain }) => {
   const wantsModel = needsRegressor(name);

@@ -1,0 +1,114 @@
+import type { Page } from '@playwright/test';
+import type { StudyProbe } from '../src/app/study/study-run';
+import type { StudyRecord } from '../src/core/study/study-record';
+import { type EmulatedHeadset, emulatedHeadset } from './emulated-headset';
+import { expect, freshTest as pageTest } from './page-fixture';
+import { experimenter, experimenterToken, serveStudies } from './study-server';
+
+export const test = pageTest.extend<object, { origin: string }>({
+  origin: [
+    // biome-ignore lint/correctness/noEmptyPattern: Playwright reads the fixture's needs from this pattern
+    async ({}, use) => {
+      const server = await serveStudies();
+      await use(server.origin);
+      await server.close();
+    },
+    { scope: 'worker' },
+  ],
+});
+
+declare global {
+  interface Window {
+    /** Set by a test: this page draws twice a second. */
+    resting?: boolean;
+  }
+}
+
+export const study = (page: Page): Promise<StudyProbe> =>
+  page
+    .waitForFunction(() => window.threepoint?.probe().study)
+    .then((shown) => shown.jsonValue() as Promise<StudyProbe>);
+
+export const screen = async (page: Page) => (await study(page)).screen;
+export const reaches = (page: Page, id: string, timeout = 20_000) =>
+  expect.poll(() => screen(page), { timeout, intervals: [100] }).toBe(id);
+
+export const upright = [0, 0, 0, 1] as const;
+export const stretched = {
+  head: { position: [0, 1.7, 0], orientation: upright },
+  left: { position: [-0.19, 1.4, -0.6], orientation: upright },
+  right: { position: [0.19, 1.4, -0.6], orientation: upright },
+} as const;
+
+/**
+ * Points the right controller's ray at a target of the sheet, waits until it is lit and pulls the trigger; `leave`: takes the arms back
+ * to where calibration wants them before the trigger is let go. All within the page: on a slow machine every word to it costs a frame.
+ */
+export const press = (page: Page, id: string, leave = false): Promise<void> =>
+  page.evaluate(
+    async ([id, upright, leave]) => {
+      const frame = () => new Promise<void>((resolve) => requestAnimationFrame(() => resolve()));
+      const until = async <T>(look: () => T | undefined | false): Promise<T> => {
+        for (const end = Date.now() + 60_000; Date.now() < end; ) {
+          const seen = look();
+          if (seen) return seen;
+          await frame();
+        }
+        throw new Error(`"${id}" cannot be pressed on the screen "${window.threepoint?.probe().study?.screen}"`);
+      };
+      const study = () => window.threepoint?.probe().study;
+      const { right, left } = window.emulatedDevice.controllers;
+      window.emulatedDevice.controlMode = 'programmatic';
+      window.emulatedDevice.position.set(0, 1.7, 0);
+      const [x, y, z] = await until(() => study()?.targets.find((target) => target.id === id)?.at);
+      left.position.set(-0.19, 1.4, -0.6);
+      right.position.set(x, y, z + 0.35);
+      for (const hand of [left, right]) hand.quaternion.set(...upright);
+      await until(() => study()?.pointedAt === id);
+      const before = JSON.stringify(study()?.screen);
+      right.updateButtonValue('trigger', 1);
+      for (let i = 0; i < 3; i++) await frame();
+      if (leave) {
+        await until(() => JSON.stringify(study()?.screen) !== before);
+        right.position.set(0.19, 1.4, -0.6);
+      }
+      right.updateButtonValue('trigger', 0);
+      for (let i = 0; i < 2; i++) await frame();
+    },
+    [id, upright, leave] as const,
+  );
+
+export async function takePart(page: Page, origin: string, id: string, participant: string): Promise<EmulatedHeadset> {
+  await page.goto(await experimenter(origin).link(id, participant, '&emulate&quality=low'));
+  return headsetOf(page);
+}
+
+export async function headsetOf(page: Page): Promise<EmulatedHeadset> {
+  await page.waitForFunction(() => window.threepoint?.probe().ready === true, undefined, { timeout: 60_000 });
+  return emulatedHeadset(page);
+}
+
+export async function calibrate(page: Page): Promise<void> {
+  await reaches(page, 'calibration');
+  await press(page, 'calibrate', true);
+  // Five seconds of the page's time are fifty frames, and each costs what the machine needs for it.
+  await expect.poll(() => screen(page), { intervals: [100], timeout: 90_000 }).toMatch(/-(ready|failed)$/);
+  expect(await screen(page)).toMatch(/-ready$/);
+}
+
+/** Questions and rounds need few frames, and each draws the sheet anew. */
+export const tenHertz = { stepMs: 100 };
+
+export const recordsOf = async (origin: string, id: string): Promise<readonly StudyRecord[]> =>
+  ((await (await experimenter(origin).ask(`/${id}/records`)).json()) as { records: StudyRecord[] }).records;
+
+export async function signIn(page: Page): Promise<void> {
+  await page.getByLabel('Token').fill(experimenterToken);
+  await page.getByRole('button', { name: 'Open' }).click();
+}
+
+export async function openResults(page: Page, id: string): Promise<void> {
+  await page.goto('/results');
+  await signIn(page);
+  await page.getByRole('combobox', { name: 'Study' }).selectOption(id);
+}

@@ -1,0 +1,92 @@
+import type { Page } from '@playwright/test';
+import { type EmulatedHeadset, emulatedHeadset, frames } from './emulated-headset';
+import { enterVr, expect, keepPicture } from './page-fixture';
+import { calibrate, press, reaches, recordsOf, screen, stretched, study, test } from './study-participant';
+import { experimenter, shortBallStudy } from './study-server';
+
+// Three headsets in software rendering take minutes.
+test('three participants play the ball game together, each in a headset of their own @nightly', async ({
+  browser,
+  origin,
+}) => {
+  test.setTimeout(300_000);
+  await experimenter(origin).begin(shortBallStudy('trio'), true);
+  const people = ['P01', 'P02', 'P03'];
+  const pages = await Promise.all(
+    people.map(async () => (await browser.newContext({ viewport: { width: 320, height: 220 } })).newPage()),
+  );
+  // Real headsets compute each for themselves: those that wait here draw seldom meanwhile, so that the others draw often enough.
+  for (const page of pages) {
+    await page.addInitScript(() => {
+      const next = window.requestAnimationFrame.bind(window);
+      window.requestAnimationFrame = (draw) => (window.resting ? window.setTimeout(() => next(draw), 500) : next(draw));
+    });
+  }
+  const rest = (page: Page, resting: boolean) =>
+    page.evaluate((on) => {
+      window.resting = on;
+    }, resting);
+  const all = <T>(act: (page: Page, index: number) => Promise<T>) => Promise.all(pages.map(act));
+  // One after the other: three pages that load at once keep each other waiting.
+  const headsets: EmulatedHeadset[] = [];
+  for (const [index, page] of pages.entries()) {
+    await page.goto(await experimenter(origin).link('trio', people[index] as string, '&emulate&quality=low'));
+    await page.waitForFunction(() => window.threepoint?.probe().ready === true, undefined, { timeout: 90_000 });
+    headsets.push(await emulatedHeadset(page));
+    await page.getByLabel(/I have read this/).check();
+    await page.getByRole('button', { name: 'I agree' }).click();
+    await page.getByRole('button', { name: 'I have noted it' }).click();
+    for (const answer of ['I prefer not to say', 'Once or twice', 'Well without correction'])
+      await page.getByLabel(answer).check();
+    await page.getByLabel('Right', { exact: true }).check();
+    await page.getByLabel(/Age/).fill('26');
+    await page.getByLabel(/Field of study/).fill('Computer science');
+    await page.getByRole('button', { name: 'Continue' }).click();
+    // Three clocks that one relay keeps together cannot be driven.
+    await enterVr(page, { stepMs: null });
+    await headsets[index]?.place(stretched);
+    await calibrate(page);
+    await reaches(page, 'trial-ready', 60_000);
+    await rest(page, true);
+  }
+  const [first, second, third] = pages as [Page, Page, Page];
+  await all((page) => rest(page, false));
+  await press(first, 'start');
+  await reaches(first, 'waiting', 60_000);
+  await press(second, 'start');
+  await press(third, 'start');
+  await expect.poll(async () => (await all(study)).every(({ running }) => running), { timeout: 60_000 }).toBe(true);
+
+  // The experimenter pauses one of them: the match stands for all three.
+  const match = (page: Page) => page.evaluate(() => window.threepoint?.probe().game);
+  const clocks = () => all(async (page) => ((await match(page)) as { secondsLeft: number }).secondsLeft);
+  const command = (type: 'pause' | 'resume') =>
+    experimenter(origin).ask('/trio/participants/P02/commands', 'POST', { type });
+  await command('pause');
+  await expect.poll(() => all(screen), { timeout: 30_000 }).toEqual(['standing', 'paused', 'standing']);
+  await keepPicture(first, 'study-standing');
+  await keepPicture(second, 'study-paused');
+  const stand = await clocks();
+  await all((page) => frames(page, 20));
+  expect(await clocks()).toEqual(stand);
+  expect(Math.max(...stand)).toBeGreaterThan(0);
+  await command('resume');
+  await expect.poll(() => all(screen), { timeout: 30_000 }).toEqual(['playing', 'playing', 'playing']);
+
+  await all((page) => expect.poll(() => screen(page), { timeout: 90_000 }).toMatch(/^(rest|question-Q8)$/));
+  await all((page) => expect.poll(async () => (await study(page)).unsent).toBe(0));
+
+  const trials = (await recordsOf(origin, 'trio')).filter((record) => record.kind === 'trial');
+  expect(trials.map(({ participant }) => participant)).toEqual(people);
+  // One group, one condition.
+  expect(new Set(trials.map(({ body }) => body.condition)).size).toBe(1);
+  expect(new Set(trials.map(({ body }) => body.group))).toEqual(new Set([1]));
+  for (const { body } of trials) {
+    expect(body.outcome.maximum).toBe(20);
+    expect(body.outcome.ended).toBe('time');
+    // The match of the plan, 20 s, and no second of the pause.
+    expect(body.outcome.seconds).toBeGreaterThan(19);
+    expect(body.outcome.seconds).toBeLessThan(26);
+  }
+  await all((page) => page.context().close());
+});

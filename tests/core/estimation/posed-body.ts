@@ -1,0 +1,45 @@
+import type { Calibration } from '../../../src/core/body/calibration';
+import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
+import type { JointName } from '../../../src/core/body/joints';
+import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
+import { createEstimator } from '../../../src/core/estimation/estimators';
+import type { Side } from '../../../src/core/math/side';
+import { dot, normalise, subtract, type Vec3, vec3 } from '../../../src/core/math/vec3';
+import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
+import { type Joints, poseOf } from './drawn';
+
+export const calibration: Calibration = { eyeHeight: 1.62, armSpan: 1.53 };
+export const degrees = Math.PI / 180;
+
+/** The body that IK gives a person who has held this pose for a while. */
+export function bodyOf(frame: TrackingFrame, body = calibration): Joints {
+  const estimator = createEstimator('ik', body);
+  let joints: Joints | null = null;
+  for (let i = 0; i < 5; i++) {
+    const pose = poseOf(estimator, { ...frame, time: frame.time + i / 60 });
+    joints = forwardKinematics(skeletonFromCalibration(body), pose.body!);
+  }
+  return joints!;
+}
+
+export const at = (joints: Joints, joint: JointName): Vec3 => joints[joint].position;
+
+/** The angle [rad] at the elbow between the two bones. */
+export const bentBy = (joints: Joints, side: Side): number => {
+  const upper = normalise(subtract(at(joints, `${side}LowerArm`), at(joints, `${side}UpperArm`)));
+  const lower = normalise(subtract(at(joints, `${side}Hand`), at(joints, `${side}LowerArm`)));
+  return Math.acos(Math.max(-1, Math.min(1, dot(upper, lower))));
+};
+
+export const hip = { left: vec3(-0.22, 0.85, -0.05), right: vec3(0.22, 0.85, -0.05) };
+export const ahead = { left: vec3(-0.2, 1.25, -0.4), right: vec3(0.2, 1.25, -0.4) };
+
+/** Elbow relative to the middle of the straight line from shoulder to wrist. */
+export const elbowAside = (joints: Joints, side: Side): Vec3 => {
+  const shoulder = at(joints, `${side}UpperArm`);
+  const hand = at(joints, `${side}Hand`);
+  return subtract(
+    at(joints, `${side}LowerArm`),
+    vec3((shoulder.x + hand.x) / 2, (shoulder.y + hand.y) / 2, (shoulder.z + hand.z) / 2),
+  );
+};

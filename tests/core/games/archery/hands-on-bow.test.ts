@@ -1,0 +1,185 @@
+import fc from 'fast-check';
+import { describe, expect, test } from 'vitest';
+import { arrowRestHeight, braceHeight } from '../../../../src/core/games/archery/bow';
+import { releaseTowards } from '../../../../src/core/games/archery/flight';
+import { oneHandedDraw, oneHandedDrawSpeed } from '../../../../src/core/games/archery/nocked-arrow';
+import { archeryRules } from '../../../../src/core/games/archery/rules';
+import { wristAround } from '../../../../src/core/games/fist';
+import { rotate } from '../../../../src/core/math/quat';
+import { otherSide, type Side } from '../../../../src/core/math/side';
+import { add, addScaled, cross, distance, length, normalise, reject, up, vec3 } from '../../../../src/core/math/vec3';
+import { evenly, seed, vector } from '../../arbitraries';
+import { bowAt, bowman } from './bowman';
+
+const sides: readonly Side[] = ['left', 'right'];
+
+describe('hands', () => {
+  test('mirrored archers shoot mirrored arrows', () => {
+    fc.assert(
+      fc.property(vector(0.4), evenly(0.3, 0.65), evenly(-0.12, 0.12), (aside, draw, off) => {
+        const shots = sides.map((bowSide) => {
+          const mirror = bowSide === 'left' ? 1 : -1;
+          const direction = normalise(vec3(mirror * aside.x, aside.y, -1));
+          const pose = { direction, off: mirror * off, bowAt: vec3(mirror * bowAt.x, bowAt.y, bowAt.z) };
+          const archer = bowman({ bowSide });
+          archer.drawTo(draw, pose).hold({ ...pose, draw }, 0.1, 0);
+          return archer.releases[0]!;
+        });
+        const [left, right] = shots;
+        expect(left!.draw).toBeCloseTo(right!.draw, 9);
+        expect(distance(left!.position, vec3(-right!.position.x, right!.position.y, right!.position.z))).toBeLessThan(
+          1e-9,
+        );
+        expect(
+          distance(left!.direction, vec3(-right!.direction.x, right!.direction.y, right!.direction.z)),
+        ).toBeLessThan(1e-9);
+      }),
+      { seed, numRuns: 30 },
+    );
+  });
+
+  test('change in the menu takes effect at once and puts the arrow back', () => {
+    const archer = bowman();
+    archer.drawTo(0.5).set({ bowSide: 'right' });
+    archer.hold({ draw: 0.5 }, 0.05, 0);
+    expect(archer.bow).toMatchObject({ bowSide: 'right', stage: 'empty' });
+    expect(archer.releases).toEqual([]);
+    archer.forget().drawTo(0.5).hold({ draw: 0.5 }, 0.1, 0);
+    expect(archer.releases).toHaveLength(1);
+  });
+
+  test('change by taking the bow out of the other hand, without an arrow', () => {
+    const archer = bowman();
+    const atGrip = { draw: -braceHeight };
+    archer.hold(atGrip, 0.1);
+    archer.frame(atGrip, { right: { trigger: 1 } });
+    expect(archer.bow).toMatchObject({ bowSide: 'left' });
+    archer.frame(atGrip, {});
+    archer.frame({ draw: 0.4 }, { right: { grip: 1 } });
+    expect(archer.bow).toMatchObject({ bowSide: 'left' });
+    archer.frame({ draw: 0.4 }, {});
+    archer.frame(atGrip, { right: { grip: 1 } });
+    expect(archer.bow).toMatchObject({ bowSide: 'right', stage: 'empty' });
+    expect(archer.frames.at(-1)!.cues).toMatchObject([{ type: 'taken', side: 'right' }]);
+    // A page that remembers what was taken asks for what is.
+    archer.set({ bowSide: 'right' });
+    archer.hold({}, 0.1);
+    expect(archer.bow).toMatchObject({ bowSide: 'right' });
+  });
+
+  test('that grip between string and bow nock when they are nearer to the string', () => {
+    const archer = bowman();
+    const between = { draw: -0.07 };
+    archer.hold(between, 0.1).hold(between, 0.1, 1, 'grip');
+    expect(archer.bow).toMatchObject({ bowSide: 'left', stage: 'nocked' });
+  });
+
+  test('that only help in one-handed play do not take the bow', () => {
+    const archer = bowman({ oneHanded: true });
+    archer.hold({ draw: -braceHeight }, 0.1);
+    archer.frame({ draw: -braceHeight }, { right: { grip: 1 } });
+    expect(archer.bow).toMatchObject({ bowSide: 'left' });
+  });
+
+  test('do not draw with the press that took the bow', () => {
+    const archer = bowman({ oneHanded: true, bowSide: null, rest: bowAt });
+    archer.hold({}, 0.1).hold({}, 0.3, 1, 'grip');
+    expect(archer.bow).toMatchObject({ bowSide: 'left', stage: 'empty' });
+  });
+
+  test('take the bow from its rest, left or right', () => {
+    for (const side of sides) {
+      const archer = bowman({ bowSide: null, rest: vec3(0.1, 1, -0.5) });
+      // Both hands of this pose are within a step of the rest; only the one that grips takes it.
+      const pose = { bowSide: side, bowAt: vec3(0.1, 1.1, -0.5), draw: 0.4 };
+      archer.hold(pose, 0.1);
+      expect(archer.bow).toBeNull();
+      archer.frame(pose, { [otherSide(side)]: { grip: 1 } });
+      expect(archer.bow).toBeNull();
+      archer.frame(pose, { [side]: { grip: 1 } });
+      expect(archer.bow).toMatchObject({ bowSide: side, stage: 'empty' });
+    }
+  });
+});
+
+describe('one hand', () => {
+  test.each(sides.flatMap((side) => (['trigger', 'pinch'] as const).map((button) => [side, button] as const)))(
+    '%s, %s: draws while the button is held, aims where the knuckles point, shoots when it is let go',
+    (bowSide, button) => {
+      const archer = bowman({ bowSide, oneHanded: true });
+      const other = otherSide(bowSide);
+      const pose = { knuckles: normalise(vec3(0.1, 0.05, -1)), lost: [other] };
+      archer.hold(pose, 0.2, 0, button).hold(pose, 0.6, 1, button);
+      expect(archer.bow!.draw).toBeCloseTo(oneHandedDrawSpeed * 0.6, 1);
+      expect(archer.bow!.stage).toBe('drawing');
+      archer.hold(pose, 1, 1, button);
+      expect(archer.bow).toMatchObject({ stage: 'anchored', draw: oneHandedDraw });
+      archer.hold(pose, 0.05, 0, button);
+      expect(archer.releases).toHaveLength(1);
+      expect(distance(archer.releases[0]!.direction, pose.knuckles)).toBeLessThan(1e-3);
+    },
+  );
+
+  test.each(sides)('%s: is enough for 50 of 50', (bowSide) => {
+    const archer = bowman({ bowSide, oneHanded: true });
+    let state = archeryRules.start(['archer'], 4);
+    const at = vec3(bowSide === 'left' ? -0.1 : 0.1, 1.4, -0.5);
+    for (const { centre } of state.targets) {
+      // Where the knuckles must point depends a little on where the nock lies, and that on where they point.
+      let knuckles = vec3(0, 0, -1);
+      for (let round = 0; round < 6; round++) {
+        const rest = addScaled(at, normalise(reject(up, knuckles)), arrowRestHeight);
+        knuckles = releaseTowards(centre, addScaled(rest, knuckles, -braceHeight - oneHandedDraw), oneHandedDraw)!;
+      }
+      const pose = { bowAt: at, knuckles, lost: [otherSide(bowSide)] };
+      archer.forget().hold(pose, 0.1, 0).hold(pose, 2, 1).hold(pose, 1, 0);
+      for (const { actions } of archer.frames) state = archeryRules.step(state, actions).state;
+    }
+    expect(state).toMatchObject({ score: 50, end: 'targets' });
+  });
+
+  test('another button puts the arrow back', () => {
+    const archer = bowman({ oneHanded: true });
+    archer.hold({}, 0.1).hold({}, 1, 1);
+    archer.frame({}, { left: { trigger: 1, grip: 1 } });
+    archer.hold({}, 0.1, 0);
+    expect(archer.said).toEqual(['nocked', 'cancelled']);
+    expect(archer.releases).toEqual([]);
+  });
+
+  test('lost while drawing holds, then cancels', () => {
+    const archer = bowman({ oneHanded: true });
+    archer
+      .hold({}, 0.1)
+      .hold({}, 1, 1)
+      .hold({ lost: ['left'] }, 0.3, 0);
+    expect(archer.bow!.stage).toBe('held');
+    archer.hold({ lost: ['left'] }, 0.5, 0).hold({}, 0.2, 0);
+    expect(archer.releases).toEqual([]);
+  });
+
+  test('switched to two hands while drawing puts the arrow back', () => {
+    const archer = bowman({ oneHanded: true });
+    archer.hold({}, 0.1).hold({}, 1, 1).set({ oneHanded: false });
+    archer.hold({}, 0.2, 0);
+    expect(archer.releases).toEqual([]);
+    expect(archer.bow!.stage).toBe('empty');
+  });
+});
+
+describe('a wrist round something', () => {
+  test('has its fist there, its knuckles and its thumb where they were asked', () => {
+    for (const side of sides) {
+      const wrist = wristAround<'floor'>(side, vec3(1, 2, 3), vec3(0, 0, -1), up);
+      const thumb = rotate(wrist.orientation, vec3(side === 'left' ? 1 : -1, 0, 0));
+      expect(distance(thumb, up)).toBeLessThan(1e-9);
+      expect(
+        distance(add(wrist.position, rotate(wrist.orientation, vec3(0, -0.025, -0.08))), vec3(1, 2, 3)),
+      ).toBeLessThan(1e-9);
+      // Backs of hands that hold something upright look outward.
+      const back = rotate(wrist.orientation, vec3(0, 1, 0));
+      expect(back.x * (side === 'left' ? -1 : 1)).toBeCloseTo(1, 9);
+      expect(length(cross(thumb, back))).toBeCloseTo(1, 9);
+    }
+  });
+});
