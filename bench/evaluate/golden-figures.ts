@@ -1,8 +1,9 @@
 import { distance, type Vec3 } from '../../src/core/math/vec3';
 import type { Loss } from './disturbances';
+import { addLosses, emptyLossTally, type LossTally, reportLosses } from './losses';
 import { addClip, emptyMeasures, type MeasuredFrame, type Measures, report, reportNames, rounded } from './measures';
 import { truthJoints } from './recordings';
-import { addErrorsAndJerk, addLosses, emptyLossTally, type LossTally, reportLosses } from './robustness';
+import { addErrorsAndJerk } from './robustness';
 import type { StagedFrame } from './situations';
 
 /** Figures of one estimator in one situation by name; the name says the unit, and `kindOf` how it may differ. */
@@ -53,7 +54,7 @@ export function addPiece(tally: GoldenTally, piece: DrivenPiece): void {
     else addErrorsAndJerk(tally.measures, run, rateHz, recordedHz);
     for (let row = start + 1; row < end; row++) addSteps(tally, piece, row);
   });
-  if (seen) addLosses(tally.losses, driven, seen, losses, rateHz);
+  if (seen) addLosses(tally.losses, { lossy: driven, seen }, losses, rateHz);
   tally.frames += driven.length;
 }
 

@@ -163,18 +163,18 @@ function measureDisturbed(corpus: Corpus) {
   const { recordings, index, regressors } = corpus;
   const judged = judgedOf(corpus);
   const clips = index.clips.filter(({ person }) => judged.has(person));
-  return measureRobustness(
-    measuredMethods,
-    chooseClips(clips, robustnessFrames),
-    (clip) => ({
+  return measureRobustness({
+    methods: measuredMethods,
+    clips: chooseClips(clips, robustnessFrames),
+    load: (clip) => ({
       name: clip.name,
       calibration: calibrationOf(index, clip.person),
       frames: readClip(recordings, index, clip),
     }),
     regressors,
-    index.rateHz,
-    progress,
-  );
+    rateHz: index.rateHz,
+    told: progress,
+  });
 }
 
 async function main(): Promise<void> {

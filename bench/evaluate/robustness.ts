@@ -1,11 +1,8 @@
 import type { Calibration } from '../../src/core/body/calibration';
-import { estimatedJoints } from '../../src/core/body/joints';
 import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
 import { nextRandom } from '../../src/core/math/random';
-import { distance, vec3 } from '../../src/core/math/vec3';
+import { vec3 } from '../../src/core/math/vec3';
 import {
-  aftermathSeconds,
-  type Loss,
   loseHands,
   offsetTrackers,
   resampleEstimates,
@@ -16,7 +13,8 @@ import {
   trackers,
 } from './disturbances';
 import { drive, type MeasuredMethod } from './drive';
-import { addClip, addMeasures, emptyMeasures, type MeasuredFrame, type Measures, report, rounded } from './measures';
+import { addLosses, emptyLossTally, type LongestStep, type LossReport, reportLosses } from './losses';
+import { addClip, addMeasures, emptyMeasures, type MeasuredFrame, type Measures, report } from './measures';
 import type { RecordedFrame } from './recordings';
 
 /** One clip with what its person calibrated. */
@@ -32,35 +30,6 @@ const axes = ['x', 'y', 'z'] as const;
 export const heightPercents = [-5, -2, 2, 5] as const;
 export const spanPercents = [-5, 5] as const;
 export const ratesHz = [72, 90, 120] as const;
-
-/** Errors [cm] in some frames, with the hand lost and, in the same frames, seen. */
-export interface LossErrors {
-  readonly allCm: number;
-  readonly allSeenCm: number;
-  readonly elbowCm: number;
-  readonly elbowSeenCm: number;
-}
-
-/** How far a shown joint moves in one frame. */
-export interface LongestStep {
-  readonly stepCm: number;
-  readonly joint: string;
-  /** The largest part of a step that the same joint does not make in the same frame with the hand seen. */
-  readonly excessCm: number;
-  readonly excessJoint: string;
-  /** Losses with an excess over 5 cm. */
-  readonly over5Cm: number;
-}
-
-export interface LossReport {
-  readonly milliseconds: number;
-  readonly losses: number;
-  readonly during: LossErrors;
-  /** The half second after the return. */
-  readonly after: LossErrors;
-  readonly atLoss: LongestStep;
-  readonly atReturn: LongestStep;
-}
 
 export interface MethodRobustness {
   readonly mpjpeCm: number;
@@ -99,140 +68,6 @@ export function chooseClips<Clip extends { readonly name: string; readonly frame
     frames += clip.frames;
   }
   return chosen;
-}
-
-interface Sums {
-  all: number;
-  allSeen: number;
-  joints: number;
-  elbow: number;
-  elbowSeen: number;
-  elbows: number;
-}
-const noSums = (): Sums => ({ all: 0, allSeen: 0, joints: 0, elbow: 0, elbowSeen: 0, elbows: 0 });
-
-interface StepTally {
-  step: number;
-  joint: string;
-  excess: number;
-  excessJoint: string;
-  over: number;
-}
-const noSteps = (): StepTally => ({ step: 0, joint: '', excess: 0, excessJoint: '', over: 0 });
-
-/** What losses of one length did; add clip by clip, then report. */
-export interface LossTally {
-  losses: number;
-  readonly during: Sums;
-  readonly after: Sums;
-  readonly atLoss: StepTally;
-  readonly atReturn: StepTally;
-}
-export const emptyLossTally = (): LossTally => ({
-  losses: 0,
-  during: noSums(),
-  after: noSums(),
-  atLoss: noSteps(),
-  atReturn: noSteps(),
-});
-
-/** Adds one clip: the same frames estimated with losses and with both hands seen. */
-export function addLosses(
-  tally: LossTally,
-  lossy: readonly MeasuredFrame[],
-  seen: readonly MeasuredFrame[],
-  losses: readonly Loss[],
-  rateHz: number,
-): void {
-  const aftermath = Math.round(aftermathSeconds * rateHz);
-  for (const { side, start, end } of losses) {
-    tally.losses += 1;
-    addErrors(tally.during, lossy, seen, side, start, end);
-    addErrors(tally.after, lossy, seen, side, end, end + aftermath);
-    addSteps(tally.atLoss, lossy, seen, start, Math.min(end, start + 2 * aftermath), rateHz);
-    addSteps(tally.atReturn, lossy, seen, end, Math.min(end + 2 * aftermath, lossy.length), rateHz);
-  }
-}
-
-function addErrors(
-  sums: Sums,
-  lossy: readonly MeasuredFrame[],
-  seen: readonly MeasuredFrame[],
-  side: Loss['side'],
-  from: number,
-  to: number,
-): void {
-  for (let row = from; row < Math.min(to, lossy.length); row++) {
-    for (const joint of estimatedJoints) {
-      const [a, b] = [errorOf(lossy[row], joint), errorOf(seen[row], joint)];
-      sums.all += a;
-      sums.allSeen += b;
-      sums.joints += 1;
-      if (joint === `${side}LowerArm`) {
-        sums.elbow += a;
-        sums.elbowSeen += b;
-        sums.elbows += 1;
-      }
-    }
-  }
-}
-
-function errorOf(frame: MeasuredFrame | undefined, joint: (typeof estimatedJoints)[number]): number {
-  const estimated = frame?.joints[joint];
-  if (!frame || !estimated) throw new Error(`the estimator gave no ${joint}`);
-  return distance(estimated, frame.truth[joint]) * 100;
-}
-
-/** Steps into the frames [from, to), in centimetres per 1/60 s at any rate. */
-function addSteps(
-  tally: StepTally,
-  lossy: readonly MeasuredFrame[],
-  seen: readonly MeasuredFrame[],
-  from: number,
-  to: number,
-  rateHz: number,
-): void {
-  const step = (frames: readonly MeasuredFrame[], row: number, joint: string): number => {
-    const [before, now] = [frames[row - 1]?.joints[joint], frames[row]?.joints[joint]];
-    if (!before || !now) throw new Error(`the estimator gave no ${joint}`);
-    return (distance(before, now) * 100 * rateHz) / 60;
-  };
-  let worst = 0;
-  for (let row = Math.max(1, from); row < to; row++) {
-    for (const joint of Object.keys(lossy[row]?.joints ?? {})) {
-      const moved = step(lossy, row, joint);
-      const excess = moved - step(seen, row, joint);
-      worst = Math.max(worst, excess);
-      if (moved > tally.step) Object.assign(tally, { step: moved, joint });
-      if (excess > tally.excess) Object.assign(tally, { excess, excessJoint: joint });
-    }
-  }
-  if (worst > 5) tally.over += 1;
-}
-
-const lossErrors = ({ all, allSeen, joints, elbow, elbowSeen, elbows }: Sums): LossErrors => ({
-  allCm: rounded(all / joints, 3),
-  allSeenCm: rounded(allSeen / joints, 3),
-  elbowCm: rounded(elbow / elbows, 3),
-  elbowSeenCm: rounded(elbowSeen / elbows, 3),
-});
-const longestStep = ({ step, joint, excess, excessJoint, over }: StepTally): LongestStep => ({
-  stepCm: rounded(step, 2),
-  joint,
-  excessCm: rounded(excess, 2),
-  excessJoint,
-  over5Cm: over,
-});
-
-export function reportLosses(seconds: number, tally: LossTally): LossReport {
-  return {
-    milliseconds: Math.round(seconds * 1000),
-    losses: tally.losses,
-    during: lossErrors(tally.during),
-    after: lossErrors(tally.after),
-    atLoss: longestStep(tally.atLoss),
-    atReturn: longestStep(tally.atReturn),
-  };
 }
 
 /** One disturbance of trackers, calibration or rate, and what became of the error under it. */
@@ -284,21 +119,26 @@ function conditions(rateHz: number) {
   };
 }
 
+interface RobustnessOptions<Method, Listed> {
+  readonly methods: readonly Method[];
+  readonly clips: readonly Listed[];
+  /** Asked for each clip once. */
+  load(clip: Listed): RobustnessClip;
+  readonly regressors: ReadonlyMap<MeasuredMethod, PoseRegressor>;
+  readonly rateHz: number;
+  /** Hears the share of the work that is done. */
+  told?(share: number): void;
+}
+
 /**
  * How each method bears what devices and people do: hands that vanish, trackers mounted elsewhere, a wrong height or span, other
- * rates. `load` is asked for each clip once; `told` hears the share of the work that is done.
+ * rates.
  */
 export async function measureRobustness<
   Method extends MeasuredMethod,
   Listed extends { readonly person: string; readonly frames: number },
->(
-  methods: readonly Method[],
-  clips: readonly Listed[],
-  load: (clip: Listed) => RobustnessClip,
-  regressors: ReadonlyMap<MeasuredMethod, PoseRegressor>,
-  rateHz: number,
-  told: (share: number) => void = () => undefined,
-): Promise<RobustnessReport<Method>> {
+>(options: RobustnessOptions<Method, Listed>): Promise<RobustnessReport<Method>> {
+  const { methods, clips, regressors, rateHz } = options;
   const all = conditions(rateHz);
   const listed: readonly Condition[] = [
     all.clean,
@@ -309,7 +149,7 @@ export async function measureRobustness<
   const total = clips.reduce((sum, clip) => sum + clip.frames, 0);
   let done = 0;
   for (const listedClip of clips) {
-    const clip = load(listedClip);
+    const clip = options.load(listedClip);
     for (const [number, name] of methods.entries()) {
       const regressor = regressors.get(name) ?? null;
       let seen: readonly MeasuredFrame[] = [];
@@ -325,11 +165,11 @@ export async function measureRobustness<
         const losses = scheduleLosses(clip.frames.length, rateHz, seconds, seedOf(`${clip.name} ${seconds}`));
         if (losses.length === 0) continue;
         const lossy = await drive(name, clip.calibration, regressor, loseHands(clip.frames, losses));
-        addLosses(tallies[number]?.[which] ?? emptyLossTally(), lossy, seen, losses, rateHz);
+        addLosses(tallies[number]?.[which] ?? emptyLossTally(), { lossy, seen }, losses, rateHz);
       }
     }
     done += listedClip.frames;
-    told(done / total);
+    options.told?.(done / total);
   }
   const rows = methods.map((name, number): [Method, MethodRobustness] => {
     const figures = ({ condition }: { readonly condition: Condition }) => {

@@ -1,17 +1,15 @@
 import { beforeAll, describe, expect, test } from 'vitest';
 import { loseHands } from '../../bench/evaluate/disturbances';
 import { drive } from '../../bench/evaluate/drive';
+import { addLosses, emptyLossTally, reportLosses } from '../../bench/evaluate/losses';
 import type { MeasuredFrame } from '../../bench/evaluate/measures';
 import {
-  addLosses,
   chooseClips,
-  emptyLossTally,
   heightPercents,
   measureRobustness,
   offsetsCm,
   type RobustnessReport,
   ratesHz,
-  reportLosses,
   robustnessText,
 } from '../../bench/evaluate/robustness';
 import { openShippedModel } from '../core/estimation/shipped-models';
@@ -28,7 +26,7 @@ describe('what a loss costs', () => {
   test('is nothing where no hand is lost', async () => {
     const [, seen] = await measured();
     const tally = emptyLossTally();
-    addLosses(tally, seen, seen, losses, 60);
+    addLosses(tally, { lossy: seen, seen }, losses, 60);
     const { during, after, atLoss, atReturn } = reportLosses(2, tally);
     expect(during.allCm).toBe(during.allSeenCm);
     expect(after.elbowCm).toBe(after.elbowSeenCm);
@@ -39,7 +37,7 @@ describe('what a loss costs', () => {
   test('is most in the elbow of that arm, and over half a second later it is less', async () => {
     const [lossy, seen] = await measured();
     const tally = emptyLossTally();
-    addLosses(tally, lossy, seen, losses, 60);
+    addLosses(tally, { lossy, seen }, losses, 60);
     const { during, after, losses: count } = reportLosses(2, tally);
     expect(count).toBe(1);
     expect(during.allCm).toBeGreaterThan(during.allSeenCm);
@@ -53,7 +51,7 @@ describe('what a loss costs', () => {
       row < 100 ? frame : { ...frame, joints: { ...frame.joints, neck: { ...frame.joints.neck!, y: 5 } } },
     );
     const tally = emptyLossTally();
-    addLosses(tally, jumping, seen, losses, 60);
+    addLosses(tally, { lossy: jumping, seen }, losses, 60);
     const { atLoss, atReturn } = reportLosses(2, tally);
     expect(atLoss).toMatchObject({ joint: 'neck', excessJoint: 'neck', over5Cm: 1 });
     expect(atLoss.stepCm).toBeCloseTo((5 - seen[99]!.joints.neck!.y) * 100, -1);
@@ -88,7 +86,13 @@ describe('a whole run', () => {
 
   beforeAll(async () => {
     const learned = await openShippedModel('learned');
-    result = await measureRobustness(['ik', 'learned'], clips, load, new Map([['learned', learned]]), 60);
+    result = await measureRobustness({
+      methods: ['ik', 'learned'],
+      clips,
+      load,
+      regressors: new Map([['learned', learned]]),
+      rateHz: 60,
+    });
     await learned.dispose();
   }, 60_000);
 
@@ -110,7 +114,7 @@ describe('a whole run', () => {
   });
 
   test('is the same twice', async () => {
-    const again = await measureRobustness(['ik'], clips, load, new Map(), 60);
+    const again = await measureRobustness({ methods: ['ik'], clips, load, regressors: new Map(), rateHz: 60 });
     expect(again.estimators.ik).toEqual(result.estimators.ik);
   }, 60_000);
 });

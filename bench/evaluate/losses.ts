@@ -1,0 +1,153 @@
+import { estimatedJoints } from '../../src/core/body/joints';
+import { distance } from '../../src/core/math/vec3';
+import { aftermathSeconds, type Loss } from './disturbances';
+import { type MeasuredFrame, rounded } from './measures';
+
+/** Errors [cm] in some frames, with the hand lost and, in the same frames, seen. */
+export interface LossErrors {
+  readonly allCm: number;
+  readonly allSeenCm: number;
+  readonly elbowCm: number;
+  readonly elbowSeenCm: number;
+}
+
+/** How far a shown joint moves in one frame. */
+export interface LongestStep {
+  readonly stepCm: number;
+  readonly joint: string;
+  /** The largest part of a step that the same joint does not make in the same frame with the hand seen. */
+  readonly excessCm: number;
+  readonly excessJoint: string;
+  /** Losses with an excess over 5 cm. */
+  readonly over5Cm: number;
+}
+
+export interface LossReport {
+  readonly milliseconds: number;
+  readonly losses: number;
+  readonly during: LossErrors;
+  /** The half second after the return. */
+  readonly after: LossErrors;
+  readonly atLoss: LongestStep;
+  readonly atReturn: LongestStep;
+}
+
+interface Sums {
+  all: number;
+  allSeen: number;
+  joints: number;
+  elbow: number;
+  elbowSeen: number;
+  elbows: number;
+}
+const noSums = (): Sums => ({ all: 0, allSeen: 0, joints: 0, elbow: 0, elbowSeen: 0, elbows: 0 });
+
+interface StepTally {
+  step: number;
+  joint: string;
+  excess: number;
+  excessJoint: string;
+  over: number;
+}
+const noSteps = (): StepTally => ({ step: 0, joint: '', excess: 0, excessJoint: '', over: 0 });
+
+/** What losses of one length did; add clip by clip, then report. */
+export interface LossTally {
+  losses: number;
+  readonly during: Sums;
+  readonly after: Sums;
+  readonly atLoss: StepTally;
+  readonly atReturn: StepTally;
+}
+export const emptyLossTally = (): LossTally => ({
+  losses: 0,
+  during: noSums(),
+  after: noSums(),
+  atLoss: noSteps(),
+  atReturn: noSteps(),
+});
+
+/** The same frames estimated with losses and with both hands seen. */
+interface Estimated {
+  readonly lossy: readonly MeasuredFrame[];
+  readonly seen: readonly MeasuredFrame[];
+}
+
+/** Adds one clip. */
+export function addLosses(tally: LossTally, estimated: Estimated, losses: readonly Loss[], rateHz: number): void {
+  const aftermath = Math.round(aftermathSeconds * rateHz);
+  for (const { side, start, end } of losses) {
+    tally.losses += 1;
+    addErrors(tally.during, estimated, side, start, end);
+    addErrors(tally.after, estimated, side, end, end + aftermath);
+    addSteps(tally.atLoss, estimated, start, Math.min(end, start + 2 * aftermath), rateHz);
+    addSteps(tally.atReturn, estimated, end, Math.min(end + 2 * aftermath, estimated.lossy.length), rateHz);
+  }
+}
+
+function addErrors(sums: Sums, { lossy, seen }: Estimated, side: Loss['side'], from: number, to: number): void {
+  for (let row = from; row < Math.min(to, lossy.length); row++) {
+    for (const joint of estimatedJoints) {
+      const [a, b] = [errorOf(lossy[row], joint), errorOf(seen[row], joint)];
+      sums.all += a;
+      sums.allSeen += b;
+      sums.joints += 1;
+      if (joint === `${side}LowerArm`) {
+        sums.elbow += a;
+        sums.elbowSeen += b;
+        sums.elbows += 1;
+      }
+    }
+  }
+}
+
+function errorOf(frame: MeasuredFrame | undefined, joint: (typeof estimatedJoints)[number]): number {
+  const estimated = frame?.joints[joint];
+  if (!frame || !estimated) throw new Error(`the estimator gave no ${joint}`);
+  return distance(estimated, frame.truth[joint]) * 100;
+}
+
+/** Steps into the frames [from, to), in centimetres per 1/60 s at any rate. */
+function addSteps(tally: StepTally, { lossy, seen }: Estimated, from: number, to: number, rateHz: number): void {
+  const step = (frames: readonly MeasuredFrame[], row: number, joint: string): number => {
+    const [before, now] = [frames[row - 1]?.joints[joint], frames[row]?.joints[joint]];
+    if (!before || !now) throw new Error(`the estimator gave no ${joint}`);
+    return (distance(before, now) * 100 * rateHz) / 60;
+  };
+  let worst = 0;
+  for (let row = Math.max(1, from); row < to; row++) {
+    for (const joint of Object.keys(lossy[row]?.joints ?? {})) {
+      const moved = step(lossy, row, joint);
+      const excess = moved - step(seen, row, joint);
+      worst = Math.max(worst, excess);
+      if (moved > tally.step) Object.assign(tally, { step: moved, joint });
+      if (excess > tally.excess) Object.assign(tally, { excess, excessJoint: joint });
+    }
+  }
+  if (worst > 5) tally.over += 1;
+}
+
+const lossErrors = ({ all, allSeen, joints, elbow, elbowSeen, elbows }: Sums): LossErrors => ({
+  allCm: rounded(all / joints, 3),
+  allSeenCm: rounded(allSeen / joints, 3),
+  elbowCm: rounded(elbow / elbows, 3),
+  elbowSeenCm: rounded(elbowSeen / elbows, 3),
+});
+const longestStep = ({ step, joint, excess, excessJoint, over }: StepTally): LongestStep => ({
+  stepCm: rounded(step, 2),
+  joint,
+  excessCm: rounded(excess, 2),
+  excessJoint,
+  over5Cm: over,
+});
+
+export function reportLosses(seconds: number, tally: LossTally): LossReport {
+  return {
+    milliseconds: Math.round(seconds * 1000),
+    losses: tally.losses,
+    during: lossErrors(tally.during),
+    after: lossErrors(tally.after),
+    atLoss: longestStep(tally.atLoss),
+    atReturn: longestStep(tally.atReturn),
+  };
+}
