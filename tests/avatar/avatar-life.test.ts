@@ -66,7 +66,7 @@ const strandOf = (avatar: Avatar): Quaternion => {
 };
 
 describe('hair', () => {
-  test('hangs alike on a child and on a giant', async () => {
+  test('hangs alike on a child and on a giant, and swings back as fast', async () => {
     const [child, giant] = [
       { eyeHeight: 1.05, armSpan: 0.95 },
       { eyeHeight: 2.05, armSpan: 2.0 },
@@ -77,6 +77,12 @@ describe('hair', () => {
     const [a, b] = [strandOf(small.avatar), strandOf(large.avatar)];
     expect(a.angleTo(new Quaternion())).toBeGreaterThan(0.1);
     expect(a.angleTo(b)).toBeLessThan(0.02);
+    for (const time of [3, 3.1, 3.2]) {
+      const seconds = 0.1;
+      stand(small.avatar, time, seconds, { aside: 0, yaw: 0.6 }, child);
+      stand(large.avatar, time, seconds, { aside: 0, yaw: 0.6 }, giant);
+      expect(strandOf(small.avatar).angleTo(strandOf(large.avatar))).toBeLessThan(0.03);
+    }
   });
 
   test('swings when its wearer steps aside, and does not when the floor is moved under the wearer', async () => {
