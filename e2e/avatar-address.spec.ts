@@ -18,6 +18,7 @@ const compressed = () =>
 const plain = () =>
   changed((json) => {
     for (const extension of ['extensions', 'extensionsUsed']) delete json[extension];
+    for (const [index, node] of json.nodes.entries()) node.name = `part ${index}`;
   });
 
 /** What the address of an avatar may answer, and what is said of it. */
@@ -25,7 +26,10 @@ const answers = {
   'nothing.vrm': [() => ({ status: 404, body: 'no' }), /nothing\.vrm could not be shown: the server answers 404/],
   'page.vrm': [() => ({ contentType: 'text/html', body: '<!doctype html><p>Welcome' }), /answers with a web page/],
   'large.vrm': [() => glb(new ArrayBuffer(61 * 2 ** 20)), /more than 60 MB/],
-  'compressed.vrm': [() => glb(compressed()), /is compressed \(EXT_meshopt_compression\)/],
+  'compressed.vrm': [
+    () => glb(compressed()),
+    /compressed\.vrm could not be shown: (not valid glTF|no VRM or GLB file)/,
+  ],
   'plain.glb': [() => glb(plain()), /no humanoid in it/],
 } as const;
 
@@ -59,6 +63,28 @@ test('an avatar of the address that does not arrive leaves our own body standing
   await expect(page.getByRole('button', { name: 'Back to ours' })).toBeHidden();
   expect(new URL(page.url()).searchParams.has('avatar')).toBe(false);
   measured('avatar-missing', { 'our own body stands there': `${stood} of ${Object.keys(answers).length}` });
+});
+
+test('an avatar on its way can be given up, and ours stays', async ({ page }) => {
+  const letThrough = new EventEmitter();
+  const held = once(letThrough, 'now');
+  await page.route(
+    ({ pathname }) => pathname === '/elsewhere/endless.vrm',
+    async (route) => {
+      await held;
+      await route.fulfill(glb(mannequin())).catch(() => undefined);
+    },
+  );
+  await open(page, 'quality=low&estimator=ik&avatar=/elsewhere/endless.vrm');
+  await joint(page, 'hips');
+  await page.getByRole('tab', { name: 'Avatar' }).click();
+  await expect(page.getByText('endless.vrm is on its way.')).toBeVisible();
+  await page.getByRole('button', { name: 'Cancel loading' }).click();
+  await expect(page.getByText('endless.vrm is on its way.')).toBeHidden();
+  await expect(page.getByRole('button', { name: 'Cancel loading' })).toBeHidden();
+  letThrough.emit('now');
+  expect((await probe(page)).avatar).toMatchObject({ name: 'Mannequin' });
+  expect((await probe(page)).notices.filter(({ level }) => level === 'error')).toEqual([]);
 });
 
 test('our own body stands there until the avatar of the address has arrived; the one asked for last is shown', async ({

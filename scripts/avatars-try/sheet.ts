@@ -2,6 +2,7 @@
 import { AmbientLight, Color, DirectionalLight, GridHelper, PerspectiveCamera, Scene, WebGLRenderer } from 'three';
 import { type Avatar, createAvatar } from '../../src/avatar/avatar';
 import { thirdPersonOnlyLayer } from '../../src/avatar/body-meshes';
+import { decoders } from '../../src/avatar/decoders';
 import { loadAvatar } from '../../src/avatar/load-avatar';
 import { validateInWorker } from '../../src/avatar/validate-in-worker';
 import { defaultCalibration } from '../../src/core/body/calibration';
@@ -85,7 +86,7 @@ function shoot(
 async function draw(sheet: CanvasRenderingContext2D, address: string, name: string): Promise<number> {
   const bytes = await (await fetch(address)).arrayBuffer();
   const began = performance.now();
-  const avatar = createAvatar(await loadAvatar(bytes, name, validateInWorker));
+  const avatar = createAvatar(await loadAvatar(bytes, name, validateInWorker, decoders));
   const loadMs = performance.now() - began;
   const scene = createScene();
   scene.add(avatar.object);

@@ -26,13 +26,25 @@ const primitive = v.object({
   mode: v.optional(index, 4),
   targets: list(v.record(v.string(), index)),
 });
+const packedView = v.optional(v.object({ count: index, byteStride: index }));
 const gltf = v.object({
   extensionsRequired: list(v.string()),
+  extensionsUsed: list(v.string()),
   nodes: list(v.object({ mesh: v.optional(index), children: list(index) })),
   meshes: list(v.object({ primitives: v.array(primitive) })),
   accessors: list(v.object({ count: index, type: v.optional(v.string(), 'SCALAR') })),
   skins: list(v.object({ joints: v.array(index) })),
-  bufferViews: list(v.object({ buffer: index, byteOffset: v.optional(index, 0), byteLength: index })),
+  bufferViews: list(
+    v.object({
+      buffer: index,
+      byteOffset: v.optional(index, 0),
+      byteLength: index,
+      extensions: v.optional(
+        v.object({ EXT_meshopt_compression: packedView, KHR_meshopt_compression: packedView }),
+        {},
+      ),
+    }),
+  ),
   buffers: list(v.object({ byteLength: index, uri: v.optional(v.string()) })),
   images: list(v.object({ uri: v.optional(v.string()), bufferView: v.optional(index) })),
 });
@@ -85,9 +97,10 @@ function urisIn(value: unknown): string[] {
 
 /**
  * Throws a sentence that names the file and the limit where a body would cost too much or reach outside itself. Looks at headers
- * alone: nothing is decoded, allocated or fetched.
+ * alone: nothing is decoded, allocated or fetched. `unpacked`: extensions of compression that are read all the same. Returns those that the
+ * file uses.
  */
-export function inspectAvatar(bytes: Uint8Array, name: string): void {
+export function inspectAvatar(bytes: Uint8Array, name: string, unpacked: readonly string[] = []): readonly string[] {
   const limit = (what: string, has: number, may: number) => {
     if (!(has <= may)) throw new Error(`${name}: ${told(has)} ${what}; an avatar may have ${told(may)} at most`);
   };
@@ -111,8 +124,8 @@ export function inspectAvatar(bytes: Uint8Array, name: string): void {
     const [issue] = parsed.issues;
     throw new Error(`${name}: no VRM or GLB file (${v.getDotPath(issue) ?? 'the whole'}: ${issue.message})`);
   }
-  const { extensionsRequired, nodes, meshes, accessors, skins, images, bufferViews } = parsed.output;
-  const foreign = extensionsRequired.find((extension) => !readable.test(extension));
+  const { extensionsRequired, extensionsUsed, nodes, meshes, accessors, skins, images, bufferViews } = parsed.output;
+  const foreign = extensionsRequired.find((extension) => !readable.test(extension) && !unpacked.includes(extension));
   if (foreign !== undefined)
     throw new Error(
       compression.test(foreign)
@@ -127,6 +140,12 @@ export function inspectAvatar(bytes: Uint8Array, name: string): void {
   limit('morph targets', targets, avatarLimits.morphTargets);
   const numbers = accessors.reduce((sum, { count, type }) => sum + count * (numbersOf[type] ?? 16), 0);
   limit('million numbers', numbers / 1e6, avatarLimits.millionNumbers);
+  // No number is smaller than a byte: what views unpack to is bounded as what accessors tell.
+  const bytesUnpacked = bufferViews.reduce((sum, { extensions }) => {
+    const packed = extensions.EXT_meshopt_compression ?? extensions.KHR_meshopt_compression;
+    return sum + (packed ? packed.count * packed.byteStride : 0);
+  }, 0);
+  limit('million unpacked bytes', bytesUnpacked / 1e6, avatarLimits.millionNumbers * 4);
   const corners = (mesh: number) =>
     (meshes[mesh]?.primitives ?? []).reduce((sum, { attributes, indices, mode }) => {
       const count = accessors[indices ?? attributes.POSITION ?? -1]?.count ?? 0;
@@ -148,6 +167,7 @@ export function inspectAvatar(bytes: Uint8Array, name: string): void {
     pixels += size.width * size.height;
   });
   limit('million pixels', pixels / 1e6, avatarLimits.millionPixels);
+  return unpacked.filter((extension) => extensionsUsed.includes(extension) || extensionsRequired.includes(extension));
 }
 
 const told = (value: number): string => (value < 100 ? String(Number(value.toFixed(1))) : String(Math.round(value)));

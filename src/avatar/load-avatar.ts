@@ -22,20 +22,36 @@ export async function loadAvatar(
   bytes: ArrayBuffer,
   name: string,
   validate: (bytes: Uint8Array) => Promise<readonly string[]>,
+  decoders: Decoders = {},
 ): Promise<LoadedAvatar> {
   const file = new Uint8Array(bytes);
-  inspectAvatar(file, name);
+  inspectAvatar(file, name, Object.keys(decoders));
   const faults = await validate(file).catch((error: unknown) => {
     throw new Error(`${name}: ${reasonOf(error)}`);
   });
   if (faults.length > 0) throw new Error(`${name}: not valid glTF (${faults[0]})`);
-  return parseAvatar(bytes, name);
+  return parseAvatar(bytes, name, { decoders });
 }
 
-/** The same from a file that is known to be valid; bones: of a humanoid that is no VRM and whose names tell nothing. */
-export async function parseAvatar(bytes: ArrayBuffer, name: string, bones?: BoneMap): Promise<LoadedAvatar> {
-  inspectAvatar(new Uint8Array(bytes), name);
+/** Means to unpack what is compressed, by the name of the extension. */
+export type Decoders = Readonly<Record<string, (loader: GLTFLoader) => Promise<void>>>;
+
+export interface ParseOptions {
+  /** Of a humanoid that is no VRM and whose names tell nothing. */
+  readonly bones?: BoneMap | undefined;
+  /** Without them compressed files are refused. */
+  readonly decoders?: Decoders;
+}
+
+/** The same from a file that is known to be valid. */
+export async function parseAvatar(
+  bytes: ArrayBuffer,
+  name: string,
+  { bones, decoders = {} }: ParseOptions = {},
+): Promise<LoadedAvatar> {
+  const packed = inspectAvatar(new Uint8Array(bytes), name, Object.keys(decoders));
   const loader = new GLTFLoader();
+  for (const extension of packed) await decoders[extension]?.(loader);
   loader.register((parser) => new VRMLoaderPlugin(parser));
   const gltf = await loader.parseAsync(bytes, '').catch((error: unknown) => {
     throw new Error(`${name}: no VRM or GLB file (${reasonOf(error)})`);

@@ -30,7 +30,7 @@ export async function loadAvatar(
   { bones }: LoadAvatarOptions = {},
 ): Promise<Avatar> {
   const { name, bytes } = await read(source);
-  return createAvatar(await parseAvatar(bytes, name, bones));
+  return createAvatar(await parseAvatar(bytes, name, { bones }));
 }
 
 async function read(source: string | URL | Blob | ArrayBuffer): Promise<{ name: string; bytes: ArrayBuffer }> {

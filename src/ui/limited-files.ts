@@ -12,14 +12,17 @@ export const nameOf = (source: string | File): string =>
 
 /**
  * The bytes of a file of this device or of what an address answers; `onProgress` hears the share [0, 1] that has come. What is larger
- * than its kind may be is refused before it is read, or as soon as that shows. Rejects with a sentence that names the file.
+ * than its kind may be is refused before it is read, or as soon as that shows. Rejects with a sentence that names the file; `signal` ends a
+ * download on its way.
  */
 export async function readLimited(
   source: string | File,
   kind: FileKind,
   onProgress?: (share: number) => void,
+  signal?: AbortSignal,
 ): Promise<ArrayBuffer> {
-  const bytes = typeof source === 'string' ? await download(source, kind, onProgress) : await readFile(source, kind);
+  const bytes =
+    typeof source === 'string' ? await download(source, kind, onProgress, signal) : await readFile(source, kind);
   onProgress?.(1);
   return bytes;
 }
@@ -32,10 +35,16 @@ function readFile(file: File, kind: FileKind): Promise<ArrayBuffer> {
 const tooLarge = (name: string, { what, megabytes }: FileKind): Error =>
   new Error(`${name}: more than ${megabytes} MB; ${what} may have that at most`);
 
-async function download(url: string, kind: FileKind, onProgress?: (share: number) => void): Promise<ArrayBuffer> {
+async function download(
+  url: string,
+  kind: FileKind,
+  onProgress?: (share: number) => void,
+  signal?: AbortSignal,
+): Promise<ArrayBuffer> {
   const name = nameOf(url);
   const most = kind.megabytes * 2 ** 20;
   const aborting = new AbortController();
+  signal?.addEventListener('abort', () => aborting.abort());
   const response = await fetch(url, { signal: aborting.signal }).catch((error: unknown) => {
     throw new Error(`${name}: could not be fetched (${firstLine(reasonOf(error))})`);
   });

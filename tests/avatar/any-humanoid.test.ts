@@ -1,8 +1,10 @@
+import { MeshoptEncoder } from 'meshoptimizer';
 import { Matrix4, type SkinnedMesh, Vector3 } from 'three';
 import { describe, expect, test } from 'vitest';
 import { type Avatar, createAvatar } from '../../src/avatar/avatar';
 import type { BoneName } from '../../src/avatar/bone-names';
-import { type LoadedAvatar, parseAvatar } from '../../src/avatar/load-avatar';
+import { decoders } from '../../src/avatar/decoders';
+import { type LoadedAvatar, loadAvatar, parseAvatar } from '../../src/avatar/load-avatar';
 import { gltfFaults } from '../../src/avatar/validate-gltf';
 import { handBoneRotation } from '../../src/core/body/arm-rotations';
 import { defaultCalibration } from '../../src/core/body/calibration';
@@ -255,6 +257,62 @@ test('the faults of the files that tests build are none of the validator’s', a
   expect(faults.filter((fault) => !/min|max/i.test(fault))).toEqual([]);
 });
 
+/** The same file with the corners of its skin packed by meshopt, as exporters write it; `told`: how many it claims to be. */
+async function packed(file: ArrayBuffer, told?: number): Promise<ArrayBuffer> {
+  await MeshoptEncoder.ready;
+  const bytes = Buffer.from(file);
+  const length = bytes.readUInt32LE(12);
+  const json = JSON.parse(bytes.toString('utf8', 20, 20 + length));
+  const binary = bytes.subarray(28 + length);
+  const view = json.bufferViews[0];
+  const [count, byteStride] = [view.byteLength / 12, 12];
+  const raw = new Uint8Array(binary.subarray(0, view.byteLength));
+  const small = MeshoptEncoder.encodeGltfBuffer(raw, count, byteStride, 'ATTRIBUTES');
+  const at = binary.length;
+  const whole = Buffer.concat([binary.fill(0, 0, view.byteLength), small, Buffer.alloc((4 - (small.length % 4)) % 4)]);
+  const extension = {
+    buffer: 0,
+    byteOffset: at,
+    byteLength: small.length,
+    byteStride,
+    count: told ?? count,
+    mode: 'ATTRIBUTES',
+  };
+  view.extensions = { EXT_meshopt_compression: extension };
+  json.buffers[0].byteLength = whole.length;
+  json.extensionsUsed = json.extensionsRequired = ['EXT_meshopt_compression'];
+  const text = Buffer.from(JSON.stringify(json));
+  const padded = Buffer.concat([text, Buffer.alloc((4 - (text.length % 4)) % 4, ' ')]);
+  const head = Buffer.alloc(20);
+  for (const [i, value] of [0x46546c67, 2, 28 + padded.length + whole.length, padded.length, 0x4e4f534a].entries()) {
+    head.writeUInt32LE(value, i * 4);
+  }
+  const chunk = Buffer.alloc(8);
+  chunk.writeUInt32LE(whole.length, 0);
+  chunk.writeUInt32LE(0x004e4942, 4);
+  return new Uint8Array(Buffer.concat([head, padded, chunk, whole])).buffer;
+}
+
+describe('a rig whose skin is packed by meshopt', () => {
+  test('is worn like any other where the page has the means to unpack it, and refused where it has not', async () => {
+    const file = await packed(builtRig({ nameOf: vroid }));
+    await expect(parseAvatar(file, 'packed.glb')).rejects.toThrow(
+      'packed.glb: is compressed (EXT_meshopt_compression)',
+    );
+    const loaded = await loadAvatar(file, 'packed.glb', async () => [], decoders);
+    const avatar = createAvatar(loaded);
+    avatar.fitTo(defaultCalibration);
+    expectBody({ loaded, avatar });
+  });
+
+  test('is refused where it would unpack to more than an avatar may have', async () => {
+    const bomb = await packed(builtRig({ nameOf: vroid }), 5e8);
+    await expect(loadAvatar(bomb, 'bomb.glb', async () => [], decoders)).rejects.toThrow(
+      /^bomb\.glb: 6000 million unpacked bytes/,
+    );
+  });
+});
+
 describe('a body of other proportions', () => {
   test('keeps its own neck and, with hanging arms, its own shoulders; stretched out, it reaches as far as its wearer', async () => {
     const { avatar } = await opened({ nameOf: vroid });
@@ -335,9 +393,11 @@ describe('is refused with a sentence', () => {
 
   test('joints that are no body’s', async () => {
     const file = parseAvatar(builtRig({ nameOf: vroid }), 'person.glb', {
-      ...{ hips: 'J_Bip_C_Hips', spine: 'J_Bip_C_Spine', head: 'J_Bip_C_Head' },
-      ...{ leftUpperArm: 'J_Bip_L_UpperArm', leftLowerArm: 'J_Bip_L_UpperArm', leftHand: 'J_Bip_L_Hand' },
-      ...{ rightUpperArm: 'J_Bip_R_UpperArm', rightLowerArm: 'J_Bip_R_LowerArm', rightHand: 'J_Bip_R_Hand' },
+      bones: {
+        ...{ hips: 'J_Bip_C_Hips', spine: 'J_Bip_C_Spine', head: 'J_Bip_C_Head' },
+        ...{ leftUpperArm: 'J_Bip_L_UpperArm', leftLowerArm: 'J_Bip_L_UpperArm', leftHand: 'J_Bip_L_Hand' },
+        ...{ rightUpperArm: 'J_Bip_R_UpperArm', rightLowerArm: 'J_Bip_R_LowerArm', rightHand: 'J_Bip_R_Hand' },
+      },
     });
     await expect(file).rejects.toThrow('its joints are no body’s: leftLowerArm lies 0 times as far from leftUpperArm');
   });

@@ -1,4 +1,6 @@
+import { VRMUtils } from '@pixiv/three-vrm';
 import { type Avatar, createAvatar } from '../../avatar/avatar';
+import { decoders } from '../../avatar/decoders';
 import { avatarLimits } from '../../avatar/inspect-avatar';
 import { type LoadedAvatar, loadAvatar, parseAvatar } from '../../avatar/load-avatar';
 import { validateInWorker } from '../../avatar/validate-in-worker';
@@ -40,6 +42,10 @@ export interface ShownAvatar {
    * False and a notice where it cannot be had.
    */
   openOwn(bytes?: Promise<ArrayBuffer>): Promise<boolean>;
+  /** Whether another is on its way that can be given up. */
+  readonly onItsWay: boolean;
+  /** Gives up what is on its way; what is shown stays. */
+  cancel(): void;
   /** Loads another; what goes wrong becomes a notice, and false. Of several the one asked for last is shown. */
   open(source: string | File): Promise<boolean>;
   /** One of our own avatar's palettes; null: the one the user chose. */
@@ -54,6 +60,8 @@ export function createShownAvatar(options: ShownAvatarOptions): ShownAvatar {
   let pending: string | null = null;
   /** Counts what was asked for; and which of that is shown. */
   let asked = 0;
+  /** Ends what is on its way; null: nothing is. */
+  let giveUp: AbortController | null = null;
   let shown = 0;
 
   function wear(palette: string | null): void {
@@ -72,26 +80,44 @@ export function createShownAvatar(options: ShownAvatarOptions): ShownAvatar {
   }
 
   /** Shows what `load` brings unless something that was asked for later has come before it. */
-  async function arrive(load: () => Promise<LoadedAvatar>, itsName: string, isOwn: boolean): Promise<boolean> {
+  async function arrive(
+    load: (signal: AbortSignal, onProgress: (share: number) => void) => Promise<LoadedAvatar>,
+    itsName: string,
+    isOwn: boolean,
+  ): Promise<boolean> {
     asked += 1;
     const turn = asked;
-    if (!isOwn) {
-      pending = `${itsName} is on its way.`;
+    const ending = new AbortController();
+    const tell = (how: string) => {
+      if (turn !== asked || isOwn) return;
+      pending = `${itsName} is on its way${how}.`;
       onChange();
-    }
+    };
+    giveUp = isOwn ? null : ending;
+    tell('');
+    let told = 0;
     try {
-      const loaded = await load();
-      if (turn < shown) return false;
+      const loaded = await load(ending.signal, (share) => {
+        const percent = Math.floor(share * 20) * 5;
+        if (percent > told) tell(percent < 100 ? `: ${percent} %` : ': it is being looked at');
+        told = percent;
+      });
+      if (turn < shown || ending.signal.aborted) {
+        VRMUtils.deepDispose(loaded.vrm.scene);
+        return false;
+      }
       show(createAvatar(loaded), itsName, isOwn);
       shown = turn;
       if (turn === asked) pending = null;
       return true;
     } catch (error) {
+      if (ending.signal.aborted) return false;
       const reason = firstLine(reasonOf(error)).replace(`${itsName}: `, '');
       notices.show('error', `${itsName} could not be shown: ${reason}`);
       if (turn === asked) pending = isOwn ? null : `${itsName} could not be shown.`;
       return false;
     } finally {
+      if (giveUp === ending) giveUp = null;
       onChange();
     }
   }
@@ -109,11 +135,24 @@ export function createShownAvatar(options: ShownAvatarOptions): ShownAvatar {
     get pending() {
       return pending;
     },
+    get onItsWay() {
+      return giveUp !== null;
+    },
+    cancel() {
+      giveUp?.abort();
+      giveUp = null;
+      pending = null;
+      onChange();
+    },
     openOwn: (bytes = fetchOwnAvatar()) => arrive(async () => parseAvatar(await bytes, ownName), ownName, true),
     open(source) {
       const itsName = nameOf(source);
-      const load = async () => loadAvatar(await readLimited(source, avatarFile), itsName, validateInWorker);
-      return arrive(load, itsName, false);
+      return arrive(
+        async (signal, onProgress) =>
+          loadAvatar(await readLimited(source, avatarFile, onProgress, signal), itsName, validateInWorker, decoders),
+        itsName,
+        false,
+      );
     },
     wear,
   };

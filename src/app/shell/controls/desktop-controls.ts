@@ -82,6 +82,7 @@ export class DesktopControls {
       view: stage.view.view,
       avatarName: avatar.current ? avatar.name : 'None yet',
       avatarPending: avatar.pending,
+      avatarOnItsWay: avatar.onItsWay,
       ownAvatarOffered: !avatar.own || avatar.pending !== null || avatar.current === null,
       palette: avatar.own ? settings.palette : null,
       heightCm: centimetres(statureFromEyeHeight(eyeHeight)),

@@ -40,6 +40,7 @@ function avatarActions({ writer, avatar, files }: PanelActionsOptions): AvatarAc
     openAvatarFile: (file) => void files.open(file),
     openAvatarUrl: (url) => void files.openAvatar(url),
     showOwnAvatar: () => files.showOwnAvatar(),
+    cancelAvatar: () => avatar.cancel(),
     setUpperBodyOnly: (upperBodyOnly) => writer.keep({ upperBodyOnly }),
   };
 }

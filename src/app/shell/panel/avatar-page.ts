@@ -15,6 +15,7 @@ function createShown(palettes: readonly PaletteChoice[], actions: AvatarActions)
   const name = element('p', { class: 'avatar-name' });
   const pending = element('p', { class: 'hint', role: 'status' });
   const own = button('Back to ours', () => actions.showOwnAvatar());
+  const cancel = button('Cancel loading', () => actions.cancelAvatar());
   const swatches = palettes.map((palette) => {
     const attributes = { class: 'swatch', 'aria-label': palette.label, title: palette.label };
     const node = button('', () => actions.choosePalette(palette.name), attributes);
@@ -29,14 +30,16 @@ function createShown(palettes: readonly PaletteChoice[], actions: AvatarActions)
       element('h2', {}, 'Avatar'),
       name,
       pending,
+      cancel,
       element('div', colours, ...swatches.map(({ node }) => node)),
       own,
     ),
-    show({ avatarName, avatarPending, ownAvatarOffered, palette: worn }: PanelState) {
+    show({ avatarName, avatarPending, avatarOnItsWay, ownAvatarOffered, palette: worn }: PanelState) {
       name.textContent = avatarName;
       pending.textContent = avatarPending;
       pending.hidden = avatarPending === null;
       own.hidden = !ownAvatarOffered;
+      cancel.hidden = !avatarOnItsWay;
       for (const { palette, node } of swatches) {
         node.setAttribute('aria-pressed', String(palette === worn));
         node.disabled = worn === null;

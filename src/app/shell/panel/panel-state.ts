@@ -27,6 +27,8 @@ export interface PanelState {
   readonly avatarPending: string | null;
   /** Another avatar than ours is shown, or was wanted. */
   readonly ownAvatarOffered: boolean;
+  /** Whether an avatar is on its way that can be given up. */
+  readonly avatarOnItsWay: boolean;
   /** Colours of our own avatar; null: another avatar is shown, which keeps its own. */
   readonly palette: string | null;
   readonly heightCm: number;
@@ -52,6 +54,7 @@ export interface AvatarActions {
   openAvatarFile(file: File): void;
   openAvatarUrl(url: string): void;
   showOwnAvatar(): void;
+  cancelAvatar(): void;
   setUpperBodyOnly(on: boolean): void;
 }
 

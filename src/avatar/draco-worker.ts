@@ -1,0 +1,100 @@
+import wasmAddress from 'three/examples/jsm/libs/draco/gltf/draco_decoder.wasm?url';
+import makeDraco from 'three/examples/jsm/libs/draco/gltf/draco_wasm_wrapper.js';
+import { reasonOf } from '../core/errors/reasons';
+
+/** One mesh to be unpacked: Draco's numbers of its attributes, and which kind of array each is to be. */
+export interface DracoQuestion {
+  readonly packed: ArrayBuffer;
+  readonly ids: Readonly<Record<string, number>>;
+  readonly types: Readonly<Record<string, string>>;
+  /** A mesh that holds more corners or triangles than its file tells is refused. */
+  readonly mostNumbers: number;
+}
+
+interface Unpacked {
+  readonly array: ArrayBufferView & { readonly buffer: ArrayBuffer };
+  readonly itemSize: number;
+}
+
+export type DracoAnswer =
+  | { readonly index: Uint32Array<ArrayBuffer>; readonly attributes: Readonly<Record<string, Unpacked>> }
+  | { readonly broken: string };
+
+/** The kinds of numbers that glTF has, by three.js's names of their arrays, and Draco's names of them. */
+const kinds = {
+  Float32Array: [Float32Array, 'DT_FLOAT32'],
+  Int8Array: [Int8Array, 'DT_INT8'],
+  Int16Array: [Int16Array, 'DT_INT16'],
+  Uint8Array: [Uint8Array, 'DT_UINT8'],
+  Uint16Array: [Uint16Array, 'DT_UINT16'],
+  Uint32Array: [Uint32Array, 'DT_UINT32'],
+} as const;
+
+const draco = fetch(wasmAddress)
+  .then((response) => response.arrayBuffer())
+  .then((wasmBinary) => makeDraco({ wasmBinary }));
+
+type Draco = Awaited<typeof draco>;
+
+/** What `write` puts into so many bytes of Draco's memory, in an array of this kind. */
+function taken<T>(
+  module: Draco,
+  bytes: number,
+  make: (memory: ArrayBuffer, at: number) => T,
+  write: (at: number) => void,
+): T {
+  const at = module._malloc(bytes);
+  write(at);
+  const result = make(module.HEAPF32.buffer.slice(at, at + bytes), 0);
+  module._free(at);
+  return result;
+}
+
+function unpack(module: Draco, { packed, ids, types, mostNumbers }: DracoQuestion): DracoAnswer {
+  const decoder = new module.Decoder();
+  const mesh = new module.Mesh();
+  try {
+    const status = decoder.DecodeArrayToMesh(new Int8Array(packed), packed.byteLength, mesh);
+    if (!status.ok() || mesh.ptr === 0) throw new Error(`Draco: ${status.error_msg()}`);
+    const [points, corners] = [mesh.num_points(), mesh.num_faces() * 3];
+    if (Math.max(points, corners) > mostNumbers) throw new Error('Draco: it unpacks to more than an avatar may have');
+    const index = taken(
+      module,
+      corners * 4,
+      (memory) => new Uint32Array(memory),
+      (at) => decoder.GetTrianglesUInt32Array(mesh, corners * 4, at),
+    );
+    const attributes = Object.fromEntries(
+      Object.entries(ids).map(([name, id]) => {
+        const [Kind, dracoKind] = kinds[(types[name] ?? 'Float32Array') as keyof typeof kinds] ?? kinds.Float32Array;
+        const attribute = decoder.GetAttributeByUniqueId(mesh, id);
+        const itemSize = attribute.num_components();
+        const bytes = points * itemSize * Kind.BYTES_PER_ELEMENT;
+        const array = taken(
+          module,
+          bytes,
+          (memory) => new Kind(memory),
+          (at) => decoder.GetAttributeDataArrayForAllPoints(mesh, attribute, module[dracoKind], bytes, at),
+        );
+        return [name, { array, itemSize }];
+      }),
+    );
+    return { index, attributes };
+  } finally {
+    module.destroy(mesh);
+    module.destroy(decoder);
+  }
+}
+
+self.addEventListener('message', ({ data }: MessageEvent<DracoQuestion>) => {
+  draco
+    .then((module) => {
+      const answer = unpack(module, data);
+      if ('broken' in answer) return;
+      const buffers = [answer.index, ...Object.values(answer.attributes).map(({ array }) => array)].map(
+        ({ buffer }) => buffer,
+      );
+      self.postMessage(answer satisfies DracoAnswer, { transfer: buffers });
+    })
+    .catch((error: unknown) => self.postMessage({ broken: reasonOf(error) } satisfies DracoAnswer));
+});
