@@ -33,6 +33,8 @@ export default defineConfig({
   expect: { timeout: 20_000 },
   reporter: [['list']],
   use: {
+    // What a page asks for is what a test sees; e2e/offline.spec.ts alone lets one be kept.
+    serviceWorkers: 'block',
     viewport: { width: 960, height: 600 },
     // What was done and said; a film of it would cost the software renderer two fifths of the time.
     trace: { mode: 'retain-on-failure', screenshots: false, snapshots: false },

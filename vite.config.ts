@@ -1,6 +1,6 @@
 import { fileURLToPath } from 'node:url';
 import { defineConfig, type Plugin } from 'vite';
-import { contentSecurityPolicy } from './server/security-headers';
+import { contentSecurityPolicy } from './server/security-headers.ts';
 
 /**
  * Says the server's policy in the pages themselves, for hosts that send no headers of ours. Without frame-ancestors, which browsers read in
@@ -43,6 +43,8 @@ export default defineConfig({
     // The policy of the server allows scripts of our own files alone: nothing may be inlined into the page as a data: URL.
     assetsInlineLimit: 0,
     modulePreload: { polyfill: false },
+    // What loads what, for scripts/build-service-worker.mjs, which takes it away.
+    manifest: true,
     chunkSizeWarningLimit: 1200,
     rolldownOptions: {
       input: ['index.html', 'results.html', 'experimenter.html'],

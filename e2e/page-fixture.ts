@@ -201,9 +201,9 @@ export interface ExpectedComplaints {
   allow(...patterns: RegExp[]): void;
 }
 
-/** A page in a context of its own that says where its policy is broken. Addresses are relative to `base`. */
-export async function newPage(browser: Browser, base: string): Promise<Page> {
-  const context = await browser.newContext({ baseURL: base });
+/** A page in a context of its own that says where its policy is broken. Addresses are relative to `base`; `kept`: the browser may keep it. */
+export async function newPage(browser: Browser, base: string, kept = false): Promise<Page> {
+  const context = await browser.newContext({ baseURL: base, serviceWorkers: kept ? 'allow' : 'block' });
   const page = await context.newPage();
   await page.addInitScript(() => {
     document.addEventListener('securitypolicyviolation', (event) => {

@@ -1,5 +1,9 @@
+import { mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { test as base } from '@playwright/test';
+import { build } from '../scripts/build.mjs';
 import type { ArcheryProbe } from '../src/app/archery/archery-play';
 import { holdAt } from './driven-time';
 import { emulatedHeadset } from './emulated-headset';
@@ -9,10 +13,10 @@ import { servePlainly } from './plain-server';
 const dist = fileURLToPath(new URL('../dist', import.meta.url));
 
 /** The page from a host that serves files out of a folder and nothing else. It may ask for nothing beyond that folder, nor complain. */
-const test = base.extend<{ address: string; complaints: readonly string[] }>({
-  // biome-ignore lint/correctness/noEmptyPattern: Playwright reads the fixture's needs from this pattern
-  address: async ({}, use) => {
-    const host = await servePlainly(dist, '/threepoint/');
+const test = base.extend<{ built: string; address: string; complaints: readonly string[] }>({
+  built: [dist, { option: true }],
+  address: async ({ built }, use) => {
+    const host = await servePlainly(built, '/threepoint/');
     await use(host.address);
     await host.close();
   },
@@ -36,6 +40,7 @@ const test = base.extend<{ address: string; complaints: readonly string[] }>({
 test('from a folder of a host of files: the learned body in VR, archery, and a sentence where rooms would be', async ({
   page,
 }) => {
+  test.setTimeout(180_000);
   await page.goto('?emulate&play=archery&seed=7&panel=off&quality=low');
   await page.waitForFunction(() => window.threepoint?.probe().ready, undefined, { timeout: 60_000 });
   const headset = await emulatedHeadset(page);
@@ -45,11 +50,49 @@ test('from a folder of a host of files: the learned body in VR, archery, and a s
   expect({ estimator, provider, notices }).toEqual({ estimator: 'learned', provider: 'wasm', notices: [] });
   expect(await joint(page, 'rightLowerArm')).toHaveLength(3);
   await holdAt<ArcheryProbe>(page, { score: 5 });
-  await keepPicture(page, 'static-host-archery');
   await headset.endSession();
 
   await page.getByRole('button', { name: 'Ball game' }).click();
   await expect(page.getByText('comes from a host without a threepoint server')).toBeVisible();
   await expect(page.getByRole('button', { name: 'Play with others' })).toBeHidden();
-  await keepPicture(page, 'static-host-rooms');
+});
+
+test.describe('built for one folder @full', () => {
+  const out = join(mkdtempSync(join(tmpdir(), 'threepoint-build-')), 'page');
+  test.use({ built: out });
+  test.beforeAll(async () => {
+    test.setTimeout(240_000);
+    await build({ base: '/threepoint/', out });
+  });
+  test.afterAll(() => rmSync(join(out, '..'), { recursive: true }));
+
+  test('the page draws the learned body, and the study pages say in a sentence that there is no server @full', async ({
+    page,
+    address,
+  }) => {
+    await page.goto('?quality=low&panel=off');
+    await page.waitForFunction(() => window.threepoint?.probe().ready, undefined, { timeout: 60_000 });
+    const { estimator, notices } = await probe(page);
+    expect({ estimator, notices }).toEqual({ estimator: 'learned', notices: [] });
+    for (const [file, link] of [
+      ['results.html', 'experimenter.html'],
+      ['experimenter.html', 'results.html'],
+    ]) {
+      await page.goto(file as string);
+      await expect(page.getByText('Studies need a threepoint server')).toBeVisible();
+      const hrefs = await page
+        .locator('nav a')
+        .evaluateAll((links) => links.map((each) => (each as HTMLAnchorElement).href));
+      expect(hrefs).toEqual([address + link, address]);
+    }
+    await keepPicture(page, 'static-host-experimenter');
+  });
+
+  test('a link to a room opens one’s own court @full', async ({ page }) => {
+    await page.goto('?play=ball&room=friends&quality=low&panel=off');
+    await page.waitForFunction(() => window.threepoint?.probe().game, undefined, { timeout: 60_000 });
+    await expect(page.getByText('Your own room')).toBeVisible();
+    await expect(page.getByText('comes from a host without a threepoint server')).toBeVisible();
+    await keepPicture(page, 'static-host-rooms');
+  });
 });

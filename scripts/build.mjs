@@ -4,6 +4,7 @@ import { join, relative, resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { parseArgs, promisify } from 'node:util';
 import { brotliCompress, constants, gzip } from 'node:zlib';
+import { buildServiceWorker } from './build-service-worker.mjs';
 import { main, root, run, SetupError } from './run-command.mjs';
 
 /** Everything the built page depends on. */
@@ -18,6 +19,7 @@ const sources = [
   'src',
   'server/security-headers.ts',
   'scripts/build.mjs',
+  'scripts/build-service-worker.mjs',
 ];
 const stampFile = '.source-hash';
 
@@ -98,6 +100,7 @@ export async function build({ base, out } = usual) {
   const vite = ['node_modules/vite/bin/vite.js', 'build', '--logLevel', 'warn'];
   const { code } = await run(process.execPath, [...vite, '--base', base, '--outDir', out, '--emptyOutDir']);
   if (code !== 0) throw new SetupError(`The build failed with exit code ${code}; its messages are above.`);
+  await buildServiceWorker(out);
   await precompress(out);
   writeFileSync(join(out, stampFile), hash);
 }

@@ -39,6 +39,7 @@ export const stages = {
     commands: () => [
       node('typescript/bin/tsc', '--noEmit'),
       node('typescript/bin/tsc', '--noEmit', '-p', 'tsconfig.core.json'),
+      node('typescript/bin/tsc', '--noEmit', '-p', 'tsconfig.worker.json'),
     ],
   },
   python: {

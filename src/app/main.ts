@@ -55,6 +55,12 @@ async function takePart(page: Page, visit: Visit): Promise<void> {
   page.stage.studio.scene.add(joined.run.object);
 }
 
+/** Keeps the page for a visit without a network, now that this one has all it needs. A study runs on what its server serves. */
+function keepForLater({ kept }: Page, { switches }: Visit): void {
+  // Only what has been built for good can be kept.
+  if (import.meta.env.PROD && !switches.study) void kept.keep(navigator.serviceWorker);
+}
+
 /** Builds the page and opens it; resolves when everything has loaded. */
 async function start(): Promise<void> {
   const notices = createNotices(pageElement('notices', HTMLElement));
@@ -83,6 +89,7 @@ async function start(): Promise<void> {
   // Compiling shaders is loading, not drawing.
   timing.reset();
   controls.show();
+  keepForLater(page, visit);
 }
 
 start().catch(showThatNothingStarts);

@@ -17,6 +17,8 @@ const site = {
   'models/learned.onnx': 'weights',
   'models/learned.json': '{}',
   'avatars/mannequin.vrm': 'glTF',
+  'manifest.webmanifest': '{}',
+  'sw.js': 'self.keptFiles=[];',
   '.source-hash': 'secret',
 };
 
@@ -44,6 +46,8 @@ describe('the page', () => {
     ['/models/learned.json', 'application/json; charset=utf-8'],
     ['/avatars/mannequin.vrm', 'model/gltf-binary'],
     ['/assets/main-3f2a.js', 'text/javascript; charset=utf-8'],
+    ['/sw.js', 'text/javascript; charset=utf-8'],
+    ['/manifest.webmanifest', 'application/manifest+json; charset=utf-8'],
   ])('%s is served as %s', async (path, type) => {
     const { origin } = await served();
     expect((await ask(origin, path)).headers['content-type']).toBe(type);
@@ -53,7 +57,7 @@ describe('the page', () => {
     const { origin } = await served();
     const asset = await ask(origin, '/assets/main-3f2a.js');
     expect(asset.headers['cache-control']).toBe('public, max-age=31536000, immutable');
-    for (const path of ['/', '/models/learned.onnx', '/avatars/mannequin.vrm']) {
+    for (const path of ['/', '/models/learned.onnx', '/avatars/mannequin.vrm', '/sw.js']) {
       expect((await ask(origin, path)).headers['cache-control']).toBe('no-cache');
     }
   });

@@ -9,6 +9,7 @@ import { createMouseAim } from '../../ui/mouse-aim';
 import type { Notices } from '../../ui/notices';
 import { pageFolder } from '../../ui/page-folder';
 import { createActor } from '../../xr/actor';
+import { KeptPage } from '../offline/kept-page';
 import { Recorder } from '../studio/recorder';
 import { Activities } from './activities';
 import { Controls } from './controls/controls';
@@ -175,9 +176,10 @@ export function createPage(options: PageOptions) {
   });
   pressSheetsByMouse({ canvas, view: stage.view, headset, study, activities });
   surviveLostGraphics({ canvas, notices, headset, studio: stage.studio, timing });
-  const probed = { loading, settings, notices, timing, frame, source, body, avatar, headset, recorder };
+  const kept = new KeptPage();
+  const probed = { loading, kept, settings, notices, timing, frame, source, body, avatar, headset, recorder };
   exposeProbe(() => readProbe({ ...probed, activities, study, stage }));
-  return { ...ground, ...play, controls, frame };
+  return { ...ground, ...play, controls, frame, kept };
 }
 
 /** The parts of the page, all built and none of them running. */

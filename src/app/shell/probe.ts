@@ -7,6 +7,7 @@ import type { Notices } from '../../ui/notices';
 import type { ArcheryProbe } from '../archery/archery-play';
 import type { PlayerProbe } from '../ball/ball-activity';
 import type { BallProbe } from '../ball/ball-frame';
+import type { KeptPage, KeptState } from '../offline/kept-page';
 import type { Recorder } from '../studio/recorder';
 import type { StudyProbe } from '../study/study-run';
 import type { Activities } from './activities';
@@ -50,6 +51,8 @@ export interface Probe {
   readonly notices: readonly { readonly level: string; readonly text: string }[];
   /** Milliseconds from opening the page to each mark of loading. */
   readonly loading: Readonly<Record<string, number>>;
+  /** What this browser keeps of the page for a visit without a network. */
+  readonly kept: KeptState;
   /** What the graphics device holds for us, and how dark the edges of the picture are (0 to 1). */
   readonly drawing: {
     readonly geometries: number;
@@ -68,6 +71,7 @@ export interface Probe {
 /** The parts of the page that a probe reads. */
 export interface ProbeParts {
   readonly loading: PageLoading;
+  readonly kept: Pick<KeptPage, 'state'>;
   readonly settings: Pick<Settings, 'calibrationSource'>;
   readonly notices: Pick<Notices, 'current'>;
   readonly timing: Pick<FrameTiming, 'summary'>;
@@ -110,7 +114,7 @@ function drawingOf({ renderer, vignette }: ProbeParts['stage']): Probe['drawing'
 
 /** What the page is doing now. */
 export function readProbe(parts: ProbeParts): Probe {
-  const { loading, settings, notices, timing, frame, source, body, headset, recorder, study, stage } = parts;
+  const { loading, kept, settings, notices, timing, frame, source, body, headset, recorder, study, stage } = parts;
   const { archery, ball } = parts.activities;
   return {
     ready: loading.ready,
@@ -126,6 +130,7 @@ export function readProbe(parts: ProbeParts): Probe {
     recorder: { mode: recorder.mode, frames: recorder.frameCount, seconds: recorder.seconds },
     notices: notices.current(),
     loading: { ...loading.marks },
+    kept: kept.state,
     drawing: drawingOf(stage),
     players: ball?.players() ?? [],
     game: archery?.probe() ?? ball?.probe() ?? null,

@@ -1,0 +1,253 @@
+import { createHash } from 'node:crypto';
+import { cpSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { test as base, type Page } from '@playwright/test';
+import { createPageHandler } from '../server/page';
+import { serve } from '../server/web-server';
+import type { ArcheryProbe } from '../src/app/archery/archery-play';
+import { holdAt } from './driven-time';
+import { emulatedHeadset } from './emulated-headset';
+import { enterVr, expect, keepPicture, listen, newPage, probe } from './page-fixture';
+import { type PlainServer, servePlainly } from './plain-server';
+
+const dist = fileURLToPath(new URL('../dist', import.meta.url));
+
+interface OurServer extends PlainServer {
+  readonly port: number;
+  /** The paths it was asked for. */
+  readonly asked: string[];
+}
+
+/** Our own server with the page alone, as `npm start` serves it. */
+async function serveOurs(folder: string, port = 0): Promise<OurServer> {
+  const page = createPageHandler(folder);
+  const asked: string[] = [];
+  const listener: typeof page = (request, response) => {
+    asked.push(request.url ?? '');
+    page(request, response);
+  };
+  const server = await serve(listener, { host: '127.0.0.1', port });
+  return { address: `http://localhost:${server.port}/`, port: server.port, asked, close: () => server.close() };
+}
+
+const hosts = {
+  'a folder of a host of files': (folder: string) => servePlainly(folder, '/threepoint/'),
+  'our server': (folder: string) => serveOurs(folder),
+};
+
+/** What a browser says of a host that cannot be reached. */
+const unreachable = /net::ERR_|Failed to fetch|could not be reached/;
+
+/** A page of a browser that may keep it; it complains of nothing, but for hosts that are away on purpose. */
+const test = base.extend<{ folder: string }>({
+  // biome-ignore lint/correctness/noEmptyPattern: Playwright reads the fixture's needs from this pattern
+  folder: async ({}, use) => {
+    const folder = mkdtempSync(join(tmpdir(), 'threepoint-page-'));
+    cpSync(dist, folder, { recursive: true });
+    await use(folder);
+    rmSync(folder, { recursive: true });
+  },
+});
+
+// Every visit builds the page anew.
+test.describe.configure({ timeout: 240_000 });
+
+async function visit(page: Page, query = 'quality=low&panel=off'): Promise<void> {
+  await page.goto(`?${query}`);
+  await page.waitForFunction(() => window.threepoint?.probe().ready, undefined, { timeout: 60_000 });
+}
+
+/** Waits until the browser has the whole page. */
+async function isKept(page: Page): Promise<void> {
+  await expect.poll(async () => (await probe(page)).kept, { timeout: 60_000 }).toBe('whole');
+}
+
+const storedPaths = (page: Page): Promise<string[]> =>
+  page.evaluate(async () => {
+    const paths: string[] = [];
+    for (const name of await caches.keys()) {
+      for (const { url } of await (await caches.open(name)).keys()) paths.push(new URL(url).pathname);
+    }
+    return paths;
+  });
+
+interface KeptFile {
+  readonly url: string;
+  revision: string | null;
+  integrity: string;
+}
+
+/** Puts another version of the page where it is served from: another title, and its archery in a file of another name. */
+function publishNewer(folder: string): { readonly oldArchery: string } {
+  const script = readFileSync(join(folder, 'sw.js'), 'utf8');
+  const end = script.indexOf(';\n');
+  const files = JSON.parse(script.slice(script.indexOf('=') + 1, end)) as KeptFile[];
+  const html = join(folder, 'index.html');
+  writeFileSync(html, readFileSync(html, 'utf8').replace('<title>threepoint</title>', '<title>newer</title>'));
+  const digest = createHash('sha256').update(readFileSync(html)).digest();
+  const page = files.find(({ url }) => url === 'index.html') as KeptFile;
+  Object.assign(page, {
+    revision: digest.toString('hex').slice(0, 16),
+    integrity: `sha256-${digest.toString('base64')}`,
+  });
+  const oldArchery = readdirSync(join(folder, 'assets')).find((name) =>
+    /^archery-activity-.*\.js$/.test(name),
+  ) as string;
+  rmSync(join(folder, 'assets', oldArchery));
+  const newer = files.filter(({ url }) => url !== `assets/${oldArchery}`);
+  for (const file of ['index.html', 'sw.js', `assets/${oldArchery}`]) {
+    for (const compressed of ['br', 'gz']) rmSync(join(folder, `${file}.${compressed}`));
+  }
+  writeFileSync(join(folder, 'sw.js'), `self.keptFiles=${JSON.stringify(newer)}${script.slice(end)}`);
+  return { oldArchery };
+}
+
+for (const [where, host] of Object.entries(hosts)) {
+  test(`after one visit to ${where}, archery is played in VR with neither network nor host @full`, async ({
+    browser,
+    folder,
+  }) => {
+    const served = await host(folder);
+    const page = await newPage(browser, served.address, true);
+    const { heard } = listen(page, served.address);
+    await visit(page);
+    await isKept(page);
+    expect(heard, 'of the first visit').toEqual([]);
+
+    await served.close();
+    await page.context().setOffline(true);
+    await visit(page, 'emulate&play=archery&seed=7&panel=off&quality=low');
+    const { estimator, provider, notices } = await probe(page);
+    expect({ estimator, provider, notices }).toEqual({ estimator: 'learned', provider: 'wasm', notices: [] });
+    const headset = await emulatedHeadset(page);
+    await enterVr(page);
+    await holdAt<ArcheryProbe>(page, { score: 5 });
+    await keepPicture(page, 'offline-archery');
+    await headset.endSession();
+    await page.getByRole('button', { name: 'Ball game' }).click();
+    await expect(page.getByText('which does not answer now')).toBeVisible();
+    await keepPicture(page, 'offline-rooms');
+    expect(
+      heard.filter((text) => !unreachable.test(text)),
+      'without a network',
+    ).toEqual([]);
+    await page.context().close();
+  });
+}
+
+test('nothing is kept of a server, and a study is served by it as ever @full', async ({ browser, folder }) => {
+  const served = await serveOurs(folder);
+  const page = await newPage(browser, served.address, true);
+  await visit(page);
+  await isKept(page);
+  const stored = await storedPaths(page);
+  expect(stored).toContain('/index.html');
+  expect(stored.filter((path) => /^\/(api|studies|relay)|experimenter|results|webgpu|asyncify/.test(path))).toEqual([]);
+
+  const from = async (address: string) => (await page.goto(address))?.fromServiceWorker();
+  expect(await from('?quality=low')).toBe(true);
+  for (const address of ['?study=paper', 'results', 'experimenter.html', '?ep=webgpu']) {
+    expect(await from(address), address).toBe(false);
+  }
+  const asksFor = async (address: string) => {
+    served.asked.length = 0;
+    await page.goto(address);
+    await page.waitForFunction(() => window.threepoint?.probe().ready, undefined, { timeout: 60_000 });
+    return served.asked.filter((path) => /^\/(avatars|models)\//.test(path));
+  };
+  expect(await asksFor('?quality=low'), 'a visit').toEqual([]);
+  expect(await asksFor('?quality=low&study=paper'), 'a study').toEqual(
+    expect.arrayContaining(['/avatars/mannequin.vrm', '/models/learned.json', '/models/learned.onnx']),
+  );
+  await page.context().close();
+  await served.close();
+});
+
+test('a page in use goes on with the files it began with; the next visit has the newer version, and then its copy too @full', async ({
+  browser,
+  folder,
+}) => {
+  const served = await serveOurs(folder);
+  const page = await newPage(browser, served.address, true);
+  await visit(page);
+  await isKept(page);
+  const first = await storedPaths(page);
+  await visit(page);
+
+  await served.close();
+  const { oldArchery } = publishNewer(folder);
+  const again = await serveOurs(folder, served.port);
+  expect(again.port).toBe(served.port);
+
+  // The host has this file no longer.
+  await page.getByRole('button', { name: 'Archery' }).click();
+  await page.waitForFunction(() => window.threepoint?.probe().game, undefined, { timeout: 60_000 });
+  await expect(page).toHaveTitle('threepoint');
+
+  again.asked.length = 0;
+  await visit(page);
+  await expect(page).toHaveTitle('newer');
+  // Another version than the kept one: all of it comes from its host.
+  expect(again.asked).toEqual(expect.arrayContaining(['/avatars/mannequin.vrm', '/models/learned.onnx']));
+
+  // It is kept beside the older one, and takes its place when no window has that any more.
+  const workers = () =>
+    page.evaluate(async () => {
+      const registration = await navigator.serviceWorker.getRegistration();
+      return [registration?.waiting?.state, registration?.active?.state];
+    });
+  await expect.poll(workers, { timeout: 60_000 }).toEqual(['installed', 'activated']);
+  await page.goto('about:blank');
+  const later = await page.context().newPage();
+  await page.close();
+  await later.goto('experimenter.html');
+  const newest = first.filter((path) => !path.endsWith(oldArchery)).toSorted();
+  await expect.poll(async () => (await storedPaths(later)).toSorted(), { timeout: 60_000 }).toEqual(newest);
+  await again.close();
+  await visit(later);
+  await expect(later).toHaveTitle('newer');
+  await later.context().close();
+});
+
+test('a browser that can store too little shows the page as ever, and keeps no half of it @full', async ({
+  browser,
+  folder,
+}) => {
+  const served = await serveOurs(folder);
+  const page = await newPage(browser, served.address, true);
+  const session = await page.context().newCDPSession(page);
+  await session.send('Storage.overrideQuotaForOrigin', {
+    origin: new URL(served.address).origin,
+    quotaSize: 3_000_000,
+  });
+  await visit(page);
+  await expect
+    .poll(async () => (await probe(page)).kept, { timeout: 60_000 })
+    .toEqual({
+      refused: 'the files could not be stored',
+    });
+  expect((await probe(page)).notices).toEqual([]);
+  await expect.poll(() => storedPaths(page)).toEqual([]);
+  await visit(page);
+  expect((await probe(page)).estimator).toBe('learned');
+  await page.context().close();
+  await served.close();
+});
+
+test('files that are not those of one version are not kept @full', async ({ browser, folder }) => {
+  const contract = join(folder, 'models/paper.json');
+  writeFileSync(contract, readFileSync(contract, 'utf8').replace('{', '{ '));
+  const served = await servePlainly(folder, '/threepoint/');
+  const page = await newPage(browser, served.address, true);
+  await visit(page);
+  await expect
+    .poll(async () => (await probe(page)).kept, { timeout: 60_000 })
+    .toEqual({
+      refused: 'the files could not be stored',
+    });
+  await expect.poll(() => storedPaths(page)).toEqual([]);
+  await page.context().close();
+  await served.close();
+});
