@@ -1,4 +1,4 @@
-import { mkdtempSync, rmSync } from 'node:fs';
+import { rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -58,13 +58,13 @@ test('from a folder of a host of files: the learned body in VR, archery, and a s
 });
 
 test.describe('built for one folder @full', () => {
-  const out = join(mkdtempSync(join(tmpdir(), 'threepoint-build-')), 'page');
+  const out = join(tmpdir(), `threepoint-page-${process.pid}`);
   test.use({ built: out });
   test.beforeAll(async () => {
     test.setTimeout(240_000);
     await build({ base: '/threepoint/', out });
   });
-  test.afterAll(() => rmSync(join(out, '..'), { recursive: true }));
+  test.afterAll(() => rmSync(out, { recursive: true, force: true }));
 
   test('the page draws the learned body, and the study pages say in a sentence that there is no server @full', async ({
     page,
