@@ -6,7 +6,7 @@ import torch
 from threepoint_training.chest_features import CHEST_FEATURES, chest_features
 from threepoint_training.features import FEATURES, HANDS, HEAD_AXES, IK_JOINTS, SEEN
 from threepoint_training.generated_motion import generate_corpus
-from threepoint_training.model import CorrectionNetwork
+from threepoint_training.model import ByteDropout, CorrectionNetwork
 from threepoint_training.train_learned import held_out
 
 pytestmark = pytest.mark.training
@@ -80,3 +80,16 @@ def test_an_elbow_knows_nothing_of_the_other_hand(network):
 
 def test_nothing_at_all_gives_numbers_all_the_same(network):
     assert np.isfinite(corrections(network, np.zeros((1, network.inputs), np.float32))).all()
+
+
+def test_dropout_leaves_out_its_share_keeps_the_mean_and_follows_the_seed():
+    def dropped(seed: int) -> torch.Tensor:
+        torch.manual_seed(seed)
+        return ByteDropout(0.2)(torch.ones(400, 500))
+
+    once = dropped(1)
+    assert (once == 0).float().mean().item() == pytest.approx(0.2, abs=0.005)
+    assert once.mean().item() == pytest.approx(1.0, abs=0.01)
+    assert torch.equal(once, dropped(1))
+    assert not torch.equal(once, dropped(2))
+    assert torch.equal(ByteDropout(0.2).eval()(once), once)

