@@ -1,6 +1,6 @@
 """Recombined bodies: one person's torso with the arms of two others, in chest space, as trackers would see it.
 
-Eleven people are too few to learn how arms and torsos go together; their recombinations are many.
+Some dozen people are too few to learn how arms and torsos go together; their recombinations are many.
 """
 
 from dataclasses import dataclass, replace
@@ -13,6 +13,7 @@ from .chest_features import chest_features
 from .complete_hands import carry_with_head, complete_hands
 from .features import frame_features
 from .prepare import EYES_FROM_HEAD_JOINT
+from .posture_balance import BalanceConfig, weights
 from .prepared_corpus import JOINTS, MIRRORED_JOINTS, PreparedCorpus
 from .residual import residual
 from .simulate_trackers import TrackerConfig
@@ -45,6 +46,7 @@ class AugmentConfig:
     arm_scale: float = 0.03
     eye_height_error: float = 0.025
     arm_span_error: float = 0.02
+    balance: BalanceConfig = BalanceConfig()
     trackers: TrackerConfig = TrackerConfig(headset_offset=0.025, wrist_offset=0.02)
 
 
@@ -60,7 +62,7 @@ class Batch:
 class BodyParts:
     """The corpus of some people taken apart: torsos in the floor frame, arms in chest space, all on the right side."""
 
-    def __init__(self, corpus: PreparedCorpus, people: tuple[str, ...]) -> None:
+    def __init__(self, corpus: PreparedCorpus, people: tuple[str, ...], balance: BalanceConfig = BalanceConfig()) -> None:
         clips = corpus.clips_of(set(people))
         slices = [corpus.clip_slice(clip) for clip in clips]
         frames = np.concatenate([np.arange(s.start, s.stop) for s in slices])
@@ -72,10 +74,7 @@ class BodyParts:
         self.clip_start = np.repeat(np.cumsum([0, *lengths[:-1]]), lengths)
         self.sizes = np.repeat(np.array(sizes), lengths, axis=0)
         names = np.array([corpus.clip_people[clip] for clip in clips])
-        # All people count nearly alike; one with ten times the motion counts somewhat more.
-        self.people, self.person, counts = np.unique(np.repeat(names, lengths), return_inverse=True, return_counts=True)
-        weight = counts[self.person] ** -0.5
-        self.cumulative = np.cumsum(weight) / weight.sum()
+        self.people, self.person = np.unique(np.repeat(names, lengths), return_inverse=True)
 
         x = joint["rightUpperArm"] - joint["leftUpperArm"]
         x /= np.linalg.norm(x, axis=-1, keepdims=True)
@@ -97,10 +96,41 @@ class BodyParts:
         self.arm_length = [
             np.linalg.norm(arm[:, 1] - arm[:, 0], axis=-1) + np.linalg.norm(arm[:, 2] - arm[:, 1], axis=-1) for arm in self.arms
         ]
+        trunks = weights(self.person, self._trunk_postures(), balance.trunk_clusters, (balance.people, balance.trunks), balance.seed)
+        owners, postures = np.tile(self.person, 2), np.concatenate([self._arm_postures(side) for side in (0, 1)])
+        arms = weights(owners, postures, balance.arm_clusters, (balance.people, balance.arms), balance.seed)
+        self._cumulative_trunks, self._cumulative_arms = (np.cumsum(each) / each.sum() for each in (trunks, arms))
 
-    def draw(self, random: np.random.Generator, count: int) -> NDArray[np.int64]:
-        """Frames, people balanced."""
-        return np.searchsorted(self.cumulative, random.uniform(size=count)).clip(max=len(self.cumulative) - 1)
+    def draw_trunks(self, random: np.random.Generator, count: int) -> NDArray[np.int64]:
+        """Frames, people and how their trunks are held balanced."""
+        return _drawn(self._cumulative_trunks, random, count)
+
+    def draw_arms(self, random: np.random.Generator, count: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Frames and sides, people and how that arm is held balanced."""
+        side, frame = np.divmod(_drawn(self._cumulative_arms, random, count), len(self.person))
+        return frame, side
+
+    def _up(self) -> Array:
+        """The room's up in chest space [F, 3]."""
+        return quaternion.rotate(quaternion.conjugate(self.chest), np.broadcast_to([0.0, 1.0, 0.0], (len(self.chest), 3)))
+
+    def _trunk_postures(self) -> Array:
+        """Up, the gaze and the hips in chest space and the head's height [F, 10], of like weight; lengths in eye heights."""
+        into_chest = quaternion.conjugate(self.chest)
+        gaze = quaternion.rotate(quaternion.multiply(into_chest, self.head_turn), np.broadcast_to([0.0, 0.0, -1.0], (len(self.chest), 3)))
+        joint = {name: self.torso[:, index] / self.sizes[:, :1] for index, name in enumerate(TORSO)}
+        hips = quaternion.rotate(into_chest, joint["hips"] - joint["chest"])
+        return np.concatenate([self._up(), gaze, 2 * hips, 2 * joint["head"][:, 1:2]], axis=1)
+
+    def _arm_postures(self, side: int) -> Array:
+        """Elbow and wrist from the shoulder in chest space, and up, as a right arm's [F, 9], of like weight; in arm lengths."""
+        arm = (self.arms[side] - self.arms[side][:, :1]) / self.arm_length[side][:, None, None]
+        up = self._up() * (_MIRROR if side == 0 else 1.0)
+        return np.concatenate([2 * arm[:, 1], 1.5 * arm[:, 2], 0.5 * up], axis=1)
+
+
+def _drawn(cumulative: Array, random: np.random.Generator, count: int) -> NDArray[np.int64]:
+    return np.searchsorted(cumulative, random.uniform(size=count)).clip(max=len(cumulative) - 1)
 
 
 @dataclass(frozen=True)
@@ -149,13 +179,14 @@ class _Bodies:
 
 
 def _draw_bodies(parts: BodyParts, count: int, config: AugmentConfig, random: np.random.Generator) -> _Bodies:
-    newest = parts.draw(random, count)
+    newest = parts.draw_trunks(random, count)
     sizes = parts.sizes[newest].copy()
     arm_frames, arm_sides = [], []
     for side in (0, 1):
         other = random.uniform(size=count) < config.recombined
-        arm_frames.append(np.where(other, parts.draw(random, count), newest))
-        arm_sides.append(np.where(other, random.integers(0, 2, count), side))
+        frames, sides = parts.draw_arms(random, count)
+        arm_frames.append(np.where(other, frames, newest))
+        arm_sides.append(np.where(other, sides, side))
     own = (parts.arm_length[0][newest] + parts.arm_length[1][newest]) / 2
     wanted = own * (1 + random.normal(size=count) * config.arm_scale)
     sizes[:, 1] += 2 * (wanted - own)

@@ -172,7 +172,7 @@ def train(
     """Trains on these people; report(step, loss, the averaged network so far, not shrunk)."""
     torch.manual_seed(config.seed)
     random = np.random.default_rng(config.seed)
-    parts = BodyParts(corpus, people)
+    parts = BodyParts(corpus, people, config.augment.balance)
     kinematics = DifferentiableKinematics()
     network = CorrectionNetwork(len(config.augment.window_frames), config.width, config.dropout, config.hidden_layers)
     first = [draw_batch(parts, config.batch, config.augment, random) for _ in range(8)]
