@@ -91,7 +91,7 @@ def main(
     recipe = replace(recipe, steps=config.steps, seed=config.seed)
     errors: dict[str, dict[str, list[float]]] = {}
     for fold in folds:
-        training = tuple(sorted(set(corpus.people) - set(fold) - reserved))
+        training = tuple(sorted(set(splits.trainable(tuple(corpus.people))) - set(fold) - reserved))
         tests: dict[tuple[str, tuple[float, ...]], train_learned.HeldOut] = {}
         for name, variant in variants(recipe).items():
             report(f"{name}, {', '.join(fold)} held out")

@@ -11,7 +11,7 @@ import torch
 from . import fit_networks, fitted_kinematics, skeleton, solve_ik, train_learned, train_paper
 from .fit_networks import Destination, TrainingRun
 from .motion import MocapError
-from .splits import FOLDS, training_people
+from .splits import FOLDS, measured_only, training_people
 
 
 def usable_folds(run: TrainingRun) -> list[str]:
@@ -50,25 +50,30 @@ def main(run: TrainingRun, folds: list[str]) -> None:
 
 
 def _cross_validate(run: TrainingRun, fold: str, is_shipped: bool) -> tuple[dict[str, torch.nn.Module], train_paper.LearningCurve | None]:
-    """The networks of one fold and the learning curve of the paper's."""
+    """The networks of one fold and the learning curve of the paper's. Judged on the fold's people and, beside them, on those who only measure."""
     config, corpus, found = run.config, run.corpus, run.report.found
     subjects = tuple(corpus.people)
     training = training_people(fold, subjects)
-    unseen = tuple(person for person in FOLDS[fold] if person in subjects)
-    label, names = f"fold {fold}", ", ".join(unseen)
+    label = f"fold {fold}"
+    judged = {label: tuple(person for person in FOLDS[fold] if person in subjects)}
+    if measured := measured_only(subjects):
+        judged[f"another laboratory, {label}'s network"] = measured
+    rows = {f"{given} ({', '.join(people)})": people for given, people in judged.items()}
     trained: dict[str, torch.nn.Module] = {}
     curve: train_paper.LearningCurve | None = None
     with _kinematics(run, training, fold, is_shipped):
-        test = train_learned.held_out(corpus, unseen, config.learned.window_seconds)
-        found(f"IK, {label} ({names})", train_learned.ik_errors_cm(test))
+        tests = {row: train_learned.held_out(corpus, people, config.learned.window_seconds) for row, people in rows.items()}
+        for row, test in tests.items():
+            found(f"IK, {row}", train_learned.ik_errors_cm(test))
         if "paper" in config.networks:
-            frames = train_paper.frames_of(corpus, unseen, config.seed)
-            trained["paper"], curve = fit_networks.followed_paper(run, training, frames, label)
-            errors = train_paper.joint_errors_cm(train_paper.predict(trained["paper"], frames.inputs), frames.targets)
-            found(f"paper, {label} ({names})", errors)
+            frames = {row: train_paper.frames_of(corpus, people, config.seed) for row, people in rows.items()}
+            trained["paper"], curve = fit_networks.followed_paper(run, training, next(iter(frames.values())), label)
+            for row, test in frames.items():
+                found(f"paper, {row}", train_paper.joint_errors_cm(train_paper.predict(trained["paper"], test.inputs), test.targets))
         if "learned" in config.networks:
             trained["learned"] = fit_networks.learned(run, training, label)
-            found(f"learned, {label} ({names})", train_learned.fitted_errors_cm(train_paper.predict(trained["learned"], test.inputs), test))
+            for row, test in tests.items():
+                found(f"learned, {row}", train_learned.fitted_errors_cm(train_paper.predict(trained["learned"], test.inputs), test))
     return trained, curve
 
 

@@ -11,6 +11,7 @@ from . import export, train_learned, train_paper
 from .model import PaperNetwork
 from .paper_features import paper_features
 from .prepared_corpus import TRACKED_COLUMNS, PreparedCorpus
+from .splits import trainable
 from .training_config import TrainConfig
 from .training_report import TrainingReport
 
@@ -70,7 +71,7 @@ def _frame_random_split(run: TrainingRun, count: int) -> tuple[np.ndarray, np.nd
 
 def paper_frame_random_errors_cm(run: TrainingRun) -> np.ndarray:
     """Of the paper's network under the paper's protocol [F, 6]."""
-    frames = train_paper.frames_of(run.corpus, tuple(run.corpus.people), run.config.seed)
+    frames = train_paper.frames_of(run.corpus, trainable(tuple(run.corpus.people)), run.config.seed)
     chosen, test = _frame_random_split(run, len(frames.inputs))
     network = paper(run, frames, "frame-random", chosen)
     return train_paper.joint_errors_cm(train_paper.predict(network, frames.inputs[test]), frames.targets[test])
@@ -78,7 +79,7 @@ def paper_frame_random_errors_cm(run: TrainingRun) -> np.ndarray:
 
 def learned_frame_random_errors_cm(run: TrainingRun) -> np.ndarray:
     """Of our network under the paper's protocol, raw joints [F, 6]."""
-    frames = train_learned.held_out(run.corpus, tuple(run.corpus.people), run.config.learned.window_seconds)
+    frames = train_learned.held_out(run.corpus, trainable(tuple(run.corpus.people)), run.config.learned.window_seconds)
     chosen, test = _frame_random_split(run, len(frames.inputs))
     config = run.config.learned_frame_random
     with run.report.task("learned frame-random", config.steps) as advance:

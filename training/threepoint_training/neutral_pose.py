@@ -96,7 +96,7 @@ class Standing:
 
 def standing_people(corpus: PreparedCorpus, window_seconds: tuple[float, ...], config: NeutralPoseConfig) -> dict[str, Standing]:
     """The people of the training side who are seen in a neutral pose for long enough."""
-    names = tuple(sorted(set(corpus.people) - set(splits.FOLDS["A"])))
+    names = splits.training_people("A", tuple(corpus.people))
     people = train_learned.held_out(corpus, names, window_seconds)
     found = {}
     for name in names:

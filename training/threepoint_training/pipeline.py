@@ -11,6 +11,7 @@ from .fit_networks import Destination, TrainingRun
 from .generated_motion import generate_corpus
 from .model import CorrectionNetwork
 from .prepared_corpus import PreparedCorpus
+from .splits import trainable
 from .training_config import REPOSITORY, TrainConfig
 from .training_report import LABELS, TrainingReport
 
@@ -41,7 +42,7 @@ def main(config: TrainConfig, console: Console | None = None) -> dict[str, dict[
 
 def _train_on_all_subjects(run: TrainingRun) -> None:
     """The page's networks. Their contracts state the errors on people held out, of networks trained the same way without them."""
-    subjects = tuple(sorted(run.corpus.people))
+    subjects = trainable(tuple(run.corpus.people))
     for name in run.config.networks:
         errors, curve = cross_validate.earlier_errors(run, name)
         row = f"{name}, all subjects, trained on"
