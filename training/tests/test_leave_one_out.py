@@ -1,7 +1,10 @@
 """Facts about holding each person out in turn."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
-from threepoint_training import fitted_kinematics, leave_one_out, skeleton, solve_ik, train_learned
+from threepoint_training import fitted_kinematics, leave_one_out, postures, skeleton, solve_ik, train_learned
 from threepoint_training.fit_ik import FitIkConfig
 from threepoint_training.generated_motion import generate_corpus
 
@@ -14,13 +17,72 @@ QUICK = FitIkConfig(iterations=1, frames_per_person=40)
 def test_each_person_has_a_row_and_the_mean_counts_them_alike():
     recipe = train_learned.TrainLearnedConfig(width=8, batch=32, steps=2)
     reported = []
-    rows = leave_one_out.main(CORPUS, recipe, QUICK, reported.append)
+    rows = leave_one_out.main(CORPUS, recipe, QUICK, reported.append).people
     people = sorted(CORPUS.people)
     assert reported == people
     assert [row[0] for row in rows] == [*people, "all alike"]
     assert all(len(row) == 1 + len(leave_one_out.COLUMNS) for row in rows)
     of_ik = [float(row[1]) for row in rows]
     assert of_ik[-1] == pytest.approx(sum(of_ik[:-1]) / len(people), abs=0.01)
+
+
+@pytest.mark.parametrize(("count", "groups"), [(None, [("1",), ("2",), ("3",)]), (2, [("1", "3"), ("2",)]), (9, [("1",), ("2",), ("3",)])])
+def test_people_are_held_out_alone_or_in_groups(count, groups):
+    assert leave_one_out.groups_of(("1", "2", "3"), count) == groups
+
+
+def test_people_who_only_measure_have_rows_of_their_own_and_are_trained_on_by_none(monkeypatch):
+    person = CORPUS.people["003"]
+    others = {name: each for name, each in CORPUS.people.items() if name != "003"}
+    corpus = replace(
+        CORPUS,
+        people=others | {"901": replace(person, name="901")},
+        clip_people=tuple("901" if name == "003" else name for name in CORPUS.clip_people),
+    )
+    trained_on = []
+    train = train_learned.train
+
+    def watched(given, people, config):
+        trained_on.append(people)
+        return train(given, people, config)
+
+    monkeypatch.setattr(train_learned, "train", watched)
+    rows = leave_one_out.main(corpus, train_learned.TrainLearnedConfig(width=8, batch=32, steps=2), QUICK).people
+    assert [row[0] for row in rows] == ["001", "002", "all alike", "901", "another laboratory, all alike"]
+    assert trained_on == [("002",), ("001",), ("001", "002")]
+
+
+def test_postures_count_people_alike_and_distances_part_all_frames():
+    """Two people, one with ten times the frames; who has more motion weighs no more."""
+    names = ("001", "002")
+
+    def person(frames, of_ik, ours, furthest):
+        errors = (np.full((frames, 6), value) for value in (of_ik, ours))
+        return leave_one_out.HeldOutPerson(*errors, {"crouching": np.arange(frames) < frames // 2}, np.linspace(0, furthest, frames))
+
+    found = {"001": person(40, 4.0, 2.0, furthest=1.0), "002": person(400, 8.0, 8.0, furthest=4.0)}
+    corpus = replace(CORPUS, people={name: CORPUS.people[name] for name in names})
+    crouching, *distances = leave_one_out.tables(corpus, found).postures
+    assert crouching == ["crouching", "50.0 %", "6.00", "5.00", "0.83", "0.83"]
+    shares = [float(row[1].split()[0]) for row in distances]
+    assert shares == pytest.approx([25, 25, 25, 15, 10], abs=3)
+    assert float(distances[-1][4]) == 1.0 > float(distances[0][4])
+
+
+def test_frames_are_told_apart_by_what_their_features_say():
+    crouching = train_learned.held_out(CORPUS, ("001",), (0.0,)).inputs[:1].repeat(3, axis=0)
+    crouching[:, 0] = 0.5, 1.0, 1.0
+    # The right hand, up from the headset; then a head that looks at the floor.
+    crouching[:, 17] = -0.5, 0.4, -0.5
+    crouching[:, 8] = -0.5
+    crouching[:, 5] = 1.0, 1.0, 0.2
+    crouching[:, -2:] = 0.9
+    of = {name: frames.tolist() for name, frames in postures.of_frames(crouching).items()}
+    assert of["head under 0.9 of the eye height"] == [True, False, False]
+    assert of["a hand above the headset"] == [False, True, False]
+    assert of["head tilted by over 45°"] == [False, False, True]
+    assert of["both arms bent, reach under 0.65"] == [False] * 3
+    assert of[postures.UPRIGHT] == [False] * 3
 
 
 def test_fitted_kinematics_are_used_for_as_long_as_they_are_asked_for():

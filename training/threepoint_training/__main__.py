@@ -29,6 +29,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--refit-kinematics", action="store_true", help="also fit the page's body proportions and IK anew")
     parser.add_argument("--ablate", action="store_true", help="instead of all that: the recipe without each of its parts, for docs/training.md")
     parser.add_argument("--leave-one-out", action="store_true", help="instead of all that: each subject held out in turn, for docs/training.md")
+    parser.add_argument("--groups", type=int, help="with --leave-one-out: so many groups in turn instead of one subject at a time")
     parser.add_argument("--quick", action="store_true", help="a twentieth of the training: does it run?")
     return parser
 
@@ -48,12 +49,15 @@ def _config() -> TrainConfig:
         frame_random=not given.no_frame_random,
         ablate=given.ablate,
         leave_one_out=given.leave_one_out,
+        groups=given.groups,
         refit_kinematics=given.refit_kinematics,
         seed=given.seed,
         threads=given.threads,
     )
     if unknown := set(config.folds) - set(FOLDS):
         parser.error(f"no fold {', '.join(sorted(unknown))}; there are {', '.join(FOLDS)}")
+    if config.groups is not None and config.groups < 2:
+        parser.error(f"--groups {config.groups}: two groups at least, or there is no one to train on")
     if unknown := set(config.networks) - set(TrainConfig.networks):
         parser.error(f"no network {', '.join(sorted(unknown))}; there are {', '.join(TrainConfig.networks)}")
     config = replace(config, paper=replace(config.paper, seed=config.seed), learned=replace(config.learned, seed=config.seed))

@@ -1,47 +1,123 @@
-"""What a new wearer may expect: each person held out in turn, proportions, IK and network made of all the others.
+"""What a new wearer may expect: each person held out in turn, proportions, IK and network made of all the others, as what ships is.
 
-`npm run train -- --mocap DIR --leave-one-out` calls this and renews the table of docs/training.md.
+`npm run train -- --mocap DIR --leave-one-out` calls this and renews two tables of docs/training.md.
 """
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import fitted_kinematics, train_learned
+from . import fitted_kinematics, postures, splits, train_learned
 from .accuracy_tables import renew, table
 from .fit_ik import FitIkConfig
+from .model import CorrectionNetwork
 from .prepared_corpus import PreparedCorpus
 from .train_learned import TrainLearnedConfig
 from .train_paper import predict
 
 PAGE = Path(__file__).parents[2] / "docs/training.md"
 
-# Of each training, fewer than for the network that is shipped: there are as many trainings as people.
-STEPS = 600
-
 COLUMNS = ("IK", "ours", "ours / IK", "elbows, ours / IK", "minutes")
+POSTURE_COLUMNS = ("of all frames", "IK", "ours", "ours / IK", "elbows, ours / IK")
+# Parts of all frames, from those nearest to what was trained on to those furthest from it.
+DISTANCES = (0.0, 0.25, 0.5, 0.75, 0.9, 1.0)
+
+
+@dataclass(frozen=True)
+class HeldOutPerson:
+    """A person whom proportions, IK and network have not seen: errors of IK and ours [F, 6] in cm, and what their frames are like."""
+
+    of_ik: NDArray[np.float64]
+    ours: NDArray[np.float64]
+    postures: dict[str, NDArray[np.bool_]]
+    distance: NDArray[np.float32]
+
+
+@dataclass(frozen=True)
+class Tables:
+    """Rows by person and by posture."""
+
+    people: list[list[str]]
+    postures: list[list[str]]
+
+
+def groups_of(people: tuple[str, ...], count: int | None) -> list[tuple[str, ...]]:
+    """Who is held out together: everybody alone (None), or so many groups of like size, neighbours in the list apart."""
+    count = len(people) if count is None else min(count, len(people))
+    return [people[number::count] for number in range(count)]
 
 
 def main(
-    corpus: PreparedCorpus, recipe: TrainLearnedConfig, ik: FitIkConfig, report: Callable[[str], None] = lambda _: None
-) -> list[list[str]]:
-    """Rows of the table, a person each, and their mean, all counted alike; cm over six joints after torso and arm fitting."""
-    recipe = replace(recipe, steps=min(recipe.steps, STEPS))
-    rows, errors = [], []
-    for name in sorted(corpus.people):
-        report(name)
-        others = tuple(sorted(set(corpus.people) - {name}))
-        with fitted_kinematics.used(fitted_kinematics.fit(corpus, others, ik)):
-            person = train_learned.held_out(corpus, (name,), recipe.window_seconds)
-            network = train_learned.train(corpus, others, recipe)
-            of_ik, ours = train_learned.ik_errors_cm(person), train_learned.fitted_errors_cm(predict(network, person.inputs), person)
-        rows.append([name, *_cells(of_ik, ours), f"{len(ours) / corpus.rate_hz / 60:.1f}"])
-        errors.append((of_ik.mean(axis=0), ours.mean(axis=0)))
-    means = (np.mean([each[method] for each in errors], axis=0, keepdims=True) for method in (0, 1))
-    return [*rows, ["all alike", *_cells(*means), ""]]
+    corpus: PreparedCorpus,
+    recipe: TrainLearnedConfig,
+    ik: FitIkConfig,
+    report: Callable[[str], None] = lambda _: None,
+    groups: int | None = None,
+) -> Tables:
+    """Rows of the tables; cm over six joints after torso and arm fitting. groups: people held out so many groups at a time; None: one by one.
+
+    People who only measure have rows of their own, by what is made of all the others.
+    """
+    trainable = splits.trainable(tuple(corpus.people))
+    turns = [*groups_of(trainable, groups), *([measured] if (measured := splits.measured_only(tuple(corpus.people))) else [])]
+    found: dict[str, HeldOutPerson] = {}
+    for group in turns:
+        report(", ".join(group))
+        found |= hold_out(corpus, group, tuple(name for name in trainable if name not in group), recipe, ik)
+    return tables(corpus, found)
+
+
+def hold_out(
+    corpus: PreparedCorpus, people: tuple[str, ...], others: tuple[str, ...], recipe: TrainLearnedConfig, ik: FitIkConfig
+) -> dict[str, HeldOutPerson]:
+    """These people, by proportions, IK and a network made of the others."""
+    with fitted_kinematics.used(fitted_kinematics.fit(corpus, others, ik)):
+        network = train_learned.train(corpus, others, recipe)
+        return {name: judge(corpus, name, network, recipe.window_seconds) for name in people}
+
+
+def judge(corpus: PreparedCorpus, name: str, network: CorrectionNetwork, window_seconds: tuple[float, ...]) -> HeldOutPerson:
+    """A person by the kinematics in use and this network."""
+    person = train_learned.held_out(corpus, (name,), window_seconds)
+    ours = train_learned.fitted_errors_cm(predict(network, person.inputs), person)
+    return HeldOutPerson(
+        train_learned.ik_errors_cm(person), ours, postures.of_frames(person.inputs), postures.distance(network, person.inputs)
+    )
+
+
+def tables(corpus: PreparedCorpus, found: dict[str, HeldOutPerson]) -> Tables:
+    """What was found of people as rows; the mean of those who may be trained on, all counted alike, then those who only measure and theirs."""
+    rows: list[list[str]] = []
+    trainable = splits.trainable(tuple(found))
+    for names, mean in ((trainable, "all alike"), (splits.measured_only(tuple(found)), "another laboratory, all alike")):
+        if names:
+            rows += [[name, *_cells(found[name].of_ik, found[name].ours), _minutes(corpus, name)] for name in names]
+            means = (np.stack([getattr(found[name], method).mean(axis=0) for name in names]) for method in ("of_ik", "ours"))
+            rows.append([mean, *_cells(*means), ""])
+    return Tables(rows, _posture_rows([found[name] for name in trainable]))
+
+
+def _posture_rows(people: list[HeldOutPerson]) -> list[list[str]]:
+    """Frames of each posture, then by their distance from what was trained on; all people counted alike."""
+    of_ik, ours, distance = (np.concatenate([getattr(person, key) for person in people]) for key in ("of_ik", "ours", "distance"))
+    weight = np.concatenate([np.full(len(person.ours), 1 / len(person.ours) / len(people)) for person in people])
+    order = np.argsort(distance)
+    rank = np.empty(len(order))
+    rank[order] = np.cumsum(weight[order])
+    chosen = {name: np.concatenate([person.postures[name] for person in people]) for name in people[0].postures}
+    for low, high in pairwise(DISTANCES):
+        chosen[f"{100 * low:.0f} to {100 * high:.0f} % by distance"] = (rank > low) & (rank <= high)
+    rows = []
+    for name, frames in chosen.items():
+        if frames.any():
+            share = weight[frames]
+            means = (np.average(errors[frames], axis=0, weights=share, keepdims=True) for errors in (of_ik, ours))
+            rows.append([name, f"{100 * share.sum():.1f} %", *_cells(*means)])
+    return rows
 
 
 def _cells(of_ik: NDArray[np.float64], ours: NDArray[np.float64]) -> list[str]:
@@ -50,6 +126,12 @@ def _cells(of_ik: NDArray[np.float64], ours: NDArray[np.float64]) -> list[str]:
     return [f"{of_ik.mean():.2f}", f"{ours.mean():.2f}", f"{ours.mean() / of_ik.mean():.2f}", f"{elbows:.2f}"]
 
 
-def write(rows: list[list[str]], page: Path = PAGE) -> None:
-    """Renews the page's table."""
-    page.write_text(renew(page.read_text(), {"leave-one-out": table(["cm", *COLUMNS], rows)}))
+def _minutes(corpus: PreparedCorpus, name: str) -> str:
+    frames = sum(each.stop - each.start for each in map(corpus.clip_slice, corpus.clips_of({name})))
+    return f"{frames / corpus.rate_hz / 60:.1f}"
+
+
+def write(rows: Tables, page: Path = PAGE) -> None:
+    """Renews the page's tables."""
+    renewed = {"leave-one-out": table(["cm", *COLUMNS], rows.people), "postures": table(["cm", *POSTURE_COLUMNS], rows.postures)}
+    page.write_text(renew(page.read_text(), renewed))

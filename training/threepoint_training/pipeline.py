@@ -79,16 +79,16 @@ def _ablate(run: TrainingRun) -> dict[str, dict[str, float]]:
 
 
 def _leave_one_out(run: TrainingRun) -> None:
-    done = 0
-    with run.report.task("leave one out", len(run.corpus.people)) as advance:
+    done, groups = 0, run.config.groups
+    with run.report.task("leave one out", None) as advance:
 
-        def report(name: str) -> None:
+        def report(people: str) -> None:
             nonlocal done
             done += 1
-            advance(done, f"without {name}")
+            advance(done, f"without {people}")
 
-        rows = leave_one_out.main(run.corpus, run.config.learned, run.config.ik, report)
-    for row in rows:
+        rows = leave_one_out.main(run.corpus, run.config.learned, run.config.ik, report, groups)
+    for row in [*rows.people, *rows.postures]:
         run.report.console.print("  ".join(row))
     leave_one_out.write(rows)
 

@@ -29,6 +29,8 @@ class TrainConfig:
     frame_random: bool = True
     ablate: bool = False
     leave_one_out: bool = False
+    # People held out in turn are held out so many groups at a time; None: one by one.
+    groups: int | None = None
     refit_kinematics: bool = False
     seed: int = 2460
     # Small layers gain little from more threads, and with one their sums keep their order on any machine.
