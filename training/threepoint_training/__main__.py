@@ -30,6 +30,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--ablate", action="store_true", help="instead of all that: the recipe without each of its parts, for docs/training.md")
     parser.add_argument("--leave-one-out", action="store_true", help="instead of all that: each subject held out in turn, for docs/training.md")
     parser.add_argument("--groups", type=int, help="with --leave-one-out: so many groups in turn instead of one subject at a time")
+    parser.add_argument("--steps", type=int, default=TrainConfig.learned.steps, help="of our network's training (default: %(default)s)")
     parser.add_argument("--quick", action="store_true", help="a twentieth of the training: does it run?")
     return parser
 
@@ -58,9 +59,11 @@ def _config() -> TrainConfig:
         parser.error(f"no fold {', '.join(sorted(unknown))}; there are {', '.join(FOLDS)}")
     if config.groups is not None and config.groups < 2:
         parser.error(f"--groups {config.groups}: two groups at least, or there is no one to train on")
+    if given.steps < 1:
+        parser.error(f"--steps {given.steps}: at least one")
     if unknown := set(config.networks) - set(TrainConfig.networks):
         parser.error(f"no network {', '.join(sorted(unknown))}; there are {', '.join(TrainConfig.networks)}")
-    config = replace(config, paper=replace(config.paper, seed=config.seed), learned=replace(config.learned, seed=config.seed))
+    config = replace(config, paper=replace(config.paper, seed=config.seed), learned=replace(config.learned, seed=config.seed, steps=given.steps))
     return quick(config) if given.quick else config
 
 

@@ -66,7 +66,7 @@ def variants(config: TrainLearnedConfig) -> dict[str, TrainLearnedConfig]:
         "without late trackers": without(late=0.0),
         "without seated people": without(seated=0.0),
         "headsets tilted by 8°, gaze not calibrated": without(trackers=tilted),
-        "no shrinkage": replace(config, shrinkage=1.0),
+        "no shrinkage": replace(config, shrinkage=1.0, arm_shrinkage=1.0),
         "no per-subject random effects": replace(config, effects_learning_rate=0.0),
         "loss on raw joints alone": replace(config, fitted_loss_weight=0.0, auxiliary_loss_weight=1.0),
         "only the newest frame": without(window_frames=(0,)),

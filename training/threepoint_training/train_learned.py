@@ -35,8 +35,9 @@ class TrainLearnedConfig:
     learning_rate: float = 5e-3
     weight_decay: float = 1e-2
     average_half_life_steps: float = 300.0
-    # Of the learned correction of the trunk: what holds for the people trained on holds for others in part.
-    shrinkage: float = 0.75
+    # Of the learned corrections of trunk and arm: what holds for the people trained on holds for others in part.
+    shrinkage: float = 0.9
+    arm_shrinkage: float = 0.8
     # Of errors of joints after torso and arm fitting, and of raw joints, so that what fitting takes back is kept small.
     fitted_loss_weight: float = 1.0
     auxiliary_loss_weight: float = 0.1
@@ -210,7 +211,7 @@ def train(
             for average, value in zip(averaged.parameters(), network.parameters(), strict=True):
                 average.lerp_(value, 1 - weight)
         report(step, float(loss.detach()), lambda: averaged)
-    averaged.shrink(config.shrinkage)
+    averaged.shrink(config.shrinkage, config.arm_shrinkage)
     return averaged
 
 
