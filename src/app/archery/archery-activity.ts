@@ -1,10 +1,13 @@
+import type { Holding } from '../../avatar/holding';
 import type { Calibration } from '../../core/body/calibration';
+import type { MutableHandShape } from '../../core/body/hand-shape';
 import type { HapticPulse } from '../../core/games/archery/gestures';
 import type { Buttons } from '../../core/games/button-presses';
-import { identity } from '../../core/math/quat';
+import type { Pose } from '../../core/math/pose';
+import { identity, rotate } from '../../core/math/quat';
 import type { Ray } from '../../core/math/ray';
 import type { Side } from '../../core/math/side';
-import { zero } from '../../core/math/vec3';
+import { copyVec3, up, vec3, zero } from '../../core/math/vec3';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 import type { Quality } from '../../scene/renderer';
 import type { SurroundingsHost } from '../../scene/surroundings';
@@ -15,6 +18,9 @@ import { lineOf } from './scoreboard-drawing';
 
 /** The room's floor is the range's: its zone lies about the origin, the targets ahead. */
 const floorFromArena = { position: zero, orientation: identity };
+
+/** The leather of the bow's grip, as thick as its riser is there [m]. */
+const grip = { at: vec3(0, 0, 0), axis: vec3(0, 1, 0), radius: 0.019 };
 
 export interface ArcheryActivityOptions {
   readonly quality: Quality;
@@ -46,8 +52,8 @@ export interface ArcheryActivity {
   /** What a ray meets of the result's button: the distance [m]; null: nothing. */
   restartAt(ray: Ray): number | null;
   setHovered(hovered: boolean): void;
-  /** Whether this hand is closed round the bow. */
-  holds(side: Side): boolean;
+  /** Closes a hand with this wrist round the bow; false: it does not hold the bow. */
+  grasp(side: Side, wrist: Pose<'floor'>, holding: Holding, target: MutableHandShape): boolean;
   /** The round in numbers, and what it waits for, in words (null: for nothing). */
   round(): (ReturnType<typeof roundOf> & { readonly waiting: string | null }) | null;
   probe(): ReturnType<typeof probeOf> | null;
@@ -82,7 +88,14 @@ export function createArcheryActivity(options: ArcheryActivityOptions): ArcheryA
     },
     restartAt: ({ origin, direction }) => view.result.restartAt(origin, direction),
     setHovered: (hovered) => view.result.setHovered(hovered),
-    holds: (side) => play.newest?.bow?.bowSide === side,
+    grasp(side, wrist, holding, target) {
+      const bow = play.newest?.bow;
+      if (bow?.bowSide !== side) return false;
+      copyVec3(bow.bow.position, grip.at);
+      rotate(bow.bow.orientation, up, grip.axis);
+      holding.rod(side, wrist, grip, target);
+      return true;
+    },
     round() {
       const { newest } = play;
       if (!newest) return null;

@@ -1,16 +1,21 @@
+import type { Holding } from '../../avatar/holding';
 import { createRemoteAvatars, type RemoteAvatars } from '../../avatar/remote-avatars';
 import type { AvatarPose } from '../../core/body/avatar-pose';
-import type { Fingers } from '../../core/body/hand-shape';
+import type { Fingers, MutableHandShape } from '../../core/body/hand-shape';
 import type { BallState } from '../../core/games/ball/ball-state';
+import { ballRadius, basketRadius, rimTube } from '../../core/games/ball/flight';
 import type { BallPulse } from '../../core/games/ball/gestures';
 import type { Performed } from '../../core/games/ball/player-postures';
 import { defaultBallOptions } from '../../core/games/ball/rules';
 import { ballsLeft } from '../../core/games/ball/state-readings';
 import type { BallSteering } from '../../core/games/ball/steered-players';
 import type { Buttons } from '../../core/games/button-presses';
-import { type Pose, type Transform, transformPose } from '../../core/math/pose';
+import { ballInPalm } from '../../core/games/fist';
+import { type Pose, type Transform, transformPoint, transformPose } from '../../core/math/pose';
+import { rotate } from '../../core/math/quat';
 import type { Ray } from '../../core/math/ray';
-import type { Vec3 } from '../../core/math/vec3';
+import type { Side } from '../../core/math/side';
+import { type Vec3, vec3 } from '../../core/math/vec3';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 import { bannerText, connectionText } from '../../net/banner';
 import type { Connection, Visitor } from '../../net/connection';
@@ -64,6 +69,8 @@ export interface BallActivity {
   /** The tracked frame as play: what it means is heard at once, what it feels like comes back. */
   follow(frame: TrackingFrame, buttons: Buttons): readonly BallPulse[];
   send(frame: TrackingFrame, pose: AvatarPose, fingers: Fingers): void;
+  /** Closes a hand with this wrist round the basket or a ball; false: it holds neither. */
+  grasp(side: Side, wrist: Pose<'floor'>, holding: Holding, target: MutableHandShape): boolean;
   /** Draws the match; head: the eyes and ears of the viewer, own floor frame. `tracked`: whether `follow` was called for this frame. */
   show(time: number, head: Pose<'floor'>, tracked: boolean): void;
   /** What a ray meets on the sheet before and after a match: the distance [m]; null: nothing. `press`: does what it says. */
@@ -83,6 +90,10 @@ export interface BallActivity {
 }
 
 type Players = BallFrame['players'];
+
+/** The basket's rim in the floor frame; a ball in a hand. */
+const rim = { at: vec3(0, 0, 0), normal: vec3(0, 1, 0), radius: basketRadius, tube: rimTube };
+const heldAt = vec3(0, 0, 0);
 
 const noBodies: BallFrame['bodies'] = [];
 const noButtons: Buttons = {
@@ -153,6 +164,21 @@ class CourtActivity implements BallActivity {
 
   send(frame: TrackingFrame, pose: AvatarPose, fingers: Fingers): void {
     this.play.send(frame, pose, fingers);
+  }
+
+  grasp(side: Side, wrist: Pose<'floor'>, holding: Holding, target: MutableHandShape): boolean {
+    const seen = this.play.newest;
+    if (!seen) return false;
+    if (seen.role !== 'holder') {
+      if (seen.held[side] === null) return false;
+      holding.ball(side, wrist, { at: ballInPalm(wrist, ballRadius, heldAt), radius: ballRadius }, target);
+      return true;
+    }
+    if (!seen.opening) return false;
+    transformPoint(this.play.floorFromArena, seen.opening.position, rim.at);
+    rotate(this.play.floorFromArena.orientation, seen.opening.normal, rim.normal);
+    holding.rim(side, wrist, rim, target);
+    return true;
   }
 
   show(time: number, head: Pose<'floor'>, tracked: boolean): void {

@@ -3,10 +3,11 @@ import type { Calibration } from '../../core/body/calibration';
 import { type Fingers, unknownFingers } from '../../core/body/hand-shape';
 import type { BallEvent, BallRole, BallState } from '../../core/games/ball/ball-state';
 import { basketInHands, type Opening } from '../../core/games/ball/basket';
+import { ballRadius } from '../../core/games/ball/flight';
 import type { BallCue, BallPulse } from '../../core/games/ball/gestures';
 import { ballSecondsLeft, ballsLeft } from '../../core/games/ball/state-readings';
 import type { Launch } from '../../core/games/ballistics';
-import { fistOf } from '../../core/games/fist';
+import { ballInPalm } from '../../core/games/fist';
 import {
   composeTransforms,
   type MutableTransform,
@@ -24,7 +25,7 @@ import type { Connection, ConnectionStatus, RoomView } from '../../net/connectio
 import type { RemotePlayer } from '../../net/remote-players';
 import { seatLooks } from './court-plan';
 
-/** A person or bot at the court in one frame. Heads and fists are the same objects in every frame: copy what must stay. */
+/** A person or bot at the court in one frame. Heads and palms are the same objects in every frame: copy what must stay. */
 export interface PlayerFrame {
   readonly name: string;
   readonly bot: boolean;
@@ -35,7 +36,8 @@ export interface PlayerFrame {
   readonly ready: boolean;
   /** Arena frame; null: not to be seen now. */
   readonly head: Vec3 | null;
-  readonly fists: Readonly<Record<Side, Vec3 | null>>;
+  /** Where a ball lies in each hand, arena frame; null: the hand is not seen. */
+  readonly palms: Readonly<Record<Side, Vec3 | null>>;
   readonly opacity: number;
 }
 
@@ -142,10 +144,10 @@ type Mutable<T> = { -readonly [Key in keyof T]: T[Key] };
 
 /** What is shown of one seat, and the memory for it. */
 interface SeatView {
-  readonly player: Mutable<Omit<PlayerFrame, 'fists'>> & { readonly fists: Record<Side, Vec3 | null> };
+  readonly player: Mutable<Omit<PlayerFrame, 'palms'>> & { readonly palms: Record<Side, Vec3 | null> };
   readonly body: Mutable<BodyFrame> & { readonly placement: MutableTransform<'floor', 'floor'> };
   readonly head: MutableVec3;
-  readonly fists: Readonly<Record<Side, MutableVec3>>;
+  readonly palms: Readonly<Record<Side, MutableVec3>>;
 }
 
 /** Who is where in this frame, own floor frame of each. */
@@ -212,8 +214,8 @@ export class CourtPeople {
       told.station = player.station;
       told.ready = player.ready;
       told.head = place && transformPoint(arenaFromFloor, place.head.position, view.head);
-      told.fists.left = fistIn(arenaFromFloor, place?.leftHand, view.fists.left);
-      told.fists.right = fistIn(arenaFromFloor, place?.rightHand, view.fists.right);
+      told.palms.left = palmIn(arenaFromFloor, place?.leftHand, view.palms.left);
+      told.palms.right = palmIn(arenaFromFloor, place?.rightHand, view.palms.right);
       told.opacity = told.me ? 1 : (there?.opacity ?? 0);
       this.players[seat] = told;
     }
@@ -245,7 +247,7 @@ const makeSeatView = (seat: number): SeatView => ({
     station: seat,
     ready: false,
     head: null,
-    fists: { left: null, right: null },
+    palms: { left: null, right: null },
     opacity: 0,
   },
   body: {
@@ -259,7 +261,7 @@ const makeSeatView = (seat: number): SeatView => ({
     opacity: 0,
   },
   head: vec3(0, 0, 0),
-  fists: { left: vec3(0, 0, 0), right: vec3(0, 0, 0) },
+  palms: { left: vec3(0, 0, 0), right: vec3(0, 0, 0) },
 });
 
 function remoteOn(seat: number, others: readonly RemotePlayer[]): RemotePlayer | null {
@@ -267,11 +269,11 @@ function remoteOn(seat: number, others: readonly RemotePlayer[]): RemotePlayer |
   return null;
 }
 
-/** The middle of a fist, arena frame; null: the hand is not seen. */
-function fistIn(
+/** Where a ball lies in a hand, arena frame; null: the hand is not seen. */
+function palmIn(
   arenaFromFloor: Transform<'arena', 'floor'>,
   hand: TrackedPose | null | undefined,
   target: MutableVec3,
 ): MutableVec3 | null {
-  return hand ? transformPoint(arenaFromFloor, fistOf(hand, target), target) : null;
+  return hand ? transformPoint(arenaFromFloor, ballInPalm(hand, ballRadius, target), target) : null;
 }

@@ -26,7 +26,7 @@ export interface Attendant extends Person {
   /** Arena frame; null: not to be seen now. */
   readonly head: Vec3 | null;
   /** The middle of each fist, arena frame; null: not seen. */
-  readonly fists: Readonly<Record<'left' | 'right', Vec3 | null>>;
+  readonly palms: Readonly<Record<'left' | 'right', Vec3 | null>>;
   /** 1: live; less: a ghost. */
   readonly opacity: number;
 }
@@ -85,7 +85,7 @@ const origin: Transform<'floor', 'arena'> = {
   position: { x: 0, y: 0, z: 0 },
   orientation: { x: 0, y: 0, z: 0, w: 1 },
 };
-const unseenFists: Attendant['fists'] = { left: null, right: null };
+const unseenPalms: Attendant['palms'] = { left: null, right: null };
 
 /** What is written of a player, and no more: a sign is drawn anew when any of it changes. */
 const writtenOf = (attendant: Attendant | null): Person | null =>
@@ -158,7 +158,7 @@ class CourtView implements BallView {
       if (event.type === 'caught') this.#pops.add((opening ?? state.basket).position, time);
     }
     const mine = me === null ? null : people[me];
-    this.#sounds.hear({ state, time, events, cues, me, people, fists: mine?.fists ?? unseenFists });
+    this.#sounds.hear({ state, time, events, cues, me, people, palms: mine?.palms ?? unseenPalms });
   }
 
   dispose(): void {
@@ -171,7 +171,7 @@ class CourtView implements BallView {
     const opening = held ?? state.basket;
     this.#basket.show(opening);
     this.#arc.show(aim, opening);
-    this.#balls.show(state, time, (player, side) => attendants[player]?.fists[side] ?? null, opening);
+    this.#balls.show(state, time, (player, side) => attendants[player]?.palms[side] ?? null, opening);
   }
 
   /** What the board says while the clock goes on: what happened a moment ago, or what the match waits for. */

@@ -22,7 +22,7 @@ import { painted } from '../../scene/painted-geometry';
 import type { Quality } from '../../scene/renderer';
 import { createShadowDiscs, type ShadowDiscs } from './shadow-discs';
 
-/** Where the fist is that holds a ball; null: it is not seen. */
+/** Where a ball lies in a hand; null: the hand is not seen. */
 type InHand = (player: number, side: 'left' | 'right') => Vec3 | null;
 
 /** All balls of a match, wherever they are; arena frame. */

@@ -38,8 +38,8 @@ export interface Heard {
   readonly cues: readonly BallCue[];
   readonly me: number | null;
   readonly people: readonly (Person | null)[];
-  /** The middle of one's own fists, arena frame; null: not seen. */
-  readonly fists: Readonly<Record<'left' | 'right', Vec3 | null>>;
+  /** Where a ball lies in one's own hands, arena frame; null: not seen. */
+  readonly palms: Readonly<Record<'left' | 'right', Vec3 | null>>;
 }
 
 const bounceSteps = 4;
@@ -103,12 +103,12 @@ class CourtSounds implements BallSounds {
 
   hear(heard: Heard): void {
     const playing = this.stage.player;
-    const { state, events, cues, people, me, fists } = heard;
+    const { state, events, cues, people, me, palms } = heard;
     const head = transformPose(invertTransform(this.#floorFromArena), this.#head);
     const hearing: Hearing = { head, me, people, seconds: state.options.seconds };
     for (const cue of cues) {
       this.#caption(cueCaption(cue));
-      if (playing) this.#playCue(cue, fists, playing);
+      if (playing) this.#playCue(cue, palms, playing);
     }
     for (const event of events) {
       this.#caption(eventCaption(event, placeOf(event, state), hearing));
@@ -142,8 +142,8 @@ class CourtSounds implements BallSounds {
     this.#ticked = left;
   }
 
-  #playCue({ type, side }: BallCue, fists: Heard['fists'], { play }: Player): void {
-    const at = fists[side];
+  #playCue({ type, side }: BallCue, palms: Heard['palms'], { play }: Player): void {
+    const at = palms[side];
     if (!at) return;
     if (type === 'grabbed' || type === 'dropped') play('click', this.#inFloor(at));
     else if (type === 'slipped') play('warning', this.#inFloor(at));

@@ -11,7 +11,7 @@ import {
   Vector3,
 } from 'three';
 import type { Opening } from '../../core/games/ball/basket';
-import { basketDepth, basketRadius } from '../../core/games/ball/flight';
+import { basketDepth, basketRadius, rimTube } from '../../core/games/ball/flight';
 import { disposeTree } from '../../scene/dispose-tree';
 import { merged, painted } from '../../scene/painted-geometry';
 
@@ -65,7 +65,7 @@ export function createWickerBasket(): WickerBasket {
       '#7b5a31',
     );
   });
-  const rim = painted(new TorusGeometry(basketRadius, 0.017, 10, 48).rotateX(Math.PI / 2), '#fff6dc');
+  const rim = painted(new TorusGeometry(basketRadius, rimTube, 10, 48).rotateX(Math.PI / 2), '#fff6dc');
   const lower = painted(
     new TorusGeometry(basketRadius * 0.985, 0.01, 8, 48).rotateX(Math.PI / 2).translate(0, -0.045, 0),
     '#1f3f6d',

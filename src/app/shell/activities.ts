@@ -1,6 +1,8 @@
-import { type MutableHandShape, shapeOfClosing } from '../../core/body/hand-shape';
+import { Holding } from '../../avatar/holding';
+import type { MutableHandShape } from '../../core/body/hand-shape';
 import { firstLine, reasonOf } from '../../core/errors/reasons';
 import { type Buttons, nothingPressed } from '../../core/games/button-presses';
+import type { Pose } from '../../core/math/pose';
 import type { Ray } from '../../core/math/ray';
 import type { Side } from '../../core/math/side';
 import type { Vec3 } from '../../core/math/vec3';
@@ -23,8 +25,6 @@ import { wakeSound } from './wake-sound';
 
 /** The court's middle, where a spectator looks at first, floor frame. */
 const courtMiddle: Vec3 = { x: 0, y: 1, z: -2.4 };
-/** How far hands close that carry a basket: they lie round its rim. */
-const basketGrip = 0.8;
 
 /** A choice of hands or rules. */
 export type RuleChange = Partial<Pick<Settings, 'bowSide' | 'oneHanded' | 'everyHitCounts'>>;
@@ -56,6 +56,7 @@ export interface ActivitiesOptions {
 /** What people do here: look at themselves in the studio, shoot on the range, or play on the court. Games load when first played. */
 export class Activities {
   readonly #options: ActivitiesOptions;
+  readonly #holding = new Holding();
   #archery: ArcheryActivity | null = null;
   #ball: BallActivity | null = null;
   #arriving = false;
@@ -255,13 +256,11 @@ export class Activities {
     return haptics;
   }
 
-  /** Closes a hand round what it holds; false: it holds nothing. */
-  grasp(side: Side, target: MutableHandShape): boolean {
-    const bow = !this.#options.study.idle && this.#archery?.holds(side);
-    if (!bow && this.#ball?.play.newest?.role !== 'holder') return false;
-    const closed = bow ? 1 : basketGrip;
-    shapeOfClosing({ thumb: closed, index: closed, rest: closed, pinch: 0 }, target);
-    return true;
+  /** Closes a hand, whose wrist is there in the floor frame, round what it holds; false: it holds nothing. */
+  grasp(side: Side, wrist: Pose<'floor'>, target: MutableHandShape): boolean {
+    this.#holding.fitTo(this.#options.body.calibration.eyeHeight);
+    if (!this.#options.study.idle && this.#archery?.grasp(side, wrist, this.#holding, target)) return true;
+    return this.#ball?.grasp(side, wrist, this.#holding, target) ?? false;
   }
 
   /** Draws the newest frame of play; frame: what was tracked, null where nothing was. */

@@ -91,10 +91,11 @@ export class PageFrame implements FrameParts<XRFrame> {
   }
 
   /** What a hand holds closes it; else its fingers are as tracked, or as the buttons of a hand say whose fingers no device sees. */
-  #bendFingers(side: Side, { fingers }: TrackingFrame): void {
+  #bendFingers(side: Side, { fingers, leftHand, rightHand }: TrackingFrame): void {
     const { activities, source, avatar } = this.#options;
     const target = this.#shapes[side];
-    const held = activities.grasp(side, target) ? target : null;
+    const wrist = side === 'left' ? leftHand : rightHand;
+    const held = wrist && activities.grasp(side, wrist, target) ? target : null;
     const shape = held ?? (fingers ? fingers[side] : shapeOfButtons(source.buttons[side], target));
     this.#fingers[side] = shape;
     avatar.current?.setFingers(side, shape);

@@ -15,6 +15,7 @@ import {
   type Vec3,
   vec3,
 } from '../math/vec3';
+import proportions from './hand-geometry.json';
 import type { FingerBend, FingerName, MutableFingerBend } from './hand-shape';
 
 /**
@@ -150,4 +151,25 @@ export function bendOfPoints(name: FingerName, points: FingerPoints, target: Mut
   multiply(frame, fromAxisAngle(right, -target.middle, turn), frame);
   target.end = bendAgainst(frame, subtract(tip, third, firstBone));
   return target;
+}
+
+const fingertip = 0.006;
+
+/** The hand of an average person of this eye height [m]: the mannequin's. */
+export function averageHand(eyeHeight: number): HandGeometry {
+  const size = eyeHeight / proportions.eyeHeight;
+  const fingerOf = ({ knuckle, lengths, radius }: (typeof proportions)['index']): FingerGeometry => ({
+    root: vec3(knuckle[0]! * size, knuckle[1]! * size, -knuckle[2]! * size),
+    lengths: [lengths[0]! * size, lengths[1]! * size, (lengths[2]! - fingertip) * size],
+    tipRadius: 0.75 * radius * size,
+    rootRadius: radius * size,
+  });
+  const { thumb, index, middle, ring, little } = proportions;
+  return {
+    thumb: fingerOf(thumb),
+    index: fingerOf(index),
+    middle: fingerOf(middle),
+    ring: fingerOf(ring),
+    little: fingerOf(little),
+  };
 }

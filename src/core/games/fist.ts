@@ -1,10 +1,30 @@
 import { type Frame, type MutablePose, makePose, type Pose } from '../math/pose';
 import { fromAxes, type Quat, rotate } from '../math/quat';
 import type { Side } from '../math/side';
-import { add, cross, type MutableVec3, normalise, reject, scale, subtract, type Vec3, vec3 } from '../math/vec3';
+import {
+  add,
+  cross,
+  type MutableVec3,
+  normalise,
+  reject,
+  scale,
+  setVec3,
+  subtract,
+  type Vec3,
+  vec3,
+} from '../math/vec3';
 
 /** The middle of the fist in the wrist's frame [m]: 8 cm towards the knuckles, 2.5 cm towards the palm. */
 export const fistInWrist: Vec3 = vec3(0, -0.025, -0.08);
+
+/** The skin of the palm lies this far below the wrist's middle [m]. */
+const palm = 0.015;
+
+/** The middle of a ball of this radius [m] that lies in the palm of a hand: drawn there, while the rules know the fist alone. */
+export function ballInPalm(wrist: Pose<Frame>, radius: number, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 {
+  setVec3(target, 0, -palm - radius, fistInWrist.z);
+  return add(wrist.position, rotate(wrist.orientation, target, target), target);
+}
 
 /** Out of the fist on the thumb's side, in the wrist's frame. */
 const thumbInWrist: Readonly<Record<Side, Vec3>> = { left: vec3(1, 0, 0), right: vec3(-1, 0, 0) };

@@ -24,6 +24,8 @@ export const ballRadius = 0.075;
 /** The basket: a round opening, walls straight down from it [m]. */
 export const basketRadius = 0.22;
 export const basketDepth = 0.3;
+/** The rim is a tube of this radius about the opening's edge [m]. */
+export const rimTube = 0.017;
 
 /** Share of the speed into a surface that a bounce gives back. */
 const floorBounce = 0.62;

@@ -1,0 +1,119 @@
+import { closeRound, distanceToBall, distanceToRod, type Surface } from '../core/body/grasp';
+import { averageHand, type HandGeometry } from '../core/body/hand-geometry';
+import { copyHandShape, type MutableHandShape, makeHandShape } from '../core/body/hand-shape';
+import type { Pose } from '../core/math/pose';
+import { rotateInverse } from '../core/math/quat';
+import type { Side } from '../core/math/side';
+import { copyVec3, distance, dot, type MutableVec3, subtract, type Vec3, vec3 } from '../core/math/vec3';
+
+type Kind = 'nothing' | 'rod' | 'ball' | 'rim';
+
+/** A thing as it lies in one hand, frame of a left wrist; the fingers are closed anew when it has moved there. */
+interface Held {
+  kind: Kind;
+  readonly middle: MutableVec3;
+  readonly axis: MutableVec3;
+  radius: number;
+  tube: number;
+  readonly shape: MutableHandShape;
+}
+
+const makeHeld = (): Held => ({
+  kind: 'nothing',
+  middle: vec3(0, 0, 0),
+  axis: vec3(0, 0, 0),
+  radius: 0,
+  tube: 0,
+  shape: makeHandShape(),
+});
+
+/** A thing that has moved less than this in its hand is held as it was [m; of the unit axis]. */
+const still = 4e-4;
+const stillAxis = 0.004;
+
+interface Ball {
+  readonly at: Vec3;
+  readonly radius: number;
+}
+
+interface Rod extends Ball {
+  readonly axis: Vec3;
+}
+
+interface Rim extends Ball {
+  readonly normal: Vec3;
+  readonly tube: number;
+}
+
+/** Closes hands round what they hold, on the average hand of an eye height. All poses and places are of one frame. */
+export class Holding {
+  readonly #held = { left: makeHeld(), right: makeHeld() };
+  readonly #middle = vec3(0, 0, 0);
+  readonly #axis = vec3(0, 0, 0);
+  #geometry: HandGeometry = averageHand(1.59);
+  #eyeHeight = 1.59;
+
+  /** Whose hands [m]. */
+  fitTo(eyeHeight: number): void {
+    if (eyeHeight === this.#eyeHeight) return;
+    this.#eyeHeight = eyeHeight;
+    this.#geometry = averageHand(eyeHeight);
+    this.#held.left.kind = this.#held.right.kind = 'nothing';
+  }
+
+  /** A round rod along a unit axis. */
+  rod(side: Side, wrist: Pose<'floor'>, { at, axis, radius }: Rod, target: MutableHandShape): void {
+    this.#put(side, wrist, at, axis);
+    this.#close(side, 'rod', radius, 0, target);
+  }
+
+  ball(side: Side, wrist: Pose<'floor'>, { at, radius }: Ball, target: MutableHandShape): void {
+    this.#put(side, wrist, at, noAxis);
+    this.#close(side, 'ball', radius, 0, target);
+  }
+
+  /** The rim of a round wall that hangs from a tube: the fingers lie on the wall from outside, the thumb goes over the tube. */
+  rim(side: Side, wrist: Pose<'floor'>, { at, normal, radius, tube }: Rim, target: MutableHandShape): void {
+    this.#put(side, wrist, at, normal);
+    this.#close(side, 'rim', radius, tube, target);
+  }
+
+  /** Where the thing lies in the frame of a left wrist. */
+  #put(side: Side, wrist: Pose<'floor'>, at: Vec3, axis: Vec3): void {
+    const middle = rotateInverse(wrist.orientation, subtract(at, wrist.position, this.#middle), this.#middle);
+    const along = rotateInverse(wrist.orientation, axis, this.#axis);
+    if (side === 'left') return;
+    middle.x = -middle.x;
+    along.x = -along.x;
+  }
+
+  #close(side: Side, kind: Kind, radius: number, tube: number, target: MutableHandShape): void {
+    const held = this.#held[side];
+    const same = held.kind === kind && held.radius === radius && held.tube === tube;
+    if (!same || distance(this.#middle, held.middle) > still || distance(this.#axis, held.axis) > stillAxis) {
+      held.kind = kind;
+      held.radius = radius;
+      held.tube = tube;
+      copyVec3(this.#middle, held.middle);
+      copyVec3(this.#axis, held.axis);
+      current = held;
+      closeRound(surfaceOfCurrent, this.#geometry, held.shape);
+    }
+    copyHandShape(held.shape, target);
+  }
+}
+
+const noAxis = vec3(0, 0, 0);
+let current = makeHeld();
+const nearest = vec3(0, 0, 0);
+
+/** How far a point is from the thing in `current`. */
+const surfaceOfCurrent: Surface = (point, finger) => {
+  const { kind, middle, axis, radius, tube } = current;
+  if (kind === 'rod') return distanceToRod(point, middle, axis, radius);
+  if (kind === 'ball') return distanceToBall(point, middle, radius);
+  const fromWall = distanceToRod(point, middle, axis, radius);
+  if (finger !== 'thumb') return fromWall - tube;
+  const above = dot(subtract(point, middle, nearest), axis);
+  return Math.sqrt(fromWall * fromWall + above * above) - tube;
+};

@@ -1,0 +1,108 @@
+import { dot, length, lerp, type MutableVec3, subtract, type Vec3, vec3 } from '../math/vec3';
+import { type FingerGeometry, fingerPoints, type HandGeometry, makeFingerPoints } from './hand-geometry';
+import {
+  closedHand,
+  copyBend,
+  type FingerName,
+  fingerNames,
+  flatHand,
+  type MutableFingerBend,
+  type MutableHandShape,
+} from './hand-shape';
+
+/** A thing in a hand, in the frame of a left wrist (hand-geometry): how far a point is from its surface, below 0 inside [m]. */
+export type Surface = (point: Vec3, finger: FingerName) => number;
+
+const relative = vec3(0, 0, 0);
+
+/** Of a ball. */
+export const distanceToBall = (point: Vec3, centre: Vec3, radius: number): number =>
+  length(subtract(point, centre, relative)) - radius;
+
+/** Of an endless round rod along a unit axis. */
+export function distanceToRod(point: Vec3, middle: Vec3, axis: Vec3, radius: number): number {
+  subtract(point, middle, relative);
+  const along = dot(relative, axis);
+  return Math.sqrt(Math.max(0, dot(relative, relative) - along * along)) - radius;
+}
+
+/** Halvings until a joint's bend is known to 0.01 rad. */
+const halvings = 7;
+const joints = ['knuckle', 'middle', 'end'] as const;
+/** A thumb stretched away above the palm, to be closed over what the hand holds. */
+const openThumb = { knuckle: -0.3, spread: 0.75, middle: -0.05, end: -0.05 } as const;
+
+const points = makeFingerPoints();
+const at: MutableVec3 = vec3(0, 0, 0);
+const bent: MutableFingerBend = { knuckle: 0, spread: 0, middle: 0, end: 0 };
+
+/**
+ * Closes each finger joint by joint, knuckle first, until its skin lies on the surface; what meets nothing closes to a fist. A finger that
+ * is inside from the start stays open.
+ */
+export function closeRound(surface: Surface, geometry: HandGeometry, target: MutableHandShape): void {
+  for (let i = 0; i < fingerNames.length; i++) {
+    const name = fingerNames[i]!;
+    const bend = copyBend(name === 'thumb' ? openThumb : flatHand[name], target[name]);
+    for (let joint = 0; joint < 3; joint++) closeJoint(surface, name, geometry[name], joint as 0 | 1 | 2, bend);
+  }
+  target.pinch = 0;
+}
+
+/** How far a joint bends between open (0) and in the fist (1); of a thumb's and finger's first bone the spread goes along. */
+function bendJoint(
+  name: FingerName,
+  joint: 0 | 1 | 2,
+  share: number,
+  from: MutableFingerBend,
+  to: MutableFingerBend,
+): void {
+  const closed = closedHand[name];
+  copyBend(from, to);
+  to[joints[joint]] += (closed[joints[joint]] - from[joints[joint]]) * share;
+  if (joint === 0) to.spread += (closed.spread - from.spread) * share;
+}
+
+function closeJoint(
+  surface: Surface,
+  name: FingerName,
+  finger: FingerGeometry,
+  joint: 0 | 1 | 2,
+  bend: MutableFingerBend,
+): void {
+  bendJoint(name, joint, 1, bend, bent);
+  let free = 0;
+  let met = 1;
+  if (isClear(surface, name, finger, joint, bent)) free = 1;
+  else {
+    for (let i = 0; i < halvings; i++) {
+      const share = (free + met) / 2;
+      bendJoint(name, joint, share, bend, bent);
+      if (isClear(surface, name, finger, joint, bent)) free = share;
+      else met = share;
+    }
+  }
+  bendJoint(name, joint, free, bend, bent);
+  copyBend(bent, bend);
+}
+
+/** Whether the bones that a joint moves are outside: the root of a finger lies in the palm, and is not asked. */
+function isClear(
+  surface: Surface,
+  name: FingerName,
+  finger: FingerGeometry,
+  joint: 0 | 1 | 2,
+  bend: MutableFingerBend,
+): boolean {
+  fingerPoints(name, finger, bend, points);
+  const { rootRadius, tipRadius } = finger;
+  for (let bone = joint; bone < 3; bone++) {
+    const [from, to] = [points[bone as 0], points[(bone + 1) as 1]];
+    for (let part = 1; part <= 2; part++) {
+      if (bone === 0 && part === 1) continue;
+      const radius = rootRadius + ((tipRadius - rootRadius) * (bone + part / 2)) / 3;
+      if (surface(lerp(from, to, part / 2, at), name) < radius) return false;
+    }
+  }
+  return true;
+}

@@ -1,0 +1,42 @@
+import { describe, expect, test } from 'vitest';
+import { closeRound, distanceToBall, distanceToRod } from '../../../src/core/body/grasp';
+import { averageHand, fingerPoints, makeFingerPoints } from '../../../src/core/body/hand-geometry';
+import { closedHand, type FingerName, fingerNames, makeHandShape } from '../../../src/core/body/hand-shape';
+import { lerp, type Vec3, vec3 } from '../../../src/core/math/vec3';
+
+const hand = averageHand(1.59);
+
+/** How far the skin of a finger's two outer bones is from a surface at its nearest, below 0 in it [m]. */
+function clearance(
+  name: FingerName,
+  shape: ReturnType<typeof makeHandShape>,
+  surface: (point: Vec3) => number,
+): number {
+  const points = fingerPoints(name, hand[name], shape[name], makeFingerPoints());
+  const { tipRadius } = hand[name];
+  const along = [0.5, 1].flatMap((share) => [lerp(points[1], points[2], share), lerp(points[2], points[3], share)]);
+  return Math.min(...along.map(surface)) - tipRadius;
+}
+
+const things: Readonly<Record<string, (point: Vec3) => number>> = {
+  'a bow’s grip across the palm': (point) => distanceToRod(point, vec3(0, -0.036, -0.085), vec3(1, 0, 0), 0.019),
+  'a ball in the palm': (point) => distanceToBall(point, vec3(0, -0.09, -0.08), 0.075),
+  'a wall along the fingers': (point) => distanceToRod(point, vec3(0, -0.265, -0.08), vec3(1, 0, 0), 0.237),
+};
+
+describe.each(Object.entries(things))('a hand round %s', (_, surface) => {
+  const shape = makeHandShape();
+  closeRound(surface, hand, shape);
+
+  test.each(fingerNames)('lays its %s finger on the surface, and not through it', (name) => {
+    const gap = clearance(name, shape, surface);
+    expect(gap).toBeGreaterThan(-0.003);
+    if (name !== 'thumb') expect(gap).toBeLessThan(0.012);
+  });
+});
+
+test('a hand round nothing is a fist', () => {
+  const shape = makeHandShape();
+  closeRound(() => 1, hand, shape);
+  for (const name of fingerNames) expect(shape[name].middle).toBeCloseTo(closedHand[name].middle, 9);
+});
