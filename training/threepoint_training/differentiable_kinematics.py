@@ -5,14 +5,15 @@ heights, from the headset. What is left out moves no estimated joint of a person
 of vertebrae, forearms and hands.
 """
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, fields
 
 import torch
 from torch import Tensor
 
 from .chest_features import ARM_COLUMNS, ARMS, CHEST_FEATURES, CHEST_HEAD_AXES
 from .features import ARM_LENGTH, IK_JOINTS
-from .kinematic_limits import LIMB, REACH, TORSO
+from .kinematic_limits import LIMB, REACH, TORSO, TORSO_EXTREME
 from .skeleton import load_proportions, rest_offsets
 from .swivel_limiter import ElbowCircles, Trunk, limit_swivel
 
@@ -21,11 +22,11 @@ from .swivel_limiter import ElbowCircles, Trunk, limit_swivel
 class FittingConfig:
     """How closely fitting follows the page. The defaults are the loss's: as little as gradients need, and far from where they grow."""
 
-    # The trunk leans after hands that are out of reach so many times.
+    # The trunk leans after hands that are out of reach so many times; beyond anatomical_passes its joints go to their extremes.
     reach_passes: int = 1
-    # Hands further away than this are out of reach [arm lengths]; a lean that changes by no more than that is done [eye heights].
+    # Hands further away than this are out of reach [arm lengths]; nearer to it than that they count as reached [eye heights].
     reach: float = 1.0
-    least_change: float = 0.0
+    least_missing: float = 0.0
     # Shoulder to wrist of the straightest arm [arm lengths] and, beyond the difference of its bones, of the most bent one [eye heights].
     straightest: float = 0.999
     most_bent: float = 1e-3
@@ -38,9 +39,9 @@ LOSS = FittingConfig()
 def as_the_page_fits(eye_height: float) -> FittingConfig:
     """All that the page does, for a body of this eye height [m]."""
     return FittingConfig(
-        reach_passes=REACH["passes"],
+        reach_passes=REACH["anatomicalPasses"] + REACH["extremePasses"],
         reach=LIMB["straightest"],
-        least_change=1e-5 / eye_height,
+        least_missing=1e-5 / eye_height,
         straightest=LIMB["straightest"],
         most_bent=LIMB["mostBent"] / eye_height,
         swivel_limiter=True,
@@ -70,8 +71,6 @@ class DifferentiableKinematics:
         # Of shoulders at rest, their middle from the neck's base.
         left, right = (self.rest[f"{side}Shoulder"] + self.rest[f"{side}UpperArm"] for side in ("left", "right"))
         self.shoulders_from_neck = (left + right) / 2 - self.rest["neck"]
-        # Beyond where the skeleton keeps it anyway no shoulder leans further than its clavicle is long.
-        self.furthest_lean = self.rest["rightUpperArm"].norm()
 
     def __call__(self, corrections: Tensor, inputs: Tensor, config: FittingConfig = LOSS) -> Tensor:
         """What corrections of IK's joints [N, 6, 3] come to on the skeleton [N, 6, 3]; inputs [N, T·46 + 38] of the network."""
@@ -100,44 +99,28 @@ class DifferentiableKinematics:
 
     def fit_torso(self, goal: _Goal, config: FittingConfig) -> tuple[Trunk, Tensor]:
         """The trunk and the shoulders [N, 2, 3], leaning after hands that the arms alone do not reach."""
-        leans = torch.zeros_like(goal.wrists)
-        trunk, shoulders = self._place_trunk(goal, leans, leans[..., :1])
-        # How far the skeleton keeps shoulders from where they are estimated when they do not lean.
-        kept = _norm(shoulders - goal.estimated[:, 2:4])
-        for _ in range(config.reach_passes):
+        targets = goal.estimated[:, 2:4]
+        trunk, shoulders = self._place_trunk(goal, targets, TORSO)
+        for number in range(config.reach_passes):
             to_wrist = goal.wrists - shoulders
-            missing = (_length(to_wrist) - config.reach * goal.arm).clamp_min(0.0)
-            further = self._softly_limited(leans + _unit(to_wrist) * missing * TORSO["reachOvershoot"], kept)
-            pulled = ((further - leans).norm(dim=-1) > config.least_change).any(dim=1)
-            leans = torch.where(pulled[:, None, None], further, leans)
-            trunk, shoulders = self._place_trunk(goal, leans, kept)
+            direction, missing = _unit(to_wrist), (_length(to_wrist) - config.reach * goal.arm).clamp_min(0.0)
+            targets = targets + direction * torch.where(missing > config.least_missing, missing, 0.0) * TORSO["reachOvershoot"]
+            limits = TORSO if number < REACH["anatomicalPasses"] else TORSO_EXTREME
+            placed = self._place_trunk(goal, targets, limits)
+            if config.reach_passes > 1:
+                placed = _chosen((missing > config.least_missing).any(dim=1), placed, (trunk, shoulders))
+            trunk, shoulders = placed
         return trunk, shoulders
 
-    def _softly_limited(self, leans: Tensor, kept: Tensor) -> Tensor:
-        """Of leans [N, 2, 3] all up to half a clavicle's length beyond `kept` [N, 2, 1], from there on ever less, and never more than a whole one."""
-        size, soft = _norm(leans), self.furthest_lean / 2
-        free = kept + soft
-        limited = free + soft - soft * torch.exp((free - size).clamp_max(0.0) / soft)
-        return leans * torch.where(size <= free, 1.0, limited / size.clamp_min(1e-9))
-
-    def _place_trunk(self, goal: _Goal, leans: Tensor, kept: Tensor) -> tuple[Trunk, Tensor]:
-        """Chest joint, hips and shoulders on their bones below the head, as nearly as limits allow where shoulders lean so far [N, 2, 3].
-
-        Limits widen with leans beyond `kept` [N, 2, 1].
-        """
-        targets = goal.estimated[:, 2:4] + leans
-        shares = (_norm(leans) - kept).clamp_min(0.0) / self.furthest_lean
-        neck_bend = _widened("neckBend", shares.amax(dim=1))
-        clavicle_swings = _widened("clavicleSwing", shares)
+    def _place_trunk(self, goal: _Goal, targets: Tensor, limits: dict[str, float]) -> tuple[Trunk, Tensor]:
+        """Chest joint, hips and shoulders on their bones below the head, as nearly as limits allow where shoulders are wanted [N, 2, 3]."""
         estimated, head_joint = goal.estimated, goal.head_joint
         middle = targets.mean(1)
-        estimated_line, turned = estimated[:, 3] - estimated[:, 2], leans[:, 1] - leans[:, 0]
-        line = _unit(estimated_line + _across(turned, _unit(estimated_line)))
-        rough_up = _kept_ahead(estimated[:, 2:4].mean(1) - estimated[:, 4], middle - estimated[:, 4])
-        rough = self._aligned(self.thorax, rough_up, line)
+        line = _unit(targets[:, 1] - targets[:, 0])
+        rough = self._aligned(self.thorax, middle - estimated[:, 4], line)
         implied_neck = middle - rough @ self.shoulders_from_neck
         neck_bone = self.rest["head"]
-        neck = head_joint - _swung(rough @ neck_bone, head_joint - implied_neck, neck_bend)
+        neck = head_joint - _swung(rough @ neck_bone, head_joint - implied_neck, limits["neckBend"])
         # Chest joint and hips follow a share of what the neck was moved by.
         shift = neck - implied_neck
         moved = shift * TORSO["neckShiftShare"] * (neck_bone.norm() / _length(shift)).clamp_max(1.0)
@@ -149,8 +132,7 @@ class DifferentiableKinematics:
         shoulders = []
         for number, side in enumerate(("left", "right")):
             root = chest + lower @ self.rest["upperChest"] + upper @ self.rest[f"{side}Shoulder"]
-            rest = upper @ self.rest[f"{side}UpperArm"]
-            shoulders.append(root + _swung(rest, _kept_ahead(rest, targets[:, number] - root), clavicle_swings[:, number]))
+            shoulders.append(root + _swung(upper @ self.rest[f"{side}UpperArm"], targets[:, number] - root, limits["clavicleSwing"]))
         return Trunk(hips, chest, neck, upper), torch.stack(shoulders, dim=1)
 
     def fit_arms(self, goal: _Goal, trunk: Trunk, shoulders: Tensor, config: FittingConfig) -> tuple[Tensor, Tensor]:
@@ -176,9 +158,14 @@ class DifferentiableKinematics:
         return _frame(to_main, to_x) @ _frame(main, self.x).T
 
 
-def _widened(limit: str, shares: Tensor) -> Tensor:
-    """A limit of the trunk [rad] that leans by these shares of the furthest."""
-    return TORSO[limit] + (REACH[limit] - TORSO[limit]) * shares
+def _chosen(bodies: Tensor, a: tuple[Trunk, Tensor], b: tuple[Trunk, Tensor]) -> tuple[Trunk, Tensor]:
+    """Trunk and shoulders `a` of these bodies [N], `b` of the others."""
+
+    def choose(x: Tensor, y: Tensor) -> Tensor:
+        return torch.where(bodies.view(-1, *[1] * (x.dim() - 1)), x, y)
+
+    trunk = Trunk(*(choose(getattr(a[0], each.name), getattr(b[0], each.name)) for each in fields(Trunk)))
+    return trunk, choose(a[1], b[1])
 
 
 def _in_chest_frame(inputs: Tensor) -> tuple[Tensor, Tensor]:
@@ -194,11 +181,6 @@ def _in_chest_frame(inputs: Tensor) -> tuple[Tensor, Tensor]:
 def _length(vectors: Tensor) -> Tensor:
     """[..., 1]; of nothing a hundred-thousandth, so that gradients stay finite."""
     return torch.sqrt((vectors * vectors).sum(-1, keepdim=True) + 1e-10)
-
-
-def _norm(vectors: Tensor) -> Tensor:
-    """[..., 1]; of nothing nothing, with no gradient."""
-    return vectors.norm(dim=-1, keepdim=True)
 
 
 def _unit(vectors: Tensor) -> Tensor:
@@ -219,18 +201,13 @@ def _frame(main: Tensor, side: Tensor) -> Tensor:
     return torch.stack([first, torch.cross(normal, first, dim=-1), normal], dim=-1)
 
 
-def _swung(rest: Tensor, towards: Tensor, limit: Tensor) -> Tensor:
-    """Bones as long as `rest` [N, 3] in these directions [N, 3], but no further than `limit` [N, 1; rad] from it."""
+def _swung(rest: Tensor, towards: Tensor, limit: float) -> Tensor:
+    """Bones as long as `rest` [N, 3] in these directions [N, 3], but no further than `limit` [rad] from it."""
     start, end = _unit(rest), _unit(towards)
     aside = _across(end, start)
-    furthest = start * torch.cos(limit) + _unit(aside) * torch.sin(limit)
+    furthest = start * math.cos(limit) + _unit(aside) * math.sin(limit)
     within = torch.atan2(_length(aside), _dot(start, end)) <= limit
     return _length(rest) * torch.where(within, end, furthest)
-
-
-def _kept_ahead(rest: Tensor, towards: Tensor) -> Tensor:
-    """Where bones [N, 3] are drawn to, but at least half their length ahead along their rest: behind its joint a bone would flip over."""
-    return towards + rest * (0.5 - _dot(rest, towards) / _dot(rest, rest).clamp_min(1e-12)).clamp_min(0.0)
 
 
 def _carried(vectors: Tensor, before: Tensor, after: Tensor) -> Tensor:

@@ -9,6 +9,7 @@ _LIMITS: dict[str, Any] = json.loads((_CORE / "estimation/kinematic-limits.json"
 
 IK: dict[str, Any] = _LIMITS["ik"]
 TORSO: dict[str, float] = _LIMITS["torso"]
+TORSO_EXTREME: dict[str, float] = _LIMITS["torsoExtreme"]
 REACH: dict[str, Any] = _LIMITS["reach"]
 LIMB: dict[str, float] = json.loads((_CORE / "body/limb-limits.json").read_text())
 TRAPEZOIDAL_RAMP: float = json.loads((_CORE / "math/easing.json").read_text())["trapezoidalRamp"]

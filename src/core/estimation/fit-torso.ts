@@ -17,7 +17,6 @@ import {
   lerp,
   type MutableVec3,
   normalise,
-  reject,
   right,
   scale,
   setVec3,
@@ -31,7 +30,13 @@ import type { CompletedFrame, CompletedHand } from './complete-hands';
 import type { JointPositions } from './joint-positions';
 import limits from './kinematic-limits.json';
 
-const { torso: shares, reach: extreme } = limits;
+const { torso: shares, torsoExtreme: extreme } = limits;
+const { anatomicalPasses, extremePasses } = limits.reach;
+
+/** How far the clavicle swings and the neck bends from rest against the thorax [rad]. */
+type TorsoLimits = Readonly<Record<'clavicleSwing' | 'neckBend', number>>;
+/** No trunk leans further [m] after a hand that it does not reach at once: the limits of clavicle and neck are met before. */
+const furthestLean = 0.6;
 
 /** A trunk leans after a hand that comes back, and straightens after one that is lost, at most this fast [m/s]. */
 const leanSpeed = 0.6;
@@ -41,8 +46,6 @@ const turnSpeed = 12;
 const shoulderLineHalfLife = 0.15;
 /** Shoulders nearer to each other than the first say nothing of their line, further apart than the second all [share of their distance at rest]. */
 const [undefinedLine, definedLine] = [0.2, 0.7];
-/** Hips that the floor keeps from hanging turn at most this fast about the chest joint [rad/s]: 2.5 cm in a frame at 60 Hz. */
-const hipsTurnSpeed = 6;
 /** Of the turn from the pelvis to the shoulders' line, in the lower back [1]. */
 const spineToShoulders = 0.35;
 /** The height [m] of the hip joints' middle when sitting on the floor. */
@@ -62,8 +65,6 @@ export interface TorsoPose {
 
 /** How a shoulder goes after a hand that the arm alone does not reach: from where it is estimated [m], floor frame. */
 interface Lean {
-  /** How far the skeleton keeps the shoulder from there already when it does not lean. */
-  kept: number;
   /** As far as the hand is missed. */
   readonly wanted: MutableVec3;
   readonly wantedBefore: MutableVec3;
@@ -71,7 +72,7 @@ interface Lean {
   readonly offset: MutableVec3;
 }
 
-const makeLean = (): Lean => ({ kept: 0, wanted: vec3(0, 0, 0), wantedBefore: vec3(0, 0, 0), offset: vec3(0, 0, 0) });
+const makeLean = (): Lean => ({ wanted: vec3(0, 0, 0), wantedBefore: vec3(0, 0, 0), offset: vec3(0, 0, 0) });
 
 export interface FitTorsoState {
   /** False before the first frame. */
@@ -80,10 +81,6 @@ export interface FitTorsoState {
   /** From the left to the right shoulder, unit, floor frame: of this frame, and of the one before. */
   readonly shoulderLine: MutableVec3;
   readonly lineBefore: MutableVec3;
-  /** From the chest joint to the hips, horizontal, unit, floor frame. */
-  readonly towardsHips: MutableVec3;
-  /** The hips are not yet where they lie or hang: they turn there. */
-  hipsTurn: boolean;
   readonly lean: Readonly<Record<Side, Lean>>;
 }
 
@@ -105,8 +102,6 @@ export const makeFitTorsoState = (): FitTorsoState => ({
   },
   shoulderLine: vec3(1, 0, 0),
   lineBefore: vec3(1, 0, 0),
-  towardsHips: vec3(0, 0, 1),
-  hipsTurn: false,
   lean: { left: makeLean(), right: makeLean() },
 });
 
@@ -124,8 +119,6 @@ export interface TorsoBones {
   readonly shoulderWidth: number;
   /** Shoulder to wrist of a straight arm [m], a hair less, so that the elbow keeps a side. */
   readonly reach: number;
-  /** How far a shoulder leans after a hand at most [m], beyond how far it is kept from where it is estimated: as far as its clavicle is long. */
-  readonly furthestLean: number;
 }
 
 export function torsoBones(skeleton: Skeleton): TorsoBones {
@@ -144,7 +137,6 @@ export function torsoBones(skeleton: Skeleton): TorsoBones {
     shouldersFromNeck: subtract(lerp(left, rightShoulder, 0.5), offsets.neck),
     shoulderWidth: 2 * rightShoulder.x,
     reach: (length(offsets.rightLowerArm) + length(offsets.rightHand)) * limbLimits.straightest,
-    furthestLean: length(offsets.rightUpperArm),
   };
 }
 
@@ -185,47 +177,37 @@ export function fitTorso(
   rotate(headingOf(frame.head.orientation, rotation), right, headingRight);
   setVec3(lean.left.wanted, 0, 0, 0);
   setVec3(lean.right.wanted, 0, 0, 0);
-  placeThorax(state, goal, lean.left.wanted, lean.right.wanted);
-  lean.left.kept = distance(pose.shoulders.left, joints.leftUpperArm);
-  lean.right.kept = distance(pose.shoulders.right, joints.rightUpperArm);
-  for (let pass = 0; pass < extreme.passes; pass++) {
+  for (let pass = 0; pass <= anatomicalPasses + extremePasses; pass++) {
+    const within = pass > anatomicalPasses ? extreme : limits.torso;
+    add(joints.leftUpperArm, lean.left.wanted, targets.left);
+    add(joints.rightUpperArm, lean.right.wanted, targets.right);
+    placeThorax(state, goal, within);
     const pulledLeft = pull(lean.left, pose.shoulders.left, frame.leftHand, bones);
     const pulledRight = pull(lean.right, pose.shoulders.right, frame.rightHand, bones);
     if (!pulledLeft && !pulledRight) break;
-    placeThorax(state, goal, lean.left.wanted, lean.right.wanted);
   }
   const leansLeft = followLean(lean.left, frame.leftHand, state.known, deltaSeconds);
   const leansRight = followLean(lean.right, frame.rightHand, state.known, deltaSeconds);
-  if (!leansLeft || !leansRight) placeThorax(state, goal, lean.left.offset, lean.right.offset);
+  if (!leansLeft || !leansRight) {
+    add(joints.leftUpperArm, lean.left.offset, targets.left);
+    add(joints.rightUpperArm, lean.right.offset, targets.right);
+    placeThorax(state, goal, limits.torso);
+  }
   placeSpine(state, goal);
   copyVec3(state.shoulderLine, state.lineBefore);
   state.known = true;
   return pose;
 }
 
-/**
- * Leans a shoulder further towards a hand that is out of the arm's reach; false: it is not, or the lean does not change any more. No
- * trunk goes after a guess.
- */
-function pull(
-  { wanted, kept }: Lean,
-  shoulder: Vec3,
-  { position, source }: CompletedHand,
-  { reach, furthestLean }: TorsoBones,
-): boolean {
+/** Leans a shoulder further towards a hand that is out of the arm's reach; false: it is not. No trunk goes after a guess. */
+function pull({ wanted }: Lean, shoulder: Vec3, { position, source }: CompletedHand, { reach }: TorsoBones): boolean {
   if (source !== 'tracked') return false;
   subtract(position, shoulder, a);
-  const missing = Math.max(length(a) - reach, 0);
-  copyVec3(wanted, b);
+  const missing = length(a) - reach;
+  if (missing <= 1e-5) return false;
   addScaled(wanted, normalise(a, undefined, a), missing * shares.reachOvershoot, wanted);
-  const leant = length(wanted);
-  scale(wanted, softLimit(leant, kept + furthestLean, furthestLean / 2) / Math.max(leant, 1e-9), wanted);
-  return distance(wanted, b) > 1e-5;
+  return true;
 }
-
-/** The value itself up to `soft` below the limit, from there on ever less of it, and never more than the limit. */
-const softLimit = (value: number, limit: number, soft: number): number =>
-  value <= limit - soft ? value : limit - soft * Math.exp((limit - soft - value) / soft);
 
 /**
  * Leans as far as is wanted, but after a hand that was lost or has come back no faster than people do; then only what is wanted
@@ -244,63 +226,49 @@ function followLean(
     copyVec3(wanted, offset);
     return true;
   }
+  const leant = length(offset);
+  if (leant > furthestLean) scale(offset, furthestLean / leant, offset);
   const far = distance(wanted, offset);
   lerp(offset, wanted, Math.min(1, most / far), offset);
   return false;
 }
 
-/**
- * The shoulders' line: never faster than `turnSpeed`, and slowly where the shoulders are estimated close together. Leans along it do
- * not turn it: shoulders that lean towards each other, after hands that cross, would come together and turn about.
- */
-function followShoulderLine(state: FitTorsoState, goal: TorsoGoal, leanLeft: Vec3, leanRight: Vec3): void {
+/** The shoulders' line: never faster than `turnSpeed`, and slowly where the shoulders are estimated close together. */
+function followShoulderLine(state: FitTorsoState, { shoulderWidth }: TorsoBones, deltaSeconds: number): void {
   const { shoulderLine: line, lineBefore: before, known } = state;
-  const { joints, bones, deltaSeconds } = goal;
-  subtract(joints.rightUpperArm, joints.leftUpperArm, a);
+  subtract(targets.right, targets.left, a);
   const apart = length(a);
-  normalise(a, headingRight, c);
-  addScaled(a, reject(subtract(leanRight, leanLeft, b), c, b), 1, a);
   const wanted = normalise(a, known ? before : headingRight, line);
   if (!known) return;
-  const confidence = smoothstep(undefinedLine, definedLine, apart / bones.shoulderWidth);
-  const most = turnSpeed * Math.max(deltaSeconds, 0);
-  turnTowards(before, wanted, smoothingFactor(shoulderLineHalfLife * (1 - confidence), deltaSeconds), most, line);
-}
-
-/** Turns a unit vector by a share of the angle to the wanted one, but by `most` [rad] at most; returns the angle [rad] that is left. */
-function turnTowards(before: Vec3, wanted: Vec3, share: number, most: number, target: MutableVec3): number {
+  const confidence = smoothstep(undefinedLine, definedLine, apart / shoulderWidth);
   const angle = Math.atan2(length(cross(before, wanted, b)), dot(before, wanted));
-  const turn = Math.min(angle * share, most);
-  if (angle - turn < 1e-9) {
-    copyVec3(wanted, target);
-    return 0;
-  }
+  const turn = Math.min(
+    angle * smoothingFactor(shoulderLineHalfLife * (1 - confidence), deltaSeconds),
+    turnSpeed * Math.max(deltaSeconds, 0),
+  );
+  if (angle - turn < 1e-9) return;
   normalise(cross(b, before, b), headingRight, b);
-  scale(before, Math.cos(turn), target);
-  normalise(addScaled(target, b, Math.sin(turn), target), before, target);
-  return angle - turn;
+  scale(before, Math.cos(turn), line);
+  normalise(addScaled(line, b, Math.sin(turn), line), before, line);
 }
 
-/** Neck, chest joint, the upper chest's rotation and the shoulders, where these lean so far from where they are estimated. */
-function placeThorax(state: FitTorsoState, goal: TorsoGoal, leanLeft: Vec3, leanRight: Vec3): void {
-  const { joints, frame, bones } = goal;
+/** Neck, chest joint, the upper chest's rotation and the shoulders, from where the shoulders are to be. */
+function placeThorax(
+  state: FitTorsoState,
+  { joints, frame, bones, deltaSeconds }: TorsoGoal,
+  within: TorsoLimits,
+): void {
   const { pose, shoulderLine } = state;
   const { upperChest } = pose.rotations;
-  add(joints.leftUpperArm, leanLeft, targets.left);
-  add(joints.rightUpperArm, leanRight, targets.right);
-  followShoulderLine(state, goal, leanLeft, leanRight);
+  followShoulderLine(state, bones, deltaSeconds);
   const middle = lerp(targets.left, targets.right, 0.5, a);
-  const leansLeft = Math.max(0, length(leanLeft) - state.lean.left.kept) / bones.furthestLean;
-  const leansRight = Math.max(0, length(leanRight) - state.lean.right.kept) / bones.furthestLean;
-  const neckBend = widened(shares.neckBend, extreme.neckBend, Math.max(leansLeft, leansRight));
 
   // The neck's base that these shoulders hang from, then brought onto the neck's length from the head.
-  subtract(lerp(joints.leftUpperArm, joints.rightUpperArm, 0.5, b), joints.chest, b);
-  normalise(keptAhead(b, subtract(middle, joints.chest, roughUp), roughUp), up, roughUp);
+  normalise(subtract(middle, joints.chest, roughUp), up, roughUp);
   const roughChest = alignDirections(bones.thorax, right, roughUp, shoulderLine, rotation);
   const impliedNeck = subtract(middle, rotate(roughChest, bones.shouldersFromNeck, b), a);
   const neckRest = rotate(roughChest, bones.skeleton.restOffsets.head, b);
-  limitAngle(rotationBetween(neckRest, subtract(frame.headJoint, impliedNeck, c), swing), neckBend, swing);
+  limitAngle(rotationBetween(neckRest, subtract(frame.headJoint, impliedNeck, c), swing), within.neckBend, swing);
   subtract(frame.headJoint, rotate(swing, neckRest, c), pose.neck);
 
   // Chest joint and hips follow a share of what the neck was moved by; a hand far out of reach does not throw them about.
@@ -311,40 +279,29 @@ function placeThorax(state: FitTorsoState, goal: TorsoGoal, leanLeft: Vec3, lean
   normalise(thoraxUp, roughUp, thoraxUp);
   addScaled(pose.neck, thoraxUp, -bones.thoraxLength, pose.chest);
   alignDirections(bones.thorax, right, thoraxUp, shoulderLine, upperChest);
-  placeShoulder('left', pose, bones, leansLeft);
-  placeShoulder('right', pose, bones, leansRight);
+  placeShoulder('left', pose, bones, within);
+  placeShoulder('right', pose, bones, within);
 }
-
-/** Where a bone is drawn to, but at least half its length ahead along its rest: behind its joint the way it turns would flip over. */
-function keptAhead(rest: Vec3, towards: Vec3, target: MutableVec3): MutableVec3 {
-  const lacking = 0.5 - dot(rest, towards) / Math.max(dot(rest, rest), 1e-12);
-  return addScaled(towards, rest, Math.max(lacking, 0), target);
-}
-
-/** A limit [rad] of a trunk that leans by this share of the furthest. */
-const widened = (limit: number, widest: number, share: number): number => limit + (widest - limit) * share;
 
 /** A shoulder on its clavicle, which swings towards its target. */
 function placeShoulder(
   side: Side,
   { neck, rotations, clavicles, shoulders }: TorsoPose,
   { skeleton }: TorsoBones,
-  leans: number,
+  within: TorsoLimits,
 ): void {
   const root = clavicleRoot(side, neck, rotations.upperChest, skeleton, a);
   const rest = rotate(rotations.upperChest, clavicleRest(side, skeleton), b);
-  const limit = widened(shares.clavicleSwing, extreme.clavicleSwing, leans);
-  limitAngle(rotationBetween(rest, keptAhead(rest, subtract(targets[side], root, c), c), swing), limit, swing);
+  limitAngle(rotationBetween(rest, subtract(targets[side], root, c), swing), within.clavicleSwing, swing);
   add(root, rotate(swing, rest, b), shoulders[side]);
   multiply(swing, rotations.upperChest, clavicles[side]);
 }
 
 /** Hips, and how each vertebra turns: the pelvis faces between head and shoulders; each joint above turns a part of the rest. */
-function placeSpine(state: FitTorsoState, { joints, frame, bones, deltaSeconds }: TorsoGoal): void {
-  const { pose, shoulderLine } = state;
+function placeSpine({ pose, shoulderLine }: FitTorsoState, { joints, frame, bones }: TorsoGoal): void {
   const { head, headJoint } = frame;
   const { hips, chest, neck, rotations } = pose;
-  hangHips(state, add(joints.hips, moved, a), bones.lowerBackLength, deltaSeconds);
+  hangHips(chest, add(joints.hips, moved, a), bones.lowerBackLength, hips);
   const lowerBackUp = normalise(subtract(chest, hips, a), up, a);
   const pelvisLine = normalise(lerp(shoulderLine, headingRight, shares.pelvisToHead, b), shoulderLine, b);
   alignDirections(bones.lowerBack, right, lowerBackUp, pelvisLine, rotations.hips);
@@ -356,32 +313,20 @@ function placeSpine(state: FitTorsoState, { joints, frame, bones, deltaSeconds }
   alignDirections(bones.skeleton.restOffsets.head, right, subtract(headJoint, neck, a), c, rotations.neck);
 }
 
-/**
- * The hips at `lowerBack` [m] from the chest joint towards their target, but never below the floor. Under a chest that is too low for
- * them to hang they lie aside, and a target almost below the chest hardly says where: they turn there with a limited speed, and go on
- * with it when they hang again until they have caught up.
- */
-function hangHips(state: FitTorsoState, goal: Vec3, lowerBack: number, deltaSeconds: number): void {
-  const { pose, towardsHips: towards } = state;
-  const { chest, hips } = pose;
+/** The hips at `lowerBack` [m] from the chest joint towards their target, but never below the floor. */
+function hangHips(chest: Vec3, goal: Vec3, lowerBack: number, hips: MutableVec3): void {
   subtract(goal, chest, hips);
   addScaled(chest, normalise(hips, down, hips), lowerBack, hips);
   const lowest = Math.min(lowestHips, chest.y + lowerBack);
-  const before = copyVec3(state.known ? towards : backward, c);
-  const wanted = normalise(setVec3(towards, hips.x - chest.x, 0, hips.z - chest.z), before, towards);
-  const lie = hips.y < lowest;
-  if (!lie && !state.hipsTurn) return;
-  if (state.known) {
-    const angle = turnTowards(before, wanted, 1, hipsTurnSpeed * Math.max(deltaSeconds, 0), towards);
-    state.hipsTurn = angle > 0;
-  }
-  const drop = lie ? clamp(chest.y - lowest, -lowerBack, lowerBack) : chest.y - hips.y;
+  if (hips.y >= lowest) return;
+  const drop = clamp(chest.y - lowest, -lowerBack, lowerBack);
   const aside = Math.sqrt(lowerBack * lowerBack - drop * drop);
-  setVec3(hips, chest.x + towards.x * aside, chest.y - drop, chest.z + towards.z * aside);
+  const horizontal = setVec3(hips, hips.x - chest.x, 0, hips.z - chest.z);
+  normalise(horizontal, backward, horizontal);
+  setVec3(hips, chest.x + horizontal.x * aside, chest.y - drop, chest.z + horizontal.z * aside);
 }
 
 /** Forgets the past: the next frame is the first. */
 export function resetFitTorso(state: FitTorsoState): void {
   state.known = false;
-  state.hipsTurn = false;
 }
