@@ -1,7 +1,6 @@
 import { createHash } from 'node:crypto';
 import { readdirSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { join, sep } from 'node:path';
-import { rolldown } from 'rolldown';
 import { root } from './run-command.mjs';
 
 /** Other pages than the one that is kept; they need their server. */
@@ -56,6 +55,8 @@ export async function buildServiceWorker(directory) {
   const manifestFile = join(directory, '.vite/manifest.json');
   const files = keptFiles(directory, JSON.parse(readFileSync(manifestFile, 'utf8')));
   rmSync(join(directory, '.vite'), { recursive: true });
+  // Loaded here, where it is installed: the commands that install what is missing load this file first.
+  const { rolldown } = await import('rolldown');
   const bundle = await rolldown({
     input: join(root, 'src/app/offline/service-worker.ts'),
     platform: 'browser',

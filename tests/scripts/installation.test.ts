@@ -1,4 +1,5 @@
-import { readFileSync, symlinkSync } from 'node:fs';
+import { spawnSync } from 'node:child_process';
+import { cpSync, readFileSync, symlinkSync } from 'node:fs';
 import { join } from 'node:path';
 import { describe, expect, test } from 'vitest';
 import { ensureInstalled, missingInstallation } from '../../scripts/installation.mjs';
@@ -55,4 +56,16 @@ test('the lock file names every platform’s packages, or npm ci would refuse it
     ),
   );
   expect(unnamed).toEqual([]);
+});
+
+test('what npm test loads before it installs asks for no package', () => {
+  const directory = directoryWith({});
+  cpSync('scripts', join(directory, 'scripts'), { recursive: true });
+  // Another sentence than that of a package that cannot be found shows that everything was loaded.
+  const { status, stderr } = spawnSync(process.execPath, ['scripts/test.mjs', 'no-such-stage'], {
+    cwd: directory,
+    encoding: 'utf8',
+  });
+  expect(stderr).toContain('No stage is called no-such-stage');
+  expect(status).toBe(1);
 });
