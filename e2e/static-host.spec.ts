@@ -37,7 +37,7 @@ const test = base.extend<{ built: string; address: string; complaints: readonly 
   ],
 });
 
-test('from a folder of a host of files: the learned body in VR, archery, and a sentence where rooms would be', async ({
+test('from a folder of a host of files: the learned body in VR, archery, and a sentence where rooms would be @full', async ({
   page,
 }) => {
   test.setTimeout(180_000);

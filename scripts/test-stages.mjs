@@ -33,20 +33,43 @@ const playwright = (tests) => async (report) => {
  * its kind can run beside it.
  */
 export const stages = {
-  types: {
+  // The longest first: of those of one core two run side by side.
+  // The package, built as it is published: its parts, its types for every resolution of modules it is made for, what each entry weighs.
+  library: {
     suite: 'day',
     singleCore: true,
     commands: () => [
-      node('typescript/bin/tsc', '--noEmit'),
-      node('typescript/bin/tsc', '--noEmit', '-p', 'tsconfig.core.json'),
-      node('typescript/bin/tsc', '--noEmit', '-p', 'tsconfig.worker.json'),
+      [process.execPath, 'scripts/build-library.mjs'],
+      node('publint/src/cli.js', 'dist-library', '--strict'),
+      node('@arethetypeswrong/cli/dist/index.js', '--pack', 'dist-library', '--profile', 'esm-only', '--quiet'),
+      [process.execPath, 'scripts/check-library-types.mjs'],
     ],
+  },
+  types: {
+    suite: 'day',
+    singleCore: true,
+    commands: () => [node('typescript/bin/tsc', '--noEmit')],
   },
   python: {
     suite: 'day',
     singleCore: true,
     runner: 'pytest',
     commands: (report) => pytest({ extras: [], marker: 'not training', report }),
+  },
+  // The page as the browser tests ask for it.
+  page: {
+    suite: 'day',
+    singleCore: true,
+    async commands() {
+      await buildWhenStale();
+      return [];
+    },
+  },
+  // Core without the browser's types and without ambient ones: window, performance and console are unknown there.
+  'core-types': {
+    suite: 'day',
+    singleCore: true,
+    commands: () => [node('typescript/bin/tsc', '--noEmit', '-p', 'tsconfig.core.json')],
   },
   lint: { suite: 'day', singleCore: true, commands: () => [node('@biomejs/biome/bin/biome', 'check', '.')] },
   dependencies: {
@@ -57,17 +80,6 @@ export const stages = {
         ...['dependency-cruiser/bin/dependency-cruise.mjs', '--config', '.dependency-cruiser.mjs'],
         ...['src', 'server', 'tests', 'e2e', 'bench'],
       ),
-    ],
-  },
-  // The package, built as it is published: its parts, its types for every resolution of modules it is made for, what each entry weighs.
-  library: {
-    suite: 'day',
-    singleCore: true,
-    commands: () => [
-      [process.execPath, 'scripts/build-library.mjs'],
-      node('publint/src/cli.js', 'dist-library', '--strict'),
-      node('@arethetypeswrong/cli/dist/index.js', '--pack', 'dist-library', '--profile', 'esm-only', '--quiet'),
-      [process.execPath, 'scripts/check-library-types.mjs'],
     ],
   },
   unit: {
