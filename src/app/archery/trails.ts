@@ -21,6 +21,25 @@ const points = 20;
 const most = 4;
 const width = 0.034;
 
+/** White, and fainter the weaker it is at a place. */
+const trailMaterial = (): ShaderMaterial =>
+  new ShaderMaterial({
+    transparent: true,
+    depthWrite: false,
+    ...bothSides,
+    fog: false,
+    vertexShader: `attribute float strength; varying float alpha;
+      void main() {
+        alpha = strength;
+        gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+      }`,
+    fragmentShader: `varying float alpha;
+      void main() {
+        gl_FragColor = vec4(1.0, 0.97, 0.85, alpha * alpha * 0.8);
+        #include <colorspace_fragment>
+      }`,
+  });
+
 /** arrowLength [m]: the ribbon begins at the nock. */
 export function createTrails(arrowLength: number): Trails {
   const positions = new BufferAttribute(new Float32Array(most * points * 2 * 3), 3).setUsage(DynamicDrawUsage);
@@ -37,22 +56,7 @@ export function createTrails(arrowLength: number): Trails {
   }
   geometry.setIndex(index);
   geometry.setDrawRange(0, 0);
-  const material = new ShaderMaterial({
-    transparent: true,
-    depthWrite: false,
-    ...bothSides,
-    fog: false,
-    vertexShader: `attribute float strength; varying float alpha;
-      void main() {
-        alpha = strength;
-        gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
-      }`,
-    fragmentShader: `varying float alpha;
-      void main() {
-        gl_FragColor = vec4(1.0, 0.97, 0.85, alpha * alpha * 0.8);
-        #include <colorspace_fragment>
-      }`,
-  });
+  const material = trailMaterial();
   const object = new Mesh(geometry, material);
   object.name = 'trails';
   object.frustumCulled = false;
