@@ -52,127 +52,108 @@ export interface ShownAvatar {
   wear(palette: string | null): void;
 }
 
-/** Brings an avatar; `onProgress` hears the share of it [0, 1] that has arrived. */
-type Load = (signal: AbortSignal, onProgress: (share: number) => void) => Promise<LoadedAvatar>;
-
-class OneShownAvatar implements ShownAvatar {
-  readonly #options: ShownAvatarOptions;
-  #avatar: Avatar | null = null;
-  #name = ownName;
-  #own = true;
-  #pending: string | null = null;
+export function createShownAvatar(options: ShownAvatarOptions): ShownAvatar {
+  const { scene, settings, body, notices, onChange } = options;
+  let avatar: Avatar | null = null;
+  let name = ownName;
+  let own = true;
+  let pending: string | null = null;
   /** Counts what was asked for; and which of that is shown. */
-  #asked = 0;
-  #shown = 0;
+  let asked = 0;
   /** Ends what is on its way; null: nothing is. */
-  #giveUp: AbortController | null = null;
+  let giveUp: AbortController | null = null;
+  let shown = 0;
 
-  constructor(options: ShownAvatarOptions) {
-    this.#options = options;
+  function wear(palette: string | null): void {
+    if (own) avatar?.setPalette(palette ?? settings.palette);
   }
 
-  get current(): Avatar | null {
-    return this.#avatar;
-  }
-
-  get name(): string {
-    return this.#name;
-  }
-
-  get own(): boolean {
-    return this.#own;
-  }
-
-  get pending(): string | null {
-    return this.#pending;
-  }
-
-  get onItsWay(): boolean {
-    return this.#giveUp !== null;
-  }
-
-  cancel(): void {
-    this.#giveUp?.abort();
-    this.#giveUp = null;
-    this.#pending = null;
-    this.#options.onChange();
-  }
-
-  openOwn(bytes: Promise<ArrayBuffer> = fetchOwnAvatar()): Promise<boolean> {
-    return this.#arrive(async () => parseAvatar(await bytes, ownName), ownName, true);
-  }
-
-  open(source: string | File): Promise<boolean> {
-    const name = nameOf(source);
-    return this.#arrive(
-      async (signal, onProgress) =>
-        loadAvatar(await readLimited(source, avatarFile, onProgress, signal), name, validateInWorker, decoders),
-      name,
-      false,
-    );
-  }
-
-  wear(palette: string | null): void {
-    if (this.#own) this.#avatar?.setPalette(palette ?? this.#options.settings.palette);
-  }
-
-  #show(next: Avatar, name: string, own: boolean): void {
-    const { scene, settings, body } = this.#options;
-    this.#avatar?.dispose();
-    this.#avatar = next;
-    this.#name = name;
-    this.#own = own;
-    scene.add(next.object);
-    this.wear(null);
-    next.setUpperBodyOnly(settings.upperBodyOnly);
-    next.fitTo(body.calibration);
+  function show(next: Avatar, itsName: string, isOwn: boolean): void {
+    avatar?.dispose();
+    avatar = next;
+    name = itsName;
+    own = isOwn;
+    scene.add(avatar.object);
+    wear(null);
+    avatar.setUpperBodyOnly(settings.upperBodyOnly);
+    avatar.fitTo(body.calibration);
   }
 
   /** Shows what `load` brings unless something that was asked for later has come before it. */
-  async #arrive(load: Load, name: string, own: boolean): Promise<boolean> {
-    this.#asked += 1;
-    const turn = this.#asked;
+  async function arrive(
+    load: (signal: AbortSignal, onProgress: (share: number) => void) => Promise<LoadedAvatar>,
+    itsName: string,
+    isOwn: boolean,
+  ): Promise<boolean> {
+    asked += 1;
+    const turn = asked;
     const ending = new AbortController();
-    this.#giveUp = own ? null : ending;
-    this.#tell(turn, name, own, '');
+    const tell = (how: string) => {
+      if (turn !== asked || isOwn) return;
+      pending = `${itsName} is on its way${how}.`;
+      onChange();
+    };
+    giveUp = isOwn ? null : ending;
+    tell('');
+    let told = 0;
     try {
-      const loaded = await load(ending.signal, this.#progress(turn, name, own));
-      if (turn < this.#shown || ending.signal.aborted) {
+      const loaded = await load(ending.signal, (share) => {
+        const percent = Math.floor(share * 20) * 5;
+        if (percent > told) tell(percent < 100 ? `: ${percent} %` : ': it is being looked at');
+        told = percent;
+      });
+      if (turn < shown || ending.signal.aborted) {
         VRMUtils.deepDispose(loaded.vrm.scene);
         return false;
       }
-      this.#show(createAvatar(loaded), name, own);
-      this.#shown = turn;
-      if (turn === this.#asked) this.#pending = null;
+      show(createAvatar(loaded), itsName, isOwn);
+      shown = turn;
+      if (turn === asked) pending = null;
       return true;
     } catch (error) {
       if (ending.signal.aborted) return false;
-      const reason = firstLine(reasonOf(error)).replace(`${name}: `, '');
-      this.#options.notices.show('error', `${name} could not be shown: ${reason}`);
-      if (turn === this.#asked) this.#pending = own ? null : `${name} could not be shown.`;
+      const reason = firstLine(reasonOf(error)).replace(`${itsName}: `, '');
+      notices.show('error', `${itsName} could not be shown: ${reason}`);
+      if (turn === asked) pending = isOwn ? null : `${itsName} could not be shown.`;
       return false;
     } finally {
-      if (this.#giveUp === ending) this.#giveUp = null;
-      this.#options.onChange();
+      if (giveUp === ending) giveUp = null;
+      onChange();
     }
   }
 
-  /** Tells how far an avatar has come, in steps of five percent. */
-  #progress(turn: number, name: string, own: boolean): (share: number) => void {
-    let told = 0;
-    return (share) => {
-      const percent = Math.floor(share * 20) * 5;
-      if (percent > told) this.#tell(turn, name, own, percent < 100 ? `: ${percent} %` : ': it is being looked at');
-      told = percent;
-    };
-  }
-
-  /** Says that an avatar of the user is on its way, unless another has been asked for since. */
-  #tell(turn: number, name: string, own: boolean, how: string): void {
-    if (turn !== this.#asked || own) return;
-    this.#pending = `${name} is on its way${how}.`;
-    this.#options.onChange();
-  }
+  return {
+    get current() {
+      return avatar;
+    },
+    get name() {
+      return name;
+    },
+    get own() {
+      return own;
+    },
+    get pending() {
+      return pending;
+    },
+    get onItsWay() {
+      return giveUp !== null;
+    },
+    cancel() {
+      giveUp?.abort();
+      giveUp = null;
+      pending = null;
+      onChange();
+    },
+    openOwn: (bytes = fetchOwnAvatar()) => arrive(async () => parseAvatar(await bytes, ownName), ownName, true),
+    open(source) {
+      const itsName = nameOf(source);
+      return arrive(
+        async (signal, onProgress) =>
+          loadAvatar(await readLimited(source, avatarFile, onProgress, signal), itsName, validateInWorker, decoders),
+        itsName,
+        false,
+      );
+    },
+    wear,
+  };
 }
-
-export const createShownAvatar = (options: ShownAvatarOptions): ShownAvatar => new OneShownAvatar(options);
