@@ -1,44 +1,40 @@
 """Biovision hierarchies (.bvh). A joint is its bone's origin; an end site is named "<parent>:end"."""
 
-from dataclasses import dataclass, field
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import quaternion
+from .bvh_hierarchy import BvhHierarchy
+from .cmuconvert import put_back_lost_bones
 from .motion import MocapError, Motion
+from .rest_pose import take_as_rest
+
+_AXES = {"X": np.array([1.0, 0, 0]), "Y": np.array([0, 1.0, 0]), "Z": np.array([0, 0, 1.0])}
 
 
-@dataclass
-class _Hierarchy:
-    """Joints in the file's order, parents before children (−1: none); offsets in the file's units, channels by joint."""
-
-    names: list[str] = field(default_factory=list)
-    parents: list[int] = field(default_factory=list)
-    offsets: list[NDArray[np.float64]] = field(default_factory=list)
-    channels: list[tuple[str, ...]] = field(default_factory=list)
-
-    def open(self, name: str, parent: int) -> int:
-        """The number of a joint that begins here."""
-        self.names.append(name)
-        self.parents.append(parent)
-        self.offsets.append(np.zeros(3))
-        self.channels.append(())
-        return len(self.names) - 1
-
-
-def parse_bvh(path: Path) -> Motion:
-    """Reads skeleton and motion; what is malformed raises MocapError with the line."""
+def parse_bvh(path: Path, rest_pose: Mapping[str, tuple[float, ...]] | None = None) -> Motion:
+    """
+    Reads skeleton and motion; what is malformed raises MocapError with the line. The rest is the pose of all angles zero, or that of
+    `rest_pose`: the angles [degrees] of joints in the order of their rotation channels; joints it leaves out have zeros.
+    """
     lines = path.read_text(errors="replace").splitlines()
     hierarchy, motion_line = _read_hierarchy(path, lines)
     values, frame_time = _read_frames(path, lines, motion_line, sum(map(len, hierarchy.channels)))
-    return _pose(path, hierarchy, values, 1.0 / frame_time)
+    notes = put_back_lost_bones(hierarchy)
+    positions, rotations = _pose(path, hierarchy, values)
+    motion = Motion(tuple(hierarchy.names), hierarchy.rest_positions(), positions, rotations, 1.0 / frame_time, notes)
+    if rest_pose is None:
+        return motion
+    rest_positions, rest_rotations = _pose(path, hierarchy, _channels_of(path, hierarchy, rest_pose))
+    return take_as_rest(motion, rest_positions[0], rest_rotations[0])
 
 
-def _read_hierarchy(path: Path, lines: list[str]) -> tuple[_Hierarchy, int]:
+def _read_hierarchy(path: Path, lines: list[str]) -> tuple[BvhHierarchy, int]:
     """What stands before MOTION, and that line's number."""
-    hierarchy, stack = _Hierarchy(), list[int]()
+    hierarchy, stack = BvhHierarchy(), list[int]()
     pending: str | None = None
     number = 0
 
@@ -122,24 +118,41 @@ def _read_frames(path: Path, lines: list[str], motion_line: int, width: int) -> 
     return values, frame_time
 
 
-def _pose(path: Path, hierarchy: _Hierarchy, values: NDArray[np.float64], frame_rate: float) -> Motion:
-    """Forward kinematics of the channels."""
+def _channels_of(path: Path, hierarchy: BvhHierarchy, rest_pose: Mapping[str, tuple[float, ...]]) -> NDArray[np.float64]:
+    """One frame [1, channels] of these angles, the root at the origin, every other joint at its offset."""
+    for name in rest_pose:
+        if name not in hierarchy.names:
+            raise MocapError(f"{path.name}: no joint “{name}”, which the map's restPose turns")
+    row: list[float] = []
+    for joint, channels in enumerate(hierarchy.channels):
+        angles = rest_pose.get(hierarchy.names[joint], ())
+        turning = sum(channel.lower().endswith("rotation") for channel in channels)
+        if angles and len(angles) != turning:
+            raise MocapError(f"{path.name}: restPose gives {hierarchy.names[joint]} {len(angles)} angles, the file {turning} rotation channels")
+        remaining = iter(angles or (0.0,) * turning)
+        for channel in channels:
+            axis = "XYZ".find(channel[0].upper())
+            at_offset = 0.0 if hierarchy.parents[joint] < 0 else float(hierarchy.offsets[joint][axis])
+            row.append(next(remaining) if channel.lower().endswith("rotation") else at_offset)
+    return np.array([row])
+
+
+def _pose(path: Path, hierarchy: BvhHierarchy, values: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Forward kinematics of the channels: positions [frames, joints, 3] and global rotations [frames, joints, 4]."""
     frames, count = len(values), len(hierarchy.names)
     positions = np.zeros((frames, count, 3))
     rotations = np.zeros((frames, count, 4))
-    rest = np.zeros((count, 3))
     column = 0
-    axes = {"X": np.array([1.0, 0, 0]), "Y": np.array([0, 1.0, 0]), "Z": np.array([0, 0, 1.0])}
     for joint, parent in enumerate(hierarchy.parents):
         local = np.broadcast_to(hierarchy.offsets[joint], (frames, 3)).copy()
         turn = np.broadcast_to([0.0, 0.0, 0.0, 1.0], (frames, 4))
         for channel in hierarchy.channels[joint]:
             axis, kind = channel[0].upper(), channel[1:].lower()
-            if kind == "position":
+            if kind == "position" and axis in _AXES:
                 # A root's position replaces its offset; the same channel on other joints does too in files that carry them.
                 local[:, "XYZ".index(axis)] = values[:, column]
-            elif kind == "rotation" and axis in axes:
-                step = quaternion.from_axis_angle(np.broadcast_to(axes[axis], (frames, 3)), np.radians(values[:, column]))
+            elif kind == "rotation" and axis in _AXES:
+                step = quaternion.from_axis_angle(np.broadcast_to(_AXES[axis], (frames, 3)), np.radians(values[:, column]))
                 turn = quaternion.multiply(turn, step)
             else:
                 raise MocapError(f"{path.name}: channel “{channel}” of {hierarchy.names[joint]} is not known")
@@ -148,7 +161,6 @@ def _pose(path: Path, hierarchy: _Hierarchy, values: NDArray[np.float64], frame_
             positions[:, joint] = local
             rotations[:, joint] = turn
         else:
-            rest[joint] = rest[parent] + hierarchy.offsets[joint]
             positions[:, joint] = positions[:, parent] + quaternion.rotate(rotations[:, parent], local)
             rotations[:, joint] = quaternion.multiply(rotations[:, parent], turn)
-    return Motion(tuple(hierarchy.names), rest, positions, rotations, frame_rate)
+    return positions, rotations

@@ -12,13 +12,17 @@ class MocapError(ValueError):
 
 @dataclass(frozen=True)
 class Motion:
-    """positions [frames, joints, 3] and global rotations [frames, joints, 4] (xyzw; identity is the rest pose)."""
+    """
+    positions [frames, joints, 3] and global rotations [frames, joints, 4] (xyzw; identity is the rest pose). notes: what was put right, a
+    sentence each.
+    """
 
     names: tuple[str, ...]
     rest_positions: NDArray[np.float64]
     positions: NDArray[np.float64]
     rotations: NDArray[np.float64]
     frame_rate: float | None
+    notes: tuple[str, ...] = ()
 
     def index(self, name: str) -> int:
         """The index of a joint; an unknown name raises KeyError."""

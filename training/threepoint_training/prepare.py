@@ -1,9 +1,7 @@
 """Motion capture files to one corpus: 60 frames a second, our joints in metres, floor frame, people facing −Z in T-pose."""
 
-import csv
 import hashlib
-import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -14,7 +12,9 @@ from . import quaternion
 from .mocap_asf_amc import AsfSkeleton, parse_amc, parse_asf
 from .mocap_bvh import parse_bvh
 from .motion import MocapError, Motion
-from .prepared_corpus import JOINTS, Person, PreparedCorpus
+from .motion_files import Source, frame_rate, index_rates, motion_files
+from .prepared_corpus import JOINTS, LEG_JOINTS, Person, PreparedCorpus
+from .rest_pose import check_rest, face_forward, rest_from_frame
 from .skeleton_map import CMU_METRES_PER_UNIT, SkeletonMap, find_skeleton_map, read_skeleton_map
 
 RATE_HZ = 60
@@ -33,11 +33,6 @@ _HAND_REST = {
 }
 _LATERAL = {"leftHand": np.array([-1.0, 0.0, 0.0]), "rightHand": np.array([1.0, 0.0, 0.0])}
 
-# AMC files carry no frame rate. The database was recorded at 120 Hz, but for these subjects, recorded at 60 Hz
-# (the frame rates of mocap.cs.cmu.edu's trial pages).
-_CMU_60_HZ_SUBJECTS = frozenset({"60", "61", "75", "87", "88"})
-_CMU_NAME = re.compile(r"^0*(\d+)_\d+$")
-
 
 @dataclass(frozen=True)
 class PrepareConfig:
@@ -50,70 +45,12 @@ class PrepareConfig:
 
 
 @dataclass(frozen=True)
-class _Source:
-    person: str
-    path: Path
-    asf: Path | None
-
-
-def _sources(config: PrepareConfig) -> list[_Source]:
-    """Every motion file with its person: the folder it lies in, or the start of its name when all lie in one folder."""
-    if not config.mocap.is_dir():
-        raise MocapError(f"{config.mocap}: no such folder")
-    files = sorted(path for path in config.mocap.rglob("*") if path.suffix.lower() in (".amc", ".bvh"))
-    if not files:
-        raise MocapError(f"{config.mocap}: no .amc or .bvh files in this folder or below it")
-    sources = []
-    for path in files:
-        person = path.parent.name if path.parent != config.mocap else path.stem.split("_")[0]
-        number = re.fullmatch(r"0*(\d+)", person)
-        if number:
-            person = f"{int(number[1]):03d}"
-        asf = None
-        if path.suffix.lower() == ".amc":
-            skeletons = sorted(path.parent.glob("*.asf"))
-            own = [skeleton for skeleton in skeletons if path.stem.startswith(skeleton.stem)]
-            asf = max(own, key=lambda skeleton: len(skeleton.stem)) if own else (skeletons[0] if len(skeletons) == 1 else None)
-        if config.people is None or person in config.people:
-            sources.append(_Source(person, path, asf))
-    if not sources:
-        raise MocapError(f"{config.mocap}: nothing of {', '.join(config.people or ())} here")
-    return sources
-
-
-def _index_rates(folder: Path) -> dict[str, float]:
-    """Frame rates from an index.csv (columns Subject, Trial #, framerate) in the folder, above or below it."""
-    rates: dict[str, float] = {}
-    candidates = [folder / "index.csv", folder.parent / "index.csv", *sorted(folder.glob("*/index.csv"))]
-    for path in candidates:
-        if path.is_file():
-            with path.open(newline="", errors="replace") as lines:
-                for row in csv.DictReader(lines):
-                    try:
-                        rates[f"{int(row['Subject'])}_{int(row['Trial #'])}"] = float(row["framerate"])
-                    except (KeyError, TypeError, ValueError):
-                        continue  # A row of another table or an empty line: the clip is then looked up elsewhere.
-    return rates
-
-
-def _frame_rate(path: Path, skeleton: SkeletonMap, rates: dict[str, float]) -> float:
-    if skeleton.frame_rate:
-        return skeleton.frame_rate
-    match = re.fullmatch(r"0*(\d+)_0*(\d+)", path.stem)
-    if match and f"{match[1]}_{match[2]}" in rates:
-        return rates[f"{match[1]}_{match[2]}"]
-    if match and _CMU_NAME.match(path.stem):
-        return 60.0 if match[1] in _CMU_60_HZ_SUBJECTS else 120.0
-    raise MocapError(f"{path.name}: frame rate unknown; give “frameRate” in a skeleton map, or an index.csv beside the files")
-
-
-@dataclass(frozen=True)
 class _Clip:
-    """One clip in our joints and axes, still at its own rate; rest is the rest pose [joints, 3]."""
+    """One clip in our joints and axes, still at its own rate; legs [frames, 8, 3] (LEG_JOINTS, NaN: not in the map); rest is the rest pose."""
 
     positions: NDArray[np.float64]
     rotations: NDArray[np.float64]
-    feet: NDArray[np.float64] | None
+    legs: NDArray[np.float64]
     rest: dict[str, NDArray[np.float64]]
     rate: float
 
@@ -137,6 +74,8 @@ def _to_our_joints(motion: Motion, skeleton: SkeletonMap, rate: float, file_name
     for theirs in skeleton.joints.values():
         if theirs not in motion.names:
             raise MocapError(f"{file_name}: no joint “{theirs}”, which the map “{skeleton.name}” names")
+    if skeleton.rest_frame is not None or skeleton.rest_pose is not None:
+        motion = face_forward(motion, skeleton.joints, skeleton.floor_from_file())
     scale = _scale(motion, skeleton, file_name)
     turn = quaternion.from_matrix(skeleton.floor_from_file())
 
@@ -144,6 +83,7 @@ def _to_our_joints(motion: Motion, skeleton: SkeletonMap, rate: float, file_name
         return quaternion.rotate(np.broadcast_to(turn, (*points.shape[:-1], 4)), points) * scale
 
     rest = {ours: place(motion.rest_positions[motion.index(theirs)]) for ours, theirs in skeleton.joints.items()}
+    check_rest(rest, skeleton.joints, file_name)
     columns = [motion.index(skeleton.joints.get(joint, skeleton.joints["hips"])) for joint in JOINTS]
     positions = place(motion.positions[:, columns])
     if "spine" not in skeleton.joints:
@@ -160,9 +100,11 @@ def _to_our_joints(motion: Motion, skeleton: SkeletonMap, rate: float, file_name
             align = quaternion.rotation_between(_LATERAL[joint], rest[joint] - elbow)
             q = quaternion.multiply(q, np.broadcast_to(quaternion.multiply(align, _HAND_REST[joint]), q.shape))
         rotations.append(quaternion.continuous(q))
-    foot_names = [name for name in ("leftFoot", "rightFoot", "leftToes", "rightToes") if name in skeleton.joints]
-    feet = place(motion.positions[:, [motion.index(skeleton.joints[name]) for name in foot_names]]) if foot_names else None
-    return _Clip(positions, np.stack(rotations, axis=1), feet, rest, rate)
+    legs = np.full((len(positions), len(LEG_JOINTS), 3), np.nan)
+    for column, joint in enumerate(LEG_JOINTS):
+        if joint in skeleton.joints:
+            legs[:, column] = place(motion.positions[:, motion.index(skeleton.joints[joint])])
+    return _Clip(positions, np.stack(rotations, axis=1), legs, rest, rate)
 
 
 def _segments(clip: _Clip, name: str, report: Callable[[str], None]) -> Iterable[tuple[str, _Clip]]:
@@ -179,24 +121,27 @@ def _segments(clip: _Clip, name: str, report: Callable[[str], None]) -> Iterable
             clip,
             positions=clip.positions[start:end],
             rotations=clip.rotations[start:end],
-            feet=None if clip.feet is None else clip.feet[start:end],
+            legs=clip.legs[start:end],
         )
         yield (name if len(pieces) == 1 else f"{name}#{number + 1}"), piece
 
 
-def _resample(clip: _Clip) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _resample(clip: _Clip) -> _Clip:
     """The clip at 60 Hz: every nth frame where that is exact, else interpolated."""
     step = clip.rate / RATE_HZ
     if abs(step - round(step)) < 1e-3 and step >= 1:
         every = round(step)
-        return clip.positions[::every], clip.rotations[::every]
+        return replace(clip, positions=clip.positions[::every], rotations=clip.rotations[::every], legs=clip.legs[::every], rate=RATE_HZ)
     duration = (len(clip.positions) - 1) / clip.rate
     times = np.arange(int(np.floor(duration * RATE_HZ)) + 1) / RATE_HZ * clip.rate
     before = np.minimum(times.astype(int), len(clip.positions) - 2)
     share = times - before
-    positions = clip.positions[before] * (1 - share)[:, None, None] + clip.positions[before + 1] * share[:, None, None]
+
+    def between(points: NDArray[np.float64]) -> NDArray[np.float64]:
+        return points[before] * (1 - share)[:, None, None] + points[before + 1] * share[:, None, None]
+
     rotations = quaternion.slerp(clip.rotations[before], clip.rotations[before + 1], share[:, None] * np.ones((1, 3)))
-    return positions, rotations
+    return replace(clip, positions=between(clip.positions), rotations=rotations, legs=between(clip.legs), rate=RATE_HZ)
 
 
 def _standing_eye_height(clip: _Clip) -> float | None:
@@ -257,7 +202,10 @@ def _neutral_head(clips: list[tuple[str, _Clip]]) -> NDArray[np.float64]:
 
 def _floor_height(clips: list[tuple[str, _Clip]]) -> float:
     """How far the lowest foot joint's usual height differs from a joint 2.5 cm above the floor; 0 where there are no feet."""
-    lowest = [clip.feet[..., 1].min(axis=1) for _, clip in clips if clip.feet is not None]
+    feet = [LEG_JOINTS.index(f"{side}{part}") for side in ("left", "right") for part in ("Foot", "Toes")]
+    # Infinity where the map has no such joint.
+    heights = [np.nan_to_num(clip.legs[:, feet, 1], nan=np.inf).min(axis=1) for _, clip in clips]
+    lowest = [height for height in heights if np.all(np.isfinite(height))]
     if not lowest:
         return 0.0
     offset = float(np.percentile(np.concatenate(lowest), 10)) - 0.025
@@ -273,42 +221,80 @@ def corpus_hash(paths: Iterable[Path]) -> str:
     return digest.hexdigest()
 
 
+def _motion(source: Source, skeletons: dict[Path, AsfSkeleton], rest_pose: Mapping[str, tuple[float, ...]] | None) -> Motion:
+    """What a file has; `skeletons` keeps those read before."""
+    if source.path.suffix.lower() == ".bvh":
+        return parse_bvh(source.path, rest_pose)
+    if rest_pose is not None:
+        raise MocapError(f"{source.path.name}: restPose is for BVH files; here restFrame can be given")
+    if source.asf is None:
+        raise MocapError(f"{source.path.name}: no .asf skeleton beside it")
+    if source.asf not in skeletons:
+        skeletons[source.asf] = parse_asf(source.asf)
+    return parse_amc(source.path, skeletons[source.asf])
+
+
+class _Reader:
+    """Reads the files of one corpus with one map; what was put right is counted in `notes`, by the sentence that says it."""
+
+    def __init__(self, config: PrepareConfig) -> None:
+        self.given = read_skeleton_map(config.skeleton_map) if config.skeleton_map else None
+        self.rates = index_rates(config.mocap)
+        self.skeletons: dict[Path, AsfSkeleton] = {}
+        self.rests: dict[Path, Motion] = {}
+        self.notes: dict[str, list[str]] = {}
+
+    def read(self, source: Source) -> _Clip:
+        """One file in our joints; what cannot be read raises MocapError or OSError."""
+        name = source.path.name
+        motion = _motion(source, self.skeletons, self.given.rest_pose if self.given else None)
+        skeleton = self.given or find_skeleton_map(motion.names, name)
+        if motion.frame_rate is None:
+            motion = replace(motion, frame_rate=frame_rate(source.path, skeleton, self.rates))
+        if skeleton.rest_frame is not None:
+            motion = self._counted_from(motion, skeleton, skeleton.rest_frame, source)
+        clip = _to_our_joints(motion, skeleton, motion.frame_rate or RATE_HZ, name)
+        for note in motion.notes:
+            self.notes.setdefault(note, []).append(name)
+        return clip
+
+    def _counted_from(self, motion: Motion, skeleton: SkeletonMap, frame: int, source: Source) -> Motion:
+        file = skeleton.rest_file
+        if file is None:
+            return rest_from_frame(motion, frame, motion, source.path.name)
+        if file not in self.rests:
+            self.rests[file] = _motion(replace(source, path=file), self.skeletons, None)
+        return rest_from_frame(motion, frame, self.rests[file], f"{source.path.name}, {file.name}")
+
+    def told(self) -> list[str]:
+        """What was put right, a sentence for all files that it is true of."""
+        return [f"{files[0]}{f' and {len(files) - 1} more' if len(files) > 1 else ''}: {note}" for note, files in self.notes.items()]
+
+
 def main(config: PrepareConfig, progress: Callable[[str], None] = lambda _: None) -> PreparedCorpus:
     """Prepares every clip it can; what it cannot is in `problems`, a sentence each. Nothing usable raises MocapError."""
-    sources = _sources(config)
+    sources = motion_files(config.mocap, config.people)
     hashed = [path for source in sources for path in (source.path, source.asf) if path is not None]
-    digest = corpus_hash([*hashed, *([config.skeleton_map] if config.skeleton_map else [])])
+    reader = _Reader(config)
+    rest_file = reader.given.rest_file if reader.given else None
+    digest = corpus_hash([*hashed, *(path for path in (config.skeleton_map, rest_file) if path)])
     cached = config.cache / f"{digest[:16]}-v{PreparedCorpus.VERSION}.npz" if config.cache else None
     if cached and cached.is_file():
         return PreparedCorpus.load(cached)
 
-    given = read_skeleton_map(config.skeleton_map) if config.skeleton_map else None
-    rates = _index_rates(config.mocap)
     problems: list[str] = []
-    skeletons: dict[Path, AsfSkeleton] = {}
     by_person: dict[str, list[tuple[str, _Clip]]] = {}
     for source in sources:
         progress(source.path.name)
         try:
-            if source.path.suffix.lower() == ".bvh":
-                motion = parse_bvh(source.path)
-                skeleton = given or find_skeleton_map(motion.names, source.path.name)
-            else:
-                if source.asf is None:
-                    raise MocapError(f"{source.path.name}: no .asf skeleton beside it")
-                if source.asf not in skeletons:
-                    skeletons[source.asf] = parse_asf(source.asf)
-                motion = parse_amc(source.path, skeletons[source.asf])
-                skeleton = given or find_skeleton_map(motion.names, source.path.name)
-                motion = replace(motion, frame_rate=_frame_rate(source.path, skeleton, rates))
-            clip = _to_our_joints(motion, skeleton, motion.frame_rate or RATE_HZ, source.path.name)
+            clip = reader.read(source)
             by_person.setdefault(source.person, []).extend(_segments(clip, source.path.stem, problems.append))
         except MocapError as error:
             problems.append(str(error))
         except OSError as error:
             problems.append(f"{source.path.name}: cannot be read: {error.strerror}")
 
-    positions, rotations, names, people_of_clips, starts = [], [], [], [], [0]
+    positions, rotations, legs, names, people_of_clips, starts = [], [], [], [], [], [0]
     people: dict[str, Person] = {}
     for person, clips in sorted(by_person.items()):
         if not clips:
@@ -317,15 +303,15 @@ def main(config: PrepareConfig, progress: Callable[[str], None] = lambda _: None
         neutral = quaternion.conjugate(_neutral_head(clips))
         floor = _floor_height(clips)
         for name, clip in clips:
-            clip_positions, clip_rotations = _resample(clip)
-            clip_positions = clip_positions - np.array([0.0, floor, 0.0])
-            head = quaternion.multiply(clip_rotations[:, 0], np.broadcast_to(neutral, clip_rotations[:, 0].shape))
-            clip_rotations = np.concatenate([head[:, None], clip_rotations[:, 1:]], axis=1)
-            positions.append(clip_positions.astype(np.float32))
-            rotations.append(clip_rotations.astype(np.float32))
+            even = _resample(clip)
+            above_floor = np.array([0.0, floor, 0.0])
+            head = quaternion.multiply(even.rotations[:, 0], np.broadcast_to(neutral, even.rotations[:, 0].shape))
+            positions.append((even.positions - above_floor).astype(np.float32))
+            legs.append((even.legs - above_floor).astype(np.float32))
+            rotations.append(np.concatenate([head[:, None], even.rotations[:, 1:]], axis=1).astype(np.float32))
             names.append(name)
             people_of_clips.append(person)
-            starts.append(starts[-1] + len(clip_positions))
+            starts.append(starts[-1] + len(even.positions))
     if not positions:
         raise MocapError("nothing could be read:\n" + "\n".join(problems))
     corpus = PreparedCorpus(
@@ -337,7 +323,8 @@ def main(config: PrepareConfig, progress: Callable[[str], None] = lambda _: None
         people=people,
         rate_hz=RATE_HZ,
         corpus_hash=digest,
-        problems=tuple(problems),
+        problems=(*reader.told(), *problems),
+        legs=np.concatenate(legs),
     )
     if cached:
         corpus.save(cached)

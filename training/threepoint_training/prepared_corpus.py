@@ -13,6 +13,11 @@ JOINTS = (
     "leftUpperArm", "leftLowerArm", "leftHand",
     "rightUpperArm", "rightLowerArm", "rightHand",
 )  # fmt: skip
+# What no estimator gives: truth for measuring legs alone.
+LEG_JOINTS = (
+    "leftUpperLeg", "leftLowerLeg", "leftFoot", "leftToes",
+    "rightUpperLeg", "rightLowerLeg", "rightFoot", "rightToes",
+)  # fmt: skip
 ROTATIONS = ("head", "leftHand", "rightHand")
 # Of the same three among JOINTS.
 TRACKED_COLUMNS = [JOINTS.index(joint) for joint in ROTATIONS]
@@ -34,9 +39,12 @@ class Person:
 
 @dataclass(frozen=True)
 class PreparedCorpus:
-    """positions [F, 11, 3] (JOINTS) in the floor frame [m]; rotations [F, 3, 4] (ROTATIONS) global, xyzw; 60 Hz."""
+    """
+    positions [F, 11, 3] (JOINTS) in the floor frame [m]; rotations [F, 3, 4] (ROTATIONS) global, xyzw; 60 Hz. legs [F, 8, 3] (LEG_JOINTS), NaN
+    where a file has no such joint; None: motion without legs.
+    """
 
-    VERSION: ClassVar[int] = 1
+    VERSION: ClassVar[int] = 2
 
     positions: NDArray[np.float32]
     rotations: NDArray[np.float32]
@@ -47,6 +55,7 @@ class PreparedCorpus:
     rate_hz: int
     corpus_hash: str
     problems: tuple[str, ...]
+    legs: NDArray[np.float32] | None = None
 
     def clip_slice(self, clip: int) -> slice:
         """The frames of a clip."""
@@ -71,7 +80,8 @@ class PreparedCorpus:
             "corpusHash": self.corpus_hash,
             "problems": self.problems,
         }
-        np.savez(path, positions=self.positions, rotations=self.rotations, clip_starts=self.clip_starts, meta=json.dumps(meta))
+        legs = {} if self.legs is None else {"legs": self.legs}
+        np.savez(path, positions=self.positions, rotations=self.rotations, clip_starts=self.clip_starts, meta=json.dumps(meta), **legs)
 
     @staticmethod
     def load(path: Path) -> "PreparedCorpus":
@@ -88,4 +98,5 @@ class PreparedCorpus:
                 rate_hz=meta["rateHz"],
                 corpus_hash=meta["corpusHash"],
                 problems=tuple(meta["problems"]),
+                legs=arrays.get("legs"),
             )

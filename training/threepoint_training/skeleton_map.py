@@ -3,6 +3,7 @@
 import json
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +28,10 @@ CMU_METRES_PER_UNIT = 0.0254 / 0.45
 
 @dataclass(frozen=True)
 class SkeletonMap:
-    """joints: our name to the file's. scale [m per unit] is None where it must be guessed. rotations: whose turn head and hands follow."""
+    """
+    joints: our name to the file's. scale [m per unit] is None where it must be guessed. rotations: whose turn head and hands follow.
+    rest_frame: a frame in T-pose (from 1), of each file or of rest_file; rest_pose: its angles [degrees] by joint; neither: all angles 0.
+    """
 
     name: str
     joints: dict[str, str]
@@ -36,6 +40,9 @@ class SkeletonMap:
     up: str = "+y"
     forward: str = "+z"
     rotations: dict[str, str] = field(default_factory=dict)
+    rest_frame: int | None = None
+    rest_file: Path | None = None
+    rest_pose: dict[str, tuple[float, ...]] | None = None
 
     def floor_from_file(self) -> NDArray[np.float64]:
         """The rotation matrix from the file's axes to ours (+Y up, −Z forward)."""
@@ -68,7 +75,7 @@ def _bvh(name: str, spine: tuple[str, str, str, str], arms: tuple[str, str, str]
 
 BUILT_IN = (
     CMU_ASF,
-    _bvh("BVH of CMU (cmuconvert)", ("LowerBack", "Spine", "Neck", "Head"), ("Arm", "ForeArm", "Hand"), ("UpLeg", "Leg", "Foot", "ToeBase")),
+    _bvh("BVH of CMU (cmuconvert)", ("Spine", "Spine1", "Neck", "Head"), ("Arm", "ForeArm", "FingerBase"), ("UpLeg", "Leg", "Foot", "ToeBase")),
     _bvh("BVH with three spine joints", ("Spine", "Spine1", "Neck", "Head"), ("Arm", "ForeArm", "Hand"), ("UpLeg", "Leg", "Foot", "ToeBase")),
     _bvh("BVH with three spine joints and toes", ("Spine", "Spine1", "Neck", "Head"), ("Arm", "ForeArm", "Hand"), ("UpLeg", "Leg", "Foot", "Toe")),
 )  # fmt: skip
@@ -82,7 +89,7 @@ def read_skeleton_map(path: Path) -> SkeletonMap:
         raise MocapError(f"{path.name}, line {error.lineno}: no valid JSON: {error.msg}") from None
     if not isinstance(content, dict) or not isinstance(content.get("joints"), dict):
         raise MocapError(f"{path.name}: expected an object with “joints”")
-    unknown = set(content) - {"name", "scale", "frameRate", "up", "forward", "joints", "rotations"}
+    unknown = set(content) - {"name", "scale", "frameRate", "up", "forward", "joints", "rotations", "restFrame", "restPose"}
     if unknown:
         raise MocapError(f"{path.name}: “{sorted(unknown)[0]}” is not known; see docs/evaluation.md")
     joints = content["joints"]
@@ -99,15 +106,53 @@ def read_skeleton_map(path: Path) -> SkeletonMap:
         value = content.get(key)
         if value is not None and (not isinstance(value, int | float) or value <= 0):
             raise MocapError(f"{path.name}: “{key}” should be a number above zero")
+    up, forward = content.get("up", "+y"), content.get("forward", "+z")
+    if up[1] == forward[1]:
+        raise MocapError(f"{path.name}: “up” {up} and “forward” {forward} are one axis")
+    rest_frame, rest_file = _rest_frame(content, path)
     return SkeletonMap(
         name=content.get("name", path.stem),
         joints=dict(joints),
         scale=content.get("scale"),
         frame_rate=content.get("frameRate"),
-        up=content.get("up", "+y"),
-        forward=content.get("forward", "+z"),
+        up=up,
+        forward=forward,
         rotations=dict(content.get("rotations", {})),
+        rest_frame=rest_frame,
+        rest_file=rest_file,
+        rest_pose=_rest_pose(content, path),
     )
+
+
+def _rest_frame(content: dict[str, Any], path: Path) -> tuple[int | None, Path | None]:
+    """The frame of restFrame and the file it is of (None: each file's own)."""
+    given = content.get("restFrame")
+    if given is None:
+        return None, None
+    if "restPose" in content:
+        raise MocapError(f"{path.name}: either “restFrame” or “restPose”")
+    if isinstance(given, dict) and isinstance(given.get("file"), str) and not set(given) - {"file", "frame"}:
+        file = path.parent / given["file"]
+        if not file.is_file():
+            raise MocapError(f"{path.name}: restFrame.file: no file {file}")
+        frame = given.get("frame", 1)
+    else:
+        file, frame = None, given
+    if not isinstance(frame, int) or isinstance(frame, bool) or frame < 1:
+        raise MocapError(f"{path.name}: “restFrame” should be the number of a frame, from 1, or {{\"file\": …, \"frame\": …}}")
+    return frame, file
+
+
+def _rest_pose(content: dict[str, Any], path: Path) -> dict[str, tuple[float, ...]] | None:
+    given = content.get("restPose")
+    if given is None:
+        return None
+    if not isinstance(given, dict):
+        raise MocapError(f"{path.name}: “restPose” should be an object: angles [degrees] by the file's joint")
+    for joint, angles in given.items():
+        if not isinstance(angles, list) or not all(isinstance(angle, int | float) and not isinstance(angle, bool) for angle in angles):
+            raise MocapError(f"{path.name}: restPose.{joint} should be a list of angles [degrees]")
+    return {joint: tuple(map(float, angles)) for joint, angles in given.items()}
 
 
 def find_skeleton_map(names: tuple[str, ...], file_name: str) -> SkeletonMap:

@@ -1,0 +1,197 @@
+"""Facts about skeletons of other programs: lost bones are put back, a rest that is no T-pose is refused or mapped, links are followed."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from synthetic_skeletons import IDENTITY, along, angles_of, game_bvh, write_asf_amc, write_cmuconvert_bvh
+from threepoint_training import prepare, quaternion
+from threepoint_training.mocap_bvh import parse_bvh
+from threepoint_training.motion import MocapError
+from threepoint_training.prepared_corpus import JOINTS, LEG_JOINTS, PreparedCorpus
+from threepoint_training.skeleton_map import read_skeleton_map
+
+X, Y, Z = np.eye(3)
+
+
+def prepared(folder: Path, skeleton: Path | None = None) -> PreparedCorpus:
+    return prepare.main(prepare.PrepareConfig(folder, skeleton))
+
+
+def folder(parent: Path, name: str) -> Path:
+    path = parent / name
+    path.mkdir(parents=True)
+    return path
+
+
+def furthest(a: PreparedCorpus, b: PreparedCorpus, joint: str) -> float:
+    column = JOINTS.index(joint)
+    return float(np.linalg.norm(a.positions[:, column] - b.positions[:, column], axis=-1).max())
+
+
+def test_a_bvh_of_cmuconvert_has_the_joints_of_its_original(tmp_path: Path) -> None:
+    angles = angles_of(1, 120)
+    original = folder(tmp_path, "asf")
+    write_asf_amc(original, angles)
+    (original / "index.csv").write_text("Subject,Trial #,framerate\n1,1,120\n")
+    for file, name in (("p.asf", "01.asf"), ("p_01.amc", "01_01.amc")):
+        (original / file).rename(original / name)
+    converted = folder(tmp_path, "bvh")
+    write_cmuconvert_bvh(converted / "01_01.bvh", angles)
+    a, b = prepared(original), prepared(converted)
+    # Lost: 11 cm of the trunk and 10 cm of the forearm. The thorax is an estimate, which this skeleton is near to; nothing else is.
+    for joint in ("head", "neck", "leftUpperArm", "rightLowerArm", "leftHand", "rightHand"):
+        assert furthest(a, b, joint) < 0.005, joint
+    for joint in ("hips", "spine", "chest"):
+        assert furthest(a, b, joint) < 1e-5, joint
+    for side in ("left", "right"):
+        wrist, elbow = JOINTS.index(f"{side}Hand"), JOINTS.index(f"{side}LowerArm")
+        forearms = [corpus.positions[:, wrist] - corpus.positions[:, elbow] for corpus in (a, b)]
+        np.testing.assert_allclose(*forearms, atol=1e-5)
+    assert np.abs(np.sum(a.rotations * b.rotations, axis=-1)).min() > 1 - 1e-6
+    assert [problem.split(":")[0] for problem in b.problems] == ["01_01.bvh"] * 3
+    assert "lost the thorax bone; it is put back" in b.problems[0]
+
+
+def test_one_that_lost_nothing_stays_as_it_is(tmp_path: Path) -> None:
+    write_cmuconvert_bvh(tmp_path / "whole.bvh", angles_of(2, 4), lost=False)
+    motion = parse_bvh(tmp_path / "whole.bvh")
+    assert motion.notes == ()
+    rest = {name: motion.rest_positions[motion.index(name)] for name in ("Spine1", "Neck", "LeftHand", "LeftFingerBase")}
+    np.testing.assert_allclose(rest["Neck"] - rest["Spine1"], [0, 2, 0.12], atol=1e-8)
+    np.testing.assert_allclose(rest["LeftFingerBase"] - rest["LeftHand"], [1.7, 0, 0], atol=1e-8)
+
+
+def test_a_trunk_bone_that_is_lost_for_good_is_refused(tmp_path: Path) -> None:
+    text_of = tmp_path / "01_01.bvh"
+    write_cmuconvert_bvh(text_of, angles_of(3, 60))
+    # Other names than cmuconvert's: what the trunk was is not known.
+    text_of.write_text(text_of.read_text().replace("LowerBack", "Belly"))
+    with pytest.raises(MocapError, match=r"01_01\.bvh: Neck \(neck\) lies on Spine1 \(chest\) in the rest pose: the file lost a bone of the trunk"):
+        prepared(tmp_path)
+
+
+def yaw(degrees: float) -> np.ndarray:
+    return quaternion.from_axis_angle(Y, np.array(np.radians(degrees)))
+
+
+def moving(frames: int = 60) -> tuple[list[dict[str, np.ndarray]], list[np.ndarray]]:
+    """Walks in a T-pose that faces 40° to the left of +Z, then turns head, an arm and a hand and bends."""
+    turns, hips = [], []
+    for frame in range(frames):
+        share = frame / (frames - 1)
+        body = yaw(40)
+        bend = quaternion.multiply(body, quaternion.from_axis_angle(X, np.array(0.5 * share)))
+        arm = quaternion.multiply(bend, quaternion.from_axis_angle(Z, np.array(-1.1 * share)))
+        hand = quaternion.multiply(arm, quaternion.from_axis_angle(X, np.array(0.8 * share)))
+        turns.append({"Hips": body, "Spine": bend, "Head": quaternion.multiply(bend, yaw(30 * share)), "LeftArm": arm, "LeftHand": hand})
+        hips.append(np.array([20 * share, 93.0, 50 * share]))
+    return turns, hips
+
+
+def write_map(path: Path, **entries: object) -> Path:
+    names = {"hips": "Hips", "spine": "Spine", "chest": "Spine1", "neck": "Neck", "head": "Head"}
+    for side in ("Left", "Right"):
+        theirs = {"UpperArm": "Arm", "LowerArm": "ForeArm", "Hand": "Hand", "UpperLeg": "UpLeg", "LowerLeg": "Leg", "Foot": "Foot", "Toes": "Toe"}
+        names |= {f"{side.lower()}{ours}": f"{side}{name}" for ours, name in theirs.items()}
+    path.write_text(json.dumps({"joints": names, **entries}))
+    return path
+
+
+@pytest.mark.parametrize(
+    ("axis", "sentence"),
+    [
+        (X, "the trunk, Hips to Neck, points to the left instead of up"),
+        (-X, "the trunk, Hips to Neck, points to the right instead of up"),
+        (Y, "the left arm, LeftArm to LeftHand, points up instead of sideways"),
+        (-Y, "the trunk, Hips to Neck, points down instead of up"),
+        (Z, "the trunk, Hips to Neck, points forward instead of up"),
+    ],
+)
+def test_bones_folded_along_an_axis_are_no_t_pose(tmp_path: Path, axis: np.ndarray, sentence: str) -> None:
+    (tmp_path / "walk.bvh").write_text(game_bvh(along(axis), *moving())[0])
+    with pytest.raises(MocapError) as error:
+        prepared(tmp_path)
+    told = str(error.value)
+    assert f"walk.bvh: the rest pose is no T-pose: {sentence}" in told
+    assert "restFrame" in told
+    assert "restPose" in told
+
+
+@pytest.mark.parametrize("axis", [X, -Y, Z])
+def test_a_map_with_the_t_pose_reads_a_folded_skeleton(tmp_path: Path, axis: np.ndarray) -> None:
+    turns, hips = moving()
+    plain = folder(tmp_path, "plain/p")
+    (plain / "walk.bvh").write_text(game_bvh({name: IDENTITY for name in along(axis)}, turns, hips)[0])
+    expected = prepared(plain.parent)
+    text, t_pose = game_bvh(along(axis), turns, hips)
+    folded = folder(tmp_path, "folded/p")
+    (folded / "walk.bvh").write_text(text)
+    (tmp_path / "t-pose.bvh").write_text(text)
+    # The first frame is a T-pose that stands turned and elsewhere.
+    for entry in ({"restPose": t_pose}, {"restFrame": 1}, {"restFrame": {"file": "t-pose.bvh", "frame": 1}}):
+        corpus = prepared(folded.parent, write_map(tmp_path / "map.json", **entry))
+        np.testing.assert_allclose(corpus.positions, expected.positions, atol=1e-5)
+        np.testing.assert_allclose(corpus.legs, expected.legs, atol=1e-5)
+        assert np.abs(np.sum(corpus.rotations * expected.rotations, axis=-1)).min() > 1 - 1e-6
+        assert corpus.people["p"].eye_height == pytest.approx(expected.people["p"].eye_height, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("entry", "sentence"),
+    [
+        ({"restFrame": 0}, "map.json: “restFrame” should be the number of a frame, from 1"),
+        ({"restFrame": {"file": "none.bvh"}}, "map.json: restFrame.file: no file"),
+        ({"restFrame": 1, "restPose": {}}, "map.json: either “restFrame” or “restPose”"),
+        ({"restPose": {"Hips": "up"}}, "map.json: restPose.Hips should be a list of angles"),
+        ({"up": "+y", "forward": "-y"}, "map.json: “up” +y and “forward” -y are one axis"),
+    ],
+)
+def test_a_bad_rest_in_a_map_is_refused(tmp_path: Path, entry: dict[str, object], sentence: str) -> None:
+    with pytest.raises(MocapError) as error:
+        read_skeleton_map(write_map(tmp_path / "map.json", **entry))
+    assert str(error.value).startswith(sentence)
+
+
+@pytest.mark.parametrize(
+    ("entry", "sentence"),
+    [
+        ({"restFrame": 61}, "walk.bvh: restFrame 61, but there are 60 frames"),
+        ({"restFrame": 60}, "walk.bvh: the rest pose is no T-pose: the left arm"),
+        ({"restPose": {"Hips": [90, 0]}}, "walk.bvh: restPose gives Hips 2 angles, the file 3 rotation channels"),
+        ({"restPose": {"Pelvis": [90, 0, 0]}}, "walk.bvh: no joint “Pelvis”, which the map's restPose turns"),
+    ],
+)
+def test_a_rest_that_does_not_fit_the_file_is_refused(tmp_path: Path, entry: dict[str, object], sentence: str) -> None:
+    turns, hips = moving()
+    # Arms up at the end.
+    turns[-1]["LeftArm"] = quaternion.multiply(turns[-1]["Spine"], quaternion.from_axis_angle(Z, np.array(1.4)))
+    own = folder(tmp_path, "p")
+    (own / "walk.bvh").write_text(game_bvh(along(X), turns, hips)[0])
+    with pytest.raises(MocapError) as error:
+        prepared(tmp_path, write_map(tmp_path / "map.json", **entry))
+    assert sentence in str(error.value)
+
+
+def test_folders_that_are_links_are_followed_and_no_one_is_two_people(tmp_path: Path) -> None:
+    text = game_bvh({name: IDENTITY for name in along(X)}, *moving())[0]
+    elsewhere = folder(tmp_path, "elsewhere")
+    (elsewhere / "walk.bvh").write_text(text)
+    mocap = folder(tmp_path, "mocap")
+    (folder(mocap, "anna") / "walk.bvh").write_text(text)
+    (mocap / "bert").symlink_to(elsewhere)
+    (mocap / "copy-of-anna").symlink_to(mocap / "anna")
+    (mocap / "anna" / "round").symlink_to(mocap)
+    (mocap / "gone").symlink_to(tmp_path / "nowhere")
+    assert sorted(prepared(mocap).people) == ["anna", "bert"]
+
+
+def test_legs_are_kept_as_truth_in_the_same_floor_frame(tmp_path: Path) -> None:
+    turns, hips = moving()
+    (folder(tmp_path, "p") / "walk.bvh").write_text(game_bvh({name: IDENTITY for name in along(X)}, turns, hips)[0])
+    corpus = prepared(tmp_path)
+    assert corpus.legs is not None
+    foot, hip = (corpus.legs[:, LEG_JOINTS.index(joint)] for joint in ("leftFoot", "leftUpperLeg"))
+    np.testing.assert_allclose(hip[:, 1] - foot[:, 1], 0.85, atol=1e-5)
+    np.testing.assert_allclose(corpus.positions[:, JOINTS.index("hips"), 1] - foot[:, 1], 0.89, atol=1e-5)
