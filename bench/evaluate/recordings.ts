@@ -50,12 +50,8 @@ export const calibrationOf = (index: RecordingIndex, person: string): Calibratio
   return calibration;
 };
 
-/** All frames of one clip, in order. */
-export function readClip(
-  folder: string,
-  index: RecordingIndex,
-  clip: RecordingIndex['clips'][number],
-): RecordedFrame[] {
+/** The numbers of one clip: `point(name)` reads the three columns name.x, .y and .z of a row. */
+export function openClip(folder: string, index: RecordingIndex, clip: RecordingIndex['clips'][number]) {
   const bytes = readFileSync(join(folder, clip.file));
   const width = index.columns.length;
   if (bytes.length !== clip.frames * width * 4) {
@@ -67,13 +63,27 @@ export function readClip(
     if (column < 0) throw new Error(`index.json: no column ${name}`);
     return column;
   };
+  const at = (row: number, column: number): number => numbers[row * width + column] ?? Number.NaN;
+  const point = (name: string) => {
+    const column = columnOf(`${name}.x`);
+    return (row: number): Vec3 => vec3(at(row, column), at(row, column + 1), at(row, column + 2));
+  };
+  return { frames: clip.frames, columnOf, at, point };
+}
+
+/** All frames of one clip, in order. */
+export function readClip(
+  folder: string,
+  index: RecordingIndex,
+  clip: RecordingIndex['clips'][number],
+): RecordedFrame[] {
+  const { columnOf, at: numberAt, point: pointOf } = openClip(folder, index, clip);
   const poses = { head: columnOf('head.px'), leftHand: columnOf('leftHand.px'), rightHand: columnOf('rightHand.px') };
-  const truths = truthJoints.map((joint) => columnOf(`truth.${joint}.x`));
+  const truths = truthJoints.map((joint) => [joint, pointOf(`truth.${joint}`)] as const);
   return Array.from({ length: clip.frames }, (_, row) => {
-    const at = (column: number): number => numbers[row * width + column] ?? Number.NaN;
-    const point = (column: number): Vec3 => vec3(at(column), at(column + 1), at(column + 2));
+    const at = (column: number): number => numberAt(row, column);
     const pose = (column: number): TrackedPose => ({
-      position: point(column),
+      position: vec3(at(column), at(column + 1), at(column + 2)),
       orientation: unit(at(column + 3), at(column + 4), at(column + 5), at(column + 6)),
       tracking: 'tracked',
     });
@@ -84,10 +94,7 @@ export function readClip(
         leftHand: pose(poses.leftHand),
         rightHand: pose(poses.rightHand),
       },
-      truth: Object.fromEntries(truthJoints.map((joint, i) => [joint, point(truths[i] ?? 0)])) as Record<
-        TruthJoint,
-        Vec3
-      >,
+      truth: Object.fromEntries(truths.map(([joint, at]) => [joint, at(row)])) as Record<TruthJoint, Vec3>,
     };
   });
 }
