@@ -79,18 +79,51 @@ export interface Stepping {
   reset(): void;
 }
 
-/** A foot is left behind when its place is farther than this, in leg lengths, or turned by more [rad]. */
-const strideShare = 0.17;
-const turnLimit = 0.6;
+/** When feet step, how fast and where to. */
+export interface SteppingParameters {
+  /** A foot is left behind when its place is farther than this, in leg lengths, or turned by more [rad]. */
+  readonly strideShare: number;
+  readonly turnLimit: number;
+  /** The place that counts is where the pelvis will be after so long [s]. */
+  readonly lookAhead: number;
+  /** Durations [s] of a step that is just due and of one three times overdue. */
+  readonly slowStep: number;
+  readonly fastStep: number;
+  /** A foot lands as far beyond its place as the pelvis goes in this share of a step, at most this far, in leg lengths. */
+  readonly overshoot: number;
+  readonly longestLead: number;
+  /** A landing place follows the pelvis until this share of the step. */
+  readonly landingFixed: number;
+  /** A foot is lifted before the other is down only in running: when it is so overdue, and the other so far on its way [share]. */
+  readonly overlapUrgency: number;
+  readonly overlapProgress: number;
+  readonly velocityHalfLife: number;
+  /** Distance between the feet, in that of the body at rest, and how far before the pelvis they stand, in leg lengths. */
+  readonly widthShare: number;
+  readonly aheadShare: number;
+  /** Toes turn out by this much [rad]. */
+  readonly toesOut: number;
+}
+
+export const standardStepping: SteppingParameters = {
+  strideShare: 0.17,
+  turnLimit: 0.6,
+  lookAhead: 0.12,
+  slowStep: 0.34,
+  fastStep: 0.16,
+  overshoot: 0.5,
+  longestLead: 0.35,
+  landingFixed: 0.6,
+  overlapUrgency: 4,
+  overlapProgress: 0.75,
+  velocityHalfLife: 0.08,
+  widthShare: 1,
+  aheadShare: 0,
+  toesOut: 0.12,
+};
+
 /** Farther than this, in leg lengths, no one steps: the person was moved. */
 const jumpShare = 1.3;
-/** A foot is lifted before the other is down only in running. */
-const overlapUrgency = 4;
-const slowStep = 0.34;
-const fastStep = 0.16;
-const velocityHalfLife = 0.08;
-/** Toes turn out by this much [rad]. */
-const toesOut = 0.12;
 
 const wrap = (angle: number): number => Math.atan2(Math.sin(angle), Math.cos(angle));
 
@@ -112,7 +145,7 @@ const makeFoot = (): FootState => ({
   yaw: 0,
   pitch: 0,
   planted: true,
-  step: { from: vec3(0, 0, 0), fromYaw: 0, to: vec3(0, 0, 0), toYaw: 0, progress: 0, duration: slowStep },
+  step: { from: vec3(0, 0, 0), fromYaw: 0, to: vec3(0, 0, 0), toYaw: 0, progress: 0, duration: 0 },
   place: { position: vec3(0, 0, 0), yaw: 0 },
   urgency: 0,
 });
@@ -130,6 +163,8 @@ class TwoFeet implements Stepping {
   private readonly velocity = vec3(0, 0, 0);
   private readonly lastPelvis = vec3(0, 0, 0);
   private hasPelvis = false;
+
+  constructor(private readonly parameters: SteppingParameters) {}
 
   update(stance: Stance, deltaSeconds: number): Feet {
     const { feet } = this;
@@ -165,18 +200,23 @@ class TwoFeet implements Stepping {
     if (this.hasPelvis && distanceAcross(pelvisNow, lastPelvis) > 0.5 * stance.legLength) this.standing = false;
     if (deltaSeconds > 0 && this.hasPelvis) {
       scale(subtract(pelvisNow, lastPelvis, speed), 1 / deltaSeconds, speed);
-      dampVec3(velocity, speed, velocityHalfLife, deltaSeconds, velocity);
+      dampVec3(velocity, speed, this.parameters.velocityHalfLife, deltaSeconds, velocity);
     }
     copyVec3(pelvisNow, lastPelvis);
     this.hasPelvis = true;
   }
 
   /** Beside the pelvis, toes a little out. */
-  private findPlace(side: Side, { pelvis, yaw, halfWidth, ankleHeight }: Stance): void {
+  private findPlace(side: Side, { pelvis, yaw, halfWidth, ankleHeight, legLength }: Stance): void {
+    const { widthShare, aheadShare, toesOut } = this.parameters;
     const { place } = this.feet[side];
     const sigma = side === 'left' ? -1 : 1;
     const { position } = place;
-    rotate(fromAxisAngle(up, yaw, turn), setVec3(position, sigma * halfWidth, 0, 0), position);
+    rotate(
+      fromAxisAngle(up, yaw, turn),
+      setVec3(position, sigma * halfWidth * widthShare, 0, -aheadShare * legLength),
+      position,
+    );
     add(pelvis, position, position);
     position.y = ankleHeight;
     place.yaw = yaw - sigma * toesOut;
@@ -190,15 +230,17 @@ class TwoFeet implements Stepping {
   }
 
   private measureUrgency(foot: FootState, { legLength }: Stance): void {
+    const { strideShare, turnLimit, lookAhead } = this.parameters;
     const { place, position } = foot;
     copyVec3(this.velocity, ahead);
-    addScaled(place.position, limit(ahead, 1.2), 0.12, ahead);
+    addScaled(place.position, limit(ahead, 1.2), lookAhead, ahead);
     const left = distanceAcross(position, ahead) / (strideShare * legLength);
     foot.urgency = Math.max(left, Math.abs(wrap(foot.yaw - place.yaw)) / turnLimit);
   }
 
   private lift(foot: FootState, other: FootState): void {
-    const mayLift = other.planted || (other.step.progress > 0.75 && foot.urgency > overlapUrgency);
+    const { overlapUrgency, overlapProgress, slowStep, fastStep } = this.parameters;
+    const mayLift = other.planted || (other.step.progress > overlapProgress && foot.urgency > overlapUrgency);
     if (!foot.planted || foot.urgency <= 1 || !mayLift) return;
     const { step, place } = foot;
     foot.planted = false;
@@ -211,6 +253,7 @@ class TwoFeet implements Stepping {
   }
 
   private advance(foot: FootState, stance: Stance, deltaSeconds: number): void {
+    const { landingFixed, overshoot, longestLead } = this.parameters;
     const { step, place, position } = foot;
     if (foot.planted) {
       position.y = stance.ankleHeight;
@@ -218,10 +261,9 @@ class TwoFeet implements Stepping {
       return;
     }
     step.progress = Math.min(1, step.progress + deltaSeconds / step.duration);
-    // The landing place follows the pelvis for the first half of the step, then it is fixed.
-    if (step.progress < 0.6) {
-      scale(this.velocity, step.duration * (1 - step.progress) + 0.5 * step.duration, step.to);
-      add(place.position, limit(step.to, 0.35 * stance.legLength), step.to);
+    if (step.progress < landingFixed) {
+      scale(this.velocity, step.duration * (1 - step.progress + overshoot), step.to);
+      add(place.position, limit(step.to, longestLead * stance.legLength), step.to);
       step.toYaw = place.yaw;
     }
     const share = smoothstep(0, 1, step.progress);
@@ -247,4 +289,4 @@ function plant(foot: FootState): void {
   foot.planted = true;
 }
 
-export const createStepping = (): Stepping => new TwoFeet();
+export const createStepping = (parameters = standardStepping): Stepping => new TwoFeet(parameters);
