@@ -8,9 +8,10 @@ import type { HandShape } from '../core/body/hand-shape';
 import { headJointOf } from '../core/body/head-joint';
 import { type JointName, jointNames } from '../core/body/joints';
 import { type Skeleton, skeletonFromCalibration } from '../core/body/skeleton';
-import { identity, type Quat, quat } from '../core/math/quat';
+import { identity, type Quat, quat, rotate } from '../core/math/quat';
 import type { Side } from '../core/math/side';
-import { type Vec3, vec3 } from '../core/math/vec3';
+import { scale, setVec3, subtract, type Vec3, vec3 } from '../core/math/vec3';
+import { ArmHelperJoints } from './arm-helpers';
 import { BodyMeshes } from './body-meshes';
 import { Face } from './face';
 import { Fingers } from './fingers';
@@ -56,6 +57,7 @@ class VrmAvatar implements Avatar {
   private readonly vrm: LoadedAvatar['vrm'];
   private readonly rig: Rig;
   private readonly trunk: OwnTrunk;
+  private readonly arms: ArmHelperJoints;
   private readonly legs: Legs;
   private readonly fingers: Fingers;
   private readonly meshes: BodyMeshes;
@@ -67,15 +69,18 @@ class VrmAvatar implements Avatar {
   private readonly joints = makeJointPoses();
   private readonly headJoint = vec3(0, 0, 0);
   private readonly handBone = quat(0, 0, 0, 1);
+  private readonly joint = vec3(0, 0, 0);
 
   constructor({ vrm }: LoadedAvatar) {
     this.vrm = vrm;
     this.object.name = 'avatar';
     this.object.add(vrm.scene);
     vrm.humanoid.autoUpdateHumanBones = false;
-    vrm.firstPerson?.setup();
     this.object.updateMatrixWorld(true);
     this.rig = new Rig(vrm);
+    this.arms = new ArmHelperJoints(this.rig, vrm.scene);
+    // After the skin is shared anew: what the wearer sees of meshes with a head is cut out of copies.
+    vrm.firstPerson?.setup();
     this.trunk = new OwnTrunk(this.rig);
     this.legs = new Legs(this.rig);
     this.fingers = new Fingers(vrm);
@@ -95,12 +100,11 @@ class VrmAvatar implements Avatar {
     const hipsPosition = this.skeleton.restOffsets.hips;
     const tPose = forwardKinematics(this.skeleton, { hipsPosition, localRotations: upright });
     // Rig to body, the same in all directions; limbs add their own stretch.
-    const scale = tPose.head.position.y / (this.rig.rest('head')?.y ?? 1.5);
-    this.scale = scale;
-    this.trunk.fit(tPose, scale);
-    this.rig.fit(tPose, this.legs.fit(tPose.hips.position.y, scale), scale);
+    this.scale = tPose.head.position.y / (this.rig.rest('head')?.y ?? 1.5);
+    this.trunk.fit(tPose, this.scale);
+    this.rig.fit(tPose, this.legs.fit(tPose.hips.position.y, this.scale), this.scale);
     // The file's own size is what its scene was before it was settled.
-    this.springs.scaleTo(scale * Math.abs(this.vrm.scene.scale.x));
+    this.springs.scaleTo(this.scale * Math.abs(this.vrm.scene.scale.x));
   }
 
   apply(pose: AvatarPose, time: number): void {
@@ -126,11 +130,13 @@ class VrmAvatar implements Avatar {
   private applyBody(body: UpperBodyPose, deltaSeconds: number): void {
     const joints = forwardKinematics(this.skeleton, body, this.joints);
     this.trunk.apply(joints);
+    this.arms.untwist(joints);
     for (let i = 0; i < jointNames.length; i++) {
       const name = jointNames[i]!;
       const { position, orientation } = joints[name];
       this.rig.place(name, position, orientation);
     }
+    this.arms.place(joints);
     this.legs.apply(joints.hips, deltaSeconds);
   }
 
@@ -141,14 +147,32 @@ class VrmAvatar implements Avatar {
       const name = jointNames[i]!;
       this.rig.place(name, headJoint, head.orientation, name === 'head');
     }
+    // The skin of the head reaches down the neck, which goes along as it rests.
+    const [neck, top] = [this.rig.rest('neck'), this.rig.rest('head')];
+    if (neck && top) {
+      const fromNeck = setVec3(this.joint, neck.x - top.x, top.y - neck.y, neck.z - top.z);
+      rotate(head.orientation, scale(fromNeck, this.scale, fromNeck), fromNeck);
+      this.rig.place('neck', subtract(headJoint, fromNeck, fromNeck), head.orientation, false);
+    }
+    this.arms.straighten();
     this.applyHand('left', leftHand);
     this.applyHand('right', rightHand);
   }
 
   private applyHand(side: Side, hand: AvatarPose['leftHand']): void {
     const name = side === 'left' ? 'leftHand' : 'rightHand';
-    if (hand) this.rig.place(name, hand.position, handBoneRotation(side, hand.orientation, this.handBone));
-    else this.rig.shrink(name);
+    const lowerArm = side === 'left' ? 'leftLowerArm' : 'rightLowerArm';
+    if (!hand) {
+      this.rig.shrink(lowerArm);
+      this.rig.shrink(name);
+      return;
+    }
+    const orientation = handBoneRotation(side, hand.orientation, this.handBone);
+    // The cuff of a sleeve has a share of the forearm, which goes straight on behind the hand.
+    const elbow = rotate(orientation, this.skeleton.restOffsets[name], this.joint);
+    subtract(hand.position, elbow, elbow);
+    this.rig.place(lowerArm, elbow, orientation, false);
+    this.rig.place(name, hand.position, orientation);
   }
 
   setFirstPerson(on: boolean): void {

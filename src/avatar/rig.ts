@@ -1,5 +1,5 @@
 import type { VRM, VRMHumanBoneName } from '@pixiv/three-vrm';
-import { Matrix4, type Object3D, Quaternion, Vector3 } from 'three';
+import { Bone, Matrix4, type Object3D, Quaternion, Vector3 } from 'three';
 import { type JointName, jointNames } from '../core/body/joints';
 import { fromAxisAngle, multiply, type Quat, quat } from '../core/math/quat';
 import { copyVec3, distance, type MutableVec3, up, type Vec3, vec3 } from '../core/math/vec3';
@@ -15,7 +15,7 @@ export const legJoints = [
 type LegJoint = (typeof legJoints)[number];
 export type AvatarJoint = JointName | LegJoint;
 
-interface RigBone {
+export interface RigBone {
   readonly node: Object3D;
   readonly parent: RigBone | null;
   /** The rest pose in the rig's own frame, facing +Z. */
@@ -34,6 +34,12 @@ interface RigBone {
   readonly world: Matrix4;
   /** Where it is drawn in this frame, floor frame [m]. */
   readonly drawn: MutableVec3;
+}
+
+/** A joint that the file lacks, where a bone of it begins, stretched as that is and turned otherwise. */
+export interface HelperJoint {
+  readonly base: RigBone;
+  readonly node: Bone;
 }
 
 /** The bone whose origin marks the far end of another: what its length is measured to. */
@@ -79,6 +85,7 @@ const scaling = new Vector3();
 const position = new Vector3();
 const rotation = new Quaternion();
 const above = new Matrix4();
+const helperWorld = new Matrix4();
 const facing = quat(0, 0, 0, 1);
 
 /** The bones of a VRM that poses move. Each has its own place: the rig is no chain of rotations. */
@@ -153,9 +160,7 @@ export class Rig {
     const bone = this.bones.get(name);
     if (!bone) return;
     const { node, parent, world, fromParentBone } = bone;
-    const { x, y, z, w } = multiply(rotationFromRest, ourFacing, facing);
-    rotation.set(x, y, z, w).multiply(bone.restRotation);
-    world.compose(position.set(at.x, at.y, at.z), rotation, unitScale).multiply(bone.stretch);
+    setWorld(bone, at, rotationFromRest, world);
     // What lies between the parent bone and this node (and above the hips) keeps its rest pose.
     if (parent) above.multiplyMatrices(parent.world, fromParentBone);
     else above.copy(fromParentBone);
@@ -164,6 +169,31 @@ export class Rig {
     node.matrixWorldNeedsUpdate = true;
     copyVec3(at, bone.drawn);
     if (seen) this.joints[name] = bone.drawn;
+  }
+
+  /** A new joint on a bone that the rig has. */
+  addHelper(name: AvatarJoint, what: string): HelperJoint {
+    const base = this.bones.get(name);
+    if (!base) throw new Error(`avatar/rig: a rig without ${name}`);
+    const node = new Bone();
+    node.name = `${name} ${what}`;
+    node.matrixAutoUpdate = false;
+    base.node.add(node);
+    node.updateMatrixWorld(true);
+    return { base, node };
+  }
+
+  /** Puts a helper joint as `place` puts a bone; its bone must have been placed before. */
+  placeHelper({ base, node }: HelperJoint, at: Vec3, rotationFromRest: Quat): void {
+    setWorld(base, at, rotationFromRest, helperWorld);
+    node.matrix.multiplyMatrices(above.copy(base.world).invert(), helperWorld);
+    node.matrixWorldNeedsUpdate = true;
+  }
+
+  /** A helper joint goes with its bone. */
+  straighten({ node }: HelperJoint): void {
+    node.matrix.identity();
+    node.matrixWorldNeedsUpdate = true;
   }
 
   /** Shrinks a bone to nothing: what no one sees is not drawn. */
@@ -179,6 +209,13 @@ export class Rig {
   forgetJoints(): void {
     for (const name of this.bones.keys()) delete this.joints[name];
   }
+}
+
+/** The world matrix of a bone whose joint is there and that is turned like this. */
+function setWorld(bone: RigBone, at: Vec3, rotationFromRest: Quat, target: Matrix4): void {
+  const { x, y, z, w } = multiply(rotationFromRest, ourFacing, facing);
+  rotation.set(x, y, z, w).multiply(bone.restRotation);
+  target.compose(position.set(at.x, at.y, at.z), rotation, unitScale).multiply(bone.stretch);
 }
 
 /** scale·(1 + (factor − 1)·d·dᵀ): longer along a direction only. */

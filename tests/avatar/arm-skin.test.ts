@@ -1,0 +1,194 @@
+import { SkinnedMesh, Vector3 } from 'three';
+import { beforeAll, describe, expect, test } from 'vitest';
+import { type Avatar, createAvatar } from '../../src/avatar/avatar';
+import { parseAvatar } from '../../src/avatar/load-avatar';
+import { type AvatarPose, makeUpperBodyPose } from '../../src/core/body/avatar-pose';
+import { defaultCalibration } from '../../src/core/body/calibration';
+import { skeletonFromCalibration } from '../../src/core/body/skeleton';
+import { makePose } from '../../src/core/math/pose';
+import { copyQuat, fromAxisAngle, multiply, type Quat, quat } from '../../src/core/math/quat';
+import { down, forward, type Vec3, vec3 } from '../../src/core/math/vec3';
+import { tell } from '../tell';
+import { mannequin } from './glb';
+
+const along = vec3(-1, 0, 0);
+const radians = (degrees: number) => (degrees * Math.PI) / 180;
+
+/** How the left arm is turned from T-pose [degrees]. */
+interface ArmTurn {
+  /** Of the whole arm about an axis of the chest. */
+  readonly swing?: { readonly axis: Vec3; readonly angle: number };
+  /** Of the upper arm about itself. */
+  readonly upperRoll?: number;
+  readonly elbow?: number;
+  /** Of the hand about the forearm; the estimators give half of it to the forearm's bone. */
+  readonly roll?: number;
+}
+
+function poseOf({ swing, upperRoll = 0, elbow = 0, roll = 0 }: ArmTurn): AvatarPose {
+  const body = makeUpperBodyPose();
+  const { restOffsets } = skeletonFromCalibration(defaultCalibration);
+  Object.assign(body.hipsPosition, restOffsets.hips);
+  const half = fromAxisAngle(along, radians(roll) / 2);
+  const turn = (joint: 'leftUpperArm' | 'leftLowerArm' | 'leftHand', q: Quat) =>
+    copyQuat(q, body.localRotations[joint]);
+  const swung = swing ? fromAxisAngle(swing.axis, radians(swing.angle)) : quat(0, 0, 0, 1);
+  turn('leftUpperArm', multiply(swung, fromAxisAngle(along, radians(upperRoll))));
+  turn('leftLowerArm', multiply(fromAxisAngle(down, radians(elbow)), half));
+  turn('leftHand', half);
+  return { head: { ...makePose<'floor'>(), tracking: 'tracked' }, leftHand: null, rightHand: null, body };
+}
+
+/** Crossings of a cut through the skin at rest with its triangles' edges: which vertices, and how far between them. */
+interface Crossing {
+  readonly mesh: SkinnedMesh;
+  readonly a: number;
+  readonly b: number;
+  readonly t: number;
+}
+
+const at = (mesh: SkinnedMesh, vertex: number, target = new Vector3()): Vector3 =>
+  mesh.getVertexPosition(vertex, target).applyMatrix4(mesh.matrixWorld);
+
+/** The skin's lines of constant height above a plane at rest: `height` of a place [m]; null: it is no part of it. */
+function cut(avatar: Avatar, height: (place: Vector3) => number | null): Crossing[] {
+  const found: Crossing[] = [];
+  avatar.object.traverse((node) => {
+    if (!(node instanceof SkinnedMesh)) return;
+    const { index } = node.geometry;
+    const heights = Array.from({ length: node.geometry.attributes.position!.count }, (_, v) => height(at(node, v)));
+    for (let corner = 0; corner < index!.count; corner++) {
+      const next = corner % 3 === 2 ? corner - 2 : corner + 1;
+      const [a, b] = [index!.getX(corner), index!.getX(next)];
+      const [from, to] = [heights[a], heights[b]];
+      if (from == null || to == null || from < 0 === to < 0) continue;
+      found.push({ mesh: node, a, b, t: from / (from - to) });
+    }
+  });
+  return found;
+}
+
+/** Least and mean distance of a cut's line from its middle, as drawn now [m]. */
+function radiiOf(crossings: readonly Crossing[]): { readonly least: number; readonly mean: number } {
+  const points = crossings.map(({ mesh, a, b, t }) => at(mesh, a).lerp(at(mesh, b), t));
+  const middle = points.reduce((sum, point) => sum.add(point), new Vector3()).divideScalar(points.length);
+  const radii = points.map((point) => point.distanceTo(middle));
+  return { least: Math.min(...radii), mean: radii.reduce((sum, radius) => sum + radius, 0) / radii.length };
+}
+
+async function wearer(file: ArrayBuffer) {
+  const avatar = createAvatar(await parseAvatar(file, 'test.glb'));
+  avatar.fitTo(defaultCalibration);
+  let time = 0;
+  const show = (turn: ArmTurn) => {
+    time += 0.1;
+    avatar.apply(poseOf(turn), time);
+    avatar.object.updateMatrixWorld(true);
+  };
+  show({});
+  const { leftUpperArm, leftLowerArm, leftHand } = avatar.jointPositions();
+  const place = ({ x, y, z }: Vec3) => new Vector3(x, y, z);
+  const [shoulder, elbow, wrist] = [place(leftUpperArm!), place(leftLowerArm!), place(leftHand!)];
+  /** A cut across the arm, so far from one place to another [share of the way]. */
+  const across = (from: Vector3, to: Vector3, share: number): Crossing[] => {
+    const way = to.clone().sub(from);
+    return cut(avatar, (vertex) => {
+      const ahead = vertex.clone().sub(from);
+      const height = ahead.dot(way) / way.lengthSq() - share;
+      // Of this arm alone, and not of the hand's thumb.
+      return ahead.addScaledVector(way, -(height + share)).length() < 0.12 ? height : null;
+    });
+  };
+  const rests = (cuts: readonly Crossing[][]) => cuts.map((crossings) => ({ crossings, rest: radiiOf(crossings) }));
+  const shares = (first: number, last: number) =>
+    Array.from({ length: 12 }, (_, i) => first + ((last - first) * i) / 11);
+  const forearm = rests(shares(0.08, 0.95).map((share) => across(elbow, wrist, share)));
+  const upperArm = rests(shares(0.3, 0.9).map((share) => across(shoulder, elbow, share)));
+  const deltoid = rests(shares(0.02, 0.3).map((share) => across(shoulder, elbow, share)));
+  /** The thinnest cut against itself at rest, by its mean and by its least radius. */
+  const thinnest = (cuts: typeof forearm) => {
+    const now = cuts.map(({ crossings, rest }) => {
+      const { least, mean } = radiiOf(crossings);
+      return { least: least / rest.least, mean: mean / rest.mean };
+    });
+    return {
+      least: Math.min(...now.map(({ least }) => least)),
+      mean: Math.min(...now.map(({ mean }) => mean)),
+    };
+  };
+  return { avatar, show, thinnest, forearm, upperArm, deltoid };
+}
+
+const rolls = [-90, -60, -30, 0, 30, 60, 90];
+
+describe('our mannequin’s arm', () => {
+  let body: Awaited<ReturnType<typeof wearer>>;
+  beforeAll(async () => {
+    body = await wearer(mannequin());
+  });
+
+  test.each([
+    { elbow: 0, leastMean: 0.95, leastAside: 0.92 },
+    { elbow: 90, leastMean: 0.9, leastAside: 0.87 },
+    { elbow: 140, leastMean: 0.87, leastAside: 0.74 },
+  ])(
+    'keeps its sleeve round however the hand is rolled, the elbow bent by $elbow°',
+    ({ elbow, leastMean, leastAside }) => {
+      const found = rolls.map((roll) => {
+        body.show({ elbow, roll });
+        return body.thinnest(body.forearm);
+      });
+      const mean = Math.min(...found.map(({ mean }) => mean));
+      const least = Math.min(...found.map(({ least }) => least));
+      tell(`sleeve at its thinnest, elbow at ${elbow}° [share of its radius]`, {
+        mean: mean.toFixed(3),
+        least: least.toFixed(3),
+      });
+      expect(mean).toBeGreaterThan(leastMean);
+      expect(least).toBeGreaterThan(leastAside);
+    },
+  );
+
+  test('keeps its upper arm round when that is turned about itself', () => {
+    for (const upperRoll of [-80, -40, 40, 80]) {
+      body.show({ upperRoll });
+      const [arm, shoulder] = [body.thinnest(body.upperArm), body.thinnest(body.deltoid)];
+      tell(`upper arm turned by ${upperRoll}° [share of its radius]`, {
+        mean: arm.mean.toFixed(3),
+        shoulder: shoulder.least.toFixed(3),
+      });
+      expect(arm.mean).toBeGreaterThan(0.93);
+      expect(shoulder.least).toBeGreaterThan(0.85);
+    }
+  });
+
+  test.each([
+    ['hanging', forward, 80],
+    ['up', forward, -75],
+    ['far back', down, -55],
+    ['ahead', down, 95],
+  ] as const)('keeps the roundness of its shoulder with the arm %s', (name, axis, angle) => {
+    body.show({ swing: { axis, angle: -angle } });
+    const { mean } = body.thinnest(body.deltoid);
+    tell(`shoulder, arm ${name} [share of its radius]`, { mean: mean.toFixed(3) });
+    expect(mean).toBeGreaterThan(0.95);
+  });
+
+  test('ends in a whole cuff where the hands are drawn alone', () => {
+    const head = { ...makePose<'floor'>(), tracking: 'tracked' as const };
+    const hand = { position: vec3(-0.3, 1.1, -0.4), orientation: quat(0, 0, 0, 1), tracking: 'tracked' as const };
+    head.position.y = 1.59;
+    body.avatar.apply({ head, leftHand: hand, rightHand: null, body: null }, 10);
+    body.avatar.object.updateMatrixWorld(true);
+    let longest = 0;
+    body.avatar.object.traverse((node) => {
+      if (!(node instanceof SkinnedMesh) || !node.visible) return;
+      const { index, drawRange } = node.geometry;
+      for (let corner = 0; corner < Math.min(drawRange.count, index!.count); corner++) {
+        const [a, b] = [index!.getX(corner), index!.getX(corner % 3 === 2 ? corner - 2 : corner + 1)];
+        longest = Math.max(longest, at(node, a).distanceTo(at(node, b)));
+      }
+    });
+    expect(longest, 'longest edge of a triangle [m]').toBeLessThan(0.06);
+  });
+});
