@@ -1,4 +1,4 @@
-// npm run evaluate -- --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,135] [--models DIR] [--robustness] [--figures FILE] [--fp32 DIR]:
+// npm run evaluate -- --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,135] [--models DIR] [--robustness] [--hands-as-recorded] [--figures FILE] [--fp32 DIR]:
 // the shipping path on recorded motion. Python prepares the recordings with their truth, TypeScript drives them.
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -9,7 +9,7 @@ import { pythonEnvironment } from './python-environment.mjs';
 import { main, root, run, SetupError } from './run-command.mjs';
 
 const usage =
-  'npm run evaluate -- --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,135] [--models DIR] [--robustness] [--figures FILE] [--fp32 DIR]\n' +
+  'npm run evaluate -- --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,135] [--models DIR] [--robustness] [--hands-as-recorded] [--figures FILE] [--fp32 DIR]\n' +
   'DIR holds .asf and .amc or .bvh files; docs/evaluation.md says the rest.';
 const twoHours = 2 * 3600;
 
@@ -24,6 +24,7 @@ function options() {
         people: text,
         models: text,
         robustness: { type: 'boolean' },
+        'hands-as-recorded': { type: 'boolean' },
         figures: text,
         fp32: text,
       },
@@ -56,7 +57,7 @@ await main(async () => {
     drive.push('--models', given.models ? path(given.models) : join(root, 'public/models'));
     if (given.json) drive.push('--json', path(given.json));
     for (const name of ['figures', 'fp32']) if (given[name]) drive.push(`--${name}`, path(given[name]));
-    if (given.robustness) drive.push('--robustness');
+    for (const name of ['robustness', 'hands-as-recorded']) if (given[name]) drive.push(`--${name}`);
     const { code } = await run(process.execPath, drive, { cwd: root, limitSeconds: twoHours });
     return code;
   } finally {

@@ -15,7 +15,7 @@ import {
 } from './measures';
 import { loadRegressors } from './networks';
 import { addReach, emptyReach, mergeReaches, type Reach, reachReport, reachText } from './reach';
-import { calibrationOf, readClip, readIndex } from './recordings';
+import { calibrationOf, guidedCalibrationOf, type RecordingIndex, readClip, readIndex } from './recordings';
 import { chooseClips, measureRobustness, robustnessText } from './robustness';
 
 /** Robustness drives forty variants of each clip: beyond so many frames, a selection stands for the rest. */
@@ -27,10 +27,15 @@ const { values: options } = parseArgs({
     models: { type: 'string' },
     json: { type: 'string' },
     robustness: { type: 'boolean' },
+    'hands-as-recorded': { type: 'boolean' },
     figures: { type: 'string' },
     fp32: { type: 'string' },
   },
 });
+
+/** What estimators are told of a clip's person: what the guided calibration measures, or without the hands' tilts. */
+const toldOf = (index: RecordingIndex, clip: RecordingIndex['clips'][number]) =>
+  options['hands-as-recorded'] ? calibrationOf(index, clip.person) : guidedCalibrationOf(index, clip);
 
 type Exact = Partial<Record<MeasuredMethod, Report>>;
 
@@ -85,7 +90,7 @@ async function measureClips(corpus: Corpus): Promise<Measured> {
   const total = index.clips.reduce((sum, clip) => sum + clip.frames, 0);
   let done = 0;
   for (const clip of index.clips) {
-    const calibration = calibrationOf(index, clip.person);
+    const calibration = toldOf(index, clip);
     const person = byPerson.get(clip.person) ?? {
       ik: emptyMeasures(),
       paper: emptyMeasures(),
@@ -185,7 +190,7 @@ function measureDisturbed(corpus: Corpus) {
     clips: chooseClips(clips, robustnessFrames),
     load: (clip) => ({
       name: clip.name,
-      calibration: calibrationOf(index, clip.person),
+      calibration: toldOf(index, clip),
       frames: readClip(recordings, index, clip),
     }),
     regressors,

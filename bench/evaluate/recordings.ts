@@ -7,6 +7,8 @@ import type { Quat } from '../../src/core/math/quat';
 import { type Vec3, vec3 } from '../../src/core/math/vec3';
 import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
 
+const tilt = v.optional(v.object({ pitch: v.number(), yaw: v.number() }));
+
 /** What training/threepoint_training/recordings.py writes. */
 const indexSchema = v.object({
   version: v.literal(1),
@@ -14,7 +16,15 @@ const indexSchema = v.object({
   corpusHash: v.string(),
   columns: v.array(v.string()),
   people: v.record(v.string(), v.object({ eyeHeight: v.number(), armSpan: v.number() })),
-  clips: v.array(v.object({ name: v.string(), person: v.string(), file: v.string(), frames: v.number() })),
+  clips: v.array(
+    v.object({
+      name: v.string(),
+      person: v.string(),
+      file: v.string(),
+      frames: v.number(),
+      handTilts: v.optional(v.object({ left: tilt, right: tilt })),
+    }),
+  ),
   problems: v.array(v.string()),
 });
 
@@ -43,7 +53,13 @@ export interface RecordedFrame {
   readonly truth: Readonly<Record<TruthJoint, Vec3>>;
 }
 
-/** The body that the calibration of a person would give. */
+/** The body that the calibration of a clip's person would give, hands measured: by what the other clips of that person show. */
+export const guidedCalibrationOf = (index: RecordingIndex, { person, handTilts }: RecordingIndex['clips'][number]) => ({
+  ...calibrationOf(index, person),
+  handTilts,
+});
+
+/** The body that the heights and spans of a person would give, hands as they come. */
 export const calibrationOf = (index: RecordingIndex, person: string): Calibration => {
   const calibration = index.people[person];
   if (!calibration) throw new Error(`index.json: clips of ${person}, but no such person`);

@@ -1,7 +1,7 @@
 import * as v from 'valibot';
 import { reasonOf } from '../core/errors/reasons';
 import type { ModelContract } from '../core/estimation/pose-regressor';
-import { learnedInputCount } from '../core/estimation/residual';
+import { inputCountWithoutHandTilts, learnedInputCount } from '../core/estimation/residual';
 
 const statedFile = {
   file: v.pipe(v.string(), v.regex(/^[\w.-]+$/, 'expected a file name beside the contract')),
@@ -57,11 +57,13 @@ export function parseContract(file: string, text: string): ModelContract {
   }
   // What is absent stays absent: exact optional properties know no undefined.
   const { correctionHalfLife, weights, ...contract } = result.output;
-  const expected = contract.name === 'paper' ? 18 : learnedInputCount(contract.windowSeconds);
+  const { name, windowSeconds } = contract;
+  const expected =
+    name === 'paper' ? [18] : [learnedInputCount, inputCountWithoutHandTilts].map((f) => f(windowSeconds));
   const count = (shape: readonly number[]) => shape.reduce((product, size) => product * size, 1);
   const [input, output] = [contract.inputs[0], contract.outputs[0]];
-  if (input === undefined || count(input.shape) !== expected) {
-    throw new Error(`${file}: expected ${input ? count(input.shape) : 0} features, the page makes ${expected}`);
+  if (input === undefined || !expected.includes(count(input.shape))) {
+    throw new Error(`${file}: expected ${input ? count(input.shape) : 0} features, the page makes ${expected[0]}`);
   }
   if (output === undefined || count(output.shape) !== outputNumbers) {
     throw new Error(`${file}: ${output ? count(output.shape) : 0} numbers come out, six joints are ${outputNumbers}`);

@@ -13,7 +13,7 @@ export type CalibrationStep =
   | { readonly kind: 'measuring'; readonly part: number }
   | { readonly kind: 'done' | 'failed'; readonly text: string };
 
-export const calibrationInstruction = 'Stand straight, look ahead, stretch both arms forward.';
+export const calibrationInstruction = 'Stand straight, look ahead, stretch both arms forward, wrists straight.';
 
 /** What a step says in one word or figure, for the dialog and for the menu in the headset. */
 export function calibrationHeadline(step: CalibrationStep): string {

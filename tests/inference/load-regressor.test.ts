@@ -68,7 +68,7 @@ describe('the learned network without a runtime', () => {
     const regressor = await loadPlainRegressor(url, { onProgress: (share) => shares.push(share) });
     expect(regressor.provider).toBe('plain');
     expect(shares.at(-1)).toBe(1);
-    const output = regressor.runNow?.(new Float32Array(176));
+    const output = regressor.runNow?.(new Float32Array(regressor.contract.inputs[0]!.shape.at(-1)!));
     expect(output).toHaveLength(18);
     expect(output?.every(Number.isFinite)).toBe(true);
   });

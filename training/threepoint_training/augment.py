@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from . import quaternion
+from . import hand_tilt, quaternion
 from .chest_features import chest_features
 from .complete_hands import carry_with_head, complete_hands
 from .features import frame_features
@@ -16,7 +16,7 @@ from .prepare import EYES_FROM_HEAD_JOINT
 from .posture_balance import BalanceConfig, weights
 from .prepared_corpus import JOINTS, MIRRORED_JOINTS, PreparedCorpus
 from .residual import residual
-from .simulate_trackers import TrackerConfig
+from .simulate_trackers import TrackerConfig, measured_tilts
 from .skeleton import body_from_calibration
 
 Array = NDArray[np.float64]
@@ -46,13 +46,15 @@ class AugmentConfig:
     arm_scale: float = 0.03
     eye_height_error: float = 0.025
     arm_span_error: float = 0.02
+    # Wearers who were not measured with their arms ahead: their hands are as they come.
+    unmeasured_hands: float = 0.3
     balance: BalanceConfig = BalanceConfig()
     trackers: TrackerConfig = TrackerConfig(headset_offset=0.025, wrist_offset=0.02)
 
 
 @dataclass(frozen=True)
 class Batch:
-    """inputs [N, T·46 + 38], targets [N, 18]; float32. people [N, 3]: whose torso, left and right arm, as numbers of `BodyParts.people`."""
+    """inputs [N, T·46 + 40], targets [N, 18]; float32. people [N, 3]: whose torso, left and right arm, as numbers of `BodyParts.people`."""
 
     inputs: NDArray[np.float32]
     targets: NDArray[np.float32]
@@ -93,6 +95,10 @@ class BodyParts:
             wrist = quaternion.multiply(inverse_chest, rotations[:, turn])
             self.arms.append(arm * _MIRROR if side == "left" else arm)
             self.wrist_turns.append(wrist * _MIRROR_TURN if side == "left" else wrist)
+        forearms = hand_tilt.ForearmMeans(corpus, people)
+        own = np.stack([forearms.of(name) for name in self.people])
+        # Of each person's left and right hand [P, 2, 2], as a right hand's.
+        self.tilts = np.stack([own[:, 0] * hand_tilt.MIRRORED_TILT, own[:, 1]], axis=1)
         self.arm_length = [
             np.linalg.norm(arm[:, 1] - arm[:, 0], axis=-1) + np.linalg.norm(arm[:, 2] - arm[:, 1], axis=-1) for arm in self.arms
         ]
@@ -170,6 +176,11 @@ class _Bodies:
         arm = neck[:, None] + quaternion.rotate(np.broadcast_to(chest[:, None], (*arm.shape[:-1], 4)), arm)
         return arm, quaternion.multiply(chest, wrist)
 
+    def tilts(self) -> Array:
+        """Of the left and the right hand [N, 2, 2]: those of the people whose arms they are."""
+        left, right = (self.parts.tilts[self.parts.person[frames], sides] for frames, sides in zip(self.arm_frames, self.arm_sides, strict=True))
+        return np.stack([left * hand_tilt.MIRRORED_TILT, right], axis=1)
+
     def hand_at(self, side: int, ago: NDArray[np.int64], unseen: NDArray[np.int64]) -> tuple[Array, Array]:
         """A wrist and its rotation that many frames before the newest; unseen for so many: where it was last, carried along with the head."""
         arm, turn = self.arm_at(side, ago + unseen)
@@ -235,6 +246,11 @@ def draw_batch(parts: BodyParts, count: int, config: AugmentConfig, random: np.r
         sizes[:, 0] * (1 + random.normal(size=count) * config.eye_height_error),
         sizes[:, 1] * (1 + random.normal(size=count) * config.arm_span_error),
     )
+    tilts = bodies.tilts()
+    tilts = np.where(mirrored[:, None, None], tilts[:, ::-1] * hand_tilt.MIRRORED_TILT, tilts)
+    tilts = measured_tilts(tilts, worn[:, 1:], config.trackers, random)
+    measured = random.uniform(size=(count, 1)) >= config.unmeasured_hands
+    calibrated = calibrated.with_hands(tilts, measured & hand_tilt.believed(tilts))
     columns = []
     targets = in_chest_frame = np.empty(0)
     for age in config.window_frames:
@@ -256,7 +272,8 @@ def draw_batch(parts: BodyParts, count: int, config: AugmentConfig, random: np.r
         vector, _ = frame_features(positions, rotations, calibrated, ~lost)
         columns.append(vector)
         if age == 0:
-            targets, in_chest_frame = residual(truth, positions, rotations, calibrated, vector), chest_features(vector)
+            targets = residual(truth, positions, rotations, calibrated, vector)
+            in_chest_frame = chest_features(vector, calibrated.hands_measured)
     arms_of = np.stack([parts.person[frames] for frames in bodies.arm_frames], axis=1)
     whose = np.column_stack([parts.person[bodies.newest], np.where(mirrored[:, None], arms_of[:, ::-1], arms_of)])
     return Batch(np.concatenate([*columns, in_chest_frame], axis=1).astype(np.float32), targets.astype(np.float32), whose)

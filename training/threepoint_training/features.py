@@ -6,7 +6,7 @@ The one function for training and for golden vectors; docs/estimation.md lists t
 import numpy as np
 from numpy.typing import NDArray
 
-from . import quaternion, solve_ik
+from . import hand_tilt, quaternion, solve_ik
 from .skeleton import Body
 
 Array = NDArray[np.float64]
@@ -27,7 +27,7 @@ def frame_features(positions: Array, rotations: Array, body: Body, seen: Array |
 
     seen [F, 2]: whether each hand is seen in this frame; all, when None.
     """
-    local, turns, _, _ = solve_ik.to_heading(positions, rotations)
+    local, turns, _, _ = solve_ik.to_heading(positions, hand_tilt.normalised(rotations, body.hand_tilts))
     joints = solve_ik.solve(local, turns, body)
     matrices = quaternion.to_matrix(turns)
     headset = local[:, 0]

@@ -2,15 +2,15 @@
 
 import copy
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import quaternion, solve_ik
+from . import hand_tilt, quaternion, solve_ik
 from .prepared_corpus import ESTIMATED_JOINTS, JOINTS, MIRRORED_JOINTS, PreparedCorpus
-from .simulate_trackers import TrackerConfig, draw_wearer, simulate
+from .simulate_trackers import TrackerConfig, draw_wearer, measured_tilts, simulate
 from .skeleton import Body, body_from_calibration
 
 Array = NDArray[np.float64]
@@ -23,7 +23,11 @@ PRIOR: dict[str, Any] = {
     "neck": 0.5,
     "clavicle": [[0, 0, 0, 0], [0, 0, 0.03, 0], [0, 0, 0, 0.03]],
     "pole": [[0.4] + [0] * 9, [-1.0] + [0] * 9, [0.6] + [0] * 9],
+    "measuredPole": [[0.4] + [0] * 9, [-1.0] + [0] * 9, [0.6] + [0] * 9],
 }
+
+
+_MATRICES = ("clavicle", "pole", "measuredPole")
 
 
 @dataclass(frozen=True)
@@ -40,7 +44,7 @@ class FitIkConfig:
 def flatten(parameters: dict[str, Any]) -> Array:
     """The parameters as one vector, in the file's order."""
     parts = [parameters["yaw"], *(parameters[s][k] for s in ("upper", "lower") for k in ("forward", "sideways"))]
-    parts += [[parameters["neck"]], *parameters["clavicle"], *parameters["pole"]]
+    parts += [[parameters["neck"]], *(row for key in _MATRICES for row in parameters[key])]
     return np.concatenate([np.asarray(part, np.float64) for part in parts])
 
 
@@ -56,7 +60,7 @@ def unflatten(vector: Array) -> dict[str, Any]:
     for segment in ("upper", "lower"):
         for key in ("forward", "sideways"):
             result[segment][key] = take(PRIOR[segment][key])
-    for key in ("neck", "clavicle", "pole"):
+    for key in ("neck", *_MATRICES):
         result[key] = take(PRIOR[key])
     return result
 
@@ -81,10 +85,14 @@ def sample(
     *,
     mirrored: bool = True,
 ) -> Sample:
-    """Frames of these people as trackers would see them, the same number of each (None: all), mirrored ones beside them."""
+    """Frames of these people as trackers would see them, the same number of each (None: all), mirrored ones beside them.
+
+    In every other frame the tilts of the hands are measured, so that both of IK's poles are fitted.
+    """
     random = np.random.default_rng(seed)
     trackers = TrackerConfig()
     columns = [JOINTS.index(joint) for joint in ESTIMATED_JOINTS]
+    forearms = hand_tilt.ForearmMeans(corpus, people)
     parts = []
     for name in people:
         person = corpus.people[name]
@@ -92,16 +100,21 @@ def sample(
         if per_person is not None and per_person < len(frames):
             frames = np.sort(random.choice(frames, per_person, replace=False))
         true_positions = corpus.positions[frames].astype(np.float64)
-        positions, rotations = simulate(true_positions, corpus.rotations[frames], draw_wearer(trackers, random), trackers, random)
+        wearer = draw_wearer(trackers, random)
+        positions, rotations = simulate(true_positions, corpus.rotations[frames], wearer, trackers, random)
+        measured = np.broadcast_to((np.arange(len(frames)) % 2 == 1)[:, None], (len(frames), 2))
+        tilts = measured_tilts(np.broadcast_to(forearms.of(name), (len(frames), 2, 2)), wearer.hand_turns, trackers, random)
+        rotations = hand_tilt.normalised(rotations, np.where(measured[..., None], tilts, 0.0))
         local, turns, yaw, origin = solve_ik.to_heading(positions, rotations)
         truth = true_positions[:, columns] - origin[:, None]
         truth = quaternion.rotate(np.broadcast_to(quaternion.conjugate(yaw)[:, None], (*truth.shape[:-1], 4)), truth)
         sizes = np.tile([person.eye_height, person.arm_span], (len(frames), 1))
-        parts.append((local, turns, truth, sizes, np.full(len(frames), name)))
+        parts.append((local, turns, truth, sizes, measured, np.full(len(frames), name)))
         if mirrored:
-            parts.append((*mirror(local, turns, truth), sizes, np.full(len(frames), name)))
-    local, turns, truth, sizes, names = (np.concatenate(columns) for columns in zip(*parts, strict=True))
-    return Sample(local, turns, truth, body_from_calibration(sizes[:, 0], sizes[:, 1], proportions), names)
+            parts.append((*mirror(local, turns, truth), sizes, measured, np.full(len(frames), name)))
+    local, turns, truth, sizes, measured, names = (np.concatenate(columns) for columns in zip(*parts, strict=True))
+    body = body_from_calibration(sizes[:, 0], sizes[:, 1], proportions)
+    return Sample(local, turns, truth, replace(body, hands_measured=measured), names)
 
 
 def mirror(positions: Array, rotations: Array, truth: Array) -> tuple[Array, Array, Array]:

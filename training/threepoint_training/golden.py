@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from . import quaternion, solve_ik
+from . import hand_tilt, quaternion, solve_ik
 from .chest_features import chest_axes
 from .features import frame_features
 from .generated_motion import generate_clip
@@ -23,7 +23,12 @@ from .skeleton import Body, body_from_calibration, rest_offsets
 Array = NDArray[np.float64]
 
 GOLDEN = Path(__file__).parents[2] / "tests/golden"
-BODIES = ((1.62, 1.56), (1.15, 1.05), (2.02, 2.05))
+# Eye height, span, and the tilts of the hands that are measured.
+BODIES: tuple[tuple[float, float, dict[str, tuple[float, float]]], ...] = (
+    (1.62, 1.56, {}),
+    (1.15, 1.05, {"left": (0.25, -0.1), "right": (-0.15, 0.3)}),
+    (2.02, 2.05, {"right": (0.05, -0.4)}),
+)
 FRAMES = 14
 STRIDE = 9
 WINDOW = (0.0, 0.1, 0.25)
@@ -37,6 +42,17 @@ def _tracked(eye_height: float, arm_span: float, random: np.random.Generator) ->
     return positions[::STRIDE], rotations[::STRIDE]
 
 
+def _body(eye_height: float, arm_span: float, tilts: dict[str, tuple[float, float]]) -> Body:
+    hands = np.array([tilts.get(side, (0.0, 0.0)) for side in ("left", "right")])
+    return body_from_calibration(np.array(eye_height), np.array(arm_span)).with_hands(hands, np.array([side in tilts for side in ("left", "right")]))
+
+
+def _calibration(eye_height: float, arm_span: float, tilts: dict[str, tuple[float, float]]) -> dict[str, Any]:
+    """As the page has it."""
+    hands = {side: {"pitch": pitch, "yaw": yaw} for side, (pitch, yaw) in tilts.items()}
+    return {"eyeHeight": eye_height, "armSpan": arm_span} | ({"handTilts": hands} if hands else {})
+
+
 def _in_floor_frame(joints: Array, positions: Array, rotations: Array) -> Array:
     """Points [F, N, 3] of the heading frames of these trackers."""
     yaw, origin = quaternion.heading(rotations[:, 0]), positions[:, 0] * [1, 0, 1]
@@ -46,17 +62,17 @@ def _in_floor_frame(joints: Array, positions: Array, rotations: Array) -> Array:
 def feature_vectors() -> list[dict[str, Any]]:
     """Rotated and moved people in three sizes, one hand unseen now and then: what goes in and what must come out."""
     cases = []
-    for number, (eye_height, arm_span) in enumerate(BODIES):
+    for number, (eye_height, arm_span, tilts) in enumerate(BODIES):
         random = np.random.default_rng([11, number])
         positions, rotations = _tracked(eye_height, arm_span, random)
         seen = random.uniform(size=(FRAMES, 2)) > 0.15
         times = np.arange(FRAMES) * STRIDE / 60 + random.uniform(0, 0.01, FRAMES)
-        body = body_from_calibration(np.array(eye_height), np.array(arm_span))
+        body = _body(eye_height, arm_span, tilts)
         vector, ik_joints = frame_features(positions, rotations, body, seen)
         floor_joints = _in_floor_frame(ik_joints, positions, rotations)
         cases.append(
             {
-                "calibration": {"eyeHeight": eye_height, "armSpan": arm_span},
+                "calibration": _calibration(eye_height, arm_span, tilts),
                 "restOffsets": rest_offsets(eye_height, arm_span),
                 "window": WINDOW,
                 "frames": [
@@ -71,7 +87,7 @@ def feature_vectors() -> list[dict[str, Any]]:
                     }
                     for i in range(FRAMES)
                 ],
-                "inputs": network_input(vector, times, WINDOW),
+                "inputs": network_input(vector, times, WINDOW, body),
             }
         )
     return cases
@@ -114,7 +130,7 @@ def fitted_vectors() -> list[dict[str, Any]]:
 
     fitting = DifferentiableKinematics(torch.float64)
     cases = []
-    for number, (eye_height, arm_span) in enumerate(BODIES):
+    for number, (eye_height, arm_span, _) in enumerate(BODIES):
         body = body_from_calibration(np.array(eye_height), np.array(arm_span))
         frames = []
         for kind, (situation, (move, elbows, others)) in enumerate(SITUATIONS.items()):
@@ -123,7 +139,7 @@ def fitted_vectors() -> list[dict[str, Any]]:
             local, turns, _, _ = solve_ik.to_heading(positions, rotations)
             positions = _in_floor_frame(move(local, solve_ik.solve(local, turns, body), body, random), positions, rotations)
             vector, ik_joints = frame_features(positions, rotations, body)
-            inputs = torch.from_numpy(network_input(vector, np.arange(FRAMES) / 60, WINDOW))
+            inputs = torch.from_numpy(network_input(vector, np.arange(FRAMES) / 60, WINDOW, body))
             corrections = random.normal(size=ik_joints.shape) * np.array([elbows] * 2 + [others] * 4)[:, None]
             fitted, limited = fitting.fit(torch.from_numpy(corrections), inputs, as_the_page_fits(eye_height))
             axes = chest_axes(vector)
@@ -163,7 +179,9 @@ def model_vectors(models: Path) -> dict[str, Any]:
         if contract["name"] == "paper":
             inputs = paper_features(positions, rotations)
         else:
-            inputs = network_input(vector, np.arange(len(vector)) / 60, tuple(contract["windowSeconds"]))
+            inputs = network_input(vector, np.arange(len(vector)) / 60, tuple(contract["windowSeconds"]), body)
+            # A network that was made before hands were measured takes all but the last two.
+            inputs = inputs[:, : contract["inputs"][0]["shape"][1]]
         inputs = inputs[::12].astype(np.float32)
         name = contract["inputs"][0]["name"]
         outputs = [session.run(None, {name: row[None]})[0][0] for row in inputs]

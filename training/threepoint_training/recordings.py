@@ -8,11 +8,12 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
-from . import prepare
+from . import hand_tilt, prepare
 from .motion import MocapError
 from .prepared_corpus import JOINTS, ROTATIONS, PreparedCorpus
-from .simulate_trackers import TrackerConfig, draw_wearer, simulate
+from .simulate_trackers import TrackerConfig, draw_wearer, measured_tilts, simulate
 
 VERSION = 1
 COLUMNS = tuple(f"{point}.{part}" for point in ROTATIONS for part in ("px", "py", "pz", "qx", "qy", "qz", "qw")) + tuple(
@@ -34,6 +35,7 @@ def write(corpus: PreparedCorpus, config: RecordingsConfig) -> Path:
     """One little-endian float32 file [frames, COLUMNS] per clip and index.json; the same seed writes the same bytes."""
     config.out.mkdir(parents=True, exist_ok=True)
     clips = []
+    forearms = hand_tilt.ForearmMeans(corpus, tuple(corpus.people))
     for number, (name, person) in enumerate(zip(corpus.clips, corpus.clip_people, strict=True)):
         # Keyed by person and clip, so that a selection of clips sees the same trackers as the whole corpus.
         wearer = draw_wearer(config.trackers, np.random.default_rng([config.seed, zlib.crc32(person.encode())]))
@@ -42,9 +44,12 @@ def write(corpus: PreparedCorpus, config: RecordingsConfig) -> Path:
         positions, rotations = simulate(corpus.positions[frames], corpus.rotations[frames], wearer, config.trackers, random)
         tracked = np.concatenate([positions, rotations], axis=-1).reshape(len(positions), -1)
         truth = corpus.positions[frames].reshape(len(positions), -1)
+        # What arms ahead would have measured: by the person's other clips, with one error for all of them.
+        error = np.random.default_rng([config.seed, 2, zlib.crc32(person.encode())])
+        tilts = measured_tilts(forearms.elsewhere(number), wearer.hand_turns, config.trackers, error)
         file = f"{number:04d}.f32"
         (config.out / file).write_bytes(np.concatenate([tracked, truth], axis=1).astype("<f4").tobytes())
-        clips.append({"name": name, "person": person, "file": file, "frames": len(positions)})
+        clips.append({"name": name, "person": person, "file": file, "frames": len(positions), "handTilts": _as_calibrated(tilts)})
     index = {
         "version": VERSION,
         "rateHz": corpus.rate_hz,
@@ -60,6 +65,12 @@ def write(corpus: PreparedCorpus, config: RecordingsConfig) -> Path:
     path = config.out / "index.json"
     path.write_text(json.dumps(index, ensure_ascii=False, indent=1))
     return path
+
+
+def _as_calibrated(tilts: NDArray[np.float64]) -> dict[str, dict[str, float]]:
+    """Tilts [2, 2] as the page's calibration has them, without those that it does not believe."""
+    sides = zip(("left", "right"), tilts.tolist(), hand_tilt.believed(tilts), strict=True)
+    return {side: {"pitch": pitch, "yaw": yaw} for side, (pitch, yaw), believed in sides if believed}
 
 
 def main(config: RecordingsConfig) -> Path:

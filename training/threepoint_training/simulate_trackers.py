@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from . import quaternion
+from . import hand_tilt, quaternion
 from .prepare import EYES_FROM_HEAD_JOINT
 from .prepared_corpus import TRACKED_COLUMNS
 
@@ -22,6 +22,7 @@ class TrackerConfig:
     hand_turn: float = np.radians(3.0)  # [rad] about a random axis
     position_noise: float = 0.0003  # [m] per frame
     rotation_noise: float = np.radians(0.1)  # [rad] per frame
+    hand_tilt_error: float = np.radians(5.0)  # [rad], of the calibration that measures the hands
 
 
 @dataclass(frozen=True)
@@ -43,6 +44,11 @@ def draw_wearer(config: TrackerConfig, random: np.random.Generator) -> Wearer:
         wrist_offsets=random.normal(size=(2, 3)) * config.wrist_offset,
         hand_turns=quaternion.from_rotation_vector(turns),
     )
+
+
+def measured_tilts(tilts: Array, worn: Array, config: TrackerConfig, random: np.random.Generator) -> Array:
+    """What a calibration measures of hands with these tilts [..., 2], through trackers that are turned by `worn` [..., 4] against them."""
+    return hand_tilt.turned(tilts, worn) + random.normal(size=tilts.shape) * config.hand_tilt_error / np.sqrt(2)
 
 
 def simulate(

@@ -1,7 +1,7 @@
 """The calibrated skeleton of docs/estimation.md, for many bodies at once."""
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -34,6 +34,13 @@ class Body:
     lower_back: Array  # hips to chest
     clavicle_root: Array  # from the neck's base
     shoulder: Array  # from the neck's base
+    # Of the left and the right hand (hand_tilt): tilts [..., 2, 2], zero where they are not measured, and whether they are [..., 2]. None: no hand is.
+    hand_tilts: Array | None = None
+    hands_measured: NDArray[np.bool_] | None = None
+
+    def with_hands(self, tilts: Array, measured: NDArray[np.bool_]) -> "Body":
+        """The same body with these tilts [..., 2, 2] of its hands, where they are measured [..., 2]."""
+        return replace(self, hand_tilts=np.where(measured[..., None], tilts, 0.0), hands_measured=measured)
 
 
 def body_from_calibration(eye_height: Array, arm_span: Array, proportions: dict[str, Any] | None = None) -> Body:

@@ -54,7 +54,7 @@ def to_heading(positions: Array, rotations: Array) -> tuple[Array, Array, Array,
 
 
 def solve(positions: Array, rotations: Array, body: Body, parameters: dict[str, Any] | None = None) -> Array:
-    """The six estimated joints [F, 6, 3] from tracked points in the heading frame; body: one for all, or one per frame."""
+    """The six estimated joints [F, 6, 3] from tracked points in the heading frame, hands turned by their tilts; body: one for all, or one per frame."""
     k = parameters or load_parameters()
     e, a = body.eye_height, body.arm
     headset, wrists = positions[:, 0], positions[:, 1:]
@@ -93,7 +93,8 @@ def solve(positions: Array, rotations: Array, body: Body, parameters: dict[str, 
 
     rest = body.shoulder - body.clavicle_root
     clavicle_length = np.linalg.norm(rest, axis=-1, keepdims=True)
-    clavicle, pole = np.array(k["clavicle"]), np.array(k["pole"])
+    clavicle, pole, measured_pole = (np.array(k[name]) for name in ("clavicle", "pole", "measuredPole"))
+    measured = np.zeros(2, bool) if body.hands_measured is None else body.hands_measured
     one = np.ones_like(neck[:, :1])
     elbows, shoulders = [], []
     for side, sign in ((0, -1.0), (1, 1.0)):
@@ -113,7 +114,8 @@ def solve(positions: Array, rotations: Array, body: Body, parameters: dict[str, 
         hand = quaternion.to_matrix(rotations[:, 1 + side])
         q = in_chest(wrist - shoulder) / a
         columns = np.concatenate([one, q, in_chest(hand[..., :, 1]), in_chest(hand[..., :, 2])], -1)
-        direction = _apply(chest, (columns @ pole.T) * mirror)
+        direction = np.where(measured[..., side, None], columns @ measured_pole.T, columns @ pole.T)
+        direction = _apply(chest, direction * mirror)
         elbows.append(two_bone_elbow(shoulder, wrist, body.upper_arm, body.forearm, direction, chest=chest))
         shoulders.append(shoulder)
     return np.stack([*elbows, *shoulders, chest_joint, hips], axis=1)

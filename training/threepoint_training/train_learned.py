@@ -7,7 +7,7 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from . import quaternion
+from . import hand_tilt, quaternion
 from .augment import AugmentConfig, BodyParts, draw_batch
 from .chest_features import CHEST_FEATURES
 from .complete_hands import carry_with_head, complete_hands
@@ -16,7 +16,7 @@ from .features import FEATURES, frame_features
 from .model import CorrectionNetwork
 from .prepared_corpus import PreparedCorpus
 from .residual import OUTPUTS, network_input, residual
-from .simulate_trackers import TrackerConfig, draw_wearer, simulate
+from .simulate_trackers import TrackerConfig, Wearer, draw_wearer, measured_tilts, simulate
 from .skeleton import Body, body_from_calibration
 from .subject_effects import SubjectEffects
 
@@ -84,15 +84,23 @@ class Condition:
     seated: float = 0.0
     # The headset looks down by so much when its wearer looks straight ahead [rad].
     tilt: float = 0.0
+    # The guided calibration has measured the hands' tilts; and its wearer bent the wrists inwards by so much meanwhile [rad].
+    hands_measured: bool = True
+    bent_wrists: float = 0.0
 
 
 def held_out(
     corpus: PreparedCorpus, people: tuple[str, ...], window_seconds: tuple[float, ...], seed: int = 1, condition: Condition = Condition()
 ) -> HeldOut:
-    """All frames of these people with the calibration they would have."""
+    """All frames of these people with the calibration they would have.
+
+    Tilts of hands are measured by the true forearms of the other clips of the same person (of one clip alone: by its own), with the
+    calibration's error.
+    """
     trackers = TrackerConfig()
     down = np.array([0.0, 1.0, 0.0])
     tilt = quaternion.from_rotation_vector(np.array([-condition.tilt, 0.0, 0.0]))
+    forearms = hand_tilt.ForearmMeans(corpus, people)
     rows = []
     for number, name in enumerate(people):
         person = corpus.people[name]
@@ -109,6 +117,7 @@ def held_out(
         for clip in corpus.clips_of({name}):
             frames = corpus.clip_slice(clip)
             random = np.random.default_rng([seed, 1, clip])
+            body = _with_measured_hands(body, forearms.elsewhere(clip), wearer, trackers, condition, np.random.default_rng([seed, 2, number]))
             positions, rotations = simulate(corpus.positions[frames], corpus.rotations[frames], wearer, trackers, random)
             truth = corpus.truth(frames).astype(np.float64)
             count = len(truth)
@@ -121,7 +130,7 @@ def held_out(
             vector, _ = frame_features(positions, rotations, body, ~lost)
             rows.append(
                 (
-                    network_input(vector, np.arange(count) / corpus.rate_hz, window_seconds).astype(np.float32),
+                    network_input(vector, np.arange(count) / corpus.rate_hz, window_seconds, body).astype(np.float32),
                     residual(truth, positions, rotations, body, vector).astype(np.float32),
                     np.full(count, eye_height),
                     np.full(count, name),
@@ -129,6 +138,16 @@ def held_out(
                 )
             )
     return HeldOut(*(np.concatenate(column) for column in zip(*rows, strict=True)))
+
+
+def _with_measured_hands(
+    body: Body, tilts: Array, wearer: Wearer, trackers: TrackerConfig, condition: Condition, random: np.random.Generator
+) -> Body:
+    """The body with what the guided calibration measures of hands with these tilts [2, 2], as far as it is believed."""
+    if not condition.hands_measured:
+        return body
+    measured = measured_tilts(tilts, wearer.hand_turns, trackers, random) + np.array([condition.bent_wrists, 0.0])
+    return body.with_hands(measured, hand_tilt.believed(measured))
 
 
 def _lose_hand(positions: Array, rotations: Array, hand: int, rate_hz: int, body: Body) -> tuple[Array, Array, NDArray[np.bool_]]:

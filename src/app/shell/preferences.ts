@@ -1,9 +1,15 @@
 import * as v from 'valibot';
 import { calibrationComplaint } from '../../core/body/calibration';
 import { estimatorNames } from '../../core/estimation/pose-estimator';
+import { handTiltsSchema } from '../../core/study/validation';
 
 const calibration = v.pipe(
-  v.object({ eyeHeight: v.number(), armSpan: v.number(), gazePitch: v.optional(v.number()) }),
+  v.object({
+    eyeHeight: v.number(),
+    armSpan: v.number(),
+    gazePitch: v.optional(v.number()),
+    handTilts: v.optional(handTiltsSchema),
+  }),
   v.check((measures) => calibrationComplaint(measures) === null, 'no person measures that'),
 );
 

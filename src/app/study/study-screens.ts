@@ -176,7 +176,7 @@ function calibrationScreen(
     id: 'calibration',
     title: 'Your measures',
     text: [
-      'Stand straight inside the marked zone, look ahead and stretch both arms forward when the countdown begins.',
+      'Stand straight inside the marked zone, look ahead and stretch both arms forward, wrists straight, when the countdown begins.',
       'Point at the button and pull the trigger, or touch it.',
     ],
     buttons: [{ id: 'calibrate', label: 'Measure me', look: 'primary', act: actions.calibrate }, pauseButton(actions)],

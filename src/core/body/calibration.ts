@@ -1,3 +1,5 @@
+import type { HandTilts } from './hand-tilt';
+
 /** What the user tells us, or two seconds of standing still reveal, about their body. */
 export interface Calibration {
   /** Height [m] of the headset's origin (between the eyes) above the floor, standing upright and looking ahead. */
@@ -9,6 +11,8 @@ export interface Calibration {
    * measured, and taken for level.
    */
   readonly gazePitch?: number | undefined;
+  /** How each hand stands to its forearm. Absent: not measured, and the hand's frame is taken as the device gives it. */
+  readonly handTilts?: HandTilts | undefined;
 }
 
 /** The steepest tilt of a headset that is believed [rad]; a wearer who seems to wear it steeper was not looking ahead. */

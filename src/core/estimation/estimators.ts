@@ -16,6 +16,7 @@ export const needsRegressor = (name: EstimatorName): name is NetworkName => name
 
 /** Inverse kinematics alone: the competitor that the networks are measured against, with the same calibration. */
 const ikAlone: JointSource = {
+  takesHandTilts: true,
   network: null,
   calibrate: () => undefined,
   reset: () => undefined,

@@ -5,10 +5,6 @@ import type { ModelContract, PoseRegressor } from './pose-regressor';
 
 /** Joints that the trunk network corrects, in its order: left and right shoulder, chest joint, hips; three numbers each. */
 const trunkOutputs = 12;
-/** Reach, its length, axes of the hand, IK's elbow, the room's up, whether the hand is seen. */
-const armInputs = 17;
-/** Of these the columns that stand in the features: the length is computed, and the arm's own length only divides. */
-const armColumns = 17;
 const outputs = 3 * estimatedJoints.length;
 /** Inputs of zeros, with which a network is tried out, must not divide by zero. */
 const shortestArm = 1e-3;
@@ -19,6 +15,11 @@ const shortestArm = 1e-3;
  */
 export class LearnedNetwork {
   readonly #features: number;
+  /**
+   * Reach, its length, axes of the hand, IK's elbow, the room's up, whether the hand is seen (and, of a network that takes tilts, measured). As
+   * many columns stand in the features: the length is computed, and the arm's own length only divides.
+   */
+  readonly #armInputs: number;
   readonly #trunk: Perceptron;
   readonly #arm: Perceptron;
   /** For the body, then for its mirror image: which feature each input is, and its sign. */
@@ -36,10 +37,11 @@ export class LearnedNetwork {
     const features = contract.inputs[0]?.shape.at(-1) ?? 0;
     this.#features = features;
     this.#trunk = new Perceptron(weights, 'trunk', features, trunkOutputs);
-    this.#arm = new Perceptron(weights, 'arm', armInputs, 3);
+    this.#armInputs = weights.get('arm.inputMean')?.shape.at(-1) ?? 0;
+    this.#arm = new Perceptron(weights, 'arm', this.#armInputs, 3);
     this.#columns = Int32Array.from(tensorOf(weights, 'mirrorColumns', 2 * features));
     this.#signs = Float64Array.from(tensorOf(weights, 'mirrorSigns', 2 * features));
-    this.#armColumns = Int32Array.from(tensorOf(weights, 'armColumns', armColumns));
+    this.#armColumns = Int32Array.from(tensorOf(weights, 'armColumns', this.#armInputs));
     const outside = (column: number) => column < 0 || column >= features;
     if (this.#columns.some(outside) || this.#armColumns.some(outside)) {
       throw new Error(`${contract.weights.file}: names columns beyond the ${features} features`);
@@ -80,11 +82,12 @@ export class LearnedNetwork {
   /** The right arm of the body (0) or of its image (1), whose shoulder's correction stands at `shoulder` behind the left one's. */
   #fillArm(body: 0 | 1, shoulder: 0 | 3): void {
     const from = body * this.#features;
-    const to = body * armInputs;
+    const inputs = this.#armInputs;
+    const to = body * inputs;
     const { input } = this.#arm;
     const bodies = this.#bodies;
     const columns = this.#armColumns;
-    const arm = Math.max(shortestArm, bodies[from + columns[armColumns - 1]!]!);
+    const arm = Math.max(shortestArm, bodies[from + columns[inputs - 1]!]!);
     let squares = 0;
     for (let axis = 0; axis < 3; axis++) {
       const mirror = body === 1 && axis === 0 ? -1 : 1;
@@ -94,7 +97,7 @@ export class LearnedNetwork {
       squares += reach * reach;
     }
     input[to + 3] = Math.sqrt(squares);
-    for (let index = 4; index < armInputs; index++) input[to + index] = bodies[from + columns[index - 1]!]!;
+    for (let index = 4; index < inputs; index++) input[to + index] = bodies[from + columns[index - 1]!]!;
   }
 
   /** To each elbow what its arm adds; the left one was computed as the right one of the image. */

@@ -47,6 +47,7 @@ export function createPaper(regressor: PoseRegressor): JointSource {
   };
 
   return {
+    takesHandTilts: true,
     network,
     calibrate: () => undefined,
     reset() {

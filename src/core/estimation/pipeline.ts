@@ -15,13 +15,14 @@ import { HeadsetPitch } from './headset-pitch';
 import { makeJoints } from './joint-positions';
 import type { JointSource, SolvedFrame } from './joint-source';
 import type { Estimate, EstimatorName, InferenceRequest, PoseEstimator } from './pose-estimator';
-import { makeIkSolution, makeThreePoints, solveIk } from './solve-ik';
+import { makeIkSolution, makeThreePoints, solveIk, turnHands } from './solve-ik';
 
 /** A gap longer than this [s] is no motion: filters and memories begin anew. */
 const longestGapSeconds = 0.5;
 
 /** The wearer's body, measured in the ways that the stages need. */
-function measure(calibration: Calibration) {
+function measure({ handTilts, ...sizes }: Calibration, { takesHandTilts }: JointSource) {
+  const calibration = takesHandTilts ? { ...sizes, handTilts } : sizes;
   const skeleton = skeletonFromCalibration(calibration);
   return {
     chestSpace: chestSpaceBody(calibration),
@@ -84,7 +85,7 @@ export class Pipeline implements PoseEstimator {
     this.name = name;
     this.source = source;
     this.#pitch = new HeadsetPitch(calibration);
-    this.#body = measure(calibration);
+    this.#body = measure(calibration, source);
     const { network } = source;
     this.#estimate = {
       pose: { head: noHead, leftHand: null, rightHand: null, body: makeUpperBodyPose() },
@@ -94,7 +95,7 @@ export class Pipeline implements PoseEstimator {
 
   calibrate(calibration: Calibration): void {
     this.#pitch.calibrate(calibration);
-    this.#body = measure(calibration);
+    this.#body = measure(calibration, this.source);
     this.source.calibrate(this.#body.chestSpace);
   }
 
@@ -152,6 +153,7 @@ export class Pipeline implements PoseEstimator {
     transformPose(this.#headingFromFloor, head, solved.points.head);
     transformPose(this.#headingFromFloor, leftHand, solved.points.leftHand);
     transformPose(this.#headingFromFloor, rightHand, solved.points.rightHand);
+    turnHands(solved.points, this.#body.chestSpace);
     solveIk(solved.points, this.#body.chestSpace, solved.ik);
     floorFromHeading(head, solved.floorFromHeading);
     rotate(solved.floorFromHeading.orientation, solved.ik.poles.left, this.#poles.left);

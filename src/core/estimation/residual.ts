@@ -4,7 +4,7 @@ import { type ChestSpaceBody, chestSpaceBody } from '../body/skeleton';
 import { smoothingFactor } from '../math/damper';
 import { transformPoint } from '../math/pose';
 import { add, copyVec3, lerp, scale, setVec3 } from '../math/vec3';
-import { chestFeatureCount, chestFeatures, headingFromChest } from './chest-features';
+import { chestFeatureCount, chestFeatures, headingFromChest, measuredHandCount } from './chest-features';
 import { FeatureWindow, featureCount, frameFeatures } from './features';
 import { copyJoints, type MutableJointPositions, makeJoints } from './joint-positions';
 import type { JointNetwork, JointSource, SolvedFrame } from './joint-source';
@@ -19,11 +19,16 @@ const defaultHalfLife = 0.04;
 export const learnedInputCount = (windowSeconds: readonly number[]): number =>
   windowSeconds.length * featureCount + chestFeatureCount;
 
+/** The same for a network that was made before hands were measured. */
+export const inputCountWithoutHandTilts = (windowSeconds: readonly number[]): number =>
+  learnedInputCount(windowSeconds) - measuredHandCount;
+
 /**
  * Our network: the residual of the IK solution, seen from the chest of the frame it was asked about. It is damped in the heading frame
  * and added to the IK of the current frame, so that neither the filter nor a late answer delays what follows head and hands.
  */
 class Residual implements JointSource, JointNetwork {
+  readonly takesHandTilts: boolean;
   readonly #regressor: PoseRegressor;
   readonly #window: FeatureWindow;
   readonly #input: Float32Array;
@@ -40,11 +45,13 @@ class Residual implements JointSource, JointNetwork {
   #known = false;
 
   constructor(calibration: Calibration, regressor: PoseRegressor) {
-    const { windowSeconds } = regressor.contract;
+    const { windowSeconds, inputs } = regressor.contract;
+    const count = inputs[0]?.shape.at(-1) ?? 0;
+    this.takesHandTilts = count === learnedInputCount(windowSeconds);
     this.#regressor = regressor;
     this.#body = chestSpaceBody(calibration);
     this.#window = new FeatureWindow(Math.max(...windowSeconds));
-    this.#input = new Float32Array(learnedInputCount(windowSeconds));
+    this.#input = new Float32Array(count);
     this.#inference = new LatestResult(
       regressor,
       (output) => this.#learn(output),
@@ -120,8 +127,9 @@ class Residual implements JointSource, JointNetwork {
   /** Writes the network's input for the newest frame, and remembers the chest from which it asks. */
   #fillInput({ points, ik }: SolvedFrame): void {
     const input = this.#input;
-    this.#window.read(this.#regressor.contract.windowSeconds, input);
-    chestFeatures(points, ik, this.#body, input, input.length - chestFeatureCount);
+    const { windowSeconds } = this.#regressor.contract;
+    this.#window.read(windowSeconds, input);
+    chestFeatures(points, ik, this.#body, input, windowSeconds.length * featureCount);
     copyVec3(ik.chest.x, this.#askedFrom.x);
     copyVec3(ik.chest.y, this.#askedFrom.y);
     copyVec3(ik.chest.z, this.#askedFrom.z);

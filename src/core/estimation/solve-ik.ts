@@ -3,7 +3,7 @@ import { type ChestSpaceBody, sideSign } from '../body/skeleton';
 import { elbowCircle, elbowOnCircle, makeElbowCircle, poleAcross } from '../body/two-bone-ik';
 import { clamp } from '../math/damper';
 import { type MutablePose, makePose, type Pose } from '../math/pose';
-import { fromAxes, fromAxisAngle, quat, rotate, rotateInverse } from '../math/quat';
+import { fromAxes, fromAxisAngle, multiply, quat, rotate, rotateInverse } from '../math/quat';
 import type { Side } from '../math/side';
 import {
   add,
@@ -40,6 +40,13 @@ export const makeThreePoints = (): { readonly [point in keyof ThreePoints]: Muta
   leftHand: makePose(),
   rightHand: makePose(),
 });
+
+/** Turns both hands as they were measured, so that their −Z continues the forearm; a hand that was not measured stays as it is. */
+export function turnHands(points: ReturnType<typeof makeThreePoints>, { handTurns }: ChestSpaceBody): void {
+  const { leftHand, rightHand } = points;
+  if (handTurns.left) multiply(leftHand.orientation, handTurns.left, leftHand.orientation);
+  if (handTurns.right) multiply(rightHand.orientation, handTurns.right, rightHand.orientation);
+}
 
 /** The axes of the chest, unit: from the left to the right shoulder, up the spine, backward. */
 export interface ChestAxes {
@@ -109,7 +116,7 @@ const fallbackPoles: readonly [MutableVec3, MutableVec3] = [vec3(0, 0, 0), vec3(
 
 /**
  * Stage 2: the six joints from head and wrists: spine bend, pelvis under the head, clavicles and two-bone arms with an
- * anatomical swivel. The numbered steps are those of docs/estimation.md.
+ * anatomical swivel, from hands that are turned as they were measured (`turnHands`). The numbered steps are those of docs/estimation.md.
  */
 export function solveIk(points: ThreePoints, body: ChestSpaceBody, target: IkSolution = makeIkSolution()): IkSolution {
   headJointOf(points.head, body.eyesInHead, headJoint);
@@ -192,7 +199,8 @@ function placeArm(side: Side, wrist: Pose<'heading'>, body: ChestSpaceBody, { jo
   writeTo(handFeatures, 4, inChest(rotate(wrist.orientation, up, a), sigma, a));
   writeTo(handFeatures, 7, inChest(rotate(wrist.orientation, backward, a), sigma, a));
   const pole = side === 'left' ? poles.left : poles.right;
-  rotate(chest, mirror(affine(parameters.pole, handFeatures, pole), sigma), pole);
+  const rows = body.handTurns[side] ? parameters.measuredPole : parameters.pole;
+  rotate(chest, mirror(affine(rows, handFeatures, pole), sigma), pole);
   scale(thoraxUp, -1, fallbackPoles[0]);
   rotate(chest, backward, fallbackPoles[1]);
   elbowCircle(shoulder, wrist.position, body.armBones, fallbackPoles[0], circle);

@@ -174,8 +174,14 @@ function demographics(at: Moment, event: EventOf<'demographics'>): Advance | nul
 function calibrated(at: Moment, { calibration }: EventOf<'calibrated'>): Advance | null {
   const { place } = at;
   if (at.step.kind !== 'calibration' || !place) return null;
-  const { eyeHeight, armSpan, gazePitch } = calibration;
-  const body = { place, eyeHeight, armSpan, ...(gazePitch !== undefined && { gazePitch }) };
+  const { eyeHeight, armSpan, gazePitch, handTilts } = calibration;
+  const body = {
+    place,
+    eyeHeight,
+    armSpan,
+    ...(gazePitch !== undefined && { gazePitch }),
+    ...(handTilts !== undefined && { handTilts }),
+  };
   return at.moveOn(at.progress, [{ ...at.envelope, kind: 'calibration', id: at.recordId('calibration'), body }]);
 }
 

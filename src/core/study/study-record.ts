@@ -8,7 +8,16 @@ import {
   questionnaires,
 } from './questionnaires';
 import { checkedOutcome } from './trial-log';
-import { checked, identifier, integerBetween, numberBetween, participantId, text, ValidationError } from './validation';
+import {
+  checked,
+  handTiltsSchema,
+  identifier,
+  integerBetween,
+  numberBetween,
+  participantId,
+  text,
+  ValidationError,
+} from './validation';
 
 /** Of what is sent and stored; grows with every change of meaning. */
 export const recordVersion = 1;
@@ -56,6 +65,7 @@ const bodies = {
     armSpan: numberBetween(0.3, 2.5),
     /** Absent: not measured. */
     gazePitch: v.optional(numberBetween(-0.5, 0.5)),
+    handTilts: v.optional(handTiltsSchema),
   }),
   trial: v.object({
     place: placeSchema,

@@ -1,6 +1,6 @@
 import * as v from 'valibot';
 import type { Calibration } from '../body/calibration';
-import { checked, integerBetween, numberBetween, text } from './validation';
+import { checked, handTiltsSchema, integerBetween, numberBetween, text } from './validation';
 
 /** Of what is recorded per trial; grows with every change of meaning. */
 export const trialVersion = 1;
@@ -73,6 +73,7 @@ const outcomeSchema = v.object({
       eyeHeight: numberBetween(0.3, 2.5),
       armSpan: numberBetween(0.3, 2.5),
       gazePitch: v.optional(numberBetween(-0.5, 0.5)),
+      handTilts: v.optional(handTiltsSchema),
     }),
   ),
   tracking: v.object({ head: lossSchema, leftHand: lossSchema, rightHand: lossSchema }),

@@ -88,3 +88,8 @@ export const integerBetween = (min: number, max: number) =>
     v.minValue(min, wholeBetween(min, max)),
     v.maxValue(max, wholeBetween(min, max)),
   );
+
+const handTilt = v.object({ pitch: numberBetween(-1, 1), yaw: numberBetween(-1, 1) });
+
+/** How hands stand to their forearms [rad], of each hand that was measured. */
+export const handTiltsSchema = v.object({ left: v.optional(handTilt), right: v.optional(handTilt) });

@@ -1,10 +1,11 @@
 import { type Calibration, calibrationComplaint, steepestGazePitch } from '../body/calibration';
+import { type HandTilts, handTiltOf, isBelievableTilt } from '../body/hand-tilt';
 import { sideSign, skeletonFromCalibration } from '../body/skeleton';
 import { clamp } from '../math/damper';
-import { type TrackedPose, transformPoint } from '../math/pose';
-import { rotate } from '../math/quat';
+import { makePose, type Pose, type TrackedPose, transformPose } from '../math/pose';
+import { rotate, rotateInverse } from '../math/quat';
 import type { Side } from '../math/side';
-import { add, addScaled, distance, forward, length, subtract, type Vec3, vec3 } from '../math/vec3';
+import { add, addScaled, distance, forward, length, normalise, scale, subtract, type Vec3, vec3 } from '../math/vec3';
 import { headingFromFloor } from './heading';
 import type { TrackingFrame } from './tracking-frame';
 
@@ -18,9 +19,9 @@ interface Sample {
   readonly head: Vec3;
   /** Elevation of the gaze as a sine. */
   readonly gaze: number;
-  /** Wrists in the heading frame; null: not seen. */
-  readonly left: Vec3 | null;
-  readonly right: Vec3 | null;
+  /** Wrists; null: not seen. */
+  readonly left: Pose<'heading'> | null;
+  readonly right: Pose<'heading'> | null;
 }
 
 export type GuidedCalibration =
@@ -49,8 +50,8 @@ export function stepGuidedCalibration(state: GuidedCalibration, frame: TrackingF
 
 function sampleOf({ head, leftHand, rightHand }: TrackingFrame): Sample {
   const fromFloor = headingFromFloor(head);
-  const wrist = (hand: TrackedPose | null): Vec3 | null =>
-    hand?.tracking === 'tracked' ? transformPoint(fromFloor, hand.position) : null;
+  const wrist = (hand: TrackedPose | null): Pose<'heading'> | null =>
+    hand?.tracking === 'tracked' ? transformPose(fromFloor, hand, makePose<'heading'>()) : null;
   return {
     head: head.position,
     gaze: rotate(head.orientation, forward).y,
@@ -85,6 +86,16 @@ const PROTRACTION = 0.018;
 // A wearer who reads a sheet beside them does not look where the arms point: then the gaze says nothing about the headset's tilt.
 const LOOKING_AHEAD = Math.PI / 18;
 
+// The length of the mean of unit vectors that lie 12° from it.
+const STEADY_HAND = 0.978;
+
+/** A wrist in the heading frame: its middle, and where it was seen. */
+interface MeasuredWrist {
+  readonly side: Side;
+  readonly position: Vec3;
+  readonly seen: readonly Pose<'heading'>[];
+}
+
 const failed = (reason: string): GuidedCalibration => ({ kind: 'failed', reason });
 
 function measure(samples: readonly Sample[]): GuidedCalibration {
@@ -98,16 +109,16 @@ function measure(samples: readonly Sample[]): GuidedCalibration {
   if (Math.abs(gaze) > STEEPEST_GAZE) {
     return failed('You looked up or down. Look straight ahead.');
   }
-  const wrists: { side: Side; position: Vec3 }[] = [];
+  const wrists: MeasuredWrist[] = [];
   for (const side of ['left', 'right'] as const) {
     const seen = samples.map((sample) => sample[side]).filter((wrist) => wrist !== null);
     const part = seen.length / samples.length;
     if (part === 0) continue;
     if (part < SEEN) return failed(`Your ${side} hand was not seen all the time. Hold it where you can see it.`);
-    const position = middleOf(seen);
-    const sway = seen.reduce((sum, wrist) => sum + distance(wrist, position), 0) / seen.length;
+    const position = middleOf(seen.map((wrist) => wrist.position));
+    const sway = seen.reduce((sum, wrist) => sum + distance(wrist.position, position), 0) / seen.length;
     if (sway > HAND_SWAY) return failed('Your hands moved. Hold them still for two seconds.');
-    wrists.push({ side, position });
+    wrists.push({ side, position, seen });
   }
   // One hand that is never seen may be missing: the other one's arm then stands for both.
   if (wrists.length === 0) return failed('Your hands were not seen. Hold them where you can see them.');
@@ -148,6 +159,7 @@ function measure(samples: readonly Sample[]): GuidedCalibration {
     eyeHeight,
     armSpan: 2 * (arm + shoulder.x),
     ...(gazePitch !== null && { gazePitch: clamp(gazePitch, -steepestGazePitch, steepestGazePitch) }),
+    ...tiltsOf(wrists, head.y, eyeHeight),
   };
   const complaint = calibrationComplaint(calibration);
   return complaint === null
@@ -160,14 +172,35 @@ function measure(samples: readonly Sample[]): GuidedCalibration {
  * high now, which for a seated wearer is less than their eye height.
  */
 function reachOf(side: Side, wrist: Vec3, headHeight: number, eyeHeight: number): number | null {
-  const sigma = sideSign(side);
+  const arm = armTo(side, wrist, headHeight, eyeHeight);
+  return arm && length(arm);
+}
+
+/** The same arm from its shoulder to the wrist. */
+function armTo(side: Side, wrist: Vec3, headHeight: number, eyeHeight: number): Vec3 | null {
   const shoulder = add(restShoulder(side, eyeHeight), vec3(0, headHeight - eyeHeight, 0));
   const arm = subtract(wrist, shoulder);
   const reach = length(arm);
-  if (reach < 1e-6) return 0;
-  if (sigma * arm.x > 0.8 * reach) return reach;
+  if (reach < 1e-6 || sideSign(side) * arm.x > 0.8 * reach) return arm;
   if (-arm.z < 0.7 * reach) return null;
-  return length(subtract(wrist, addScaled(shoulder, forward, PROTRACTION * eyeHeight)));
+  return subtract(wrist, addScaled(shoulder, forward, PROTRACTION * eyeHeight));
+}
+
+/** How each hand stands to its arm, which is straight; a hand that turned meanwhile, or whose wrist was bent, is left as it is. */
+function tiltsOf(wrists: readonly MeasuredWrist[], headHeight: number, eyeHeight: number): { handTilts?: HandTilts } {
+  const handTilts: { -readonly [Hand in keyof HandTilts]: HandTilts[Hand] } = {};
+  for (const { side, position, seen } of wrists) {
+    const arm = armTo(side, position, headHeight, eyeHeight);
+    if (!arm) continue;
+    const direction = normalise(arm, forward);
+    const forearm = scale(
+      seen.reduce((sum, { orientation }) => add(sum, rotateInverse(orientation, direction)), vec3(0, 0, 0)),
+      1 / seen.length,
+    );
+    const tilt = handTiltOf(forearm);
+    if (length(forearm) > STEADY_HAND && isBelievableTilt(tilt)) handTilts[side] = tilt;
+  }
+  return Object.keys(handTilts).length > 0 ? { handTilts } : {};
 }
 
 /** Whether both arms point where the head does; wrists in the heading frame. Arms stretched sideways do as well. */

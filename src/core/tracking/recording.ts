@@ -1,5 +1,6 @@
 import type { Calibration } from '../body/calibration';
 import { type Fingers, fingerNames, type HandShape, limitBend, makeHandShape, mixHandShape } from '../body/hand-shape';
+import type { HandTilts } from '../body/hand-tilt';
 import { clamp } from '../math/damper';
 import type { TrackedPose } from '../math/pose';
 import { slerp } from '../math/quat';
@@ -106,11 +107,25 @@ const isRecord = (value: unknown): value is Record<string, unknown> =>
 
 const isFiniteNumber = (value: unknown): value is number => typeof value === 'number' && Number.isFinite(value);
 
+/** Tilts of the hands that have one; null: of none. */
+function parseHandTilts(value: unknown): HandTilts | null {
+  if (!isRecord(value)) return null;
+  const tiltOf = (tilt: unknown) =>
+    isRecord(tilt) && isFiniteNumber(tilt.pitch) && isFiniteNumber(tilt.yaw)
+      ? { pitch: tilt.pitch, yaw: tilt.yaw }
+      : null;
+  const [left, right] = [tiltOf(value.left), tiltOf(value.right)];
+  return left || right ? { ...(left && { left }), ...(right && { right }) } : null;
+}
+
 function parseCalibration(value: unknown): Calibration | null {
   if (value === null || value === undefined) return null;
   if (isRecord(value) && isFiniteNumber(value.eyeHeight) && isFiniteNumber(value.armSpan)) {
     const { eyeHeight, armSpan, gazePitch } = value;
-    if (eyeHeight > 0 && armSpan > 0) return { eyeHeight, armSpan, ...(isFiniteNumber(gazePitch) && { gazePitch }) };
+    const handTilts = parseHandTilts(value.handTilts);
+    if (eyeHeight > 0 && armSpan > 0) {
+      return { eyeHeight, armSpan, ...(isFiniteNumber(gazePitch) && { gazePitch }), ...(handTilts && { handTilts }) };
+    }
   }
   throw new Error('The recording’s calibration is neither null nor an eye height and an arm span in metres.');
 }

@@ -1,7 +1,8 @@
 import { readFileSync } from 'node:fs';
 import type { Calibration } from '../../../src/core/body/calibration';
+import type { ChestSpaceBody } from '../../../src/core/body/skeleton';
 import type { SeenHands } from '../../../src/core/estimation/features';
-import { makeThreePoints, type ThreePoints } from '../../../src/core/estimation/solve-ik';
+import { makeThreePoints, type ThreePoints, turnHands } from '../../../src/core/estimation/solve-ik';
 import { type Pose, transformPose } from '../../../src/core/math/pose';
 import type { Quat } from '../../../src/core/math/quat';
 import type { Vec3 } from '../../../src/core/math/vec3';
@@ -81,12 +82,13 @@ export function goldenPoints({ positions, rotations, seen }: GoldenCase['frames'
   };
 }
 
-/** The same as IK sees them. */
-export function pointsInHeading({ head, leftHand, rightHand }: GoldenPoints): ThreePoints {
+/** The same as IK sees them on this body. */
+export function pointsInHeading({ head, leftHand, rightHand }: GoldenPoints, body: ChestSpaceBody): ThreePoints {
   const points = makeThreePoints();
   const transform = headingFromFloor(head);
   transformPose(transform, head, points.head);
   transformPose(transform, leftHand, points.leftHand);
   transformPose(transform, rightHand, points.rightHand);
+  turnHands(points, body);
   return points;
 }

@@ -33,7 +33,7 @@ describe.each(cases)('TypeScript agrees with Python for eyes at $calibration.eye
   test('the IK solution in the floor frame', () => {
     for (const frame of golden.frames) {
       const points = goldenPoints(frame);
-      const { joints } = solveIk(pointsInHeading(points), body);
+      const { joints } = solveIk(pointsInHeading(points, body), body);
       transformJoints(floorFromHeading(points.head), joints, joints);
       estimatedJoints.forEach((joint, index) => {
         const { x, y, z } = joints[joint];
@@ -47,7 +47,7 @@ describe.each(cases)('TypeScript agrees with Python for eyes at $calibration.eye
     const input = new Float32Array(golden.window.length * featureCount + chestFeatureCount);
     golden.frames.forEach((frame, index) => {
       const seen = goldenPoints(frame);
-      const points = pointsInHeading(seen);
+      const points = pointsInHeading(seen, body);
       const solution = solveIk(points, body);
       const features = frameFeatures(points, seen.seen, solution.joints, body, window.push(frame.time));
       expect(features.length).toBe(featureCount);

@@ -238,4 +238,47 @@ describe('the guided calibration', () => {
       expect(state.calibration).not.toHaveProperty('gazePitch');
     });
   });
+
+  describe('the tilts of the hands', () => {
+    const still = stretched(person, 'forward');
+    /** Both hands turned in their own frames while the arms point ahead. */
+    const held = (left: Quat, right: Quat) => ({
+      ...still,
+      leftHand: pose(still.leftHand!.position, left),
+      rightHand: pose(still.rightHand!.position, right),
+    });
+    const tiltsOf = (state: GuidedCalibration) => {
+      if (state.kind !== 'done') throw new Error('not measured');
+      return state.calibration.handTilts;
+    };
+
+    test('are how controllers are held, arms and wrists straight', () => {
+      const state = guide(() => held(fromAxisAngle(right, -0.4), fromAxisAngle(up, 0.3)));
+      const tilts = tiltsOf(state);
+      // The arms point a little inward or outward of straight ahead: the shoulders are the average body's.
+      expect(Math.abs((tilts?.left?.pitch ?? 9) - 0.4)).toBeLessThan(0.1);
+      expect(Math.abs(tilts?.left?.yaw ?? 9)).toBeLessThan(0.1);
+      expect(Math.abs((tilts?.right?.yaw ?? 9) + 0.3)).toBeLessThan(0.1);
+      expect(Math.abs(tilts?.right?.pitch ?? 9)).toBeLessThan(0.1);
+    });
+
+    test('stay unknown of a wrist that is bent further than any hand is held', () => {
+      const tilts = tiltsOf(guide(() => held(fromAxisAngle(right, -1.2), identity)));
+      expect(tilts).not.toHaveProperty('left');
+      expect(tilts).toHaveProperty('right');
+    });
+
+    test('stay unknown of hands that turn meanwhile', () => {
+      const state = guide((seconds) => {
+        const turning = fromAxisAngle(right, 0.6 * Math.sin(6 * seconds));
+        return held(turning, turning);
+      });
+      expect(tiltsOf(state)).toBeUndefined();
+    });
+
+    test('a hand that is not seen has none', () => {
+      const state = guide(() => ({ ...held(identity, identity), leftHand: null }));
+      expect(Object.keys(tiltsOf(state) ?? {})).toEqual(['right']);
+    });
+  });
 });

@@ -12,7 +12,7 @@ import {
   writeRecording,
 } from '../../../src/core/tracking/recording';
 import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
-import { number, rotation, seed, vector } from '../arbitraries';
+import { evenly, number, rotation, seed, vector } from '../arbitraries';
 
 const tracked: fc.Arbitrary<TrackedPose> = fc.record({
   position: vector(10),
@@ -32,10 +32,22 @@ const hand = fc.record({
   pinch: fc.integer({ min: 0, max: 10_000 }).map((steps) => steps / 1e4),
 });
 
+const tilt = fc.record({ pitch: evenly(-1, 1), yaw: evenly(-1, 1) });
+
 const recording: fc.Arbitrary<Recording> = fc.record({
   device: fc.string(),
   rateHz: number(1, 144),
-  calibration: fc.option(fc.record({ eyeHeight: number(0.9, 2.2), armSpan: number(0.6, 2.3) })),
+  calibration: fc.option(
+    fc.record(
+      {
+        eyeHeight: number(0.9, 2.2),
+        armSpan: number(0.6, 2.3),
+        gazePitch: evenly(-0.2, 0.2),
+        handTilts: fc.record({ left: tilt, right: tilt }, { requiredKeys: ['left'] }),
+      },
+      { requiredKeys: ['eyeHeight', 'armSpan'] },
+    ),
+  ),
   frames: fc
     .array(
       fc.record({

@@ -1,0 +1,105 @@
+"""Facts about how hands stand to their forearms."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from threepoint_training import fit_ik, hand_tilt, quaternion, solve_ik, train_learned
+from threepoint_training.chest_features import MEASURED
+from threepoint_training.features import FEATURES, frame_features
+from threepoint_training.generated_motion import generate_corpus
+from threepoint_training.kinematic_limits import LIMB
+from threepoint_training.simulate_trackers import TrackerConfig, measured_tilts
+from threepoint_training.skeleton import body_from_calibration, load_proportions
+
+CORPUS = generate_corpus(people=2, clips=3, frames=90, seed=12)
+BODY = body_from_calibration(np.array(1.6), np.array(1.52))
+RANDOM = np.random.default_rng(3)
+TILTS = RANDOM.normal(size=(50, 2)) * 0.4
+
+
+def worn_off(corpus, left, right):
+    """The same people with hands turned against their forearms."""
+    turns = quaternion.from_rotation_vector(np.array([[0.0, 0.0, 0.0], left, right]))
+    return replace(corpus, rotations=quaternion.multiply(corpus.rotations.astype(np.float64), turns).astype(np.float32))
+
+
+def test_a_tilt_is_where_its_turn_takes_minus_z():
+    along = np.broadcast_to([0.0, 0.0, -1.0], (50, 3))
+    np.testing.assert_allclose(hand_tilt.tilt_of(quaternion.rotate(hand_tilt.turn_of(TILTS), along)), TILTS, atol=1e-12)
+    up, left = quaternion.rotate(hand_tilt.turn_of(np.array([[0.3, 0.0], [0.0, 0.3]])), along[:2])
+    assert up[1] > 0.2
+    assert left[0] < -0.2
+
+
+def test_a_tracker_that_is_turned_sees_the_tilt_that_undoes_it():
+    """−Z of the tracker, turned by that tilt, lies along the same forearm."""
+    worn = quaternion.from_rotation_vector(RANDOM.normal(size=(50, 3)) * 0.2)
+    along = np.broadcast_to([0.0, 0.0, -1.0], (50, 3))
+    seen = quaternion.multiply(worn, hand_tilt.turn_of(hand_tilt.turned(TILTS, worn)))
+    np.testing.assert_allclose(quaternion.rotate(seen, along), quaternion.rotate(hand_tilt.turn_of(TILTS), along), atol=1e-12)
+
+
+def test_what_is_measured_of_a_clip_comes_from_the_others():
+    forearms = hand_tilt.ForearmMeans(CORPUS, ("001",))
+    clips = CORPUS.clips_of({"001"})
+    rotations = CORPUS.rotations.copy()
+    rotations[CORPUS.clip_slice(clips[0])] = quaternion.multiply(
+        rotations[CORPUS.clip_slice(clips[0])].astype(np.float64), quaternion.from_rotation_vector(np.array([0.6, 0.0, 0.0]))
+    )
+    changed = hand_tilt.ForearmMeans(replace(CORPUS, rotations=rotations), ("001",))
+    np.testing.assert_array_equal(changed.elsewhere(clips[0]), forearms.elsewhere(clips[0]))
+    assert np.abs(changed.elsewhere(clips[1]) - forearms.elsewhere(clips[1])).max() > 0.1
+
+
+def test_with_exact_tilts_it_does_not_matter_how_hands_are_worn():
+    """But for turns about the forearm, which no calibration of this kind tells."""
+    positions, rotations = (part[:90].astype(np.float64) for part in (CORPUS.positions[:, [4, 7, 10]], CORPUS.rotations))
+    tilts = np.array([[0.3, -0.2], [-0.1, 0.4]])
+    worn = quaternion.conjugate(hand_tilt.turn_of(tilts))
+    turned = rotations.copy()
+    turned[:, 1:] = quaternion.multiply(rotations[:, 1:], np.broadcast_to(worn, (90, 2, 4)))
+    known = np.array([True, True])
+    as_they_are, _ = frame_features(positions, rotations, BODY.with_hands(np.zeros((2, 2)), known))
+    put_right, _ = frame_features(positions, turned, BODY.with_hands(tilts, known))
+    np.testing.assert_allclose(put_right, as_they_are, atol=1e-9)
+
+
+def test_a_bent_wrist_is_not_believed():
+    steepest = LIMB["steepestHandTilt"]
+    assert hand_tilt.believed(np.array([[steepest - 0.01, 0.0], [0.0, -steepest - 0.01]])).tolist() == [True, False]
+    bent = train_learned.held_out(CORPUS, ("001",), (0.0,), condition=train_learned.Condition(bent_wrists=1.5))
+    assert (bent.inputs[:, FEATURES:][:, MEASURED] == 0).all()
+    untold = train_learned.held_out(CORPUS, ("001",), (0.0,), condition=train_learned.Condition(hands_measured=False))
+    np.testing.assert_array_equal(bent.inputs, untold.inputs)
+
+
+def test_the_calibration_errs_by_its_standard_deviation():
+    errors = measured_tilts(np.zeros((4000, 2)), np.broadcast_to([0.0, 0.0, 0.0, 1.0], (4000, 4)), TrackerConfig(), RANDOM)
+    assert np.sqrt((errors**2).sum(axis=1).mean()) == pytest.approx(TrackerConfig().hand_tilt_error, rel=0.05)
+
+
+def test_ik_of_measured_hands_is_fitted_beside_that_of_hands_as_they_come():
+    """Towards bodies that IK itself posed, every other frame with measured hands: each pole is found by its own frames."""
+    positions, rotations, _, _ = solve_ik.to_heading(CORPUS.positions[:, [4, 7, 10]].astype(np.float64), CORPUS.rotations.astype(np.float64))
+    measured = np.broadcast_to(np.arange(len(positions))[:, None] % 2 == 1, (len(positions), 2))
+    body = replace(BODY, hands_measured=measured)
+    truth = solve_ik.solve(positions, rotations, body)
+    frames = fit_ik.Sample(positions, rotations, truth, body, np.full(len(truth), "test"))
+    fitted = fit_ik.fit(frames, fit_ik.FitIkConfig(iterations=8, ridge=1e-7))
+    elbows = fit_ik.errors_cm(frames, fitted)[:, :2].mean()
+    mistaken = replace(frames, body=replace(BODY, hands_measured=~measured))
+    assert elbows < 0.5 * fit_ik.errors_cm(mistaken, fitted)[:, :2].mean()
+    assert fit_ik.unflatten(fit_ik.flatten(fitted)) == fitted
+
+
+def test_a_fit_sees_hands_of_both_kinds():
+    """Proportions are the page's; half of the frames have hands that were measured, and turned by it."""
+    frames = fit_ik.sample(worn_off(CORPUS, [0.5, 0.0, 0.0], [0.5, 0.0, 0.0]), ("001",), load_proportions(), None, 1, mirrored=False)
+    measured = frames.body.hands_measured.all(axis=1)
+    assert measured.mean() == pytest.approx(0.5, abs=0.01)
+    forearms = frames.positions[:, 1] - frames.truth[:, 0]
+    forearms /= np.linalg.norm(forearms, axis=-1, keepdims=True)
+    along = quaternion.rotate(frames.rotations[:, 1], np.broadcast_to([0.0, 0.0, -1.0], forearms.shape))
+    bend = np.degrees(np.arccos(np.clip(np.sum(along * forearms, axis=-1), -1, 1)))
+    assert np.median(bend[measured]) < 0.8 * np.median(bend[~measured])
