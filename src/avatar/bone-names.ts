@@ -15,7 +15,7 @@ export type BoneName =
 /** VRM's names of bones, and what a file calls their nodes. */
 export type BoneMap = Readonly<Partial<Record<BoneName, string>>>;
 
-/** How programs of one kind call the bones of a body. A space stands for whatever parts the words: nothing, `_`, `.`, `-` or a blank. */
+/** How programs of one kind call the bones of a body. A space stands for the separator of words: none, `_`, `.`, `-` or a blank. */
 interface Naming {
   readonly centre: Partial<Readonly<Record<CentreBone, string>>>;
   /** `$` is the side, as `left` and `right` here have it. */
@@ -197,7 +197,7 @@ function prefixesOf(names: Iterable<string>, hips: string): Set<string> {
 }
 
 /**
- * Which nodes are a body's bones, by their names alone and whatever stands before them: the naming that finds the most. Empty where no naming
+ * Which nodes are a body's bones, by their names alone, under any prefix: the naming that finds the most. Empty where no naming
  * finds hips and a head. Names with a number at the end, as Sketchfab writes them (`mixamorig:Hips_01`), are read without it where that finds more.
  */
 export function bonesByName(nodeNames: readonly string[]): BoneMap {

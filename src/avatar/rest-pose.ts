@@ -46,7 +46,7 @@ function standing(hips: Vector3, head: Vector3, toLeft: Vector3): Matrix4 {
   return between(nearest, exact) < mostLean ? nearest : exact;
 }
 
-/** A body's bones while its rest is settled: turned and moved in the world, whatever hangs between them. */
+/** A body's bones while its rest is settled: turned and moved in the world frame, across nodes between them that are no bones. */
 class Resting {
   constructor(
     readonly vrm: VRM,
@@ -218,7 +218,7 @@ function straightenLeg(body: Resting, side: 'left' | 'right'): void {
 
 /**
  * Brings a body from a file to the rest that a rig is read from: upright on the floor, of a body's size, facing +Z, arms straight out to the
- * sides with palms down, legs straight down; whatever its scene was scaled and turned by. Throws a sentence that names the file where the
+ * sides with palms down, legs straight down, under a scene of any scale and rotation. Throws a sentence that names the file where the
  * joints are no body's.
  */
 export function settleRest(vrm: VRM, name: string): void {

@@ -176,7 +176,7 @@ function hold(avatar: Avatar, seconds: number): TrackingFrame {
   return frame;
 }
 
-/** What must be true of a body that is worn, whatever file it came from. */
+/** What must be true of every body that is worn, from any file. */
 function expectBody(body: { loaded: LoadedAvatar; avatar: Avatar }): void {
   for (const second of [1, 11.5, 20]) {
     const { leftHand, rightHand, head } = hold(body.avatar, second);
@@ -325,7 +325,7 @@ describe('a body of other proportions', () => {
     expect(apart(joints.leftUpperArm, joints.rightUpperArm)).toBeLessThan(0.34);
   });
 
-  test('is as high as the top of its head, whatever unit it was made in', async () => {
+  test('is as high as the top of its head, in metres and in centimetres', async () => {
     for (const unit of [1, 100]) {
       const body = await opened({ nameOf: vroid, unit });
       hold(body.avatar, 1);

@@ -15,7 +15,7 @@ export async function answeringHost(
   return { server, folder: `http://127.0.0.1:${(server.address() as AddressInfo).port}/threepoint` };
 }
 
-/** Says this to whatever is asked. */
+/** Gives every request this answer. */
 export const says =
   (status: number, body: string): RequestListener =>
   (_, response) =>

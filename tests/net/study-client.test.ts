@@ -14,7 +14,7 @@ test('a host of files is told from a server that has no such study', async () =>
   await expect(server.study('paper')).rejects.not.toThrow(NoStudyServer);
 });
 
-test('a server that is away for now is unreachable, whatever its proxy says', async () => {
+test('a server that is away for now is unreachable, with a proxy’s page as with our own sentence', async () => {
   for (const body of ['<h1>Bad gateway</h1>', '{"error":"starting"}']) {
     await expect((await clientOf(502, body)).study('paper')).rejects.toThrow(ServerUnreachable);
   }

@@ -41,7 +41,7 @@ test('what the page may ever load is kept, and nothing of a server, of other pag
   ]);
 });
 
-test('each is known by its content, whatever its name', () => {
+test('each is known by its content, not by its name', () => {
   const before = keptFiles(directoryWith(built), manifest);
   const after = keptFiles(directoryWith({ ...built, 'models/learned.onnx': 'better weights' }), manifest);
   const changed = after.filter((file, i) => file.integrity !== before[i]?.integrity);

@@ -48,7 +48,7 @@ function asksForServer(address: string): boolean {
   return searchParams.has('study') || searchParams.get('ep') === 'webgpu';
 }
 
-/** The folder itself and its index.html, whatever the query. */
+/** The folder itself and its index.html, with any query. */
 function isThePage(address: string): boolean {
   const { origin, pathname } = new URL(address);
   const folder = self.registration.scope;

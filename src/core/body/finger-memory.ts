@@ -15,7 +15,7 @@ import {
 export const heldSeconds = 0.5;
 export const relaxHalfLife = 0.25;
 
-/** The fingers of one hand as they are shown: finite in every frame, whatever is seen of them. */
+/** The fingers of one hand as they are shown: finite in every frame, seen, lost or no numbers. */
 export class FingerMemory {
   /** Overwritten by the next `follow`. */
   readonly shape: HandShape;

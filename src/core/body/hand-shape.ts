@@ -160,7 +160,7 @@ export function isFiniteHand(shape: HandShape): boolean {
   return Number.isFinite(shape.pinch);
 }
 
-/** No joint is bent further than a hand's [rad], whatever was tracked or sent. */
+/** The range of motion of a hand's joints [rad], with some room: what is tracked or sent beyond it is wrong. */
 const limits = {
   knuckle: { low: -0.7, high: 1.9 },
   spread: { low: -0.7, high: 1.3 },
