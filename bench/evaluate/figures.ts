@@ -116,14 +116,16 @@ export function addFigures(collection: FigureCollection, clip: string, driven: D
   for (const motion of motions) {
     let least = collection.poses.get(motion)?.unlikeness ?? Number.POSITIVE_INFINITY;
     let best: number | null = null;
-    driven.ik.forEach(({ truth }, row) => {
+    for (const [row, { truth }] of driven.ik.entries()) {
       const now = unlikeness(motion, truth);
-      if (now < least) {
-        least = now;
-        best = row;
-      }
-    });
-    if (best !== null) collection.poses.set(motion, picture(motion, clip, driven, best, rateHz, least));
+      if (!(now < least)) continue;
+      least = now;
+      best = row;
+    }
+    if (best === null) continue;
+    const seconds = rounded(best / rateHz, 2);
+    const bodies = bodiesAt(driven, best);
+    collection.poses.set(motion, { motion, clip, seconds, unlikeness: rounded(least, 3), bodies });
   }
 }
 
@@ -133,14 +135,8 @@ function pointOf(joints: Readonly<Record<string, Vec3>>, name: string): Vec3 {
   return point;
 }
 
-function picture(
-  motion: Motion,
-  clip: string,
-  driven: Driven,
-  row: number,
-  rateHz: number,
-  unlike: number,
-): PictureOfMotion {
+/** The joints of a frame as they were and as each method gives them, in the axes of `PictureOfMotion`. */
+function bodiesAt(driven: Driven, row: number): PictureOfMotion['bodies'] {
   const { truth } = driven.ik[row] as MeasuredFrame;
   const { right, forward } = shoulderFrame(truth);
   const seen = (joints: Readonly<Record<string, Vec3>>): Points =>
@@ -150,11 +146,10 @@ function picture(
         return [name, [dot(from, right), from.y, -dot(from, forward)].map((value) => rounded(value, 4))];
       }),
     ) as unknown as Points;
-  const bodies = {
+  return {
     truth: seen(truth),
     ...Object.fromEntries(measuredMethods.map((name) => [name, seen((driven[name][row] as MeasuredFrame).joints)])),
   } as PictureOfMotion['bodies'];
-  return { motion, clip, seconds: rounded(row / rateHz, 2), unlikeness: rounded(unlike, 3), bodies };
 }
 
 const mean = (values: readonly number[]): number => values.reduce((sum, value) => sum + value, 0) / values.length;
