@@ -1,7 +1,7 @@
 import type { VRM } from '@pixiv/three-vrm';
 import { closePinch } from '../core/body/close-pinch';
 import { FingerMemory } from '../core/body/finger-memory';
-import { fingerFrames, type HandGeometry, makeFingerFrames } from '../core/body/hand-geometry';
+import { fingerFrames, makeFingerFrames } from '../core/body/hand-geometry';
 import { copyHandShape, type HandShape, makeHandShape } from '../core/body/hand-shape';
 import { conjugate, multiply, quat } from '../core/math/quat';
 import type { Side } from '../core/math/side';
@@ -31,10 +31,6 @@ class HandFingers {
   constructor(vrm: VRM, side: Side) {
     this.#side = side;
     this.#rig = readHand(vrm, side);
-  }
-
-  get geometry(): HandGeometry | null {
-    return this.#rig.geometry;
   }
 
   set(shape: HandShape | null): void {
@@ -84,10 +80,5 @@ export class Fingers {
   /** Bends the bones, so long after the last time [s]. */
   update(deltaSeconds: number): void {
     for (const side of sides) this.#hands[side].update(deltaSeconds);
-  }
-
-  /** Of the rig, in its own metres; null: it lacks a bone of a finger. */
-  geometry(side: Side): HandGeometry | null {
-    return this.#hands[side].geometry;
   }
 }

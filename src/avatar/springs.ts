@@ -50,6 +50,7 @@ export class Springs {
   readonly #measures: readonly Measure[];
   /** Time that no step has used up yet [s]. */
   #due = 0;
+  /** The next frame begins from rest: another size, or none before. */
   #rest = true;
   readonly #position = vec3(0, 0, 0);
   readonly #orientation = quat(0, 0, 0, 1);
@@ -62,11 +63,6 @@ export class Springs {
   /** The rig is so many times the size of the file from now on. */
   scaleTo(factor: number): void {
     for (const measure of this.#measures) measure.scale(factor);
-    this.#rest = true;
-  }
-
-  /** From rest in the next frame: the body was hidden, or carried elsewhere. */
-  reset(): void {
     this.#rest = true;
   }
 

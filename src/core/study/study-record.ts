@@ -89,7 +89,6 @@ const bodies = {
 } as const;
 
 export type RecordKind = keyof typeof bodies;
-export const recordKinds = Object.keys(bodies) as readonly RecordKind[];
 
 const envelope = {
   version: v.literal(recordVersion, `expected ${recordVersion}, the version that this program reads`),
