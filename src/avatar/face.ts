@@ -1,5 +1,6 @@
 import { type VRM, VRMLookAt, VRMLookAtBoneApplier, VRMLookAtRangeMap } from '@pixiv/three-vrm';
 import type { Mesh } from 'three';
+import { clamp } from '../core/math/damper';
 import { conjugate, copyQuat, multiply, type Quat, quat, rotate } from '../core/math/quat';
 import { nextRandom, type RandomState } from '../core/math/random';
 import { forward, vec3 } from '../core/math/vec3';
@@ -96,7 +97,7 @@ export class Face {
     // What was looked at, seen from the head as it is turned now: on the way back from its turn, never ahead of it.
     rotate(multiply(conjugate(head, inverse), this.#held, inverse), forward, ahead);
     const yaw = (Math.atan2(-ahead.x, -ahead.z) * 180) / Math.PI;
-    const pitch = (Math.asin(Math.max(-1, Math.min(1, -ahead.y))) * 180) / Math.PI;
+    const pitch = (Math.asin(clamp(-ahead.y, -1, 1)) * 180) / Math.PI;
     const leaps = Math.hypot(yaw, pitch) > widestGaze;
     if (leaps) copyQuat(head, this.#held);
     gaze.yaw = leaps ? 0 : yaw;

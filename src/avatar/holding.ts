@@ -1,5 +1,5 @@
 import { closeRound, distanceToBall, distanceToRod, type Surface } from '../core/body/grasp';
-import { averageHand, type HandGeometry } from '../core/body/hand-geometry';
+import { averageHand, type HandGeometry, mirrorPoint } from '../core/body/hand-geometry';
 import { copyHandShape, type MutableHandShape, makeHandShape } from '../core/body/hand-shape';
 import type { Pose } from '../core/math/pose';
 import { rotateInverse } from '../core/math/quat';
@@ -83,8 +83,8 @@ export class Holding {
     const middle = rotateInverse(wrist.orientation, subtract(at, wrist.position, this.#middle), this.#middle);
     const along = rotateInverse(wrist.orientation, axis, this.#axis);
     if (side === 'left') return;
-    middle.x = -middle.x;
-    along.x = -along.x;
+    mirrorPoint(middle, middle);
+    mirrorPoint(along, along);
   }
 
   #close(side: Side, kind: Kind, radius: number, tube: number, target: MutableHandShape): void {

@@ -1,6 +1,7 @@
 import type { Vector3 } from 'three';
 import type { JointPoses, MutableJointPoses } from '../core/body/forward-kinematics';
 import type { JointName } from '../core/body/joints';
+import { clamp } from '../core/math/damper';
 import { multiply, quat, rotate, rotationBetween } from '../core/math/quat';
 import type { Side } from '../core/math/side';
 import {
@@ -71,7 +72,7 @@ function yielding(from: Vec3, to: Vec3, elbow: Vec3, least: number, most: number
   const a = dot(before, before);
   const h = dot(before, after);
   const root = Math.sqrt(Math.max(0, h * h - a * (far * far - bound * bound)));
-  return Math.min(1, Math.max(0, (far > most ? -h - root : -h + root) / Math.max(a, 1e-12)));
+  return clamp((far > most ? -h - root : -h + root) / Math.max(a, 1e-12), 0, 1);
 }
 
 /**
@@ -119,7 +120,7 @@ export class OwnTrunk {
       const joint = rest(link.name) ?? below;
       subtract(joint, below, link.offset);
       setVec3(link.offset, link.offset.x, link.offset.y * share, link.offset.z);
-      link.share = Math.min(1, Math.max(0, (joint.y - hips.y) / Math.max(1e-3, restNeck.y - hips.y)));
+      link.share = clamp((joint.y - hips.y) / Math.max(1e-3, restNeck.y - hips.y), 0, 1);
       below = joint;
     }
     subtract(restNeck, below, this.neckOffset);

@@ -1,7 +1,7 @@
 import {
   closedHand,
   copyBend,
-  type FingerBend,
+  fingerBend,
   type HandShape,
   type MutableHandShape,
   makeHandShape,
@@ -18,24 +18,17 @@ const thumbButtons = [2, 3, 4, 5, 6] as const;
 /** A finger goes half of the way to where a button says it is in this time [s]: a touch is there or not. */
 const halfLife = 0.035;
 
-const bend = (knuckle: number, spread: number, middle: number, end: number): FingerBend => ({
-  knuckle,
-  spread,
-  middle,
-  end,
-});
-
 /** Round a handle of 3.5 cm. */
-const heldMiddle = bend(0.82, 0, 1.12, 0.62);
-const heldRing = bend(0.88, -0.03, 1.14, 0.62);
-const heldLittle = bend(0.92, -0.08, 1.1, 0.6);
+const heldMiddle = fingerBend(0.82, 0, 1.12, 0.62);
+const heldRing = fingerBend(0.88, -0.03, 1.14, 0.62);
+const heldLittle = fingerBend(0.92, -0.08, 1.1, 0.6);
 /** On the trigger; beside it, straight ahead. */
-const indexOnTrigger = bend(0.5, 0.04, 0.72, 0.36);
-const indexAhead = bend(0.12, 0.06, 0.1, 0.06);
-const indexPressed = bend(0.8, 0.03, 1.3, 0.75);
+const indexOnTrigger = fingerBend(0.5, 0.04, 0.72, 0.36);
+const indexAhead = fingerBend(0.12, 0.06, 0.1, 0.06);
+const indexPressed = fingerBend(0.8, 0.03, 1.3, 0.75);
 /** On the controller's face; stretched away from it. */
-const thumbOnFace = bend(0.62, 0.3, 0.34, 0.4);
-const thumbUp = bend(0.12, 0.62, -0.05, -0.1);
+const thumbOnFace = fingerBend(0.62, 0.3, 0.34, 0.4);
+const thumbUp = fingerBend(0.12, 0.62, -0.05, -0.1);
 
 /** The fingers of a hand that holds a controller, by what they press and touch. */
 export class ControllerFingers {

@@ -15,7 +15,14 @@ import {
 } from '../math/vec3';
 import { fingerPoints, type HandGeometry, makeFingerPoints } from './hand-geometry';
 import { closedPinch, openPinch } from './hand-joints';
-import { copyBend, type FingerName, limitBend, type MutableFingerBend, type MutableHandShape } from './hand-shape';
+import {
+  copyBend,
+  type FingerName,
+  fingerBend,
+  limitBend,
+  type MutableFingerBend,
+  type MutableHandShape,
+} from './hand-shape';
 
 /** Pads of touching tips lie this deep in each other [share of the sum of the tips' radii]. */
 const pressedIn = 0.45;
@@ -47,6 +54,7 @@ export function closePinch(shape: MutableHandShape, geometry: HandGeometry): voi
   if (!(pinch > 0)) return;
   const share = smoothstep(0, wholeFrom, pinch);
   const touching = (1 - pressedIn) * (geometry.thumb.tipRadius + geometry.index.tipRadius);
+  let wanted = 0;
   for (let step = 0; step < steps; step++) {
     const thumbTip = fingerPoints('thumb', geometry.thumb, thumb, thumbPoints)[3];
     const indexTip = fingerPoints('index', geometry.index, index, indexPoints)[3];
@@ -62,7 +70,6 @@ export function closePinch(shape: MutableHandShape, geometry: HandGeometry): voi
   }
 }
 
-let wanted = 0;
 const parameters = ['knuckle', 'spread', 'middle'] as const;
 const columns = [vec3(0, 0, 0), vec3(0, 0, 0), vec3(0, 0, 0)] as const;
 const rows = [vec3(0, 0, 0), vec3(0, 0, 0), vec3(0, 0, 0)] as const;
@@ -70,7 +77,7 @@ const error = vec3(0, 0, 0);
 const solution = vec3(0, 0, 0);
 const points = makeFingerPoints();
 const tip = vec3(0, 0, 0);
-const moved: MutableFingerBend = { knuckle: 0, spread: 0, middle: 0, end: 0 };
+const moved = fingerBend(0, 0, 0, 0);
 
 /** One step of damped least squares that brings a finger's tip towards a place; its end joint bends half as far as its middle one. */
 function reach(name: FingerName, geometry: HandGeometry, bend: MutableFingerBend, place: Vec3): void {

@@ -1,4 +1,4 @@
-import { smoothingFactor } from '../math/damper';
+import { clamp, smoothingFactor } from '../math/damper';
 import {
   copyHandShape,
   fingerNames,
@@ -55,7 +55,7 @@ export class FingerMemory {
   /** A pinch is as good as the two fingers that make it. */
   #followPinch(seen: HandShape | null, deltaSeconds: number): void {
     const target = this.#shape;
-    if (seen && Number.isFinite(seen.pinch)) target.pinch = Math.max(0, Math.min(1, seen.pinch));
+    if (seen && Number.isFinite(seen.pinch)) target.pinch = clamp(seen.pinch, 0, 1);
     else {
       const unseen = Math.max(this.#unseen.thumb, this.#unseen.index);
       target.pinch *= 1 - smoothingFactor(relaxHalfLife, Math.min(deltaSeconds, unseen - heldSeconds));

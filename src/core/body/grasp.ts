@@ -4,6 +4,7 @@ import {
   closedHand,
   copyBend,
   type FingerName,
+  fingerBend,
   fingerNames,
   flatHand,
   type MutableFingerBend,
@@ -30,11 +31,11 @@ export function distanceToRod(point: Vec3, middle: Vec3, axis: Vec3, radius: num
 const halvings = 7;
 const joints = ['knuckle', 'middle', 'end'] as const;
 /** A thumb stretched away above the palm, to be closed over what the hand holds. */
-const openThumb = { knuckle: -0.3, spread: 0.75, middle: -0.05, end: -0.05 } as const;
+const openThumb = fingerBend(-0.3, 0.75, -0.05, -0.05);
 
 const points = makeFingerPoints();
 const at: MutableVec3 = vec3(0, 0, 0);
-const bent: MutableFingerBend = { knuckle: 0, spread: 0, middle: 0, end: 0 };
+const bent = fingerBend(0, 0, 0, 0);
 
 /**
  * Closes each finger joint by joint, knuckle first, until its skin lies on the surface; what meets nothing closes to a fist. A finger that
@@ -49,7 +50,7 @@ export function closeRound(surface: Surface, geometry: HandGeometry, target: Mut
   target.pinch = 0;
 }
 
-/** How far a joint bends between open (0) and in the fist (1); of a thumb's and finger's first bone the spread goes along. */
+/** Bends a joint by this share of its way into the fist; the spread of a first bone goes along. */
 function bendJoint(
   name: FingerName,
   joint: 0 | 1 | 2,

@@ -1,3 +1,4 @@
+import { clamp } from '../math/damper';
 import { fromAxisAngle, type MutableQuat, multiply, quat, rotate, rotateInverse, rotationBetween } from '../math/quat';
 import {
   add,
@@ -144,7 +145,7 @@ function bendAgainst(frame: MutableQuat, to: Vec3): number {
 export function bendOfPoints(name: FingerName, points: FingerPoints, target: MutableFingerBend): MutableFingerBend {
   const [first, second, third, tip] = points;
   const bone = normalise(subtract(second, first, firstBone), undefined, firstBone);
-  target.spread = Math.asin(Math.max(-1, Math.min(1, bone.x)));
+  target.spread = Math.asin(clamp(bone.x, -1, 1));
   target.knuckle = Math.atan2(-bone.y, -bone.z);
   const frame = firstFrame(name, target, frames[0]);
   target.middle = bendAgainst(frame, subtract(third, second, firstBone));

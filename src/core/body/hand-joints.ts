@@ -3,7 +3,7 @@ import type { Pose } from '../math/pose';
 import { rotateInverse } from '../math/quat';
 import type { Side } from '../math/side';
 import { distance, subtract, type Vec3 } from '../math/vec3';
-import { bendOfPoints, type FingerPoints, makeFingerPoints } from './hand-geometry';
+import { bendOfPoints, type FingerPoints, makeFingerPoints, mirrorPoint } from './hand-geometry';
 import { type FingerName, fingerNames, type MutableHandShape } from './hand-shape';
 
 /** Tips of thumb and index finger this near are a full pinch, this far are none [m]. */
@@ -35,7 +35,7 @@ export function setHandJoint(
 ): void {
   const target = joints[finger][joint];
   rotateInverse(wrist.orientation, subtract(at, wrist.position, target), target);
-  if (side === 'right') target.x = -target.x;
+  if (side === 'right') mirrorPoint(target, target);
 }
 
 /** How the fingers with these joints are bent; a finger with a joint that is no place has numbers that are none. */

@@ -43,7 +43,8 @@ export interface MutableHandShape extends Readonly<Record<FingerName, MutableFin
   pinch: number;
 }
 
-const bend = (knuckle: number, spread: number, middle: number, end: number): MutableFingerBend => ({
+/** A finger's four angles [rad], in an object of their own. */
+export const fingerBend = (knuckle: number, spread: number, middle: number, end: number): MutableFingerBend => ({
   knuckle,
   spread,
   middle,
@@ -52,11 +53,11 @@ const bend = (knuckle: number, spread: number, middle: number, end: number): Mut
 
 /** Fingers straight, thumb beside them; for buffers. */
 export const makeHandShape = (): MutableHandShape => ({
-  thumb: bend(0.35, 0.65, 0.05, 0.05),
-  index: bend(0.02, 0.08, 0.02, 0.02),
-  middle: bend(0.02, 0, 0.02, 0.02),
-  ring: bend(0.02, -0.08, 0.02, 0.02),
-  little: bend(0.02, -0.18, 0.02, 0.02),
+  thumb: fingerBend(0.35, 0.65, 0.05, 0.05),
+  index: fingerBend(0.02, 0.08, 0.02, 0.02),
+  middle: fingerBend(0.02, 0, 0.02, 0.02),
+  ring: fingerBend(0.02, -0.08, 0.02, 0.02),
+  little: fingerBend(0.02, -0.18, 0.02, 0.02),
   pinch: 0,
 });
 
@@ -65,21 +66,21 @@ export const flatHand: HandShape = makeHandShape();
 
 /** A hand at ease: each finger a little more bent than the one before. */
 export const relaxedHand: HandShape = {
-  thumb: bend(0.5, 0.52, 0.12, 0.2),
-  index: bend(0.26, 0.06, 0.34, 0.18),
-  middle: bend(0.34, 0, 0.42, 0.22),
-  ring: bend(0.4, -0.05, 0.46, 0.24),
-  little: bend(0.44, -0.12, 0.48, 0.24),
+  thumb: fingerBend(0.5, 0.52, 0.12, 0.2),
+  index: fingerBend(0.26, 0.06, 0.34, 0.18),
+  middle: fingerBend(0.34, 0, 0.42, 0.22),
+  ring: fingerBend(0.4, -0.05, 0.46, 0.24),
+  little: fingerBend(0.44, -0.12, 0.48, 0.24),
   pinch: 0,
 };
 
 /** Fingers in the palm, the thumb across them. */
 export const closedHand: HandShape = {
-  thumb: bend(0.86, 0.2, 0.62, 0.75),
-  index: bend(1.3, 0.02, 1.72, 1.05),
-  middle: bend(1.34, 0, 1.74, 1.1),
-  ring: bend(1.36, -0.02, 1.74, 1.1),
-  little: bend(1.36, -0.06, 1.7, 1.05),
+  thumb: fingerBend(0.86, 0.2, 0.62, 0.75),
+  index: fingerBend(1.3, 0.02, 1.72, 1.05),
+  middle: fingerBend(1.34, 0, 1.74, 1.1),
+  ring: fingerBend(1.36, -0.02, 1.74, 1.1),
+  little: fingerBend(1.36, -0.06, 1.7, 1.05),
   pinch: 0,
 };
 
@@ -133,8 +134,8 @@ export interface HandClosing {
 const share = (value: number): number => (value > 0 ? Math.min(value, 1) : 0);
 
 /** A pinch: thumb and index finger meet before the palm, the others stay at ease. */
-const pinchedThumb = bend(0.82, 0.14, 0.18, 0.42);
-const pinchedIndex = bend(0.98, 0.03, 0.72, 0.3);
+const pinchedThumb = fingerBend(0.82, 0.14, 0.18, 0.42);
+const pinchedIndex = fingerBend(0.98, 0.03, 0.72, 0.3);
 
 /** The hand of a player whose fingers are not seen, by what they press. */
 export function shapeOfClosing(closing: HandClosing, target: MutableHandShape = makeHandShape()): MutableHandShape {
