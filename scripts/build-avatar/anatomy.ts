@@ -1,4 +1,5 @@
-import { armDepth, armHeight, armJoints, fingerPoint, fingers, phalanges } from './rig';
+import { fingerBones } from '../../src/avatar/bone-names';
+import { armDepth, armHeight, armJoints, fingerPoint, fingers } from './rig';
 import { type DistanceField, ellipsoid, type Point, roundedBox, smoothUnion, taperedCapsule } from './signed-distance';
 
 /** A piece of the body: a solid, the bone it moves with and how softly its weight fades beyond its surface [m]. */
@@ -110,7 +111,7 @@ const palm: Region = {
 };
 
 const fingerRegions: Region[] = fingers.map((finger) => {
-  const names = phalanges(finger.name);
+  const names = fingerBones(finger.name);
   const segment = (index: number): Part => {
     const from = fingerPoint(finger, index);
     const to = fingerPoint(finger, index + 1);

@@ -1,3 +1,4 @@
+import { fingerBones } from '../../src/avatar/bone-names';
 import averageHand from '../../src/core/body/hand-geometry.json';
 import type { FingerName } from '../../src/core/body/hand-shape';
 import { type JointName, parentOf } from '../../src/core/body/joints';
@@ -70,12 +71,6 @@ function fingerOf(name: FingerName): Finger {
 /** Five separate fingers; the thumb lies forward and a little below, as in a hand at ease. */
 export const fingers: readonly Finger[] = (['index', 'middle', 'ring', 'little', 'thumb'] as const).map(fingerOf);
 
-/** Names of a finger's three joints in VRM 1.0. */
-export const phalanges = (finger: string): readonly [string, string, string] =>
-  finger === 'Thumb'
-    ? ['ThumbMetacarpal', 'ThumbProximal', 'ThumbDistal']
-    : [`${finger}Proximal`, `${finger}Intermediate`, `${finger}Distal`];
-
 /** Where along a finger joint `index` (0 to 3: knuckle to tip) lies. */
 export function fingerPoint(finger: Finger, index: number): Point {
   const length = finger.lengths.slice(0, index).reduce((sum, l) => sum + l, 0);
@@ -99,9 +94,9 @@ const leftSide: Bone[] = [
     joint: jointOf(name),
   })),
   ...fingers.flatMap((finger) =>
-    phalanges(finger.name).map((phalanx, index) => ({
+    fingerBones(finger.name).map((phalanx, index) => ({
       name: `left${phalanx}`,
-      parent: index === 0 ? 'leftHand' : `left${phalanges(finger.name)[index - 1]}`,
+      parent: index === 0 ? 'leftHand' : `left${fingerBones(finger.name)[index - 1]}`,
       joint: fingerPoint(finger, index),
     })),
   ),

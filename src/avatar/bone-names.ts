@@ -5,6 +5,15 @@ type CentreBone = 'hips' | 'spine' | 'chest' | 'upperChest' | 'neck' | 'head' | 
 const fingerNames = ['Thumb', 'Index', 'Middle', 'Ring', 'Little'] as const;
 type Finger = (typeof fingerNames)[number];
 
+/** VRM's names of a finger's three bones, from the palm outwards, without the side. */
+export const fingerBones = (finger: string): readonly [string, string, string] =>
+  finger === 'Thumb'
+    ? ['ThumbMetacarpal', 'ThumbProximal', 'ThumbDistal']
+    : [`${finger}Proximal`, `${finger}Intermediate`, `${finger}Distal`];
+
+/** VRM's names of all bones of a hand's fingers, without the side. */
+export const handFingerBones: readonly string[] = fingerNames.flatMap(fingerBones);
+
 /** VRM's name of a bone. In words of our own: the declarations of @pixiv/three-vrm cannot be read where modules are resolved as Node does. */
 export type BoneName =
   | CentreBone
@@ -22,7 +31,7 @@ interface Naming {
   readonly sides: Partial<Readonly<Record<SideNames, string>>>;
   readonly left: string;
   readonly right: string;
-  /** `$` as above, `#` the number of the phalanx from the palm (1, 2, 3), `%` VRM's name of it. */
+  /** `$` as above, `#` the number of the phalanx from the palm (1, 2, 3), `%` VRM's name of the bone without the side. */
   readonly fingers: Readonly<Record<Finger, string>>;
 }
 
@@ -42,6 +51,8 @@ const unreal = {
   },
   fingers: fingersBy((finger) => `${pinky(finger)} 0# $`),
 };
+const unrealCentre = (chest: string, upperChest: string) =>
+  ({ hips: 'pelvis', spine: 'spine 01', chest, upperChest, neck: 'neck 01', head: 'head' }) as const;
 const rigify = {
   ...{ left: 'L', right: 'R' },
   sides: {
@@ -84,29 +95,11 @@ const namings: Readonly<Record<string, Naming>> = {
   },
   'Unreal 5': {
     ...unreal,
-    centre: {
-      ...{
-        hips: 'pelvis',
-        spine: 'spine 01',
-        chest: 'spine 03',
-        upperChest: 'spine 05',
-        neck: 'neck 01',
-        head: 'head',
-      },
-    },
+    centre: unrealCentre('spine 03', 'spine 05'),
   },
   'Unreal 4': {
     ...unreal,
-    centre: {
-      ...{
-        hips: 'pelvis',
-        spine: 'spine 01',
-        chest: 'spine 02',
-        upperChest: 'spine 03',
-        neck: 'neck 01',
-        head: 'head',
-      },
-    },
+    centre: unrealCentre('spine 02', 'spine 03'),
   },
   Rigify: {
     ...rigify,
@@ -139,14 +132,8 @@ const namings: Readonly<Record<string, Naming>> = {
       ...{ Shoulder: '$Shoulder', UpperArm: '$UpperArm', LowerArm: '$LowerArm', Hand: '$Hand', Eye: '$Eye' },
       ...{ UpperLeg: '$UpperLeg', LowerLeg: '$LowerLeg', Foot: '$Foot', Toes: '$Toes' },
     },
-    fingers: fingersBy((finger) => `$${finger}%`),
+    fingers: fingersBy(() => '$%'),
   },
-};
-
-/** VRM's phalanges, from the palm outwards. */
-const phalanges: Readonly<Record<'Thumb' | 'other', readonly string[]>> = {
-  Thumb: ['Metacarpal', 'Proximal', 'Distal'],
-  other: ['Proximal', 'Intermediate', 'Distal'],
 };
 
 /** The same for all writings of one name. */
@@ -164,11 +151,11 @@ function bonesOf({ centre, sides: names, left, right, fingers }: Naming): Readon
       bones.set(`${side}${bone}` as BoneName, plain(called.replace('$', sign)));
     }
     for (const finger of fingerNames) {
-      for (const [index, phalanx] of phalanges[finger === 'Thumb' ? 'Thumb' : 'other'].entries()) {
+      for (const [index, bone] of fingerBones(finger).entries()) {
         // Biped counts fingers from 0 and leaves the first phalanx without a number.
         const form = fingers[finger].replace('$', sign);
         const number = form.includes('Finger') ? (index === 0 ? '' : String(index)) : String(index + 1);
-        bones.set(`${side}${finger}${phalanx}` as BoneName, plain(form.replace('#', number).replace('%', phalanx)));
+        bones.set(`${side}${bone}` as BoneName, plain(form.replace('#', number).replace('%', bone)));
       }
     }
   }

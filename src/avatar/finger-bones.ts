@@ -1,4 +1,4 @@
-import type { VRM, VRMHumanBoneName } from '@pixiv/three-vrm';
+import type { VRM } from '@pixiv/three-vrm';
 import { type Bone, type Object3D, Quaternion, SkinnedMesh, Vector3 } from 'three';
 import {
   bendOfPoints,
@@ -13,7 +13,22 @@ import {
 import { type FingerName, fingerNames, makeHandShape } from '../core/body/hand-shape';
 import { conjugate, copyQuat, fromAxes, type MutableQuat, multiply, type Quat, quat } from '../core/math/quat';
 import type { Side } from '../core/math/side';
-import { add, backward, distance, normalise, scale, setVec3, subtract, up, vec3 } from '../core/math/vec3';
+import {
+  add,
+  backward,
+  distance,
+  dot,
+  forward,
+  normalise,
+  right,
+  scale,
+  setVec3,
+  subtract,
+  up,
+  vec3,
+} from '../core/math/vec3';
+import { type BoneName, fingerBones } from './bone-names';
+import { boneNode } from './humanoid';
 
 export type BoneIndex = 0 | 1 | 2;
 
@@ -43,17 +58,14 @@ export interface RigHand {
   readonly geometry: HandGeometry | null;
 }
 
-/** VRM's names of a finger's three bones from the palm on; three-vrm gives those of VRM 0.x's thumbs the same names. */
-function boneNames(side: Side, finger: FingerName): readonly VRMHumanBoneName[] {
-  const name = `${side}${finger[0]!.toUpperCase()}${finger.slice(1)}`;
-  const bones = finger === 'thumb' ? ['Metacarpal', 'Proximal', 'Distal'] : ['Proximal', 'Intermediate', 'Distal'];
-  return bones.map((bone) => `${name}${bone}` as VRMHumanBoneName);
-}
+/** A finger's three nodes from the palm on; three-vrm gives the bones of VRM 0.x's thumbs the names of 1.0. null: the rig lacks one. */
+const nodesOf = (vrm: VRM, side: Side, finger: FingerName): (Object3D | null)[] =>
+  fingerBones(finger[0]!.toUpperCase() + finger.slice(1)).map((bone) => boneNode(vrm, `${side}${bone}` as BoneName));
 
 /** A wrist at rest in the rig's frame, which faces +Z, arms spread, palms down. */
 const rigFromWrist: Readonly<Record<Side, Quat>> = {
   left: fromAxes(backward, up, vec3(-1, 0, 0)),
-  right: fromAxes(vec3(0, 0, -1), up, vec3(1, 0, 0)),
+  right: fromAxes(forward, up, right),
 };
 
 /** A rig that does not say where a finger ends: its last bone against the one before [share]. */
@@ -65,7 +77,7 @@ const taper = 1.3;
 
 /** The fingers of one hand of a rig at rest, world matrices up to date. */
 export function readHand(vrm: VRM, side: Side): RigHand {
-  const hand = vrm.humanoid.getRawBoneNode(`${side}Hand` as VRMHumanBoneName);
+  const hand = boneNode(vrm, `${side}Hand`);
   const found = hand ? fingerNames.map((name) => readFinger(vrm, side, name, hand)) : [];
   const fingers = found.flatMap(({ finger }) => finger ?? []);
   const geometries = Object.fromEntries(found.map(({ name, geometry }) => [name, geometry]));
@@ -80,7 +92,7 @@ interface FoundFinger {
 }
 
 function readFinger(vrm: VRM, side: Side, name: FingerName, hand: Object3D): FoundFinger {
-  const nodes = boneNames(side, name).map((bone) => vrm.humanoid.getRawBoneNode(bone));
+  const nodes = nodesOf(vrm, side, name);
   if (!nodes.some(Boolean)) return { name, finger: null, geometry: null };
   const points = makeFingerPoints();
   const skin = skinOf(vrm.scene, nodes[2] ?? null);
@@ -156,8 +168,8 @@ function endAtSkin(skin: readonly Vector3[], hand: Object3D, side: Side, points:
   const found = skin.map((vertex) => {
     placeIn(vertex, hand, side, at);
     const from = subtract(at, joint);
-    const ahead = from.x * along.x + from.y * along.y + from.z * along.z;
-    return { ahead, aside: Math.sqrt(Math.max(0, from.x ** 2 + from.y ** 2 + from.z ** 2 - ahead ** 2)) };
+    const ahead = dot(from, along);
+    return { ahead, aside: Math.sqrt(Math.max(0, dot(from, from) - ahead ** 2)) };
   });
   const furthest = Math.max(...found.map(({ ahead }) => ahead));
   const sides = found.filter(({ ahead }) => ahead > 0.2 * furthest && ahead < 0.8 * furthest);

@@ -3,7 +3,7 @@ import type { Group, Object3D, SkinnedMesh } from 'three';
 import { type BoneMap, bonesByName, knownNamings } from './bone-names';
 
 /** Bones without which there is no upper body to move. */
-const neededBones = [
+export const neededBones = [
   'hips',
   'spine',
   'head',
@@ -21,7 +21,7 @@ const shownNames = 12;
 /** The file's own name of a node: three.js rewrites names, and keeps the file's beside. */
 const nameOf = (node: Object3D): string => (typeof node.userData.name === 'string' ? node.userData.name : node.name);
 
-/** The nodes that carry skin, or all where none does, by the file's own names; of several the uppermost. */
+/** Nodes by the file's own names; of several of one name the uppermost. `among`: which nodes count. */
 function nodesByName(scene: Group, among: (node: Object3D) => boolean): Map<string, Object3D> {
   const nodes = new Map<string, Object3D>();
   scene.traverse((node) => {
@@ -46,9 +46,9 @@ function knownBones(scene: Group, name: string): { readonly bones: BoneMap; read
   const skinned = skinBones(scene);
   const joints = nodesByName(scene, (node) => skinned.has(node));
   const all = nodesByName(scene, () => true);
-  const choices = [joints, all].map((nodes) => ({ nodes, bones: bonesByName([...nodes.keys()]) }));
-  const [byJoints, byAll] = choices;
-  if (!byJoints || !byAll) throw new Error('two choices');
+  const named = (nodes: Map<string, Object3D>) => ({ nodes, bones: bonesByName([...nodes.keys()]) });
+  const byJoints = named(joints);
+  const byAll = named(all);
   const choice = lacks(byJoints.bones).length <= lacks(byAll.bones).length ? byJoints : byAll;
   if (choice.bones.hips !== undefined) return choice;
   const found = [...(joints.size > 0 ? joints : all).keys()];

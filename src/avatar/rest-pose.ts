@@ -1,7 +1,8 @@
 import type { VRM } from '@pixiv/three-vrm';
 import { Matrix4, type Object3D, Quaternion, Vector3 } from 'three';
-import type { BoneName } from './bone-names';
-import { boneNode } from './humanoid';
+import type { Side } from '../core/math/side';
+import { type BoneName, handFingerBones } from './bone-names';
+import { boneNode, neededBones } from './humanoid';
 
 // From here on a body at rest faces +Z, as a VRM does: its left is +X.
 const left = new Vector3(1, 0, 0);
@@ -89,10 +90,8 @@ function setWorld(node: Object3D, world: Matrix4): void {
   node.updateWorldMatrix(false, true);
 }
 
-const upperBody = ['hips', 'spine', 'head', 'leftUpperArm', 'leftLowerArm', 'leftHand'] as const;
-
 function demandFinite(body: Resting): void {
-  for (const bone of [...upperBody, 'rightUpperArm', 'rightLowerArm', 'rightHand'] as const) {
+  for (const bone of neededBones) {
     const node = body.node(bone);
     if (node && !node.matrixWorld.elements.every(Number.isFinite))
       body.complain(`the joint of ${bone} lies nowhere (${at(node).toArray().join(', ')})`);
@@ -159,13 +158,8 @@ function putOnFloor(body: Resting): void {
   if (move.length() > 1e-4) setWorld(scene, new Matrix4().makeTranslation(move).multiply(scene.matrixWorld));
 }
 
-const sideBones = (side: 'left' | 'right', names: readonly string[]): BoneName[] =>
+const sideBones = (side: Side, names: readonly string[]): BoneName[] =>
   names.map((name) => `${side}${name}` as BoneName);
-const handBones = (['Thumb', 'Index', 'Middle', 'Ring', 'Little'] as const).flatMap((finger) =>
-  (finger === 'Thumb' ? ['Metacarpal', 'Proximal', 'Distal'] : ['Proximal', 'Intermediate', 'Distal']).map(
-    (phalanx) => finger + phalanx,
-  ),
-);
 
 /** Turns the first of `bones` so that it points along `way`, if it is off by more than `least` [rad]. */
 function point(body: Resting, bones: readonly BoneName[], to: Vector3 | null, way: Vector3, least: number): void {
@@ -177,7 +171,7 @@ function point(body: Resting, bones: readonly BoneName[], to: Vector3 | null, wa
 }
 
 /** The middle of where the fingers begin; null: the hand has none. */
-function knuckles(body: Resting, side: 'left' | 'right'): Vector3 | null {
+function knuckles(body: Resting, side: Side): Vector3 | null {
   const roots = sideBones(side, ['IndexProximal', 'MiddleProximal', 'RingProximal', 'LittleProximal']);
   const found = roots.flatMap((root) => body.at(root) ?? []);
   if (found.length === 0) return null;
@@ -185,9 +179,9 @@ function knuckles(body: Resting, side: 'left' | 'right'): Vector3 | null {
 }
 
 /** Straight out to the side, palms down: what every rotation of a pose is counted from. */
-function straightenArm(body: Resting, side: 'left' | 'right'): void {
+function straightenArm(body: Resting, side: Side): void {
   const out = side === 'left' ? left : right;
-  const hand = sideBones(side, ['Hand', ...handBones]);
+  const hand = sideBones(side, ['Hand', ...handFingerBones]);
   const lowerArm = sideBones(side, ['LowerArm']).concat(hand);
   const upperArm = sideBones(side, ['UpperArm']).concat(lowerArm);
   point(body, upperArm, body.at(lowerArm[0]!), out, armBend);
@@ -203,7 +197,7 @@ function straightenArm(body: Resting, side: 'left' | 'right'): void {
 }
 
 /** Straight down, the feet as they stood. */
-function straightenLeg(body: Resting, side: 'left' | 'right'): void {
+function straightenLeg(body: Resting, side: Side): void {
   const foot = sideBones(side, ['Foot', 'Toes']);
   const lowerLeg = sideBones(side, ['LowerLeg']).concat(foot);
   const upperLeg = sideBones(side, ['UpperLeg']).concat(lowerLeg);
