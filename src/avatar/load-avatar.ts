@@ -14,27 +14,11 @@ export interface LoadedAvatar {
   readonly vrm: VRM;
 }
 
-/**
- * A body from the bytes of a file that is not our own: within `avatarLimits`, and without faults that `validate` finds. Rejects with a
- * sentence that names the file.
- */
-export async function loadAvatar(
-  bytes: ArrayBuffer,
-  name: string,
-  validate: (bytes: Uint8Array) => Promise<readonly string[]>,
-  decoders: Decoders = {},
-): Promise<LoadedAvatar> {
-  const file = new Uint8Array(bytes);
-  inspectAvatar(file, name, Object.keys(decoders));
-  const faults = await validate(file).catch((error: unknown) => {
-    throw new Error(`${name}: ${reasonOf(error)}`);
-  });
-  if (faults.length > 0) throw new Error(`${name}: not valid glTF (${faults[0]})`);
-  return parseAvatar(bytes, name, { decoders });
-}
-
 /** Means to unpack what is compressed, by the name of the extension. */
 export type Decoders = Readonly<Record<string, (loader: GLTFLoader) => Promise<void>>>;
+
+/** Finds faults of a file, each in a sentence. */
+type Validate = (bytes: Uint8Array) => Promise<readonly string[]>;
 
 export interface ParseOptions {
   /** Of a humanoid that is no VRM and whose names tell nothing. */
@@ -43,13 +27,32 @@ export interface ParseOptions {
   readonly decoders?: Decoders;
 }
 
-/** The same from a file that is known to be valid. */
-export async function parseAvatar(
+/**
+ * A body from the bytes of a file that is not our own: within `avatarLimits`, and without faults that `validate` finds. Rejects with a
+ * sentence that names the file.
+ */
+export const loadAvatar = (
   bytes: ArrayBuffer,
   name: string,
-  { bones, decoders = {} }: ParseOptions = {},
+  validate: Validate,
+  decoders: Decoders = {},
+): Promise<LoadedAvatar> => read(bytes, name, { validate, decoders });
+
+/** The same from a file that is known to be valid. */
+export const parseAvatar = (bytes: ArrayBuffer, name: string, options: ParseOptions = {}): Promise<LoadedAvatar> =>
+  read(bytes, name, options);
+
+async function read(
+  bytes: ArrayBuffer,
+  name: string,
+  { bones, decoders = {}, validate }: ParseOptions & { readonly validate?: Validate },
 ): Promise<LoadedAvatar> {
-  const packed = inspectAvatar(new Uint8Array(bytes), name, Object.keys(decoders));
+  const file = new Uint8Array(bytes);
+  const packed = inspectAvatar(file, name, Object.keys(decoders));
+  const faults = await validate?.(file).catch((error: unknown) => {
+    throw new Error(`${name}: ${reasonOf(error)}`);
+  });
+  if (faults?.[0] !== undefined) throw new Error(`${name}: not valid glTF (${faults[0]})`);
   const loader = new GLTFLoader();
   for (const extension of packed) await decoders[extension]?.(loader);
   loader.register((parser) => new VRMLoaderPlugin(parser));
