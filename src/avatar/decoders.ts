@@ -1,4 +1,4 @@
-import { BufferAttribute, BufferGeometry, type TypedArray } from 'three';
+import { BufferAttribute, BufferGeometry } from 'three';
 import type { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
 import type { DracoAnswer, DracoQuestion } from './draco-worker';
 import { avatarLimits } from './inspect-avatar';
@@ -30,22 +30,25 @@ async function geometryOf(question: DracoQuestion): Promise<BufferGeometry> {
   const geometry = new BufferGeometry();
   geometry.setIndex(new BufferAttribute(answer.index, 1));
   for (const [name, { array, itemSize }] of Object.entries(answer.attributes)) {
-    geometry.setAttribute(name, new BufferAttribute(array as unknown as TypedArray, itemSize));
+    geometry.setAttribute(name, new BufferAttribute(array, itemSize));
   }
   return geometry;
 }
 
+/** How GLTFLoader asks a Draco loader for a mesh. */
+type DracoCall = [
+  packed: ArrayBuffer,
+  onLoad: (geometry: BufferGeometry) => void,
+  ids: Record<string, number>,
+  types: Record<string, string>,
+  colourSpace: string,
+  onError: (error: unknown) => void,
+];
+
 /** What GLTFLoader asks of a Draco loader, answered by a worker of our own: three.js's own starts from a blob: address, which our policy forbids. */
 const dracoInWorker = {
   preload: () => undefined,
-  decodeDracoFile(
-    packed: ArrayBuffer,
-    onLoad: (geometry: BufferGeometry) => void,
-    ids: Record<string, number>,
-    types: Record<string, string>,
-    _colourSpace: string,
-    onError: (error: unknown) => void,
-  ): void {
+  decodeDracoFile(...[packed, onLoad, ids, types, , onError]: DracoCall): void {
     geometryOf({ packed, ids, types, mostNumbers }).then(onLoad, onError);
   },
 };

@@ -1,3 +1,4 @@
+import type { TypedArray } from 'three';
 import wasmAddress from 'three/examples/jsm/libs/draco/gltf/draco_decoder.wasm?url';
 import makeDraco from 'three/examples/jsm/libs/draco/gltf/draco_wasm_wrapper.js';
 import { reasonOf } from '../core/errors/reasons';
@@ -11,14 +12,12 @@ export interface DracoQuestion {
   readonly mostNumbers: number;
 }
 
-interface Unpacked {
-  readonly array: ArrayBufferView & { readonly buffer: ArrayBuffer };
-  readonly itemSize: number;
+interface UnpackedMesh {
+  readonly index: Uint32Array<ArrayBuffer>;
+  readonly attributes: Readonly<Record<string, UnpackedAttribute>>;
 }
 
-export type DracoAnswer =
-  | { readonly index: Uint32Array<ArrayBuffer>; readonly attributes: Readonly<Record<string, Unpacked>> }
-  | { readonly broken: string };
+export type DracoAnswer = UnpackedMesh | { readonly broken: string };
 
 /** The kinds of numbers that glTF has, by three.js's names of their arrays, and Draco's names of them. */
 const kinds = {
@@ -30,27 +29,27 @@ const kinds = {
   Uint32Array: [Uint32Array, 'DT_UINT32'],
 } as const;
 
+interface UnpackedAttribute {
+  readonly array: TypedArray & { readonly buffer: ArrayBuffer };
+  readonly itemSize: number;
+}
+
 const draco = fetch(wasmAddress)
   .then((response) => response.arrayBuffer())
   .then((wasmBinary) => makeDraco({ wasmBinary }));
 
 type Draco = Awaited<typeof draco>;
 
-/** What `write` puts into so many bytes of Draco's memory, in an array of this kind. */
-function taken<T>(
-  module: Draco,
-  bytes: number,
-  make: (memory: ArrayBuffer, at: number) => T,
-  write: (at: number) => void,
-): T {
+/** What `write` puts into so many bytes of Draco's memory. */
+function taken(module: Draco, bytes: number, write: (at: number) => void): ArrayBuffer {
   const at = module._malloc(bytes);
   write(at);
-  const result = make(module.HEAPF32.buffer.slice(at, at + bytes), 0);
+  const memory = module.HEAPF32.buffer.slice(at, at + bytes);
   module._free(at);
-  return result;
+  return memory;
 }
 
-function unpack(module: Draco, { packed, ids, types, mostNumbers }: DracoQuestion): DracoAnswer {
+function unpack(module: Draco, { packed, ids, types, mostNumbers }: DracoQuestion): UnpackedMesh {
   const decoder = new module.Decoder();
   const mesh = new module.Mesh();
   try {
@@ -58,28 +57,20 @@ function unpack(module: Draco, { packed, ids, types, mostNumbers }: DracoQuestio
     if (!status.ok() || mesh.ptr === 0) throw new Error(`Draco: ${status.error_msg()}`);
     const [points, corners] = [mesh.num_points(), mesh.num_faces() * 3];
     if (Math.max(points, corners) > mostNumbers) throw new Error('Draco: it unpacks to more than an avatar may have');
-    const index = taken(
-      module,
-      corners * 4,
-      (memory) => new Uint32Array(memory),
-      (at) => decoder.GetTrianglesUInt32Array(mesh, corners * 4, at),
-    );
+    const index = taken(module, corners * 4, (at) => decoder.GetTrianglesUInt32Array(mesh, corners * 4, at));
     const attributes = Object.fromEntries(
       Object.entries(ids).map(([name, id]) => {
         const [Kind, dracoKind] = kinds[(types[name] ?? 'Float32Array') as keyof typeof kinds] ?? kinds.Float32Array;
         const attribute = decoder.GetAttributeByUniqueId(mesh, id);
         const itemSize = attribute.num_components();
         const bytes = points * itemSize * Kind.BYTES_PER_ELEMENT;
-        const array = taken(
-          module,
-          bytes,
-          (memory) => new Kind(memory),
-          (at) => decoder.GetAttributeDataArrayForAllPoints(mesh, attribute, module[dracoKind], bytes, at),
+        const memory = taken(module, bytes, (at) =>
+          decoder.GetAttributeDataArrayForAllPoints(mesh, attribute, module[dracoKind], bytes, at),
         );
-        return [name, { array, itemSize }];
+        return [name, { array: new Kind(memory), itemSize }];
       }),
     );
-    return { index, attributes };
+    return { index: new Uint32Array(index), attributes };
   } finally {
     module.destroy(mesh);
     module.destroy(decoder);
@@ -89,12 +80,9 @@ function unpack(module: Draco, { packed, ids, types, mostNumbers }: DracoQuestio
 self.addEventListener('message', ({ data }: MessageEvent<DracoQuestion>) => {
   draco
     .then((module) => {
-      const answer = unpack(module, data);
-      if ('broken' in answer) return;
-      const buffers = [answer.index, ...Object.values(answer.attributes).map(({ array }) => array)].map(
-        ({ buffer }) => buffer,
-      );
-      self.postMessage(answer satisfies DracoAnswer, { transfer: buffers });
+      const { index, attributes } = unpack(module, data);
+      const buffers = [index, ...Object.values(attributes).map(({ array }) => array)].map(({ buffer }) => buffer);
+      self.postMessage({ index, attributes } satisfies DracoAnswer, { transfer: buffers });
     })
     .catch((error: unknown) => self.postMessage({ broken: reasonOf(error) } satisfies DracoAnswer));
 });
