@@ -10,7 +10,7 @@ import { type JointName, jointNames } from '../core/body/joints';
 import { type Skeleton, skeletonFromCalibration } from '../core/body/skeleton';
 import { identity, type Quat, quat, rotate } from '../core/math/quat';
 import type { Side } from '../core/math/side';
-import { scale, setVec3, subtract, type Vec3, vec3 } from '../core/math/vec3';
+import { addScaled, setVec3, subtract, type Vec3, vec3 } from '../core/math/vec3';
 import { ArmHelperJoints } from './arm-helpers';
 import { BodyMeshes } from './body-meshes';
 import { Face } from './face';
@@ -143,16 +143,15 @@ class VrmAvatar implements Avatar {
   /** Head and hands alone, each where it was tracked; the rest is not drawn. */
   private applyHands({ head, leftHand, rightHand }: AvatarPose): void {
     const headJoint = headJointOf(head, this.skeleton.eyesInHead, this.headJoint);
+    const restHead = this.rig.rest('head');
     for (let i = 0; i < jointNames.length; i++) {
       const name = jointNames[i]!;
-      this.rig.place(name, headJoint, head.orientation, name === 'head');
-    }
-    // The skin of the head reaches down the neck, which goes along as it rests.
-    const [neck, top] = [this.rig.rest('neck'), this.rig.rest('head')];
-    if (neck && top) {
-      const fromNeck = setVec3(this.joint, neck.x - top.x, top.y - neck.y, neck.z - top.z);
-      rotate(head.orientation, scale(fromNeck, this.scale, fromNeck), fromNeck);
-      this.rig.place('neck', subtract(headJoint, fromNeck, fromNeck), head.orientation, false);
+      const rest = this.rig.rest(name);
+      if (!rest || !restHead) continue;
+      // The skin of the head reaches down to the neck or, without one, the trunk: they go along as they rest. A rig faces the other way.
+      const from = setVec3(this.joint, restHead.x - rest.x, rest.y - restHead.y, restHead.z - rest.z);
+      addScaled(headJoint, rotate(head.orientation, from, from), this.scale, from);
+      this.rig.place(name, from, head.orientation, name === 'head');
     }
     this.arms.straighten();
     this.applyHand('left', leftHand);

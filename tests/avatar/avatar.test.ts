@@ -87,6 +87,32 @@ function worldOf(
   };
 }
 
+/** How many corners of each mesh of skin are drawn now. */
+function drawnSkin(avatar: Avatar): ReadonlyMap<SkinnedMesh, number> {
+  const drawn = new Map<SkinnedMesh, number>();
+  avatar.object.traverse((mesh) => {
+    if (!(mesh instanceof SkinnedMesh) || !mesh.visible) return;
+    drawn.set(mesh, Math.min(mesh.geometry.drawRange.count, mesh.geometry.index!.count));
+  });
+  return drawn;
+}
+
+/** The longest edge [m] of so many corners of each mesh, three a triangle, as posed now. */
+function longestEdge(avatar: Avatar, skin: ReadonlyMap<SkinnedMesh, number>): number {
+  let longest = 0;
+  const [from, to] = [new Vector3(), new Vector3()];
+  avatar.object.updateMatrixWorld(true);
+  for (const [mesh, corners] of skin) {
+    const place = (corner: number, target: Vector3): Vector3 =>
+      mesh.getVertexPosition(mesh.geometry.index!.getX(corner), target).applyMatrix4(mesh.matrixWorld);
+    for (let corner = 0; corner < corners; corner++) {
+      const next = corner % 3 === 2 ? corner - 2 : corner + 1;
+      longest = Math.max(longest, place(corner, from).distanceTo(place(next, to)));
+    }
+  }
+  return longest;
+}
+
 /** Plays some seconds of the actor and calls `look` after each frame. */
 async function play(
   avatar: Avatar,
@@ -141,6 +167,21 @@ describe.each(avatars)('%s', (_, file) => {
       const near = /^(hips|head|.*LowerArm|.*Hand)$/.test(name) ? 1e-4 : 0.08;
       expect(distance(worldOf(loaded, avatar, name).position, joints[name].position), name).toBeLessThan(near);
     }
+  });
+
+  test.each([
+    ['both hands', {}],
+    ['one hand', { leftHand: null }],
+  ])('drawn as head and %s, no skin reaches from one to another', (_, lost) => {
+    avatar.fitTo(defaultCalibration);
+    const frame = { ...actorFrame(11.5, defaultCalibration), ...lost };
+    const pose = poseOf(createIk(defaultCalibration), frame);
+    avatar.apply({ ...pose, body: null }, 0);
+    const drawn = drawnSkin(avatar);
+    const longest = longestEdge(avatar, drawn);
+    avatar.apply(pose, 0.1);
+    expect(longest).toBeGreaterThan(0.005);
+    expect(longest, 'against the same skin on a whole body').toBeLessThan(1.3 * longestEdge(avatar, drawn));
   });
 
   test('its feet stay on the floor and nothing is NaN', async () => {
