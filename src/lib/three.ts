@@ -219,6 +219,7 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
 
   #leave(ends = true): void {
     this.#reading?.base.removeEventListener('reset', this.#jumped);
+    this.#reading?.tracker.dispose();
     this.#reading = null;
     if (!ends) return;
     this.body.forgetPoints();

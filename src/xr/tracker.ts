@@ -45,6 +45,8 @@ export interface Tracker {
   turn(angle: number): void;
   /** Which way a stick was pushed since the last call: 1 left, −1 right, 0 neither. One push is one turn. */
   takeTurn(): -1 | 0 | 1;
+  /** Ends what it listens to: the session is over, or read by another tracker. */
+  dispose(): void;
 }
 
 /** A stick pushed this far to the side turns, and may turn again once it is back below the second. */
@@ -76,17 +78,20 @@ class SessionTracker implements Tracker {
   /** Devices in the order in which they came. */
   readonly #devices = new WeakMap<XRInputSource, number>();
   #deviceCount = 0;
+  readonly #floor: XRReferenceSpace;
   #space: XRReferenceSpace;
   #lastHead: Pose<'floor'> | null = null;
+  readonly #reset = () => {
+    this.#lastHead = null;
+    if (this.#space !== this.#floor) this.#moveTo(this.#floor);
+  };
 
   constructor(session: XRSession, floor: XRReferenceSpace, onSpace?: (space: XRReferenceSpace) => void) {
     this.#session = session;
+    this.#floor = floor;
     this.#space = floor;
     this.#onSpace = onSpace;
-    floor.addEventListener('reset', () => {
-      this.#lastHead = null;
-      if (this.#space !== floor) this.#moveTo(floor);
-    });
+    floor.addEventListener('reset', this.#reset);
   }
 
   get input(): Tracker['input'] {
@@ -133,6 +138,10 @@ class SessionTracker implements Tracker {
 
   takeTurn(): -1 | 0 | 1 {
     return this.#sticks.take();
+  }
+
+  dispose(): void {
+    this.#floor.removeEventListener('reset', this.#reset);
   }
 
   #moveTo(next: XRReferenceSpace): void {

@@ -125,6 +125,20 @@ describe('a body in a session of three.js', () => {
     expect(told).toEqual(['found head', 'found left', 'found right']);
   });
 
+  test('leaves the space of a page that has moved its wearer to the page, also when the device recentres', async () => {
+    const { headset, tracker, run } = await begin({ calibration: defaultCalibration });
+    headset.putOn();
+    run(2);
+    tracker.recentre();
+    run(1);
+    const there = new XRRigidTransform({ x: -5, y: 0, z: 0, w: 1 }, { x: 0, y: 0, z: 0, w: 1 });
+    const moved = headset.floor.getOffsetReferenceSpace(there);
+    headset.xr.setReferenceSpace(moved);
+    run(1);
+    headset.reset({ position: { x: 1, y: 0, z: 0 }, orientation: identity });
+    expect(headset.xr.getReferenceSpace()).toBe(moved);
+  });
+
   test('of a device that never calls anything tracked, as emulators do, has its hands on the controllers too', async () => {
     const { headset, tracker, run } = await begin({ calibration: defaultCalibration });
     const guessed = { ...left, emulated: true };

@@ -174,4 +174,13 @@ describe('where the floor is', () => {
     expect(distance(head.position, vec3(0, 1.6, 0))).toBeLessThan(1e-9);
     expect(angleBetween(head.orientation, identity)).toBeLessThan(1e-9);
   });
+
+  test('is no matter of a tracker that is done with: a device that recentres later moves nothing', () => {
+    const { read, tracker, reset, spaces } = tracked();
+    read();
+    tracker.turn(1);
+    tracker.dispose();
+    reset({ position: vec3(1, 0, 0), orientation: identity });
+    expect(spaces).toHaveLength(1);
+  });
 });

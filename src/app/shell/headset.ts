@@ -171,12 +171,15 @@ export class Headset {
     if (this.#emulator) easeEmulatedPicture(renderer, quality);
     const tracker = createTracker(xr, space, (moved) => renderer.xr.setReferenceSpace(moved));
     this.#session = { xr, tracker };
+    const jumped = () => this.#listener?.jumped();
+    space.addEventListener('reset', jumped);
     xr.addEventListener('end', () => {
+      space.removeEventListener('reset', jumped);
+      tracker.dispose();
       this.#session = null;
       this.#listener?.left();
     });
     xr.addEventListener('visibilitychange', () => this.#listener?.visibilityChanged(xr.visibilityState));
-    space.addEventListener('reset', () => this.#listener?.jumped());
     if (!settings.actor) this.#emulator?.release();
   }
 
