@@ -21,7 +21,7 @@ export interface JoinStudyOptions {
   readonly activities: Activities;
   readonly timing: FrameTiming;
   readonly body: Pick<BareBody, 'choose' | 'estimator' | 'wearerCalibration'>;
-  readonly wearer: Pick<Wearer, 'calibrate'>;
+  readonly wearer: Pick<Wearer, 'calibrate' | 'forget'>;
 }
 
 /** Takes part in a study: from now on it decides what is played and with which body. */
@@ -53,7 +53,10 @@ export async function joinStudy(options: JoinStudyOptions): Promise<JoinedStudy>
     enterVr: () => headset.enter(),
     inSession: () => headset.worn,
     calibration: () => body.wearerCalibration,
-    setCalibration: (calibration) => wearer.calibrate(calibration, 'measured'),
+    setCalibration(calibration) {
+      if (calibration) wearer.calibrate(calibration, 'measured');
+      else wearer.forget();
+    },
     chooseEstimator: (name) => body.choose(name),
     estimator: () => body.estimator,
     setActor(on) {

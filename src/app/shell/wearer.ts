@@ -42,12 +42,17 @@ export class Wearer {
     this.calibrate(calibration, source);
   }
 
-  /** Forgets the user's measures. */
-  resetCalibration(): void {
-    const { body, writer, store } = this.#options;
-    store.remember({ calibration: undefined });
+  /** No measures for this visit, until the headset tells its height. */
+  forget(): void {
+    const { body, writer } = this.#options;
     body.calibrate('auto');
     writer.change({ calibrationSource: 'not calibrated yet' });
+  }
+
+  /** As `forget`, and nothing is remembered for later visits. */
+  resetCalibration(): void {
+    this.#options.store.remember({ calibration: undefined });
+    this.forget();
   }
 
   /** The body found out other measures by itself. */

@@ -96,7 +96,7 @@ export class RunningStudy {
   /** Shows the step at hand, now and as time passes, and begins to talk to the server. */
   begin(): void {
     const { calibration, preferredHand } = this.session;
-    if (calibration) this.#host.setCalibration(calibration);
+    this.#host.setCalibration(calibration);
     if (preferredHand) this.#host.setBowSide(bowSideOf(preferredHand));
     this.show();
     this.#tickLater();

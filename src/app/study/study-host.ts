@@ -10,8 +10,8 @@ export interface StudyHost extends TrialHost {
   readonly runners: Readonly<Partial<Record<string, TaskRunner>>>;
   enterVr(): Promise<void>;
   inSession(): boolean;
-  /** Of this participant, for this visit; not remembered for others. */
-  setCalibration(calibration: Calibration): void;
+  /** Of this participant, for this visit; not remembered for others. null: not measured yet, and what the page had is another person's. */
+  setCalibration(calibration: Calibration | null): void;
   /** Resolves when it draws, or when it turned out that it cannot. */
   chooseEstimator(name: EstimatorName): Promise<void>;
   setActor(on: boolean): void;

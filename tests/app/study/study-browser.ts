@@ -7,7 +7,7 @@ import type { StudyAddressBar, StudyDisplay, StudyPage } from '../../../src/app/
 import type { StudyScreen } from '../../../src/app/study/study-screen';
 import { StudyVisit } from '../../../src/app/study/study-visit';
 import type { TaskEnd, TaskEvent, TaskPlace, TaskRunner } from '../../../src/app/study/task-runner';
-import type { Calibration } from '../../../src/core/body/calibration';
+import { type Calibration, defaultCalibration } from '../../../src/core/body/calibration';
 import type { EstimatorName } from '../../../src/core/estimation/pose-estimator';
 import type { Side } from '../../../src/core/math/side';
 import type { FrameListener } from '../../../src/core/study/trial-log';
@@ -150,15 +150,16 @@ export class OneShotGame implements TaskRunner {
   }
 }
 
-/** Of the page before a study has measured anyone. */
-export const unmeasured: Calibration = { eyeHeight: 1.6, armSpan: 1.5 };
+/** What the page has before a study begins: its user's measures, or those of the participant before. */
+export const ofAnother: Calibration = { eyeHeight: 1.8, armSpan: 1.74 };
 
 /** The page around the study: a headset to be put on and taken off, bodies that load, two games. */
 class TestHost implements StudyHost {
   readonly games = { archery: new OneShotGame(), ball: new OneShotGame() };
   readonly runners = this.games;
   worn = false;
-  measures: Calibration = unmeasured;
+  /** null: of no one. */
+  measures: Calibration | null = ofAnother;
   drawn: EstimatorName = 'hands-only';
   /** Estimators that this page cannot load. */
   readonly missing = new Set<EstimatorName>();
@@ -170,8 +171,8 @@ class TestHost implements StudyHost {
     this.worn = true;
   }
   inSession = (): boolean => this.worn;
-  calibration = (): Calibration => this.measures;
-  setCalibration(calibration: Calibration): void {
+  calibration = (): Calibration => this.measures ?? defaultCalibration;
+  setCalibration(calibration: Calibration | null): void {
     this.measures = calibration;
   }
   async chooseEstimator(name: EstimatorName): Promise<void> {

@@ -1,7 +1,7 @@
 import { describe, expect, test } from 'vitest';
 import { openStudyVault } from '../../../src/app/study/study-vault';
 import { aWomanOf26 } from '../../core/study/studies';
-import { browser, type Tab, unmeasured } from './study-browser';
+import { browser, ofAnother, type Tab } from './study-browser';
 import { type StudyServer, studyServer } from './study-server';
 
 async function agree(tab: Tab, motion = false): Promise<void> {
@@ -119,13 +119,19 @@ describe('the participant', () => {
     const { device, tab } = await beforeTheRound(await studyServer());
     const { bowSide, measures, actor } = tab.host;
     expect(bowSide).toBe('left');
-    expect(measures.eyeHeight).toBeCloseTo(1.6, 1);
+    expect(measures?.eyeHeight).toBeCloseTo(1.6, 1);
     expect(actor).toBe(false);
-    expect(measures, 'those of before').not.toEqual(unmeasured);
     await tab.exchange();
     tab.close();
     const again = await device.open();
     expect(again.host).toMatchObject({ bowSide, measures });
+  });
+
+  test('has no measures before the first ones: those that the page has are another person’s', async () => {
+    const tab = await browser(await studyServer()).open();
+    expect(tab.host.measures).toEqual(ofAnother);
+    await agree(tab);
+    expect(tab.host.measures).toBeNull();
   });
 
   test('is measured anew before each block', async () => {
@@ -150,7 +156,7 @@ describe('the participant', () => {
     expect(tab.display.shown).toBe('calibration-enter');
     tab.wear(true);
     expect(tab.display.shown).toBe('calibration');
-    expect(tab.host.measures).toEqual(unmeasured);
+    expect(tab.host.measures).toBeNull();
   });
 
   test('rests as long as the plan says, and the questions come by themselves', async () => {
