@@ -6,8 +6,11 @@ import { root } from './run-command.mjs';
 /** Other pages than the one that is kept; they need their server. */
 const otherPages = ['experimenter.html', 'results.html'];
 
-/** Files that no page which is kept asks for: a server's business, and what computes by WebGPU (27 MB, behind ?ep=webgpu alone). */
-const unkept = /^(api|studies)\/|(^|\/)\.|\.html$|\.webgpu\.|\.asyncify-|^sw\.js$/;
+/**
+ * Files that no page which is kept asks for: a server's business, weights for pages without the runtime (the library's), and what computes
+ * by WebGPU (27 MB, behind ?ep=webgpu alone).
+ */
+const unkept = /^(api|studies)\/|(^|\/)\.|\.html$|\.webgpu\.|\.asyncify-|^models\/.*\.bin$|^sw\.js$/;
 
 /** Files that these pages of Vite's manifest load, now or later. */
 function reached(manifest, pages) {

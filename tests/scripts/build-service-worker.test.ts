@@ -13,6 +13,7 @@ const built = {
   '.source-hash': 'hash',
   'favicon.svg': '<svg/>',
   'models/learned.onnx': 'weights',
+  'models/learned.bin': 'weights for pages without a runtime',
   'assets/main-1.js': 'main',
   'assets/archery-2.js': 'later',
   'assets/shared-3.js': 'of two pages',
