@@ -65,11 +65,13 @@ export const stages = {
       return [];
     },
   },
-  // Core without the browser's types and without ambient ones: window, performance and console are unknown there.
+  // Core without the browser's types and without ambient ones: window, performance and console are unknown there. The service worker with a
+  // worker's types.
   'core-types': {
     suite: 'day',
     singleCore: true,
-    commands: () => [node('typescript/bin/tsc', '--noEmit', '-p', 'tsconfig.core.json')],
+    commands: () =>
+      ['core', 'worker'].map((part) => node('typescript/bin/tsc', '--noEmit', '-p', `tsconfig.${part}.json`)),
   },
   lint: { suite: 'day', singleCore: true, commands: () => [node('@biomejs/biome/bin/biome', 'check', '.')] },
   dependencies: {

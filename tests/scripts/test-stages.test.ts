@@ -1,4 +1,4 @@
-import { readFileSync } from 'node:fs';
+import { readdirSync, readFileSync } from 'node:fs';
 import { describe, expect, onTestFinished, test, vi } from 'vitest';
 import { stages, stagesOf } from '../../scripts/test-stages.mjs';
 
@@ -15,6 +15,17 @@ describe('the suites', () => {
   test('have every stage between them, each once', () => {
     const all = ['test', 'test:full', 'test:training', 'nightly'].flatMap(run);
     expect(all.toSorted()).toEqual(Object.keys(stages).toSorted());
+  });
+
+  test('by day compile by every configuration of the compiler that there is', () => {
+    const commands = [...stages.types.commands(), ...stages['core-types'].commands()].flat();
+    const configurations = readdirSync(new URL('../..', import.meta.url)).filter((file) =>
+      /^tsconfig\.\w+\.json$/.test(file),
+    );
+    expect(configurations.length).toBeGreaterThan(0);
+    // The stage of the library has its own, by the script that builds it.
+    const compiled = [...commands, ...(text('scripts/build-library.mjs').match(/tsconfig\.\w+\.json/g) ?? [])];
+    expect(compiled).toEqual(expect.arrayContaining(configurations));
   });
 
   test('by day, in full and of training are what a change must pass', () => {
