@@ -24,7 +24,7 @@ export interface Sheet {
   readonly picture: string;
   /** null: the file was opened. */
   readonly refused: string | null;
-  /** [ms] from bytes to a body, and the longest task of the page's thread on the way. */
+  /** From bytes to a body [ms]; 0: there is none. */
   readonly loadMs: number;
 }
 

@@ -25,7 +25,7 @@ import { createZoneRing } from './zone-ring';
 export interface Attendant extends Person {
   /** Arena frame; null: not to be seen now. */
   readonly head: Vec3 | null;
-  /** The middle of each fist, arena frame; null: not seen. */
+  /** Where a ball lies in each hand, arena frame; null: the hand is not seen. */
   readonly palms: Readonly<Record<'left' | 'right', Vec3 | null>>;
   /** 1: live; less: a ghost. */
   readonly opacity: number;

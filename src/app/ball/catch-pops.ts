@@ -1,5 +1,5 @@
 import { Group } from 'three';
-import { copyVec3, type Vec3, vec3 } from '../../core/math/vec3';
+import { copyVec3, type MutableVec3, type Vec3, vec3 } from '../../core/math/vec3';
 import { ink } from '../../scene/boards/lettering';
 import type { Quality } from '../../scene/renderer';
 import { RisingWord } from '../../scene/rising-word';
@@ -10,7 +10,7 @@ const atOnce = 2;
 /** "+1" that rises from the basket for a moment at each catch; arena frame. */
 export class CatchPops {
   readonly object = new Group();
-  readonly #catches: readonly { readonly word: RisingWord; readonly at: ReturnType<typeof vec3>; from: number }[];
+  readonly #catches: readonly { readonly word: RisingWord; readonly at: MutableVec3; from: number }[];
   #next = 0;
 
   constructor(quality: Quality) {
