@@ -1,7 +1,4 @@
 import { expect, test } from 'vitest';
-import { arrowRestHeight, braceHeight } from '../../src/core/games/archery/bow';
-import { releaseTowards } from '../../src/core/games/archery/flight';
-import { oneHandedDraw } from '../../src/core/games/archery/nocked-arrow';
 import { archeryRules } from '../../src/core/games/archery/rules';
 import type { BallAction, BallState } from '../../src/core/games/ball/ball-state';
 import { createBallGestures } from '../../src/core/games/ball/gestures';
@@ -11,8 +8,7 @@ import { stations } from '../../src/core/games/ball/stations';
 import { createThrower } from '../../src/core/games/ball/thrower-motion';
 import { allReleased } from '../../src/core/games/button-presses';
 import { otherSide, type Side } from '../../src/core/math/side';
-import { addScaled, normalise, reject, up, vec3 } from '../../src/core/math/vec3';
-import { bowman } from '../core/games/archery/bowman';
+import { shotWithOneHand } from '../core/games/archery/one-handed-round';
 import { playRound, steady } from '../core/games/archery/playing';
 import { measured } from './measured';
 
@@ -41,20 +37,7 @@ test('archery with one hand: a round can be won from any height', () => {
   let played = 0;
   for (const bowSide of ['left', 'right'] as const) {
     for (const eyeHeight of [1.03, 1.6]) {
-      const archer = bowman({ bowSide, oneHanded: true });
-      let state = archeryRules.start(['archer'], 4, { eyeHeight });
-      const at = vec3(bowSide === 'left' ? -0.1 : 0.1, 1.4, -0.5);
-      for (const { centre } of state.targets) {
-        // Where the knuckles must point depends a little on where the nock lies, and that on where they point.
-        let knuckles = vec3(0, 0, -1);
-        for (let round = 0; round < 6; round++) {
-          const rest = addScaled(at, normalise(reject(up, knuckles)), arrowRestHeight);
-          knuckles = releaseTowards(centre, addScaled(rest, knuckles, -braceHeight - oneHandedDraw), oneHandedDraw)!;
-        }
-        const pose = { bowAt: at, knuckles, lost: [otherSide(bowSide)] };
-        archer.forget().hold(pose, 0.1, 0).hold(pose, 2, 1).hold(pose, 1, 0);
-        for (const { actions } of archer.frames) state = archeryRules.step(state, actions).state;
-      }
+      const state = shotWithOneHand(bowSide, archeryRules.start(['archer'], 4, { eyeHeight }));
       played += 1;
       if (state.score === 50) won += 1;
     }

@@ -38,13 +38,6 @@ export const showSecond = (
 export const times = (start: number, count: number, step = rate): number[] =>
   Array.from({ length: count }, (_, i) => start + i * step);
 
-export const everyNumber = (value: unknown): number[] =>
-  typeof value === 'number'
-    ? [value]
-    : typeof value === 'object' && value !== null
-      ? Object.values(value).flatMap(everyNumber)
-      : [];
-
 export const apart = (a: Joints, b: Joints): number =>
   Math.max(...jointNames.map((joint) => distance(a[joint].position, b[joint].position)));
 

@@ -33,18 +33,8 @@ import {
 } from '../../../src/core/math/vec3';
 import { headingOf } from '../../../src/core/tracking/heading';
 import { evenly, rotation, seed, standpoint, vector } from '../arbitraries';
-import {
-  apart,
-  calibrationOf,
-  everyNumber,
-  factIf,
-  jointsOf,
-  person,
-  rate,
-  showSecond,
-  subjects,
-  times,
-} from './contract-subjects';
+import { numbersIn } from '../numbers-in';
+import { apart, calibrationOf, factIf, jointsOf, person, rate, showSecond, subjects, times } from './contract-subjects';
 import { type Joints, show, showAll } from './drawn';
 import { mirrorFrame, mirrorPoint, transformFrame, withHand } from './moving-person';
 import { openPlainModel, openShippedModel } from './shipped-models';
@@ -176,8 +166,8 @@ describe.each(subjects)('$label', ({ name, plain }) => {
             ? { time, head, leftHand: head, rightHand: head }
             : { time, head, leftHand, rightHand };
           const shown = await show(estimator, frame);
-          expect(everyNumber(shown).every(Number.isFinite)).toBe(true);
-          if (shown.body) expect(everyNumber(jointsOf(shown, calibration)).every(Number.isFinite)).toBe(true);
+          expect(numbersIn(shown).every(Number.isFinite)).toBe(true);
+          if (shown.body) expect(numbersIn(jointsOf(shown, calibration)).every(Number.isFinite)).toBe(true);
         }
       }),
       runs(200),

@@ -16,6 +16,7 @@ import { longestPose, type PosePacket, poseVersion } from '../../../src/core/pro
 import { isNightly } from '../../nightly';
 import { seed } from '../arbitraries';
 import { openShippedModel } from '../estimation/shipped-models';
+import { numbersIn } from '../numbers-in';
 import { packetOf, senders } from './sent-bodies';
 
 const degrees = 180 / Math.PI;
@@ -30,13 +31,6 @@ function worstOf() {
     told: () => [...worst].map(([what, value]) => `${what} ${value.toFixed(2)}`).join(', '),
   };
 }
-
-const everyNumber = (value: unknown): number[] =>
-  typeof value === 'number'
-    ? [value]
-    : typeof value === 'object' && value !== null
-      ? Object.values(value).flatMap(everyNumber)
-      : [];
 
 /** What the receiver may be off by, for any person in any movement, hands seen, lost, guessed, coming back, out of reach or wrung. */
 async function measure(
@@ -352,7 +346,7 @@ test('100,000 bad packets (a million at night) decode to null or to a finite pos
     if ((pose === null) !== (points === null)) throw new Error(`two opinions on ${bytes}`);
     if (pose === null) continue;
     accepted += 1;
-    const finite = everyNumber(pose).every(Number.isFinite);
+    const finite = numbersIn(pose).every(Number.isFinite);
     const turns = [pose.pose.head, pose.pose.leftHand, pose.pose.rightHand]
       .flatMap((hand) => (hand ? [hand.orientation] : []))
       .concat(Object.values(pose.pose.body?.localRotations ?? {}));

@@ -5,7 +5,8 @@ import { arrowLength, maximumDraw, minimumDraw } from '../../../../src/core/game
 import { archeryRules, releaseInterval } from '../../../../src/core/games/archery/rules';
 import { addScaled, length, vec3 } from '../../../../src/core/math/vec3';
 import { seed } from '../../arbitraries';
-import { highShot, numbersIn, shotAt, start, tickSeconds, told } from './shots';
+import { numbersIn } from '../../numbers-in';
+import { highShot, shotAt, start, tickSeconds, told } from './shots';
 
 describe('what no archer can do', () => {
   const shot = (state: ArcheryState) => shotAt(state, 1) as Extract<ArcheryAction, { type: 'release' }>;

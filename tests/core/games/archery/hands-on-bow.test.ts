@@ -1,15 +1,15 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
-import { arrowRestHeight, braceHeight } from '../../../../src/core/games/archery/bow';
-import { releaseTowards } from '../../../../src/core/games/archery/flight';
+import { braceHeight } from '../../../../src/core/games/archery/bow';
 import { oneHandedDraw, oneHandedDrawSpeed } from '../../../../src/core/games/archery/nocked-arrow';
 import { archeryRules } from '../../../../src/core/games/archery/rules';
 import { wristAround } from '../../../../src/core/games/fist';
 import { rotate } from '../../../../src/core/math/quat';
 import { otherSide, type Side } from '../../../../src/core/math/side';
-import { add, addScaled, cross, distance, length, normalise, reject, up, vec3 } from '../../../../src/core/math/vec3';
+import { add, cross, distance, length, normalise, up, vec3 } from '../../../../src/core/math/vec3';
 import { evenly, seed, vector } from '../../arbitraries';
 import { bowAt, bowman } from './bowman';
+import { shotWithOneHand } from './one-handed-round';
 
 const sides: readonly Side[] = ['left', 'right'];
 
@@ -121,20 +121,7 @@ describe('one hand', () => {
   );
 
   test.each(sides)('%s: is enough for 50 of 50', (bowSide) => {
-    const archer = bowman({ bowSide, oneHanded: true });
-    let state = archeryRules.start(['archer'], 4);
-    const at = vec3(bowSide === 'left' ? -0.1 : 0.1, 1.4, -0.5);
-    for (const { centre } of state.targets) {
-      // Where the knuckles must point depends a little on where the nock lies, and that on where they point.
-      let knuckles = vec3(0, 0, -1);
-      for (let round = 0; round < 6; round++) {
-        const rest = addScaled(at, normalise(reject(up, knuckles)), arrowRestHeight);
-        knuckles = releaseTowards(centre, addScaled(rest, knuckles, -braceHeight - oneHandedDraw), oneHandedDraw)!;
-      }
-      const pose = { bowAt: at, knuckles, lost: [otherSide(bowSide)] };
-      archer.forget().hold(pose, 0.1, 0).hold(pose, 2, 1).hold(pose, 1, 0);
-      for (const { actions } of archer.frames) state = archeryRules.step(state, actions).state;
-    }
+    const state = shotWithOneHand(bowSide, archeryRules.start(['archer'], 4));
     expect(state).toMatchObject({ score: 50, end: 'targets' });
   });
 

@@ -33,14 +33,6 @@ export function highShot(state: ArcheryState): ArcheryAction {
   return { type: 'release', position, direction, draw: 0.6, delay: 0 };
 }
 
-/** Every number somewhere in a state. */
-export const numbersIn = (value: unknown): number[] =>
-  typeof value === 'number'
-    ? [value]
-    : typeof value === 'object' && value !== null
-      ? Object.values(value).flatMap(numbersIn)
-      : [];
-
 /** A match told tick by tick. */
 export function told(first: ArcheryState) {
   const events: ArcheryEvent[] = [];

@@ -5,14 +5,8 @@ import { rackPosition } from '../../../../src/core/games/ball/stations';
 import { nextRandom } from '../../../../src/core/math/random';
 import { add, vec3 } from '../../../../src/core/math/vec3';
 import { seed } from '../../arbitraries';
+import { numbersIn } from '../../numbers-in';
 import { headOf, hold, inFront, stand, tickSeconds, velocityTo } from './playing';
-
-const everyNumber = (value: unknown): number[] =>
-  typeof value === 'number'
-    ? [value]
-    : typeof value === 'object' && value !== null
-      ? Object.values(value).flatMap(everyNumber)
-      : [];
 
 /** A whole game of random deeds, some of them impossible, told as ticks. */
 function randomGame(matchSeed: number, ticks: number): BallAction[][] {
@@ -85,7 +79,7 @@ describe('a record of a match', () => {
       const rest = play(log.slice(450), JSON.parse(JSON.stringify(half.state)) as BallState);
       expect(rest.state).toEqual(whole.state);
       expect([...half.events, ...rest.events]).toEqual(whole.events);
-      expect(everyNumber(whole.state).every(Number.isFinite)).toBe(true);
+      expect(numbersIn(whole.state).every(Number.isFinite)).toBe(true);
     }
     expect(points).toBeGreaterThan(5);
   });

@@ -23,13 +23,6 @@ import {
   velocityTo,
 } from './playing';
 
-const _everyNumber = (value: unknown): number[] =>
-  typeof value === 'number'
-    ? [value]
-    : typeof value === 'object' && value !== null
-      ? Object.values(value).flatMap(_everyNumber)
-      : [];
-
 describe('the court', () => {
   test('has both throwers 5 m from the basket holder, who face each other', () => {
     for (const thrower of [leftThrower, rightThrower]) {

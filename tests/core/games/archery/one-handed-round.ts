@@ -1,0 +1,32 @@
+import type { ArcheryState } from '../../../../src/core/games/archery/archery-state';
+import { arrowRestHeight, braceHeight } from '../../../../src/core/games/archery/bow';
+import { releaseTowards } from '../../../../src/core/games/archery/flight';
+import { oneHandedDraw } from '../../../../src/core/games/archery/nocked-arrow';
+import { archeryRules } from '../../../../src/core/games/archery/rules';
+import { otherSide, type Side } from '../../../../src/core/math/side';
+import { addScaled, normalise, reject, up, type Vec3, vec3 } from '../../../../src/core/math/vec3';
+import { bowman } from './bowman';
+
+/** Where the knuckles of a hand with the bow there must point for its arrow to hit. */
+function knucklesTowards(target: Vec3, bowAt: Vec3): Vec3 {
+  // It depends a little on where the nock lies, and that on where they point.
+  let knuckles = vec3(0, 0, -1);
+  for (let round = 0; round < 6; round++) {
+    const rest = addScaled(bowAt, normalise(reject(up, knuckles)), arrowRestHeight);
+    knuckles = releaseTowards(target, addScaled(rest, knuckles, -braceHeight - oneHandedDraw), oneHandedDraw)!;
+  }
+  return knuckles;
+}
+
+/** A round after one hand alone has shot at each of its targets. */
+export function shotWithOneHand(bowSide: Side, round: ArcheryState): ArcheryState {
+  const archer = bowman({ bowSide, oneHanded: true });
+  const bowAt = vec3(bowSide === 'left' ? -0.1 : 0.1, 1.4, -0.5);
+  let state = round;
+  for (const { centre } of round.targets) {
+    const pose = { bowAt, knuckles: knucklesTowards(centre, bowAt), lost: [otherSide(bowSide)] };
+    archer.forget().hold(pose, 0.1, 0).hold(pose, 2, 1).hold(pose, 1, 0);
+    for (const { actions } of archer.frames) state = archeryRules.step(state, actions).state;
+  }
+  return state;
+}
