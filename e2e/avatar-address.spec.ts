@@ -79,7 +79,9 @@ test('an avatar on its way can be given up, and ours stays', async ({ page }) =>
   await joint(page, 'hips');
   await page.getByRole('tab', { name: 'Avatar' }).click();
   await expect(page.getByText('endless.vrm is on its way.')).toBeVisible();
+  const ended = page.waitForEvent('requestfailed', (request) => request.url().endsWith('/endless.vrm'));
   await page.getByRole('button', { name: 'Cancel loading' }).click();
+  expect((await ended).failure()?.errorText).toBe('net::ERR_ABORTED');
   await expect(page.getByText('endless.vrm is on its way.')).toBeHidden();
   await expect(page.getByRole('button', { name: 'Cancel loading' })).toBeHidden();
   letThrough.emit('now');

@@ -1,5 +1,6 @@
 import { Matrix4, Quaternion, Vector3 } from 'three';
 import type { BoneName } from '../../src/avatar/bone-names';
+import { glbOf, padded } from './glb';
 
 type Point = readonly [number, number, number];
 
@@ -222,7 +223,7 @@ function glb(nodes: unknown, parts: readonly Uint8Array[], { joints, vertices, i
   let length = 0;
   for (const part of parts) {
     views.push({ buffer: 0, byteOffset: length, byteLength: part.length });
-    length += Math.ceil(part.length / 4) * 4;
+    length += padded(part.length);
   }
   if (stride > 0) views[0] = { ...views[0], byteStride: stride };
   const [float, short] = [5126, 5123];
@@ -239,7 +240,13 @@ function glb(nodes: unknown, parts: readonly Uint8Array[], { joints, vertices, i
     of(views.length - 2, short, 'SCALAR', indices),
     of(views.length - 1, float, 'MAT4', joints.length),
   ];
-  const json = JSON.stringify({
+  const binary = new Uint8Array(length);
+  let at = 0;
+  for (const part of parts) {
+    binary.set(part, at);
+    at += padded(part.length);
+  }
+  const json = {
     asset: { version: '2.0' },
     scene: 0,
     scenes: [{ nodes: [0] }],
@@ -249,26 +256,6 @@ function glb(nodes: unknown, parts: readonly Uint8Array[], { joints, vertices, i
     accessors,
     bufferViews: views,
     buffers: [{ byteLength: length }],
-  });
-  const text = new TextEncoder().encode(json + ' '.repeat((4 - (json.length % 4)) % 4));
-  const file = new Uint8Array(28 + text.length + length);
-  const header = new DataView(file.buffer);
-  for (const [at, value] of [
-    [0, 0x46546c67],
-    [4, 2],
-    [8, file.length],
-    [12, text.length],
-    [16, 0x4e4f534a],
-    [20 + text.length, length],
-    [24 + text.length, 0x004e4942],
-  ] as const) {
-    header.setUint32(at, value, true);
-  }
-  file.set(text, 20);
-  let at = 28 + text.length;
-  for (const part of parts) {
-    file.set(part, at);
-    at += Math.ceil(part.length / 4) * 4;
-  }
-  return file.buffer;
+  };
+  return glbOf(json, binary);
 }

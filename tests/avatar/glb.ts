@@ -21,8 +21,39 @@ export interface GltfJson {
   };
 }
 
-const copy = (file: Buffer): ArrayBuffer =>
+const copy = (file: Uint8Array): ArrayBuffer =>
   file.buffer.slice(file.byteOffset, file.byteOffset + file.byteLength) as ArrayBuffer;
+
+/** A length that is filled up to whole words, as GLB wants its parts. */
+export const padded = (length: number): number => Math.ceil(length / 4) * 4;
+
+/** What a GLB file consists of. */
+export function partsOf(file: Uint8Array): { readonly json: GltfJson; readonly binary: Buffer } {
+  const whole = Buffer.from(file.buffer, file.byteOffset, file.byteLength);
+  const length = whole.readUInt32LE(12);
+  return {
+    json: JSON.parse(whole.toString('utf8', 20, 20 + length)) as GltfJson,
+    binary: whole.subarray(28 + length),
+  };
+}
+
+/** The GLB file of this JSON and binary part. */
+export function glbOf(json: unknown, binary: Uint8Array): ArrayBuffer {
+  const text = Buffer.from(JSON.stringify(json));
+  const begin = 20 + padded(text.length);
+  const file = Buffer.alloc(begin + 8 + padded(binary.length));
+  file.write('glTF', 0, 'latin1');
+  file.writeUInt32LE(2, 4);
+  file.writeUInt32LE(file.length, 8);
+  file.writeUInt32LE(padded(text.length), 12);
+  file.write('JSON', 16, 'latin1');
+  file.fill(' ', 20, begin);
+  file.set(text, 20);
+  file.writeUInt32LE(padded(binary.length), begin);
+  file.write('BIN\0', begin + 4, 'latin1');
+  file.set(binary, begin + 8);
+  return copy(file);
+}
 
 /** Our own avatar's file. */
 export const mannequin = (): ArrayBuffer => copy(bytes);
@@ -32,18 +63,7 @@ export function changed(
   change: (json: GltfJson, binaryLength: number) => void,
   more: Uint8Array = new Uint8Array(),
 ): ArrayBuffer {
-  const length = bytes.readUInt32LE(12);
-  const json = JSON.parse(bytes.toString('utf8', 20, 20 + length)) as GltfJson;
-  const binary = bytes.subarray(20 + length + 8);
+  const { json, binary } = partsOf(bytes);
   change(json, binary.length);
-  const text = Buffer.from(JSON.stringify(json));
-  const padded = Buffer.concat([text, Buffer.alloc((4 - (text.length % 4)) % 4, ' ')]);
-  const whole = Buffer.concat([binary, more, Buffer.alloc((4 - (more.length % 4)) % 4)]);
-  const header = Buffer.from(bytes.subarray(0, 20));
-  header.writeUInt32LE(20 + padded.length + 8 + whole.length, 8);
-  header.writeUInt32LE(padded.length, 12);
-  const chunk = Buffer.alloc(8);
-  chunk.writeUInt32LE(whole.length, 0);
-  chunk.write('BIN\0', 4, 'latin1');
-  return copy(Buffer.concat([header, padded, chunk, whole]));
+  return glbOf(json, Buffer.concat([binary, more]));
 }

@@ -51,5 +51,6 @@ test('a thing that does not move in its hand is held the same way, wherever the 
       shape,
     );
   }
+  expect(first).not.toEqual(makeHandShape());
   expect(second).toEqual(first);
 });

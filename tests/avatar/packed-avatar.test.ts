@@ -1,0 +1,47 @@
+import { MeshoptEncoder } from 'meshoptimizer';
+import { describe, expect, test } from 'vitest';
+import { decoders } from '../../src/avatar/decoders';
+import { loadAvatar, parseAvatar } from '../../src/avatar/load-avatar';
+import { builtRig } from './built-rig';
+import { glbOf, padded, partsOf } from './glb';
+import { vroid } from './rig-namings';
+import { expectBody, wear } from './worn-body';
+
+/** The same file with the corners of its skin packed by meshopt, as exporters write it; `told`: how many it claims to be. */
+async function packed(file: ArrayBuffer, told?: number): Promise<ArrayBuffer> {
+  await MeshoptEncoder.ready;
+  const { json, binary } = partsOf(new Uint8Array(file));
+  const view = json.bufferViews[0]!;
+  const [count, byteStride] = [view.byteLength / 12, 12];
+  const raw = new Uint8Array(binary.subarray(0, view.byteLength));
+  const small = MeshoptEncoder.encodeGltfBuffer(raw, count, byteStride, 'ATTRIBUTES');
+  const extension = {
+    buffer: 0,
+    byteOffset: binary.length,
+    byteLength: small.length,
+    byteStride,
+    count: told ?? count,
+    mode: 'ATTRIBUTES',
+  };
+  Object.assign(view, { extensions: { EXT_meshopt_compression: extension } });
+  json.buffers[0]!.byteLength = binary.length + padded(small.length);
+  json.extensionsUsed = json.extensionsRequired = ['EXT_meshopt_compression'];
+  return glbOf(json, Buffer.concat([binary.fill(0, 0, view.byteLength), small]));
+}
+
+describe('a rig whose skin is packed by meshopt', () => {
+  test('is worn like any other where the page has the means to unpack it, and refused where it has not', async () => {
+    const file = await packed(builtRig({ nameOf: vroid }));
+    await expect(parseAvatar(file, 'packed.glb')).rejects.toThrow(
+      'packed.glb: is compressed (EXT_meshopt_compression)',
+    );
+    expectBody(wear(await loadAvatar(file, 'packed.glb', async () => [], decoders)));
+  });
+
+  test('is refused where it would unpack to more than an avatar may have', async () => {
+    const bomb = await packed(builtRig({ nameOf: vroid }), 5e8);
+    await expect(loadAvatar(bomb, 'bomb.glb', async () => [], decoders)).rejects.toThrow(
+      /^bomb\.glb: 6000 million unpacked bytes/,
+    );
+  });
+});
