@@ -51,7 +51,7 @@ export function createVrPanel(width: number, height: number, pixelsPerMetre: num
   };
 }
 
-/** The colours of the page (styles/page.css), for canvases. */
+/** The colours of the page (styles/page/base.css), for canvases. */
 export const vrColors = {
   ink: '#f1f4f9',
   inkSoft: '#b6c1d3',

@@ -7,7 +7,7 @@ import { vec3 } from '../../src/core/math/vec3';
 import { createVignette } from '../../src/scene/vignette';
 import { measured } from './measured';
 
-const css = readFileSync(new URL('../../src/styles/page.css', import.meta.url), 'utf8');
+const css = readFileSync(new URL('../../src/styles/page/base.css', import.meta.url), 'utf8');
 
 /** A colour of the page's root, as shares of red, green and blue. */
 function colour(name: string): readonly number[] {
@@ -15,7 +15,7 @@ function colour(name: string): readonly number[] {
   const rgb = new RegExp(`--${name}: rgb\\((\\d+) (\\d+) (\\d+)`).exec(css);
   if (hex) return [0, 2, 4].map((at) => Number.parseInt(hex.slice(at, at + 2), 16) / 255);
   if (rgb) return rgb.slice(1, 4).map((value) => Number(value) / 255);
-  throw new Error(`page.css has no colour --${name}`);
+  throw new Error(`base.css has no colour --${name}`);
 }
 
 /** Relative luminance as WCAG defines it. */
