@@ -26,7 +26,7 @@ import { PageStudy } from './page-study';
 import { exposeProbe, readProbe } from './probe';
 import { SessionChanges } from './session-changes';
 import { pressSheetsByMouse } from './sheet-pointing';
-import { createShownAvatar, fetchOwnAvatar } from './shown-avatar';
+import { fetchOwnAvatar, ShownAvatar } from './shown-avatar';
 import { createStage } from './stage';
 import { TrackingSource } from './tracking-source';
 import type { Visit } from './visit';
@@ -86,7 +86,7 @@ function createGround(options: PageOptions) {
   const recorder = new Recorder();
   const { body } = ground;
   const onChange = changes.emit;
-  const avatar = createShownAvatar({ scene: stage.studio.scene, settings, body, notices, onChange });
+  const avatar = new ShownAvatar({ scene: stage.studio.scene, settings, body, notices, onChange });
   const avatarShown = avatar.openOwn(ownAvatar);
   const headset = new Headset({ renderer: stage.renderer, quality, switches, settings, notices });
   return { ...ground, canvas, quality, timing, stage, recorder, avatar, avatarShown, headset };
@@ -114,7 +114,7 @@ function createPlay({ visit, notices }: PageOptions, ground: ReturnType<typeof c
     headset,
     body,
     study,
-    wear: avatar.wear,
+    wear: (palette) => avatar.wear(palette),
     onCaption,
     onArrival: arrivals.emit,
     onChange: changes.emit,
