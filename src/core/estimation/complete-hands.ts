@@ -13,7 +13,18 @@ import {
   transformPose,
   untransformPoint,
 } from '../math/pose';
-import { conjugate, copyQuat, fromAxes, type MutableQuat, multiply, quat, rotate, slerp } from '../math/quat';
+import {
+  conjugate,
+  copyQuat,
+  fromAxes,
+  fromAxisAngle,
+  type MutableQuat,
+  multiply,
+  type Quat,
+  quat,
+  rotate,
+  slerp,
+} from '../math/quat';
 import type { Side } from '../math/side';
 import {
   addScaled,
@@ -26,6 +37,7 @@ import {
   scale,
   setVec3,
   subtract,
+  up,
   type Vec3,
   vec3,
 } from '../math/vec3';
@@ -57,6 +69,8 @@ export interface CompletedHand extends MutablePose<'floor'> {
 export interface CompletedFrame {
   readonly head: Pose<'floor'>;
   readonly headJoint: Vec3;
+  /** How the body has turned about +Y since the frame before. */
+  readonly bodyTurn: Quat;
   readonly leftHand: CompletedHand;
   readonly rightHand: CompletedHand;
 }
@@ -87,7 +101,11 @@ export interface CompleteHandsState {
   readonly floorFromBody: MutableTransform<'floor', 'body'>;
   readonly left: HandState;
   readonly right: HandState;
-  readonly frame: CompletedFrame & { head: Pose<'floor'>; readonly headJoint: MutableVec3 };
+  readonly frame: CompletedFrame & {
+    head: Pose<'floor'>;
+    readonly headJoint: MutableVec3;
+    readonly bodyTurn: MutableQuat;
+  };
 }
 
 const makeReach = (): Reach => ({ direction: vec3(0, -1, 0), distance: Number.NaN, orientation: quat(0, 0, 0, 1) });
@@ -108,7 +126,13 @@ export function makeCompleteHandsState(): CompleteHandsState {
     floorFromBody: makeTransform(),
     left,
     right,
-    frame: { head: makePose(), headJoint: vec3(0, 0, 0), leftHand: left.hand, rightHand: right.hand },
+    frame: {
+      head: makePose(),
+      headJoint: vec3(0, 0, 0),
+      bodyTurn: quat(0, 0, 0, 1),
+      leftHand: left.hand,
+      rightHand: right.hand,
+    },
   };
 }
 
@@ -248,7 +272,9 @@ export function completeHands(
   frame.head = head;
   headJointOf(head, body.eyesInHead, frame.headJoint);
   setVec3(floorFromBody.position, frame.headJoint.x, 0, frame.headJoint.z);
+  const yawBefore = state.heading.yaw;
   followBodyHeading(state.heading, head.orientation, deltaSeconds, floorFromBody.orientation);
+  fromAxisAngle(up, Number.isNaN(yawBefore) ? 0 : state.heading.yaw - yawBefore, frame.bodyTurn);
   completeHand(state, 'left', leftHand, body, deltaSeconds);
   completeHand(state, 'right', rightHand, body, deltaSeconds);
   return frame;

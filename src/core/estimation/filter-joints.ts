@@ -1,7 +1,19 @@
 import { estimatedJoints } from '../body/joints';
 import { smoothingFactor, trapezoidalEasing } from '../math/damper';
 import type { Pose } from '../math/pose';
-import { add, addScaled, copyVec3, length, lerp, type MutableVec3, scale, setVec3, subtract, vec3 } from '../math/vec3';
+import { type Quat, rotate, rotateInverse } from '../math/quat';
+import {
+  add,
+  addScaled,
+  copyVec3,
+  distance,
+  lerp,
+  type MutableVec3,
+  scale,
+  setVec3,
+  subtract,
+  vec3,
+} from '../math/vec3';
 import { headingConfidence } from '../tracking/heading';
 import { type CompletedFrame, type CompletedHand, confidenceSeconds } from './complete-hands';
 import { type JointPositions, type MutableJointPositions, makeJoints } from './joint-positions';
@@ -46,6 +58,8 @@ export const makeFilterJointsState = (): FilterJointsState => ({
 
 const goal = vec3(0, 0, 0);
 const step = vec3(0, 0, 0);
+/** How the wearer's own turn moves a joint [m], floor axes. */
+const carried = vec3(0, 0, 0);
 
 /** A critically damped g-h filter (Brookner, Tracking and Kalman Filtering Made Easy, 1998), which keeps pace with a person who walks. */
 function followHead({ position, velocity }: FilterJointsState, head: Pose<'floor'>, deltaSeconds: number): void {
@@ -68,7 +82,7 @@ const settlesIn = ({ source, jumped, confidence }: CompletedHand): number =>
 function followJumps(
   state: FilterJointsState,
   joints: JointPositions,
-  { head, leftHand, rightHand }: CompletedFrame,
+  { head, bodyTurn, leftHand, rightHand }: CompletedFrame,
   deltaSeconds: number,
 ): void {
   const seconds = Math.max(settlesIn(leftHand), settlesIn(rightHand));
@@ -78,18 +92,21 @@ function followJumps(
   state.settleSeconds = state.secondsLeft;
   for (let index = 0; index < estimatedJoints.length; index++) {
     const joint = estimatedJoints[index]!;
+    const jump = state.jump[joint];
     subtract(joints[joint], head.position, goal);
-    subtract(state.relative[joint], goal, state.jump[joint]);
+    // The loop below turns every jump along with the body, this one too: it is noted as it was before the turn.
+    subtract(state.relative[joint], rotateInverse(bodyTurn, goal, goal), jump);
   }
   if (leftHand.jumped) scale(state.jump.leftUpperArm, 0.5, state.jump.leftLowerArm);
   if (rightHand.jumped) scale(state.jump.rightUpperArm, 0.5, state.jump.rightLowerArm);
 }
 
-/** Goes to the goal by `share`, but no further than `most` [m]. */
-function followJoint(joint: MutableVec3, share: number, most: number): void {
-  subtract(lerp(joint, goal, share, step), joint, step);
-  const far = length(step);
-  addScaled(joint, step, far > most ? most / far : 1, joint);
+/** Goes to the goal by `share`, but no further than `most` [m] from where the body's turn carries the joint. */
+function followJoint(joint: MutableVec3, share: number, most: number, bodyTurn: Quat): void {
+  lerp(joint, goal, share, step);
+  rotate(bodyTurn, joint, carried);
+  const far = distance(step, carried);
+  lerp(carried, step, far > most ? most / far : 1, joint);
 }
 
 /**
@@ -103,7 +120,7 @@ export function filterJoints(
   completed: CompletedFrame,
   deltaSeconds: number,
 ): MutableJointPositions {
-  const { head, leftHand, rightHand } = completed;
+  const { head, bodyTurn, leftHand, rightHand } = completed;
   const confidence = Math.min(headingConfidence(head.orientation), confidenceIn(leftHand), confidenceIn(rightHand));
   const most = (doubtfulTrunkSpeed + (trunkSpeed - doubtfulTrunkSpeed) * confidence) * Math.max(deltaSeconds, 0);
   const share = smoothingFactor(jointHalfLife, deltaSeconds);
@@ -116,9 +133,9 @@ export function filterJoints(
     const relative = state.relative[joint];
     const hand = joint === 'leftLowerArm' ? leftHand : joint === 'rightLowerArm' ? rightHand : null;
     subtract(joints[joint], head.position, goal);
-    if (left > 0) addScaled(goal, state.jump[joint], left, goal);
+    if (left > 0) addScaled(goal, rotate(bodyTurn, state.jump[joint], state.jump[joint]), left, goal);
     if (!state.known || hand?.jumped) copyVec3(goal, relative);
-    else followJoint(relative, share, hand ? Number.POSITIVE_INFINITY : most);
+    else followJoint(relative, share, hand ? Number.POSITIVE_INFINITY : most, bodyTurn);
     add(state.position, relative, state.joints[joint]);
   }
   state.known = true;

@@ -306,7 +306,13 @@ describe('a hand that comes back far from where it rests', () => {
     (yaw: number, turning: number) =>
     (time: number, position: Vec3 | null): TrackingFrame => {
       const turn = fromAxisAngle(up, yaw + turning * time);
-      return { ...frame(time, position && tracked(rotate(turn, position))), head: tracked(vec3(0, 1.6, 0), turn) };
+      const turned = (place: Vec3): TrackedPose => tracked(rotate(turn, place));
+      return {
+        time,
+        head: tracked(vec3(0, 1.6, 0), turn),
+        leftHand: turned(vec3(-0.2, 1.3, -0.45)),
+        rightHand: position && turned(position),
+      };
     };
   /** What a step [m] has beyond what the turning person does; the head joint it turns about goes 0.1 m round the eyes itself. */
   const ownStep = (now: Vec3, before: Vec3, turning: number): number =>

@@ -11,7 +11,7 @@ import { fitTorso, makeFitTorsoState, torsoBones } from '../../../src/core/estim
 import type { JointPositions } from '../../../src/core/estimation/joint-positions';
 import type { PoseEstimator } from '../../../src/core/estimation/pose-estimator';
 import type { Pose } from '../../../src/core/math/pose';
-import { copyQuat } from '../../../src/core/math/quat';
+import { copyQuat, identity } from '../../../src/core/math/quat';
 import { copyVec3, normalise, vec3 } from '../../../src/core/math/vec3';
 import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
 
@@ -54,6 +54,7 @@ export const completedFrame = (
 ): CompletedFrame => ({
   head,
   headJoint: headJointOf(head, skeletonFromCalibration(calibration).eyesInHead, vec3(0, 0, 0)),
+  bodyTurn: identity,
   leftHand: seenHand(leftHand),
   rightHand: seenHand(rightHand),
 });
