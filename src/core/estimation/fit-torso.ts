@@ -46,6 +46,8 @@ const turnSpeed = 12;
 const shoulderLineHalfLife = 0.15;
 /** Shoulders nearer to each other than the first say nothing of their line, further apart than the second all [share of their distance at rest]. */
 const [undefinedLine, definedLine] = [0.2, 0.7];
+/** Hips that the floor keeps from hanging turn at most this fast about the chest joint [rad/s]: 2.5 cm in a frame at 60 Hz. */
+const hipsTurnSpeed = 6;
 /** Of the turn from the pelvis to the shoulders' line, in the lower back [1]. */
 const spineToShoulders = 0.35;
 /** The height [m] of the hip joints' middle when sitting on the floor. */
@@ -81,6 +83,10 @@ export interface FitTorsoState {
   /** From the left to the right shoulder, unit, floor frame: of this frame, and of the one before. */
   readonly shoulderLine: MutableVec3;
   readonly lineBefore: MutableVec3;
+  /** From the chest joint to the hips, horizontal, unit, floor frame. */
+  readonly towardsHips: MutableVec3;
+  /** The hips are not yet where they lie or hang: they turn there. */
+  hipsTurn: boolean;
   readonly lean: Readonly<Record<Side, Lean>>;
 }
 
@@ -102,6 +108,8 @@ export const makeFitTorsoState = (): FitTorsoState => ({
   },
   shoulderLine: vec3(1, 0, 0),
   lineBefore: vec3(1, 0, 0),
+  towardsHips: vec3(0, 0, 1),
+  hipsTurn: false,
   lean: { left: makeLean(), right: makeLean() },
 });
 
@@ -238,18 +246,25 @@ function followShoulderLine(state: FitTorsoState, { shoulderWidth }: TorsoBones,
   const { shoulderLine: line, lineBefore: before, known } = state;
   subtract(targets.right, targets.left, a);
   const apart = length(a);
-  const wanted = normalise(a, known ? before : headingRight, line);
+  normalise(a, known ? before : headingRight, line);
   if (!known) return;
   const confidence = smoothstep(undefinedLine, definedLine, apart / shoulderWidth);
+  const share = smoothingFactor(shoulderLineHalfLife * (1 - confidence), deltaSeconds);
+  turnTowards(line, before, share, turnSpeed * Math.max(deltaSeconds, 0));
+}
+
+/**
+ * Replaces a unit vector by the one that `before` comes to when it turns towards it by a share of the angle between them, but by `most` [rad] at
+ * most. Whether it gets there.
+ */
+function turnTowards(wanted: MutableVec3, before: Vec3, share: number, most: number): boolean {
   const angle = Math.atan2(length(cross(before, wanted, b)), dot(before, wanted));
-  const turn = Math.min(
-    angle * smoothingFactor(shoulderLineHalfLife * (1 - confidence), deltaSeconds),
-    turnSpeed * Math.max(deltaSeconds, 0),
-  );
-  if (angle - turn < 1e-9) return;
+  const turn = Math.min(angle * share, most);
+  if (angle - turn < 1e-9) return true;
   normalise(cross(b, before, b), headingRight, b);
-  scale(before, Math.cos(turn), line);
-  normalise(addScaled(line, b, Math.sin(turn), line), before, line);
+  scale(before, Math.cos(turn), wanted);
+  normalise(addScaled(wanted, b, Math.sin(turn), wanted), before, wanted);
+  return false;
 }
 
 /** Neck, chest joint, the upper chest's rotation and the shoulders, from where the shoulders are to be. */
@@ -298,10 +313,11 @@ function placeShoulder(
 }
 
 /** Hips, and how each vertebra turns: the pelvis faces between head and shoulders; each joint above turns a part of the rest. */
-function placeSpine({ pose, shoulderLine }: FitTorsoState, { joints, frame, bones }: TorsoGoal): void {
+function placeSpine(state: FitTorsoState, { joints, frame, bones, deltaSeconds }: TorsoGoal): void {
+  const { pose, shoulderLine } = state;
   const { head, headJoint } = frame;
   const { hips, chest, neck, rotations } = pose;
-  hangHips(chest, add(joints.hips, moved, a), bones.lowerBackLength, hips);
+  hangHips(state, add(joints.hips, moved, a), bones.lowerBackLength, deltaSeconds);
   const lowerBackUp = normalise(subtract(chest, hips, a), up, a);
   const pelvisLine = normalise(lerp(shoulderLine, headingRight, shares.pelvisToHead, b), shoulderLine, b);
   alignDirections(bones.lowerBack, right, lowerBackUp, pelvisLine, rotations.hips);
@@ -313,20 +329,29 @@ function placeSpine({ pose, shoulderLine }: FitTorsoState, { joints, frame, bone
   alignDirections(bones.skeleton.restOffsets.head, right, subtract(headJoint, neck, a), c, rotations.neck);
 }
 
-/** The hips at `lowerBack` [m] from the chest joint towards their target, but never below the floor. */
-function hangHips(chest: Vec3, goal: Vec3, lowerBack: number, hips: MutableVec3): void {
+/**
+ * The hips at `lowerBack` [m] from the chest joint towards their target, but never below the floor. Under a chest that is too low for
+ * them to hang they lie aside, and a target almost below the chest hardly says on which side: they turn there with a limited speed,
+ * and go on with it when they hang again until they have caught up.
+ */
+function hangHips(state: FitTorsoState, goal: Vec3, lowerBack: number, deltaSeconds: number): void {
+  const { pose, towardsHips: towards } = state;
+  const { chest, hips } = pose;
   subtract(goal, chest, hips);
   addScaled(chest, normalise(hips, down, hips), lowerBack, hips);
   const lowest = Math.min(lowestHips, chest.y + lowerBack);
-  if (hips.y >= lowest) return;
-  const drop = clamp(chest.y - lowest, -lowerBack, lowerBack);
+  const lie = hips.y < lowest;
+  const before = copyVec3(state.known ? towards : backward, c);
+  normalise(setVec3(towards, hips.x - chest.x, 0, hips.z - chest.z), before, towards);
+  if (!lie && !state.hipsTurn) return;
+  state.hipsTurn = state.known && !turnTowards(towards, before, 1, hipsTurnSpeed * Math.max(deltaSeconds, 0));
+  const drop = lie ? clamp(chest.y - lowest, -lowerBack, lowerBack) : chest.y - hips.y;
   const aside = Math.sqrt(lowerBack * lowerBack - drop * drop);
-  const horizontal = setVec3(hips, hips.x - chest.x, 0, hips.z - chest.z);
-  normalise(horizontal, backward, horizontal);
-  setVec3(hips, chest.x + horizontal.x * aside, chest.y - drop, chest.z + horizontal.z * aside);
+  setVec3(hips, chest.x + towards.x * aside, chest.y - drop, chest.z + towards.z * aside);
 }
 
 /** Forgets the past: the next frame is the first. */
 export function resetFitTorso(state: FitTorsoState): void {
   state.known = false;
+  state.hipsTurn = false;
 }

@@ -1,0 +1,53 @@
+import fc from 'fast-check';
+import { describe, expect, test } from 'vitest';
+import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
+import { estimatedJoints } from '../../../src/core/body/joints';
+import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
+import { createEstimator } from '../../../src/core/estimation/estimators';
+import { fromAxisAngle } from '../../../src/core/math/quat';
+import { add, addScaled, copyVec3, distance, up, type Vec3, vec3 } from '../../../src/core/math/vec3';
+import { evenly, seed } from '../arbitraries';
+import { completedFrame, fitted, poseOf } from './drawn';
+import { standing, transformFrame } from './moving-person';
+
+const calibration = { eyeHeight: 1.62, armSpan: 1.53 };
+const skeleton = skeletonFromCalibration(calibration);
+const hip = { left: vec3(-0.22, 0.85, -0.05), right: vec3(0.22, 0.85, -0.05) };
+describe('hips under a chest that is too low for them to hang', () => {
+  test('do not leap to its other side when they are estimated a little over there', () => {
+    const below = fc.record({ angle: evenly(-3, 3), metres: evenly(0.005, 0.03), yaw: evenly(-3, 3) });
+    fc.assert(
+      fc.property(below, ({ angle, metres, yaw }) => {
+        const elsewhere = { position: vec3(1, 0, -2), orientation: fromAxisAngle(up, yaw) };
+        const upright = createEstimator('ik', calibration);
+        const frame = transformFrame(elsewhere, standing(calibration, hip.left, hip.right));
+        const joints = forwardKinematics(skeleton, poseOf(upright, frame).body!);
+        // The whole person is 1.05 m lower: the chest is where hips should be.
+        const lowered = (place: Vec3): Vec3 => addScaled(place, up, -1.05);
+        const seated = completedFrame(
+          {
+            head: { ...frame.head, position: lowered(frame.head.position) },
+            leftHand: { ...frame.leftHand!, position: lowered(frame.leftHand!.position) },
+            rightHand: { ...frame.rightHand!, position: lowered(frame.rightHand!.position) },
+          },
+          calibration,
+        );
+        const estimated = Object.fromEntries(
+          estimatedJoints.map((joint) => [joint, lowered(joints[joint].position)]),
+        ) as Record<(typeof estimatedJoints)[number], Vec3>;
+        const aside = vec3(Math.sin(angle), 0, Math.cos(angle));
+        const fitBody = fitted(calibration);
+        const hips: Vec3[] = [];
+        for (let i = 0; i < 90; i++) {
+          const under = addScaled(add(estimated.chest, vec3(0, -0.1, 0)), aside, i < 30 ? metres : -metres);
+          const drawn = fitBody(seated, { ...estimated, hips: under }, i ? 1 / 60 : 0);
+          hips.push(copyVec3(drawn.hips.position));
+        }
+        expect(distance(hips[29]!, hips[89]!)).toBeGreaterThan(0.3);
+        expect(Math.max(...hips.slice(1).map((place, i) => distance(place, hips[i]!)))).toBeLessThan(0.03);
+        expect(Math.min(...hips.map(({ y }) => y))).toBeGreaterThan(0.08);
+      }),
+      { seed, numRuns: 40 },
+    );
+  });
+});
