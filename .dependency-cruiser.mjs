@@ -8,6 +8,7 @@ const coreFolders = {
   body: ['math'],
   tracking: ['math', 'body', 'errors'],
   estimation: ['math', 'body', 'tracking', 'errors'],
+  motion: ['math', 'body', 'tracking', 'estimation', 'errors'],
   games: ['math', 'tracking'],
   protocol: ['math', 'body', 'tracking', 'games'],
   room: ['math', 'body', 'tracking', 'protocol', 'errors'],

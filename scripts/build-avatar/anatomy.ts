@@ -1,4 +1,4 @@
-import { fingerBones } from '../../src/avatar/bone-names';
+import { fingerBones } from '../../src/core/body/finger-bones';
 import { armDepth, armHeight, armJoints, fingerPoint, fingers } from './rig';
 import { type DistanceField, ellipsoid, type Point, roundedBox, smoothUnion, taperedCapsule } from './signed-distance';
 

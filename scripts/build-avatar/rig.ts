@@ -1,4 +1,4 @@
-import { fingerBones } from '../../src/avatar/bone-names';
+import { fingerBones } from '../../src/core/body/finger-bones';
 import averageHand from '../../src/core/body/hand-geometry.json';
 import type { FingerName } from '../../src/core/body/hand-shape';
 import { type JointName, parentOf } from '../../src/core/body/joints';

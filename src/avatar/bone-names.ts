@@ -1,15 +1,10 @@
+import { fingerBones } from '../core/body/finger-bones';
 import type { Side } from '../core/math/side';
 
 type SideNames = 'Shoulder' | 'UpperArm' | 'LowerArm' | 'Hand' | 'UpperLeg' | 'LowerLeg' | 'Foot' | 'Toes' | 'Eye';
 type CentreBone = 'hips' | 'spine' | 'chest' | 'upperChest' | 'neck' | 'head' | 'jaw';
 const fingerNames = ['Thumb', 'Index', 'Middle', 'Ring', 'Little'] as const;
 type Finger = (typeof fingerNames)[number];
-
-/** VRM's names of a finger's three bones, from the palm outwards, without the side. */
-export const fingerBones = (finger: string): readonly [string, string, string] =>
-  finger === 'Thumb'
-    ? ['ThumbMetacarpal', 'ThumbProximal', 'ThumbDistal']
-    : [`${finger}Proximal`, `${finger}Intermediate`, `${finger}Distal`];
 
 /** VRM's names of all bones of a hand's fingers, without the side. */
 export const handFingerBones: readonly string[] = fingerNames.flatMap(fingerBones);

@@ -1,5 +1,6 @@
 import type { VRM } from '@pixiv/three-vrm';
 import { type Bone, type Object3D, Quaternion, SkinnedMesh, Vector3 } from 'three';
+import { fingerBonesOf } from '../core/body/finger-bones';
 import {
   bendOfPoints,
   type FingerGeometry,
@@ -27,7 +28,7 @@ import {
   up,
   vec3,
 } from '../core/math/vec3';
-import { type BoneName, fingerBones } from './bone-names';
+import type { BoneName } from './bone-names';
 import { boneNode } from './humanoid';
 
 export type BoneIndex = 0 | 1 | 2;
@@ -60,7 +61,7 @@ export interface RigHand {
 
 /** A finger's three nodes from the palm on; three-vrm gives the bones of VRM 0.x's thumbs the names of 1.0. null: the rig lacks one. */
 const nodesOf = (vrm: VRM, side: Side, finger: FingerName): (Object3D | null)[] =>
-  fingerBones(finger[0]!.toUpperCase() + finger.slice(1)).map((bone) => boneNode(vrm, `${side}${bone}` as BoneName));
+  fingerBonesOf(side, finger).map((bone) => boneNode(vrm, bone as BoneName));
 
 /** A wrist at rest in the rig's frame, which faces +Z, arms spread, palms down. */
 const rigFromWrist: Readonly<Record<Side, Quat>> = {

@@ -1,0 +1,12 @@
+import type { Side } from '../math/side';
+import type { FingerName } from './hand-shape';
+
+/** VRM's names of the three bones of a finger with this name, capitalised, from the palm outwards, without the side. */
+export const fingerBones = (finger: string): readonly [string, string, string] =>
+  finger === 'Thumb'
+    ? ['ThumbMetacarpal', 'ThumbProximal', 'ThumbDistal']
+    : [`${finger}Proximal`, `${finger}Intermediate`, `${finger}Distal`];
+
+/** The same with the side. */
+export const fingerBonesOf = (side: Side, finger: FingerName): readonly string[] =>
+  fingerBones(finger[0]!.toUpperCase() + finger.slice(1)).map((bone) => `${side}${bone}`);

@@ -1,0 +1,118 @@
+import { type MutableQuat, multiply, quat, rotate, setQuat, slerp } from '../math/quat';
+import { add, lerp, type MutableVec3, setVec3, vec3 } from '../math/vec3';
+import type { MotionBone } from './skeleton';
+
+/** A body over a while, in the clip frame (skeleton.ts): what every file of motion is written from. */
+export interface Motion {
+  /** Every bone before its children, the measured ones first. */
+  readonly bones: readonly MotionBone[];
+  /** Of the measured bones. */
+  readonly measured: number;
+  /** Frames per second that the device asked for; `times` are what counts. */
+  readonly rateHz: number;
+  /** Seconds from the first frame, rising. */
+  readonly times: Float64Array;
+  /** Where the hips are [m]: x, y, z of each frame. */
+  readonly hips: Float64Array;
+  /** Rotation of each measured bone against its parent, in T-pose's axes: x, y, z, w, bone after bone, frame after frame. */
+  readonly rotations: Float32Array;
+  /** Whether the left (1) and the right hand (2) were seen, added up, of each frame. */
+  readonly seen: Uint8Array;
+}
+
+/** The rotation of a measured bone against its parent in one frame. */
+export function rotationAt(motion: Motion, frame: number, bone: number, target: MutableQuat): MutableQuat {
+  const at = 4 * (frame * motion.measured + bone);
+  const { rotations } = motion;
+  return setQuat(target, rotations[at]!, rotations[at + 1]!, rotations[at + 2]!, rotations[at + 3]!);
+}
+
+/** Where the hips are in one frame [m]. */
+export const hipsAt = ({ hips }: Motion, frame: number, target: MutableVec3): MutableVec3 =>
+  setVec3(target, hips[3 * frame]!, hips[3 * frame + 1]!, hips[3 * frame + 2]!);
+
+/** Position [m] and rotation from T-pose of every bone, clip frame. */
+export interface PosedBones {
+  readonly positions: readonly MutableVec3[];
+  readonly rotations: readonly MutableQuat[];
+}
+
+export const makePosedBones = ({ bones }: Pick<Motion, 'bones'>): PosedBones => ({
+  positions: bones.map(() => vec3(0, 0, 0)),
+  rotations: bones.map(() => quat(0, 0, 0, 1)),
+});
+
+/** Every bone in one frame. */
+export function poseBones(motion: Motion, frame: number, target: PosedBones): PosedBones {
+  const { positions, rotations } = target;
+  for (const [i, { parent, offset, measured }] of motion.bones.entries()) {
+    const position = positions[i]!;
+    const rotation = rotations[i]!;
+    if (measured) rotationAt(motion, frame, i, rotation);
+    else setQuat(rotation, 0, 0, 0, 1);
+    if (parent < 0) hipsAt(motion, frame, position);
+    else {
+      add(positions[parent]!, rotate(rotations[parent]!, offset, position), position);
+      multiply(rotations[parent]!, rotation, rotation);
+    }
+  }
+  return target;
+}
+
+/** Frames that a file of an even rate may have: two and a half hours at 120 Hz. */
+const mostFrames = 1_080_000;
+
+/**
+ * The same motion at an even rate [Hz], interpolated. Throws a sentence where that is no rate, or the motion lasts so long at it that no file
+ * could hold it.
+ */
+export function resampleMotion(motion: Motion, rateHz: number): Motion {
+  const { times, measured } = motion;
+  if (!(rateHz >= 1 && rateHz <= 1000)) throw new Error(`A rate of ${rateHz} Hz is not one from 1 to 1000.`);
+  const duration = times.at(-1)!;
+  const count = Math.floor(duration * rateHz + 1e-6) + 1;
+  if (!(count <= mostFrames))
+    throw new Error(`The motion lasts ${Math.round(duration)} s, at ${rateHz} Hz more than ${mostFrames} frames.`);
+  const even: Motion = {
+    ...motion,
+    rateHz,
+    times: Float64Array.from({ length: count }, (_, i) => i / rateHz),
+    hips: new Float64Array(3 * count),
+    rotations: new Float32Array(4 * measured * count),
+    seen: new Uint8Array(count),
+  };
+  for (let frame = 0, before = 0; frame < count; frame++) {
+    const time = even.times[frame]!;
+    while (before + 1 < times.length && times[before + 1]! <= time) before += 1;
+    const after = Math.min(before + 1, times.length - 1);
+    const span = times[after]! - times[before]!;
+    mixFrame(motion, before, after, span > 0 ? (time - times[before]!) / span : 0, { into: even, frame });
+  }
+  return even;
+}
+
+const a = vec3(0, 0, 0);
+const b = vec3(0, 0, 0);
+const from = quat(0, 0, 0, 1);
+const to = quat(0, 0, 0, 1);
+
+function mixFrame(
+  motion: Motion,
+  before: number,
+  after: number,
+  share: number,
+  { into, frame }: { readonly into: Motion; readonly frame: number },
+): void {
+  const hips = lerp(hipsAt(motion, before, a), hipsAt(motion, after, b), share, a);
+  into.hips.set([hips.x, hips.y, hips.z], 3 * frame);
+  for (let bone = 0; bone < motion.measured; bone++) {
+    const { x, y, z, w } = slerp(
+      rotationAt(motion, before, bone, from),
+      rotationAt(motion, after, bone, to),
+      share,
+      from,
+    );
+    into.rotations.set([x, y, z, w], 4 * (frame * motion.measured + bone));
+  }
+  into.seen[frame] = motion.seen[share < 0.5 ? before : after]!;
+}

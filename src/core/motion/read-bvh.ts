@@ -1,0 +1,261 @@
+import { fromAxisAngle, type MutableQuat, multiply, quat, rotate, setQuat } from '../math/quat';
+import { add, backward, copyVec3, type MutableVec3, right, up, type Vec3, vec3 } from '../math/vec3';
+
+type Axis = 'x' | 'y' | 'z';
+export interface BvhChannel {
+  readonly kind: 'position' | 'rotation';
+  readonly axis: Axis;
+}
+
+/** A joint of a file; an end site is a joint without channels, called “<parent>:end”. */
+export interface BvhJoint {
+  readonly name: string;
+  /** Index of the parent, which is smaller; −1: a root. */
+  readonly parent: number;
+  /** From the parent's joint, in the file's unit and axes. */
+  readonly offset: Vec3;
+  /** In the order in which they are applied. */
+  readonly channels: readonly BvhChannel[];
+}
+
+/** What a BVH file says, in its own unit and axes. */
+export interface BvhMotion {
+  readonly joints: readonly BvhJoint[];
+  readonly frameSeconds: number;
+  readonly frameCount: number;
+  /** Numbers of a frame. */
+  readonly width: number;
+  /** Frame after frame; angles in degrees. */
+  readonly values: Float64Array;
+}
+
+/** No skeleton of a person has as many. */
+const mostJoints = 5000;
+const mostShown = 40;
+const linesPerStep = 64;
+
+const shown = (text: string): string => `“${text.length > mostShown ? `${text.slice(0, mostShown)}…` : text}”`;
+
+/** Lines of a text one by one, with the place of what is read. */
+class Lines {
+  /** Of the line at hand, from 1. */
+  number = 0;
+  line = '';
+  #next = 0;
+
+  constructor(readonly text: string) {}
+
+  /** Share [0, 1] of the text that was read. */
+  get share(): number {
+    return this.text.length === 0 ? 1 : Math.min(1, this.#next / this.text.length);
+  }
+
+  /** Goes on to the next line that is not blank; false: there is none. */
+  next(): boolean {
+    while (this.#next <= this.text.length) {
+      const feed = this.text.indexOf('\n', this.#next);
+      const end = feed < 0 ? this.text.length : feed;
+      this.line = this.text.slice(this.#next, end);
+      this.#next = end + 1;
+      this.number += 1;
+      if (this.line.trim() !== '') return true;
+    }
+    return false;
+  }
+
+  /** Words of the line with the columns [from 1] at which they begin. */
+  words(): { readonly word: string; readonly column: number }[] {
+    return [...this.line.matchAll(/\S+/g)].map(({ 0: word, index }) => ({ word, column: index + 1 }));
+  }
+
+  fail(column: number, message: string): never {
+    throw new Error(`line ${this.number}, column ${column}: ${message}`);
+  }
+}
+
+interface OpenJoint {
+  readonly name: string;
+  readonly parent: number;
+  offset: Vec3;
+  channels: readonly BvhChannel[];
+}
+
+type Word = ReturnType<Lines['words']>[number];
+
+function numberOf(lines: Lines, { word, column }: Word): number {
+  const value = Number(word);
+  // Number takes '0x10' and 'Infinity' too; the latter is refused as not finite.
+  if (!Number.isFinite(value)) lines.fail(column, `${shown(word)} is no finite number`);
+  return value;
+}
+
+function readOffset(lines: Lines, words: readonly Word[]): Vec3 {
+  if (words.length !== 4) lines.fail(words[0]!.column, `OFFSET should be three numbers, has ${words.length - 1}`);
+  const [x, y, z] = words.slice(1).map((word) => numberOf(lines, word));
+  return vec3(x!, y!, z!);
+}
+
+function readChannels(lines: Lines, words: readonly Word[]): readonly BvhChannel[] {
+  const [at, count, ...names] = words as [Word, Word | undefined, ...Word[]];
+  if (!count || !/^\d+$/.test(count.word)) lines.fail(at.column, 'CHANNELS should begin with their count');
+  if (Number(count.word) !== names.length)
+    lines.fail(count.column, `CHANNELS ${shown(count.word)}, but ${names.length} follow`);
+  return names.map(({ word, column }) => {
+    const found = /^([xyz])(position|rotation)$/i.exec(word);
+    if (!found) lines.fail(column, `channel ${shown(word)} is not known`);
+    return {
+      axis: found[1]!.toLowerCase() as Axis,
+      kind: found[2]!.toLowerCase() as BvhChannel['kind'],
+    };
+  });
+}
+
+/** What stands before MOTION. */
+function readHierarchy(lines: Lines): readonly OpenJoint[] {
+  const joints: OpenJoint[] = [];
+  const stack: number[] = [];
+  let pending: string | null = null;
+  const top = (column: number, what: string): OpenJoint => {
+    const index = stack.at(-1);
+    return index === undefined ? lines.fail(column, `${what} outside a joint`) : joints[index]!;
+  };
+  while (lines.next()) {
+    const words = lines.words();
+    const { word, column } = words[0]!;
+    const keyword = word.toUpperCase();
+    if (keyword === 'HIERARCHY') continue;
+    if (keyword === 'ROOT' || keyword === 'JOINT') {
+      pending = words.slice(1).map((part) => part.word).join(' '); // biome-ignore format: one thought
+      if (pending === '') lines.fail(column, 'a joint without a name');
+    } else if (keyword === 'END') {
+      pending = `${top(column, 'End Site').name}:end`;
+    } else if (keyword === '{') {
+      if (pending === null) lines.fail(column, '“{” without a joint before it');
+      if (joints.length >= mostJoints) lines.fail(column, `more than ${mostJoints} joints: no person's skeleton`);
+      joints.push({ name: pending, parent: stack.at(-1) ?? -1, offset: vec3(0, 0, 0), channels: [] });
+      stack.push(joints.length - 1);
+      pending = null;
+    } else if (keyword === '}') {
+      if (stack.pop() === undefined) lines.fail(column, '“}” closes nothing');
+    } else if (keyword === 'OFFSET') top(column, 'OFFSET').offset = readOffset(lines, words);
+    else if (keyword === 'CHANNELS') top(column, 'CHANNELS').channels = readChannels(lines, words);
+    else if (keyword === 'MOTION') {
+      if (stack.length > 0)
+        lines.fail(column, `the hierarchy is not closed before MOTION: ${stack.length} “}” missing`);
+      if (joints.length === 0) lines.fail(column, 'no joint before MOTION');
+      return joints;
+    } else lines.fail(column, `${shown(word)} is not known in a BVH hierarchy`);
+  }
+  return lines.fail(1, joints.length === 0 ? 'no BVH file: no HIERARCHY' : 'the file ends before its MOTION');
+}
+
+interface Declared {
+  count: number | null;
+  seconds: number | null;
+}
+
+/** Reads “Frames: n” and “Frame Time: s”; false: the line is neither. */
+function readDeclaration(lines: Lines, declared: Declared): boolean {
+  const found = /^\s*(frames|frame\s+time)\s*:\s*(.*?)\s*$/i.exec(lines.line);
+  if (!found) return false;
+  const text = found[2]!;
+  const column = lines.line.lastIndexOf(text === '' ? ':' : text) + 1;
+  const value = text === '' ? Number.NaN : Number(text);
+  if (found[1]!.toLowerCase() === 'frames') {
+    if (!Number.isSafeInteger(value) || value < 1) lines.fail(column, `Frames should be a count, is ${shown(text)}`);
+    declared.count = value;
+  } else {
+    if (!(Number.isFinite(value) && value > 0)) lines.fail(column, `Frame Time should be seconds, is ${shown(text)}`);
+    declared.seconds = value;
+  }
+  return true;
+}
+
+/** Writes the numbers of a line. */
+function readRow(lines: Lines, width: number, values: Float64Array, at: number): void {
+  const { line } = lines;
+  let count = 0;
+  for (let i = 0; i < line.length; ) {
+    if (line.charCodeAt(i) <= 32) {
+      i++;
+      continue;
+    }
+    let end = i + 1;
+    while (end < line.length && line.charCodeAt(end) > 32) end++;
+    const value = Number(line.slice(i, end));
+    if (!Number.isFinite(value)) lines.fail(i + 1, `${shown(line.slice(i, end))} is no finite number`);
+    if (count < width) values[at + count] = value;
+    count += 1;
+    i = end;
+  }
+  if (count !== width) lines.fail(1, `a frame has ${count} numbers, the hierarchy has ${width} channels`);
+}
+
+/**
+ * Reads the text of a BVH file. Yields the share [0, 1] that was read. Throws a sentence with line and column where the text is none: cut
+ * short, counts that do not agree, numbers that are none.
+ */
+export function* readBvh(text: string): Generator<number, BvhMotion> {
+  const lines = new Lines(text);
+  const joints = readHierarchy(lines);
+  const width = joints.reduce((sum, { channels }) => sum + channels.length, 0);
+  if (width === 0) lines.fail(1, 'no joint of the hierarchy has channels: nothing moves');
+  const declared: Declared = { count: null, seconds: null };
+  let values = new Float64Array(width * 64);
+  let frameCount = 0;
+  while (lines.next()) {
+    if (readDeclaration(lines, declared)) continue;
+    if (declared.count !== null && frameCount >= declared.count)
+      lines.fail(1, `Frames says ${declared.count}, but more follow`);
+    if ((frameCount + 1) * width > values.length) {
+      const larger = new Float64Array(2 * values.length);
+      larger.set(values);
+      values = larger;
+    }
+    readRow(lines, width, values, frameCount * width);
+    frameCount += 1;
+    if (frameCount % linesPerStep === 0) yield lines.share;
+  }
+  if (frameCount === 0) lines.fail(1, 'the file ends without a frame');
+  if (declared.count !== null && declared.count !== frameCount)
+    lines.fail(1, `Frames says ${declared.count}, but the file ends after ${frameCount}`);
+  if (declared.seconds === null) throw new Error('a line “Frame Time: seconds” is needed, and there is none');
+  return { joints, frameSeconds: declared.seconds, frameCount, width, values: values.subarray(0, frameCount * width) };
+}
+
+/** Where every joint of a file is and how it is turned, in the file's unit and axes. */
+export interface BvhPose {
+  readonly positions: readonly MutableVec3[];
+  readonly rotations: readonly MutableQuat[];
+}
+
+export const makeBvhPose = ({ joints }: BvhMotion): BvhPose => ({
+  positions: joints.map(() => vec3(0, 0, 0)),
+  rotations: joints.map(() => quat(0, 0, 0, 1)),
+});
+
+const axes: Readonly<Record<Axis, Vec3>> = { x: right, y: up, z: backward };
+const turn = quat(0, 0, 0, 1);
+const local = vec3(0, 0, 0);
+
+/** Every joint in one frame. A position that a file states takes the place of the joint's offset. */
+export function poseBvh({ joints, width, values }: BvhMotion, frame: number, target: BvhPose): BvhPose {
+  let column = frame * width;
+  for (const [i, { parent, offset, channels }] of joints.entries()) {
+    const position = target.positions[i]!;
+    const rotation = setQuat(target.rotations[i]!, 0, 0, 0, 1);
+    copyVec3(offset, local);
+    for (const { kind, axis } of channels) {
+      const value = values[column++]!;
+      if (kind === 'position') local[axis] = value;
+      else multiply(rotation, fromAxisAngle(axes[axis], (value * Math.PI) / 180, turn), rotation);
+    }
+    if (parent < 0) copyVec3(local, position);
+    else {
+      const from = target.rotations[parent]!;
+      add(target.positions[parent]!, rotate(from, local, position), position);
+      multiply(from, rotation, rotation);
+    }
+  }
+  return target;
+}

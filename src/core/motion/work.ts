@@ -1,0 +1,28 @@
+/**
+ * Long work in pieces: it yields the share [0, 1] that is done, so that who runs it can show how far it is, let others go first, or leave off.
+ */
+export type Work<Result> = Generator<number, Result> | AsyncGenerator<number, Result>;
+
+/** Work as a part of longer work: its shares become those from `from` to `to`. */
+export async function* partOf<Result>(work: Work<Result>, from: number, to: number): AsyncGenerator<number, Result> {
+  for (;;) {
+    const step = await work.next();
+    if (step.done) return step.value;
+    yield from + (to - from) * step.value;
+  }
+}
+
+/** Does the whole of some work at once, where nothing waits for it. */
+export function finishWork<Result>(work: Generator<number, Result>): Result {
+  for (;;) {
+    const step = work.next();
+    if (step.done) return step.value;
+  }
+}
+
+/**
+ * Seconds that are left of work of which this share [0, 1] took so many seconds; null: too little is done to say. Work at an even pace is told
+ * exactly.
+ */
+export const secondsLeft = (share: number, elapsedSeconds: number): number | null =>
+  share >= 0.02 && elapsedSeconds > 0 ? (elapsedSeconds * (1 - share)) / share : null;

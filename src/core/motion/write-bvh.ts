@@ -1,0 +1,103 @@
+import { type Quat, quat, toEulerYxz } from '../math/quat';
+import { type MutableVec3, scale, setVec3, type Vec3, vec3 } from '../math/vec3';
+import { hipsAt, type Motion, resampleMotion, rotationAt } from './motion';
+import type { MotionBone } from './skeleton';
+
+export interface BvhOptions {
+  /** What a number of the file is: metres (the default) or centimetres. */
+  readonly unit?: 'm' | 'cm';
+  /** Frames per second; default: those the device asked for. */
+  readonly rateHz?: number;
+}
+
+const degrees = 180 / Math.PI;
+/** From here on [sine of the middle angle] the outer two angles turn about the same axis to within 0.006°. */
+const locked = 1 - 5e-9;
+
+/** Angles [rad] about x, y, z of Ry·Rx·Rz. Where x is a quarter turn only the sum of the others is a fact: all of it is y's. */
+export function eulerYxz(q: Quat, target: MutableVec3): MutableVec3 {
+  const sine = 2 * (q.x * q.w - q.y * q.z);
+  if (Math.abs(sine) < locked) return toEulerYxz(q, target);
+  const y = Math.atan2(2 * (q.y * q.w - q.x * q.z), 1 - 2 * (q.y * q.y + q.z * q.z));
+  return setVec3(target, Math.sign(sine) * (Math.PI / 2), y, 0);
+}
+
+/** Without the sign of a zero. */
+const fixed = (value: number, digits: number): string => {
+  const text = value.toFixed(digits);
+  return text.startsWith('-') && Number(text) === 0 ? text.slice(1) : text;
+};
+
+const root = 'CHANNELS 6 Xposition Yposition Zposition Yrotation Xrotation Zrotation';
+const joint = 'CHANNELS 3 Yrotation Xrotation Zrotation';
+/** Says that no one measured the joint: it keeps its rest. */
+const unmeasured = 'CHANNELS 0';
+
+/** Lines of the hierarchy, bones indented below their parents. */
+function hierarchy(bones: readonly MotionBone[], told: (v: Vec3) => string): string[] {
+  const lines: string[] = ['HIERARCHY'];
+  const write = (index: number, depth: number): void => {
+    const { name, parent, offset, end, measured } = bones[index]!;
+    const indent = '\t'.repeat(depth);
+    lines.push(`${indent}${parent < 0 ? 'ROOT' : 'JOINT'} ${name}`, `${indent}{`);
+    lines.push(`${indent}\tOFFSET ${parent < 0 ? told(vec3(0, 0, 0)) : told(offset)}`);
+    lines.push(`${indent}\t${parent < 0 ? root : measured ? joint : unmeasured}`);
+    for (const [child, bone] of bones.entries()) if (bone.parent === index) write(child, depth + 1);
+    if (end) lines.push(`${indent}\tEnd Site`, `${indent}\t{`, `${indent}\t\tOFFSET ${told(end)}`, `${indent}\t}`);
+    lines.push(`${indent}}`);
+  };
+  write(0, 0);
+  return lines;
+}
+
+/** The bones in the order in which a file lists them: each before its children, and those before its next sibling. */
+export function fileOrder(bones: readonly MotionBone[]): readonly number[] {
+  const order: number[] = [];
+  const visit = (index: number): void => {
+    order.push(index);
+    for (const [child, bone] of bones.entries()) if (bone.parent === index) visit(child);
+  };
+  visit(0);
+  return order;
+}
+
+const framesPerStep = 64;
+
+/**
+ * The text of a BVH file, in parts: T-pose at rest facing +Z, the root at the hips, angles in the order Y, X, Z, an even rate. Bones that are
+ * not measured have no channels. Yields the share [0, 1] that is done. Throws a sentence where the rate is none.
+ */
+export function* writeBvh(
+  motion: Motion,
+  { unit = 'm', rateHz = motion.rateHz }: BvhOptions = {},
+): Generator<number, readonly string[]> {
+  const even = resampleMotion(motion, rateHz);
+  const perMetre = unit === 'cm' ? 100 : 1;
+  const digits = unit === 'cm' ? 4 : 6;
+  const place = vec3(0, 0, 0);
+  const told = (v: Vec3): string => {
+    const { x, y, z } = scale(v, perMetre, place);
+    return `${fixed(x, digits)} ${fixed(y, digits)} ${fixed(z, digits)}`;
+  };
+  const count = even.times.length;
+  const header = [...hierarchy(even.bones, told), 'MOTION', `Frames: ${count}`];
+  const parts = [`${header.join('\n')}\nFrame Time: ${(1 / rateHz).toFixed(9)}\n`];
+  const order = fileOrder(even.bones).filter((index) => even.bones[index]!.measured);
+  const rotation = quat(0, 0, 0, 1);
+  const angles = vec3(0, 0, 0);
+  let lines = '';
+  for (let frame = 0; frame < count; frame++) {
+    const numbers = [told(hipsAt(even, frame, vec3(0, 0, 0)))];
+    for (const bone of order) {
+      const { x, y, z } = eulerYxz(rotationAt(even, frame, bone, rotation), angles);
+      numbers.push(`${fixed(y * degrees, 5)} ${fixed(x * degrees, 5)} ${fixed(z * degrees, 5)}`);
+    }
+    lines += `${numbers.join(' ')}\n`;
+    if (frame % framesPerStep !== framesPerStep - 1) continue;
+    parts.push(lines);
+    lines = '';
+    yield frame / count;
+  }
+  parts.push(lines);
+  return parts;
+}
