@@ -1,5 +1,6 @@
 import * as v from 'valibot';
 import { reasonOf } from '../core/errors/reasons';
+import { chunksOf } from './glb-chunks';
 import { imageSize } from './image-size';
 
 /** What a body from a file may cost: several times what avatars made for headsets have, far below what stalls one. */
@@ -63,22 +64,7 @@ const numbersOf: Readonly<Record<string, number>> = {
   MAT3: 9,
   MAT4: 16,
 };
-const glbMagic = 0x46546c67;
-const jsonChunk = 0x4e4f534a;
-const binaryChunk = 0x004e4942;
 const mostJsonMegabytes = 16;
-
-/** The two chunks of a GLB file; null: it is none, or cut short. */
-function chunksOf(bytes: Uint8Array): { readonly json: string; readonly binary: Uint8Array } | null {
-  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
-  if (bytes.length < 20 || view.getUint32(0, true) !== glbMagic || view.getUint32(4, true) !== 2) return null;
-  const jsonLength = view.getUint32(12, true);
-  if (view.getUint32(16, true) !== jsonChunk || 20 + jsonLength > bytes.length) return null;
-  const json = new TextDecoder().decode(bytes.subarray(20, 20 + jsonLength));
-  const at = 20 + jsonLength;
-  if (at + 8 > bytes.length || view.getUint32(at + 4, true) !== binaryChunk) return { json, binary: new Uint8Array() };
-  return { json, binary: bytes.subarray(at + 8, at + 8 + view.getUint32(at, true)) };
-}
 
 /** Binary FBX begins with these words, FBX as text with any. */
 const isFbx = (bytes: Uint8Array, name: string): boolean =>

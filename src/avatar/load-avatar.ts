@@ -1,5 +1,6 @@
 import { type VRM, VRMLoaderPlugin, VRMUtils } from '@pixiv/three-vrm';
-import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
+import type { Object3D } from 'three';
+import { type GLTF, GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
 import { reasonOf } from '../core/errors/reasons';
 import { restoreBindPose } from './bind-pose';
 import type { BoneMap } from './bone-names';
@@ -12,6 +13,8 @@ import { settleRest } from './rest-pose';
 export interface LoadedAvatar {
   readonly name: string;
   readonly vrm: VRM;
+  /** Which node of the file an object is. */
+  readonly nodeIndices: ReadonlyMap<Object3D, number>;
 }
 
 /** Means to unpack what is compressed, by the name of the extension. */
@@ -68,5 +71,15 @@ async function read(
   } else restoreBindPose(gltf.scene);
   const vrm = own ?? humanoidOf(gltf.scene, name, bones);
   settleRest(vrm, name);
-  return { name, vrm };
+  return { name, vrm, nodeIndices: nodeIndicesOf(gltf) };
+}
+
+function nodeIndicesOf({ parser }: GLTF): ReadonlyMap<Object3D, number> {
+  const indices = new Map<Object3D, number>();
+  // three.js keeps objects without a place in the file here too.
+  const places: Iterable<[object, { readonly nodes?: number } | undefined]> = parser.associations;
+  for (const [object, place] of places) {
+    if (place?.nodes !== undefined && 'isObject3D' in object) indices.set(object as Object3D, place.nodes);
+  }
+  return indices;
 }

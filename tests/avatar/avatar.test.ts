@@ -12,7 +12,7 @@ import { distance, up, type Vec3 } from '../../src/core/math/vec3';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
 import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
 import { poseOf } from '../core/estimation/drawn';
-import { changed, mannequin } from './glb';
+import { changed, mannequin, old } from './glb';
 
 /** Long arms and short legs: proportions that no one has. It stands on the floor all the same. */
 const monster = changed((json) => {
@@ -32,30 +32,6 @@ const monster = changed((json) => {
 const plain = changed((json) => {
   const bones = json.extensions.VRMC_vrm?.humanoid.humanBones;
   for (const name of ['upperChest', 'chest', 'neck', 'leftShoulder', 'rightShoulder']) delete bones?.[name];
-});
-
-/** VRM 0.x: faces −Z at rest, bones in a list. */
-const old = changed((json) => {
-  const bones = json.extensions.VRMC_vrm?.humanoid.humanBones ?? {};
-  delete json.extensions.VRMC_vrm;
-  json.extensionsUsed = ['VRM'];
-  json.extensions.VRM = {
-    specVersion: '0.0',
-    meta: { title: 'old', licenseName: 'CC0' },
-    humanoid: {
-      humanBones: Object.entries(bones)
-        .filter(([name]) => !name.includes('Thumb'))
-        .map(([bone, { node }]) => ({ bone, node })),
-    },
-    firstPerson: { meshAnnotations: [] },
-    blendShapeMaster: { blendShapeGroups: [] },
-    secondaryAnimation: { boneGroups: [], colliderGroups: [] },
-    materialProperties: [],
-  };
-  for (const node of json.nodes) {
-    if (node.translation)
-      node.translation = [-(node.translation[0] ?? 0), node.translation[1] ?? 0, -(node.translation[2] ?? 0)];
-  }
 });
 
 const avatars: readonly (readonly [string, () => ArrayBuffer])[] = [

@@ -67,3 +67,27 @@ export function changed(
   change(json, binary.length);
   return glbOf(json, Buffer.concat([binary, more]));
 }
+
+/** VRM 0.x: faces −Z at rest, bones in a list. */
+export const old = changed((json) => {
+  const bones = json.extensions.VRMC_vrm?.humanoid.humanBones ?? {};
+  delete json.extensions.VRMC_vrm;
+  json.extensionsUsed = ['VRM'];
+  json.extensions.VRM = {
+    specVersion: '0.0',
+    meta: { title: 'old', licenseName: 'CC0' },
+    humanoid: {
+      humanBones: Object.entries(bones)
+        .filter(([name]) => !name.includes('Thumb'))
+        .map(([bone, { node }]) => ({ bone, node })),
+    },
+    firstPerson: { meshAnnotations: [] },
+    blendShapeMaster: { blendShapeGroups: [] },
+    secondaryAnimation: { boneGroups: [], colliderGroups: [] },
+    materialProperties: [],
+  };
+  for (const node of json.nodes) {
+    if (node.translation)
+      node.translation = [-(node.translation[0] ?? 0), node.translation[1] ?? 0, -(node.translation[2] ?? 0)];
+  }
+});
