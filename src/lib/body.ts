@@ -1,7 +1,7 @@
 import type { NetworkName } from '../core/estimation/estimators';
 import type { PoseRegressor } from '../core/estimation/pose-regressor';
 import { BareBody, type BareBodyOptions } from './bare-body';
-import { loadLearned } from './load-learned';
+import { learnedAlone } from './load-learned';
 
 export interface BodyOptions extends Partial<BareBodyOptions> {
   /** Default: the learned one without a runtime. `onnxNetworks` of threepoint/onnx brings both. */
@@ -14,9 +14,4 @@ export class Body extends BareBody {
   constructor(options: BodyOptions = {}) {
     super({ ...options, networks: options.networks ?? learnedAlone });
   }
-}
-
-function learnedAlone(name: NetworkName): Promise<PoseRegressor> {
-  if (name === 'learned') return loadLearned();
-  return Promise.reject(new Error('the paper’s network needs a runtime: networks: onnxNetworks() of threepoint/onnx'));
 }

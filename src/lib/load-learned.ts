@@ -1,4 +1,5 @@
 import contract from '../../public/models/learned.json';
+import type { NetworkName } from '../core/estimation/estimators';
 import { createPlainRegressor } from '../core/estimation/learned-network';
 import type { ModelContract, PoseRegressor } from '../core/estimation/pose-regressor';
 import { fetchFile } from '../inference/model-files';
@@ -25,4 +26,10 @@ export async function loadLearned({ modelUrl, onProgress }: LearnedOptions = {})
   const own = contract as unknown as ModelContract;
   if (!own.weights) throw new Error('learned.json: names no weights');
   return createPlainRegressor(own, await fetchFile(ownWeights().href, own.weights, onProgress));
+}
+
+/** The networks of who has no runtime. */
+export function learnedAlone(name: NetworkName): Promise<PoseRegressor> {
+  if (name === 'learned') return loadLearned();
+  return Promise.reject(new Error('the paper’s network needs a runtime: networks: onnxNetworks() of threepoint/onnx'));
 }

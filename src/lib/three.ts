@@ -1,6 +1,7 @@
 // "threepoint/three": the body on an avatar of three.js, driven by a WebXR session.
 import { EventDispatcher, type Object3D, type WebGLRenderer } from 'three';
 import { type Avatar, createAvatar } from '../avatar/avatar';
+import { avatarClip } from '../avatar/avatar-clip';
 import type { BoneMap } from '../avatar/bone-names';
 import { parseAvatar } from '../avatar/load-avatar';
 import type { AvatarPose } from '../core/body/avatar-pose';
@@ -10,6 +11,7 @@ import type { EstimatorName } from '../core/estimation/pose-estimator';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import { createTracker, type Tracker } from '../xr/tracker';
 import type { CalibrationSource, TrackedPoint } from './bare-body';
+import type { MotionWriter } from './bare-export';
 import { Body, type BodyOptions } from './body';
 import { loadLearned } from './load-learned';
 
@@ -31,6 +33,18 @@ export async function loadAvatar(
 ): Promise<Avatar> {
   const { name, bytes } = await read(source);
   return createAvatar(await parseAvatar(bytes, name, { bones }));
+}
+
+/**
+ * Makes GLB files of an avatar that moves, as `to` of `exportMotion`: all that is in its file stays, bones turn as the person's, and steps are as
+ * long as its own legs make them. Rejects as `loadAvatar`.
+ */
+export async function avatarMotion(
+  source: string | URL | Blob | ArrayBuffer,
+  { bones }: LoadAvatarOptions = {},
+): Promise<MotionWriter> {
+  const { name, bytes } = await read(source);
+  return avatarClip(bytes, name, { bones });
 }
 
 async function read(source: string | URL | Blob | ArrayBuffer): Promise<{ name: string; bytes: ArrayBuffer }> {

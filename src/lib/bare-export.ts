@@ -1,0 +1,82 @@
+import { type Calibration, provisionalCalibration } from '../core/body/calibration';
+import { createEstimator, type NetworkName, needsRegressor } from '../core/estimation/estimators';
+import type { EstimatorName } from '../core/estimation/pose-estimator';
+import type { PoseRegressor } from '../core/estimation/pose-regressor';
+import type { Motion } from '../core/motion/motion';
+import { estimateMotion } from '../core/motion/take-motion';
+import { partOf, type Work } from '../core/motion/work';
+import { type BvhOptions, writeBvh } from '../core/motion/write-bvh';
+import { writeCsv } from '../core/motion/write-csv';
+import { writeVrma } from '../core/motion/write-vrma';
+import type { Recording } from '../core/tracking/recording';
+import { runWork, type WorkOptions } from './run-work';
+
+export const motionFormats = ['bvh', 'csv', 'vrma'] as const;
+export type MotionFormat = (typeof motionFormats)[number];
+
+/** A file that was made, in memory: `new Blob(parts, {type})` or written one after the other. */
+export interface MotionFile {
+  /** What its name should end in, without the dot. */
+  readonly extension: string;
+  readonly type: string;
+  readonly parts: readonly (string | Uint8Array<ArrayBuffer>)[];
+}
+
+/** Makes files of one kind of motions; `avatarClip` of threepoint/three makes another. */
+export interface MotionWriter {
+  readonly extension: string;
+  readonly type: string;
+  write(motion: Motion): Work<MotionFile['parts']>;
+}
+
+export interface BareExportOptions extends WorkOptions, BvhOptions {
+  readonly to: MotionFormat | MotionWriter;
+  /** The method that draws the body between the points; default: 'learned'. */
+  readonly estimator?: EstimatorName;
+  /** Brings the networks, as of a BareBody. What it brings is let go in the end. */
+  readonly networks: (name: NetworkName) => Promise<PoseRegressor>;
+  /** Whose body; default: as the recording says, else by the height of its first frame. */
+  readonly calibration?: Calibration | undefined;
+}
+
+function writerOf({ to, ...options }: BareExportOptions): MotionWriter {
+  if (typeof to === 'object') return to;
+  if (to === 'bvh') return { extension: 'bvh', type: 'text/plain', write: (motion) => writeBvh(motion, options) };
+  if (to === 'csv') return { extension: 'csv', type: 'text/csv', write: writeCsv };
+  if (to === 'vrma') return { extension: 'vrma', type: 'model/gltf-binary', write: writeVrma };
+  throw new Error(`“${String(to)}” is no format of motion: ${motionFormats.join(', ')}`);
+}
+
+/** Of all work, what estimating takes; the rest is writing. */
+const estimating = 0.7;
+
+async function* exportWork(
+  recording: Recording,
+  calibration: Calibration,
+  regressor: PoseRegressor | null,
+  { estimator = 'learned' }: BareExportOptions,
+  writer: MotionWriter,
+): AsyncGenerator<number, MotionFile['parts']> {
+  const drawn = createEstimator(estimator, calibration, regressor);
+  const motion = yield* partOf(estimateMotion(recording, calibration, drawn), 0, estimating);
+  return yield* partOf(writer.write(motion), estimating, 1);
+}
+
+/**
+ * A file of what a method draws of a recording, with fingers: BVH, a table of joints (CSV), VRM Animation, or what a writer makes. Rejects with a
+ * sentence where the method draws no body or fails, or no network comes; with the signal's reason where it is given up.
+ */
+export async function exportMotionBare(recording: Recording, options: BareExportOptions): Promise<MotionFile> {
+  const { estimator = 'learned', networks } = options;
+  const writer = writerOf(options);
+  const calibration =
+    options.calibration ?? recording.calibration ?? provisionalCalibration(recording.frames[0]!.head.position.y);
+  options.signal?.throwIfAborted();
+  const regressor = needsRegressor(estimator) ? await networks(estimator) : null;
+  try {
+    const parts = await runWork(exportWork(recording, calibration, regressor, options, writer), options);
+    return { extension: writer.extension, type: writer.type, parts };
+  } finally {
+    await regressor?.dispose();
+  }
+}

@@ -1,0 +1,120 @@
+import { describe, expect, test } from 'vitest';
+import { defaultCalibration } from '../../src/core/body/calibration';
+import { forwardKinematics } from '../../src/core/body/forward-kinematics';
+import { closedHand } from '../../src/core/body/hand-shape';
+import { skeletonFromCalibration } from '../../src/core/body/skeleton';
+import { createEstimator, needsRegressor } from '../../src/core/estimation/estimators';
+import { distance } from '../../src/core/math/vec3';
+import { makeBvhPose, poseBvh, readBvh } from '../../src/core/motion/read-bvh';
+import { turnPoint } from '../../src/core/motion/skeleton';
+import { finishWork } from '../../src/core/motion/work';
+import { actorFrame } from '../../src/core/tracking/actor-motion';
+import type { Recording } from '../../src/core/tracking/recording';
+import { exportMotion } from '../../src/lib/export-motion';
+import { show } from '../core/estimation/drawn';
+import { openPlainModel, openShippedModel } from '../core/estimation/shipped-models';
+
+const rateHz = 60;
+const recordingOf = (seconds: number): Recording => ({
+  device: 'actor',
+  rateHz,
+  calibration: defaultCalibration,
+  frames: Array.from({ length: Math.round(seconds * rateHz) }, (_, i) => ({
+    ...actorFrame(2 + i / rateHz, defaultCalibration),
+    fingers: { left: closedHand, right: null },
+  })),
+});
+const recording = recordingOf(1);
+const networks = async (name: 'paper' | 'learned') => (name === 'learned' ? openPlainModel() : openShippedModel(name));
+const textOf = (parts: readonly unknown[]): string => parts.join('');
+
+describe('a recording', () => {
+  test.each(['ik', 'learned', 'paper'] as const)('becomes the BVH of what %s draws live, within 1 mm', async (name) => {
+    const { parts, extension } = await exportMotion(recording, { to: 'bvh', estimator: name, networks });
+    expect(extension).toBe('bvh');
+    const file = finishWork(readBvh(textOf(parts)));
+    const pose = makeBvhPose(file);
+    const regressor = needsRegressor(name) ? await networks(name) : null;
+    const live = createEstimator(name, defaultCalibration, regressor);
+    const skeleton = skeletonFromCalibration(defaultCalibration);
+    for (const [i, frame] of recording.frames.entries()) {
+      const { body } = await show(live, frame);
+      const joints = forwardKinematics(skeleton, body!);
+      poseBvh(file, i, pose);
+      for (const joint of ['leftHand', 'rightLowerArm', 'chest', 'hips'] as const) {
+        const at = pose.positions[file.joints.findIndex((found) => found.name === joint)]!;
+        expect(distance(turnPoint(at), joints[joint].position), `${joint}, frame ${i}`).toBeLessThan(1e-3);
+      }
+    }
+    await regressor?.dispose();
+  });
+
+  test.each(['csv', 'vrma'] as const)('becomes a file of kind %s', async (to) => {
+    const { parts, extension, type } = await exportMotion(recording, { to, estimator: 'ik' });
+    expect(extension).toBe(to);
+    expect(new Blob([...parts], { type }).size).toBeGreaterThan(10_000);
+  });
+
+  test('is refused in a sentence where the method draws no body', async () => {
+    await expect(exportMotion(recording, { to: 'bvh', estimator: 'hands-only' })).rejects.toThrow(/draws no body/);
+    await expect(exportMotion(recording, { to: 'bvh', estimator: 'paper' })).rejects.toThrow(/needs a runtime/);
+    await expect(exportMotion(recording, { to: 'fbx' as 'bvh', estimator: 'ik' })).rejects.toThrow(
+      /“fbx” is no format/,
+    );
+  });
+
+  test('without measures is of a person as tall as its first frame tells', async () => {
+    const { parts } = await exportMotion({ ...recording, calibration: null }, { to: 'csv', estimator: 'ik' });
+    const [header, row] = textOf(parts).split('\n');
+    const at = header!.split(',').indexOf('head_y');
+    expect(Number(row!.split(',')[at])).toBeGreaterThan(1.3);
+  });
+});
+
+describe('a long export', () => {
+  test('tells how far it is, and how long the rest takes', async () => {
+    const told: number[] = [];
+    const left: (number | null)[] = [];
+    await exportMotion(recordingOf(20), {
+      to: 'bvh',
+      estimator: 'ik',
+      onProgress({ share, secondsLeft }) {
+        told.push(share);
+        left.push(secondsLeft);
+      },
+    });
+    expect(told.length).toBeGreaterThan(1);
+    expect(told).toEqual([...told].sort((a, b) => a - b));
+    expect([told.at(-1), left.at(-1)]).toEqual([1, 0]);
+  });
+
+  test('lets others have their turn', async () => {
+    let turns = 0;
+    const timer = setInterval(() => {
+      turns += 1;
+    }, 0);
+    await exportMotion(recordingOf(20), { to: 'bvh', estimator: 'ik' });
+    clearInterval(timer);
+    expect(turns).toBeGreaterThan(3);
+  });
+
+  test('is given up when it is asked to, and lets its network go', async () => {
+    const giveUp = new AbortController();
+    let disposed = 0;
+    const network = openPlainModel();
+    const work = exportMotion(recordingOf(20), {
+      to: 'bvh',
+      estimator: 'learned',
+      networks: async () => ({
+        ...network,
+        async dispose() {
+          disposed += 1;
+        },
+      }),
+      signal: giveUp.signal,
+      onProgress: () => giveUp.abort(new Error('enough')),
+    });
+    await expect(work).rejects.toThrow('enough');
+    expect(disposed).toBe(1);
+  });
+});
