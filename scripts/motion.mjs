@@ -1,0 +1,38 @@
+// npm run motion -- FILE --to bvh|csv|vrma|glb [--estimator NAME] [--out FILE] [--unit m|cm] [--rate HZ] [--avatar FILE]:
+// a recording of the page as a file for other programs; docs/motion.md says which and how.
+import { resolve } from 'node:path';
+import { parseArgs } from 'node:util';
+import { ensureInstalled } from './installation.mjs';
+import { main, run, SetupError } from './run-command.mjs';
+
+const usage =
+  'npm run motion -- FILE --to bvh|csv|vrma|glb [--estimator learned|ik|paper] [--out FILE] [--unit m|cm] [--rate HZ] [--avatar FILE]\n' +
+  'FILE is a recording that the page made; docs/motion.md says the rest.';
+const twoHours = 2 * 3600;
+
+function options() {
+  const text = { type: 'string' };
+  try {
+    const { values, positionals } = parseArgs({
+      options: { to: text, estimator: text, out: text, unit: text, rate: text, avatar: text },
+      allowPositionals: true,
+    });
+    if (positionals.length !== 1) throw new Error(`one recording is needed, not ${positionals.length}`);
+    if (!values.to) throw new Error('--to is needed');
+    return { file: positionals[0], values };
+  } catch (error) {
+    throw new SetupError(`motion: ${error.message}\n${usage}`);
+  }
+}
+
+await main(async () => {
+  const { file, values } = options();
+  await ensureInstalled();
+  // Paths on the command line mean what they mean to the person who typed them.
+  const path = (name) => resolve(process.env.INIT_CWD ?? process.cwd(), name);
+  const given = { ...values, file: path(file) };
+  for (const name of ['out', 'avatar']) if (given[name]) given[name] = path(given[name]);
+  const args = ['--import', 'tsx', 'scripts/motion/main.ts', JSON.stringify(given)];
+  const { code } = await run(process.execPath, args, { limitSeconds: twoHours });
+  return code;
+});

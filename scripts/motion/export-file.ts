@@ -1,0 +1,101 @@
+import { existsSync, readFileSync } from 'node:fs';
+import { basename, extname, join } from 'node:path';
+import { avatarClip } from '../../src/avatar/avatar-clip';
+import { reasonOf } from '../../src/core/errors/reasons';
+import type { NetworkName } from '../../src/core/estimation/estimators';
+import { createPlainRegressor } from '../../src/core/estimation/learned-network';
+import { type EstimatorName, estimatorNames } from '../../src/core/estimation/pose-estimator';
+import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
+import { parseRecording } from '../../src/core/tracking/recording';
+import { startRegressor } from '../../src/inference/load-regressor';
+import { parseContract } from '../../src/inference/model-contract';
+import { exportMotionBare, type MotionFormat, type MotionWriter, motionFormats } from '../../src/lib/bare-export';
+import type { WorkOptions } from '../../src/lib/run-work';
+import { writeWhole } from './write-whole';
+
+/** What was asked for on the command line, paths in full. */
+export interface MotionRequest {
+  readonly file: string;
+  readonly to: string;
+  readonly estimator?: string;
+  readonly out?: string;
+  readonly unit?: string;
+  readonly rate?: string;
+  readonly avatar?: string;
+}
+
+/** A sentence for the person at the terminal, who needs no stack. */
+export class MotionError extends Error {}
+
+const root = join(import.meta.dirname, '../..');
+
+/** The page's networks, from their files: the learned one without a runtime, the paper's by onnxruntime-web. */
+async function network(name: NetworkName): Promise<PoseRegressor> {
+  const folder = join(root, 'public/models');
+  const contract = parseContract(`${name}.json`, readFileSync(join(folder, `${name}.json`), 'utf8'));
+  const bytes = (file: string) => readFileSync(join(folder, file));
+  return contract.weights
+    ? createPlainRegressor(contract, bytes(contract.weights.file))
+    : startRegressor(contract, bytes(contract.file));
+}
+
+function readGiven(path: string, what: string): Buffer {
+  if (!existsSync(path)) throw new MotionError(`${what}: there is no file ${path}`);
+  try {
+    return readFileSync(path);
+  } catch (error) {
+    throw new MotionError(`${what}: ${path} cannot be read (${reasonOf(error)})`);
+  }
+}
+
+async function formatOf({ to, avatar }: MotionRequest): Promise<MotionFormat | MotionWriter> {
+  if (to !== 'glb') {
+    if (avatar) throw new MotionError('--avatar is for --to glb alone');
+    const format = motionFormats.find((name) => name === to);
+    if (!format) throw new MotionError(`--to: “${to}” is none of ${motionFormats.join(', ')}, glb`);
+    return format;
+  }
+  const path = avatar ?? join(root, 'public/avatars/mannequin.vrm');
+  const file = readGiven(path, '--avatar');
+  return avatarClip(new Uint8Array(file).buffer, basename(path));
+}
+
+function checked<Name extends string>(option: string, value: string, names: readonly Name[]): Name {
+  const found = names.find((name) => name === value);
+  if (!found) throw new MotionError(`${option}: “${value}” is none of ${names.join(', ')}`);
+  return found;
+}
+
+function rateOf(rate: string | undefined): { rateHz?: number } {
+  if (rate === undefined) return {};
+  const rateHz = Number(rate);
+  if (!(rateHz >= 1 && rateHz <= 1000)) throw new MotionError(`--rate: “${rate}” is no rate from 1 to 1000 Hz`);
+  return { rateHz };
+}
+
+/**
+ * Reads a recording and writes what was asked for, whole or not at all; returns where. Rejects with a sentence where the recording, the avatar or an
+ * option is wrong, and with the signal's reason where it is given up.
+ */
+export async function exportFile(request: MotionRequest, work: WorkOptions = {}): Promise<string> {
+  const { file, unit = 'm', rate, estimator = 'learned' } = request;
+  const name: EstimatorName = checked('--estimator', estimator, estimatorNames);
+  const options = { unit: checked('--unit', unit, ['m', 'cm']), ...rateOf(rate) };
+  const to = await formatOf(request);
+  const text = readGiven(file, 'motion').toString('utf8');
+  let recording: ReturnType<typeof parseRecording>;
+  try {
+    recording = parseRecording(text);
+  } catch (error) {
+    throw new MotionError(`${basename(file)}: ${reasonOf(error)}`);
+  }
+  const made = await exportMotionBare(recording, { ...options, ...work, to, estimator: name, networks: network });
+  const out = request.out ?? join(file, '..', `${basename(file, extname(file))}.${made.extension}`);
+  work.signal?.throwIfAborted();
+  try {
+    writeWhole(out, made.parts);
+  } catch (error) {
+    throw new MotionError(`${out} could not be written (${reasonOf(error)}): nothing is there that was not before`);
+  }
+  return out;
+}

@@ -1,0 +1,29 @@
+import { reasonOf } from '../../src/core/errors/reasons';
+import type { WorkProgress } from '../../src/lib/run-work';
+import { exportFile, type MotionRequest } from './export-file';
+
+const givenUp = new AbortController();
+for (const signal of ['SIGINT', 'SIGTERM', 'SIGHUP'] as const) {
+  process.once(signal, () => givenUp.abort(new Error(`Given up by ${signal}: nothing was written.`)));
+}
+
+const terminal = process.stderr.isTTY;
+
+/** One line that is written over again; where there is no terminal, none. */
+function show({ share, secondsLeft }: WorkProgress): void {
+  if (!terminal) return;
+  const left = secondsLeft === null ? '' : `, ${secondsLeft.toFixed(0)} s left`;
+  process.stderr.write(`\r\u001b[K${(100 * share).toFixed(0)} %${left}`);
+}
+
+try {
+  const request = JSON.parse(process.argv[2] ?? '{}') as MotionRequest;
+  const path = await exportFile(request, { signal: givenUp.signal, onProgress: show });
+  if (terminal) process.stderr.write('\r\u001b[K');
+  console.log(path);
+} catch (error) {
+  if (terminal) process.stderr.write('\r\u001b[K');
+  // A fault of ours has a stack that helps; what is told to the person is a sentence.
+  console.error(reasonOf(error));
+  process.exitCode = 1;
+}

@@ -1,0 +1,95 @@
+import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { describe, expect, test } from 'vitest';
+import { exportFile } from '../../scripts/motion/export-file';
+import { writeWhole } from '../../scripts/motion/write-whole';
+import { defaultCalibration } from '../../src/core/body/calibration';
+import { readBvh } from '../../src/core/motion/read-bvh';
+import { finishWork } from '../../src/core/motion/work';
+import { actorFrame } from '../../src/core/tracking/actor-motion';
+import { writeRecording } from '../../src/core/tracking/recording';
+import { directoryWith } from '../temporary-directory';
+
+const recorded = (seconds: number): string =>
+  writeRecording({
+    device: 'actor',
+    rateHz: 60,
+    calibration: defaultCalibration,
+    frames: Array.from({ length: 60 * seconds }, (_, i) => actorFrame(i / 60, defaultCalibration)),
+  });
+
+/** A folder with a recording in it. */
+function folderWith(seconds: number) {
+  const folder = directoryWith({ 'mine.json': recorded(seconds) });
+  return { folder, file: join(folder, 'mine.json') };
+}
+
+describe('npm run motion', () => {
+  test.each([
+    ['bvh', 'learned'],
+    ['csv', 'ik'],
+    ['vrma', 'paper'],
+    ['glb', 'learned'],
+  ])('writes a recording as %s beside it, as %s draws it', async (to, estimator) => {
+    const { folder, file } = folderWith(1);
+    expect(await exportFile({ file, to, estimator })).toBe(join(folder, `mine.${to}`));
+    expect(readdirSync(folder).sort()).toEqual(['mine.json', `mine.${to}`].sort());
+    expect(readFileSync(join(folder, `mine.${to}`)).length).toBeGreaterThan(20_000);
+  });
+
+  test('takes unit, rate and place', async () => {
+    const { folder, file } = folderWith(1);
+    const out = join(folder, 'other.txt');
+    await exportFile({ file, to: 'bvh', estimator: 'ik', unit: 'cm', rate: '30', out });
+    const { joints, frameCount } = finishWork(readBvh(readFileSync(out, 'utf8')));
+    expect(frameCount).toBe(30);
+    expect(joints.find(({ name }) => name === 'leftLowerArm')!.offset.x).toBeGreaterThan(20);
+  });
+
+  test.each([
+    ['an unknown format', { to: 'fbx' }, /--to: “fbx” is none of bvh, csv, vrma, glb/],
+    ['an unknown method', { to: 'bvh', estimator: 'magic' }, /--estimator: “magic” is none of/],
+    ['a method without a body', { to: 'bvh', estimator: 'hands-only' }, /draws no body/],
+    ['an unknown unit', { to: 'bvh', unit: 'ft' }, /--unit: “ft” is none of m, cm/],
+    ['no rate', { to: 'bvh', rate: 'often' }, /--rate: “often” is no rate/],
+    ['an avatar where none is wanted', { to: 'bvh', avatar: 'me.vrm' }, /--avatar is for --to glb alone/],
+    ['an avatar that is not there', { to: 'glb', avatar: '/nowhere/me.vrm' }, /--avatar: there is no file/],
+    ['a folder that is not there', { to: 'csv', estimator: 'ik', out: '/nowhere/x.csv' }, /x.csv could not be written/],
+  ])('refuses %s in a sentence, and writes nothing', async (_, request, sentence) => {
+    const { folder, file } = folderWith(1);
+    await expect(exportFile({ file, ...request })).rejects.toThrow(sentence);
+    expect(readdirSync(folder)).toEqual(['mine.json']);
+  });
+
+  test('refuses a damaged recording with the line', async () => {
+    const { folder, file } = folderWith(1);
+    writeFileSync(file, recorded(1).slice(0, 3000));
+    await expect(exportFile({ file, to: 'bvh' })).rejects.toThrow(/^mine.json: The recording is no JSON/);
+    expect(readdirSync(folder)).toEqual(['mine.json']);
+  });
+
+  test('that is given up leaves what was there', async () => {
+    const { folder, file } = folderWith(20);
+    const out = join(folder, 'mine.bvh');
+    writeFileSync(out, 'of yesterday');
+    const giveUp = new AbortController();
+    const onProgress = () => giveUp.abort(new Error('enough'));
+    const work = exportFile({ file, to: 'bvh', estimator: 'ik' }, { signal: giveUp.signal, onProgress });
+    await expect(work).rejects.toThrow('enough');
+    expect(readdirSync(folder).sort()).toEqual(['mine.bvh', 'mine.json']);
+    expect(readFileSync(out, 'utf8')).toBe('of yesterday');
+  });
+
+  test('that fails half-way through a file leaves what was there', () => {
+    const { folder } = folderWith(1);
+    const out = join(folder, 'mine.csv');
+    writeFileSync(out, 'of yesterday');
+    function* failing() {
+      yield 'some of today';
+      throw new Error('the disk is full');
+    }
+    expect(() => writeWhole(out, failing())).toThrow('the disk is full');
+    expect(readdirSync(folder).sort()).toEqual(['mine.csv', 'mine.json']);
+    expect(readFileSync(out, 'utf8')).toBe('of yesterday');
+  });
+});
