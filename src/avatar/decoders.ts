@@ -4,28 +4,60 @@ import type { DracoAnswer, DracoQuestion } from './draco-worker';
 import { avatarLimits } from './inspect-avatar';
 import type { Decoders } from './load-avatar';
 
-/** A mesh that keeps the decoder busy for longer [ms] is not worth the wait. */
+/** A decoder that is silent for longer [ms] is not worth the wait. */
 const patienceMs = 20_000;
 const mostNumbers = avatarLimits.triangles * 3;
 
-function askWorker(question: DracoQuestion): Promise<DracoAnswer> {
-  const worker = new Worker(new URL('./draco-worker.ts', import.meta.url), { type: 'module' });
-  return new Promise<DracoAnswer>((resolve, reject) => {
-    const timer = setTimeout(() => reject(new Error('Draco: unpacking it takes too long')), patienceMs);
-    worker.addEventListener('message', ({ data }: MessageEvent<DracoAnswer>) => {
-      clearTimeout(timer);
-      resolve(data);
-    });
-    worker.addEventListener('error', ({ message }) => {
-      clearTimeout(timer);
-      reject(new Error(`Draco: the decoder did not start (${message})`));
-    });
-    worker.postMessage(question);
-  }).finally(() => worker.terminate());
+interface Waiting {
+  resolve(answer: DracoAnswer): void;
+  reject(error: Error): void;
 }
 
-async function geometryOf(question: DracoQuestion): Promise<BufferGeometry> {
-  const answer = await askWorker(question);
+/** A worker that unpacks meshes in the order in which they are asked for. It begins with the first and ends when none is left. */
+class DracoWorker {
+  readonly #waiting: Waiting[] = [];
+  #worker: Worker | null = null;
+  #patience: ReturnType<typeof setTimeout> | undefined;
+
+  ask(question: DracoQuestion): Promise<DracoAnswer> {
+    return new Promise((resolve, reject) => {
+      this.#worker ??= this.#begin();
+      this.#waiting.push({ resolve, reject });
+      this.#worker.postMessage(question);
+      if (this.#waiting.length === 1) this.#wait();
+    });
+  }
+
+  #begin(): Worker {
+    const worker = new Worker(new URL('./draco-worker.ts', import.meta.url), { type: 'module' });
+    worker.addEventListener('message', ({ data }: MessageEvent<DracoAnswer>) => {
+      this.#waiting.shift()?.resolve(data);
+      if (this.#waiting.length > 0) this.#wait();
+      else this.#end();
+    });
+    worker.addEventListener('error', ({ message }) => this.#fail(`Draco: the decoder did not start (${message})`));
+    return worker;
+  }
+
+  #wait(): void {
+    clearTimeout(this.#patience);
+    this.#patience = setTimeout(() => this.#fail('Draco: unpacking it takes too long'), patienceMs);
+  }
+
+  #fail(reason: string): void {
+    for (const { reject } of this.#waiting.splice(0)) reject(new Error(reason));
+    this.#end();
+  }
+
+  #end(): void {
+    clearTimeout(this.#patience);
+    this.#worker?.terminate();
+    this.#worker = null;
+  }
+}
+
+async function geometryOf(worker: DracoWorker, question: DracoQuestion): Promise<BufferGeometry> {
+  const answer = await worker.ask(question);
   if ('broken' in answer) throw new Error(answer.broken);
   const geometry = new BufferGeometry();
   geometry.setIndex(new BufferAttribute(answer.index, 1));
@@ -46,12 +78,15 @@ type DracoCall = [
 ];
 
 /** What GLTFLoader asks of a Draco loader, answered by a worker of our own: three.js's own starts from a blob: address, which our policy forbids. */
-const dracoInWorker = {
-  preload: () => undefined,
-  decodeDracoFile(...[packed, onLoad, ids, types, , onError]: DracoCall): void {
-    geometryOf({ packed, ids, types, mostNumbers }).then(onLoad, onError);
-  },
-};
+function dracoInWorker() {
+  const worker = new DracoWorker();
+  return {
+    preload: () => undefined,
+    decodeDracoFile(...[packed, onLoad, ids, types, , onError]: DracoCall): void {
+      geometryOf(worker, { packed, ids, types, mostNumbers }).then(onLoad, onError);
+    },
+  };
+}
 
 async function meshopt(loader: GLTFLoader): Promise<void> {
   const { MeshoptDecoder } = await import('three/examples/jsm/libs/meshopt_decoder.module.js');
@@ -63,6 +98,6 @@ export const decoders: Decoders = {
   EXT_meshopt_compression: meshopt,
   KHR_meshopt_compression: meshopt,
   async KHR_draco_mesh_compression(loader) {
-    loader.setDRACOLoader(dracoInWorker as never);
+    loader.setDRACOLoader(dracoInWorker() as never);
   },
 };

@@ -77,12 +77,21 @@ function unpack(module: Draco, { packed, ids, types, mostNumbers }: DracoQuestio
   }
 }
 
+function refuse(error: unknown): void {
+  self.postMessage({ broken: reasonOf(error) } satisfies DracoAnswer);
+}
+
+function answer(module: Draco, question: DracoQuestion): void {
+  try {
+    const { index, attributes } = unpack(module, question);
+    const buffers = [index, ...Object.values(attributes).map(({ array }) => array)].map(({ buffer }) => buffer);
+    self.postMessage({ index, attributes } satisfies DracoAnswer, { transfer: buffers });
+  } catch (error) {
+    refuse(error);
+  }
+}
+
+// One answer for each question, in their order.
 self.addEventListener('message', ({ data }: MessageEvent<DracoQuestion>) => {
-  draco
-    .then((module) => {
-      const { index, attributes } = unpack(module, data);
-      const buffers = [index, ...Object.values(attributes).map(({ array }) => array)].map(({ buffer }) => buffer);
-      self.postMessage({ index, attributes } satisfies DracoAnswer, { transfer: buffers });
-    })
-    .catch((error: unknown) => self.postMessage({ broken: reasonOf(error) } satisfies DracoAnswer));
+  draco.then((module) => answer(module, data), refuse);
 });
