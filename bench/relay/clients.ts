@@ -7,6 +7,7 @@ import { createIk } from '../../src/core/estimation/estimators';
 import { protocolVersion } from '../../src/core/protocol/messages';
 import { encodePose } from '../../src/core/protocol/pose-codec';
 import { decodeFrame } from '../../src/core/protocol/pose-frame';
+import { plainAvatar } from '../../src/core/protocol/worn-avatar';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
 import type { Heard, Load } from './conversation';
 
@@ -208,7 +209,14 @@ class Client {
   }
 
   #askIn(): void {
-    const person = { name: `P${this.#seat}`, calibration: defaultCalibration, spectate: false, bot: false, seat: null };
+    const person = {
+      name: `P${this.#seat}`,
+      calibration: defaultCalibration,
+      spectate: false,
+      bot: false,
+      seat: null,
+      avatar: plainAvatar,
+    };
     const message = { type: 'join', version: protocolVersion, ...person };
     this.#say(`42${JSON.stringify(['/', ['message', message]])}`);
   }

@@ -10,7 +10,7 @@ const endings: Readonly<Record<NonNullable<ConnectionStatus['reason']>, string>>
   stopping: 'The server is being restarted.',
   unreachable: 'The server cannot be reached.',
   refused: 'The server does not let you into this room. Open the link again.',
-  'old-page': 'This page is older than the server. Reload it.',
+  'old-page': 'This page and the server are of different versions. Reload the page.',
 };
 
 /** What a person should know of their connection, in a sentence or two; null: nothing. */

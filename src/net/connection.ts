@@ -3,6 +3,7 @@ import type { BallDeed, BallEvent, BallState } from '../core/games/ball/ball-sta
 import type { Transform } from '../core/math/pose';
 import type { Farewell, SeatInfo } from '../core/protocol/messages';
 import type { PosePacket } from '../core/protocol/pose-packet';
+import type { WornAvatar } from '../core/protocol/worn-avatar';
 
 /** This page's clock, that of the tracked frames [s]; it never goes back. */
 export interface LocalClock {
@@ -44,6 +45,8 @@ export interface RoomView {
   readonly matchAhead: number;
   /** The match's clock stands because a player stopped it. */
   readonly paused: boolean;
+  /** How often the room has been known afresh, after joining and after each return. */
+  readonly welcomes: number;
   /** How many rounds were cut short because the room had forgotten them (its server was restarted). */
   readonly voided: number;
 }
@@ -89,6 +92,8 @@ export interface Connection {
   /** Another seat that is free; null: watch. */
   sit(seat: number | null): void;
   calibrate(calibration: Calibration): void;
+  /** To be seen with another avatar from now on. Said again after every return. */
+  wear(avatar: WornAvatar): void;
   /** Where a seat's floor lies in the arena. */
   arenaFromFloor(seat: number): Transform<'arena', 'floor'>;
   /** Gives the seat up; the connection has ended. */
@@ -99,6 +104,8 @@ export interface Connection {
 export interface Visitor {
   readonly name: string;
   readonly calibration: Calibration;
+  /** Absent: the plain one. */
+  readonly avatar?: WornAvatar;
   /** Watches only. */
   readonly spectate?: boolean;
   /** Is no person: gives its seat to the first person who finds none, and is marked. */

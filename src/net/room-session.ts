@@ -6,6 +6,7 @@ import type { BallRoomMessage } from '../core/protocol/ball-messages';
 import type { ClientMessage, Joining } from '../core/protocol/messages';
 import { decodePose, encodePose } from '../core/protocol/pose-codec';
 import { decodeFrame } from '../core/protocol/pose-frame';
+import { plainAvatar, type WornAvatar } from '../core/protocol/worn-avatar';
 import { createClockSync } from './clock-sync';
 import type {
   ArrivedPose,
@@ -36,10 +37,12 @@ export abstract class RoomSession implements Connection {
   readonly #clock = createClockSync();
   readonly #replica = new RoomReplica();
   #calibration: Calibration;
+  #avatar: WornAvatar;
   #skeleton: Skeleton;
   #wishes: { spectate: boolean; seat: number | null };
   /** Whether the clock is to stand; null: never asked for. */
   #pauseWish: boolean | null = null;
+  #welcomes = 0;
   #now = 0;
   #nextPose = Number.NEGATIVE_INFINITY;
   #events: BallEvent[] = [];
@@ -52,6 +55,7 @@ export abstract class RoomSession implements Connection {
     this.#knowsClock = knowsClock;
     this.#calibration = toMillimetres(visitor.calibration);
     this.#skeleton = skeletonFromCalibration(this.#calibration);
+    this.#avatar = visitor.avatar ?? plainAvatar;
     this.#wishes = { spectate: visitor.spectate ?? false, seat: visitor.seat ?? null };
   }
 
@@ -75,6 +79,7 @@ export abstract class RoomSession implements Connection {
       delay: this.#knowsClock ? null : this.#clock.delayAt(this.#now),
       matchAhead: this.#matchAhead,
       paused: known.paused !== null,
+      welcomes: this.#welcomes,
       voided: this.#replica.voided,
     };
     return this.#view;
@@ -122,6 +127,12 @@ export abstract class RoomSession implements Connection {
     if (this.#replica.known) this.transmit({ type: 'calibration', calibration: this.#calibration });
   }
 
+  wear(avatar: WornAvatar): void {
+    if (avatar === this.#avatar) return;
+    this.#avatar = avatar;
+    if (this.#replica.known) this.transmit({ type: 'wear', avatar });
+  }
+
   arenaFromFloor(seat: number): Transform<'arena', 'floor'> {
     return this.#replica.arenaFromFloor(seat);
   }
@@ -129,7 +140,7 @@ export abstract class RoomSession implements Connection {
   /** What to say first on every new connection. */
   protected joining(): Joining {
     const { name, bot = false } = this.#visitor;
-    return { name, calibration: this.#calibration, bot, ...this.#wishes };
+    return { name, calibration: this.#calibration, bot, avatar: this.#avatar, ...this.#wishes };
   }
 
   /** Takes a message of the Room in, heard at this time of the page's clock [s]. */
@@ -143,6 +154,7 @@ export abstract class RoomSession implements Connection {
       case 'welcome':
         if (this.#replica.onWelcome(message)) this.#news.push('voided');
         this.#news.push('welcome');
+        this.#welcomes += 1;
         // A player who returns to a server that has forgotten them asks for the same seat.
         if (message.seat !== null) this.#wishes = { spectate: false, seat: message.seat };
         // The room may have forgotten the wish, or have been told otherwise before the connection was lost.

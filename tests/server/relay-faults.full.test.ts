@@ -6,6 +6,7 @@ import { createRoomTokens } from '../../server/room-tokens';
 import { nextRandom } from '../../src/core/math/random';
 import { ballKind } from '../../src/core/protocol/ball-messages';
 import { protocolVersion } from '../../src/core/protocol/messages';
+import { plainAvatar } from '../../src/core/protocol/worn-avatar';
 import { createRemotePlayers } from '../../src/net/remote-players';
 import { createSocketConnection } from '../../src/net/socket-connection';
 import { fists, holding, opening, releaseOf, visitor } from '../net/people';
@@ -226,7 +227,15 @@ test('a reader that stalls is kicked within 10 s, and the others do not notice',
       const text = received.toString();
       if (text[0] === '0') stalled.send(`40${JSON.stringify(['/', { token }])}`);
       else if (text.startsWith('40')) {
-        const join = { type: 'join', version: protocolVersion, name: 'slow', spectate: false, bot: false, seat: null };
+        const join = {
+          type: 'join',
+          version: protocolVersion,
+          name: 'slow',
+          spectate: false,
+          bot: false,
+          seat: null,
+          avatar: plainAvatar,
+        };
         const message = { ...join, calibration: { eyeHeight: 1.6, armSpan: 1.5 } };
         stalled.send(`42${JSON.stringify(['/', ['message', message]])}`);
       } else if (text.includes('"welcome"')) resolve();

@@ -1,7 +1,11 @@
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
+import { defaultCalibration } from '../../src/core/body/calibration';
 import type { BallState } from '../../src/core/games/ball/ball-state';
+import { messageEvent } from '../../src/core/protocol/small-frames';
+import { bannerText } from '../../src/net/banner';
+import type { ConnectionStatus } from '../../src/net/connection';
 import { atRack, fists, holding, opening, releaseOf } from '../net/people';
-import { arrive, type RunningRelay, startRelay, until } from './running-relay';
+import { arrive, type RunningRelay, rawSocket, startRelay, tokenFor, until } from './running-relay';
 
 let server: RunningRelay;
 beforeAll(async () => {
@@ -10,6 +14,28 @@ beforeAll(async () => {
 afterAll(() => server.close());
 
 describe('a relay', () => {
+  test('tells a page from before an update that it is one, and shows it to no one in the room', async () => {
+    const ann = arrive(server.url, 'versions', 'Ann');
+    try {
+      await until('ann in', () => ann.connection.room !== null);
+      const token = await tokenFor(server.url, 'versions');
+      const older = rawSocket(server.url, token, 'versions');
+      const heard: { type?: string; reason?: string }[] = [];
+      older.on(messageEvent, (message) => heard.push(message));
+      // As pages said it when the pose packet had another layout: without an avatar, in version 3.
+      const join = { type: 'join', version: 3, name: 'Old', calibration: defaultCalibration, spectate: false };
+      older.on('connect', () => older.emit(messageEvent, { ...join, bot: false, seat: null }));
+      await until('the farewell', () => heard.length > 0 && older.disconnected);
+      expect(heard).toEqual([{ type: 'farewell', reason: 'old-page' }]);
+      const status: ConnectionStatus = { phase: 'ended', attempt: 0, retryIn: null, reason: 'old-page' };
+      expect(bannerText(status)).toBe('This page and the server are of different versions. Reload the page.');
+      expect(ann.connection.status.phase).toBe('joined');
+      expect(ann.connection.room?.seats.filter(Boolean)).toHaveLength(1);
+    } finally {
+      ann.stop();
+    }
+  });
+
   test('makes a room as the first to come asks for it, and as no one after', async () => {
     const ann = arrive(server.url, 'short', 'Ann', { terms: { seconds: 30, balls: 6 } });
     const people = [ann];

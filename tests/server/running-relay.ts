@@ -14,6 +14,7 @@ import { type BallRoomMessage, ballKind } from '../../src/core/protocol/ball-mes
 import { mostSeats, protocolVersion, type RoomTerms } from '../../src/core/protocol/messages';
 import { encodePose } from '../../src/core/protocol/pose-codec';
 import { messageEvent, pageParser } from '../../src/core/protocol/small-frames';
+import { plainAvatar } from '../../src/core/protocol/worn-avatar';
 import type { Visitor } from '../../src/net/connection';
 import { createRoomPass } from '../../src/net/room-pass';
 import { createSocketConnection } from '../../src/net/socket-connection';
@@ -157,6 +158,7 @@ export async function rawGuest(url: string, room: string, token?: string) {
       spectate: false,
       bot: false,
       seat: null,
+      avatar: plainAvatar,
     }),
   );
   await until('the raw guest to be welcomed', () => heard.some(({ type }) => type === 'welcome'));

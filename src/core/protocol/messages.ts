@@ -1,9 +1,13 @@
 import * as v from 'valibot';
 import type { Calibration } from '../body/calibration';
 import { cleanName } from './names';
+import { avatarHash, ownAvatars, type WornAvatar } from './worn-avatar';
 
-/** Bumped with every change that an older page or server would misunderstand. */
-export const protocolVersion = 3;
+/**
+ * Bumped with every change that an older page or server would misunderstand: of these messages, of pose packets and of their frames, which each
+ * have a version of their own. Who joins with another one is told so, and shows nothing to those who could not read it.
+ */
+export const protocolVersion = 4;
 
 /** No control message is longer [bytes of UTF-8]; a snapshot takes at most half of it. */
 export const longestMessage = 4096;
@@ -22,6 +26,8 @@ const calibration = v.strictObject({
 });
 
 const name = v.pipe(v.string(), v.maxLength(200), v.transform(cleanName));
+/** A WornAvatar. */
+const avatar = v.union([v.picklist(ownAvatars), v.pipe(v.string(), v.regex(avatarHash))]);
 
 /** First of all: who this is to the others. Where a seat is free and none is named, the first. */
 const join = v.strictObject({
@@ -33,6 +39,7 @@ const join = v.strictObject({
   /** Not a person: gives its seat to the first person who finds none. */
   bot: v.boolean(),
   seat: v.nullable(seat),
+  avatar,
 });
 
 const clientMessage = v.variant('type', [
@@ -46,6 +53,8 @@ const clientMessage = v.variant('type', [
   /** To another seat that is free, or to one from among the spectators; null: become a spectator. */
   v.strictObject({ type: v.literal('sit'), seat: v.nullable(seat) }),
   v.strictObject({ type: v.literal('calibration'), calibration }),
+  /** To be seen with another avatar; of a file, the server's store has it. */
+  v.strictObject({ type: v.literal('wear'), avatar }),
   /** Stop the match's clock, or take that back: in a room whose terms allow it, from a seat. */
   v.strictObject({ type: v.literal('pause'), pause: v.boolean() }),
   /** Answered at once; `sent` comes back as it is. */
@@ -88,12 +97,13 @@ export interface SeatInfo {
   readonly calibration: Calibration;
   readonly bot: boolean;
   readonly presence: (typeof presences)[number];
+  readonly avatar: WornAvatar;
 }
 const presences = ['here', 'away', 'gone'] as const;
 
-/** Name, eye height, arm span [m], presence (index), 1 for a bot; null: the seat is empty. */
+/** Name, eye height, arm span [m], presence (index), 1 for a bot, avatar; null: the seat is empty. */
 const packedSeatInfo = v.nullable(
-  v.tuple([v.string(), finiteWithin(3), finiteWithin(3), wholeFrom(0, presences.length - 1), wholeFrom(0, 1)]),
+  v.tuple([v.string(), finiteWithin(3), finiteWithin(3), wholeFrom(0, presences.length - 1), wholeFrom(0, 1), avatar]),
 );
 export type PackedSeatInfo = v.InferOutput<typeof packedSeatInfo>;
 
@@ -106,12 +116,14 @@ export const packSeatInfo = (info: SeatInfo | null): PackedSeatInfo =>
     millimetres(info.calibration.armSpan),
     presences.indexOf(info.presence),
     info.bot ? 1 : 0,
+    info.avatar,
   ];
 
 export function unpackSeatInfo(packed: PackedSeatInfo): SeatInfo | null {
   if (!packed) return null;
-  const [name, eyeHeight, armSpan, presence, bot] = packed;
-  return { name, calibration: { eyeHeight, armSpan }, presence: presences[presence] ?? 'gone', bot: bot === 1 };
+  const [name, eyeHeight, armSpan, presence, bot, avatar] = packed;
+  const calibration = { eyeHeight, armSpan };
+  return { name, calibration, presence: presences[presence] ?? 'gone', bot: bot === 1, avatar };
 }
 
 /**

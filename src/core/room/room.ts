@@ -2,6 +2,7 @@ import { type Pose, type TrackedPose, type Transform, transformPoint, transformP
 import { type ClientMessage, type Joining, packSeatInfo, protocolVersion } from '../protocol/messages';
 import { decodePoints } from '../protocol/pose-codec';
 import type { PointsPacket } from '../protocol/pose-packet';
+import { plainAvatar, type WornAvatar } from '../protocol/worn-avatar';
 import { MatchClock } from './match-clock';
 import type { HostedGame, MatchPolicy } from './match-policy';
 import type { ClientId, RoomOutlet, RoomReason, RoomRefusal } from './room-outlet';
@@ -80,6 +81,12 @@ export class Room<Game extends HostedGame> {
     return this.#match.isPaused;
   }
 
+  /** What this person has on, on a seat that is theirs or held for them; null: they have none. */
+  wornBy(identity: string): WornAvatar | null {
+    const index = this.#seats.heldBy(identity);
+    return index === null ? null : (this.#seats.at(index)?.avatar ?? null);
+  }
+
   /** A new connection of a person whose identity the host has made sure of. Replaces an older one of theirs and takes their held seat. */
   join(client: ClientId, identity: string, joining: Joining, time: number): void {
     this.#match.begin(time);
@@ -89,7 +96,8 @@ export class Room<Game extends HostedGame> {
     }
     this.#replaceOlder(identity, time);
     const { name, calibration, bot, spectate } = joining;
-    const known: Client = { identity, name, bot, calibration };
+    const avatar = this.options.assigned ? plainAvatar : joining.avatar;
+    const known: Client = { identity, name, bot, calibration, avatar };
     this.#clients.set(client, known);
     const held = this.#seats.heldBy(identity);
     if (held !== null && !spectate) this.#seats.retake(held, client, known, time);
@@ -170,6 +178,9 @@ export class Room<Game extends HostedGame> {
       case 'calibration':
         this.#calibrate(index, known, message);
         return;
+      case 'wear':
+        this.#wear(client, known, message);
+        return;
       case 'away':
         if (index !== null) this.#declareAway(index, message, time);
         return;
@@ -230,6 +241,20 @@ export class Room<Game extends HostedGame> {
     const seat = index === null ? null : this.#seats.at(index);
     if (!seat || index === null) return;
     seat.calibration = calibration;
+    this.#broadcastSeat(index);
+  }
+
+  /** Where places are assigned all look alike: bodies that people bring along would tell who they are. */
+  #wear(client: ClientId, known: Client, { avatar }: Received<'wear'>): void {
+    if (this.options.assigned) {
+      this.#refuse(client, 'message', 'assigned');
+      return;
+    }
+    known.avatar = avatar;
+    const index = this.#seats.indexOf(client);
+    const seat = index === null ? null : this.#seats.at(index);
+    if (!seat || index === null || seat.avatar === avatar) return;
+    seat.avatar = avatar;
     this.#broadcastSeat(index);
   }
 

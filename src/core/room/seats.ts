@@ -1,6 +1,7 @@
 import type { Calibration } from '../body/calibration';
 import type { SeatInfo } from '../protocol/messages';
 import { encodeFrame, type SeatPose } from '../protocol/pose-frame';
+import type { WornAvatar } from '../protocol/worn-avatar';
 import type { SeatAction } from '../tracking/seat-action';
 import { PoseClaims } from './pose-claims';
 import type { ClientId } from './room-outlet';
@@ -17,6 +18,7 @@ export interface Client {
   readonly name: string;
   readonly bot: boolean;
   calibration: Calibration;
+  avatar: WornAvatar;
 }
 
 /** One seat that is taken, with what its player told of themselves. */
@@ -26,6 +28,7 @@ export interface Seat {
   client: ClientId | null;
   name: string;
   calibration: Calibration;
+  avatar: WornAvatar;
   readonly bot: boolean;
   /** Room time [s] of losing the connection. */
   lostAt: number | null;
@@ -86,7 +89,9 @@ export class Seats {
   /** As others know it; null: the seat is empty. */
   infoOf(index: number): SeatInfo | null {
     const seat = this.at(index);
-    return seat && { name: seat.name, calibration: seat.calibration, bot: seat.bot, presence: seat.presence };
+    if (!seat) return null;
+    const { name, calibration, bot, presence, avatar } = seat;
+    return { name, calibration, bot, presence, avatar };
   }
 
   at(index: number): Seat | null {
@@ -121,12 +126,13 @@ export class Seats {
   }
 
   /** Sits a client down on a seat that is empty. */
-  take(index: number, client: ClientId, { identity, name, calibration, bot }: Client, time: number): void {
+  take(index: number, client: ClientId, { identity, name, calibration, avatar, bot }: Client, time: number): void {
     this.#seats[index] = {
       identity,
       client,
       name: name || `Player ${index + 1}`,
       calibration,
+      avatar,
       bot,
       lostAt: null,
       playing: true,
@@ -140,12 +146,20 @@ export class Seats {
   }
 
   /** Gives the seat that was held for a person back to them, on their new connection. */
-  retake(index: number, client: ClientId, { name, calibration }: Client, time: number): void {
+  retake(index: number, client: ClientId, { name, calibration, avatar }: Client, time: number): void {
     const seat = this.at(index);
     if (!seat) return;
     // To the rules a player who was away for long comes anew; within the grace nothing has happened.
     if (!seat.playing) this.#listener.act({ type: 'join', player: index });
-    Object.assign(seat, { client, lostAt: null, playing: true, declaredAway: false, presence: 'here', calibration });
+    Object.assign(seat, {
+      client,
+      lostAt: null,
+      playing: true,
+      declaredAway: false,
+      presence: 'here',
+      calibration,
+      avatar,
+    });
     if (name) seat.name = name;
     seat.poses.reconnected(time);
     this.#listener.changed(index);

@@ -1,3 +1,4 @@
+import { createHash } from 'node:crypto';
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import { defaultCalibration } from '../../../src/core/body/calibration';
@@ -10,8 +11,12 @@ import {
   unpackSeatInfo,
 } from '../../../src/core/protocol/messages';
 import { cleanName } from '../../../src/core/protocol/names';
-import { decodeFrame, encodeFrame } from '../../../src/core/protocol/pose-frame';
+import { decodeFrame, encodeFrame, frameVersion } from '../../../src/core/protocol/pose-frame';
+import { poseVersion } from '../../../src/core/protocol/pose-packet';
 import { pageParser, relayParser, type SocketPacket } from '../../../src/core/protocol/small-frames';
+import { ownAvatars, plainAvatar } from '../../../src/core/protocol/worn-avatar';
+
+const fileHash = createHash('sha256').update('a bear').digest('base64url');
 
 const join = {
   type: 'join',
@@ -21,6 +26,7 @@ const join = {
   spectate: false,
   bot: false,
   seat: null,
+  avatar: plainAvatar,
 };
 const throwing = {
   type: 'throw',
@@ -47,6 +53,8 @@ describe('control messages', () => {
       { type: 'ready', ready: true },
       { type: 'action', action: throwing },
       { type: 'sit', seat: null },
+      { type: 'wear', avatar: plainAvatar },
+      { type: 'wear', avatar: fileHash },
       { type: 'pause', pause: true },
       { type: 'ping', sent: 1.5 },
     ]) {
@@ -62,6 +70,8 @@ describe('control messages', () => {
     ['a field too few', { type: 'ready' }],
     ['another version', { ...join, version: protocolVersion + 1 }],
     ['a seat that no room has', { type: 'sit', seat: 16 }],
+    ['a body that no page has', { type: 'wear', avatar: 'dragon' }],
+    ['an address instead of a hash', { type: 'wear', avatar: '//elsewhere.example/a/bear/that/is/worn.vrm#' }],
     ['half a seat', { type: 'sit', seat: 0.5 }],
     ['a giant', { ...join, calibration: { eyeHeight: 40, armSpan: 1.5 } }],
     ['a name as long as a book', { ...join, name: 'a'.repeat(300) }],
@@ -94,6 +104,7 @@ describe('control messages', () => {
           }),
           bot: fc.boolean(),
           presence: fc.constantFrom('here' as const, 'away' as const, 'gone' as const),
+          avatar: fc.constantFrom(...ownAvatars, fileHash),
         }),
         (info) => {
           expect(unpackSeatInfo(JSON.parse(JSON.stringify(packSeatInfo(info))))).toEqual(info);
@@ -114,6 +125,15 @@ describe('control messages', () => {
         expect(cleanName(name)).toBe(name);
       }),
     );
+  });
+});
+
+test('a change of packets or frames is told to older pages as a change of messages is: by the version of the protocol', () => {
+  // A change of the second or third raises the first, too: pages that would not see each other are told so when they join.
+  expect({ protocolVersion, poseVersion, frameVersion }).toEqual({
+    protocolVersion: 4,
+    poseVersion: 2,
+    frameVersion: 1,
   });
 });
 

@@ -6,6 +6,7 @@ import { type BallGame, BallPolicy } from '../../../src/core/match-policies/ball
 import { type BallRoomMessage, ballRoomMessageFrom } from '../../../src/core/protocol/ball-messages';
 import type { Joining } from '../../../src/core/protocol/messages';
 import { encodePose } from '../../../src/core/protocol/pose-codec';
+import { plainAvatar } from '../../../src/core/protocol/worn-avatar';
 import { Room, type RoomOptions } from '../../../src/core/room/room';
 import type { RoomRefusal } from '../../../src/core/room/room-outlet';
 import { fists, holding, opening, releaseOf, shownAt } from '../../net/people';
@@ -18,6 +19,7 @@ export const joining = (more: Partial<Joining> = {}): Joining => ({
   spectate: false,
   bot: false,
   seat: null,
+  avatar: plainAvatar,
   ...more,
 });
 
