@@ -20,6 +20,10 @@ export interface RelayConfiguration {
   readonly mostRooms: number;
   /** Seconds of a ball game's round. */
   readonly ballSeconds: number;
+  /** Of all avatars together that the people of this process's rooms have stored; 0: none is taken. */
+  readonly avatarMegabytes: number;
+  /** The folder of another server that has avatars by the same names, with a slash at its end; null: there is none. */
+  readonly avatarsFrom: string | null;
   /** Believe what a proxy in front says of a client's address. */
   readonly trustProxy: boolean;
   /** Of the lobby that several processes share; null: this process is alone. */
@@ -48,6 +52,8 @@ export const relayEnvironment = `Environment of the relay (docs/relay.md):
   THREEPOINT_CONNECTIONS_PER_ADDRESS  connections that one address may have open; default 256
   THREEPOINT_MOST_ROOMS         rooms in this process; default 500
   THREEPOINT_BALL_SECONDS       length of a round of the ball game; default 90
+  THREEPOINT_AVATAR_MEGABYTES   of avatars that people show each other, in memory; default 256, 0: none
+  THREEPOINT_AVATARS_FROM       https:// address of a folder that has more of them, each named by its SHA-256 as base64url
   THREEPOINT_TRUST_PROXY        1: a proxy stands in front and tells the clients' addresses; default 0
   THREEPOINT_REDIS_URL          redis://HOST:PORT of the lobby that several processes share
   THREEPOINT_ADMIN_TOKEN        lets its holder end rooms; 128 bits or more
@@ -95,6 +101,17 @@ function hostsFrom(text: string | undefined): readonly string[] {
     }
   }
   return names;
+}
+
+function folderFrom(text: string | undefined): string | null {
+  if (!text) return null;
+  const url = URL.canParse(text) ? new URL(text) : null;
+  if (url?.protocol !== 'https:' || !url.pathname.endsWith('/') || url.search || url.hash || url.username) {
+    throw new ConfigurationError(
+      `The environment variable THREEPOINT_AVATARS_FROM must be a folder as https://example.org/avatars/, not "${text}".`,
+    );
+  }
+  return url.href;
 }
 
 function refuseWeak(name: string, secret: string | null): void {
@@ -151,6 +168,8 @@ export function relayConfigurationFrom(environment: Environment): RelayConfigura
     connectionsPerAddress: whole('THREEPOINT_CONNECTIONS_PER_ADDRESS', 256, 8, 1_000_000),
     mostRooms: whole('THREEPOINT_MOST_ROOMS', 500, 1, 100_000),
     ballSeconds: number('THREEPOINT_BALL_SECONDS', 90, 1, 3600),
+    avatarMegabytes: whole('THREEPOINT_AVATAR_MEGABYTES', 256, 0, 65_536),
+    avatarsFrom: folderFrom(environment.THREEPOINT_AVATARS_FROM),
     trustProxy: whole('THREEPOINT_TRUST_PROXY', 0, 0, 1) === 1,
     redisUrl,
     host: environment.THREEPOINT_HOST || null,

@@ -39,6 +39,10 @@ export interface RelayCensus extends HostCensus {
   readonly connections: number;
   /** Connections refused since the start, because their address had too many. */
   readonly refusedConnections: number;
+  /** Files of avatars in the store. */
+  readonly avatars: number;
+  /** Their bytes, those on their way included. */
+  readonly avatarBytes: number;
 }
 
 const countHelp = {
@@ -58,6 +62,8 @@ const gaugeHelp = {
   spectators: 'People who watch.',
   sockets: 'WebSockets that are open, silent ones included.',
   connections: 'Connections of any kind that are open, silent ones included.',
+  avatars: 'Files of avatars in the store.',
+  avatarBytes: 'Bytes of avatars in the store, those on their way included.',
 } as const satisfies Partial<Record<keyof RelayCensus, string>>;
 
 const keysOf = <T extends object>(of: T): (keyof T)[] => Object.keys(of) as (keyof T)[];

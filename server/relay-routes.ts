@@ -6,6 +6,7 @@ import * as v from 'valibot';
 import { roomTerms } from '../src/core/protocol/messages';
 import { checked } from '../src/core/study/validation';
 import { AdminGuard } from './admin-guard';
+import type { AvatarRoutes } from './avatar-routes';
 import { isLoopback } from './client-address';
 import type { RoomListing } from './hosted-rooms';
 import { type Answer, HttpError, json } from './http/answer';
@@ -31,6 +32,7 @@ export interface RelayRoutesOptions {
   readonly endRoom: (room: string) => void;
   /** Where a fleet counts who joins from where; null: this process is alone. */
   readonly redis: Redis | null;
+  readonly avatars: Pick<AvatarRoutes, 'routes'>;
 }
 
 const longestBody = 4096;
@@ -73,8 +75,11 @@ const byWelcome = (a: RoomListing, b: RoomListing): number =>
 const isOnThisMachine = ({ headers, socket }: IncomingMessage): boolean =>
   isLoopback(socket.remoteAddress ?? '') && headers['x-forwarded-for'] === undefined;
 
-/** Who may call a route of the relay: all pages of our origins, the holder of the admin's token, programs on this machine. */
-export type RelayAccess = 'anyone' | 'admin' | 'this-machine';
+/**
+ * Who may call a route of the relay: all pages of our origins, the holder of the admin's token, programs on this machine; guest: the holder of a
+ * pass to the room that the address names, which the route itself looks at.
+ */
+export type RelayAccess = 'anyone' | 'admin' | 'this-machine' | 'guest';
 
 type RelayRoute = Route<RelayAccess>;
 
@@ -125,6 +130,7 @@ export class RelayRoutes implements Service<RelayAccess> {
         return json(ended);
       }),
       post('/api/rooms/token', 'anyone', (call) => this.#token(call)),
+      ...options.avatars.routes,
     ];
   }
 

@@ -2,6 +2,8 @@ import { randomBytes } from 'node:crypto';
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname } from 'node:path';
 import { type Logger, pino } from 'pino';
+import { AvatarRoutes } from './avatar-routes';
+import { AvatarStore } from './avatar-store';
 import type { Door } from './door';
 import type { Service } from './http/router';
 import { connectRedis, connectRedisPatiently, createOwnLobby, createRedisLobby } from './lobby';
@@ -18,12 +20,16 @@ import type { UpgradeListener } from './web-server';
 /** A relay for a server: its sockets and its part of the HTTP. */
 export interface Relay {
   readonly host: SocketHost;
+  readonly avatars: AvatarStore;
   readonly census: RelayCensus;
   readonly service: Service;
   readonly upgrade: UpgradeListener;
   /** Says farewell and closes; the server itself is its owner's. */
   close(): Promise<void>;
 }
+
+/** How often avatars that no one has on any more are forgotten [ms]. */
+const sweepMs = 1000;
 
 /** A secret kept in a file, so that tokens outlive a restart. */
 export function secretIn(path: string): string {
@@ -63,10 +69,15 @@ export function createRelay(
     sockets: transport.sockets,
     connections: door.open,
     refusedConnections: door.refused,
+    avatars: avatars.count,
+    avatarBytes: avatars.bytes,
   });
   const metrics = createRelayMetrics(census);
   const transport = createRelayTransport(configuration, { log, metrics });
   const host = createSocketHost(transport, { configuration, kinds, tokens, log, metrics, now });
+  const wornBy = (room: string, identity: string) => host.room(room)?.wornBy(identity) ?? null;
+  const avatars = new AvatarStore({ mostBytes: configuration.avatarMegabytes * 2 ** 20, wornBy, now });
+  const sweeping = setInterval(() => avatars.sweep(), sweepMs).unref();
   const fleet = connectFleet(configuration, log);
   const lobby = fleet ? createRedisLobby(fleet.own, node, log) : createOwnLobby();
   const hall = new LobbyHall({
@@ -87,15 +98,22 @@ export function createRelay(
     log,
     endRoom: (room) => hall.endRoom(room),
     redis: fleet?.own ?? null,
+    avatars: new AvatarRoutes({
+      ...{ configuration, store: avatars, tokens, metrics },
+      isSeated: (room, identity) => wornBy(room, identity) !== null,
+    }),
   });
   return {
     host,
+    avatars,
     get census() {
       return census();
     },
     service,
     upgrade: transport.upgrade,
     async close() {
+      clearInterval(sweeping);
+      avatars.clear();
       hall.close();
       await host.close();
       await lobby.close();

@@ -2,6 +2,7 @@ import type { IncomingMessage, RequestListener } from 'node:http';
 import { ValidationError } from '../../src/core/study/validation';
 import { createSitePolicy, type SitePolicy } from '../site-policy';
 import { type Answer, HttpError, json, refusal, sendAnswer } from './answer';
+import { textBody } from './body';
 import { targetOf } from './target';
 
 /** A request to a route, its body read. */
@@ -21,7 +22,7 @@ export interface Route<Access extends string = string> {
   readonly path: string;
   /** Who may: what its service's `admit` makes sure of. */
   readonly access: Access;
-  /** Longest body [bytes]; 0: what is sent is not read. */
+  /** Longest body of JSON [bytes]; 0: what is sent is not read, unless `handle` does. */
   readonly bodyLimit: number;
   handle(call: Call): Answer | Promise<Answer>;
 }
@@ -35,28 +36,6 @@ export interface Service<Access extends string = string> {
   refusalOf(error: unknown): HttpError | null;
   /** Told of faults of ours; the other side hears only that there was one. */
   onFault(error: unknown): void;
-}
-
-/** The whole body as text; an HttpError where it is longer than the limit [bytes]. */
-async function bodyOf(request: IncomingMessage, limit: number): Promise<string> {
-  const tooLong = () => new HttpError(413, `a body has at most ${limit} bytes here`);
-  if (Number(request.headers['content-length'] ?? 0) > limit) throw tooLong();
-  const chunks: Buffer[] = [];
-  let length = 0;
-  if (request.destroyed) throw new HttpError(400, 'the body has no end');
-  // Read by events: leaving a loop over the request would end the connection before the refusal is sent.
-  await new Promise<void>((resolve, reject) => {
-    request.on('data', (chunk: Buffer) => {
-      length += chunk.length;
-      if (length > limit) {
-        request.removeAllListeners('data').pause();
-        reject(tooLong());
-      } else chunks.push(chunk);
-    });
-    const cut = () => reject(new HttpError(400, 'the body has no end'));
-    request.once('end', resolve).once('error', cut).once('close', cut);
-  });
-  return Buffer.concat(chunks).toString('utf8');
 }
 
 /** Lists and objects in each other: nothing that is stored needs as many, and code that recurses has no stack for 100,000. */
@@ -103,7 +82,7 @@ function matcherOf<Access extends string>(service: Service<Access>, route: Route
       if (!/^application\/json(;|$)/i.test(call.request.headers['content-type'] ?? '')) {
         throw new HttpError(415, 'send application/json');
       }
-      return route.handle({ ...call, body: await bodyOf(call.request, route.bodyLimit) });
+      return route.handle({ ...call, body: await textBody(call.request, route.bodyLimit) });
     },
     answerTo(error: unknown): Answer {
       const known = refusalOf(error) ?? service.refusalOf(error);

@@ -20,7 +20,10 @@ export interface HttpRow {
   readonly query?: string;
   readonly status: Readonly<Record<HttpRole, number>>;
   /** A secret of this route alone, and the status that it gets. */
-  readonly also?: { readonly who: 'invited' | 'withdrawing' | 'admin' | 'this machine'; readonly status: number };
+  readonly also?: {
+    readonly who: 'invited' | 'withdrawing' | 'admin' | 'this machine' | 'player';
+    readonly status: number;
+  };
 }
 
 const shut = { otherSite: 403, pointedHere: 421 } as const;
@@ -63,6 +66,24 @@ export const httpRows: Readonly<Record<string, HttpRow>> = {
     json: { room: 'meadow' },
     status: forAll(403),
     also: { who: 'admin', status: 200 },
+  },
+  'GET /api/avatars': {
+    gives: 'what may be stored of the avatars of a room, and what of one’s own is',
+    query: '?room=meadow',
+    status: forAll(401),
+    also: { who: 'player', status: 200 },
+  },
+  'GET /api/avatars/:hash': {
+    gives: 'the file of an avatar that a player of the room has on',
+    query: '?room=meadow',
+    status: forAll(401),
+    also: { who: 'player', status: 200 },
+  },
+  'PUT /api/avatars/:hash': {
+    gives: 'the file of one’s own avatar to the others of the room',
+    query: '?room=meadow',
+    status: forAll(401),
+    also: { who: 'player', status: 204 },
   },
   'GET /api/studies': { gives: 'the list of studies', status: forExperimenter(200) },
   'POST /api/studies': { gives: 'a new study', json: 'plan', status: forExperimenter(201) },
@@ -148,6 +169,10 @@ export const socketRows: Readonly<Record<ClientMessage['type'] | 'pose' | 'unkno
     outcome: { ...all('taken'), participant: 'assigned', experimenter: 'assigned' },
   },
   calibration: { gives: 'the own measures', outcome: all('taken') },
+  wear: {
+    gives: 'another avatar to the own seat',
+    outcome: { ...all('taken'), participant: 'assigned', experimenter: 'assigned' },
+  },
   pause: { gives: 'a clock that stands', outcome: { ...seated, player: 'not-pausable' } },
   ping: { gives: 'the room’s time', outcome: all('taken') },
   leave: { gives: 'the own seat back', outcome: all('taken') },

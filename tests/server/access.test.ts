@@ -1,3 +1,4 @@
+import { createHash } from 'node:crypto';
 import { readFileSync } from 'node:fs';
 import { request as httpRequest, type OutgoingHttpHeaders, type RequestListener } from 'node:http';
 import { join } from 'node:path';
@@ -17,6 +18,7 @@ import { scheduleFor } from '../../src/core/study/plan';
 import { begin } from '../../src/core/study/progress';
 import { checkedRecord } from '../../src/core/study/study-record';
 import { writeRecording } from '../../src/core/tracking/recording';
+import { mannequin } from '../avatar/glb';
 import { paperPlan, session } from '../core/study/studies';
 import { measured } from '../reliability/measured';
 import { directoryWith } from '../temporary-directory';
@@ -114,7 +116,7 @@ function bodyOf({ json }: HttpRow, { records }: WholeServer): string | undefined
 
 interface Sent {
   readonly headers: OutgoingHttpHeaders;
-  readonly body?: string | undefined;
+  readonly body?: string | Uint8Array | undefined;
 }
 
 const statusOf = (port: number, method: string, path: string, { headers, body }: Sent): Promise<number> =>
@@ -165,6 +167,26 @@ test('docs/security.md has these rows (written by scripts/security-table.ts)', (
   expect(text).toBe(withTables(text));
 });
 
+const avatarFile = { bytes: new Uint8Array(mannequin()), hash: '' };
+avatarFile.hash = createHash('sha256').update(avatarFile.bytes).digest('base64url');
+
+/** What a player on a seat of the room called meadow gets who has stored the avatar. */
+async function statusForPlayer(port: number, method: string, address: string): Promise<number> {
+  const origin = `http://localhost:${port}`;
+  const token = await tokenFor(origin, 'meadow');
+  const guest = await rawGuest(origin, 'meadow', token);
+  onTestFinished(() => void guest.socket.disconnect());
+  const headers = { host: `localhost:${port}`, authorization: `Bearer ${token}` };
+  const store = () =>
+    statusOf(port, 'PUT', `/api/avatars/${avatarFile.hash}?room=meadow`, {
+      headers: { ...headers, 'content-type': 'model/gltf-binary' },
+      body: avatarFile.bytes,
+    });
+  if (method === 'PUT') return store();
+  await store();
+  return statusOf(port, method, address, { headers });
+}
+
 /** Who changes least goes first, so that what one is given changes nothing for the next. */
 const order: readonly HttpRole[] = [
   'stranger',
@@ -180,7 +202,9 @@ describe.each(Object.entries(httpRows))('%s', (name, row) => {
   const [method, path] = name.split(' ') as [string, string];
   // Its own place is taken already: a free one is claimed.
   const participant = path.endsWith('/claim') ? 'P03' : 'P01';
-  const address = path.replace(':study', 'paper').replace(':participant', participant) + (row.query ?? '');
+  const address =
+    path.replace(':study', 'paper').replace(':participant', participant).replace(':hash', avatarFile.hash) +
+    (row.query ?? '');
 
   test(`${order.map((role) => `${role} ${row.status[role]}`).join(', ')}`, async () => {
     const server = await wholeServer();
@@ -197,6 +221,12 @@ describe.each(Object.entries(httpRows))('%s', (name, row) => {
   test(`${also.who} ${also.status}`, async () => {
     const server = await wholeServer();
     const host = `localhost:${server.port}`;
+    if (also.who === 'player') {
+      const status = await statusForPlayer(server.port, method, address);
+      count(status === also.status);
+      expect(status).toBe(also.status);
+      return;
+    }
     const secrets = {
       invited: { headers: { host }, json: { invitation: server.store.overview('paper', now)[2]?.invitation } },
       withdrawing: { headers: { host }, json: { code: server.claims.P01.withdrawalCode } },
@@ -245,6 +275,7 @@ describe('a message to a room', () => {
     away: { type: 'away', away: true },
     sit: { type: 'sit', seat: 2 },
     calibration: { type: 'calibration', calibration: defaultCalibration },
+    wear: { type: 'wear', avatar: 'a'.repeat(43) },
     pause: { type: 'pause', pause: true },
     ping: { type: 'ping', sent: 7 },
     leave: { type: 'leave' },

@@ -1,0 +1,99 @@
+import { type AvatarHash, isAvatarHash, type WornAvatar } from '../src/core/protocol/worn-avatar';
+
+export interface AvatarStoreOptions {
+  /** All files together, those on their way included [bytes]; 0: none is taken. */
+  readonly mostBytes: number;
+  /** What a person has on in a room of this process; null: they have no seat there. */
+  readonly wornBy: (room: string, identity: string) => WornAvatar | null;
+  /** Seconds, monotonic. */
+  readonly now: () => number;
+}
+
+/** Room for a file that is on its way. */
+export interface Reservation {
+  /** The file has arrived: it is its owner's one file in the room from now on. */
+  keep(hash: AvatarHash, bytes: Uint8Array): void;
+  /** It has not; once more does nothing. */
+  cancel(): void;
+}
+
+interface StoredAvatar {
+  readonly room: string;
+  readonly identity: string;
+  readonly hash: AvatarHash;
+  readonly bytes: Uint8Array;
+  readonly storedAt: number;
+}
+
+/** A file may lie here for so long [s] before its owner has said that they have it on. */
+const graceSeconds = 30;
+
+const ownerOf = (room: string, identity: string): string => `${room} ${identity}`;
+
+/**
+ * The files of avatars that people on seats have on, in the memory of this process and nowhere else: one of each person and room, by the hash of
+ * its content. A file goes with its owner's seat, with the room, or when they have another avatar on.
+ */
+export class AvatarStore {
+  readonly #options: AvatarStoreOptions;
+  readonly #files = new Map<string, StoredAvatar>();
+  /** Bytes reserved for files on their way, by owner. */
+  readonly #coming = new Map<string, number>();
+
+  constructor(options: AvatarStoreOptions) {
+    this.#options = options;
+  }
+
+  /** All that is stored or on its way [bytes]; two files of one content count twice. */
+  get bytes(): number {
+    let sum = 0;
+    for (const { bytes } of this.#files.values()) sum += bytes.length;
+    for (const bytes of this.#coming.values()) sum += bytes;
+    return sum;
+  }
+
+  get count(): number {
+    return this.#files.size;
+  }
+
+  /** Room for a file of this length; full: there is none. busy: the person's last one is still on its way. */
+  reserve(room: string, identity: string, length: number): Reservation | 'full' | 'busy' {
+    const owner = ownerOf(room, identity);
+    if (this.#coming.has(owner)) return 'busy';
+    const freed = this.#files.get(owner)?.bytes.length ?? 0;
+    if (this.bytes - freed + length > this.#options.mostBytes) return 'full';
+    this.#coming.set(owner, length);
+    return {
+      keep: (hash, bytes) => {
+        this.#coming.delete(owner);
+        this.#files.set(owner, { room, identity, hash, bytes, storedAt: this.#options.now() });
+      },
+      cancel: () => this.#coming.delete(owner),
+    };
+  }
+
+  /** The file of this content, where a person in the room has stored it; null: no one has. */
+  get(room: string, hash: AvatarHash): Uint8Array | null {
+    for (const file of this.#files.values()) if (file.room === room && file.hash === hash) return file.bytes;
+    return null;
+  }
+
+  /** Which file of this person is stored; null: none. */
+  keptOf(room: string, identity: string): AvatarHash | null {
+    return this.#files.get(ownerOf(room, identity))?.hash ?? null;
+  }
+
+  /** Forgets what no one has on any more; asked again and again. */
+  sweep(): void {
+    const now = this.#options.now();
+    for (const [owner, { room, identity, hash, storedAt }] of this.#files) {
+      const worn = this.#options.wornBy(room, identity);
+      const waiting = worn !== null && !isAvatarHash(worn) && now - storedAt < graceSeconds;
+      if (worn !== hash && !waiting) this.#files.delete(owner);
+    }
+  }
+
+  clear(): void {
+    this.#files.clear();
+  }
+}
