@@ -30,7 +30,7 @@ const answers = {
     () => glb(compressed()),
     /compressed\.vrm could not be shown: (not valid glTF|no VRM or GLB file)/,
   ],
-  'plain.glb': [() => glb(plain()), /no humanoid in it/],
+  'plain.glb': [() => glb(plain()), /the names of its bones tell no body\. Say which is which/],
 } as const;
 
 test('an avatar of the address that does not arrive leaves our own body standing, and says why @full', async ({
@@ -57,7 +57,7 @@ test('an avatar of the address that does not arrive leaves our own body standing
   }
   await page.getByRole('button', { name: 'Controls' }).click();
   await page.getByRole('tab', { name: 'Avatar' }).click();
-  await expect(page.getByText('plain.glb could not be shown.', { exact: true })).toBeVisible();
+  await expect(page.getByText('plain.glb waits to be told which bone is which.', { exact: true })).toBeVisible();
   await keepPicture(page, 'avatar-refused');
   await page.getByRole('button', { name: 'Back to ours' }).click();
   await expect(page.getByRole('button', { name: 'Back to ours' })).toBeHidden();

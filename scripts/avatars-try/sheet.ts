@@ -2,9 +2,9 @@
 import { AmbientLight, Color, DirectionalLight, GridHelper, PerspectiveCamera, Scene, WebGLRenderer } from 'three';
 import { type Avatar, createAvatar } from '../../src/avatar/avatar';
 import { thirdPersonOnlyLayer } from '../../src/avatar/body-meshes';
+import { checkInWorker } from '../../src/avatar/check-in-worker';
 import { decoders } from '../../src/avatar/decoders';
-import { loadAvatar } from '../../src/avatar/load-avatar';
-import { validateInWorker } from '../../src/avatar/validate-in-worker';
+import { parseChecked } from '../../src/avatar/load-avatar';
 import { defaultCalibration } from '../../src/core/body/calibration';
 import { reasonOf } from '../../src/core/errors/reasons';
 import { createIk } from '../../src/core/estimation/estimators';
@@ -86,7 +86,8 @@ function shoot(
 async function draw(sheet: CanvasRenderingContext2D, address: string, name: string): Promise<number> {
   const bytes = await (await fetch(address)).arrayBuffer();
   const began = performance.now();
-  const avatar = createAvatar(await loadAvatar(bytes, name, validateInWorker, decoders));
+  const checked = await checkInWorker(bytes, { name, unpacked: Object.keys(decoders) });
+  const avatar = createAvatar(await parseChecked(checked, name, { decoders }));
   const loadMs = performance.now() - began;
   const scene = createScene();
   scene.add(avatar.object);

@@ -158,6 +158,8 @@ function bonesOf({ centre, sides: names, left, right, fingers }: Naming): Readon
 }
 
 const tables = Object.values(namings).map(bonesOf);
+/** Every bone that a map may name. */
+export const boneNames: ReadonlySet<string> = new Set(tables.flatMap((table) => [...table.keys()]));
 /** What people call the namings of `bonesByName`, for a sentence. */
 export const knownNamings: readonly string[] = Object.keys(namings);
 

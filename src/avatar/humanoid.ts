@@ -1,6 +1,8 @@
 import { VRM, VRMFirstPerson, type VRMHumanBones, VRMHumanoid } from '@pixiv/three-vrm';
 import type { Group, Object3D, SkinnedMesh } from 'three';
+import { reasonOf } from '../core/errors/reasons';
 import { type BoneMap, bonesByName, knownNamings } from './bone-names';
+import { UnknownBones } from './unknown-bones';
 
 /** Bones without which there is no upper body to move. */
 export const neededBones = [
@@ -55,8 +57,9 @@ function knownBones(scene: Group, name: string): { readonly bones: BoneMap; read
   if (found.length === 0) throw new Error(`${name}: no humanoid in it: it has no bones`);
   const told =
     found.slice(0, shownNames).join(', ') + (found.length > shownNames ? ` and ${found.length - shownNames} more` : '');
-  throw new Error(
+  throw new UnknownBones(
     `${name}: no humanoid in it that this page knows by its bones’ names (found: ${told}; known: ${knownNamings.join('; ')}). A map of its bones can be given to loadAvatar: {bones: {hips: '…', …}}`,
+    found,
   );
 }
 
@@ -79,7 +82,11 @@ function mappedBones(scene: Group, bones: BoneMap, name: string): Map<string, Ob
  */
 export function humanoidOf(scene: Group, name: string, given?: BoneMap): VRM {
   const { bones, nodes } = given ? { bones: given, nodes: mappedBones(scene, given, name) } : knownBones(scene, name);
-  demandBones(name, (bone) => bones[bone] !== undefined);
+  try {
+    demandBones(name, (bone) => bones[bone] !== undefined);
+  } catch (error) {
+    throw given ? error : new UnknownBones(reasonOf(error), [...nodes.keys()], bones);
+  }
   const humanBones = Object.fromEntries(
     Object.entries(bones).map(([bone, called]) => [bone, { node: nodes.get(called) }]),
   ) as unknown as VRMHumanBones;

@@ -18,6 +18,20 @@ export const avatarLimits = {
   /** Numbers in all accessors together, unpacked. */
   millionNumbers: 40,
 } as const;
+export type AvatarLimits = Readonly<Record<keyof typeof avatarLimits, number>>;
+
+/** What a body may cost that another person has on: there are several of them, and no one here has chosen them. */
+export const seenAvatarLimits: AvatarLimits = {
+  megabytes: 20,
+  triangles: 100_000,
+  textures: 48,
+  texturePixels: 4096,
+  millionPixels: 64,
+  bones: 400,
+  nodes: 2000,
+  morphTargets: 1000,
+  millionNumbers: 12,
+};
 
 const index = v.pipe(v.number(), v.integer(), v.minValue(0));
 const list = <Item extends v.GenericSchema>(item: Item) => v.optional(v.array(item), []);
@@ -64,7 +78,8 @@ const numbersOf: Readonly<Record<string, number>> = {
   MAT3: 9,
   MAT4: 16,
 };
-const mostJsonMegabytes = 16;
+/** Of all bytes this share may be JSON. */
+const mostJson = 0.25;
 
 /** Binary FBX begins with these words, FBX as text with any. */
 const isFbx = (bytes: Uint8Array, name: string): boolean =>
@@ -86,15 +101,20 @@ function urisIn(value: unknown): string[] {
  * alone: nothing is decoded, allocated or fetched. `unpacked`: extensions of compression that are read all the same. Returns those that the
  * file uses.
  */
-export function inspectAvatar(bytes: Uint8Array, name: string, unpacked: readonly string[] = []): readonly string[] {
+export function inspectAvatar(
+  bytes: Uint8Array,
+  name: string,
+  unpacked: readonly string[] = [],
+  limits: AvatarLimits = avatarLimits,
+): readonly string[] {
   const limit = (what: string, has: number, may: number) => {
     if (!(has <= may)) throw new Error(`${name}: ${told(has)} ${what}; an avatar may have ${told(may)} at most`);
   };
-  limit('MB', bytes.length / 2 ** 20, avatarLimits.megabytes);
+  limit('MB', bytes.length / 2 ** 20, limits.megabytes);
   if (isFbx(bytes, name)) throw new Error(`${name}: ${fbxAdvice}`);
   const chunks = chunksOf(bytes);
   if (!chunks) throw new Error(`${name}: no VRM or GLB file (it does not begin as one, or is cut short)`);
-  limit('MB of description', chunks.json.length / 2 ** 20, mostJsonMegabytes);
+  limit('MB of description', chunks.json.length / 2 ** 20, limits.megabytes * mostJson);
   let json: unknown;
   try {
     json = JSON.parse(chunks.json);
@@ -118,20 +138,20 @@ export function inspectAvatar(bytes: Uint8Array, name: string, unpacked: readonl
         ? `${name}: is compressed (${foreign}); this page reads avatars that are saved without compression`
         : `${name}: needs ${foreign.slice(0, 60)}, which this page does not read`,
     );
-  limit('nodes', nodes.length, avatarLimits.nodes);
-  limit('bones', new Set(skins.flatMap(({ joints }) => joints)).size, avatarLimits.bones);
+  limit('nodes', nodes.length, limits.nodes);
+  limit('bones', new Set(skins.flatMap(({ joints }) => joints)).size, limits.bones);
 
   const primitives = meshes.flatMap((mesh) => mesh.primitives);
   const targets = primitives.reduce((sum, { targets }) => sum + targets.length, 0);
-  limit('morph targets', targets, avatarLimits.morphTargets);
+  limit('morph targets', targets, limits.morphTargets);
   const numbers = accessors.reduce((sum, { count, type }) => sum + count * (numbersOf[type] ?? 16), 0);
-  limit('million numbers', numbers / 1e6, avatarLimits.millionNumbers);
+  limit('million numbers', numbers / 1e6, limits.millionNumbers);
   // No number is smaller than a byte: what views unpack to is bounded as what accessors tell.
   const bytesUnpacked = bufferViews.reduce((sum, { extensions }) => {
     const packed = extensions.EXT_meshopt_compression ?? extensions.KHR_meshopt_compression;
     return sum + (packed ? packed.count * packed.byteStride : 0);
   }, 0);
-  limit('million unpacked bytes', bytesUnpacked / 1e6, avatarLimits.millionNumbers * 4);
+  limit('million unpacked bytes', bytesUnpacked / 1e6, limits.millionNumbers * 4);
   const corners = (mesh: number) =>
     (meshes[mesh]?.primitives ?? []).reduce((sum, { attributes, indices, mode }) => {
       const count = accessors[indices ?? attributes.POSITION ?? -1]?.count ?? 0;
@@ -140,19 +160,19 @@ export function inspectAvatar(bytes: Uint8Array, name: string, unpacked: readonl
     }, 0);
   // A mesh that hangs from many nodes is drawn as often.
   const triangles = nodes.reduce((sum, { mesh }) => sum + (mesh === undefined ? 0 : corners(mesh)), 0);
-  limit('triangles', triangles, avatarLimits.triangles);
+  limit('triangles', triangles, limits.triangles);
 
-  limit('textures', images.length, avatarLimits.textures);
+  limit('textures', images.length, limits.textures);
   let pixels = 0;
   images.forEach(({ bufferView }, i) => {
     const where = bufferView === undefined ? undefined : bufferViews[bufferView];
     const start = where?.byteOffset ?? 0;
     const size = where && imageSize(chunks.binary.subarray(start, start + where.byteLength));
     if (!size) throw new Error(`${name}: picture ${i} is no PNG, JPEG, WebP or KTX2`);
-    limit(`pixels across picture ${i}`, Math.max(size.width, size.height), avatarLimits.texturePixels);
+    limit(`pixels across picture ${i}`, Math.max(size.width, size.height), limits.texturePixels);
     pixels += size.width * size.height;
   });
-  limit('million pixels', pixels / 1e6, avatarLimits.millionPixels);
+  limit('million pixels', pixels / 1e6, limits.millionPixels);
   return unpacked.filter((extension) => extensionsUsed.includes(extension) || extensionsRequired.includes(extension));
 }
 

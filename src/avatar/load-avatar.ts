@@ -4,6 +4,7 @@ import { type GLTF, GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js'
 import { reasonOf } from '../core/errors/reasons';
 import { restoreBindPose } from './bind-pose';
 import type { BoneMap } from './bone-names';
+import type { CheckedAvatar } from './check-avatar';
 import { boneNode, demandBones, humanoidOf } from './humanoid';
 import { inspectAvatar } from './inspect-avatar';
 import { makeGeometryPlain } from './plain-geometry';
@@ -20,9 +21,6 @@ export interface LoadedAvatar {
 /** Means to unpack what is compressed, by the name of the extension. */
 export type Decoders = Readonly<Record<string, (loader: GLTFLoader) => Promise<void>>>;
 
-/** Finds faults of a file, each in a sentence. */
-type Validate = (bytes: Uint8Array) => Promise<readonly string[]>;
-
 export interface ParseOptions {
   /** Of a humanoid that is no VRM and whose names tell nothing. */
   readonly bones?: BoneMap | undefined;
@@ -30,32 +28,22 @@ export interface ParseOptions {
   readonly decoders?: Decoders;
 }
 
-/**
- * A body from the bytes of a file that is not our own: within `avatarLimits`, and without faults that `validate` finds. Rejects with a
- * sentence that names the file.
- */
-export const loadAvatar = (
+/** A body from the bytes of a file within `avatarLimits` that is known to be valid glTF. Rejects with a sentence that names the file. */
+export async function parseAvatar(
   bytes: ArrayBuffer,
   name: string,
-  validate: Validate,
-  decoders: Decoders = {},
-): Promise<LoadedAvatar> => read(bytes, name, { validate, decoders });
-
-/** The same from a file that is known to be valid. */
-export const parseAvatar = (bytes: ArrayBuffer, name: string, options: ParseOptions = {}): Promise<LoadedAvatar> =>
-  read(bytes, name, options);
-
-async function read(
-  bytes: ArrayBuffer,
-  name: string,
-  { bones, decoders = {}, validate }: ParseOptions & { readonly validate?: Validate },
+  { bones, decoders = {} }: ParseOptions = {},
 ): Promise<LoadedAvatar> {
-  const file = new Uint8Array(bytes);
-  const packed = inspectAvatar(file, name, Object.keys(decoders));
-  const faults = await validate?.(file).catch((error: unknown) => {
-    throw new Error(`${name}: ${reasonOf(error)}`);
-  });
-  if (faults?.[0] !== undefined) throw new Error(`${name}: not valid glTF (${faults[0]})`);
+  const packed = inspectAvatar(new Uint8Array(bytes), name, Object.keys(decoders));
+  return parseChecked({ bytes, packed }, name, { bones, decoders });
+}
+
+/** The same from a file that `checkAvatar` has looked at. */
+export async function parseChecked(
+  { bytes, packed }: Pick<CheckedAvatar, 'bytes' | 'packed'>,
+  name: string,
+  { bones, decoders = {} }: ParseOptions = {},
+): Promise<LoadedAvatar> {
   const loader = new GLTFLoader();
   for (const extension of packed) await decoders[extension]?.(loader);
   loader.register((parser) => new VRMLoaderPlugin(parser));

@@ -10,20 +10,26 @@ export interface FileKind {
 export const nameOf = (source: string | File): string =>
   typeof source === 'string' ? source.split(/[?#]/)[0]?.split('/').at(-1) || source : source.name;
 
+export interface ReadOptions {
+  /** Hears the share [0, 1] that has come. */
+  readonly onProgress?: (share: number) => void;
+  /** Ends a download on its way. */
+  readonly signal?: AbortSignal;
+  /** Of a download. */
+  readonly headers?: Readonly<Record<string, string>>;
+}
+
 /**
- * The bytes of a file of this device or of what an address answers; `onProgress` hears the share [0, 1] that has come. What is larger
- * than its kind may be is refused before it is read, or as soon as that shows. Rejects with a sentence that names the file; `signal` ends a
- * download on its way.
+ * The bytes of a file of this device or of what an address answers. What is larger than its kind may be is refused before it is read, or as
+ * soon as that shows. Rejects with a sentence that names the file.
  */
 export async function readLimited(
   source: string | File,
   kind: FileKind,
-  onProgress?: (share: number) => void,
-  signal?: AbortSignal,
+  options: ReadOptions = {},
 ): Promise<ArrayBuffer> {
-  const bytes =
-    typeof source === 'string' ? await download(source, kind, onProgress, signal) : await readFile(source, kind);
-  onProgress?.(1);
+  const bytes = typeof source === 'string' ? await download(source, kind, options) : await readFile(source, kind);
+  options.onProgress?.(1);
   return bytes;
 }
 
@@ -38,14 +44,13 @@ const tooLarge = (name: string, { what, megabytes }: FileKind): Error =>
 async function download(
   url: string,
   kind: FileKind,
-  onProgress?: (share: number) => void,
-  signal?: AbortSignal,
+  { onProgress, signal, headers = {} }: ReadOptions,
 ): Promise<ArrayBuffer> {
   const name = nameOf(url);
   const most = kind.megabytes * 2 ** 20;
   const aborting = new AbortController();
   signal?.addEventListener('abort', () => aborting.abort());
-  const response = await fetch(url, { signal: aborting.signal }).catch((error: unknown) => {
+  const response = await fetch(url, { signal: aborting.signal, headers }).catch((error: unknown) => {
     throw new Error(`${name}: could not be fetched (${firstLine(reasonOf(error))})`);
   });
   /** Ends the answer, so that nothing more of it comes. */

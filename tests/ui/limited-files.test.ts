@@ -62,7 +62,7 @@ describe('what an address answers', () => {
       response.setHeader('content-length', 300_000).end(Buffer.alloc(300_000, 7)),
     );
     const shares: number[] = [];
-    const bytes = await readLimited(url, recording, (share) => shares.push(share));
+    const bytes = await readLimited(url, recording, { onProgress: (share) => shares.push(share) });
     expect(new Uint8Array(bytes).every((byte) => byte === 7) && bytes.byteLength).toBe(300_000);
     expect(shares).toEqual([...shares].sort((a, b) => a - b));
     expect(shares.at(-1)).toBe(1);

@@ -18,6 +18,7 @@ import { estimatorTexts } from './estimator-texts';
 import { createFrameTiming, type FrameTiming } from './frame-timing';
 import { PageGames } from './games';
 import { Headset } from './headset';
+import { KnownBones } from './known-bones';
 import { createNetworkLoader } from './network-loading';
 import { surviveLostGraphics } from './page-faults';
 import { PageFrame } from './page-frame';
@@ -70,7 +71,7 @@ function createBody({ visit, notices, loading }: PageOptions, timing: FrameTimin
 /** What a visit needs for the studio and for every game: a stage, a body on it, and the headset that may move it. */
 function createGround(options: PageOptions) {
   const { visit, notices, loading } = options;
-  const { switches, settings, changes } = visit;
+  const { switches, settings, store, changes } = visit;
   const timing = createFrameTiming(() => performance.now());
 
   // Everything that travels starts at once; only then is anything built.
@@ -86,7 +87,8 @@ function createGround(options: PageOptions) {
   const recorder = new Recorder();
   const { body } = ground;
   const onChange = changes.emit;
-  const avatar = new ShownAvatar({ scene: stage.studio.scene, settings, body, notices, onChange });
+  const knownBones = new KnownBones(store);
+  const avatar = new ShownAvatar({ scene: stage.studio.scene, settings, body, notices, knownBones, onChange });
   const avatarShown = avatar.openOwn(ownAvatar);
   const headset = new Headset({ renderer: stage.renderer, quality, switches, settings, notices });
   return { ...ground, canvas, quality, timing, stage, recorder, avatar, avatarShown, headset };
@@ -107,7 +109,9 @@ function createPlay({ visit, notices }: PageOptions, ground: ReturnType<typeof c
     settings,
     writer,
     notices,
-    games: new PageGames({ quality, switches, settings, clock, stage, mouse, headset, body, server, onCaption }),
+    games: new PageGames({
+      ...{ quality, switches, settings, clock, stage, mouse, headset, body, avatar, server, notices, onCaption },
+    }),
     seed: switches.seed ?? Math.floor(performance.timeOrigin % 2 ** 31),
     stage,
     mouse,

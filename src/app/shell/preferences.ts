@@ -1,6 +1,8 @@
 import * as v from 'valibot';
+import { type BoneName, boneNames } from '../../avatar/bone-names';
 import { calibrationComplaint } from '../../core/body/calibration';
 import { estimatorNames } from '../../core/estimation/pose-estimator';
+import { avatarHash } from '../../core/protocol/worn-avatar';
 import { handTiltsSchema } from '../../core/study/validation';
 
 const calibration = v.pipe(
@@ -11,6 +13,13 @@ const calibration = v.pipe(
     handTilts: v.optional(handTiltsSchema),
   }),
   v.check((measures) => calibrationComplaint(measures) === null, 'no person measures that'),
+);
+
+const boneName = v.custom<BoneName>((name) => typeof name === 'string' && boneNames.has(name), 'no bone is called so');
+/** VRM's names of bones, and what a file calls them. */
+export const boneMap = v.record(
+  boneName,
+  v.pipe(v.string('expected the name of a bone of the file'), v.maxLength(200)),
 );
 
 const schema = v.object({
@@ -28,6 +37,10 @@ const schema = v.object({
   largerText: v.optional(v.boolean()),
   bots: v.optional(v.boolean()),
   name: v.optional(v.pipe(v.string(), v.maxLength(40))),
+  /** Of files whose bones' names tell no body, by SHA-256. */
+  bones: v.optional(v.record(v.pipe(v.string(), v.regex(avatarHash)), boneMap)),
+  shareAvatar: v.optional(v.boolean()),
+  plainOthers: v.optional(v.boolean()),
 });
 
 /** What the page remembers from one visit to the next, on this device only. */

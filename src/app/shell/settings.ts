@@ -12,6 +12,10 @@ export interface Settings {
   readonly vrOverlay: boolean;
   readonly largerText: boolean;
   readonly palette: string;
+  /** Players of the same room see an avatar that is a file of this one's. */
+  readonly shareAvatar: boolean;
+  /** Everybody else is shown as a mannequin. */
+  readonly plainOthers: boolean;
   /** The built-in actor moves the body where no person does. */
   readonly actor: boolean;
   /** In a game, without a headset: the mouse plays instead of the actor. */
@@ -46,6 +50,8 @@ export function createSettings(switches: Switches, { preferences }: Pick<Prefere
     vrOverlay: false,
     largerText: preferences.largerText ?? false,
     palette: preferences.palette ?? 'porcelain',
+    shareAvatar: preferences.shareAvatar ?? true,
+    plainOthers: preferences.plainOthers ?? false,
     actor: switches.actor,
     mouse: false,
     emulatorPanel: true,
@@ -71,6 +77,8 @@ export type LastingSettings = Partial<
     | 'overlay'
     | 'largerText'
     | 'palette'
+    | 'shareAvatar'
+    | 'plainOthers'
     | 'bowSide'
     | 'oneHanded'
     | 'everyHitCounts'

@@ -1,15 +1,23 @@
 import { VRMUtils } from '@pixiv/three-vrm';
 import { type Avatar, createAvatar } from '../../avatar/avatar';
+import type { BoneMap } from '../../avatar/bone-names';
+import type { CheckedAvatar } from '../../avatar/check-avatar';
+import { checkInWorker } from '../../avatar/check-in-worker';
 import { decoders } from '../../avatar/decoders';
+import { hashOf } from '../../avatar/file-hash';
 import { avatarLimits } from '../../avatar/inspect-avatar';
-import { type LoadedAvatar, loadAvatar, parseAvatar } from '../../avatar/load-avatar';
-import { validateInWorker } from '../../avatar/validate-in-worker';
+import { type LoadedAvatar, parseAvatar, parseChecked } from '../../avatar/load-avatar';
+import { withNamedBones } from '../../avatar/name-bones';
+import { UnknownBones } from '../../avatar/unknown-bones';
 import { firstLine, reasonOf } from '../../core/errors/reasons';
+import { plainAvatar } from '../../core/protocol/worn-avatar';
 import type { BareBody } from '../../lib/bare-body';
 import { type FileKind, nameOf, readLimited } from '../../ui/limited-files';
 import type { Notices } from '../../ui/notices';
 import { pageFolder } from '../../ui/page-folder';
+import type { OwnWear } from '../ball/shared-avatar';
 import type { Studio } from '../studio/studio';
+import type { KnownBones } from './known-bones';
 import type { Settings } from './settings';
 
 export interface ShownAvatarOptions {
@@ -17,23 +25,50 @@ export interface ShownAvatarOptions {
   readonly settings: Pick<Settings, 'palette' | 'upperBodyOnly'>;
   readonly body: Pick<BareBody, 'calibration'>;
   readonly notices: Pick<Notices, 'show'>;
+  /** The maps of bones that were given for files of unknown naming. */
+  readonly knownBones: Pick<KnownBones, 'of' | 'keep'>;
   onChange(): void;
 }
 
 /** A body from a file. */
 export const avatarFile: FileKind = { what: 'an avatar', megabytes: avatarLimits.megabytes };
 const ownName = 'Mannequin';
+const howToTell = 'Say which is which: Controls, Avatar, Bones of this file.';
 
 /** The file of our own avatar, which lies beside the page, on its way; `onProgress` hears the share [0, 1] that has come. */
 export const fetchOwnAvatar = (onProgress?: (share: number) => void): Promise<ArrayBuffer> =>
-  readLimited(`${pageFolder()}/avatars/mannequin.vrm`, avatarFile, onProgress);
+  readLimited(`${pageFolder()}/avatars/mannequin.vrm`, avatarFile, onProgress && { onProgress });
 
-/** An avatar that was asked for. */
-interface Wanted {
+/** A file that came whole, but whose bones are to be told first. */
+export interface WaitingForBones {
+  readonly name: string;
+  /** What the file calls its bones. */
+  readonly found: readonly string[];
+  /** Those that are known, or were given last. */
+  readonly bones: BoneMap;
+  /** What is wrong with them, in a sentence; null: nothing was given yet. */
+  readonly complaint: string | null;
+}
+
+/** A file as others can read it, who know no map of its bones; its hash is null where this page cannot tell it. */
+async function fileFor({ bytes, hash }: CheckedAvatar, bones: BoneMap | undefined) {
+  if (!bones) return { file: new Blob([bytes]), hash };
+  const named = await withNamedBones(bytes, bones);
+  return { file: new Blob([named]), hash: await hashOf(named) };
+}
+
+/** A body that has come, what to call it, and as what it is told to others. */
+interface Arrived {
+  readonly loaded: LoadedAvatar;
+  readonly worn: OwnWear;
+}
+
+/** What was asked for, until it is shown, refused or given up. */
+interface Asked {
+  readonly turn: number;
   readonly name: string;
   readonly own: boolean;
-  /** Brings it; `onProgress` hears the share of its file [0, 1] that has come. */
-  load(signal: AbortSignal, onProgress: (share: number) => void): Promise<LoadedAvatar>;
+  readonly ending: AbortController;
 }
 
 /** The avatar on the stage. One is shown at a time; another takes its place only when it has arrived whole. */
@@ -41,13 +76,14 @@ export class ShownAvatar {
   readonly #options: ShownAvatarOptions;
   #avatar: Avatar | null = null;
   #name = ownName;
-  #own = true;
+  #worn: OwnWear = plainAvatar;
   #pending: string | null = null;
   /** Counts what was asked for; and which of that is shown. */
   #asked = 0;
   #shown = 0;
-  /** Ends what is on its way; null: nothing is. */
-  #giveUp: AbortController | null = null;
+  /** What is on its way and can be given up; null: nothing is. */
+  #coming: Asked | null = null;
+  #waiting: (WaitingForBones & { readonly checked: CheckedAvatar }) | null = null;
 
   constructor(options: ShownAvatarOptions) {
     this.#options = options;
@@ -64,7 +100,12 @@ export class ShownAvatar {
 
   /** Whether it is our own, whose colours can be chosen. */
   get own(): boolean {
-    return this.#own;
+    return typeof this.#worn === 'string';
+  }
+
+  /** As what it is told to others: the same object for as long as it is shown. */
+  get worn(): OwnWear {
+    return this.#worn;
   }
 
   /** What became of the avatar that was asked for last, in words: on its way, or refused; null: it is shown. */
@@ -74,13 +115,24 @@ export class ShownAvatar {
 
   /** Whether another is on its way that can be given up. */
   get onItsWay(): boolean {
-    return this.#giveUp !== null;
+    return this.#coming !== null;
   }
 
-  /** Gives up what is on its way; what is shown stays. */
+  /** A file whose bones are to be told; null: none. */
+  get waiting(): WaitingForBones | null {
+    return this.#waiting;
+  }
+
+  /** One of our own avatar's palettes; null: the one the user chose. Bound: parts of the page take it along. */
+  readonly wear = (palette: string | null): void => {
+    if (this.own) this.#avatar?.setPalette(palette ?? this.#options.settings.palette);
+  };
+
+  /** Gives up what is on its way, or waits for its bones; what is shown stays. */
   cancel(): void {
-    this.#giveUp?.abort();
-    this.#giveUp = null;
+    this.#coming?.ending.abort();
+    this.#coming = null;
+    this.#waiting = null;
     this.#pending = null;
     this.#options.onChange();
   }
@@ -89,86 +141,133 @@ export class ShownAvatar {
    * Our own takes its place, or stays there; what is still on its way is not waited for. `bytes`: its file, where that travels already.
    * False and a notice where it cannot be had.
    */
-  openOwn(bytes: Promise<ArrayBuffer> = fetchOwnAvatar()): Promise<boolean> {
-    return this.#arrive({ name: ownName, own: true, load: async () => parseAvatar(await bytes, ownName) });
+  openOwn(bytes = fetchOwnAvatar()): Promise<boolean> {
+    return this.#arrive(this.#ask(ownName, true), async () => ({
+      loaded: await parseAvatar(await bytes, ownName),
+      worn: plainAvatar,
+    }));
   }
 
   /** Loads another; what goes wrong becomes a notice, and false. Of several the one asked for last is shown. */
   open(source: string | File): Promise<boolean> {
-    const name = nameOf(source);
-    return this.#arrive({
-      name,
-      own: false,
-      async load(signal, onProgress) {
-        const bytes = await readLimited(source, avatarFile, onProgress, signal);
-        return loadAvatar(bytes, name, validateInWorker, decoders);
-      },
+    const asked = this.#ask(nameOf(source), false);
+    return this.#arrive(asked, async () => {
+      const { signal } = asked.ending;
+      const bytes = await readLimited(source, avatarFile, { onProgress: this.#progressOf(asked), signal });
+      const checked = await checkInWorker(bytes, { name: asked.name, unpacked: Object.keys(decoders) });
+      const bones = checked.hash === null ? undefined : this.#options.knownBones.of(checked.hash);
+      return this.#read(checked, asked.name, bones);
     });
   }
 
-  /** One of our own avatar's palettes; null: the one the user chose. */
-  wear(palette: string | null): void {
-    if (this.#own) this.#avatar?.setPalette(palette ?? this.#options.settings.palette);
-  }
-
-  /** Shows what was asked for unless something that was asked for later has come before it. */
-  async #arrive(wanted: Wanted): Promise<boolean> {
-    this.#asked += 1;
-    const turn = this.#asked;
-    const ending = new AbortController();
-    this.#giveUp = wanted.own ? null : ending;
-    this.#tell(wanted, turn, '');
+  /** The file that waits for them has these bones. False, and what is wrong in `waiting`, where it does not. */
+  async giveBones(bones: BoneMap): Promise<boolean> {
+    const waiting = this.#waiting;
+    if (!waiting) return false;
+    const { name, checked } = waiting;
     try {
-      const loaded = await wanted.load(ending.signal, this.#progressOf(wanted, turn));
-      if (turn < this.#shown || ending.signal.aborted) {
-        VRMUtils.deepDispose(loaded.vrm.scene);
+      const arrived = await this.#read(checked, name, bones);
+      if (this.#waiting !== waiting) {
+        VRMUtils.deepDispose(arrived.loaded.vrm.scene);
         return false;
       }
-      this.#show(createAvatar(loaded), wanted);
-      this.#shown = turn;
-      if (turn === this.#asked) this.#pending = null;
+      if (checked.hash !== null) this.#options.knownBones.keep(checked.hash, bones);
+      this.#asked += 1;
+      this.#show(arrived, name, this.#asked);
       return true;
     } catch (error) {
-      if (!ending.signal.aborted) this.#refuse(wanted, turn, error);
+      const complaint = firstLine(reasonOf(error)).replace(`${name}: `, '');
+      if (this.#waiting === waiting) this.#waiting = { ...waiting, bones, complaint };
       return false;
     } finally {
-      if (this.#giveUp === ending) this.#giveUp = null;
       this.#options.onChange();
     }
   }
 
-  #show(avatar: Avatar, { name, own }: Wanted): void {
-    const { scene, settings, body } = this.#options;
-    this.#avatar?.dispose();
-    this.#avatar = avatar;
-    this.#name = name;
-    this.#own = own;
-    scene.add(avatar.object);
-    this.wear(null);
-    avatar.setUpperBodyOnly(settings.upperBodyOnly);
-    avatar.fitTo(body.calibration);
+  async #read(checked: CheckedAvatar, name: string, bones: BoneMap | undefined): Promise<Arrived> {
+    try {
+      const loaded = await parseChecked(checked, name, { decoders, bones });
+      return { loaded, worn: { name, ...(await fileFor(checked, bones)) } };
+    } catch (error) {
+      if (error instanceof UnknownBones) {
+        const { found, told } = error;
+        this.#waiting = { name, found, bones: told, complaint: null, checked };
+      }
+      throw error;
+    }
   }
 
-  #refuse({ name, own }: Wanted, turn: number, error: unknown): void {
-    const reason = firstLine(reasonOf(error)).replace(`${name}: `, '');
-    this.#options.notices.show('error', `${name} could not be shown: ${reason}`);
-    if (turn === this.#asked) this.#pending = own ? null : `${name} could not be shown.`;
+  #ask(name: string, own: boolean): Asked {
+    this.#asked += 1;
+    const asked = { turn: this.#asked, name, own, ending: new AbortController() };
+    this.#coming = own ? null : asked;
+    this.#waiting = null;
+    this.#tell(asked, '');
+    return asked;
   }
 
-  /** Tells how far it has come, in steps of five percent. */
-  #progressOf(wanted: Wanted, turn: number): (share: number) => void {
+  #tell({ turn, own, name }: Asked, how: string): void {
+    if (turn !== this.#asked || own) return;
+    this.#pending = `${name} is on its way${how}.`;
+    this.#options.onChange();
+  }
+
+  #progressOf(asked: Asked): (share: number) => void {
     let told = 0;
     return (share) => {
       const percent = Math.floor(share * 20) * 5;
-      if (percent > told) this.#tell(wanted, turn, percent < 100 ? `: ${percent} %` : ': it is being looked at');
+      if (percent > told) this.#tell(asked, percent < 100 ? `: ${percent} %` : ': it is being looked at');
       told = percent;
     };
   }
 
-  /** Says that it is on its way, unless another has been asked for since. Our own comes without a word. */
-  #tell({ name, own }: Wanted, turn: number, how: string): void {
-    if (turn !== this.#asked || own) return;
-    this.#pending = `${name} is on its way${how}.`;
-    this.#options.onChange();
+  /** Shows what `load` brings unless something that was asked for later has come before it. */
+  async #arrive(asked: Asked, load: () => Promise<Arrived>): Promise<boolean> {
+    const { turn, name, own, ending } = asked;
+    try {
+      const arrived = await load();
+      if (turn < this.#shown || ending.signal.aborted) {
+        VRMUtils.deepDispose(arrived.loaded.vrm.scene);
+        return false;
+      }
+      this.#show(arrived, name, turn);
+      return true;
+    } catch (error) {
+      if (ending.signal.aborted) {
+        this.#waiting = null;
+        return false;
+      }
+      if (error instanceof UnknownBones && turn === this.#asked) {
+        this.#options.notices.show(
+          'error',
+          `${name} could not be shown: the names of its bones tell no body. ${howToTell}`,
+        );
+        this.#pending = `${name} waits to be told which bone is which.`;
+        return false;
+      }
+      const reason = firstLine(reasonOf(error)).replace(`${name}: `, '');
+      this.#options.notices.show('error', `${name} could not be shown: ${reason}`);
+      if (turn === this.#asked) this.#pending = own ? null : `${name} could not be shown.`;
+      return false;
+    } finally {
+      if (this.#coming === asked) this.#coming = null;
+      this.#options.onChange();
+    }
+  }
+
+  #show({ loaded, worn }: Arrived, name: string, turn: number): void {
+    const { scene, settings, body } = this.#options;
+    this.#avatar?.dispose();
+    const avatar = createAvatar(loaded);
+    this.#avatar = avatar;
+    this.#name = name;
+    this.#worn = worn;
+    this.#shown = turn;
+    this.#waiting = null;
+    if (turn === this.#asked) this.#pending = null;
+    scene.add(avatar.object);
+    this.wear(null);
+    avatar.setUpperBodyOnly(settings.upperBodyOnly);
+    avatar.fitTo(body.calibration);
   }
 }

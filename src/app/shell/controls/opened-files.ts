@@ -1,3 +1,4 @@
+import type { BoneMap } from '../../../avatar/bone-names';
 import { firstLine, reasonOf } from '../../../core/errors/reasons';
 import type { BareBody } from '../../../lib/bare-body';
 import { type FileKind, nameOf, readLimited } from '../../../ui/limited-files';
@@ -9,7 +10,7 @@ import type { ShownAvatar } from '../shown-avatar';
 const recordingFile: FileKind = { what: 'a recording', megabytes: 100 };
 
 export interface OpenedFilesOptions {
-  readonly avatar: Pick<ShownAvatar, 'open' | 'openOwn' | 'name'>;
+  readonly avatar: Pick<ShownAvatar, 'open' | 'openOwn' | 'giveBones' | 'name'>;
   readonly recorder: Pick<Recorder, 'open' | 'replay'>;
   readonly notices: Pick<Notices, 'show'>;
   readonly body: Pick<BareBody, 'jumped'>;
@@ -33,6 +34,12 @@ export class OpenedFiles {
   async openAvatar(source: string | File): Promise<void> {
     const { avatar, notices } = this.#options;
     if (await avatar.open(source)) notices.show('info', `${avatar.name} is your avatar now.`);
+  }
+
+  /** The bones of the file that waits for them. Never rejects: what is wrong stands where they are told. */
+  async giveBones(bones: BoneMap): Promise<void> {
+    const { avatar, notices } = this.#options;
+    if (await avatar.giveBones(bones)) notices.show('info', `${avatar.name} is your avatar now.`);
   }
 
   /** Ours, also after a reload. */

@@ -42,6 +42,9 @@ function avatarActions({ writer, avatar, files }: PanelActionsOptions): AvatarAc
     showOwnAvatar: () => files.showOwnAvatar(),
     cancelAvatar: () => avatar.cancel(),
     setUpperBodyOnly: (upperBodyOnly) => writer.keep({ upperBodyOnly }),
+    giveBones: (bones) => void files.giveBones(bones),
+    setShareAvatar: (shareAvatar) => writer.keep({ shareAvatar }),
+    setPlainOthers: (plainOthers) => writer.keep({ plainOthers }),
   };
 }
 

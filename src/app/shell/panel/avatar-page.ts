@@ -1,6 +1,7 @@
 import { button, element } from '../../../ui/element';
 import { fileButton } from '../../../ui/file-button';
 import { toggle } from '../../../ui/toggle';
+import { createBonesForm } from './bones-form';
 import type { AvatarActions, PanelPage, PanelState } from './panel-state';
 
 /** Colours of our own avatar. */
@@ -78,15 +79,43 @@ function otherAvatars(actions: AvatarActions): HTMLElement {
   );
 }
 
+/** Who sees whose avatar. */
+function createSight(actions: AvatarActions) {
+  const share = toggle('Others see my avatar', (on) => actions.setShareAvatar(on));
+  const plain = toggle('Show everybody as mannequin', (on) => actions.setPlainOthers(on));
+  return {
+    node: element(
+      'section',
+      {},
+      element('h2', {}, 'In rooms with others'),
+      share.node,
+      element(
+        'p',
+        { class: 'hint' },
+        'A file of 20 MB at most: the server keeps it for the people of the room until you leave. In a study all wear the same.',
+      ),
+      plain.node,
+    ),
+    show({ shareAvatar, plainOthers }: PanelState) {
+      share.input.checked = shareAvatar;
+      plain.input.checked = plainOthers;
+    },
+  };
+}
+
 /** Which avatar the body wears, and how much of it. */
 export function createAvatarPage(palettes: readonly PaletteChoice[], actions: AvatarActions): PanelPage {
   const shown = createShown(palettes, actions);
+  const bones = createBonesForm((map) => actions.giveBones(map));
+  const sight = createSight(actions);
   const upperBody = toggle('Upper body only', (on) => actions.setUpperBodyOnly(on));
   return {
     name: 'Avatar',
-    content: [shown.node, otherAvatars(actions), element('section', {}, upperBody.node)],
+    content: [shown.node, bones.node, otherAvatars(actions), sight.node, element('section', {}, upperBody.node)],
     show(state) {
       shown.show(state);
+      bones.show(state.waitingForBones);
+      sight.show(state);
       upperBody.input.checked = state.upperBodyOnly;
     },
   };

@@ -1,5 +1,7 @@
+import type { BoneMap } from '../../../avatar/bone-names';
 import type { EstimatorName } from '../../../core/estimation/pose-estimator';
 import type { ViewName } from '../../../scene/desktop-view';
+import type { WaitingForBones } from '../shown-avatar';
 
 /** What the recorder is doing; seconds since its start, of how many. */
 export interface RecorderState {
@@ -29,6 +31,10 @@ export interface PanelState {
   readonly ownAvatarOffered: boolean;
   /** Whether an avatar is on its way that can be given up. */
   readonly avatarOnItsWay: boolean;
+  /** A file whose bones are to be told; null: none. */
+  readonly waitingForBones: WaitingForBones | null;
+  readonly shareAvatar: boolean;
+  readonly plainOthers: boolean;
   /** Colours of our own avatar; null: another avatar is shown, which keeps its own. */
   readonly palette: string | null;
   readonly heightCm: number;
@@ -56,6 +62,10 @@ export interface AvatarActions {
   showOwnAvatar(): void;
   cancelAvatar(): void;
   setUpperBodyOnly(on: boolean): void;
+  /** Which bone of the file that waits is which. */
+  giveBones(bones: BoneMap): void;
+  setShareAvatar(on: boolean): void;
+  setPlainOthers(on: boolean): void;
 }
 
 export interface RecordingActions {

@@ -1,0 +1,25 @@
+import type { BoneMap } from '../../avatar/bone-names';
+import type { PreferenceStore } from './preferences';
+
+/** The maps of so many files are remembered, the newest ones. */
+const mostFiles = 20;
+
+/** The maps of bones that were given for files of unknown naming, by the files' SHA-256; on this device only. */
+export class KnownBones {
+  readonly #store: Pick<PreferenceStore, 'preferences' | 'remember'>;
+
+  constructor(store: Pick<PreferenceStore, 'preferences' | 'remember'>) {
+    this.#store = store;
+  }
+
+  /** undefined: none was given for this file. */
+  of(hash: string): BoneMap | undefined {
+    return this.#store.preferences.bones?.[hash];
+  }
+
+  keep(hash: string, bones: BoneMap): void {
+    const { [hash]: _before, ...others } = this.#store.preferences.bones ?? {};
+    const kept = [...Object.entries(others), [hash, bones] as const].slice(-mostFiles);
+    this.#store.remember({ bones: Object.fromEntries(kept) });
+  }
+}

@@ -1,0 +1,33 @@
+import { packGlb } from '../core/motion/gltf';
+import { type BoneMap, boneNames } from './bone-names';
+import { chunksOf } from './glb-chunks';
+
+interface NamedNodes {
+  [field: string]: unknown;
+  nodes?: { name?: string }[];
+}
+
+const plain = (name: string): string => name.toLowerCase().replace(/[^a-z0-9]/g, '');
+const plainBones = new Set([...boneNames].map(plain));
+
+/**
+ * The same GLB file with its bones called by VRM's names, as this map tells them: a page that reads it needs no map. Rejects where the map names
+ * what is not in it, or the file is no GLB.
+ */
+export async function withNamedBones(bytes: ArrayBuffer, bones: BoneMap): Promise<ArrayBuffer> {
+  const chunks = chunksOf(new Uint8Array(bytes));
+  if (!chunks) throw new Error('no GLB file');
+  const json = JSON.parse(chunks.json) as NamedNodes;
+  const nodes = json.nodes ?? [];
+  const mapped = Object.entries(bones).map(([bone, called]) => {
+    const node = nodes.find(({ name }) => name === called);
+    if (!node) throw new Error(`bones.${bone}: no node is called “${called}”`);
+    return { bone, node };
+  });
+  for (const node of nodes) {
+    // What is called as a bone and is none of them would be taken for one.
+    if (node.name !== undefined && plainBones.has(plain(node.name))) node.name = `not ${node.name} here`;
+  }
+  for (const { bone, node } of mapped) node.name = bone;
+  return new Blob([...packGlb(json, [chunks.binary as Uint8Array<ArrayBuffer>])]).arrayBuffer();
+}

@@ -1,0 +1,133 @@
+import { describe, expect, test } from 'vitest';
+import { KnownBones } from '../../src/app/shell/known-bones';
+import { boneComplaint, bonesIn } from '../../src/app/shell/panel/bones-form';
+import { createPreferenceStore } from '../../src/app/shell/preferences';
+import { createAvatar } from '../../src/avatar/avatar';
+import type { BoneMap, BoneName } from '../../src/avatar/bone-names';
+import { type LoadedAvatar, parseAvatar } from '../../src/avatar/load-avatar';
+import { withNamedBones } from '../../src/avatar/name-bones';
+import { UnknownBones } from '../../src/avatar/unknown-bones';
+import { gltfFaults } from '../../src/avatar/validate-gltf';
+import { defaultCalibration } from '../../src/core/body/calibration';
+import { createIk } from '../../src/core/estimation/estimators';
+import { distance, type Vec3 } from '../../src/core/math/vec3';
+import { actorFrame } from '../../src/core/tracking/actor-motion';
+import { poseOf } from '../core/estimation/drawn';
+import { builtRig } from './built-rig';
+
+/** Names that no program gives: each bone's backwards. */
+const backwards = (bone: string): string => [...bone].reverse().join('');
+const bones: BoneMap = Object.fromEntries(
+  [
+    ...['hips', 'spine', 'chest', 'neck', 'head'],
+    ...['left', 'right'].flatMap((side) => ['Shoulder', 'UpperArm', 'LowerArm', 'Hand'].map((part) => side + part)),
+  ].map((bone) => [bone, backwards(bone)]),
+);
+
+const estimator = createIk(defaultCalibration);
+/** Where the joints are of a body that stands as the built-in actor does. */
+function posed(loaded: LoadedAvatar) {
+  const avatar = createAvatar(loaded);
+  avatar.fitTo(defaultCalibration);
+  avatar.apply(poseOf(estimator, actorFrame(9.5, defaultCalibration)), 0);
+  return structuredClone(avatar.jointPositions());
+}
+
+/** One place, but for rounding. */
+const expectSame = (a: Vec3 | undefined, b: Vec3 | undefined) =>
+  expect(a && b ? distance(a, b) : 'one of them is not drawn').toBeLessThan(1e-9);
+
+/** How a file's names are refused. */
+async function refusalOf(file: ArrayBuffer): Promise<UnknownBones> {
+  const error = await parseAvatar(file, 'person.glb').then(
+    () => null,
+    (reason: unknown) => reason,
+  );
+  if (!(error instanceof UnknownBones)) throw new Error(`expected names that tell nothing, not ${error}`);
+  return error;
+}
+
+describe('a file whose bones’ names tell no body', () => {
+  test('is told with what it calls them, and with those that are known', async () => {
+    const unknown = await refusalOf(builtRig({ nameOf: backwards }));
+    expect(unknown.found).toContain('spih');
+    expect(unknown.found).toContain('dnaHtfel');
+    expect(unknown.told).toEqual({});
+    const oneHanded = await refusalOf(builtRig({ nameOf: (bone) => (bone === 'leftHand' ? 'hook' : bone) }));
+    expect(oneHanded.message).toBe('person.glb: its humanoid has no leftHand');
+    expect(oneHanded.told).toMatchObject({ hips: 'hips', rightHand: 'rightHand' });
+    expect(oneHanded.found).toContain('hook');
+  });
+
+  test('is worn with a map, and by those who have no map once its bones are named', async () => {
+    const file = builtRig({ nameOf: backwards });
+    const named = await withNamedBones(file, bones);
+    expect(await gltfFaults(new Uint8Array(named))).toEqual([]);
+    const own = posed(await parseAvatar(file, 'person.glb', { bones }));
+    const seen = posed(await parseAvatar(named, 'person.glb'));
+    for (const joint of ['hips', 'head', 'leftHand', 'rightLowerArm'] as const) expectSame(seen[joint], own[joint]);
+  });
+
+  test('calls no bone by a name that another node has', async () => {
+    const decoy = (bone: BoneName) =>
+      bone === 'leftToes' ? 'Head' : bone === 'rightToes' ? 'left_hand' : backwards(bone);
+    const seen = posed(await parseAvatar(await withNamedBones(builtRig({ nameOf: decoy }), bones), 'person.glb'));
+    const own = posed(await parseAvatar(builtRig({ nameOf: backwards }), 'person.glb', { bones }));
+    expectSame(seen.head, own.head);
+    expectSame(seen.leftHand, own.leftHand);
+  });
+
+  test('cannot be named after what is not in it, nor can anything that is no GLB', async () => {
+    const file = builtRig({ nameOf: backwards });
+    await expect(withNamedBones(file, { hips: 'Bottom' })).rejects.toThrow('bones.hips: no node is called “Bottom”');
+    await expect(withNamedBones(new ArrayBuffer(40), bones)).rejects.toThrow('no GLB file');
+  });
+});
+
+describe('a map of bones that is given', () => {
+  const found = ['spih', 'enips', 'daeh'];
+
+  test.each([
+    ['hips: spih', /^The text is no JSON \(/],
+    ['["spih"]', /^The text is no map of bones/],
+    ['{"hip": "spih"}', /^The text says “hip”: no bone is called so\.$/],
+    ['{"hips": 3}', /^The text says “hips”: expected the name of a bone of the file\.$/],
+    ['{"hips": "Bottom"}', /^The text says hips is “Bottom”, which is not in this file\.$/],
+  ])('%s: is answered with a sentence', (text, sentence) => {
+    expect(bonesIn(text, found)).toEqual({ complaint: expect.stringMatching(sentence) });
+  });
+
+  test('is taken where it is one; empty text tells nothing', () => {
+    expect(bonesIn('{"hips": "spih", "leftIndexProximal": "daeh"}', found)).toEqual({
+      hips: 'spih',
+      leftIndexProximal: 'daeh',
+    });
+    expect(bonesIn(' \n', found)).toEqual({});
+  });
+
+  test('is not enough without a bone that a body needs, or with one bone for two', () => {
+    const { leftHand: _, spine: __, ...less } = bones;
+    expect(boneComplaint(bones)).toBeNull();
+    expect(boneComplaint(less)).toBe('Still to be said: spine, left hand.');
+    expect(boneComplaint({ ...bones, leftHand: backwards('rightHand') })).toBe(
+      '“dnaHthgir” is said to be both leftHand and rightHand.',
+    );
+  });
+
+  test('is remembered by the file’s hash over a reload, of the newest twenty files', () => {
+    const items = new Map<string, string>();
+    const storage = {
+      getItem: (key: string) => items.get(key) ?? null,
+      setItem: (key: string, value: string) => void items.set(key, value),
+    };
+    const hashOf = (i: number) => String(i).padStart(43, 'h');
+    const first = new KnownBones(createPreferenceStore(storage));
+    for (let i = 0; i < 21; i++) first.keep(hashOf(i), { ...bones, head: `daeh${i}` });
+    const store = createPreferenceStore(storage);
+    expect(store.complaint).toBeNull();
+    const later = new KnownBones(store);
+    expect(later.of(hashOf(0))).toBeUndefined();
+    expect(later.of(hashOf(20))?.head).toBe('daeh20');
+    expect(later.of('unknown')).toBeUndefined();
+  });
+});
