@@ -1,5 +1,6 @@
 import { createBallView } from '../../src/app/ball/ball-view';
 import type { Studio } from '../../src/app/studio/studio';
+import { parseAvatar } from '../../src/avatar/load-avatar';
 import { createRemoteAvatars, type SeenPerson } from '../../src/avatar/remote-avatars';
 import { defaultCalibration } from '../../src/core/body/calibration';
 import { unknownFingers } from '../../src/core/body/hand-shape';
@@ -7,6 +8,7 @@ import { type Skeleton, skeletonFromCalibration } from '../../src/core/body/skel
 import { ballRules } from '../../src/core/games/ball/rules';
 import { composeTransforms, invertTransform, type TrackedPose } from '../../src/core/math/pose';
 import { decodePose } from '../../src/core/protocol/pose-codec';
+import { plainAvatar } from '../../src/core/protocol/worn-avatar';
 import { createRemotePlayers } from '../../src/net/remote-players';
 import { arenaFromCirclePlace } from './circle';
 
@@ -34,13 +36,18 @@ export class Court {
     const floorFromArena = invertTransform(arenaFromCirclePlace(0, places));
     this.#view = createBallView({ quality: 'low', balls: 20, onCaption: () => undefined });
     studio.setSurroundings(this.#view.placed(floorFromArena));
-    this.#others = createRemoteAvatars(mannequin, 'mannequin.vrm');
+    this.#others = createRemoteAvatars({
+      load: () => parseAvatar(mannequin, 'mannequin.vrm'),
+      plain: () => false,
+      onRefused: () => undefined,
+    });
     studio.scene.add(this.#others.object);
     const nowhere = { position: { x: 0, y: 1.6, z: 0 }, orientation: { x: 0, y: 0, z: 0, w: 1 } };
     const head: TrackedPose = { ...nowhere, tracking: 'tracked' };
     this.#seen = Array.from({ length: places }, (_, seat) => ({
       id: seat,
       calibration: defaultCalibration,
+      avatar: plainAvatar,
       palette: 'ember',
       pose: { head, leftHand: null, rightHand: null, body: null },
       placement: composeTransforms(floorFromArena, arenaFromCirclePlace(seat, places)),

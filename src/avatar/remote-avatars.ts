@@ -1,3 +1,4 @@
+import { VRMUtils } from '@pixiv/three-vrm';
 import { Group, type Mesh, type MeshBasicMaterial, type Object3D, type PlaneGeometry } from 'three';
 import type { AvatarPose } from '../core/body/avatar-pose';
 import type { Calibration } from '../core/body/calibration';
@@ -5,15 +6,18 @@ import type { Fingers } from '../core/body/hand-shape';
 import { type MutableTransform, makeTransform, type Transform, transformPoint } from '../core/math/pose';
 import { copyQuat } from '../core/math/quat';
 import { copyVec3, type Vec3 } from '../core/math/vec3';
+import { isAvatarHash, plainAvatar, type WornAvatar } from '../core/protocol/worn-avatar';
 import { createBlobShadow } from '../scene/blob-shadow';
 import { type Avatar, createAvatar } from './avatar';
-import { parseAvatar } from './load-avatar';
+import type { LoadedAvatar } from './load-avatar';
 
 /** Another person as they are to be drawn in this frame. */
 export interface SeenPerson {
   /** Who it is, for as long as they are there: the same number is the same body. */
   readonly id: number;
   readonly calibration: Calibration;
+  readonly avatar: WornAvatar;
+  /** Of a body of our own. */
   readonly palette: string;
   /** In their own floor's frame. */
   readonly pose: AvatarPose;
@@ -24,26 +28,45 @@ export interface SeenPerson {
   readonly opacity: number;
 }
 
-/** The bodies of other people: mannequins that share what the graphics device holds of one. */
+export interface RemoteAvatarsOptions {
+  /** The body for what a person has on. Rejects where there is none; asked once for a file, and for one of ours with every body that is needed. */
+  load(avatar: WornAvatar): Promise<LoadedAvatar>;
+  /** All are to be drawn as the plain one; asked in every frame. */
+  plain(): boolean;
+  /** A person's avatar cannot be shown: the plain one stays. Told once for each avatar. */
+  onRefused(avatar: WornAvatar, reason: unknown): void;
+}
+
+/** The bodies of other people. Those of one of ours share what the graphics device holds of it. */
 export interface RemoteAvatars {
   readonly object: Group;
   /** Draws these people and no one else, at a time [s] on the clock of the frames. */
   show(people: readonly SeenPerson[], time: number): void;
   /** Where a person's joints are drawn, floor frame of this room [m]; null: no one of this number is drawn. */
   jointsOf(id: number): Readonly<Record<string, Vec3>> | null;
+  /** As what a person is drawn; null: no one of this number is. */
+  drawnAs(id: number): WornAvatar | null;
   dispose(): void;
 }
 
 interface Body {
   readonly avatar: Avatar;
+  readonly of: WornAvatar;
+  /** Not one of ours. */
+  readonly fromFile: boolean;
   readonly place: Group;
   readonly shadow: Mesh<PlaneGeometry, MeshBasicMaterial>;
   id: number | null;
+  /** When it was drawn last [s]. */
+  drawnAt: number;
   fitted: Calibration | null;
   palette: string;
   opacity: number;
   readonly placement: MutableTransform<'floor', 'floor'>;
 }
+
+/** A body from a file that no one has had on for so long [s] gives its memory back. */
+const keptSeconds = 20;
 
 /** The second body draws from the first one's memory on the graphics device: only bones and colours are its own. */
 function shareGeometry(from: Object3D, to: Object3D): void {
@@ -68,93 +91,150 @@ function isAmong(people: readonly SeenPerson[], id: number): boolean {
   return false;
 }
 
-/** `bytes`: of the mannequin's file. Bodies are made when they are first needed, one after the other, and kept for the next person who comes. */
-export const createRemoteAvatars = (bytes: ArrayBuffer, name: string): RemoteAvatars => new Mannequins(bytes, name);
+/**
+ * Bodies are made when they are first needed and kept for the next person who comes. Files are loaded one at a time, and whose file is on its way,
+ * or refused, has the plain body on.
+ */
+export const createRemoteAvatars = (options: RemoteAvatarsOptions): RemoteAvatars => new OthersBodies(options);
 
-class Mannequins implements RemoteAvatars {
+class OthersBodies implements RemoteAvatars {
   readonly object = new Group();
-  readonly #bytes: ArrayBuffer;
-  readonly #name: string;
+  readonly #options: RemoteAvatarsOptions;
   readonly #bodies: Body[] = [];
-  #making = false;
+  /** What is being made: of our own bodies and of files, one each. */
+  readonly #making: { own: boolean; file: boolean } = { own: false, file: false };
+  readonly #refused = new Set<WornAvatar>();
   #disposed = false;
-  /** Why a body could not be made; null: each could. */
+  /** The time of the newest frame [s]. */
+  #now = 0;
+  /** Why the plain body could not be made; null: it could. */
   #failed: unknown = null;
 
-  constructor(bytes: ArrayBuffer, name: string) {
-    this.#bytes = bytes;
-    this.#name = name;
+  constructor(options: RemoteAvatarsOptions) {
+    this.#options = options;
     this.object.name = 'other people';
   }
 
   show(people: readonly SeenPerson[], time: number): void {
+    this.#now = time;
+    const plain = this.#options.plain();
     for (const person of people) {
-      const body = this.#bodyFor(person.id, people);
-      if (body) draw(body, person, time);
+      const body = this.#bodyFor(person, plain ? plainAvatar : person.avatar, people);
+      if (!body) continue;
+      body.drawnAt = time;
+      draw(body, person, time);
     }
-    for (const body of this.#bodies) {
+    for (let i = this.#bodies.length - 1; i >= 0; i--) {
+      const body = this.#bodies[i]!;
       let there = false;
       for (const { id, opacity } of people) there ||= id === body.id && opacity > 0;
       body.place.visible = there;
       if (!there) body.id = null;
+      if (body.id === null && body.fromFile && time - body.drawnAt > keptSeconds) this.#drop(i);
     }
   }
 
   jointsOf(id: number): Readonly<Record<string, Vec3>> | null {
-    const body = this.#bodies.find((candidate) => candidate.id === id);
+    const body = this.#bodyOf(id);
     if (!body) return null;
     const joints = Object.entries(body.avatar.jointPositions());
     return Object.fromEntries(joints.map(([joint, at]) => [joint, transformPoint(body.placement, at)]));
   }
 
+  drawnAs(id: number): WornAvatar | null {
+    return this.#bodyOf(id)?.of ?? null;
+  }
+
   dispose(): void {
     this.#disposed = true;
     this.object.removeFromParent();
-    for (const { avatar, shadow } of this.#bodies) {
-      avatar.dispose();
-      shadow.geometry.dispose();
-      shadow.material.dispose();
-    }
+    while (this.#bodies.length > 0) this.#drop(this.#bodies.length - 1);
   }
 
-  /** The body of this number, or a free one; null while one is being made. */
-  #bodyFor(id: number, people: readonly SeenPerson[]): Body | null {
+  #bodyOf(id: number): Body | null {
     for (const body of this.#bodies) if (body.id === id) return body;
-    for (const body of this.#bodies) {
-      if (body.id !== null && isAmong(people, body.id)) continue;
-      body.id = id;
-      body.fitted = null;
-      return body;
-    }
-    if (this.#failed) throw this.#failed;
-    if (!this.#making) void this.#make();
     return null;
   }
 
-  /** Never rejects: the next frame that wants a body throws why there is none. */
-  async #make(): Promise<void> {
-    this.#making = true;
+  /** The body of a person with this avatar on, else with the plain one; null while that is being made. */
+  #bodyFor({ id }: SeenPerson, avatar: WornAvatar, people: readonly SeenPerson[]): Body | null {
+    const own = this.#bodyOf(id);
+    if (own?.of === avatar) return own;
+    const wanted = this.#freeBody(avatar, people);
+    if (wanted) {
+      if (own) own.id = null;
+      return take(wanted, id);
+    }
+    if (avatar !== plainAvatar && !this.#refused.has(avatar)) this.#make(avatar);
+    if (own?.of === plainAvatar) return own;
+    const plain = this.#freeBody(plainAvatar, people);
+    if (plain) {
+      if (own) own.id = null;
+      return take(plain, id);
+    }
+    if (this.#failed) throw this.#failed;
+    this.#make(plainAvatar);
+    // Until the plain one is there they stay as they were.
+    return own;
+  }
+
+  #freeBody(avatar: WornAvatar, people: readonly SeenPerson[]): Body | null {
+    for (const body of this.#bodies) {
+      if (body.of === avatar && (body.id === null || !isAmong(people, body.id))) return body;
+    }
+    return null;
+  }
+
+  #make(avatar: WornAvatar): void {
+    const lane = isAvatarHash(avatar) ? 'file' : 'own';
+    if (this.#making[lane]) return;
+    this.#making[lane] = true;
+    void this.#load(avatar).finally(() => {
+      this.#making[lane] = false;
+    });
+  }
+
+  /** Never rejects: of a file that is none the plain body stays; without the plain one the next frame throws why. */
+  async #load(avatar: WornAvatar): Promise<void> {
     try {
-      const avatar = createAvatar(await parseAvatar(this.#bytes, this.#name));
-      if (this.#disposed) avatar.dispose();
-      else this.#add(avatar);
-      this.#making = false;
+      const loaded = await this.#options.load(avatar);
+      if (this.#disposed) VRMUtils.deepDispose(loaded.vrm.scene);
+      else this.#add(createAvatar(loaded), avatar);
     } catch (error) {
-      this.#failed = error;
+      if (avatar === plainAvatar) this.#failed = error;
+      this.#refused.add(avatar);
+      if (!this.#disposed) this.#options.onRefused(avatar, error);
     }
   }
 
-  #add(avatar: Avatar): void {
-    const first = this.#bodies[0];
-    if (first) shareGeometry(first.avatar.object, avatar.object);
+  #add(avatar: Avatar, of: WornAvatar): void {
+    const fromFile = isAvatarHash(of);
+    // One of ours stays for as long as the others do; a file's memory is given back body by body.
+    const first = this.#bodies.find((body) => body.of === of);
+    if (first && !fromFile) shareGeometry(first.avatar.object, avatar.object);
     const place = new Group();
     const shadow = createBlobShadow();
     place.visible = false;
     place.add(avatar.object, shadow);
     this.object.add(place);
     const free = { id: null, fitted: null, palette: '', opacity: 1, placement: makeTransform<'floor', 'floor'>() };
-    this.#bodies.push({ avatar, place, shadow, ...free });
+    this.#bodies.push({ avatar, of, fromFile, place, shadow, drawnAt: this.#now, ...free });
   }
+
+  #drop(index: number): void {
+    const [body] = this.#bodies.splice(index, 1);
+    if (!body) return;
+    body.place.removeFromParent();
+    body.avatar.dispose();
+    body.shadow.geometry.dispose();
+    body.shadow.material.dispose();
+  }
+}
+
+function take(body: Body, id: number): Body {
+  body.id = id;
+  body.fitted = null;
+  return body;
 }
 
 function draw(body: Body, person: SeenPerson, time: number): void {
@@ -164,7 +244,7 @@ function draw(body: Body, person: SeenPerson, time: number): void {
     avatar.fitTo(calibration);
     body.fitted = calibration;
   }
-  if (body.palette !== palette) {
+  if (!body.fromFile && body.palette !== palette) {
     avatar.setPalette(palette);
     body.palette = palette;
   }

@@ -1,6 +1,7 @@
 import { readFileSync } from 'node:fs';
 import { Mesh, type MeshStandardMaterial, SkinnedMesh } from 'three';
 import { describe, expect, test } from 'vitest';
+import { parseAvatar } from '../../src/avatar/load-avatar';
 import { createRemoteAvatars, type RemoteAvatars, type SeenPerson } from '../../src/avatar/remote-avatars';
 import { defaultCalibration } from '../../src/core/body/calibration';
 import { forwardKinematics } from '../../src/core/body/forward-kinematics';
@@ -10,6 +11,7 @@ import { createIk } from '../../src/core/estimation/estimators';
 import { transformPoint } from '../../src/core/math/pose';
 import { fromAxisAngle } from '../../src/core/math/quat';
 import { distance, up, vec3 } from '../../src/core/math/vec3';
+import { plainAvatar } from '../../src/core/protocol/worn-avatar';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
 import { poseOf } from '../core/estimation/drawn';
 
@@ -20,6 +22,7 @@ const estimator = createIk(defaultCalibration);
 const person = (id: number, more: Partial<SeenPerson> = {}): SeenPerson => ({
   id,
   calibration: defaultCalibration,
+  avatar: plainAvatar,
   palette: 'ember',
   pose: poseOf(estimator, actorFrame(9.5, defaultCalibration)),
   placement: { position: vec3(id, 0, -2 * id), orientation: fromAxisAngle(up, 0.7 * id) },
@@ -30,7 +33,11 @@ const person = (id: number, more: Partial<SeenPerson> = {}): SeenPerson => ({
 
 /** Draws these people until each of them has a body. */
 async function gathered(people: readonly SeenPerson[]): Promise<RemoteAvatars> {
-  const others = createRemoteAvatars(bytes, 'mannequin.vrm');
+  const others = createRemoteAvatars({
+    load: () => parseAvatar(bytes, 'mannequin.vrm'),
+    plain: () => false,
+    onRefused: (avatar, reason) => expect([avatar, reason]).toBeNull(),
+  });
   for (let i = 0; i < 500 && !people.every(({ id }) => others.jointsOf(id)); i++) {
     others.show(people, i / 60);
     await new Promise((resolve) => setImmediate(resolve));

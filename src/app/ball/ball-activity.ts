@@ -2,6 +2,7 @@ import type { Holding } from '../../avatar/holding';
 import { createRemoteAvatars, type RemoteAvatars } from '../../avatar/remote-avatars';
 import type { AvatarPose } from '../../core/body/avatar-pose';
 import type { Fingers, MutableHandShape } from '../../core/body/hand-shape';
+import { firstLine, reasonOf } from '../../core/errors/reasons';
 import type { BallState } from '../../core/games/ball/ball-state';
 import { ballRadius, basketRadius, rimTube } from '../../core/games/ball/flight';
 import type { BallPulse } from '../../core/games/ball/gestures';
@@ -16,7 +17,9 @@ import { rotate } from '../../core/math/quat';
 import type { Ray } from '../../core/math/ray';
 import type { Side } from '../../core/math/side';
 import { type Vec3, vec3 } from '../../core/math/vec3';
+import { plainAvatar, type WornAvatar } from '../../core/protocol/worn-avatar';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
+import type { AvatarExchange } from '../../net/avatar-exchange';
 import { bannerText, connectionText } from '../../net/banner';
 import type { Connection, Visitor } from '../../net/connection';
 import type { Quality } from '../../scene/renderer';
@@ -29,6 +32,8 @@ import { type LobbyButton, ownName, seatOfButton, waitingFor } from './board-dra
 import { roleTexts, seatLooks } from './court-plan';
 import { eventHaptics } from './haptics';
 import { createMatchClock } from './match-clock';
+import { SeenAvatars } from './seen-avatars';
+import { type OwnWear, SharedAvatar } from './shared-avatar';
 
 export interface BallActivityOptions {
   readonly quality: Quality;
@@ -39,6 +44,13 @@ export interface BallActivityOptions {
   /** The visitor's name was given by the page: its player reads “You” instead. */
   readonly unnamed: boolean;
   connect(visitor: Visitor, time: number): Connection;
+  /** null: avatars that are files are not exchanged in this room. */
+  readonly avatars: AvatarExchange | null;
+  /** What the player has on, for the others; null: they are to see the plain one. Asked for in every frame. */
+  worn(): OwnWear | null;
+  /** Everybody else is drawn as the plain one. */
+  plainOthers(): boolean;
+  notify(level: 'info' | 'warning', text: string): void;
   bots(): boolean;
   acting(): boolean;
   /** What a mouse wants of the own player, floor frame; null: nothing, a built-in one plays. */
@@ -54,6 +66,9 @@ export interface PlayerProbe {
   readonly bot: boolean;
   readonly presence: string;
   readonly opacity: number;
+  /** What the player has on, and as what they are drawn. */
+  readonly avatar: WornAvatar;
+  readonly drawnAs: WornAvatar | null;
   /** Joints as drawn, own floor frame [m]. */
   readonly joints: Readonly<Record<string, readonly [number, number, number]>>;
 }
@@ -125,6 +140,8 @@ class CourtActivity implements BallActivity {
   readonly #options: BallActivityOptions;
   readonly #view: BallView;
   readonly #others: RemoteAvatars;
+  readonly #seen: SeenAvatars;
+  readonly #shared: SharedAvatar;
   readonly #clock = createMatchClock();
   /** What `#named` gives; used again by its next call. */
   readonly #written: Players[number][] = [];
@@ -140,7 +157,18 @@ class CourtActivity implements BallActivity {
     this.play = createBallPlay(options);
     this.#view = createBallView({ quality, balls: defaultBallOptions.balls, onCaption });
     this.sound = this.#view.sound;
-    this.#others = createRemoteAvatars(mannequin, 'mannequin.vrm');
+    this.#seen = new SeenAvatars(mannequin, options.avatars);
+    this.#others = createRemoteAvatars({
+      load: (avatar) => this.#seen.load(avatar),
+      plain: options.plainOthers,
+      onRefused: (avatar, reason) => this.#tellRefused(avatar, reason),
+    });
+    this.#shared = new SharedAvatar({
+      exchange: options.avatars,
+      wear: options.worn,
+      tell: (avatar) => this.play.wear(avatar),
+      notify: options.notify,
+    });
     surroundings.scene.add(this.#view.own, this.#others.object);
     this.#place();
   }
@@ -148,6 +176,7 @@ class CourtActivity implements BallActivity {
   begin(time: number): void {
     this.#now = time;
     this.play.begin(time);
+    this.#shared.follow(this.play.room);
     this.#place();
     const voided = this.play.room?.voided ?? 0;
     if (voided > this.#voided) this.#notice = { text: voidedNotice, until: time + noticeSeconds };
@@ -278,7 +307,8 @@ class CourtActivity implements BallActivity {
       const { name, bot, presence } = player;
       const drawn = Object.entries(this.#others.jointsOf(id) ?? {});
       const joints = Object.fromEntries(drawn.map(([joint, at]) => [joint, triple(at)] as const));
-      return [{ seat: id, name, bot, presence, opacity, joints }];
+      const { avatar = plainAvatar } = this.play.room?.seats[id] ?? {};
+      return [{ seat: id, name, bot, presence, opacity, avatar, drawnAs: this.#others.drawnAs(id), joints }];
     });
   }
 
@@ -286,8 +316,21 @@ class CourtActivity implements BallActivity {
     this.play.leave();
     this.#view.own.removeFromParent();
     this.#options.surroundings.setSurroundings(null);
+    this.#seen.leave();
     this.#others.dispose();
     this.#view.dispose();
+  }
+
+  /** Others are seen all the same, as the plain one. */
+  #tellRefused(avatar: WornAvatar, reason: unknown): void {
+    const seats = this.play.room?.seats ?? [];
+    const names = seats.flatMap((seat, index) =>
+      seat?.avatar === avatar && index !== this.play.room?.mySeat ? [seat.name] : [],
+    );
+    // Who has put on something else meanwhile is not spoken of.
+    if (names.length === 0) return;
+    const why = firstLine(reasonOf(reason)).replace(/^the avatar: /, '');
+    this.#options.notify('info', `The avatar of ${names.join(' and ')} is not shown, a mannequin is: ${why}`);
   }
 
   /** A built-in player moves the own body, with no person behind it. */

@@ -1,5 +1,6 @@
 import type { RoomTerms } from '../../core/protocol/messages';
 import type { SignedSeat } from '../../core/study/study-api';
+import type { AvatarExchange } from '../../net/avatar-exchange';
 import type { Connection, LocalClock, Visitor } from '../../net/connection';
 import { createLoopbackHost } from '../../net/loopback-connection';
 import { pageFolder } from '../../ui/page-folder';
@@ -17,11 +18,22 @@ function tabStorage(): Storage | undefined {
   }
 }
 
-/** The seat that a server assigns, of which it signs a pass; the pass is asked for anew when the first one has expired. */
-export async function assignedSeat(seat: () => Promise<SignedSeat>, clock: LocalClock): Promise<Connect> {
+/** A room to play in. */
+export interface BallPlace {
+  readonly connect: Connect;
+  /** Where its people's avatars are exchanged; null: nowhere. */
+  readonly avatars: AvatarExchange | null;
+}
+
+/**
+ * The seat that a server assigns, of which it signs a pass; the pass is asked for anew when the first one has expired. All wear the same there.
+ */
+export async function assignedSeat(seat: () => Promise<SignedSeat>, clock: LocalClock): Promise<BallPlace> {
   const [{ createSocketConnection }, first] = await Promise.all([import('../../net/socket-connection'), seat()]);
   const pass = { token: async (afresh: boolean) => (afresh ? await seat() : first).token };
-  return (visitor) => createSocketConnection({ url: pageFolder(), room: first.room, visitor, clock, pass });
+  const connect: Connect = (visitor) =>
+    createSocketConnection({ url: pageFolder(), room: first.room, visitor, clock, pass });
+  return { connect, avatars: null };
 }
 
 /**
@@ -31,18 +43,19 @@ export async function assignedSeat(seat: () => Promise<SignedSeat>, clock: Local
 export async function connectionsFor(
   room: string | null,
   { seed, clock, ...terms }: RoomTerms & { readonly seed: number; readonly clock: LocalClock },
-): Promise<Connect> {
+): Promise<BallPlace> {
   if (room === null) {
     const { pausable: _, ...ball } = terms;
-    return createLoopbackHost({ seed, ball }).connect;
+    return { connect: createLoopbackHost({ seed, ball }).connect, avatars: null };
   }
-  const [{ createSocketConnection }, { createRoomPass }] = await Promise.all([
+  const [{ createSocketConnection }, { createRoomPass }, { createAvatarExchange }] = await Promise.all([
     import('../../net/socket-connection'),
     import('../../net/room-pass'),
+    import('../../net/avatar-exchange'),
   ]);
   const server = pageFolder();
   const person = createRoomPass(server, room, 'ball', tabStorage(), terms);
-  return (visitor) =>
+  const connect: Connect = (visitor) =>
     createSocketConnection({
       url: server,
       room,
@@ -51,4 +64,5 @@ export async function connectionsFor(
       // Each bot is a guest of its own.
       pass: visitor.bot ? createRoomPass(server, room, 'ball') : person,
     });
+  return { connect, avatars: createAvatarExchange(server, room, person) };
 }

@@ -20,6 +20,7 @@ import {
 } from '../../core/math/pose';
 import type { Side } from '../../core/math/side';
 import { length, type MutableVec3, type Vec3, vec3 } from '../../core/math/vec3';
+import { plainAvatar, type WornAvatar } from '../../core/protocol/worn-avatar';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 import type { Connection, ConnectionStatus, RoomView } from '../../net/connection';
 import type { RemotePlayer } from '../../net/remote-players';
@@ -46,6 +47,7 @@ export interface BodyFrame {
   readonly id: number;
   readonly calibration: Calibration;
   readonly station: number;
+  readonly avatar: WornAvatar;
   /** One of the avatar's palettes. */
   readonly palette: string;
   readonly pose: AvatarPose;
@@ -196,6 +198,7 @@ export class CourtPeople {
       if (there) {
         const { body } = view;
         body.calibration = row.calibration;
+        body.avatar = row.avatar;
         body.station = player?.station ?? seat;
         body.palette = seatLooks[body.station]?.palette ?? 'porcelain';
         body.pose = there.pose;
@@ -254,6 +257,7 @@ const makeSeatView = (seat: number): SeatView => ({
     id: seat,
     calibration: { eyeHeight: Number.NaN, armSpan: Number.NaN },
     station: seat,
+    avatar: plainAvatar,
     palette: '',
     pose: { head: { ...makePose<'floor'>(), tracking: 'emulated' }, leftHand: null, rightHand: null, body: null },
     placement: makeTransform(),

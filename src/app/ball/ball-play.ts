@@ -18,6 +18,7 @@ import { invertTransform, type Transform } from '../../core/math/pose';
 import { identity } from '../../core/math/quat';
 import type { Side } from '../../core/math/side';
 import { zero } from '../../core/math/vec3';
+import type { WornAvatar } from '../../core/protocol/worn-avatar';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 import type { Connection, ConnectionStatus, RoomView, Visitor } from '../../net/connection';
 import { createRemotePlayers, type RemotePlayer } from '../../net/remote-players';
@@ -63,6 +64,8 @@ export interface BallPlay {
   pause(on: boolean): void;
   away(on: boolean): void;
   calibrate(calibration: Calibration): void;
+  /** What the others are to see this player with. */
+  wear(avatar: WornAvatar): void;
   probe(): BallProbe | null;
   leave(): void;
 }
@@ -262,6 +265,10 @@ class MatchPlay implements BallPlay {
     this.between.calibrate(next);
     this.own = null;
     this.connection?.calibrate(next);
+  }
+
+  wear(avatar: WornAvatar): void {
+    this.connection?.wear(avatar);
   }
 
   probe(): BallProbe | null {

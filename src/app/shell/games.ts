@@ -4,13 +4,14 @@ import type { ServerPresence } from '../../net/server-presence';
 import type { Quality } from '../../scene/renderer';
 import type { SurroundingsHost } from '../../scene/surroundings';
 import type { MouseAim } from '../../ui/mouse-aim';
+import type { Notices } from '../../ui/notices';
 import type { ArcheryActivity } from '../archery/archery-activity';
 import type { BallActivity } from '../ball/ball-activity';
-import type { Connect } from '../ball/ball-connections';
+import type { BallPlace } from '../ball/ball-connections';
 import type { TaskPlace } from '../study/task-runner';
 import type { Headset } from './headset';
 import type { Settings } from './settings';
-import { fetchOwnAvatar } from './shown-avatar';
+import { fetchOwnAvatar, type ShownAvatar } from './shown-avatar';
 import type { Stage } from './stage';
 import type { Switches } from './switches';
 
@@ -25,7 +26,9 @@ export interface GamesOptions {
   readonly mouse: MouseAim;
   readonly headset: Pick<Headset, 'worn' | 'emulator'>;
   readonly body: Pick<BareBody, 'calibration'>;
+  readonly avatar: Pick<ShownAvatar, 'own' | 'worn'>;
   readonly server: Pick<ServerPresence, 'known'>;
+  readonly notices: Pick<Notices, 'show'>;
   onCaption(text: string): void;
 }
 
@@ -64,7 +67,7 @@ export class PageGames implements Games {
   }
 
   async ball({ seed, place }: Opening): Promise<BallActivity> {
-    const { quality, settings, switches, stage, mouse, headset, body, onCaption } = this.#options;
+    const { quality, settings, switches, stage, mouse, headset, body, avatar, notices, onCaption } = this.#options;
     const [{ createBallActivity }, connections, mannequin] = await Promise.all([
       import('../ball/ball-activity'),
       import('../ball/ball-connections'),
@@ -74,7 +77,10 @@ export class PageGames implements Games {
       quality,
       surroundings: stage.studio,
       mannequin,
-      connect: await this.#connect(connections, seed(), place),
+      ...(await this.#place(connections, seed(), place)),
+      worn: () => (settings.shareAvatar || avatar.own ? avatar.worn : null),
+      plainOthers: () => settings.plainOthers,
+      notify: (level, text) => notices.show(level, text),
       visitor: {
         name: place?.participant || settings.name || settings.guestName,
         calibration: body.calibration,
@@ -93,7 +99,7 @@ export class PageGames implements Games {
     });
   }
 
-  async #connect(connections: Connections, seed: number, place: TaskPlace | null): Promise<Connect> {
+  async #place(connections: Connections, seed: number, place: TaskPlace | null): Promise<BallPlace> {
     const { switches, clock, server } = this.#options;
     if (place) return connections.assignedSeat(place.seat, clock);
     // A server that is silent is waited for; where there is none, the match is in this page.

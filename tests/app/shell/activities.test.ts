@@ -11,6 +11,7 @@ import { defaultCalibration } from '../../../src/core/body/calibration';
 import { nothingPressed } from '../../../src/core/games/button-presses';
 import type { Side } from '../../../src/core/math/side';
 import { vec3 } from '../../../src/core/math/vec3';
+import { plainAvatar } from '../../../src/core/protocol/worn-avatar';
 import { createPageClock } from '../../../src/core/tracking/page-clock';
 import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
 import { ServerPresence } from '../../../src/net/server-presence';
@@ -80,6 +81,8 @@ function page() {
     games: new PageGames({
       ...{ ...common, switches, quality: 'low', clock: createPageClock(() => 0), onCaption: () => undefined },
       server: new ServerPresence('http://127.0.0.1:9', () => undefined),
+      avatar: { own: true, worn: plainAvatar },
+      notices: { show: (level, text) => void notices.push({ level, text }) },
     }),
     notices: { show: (level, text) => void notices.push({ level, text }) },
     wear: () => undefined,

@@ -2,6 +2,7 @@ import { expect, onTestFinished, test, vi } from 'vitest';
 import { relayConfigurationFrom } from '../../../server/relay-configuration';
 import { startServer } from '../../../server/start';
 import { assignedSeat } from '../../../src/app/ball/ball-connections';
+import { plainAvatar } from '../../../src/core/protocol/worn-avatar';
 import { scheduleFor } from '../../../src/core/study/plan';
 import type { ParticipantState } from '../../../src/core/study/study-api';
 import { createExperimenterClient, createParticipantClient } from '../../../src/net/study-client';
@@ -40,8 +41,9 @@ test('participants who were invited meet in the room of their trial, each on the
   const connections = await Promise.all(
     group.map(async (participant) => {
       const { token } = await client.claim('paper', participant, invitationOf(participant));
-      const connect = await assignedSeat(() => client.seat('paper', participant, token, trial), clock);
-      return connect(visitor('what the page says'), clock.now());
+      const { connect, avatars } = await assignedSeat(() => client.seat('paper', participant, token, trial), clock);
+      expect(avatars).toBeNull();
+      return connect(visitor('what the page says', { avatar: 'a'.repeat(43) }), clock.now());
     }),
   );
   onTestFinished(() => {
@@ -52,5 +54,8 @@ test('participants who were invited meet in the room of their trial, each on the
   );
   expect(connections.map(({ room }) => room?.mySeat)).toEqual([0, 1, 2]);
   for (const { room } of connections) expect(room?.seats.map((seat) => seat?.name)).toEqual(group);
+  // What people bring along would tell who they are.
+  for (const { room } of connections)
+    expect(room?.seats.map((seat) => seat?.avatar)).toEqual(group.map(() => plainAvatar));
   expect(await (await fetch(`${origin}/api/rooms`)).json()).toMatchObject({ rooms: [] });
 });

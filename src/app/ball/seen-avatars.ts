@@ -1,0 +1,63 @@
+import { checkInWorker } from '../../avatar/check-in-worker';
+import { decoders } from '../../avatar/decoders';
+import { seenAvatarLimits } from '../../avatar/inspect-avatar';
+import { type LoadedAvatar, parseAvatar, parseChecked } from '../../avatar/load-avatar';
+import { reasonOf } from '../../core/errors/reasons';
+import { type AvatarHash, isAvatarHash, type WornAvatar } from '../../core/protocol/worn-avatar';
+import type { AvatarExchange } from '../../net/avatar-exchange';
+import { type FileKind, readLimited } from '../../ui/limited-files';
+
+/** The file of another person. */
+const seenFile: FileKind = { what: 'an avatar that others see', megabytes: seenAvatarLimits.megabytes };
+/** A file that is on its way for longer [ms] is given up: others wait for theirs. */
+const patienceMs = 60_000;
+
+/**
+ * Loads what other people have on. A file comes from the store of the room or from the server that it names, and from nowhere else; is refused where it is not
+ * the one that was told of; and is looked at in a worker before anything of it is read here.
+ */
+export class SeenAvatars {
+  readonly #mannequin: ArrayBuffer;
+  readonly #exchange: AvatarExchange | null;
+  readonly #leaving = new AbortController();
+
+  /** `mannequin`: the plain one's file. `exchange`: null where there is no server, or its rooms are a study's. */
+  constructor(mannequin: ArrayBuffer, exchange: AvatarExchange | null) {
+    this.#mannequin = mannequin;
+    this.#exchange = exchange;
+  }
+
+  async load(avatar: WornAvatar): Promise<LoadedAvatar> {
+    if (isAvatarHash(avatar)) return this.#loadFile(avatar);
+    return parseAvatar(this.#mannequin, 'mannequin.vrm');
+  }
+
+  /** Ends what is on its way. */
+  leave(): void {
+    this.#leaving.abort();
+  }
+
+  async #loadFile(hash: AvatarHash): Promise<LoadedAvatar> {
+    const name = 'the avatar';
+    const bytes = await this.#fetch(hash);
+    const question = { name, unpacked: Object.keys(decoders), limits: seenAvatarLimits };
+    const checked = await checkInWorker(bytes, question);
+    if (checked.hash !== hash) throw new Error('another file came than the one that was told of');
+    return parseChecked(checked, name, { decoders });
+  }
+
+  async #fetch(hash: AvatarHash): Promise<ArrayBuffer> {
+    if (!this.#exchange) throw new Error('there is no server that has it');
+    const signal = AbortSignal.any([this.#leaving.signal, AbortSignal.timeout(patienceMs)]);
+    let reason = '';
+    for (const { url, headers } of await this.#exchange.addressesOf(hash)) {
+      try {
+        return await readLimited(url, seenFile, { headers, signal });
+      } catch (error) {
+        reason ||= reasonOf(error).replace(`${hash}: `, '');
+        if (signal.aborted) break;
+      }
+    }
+    throw new Error(signal.aborted ? 'it did not arrive in time' : reason);
+  }
+}
