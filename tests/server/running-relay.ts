@@ -71,11 +71,12 @@ export function arrive(
   { terms, ...more }: Partial<Visitor> & { readonly terms?: RoomTerms } = {},
   now = seconds,
 ) {
+  const pass = createRoomPass(url, room, kindOf(room), undefined, terms);
   const connection = createSocketConnection({
     url,
     room,
     visitor: visitor(name, more),
-    pass: createRoomPass(url, room, kindOf(room), undefined, terms),
+    pass,
     clock: { now, leftOut: 0 },
   });
   const person = createPerson(connection);
@@ -87,6 +88,7 @@ export function arrive(
   }, 1000 / 60);
   return Object.assign(person, {
     now,
+    pass,
     everyFrame(then: (time: number) => void) {
       frames = then;
     },

@@ -1,0 +1,238 @@
+import { fork } from 'node:child_process';
+import { createHash, randomBytes } from 'node:crypto';
+import { once } from 'node:events';
+import { fileURLToPath } from 'node:url';
+import { changed, type GltfJson } from '../tests/avatar/glb';
+import type { GuestAnswer, GuestOrder } from './guest-process';
+import { expect, freshTest, joint, keepPicture, probe, test } from './page-fixture';
+import { serveStudies } from './study-server';
+
+type Page = Parameters<typeof probe>[0];
+
+freshTest.use({ viewport: { width: 960, height: 600 } });
+
+const hashOf = (file: ArrayBuffer): string => createHash('sha256').update(new Uint8Array(file)).digest('base64url');
+const glb = (file: ArrayBuffer) => ({ contentType: 'model/gltf-binary', body: Buffer.from(file) });
+
+/** The mannequin with other materials, and so another file. */
+const blue = (): ArrayBuffer =>
+  changed((json) => {
+    const { materials } = json as GltfJson & { materials: { name: string; pbrMetallicRoughness: object }[] };
+    for (const material of materials) {
+      material.name = `Blue ${material.name}`;
+      Object.assign(material.pbrMetallicRoughness, { baseColorFactor: [0.05, 0.15, 0.9, 1] });
+    }
+  }, randomBytes(4));
+
+/** A picture that says it is this wide and high, and is not. */
+function png(width: number, height: number): Buffer {
+  const bytes = Buffer.alloc(64);
+  bytes.write('\x89PNG\r\n\x1a\n', 0, 'latin1');
+  bytes.write('IHDR', 12, 'latin1');
+  bytes.writeUInt32BE(width, 16);
+  bytes.writeUInt32BE(height, 20);
+  return bytes;
+}
+
+const withPicture = (picture: Buffer): ArrayBuffer =>
+  changed((json, length) => {
+    const padded = Math.ceil(length / 4) * 4;
+    json.bufferViews.push({ buffer: 0, byteOffset: padded, byteLength: picture.length });
+    json.images = [{ bufferView: json.bufferViews.length - 1, mimeType: 'image/png' }];
+    json.buffers = [{ byteLength: padded + picture.length }];
+  }, picture);
+
+/** What a person may bring to spoil the evening of the others, and what is said of it. */
+const malicious: Readonly<Record<string, readonly [file: () => ArrayBuffer, sentence: RegExp]>> = {
+  'a million morph targets': [
+    () =>
+      changed((json) => {
+        const [primitive] = json.meshes[0]?.primitives ?? [];
+        if (primitive) primitive.targets = Array.from({ length: 1e5 }, () => ({ POSITION: 0 }));
+        json.meshes[0]!.primitives = Array.from({ length: 10 }, () => primitive!);
+      }),
+    /MB of description|morph targets/,
+  ],
+  'a picture of 16,384 pixels a side': [() => withPicture(png(16_384, 16_384)), /16384 pixels across picture 0/],
+  'a picture with a script in it': [
+    () => withPicture(Buffer.from('<svg xmlns="http://www.w3.org/2000/svg" onload="window.attacked = true"/>')),
+    /picture 0 is no PNG/,
+  ],
+  'an address of somewhere else': [
+    () =>
+      changed((json) => {
+        json.images = [{ uri: 'https://elsewhere.example/who-is-there.png' }];
+      }),
+    /outside the file/,
+  ],
+  'a mesh that unpacks to 40 GB': [
+    () =>
+      changed((json) => {
+        json.extensionsUsed.push('EXT_meshopt_compression');
+        json.extensionsRequired = ['EXT_meshopt_compression'];
+        const packed = { buffer: 0, byteLength: 10, byteStride: 4, count: 1e10, mode: 'ATTRIBUTES' };
+        Object.assign(json.bufferViews[0] ?? {}, { extensions: { EXT_meshopt_compression: packed } });
+      }),
+    /million unpacked bytes/,
+  ],
+  'bones that are their own parents': [
+    () =>
+      changed((json) => {
+        const child = json.nodes[json.nodes[0]?.children?.[0] ?? 1];
+        if (child) child.children = [0];
+      }),
+    /not valid glTF/,
+  ],
+};
+
+/** Ben's page in a room on this server, joined. */
+async function join(page: Page, origin: string, room: string, query = ''): Promise<void> {
+  await page.goto(`${origin}/?play=ball&room=${room}&bots=off&panel=off&quality=low&estimator=ik&overlay=off${query}`);
+  await page.waitForFunction(
+    () => {
+      const now = window.threepoint?.probe();
+      return now?.ready === true && now.game?.name === 'ball' && now.game.connection === 'joined';
+    },
+    undefined,
+    { timeout: 90_000 },
+  );
+}
+
+/** Another person in the room, who comes without a page. */
+async function comes(origin: string, room: string, name: string) {
+  const script = fileURLToPath(new URL('guest-process.ts', import.meta.url));
+  const child = fork(script, [origin, room, name], { execArgv: ['--import', 'tsx'], serialization: 'advanced' });
+  const answers = new Map<number, (answer: GuestAnswer) => void>();
+  const answerTo = (id: number) => new Promise<GuestAnswer>((resolve) => answers.set(id, resolve));
+  child.on('message', (answer: GuestAnswer) => answers.get(answer.id)?.(answer));
+  await answerTo(0);
+  let asked = 0;
+  const order = async (file: Uint8Array<ArrayBuffer> | null): Promise<string | null> => {
+    asked += 1;
+    const answer = answerTo(asked);
+    child.send({ id: asked, file } satisfies GuestOrder);
+    const { hash, refused } = await answer;
+    if (refused) throw new Error(`${name}: ${refused}`);
+    return hash;
+  };
+  return {
+    /** Resolves to the file's hash, once the server has it and the room was told. */
+    putOn: (file: ArrayBuffer) => order(new Uint8Array(file)),
+    kept: () => order(null),
+    async stop() {
+      if (child.exitCode !== null) return;
+      const gone = once(child, 'exit');
+      child.disconnect();
+      await gone;
+    },
+  };
+}
+
+const drawnAs = async (page: Page, name: string): Promise<string | null | undefined> =>
+  (await probe(page)).players.find((player) => player.name === name)?.drawnAs;
+const shows = (page: Page, name: string, avatar: string) =>
+  expect.poll(() => drawnAs(page, name), { timeout: 60_000, message: `${name} is drawn as ${avatar}` }).toBe(avatar);
+
+freshTest(
+  'what a player has on is what the others see, until they leave or would rather see mannequins @full',
+  async ({ page, complaints, browser }) => {
+    test.setTimeout(240_000);
+    const server = await serveStudies();
+    complaints.allow(new RegExp(`asked ${server.origin}:`));
+    const other = await browser.newPage({ baseURL: server.origin, viewport: { width: 960, height: 600 } });
+    try {
+      const file = blue();
+      await other.route(
+        ({ pathname }) => pathname === '/elsewhere/blue.vrm',
+        (route) => route.fulfill(glb(file)),
+      );
+      await join(page, server.origin, 'meadow', '&name=Ben');
+      await join(other, server.origin, 'meadow', '&name=Ann&avatar=/elsewhere/blue.vrm');
+      await expect(other.getByText('The others see you as blue.vrm now.')).toBeVisible({ timeout: 60_000 });
+      await shows(page, 'Ann', hashOf(file));
+      await keepPicture(page, 'others-own-avatar');
+
+      // What this page's switch says, at once and back again.
+      await page.getByRole('button', { name: 'Controls' }).click();
+      await page.getByRole('tab', { name: 'Avatar' }).click();
+      await page.getByLabel('Show everybody as mannequin').check();
+      await shows(page, 'Ann', 'mannequin');
+      await keepPicture(page, 'others-as-mannequins');
+      await page.getByLabel('Show everybody as mannequin').uncheck();
+      await shows(page, 'Ann', hashOf(file));
+
+      // Ann no longer wants it to be seen: nor does the server keep it.
+      await other.getByRole('button', { name: 'Controls' }).click();
+      await other.getByRole('tab', { name: 'Avatar' }).click();
+      await other.getByLabel('Others see my avatar').uncheck();
+      await shows(page, 'Ann', 'mannequin');
+    } finally {
+      await other.close();
+      await server.close();
+    }
+  },
+);
+
+freshTest(
+  'a malicious avatar changes nothing for the others but that its owner is a mannequin @full',
+  async ({ page, complaints }) => {
+    test.setTimeout(300_000);
+    const server = await serveStudies();
+    complaints.allow(new RegExp(`asked ${server.origin}:`));
+    const people: { stop(): Promise<void> }[] = [];
+    try {
+      await join(page, server.origin, 'birch', '&name=Ben');
+      let eve = await comes(server.origin, 'birch', 'Eve');
+      people.push(eve);
+      await shows(page, 'Eve', 'mannequin');
+      let tried = 0;
+      for (const [what, [file, sentence]] of Object.entries(malicious)) {
+        if (tried > 0 && tried % 4 === 0) {
+          // Four files a minute of one person: another one goes on.
+          await eve.stop();
+          eve = await comes(server.origin, 'birch', 'Eve');
+          people.push(eve);
+        }
+        tried += 1;
+        await eve.putOn(file());
+        const notice = page.getByText(/The avatar of Eve is not shown, a mannequin is:/).filter({ hasText: sentence });
+        await expect(notice, what).toBeVisible({ timeout: 60_000 });
+        expect(await drawnAs(page, 'Eve'), what).toBe('mannequin');
+        const { frame } = await probe(page);
+        await page.waitForFunction((count) => (window.threepoint?.probe().frame.count ?? 0) > count + 3, frame.count);
+      }
+      expect(await page.evaluate(() => 'attacked' in window)).toBe(false);
+      await joint(page, 'hips');
+
+      // Another file than the one that was told of, and one that never ends: on its way to Ben alone.
+      const [swapped, endless, good] = [blue(), blue(), blue()];
+      await eve.stop();
+      const last = await comes(server.origin, 'birch', 'Eve');
+      people.push(last);
+      await page.route(
+        ({ pathname }) => pathname.endsWith(hashOf(swapped)),
+        (route) => route.fulfill(glb(good)),
+      );
+      await last.putOn(swapped);
+      await expect(page.getByText(/Eve is not shown.*another file came than the one that was told of/)).toBeVisible();
+      await page.route(
+        ({ pathname }) => pathname.endsWith(hashOf(endless)),
+        () => undefined,
+      );
+      await last.putOn(endless);
+      await expect(page.getByText(/Eve is not shown.*it did not arrive in time/)).toBeVisible({ timeout: 90_000 });
+      expect(await drawnAs(page, 'Eve')).toBe('mannequin');
+
+      const ann = await comes(server.origin, 'birch', 'Ann');
+      people.push(ann);
+      await ann.putOn(good);
+      await shows(page, 'Ann', hashOf(good));
+      expect(await drawnAs(page, 'Eve')).toBe('mannequin');
+      expect(await ann.kept()).toBe(hashOf(good));
+      await keepPicture(page, 'others-after-malicious');
+    } finally {
+      for (const person of people) await person.stop();
+      await server.close();
+    }
+  },
+);
