@@ -1,18 +1,25 @@
 import { readFileSync } from 'node:fs';
 import type { Page } from '@playwright/test';
+import { validateBytes } from 'gltf-validator';
+import { readBvh } from '../src/core/motion/read-bvh';
+import { finishWork } from '../src/core/motion/work';
 import { expect, joint, open, probe, test } from './page-fixture';
 
-/** A second and a half of the actor, recorded by the page, as the file that it offers for download. */
-async function recordTheActor(page: Page): Promise<string> {
+/** A second and a half of the actor, recorded by the page. */
+async function recordTheActor(page: Page): Promise<void> {
   await open(page, 'emulate&quality=low&estimator=ik');
   await page.getByRole('tab', { name: 'Recording' }).click();
   await page.getByRole('button', { name: 'Record', exact: true }).click();
   await expect.poll(async () => (await probe(page)).recorder.seconds).toBeGreaterThan(1.5);
   await page.getByRole('button', { name: 'Stop' }).click();
+}
+
+/** What the page offers for download when this button is pressed. */
+async function downloaded(page: Page, button: string): Promise<{ readonly name: string; readonly bytes: Buffer }> {
   const download = page.waitForEvent('download');
-  await page.getByRole('button', { name: 'Download' }).click();
-  const path = await (await download).path();
-  return readFileSync(path, 'utf8');
+  await page.getByRole('button', { name: button, exact: true }).click();
+  const file = await download;
+  return { name: file.suggestedFilename(), bytes: readFileSync(await file.path()) };
 }
 
 // In full one that asks a network and one that asks none, the others by night.
@@ -29,7 +36,8 @@ const replays = {
 for (const [suite, estimators] of Object.entries(replays)) {
   const names = estimators.map(([, name]) => name).join(' and ');
   test(`a recording keeps full precision and replays through ${names} ${suite}`, async ({ page }) => {
-    const text = await recordTheActor(page);
+    await recordTheActor(page);
+    const text = (await downloaded(page, 'Download')).bytes.toString('utf8');
     const digits = [...text.matchAll(/-?\d\.(\d+)/g)].map(([, decimals = '']) => decimals.length);
     expect(Math.max(...digits)).toBeGreaterThan(5);
 
@@ -66,4 +74,32 @@ test('a file that is no recording is refused in a sentence', async ({ page, comp
     .and(page.locator('input'))
     .setInputFiles({ name: 'holiday.json', mimeType: 'application/json', buffer: Buffer.from('{"photos": []}') });
   await expect(page.getByRole('alert')).toContainText('holiday.json');
+});
+
+test('a recording becomes files for other programs, drawn by the chosen method', async ({ page, complaints }) => {
+  complaints.allow(/could not be exported/);
+  await recordTheActor(page);
+  const bvh = await downloaded(page, 'BVH');
+  expect(bvh.name).toBe('recording-1.bvh');
+  const { joints, frameCount } = finishWork(readBvh(bvh.bytes.toString('utf8')));
+  expect(frameCount).toBeGreaterThan(30);
+  expect(joints.map(({ name }) => name)).toContain('leftIndexDistal');
+
+  for (const [button, ending] of [
+    ['VRM Animation', 'vrma'],
+    ['Avatar (GLB)', 'glb'],
+  ] as const) {
+    const { name, bytes } = await downloaded(page, button);
+    expect(name).toBe(`recording-1.${ending}`);
+    const { issues } = await validateBytes(new Uint8Array(bytes), { format: 'glb' });
+    expect(issues.messages.filter(({ severity }) => severity === 0)).toEqual([]);
+  }
+  const csv = await downloaded(page, 'Table (CSV)');
+  expect(csv.bytes.toString('utf8').trimEnd().split('\n').length).toBeGreaterThan(5);
+
+  await page.getByRole('tab', { name: 'Body' }).click();
+  await page.getByRole('radio', { name: 'Hands only' }).check();
+  await page.getByRole('tab', { name: 'Recording' }).click();
+  await page.getByRole('button', { name: 'BVH', exact: true }).click();
+  await expect(page.getByRole('alert')).toContainText('recording-1 could not be exported');
 });

@@ -46,12 +46,13 @@ function createBody({ visit, notices, loading }: PageOptions, timing: FrameTimin
   const calibrated = new Emitter<[calibration: Calibration, source: CalibrationSource]>();
   const outgrown = new Emitter<[difference: number]>();
   const jumps = new Emitter();
+  const networks = createNetworkLoader({ provider: switches.executionProvider, notices, loading });
   const body = new BareBody({
     estimator: 'ik',
     calibration: store.preferences.calibration ?? 'auto',
     // A study measures its participants itself.
     grows: switches.study === null,
-    networks: createNetworkLoader({ provider: switches.executionProvider, notices, loading }),
+    networks,
     clock,
     timing,
     events: {
@@ -65,7 +66,7 @@ function createBody({ visit, notices, loading }: PageOptions, timing: FrameTimin
       },
     },
   });
-  return { body, clock, calibrated, outgrown, jumps };
+  return { body, networks, clock, calibrated, outgrown, jumps };
 }
 
 /** What a visit needs for the studio and for every game: a stage, a body on it, and the headset that may move it. */
@@ -143,11 +144,11 @@ export function createPage(options: PageOptions) {
   const { switches, settings, writer, store } = visit;
   const ground = createGround(options);
   const play = createPlay(options, ground);
-  const { body, canvas, timing, stage, recorder, avatar, headset } = ground;
+  const { body, networks, canvas, timing, stage, recorder, avatar, headset } = ground;
   const { study, server, activities, wearer, source } = play;
   const controls = new Controls({
     ...{ switches, settings, writer, store, notices, onChange: visit.changes.emit },
-    ...{ timing, stage, recorder, headset, avatar, activities, body, wearer, study, server },
+    ...{ timing, stage, recorder, headset, avatar, activities, body, networks, wearer, study, server },
   });
   const sessions = new SessionChanges({
     headset,

@@ -108,6 +108,11 @@ export class ShownAvatar {
     return this.#worn;
   }
 
+  /** The file of the avatar that is shown. Rejects with a sentence where it can be had no longer. */
+  file(): Promise<ArrayBuffer> {
+    return typeof this.#worn === 'string' ? fetchOwnAvatar() : this.#worn.file.arrayBuffer();
+  }
+
   /** What became of the avatar that was asked for last, in words: on its way, or refused; null: it is shown. */
   get pending(): string | null {
     return this.#pending;

@@ -44,6 +44,11 @@ export class Recorder {
     return this.#mode === 'replaying' ? (this.#recording?.calibration ?? null) : null;
   }
 
+  /** The recording at hand; null: none. */
+  get recording(): Recording | null {
+    return this.#recording;
+  }
+
   get loop(): boolean {
     return this.#loop;
   }

@@ -1,4 +1,4 @@
-import type { BareBody } from '../../../lib/bare-body';
+import type { BareBody, BareBodyOptions } from '../../../lib/bare-body';
 import type { ServerPresence } from '../../../net/server-presence';
 import type { Notices } from '../../../ui/notices';
 import type { Recorder } from '../../studio/recorder';
@@ -23,6 +23,8 @@ export interface ControlledParts {
   readonly timing: Pick<FrameTiming, 'summary'>;
   readonly stage: Pick<Stage, 'renderer' | 'studio' | 'view' | 'layOut' | 'setSkeletonVisible'>;
   readonly body: BareBody;
+  /** Brings networks of their own for what is made of recordings. */
+  readonly networks: BareBodyOptions['networks'];
   readonly recorder: Recorder;
   readonly headset: Headset;
   readonly avatar: ShownAvatar;

@@ -12,10 +12,12 @@ import { createPanel, type Panel, type PanelActions } from '../panel/panel';
 import type { PanelState } from '../panel/panel-state';
 import type { ControlledParts } from './controlled-parts';
 import type { Measuring } from './measuring';
+import type { MotionExport } from './motion-export';
 
 export interface DesktopControlsOptions extends ControlledParts {
   readonly actions: PanelActions;
   readonly measuring: Pick<Measuring, 'dialogVisible'>;
+  readonly motionExport: Pick<MotionExport, 'state'>;
 }
 
 const centimetres = (metres: number): number => 100 * metres;
@@ -73,7 +75,7 @@ export class DesktopControls {
   }
 
   #state(): PanelState {
-    const { settings, body, stage, avatar, headset, recorder } = this.#options;
+    const { settings, body, stage, avatar, headset, recorder, motionExport } = this.#options;
     const { eyeHeight, armSpan } = body.wearerCalibration;
     return {
       ...settings,
@@ -92,6 +94,7 @@ export class DesktopControls {
       emulated: headset.emulator !== null,
       inSession: headset.worn,
       recorder,
+      exporting: motionExport.state,
     };
   }
 }

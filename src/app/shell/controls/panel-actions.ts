@@ -4,10 +4,12 @@ import type { PanelActions } from '../panel/panel';
 import type { AvatarActions, BodyActions, RecordingActions, ViewActions } from '../panel/panel-state';
 import type { ControlledParts } from './controlled-parts';
 import type { Measuring } from './measuring';
+import type { MotionExport } from './motion-export';
 import type { OpenedFiles } from './opened-files';
 
 export interface PanelActionsOptions extends ControlledParts {
   readonly files: OpenedFiles;
+  readonly motionExport: MotionExport;
   readonly measuring: Pick<Measuring, 'start'>;
 }
 
@@ -49,7 +51,7 @@ function avatarActions({ writer, avatar, files }: PanelActionsOptions): AvatarAc
 }
 
 function recordingActions(options: PanelActionsOptions): RecordingActions {
-  const { writer, settings, recorder, headset, timing, body, files, onChange } = options;
+  const { writer, settings, recorder, headset, timing, body, files, motionExport, onChange } = options;
   return {
     record() {
       const driven = headset.emulator || !headset.worn ? 'emulated headset' : 'headset';
@@ -69,6 +71,8 @@ function recordingActions(options: PanelActionsOptions): RecordingActions {
       const file = recorder.file();
       if (file) offerDownload(file.name, 'application/json', file.text);
     },
+    exportMotion: (choice) => void motionExport.begin(choice),
+    cancelExport: () => motionExport.cancel(),
     openRecording: (file) => void files.openRecording(file),
     setLoop(on) {
       recorder.setLoop(on);

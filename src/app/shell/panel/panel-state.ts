@@ -13,6 +13,19 @@ export interface RecorderState {
   readonly name: string | null;
 }
 
+/** Kinds of files that recordings can be made into: BVH in metres or centimetres, a VRM Animation, the shown avatar moving, a table of joints. */
+export type ExportChoice = 'bvh' | 'bvh-cm' | 'vrma' | 'glb' | 'csv';
+
+/** A file that is being made. */
+export interface ExportState {
+  readonly name: string;
+  /** What draws the body in it, in words. */
+  readonly method: string;
+  /** Share [0, 1] that is done, and seconds for the rest; null: not known yet. */
+  readonly share: number;
+  readonly secondsLeft: number | null;
+}
+
 /** Everything the panel shows; it keeps no state of its own. */
 export interface PanelState {
   readonly estimator: EstimatorName;
@@ -45,6 +58,8 @@ export interface PanelState {
   readonly emulated: boolean;
   readonly emulatorPanel: boolean;
   readonly recorder: RecorderState;
+  /** null: nothing is being made. */
+  readonly exporting: ExportState | null;
   readonly inSession: boolean;
 }
 
@@ -73,6 +88,8 @@ export interface RecordingActions {
   stop(): void;
   replay(): void;
   download(): void;
+  exportMotion(choice: ExportChoice): void;
+  cancelExport(): void;
   openRecording(file: File): void;
   setLoop(on: boolean): void;
   setActor(on: boolean): void;

@@ -1,7 +1,7 @@
 import { button, element } from '../../../ui/element';
 import { fileButton } from '../../../ui/file-button';
 import { toggle } from '../../../ui/toggle';
-import type { PanelPage, PanelState, RecorderState, RecordingActions } from './panel-state';
+import type { ExportChoice, ExportState, PanelPage, PanelState, RecorderState, RecordingActions } from './panel-state';
 
 const seconds = (value: number): string => `${value.toFixed(1)} s`;
 
@@ -49,6 +49,53 @@ function createRecorderSection(actions: RecordingActions) {
   };
 }
 
+const exportChoices: readonly (readonly [ExportChoice, label: string, title: string])[] = [
+  ['bvh', 'BVH', 'For Blender, MotionBuilder and others, in metres'],
+  ['bvh-cm', 'BVH in cm', 'The same in centimetres'],
+  ['vrma', 'VRM Animation', 'A .vrma, for any VRM avatar'],
+  ['glb', 'Avatar (GLB)', 'The avatar that is shown, moving'],
+  ['csv', 'Table (CSV)', 'Where every joint is [m], a row for each frame'],
+];
+
+/** How far a file is, in words. */
+export const exportText = ({ name, method, share, secondsLeft }: ExportState): string => {
+  const left = secondsLeft === null ? '' : `, ${Math.ceil(secondsLeft)} s left`;
+  return `${name} as drawn by ${method}: ${Math.floor(100 * share)}\u00a0%${left}`;
+};
+
+/** Files for other programs. */
+function createExportSection(actions: RecordingActions) {
+  const choices = exportChoices.map(([choice, label, title]) =>
+    button(label, () => actions.exportMotion(choice), { title }),
+  );
+  const text = element('p', { class: 'recorder-text' });
+  const bar = element('progress', { max: 1, value: 0, 'aria-label': 'Progress of the export' });
+  const cancel = button('Cancel export', () => actions.cancelExport());
+  const row = element('div', { class: 'row', role: 'group', 'aria-label': 'Export as' }, ...choices);
+  return {
+    node: element(
+      'section',
+      {},
+      element('h2', {}, 'Export'),
+      element(
+        'p',
+        { class: 'hint' },
+        'The recording at hand with the body that the chosen method draws, fingers too; legs are not measured.',
+      ),
+      row,
+      text,
+      bar,
+      cancel,
+    ),
+    show({ recorder: { mode, name }, exporting }: PanelState) {
+      for (const choice of choices) choice.disabled = mode === 'recording' || name === null || exporting !== null;
+      for (const node of [text, bar, cancel]) node.hidden = exporting === null;
+      bar.value = exporting?.share ?? 0;
+      text.textContent = exporting ? exportText(exporting) : '';
+    },
+  };
+}
+
 /** Who or what moves the body where no headset is worn. */
 function createMovers(actions: RecordingActions) {
   const actor = toggle('Actor moves the body', (on) => actions.setActor(on));
@@ -66,12 +113,14 @@ function createMovers(actions: RecordingActions) {
 /** Recordings, and what moves the body instead of a person. */
 export function createRecordingPage(actions: RecordingActions): PanelPage {
   const recorder = createRecorderSection(actions);
+  const exports = createExportSection(actions);
   const movers = createMovers(actions);
   return {
     name: 'Recording',
-    content: [recorder.node, movers.node],
+    content: [recorder.node, exports.node, movers.node],
     show(state) {
       recorder.show(state.recorder);
+      exports.show(state);
       movers.show(state);
     },
   };

@@ -1,0 +1,84 @@
+import { decoders } from '../../../avatar/decoders';
+import { firstLine, reasonOf } from '../../../core/errors/reasons';
+import type { BareBody, BareBodyOptions } from '../../../lib/bare-body';
+import type { MotionFormat, MotionWriter } from '../../../lib/bare-export';
+import { offerDownload } from '../../../ui/downloads';
+import type { Notices } from '../../../ui/notices';
+import type { Recorder } from '../../studio/recorder';
+import { estimatorTexts } from '../estimator-texts';
+import type { ExportChoice, ExportState } from '../panel/panel-state';
+import type { ShownAvatar } from '../shown-avatar';
+
+export interface MotionExportOptions {
+  readonly recorder: Pick<Recorder, 'recording' | 'name'>;
+  readonly body: Pick<BareBody, 'wanted' | 'wearerCalibration'>;
+  readonly avatar: Pick<ShownAvatar, 'name' | 'file'>;
+  readonly networks: BareBodyOptions['networks'];
+  readonly notices: Pick<Notices, 'show'>;
+  onChange(): void;
+}
+
+/** Makes files for other programs of the recording at hand, one at a time; code for it comes when it is asked for. */
+export class MotionExport {
+  readonly #options: MotionExportOptions;
+  #state: ExportState | null = null;
+  #giveUp = new AbortController();
+
+  constructor(options: MotionExportOptions) {
+    this.#options = options;
+  }
+
+  /** How far it is; null: nothing is being made. */
+  get state(): ExportState | null {
+    return this.#state;
+  }
+
+  /** Lets go what is being made. */
+  cancel(): void {
+    this.#giveUp.abort();
+  }
+
+  /** Begins with the recording at hand as the chosen method draws it, unless another file is being made. Never rejects: faults become notices. */
+  async begin(choice: ExportChoice): Promise<void> {
+    const { recorder, body, notices } = this.#options;
+    const { recording, name } = recorder;
+    if (!recording || !name || this.#state) return;
+    const estimator = body.wanted;
+    const stem = name.replace(/\.json$/i, '');
+    const { label } = estimatorTexts[estimator];
+    this.#giveUp = new AbortController();
+    const { signal } = this.#giveUp;
+    this.#tell({ name: stem, method: label, share: 0, secondsLeft: null });
+    try {
+      const { exportMotionBare } = await import('../../../lib/bare-export');
+      const { extension, type, parts } = await exportMotionBare(recording, {
+        to: await this.#formatOf(choice),
+        unit: choice === 'bvh-cm' ? 'cm' : 'm',
+        estimator,
+        networks: this.#options.networks,
+        calibration: recording.calibration ?? body.wearerCalibration,
+        signal,
+        onProgress: (progress) => this.#tell({ name: stem, method: label, ...progress }),
+      });
+      const file = `${stem}.${extension}`;
+      offerDownload(file, type, new Blob([...parts], { type }));
+      notices.show('info', `${file} is ready: the body as drawn by ${label}.`);
+    } catch (error) {
+      if (!signal.aborted) notices.show('error', `${stem} could not be exported: ${firstLine(reasonOf(error))}`);
+    } finally {
+      this.#tell(null);
+    }
+  }
+
+  async #formatOf(choice: ExportChoice): Promise<MotionFormat | MotionWriter> {
+    if (choice !== 'glb') return choice === 'bvh-cm' ? 'bvh' : choice;
+    const { avatar } = this.#options;
+    const { avatarClip } = await import('../../../avatar/avatar-clip');
+    return avatarClip(await avatar.file(), avatar.name, { decoders });
+  }
+
+  #tell(state: ExportState | null): void {
+    this.#state = state;
+    this.#options.onChange();
+  }
+}
