@@ -1,9 +1,16 @@
-import type { AvatarPose } from '../body/avatar-pose';
+import type { AvatarPose, UpperBodyPose } from '../body/avatar-pose';
 import type { Calibration } from '../body/calibration';
 import { closePinch } from '../body/close-pinch';
 import { FingerMemory } from '../body/finger-memory';
 import { averageHand, fingerFrames, makeFingerFrames, mirrorRotation } from '../body/hand-geometry';
-import { copyHandShape, fingerNames, type HandShape, makeHandShape } from '../body/hand-shape';
+import {
+  copyHandShape,
+  type Fingers,
+  fingerNames,
+  type HandShape,
+  makeHandShape,
+  unknownFingers,
+} from '../body/hand-shape';
 import { jointNames } from '../body/joints';
 import { wristFromHandBone } from '../body/skeleton';
 import type { PoseEstimator } from '../estimation/pose-estimator';
@@ -40,23 +47,68 @@ function fingerRotation(side: Side, index: 0 | 1 | 2, target: MutableQuat): Muta
   return multiply(multiply(conjugate(toWrist, wrist), against, against), toWrist, target);
 }
 
-/** Gathers a body's poses, frame by frame, into a motion with fingers. */
-export class MotionTaker {
+/** How every measured bone of a person is turned, frame after frame: fingers that are not seen keep their bend for a while, as on an avatar. */
+export class BoneRotations {
   readonly #hand;
   readonly #memories = { left: new FingerMemory(), right: new FingerMemory() };
   readonly #shape = makeHandShape();
   readonly #rotation = quat(0, 0, 0, 1);
-  readonly #motion: Motion;
-  #firstTime = 0;
-  #count = 0;
+  #target = new Float32Array();
   /** Where the next rotation goes. */
   #at = 0;
+
+  constructor(calibration: Calibration) {
+    this.#hand = averageHand(calibration.eyeHeight);
+  }
+
+  /** Writes x, y, z, w of each bone, clip frame, in the order of `motionSkeleton`, from `at` on; so long after the frame before [s]. */
+  write(
+    { localRotations }: UpperBodyPose,
+    fingers: Fingers,
+    deltaSeconds: number,
+    target: Float32Array<ArrayBuffer>,
+    at: number,
+  ): void {
+    this.#target = target;
+    this.#at = at;
+    for (const joint of jointNames) {
+      this.#put(localRotations[joint]);
+      for (const side of sides) if (joint === `${side}Hand`) this.#bend(side, fingers[side], deltaSeconds);
+    }
+  }
+
+  #bend(side: Side, seen: HandShape | null, deltaSeconds: number): void {
+    const shape = copyHandShape(this.#memories[side].follow(seen, deltaSeconds), this.#shape);
+    closePinch(shape, this.#hand);
+    for (const finger of fingerNames) {
+      fingerFrames(finger, shape[finger], frames);
+      for (let i = 0; i < 3; i++) multiply(frames[i as 0], fromRest[finger][i as 0], turned[i as 0]);
+      for (let i = 0; i < 3; i++) this.#put(fingerRotation(side, i as 0, this.#rotation));
+    }
+  }
+
+  /** A rotation of the floor frame's axes. */
+  #put(rotation: Quat): void {
+    const { x, y, z, w } = turnRotation(rotation, this.#rotation);
+    this.#target[this.#at++] = x;
+    this.#target[this.#at++] = y;
+    this.#target[this.#at++] = z;
+    this.#target[this.#at++] = w;
+  }
+}
+
+/** Gathers a body's poses, frame by frame, into a motion with fingers. */
+export class MotionTaker {
+  readonly #rotations: BoneRotations;
+  readonly #motion: Omit<Motion, 'rotations'> & { readonly rotations: Float32Array<ArrayBuffer> };
+  #firstTime = 0;
+  #count = 0;
 
   /** For so many frames of a person of these measures. */
   constructor(calibration: Calibration, count: number, rateHz: number) {
     const bones = motionSkeleton(calibration);
     const measured = bones.filter((bone) => bone.measured).length;
-    this.#hand = averageHand(calibration.eyeHeight);
+    this.#rotations = new BoneRotations(calibration);
     this.#motion = {
       bones,
       measured,
@@ -69,10 +121,10 @@ export class MotionTaker {
   }
 
   /** The next frame. Throws a sentence where the pose has no body: of head and hands alone no motion is made. */
-  add({ time, leftHand, rightHand, fingers }: TrackingFrame, { body }: AvatarPose): void {
+  add({ time, leftHand, rightHand, fingers = unknownFingers }: TrackingFrame, { body }: AvatarPose): void {
     if (!body)
       throw new Error('This method draws no body: there are head and hands alone, and no motion to be written.');
-    const { times, hips, seen } = this.#motion;
+    const { times, hips, seen, rotations, measured } = this.#motion;
     const index = this.#count;
     if (index === 0) this.#firstTime = time;
     times[index] = time - this.#firstTime;
@@ -80,11 +132,7 @@ export class MotionTaker {
     hips.set([at.x, at.y, at.z], 3 * index);
     seen[index] = (leftHand ? 1 : 0) + (rightHand ? 2 : 0);
     const deltaSeconds = index === 0 ? 0 : times[index] - times[index - 1]!;
-    this.#at = 4 * index * this.#motion.measured;
-    for (const joint of jointNames) {
-      this.#write(body.localRotations[joint]);
-      for (const side of sides) if (joint === `${side}Hand`) this.#bend(side, fingers?.[side] ?? null, deltaSeconds);
-    }
+    this.#rotations.write(body, fingers, deltaSeconds, rotations, 4 * index * measured);
     this.#count += 1;
   }
 
@@ -99,26 +147,6 @@ export class MotionTaker {
       rotations: rotations.subarray(0, 4 * measured * n),
       seen: seen.subarray(0, n),
     };
-  }
-
-  #bend(side: Side, seen: HandShape | null, deltaSeconds: number): void {
-    const shape = copyHandShape(this.#memories[side].follow(seen, deltaSeconds), this.#shape);
-    closePinch(shape, this.#hand);
-    for (const finger of fingerNames) {
-      fingerFrames(finger, shape[finger], frames);
-      for (let i = 0; i < 3; i++) multiply(frames[i as 0], fromRest[finger][i as 0], turned[i as 0]);
-      for (let i = 0; i < 3; i++) this.#write(fingerRotation(side, i as 0, this.#rotation));
-    }
-  }
-
-  /** A rotation of the floor frame's axes, in the order of the bones. */
-  #write(rotation: Quat): void {
-    const { x, y, z, w } = turnRotation(rotation, this.#rotation);
-    const { rotations } = this.#motion;
-    rotations[this.#at++] = x;
-    rotations[this.#at++] = y;
-    rotations[this.#at++] = z;
-    rotations[this.#at++] = w;
   }
 }
 
