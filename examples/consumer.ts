@@ -7,15 +7,19 @@ import {
   type BodyEvents,
   type Calibration,
   createPageClock,
+  exportMotion,
   forwardKinematics,
   loadLearned,
   type PoseRegressor,
+  parseRecording,
   skeletonFromCalibration,
   type TrackingFrame,
+  toXRBody,
+  type XRBodyJoints,
 } from 'threepoint';
 import { type OnnxOptions, onnxNetworks } from 'threepoint/onnx';
 import 'threepoint/onnx-worker';
-import { type Avatar, BodyTracker, type BodyTrackerEvents, loadAvatar } from 'threepoint/three';
+import { type Avatar, avatarMotion, BodyTracker, type BodyTrackerEvents, loadAvatar } from 'threepoint/three';
 
 /** With three.js, its session and an avatar. */
 export async function inTheHeadset(renderer: WebGLRenderer, scene: Scene): Promise<BodyTracker> {
@@ -58,4 +62,19 @@ export async function byDefault(): Promise<Body> {
   const body = new Body({ networks: async () => network });
   await body.dispose();
   return body;
+}
+
+/** A recording as files for other programs, and a pose as WebXR has bodies. */
+export async function forOthers(text: string, signal: AbortSignal): Promise<Blob[]> {
+  const recording = parseRecording(text);
+  const onProgress = ({ share, secondsLeft }: { share: number; secondsLeft: number | null }) =>
+    console.log(share, secondsLeft);
+  const bvh = await exportMotion(recording, { to: 'bvh', unit: 'cm', rateHz: 30, signal, onProgress });
+  const glb = await exportMotion(recording, { to: await avatarMotion('/avatars/me.vrm'), estimator: 'ik' });
+  return [bvh, glb].map(({ parts, type }) => new Blob([...parts], { type }));
+}
+
+export function asWebXR({ body }: AvatarPose, calibration: Calibration): number | undefined {
+  const joints: XRBodyJoints | null = body && toXRBody(body, calibration);
+  return joints?.get('left-arm-lower')?.position.y;
 }

@@ -11,6 +11,7 @@ export {
 } from '../core/body/calibration';
 export type { JointPoses } from '../core/body/forward-kinematics';
 export { forwardKinematics, makeJointPoses } from '../core/body/forward-kinematics';
+export type { Fingers, HandShape } from '../core/body/hand-shape';
 export type { JointName } from '../core/body/joints';
 export { jointNames } from '../core/body/joints';
 export type { Skeleton } from '../core/body/skeleton';
@@ -24,6 +25,10 @@ export type { Pose, TrackedPose } from '../core/math/pose';
 export type { Quat } from '../core/math/quat';
 export type { Side } from '../core/math/side';
 export type { Vec3 } from '../core/math/vec3';
+export type { Motion } from '../core/motion/motion';
+export type { MotionBone } from '../core/motion/skeleton';
+export type { XRBodyJoints } from '../core/motion/xr-body';
+export { toXRBody, XRBodyPoser } from '../core/motion/xr-body';
 export type { PageClock } from '../core/tracking/page-clock';
 export { createPageClock } from '../core/tracking/page-clock';
 export type { Recording } from '../core/tracking/recording';
