@@ -8,6 +8,7 @@ import type { HandShape } from '../core/body/hand-shape';
 import { headJointOf } from '../core/body/head-joint';
 import { type JointName, jointNames } from '../core/body/joints';
 import { type Skeleton, skeletonFromCalibration } from '../core/body/skeleton';
+import type { GaitPoints } from '../core/estimation/gait-features';
 import { identity, type Quat, quat, rotate } from '../core/math/quat';
 import type { Side } from '../core/math/side';
 import { addScaled, setVec3, subtract, type Vec3, vec3 } from '../core/math/vec3';
@@ -67,6 +68,13 @@ class VrmAvatar implements Avatar {
   private scale = 1;
   private lastTime: number | null = null;
   private readonly joints = makeJointPoses();
+  /** What the legs are told of a pose. */
+  private readonly points: { -readonly [Key in keyof GaitPoints]: GaitPoints[Key] } = {
+    hips: this.joints.hips,
+    head: this.joints.head,
+    leftHand: this.joints.leftHand.position,
+    rightHand: this.joints.rightHand.position,
+  };
   private readonly headJoint = vec3(0, 0, 0);
   private readonly handBone = quat(0, 0, 0, 1);
   private readonly joint = vec3(0, 0, 0);
@@ -102,7 +110,8 @@ class VrmAvatar implements Avatar {
     // Rig to body, the same in all directions; limbs add their own stretch.
     this.scale = tPose.head.position.y / (this.rig.rest('head')?.y ?? 1.5);
     this.trunk.fit(tPose, this.scale);
-    this.rig.fit(tPose, this.legs.fit(tPose.hips.position.y, this.scale), this.scale);
+    const legs = this.legs.fit(calibration.eyeHeight, tPose.hips.position.y, this.scale);
+    this.rig.fit(tPose, legs, this.scale);
     // The file's own size is what its scene was before it was settled.
     this.springs.scaleTo(this.scale * Math.abs(this.vrm.scene.scale.x));
   }
@@ -112,7 +121,7 @@ class VrmAvatar implements Avatar {
     this.lastTime = time;
     const shown = pose.body ? 'body' : 'hands';
     if (this.meshes.show(shown)) this.rig.forgetJoints();
-    if (pose.body) this.applyBody(pose.body, deltaSeconds);
+    if (pose.body) this.applyBody(pose.head, pose.body, deltaSeconds);
     else this.applyHands(pose);
     this.fingers.update(deltaSeconds);
     this.live(pose.head, deltaSeconds);
@@ -127,7 +136,7 @@ class VrmAvatar implements Avatar {
     for (const material of vrm.materials ?? []) (material as { update?(seconds: number): void }).update?.(deltaSeconds);
   }
 
-  private applyBody(body: UpperBodyPose, deltaSeconds: number): void {
+  private applyBody(head: AvatarPose['head'], body: UpperBodyPose, deltaSeconds: number): void {
     const joints = forwardKinematics(this.skeleton, body, this.joints);
     this.trunk.apply(joints);
     this.arms.untwist(joints);
@@ -137,7 +146,12 @@ class VrmAvatar implements Avatar {
       this.rig.place(name, position, orientation);
     }
     this.arms.place(joints);
-    this.legs.apply(joints.hips, deltaSeconds);
+    const { points } = this;
+    points.hips = joints.hips;
+    points.head = head;
+    points.leftHand = joints.leftHand.position;
+    points.rightHand = joints.rightHand.position;
+    this.legs.apply(points, deltaSeconds);
   }
 
   /** Head and hands alone, each where it was tracked; the rest is not drawn. */

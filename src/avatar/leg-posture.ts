@@ -1,6 +1,7 @@
 import { sideSign } from '../core/body/skeleton';
 import { elbowCircle, elbowOnCircle, makeElbowCircle, poleAcross } from '../core/body/two-bone-ik';
-import type { Pose } from '../core/math/pose';
+import { Gait } from '../core/estimation/gait';
+import { type GaitPoints, yawOfHips } from '../core/estimation/gait-features';
 import { fromAxes, fromAxisAngle, type MutableQuat, multiply, type Quat, quat, rotate } from '../core/math/quat';
 import type { Side } from '../core/math/side';
 import {
@@ -20,7 +21,7 @@ import {
   type Vec3,
   vec3,
 } from '../core/math/vec3';
-import { createStepping, type Foot, type SteppingParameters } from './stepping';
+import { createStepping, type Foot, type Stepping } from './stepping';
 
 /** What legs need of a body that stands, facing −Z [m]. */
 export interface LegProportions {
@@ -29,8 +30,6 @@ export interface LegProportions {
   readonly upper: number;
   readonly lower: number;
   readonly ankleHeight: number;
-  /** Half the distance between the feet. */
-  readonly halfWidth: number;
 }
 
 /** One leg, floor frame [m]; rotations from T-pose. */
@@ -54,6 +53,8 @@ interface MutableLegPose extends LegPose {
 
 /** A leg is never quite straight [share of its length]: a knee that snaps straight is seen. */
 const longestReach = 0.999;
+/** Hips go no further in one frame, in leg lengths. */
+const longestWay = 0.5;
 
 const makeLeg = (): MutableLegPose => ({
   hip: vec3(0, 0, 0),
@@ -65,9 +66,6 @@ const makeLeg = (): MutableLegPose => ({
 });
 
 // Scratch of one call; nothing of it is kept.
-const ahead = vec3(0, 0, 0);
-const overhead = vec3(0, 0, 0);
-const way = vec3(0, 0, 0);
 const level = quat(0, 0, 0, 1);
 const levelForward = vec3(0, 0, 0);
 const footTurn = quat(0, 0, 0, 1);
@@ -90,44 +88,55 @@ function aimDown(direction: Vec3, towards: Vec3, target: MutableQuat): Quat {
   return fromAxes(axisX, axisY, cross(axisX, axisY, axisZ), target);
 }
 
-/** Two legs under a pelvis: no estimate, but what a standing or walking person's would do. */
+/** Two legs under a pelvis: feet stand and step as a gait network expects them to, knees follow. */
 export class LegPosture {
   /** The same objects in every frame. */
   readonly legs: Readonly<Record<Side, LegPose>>;
   private readonly own = { left: makeLeg(), right: makeLeg() };
-  private readonly stepping;
-  private readonly stance = { pelvis: vec3(0, 0, 0), yaw: 0, halfWidth: 0, ankleHeight: 0, legLength: 0 };
+  private readonly stance = { ankleHeight: 0, legLength: 0 };
+  private readonly lastHips = vec3(0, 0, 0);
+  private seconds = 0;
 
+  /** eyeHeight [m]: of the person, in whose units the gait is told. */
   constructor(
     private proportions: LegProportions,
-    parameters?: SteppingParameters,
+    private eyeHeight: number,
+    private readonly gait: Gait = new Gait(),
+    private readonly stepping: Stepping = createStepping(),
   ) {
     this.legs = this.own;
-    this.stepping = createStepping(parameters);
   }
 
   /** Other legs, which stand up anew. */
-  fit(proportions: LegProportions): void {
+  fit(proportions: LegProportions, eyeHeight: number): void {
     this.proportions = proportions;
-    this.stepping.reset();
+    this.eyeHeight = eyeHeight;
+    this.standUp();
   }
 
-  /** Stands or steps under these hips, floor frame. */
-  update(hips: Pose<'floor'>, deltaSeconds: number): void {
-    const { stance, proportions } = this;
-    const yaw = yawOfHips(hips.orientation);
-    fromAxisAngle(up, yaw, level);
-    rotate(level, forward, levelForward);
-    // Between the hip joints; the spine's lowest point lies behind them.
-    rotate(level, setVec3(stance.pelvis, 0, 0, proportions.hipOffset.z), stance.pelvis);
-    add(hips.position, stance.pelvis, stance.pelvis);
-    stance.yaw = yaw;
-    stance.halfWidth = proportions.halfWidth;
+  /** Stands or steps under the hips of a body, floor frame. */
+  update(points: GaitPoints, deltaSeconds: number): void {
+    const { stance, proportions, lastHips, gait } = this;
+    const { hips } = points;
     stance.ankleHeight = proportions.ankleHeight;
     stance.legLength = proportions.upper + proportions.lower;
-    const feet = this.stepping.update(stance, deltaSeconds);
+    // Hips that jump were moved by the device or the wearer: feet come along at once.
+    const x = hips.position.x - lastHips.x;
+    const z = hips.position.z - lastHips.z;
+    if (Math.sqrt(x * x + z * z) > longestWay * stance.legLength) this.standUp();
+    copyVec3(hips.position, lastHips);
+    this.seconds += deltaSeconds;
+    gait.update(points, this.eyeHeight, this.seconds);
+    const feet = this.stepping.update(gait.feet, stance, deltaSeconds);
+    fromAxisAngle(up, yawOfHips(hips.orientation), level);
+    rotate(level, forward, levelForward);
     this.place('left', hips.position, feet.left);
     this.place('right', hips.position, feet.right);
+  }
+
+  private standUp(): void {
+    this.gait.reset();
+    this.stepping.reset();
   }
 
   private place(side: Side, hips: Vec3, foot: Foot): void {
@@ -150,13 +159,4 @@ export class LegPosture {
     aimDown(subtract(ankle, knee, line), pole, leg.shank);
     multiply(footTurn, fromAxisAngle(right, -foot.pitch, nod), leg.foot);
   }
-}
-
-/** Which way hips face [rad], 0 towards −Z; bent over, their forward points down and their up points ahead: together they know the way. */
-function yawOfHips(orientation: Quat): number {
-  rotate(orientation, forward, ahead);
-  rotate(orientation, up, overhead);
-  scale(ahead, Math.max(0, overhead.y), way);
-  addScaled(way, overhead, Math.max(0, -ahead.y), way);
-  return Math.atan2(-way.x, -way.z);
 }

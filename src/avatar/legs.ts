@@ -1,4 +1,4 @@
-import type { Pose } from '../core/math/pose';
+import type { GaitPoints } from '../core/estimation/gait-features';
 import type { Side } from '../core/math/side';
 import { vec3 } from '../core/math/vec3';
 import { LegPosture, type LegProportions } from './leg-posture';
@@ -16,8 +16,9 @@ const averageLegs: LegProportions = {
   upper: 0.42,
   lower: 0.42,
   ankleHeight: 0.08,
-  halfWidth: 0.1,
 };
+
+const averageEyeHeight = 1.6;
 
 /** The rig's own shares of what is left below hips this high [m], on a rig scaled by `rigScale`. */
 export function legProportionsOf(rig: Rig, hipsHeight: number, rigScale: number): LegProportions {
@@ -34,30 +35,29 @@ export function legProportionsOf(rig: Rig, hipsHeight: number, rigScale: number)
     // The ankle keeps the foot's own size; the rest of the difference goes to the shank.
     lower: knee.distanceTo(ankle) * downScale + ankle.y * (downScale - rigScale),
     ankleHeight: ankle.y * rigScale,
-    halfWidth: Math.abs(ankle.x) * rigScale,
   };
 }
 
 /** The legs of an avatar: a leg posture on the bones of its rig. */
 export class Legs {
-  private readonly posture = new LegPosture(averageLegs);
+  private readonly posture = new LegPosture(averageLegs, averageEyeHeight);
   private readonly whole: boolean;
 
   constructor(private readonly rig: Rig) {
     this.whole = rig.bones.has('leftFoot') && rig.bones.has('rightFoot');
   }
 
-  /** Legs for hips this high [m], on a rig scaled by `rigScale`; returns the lengths of its bones. */
-  fit(hipsHeight: number, rigScale: number): { readonly upper: number; readonly lower: number } {
+  /** Legs for a person with eyes and hips this high [m], on a rig scaled by `rigScale`; returns the lengths of its bones. */
+  fit(eyeHeight: number, hipsHeight: number, rigScale: number): { readonly upper: number; readonly lower: number } {
     const proportions = legProportionsOf(this.rig, hipsHeight, rigScale);
-    this.posture.fit(proportions);
+    this.posture.fit(proportions, eyeHeight);
     return proportions;
   }
 
-  /** Stands or steps under these hips, floor frame. */
-  apply(hips: Pose<'floor'>, deltaSeconds: number): void {
+  /** Stands or steps under the hips of a body, floor frame. */
+  apply(points: GaitPoints, deltaSeconds: number): void {
     if (!this.whole) return;
-    this.posture.update(hips, deltaSeconds);
+    this.posture.update(points, deltaSeconds);
     for (const side of sides) {
       const { hip, knee, ankle, thigh, shank, foot } = this.posture.legs[side];
       const bones = bonesOf[side];

@@ -81,9 +81,12 @@ export class FeatureWindow {
   readonly #frames: TimedFeatures[] = [];
   readonly #spare: TimedFeatures[] = [];
   readonly #longestAge: number;
+  readonly #width: number;
 
-  constructor(longestAgeSeconds: number) {
+  /** width: numbers of a frame. */
+  constructor(longestAgeSeconds: number, width: number = featureCount) {
     this.#longestAge = longestAgeSeconds;
+    this.#width = width;
   }
 
   /** The buffer of a new frame, for its features to be written into; a time that does not advance replaces the newest. */
@@ -92,7 +95,7 @@ export class FeatureWindow {
     const newest = frames.at(-1);
     if (newest && time < newest.time - this.#longestAge) this.clear();
     while (frames.length > 0 && frames.at(-1)!.time >= time) this.#spare.push(frames.pop()!);
-    const frame = this.#spare.pop() ?? { time, features: new Float32Array(featureCount) };
+    const frame = this.#spare.pop() ?? { time, features: new Float32Array(this.#width) };
     frame.time = time;
     frames.push(frame);
     // One frame beyond the longest age stays, to interpolate from.
@@ -103,9 +106,10 @@ export class FeatureWindow {
   /** Writes the features at `ages` [s] before the newest frame, one after the other; linear between frames, the oldest before the start. */
   read(ages: readonly number[], target: Float32Array): void {
     const frames = this.#frames;
+    const width = this.#width;
     const newest = frames.at(-1);
     if (!newest) {
-      target.fill(0, 0, ages.length * featureCount);
+      target.fill(0, 0, ages.length * width);
       return;
     }
     for (let slot = 0; slot < ages.length; slot++) {
@@ -116,8 +120,8 @@ export class FeatureWindow {
       const early = frames[Math.max(0, after - 1)]!;
       const gap = late.time - early.time;
       const share = gap > 0 ? (wanted - early.time) / gap : 1;
-      const from = slot * featureCount;
-      for (let i = 0; i < featureCount; i++) {
+      const from = slot * width;
+      for (let i = 0; i < width; i++) {
         target[from + i] = early.features[i]! * (1 - share) + late.features[i]! * share;
       }
     }

@@ -1,0 +1,115 @@
+import type { Pose } from '../math/pose';
+import { type Quat, rotate } from '../math/quat';
+import { addScaled, forward, scale, up, type Vec3, vec3 } from '../math/vec3';
+import { yawOf } from '../tracking/heading';
+import { FeatureWindow } from './features';
+
+/** What a drawn body has of a person whose legs no tracker sees, floor frame [m]. */
+export interface GaitPoints {
+  readonly hips: Pose<'floor'>;
+  readonly head: Pose<'floor'>;
+  readonly leftHand: Vec3;
+  readonly rightHand: Vec3;
+}
+
+/** How long ago [s] the frames are that a gait is told from: steps take half a second. */
+export const gaitAges = [0, 0.1, 0.2, 0.35, 0.5, 0.75, 1] as const;
+
+/** hips, their yaw, head, its yaw, left hand, right hand. */
+const sampleWidth = 14;
+const [hipsAt, hipsYawAt, headAt, headYawAt, leftAt, rightAt] = [0, 3, 4, 7, 8, 11] as const;
+/** The same of each age as the network has it: both yaws are a sine and a cosine. */
+const ageWidth = 16;
+export const gaitFeatureCount = gaitAges.length * ageWidth;
+
+const ahead = vec3(0, 0, 0);
+const overhead = vec3(0, 0, 0);
+const way = vec3(0, 0, 0);
+
+/** Which way hips face [rad], 0 towards −Z; bent over, their forward points down and their up points ahead: together they know the way. */
+export function yawOfHips(orientation: Quat): number {
+  rotate(orientation, forward, ahead);
+  rotate(orientation, up, overhead);
+  scale(ahead, Math.max(0, overhead.y), way);
+  addScaled(way, overhead, Math.max(0, -ahead.y), way);
+  return Math.atan2(-way.x, -way.z);
+}
+
+/** The angle that differs from `angle` by whole turns and lies nearest to `before`. */
+const unwrapped = (angle: number, before: number): number =>
+  before + Math.atan2(Math.sin(angle - before), Math.cos(angle - before));
+
+function writePoint(target: Float32Array, at: number, { x, y, z }: Vec3): void {
+  target[at] = x;
+  target[at + 1] = y;
+  target[at + 2] = z;
+}
+
+/**
+ * A gait network's inputs: hips, head and hands at each age, in the frame of the hips as they are now (origin on the floor under them, their
+ * yaw), in eye heights.
+ */
+export class GaitFeatures {
+  readonly values = new Float64Array(gaitFeatureCount);
+  /** The same of the mirrored person. */
+  readonly mirrored = new Float64Array(gaitFeatureCount);
+  readonly #window = new FeatureWindow(gaitAges.at(-1)!, sampleWidth);
+  readonly #samples = new Float32Array(gaitAges.length * sampleWidth);
+  #hipsYaw = 0;
+  #headYaw = 0;
+
+  /** Adds a frame at a time [s] that does not go back, and reads all ages. eyeHeight [m]. */
+  update({ hips, head, leftHand, rightHand }: GaitPoints, eyeHeight: number, time: number): void {
+    this.#hipsYaw = unwrapped(yawOfHips(hips.orientation), this.#hipsYaw);
+    this.#headYaw = unwrapped(yawOf(head.orientation), this.#headYaw);
+    const sample = this.#window.push(time);
+    writePoint(sample, hipsAt, hips.position);
+    sample[hipsYawAt] = this.#hipsYaw;
+    writePoint(sample, headAt, head.position);
+    sample[headYawAt] = this.#headYaw;
+    writePoint(sample, leftAt, leftHand);
+    writePoint(sample, rightAt, rightHand);
+    this.#window.read(gaitAges, this.#samples);
+    for (let age = 0; age < gaitAges.length; age++) this.#writeAge(age, hips.position, eyeHeight);
+  }
+
+  /** Forgets earlier frames: the person was moved. */
+  reset(): void {
+    this.#window.clear();
+  }
+
+  #writeAge(age: number, origin: Vec3, eyeHeight: number): void {
+    const samples = this.#samples;
+    const from = age * sampleWidth;
+    const to = age * ageWidth;
+    this.#writeFromHips(to, from + hipsAt, origin, eyeHeight);
+    this.#writeYaw(to + 3, samples[from + hipsYawAt]! - this.#hipsYaw);
+    this.#writeFromHips(to + 5, from + headAt, origin, eyeHeight);
+    this.#writeYaw(to + 8, samples[from + headYawAt]! - this.#hipsYaw);
+    this.#writeFromHips(to + 10, from + leftAt, origin, eyeHeight, to + 13);
+    this.#writeFromHips(to + 13, from + rightAt, origin, eyeHeight, to + 10);
+  }
+
+  /** mirrorTo: where the mirrored person has this point. */
+  #writeFromHips(to: number, from: number, origin: Vec3, eyeHeight: number, mirrorTo = to): void {
+    const { values, mirrored } = this;
+    const samples = this.#samples;
+    const x = samples[from]! - origin.x;
+    const z = samples[from + 2]! - origin.z;
+    const c = Math.cos(this.#hipsYaw);
+    const s = Math.sin(this.#hipsYaw);
+    values[to] = (c * x - s * z) / eyeHeight;
+    values[to + 1] = samples[from + 1]! / eyeHeight;
+    values[to + 2] = (s * x + c * z) / eyeHeight;
+    mirrored[mirrorTo] = -values[to]!;
+    mirrored[mirrorTo + 1] = values[to + 1]!;
+    mirrored[mirrorTo + 2] = values[to + 2]!;
+  }
+
+  #writeYaw(to: number, yaw: number): void {
+    this.values[to] = Math.sin(yaw);
+    this.values[to + 1] = Math.cos(yaw) - 1;
+    this.mirrored[to] = -this.values[to]!;
+    this.mirrored[to + 1] = this.values[to + 1]!;
+  }
+}

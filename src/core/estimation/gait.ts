@@ -1,0 +1,93 @@
+import type { Pose } from '../math/pose';
+import type { Side } from '../math/side';
+import { GaitFeatures, type GaitPoints, gaitFeatureCount, yawOfHips } from './gait-features';
+import shipped from './gait-network.json';
+import type { Tensor } from './model-weights';
+import { Perceptron } from './perceptron';
+
+/** What a file of gait weights has: who was trained on, and each tensor's shape and numbers (training/threepoint_training/train_gait.py). */
+export interface GaitNetwork {
+  readonly trainedOn: readonly string[];
+  readonly tensors: Readonly<Record<string, { readonly shape: readonly number[]; readonly numbers: readonly number[] }>>;
+}
+
+/** Where a foot is expected, floor frame [m], where its toes point [rad, 0 towards −Z], and how surely it stands on the floor [0, 1]. */
+export interface ExpectedFoot {
+  readonly x: number;
+  readonly z: number;
+  readonly yaw: number;
+  readonly standing: number;
+}
+
+interface MutableExpectedFoot {
+  x: number;
+  z: number;
+  yaw: number;
+  standing: number;
+}
+
+/** Both feet from the hips [eye heights, their frame], logits of standing, sine and cosine of each foot's yaw. */
+export const gaitOutputCount = 10;
+const [standingAt, yawAt] = [4, 6] as const;
+
+export const shippedGait: GaitNetwork = shipped;
+
+/**
+ * Expects feet from a second of hips, head and hands: a small network, computed for a person and their mirror image, the mean of both. What
+ * it expects is where feet are on average, not a step: a stepping makes feet of it that stand.
+ */
+export class Gait {
+  /** Overwritten by the next update. */
+  readonly feet: Readonly<Record<Side, ExpectedFoot>>;
+  readonly #own: Record<Side, MutableExpectedFoot> = {
+    left: { x: 0, z: 0, yaw: 0, standing: 1 },
+    right: { x: 0, z: 0, yaw: 0, standing: 1 },
+  };
+  readonly #features = new GaitFeatures();
+  readonly #perceptron: Perceptron;
+
+  /** Throws a sentence where the weights are no gait network's. */
+  constructor({ tensors }: GaitNetwork = shippedGait) {
+    const weights = new Map<string, Tensor>(
+      Object.entries(tensors).map(([name, { shape, numbers }]) => [name, { shape, numbers: Float32Array.from(numbers) }]),
+    );
+    this.#perceptron = new Perceptron(weights, 'gait', gaitFeatureCount, gaitOutputCount);
+    this.feet = this.#own;
+  }
+
+  /** A frame at a time [s] that does not go back; eyeHeight [m]. */
+  update(points: GaitPoints, eyeHeight: number, time: number): void {
+    const { values, mirrored } = this.#features;
+    this.#features.update(points, eyeHeight, time);
+    const { input } = this.#perceptron;
+    input.set(values);
+    input.set(mirrored, gaitFeatureCount);
+    const outputs = this.#perceptron.run();
+    const yaw = yawOfHips(points.hips.orientation);
+    this.#expect(outputs, 'left', points.hips, yaw, eyeHeight);
+    this.#expect(outputs, 'right', points.hips, yaw, eyeHeight);
+  }
+
+  /** Forgets earlier frames: the person was moved. */
+  reset(): void {
+    this.#features.reset();
+  }
+
+  #expect(outputs: Float64Array, side: Side, hips: Pose<'floor'>, yaw: number, eyeHeight: number): void {
+    const foot = this.#own[side];
+    const index = side === 'left' ? 0 : 1;
+    const other = this.#perceptron.stride;
+    const [at, mirrorAt] = [2 * index, other + 2 * (1 - index)];
+    const x = ((outputs[at]! - outputs[mirrorAt]!) / 2) * eyeHeight;
+    const z = ((outputs[at + 1]! + outputs[mirrorAt + 1]!) / 2) * eyeHeight;
+    const c = Math.cos(yaw);
+    const s = Math.sin(yaw);
+    foot.x = hips.position.x + c * x + s * z;
+    foot.z = hips.position.z - s * x + c * z;
+    const logit = (outputs[standingAt + index]! + outputs[other + standingAt + 1 - index]!) / 2;
+    foot.standing = 1 / (1 + Math.exp(-logit));
+    const sine = outputs[yawAt + at]! - outputs[yawAt + mirrorAt]!;
+    const cosine = outputs[yawAt + at + 1]! + outputs[yawAt + mirrorAt + 1]!;
+    foot.yaw = yaw + Math.atan2(sine, cosine);
+  }
+}

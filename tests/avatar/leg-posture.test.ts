@@ -1,0 +1,88 @@
+import { describe, expect, test } from 'vitest';
+import { LegPosture } from '../../src/avatar/leg-posture';
+import type { GaitPoints } from '../../src/core/estimation/gait-features';
+import { fromAxisAngle, multiply, rotate } from '../../src/core/math/quat';
+import { add, distance, up, type Vec3, vec3 } from '../../src/core/math/vec3';
+import { eyeHeight, proportions, standing, walking } from './walking-person';
+
+const rateHz = 72;
+
+type Person = (time: number) => GaitPoints;
+const feetAfter = (person: Person, seconds: number, look?: (posture: LegPosture, time: number) => void) => {
+  const posture = new LegPosture(proportions, eyeHeight);
+  for (let frame = 0; frame <= seconds * rateHz; frame++) {
+    posture.update(person(frame / rateHz), frame === 0 ? 0 : 1 / rateHz);
+    look?.(posture, frame / rateHz);
+  }
+  return posture.legs;
+};
+
+const turned = (person: Person, yaw: number, to: Vec3): Person => {
+  const turn = fromAxisAngle(up, yaw);
+  const point = (p: Vec3) => add(rotate(turn, p), to);
+  return (time) => {
+    const { hips, head, leftHand, rightHand } = person(time);
+    return {
+      hips: { position: point(hips.position), orientation: multiply(turn, hips.orientation) },
+      head: { position: point(head.position), orientation: multiply(turn, head.orientation) },
+      leftHand: point(leftHand),
+      rightHand: point(rightHand),
+    };
+  };
+};
+
+describe('legs', () => {
+  test('of a person who stands stay where they are, flat on the floor, on their own sides', () => {
+    const first: Vec3[] = [];
+    feetAfter(standing, 5, ({ legs: { left, right } }) => {
+      if (first.length === 0) first.push({ ...left.ankle }, { ...right.ankle });
+      expect(distance(left.ankle, first[0]!)).toBeLessThan(1e-9);
+      expect(distance(right.ankle, first[1]!)).toBeLessThan(1e-9);
+      expect(left.ankle.y).toBeCloseTo(proportions.ankleHeight, 3);
+    });
+    expect(first[0]!.x).toBeLessThan(-0.04);
+    expect(first[1]!.x).toBeGreaterThan(0.04);
+  });
+
+  test('have the lengths of their bones, knees ahead, and nothing is NaN while a person walks', () => {
+    feetAfter(walking, 6, ({ legs }) => {
+      for (const { hip, knee, ankle } of Object.values(legs)) {
+        expect(distance(hip, knee)).toBeCloseTo(proportions.upper, 6);
+        expect(distance(knee, ankle)).toBeCloseTo(proportions.lower, 6);
+      }
+    });
+  });
+
+  test('of a walker step in turn', () => {
+    const lifts: string[] = [];
+    const high = { left: false, right: false };
+    feetAfter(walking, 8, ({ legs }, time) => {
+      for (const side of ['left', 'right'] as const) {
+        const now = legs[side].ankle.y > proportions.ankleHeight + 0.015;
+        if (now && !high[side] && time > 2) lifts.push(side);
+        high[side] = now;
+      }
+    });
+    // Six seconds at 0.9 strides a second: five or six lifts of each foot.
+    expect(lifts.length).toBeGreaterThanOrEqual(8);
+    expect(lifts.filter((side, i) => i > 0 && side === lifts[i - 1]).length).toBeLessThanOrEqual(2);
+  });
+
+  test('are the same legs wherever the person is and whichever way they face', () => {
+    const to = vec3(2, 0, -1);
+    const plain = feetAfter(walking, 3);
+    const elsewhere = feetAfter(turned(walking, 2, to), 3);
+    const turn = fromAxisAngle(up, 2);
+    for (const side of ['left', 'right'] as const)
+      expect(distance(add(rotate(turn, plain[side].ankle), to), elsewhere[side].ankle)).toBeLessThan(1e-3);
+  });
+
+  test('come along at once when the person is moved', () => {
+    const moved: Person = (time) => (time < 1 ? standing(time) : turned(standing, 0.5, vec3(3, 0, 2))(time));
+    const places: Vec3[] = [];
+    feetAfter(moved, 1.5, ({ legs }) => places.push({ ...legs.left.ankle }));
+    const jumps = places.slice(1).filter((place, i) => distance(place, places[i]!) > 0.05);
+    expect(jumps).toHaveLength(1);
+    expect(distance(places.at(-1)!, vec3(3, 0.08, 2))).toBeLessThan(0.4);
+  });
+});
