@@ -1,4 +1,4 @@
-// npm run evaluate -- --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,135] [--models DIR] [--robustness] [--hands-as-recorded] [--figures FILE] [--fp32 DIR]:
+// npm run evaluate -- --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,135] [--models DIR] [--robustness] [--hands-as-recorded] [--figures FILE] [--fp32 DIR] [--legs]:
 // the shipping path on recorded motion. Python prepares the recordings with their truth, TypeScript drives them.
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -10,6 +10,7 @@ import { main, root, run, SetupError } from './run-command.mjs';
 
 const usage =
   'npm run evaluate -- --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,135] [--models DIR] [--robustness] [--hands-as-recorded] [--figures FILE] [--fp32 DIR]\n' +
+  'npm run evaluate -- --legs --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,135] [--models DIR] [--gaits DIR]\n' +
   'DIR holds .asf and .amc or .bvh files; docs/evaluation.md says the rest.';
 const twoHours = 2 * 3600;
 
@@ -27,9 +28,14 @@ function options() {
         'hands-as-recorded': { type: 'boolean' },
         figures: text,
         fp32: text,
+        legs: { type: 'boolean' },
+        gaits: text,
       },
     });
     if (!values.mocap) throw new Error('--mocap is needed');
+    const other = ['robustness', 'hands-as-recorded', 'figures', 'fp32'].find((name) => values[name]);
+    if (values.gaits && !values.legs) throw new Error('--gaits are the networks of legs: with --legs');
+    if (values.legs && other) throw new Error(`--legs measures legs alone: without --${other}`);
     return values;
   } catch (error) {
     throw new SetupError(`evaluate: ${error.message}\n${usage}`);
@@ -53,10 +59,11 @@ await main(async () => {
       limitSeconds: twoHours,
     });
     if (prepared.code !== 0) return prepared.code;
-    const drive = ['--import', 'tsx', 'bench/evaluate/main.ts', '--recordings', recordings];
+    const program = given.legs ? 'bench/evaluate/legs.ts' : 'bench/evaluate/main.ts';
+    const drive = ['--import', 'tsx', program, '--recordings', recordings];
     drive.push('--models', given.models ? path(given.models) : join(root, 'public/models'));
     if (given.json) drive.push('--json', path(given.json));
-    for (const name of ['figures', 'fp32']) if (given[name]) drive.push(`--${name}`, path(given[name]));
+    for (const name of ['figures', 'fp32', 'gaits']) if (given[name]) drive.push(`--${name}`, path(given[name]));
     for (const name of ['robustness', 'hands-as-recorded']) if (given[name]) drive.push(`--${name}`);
     const { code } = await run(process.execPath, drive, { cwd: root, limitSeconds: twoHours });
     return code;

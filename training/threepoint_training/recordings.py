@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 
 from . import hand_tilt, prepare
 from .motion import MocapError
-from .prepared_corpus import JOINTS, ROTATIONS, PreparedCorpus
+from .prepared_corpus import JOINTS, LEG_JOINTS, ROTATIONS, PreparedCorpus
 from .simulate_trackers import TrackerConfig, draw_wearer, measured_tilts, simulate
 
 VERSION = 1
 COLUMNS = tuple(f"{point}.{part}" for point in ROTATIONS for part in ("px", "py", "pz", "qx", "qy", "qz", "qw")) + tuple(
-    f"truth.{joint}.{axis}" for joint in JOINTS for axis in "xyz"
+    f"truth.{joint}.{axis}" for joint in JOINTS + LEG_JOINTS for axis in "xyz"
 )
 
 
@@ -32,7 +32,7 @@ class RecordingsConfig:
 
 
 def write(corpus: PreparedCorpus, config: RecordingsConfig) -> Path:
-    """One little-endian float32 file [frames, COLUMNS] per clip and index.json; the same seed writes the same bytes."""
+    """One little-endian float32 file [frames, COLUMNS] (NaN: joints that the motion lacks) per clip and index.json; same seed, same bytes."""
     config.out.mkdir(parents=True, exist_ok=True)
     clips = []
     forearms = hand_tilt.ForearmMeans(corpus, tuple(corpus.people))
@@ -43,7 +43,8 @@ def write(corpus: PreparedCorpus, config: RecordingsConfig) -> Path:
         frames = corpus.clip_slice(number)
         positions, rotations = simulate(corpus.positions[frames], corpus.rotations[frames], wearer, config.trackers, random)
         tracked = np.concatenate([positions, rotations], axis=-1).reshape(len(positions), -1)
-        truth = corpus.positions[frames].reshape(len(positions), -1)
+        legs = np.full((len(positions), len(LEG_JOINTS), 3), np.nan, np.float32) if corpus.legs is None else corpus.legs[frames]
+        truth = np.concatenate([corpus.positions[frames], legs], axis=1).reshape(len(positions), -1)
         # What arms ahead would have measured: by the person's other clips, with one error for all of them.
         error = np.random.default_rng([config.seed, 2, zlib.crc32(person.encode())])
         tilts = measured_tilts(forearms.elsewhere(number), wearer.hand_turns, config.trackers, error)

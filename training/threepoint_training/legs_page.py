@@ -1,0 +1,72 @@
+"""Renews the tables of legs in docs/accuracy.md. `npm run report -- --legs` measures and calls this."""
+
+import argparse
+import json
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from .accuracy_page import REPOSITORY
+from .accuracy_tables import renew, table
+from .splits import measured_only, trainable
+
+Json = dict[str, Any]
+
+DRIVERS = {"truth": "the true pelvis", "ik": "IK", "learned": "learned"}
+_FIGURES = ("pelvisCm", "kneeCm", "footCm", "skateCmS", "slideCmS", "floatCm", "sinkCm", "agreed")
+_HEAD = (
+    "pelvis [cm]", "knee [cm]", "foot [cm]", "skate [cm/s]", "drawn skate [cm/s]", "floating [cm]", "sinking [cm]", "contact told",
+)  # fmt: skip
+
+
+def _mean(people: Iterable[Json], driver: str, figure: str) -> float:
+    values = [person[driver][figure] for person in people]
+    return sum(values) / len(values)
+
+
+def _cells(people: list[Json], driver: str) -> list[str]:
+    digits = {"agreed": "{:.0%}", "pelvisCm": "{:.1f}", "kneeCm": "{:.1f}", "footCm": "{:.1f}", "skateCmS": "{:.0f}", "slideCmS": "{:.0f}"}
+    return [digits.get(figure, "{:.2f}").format(_mean(people, driver, figure)).replace("%", " %") for figure in _FIGURES]
+
+
+def drivers(legs: Json) -> str:
+    """By what the legs hang from: all people alike, and those of another laboratory in rows of their own."""
+    people = legs["people"]
+    groups = {"": trainable(list(people)), ", another laboratory": measured_only(list(people))}
+    rows = [
+        [f"{label}{group}", *_cells([people[name] for name in names], driver)]
+        for group, names in groups.items()
+        if names
+        for driver, label in DRIVERS.items()
+    ]
+    return table(["legs under", *_HEAD], rows)
+
+
+def by_person(legs: Json) -> str:
+    """Each person by themselves, under the learned network's pelvis, with the true foot's own speed while it stands."""
+    people = legs["people"]
+    names = [*trainable(list(people)), *measured_only(list(people))]
+    rows = [
+        [
+            f"{name} (trained on)" if people[name]["seen"] else name,
+            *_cells([people[name]], "learned"),
+            f"{people[name]['learned']['trueSkateCmS']:.0f}",
+            f"{people[name]['minutes']:.1f}",
+        ]
+        for name in names
+    ]
+    return table(["learned", *_HEAD, "true foot [cm/s]", "minutes"], rows)
+
+
+def main(legs: Path, page: Path) -> None:
+    """Writes the page."""
+    measured = json.loads(legs.read_text())
+    page.write_text(renew(page.read_text(), {"legs": drivers(measured), "legs-people": by_person(measured)}))
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description="Tables of legs in docs/accuracy.md.")
+    parser.add_argument("--legs", type=Path, required=True)
+    parser.add_argument("--page", type=Path, default=REPOSITORY / "docs/accuracy.md")
+    given = parser.parse_args()
+    main(given.legs, given.page)
