@@ -49,7 +49,8 @@ async function reportLegs({ mocap, skeleton, models }) {
   if (models) evaluate.push('--models', path(models));
   // People are measured with networks that have not seen them.
   const gaits = join(root, '.cache/gait');
-  if (!existsSync(gaits)) throw new SetupError(`report: there are no networks in ${gaits}; npm run train:gait makes them\n${usage}`);
+  if (!existsSync(gaits))
+    throw new SetupError(`report: there are no networks in ${gaits}; npm run train:gait makes them\n${usage}`);
   evaluate.push('--gaits', gaits);
   const { code } = await run(process.execPath, evaluate, { cwd: root, limitSeconds: sixHours });
   if (code !== 0) return code;

@@ -7,7 +7,7 @@ import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
 import type { Pose } from '../../src/core/math/pose';
 import type { LegClip } from './leg-measures';
 import { type Contact, contactsOf, footHeights, readLegs, type TrueLegs } from './leg-truth';
-import { calibrationOf, type RecordedFrame, type RecordingIndex, readClip } from './recordings';
+import { guidedCalibrationOf, type RecordedFrame, type RecordingIndex, readClip } from './recordings';
 
 /** Whose hips the legs hang from: the recorded ones, or those of the bodies that the page draws. */
 export const legDrivers = ['truth', 'ik', 'learned'] as const;
@@ -55,10 +55,10 @@ export async function driveLegs(
   const truths = clips.map((clip) => ({ clip, truth: readLegs(recordings, index, clip) }));
   const whole = truths.flatMap(({ clip, truth }) => (truth ? [{ clip, truth }] : []));
   const heights = footHeights(whole.map(({ truth }) => truth));
-  const calibration = calibrationOf(index, person);
   const driven: DrivenLegs[] = [];
   for (const { clip, truth } of whole) {
     const frames = readClip(recordings, index, clip);
+    const calibration = guidedCalibrationOf(index, clip);
     driven.push({
       person,
       calibration,

@@ -25,10 +25,13 @@ function print(title: string, reports: readonly (readonly [string, LegReport])[]
 
 /** The network of each person: the page's where it has not seen them; else one of the folder that has not, where there is one. */
 function gaitsOf(folder: string | undefined): (person: string) => GaitNetwork {
-  const held = folder ? readdirSync(folder).filter((name) => name.endsWith('.json')).sort() : [];
+  const held = folder
+    ? readdirSync(folder)
+        .filter((name) => name.endsWith('.json'))
+        .sort()
+    : [];
   const networks = held.map((name) => JSON.parse(readFileSync(join(folder!, name), 'utf8')) as GaitNetwork);
-  return (person) =>
-    [shippedGait, ...networks].find(({ trainedOn }) => !trainedOn.includes(person)) ?? shippedGait;
+  return (person) => [shippedGait, ...networks].find(({ trainedOn }) => !trainedOn.includes(person)) ?? shippedGait;
 }
 
 interface PersonLegs extends ByDriver<LegReport> {

@@ -77,7 +77,8 @@ describe('feet', () => {
     const steps = { left: 0, right: 0 };
     let before: Feet | null = null;
     step(walking, 6, 72, (feet, time) => {
-      for (const side of ['left', 'right'] as const) if (before?.[side].planted && !feet[side].planted) steps[side] += 1;
+      for (const side of ['left', 'right'] as const)
+        if (before?.[side].planted && !feet[side].planted) steps[side] += 1;
       const middle = (feet.left.position.z + feet.right.position.z) / 2;
       const expected = (walking(time).left.z + walking(time).right.z) / 2;
       if (time > 1) expect(Math.abs(middle - expected)).toBeLessThan(0.3);

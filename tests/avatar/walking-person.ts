@@ -4,7 +4,12 @@ import { fromAxisAngle, identity } from '../../src/core/math/quat';
 import { up, vec3 } from '../../src/core/math/vec3';
 
 export const eyeHeight = 1.6;
-export const proportions: LegProportions = { hipOffset: vec3(0.09, -0.06, -0.04), upper: 0.42, lower: 0.42, ankleHeight: 0.08 };
+export const proportions: LegProportions = {
+  hipOffset: vec3(0.09, -0.06, -0.04),
+  upper: 0.42,
+  lower: 0.42,
+  ankleHeight: 0.08,
+};
 /** A person 1.6 m high at the eyes who stands at the origin, hands hanging, and leans and sways a little. */
 export function standing(time: number): GaitPoints {
   const sway = 0.015 * Math.sin(1.7 * time);

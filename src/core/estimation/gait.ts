@@ -8,7 +8,9 @@ import { Perceptron } from './perceptron';
 /** What a file of gait weights has: who was trained on, and each tensor's shape and numbers (training/threepoint_training/train_gait.py). */
 export interface GaitNetwork {
   readonly trainedOn: readonly string[];
-  readonly tensors: Readonly<Record<string, { readonly shape: readonly number[]; readonly numbers: readonly number[] }>>;
+  readonly tensors: Readonly<
+    Record<string, { readonly shape: readonly number[]; readonly numbers: readonly number[] }>
+  >;
 }
 
 /** Where a foot is expected, floor frame [m], where its toes point [rad, 0 towards −Z], and how surely it stands on the floor [0, 1]. */
@@ -49,7 +51,10 @@ export class Gait {
   /** Throws a sentence where the weights are no gait network's. */
   constructor({ tensors }: GaitNetwork = shippedGait) {
     const weights = new Map<string, Tensor>(
-      Object.entries(tensors).map(([name, { shape, numbers }]) => [name, { shape, numbers: Float32Array.from(numbers) }]),
+      Object.entries(tensors).map(([name, { shape, numbers }]) => [
+        name,
+        { shape, numbers: Float32Array.from(numbers) },
+      ]),
     );
     this.#perceptron = new Perceptron(weights, 'gait', gaitFeatureCount, gaitOutputCount);
     this.feet = this.#own;
@@ -77,7 +82,8 @@ export class Gait {
     const foot = this.#own[side];
     const index = side === 'left' ? 0 : 1;
     const other = this.#perceptron.stride;
-    const [at, mirrorAt] = [2 * index, other + 2 * (1 - index)];
+    const at = 2 * index;
+    const mirrorAt = other + 2 * (1 - index);
     const x = ((outputs[at]! - outputs[mirrorAt]!) / 2) * eyeHeight;
     const z = ((outputs[at + 1]! + outputs[mirrorAt + 1]!) / 2) * eyeHeight;
     const c = Math.cos(yaw);
