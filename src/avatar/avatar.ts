@@ -92,7 +92,7 @@ class VrmAvatar implements Avatar {
     this.trunk = new OwnTrunk(this.rig);
     this.legs = new Legs(this.rig);
     this.fingers = new Fingers(vrm);
-    this.meshes = new BodyMeshes(vrm, this.rig.bones);
+    this.meshes = new BodyMeshes(vrm, this.rig);
     this.springs = new Springs(vrm);
     made += 1;
     this.face = new Face(vrm, made);

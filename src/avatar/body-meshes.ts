@@ -24,7 +24,7 @@ interface AvatarMesh {
   readonly ends: Record<SkinPart, number> | null;
 }
 
-function readMeshes(vrm: VRM, bones: Rig['bones']): AvatarMesh[] {
+function readMeshes(vrm: VRM, { bones, helpers }: Pick<Rig, 'bones' | 'helpers'>): AvatarMesh[] {
   const partByNode = new Map<Object3D, SkinPart | 'hips'>();
   const hipLine = bones.get('leftUpperLeg')?.restPosition.y ?? 0;
   for (const [name, { node }] of bones) {
@@ -41,7 +41,9 @@ function readMeshes(vrm: VRM, bones: Rig['bones']): AvatarMesh[] {
     partByNode.set(node, part);
   }
   const partOfBone = (node: Object3D): SkinPart | 'hips' => {
-    for (let above: Object3D | null = node; above; above = above.parent) {
+    // The skin of a joint that helps a bone to bend lies before that bone: a wrist's on the sleeve.
+    const from = helpers.has(node) ? (node.parent?.parent ?? null) : node;
+    for (let above = from; above; above = above.parent) {
       const part = partByNode.get(above);
       if (part) return part;
     }
@@ -105,9 +107,9 @@ export class BodyMeshes {
   private firstPerson = false;
   private opacity = 1;
 
-  constructor(vrm: VRM, bones: Rig['bones']) {
-    this.meshes = readMeshes(vrm, bones);
-    this.top = topOf(this.meshes, bones.get('head')?.node);
+  constructor(vrm: VRM, rig: Pick<Rig, 'bones' | 'helpers'>) {
+    this.meshes = readMeshes(vrm, rig);
+    this.top = topOf(this.meshes, rig.bones.get('head')?.node);
     this.showParts();
     this.showLayers();
   }

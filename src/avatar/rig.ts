@@ -91,6 +91,8 @@ const facing = quat(0, 0, 0, 1);
 /** The bones of a VRM that poses move. Each has its own place: the rig is no chain of rotations. */
 export class Rig {
   readonly bones: ReadonlyMap<AvatarJoint, RigBone>;
+  /** Nodes of joints that the file lacks: each begins where its bone does, which carries it, and shares the skin before it. */
+  readonly helpers = new Set<Object3D>();
   /** Joints of the bones as drawn, floor frame [m]; the same object in every frame. */
   readonly joints: Partial<Record<AvatarJoint, Vec3>> = {};
   /** Constraints read positions and rotations; drawing needs the matrices alone. */
@@ -179,6 +181,7 @@ export class Rig {
     node.name = `${name} ${what}`;
     node.matrixAutoUpdate = false;
     base.node.add(node);
+    this.helpers.add(node);
     node.updateMatrixWorld(true);
     return { base, node };
   }

@@ -7,8 +7,8 @@ import { forwardKinematics } from '../../src/core/body/forward-kinematics';
 import { jointNames } from '../../src/core/body/joints';
 import { skeletonFromCalibration } from '../../src/core/body/skeleton';
 import { createIk } from '../../src/core/estimation/estimators';
-import { angleBetween, fromAxisAngle, multiply } from '../../src/core/math/quat';
-import { distance, up, type Vec3 } from '../../src/core/math/vec3';
+import { angleBetween, fromAxisAngle, multiply, rotate } from '../../src/core/math/quat';
+import { backward, distance, dot, length, subtract, up, type Vec3 } from '../../src/core/math/vec3';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
 import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
 import { poseOf } from '../core/estimation/drawn';
@@ -206,6 +206,27 @@ describe('our mannequin', () => {
     const once = { ...bodyAfter([defaultCalibration]) };
     const again = bodyAfter([{ eyeHeight: 2, armSpan: 1.9 }, defaultCalibration, defaultCalibration]);
     expect(distance(once, again)).toBeLessThan(1e-6);
+  });
+
+  test('shown as head and hands ends at its wrists, not in shreds of sleeves', async () => {
+    const avatar = createAvatar(await parseAvatar(mannequin(), 'mannequin.vrm'));
+    avatar.fitTo(defaultCalibration);
+    const frame = actorFrame(1, defaultCalibration);
+    avatar.apply({ ...frame, body: null }, 0);
+    avatar.object.updateMatrixWorld(true);
+    const at = new Vector3();
+    let furthest = 0;
+    for (const [mesh, corners] of drawnSkin(avatar)) {
+      for (let corner = 0; corner < corners; corner++) {
+        mesh.getVertexPosition(mesh.geometry.index!.getX(corner), at).applyMatrix4(mesh.matrixWorld);
+        for (const { position, orientation } of [frame.leftHand!, frame.rightHand!]) {
+          const from = subtract(at, position);
+          if (length(from) < 0.15) furthest = Math.max(furthest, dot(from, rotate(orientation, backward)));
+        }
+      }
+    }
+    expect(furthest).toBeGreaterThan(0);
+    expect(furthest, 'behind a wrist [m]').toBeLessThan(0.025);
   });
 
   test('shows its upper body, or head and hands, alone', async () => {
