@@ -66,6 +66,10 @@ export interface SteppingParameters {
   /** A foot is in the air, or on the floor, for so long at least. */
   readonly shortestSwing: number;
   readonly shortestStance: number;
+  /** In the air for longer it is put down: what is expected of arms held high is a jump that never ends. */
+  readonly longestSwing: number;
+  /** A foot whose goal is nearer than this, in leg lengths, has nowhere to step to. */
+  readonly leastWay: number;
   /** A foot is left behind when its goal is farther than this, in leg lengths, or turned by more [rad]; it then steps for so long. */
   readonly farthest: number;
   readonly turnLimit: number;
@@ -84,6 +88,8 @@ export const standardStepping: SteppingParameters = {
   plantAbove: 0.58,
   shortestSwing: 0.11,
   shortestStance: 0.04,
+  longestSwing: 0.8,
+  leastWay: 0.05,
   farthest: 0.42,
   turnLimit: 0.8,
   ownStep: 0.22,
@@ -160,11 +166,12 @@ class TwoFeet implements Stepping {
   }
 
   private liftWhereDue(foot: FootState, goal: FootGoal, { legLength }: Stance): void {
-    const { liftBelow, shortestStance, farthest, turnLimit } = this.parameters;
-    const lifts = foot.standing < liftBelow && foot.seconds > shortestStance;
+    const { liftBelow, shortestStance, leastWay, farthest, turnLimit } = this.parameters;
     const x = goal.x - foot.position.x;
     const z = goal.z - foot.position.z;
-    const far = Math.sqrt(x * x + z * z) > farthest * legLength || Math.abs(wrap(goal.yaw - foot.yaw)) > turnLimit;
+    const way = Math.sqrt(x * x + z * z) / legLength;
+    const lifts = foot.standing < liftBelow && foot.seconds > shortestStance && way > leastWay;
+    const far = way > farthest || Math.abs(wrap(goal.yaw - foot.yaw)) > turnLimit;
     if (!lifts && !far) return;
     foot.planted = false;
     foot.leftBehind = !lifts;
@@ -172,8 +179,9 @@ class TwoFeet implements Stepping {
   }
 
   private plantWhereDue(foot: FootState): void {
-    const { plantAbove, shortestSwing, ownStep } = this.parameters;
-    const lands = foot.leftBehind ? foot.seconds > ownStep : foot.standing > plantAbove && foot.seconds > shortestSwing;
+    const { plantAbove, shortestSwing, longestSwing, ownStep } = this.parameters;
+    const stands = foot.standing > plantAbove && foot.seconds > shortestSwing;
+    const lands = foot.leftBehind ? foot.seconds > ownStep : stands || foot.seconds > longestSwing;
     if (!lands) return;
     foot.planted = true;
     foot.seconds = 0;

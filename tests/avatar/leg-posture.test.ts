@@ -44,6 +44,21 @@ describe('legs', () => {
     expect(first[1]!.x).toBeGreaterThan(0.04);
   });
 
+  test('of a person who holds both hands high stand on the floor', () => {
+    let lifted = 0;
+    feetAfter(
+      (time) => {
+        const { hips, head } = standing(time);
+        return { hips, head, leftHand: vec3(-0.3, 2.1, 0), rightHand: vec3(0.3, 2.1, 0) };
+      },
+      6,
+      ({ legs: { left, right } }, time) => {
+        if (time > 1 && Math.max(left.ankle.y, right.ankle.y) > proportions.ankleHeight + 0.015) lifted += 1;
+      },
+    );
+    expect(lifted).toBe(0);
+  });
+
   test('have the lengths of their bones, knees ahead, and nothing is NaN while a person walks', () => {
     feetAfter(walking, 6, ({ legs }) => {
       for (const { hip, knee, ankle } of Object.values(legs)) {

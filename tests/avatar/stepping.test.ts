@@ -108,6 +108,24 @@ describe('feet', () => {
     expect(Math.abs(left.position.x - 0.5)).toBeLessThan(0.1);
   });
 
+  test('are not held in the air for longer than a step, however surely they are expected there', () => {
+    let longest = 0;
+    let since = 0;
+    step(
+      (t) => {
+        const { left, right } = beside(0.3 * t, 0);
+        return { left: { ...left, standing: 0.05 }, right: { ...right, standing: 0.05 } };
+      },
+      6,
+      60,
+      ({ left }, time) => {
+        if (left.planted) since = time;
+        longest = Math.max(longest, time - since);
+      },
+    );
+    expect(longest).toBeLessThan(1);
+  });
+
   test('follow a turn on the spot', () => {
     let yaw = 0;
     step(
