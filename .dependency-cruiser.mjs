@@ -97,11 +97,19 @@ export default {
         'threepoint has neither three nor onnxruntime in it: what draws is reached through lib/three alone, the runtime through lib/onnx ' +
         'and its worker alone; of inference the others take what fetches and computes without a runtime.',
       severity: 'error',
-      from: { path: '^src/lib/', pathNot: '^src/lib/(three|onnx|onnx-worker)\\.ts$' },
+      from: { path: '^src/lib/', pathNot: '^src/lib/(three|onnx|onnx-worker|polyfill)\\.ts$' },
       to: {
         path: '^src/(xr|avatar|scene|inference|lib/(three|onnx|onnx-worker))',
         pathNot: '^src/inference/(load-plain-regressor|model-files)\\.ts$',
       },
+    },
+    {
+      name: 'library-polyfill-draws-nothing',
+      comment:
+        'threepoint/polyfill serves pages of any engine: it reads sessions, and has neither three nor a runtime.',
+      severity: 'error',
+      from: { path: '^src/lib/polyfill\\.ts$' },
+      to: { path: '^src/(avatar|scene|inference|xr/(?!tracker)|lib/(three|onnx|onnx-worker))' },
     },
     {
       name: 'library-draws-without-runtime',

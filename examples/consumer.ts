@@ -19,6 +19,7 @@ import {
 } from 'threepoint';
 import { type OnnxOptions, onnxNetworks } from 'threepoint/onnx';
 import 'threepoint/onnx-worker';
+import { type EmulatedBody, installBodyTracking } from 'threepoint/polyfill';
 import { type Avatar, avatarMotion, BodyTracker, type BodyTrackerEvents, loadAvatar } from 'threepoint/three';
 
 /** With three.js, its session and an avatar. */
@@ -77,4 +78,10 @@ export async function forOthers(text: string, signal: AbortSignal): Promise<Blob
 export function asWebXR({ body }: AvatarPose, calibration: Calibration): number | undefined {
   const joints: XRBodyJoints | null = body && toXRBody(body, calibration);
   return joints?.get('left-arm-lower')?.position.y;
+}
+
+/** For pages that expect the device's own body. */
+export function polyfilled(frame: XRFrame & { readonly body?: EmulatedBody | null }): () => void {
+  console.log(frame.body?.get('left-arm-lower')?.jointName, frame.body?.emulated);
+  return installBodyTracking({ estimator: 'ik', calibration: 'auto', onFault: (reason) => console.log(reason) });
 }

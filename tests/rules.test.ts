@@ -123,6 +123,11 @@ describe('the import rules', () => {
       { 'src/lib/three.ts': "import './onnx';", 'src/lib/onnx.ts': empty },
     ],
     [
+      'nor does the polyfill know three',
+      'library-polyfill-draws-nothing',
+      { 'src/lib/polyfill.ts': "import '../avatar/b';", 'src/avatar/b.ts': empty },
+    ],
+    [
       'adapters know no library',
       'adapters-know-no-page',
       { 'src/xr/a.ts': "import '../lib/body';", 'src/lib/body.ts': empty },

@@ -9,7 +9,8 @@ import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
 import { parseRecording } from '../../src/core/tracking/recording';
 import { startRegressor } from '../../src/inference/load-regressor';
 import { parseContract } from '../../src/inference/model-contract';
-import { exportMotionBare, type MotionFormat, type MotionWriter, motionFormats } from '../../src/lib/bare-export';
+import { exportMotionBare, type MotionWriter } from '../../src/lib/bare-export';
+import { type MotionFormat, motionFormats } from '../../src/lib/motion-formats';
 import type { WorkOptions } from '../../src/lib/run-work';
 import { writeWhole } from './write-whole';
 

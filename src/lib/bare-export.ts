@@ -9,10 +9,8 @@ import { type BvhOptions, writeBvh } from '../core/motion/write-bvh';
 import { writeCsv } from '../core/motion/write-csv';
 import { writeVrma } from '../core/motion/write-vrma';
 import type { Recording } from '../core/tracking/recording';
+import { type MotionFormat, motionFormats } from './motion-formats';
 import { runWork, type WorkOptions } from './run-work';
-
-export const motionFormats = ['bvh', 'csv', 'vrma'] as const;
-export type MotionFormat = (typeof motionFormats)[number];
 
 /** A file that was made, in memory: `new Blob(parts, {type})` or written one after the other. */
 export interface MotionFile {

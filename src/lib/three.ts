@@ -1,7 +1,6 @@
 // "threepoint/three": the body on an avatar of three.js, driven by a WebXR session.
 import { EventDispatcher, type Object3D, type WebGLRenderer } from 'three';
 import { type Avatar, createAvatar } from '../avatar/avatar';
-import { avatarClip } from '../avatar/avatar-clip';
 import type { BoneMap } from '../avatar/bone-names';
 import { parseAvatar } from '../avatar/load-avatar';
 import type { AvatarPose } from '../core/body/avatar-pose';
@@ -43,7 +42,7 @@ export async function avatarMotion(
   source: string | URL | Blob | ArrayBuffer,
   { bones }: LoadAvatarOptions = {},
 ): Promise<MotionWriter> {
-  const { name, bytes } = await read(source);
+  const [{ avatarClip }, { name, bytes }] = await Promise.all([import('../avatar/avatar-clip'), read(source)]);
   return avatarClip(bytes, name, { bones });
 }
 

@@ -158,6 +158,11 @@ export class XRBodyPoser {
     this.#poses = new Map(this.#joints.map(({ name }) => [name, makePose<'floor'>()]));
   }
 
+  /** Of all joints, in the specification's order. */
+  get names(): readonly string[] {
+    return this.#joints.map(({ name }) => name);
+  }
+
   /** Overwritten by the next frame; so long after the frame before [s]. */
   pose(body: UpperBodyPose, fingers: Fingers = unknownFingers, deltaSeconds = 0): XRBodyJoints {
     const { hips, rotations } = this.#motion;

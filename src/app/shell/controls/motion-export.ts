@@ -1,7 +1,8 @@
 import { decoders } from '../../../avatar/decoders';
 import { firstLine, reasonOf } from '../../../core/errors/reasons';
 import type { BareBody, BareBodyOptions } from '../../../lib/bare-body';
-import type { MotionFormat, MotionWriter } from '../../../lib/bare-export';
+import type { MotionWriter } from '../../../lib/bare-export';
+import type { MotionFormat } from '../../../lib/motion-formats';
 import { offerDownload } from '../../../ui/downloads';
 import type { Notices } from '../../../ui/notices';
 import type { Recorder } from '../../studio/recorder';
