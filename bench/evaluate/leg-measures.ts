@@ -97,7 +97,11 @@ export function addLegs(
       drawnOf(posture.legs[side], proportions, now[side]);
       if (!last) continue;
       measures.pelvis += distance(points.hips.position, frame.hips.position);
-      addFoot(measures, now[side], before[side], frame[side], last[side], {
+      addFoot(measures, {
+        drawn: now[side],
+        drawnBefore: before[side],
+        truth: frame[side],
+        truthBefore: last[side],
         stands: contacts[row]![side],
         ankleHeight: proportions.ankleHeight,
         rateHz,
@@ -106,30 +110,29 @@ export function addLegs(
   });
 }
 
+/** A leg in one frame as drawn and as it was, each with the frame before. */
 interface FootFrame {
+  readonly drawn: Drawn;
+  readonly drawnBefore: Drawn;
+  readonly truth: TrueLeg;
+  readonly truthBefore: TrueLeg;
   readonly stands: boolean;
   readonly ankleHeight: number;
   readonly rateHz: number;
 }
 
-function addFoot(
-  measures: LegMeasures,
-  drawn: Drawn,
-  before: Drawn,
-  truth: TrueLeg,
-  trueBefore: TrueLeg,
-  { stands, ankleHeight, rateHz }: FootFrame,
-): void {
+function addFoot(measures: LegMeasures, foot: FootFrame): void {
+  const { drawn, truth, stands, ankleHeight, rateHz } = foot;
   measures.feet += 1;
   measures.knee += distance(drawn.knee, truth.knee);
   measures.ankle += distance(drawn.ankle, truth.ankle);
   const sole = Math.min(drawn.ankle.y - ankleHeight, drawn.ball.y - ballHeight * ankleHeight);
-  const skate = skateOf(drawn, before, rateHz);
+  const skate = skateOf(drawn, foot.drawnBefore, rateHz);
   measures.sink += Math.max(0, -sole);
   if (stands) {
     measures.standing += 1;
     measures.skate += skate;
-    measures.trueSkate += skateOf(truth, trueBefore, rateHz);
+    measures.trueSkate += skateOf(truth, foot.truthBefore, rateHz);
     measures.float += Math.max(0, sole);
   }
   const drawnStands = sole < onFloor;
