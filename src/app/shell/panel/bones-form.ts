@@ -75,6 +75,20 @@ export function boneComplaint(bones: BoneMap): string | null {
   return null;
 }
 
+/** Where a map can be written, folded away. */
+const asText = (text: HTMLTextAreaElement): HTMLElement =>
+  element(
+    'details',
+    {},
+    element('summary', {}, 'As text, fingers and toes too'),
+    element(
+      'p',
+      { class: 'hint' },
+      'JSON, VRM’s name of a bone and the file’s. What stands here counts before the lists.',
+    ),
+    text,
+  );
+
 /** Asks which of a file's bones is which, where their names do not tell. */
 export function createBonesForm(give: (bones: BoneMap) => void) {
   const title = element('h2', {}, 'Bones of this file');
@@ -114,17 +128,7 @@ export function createBonesForm(give: (bones: BoneMap) => void) {
     title,
     hint,
     ...selects.map((each) => each.node),
-    element(
-      'details',
-      {},
-      element('summary', {}, 'As text, fingers and toes too'),
-      element(
-        'p',
-        { class: 'hint' },
-        'JSON, VRM’s name of a bone and the file’s. What stands here counts before the lists.',
-      ),
-      text,
-    ),
+    asText(text),
     complaint,
     button('Use these bones', submit, { class: 'primary' }),
   );
