@@ -32,7 +32,7 @@ const glbHead = Buffer.from([0x67, 0x6c, 0x54, 0x46, 2, 0, 0, 0]);
 const isGlb = (bytes: Buffer): boolean =>
   bytes.length >= 20 && bytes.subarray(0, 8).equals(glbHead) && bytes.readUInt32LE(8) === bytes.length;
 
-/** What is stored is shown by no browser, whatever is in it: it is a file to be saved, without scripts, of the type that it was checked for. */
+/** What is stored is shown by no browser, text and scripts included: it is a file to be saved, without scripts, of the type that it was checked for. */
 const asFile: Readonly<Record<string, string>> = {
   'content-type': glb,
   'content-disposition': 'attachment; filename="avatar.glb"',

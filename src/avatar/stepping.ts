@@ -43,7 +43,7 @@ interface FootState {
   standing: number;
   /** Since it was lifted or put down [s]. */
   seconds: number;
-  /** It was left behind, and steps once whatever is expected of it. */
+  /** It was left behind, and steps once, expected to or not. */
   leftBehind: boolean;
   goalX: number;
   goalZ: number;

@@ -1,4 +1,4 @@
-"""Facts about the tables of legs: people alike, whatever the length of their clips; another laboratory in rows of its own."""
+"""Facts about the tables of legs: people alike, with long clips and short ones; another laboratory in rows of its own."""
 
 from pathlib import Path
 
