@@ -5,7 +5,9 @@ import { findChromium } from '../scripts/chromium.mjs';
 import { createPageHandler } from '../server/page';
 import { serve, type WebServer } from '../server/web-server';
 import { reasonOf } from '../src/core/errors/reasons';
+import { tell } from '../tests/tell';
 import { builtIn, measureAllocations } from './allocations';
+import { measureAvatarLoading } from './avatar-loading';
 import { type MeasuredNetwork, measureNetworks } from './networks';
 import type { PageResult } from './page/main';
 import {
@@ -31,12 +33,13 @@ const { values: options, positionals } = parseArgs({
     allocations: { type: 'boolean' },
     rounds: { type: 'string' },
     device: { type: 'boolean' },
+    avatar: { type: 'string' },
   },
   allowPositionals: true,
 });
 
 /** What is measured without --allocations; named on the command line, only these. */
-const everyPart = ['visit', 'frames', 'archery', 'ball', 'allocations', 'networks'] as const;
+const everyPart = ['visit', 'frames', 'archery', 'ball', 'allocations', 'networks', 'avatar'] as const;
 type Part = (typeof everyPart)[number];
 const parts: readonly string[] = options.allocations || positionals.length === 0 ? everyPart : positionals;
 const unknown = parts.filter((part) => !everyPart.some((known) => known === part));
@@ -188,6 +191,20 @@ const measurePart: Readonly<Record<Part, (browser: Browser) => Promise<object>>>
   },
   async networks(browser) {
     return { networks: await measureLearned(browser) };
+  },
+  async avatar(browser) {
+    const server = await serve(createPageHandler(builtIn('dist')), { host: '127.0.0.1', port: 0 });
+    try {
+      const loading = await measureAvatarLoading(browser, `http://localhost:${server.port}`, options.avatar);
+      tell(`${loading.name}, ${loading.megabytes.toFixed(1)} MB`, {
+        'shown after [s]': loading.shownAfter / 1000,
+        'longest tasks of the page [ms of processor time]': loading.longestTasks.join(' '),
+        'without it': loading.longestWithout.join(' '),
+      });
+      return { avatarLoading: loading };
+    } finally {
+      await server.close();
+    }
   },
 };
 

@@ -3,6 +3,7 @@ import { alongArm } from '../core/body/arm-rotations';
 import type { MutableJointPoses } from '../core/body/forward-kinematics';
 import { conjugate, fromAxisAngle, multiply, type Quat, quat, slerp, twistAngle, twistOf } from '../core/math/quat';
 import type { Side } from '../core/math/side';
+import type { Steps } from './in-steps';
 import type { HelperJoint, Rig } from './rig';
 import { type SpreadArm, spreadArms } from './spread-weights';
 
@@ -60,13 +61,16 @@ export class ArmHelperJoints {
   readonly #rig: Rig;
   readonly #arms: readonly ArmHelpers[];
 
-  /** The rig must be at rest, its world matrices up to date. */
-  constructor(rig: Rig, scene: Object3D) {
+  constructor(rig: Rig) {
     this.#rig = rig;
     this.#arms = sides.map((side) => makeHelpers(rig, side));
-    spreadArms(
+  }
+
+  /** Shares the skin under `scene` among the joints, once. The rig must be at rest, its world matrices up to date. */
+  shareSkin(scene: Object3D): Steps<void> {
+    return spreadArms(
       scene,
-      this.#arms.map((arm) => spreadOf(rig, arm)),
+      this.#arms.map((arm) => spreadOf(this.#rig, arm)),
     );
   }
 

@@ -1,4 +1,4 @@
-import { VRMUtils } from '@pixiv/three-vrm';
+import { type VRM, VRMFirstPerson, VRMUtils } from '@pixiv/three-vrm';
 import { Group, type Object3D } from 'three';
 import { handBoneRotation } from '../core/body/arm-rotations';
 import type { AvatarPose, UpperBodyPose } from '../core/body/avatar-pose';
@@ -13,9 +13,10 @@ import { identity, type Quat, quat, rotate } from '../core/math/quat';
 import type { Side } from '../core/math/side';
 import { addScaled, setVec3, subtract, type Vec3, vec3 } from '../core/math/vec3';
 import { ArmHelperJoints } from './arm-helpers';
-import { BodyMeshes } from './body-meshes';
+import { type AvatarMesh, BodyMeshes, readMeshes } from './body-meshes';
 import { Face } from './face';
 import { Fingers } from './fingers';
+import { atOnce, betweenFrames, type Steps } from './in-steps';
 import { Legs } from './legs';
 import type { LoadedAvatar } from './load-avatar';
 import { OwnTrunk } from './own-trunk';
@@ -53,8 +54,44 @@ const longestStep = 0.25;
 let made = 0;
 const upright = Object.fromEntries(jointNames.map((name) => [name, identity])) as Record<JointName, Quat>;
 
+/** What of a body takes long to make. */
+interface MadeParts {
+  readonly vrm: VRM;
+  readonly object: Group;
+  readonly rig: Rig;
+  readonly arms: ArmHelperJoints;
+  readonly meshes: readonly AvatarMesh[];
+}
+
+/** Makes a body from a file, which serves for one. */
+function* makeAvatar({ vrm }: LoadedAvatar): Steps<Avatar> {
+  const object = new Group();
+  object.name = 'avatar';
+  object.add(vrm.scene);
+  vrm.humanoid.autoUpdateHumanBones = false;
+  object.updateMatrixWorld(true);
+  const rig = new Rig(vrm);
+  const arms = new ArmHelperJoints(rig);
+  yield* arms.shareSkin(vrm.scene);
+  // After the skin is shared anew: what the wearer sees of meshes with a head is cut out of copies.
+  yield* setUpFirstPerson(vrm);
+  const meshes = yield* readMeshes(vrm, rig);
+  yield;
+  return new VrmAvatar({ vrm, object, rig, arms, meshes });
+}
+
+/** What VRMFirstPerson does with all meshes, mesh by mesh. */
+function* setUpFirstPerson({ firstPerson, humanoid }: VRM): Steps<void> {
+  for (const { meshes, type } of firstPerson?.meshAnnotations ?? []) {
+    for (const mesh of meshes) {
+      yield;
+      new VRMFirstPerson(humanoid, [{ meshes: [mesh], type }]).setup();
+    }
+  }
+}
+
 class VrmAvatar implements Avatar {
-  readonly object = new Group();
+  readonly object: Group;
   private readonly vrm: LoadedAvatar['vrm'];
   private readonly rig: Rig;
   private readonly trunk: OwnTrunk;
@@ -79,20 +116,15 @@ class VrmAvatar implements Avatar {
   private readonly handBone = quat(0, 0, 0, 1);
   private readonly joint = vec3(0, 0, 0);
 
-  constructor({ vrm }: LoadedAvatar) {
+  constructor({ vrm, object, rig, arms, meshes }: MadeParts) {
     this.vrm = vrm;
-    this.object.name = 'avatar';
-    this.object.add(vrm.scene);
-    vrm.humanoid.autoUpdateHumanBones = false;
-    this.object.updateMatrixWorld(true);
-    this.rig = new Rig(vrm);
-    this.arms = new ArmHelperJoints(this.rig, vrm.scene);
-    // After the skin is shared anew: what the wearer sees of meshes with a head is cut out of copies.
-    vrm.firstPerson?.setup();
+    this.object = object;
+    this.rig = rig;
+    this.arms = arms;
     this.trunk = new OwnTrunk(this.rig);
     this.legs = new Legs(this.rig);
     this.fingers = new Fingers(vrm);
-    this.meshes = new BodyMeshes(vrm, this.rig);
+    this.meshes = new BodyMeshes(meshes, this.rig);
     this.springs = new Springs(vrm);
     made += 1;
     this.face = new Face(vrm, made);
@@ -218,4 +250,7 @@ class VrmAvatar implements Avatar {
   }
 }
 
-export const createAvatar = (loaded: LoadedAvatar): Avatar => new VrmAvatar(loaded);
+export const createAvatar = (loaded: LoadedAvatar): Avatar => atOnce(makeAvatar(loaded));
+
+/** The same while pictures go on: for a file that came while the page is in use. */
+export const createAvatarBetweenFrames = (loaded: LoadedAvatar): Promise<Avatar> => betweenFrames(makeAvatar(loaded));

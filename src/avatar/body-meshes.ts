@@ -9,6 +9,7 @@ import {
   SkinnedMesh,
   Vector3,
 } from 'three';
+import type { Steps } from './in-steps';
 import { palettes } from './palettes';
 import type { Rig } from './rig';
 import { type SkinPart, sortByPart } from './skin-parts';
@@ -17,14 +18,18 @@ import { type SkinPart, sortByPart } from './skin-parts';
 export const thirdPersonOnlyLayer = 10;
 const firstPersonOnlyLayer = 9;
 
-interface AvatarMesh {
+export interface AvatarMesh {
   readonly mesh: Mesh;
   readonly audience: 'both' | 'others' | 'self';
   /** Index count up to and including each part; null for meshes without a skin. */
   readonly ends: Record<SkinPart, number> | null;
 }
 
-function readMeshes(vrm: VRM, { bones, helpers }: Pick<Rig, 'bones' | 'helpers'>): AvatarMesh[] {
+/** The meshes of a body, those with a skin sorted by its parts, once. */
+export function* readMeshes(
+  vrm: VRM,
+  { bones, helpers }: Pick<Rig, 'bones' | 'helpers'>,
+): Steps<readonly AvatarMesh[]> {
   const partByNode = new Map<Object3D, SkinPart | 'hips'>();
   const hipLine = bones.get('leftUpperLeg')?.restPosition.y ?? 0;
   for (const [name, { node }] of bones) {
@@ -49,10 +54,12 @@ function readMeshes(vrm: VRM, { bones, helpers }: Pick<Rig, 'bones' | 'helpers'>
     }
     return 'trunk';
   };
-  const result: AvatarMesh[] = [];
+  const meshes: Mesh[] = [];
   vrm.scene.traverse((node) => {
-    if (!('isMesh' in node)) return;
-    const mesh = node as Mesh;
+    if ('isMesh' in node) meshes.push(node as Mesh);
+  });
+  const result: AvatarMesh[] = [];
+  for (const mesh of meshes) {
     // Bones carry the skin far from where it lay at rest: its own bounds say nothing.
     mesh.frustumCulled = false;
     mesh.castShadow = true;
@@ -61,9 +68,9 @@ function readMeshes(vrm: VRM, { bones, helpers }: Pick<Rig, 'bones' | 'helpers'>
       : mesh.layers.isEnabled(firstPersonOnlyLayer)
         ? 'self'
         : 'others';
-    const ends = mesh instanceof SkinnedMesh ? sortByPart(mesh, partOfBone, hipLine) : null;
+    const ends = mesh instanceof SkinnedMesh ? yield* sortByPart(mesh, partOfBone, hipLine) : null;
     result.push({ mesh, audience, ends });
-  });
+  }
   return result;
 }
 
@@ -107,9 +114,9 @@ export class BodyMeshes {
   private firstPerson = false;
   private opacity = 1;
 
-  constructor(vrm: VRM, rig: Pick<Rig, 'bones' | 'helpers'>) {
-    this.meshes = readMeshes(vrm, rig);
-    this.top = topOf(this.meshes, rig.bones.get('head')?.node);
+  constructor(meshes: readonly AvatarMesh[], { bones }: Pick<Rig, 'bones'>) {
+    this.meshes = meshes;
+    this.top = topOf(this.meshes, bones.get('head')?.node);
     this.showParts();
     this.showLayers();
   }

@@ -6,6 +6,7 @@ import { restoreBindPose } from './bind-pose';
 import type { BoneMap } from './bone-names';
 import type { CheckedAvatar } from './check-avatar';
 import { boneNode, demandBones, humanoidOf } from './humanoid';
+import { betweenFrames } from './in-steps';
 import { inspectAvatar } from './inspect-avatar';
 import { makeGeometryPlain } from './plain-geometry';
 import { settleRest } from './rest-pose';
@@ -50,7 +51,7 @@ export async function parseChecked(
   const gltf = await loader.parseAsync(bytes, '').catch((error: unknown) => {
     throw new Error(`${name}: no VRM or GLB file (${reasonOf(error)})`);
   });
-  makeGeometryPlain(gltf.scene);
+  await betweenFrames(makeGeometryPlain(gltf.scene));
   const own = bones ? undefined : (gltf.userData.vrm as VRM | undefined);
   if (own) {
     demandBones(name, (bone) => boneNode(own, bone) !== null);

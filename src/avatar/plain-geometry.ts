@@ -6,6 +6,7 @@ import {
   type Object3D,
   type TypedArray,
 } from 'three';
+import type { Steps } from './in-steps';
 
 type Attribute = BufferAttribute | InterleavedBufferAttribute;
 
@@ -25,7 +26,7 @@ function unravelled(attribute: InterleavedBufferAttribute): BufferAttribute {
  * Gives each attribute of a scene's meshes an array of its own, and each geometry an index: files may interleave attributes in one buffer and
  * leave indices out, and what cuts meshes into parts reads plain arrays. Meshes that shared an attribute still do.
  */
-export function makeGeometryPlain(scene: Object3D): void {
+export function* makeGeometryPlain(scene: Object3D): Steps<void> {
   const known = new Map<Attribute, BufferAttribute>();
   const plain = (attribute: Attribute): BufferAttribute => {
     if (!('isInterleavedBufferAttribute' in attribute)) return attribute;
@@ -33,8 +34,12 @@ export function makeGeometryPlain(scene: Object3D): void {
     known.set(attribute, made);
     return made;
   };
+  const meshes: Object3D[] = [];
   scene.traverse((node) => {
-    if (!('isMesh' in node)) return;
+    if ('isMesh' in node) meshes.push(node);
+  });
+  for (const node of meshes) {
+    yield;
     const geometry = (node as Mesh).geometry as BufferGeometry;
     for (const [name, attribute] of Object.entries(geometry.attributes)) geometry.setAttribute(name, plain(attribute));
     for (const [name, targets] of Object.entries(geometry.morphAttributes)) {
@@ -44,5 +49,5 @@ export function makeGeometryPlain(scene: Object3D): void {
       const { count } = geometry.getAttribute('position');
       geometry.setIndex(Array.from({ length: count }, (_, index) => index));
     }
-  });
+  }
 }

@@ -1,4 +1,3 @@
-import { VRMUtils } from '@pixiv/three-vrm';
 import { Group, type Mesh, type MeshBasicMaterial, type Object3D, type PlaneGeometry } from 'three';
 import type { AvatarPose } from '../core/body/avatar-pose';
 import type { Calibration } from '../core/body/calibration';
@@ -8,7 +7,7 @@ import { copyQuat } from '../core/math/quat';
 import { copyVec3, type Vec3 } from '../core/math/vec3';
 import { isAvatarHash, plainAvatar, type WornAvatar } from '../core/protocol/worn-avatar';
 import { createBlobShadow } from '../scene/blob-shadow';
-import { type Avatar, createAvatar } from './avatar';
+import { type Avatar, createAvatarBetweenFrames } from './avatar';
 import type { LoadedAvatar } from './load-avatar';
 
 /** Another person as they are to be drawn in this frame. */
@@ -198,8 +197,9 @@ class OthersBodies implements RemoteAvatars {
   async #load(avatar: WornAvatar): Promise<void> {
     try {
       const loaded = await this.#options.load(avatar);
-      if (this.#disposed) VRMUtils.deepDispose(loaded.vrm.scene);
-      else this.#add(createAvatar(loaded), avatar);
+      const made = await createAvatarBetweenFrames(loaded);
+      if (this.#disposed) made.dispose();
+      else this.#add(made, avatar);
     } catch (error) {
       if (avatar === plainAvatar) this.#failed = error;
       this.#refused.add(avatar);

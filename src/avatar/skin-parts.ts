@@ -1,18 +1,22 @@
 import { BufferAttribute, type Object3D, type SkinnedMesh, Vector3 } from 'three';
+import type { Steps } from './in-steps';
 
 /** What a triangle of skin belongs to, in the order in which parts are kept: a prefix of them can be drawn alone. */
 export const skinParts = ['hands', 'head', 'trunk', 'legs'] as const;
 export type SkinPart = (typeof skinParts)[number];
 
+/** So many corners are sorted in one step. */
+const cornersAStep = 3 * 1024;
+
 /**
  * Sorts a skinned mesh's triangles by part and returns how many indices end after each part. The skin about the hips is
  * divided at the height [m] `hipLine` of the rest pose, so that trunk and legs part along a line and not along triangles.
  */
-export function sortByPart(
+export function* sortByPart(
   mesh: SkinnedMesh,
   partOfBone: (bone: Object3D) => SkinPart | 'hips',
   hipLine: number,
-): Record<SkinPart, number> {
+): Steps<Record<SkinPart, number>> {
   const { geometry, skeleton } = mesh;
   const joints = geometry.getAttribute('skinIndex');
   const weights = geometry.getAttribute('skinWeight');
@@ -45,6 +49,7 @@ export function sortByPart(
   };
   const sorted: number[][] = skinParts.map(() => []);
   for (let i = 0; i < source.count; i += 3) {
+    if (i % cornersAStep === 0) yield;
     const triangle = [source.getX(i), source.getX(i + 1), source.getX(i + 2)];
     const [a = 2, b = 2, c = 2] = triangle.map(partOf);
     // Two of three decide; three different ones: the middle part, so that borders lie on the trunk's side.

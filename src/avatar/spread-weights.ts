@@ -8,6 +8,7 @@ import {
   SkinnedMesh,
   Vector3,
 } from 'three';
+import type { Steps } from './in-steps';
 
 /** The bones of an arm and the joints between them among which its skin is to be shared. */
 export interface SpreadArm {
@@ -207,7 +208,10 @@ interface Weights {
   readonly weights: BufferAttribute;
 }
 
-function spreadMesh(mesh: SkinnedMesh, arms: readonly ArmIndices[]): Weights | null {
+/** So many vertices are shared anew in one step. */
+const verticesAStep = 512;
+
+function* spreadMesh(mesh: SkinnedMesh, arms: readonly ArmIndices[]): Steps<Weights | null> {
   const { skinIndex, skinWeight } = mesh.geometry.attributes;
   if (!skinIndex || !skinWeight) return null;
   const indices = new Uint16Array(skinIndex.count * influences);
@@ -216,6 +220,7 @@ function spreadMesh(mesh: SkinnedMesh, arms: readonly ArmIndices[]): Weights | n
   const shares: Shares = new Map();
   const place = new Vector3();
   for (let vertex = 0; vertex < skinIndex.count; vertex++) {
+    if (vertex % verticesAStep === 0) yield;
     shares.clear();
     let isOfArm = false;
     for (let slot = 0; slot < influences; slot++) {
@@ -251,12 +256,15 @@ function writeStrongest(shares: Shares, at: number, indices: Uint16Array, weight
  * Shares the skin of arms among their bones and the joints between, in every mesh under `scene`. The rig must be at rest, its world matrices up
  * to date.
  */
-export function spreadArms(scene: Object3D, arms: readonly SpreadArm[]): void {
+export function* spreadArms(scene: Object3D, arms: readonly SpreadArm[]): Steps<void> {
   scene.updateMatrixWorld(true);
   const extended = new Map<Skeleton, readonly ArmIndices[]>();
   const done = new Map<Skeleton, Map<unknown, Weights>>();
+  const meshes: SkinnedMesh[] = [];
   scene.traverse((node) => {
-    if (!(node instanceof SkinnedMesh)) return;
+    if (node instanceof SkinnedMesh) meshes.push(node);
+  });
+  for (const node of meshes) {
     const { skeleton, geometry } = node;
     const known = extended.get(skeleton);
     const own = known ?? arms.flatMap((arm) => extend(skeleton, arm) ?? []);
@@ -264,15 +272,15 @@ export function spreadArms(scene: Object3D, arms: readonly SpreadArm[]): void {
       extended.set(skeleton, own);
       skeleton.init();
     }
-    if (own.length === 0) return;
+    if (own.length === 0) continue;
     // Meshes of one file often share their vertices.
     const before = geometry.attributes.skinIndex;
     const shared = done.get(skeleton) ?? new Map<unknown, Weights>();
     done.set(skeleton, shared);
-    const weights = shared.get(before) ?? spreadMesh(node, own);
-    if (!weights) return;
+    const weights = shared.get(before) ?? (yield* spreadMesh(node, own));
+    if (!weights) continue;
     shared.set(before, weights);
     geometry.setAttribute('skinIndex', weights.indices);
     geometry.setAttribute('skinWeight', weights.weights);
-  });
+  }
 }

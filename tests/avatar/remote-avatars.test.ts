@@ -38,9 +38,9 @@ async function gathered(people: readonly SeenPerson[]): Promise<RemoteAvatars> {
     plain: () => false,
     onRefused: (avatar, reason) => expect([avatar, reason]).toBeNull(),
   });
-  for (let i = 0; i < 500 && !people.every(({ id }) => others.jointsOf(id)); i++) {
+  for (let i = 0; i < 5000 && !people.every(({ id }) => others.jointsOf(id)); i++) {
     others.show(people, i / 60);
-    await new Promise((resolve) => setImmediate(resolve));
+    await new Promise((resolve) => setTimeout(resolve));
   }
   others.show(people, 10);
   return others;

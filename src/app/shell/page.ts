@@ -1,8 +1,10 @@
+import type { Object3D } from 'three';
 import type { Calibration } from '../../core/body/calibration';
 import { firstLine } from '../../core/errors/reasons';
 import { createPageClock } from '../../core/tracking/page-clock';
 import { BareBody, type CalibrationSource } from '../../lib/bare-body';
 import { ServerPresence } from '../../net/server-presence';
+import { prepareFirstPicture } from '../../scene/first-picture';
 import { affordableQuality } from '../../scene/renderer';
 import { pageElement } from '../../ui/element';
 import { createMouseAim } from '../../ui/mouse-aim';
@@ -89,7 +91,9 @@ function createGround(options: PageOptions) {
   const { body } = ground;
   const onChange = changes.emit;
   const knownBones = new KnownBones(store);
-  const avatar = new ShownAvatar({ scene: stage.studio.scene, settings, body, notices, knownBones, onChange });
+  const { scene } = stage.studio;
+  const prepare = (object: Object3D) => prepareFirstPicture(stage.renderer, scene, object);
+  const avatar = new ShownAvatar({ scene, settings, body, notices, knownBones, prepare, onChange });
   const avatarShown = avatar.openOwn(ownAvatar);
   const headset = new Headset({ renderer: stage.renderer, quality, switches, settings, notices });
   return { ...ground, canvas, quality, timing, stage, recorder, avatar, avatarShown, headset };

@@ -1,12 +1,11 @@
-import { VRMUtils } from '@pixiv/three-vrm';
-import { type Avatar, createAvatar } from '../../avatar/avatar';
+import { type Avatar, createAvatarBetweenFrames } from '../../avatar/avatar';
 import type { BoneMap } from '../../avatar/bone-names';
 import type { CheckedAvatar } from '../../avatar/check-avatar';
 import { checkInWorker } from '../../avatar/check-in-worker';
 import { decoders } from '../../avatar/decoders';
 import { hashOf } from '../../avatar/file-hash';
 import { avatarLimits } from '../../avatar/inspect-avatar';
-import { type LoadedAvatar, parseAvatar, parseChecked } from '../../avatar/load-avatar';
+import { parseAvatar, parseChecked } from '../../avatar/load-avatar';
 import { withNamedBones } from '../../avatar/name-bones';
 import { UnknownBones } from '../../avatar/unknown-bones';
 import { firstLine, reasonOf } from '../../core/errors/reasons';
@@ -27,6 +26,8 @@ export interface ShownAvatarOptions {
   readonly notices: Pick<Notices, 'show'>;
   /** The maps of bones that were given for files of unknown naming. */
   readonly knownBones: Pick<KnownBones, 'of' | 'keep'>;
+  /** Brings what a body needs to the graphics device before it is shown. */
+  prepare(object: Avatar['object']): Promise<void>;
   onChange(): void;
 }
 
@@ -59,7 +60,7 @@ async function fileFor({ bytes, hash }: CheckedAvatar, bones: BoneMap | undefine
 
 /** A body that has come, what to call it, and as what it is told to others. */
 interface Arrived {
-  readonly loaded: LoadedAvatar;
+  readonly avatar: Avatar;
   readonly worn: OwnWear;
 }
 
@@ -128,10 +129,10 @@ export class ShownAvatar {
     return this.#waiting;
   }
 
-  /** One of our own avatar's palettes; null: the one the user chose. Bound: parts of the page take it along. */
-  readonly wear = (palette: string | null): void => {
+  /** One of our own avatar's palettes; null: the one the user chose. */
+  wear(palette: string | null): void {
     if (this.own) this.#avatar?.setPalette(palette ?? this.#options.settings.palette);
-  };
+  }
 
   /** Gives up what is on its way, or waits for its bones; what is shown stays. */
   cancel(): void {
@@ -148,7 +149,7 @@ export class ShownAvatar {
    */
   openOwn(bytes = fetchOwnAvatar()): Promise<boolean> {
     return this.#arrive(this.#ask(ownName, true), async () => ({
-      loaded: await parseAvatar(await bytes, ownName),
+      avatar: await createAvatarBetweenFrames(await parseAvatar(await bytes, ownName)),
       worn: plainAvatar,
     }));
   }
@@ -173,7 +174,7 @@ export class ShownAvatar {
     try {
       const arrived = await this.#read(checked, name, bones);
       if (this.#waiting !== waiting) {
-        VRMUtils.deepDispose(arrived.loaded.vrm.scene);
+        arrived.avatar.dispose();
         return false;
       }
       if (checked.hash !== null) this.#options.knownBones.keep(checked.hash, bones);
@@ -191,8 +192,9 @@ export class ShownAvatar {
 
   async #read(checked: CheckedAvatar, name: string, bones: BoneMap | undefined): Promise<Arrived> {
     try {
-      const loaded = await parseChecked(checked, name, { decoders, bones });
-      return { loaded, worn: { name, ...(await fileFor(checked, bones)) } };
+      const avatar = await createAvatarBetweenFrames(await parseChecked(checked, name, { decoders, bones }));
+      await this.#options.prepare(avatar.object);
+      return { avatar, worn: { name, ...(await fileFor(checked, bones)) } };
     } catch (error) {
       if (error instanceof UnknownBones) {
         const { found, told } = error;
@@ -232,7 +234,7 @@ export class ShownAvatar {
     try {
       const arrived = await load();
       if (turn < this.#shown || ending.signal.aborted) {
-        VRMUtils.deepDispose(arrived.loaded.vrm.scene);
+        arrived.avatar.dispose();
         return false;
       }
       this.#show(arrived, name, turn);
@@ -260,10 +262,9 @@ export class ShownAvatar {
     }
   }
 
-  #show({ loaded, worn }: Arrived, name: string, turn: number): void {
+  #show({ avatar, worn }: Arrived, name: string, turn: number): void {
     const { scene, settings, body } = this.#options;
     this.#avatar?.dispose();
-    const avatar = createAvatar(loaded);
     this.#avatar = avatar;
     this.#name = name;
     this.#worn = worn;
