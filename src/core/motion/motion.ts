@@ -45,7 +45,9 @@ export const makePosedBones = ({ bones }: Pick<Motion, 'bones'>): PosedBones => 
 /** Every bone in one frame. */
 export function poseBones(motion: Motion, frame: number, target: PosedBones): PosedBones {
   const { positions, rotations } = target;
-  for (const [i, { parent, offset, measured }] of motion.bones.entries()) {
+  const { bones } = motion;
+  for (let i = 0; i < bones.length; i++) {
+    const { parent, offset, measured } = bones[i]!;
     const position = positions[i]!;
     const rotation = rotations[i]!;
     if (measured) rotationAt(motion, frame, i, rotation);
@@ -61,12 +63,13 @@ export function poseBones(motion: Motion, frame: number, target: PosedBones): Po
 
 /** Frames that a file of an even rate may have: two and a half hours at 120 Hz. */
 const mostFrames = 1_080_000;
+const framesPerStep = 64;
 
 /**
- * The same motion at an even rate [Hz], interpolated. Throws a sentence where that is no rate, or the motion lasts so long at it that no file
+ * The same motion at an even rate [Hz], interpolated. Yields the share [0, 1] that is done. Throws a sentence where that is no rate, or the motion lasts so long at it that no file
  * could hold it.
  */
-export function resampleMotion(motion: Motion, rateHz: number): Motion {
+export function* resampleMotion(motion: Motion, rateHz: number): Generator<number, Motion> {
   const { times, measured } = motion;
   if (!(rateHz >= 1 && rateHz <= 1000)) throw new Error(`A rate of ${rateHz} Hz is not one from 1 to 1000.`);
   const duration = times.at(-1)!;
@@ -86,6 +89,7 @@ export function resampleMotion(motion: Motion, rateHz: number): Motion {
     while (before + 1 < times.length && times[before + 1]! <= time) before += 1;
     const after = Math.min(before + 1, times.length - 1);
     const span = times[after]! - times[before]!;
+    if (frame % framesPerStep === framesPerStep - 1) yield frame / count;
     mixFrame(motion, before, after, span > 0 ? (time - times[before]!) / span : 0, { into: even, frame });
   }
   return even;

@@ -12,6 +12,19 @@ export async function* partOf<Result>(work: Work<Result>, from: number, to: numb
   }
 }
 
+/** The same of work that never waits. */
+export function* portionOf<Result>(
+  work: Generator<number, Result>,
+  from: number,
+  to: number,
+): Generator<number, Result> {
+  for (;;) {
+    const step = work.next();
+    if (step.done) return step.value;
+    yield from + (to - from) * step.value;
+  }
+}
+
 /** Does the whole of some work at once, where nothing waits for it. */
 export function finishWork<Result>(work: Generator<number, Result>): Result {
   for (;;) {

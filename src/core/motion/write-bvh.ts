@@ -2,6 +2,7 @@ import { type Quat, quat, toEulerYxz } from '../math/quat';
 import { type MutableVec3, scale, setVec3, type Vec3, vec3 } from '../math/vec3';
 import { hipsAt, type Motion, resampleMotion, rotationAt } from './motion';
 import type { MotionBone } from './skeleton';
+import { portionOf } from './work';
 
 export interface BvhOptions {
   /** What a number of the file is: metres (the default) or centimetres. */
@@ -62,6 +63,8 @@ export function fileOrder(bones: readonly MotionBone[]): readonly number[] {
 }
 
 const framesPerStep = 64;
+/** Of the work, what an even rate takes. */
+const resampling = 0.3;
 
 /**
  * The text of a BVH file, in parts: T-pose at rest facing +Z, the root at the hips, angles in the order Y, X, Z, an even rate. Bones that are
@@ -71,7 +74,7 @@ export function* writeBvh(
   motion: Motion,
   { unit = 'm', rateHz = motion.rateHz }: BvhOptions = {},
 ): Generator<number, readonly string[]> {
-  const even = resampleMotion(motion, rateHz);
+  const even = yield* portionOf(resampleMotion(motion, rateHz), 0, resampling);
   const perMetre = unit === 'cm' ? 100 : 1;
   const digits = unit === 'cm' ? 4 : 6;
   const place = vec3(0, 0, 0);
@@ -96,7 +99,7 @@ export function* writeBvh(
     if (frame % framesPerStep !== framesPerStep - 1) continue;
     parts.push(lines);
     lines = '';
-    yield frame / count;
+    yield resampling + ((1 - resampling) * frame) / count;
   }
   parts.push(lines);
   return parts;

@@ -81,6 +81,12 @@ describe('a BVH file', () => {
     ).toBe('yxz');
   });
 
+  test('is written in steps of some frames, so that others have their turn', () => {
+    const shares = [...writeBvh(people.acting.motion)];
+    expect(shares.length).toBeGreaterThan((2 * people.acting.truth.length) / 80);
+    expect(shares).toEqual([...shares].sort((a, b) => a - b));
+  });
+
   test('has the rate that is asked for', () => {
     const file = read(textOf(writeBvh(people.acting.motion, { rateHz: 30 })));
     expect(file.frameCount).toBe(Math.floor(people.acting.motion.times.at(-1)! * 30) + 1);
