@@ -27,6 +27,11 @@ def test_golden_features_are_what_the_features_are_now():
     assert_as_committed("features.json", golden.feature_vectors(), atol=1e-7)
 
 
+def test_golden_mocap_files_are_read_as_before():
+    assert_as_committed("bvh.json", golden.bvh_vectors(), atol=1e-7)
+    assert [case["text"] for case in committed("bvh.json")] == [case["text"] for case in golden.bvh_vectors()]
+
+
 def test_golden_frames_start_turned_and_away_from_the_origin():
     for case in committed("features.json"):
         first = case["frames"][0]

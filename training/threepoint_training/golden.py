@@ -14,6 +14,7 @@ from . import hand_tilt, quaternion, solve_ik
 from .chest_features import chest_axes
 from .features import frame_features
 from .generated_motion import generate_clip
+from .golden_bvh import bvh_vectors
 from .paper_features import paper_features
 from .prepared_corpus import Person
 from .residual import network_input
@@ -214,10 +215,11 @@ class GoldenConfig:
 
 
 def main(config: GoldenConfig) -> None:
-    """Writes tests/golden/features.json and fitted-joints.json, and models.json where there are models."""
+    """Writes tests/golden/features.json, fitted-joints.json and bvh.json, and models.json where there are models."""
     GOLDEN.mkdir(parents=True, exist_ok=True)
     (GOLDEN / "features.json").write_text(json.dumps(plain(feature_vectors())) + "\n")
     (GOLDEN / "fitted-joints.json").write_text(json.dumps(plain(fitted_vectors())) + "\n")
+    (GOLDEN / "bvh.json").write_text(json.dumps(plain(bvh_vectors())) + "\n")
     if list(config.models.glob("*.json")):
         (GOLDEN / "models.json").write_text(json.dumps(plain(model_vectors(config.models))) + "\n")
 
