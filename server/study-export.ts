@@ -50,7 +50,7 @@ function readme({ plan, simulated, records, at, retentionUntil }: ExportContent)
 /** File names of an export with their text. */
 export function exportFiles(content: ExportContent): Readonly<Record<string, string>> {
   const { plan, simulated, records, motion, at } = content;
-  const tables = studyTables(records);
+  const tables = studyTables(records, plan);
   const files: Record<string, string> = {
     'README.txt': readme(content),
     'plan.json': `${JSON.stringify(plan, null, 2)}\n`,

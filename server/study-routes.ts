@@ -1,5 +1,5 @@
 import * as v from 'valibot';
-import { checkedPlan, type StudyPlan } from '../src/core/study/plan';
+import { checkedPlan, languagesOf, type StudyPlan } from '../src/core/study/plan';
 import { checkedRecord } from '../src/core/study/study-record';
 import {
   checked,
@@ -86,7 +86,10 @@ const motionSchema = v.object({
 });
 
 /** What a participant may know of a plan: the order and names of conditions come only with their own schedule. */
-const publicPlan = ({ id, title, consent }: StudyPlan, simulated: boolean) => ({ id, title, consent, simulated });
+const publicPlan = (plan: StudyPlan, simulated: boolean) => {
+  const { id, title, consent } = plan;
+  return { id, title, consent, languages: languagesOf(plan), simulated };
+};
 
 const statusOfRefusal = { unknown: 404, conflict: 409, forbidden: 403, full: 507 } as const;
 
@@ -169,9 +172,10 @@ function participantTable({ store, now, guard, seats }: TableOptions): Route<Stu
     }),
     route('POST', `${own}/records`, 'participant', bodyLimits.json, (call) => {
       const { records } = checked(batchSchema, jsonOf(call));
+      const { plan } = store.study(call.study);
       const valid = records.map((record, index) => {
         try {
-          return checkedRecord(record);
+          return checkedRecord(record, plan);
         } catch (error) {
           if (!(error instanceof ValidationError)) throw error;
           throw new ValidationError(`records[${index}]${error.field && `.${error.field}`}`, error.complaint);

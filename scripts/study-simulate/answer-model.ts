@@ -1,8 +1,9 @@
-import type { Answers, Questionnaire } from '../../src/core/study/questionnaires';
+import type { Question } from '../../src/core/study/questionnaire-schema';
+import { type Answer, type Answers, nearestOn, type Questionnaire } from '../../src/core/study/questionnaires';
 import type { RandomSource } from './random-source';
 
 /**
- * How a simulated participant answers: a leaning [scale points], the person's own, the question's, the condition's, the place's
+ * How a simulated participant answers: a leaning [points of a scale from 1 to 5, stretched to the question's own], the person's own, the question's, the condition's, the place's
  * in the order, and chance, rounded to the scale. Stated, not fitted: no person's answers are imitated.
  */
 export interface AnswerModel {
@@ -38,6 +39,19 @@ export const plantedAnswerModel = (condition: string, effect: number): AnswerMod
 /** How this person leans, drawn once. */
 export const drawPerson = (model: AnswerModel, random: RandomSource): number => model.personDeviation * random.normal();
 
+/** What a leaning is as an answer to a question: on scales and numbers its place between the ends, turned round where these are. */
+function answerAt({ answer: form, reversed }: Question, leaning: number, random: RandomSource): Answer {
+  if (form.kind === 'text') return 'SIMULATED'.slice(0, form.maxLength);
+  if (form.kind === 'choice') {
+    const chosen = form.options[Math.floor(random.uniform() * form.options.length)] ?? form.options[0];
+    return chosen?.value ?? '';
+  }
+  const part = Math.min(1, Math.max(0, (leaning - 1) / 4));
+  const value = form.from + (form.to - form.from) * (reversed ? 1 - part : part);
+  if (form.kind === 'number') return form.whole ? Math.round(value) : value;
+  return nearestOn(form, value);
+}
+
 /** All answers of a questionnaire. */
 export function drawAnswers(
   model: AnswerModel,
@@ -47,13 +61,14 @@ export function drawAnswers(
 ): Answers {
   const effects = model.effects[condition] ?? {};
   return Object.fromEntries(
-    questionnaire.questions.map(({ id }) => {
+    questionnaire.questions.map((question) => {
+      const { id } = question;
       const leaning =
         (model.base[id] ?? model.elsewhere) +
         person +
         (effects[id] ?? effects['*'] ?? 0) +
         (block > 1 ? model.orderEffect : 0);
-      return [id, Math.min(5, Math.max(1, Math.round(leaning + model.answerDeviation * random.normal())))];
+      return [id, answerAt(question, leaning + model.answerDeviation * random.normal(), random)];
     }),
   );
 }

@@ -74,7 +74,7 @@ function run(): void {
       write(join('participants', `${exportName(own, participant)}.zip`), exportZip(own, participant));
     }
     const conditions: [string, string] = [treated.id, baseline.id];
-    const answers = compareAnswers(answersIn(all.records), conditions);
+    const answers = compareAnswers(answersIn(all.records, plan), conditions);
     const scores = compareScores(trialsIn(all.records), conditions);
     write('SIMULATED-models.json', `${JSON.stringify({ simulated: true, seed, effect, models }, null, 2)}\n`);
     write('SIMULATED-results.json', `${JSON.stringify({ simulated: true, conditions, answers, scores }, null, 2)}\n`);

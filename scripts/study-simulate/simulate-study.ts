@@ -1,7 +1,7 @@
 import { advance, type ProgressEvent } from '../../src/core/study/advance';
+import type { Demographics } from '../../src/core/study/demographics';
 import { participantsOf, type Schedule, type StudyPlan, type StudyStep, scheduleFor } from '../../src/core/study/plan';
 import { begin, currentStep, type Progress, resumed } from '../../src/core/study/progress';
-import { type Demographics, questionnaires } from '../../src/core/study/questionnaires';
 import type { StudyRecord } from '../../src/core/study/study-record';
 import type { TrialOutcome } from '../../src/core/study/trial-log';
 import { type AnswerModel, drawAnswers, drawPerson } from './answer-model';
@@ -200,7 +200,7 @@ class SimulatedSession {
 
   #answer({ condition, block, questionnaire }: QuestionnaireStep): void {
     const about = { person: this.#person, condition, block };
-    const drawn = drawAnswers(this.#models.answers, questionnaires[questionnaire], about, this.#random);
+    const drawn = drawAnswers(this.#models.answers, questionnaire, about, this.#random);
     for (const [question, value] of Object.entries(drawn)) {
       this.#now += 4 + Math.round(8 * this.#random.uniform());
       this.#tell({ type: 'answer', question, value });

@@ -1,7 +1,7 @@
 import { checkedPaperRows, paperDf, paperFrameTimes, paperScores, savedShare } from '../core/study/paper-tables';
 import { paperTable } from '../core/study/result-tables';
 import { element } from '../ui/element';
-import { aboutOf, csvButton, fixed, pText } from './result-cells';
+import { csvButton, fixed, paperAboutOf, pText } from './result-cells';
 import { tableNode } from './table';
 
 /** The paper's printed numbers, recomputed from its t values and tables. */
@@ -31,7 +31,7 @@ export function paperCheck(): readonly Node[] {
       rows.map(({ question, ours, ik, t, printedP, p, dz, holmP, follows }) => ({
         look: follows ? '' : 'wrong',
         cells: [
-          `${question} ${aboutOf(question)?.about ?? ''}`,
+          `${question} ${paperAboutOf(question)}`,
           fixed(ours, 2),
           fixed(ik, 2),
           fixed(t, 3),

@@ -1,4 +1,4 @@
-import { questionnaires } from '../core/study/questionnaires';
+import { shippedQuestionnaires } from '../core/study/questionnaires';
 import type { Interval } from '../core/study/statistics';
 import { type Table, tidyCsv } from '../core/study/tidy-csv';
 import { offerDownload } from '../ui/downloads';
@@ -15,11 +15,11 @@ const interval = (between: Interval | null | undefined, digits: number) =>
 export const meanCell = (mean: number | undefined, between: Interval | null | undefined, digits: number): Node =>
   element('div', {}, fixed(mean, digits), element('div', { class: 'soft interval' }, interval(between, digits)));
 
-/** The question of this id; undefined: there is none. */
-export const aboutOf = (id: string) =>
-  Object.values(questionnaires)
-    .flatMap(({ questions }) => questions)
-    .find((question) => question.id === id);
+/** What a question of the paper asks about; empty: it is none of them. */
+export const paperAboutOf = (id: string): string =>
+  [shippedQuestionnaires.archery, shippedQuestionnaires.ball]
+    .flatMap((asked) => asked?.questions ?? [])
+    .find((question) => question.id === id)?.about ?? '';
 
 /** Saves a table as `file`.csv. */
 export const csvButton = (table: Table, file: string) =>

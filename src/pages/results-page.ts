@@ -2,7 +2,8 @@ import { reasonOf } from '../core/errors/reasons';
 import '../styles/document.css';
 import { button, element, pageElement } from '../ui/element';
 import { paperCheck } from './paper-check';
-import { type ShownStudy, studyResults } from './results-view';
+import { studyResults } from './results-view';
+import type { ShownStudy } from './shown-results';
 import { StudyAccess } from './study-access';
 import { openStudyFile } from './study-file';
 

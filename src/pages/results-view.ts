@@ -1,50 +1,20 @@
-import {
-  type Comparison,
-  compareAnswers,
-  compareScores,
-  type Exclusion,
-  type Results,
-} from '../core/study/compare-conditions';
+import { type Comparison, compareAnswers, compareScores, type Exclusion } from '../core/study/compare-conditions';
 import { frameTimes } from '../core/study/frame-times';
-import type { StudyPlan } from '../core/study/plan';
-import { questionnaires } from '../core/study/questionnaires';
+import { questionnairesOf } from '../core/study/plan';
 import { comparisonTable, frameTimeTable } from '../core/study/result-tables';
 import type { StudyRecord } from '../core/study/study-record';
-import { answersIn, studyTables, trialsIn } from '../core/study/study-tables';
+import { answersIn, scalesIn, studyTables, trialsIn } from '../core/study/study-tables';
 import { tidyCsv } from '../core/study/tidy-csv';
 import { offerDownload } from '../ui/downloads';
 import { button, element } from '../ui/element';
-import { barChart, type ChartOptions, pairedChart, pngOf, svgText } from './charts';
-import { aboutOf, csvButton, fixed, meanCell, none, pText } from './result-cells';
+import { barChart, type ChartOptions, pairedChart } from './charts';
+import { figure } from './figure';
+import { aboutIn, questionFigures, scaleFigures } from './questionnaire-figures';
+import { csvButton, fixed, meanCell, none, pText } from './result-cells';
+import type { Compared, ShownStudy } from './shown-results';
 import { tableNode } from './table';
 
-/** What the results are computed from. */
-export interface ShownStudy {
-  readonly plan: StudyPlan;
-  readonly simulated: boolean;
-  readonly records: readonly StudyRecord[];
-}
-
 const significance = 0.05;
-
-function figure(svg: SVGSVGElement, caption: string, file: string): HTMLElement {
-  svg.setAttribute('role', 'img');
-  svg.setAttribute('aria-label', caption);
-  return element(
-    'figure',
-    {},
-    svg,
-    element(
-      'div',
-      { class: 'bar' },
-      element('figcaption', { class: 'soft' }, caption),
-      button('SVG', () => offerDownload(`${file}.svg`, 'image/svg+xml', svgText(svg)), { class: 'small' }),
-      button('PNG', () => void pngOf(svg).then((blob) => offerDownload(`${file}.png`, 'image/png', blob)), {
-        class: 'small',
-      }),
-    ),
-  );
-}
 
 function comparisonRows(comparisons: readonly Comparison[], digits: number, nameOf: (one: Comparison) => string) {
   return comparisons.map((one) => {
@@ -118,27 +88,14 @@ function demographicsText(records: readonly StudyRecord[]): string {
   );
 }
 
-/** A study's results as they are shown: first − second condition, and what things are called. */
-interface Compared {
-  readonly study: ShownStudy;
-  readonly conditions: readonly [string, string];
-  readonly answers: Results;
-  readonly scores: ReturnType<typeof compareScores>;
-  /** Of the first and the second condition. */
-  readonly labels: { readonly first: string; readonly second: string };
-  labelOf(condition: string): string;
-  titleOf(task: string): string;
-  /** The name of a file to save, without its ending. */
-  fileOf(name: string): string;
-}
-
 function compared(study: ShownStudy, conditions: readonly [string, string]): Compared {
   const { plan, simulated, records } = study;
   const labelOf = (id: string) => plan.conditions.find((condition) => condition.id === id)?.label ?? id;
   return {
     study,
     conditions,
-    answers: compareAnswers(answersIn(records), conditions),
+    answers: compareAnswers(answersIn(records, plan), conditions),
+    scales: compareAnswers(scalesIn(records, plan), conditions),
     scores: compareScores(trialsIn(records), conditions),
     labels: { first: labelOf(conditions[0]), second: labelOf(conditions[1]) },
     labelOf,
@@ -159,6 +116,7 @@ export function studyResults(study: ShownStudy, conditions: readonly [string, st
     ...notice,
     summary(results),
     ...answerParts(results),
+    ...scaleParts(results),
     ...scoreParts(results),
     ...frameTimeParts(results),
     ...leftOutParts(results),
@@ -188,49 +146,38 @@ function summary({ study: { plan, records }, answers, labels }: Compared): HTMLE
 
 function answerParts(results: Compared): readonly Node[] {
   const { study, conditions, answers, labels, fileOf } = results;
-  const table = comparisonTable('answers-compared', answers.comparisons, conditions, study.simulated);
+  if (answers.comparisons.length === 0) return [];
+  const asked = questionnairesOf(study.plan);
+  const aboutOf = (one: Comparison) => aboutIn(asked, one);
+  const facts = { conditions, simulated: study.simulated, aboutOf };
   return [
     element('h2', {}, 'Questionnaires'),
-    ...Object.values(questionnaires).flatMap((questionnaire) => answerFigures(results, questionnaire)),
+    ...questionFigures(asked, results),
     tableNode(
       'Paired comparisons of the answers: means with 95 % confidence intervals, and tests (the paper’s tables 9 and 10)',
       comparisonHeads('Question', labels.first, labels.second),
-      comparisonRows(answers.comparisons, 2, ({ of }) => `${of} ${aboutOf(of)?.about ?? ''}`),
+      comparisonRows(answers.comparisons, 2, (one) => `${one.of} ${aboutOf(one)}`),
     ),
-    bar(csvButton(table, fileOf('answers-compared'))),
+    bar(csvButton(comparisonTable('answers-compared', answers.comparisons, facts), fileOf('answers-compared'))),
   ];
 }
 
-/** The figures of one questionnaire; none where it was not answered in both conditions. */
-function answerFigures(
-  { study: { simulated }, answers, labels, fileOf }: Compared,
-  { id, title, questions }: (typeof questionnaires)[keyof typeof questionnaires],
-): readonly Node[] {
-  const comparisons = answers.comparisons.filter(({ of }) => questions.some((question) => question.id === of));
-  if (comparisons.length === 0) return [];
-  const name = `${title}: questionnaire`;
-  const options: Omit<ChartOptions, 'title'> = {
-    labels,
-    simulated,
-    nameOf: ({ of }) => of,
-    axis: 'answer, 1 very poor to 5 excellent',
-    domain: [1, 5],
-  };
+function scaleParts(results: Compared): readonly Node[] {
+  const { study, conditions, scales, labels, titleOf, fileOf } = results;
+  if (scales.comparisons.length === 0) return [];
+  const asked = questionnairesOf(study.plan);
+  const aboutOf = (one: Comparison) => aboutIn(asked, one);
+  const facts = { conditions, simulated: study.simulated, aboutOf };
+  const name = (one: Comparison) => `${aboutOf(one)}, ${titleOf(one.asked?.task ?? '')}`;
   return [
-    element(
-      'div',
-      { class: 'figures' },
-      figure(
-        barChart(comparisons, { title: name, ...options }),
-        `${name}, means (the paper’s figure ${id === 'archery' ? 11 : 13})`,
-        fileOf(`${id}-answers`),
-      ),
-      figure(
-        pairedChart(comparisons, { title: `${name}, pairs`, ...options }),
-        `${name}, every participant`,
-        fileOf(`${id}-answers-pairs`),
-      ),
+    element('h2', {}, 'Scales'),
+    ...scaleFigures(asked, results),
+    tableNode(
+      `Paired comparisons of the scales: means with 95 % confidence intervals, and tests; Holm over all ${scales.comparisons.length} scales`,
+      comparisonHeads('Scale', labels.first, labels.second),
+      comparisonRows(scales.comparisons, 2, name),
     ),
+    bar(csvButton(comparisonTable('scales-compared', scales.comparisons, facts), fileOf('scales-compared'))),
   ];
 }
 
@@ -238,7 +185,7 @@ function scoreParts(results: Compared): readonly Node[] {
   const { study, conditions, scores, labels, titleOf, fileOf } = results;
   const { points, percent } = scores;
   const both = [...points.comparisons, ...percent.comparisons];
-  const table = comparisonTable('scores-compared', both, conditions, study.simulated);
+  const table = comparisonTable('scores-compared', both, { conditions, simulated: study.simulated, aboutOf: () => '' });
   return [
     element('h2', {}, 'Scores'),
     ...percent.comparisons.map((comparison) => scoreFigures(results, comparison)),
@@ -327,8 +274,12 @@ function frameTimeParts({ study: { simulated, records }, titleOf, labelOf, fileO
 
 const listNode = (lines: readonly string[]) => element('ul', {}, ...lines.map((line) => element('li', {}, line)));
 
-function leftOutParts({ study: { records }, answers, scores }: Compared): readonly Node[] {
-  const excluded = exclusionList([...answers.excluded, ...scores.points.excluded.filter(notTutorial)]);
+function leftOutParts({ study: { records }, answers, scales, scores }: Compared): readonly Node[] {
+  const excluded = exclusionList([
+    ...answers.excluded,
+    ...scales.excluded,
+    ...scores.points.excluded.filter(notTutorial),
+  ]);
   const assisted = records.flatMap((record) => {
     if (record.kind !== 'trial' || record.body.outcome.assists.length === 0) return [];
     const { place, outcome } = record.body;
@@ -344,10 +295,10 @@ function leftOutParts({ study: { records }, answers, scores }: Compared): readon
   ];
 }
 
-const exportParts = ({ study: { records }, fileOf }: Compared): readonly Node[] => [
+const exportParts = ({ study: { plan, records }, fileOf }: Compared): readonly Node[] => [
   element('h2', {}, 'Tables of the export'),
   bar(
-    ...studyTables(records).map((table) =>
+    ...studyTables(records, plan).map((table) =>
       button(
         `${table.name}.csv`,
         () => offerDownload(`${fileOf(table.name)}.csv`, 'text/csv;charset=utf-8', tidyCsv(table)),

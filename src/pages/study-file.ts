@@ -44,7 +44,7 @@ export function openStudyFile(zip: Uint8Array): OpenedStudy {
   }
   const records = file.records.map((record: unknown, index: number) => {
     try {
-      return checkedRecord(record);
+      return checkedRecord(record, plan);
     } catch (error) {
       throw new Error(`records.json: records[${index}]: ${reasonOf(error)}`);
     }

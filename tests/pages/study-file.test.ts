@@ -34,8 +34,10 @@ test.each<[string, Uint8Array, RegExp]>([
 });
 
 test('the table of comparisons has a row per question and full precision, and says that it is simulated', () => {
-  const { comparisons } = compareAnswers(answersIn(records), ['learned', 'ik']);
-  const csv = tidyCsv(comparisonTable('answers', comparisons, ['learned', 'ik'], true))
+  const { comparisons } = compareAnswers(answersIn(records, plan), ['learned', 'ik']);
+  const csv = tidyCsv(
+    comparisonTable('answers', comparisons, { conditions: ['learned', 'ik'], simulated: true, aboutOf: () => '' }),
+  )
     .trimEnd()
     .split('\r\n');
   expect(csv).toHaveLength(13);

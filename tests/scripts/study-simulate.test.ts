@@ -41,10 +41,10 @@ describe('a simulated study', () => {
 
   test('holds what the store takes from people: complete answers, trials within their limits', () => {
     const records = simulated;
-    for (const record of records) expect(checkedRecord(JSON.parse(JSON.stringify(record)))).toEqual(record);
+    for (const record of records) expect(checkedRecord(JSON.parse(JSON.stringify(record)), plan)).toEqual(record);
     const valid = trialsIn(records).filter(({ excluded }) => !excluded);
     expect(valid).toHaveLength(15 * 4);
-    expect(answersIn(records).filter(({ excluded }) => !excluded)).toHaveLength(15 * 24);
+    expect(answersIn(records, plan).filter(({ excluded }) => !excluded)).toHaveLength(15 * 24);
     for (const { score, maximum } of valid) expect(score).toBeLessThanOrEqual(maximum);
   });
 
@@ -78,7 +78,7 @@ describe('a simulated study', () => {
   test('shows the analysis what was put in: answers and scores', () => {
     const performance = { ...statedPerformanceModel, hitChance: [0.6, 0.5, 0.4, 0.3], effects: { learned: 0.5 } };
     const records = simulate({ answers: plantedAnswerModel('learned', 1.5), performance });
-    const answers = compareAnswers(answersIn(records), ['learned', 'ik']);
+    const answers = compareAnswers(answersIn(records, plan), ['learned', 'ik']);
     expect(answers.simulated).toBe(true);
     expect(answers.comparisons.filter(({ holmP }) => (holmP ?? 1) < 0.05).length).toBeGreaterThan(6);
     const [archery] = compareScores(trialsIn(records), ['learned', 'ik']).points.comparisons;

@@ -49,7 +49,7 @@ async function wholeServer() {
   const one = session(scheduleFor(plan, 'P01'));
   one.tell({ type: 'consent', version: plan.consent.version, motion: true });
   one.doUntil(({ kind }) => kind === 'end');
-  const records = one.records.map(checkedRecord);
+  const records = one.records.map((record) => checkedRecord(record, plan));
   store.storeRecords('paper', 'P01', records, now);
   const environment = {
     THREEPOINT_LOG_LEVEL: 'silent',

@@ -305,6 +305,8 @@ describe('an export', () => {
         'plan.json',
         'questions.csv',
         'records.json',
+        'scale-definitions.csv',
+        'scales.csv',
         'trials.csv',
       ].map((name) => `paper-P01/${name}`),
     );

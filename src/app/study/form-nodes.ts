@@ -1,4 +1,5 @@
-import { type DemographicField, demographicFields } from '../../core/study/questionnaires';
+import { type DemographicField, demographicFields } from '../../core/study/demographics';
+import { inLanguage } from '../../core/study/words';
 import { button, element } from '../../ui/element';
 import type { Invited, StudyForm } from './study-form';
 
@@ -19,33 +20,63 @@ function complaintLine(): { readonly node: HTMLElement; say(text: string): void 
   };
 }
 
-/** The text consented to. */
-function consentForm({ study: { consent, simulated }, ...actions }: FormOf<'consent'>): readonly Node[] {
+/** A choice of languages, each in its own words; `onChoice` hears of the one chosen. */
+function languageChoice(languages: readonly string[], chosen: string, onChoice: (language: string) => void): Node {
+  const nameOf = (language: string) => new Intl.DisplayNames([language], { type: 'language' }).of(language) ?? language;
+  const select = element(
+    'select',
+    { name: 'language' },
+    ...languages.map((one) => element('option', { value: one, lang: one, selected: one === chosen }, nameOf(one))),
+  );
+  select.addEventListener('change', () => onChoice(select.value));
+  return element('label', { class: 'field' }, element('span', {}, 'Language'), select);
+}
+
+/** The text consented to, in the language chosen. */
+function consentForm({ study: { consent, simulated, languages }, ...actions }: FormOf<'consent'>): readonly Node[] {
+  let language = languages[0] ?? 'en';
   const complaint = complaintLine();
-  const box = (text: string) => {
+  const box = () => {
     const input = element('input', { type: 'checkbox' });
-    return { input, node: element('label', { class: 'check' }, input, element('span', {}, text)) };
+    const said = element('span', {});
+    return { input, said, node: element('label', { class: 'check' }, input, said) };
   };
-  const agreed = box('I have read this, I am old enough to decide for myself, and I want to take part.');
-  const motion = consent.motion === null ? null : box(consent.motion);
+  const agreed = box();
+  agreed.said.textContent = 'I have read this, I am old enough to decide for myself, and I want to take part.';
+  const motion = consent.motion === null ? null : box();
+  const title = element('h1', {});
+  const texts = element('div', { class: 'content' });
+  const read = () => {
+    title.textContent = inLanguage(consent.title, language);
+    texts.replaceChildren(...paragraphs(consent.paragraphs.map((one) => inLanguage(one, language))));
+    for (const node of [title, texts, ...(motion ? [motion.said] : [])]) node.lang = language;
+    if (motion && consent.motion !== null) motion.said.textContent = inLanguage(consent.motion, language);
+  };
+  read();
   const go = button('I agree', () => void agree(), { class: 'primary', disabled: true });
   agreed.input.addEventListener('change', () => {
     go.disabled = !agreed.input.checked;
   });
   async function agree(): Promise<void> {
     go.disabled = true;
-    const said = await actions.agree(motion?.input.checked ?? false);
+    const chosen = languages.length > 1 ? language : null;
+    const said = await actions.agree({ motion: motion?.input.checked ?? false, language: chosen });
     if (said === null) return;
     complaint.say(said);
     go.disabled = false;
   }
+  const choose = (chosen: string) => {
+    language = chosen;
+    read();
+  };
   return [
     element('p', { class: 'kicker' }, `Consent · text of ${consent.version}`),
-    element('h1', {}, consent.title),
+    ...(languages.length > 1 ? [languageChoice(languages, language, choose)] : []),
+    title,
     ...(simulated
       ? [element('p', { class: 'hint' }, 'This study is SIMULATED: what is recorded is marked as made by a program.')]
       : []),
-    ...paragraphs(consent.paragraphs),
+    texts,
     element('div', { class: 'checks' }, agreed.node, ...(motion ? [motion.node] : [])),
     element('p', { class: 'soft' }, 'Nothing is recorded before you agree.'),
     complaint.node,

@@ -1,6 +1,8 @@
 import type { Side } from '../../core/math/side';
 import type { ProgressEvent } from '../../core/study/advance';
 import { placeOf } from '../../core/study/progress';
+import type { Question } from '../../core/study/questionnaire-schema';
+import { type Answer, typedAnswer, unanswered } from '../../core/study/questionnaires';
 import { randomFor } from '../../core/study/shuffle';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 import type { CalibrationStep } from '../../ui/calibration-dialog';
@@ -9,7 +11,8 @@ import { ExchangeTimer } from './exchange-timer';
 import type { ParticipantSession } from './participant-session';
 import type { StudyHost } from './study-host';
 import type { StudyPage } from './study-page';
-import { lockedOutScreen, type ScreenActions, screenOf, screenQuestions } from './study-screens';
+import { lockedOutScreen, screenOf, screenQuestions } from './study-screens';
+import type { ScreenActions } from './study-situation';
 import { type FinishedTrial, isPlayed, type PlayedStep, type PlayedTrial, playTrial } from './study-trial';
 import type { TaskPlace, TaskRunner } from './task-runner';
 import { TrialPreparation } from './trial-preparation';
@@ -38,8 +41,9 @@ export class RunningStudy {
   readonly #guide: CalibrationGuide;
   readonly #actions: ScreenActions;
   #trial: PlayedTrial | null = null;
-  /** Of the step at hand: the question shown, whether handing in failed for want of an answer, why the last wish changed nothing. */
+  /** Of the step at hand: the question shown, what was typed into its field, whether handing in failed for want of an answer, why the last wish changed nothing. */
   #question = 0;
+  #typed: string | null = null;
   #triedToSubmit = false;
   #refusal: string | null = null;
   #shownStep = '';
@@ -73,6 +77,7 @@ export class RunningStudy {
       apply: (event) => this.#apply(event),
       goTo: (index) => this.#goTo(index),
       choose: (question, value) => this.#choose(question, value),
+      type: (question, typed) => this.#type(question, typed),
       submit: () => this.#submit(),
       calibrate: () => this.#guide.start(),
       enterVr: () => void host.enterVr(),
@@ -152,6 +157,7 @@ export class RunningStudy {
         session: this.session,
         inSession: this.#host.inSession(),
         question: this.#question,
+        typed: this.#typed,
         triedToSubmit: this.#triedToSubmit,
         calibration: this.#calibration,
         prepared: this.#preparation.of(this.#attempt()),
@@ -195,6 +201,7 @@ export class RunningStudy {
 
   #enterStep(): void {
     this.#shownStep = this.session.step.id;
+    this.#typed = null;
     this.#triedToSubmit = false;
     this.#refusal = null;
     this.#guide.cancel();
@@ -279,11 +286,21 @@ export class RunningStudy {
 
   #goTo(index: number): void {
     this.#question = index;
+    this.#typed = null;
+    this.#refusal = null;
     this.show();
   }
 
-  #choose(question: string, value: number): void {
+  #choose(question: string, value: Answer): void {
     this.#refusal = this.session.apply({ type: 'answer', question, value });
+    this.show();
+  }
+
+  /** What stands in a field is the answer as soon as it is one; until then there is none. */
+  #type(question: Question, typed: string): void {
+    this.#typed = typed;
+    const value = typedAnswer(question.answer, typed);
+    this.#refusal = this.session.apply({ type: 'answer', question: question.id, value });
     this.show();
   }
 
@@ -299,8 +316,9 @@ export class RunningStudy {
 
   /** Index of the first question without an answer; −1: there is none. */
   #firstOpenQuestion(): number {
-    const { draft } = this.session.progress;
-    return screenQuestions(this.session).findIndex(({ id }) => draft[id] === undefined);
+    const questions = screenQuestions(this.session);
+    const [open] = unanswered({ questions }, this.session.progress.draft);
+    return questions.findIndex(({ id }) => id === open);
   }
 
   /** Why the answers cannot be taken; null: they are. */

@@ -1,5 +1,6 @@
 import { button, element } from '../../ui/element';
 import { formNodes, formNote, paragraphs } from './form-nodes';
+import { dotNodes, questionNodes } from './question-card';
 import type { StudyForm } from './study-form';
 import type { StudyScreen } from './study-screen';
 
@@ -9,42 +10,6 @@ export interface StudyCard {
   show(screen: StudyScreen | null): void;
   /** A form takes the screen's place; it is built once as long as nothing else is shown. */
   ask(form: StudyForm): void;
-}
-
-function questionNodes(question: NonNullable<StudyScreen['question']>): readonly Node[] {
-  const dots = element('nav', { 'aria-label': 'Questions', class: 'dots' });
-  for (const [index, { id, state }] of question.all.entries()) {
-    const here = index + 1 === question.number;
-    const words = state === 'answered' ? 'answered' : 'needs an answer';
-    dots.append(
-      button(String(index + 1), () => question.goTo(index), {
-        'data-id': `go-${id}`,
-        class: `dot ${state}`,
-        'aria-label': `Question ${index + 1}, ${words}`,
-        ...(here && { 'aria-current': 'step' }),
-      }),
-    );
-  }
-  const choices = question.scale.map(({ value, label }) => {
-    const radio = element('input', {
-      type: 'radio',
-      name: question.id,
-      value,
-      checked: question.answer === value,
-      'data-id': `answer-${value}`,
-    });
-    radio.addEventListener('change', () => question.choose(value));
-    return element('label', { class: 'choice' }, radio, element('b', {}, String(value)), element('span', {}, label));
-  });
-  return [
-    dots,
-    element(
-      'fieldset',
-      { class: 'scale' },
-      element('legend', {}, question.text, element('span', { class: 'must', title: 'An answer is needed' }, ' *')),
-      ...choices,
-    ),
-  ];
 }
 
 export function createStudyCard(): StudyCard {
@@ -59,7 +24,9 @@ export function createStudyCard(): StudyCard {
   const layer = element('div', { class: 'study-layer' }, card);
   layer.hidden = true;
   document.body.append(layer);
+  const dots = element('nav', { 'aria-label': 'Questions', class: 'dots' });
   let shownKey = '';
+  let shownDots = '';
 
   const put = (node: HTMLElement, text: string | null) => {
     node.hidden = text === null;
@@ -69,22 +36,21 @@ export function createStudyCard(): StudyCard {
   return {
     show(screen) {
       layer.hidden = screen === null;
-      if (!screen) return;
+      if (!screen) {
+        // Answers may be given elsewhere meanwhile: what is shown next is built anew.
+        shownKey = '';
+        return;
+      }
       const { question, text, title, buttons } = screen;
-      const key = JSON.stringify([
-        screen.id,
-        title,
-        text,
-        question,
-        buttons.map(({ id, label, look }) => [id, label, look]),
-      ]);
+      // The fields themselves show what is answered: a card built anew at every key would lose the place of the cursor.
+      const key = JSON.stringify([screen.id, title, text, buttons.map(({ id, label, look }) => [id, label, look])]);
       if (key !== shownKey) {
         shownKey = key;
         const focused = document.activeElement?.getAttribute('data-id');
         const another = card.dataset.screen !== screen.id;
         card.dataset.screen = screen.id;
         content.replaceChildren(
-          ...(question ? questionNodes(question) : [element('h1', {}, title), ...paragraphs(text)]),
+          ...(question ? [dots, ...questionNodes(question)] : [element('h1', {}, title), ...paragraphs(text)]),
         );
         row.replaceChildren(
           ...buttons.map(({ id, label, look, act }) =>
@@ -100,6 +66,11 @@ export function createStudyCard(): StudyCard {
         const again = focused && card.querySelector<HTMLElement>(`[data-id="${focused}"]`);
         if (again) again.focus({ preventScroll: true });
         if (another) card.scrollTop = 0;
+      }
+      if (question) {
+        const state = JSON.stringify([question.number, question.all]);
+        if (state !== shownDots) dots.replaceChildren(...dotNodes(question));
+        shownDots = state;
       }
       put(kicker, screen.kicker);
       kicker.classList.toggle('trouble', screen.trouble);

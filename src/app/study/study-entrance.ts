@@ -73,8 +73,8 @@ export class StudyEntrance {
       kind: 'consent',
       study,
       participant,
-      agree: async (motion) => {
-        const taken = await agree(motion, invitation);
+      agree: async (choices) => {
+        const taken = await agree(choices, invitation);
         if (taken === 'uninvited') {
           this.#askWho(
             `This is not the invitation of ${participant}. Compare it with your link, or ask the experimenter.`,

@@ -6,6 +6,14 @@ export interface Invited {
   readonly invitation: string;
 }
 
+/** What is chosen on the form of consent. */
+export interface ConsentChoices {
+  /** Whether tracked frames may be kept. */
+  readonly motion: boolean;
+  /** In which the text was read; null: the study has only one. */
+  readonly language: string | null;
+}
+
 /** What is filled in or read at the desk alone, never in the headset; `kind` names it for tools. */
 export type StudyForm =
   | {
@@ -22,7 +30,7 @@ export type StudyForm =
       readonly study: PublicStudy;
       readonly participant: string;
       /** Answers with a complaint; null: all went well. */
-      agree(motion: boolean): Promise<string | null>;
+      agree(choices: ConsentChoices): Promise<string | null>;
       decline(): void;
     }
   | { readonly kind: 'declined'; readonly title: string }

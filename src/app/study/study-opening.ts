@@ -4,6 +4,7 @@ import type { Progress } from '../../core/study/progress';
 import type { PublicStudy } from '../../core/study/study-api';
 import { type ParticipantClient, ServerRefusal, ServerUnreachable } from '../../net/study-client';
 import { createParticipantSession, isLater, type ParticipantSession, startSession } from './participant-session';
+import type { ConsentChoices } from './study-form';
 import { type KeptSession, openStudyVault, type StudyVault } from './study-vault';
 
 /** Whose session, of which study. */
@@ -19,7 +20,10 @@ export type Opened =
       readonly kind: 'new';
       readonly study: PublicStudy;
       /** Takes the place by its invitation and begins; `uninvited`: it was another invitation. A sentence: why not. */
-      agree(motion: boolean, invitation: string): Promise<ParticipantSession | 'uninvited' | { readonly why: string }>;
+      agree(
+        choices: ConsentChoices,
+        invitation: string,
+      ): Promise<ParticipantSession | 'uninvited' | { readonly why: string }>;
     };
 
 export interface OpeningOptions {
@@ -86,7 +90,7 @@ export async function openSession(place: Place, { client, now, onChange }: Openi
   return {
     kind: 'new',
     study,
-    async agree(motion, invitation) {
+    async agree({ motion, language }, invitation) {
       try {
         const claim = await client.claim(id, participant, invitation);
         const session = createParticipantSession(
@@ -95,7 +99,8 @@ export async function openSession(place: Place, { client, now, onChange }: Openi
           options,
         );
         if (session.step.kind === 'consent') {
-          const said = session.apply({ type: 'consent', motion, version: study.consent.version });
+          const { version } = study.consent;
+          const said = session.apply({ type: 'consent', motion, version, ...(language !== null && { language }) });
           if (said !== null) return { why: said };
         } else session.apply({ type: 'reload' });
         return session;

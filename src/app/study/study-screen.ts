@@ -6,18 +6,67 @@ export interface ScreenButton {
   act(): void;
 }
 
+/** A point that can be chosen. */
+export interface ScreenPoint<Value> {
+  readonly value: Value;
+  /** Empty: the number alone. */
+  readonly label: string;
+}
+
+/** Below the ends of a scale. */
+export interface ScreenEnds {
+  readonly low: string;
+  readonly high: string;
+}
+
+/** How a question is answered, in the participant's language; `answer` null: not yet. */
+export type ScreenField =
+  | {
+      readonly kind: 'likert';
+      readonly points: readonly ScreenPoint<number>[];
+      /** null: the points say it themselves. */
+      readonly ends: ScreenEnds | null;
+      readonly answer: number | null;
+      choose(value: number): void;
+    }
+  | {
+      readonly kind: 'slider';
+      /** Every value that the line tells apart, in order. */
+      readonly values: readonly number[];
+      readonly ends: ScreenEnds;
+      readonly answer: number | null;
+      choose(value: number): void;
+    }
+  | {
+      readonly kind: 'choice';
+      readonly points: readonly ScreenPoint<string>[];
+      readonly answer: string | null;
+      choose(value: string): void;
+    }
+  | {
+      readonly kind: 'number' | 'text';
+      /** As typed so far, an answer or not. */
+      readonly typed: string;
+      /** Behind the number; empty: none. */
+      readonly unit: string;
+      readonly maxLength: number;
+      type(typed: string): void;
+    };
+
 /** One question of a questionnaire and where it stands among the others. */
 export interface ScreenQuestion {
   readonly id: string;
   readonly text: string;
+  readonly language: string;
   /** From 1. */
   readonly number: number;
-  readonly scale: readonly { readonly value: number; readonly label: string }[];
-  /** null: not answered. */
-  readonly answer: number | null;
-  /** Of all questions in order. missing: handing in failed for want of it. */
-  readonly all: readonly { readonly id: string; readonly state: 'answered' | 'open' | 'missing' }[];
-  choose(value: number): void;
+  readonly optional: boolean;
+  readonly field: ScreenField;
+  /** Of all questions in order. missing: handing in failed for want of it. optional: open, and may stay so. */
+  readonly all: readonly {
+    readonly id: string;
+    readonly state: 'answered' | 'open' | 'missing' | 'optional';
+  }[];
   goTo(index: number): void;
 }
 

@@ -1,42 +1,11 @@
-import type { ProgressEvent } from '../../core/study/advance';
 import { blindLabel, type StudyStep } from '../../core/study/plan';
-import { type Question, questionnaires, scale } from '../../core/study/questionnaires';
+import type { Question } from '../../core/study/questionnaire-schema';
 import { type CalibrationStep, calibrationHeadline, calibrationInstruction } from '../../ui/calibration-dialog';
 import type { ParticipantSession, Safekeeping } from './participant-session';
+import { questionPart } from './question-screen';
 import type { ScreenButton, StudyScreen } from './study-screen';
+import type { ScreenActions, StudySituation } from './study-situation';
 import type { PlayedStep } from './study-trial';
-import type { Prepared } from './trial-preparation';
-
-/** Everything that decides what a participant sees. */
-export interface StudySituation {
-  readonly session: ParticipantSession;
-  readonly inSession: boolean;
-  /** Index of the question shown. */
-  readonly question: number;
-  /** Handing in failed for want of an answer. */
-  readonly triedToSubmit: boolean;
-  /** null: no one is being measured. */
-  readonly calibration: CalibrationStep | null;
-  /** Of the step at hand; null: not asked for yet. */
-  readonly prepared: Prepared | null;
-  /** Why the last wish changed nothing; null: it did. */
-  readonly refusal: string | null;
-  readonly playing: boolean;
-  /** Others without whom a trial that was started cannot begin; null: it waits for no one. */
-  readonly waitingFor: string | null;
-  /** The game stands because another of the group pauses. */
-  readonly standing: boolean;
-}
-
-export interface ScreenActions {
-  apply(event: ProgressEvent): void;
-  goTo(index: number): void;
-  choose(question: string, value: number): void;
-  submit(): void;
-  calibrate(): void;
-  enterVr(): void;
-  prepareAgain(): void;
-}
 
 const clock = (seconds: number): string => {
   const whole = Math.ceil(seconds);
@@ -70,7 +39,7 @@ export function safekeepingText({
 }
 
 export function screenQuestions({ step }: Pick<ParticipantSession, 'step'>): readonly Question[] {
-  return step.kind === 'questionnaire' ? questionnaires[step.questionnaire].questions : [];
+  return step.kind === 'questionnaire' ? step.questionnaire.questions : [];
 }
 
 /** Participants know rounds by number, never by condition. */
@@ -327,45 +296,21 @@ function endScreen(base: ScreenBase, { plan, safekeeping }: ParticipantSession):
   };
 }
 
-function questionScreen(
-  base: ScreenBase,
-  { session, question: index, triedToSubmit, refusal }: StudySituation,
-  actions: ScreenActions,
-): StudyScreen {
+function questionScreen(base: ScreenBase, situation: StudySituation, actions: ScreenActions): StudyScreen {
+  const { session, question: index } = situation;
   const questions = screenQuestions(session);
-  const { draft } = session.progress;
-  const shown = questions[Math.min(index, questions.length - 1)] as Question;
-  const at = questions.indexOf(shown);
+  const at = Math.min(index, questions.length - 1);
   const last = at === questions.length - 1;
-  const open = questions.filter(({ id }) => draft[id] === undefined).length;
   const left = session.remaining();
   const time = left === null ? '' : left > 0 ? `${clock(left)} left` : 'Take the time you need.';
-  const missing = triedToSubmit && draft[shown.id] === undefined;
+  const { question, hint } = questionPart(questions, at, situation, actions);
   return {
     ...base,
-    id: `question-${shown.id}`,
-    title: shown.text,
+    id: `question-${question.id}`,
+    title: question.text,
     text: [],
-    hint:
-      refusal ??
-      (missing
-        ? '* This question still needs an answer.'
-        : open > 0
-          ? `* ${open} of ${questions.length} still need an answer.`
-          : null),
-    question: {
-      id: shown.id,
-      text: shown.text,
-      number: at + 1,
-      scale,
-      answer: draft[shown.id] ?? null,
-      all: questions.map(({ id }) => ({
-        id,
-        state: draft[id] !== undefined ? 'answered' : triedToSubmit ? 'missing' : 'open',
-      })),
-      choose: (value) => actions.choose(shown.id, value),
-      goTo: actions.goTo,
-    },
+    hint,
+    question,
     buttons: [
       { id: 'back', label: 'Back', look: at === 0 ? 'off' : 'plain', act: () => actions.goTo(at - 1) },
       pauseButton(actions),

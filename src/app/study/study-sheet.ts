@@ -1,55 +1,13 @@
 import { fillRounded, vrColors, vrFont, wrap } from '../../ui/vr-panel';
-import type { PanelTarget } from '../../ui/vr-touch';
-import type { ScreenButton, ScreenQuestion, StudyScreen } from './study-screen';
-
-/** The sheet [pixels], and how many of them are a metre. */
-export const width = 1200;
-export const height = 880;
-export const pixelsPerMetre = 1000;
-const margin = 60;
-const inner = width - 2 * margin;
-
-/** What can be pressed on the sheet, and how it looks. */
-export interface Target extends PanelTarget {
-  readonly kind: 'button' | 'scale' | 'dot';
-  readonly label: string;
-  readonly look: ScreenButton['look'] | 'chosen' | 'answered' | 'open' | 'missing' | 'here';
-  act(): void;
-}
+import { paintQuestion, questionTargets } from './question-sheet';
+import { height, inner, margin, type Target, width } from './sheet-target';
+import type { ScreenButton, StudyScreen } from './study-screen';
 
 /** Everything of a screen that can be pressed, laid out. */
 export const targetsOf = ({ question, buttons }: StudyScreen): readonly Target[] => [
   ...(question ? questionTargets(question) : []),
   ...buttonTargets(buttons),
 ];
-
-function questionTargets(question: ScreenQuestion): readonly Target[] {
-  const step = 52;
-  const left = width - margin - question.all.length * step;
-  const dots = question.all.map(
-    ({ id, state }, index): Target => ({
-      kind: 'dot',
-      id: `go-${id}`,
-      label: String(index + 1),
-      look: index + 1 === question.number ? 'here' : state,
-      at: [left + index * step, 40, 44, 44],
-      act: () => question.goTo(index),
-    }),
-  );
-  const gap = 18;
-  const wide = (inner - gap * (question.scale.length - 1)) / question.scale.length;
-  const answers = question.scale.map(
-    ({ value, label }, index): Target => ({
-      kind: 'scale',
-      id: `answer-${value}`,
-      label,
-      look: question.answer === value ? 'chosen' : 'plain',
-      at: [margin + index * (wide + gap), 410, wide, 190],
-      act: () => question.choose(value),
-    }),
-  );
-  return [...dots, ...answers];
-}
 
 function buttonTargets(buttons: readonly ScreenButton[]): readonly Target[] {
   const gap = 24;
@@ -87,7 +45,7 @@ export function paintSheet(
   context.fillText(screen.kicker, margin, 64, screen.question ? 560 : inner);
 
   context.fillStyle = vrColors.ink;
-  if (screen.question) paintQuestion(context, screen.question);
+  if (screen.question) paintQuestion(context, screen.question, hovered);
   else paintText(context, screen);
 
   context.textAlign = 'center';
@@ -101,11 +59,6 @@ export function paintSheet(
   context.fillStyle = vrColors.inkSoft;
   context.font = `400 26px ${vrFont}`;
   context.fillText(screen.footnote, margin, 842, inner);
-}
-
-function paintQuestion(context: CanvasRenderingContext2D, { text }: ScreenQuestion): void {
-  context.font = `600 50px ${vrFont}`;
-  for (const [index, line] of wrap(context, text, inner).entries()) context.fillText(line, margin, 180 + index * 66);
 }
 
 /** Title, paragraphs, a number to be read from afar, a bar. */
@@ -133,21 +86,45 @@ function paintText(context: CanvasRenderingContext2D, { title, text, figure, par
   }
 }
 
+const fontOf = ({ kind, at: [, , wide, high] }: Target): string => {
+  const size = {
+    dot: 24,
+    key: 30,
+    button: Math.min(44, high * 0.45),
+    option: Math.min(40, high * 0.4),
+    scale: 34,
+    tick: 0,
+  };
+  return `${kind === 'scale' ? 500 : 600} ${Math.min(size[kind], wide)}px ${vrFont}`;
+};
+
 function paintTarget(context: CanvasRenderingContext2D, target: Target, hovered: boolean): void {
-  const { kind, look, label } = target;
+  const { kind, look, label, figure } = target;
+  if (kind === 'tick') return;
   const [x, y, w, h] = target.at;
   const outline = look === 'missing' ? vrColors.accent : hovered ? vrColors.ink : undefined;
-  fillRounded(context, [x, y, w, h], kind === 'dot' ? 22 : 28, fillOf(look, hovered), outline);
+  const radius = kind === 'dot' ? 22 : kind === 'key' ? 12 : 28;
+  fillRounded(context, [x, y, w, h], Math.min(radius, w / 3), fillOf(look, hovered), outline);
   context.globalAlpha = look === 'off' ? 0.4 : 1;
   context.fillStyle = look === 'chosen' || look === 'primary' ? vrColors.accentInk : vrColors.ink;
-  if (kind === 'scale') {
-    context.font = `650 72px ${vrFont}`;
-    context.fillText(target.id.replace('answer-', ''), x + w / 2, y + 76);
-    context.font = `500 34px ${vrFont}`;
-    context.fillText(label, x + w / 2, y + 148, w - 16);
-  } else {
-    context.font = `600 ${kind === 'dot' ? 24 : 44}px ${vrFont}`;
-    context.fillText(label, x + w / 2, y + h / 2 + 2, w - 20);
+  if (figure) {
+    context.font = `650 ${Math.min(72, w * 0.5)}px ${vrFont}`;
+    context.fillText(figure, x + w / 2, y + (label ? 76 : h / 2));
+  }
+  if (label) {
+    // Narrow points have small words, in as many lines as they need.
+    context.font = kind === 'scale' && w < 180 ? `500 26px ${vrFont}` : fontOf(target);
+    const lines = kind === 'scale' || kind === 'option' ? wrap(context, label, w - 16) : [label];
+    const middle = figure ? y + 148 : y + h / 2 + 2;
+    const step = 30;
+    for (const [index, line] of lines.entries()) {
+      context.fillText(
+        line,
+        x + w / 2,
+        middle + (index - (lines.length - 1) / 2) * (figure ? step : step + 12),
+        w - 16,
+      );
+    }
   }
   context.globalAlpha = 1;
 }

@@ -2,8 +2,9 @@ import { Group, Vector3 } from 'three';
 import { createVrPanel } from '../../ui/vr-panel';
 import type { Pointer } from '../../ui/vr-pointers';
 import { createPanelTouch } from '../../ui/vr-touch';
+import { height, pixelsPerMetre, type Target, width } from './sheet-target';
 import type { StudyScreen } from './study-screen';
-import { height, paintSheet, pixelsPerMetre, type Target, targetsOf, width } from './study-sheet';
+import { paintSheet, targetsOf } from './study-sheet';
 
 /** The study in the headset: one sheet at arm's length and a bit, with targets as big as a palm. */
 export interface VrStudyPanel {

@@ -1,20 +1,24 @@
 import type { Calibration } from '../body/calibration';
+import { checkedConsent } from './consent';
+import { checkedDemographics } from './demographics';
 import type { Schedule, StudyStep } from './plan';
 import { currentStep, elapsedSeconds, type Progress, placeOf } from './progress';
-import { checkedAnswers, checkedConsent, checkedDemographics, checkedDraft, questionnaires } from './questionnaires';
+import { type Answer, checkedAnswers, checkedDraft } from './questionnaires';
 import { type Place, recordVersion, type StudyEvent, type StudyRecord } from './study-record';
 import { checkedOutcome, type TrialOutcome } from './trial-log';
 import { checked, text, ValidationError } from './validation';
 
 /** What participant, experimenter, game or clock report. */
 export type ProgressEvent =
-  | { readonly type: 'consent'; readonly motion: boolean; readonly version: string }
+  /** `language`: in which the text was read; absent: the study has only one. */
+  | { readonly type: 'consent'; readonly motion: boolean; readonly version: string; readonly language?: string }
   | { readonly type: 'demographics'; readonly demographics: unknown }
   | { readonly type: 'calibrated'; readonly calibration: Calibration }
   /** Starts the tutorial or trial that waits. */
   | { readonly type: 'start' }
   | { readonly type: 'trial-finished'; readonly outcome: TrialOutcome }
-  | { readonly type: 'answer'; readonly question: string; readonly value: number }
+  /** null takes the answer back. */
+  | { readonly type: 'answer'; readonly question: string; readonly value: Answer | null }
   /** Hands the questionnaire in. */
   | { readonly type: 'submit' }
   /** Time has passed. */
@@ -159,10 +163,11 @@ class Moment {
 
 const isPlayed = (step: StudyStep) => step.kind === 'trial' || step.kind === 'tutorial';
 
-function consent(at: Moment, { version, motion }: EventOf<'consent'>): Advance | null {
+function consent(at: Moment, { version, motion, language }: EventOf<'consent'>): Advance | null {
   if (at.step.kind !== 'consent') return null;
-  const body = checkedConsent({ version, given: true, motion, at: at.now }, at.schedule.consentVersion);
-  return at.moveOn({ ...at.progress, motion }, [{ ...at.envelope, kind: 'consent', id: 'consent', body }]);
+  const chosen = language === undefined ? {} : { language };
+  const body = checkedConsent({ version, given: true, motion, at: at.now, ...chosen }, at.schedule.consentVersion);
+  return at.moveOn({ ...at.progress, motion, ...chosen }, [{ ...at.envelope, kind: 'consent', id: 'consent', body }]);
 }
 
 function demographics(at: Moment, event: EventOf<'demographics'>): Advance | null {
@@ -207,14 +212,15 @@ function trialFinished(at: Moment, { outcome }: EventOf<'trial-finished'>): Adva
 function answer(at: Moment, { question, value }: EventOf<'answer'>): Advance | null {
   const { step, progress } = at;
   if (step.kind !== 'questionnaire') return null;
-  const draft = checkedDraft(questionnaires[step.questionnaire], { ...progress.draft, [question]: value });
+  const { [question]: _, ...others } = progress.draft;
+  const draft = checkedDraft(step.questionnaire, value === null ? others : { ...progress.draft, [question]: value });
   return at.taken({ ...progress, draft: { ...draft } });
 }
 
 function submit(at: Moment): Advance | null {
   const { step, place, progress } = at;
   if (step.kind !== 'questionnaire' || !place) return null;
-  const answers = checkedAnswers(questionnaires[step.questionnaire], progress.draft);
+  const answers = checkedAnswers(step.questionnaire, progress.draft);
   const seconds = elapsedSeconds(progress, at.now);
   const { estimator } = at.schedule.steps.find(
     (other) => other.kind === 'trial' && other.task === step.task && other.block === step.block,
@@ -223,7 +229,8 @@ function submit(at: Moment): Advance | null {
     place,
     condition: step.condition,
     estimator,
-    questionnaire: step.questionnaire,
+    questionnaire: step.questionnaire.id,
+    ...(progress.language !== undefined && { language: progress.language }),
     answers: { ...answers },
     seconds,
     overtime: seconds > step.seconds,

@@ -1,4 +1,4 @@
-import { questionnaires } from './questionnaires';
+import type { AnswerRow } from './answer-tables';
 import {
   holm,
   type MeanSummary,
@@ -8,7 +8,7 @@ import {
   type SignedRankTest,
   signedRankTest,
 } from './statistics';
-import { type AnswerRow, refuseMixture, type TrialRow } from './study-tables';
+import { refuseMixture, type TrialRow } from './study-tables';
 
 /** A participant or an answer left out, and why: results state it. */
 export interface Exclusion {
@@ -18,10 +18,15 @@ export interface Exclusion {
   readonly reason: string;
 }
 
+/** A question, or a scale, of a questionnaire after a task. */
+export type Asked = Pick<AnswerRow, 'task' | 'questionnaire' | 'question'>;
+
 /** One question, or one score, under two conditions. */
 export interface Comparison {
-  /** "Q1", or the id of a task. */
+  /** "Q1", or the id of a task; of a question that is asked in more than one place: "archery/nasa-tlx/mental". */
   readonly of: string;
+  /** What was asked where; null: scores. */
+  readonly asked: Asked | null;
   readonly unit: 'answer' | 'points' | 'percent';
   /** null: no participant has both. */
   readonly first: MeanSummary | null;
@@ -45,6 +50,7 @@ type Pair = Comparison['pairs'][number];
 
 interface Series {
   readonly of: string;
+  readonly asked: Asked | null;
   readonly unit: Comparison['unit'];
   readonly pairs: readonly Pair[];
 }
@@ -107,30 +113,43 @@ function paired(
 const incomplete = (alone: readonly { readonly who: string; readonly missing: string }[], of: string): Exclusion[] =>
   alone.map(({ who, missing }) => ({ participant: who, of, reason: `no valid value under "${missing}"` }));
 
+/** What is asked with a number, in the order first met, and what each is called: its id, where that is of one place alone. */
+function askedIn(rows: readonly AnswerRow[]): readonly { readonly of: string; readonly asked: Asked }[] {
+  const places = new Map<string, Asked>();
+  for (const { task, questionnaire, question, answer } of rows) {
+    const key = `${task}/${questionnaire}/${question}`;
+    if (typeof answer === 'number' && !places.has(key)) places.set(key, { task, questionnaire, question });
+  }
+  const times = new Map<string, number>();
+  for (const { question } of places.values()) times.set(question, (times.get(question) ?? 0) + 1);
+  return [...places].map(([key, asked]) => ({ of: times.get(asked.question) === 1 ? asked.question : key, asked }));
+}
+
+const isOf = (row: AnswerRow, { task, questionnaire, question }: Asked) =>
+  row.question === question && row.questionnaire === questionnaire && row.task === task;
+
 /**
- * Every question compared between two conditions, first − second, as one family for Holm's correction. Only participants with
- * both values count; who is left out is stated. Throws where simulated rows and rows of people are mixed.
+ * Every question (or scale) that is answered with a number compared between two conditions, first − second, as one family for
+ * Holm's correction. Only participants with both values count; who is left out is stated. Throws where simulated rows and rows
+ * of people are mixed.
  */
 export function compareAnswers(rows: readonly AnswerRow[], conditions: readonly [string, string]): Results {
   refuseMixture(rows);
   const excluded: Exclusion[] = [];
-  const asked = Object.values(questionnaires).flatMap(({ questions }) => questions.map(({ id }) => id));
-  const series = asked
-    .filter((id) => rows.some(({ question }) => question === id))
-    .map((id): Series => {
-      const relevant = rows.filter(({ question, condition }) => question === id && conditions.includes(condition));
-      for (const { participant, excluded: reason } of relevant) {
-        if (reason) excluded.push({ participant, of: id, reason });
-      }
-      const { pairs, alone } = paired(
-        relevant
-          .filter(({ excluded: reason }) => !reason)
-          .map(({ participant, condition, answer }) => ({ who: participant, condition, value: answer })),
-        conditions,
-      );
-      excluded.push(...incomplete(alone, id));
-      return { of: id, unit: 'answer', pairs };
-    });
+  const series = askedIn(rows).map(({ of, asked }): Series => {
+    const relevant = rows.filter((row) => isOf(row, asked) && conditions.includes(row.condition));
+    for (const { participant, excluded: reason } of relevant) {
+      if (reason) excluded.push({ participant, of, reason });
+    }
+    const { pairs, alone } = paired(
+      relevant.flatMap(({ participant, condition, answer, excluded: reason }) =>
+        reason || typeof answer !== 'number' ? [] : [{ who: participant, condition, value: answer }],
+      ),
+      conditions,
+    );
+    excluded.push(...incomplete(alone, of));
+    return { of, asked, unit: 'answer', pairs };
+  });
   return { simulated: rows[0]?.simulated ?? false, comparisons: compared(series), excluded };
 }
 
@@ -167,7 +186,7 @@ export function compareScores(
         }
         excluded.push(...incomplete(alone, task));
       }
-      return { of: task, unit, pairs };
+      return { of: task, asked: null, unit, pairs };
     });
   const simulated = rows[0]?.simulated ?? false;
   return {

@@ -1,8 +1,24 @@
 import * as v from 'valibot';
 import { type EstimatorName, estimatorNames } from '../estimation/pose-estimator';
-import { type QuestionnaireId, questionnaireIds } from './questionnaires';
+import { questionnaireSchema } from './questionnaire-schema';
+import {
+  type Questionnaire,
+  questionnaireNamed,
+  refuseMissingLanguages,
+  resolvedQuestionnaire,
+  shippedQuestionnaires,
+} from './questionnaires';
 import { randomFor, shuffle } from './shuffle';
-import { checked, identifier, integerBetween, numberBetween, text, ValidationError } from './validation';
+import {
+  checked,
+  complaintsAbout,
+  identifier,
+  integerBetween,
+  numberBetween,
+  text,
+  ValidationError,
+} from './validation';
+import { languageTag, missingLanguage, type Words, words } from './words';
 
 export const planFormat = 'threepoint-study';
 export const planVersion = 1;
@@ -37,12 +53,22 @@ const taskSchema = v.strictObject({
   calibrateBeforeBlock: v.boolean('expected true or false'),
   /** Between the last trial of a block and its questionnaire. */
   restSeconds: seconds(3600),
-  questionnaire: v.picklist(questionnaireIds, `expected one of ${questionnaireIds.join(', ')}`),
-  /** Time to answer; who needs longer may finish, and it is recorded. */
+  /** Ids of the plan's own questionnaires or of shipped ones, asked in this order. */
+  questionnaire: v.union(
+    [
+      identifier,
+      v.pipe(v.array(identifier), v.minLength(1, 'expected at least one'), v.maxLength(8, 'expected at most eight')),
+    ],
+    'expected the id of a questionnaire, or a list of ids',
+  ),
+  /** Time to answer each; who needs longer may finish, and it is recorded. */
   questionnaireSeconds: numberBetween(10, 7200),
 });
 
-const planSchema = v.strictObject({
+/** The schema of a plan, but for what its parts demand of each other. */
+export const planSchema = v.strictObject({
+  /** Where editors find the schema; the program does not ask for it. */
+  $schema: v.exactOptional(text(500)),
   format: v.literal(planFormat, `expected "${planFormat}": this is no study file`),
   version: v.literal(planVersion, `expected ${planVersion}, the version that this program reads`),
   id: identifier,
@@ -64,17 +90,24 @@ const planSchema = v.strictObject({
     v.minLength(1, 'expected at least one task'),
     v.maxLength(8, 'expected at most eight tasks'),
   ),
+  /** Those that participants may choose from; the first is the one that is chosen. One, English, where nothing is said. */
+  languages: v.exactOptional(
+    v.pipe(v.array(languageTag, 'expected a list of languages'), v.minLength(1, 'expected at least one language')),
+  ),
+  questionnaires: v.exactOptional(
+    v.pipe(v.array(questionnaireSchema, 'expected a list'), v.maxLength(20, 'expected at most twenty')),
+  ),
   consent: v.strictObject({
     /** Changes with every change of the text. */
     version: text(40),
-    title: text(120),
+    title: words(120),
     paragraphs: v.pipe(
-      v.array(text(2000), 'expected a list of paragraphs'),
+      v.array(words(2000), 'expected a list of paragraphs'),
       v.minLength(1, 'expected at least one paragraph'),
       v.maxLength(40, 'expected at most forty paragraphs'),
     ),
     /** Asked apart: whether tracked frames may be kept; null: this study never records them. */
-    motion: v.nullable(text(1000)),
+    motion: v.nullable(words(1000)),
   }),
   /** After this many days the server deletes what was recorded. */
   retentionDays: integerBetween(1, 36_500),
@@ -94,6 +127,67 @@ function refuseRepeated(names: readonly string[], fieldOf: (index: number) => st
   });
 }
 
+/** The languages that participants may choose from, the first of them chosen. */
+export const languagesOf = ({ languages }: Pick<StudyPlan, 'languages'>): readonly [string, ...string[]] => {
+  const [first = 'en', ...others] = languages ?? [];
+  return [first, ...others];
+};
+
+/** The ids of the questionnaires after each block of a task, in the order asked. */
+export const questionnairesAfter = ({ questionnaire }: Pick<StudyTask, 'questionnaire'>): readonly string[] =>
+  typeof questionnaire === 'string' ? [questionnaire] : questionnaire;
+
+/** Every questionnaire that the study asks, once, in the order first met. */
+export const questionnairesOf = (plan: StudyPlan): readonly Questionnaire[] =>
+  [...new Set(plan.tasks.flatMap(questionnairesAfter))].map((id) => questionnaireNamed(plan, id) as Questionnaire);
+
+function refuseQuestionnaires(plan: StudyPlan): void {
+  const own = plan.questionnaires ?? [];
+  const languages = languagesOf(plan);
+  refuseRepeated(languages, (index) => `languages[${index}]`);
+  refuseRepeated(
+    own.map(({ id }) => id),
+    (index) => `questionnaires[${index}].id`,
+  );
+  own.forEach((file, index) => {
+    const field = `questionnaires[${index}]`;
+    if (Object.hasOwn(shippedQuestionnaires, file.id)) {
+      throw new ValidationError(
+        `${field}.id`,
+        `"${file.id}" is the name of a questionnaire that comes with the program`,
+      );
+    }
+    resolvedQuestionnaire(file, field);
+    refuseMissingLanguages(file, languages, field);
+  });
+  plan.tasks.forEach((task, index) => {
+    const named = questionnairesAfter(task);
+    const fieldOf = (at: number) =>
+      `tasks[${index}].questionnaire${typeof task.questionnaire === 'string' ? '' : `[${at}]`}`;
+    refuseRepeated(named, fieldOf);
+    named.forEach((id, at) => {
+      if (questionnaireNamed(plan, id)) return;
+      const known = [...own.map((one) => one.id), ...Object.keys(shippedQuestionnaires)];
+      throw new ValidationError(fieldOf(at), `there is no questionnaire "${id}": expected one of ${known.join(', ')}`);
+    });
+  });
+}
+
+function refuseUntranslatedConsent(plan: StudyPlan): void {
+  const { title, paragraphs, motion } = plan.consent;
+  const texts: (readonly [string, Words])[] = [
+    ['title', title],
+    ...paragraphs.map((one, index) => [`paragraphs[${index}]`, one] as const),
+  ];
+  if (motion !== null) texts.push(['motion', motion]);
+  for (const [field, text] of texts) {
+    const missing = missingLanguage(text, languagesOf(plan));
+    if (missing !== null) {
+      throw new ValidationError(`consent.${field}.${missing}`, 'is missing, and the study is in this language too');
+    }
+  }
+}
+
 /** A study from parsed JSON; throws a ValidationError that names the field. */
 export function checkedPlan(value: unknown): StudyPlan {
   const plan = checked(planSchema, value);
@@ -111,6 +205,8 @@ export function checkedPlan(value: unknown): StudyPlan {
       `all orders of ${plan.conditions.length} conditions are more than a study can run: expected williams`,
     );
   }
+  refuseQuestionnaires(plan);
+  refuseUntranslatedConsent(plan);
   plan.tasks.forEach(({ groupSize }, index) => {
     if (plan.participants % groupSize !== 0) {
       throw new ValidationError(
@@ -130,6 +226,28 @@ export function parsePlan(json: string, file: string): StudyPlan {
     if (error instanceof ValidationError) throw new ValidationError(error.field, error.complaint, file);
     if (error instanceof SyntaxError) throw new ValidationError('', `this is no JSON: ${error.message}`, file);
     throw error;
+  }
+}
+
+/** Everything that is wrong with the text of a study's file, each with file, field and reason; empty: it is sound. */
+export function planComplaints(json: string, file: string): readonly string[] {
+  let value: unknown;
+  try {
+    value = JSON.parse(json);
+  } catch (error) {
+    if (!(error instanceof SyntaxError)) throw error;
+    return [`${file}: this is no JSON: ${error.message}`];
+  }
+  const complaints = complaintsAbout(planSchema, value).map(({ field, complaint }) =>
+    [file, field, complaint].filter(Boolean).join(': '),
+  );
+  if (complaints.length > 0) return complaints;
+  try {
+    checkedPlan(value);
+    return [];
+  } catch (error) {
+    if (!(error instanceof ValidationError)) throw error;
+    return [[file, error.field, error.complaint].filter(Boolean).join(': ')];
   }
 }
 
@@ -221,7 +339,7 @@ export type StudyStep =
       })
   | (StepOf<'rest'> & BlockStep & { readonly seconds: number })
   | (StepOf<'questionnaire'> &
-      BlockStep & { readonly condition: string; readonly questionnaire: QuestionnaireId; readonly seconds: number })
+      BlockStep & { readonly condition: string; readonly questionnaire: Questionnaire; readonly seconds: number })
   | StepOf<'end'>;
 
 /** What one participant does, from consent to the end. */
@@ -255,13 +373,19 @@ export function scheduleFor(plan: StudyPlan, participant: string): Schedule {
     const index = all.findIndex((members) => members.includes(participant));
     groups[task.id] = { number: index + 1, members: all[index] as readonly string[] };
     const order = ordersByGroup(plan, task)[index] as readonly StudyCondition[];
-    steps.push(...order.flatMap((condition, place) => blockSteps(task, condition, place + 1)));
+    const asked = questionnairesAfter(task).map((id) => questionnaireNamed(plan, id) as Questionnaire);
+    steps.push(...order.flatMap((condition, place) => blockSteps(task, condition, place + 1, asked)));
   }
   steps.push({ kind: 'end', id: 'end' });
   return { study: plan.id, participant, consentVersion: plan.consent.version, groups, steps };
 }
 
-function blockSteps(task: StudyTask, condition: StudyCondition, block: number): readonly StudyStep[] {
+function blockSteps(
+  task: StudyTask,
+  condition: StudyCondition,
+  block: number,
+  asked: readonly Questionnaire[],
+): readonly StudyStep[] {
   const where = { task: task.id, block };
   const id = (name: string) => `${task.id}/${block}/${name}`;
   const steps: StudyStep[] = [];
@@ -291,13 +415,15 @@ function blockSteps(task: StudyTask, condition: StudyCondition, block: number): 
     });
   }
   if (task.restSeconds > 0) steps.push({ kind: 'rest', id: id('rest'), ...where, seconds: task.restSeconds });
-  steps.push({
-    kind: 'questionnaire',
-    id: id('questionnaire'),
-    ...where,
-    condition: condition.id,
-    questionnaire: task.questionnaire,
-    seconds: task.questionnaireSeconds,
+  asked.forEach((questionnaire, index) => {
+    steps.push({
+      kind: 'questionnaire',
+      id: id(index === 0 ? 'questionnaire' : `questionnaire-${index + 1}`),
+      ...where,
+      condition: condition.id,
+      questionnaire,
+      seconds: task.questionnaireSeconds,
+    });
   });
   return steps;
 }

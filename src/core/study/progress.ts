@@ -1,8 +1,9 @@
 import * as v from 'valibot';
 import type { Schedule, StudyStep } from './plan';
-import { checkedDraft, questionnaires } from './questionnaires';
+import { checkedDraft } from './questionnaires';
 import type { Place } from './study-record';
 import { checked, identifier, integerBetween, numberBetween, participantId, text, ValidationError } from './validation';
+import { languageTag } from './words';
 
 export const progressVersion = 1;
 
@@ -25,9 +26,11 @@ const progressSchema = v.object({
   /** Seconds that it ran before. */
   elapsed: numberBetween(0, longestStep),
   /** The answers given so far in the questionnaire of this step. */
-  draft: v.record(v.string(), v.number()),
+  draft: v.record(v.string(), v.union([v.number(), v.string()])),
   /** Whether tracked frames may be kept; null: consent has not been given, so nothing may be recorded. */
   motion: v.nullable(v.boolean()),
+  /** In which the participant reads; absent: the study has only one. */
+  language: v.exactOptional(languageTag),
   /** "task/block" to its run, where that is not the first. */
   runs: v.record(v.string(), integerBetween(1, 1000)),
   /** Attempts at the present step, from 1. */
@@ -83,7 +86,7 @@ export function resumed(schedule: Schedule, json: string): Progress {
     }
   }
   const step = currentStep(schedule, progress);
-  if (step.kind === 'questionnaire') checkedDraft(questionnaires[step.questionnaire], progress.draft);
+  if (step.kind === 'questionnaire') checkedDraft(step.questionnaire, progress.draft);
   return progress;
 }
 

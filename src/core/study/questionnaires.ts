@@ -1,118 +1,242 @@
 import * as v from 'valibot';
-import { checked, integerBetween, numberBetween, text, ValidationError } from './validation';
+import type { AnswerForm, Question, QuestionnaireFile, Scale } from './questionnaire-schema';
+import { questionnaireSchema } from './questionnaire-schema';
+import archery from './shipped/archery.json' with { type: 'json' };
+import ball from './shipped/ball.json' with { type: 'json' };
+import nasaTlx from './shipped/nasa-tlx.json' with { type: 'json' };
+import nasaTlxRaw from './shipped/nasa-tlx-raw.json' with { type: 'json' };
+import ssq from './shipped/ssq.json' with { type: 'json' };
+import systemUsability from './shipped/system-usability.json' with { type: 'json' };
+import { checked, ValidationError } from './validation';
+import { missingLanguage, type Words } from './words';
 
-/** One question of a questionnaire, answered on the scale. */
-export interface Question {
-  readonly id: string;
-  readonly text: string;
-  /** What it asks about, in a word or two: headings of charts and tables. */
-  readonly about: string;
-}
-
+/** A questionnaire whose questions all say how they are answered. */
 export interface Questionnaire {
-  readonly id: QuestionnaireId;
-  readonly title: string;
-  /** All of them must be answered. */
+  readonly id: string;
+  readonly title: Words;
+  readonly source?: string;
   readonly questions: readonly Question[];
+  readonly scales: readonly Scale[];
 }
 
-/** Five points; the paper names the ends (very poor, excellent), the three between are ours. */
-export const scale = [
-  { value: 1, label: 'Very poor' },
-  { value: 2, label: 'Poor' },
-  { value: 3, label: 'Fair' },
-  { value: 4, label: 'Good' },
-  { value: 5, label: 'Excellent' },
-] as const;
+/** An answer as it is recorded: a number, or a text (what was typed, or the value of the option chosen). */
+export type Answer = number | string;
 
-export const questionnaireIds = ['archery', 'ball'] as const;
-export type QuestionnaireId = (typeof questionnaireIds)[number];
+/** Question id to answer, as given: reversed questions are not turned round. */
+export type Answers = Readonly<Record<string, Answer>>;
 
-/** Tables 7 and 8 of the paper, word for word. In Q5 it reads a high answer as little delay. */
-export const questionnaires: Readonly<Record<QuestionnaireId, Questionnaire>> = {
-  archery: {
-    id: 'archery',
-    title: 'Archery',
-    questions: [
-      {
-        id: 'Q1',
-        about: 'presence',
-        text: 'How strongly did you feel a sense of presence while using this method?',
-      },
-      {
-        id: 'Q2',
-        about: 'embodiment',
-        text: 'How strongly did you feel a sense of embodiment while using this method?',
-      },
-      {
-        id: 'Q3',
-        about: 'moving around',
-        text: 'How compelling was your sense of moving around inside the virtual environment?',
-      },
-      { id: 'Q4', about: 'accuracy', text: 'How accurate was the environment for actions you are in?' },
-      {
-        id: 'Q5',
-        about: 'delay',
-        text: 'To what extent did you observe a delay between actions and the expected outcomes?',
-      },
-      { id: 'Q6', about: 'naturalness', text: 'How natural did your interactions with the environment seem?' },
-      {
-        id: 'Q7',
-        about: 'preference',
-        text: 'Do you prefer this method overall (for a single-user virtual game)?',
-      },
-    ],
-  },
-  ball: {
-    id: 'ball',
-    title: 'Ball game',
-    questions: [
-      {
-        id: 'Q8',
-        about: 'presence',
-        text: 'How strongly did you feel a sense of presence while using this method?',
-      },
-      {
-        id: 'Q9',
-        about: 'ownership',
-        text: 'How strongly did you feel like your virtual body was your own while using this method?',
-      },
-      {
-        id: 'Q10',
-        about: 'prediction',
-        text: 'How well were you able to predict the outcome of your actions in the virtual environment?',
-      },
-      {
-        id: 'Q11',
-        about: 'manipulation',
-        text: 'How easily were you able to move and manipulate objects in the virtual environment?',
-      },
-      {
-        id: 'Q12',
-        about: 'preference',
-        text: 'Would you say you prefer this method over others for a multi-user virtual game?',
-      },
-    ],
-  },
+const mostPoints = 101;
+const mostSliderSteps = 200;
+
+/** The distance of two answers that a scale tells apart; a slider that says nothing has a hundred. */
+export const stepOf = (form: Extract<AnswerForm, { kind: 'likert' | 'slider' }>): number =>
+  form.step ?? (form.kind === 'likert' ? 1 : (form.to - form.from) / 100);
+
+/** The number on a scale nearest to a value; ends included. */
+export function nearestOn(form: Extract<AnswerForm, { kind: 'likert' | 'slider' }>, value: number): number {
+  const step = stepOf(form);
+  const steps = Math.min(Math.round((form.to - form.from) / step), Math.max(0, Math.round((value - form.from) / step)));
+  return Number((form.from + steps * step).toFixed(6));
+}
+
+/** The points of a Likert scale, first to last; everything between the ends of a slider in its steps. */
+export function pointsOf(form: Extract<AnswerForm, { kind: 'likert' | 'slider' }>): readonly number[] {
+  const steps = Math.round((form.to - form.from) / stepOf(form));
+  return Array.from({ length: steps + 1 }, (_, index) => nearestOn(form, form.from + index * stepOf(form)));
+}
+
+function refuseForm(form: AnswerForm, field: string): void {
+  if (form.kind === 'text') return;
+  if (form.kind === 'choice') {
+    form.options.forEach(({ value }, index) => {
+      const first = form.options.findIndex((option) => option.value === value);
+      if (first !== index) {
+        throw new ValidationError(`${field}.options[${index}].value`, `"${value}" is the value of option ${first} too`);
+      }
+    });
+    return;
+  }
+  if (form.to <= form.from)
+    throw new ValidationError(`${field}.to`, `expected more than ${form.from}, where it begins`);
+  if (form.kind === 'number') return;
+  const steps = (form.to - form.from) / stepOf(form);
+  if (Math.abs(steps - Math.round(steps)) > 1e-6) {
+    throw new ValidationError(
+      `${field}.step`,
+      `${form.from} to ${form.to} is no whole number of steps of ${form.step}`,
+    );
+  }
+  const most = form.kind === 'likert' ? mostPoints - 1 : mostSliderSteps;
+  if (steps > most + 1e-6) throw new ValidationError(`${field}.step`, `expected at most ${most} steps from end to end`);
+  if (form.kind === 'likert' && form.labels && form.labels.length !== Math.round(steps) + 1) {
+    const points = Math.round(steps) + 1;
+    throw new ValidationError(`${field}.labels`, `expected ${points}, one for each point, found ${form.labels.length}`);
+  }
+}
+
+function refuseScale(scale: Scale, questions: readonly Question[], field: string): void {
+  const named = (list: 'questions' | 'choices') =>
+    (scale[list] ?? []).forEach((id, index) => {
+      const found = questions.find((question) => question.id === id);
+      const at = `${field}.${list}[${index}]`;
+      if (!found) throw new ValidationError(at, `there is no question "${id}"`);
+      const chosen = found.answer.kind === 'choice';
+      if (list === 'choices' && !chosen) throw new ValidationError(at, `"${id}" is no choice`);
+      if (list === 'questions' && (chosen || found.answer.kind === 'text')) {
+        throw new ValidationError(at, `"${id}" is not answered with a number`);
+      }
+    });
+  named('questions');
+  named('choices');
+  if (scale.method === 'count' && scale.atLeast === undefined)
+    throw new ValidationError(`${field}.atLeast`, 'is missing');
+  if (scale.method === 'weighted-mean' && !scale.choices) throw new ValidationError(`${field}.choices`, 'is missing');
+}
+
+/** A questionnaire with how each question is answered; throws a ValidationError with the field below `field`. */
+export function resolvedQuestionnaire(file: QuestionnaireFile, field = ''): Questionnaire {
+  const at = (way: string) => (field ? `${field}.${way}` : way);
+  if (file.answer) refuseForm(file.answer, at('answer'));
+  const questions = file.questions.map((question, index): Question => {
+    const way = at(`questions[${index}]`);
+    const first = file.questions.findIndex(({ id }) => id === question.id);
+    if (first !== index)
+      throw new ValidationError(`${way}.id`, `"${question.id}" is the name of question ${first} too`);
+    const answer = question.answer ?? file.answer;
+    if (!answer) throw new ValidationError(`${way}.answer`, 'is missing, and the questionnaire says none for all');
+    if (question.answer) refuseForm(question.answer, `${way}.answer`);
+    if (question.reversed && (answer.kind === 'choice' || answer.kind === 'text')) {
+      throw new ValidationError(`${way}.reversed`, `a ${answer.kind} has no other way round`);
+    }
+    return { ...question, answer };
+  });
+  const scales = file.scales ?? [];
+  scales.forEach((scale, index) => {
+    refuseScale(scale, questions, at(`scales[${index}]`));
+    if (scales.findIndex(({ id }) => id === scale.id) !== index || questions.some(({ id }) => id === scale.id)) {
+      throw new ValidationError(at(`scales[${index}].id`), `"${scale.id}" is the name of another scale or a question`);
+    }
+  });
+  return { id: file.id, title: file.title, ...(file.source && { source: file.source }), questions, scales };
+}
+
+/** Every text of a questionnaire that participants read, with its field below `field`. */
+function textsOf(
+  { title, answer, questions }: QuestionnaireFile,
+  field: string,
+): readonly (readonly [string, Words])[] {
+  const ofForm = (form: AnswerForm | undefined, at: string): readonly (readonly [string, Words])[] => {
+    if (!form || form.kind === 'text') return [];
+    if (form.kind === 'choice')
+      return form.options.map(({ label }, i) => [`${at}.options[${i}].label`, label] as const);
+    if (form.kind === 'number') return form.unit === undefined ? [] : [[`${at}.unit`, form.unit]];
+    const labels = form.kind === 'likert' ? (form.labels ?? []) : [];
+    return [
+      ...(form.ends ? [[`${at}.ends.low`, form.ends.low] as const, [`${at}.ends.high`, form.ends.high] as const] : []),
+      ...labels.map((label, i) => [`${at}.labels[${i}]`, label] as const),
+    ];
+  };
+  return [
+    [`${field}.title`, title],
+    ...ofForm(answer, `${field}.answer`),
+    ...questions.flatMap((one, i) => [
+      [`${field}.questions[${i}].text`, one.text] as const,
+      ...ofForm(one.answer, `${field}.questions[${i}].answer`),
+    ]),
+  ];
+}
+
+/** Throws a ValidationError for the first text that one of the languages lacks. */
+export function refuseMissingLanguages(file: QuestionnaireFile, languages: readonly string[], field: string): void {
+  for (const [at, text] of textsOf(file, field)) {
+    const missing = missingLanguage(text, languages);
+    if (missing !== null)
+      throw new ValidationError(`${at}.${missing}`, 'is missing, and the study is in this language too');
+  }
+}
+
+const shipped = (file: unknown): readonly [string, Questionnaire] => {
+  const questionnaire = resolvedQuestionnaire(checked(questionnaireSchema, file));
+  return [questionnaire.id, questionnaire];
 };
 
-/** Question id to an answer from 1 to 5. */
-export type Answers = Readonly<Record<string, number>>;
+/** The questionnaires that come with the program, by id: a plan names them. */
+export const shippedQuestionnaires: Readonly<Record<string, Questionnaire>> = Object.fromEntries(
+  [archery, ball, nasaTlx, nasaTlxRaw, ssq, systemUsability].map(shipped),
+);
 
-/** The answers as given so far, some perhaps missing; throws for a question that is not asked or a value off the scale. */
-export function checkedDraft(questionnaire: Questionnaire, value: unknown): Answers {
-  const answers = checked(v.record(v.string(), integerBetween(1, scale.length)), value);
-  for (const id of Object.keys(answers)) {
-    if (!questionnaire.questions.some((question) => question.id === id)) {
-      throw new ValidationError(id, `the questionnaire "${questionnaire.id}" does not ask this`);
+/** The questionnaire of this id: the plan's own, or one of the shipped; null: there is none. */
+export function questionnaireNamed(
+  plan: { readonly questionnaires?: readonly QuestionnaireFile[] },
+  id: string,
+): Questionnaire | null {
+  const own = plan.questionnaires?.find((questionnaire) => questionnaire.id === id);
+  if (own) return resolvedQuestionnaire(own);
+  return Object.hasOwn(shippedQuestionnaires, id) ? (shippedQuestionnaires[id] as Questionnaire) : null;
+}
+
+/** What an answer to a form must be, in words: "expected a whole number from 1 to 5". */
+export function expectedAnswer(form: AnswerForm): string {
+  switch (form.kind) {
+    case 'likert':
+    case 'slider': {
+      const step = stepOf(form);
+      if (step === 1) return `expected a whole number from ${form.from} to ${form.to}`;
+      return `expected a number from ${form.from} to ${form.to} in steps of ${Number(step.toFixed(6))}`;
     }
+    case 'number':
+      return `expected a ${form.whole ? 'whole ' : ''}number from ${form.from} to ${form.to}`;
+    case 'choice':
+      return `expected one of ${form.options.map(({ value }) => value).join(', ')}`;
+    case 'text':
+      return `expected text of at most ${form.maxLength} characters`;
+  }
+}
+
+/** Whether this may be the answer to a question of this form. */
+export function isAnswer(form: AnswerForm, value: unknown): value is Answer {
+  switch (form.kind) {
+    case 'likert':
+    case 'slider':
+      return typeof value === 'number' && Number.isFinite(value) && Math.abs(nearestOn(form, value) - value) < 1e-6;
+    case 'number':
+      return (
+        typeof value === 'number' &&
+        value >= form.from &&
+        value <= form.to &&
+        (form.whole !== true || Number.isInteger(value))
+      );
+    case 'choice':
+      return form.options.some((option) => option.value === value);
+    case 'text':
+      return typeof value === 'string' && value.trim() !== '' && value.length <= form.maxLength;
+  }
+}
+
+/** What was typed as an answer; null: it is none, or not yet. */
+export function typedAnswer(form: AnswerForm, typed: string): Answer | null {
+  const text = typed.trim();
+  if (text === '') return null;
+  const value = form.kind === 'number' ? Number(text.replace('−', '-').replace(',', '.')) : text;
+  return isAnswer(form, value) ? value : null;
+}
+
+const loose = v.record(v.string(), v.union([v.number(), v.string()], 'expected a number or a text'));
+
+/** The answers as given so far, some perhaps missing; throws for a question that is not asked or a value off its scale. */
+export function checkedDraft(questionnaire: Questionnaire, value: unknown): Answers {
+  const answers = checked(loose, value);
+  for (const [id, answer] of Object.entries(answers)) {
+    const asked = questionnaire.questions.find((question) => question.id === id);
+    if (!asked) throw new ValidationError(id, `the questionnaire "${questionnaire.id}" does not ask this`);
+    if (!isAnswer(asked.answer, answer)) throw new ValidationError(id, expectedAnswer(asked.answer));
   }
   return answers;
 }
 
-/** The ids of the questions without an answer, in the order asked. */
-export const unanswered = (questionnaire: Questionnaire, answers: Answers): readonly string[] =>
-  questionnaire.questions.map(({ id }) => id).filter((id) => answers[id] === undefined);
+/** The ids of the questions that still need an answer, in the order asked. */
+export const unanswered = ({ questions }: Pick<Questionnaire, 'questions'>, answers: Answers): readonly string[] =>
+  questions.filter(({ id, optional }) => !optional && answers[id] === undefined).map(({ id }) => id);
 
 /** Complete answers; throws for what `checkedDraft` refuses and for the first question left out. */
 export function checkedAnswers(questionnaire: Questionnaire, value: unknown): Answers {
@@ -120,126 +244,4 @@ export function checkedAnswers(questionnaire: Questionnaire, value: unknown): An
   const [missing] = unanswered(questionnaire, answers);
   if (missing) throw new ValidationError(missing, 'this question has no answer');
   return answers;
-}
-
-export type DemographicField =
-  | {
-      readonly id: keyof Demographics;
-      readonly label: string;
-      readonly kind: 'choice';
-      readonly options: readonly { readonly value: string; readonly label: string }[];
-    }
-  | {
-      readonly id: keyof Demographics;
-      readonly label: string;
-      readonly kind: 'age';
-      readonly min: number;
-      readonly max: number;
-    }
-  | { readonly id: keyof Demographics; readonly label: string; readonly kind: 'text'; readonly maxLength: number };
-
-const genders = ['woman', 'man', 'non-binary', 'other', 'not-said'] as const;
-const experiences = ['none', 'once-or-twice', 'several-times', 'monthly', 'weekly'] as const;
-const hands = ['right', 'left', 'both'] as const;
-const visions = ['normal', 'corrected', 'impaired'] as const;
-const ages = { min: 16, max: 120 };
-const longest = { major: 80, systems: 120 };
-
-const demographicsSchema = v.object({
-  gender: v.picklist(genders, `expected one of ${genders.join(', ')}`),
-  /** Years. */
-  age: integerBetween(ages.min, ages.max),
-  /** Field of study or work. */
-  major: text(longest.major),
-  vrExperience: v.picklist(experiences, `expected one of ${experiences.join(', ')}`),
-  /** Which systems were used before; may be empty. */
-  vrSystems: v.pipe(
-    v.string('expected text'),
-    v.trim(),
-    v.maxLength(longest.systems, `expected at most ${longest.systems} characters`),
-  ),
-  handedness: v.picklist(hands, `expected one of ${hands.join(', ')}`),
-  vision: v.picklist(visions, `expected one of ${visions.join(', ')}`),
-});
-
-/** What the paper asked of its participants before they played, and which hand they prefer. */
-export type Demographics = v.InferOutput<typeof demographicsSchema>;
-
-/** Throws a ValidationError that names the field. */
-export const checkedDemographics = (value: unknown): Demographics => checked(demographicsSchema, value);
-
-/** The form, in the order asked. Everything but the systems used must be answered; gender need not be told. */
-export const demographicFields: readonly DemographicField[] = [
-  {
-    id: 'gender',
-    label: 'Gender',
-    kind: 'choice',
-    options: [
-      { value: 'woman', label: 'Woman' },
-      { value: 'man', label: 'Man' },
-      { value: 'non-binary', label: 'Non-binary' },
-      { value: 'other', label: 'Another' },
-      { value: 'not-said', label: 'I prefer not to say' },
-    ],
-  },
-  { id: 'age', label: 'Age [years]', kind: 'age', ...ages },
-  { id: 'major', label: 'Field of study or work', kind: 'text', maxLength: longest.major },
-  {
-    id: 'vrExperience',
-    label: 'How often have you used virtual reality?',
-    kind: 'choice',
-    options: [
-      { value: 'none', label: 'Never' },
-      { value: 'once-or-twice', label: 'Once or twice' },
-      { value: 'several-times', label: 'Several times' },
-      { value: 'monthly', label: 'Every month' },
-      { value: 'weekly', label: 'Every week' },
-    ],
-  },
-  { id: 'vrSystems', label: 'Which systems? (may stay empty)', kind: 'text', maxLength: longest.systems },
-  {
-    id: 'handedness',
-    label: 'Which hand do you prefer?',
-    kind: 'choice',
-    options: [
-      { value: 'right', label: 'Right' },
-      { value: 'left', label: 'Left' },
-      { value: 'both', label: 'Both alike' },
-    ],
-  },
-  {
-    id: 'vision',
-    label: 'How do you see?',
-    kind: 'choice',
-    options: [
-      { value: 'normal', label: 'Well without correction' },
-      { value: 'corrected', label: 'Well with glasses or lenses' },
-      { value: 'impaired', label: 'Impaired, also in the headset' },
-    ],
-  },
-];
-
-const consentSchema = v.object({
-  /** Of the text that was shown. */
-  version: text(40),
-  given: v.literal(true, 'nothing is recorded without consent'),
-  /** Whether tracked frames may be kept as well. */
-  motion: v.boolean('expected true or false'),
-  /** Seconds since 1970, on the participant's device. */
-  at: numberBetween(0, 1e11),
-});
-
-/** Consent to a text of a version; there is no record of a refusal, because then nothing is recorded. */
-export type Consent = v.InferOutput<typeof consentSchema>;
-
-/** Throws a ValidationError that names the field, also where the version is not the one of the plan. */
-export function checkedConsent(value: unknown, version: string): Consent {
-  const consent = checked(consentSchema, value);
-  if (consent.version !== version) {
-    throw new ValidationError(
-      'version',
-      `consent was given to text ${consent.version}, but the study shows ${version}`,
-    );
-  }
-  return consent;
 }

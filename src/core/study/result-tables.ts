@@ -1,7 +1,6 @@
 import type { Comparison } from './compare-conditions';
 import type { FrameTimeRow } from './frame-times';
 import { checkedPaperRows } from './paper-tables';
-import { questionnaires } from './questionnaires';
 import type { Column, Table } from './tidy-csv';
 
 const text = (name: string, description: string): Column => ({ name, type: 'text', unit: '', description });
@@ -22,7 +21,7 @@ const comparisonColumns: readonly Column[] = [
   simulatedColumn,
   text('of', 'Question, or task whose scores are compared.'),
   text('about', 'What the question asks about; empty for scores.'),
-  text('unit', 'answer (1 to 5), points or percent.'),
+  text('unit', 'answer (as the scale of the question goes), points or percent.'),
   text('first', 'Condition whose values the difference begins with.'),
   text('second', 'Condition that is subtracted.'),
   number('n', '', 'Pairs: participants, or groups where a group has one score.'),
@@ -47,17 +46,20 @@ const comparisonColumns: readonly Column[] = [
   number('rank_biserial', '', 'Its effect size, −1 to 1.'),
 ];
 
-const aboutOf = (id: string): string =>
-  Object.values(questionnaires)
-    .flatMap(({ questions }) => questions)
-    .find((question) => question.id === id)?.about ?? '';
+/** What comparisons are of. */
+export interface ComparedFacts {
+  /** Ids: first − second. */
+  readonly conditions: readonly [string, string];
+  readonly simulated: boolean;
+  /** What a question asks about, in a word or two; empty: nothing is said. */
+  readonly aboutOf: (comparison: Comparison) => string;
+}
 
 /** The comparisons as a tidy table, full precision. */
 export function comparisonTable(
   name: string,
   comparisons: readonly Comparison[],
-  [first, second]: readonly [string, string],
-  simulated: boolean,
+  { conditions: [first, second], simulated, aboutOf }: ComparedFacts,
 ): Table {
   return {
     name,
@@ -65,7 +67,7 @@ export function comparisonTable(
     rows: comparisons.map((one) => ({
       simulated,
       of: one.of,
-      about: aboutOf(one.of),
+      about: aboutOf(one),
       unit: one.unit,
       first,
       second,

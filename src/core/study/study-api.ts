@@ -51,6 +51,8 @@ export interface StudyInfo {
 
 /** What is public of a study. */
 export interface PublicStudy extends Pick<StudyPlan, 'id' | 'title' | 'consent'> {
+  /** Those that participants may choose from; the first is chosen. */
+  readonly languages: readonly string[];
   readonly simulated: boolean;
 }
 

@@ -1,12 +1,9 @@
 import * as v from 'valibot';
 import { estimatorNames } from '../estimation/pose-estimator';
-import {
-  checkedAnswers,
-  checkedConsent,
-  checkedDemographics,
-  questionnaireIds,
-  questionnaires,
-} from './questionnaires';
+import { checkedConsent } from './consent';
+import { checkedDemographics } from './demographics';
+import type { StudyPlan } from './plan';
+import { checkedAnswers, questionnaireNamed } from './questionnaires';
 import { checkedOutcome } from './trial-log';
 import {
   checked,
@@ -18,6 +15,7 @@ import {
   text,
   ValidationError,
 } from './validation';
+import { languageTag } from './words';
 
 /** Of what is sent and stored; grows with every change of meaning. */
 export const recordVersion = 1;
@@ -79,8 +77,10 @@ const bodies = {
   answers: v.object({
     place: placeSchema,
     ...condition.entries,
-    questionnaire: v.picklist(questionnaireIds),
-    answers: v.record(v.string(), v.number()),
+    questionnaire: identifier,
+    /** In which it was read; absent: the study has only one. */
+    language: v.exactOptional(languageTag),
+    answers: v.record(v.string(), v.union([v.number(), v.string()], 'expected a number or a text')),
     /** From the first question to handing in, pauses left out. */
     seconds: numberBetween(0, 1e7),
     overtime: v.boolean(),
@@ -151,8 +151,11 @@ function within<T>(field: string, check: () => T): T {
   }
 }
 
-/** A record that may be stored; throws a ValidationError that names the field, also where it is too long. */
-export function checkedRecord(value: unknown): StudyRecord {
+/** What of a plan decides whether a record fits it. */
+export type RecordedBy = Pick<StudyPlan, 'questionnaires'>;
+
+/** A record of this study that may be stored; throws a ValidationError that names the field, also where it is too long. */
+export function checkedRecord(value: unknown, plan: RecordedBy): StudyRecord {
   const record = checked(recordSchema, value);
   const length = JSON.stringify(record).length;
   if (length > longestRecord)
@@ -168,11 +171,13 @@ export function checkedRecord(value: unknown): StudyRecord {
     }
     case 'answers': {
       const { questionnaire, answers } = record.body;
+      const asked = questionnaireNamed(plan, questionnaire);
+      if (!asked) throw new ValidationError('body.questionnaire', `the study has no questionnaire "${questionnaire}"`);
       return {
         ...record,
         body: {
           ...record.body,
-          answers: within('body.answers', () => checkedAnswers(questionnaires[questionnaire], answers)),
+          answers: within('body.answers', () => ({ ...checkedAnswers(asked, answers) })),
         },
       };
     }

@@ -1,4 +1,5 @@
-import { type Questionnaire, questionnaires } from './questionnaires';
+import { type AnswerRow, answerRows, type BlockExclusion, questionTable, scaleRows, scaleTable } from './answer-tables';
+import type { StudyPlan } from './plan';
 import type { Place, StudyRecord } from './study-record';
 import type { Cell, Column, Table } from './tidy-csv';
 
@@ -32,6 +33,7 @@ const participantColumns = [
   ...who,
   text('consent_version', 'Version of the text consented to.'),
   boolean('motion_consent', 'Whether tracked frames may be kept.'),
+  text('language', 'In which the text was read; empty: the study has only one.'),
   text('gender', 'woman, man, non-binary, other, not-said.'),
   number('age', 'years', 'As told.'),
   text('major', 'Field of study or work, as typed.'),
@@ -45,11 +47,24 @@ const answerColumns = [
   ...who,
   ...where,
   ...conditionColumns,
-  text('questionnaire', 'archery (Q1 to Q7) or ball (Q8 to Q12).'),
-  text('question', 'Id of the question; its words are in questions.csv.'),
-  number('answer', '', '1 very poor, 2 poor, 3 fair, 4 good, 5 excellent.'),
+  text('questionnaire', 'Id.'),
+  text('question', 'Id of the question; its words and its scale are in questions.csv.'),
+  number('answer', '', 'As given, reversed questions too; empty: text, a choice, or left open.'),
+  text('answer_text', 'Text as typed, or the value of the option chosen; empty: a number, or left open.'),
+  text('language', 'In which it was read.'),
   number('seconds', 's', 'From the first question shown to handing in the whole questionnaire, pauses left out.'),
   boolean('overtime', 'Whether that took longer than the plan gives.'),
+  time,
+  excluded,
+];
+
+const scaleColumns = [
+  ...who,
+  ...where,
+  ...conditionColumns,
+  text('questionnaire', 'Id.'),
+  text('scale', 'Id of the scale; scale-definitions.csv says how it is computed.'),
+  number('value', '', 'Empty: a question that it needs has no answer.'),
   time,
   excluded,
 ];
@@ -137,18 +152,8 @@ const eventColumns = [
   time,
 ];
 
-const questionColumns = [
-  text('questionnaire', 'archery or ball.'),
-  text('question', 'Id.'),
-  text('about', 'What it asks about.'),
-  text('text', 'The words, those of the paper.'),
-];
-
-/** Why what was recorded in this block counts for nothing; empty: it counts. */
-type Exclusion = (participant: string, place: Place) => string;
-
 /** Says why what was recorded at a place counts for nothing: "voided: reason"; empty: it counts. */
-export function voidedBlocks(records: readonly StudyRecord[]): Exclusion {
+export function voidedBlocks(records: readonly StudyRecord[]): BlockExclusion {
   const key = (participant: string, { task, block, run }: Pick<Place, 'task' | 'block' | 'run'>) =>
     `${participant} ${task}/${block}@${run}`;
   const voided = new Map<string, string>();
@@ -163,46 +168,15 @@ export function voidedBlocks(records: readonly StudyRecord[]): Exclusion {
 const identity = ({ study, participant, simulated }: StudyRecord) => ({ study, participant, simulated });
 const placed = ({ task, block, run }: Place) => ({ task, block, run });
 
-/** Answers to each question, one per row. */
-export interface AnswerRow {
-  readonly participant: string;
-  readonly simulated: boolean;
-  readonly task: string;
-  readonly block: number;
-  readonly run: number;
-  readonly condition: string;
-  readonly question: string;
-  readonly answer: number;
-  /** Empty: it counts. */
-  readonly excluded: string;
-}
+/** The answers to every question, voided ones marked. */
+export const answersIn = (records: readonly StudyRecord[], plan: StudyPlan): readonly AnswerRow[] =>
+  answerRows(records, plan, voidedBlocks(records));
 
-function answerRows(records: readonly StudyRecord[], exclusion: Exclusion) {
-  return records.flatMap((record) => {
-    if (record.kind !== 'answers') return [];
-    const { place, condition, estimator, questionnaire, answers, seconds, overtime } = record.body;
-    const excluded = exclusion(record.participant, place);
-    return (questionnaires[questionnaire] as Questionnaire).questions.map(({ id }) => ({
-      ...identity(record),
-      ...placed(place),
-      condition,
-      estimator,
-      questionnaire,
-      question: id,
-      answer: answers[id] as number,
-      seconds,
-      overtime,
-      at: record.at,
-      excluded,
-    }));
-  });
-}
+/** The scales that are computed from the answers, voided ones marked. */
+export const scalesIn = (records: readonly StudyRecord[], plan: StudyPlan): readonly AnswerRow[] =>
+  scaleRows(records, plan, voidedBlocks(records));
 
-/** The answers of these records, voided ones marked. */
-export const answersIn = (records: readonly StudyRecord[]): readonly AnswerRow[] =>
-  answerRows(records, voidedBlocks(records));
-
-function trialRows(records: readonly StudyRecord[], exclusion: Exclusion) {
+function trialRows(records: readonly StudyRecord[], exclusion: BlockExclusion) {
   return records.flatMap((record) => {
     if (record.kind !== 'trial') return [];
     const { place, condition, estimator, repetition, group, outcome } = record.body;
@@ -252,7 +226,8 @@ function participantRows(records: readonly StudyRecord[]) {
       rows.set(record.participant, row);
     }
     if (record.kind === 'consent') {
-      Object.assign(row, { consent_version: record.body.version, motion_consent: record.body.motion });
+      const { version, motion, language = null } = record.body;
+      Object.assign(row, { consent_version: version, motion_consent: motion, language });
     } else if (record.kind === 'demographics') {
       const { vrExperience, vrSystems, ...rest } = record.body;
       Object.assign(row, { ...rest, vr_experience: vrExperience, vr_systems: vrSystems });
@@ -289,20 +264,32 @@ export function refuseMixture(records: readonly { readonly simulated: boolean }[
 }
 
 /** The tables of an export. Throws where simulated records and records of people are mixed. */
-export function studyTables(records: readonly StudyRecord[]): readonly Table[] {
+export function studyTables(records: readonly StudyRecord[], plan: StudyPlan): readonly Table[] {
   refuseMixture(records);
   const exclusion = voidedBlocks(records);
   const trials = trialRows(records, exclusion);
   return [
     { name: 'participants', columns: participantColumns, rows: participantRows(records) },
-    { name: 'answers', columns: answerColumns, rows: answerRows(records, exclusion) },
     {
-      name: 'questions',
-      columns: questionColumns,
-      rows: Object.values(questionnaires).flatMap(({ id: questionnaire, questions }) =>
-        questions.map(({ id, about, text: words }) => ({ questionnaire, question: id, about, text: words })),
-      ),
+      name: 'answers',
+      columns: answerColumns,
+      rows: answerRows(records, plan, exclusion).map(({ answer, ...row }) => ({
+        ...row,
+        answer: typeof answer === 'number' ? answer : null,
+        answer_text: typeof answer === 'string' ? answer : '',
+      })),
     },
+    questionTable(plan),
+    {
+      name: 'scales',
+      columns: scaleColumns,
+      rows: scaleRows(records, plan, exclusion).map(({ question, answer, ...row }) => ({
+        ...row,
+        scale: question,
+        value: answer,
+      })),
+    },
+    scaleTable(plan),
     {
       name: 'trials',
       columns: trialColumns,

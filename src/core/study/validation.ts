@@ -48,6 +48,15 @@ export function checked<Schema extends v.GenericSchema>(schema: Schema, value: u
   throw new ValidationError(fieldOf(issue), issue.message);
 }
 
+/** Everything that a schema finds wrong with a value, in the order of its fields. */
+export function complaintsAbout(
+  schema: v.GenericSchema,
+  value: unknown,
+): readonly { readonly field: string; readonly complaint: string }[] {
+  const { issues = [] } = v.safeParse(schema, value, { abortPipeEarly: true, message: complaintOf });
+  return issues.map((issue) => ({ field: fieldOf(issue), complaint: issue.message }));
+}
+
 /** Names that go into addresses, file names and tables. */
 export const identifier = v.pipe(
   v.string(),

@@ -1,13 +1,10 @@
 import { describe, expect, test } from 'vitest';
 import { createParticipantSession, startSession } from '../../../src/app/study/participant-session';
-import {
-  type ScreenActions,
-  type StudySituation,
-  safekeepingText,
-  screenOf,
-} from '../../../src/app/study/study-screens';
+import type { StudyScreen } from '../../../src/app/study/study-screen';
+import { safekeepingText, screenOf } from '../../../src/app/study/study-screens';
+import type { ScreenActions, StudySituation } from '../../../src/app/study/study-situation';
 import type { ProgressEvent } from '../../../src/core/study/advance';
-import { questionnaires } from '../../../src/core/study/questionnaires';
+import { typedAnswer } from '../../../src/core/study/questionnaires';
 import { createParticipantClient } from '../../../src/net/study-client';
 import { aWomanOf26, outcomeOf, paperPlan } from '../../core/study/studies';
 
@@ -32,6 +29,7 @@ function participant(...events: readonly ProgressEvent[]) {
     apply: tell,
     goTo: (index) => void done.push(`question ${index}`),
     choose: (question, value) => tell({ type: 'answer', question, value }),
+    type: ({ id, answer }, typed) => tell({ type: 'answer', question: id, value: typedAnswer(answer, typed) }),
     submit: () => void done.push('submit'),
     calibrate: () => void done.push('calibrate'),
     enterVr: () => void done.push('enter VR'),
@@ -48,13 +46,28 @@ function participant(...events: readonly ProgressEvent[]) {
     screen: (situation: Partial<StudySituation> = {}) =>
       screenOf(
         {
-          ...{ session, inSession: true, question: 0, triedToSubmit: false, calibration: null, refusal: null },
+          ...{
+            session,
+            inSession: true,
+            question: 0,
+            typed: null,
+            triedToSubmit: false,
+            calibration: null,
+            refusal: null,
+          },
           ...{ prepared: { state: 'ready', reason: '' }, playing: false, waitingFor: null, standing: false },
           ...situation,
         },
         actions,
       ),
   };
+}
+
+/** Gives the question shown an answer of its scale. */
+function chooseOn(screen: StudyScreen | null, value: number): void {
+  const field = screen?.question?.field;
+  if (field?.kind !== 'likert') throw new Error(`expected a Likert scale, not ${field?.kind}`);
+  field.choose(value);
 }
 
 /** The same one, who has played the practice and the first round and sits before the questions. */
@@ -166,7 +179,7 @@ describe('a participant with a questionnaire', () => {
     const one = beforeTheQuestions();
     const { step } = one.session;
     if (step.kind !== 'questionnaire') throw new Error(`expected a questionnaire, not ${step.kind}`);
-    const { questions } = questionnaires[step.questionnaire];
+    const { questions } = step.questionnaire;
     const first = one.screen();
     expect(first?.id).toBe(`question-${questions[0]?.id}`);
     expect(first?.hint).toBe(`* ${questions.length} of ${questions.length} still need an answer.`);
@@ -177,8 +190,8 @@ describe('a participant with a questionnaire', () => {
     ]);
     first?.buttons[2]?.act();
     expect(one.done).toEqual(['question 1']);
-    first?.question?.choose(4);
-    expect(one.screen()?.question?.answer).toBe(4);
+    chooseOn(first, 4);
+    expect(one.screen()?.question?.field).toMatchObject({ kind: 'likert', answer: 4 });
     const last = one.screen({ question: questions.length - 1, triedToSubmit: true });
     expect(last?.hint).toBe('* This question still needs an answer.');
     expect(last?.question?.all.map(({ state }) => state)).toEqual([

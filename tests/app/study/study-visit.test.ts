@@ -5,7 +5,7 @@ import { browser, ofAnother, type Tab } from './study-browser';
 import { type StudyServer, studyServer } from './study-server';
 
 async function agree(tab: Tab, motion = false): Promise<void> {
-  expect(await tab.display.asked('consent').agree(motion)).toBeNull();
+  expect(await tab.display.asked('consent').agree({ motion, language: null })).toBeNull();
   tab.display.asked('code').noted();
 }
 
@@ -76,7 +76,7 @@ describe('the entrance', () => {
   test('a wrong invitation is said once consent is given, and the place stays free', async () => {
     const server = await studyServer();
     const tab = await browser(server).open({ invitation: 'AAAA-BBBB-CCCC-DDDD' });
-    expect(await tab.display.asked('consent').agree(false)).toBeNull();
+    expect(await tab.display.asked('consent').agree({ motion: false, language: null })).toBeNull();
     expect(tab.display.asked('participant').complaint).toContain('not the invitation of P01');
     expect(server.store.overview('paper', 1e9)[0]?.claimed).toBe(false);
   });
@@ -310,11 +310,18 @@ describe('a round', () => {
   });
 });
 
+/** Gives the question shown an answer of its scale. */
+function choose(tab: Tab, value: number): void {
+  const field = tab.display.screen?.question?.field;
+  if (field?.kind !== 'likert') throw new Error(`expected a Likert scale, not ${field?.kind}`);
+  field.choose(value);
+}
+
 /** Gives every one of these questions the answer 4, each after the next. */
 function answer(tab: Tab, questions: readonly string[]): void {
   for (const [index, id] of questions.entries()) {
     expect(tab.display.shown).toBe(`question-${id}`);
-    tab.display.screen?.question?.choose(4);
+    choose(tab, 4);
     if (index < questions.length - 1) tab.display.press('next');
   }
 }
@@ -322,11 +329,11 @@ function answer(tab: Tab, questions: readonly string[]): void {
 describe('a questionnaire', () => {
   test('goes on after a reload where the first answer is missing', async () => {
     const { device, tab } = await beforeTheQuestions(await studyServer());
-    tab.display.screen?.question?.choose(3);
+    choose(tab, 3);
     tab.display.press('next');
     tab.display.press('next');
     expect(tab.display.shown).toBe('question-Q3');
-    tab.display.screen?.question?.choose(5);
+    choose(tab, 5);
     await tab.exchange();
     tab.close();
 
@@ -342,7 +349,7 @@ describe('a questionnaire', () => {
     const { tab } = await beforeTheQuestions(await studyServer());
     answer(tab, ['Q1', 'Q2', 'Q3']);
     tab.display.screen?.question?.goTo(6);
-    tab.display.screen?.question?.choose(2);
+    choose(tab, 2);
     tab.display.press('submit');
     expect(tab.display.shown).toBe('question-Q4');
     expect(tab.display.screen?.hint).toBe('* This question still needs an answer.');

@@ -7,10 +7,10 @@ import {
   plantedAnswerModel,
 } from '../../../scripts/study-simulate/answer-model';
 import { randomSource } from '../../../scripts/study-simulate/random-source';
+import type { AnswerRow } from '../../../src/core/study/answer-tables';
 import { compareAnswers, compareScores } from '../../../src/core/study/compare-conditions';
-import { ordersByGroup, type StudyTask } from '../../../src/core/study/plan';
-import { questionnaires } from '../../../src/core/study/questionnaires';
-import type { AnswerRow, TrialRow } from '../../../src/core/study/study-tables';
+import { ordersByGroup, questionnairesOf, type StudyTask } from '../../../src/core/study/plan';
+import type { TrialRow } from '../../../src/core/study/study-tables';
 import { paperPlan } from './studies';
 
 const conditions = ['learned', 'ik'] as const;
@@ -23,7 +23,7 @@ function simulatedAnswers(model: AnswerModel, study: number): AnswerRow[] {
   return orders.flatMap((order, index) => {
     const person = drawPerson(model, random);
     return order.flatMap(({ id: condition }, place) =>
-      Object.values(questionnaires).flatMap((questionnaire) =>
+      questionnairesOf(plan).flatMap((questionnaire) =>
         Object.entries(drawAnswers(model, questionnaire, { person, condition, block: place + 1 }, random)).map(
           ([question, answer]) => ({
             participant: `P${String(index + 1).padStart(2, '0')}`,
@@ -32,6 +32,7 @@ function simulatedAnswers(model: AnswerModel, study: number): AnswerRow[] {
             block: place + 1,
             run: 1,
             condition,
+            questionnaire: questionnaire.id,
             question,
             answer,
             excluded: '',
@@ -87,6 +88,7 @@ describe('what is compared', () => {
     block: 1,
     run: 1,
     condition,
+    questionnaire: 'archery',
     question: 'Q1',
     answer: value,
     excluded,

@@ -25,7 +25,8 @@ describe('a session', () => {
   test('makes records that the store takes', () => {
     const one = session(schedule);
     one.doUntil(({ kind }) => kind === 'end');
-    for (const record of one.records) expect(checkedRecord(JSON.parse(JSON.stringify(record)))).toEqual(record);
+    for (const record of one.records)
+      expect(checkedRecord(JSON.parse(JSON.stringify(record)), paperPlan())).toEqual(record);
   });
 
   test('records nothing before consent', () => {

@@ -1,27 +1,36 @@
 import { describe, expect, test } from 'vitest';
+import type { QuestionnaireFile } from '../../../src/core/study/questionnaire-schema';
+import { scaleRange, scaleScore } from '../../../src/core/study/questionnaire-scores';
 import {
+  type Answers,
   checkedAnswers,
-  checkedConsent,
-  checkedDemographics,
   checkedDraft,
-  demographicFields,
-  questionnaires,
-  scale,
+  type Questionnaire,
+  resolvedQuestionnaire,
+  shippedQuestionnaires,
+  typedAnswer,
   unanswered,
 } from '../../../src/core/study/questionnaires';
-import { aWomanOf26 } from './studies';
 
-const { archery, ball } = questionnaires;
+const shipped = (id: string): Questionnaire => {
+  const found = shippedQuestionnaires[id];
+  if (!found) throw new Error(`no questionnaire "${id}" comes with the program`);
+  return found;
+};
+const archery = shipped('archery');
+const ball = shipped('ball');
 
-describe('the questionnaires', () => {
+describe('the paper’s questionnaires', () => {
   test('are seven questions after archery and five after the ball game', () => {
     expect(archery.questions.map(({ id }) => id)).toEqual(['Q1', 'Q2', 'Q3', 'Q4', 'Q5', 'Q6', 'Q7']);
     expect(ball.questions.map(({ id }) => id)).toEqual(['Q8', 'Q9', 'Q10', 'Q11', 'Q12']);
   });
 
   test('are answered on five points from very poor to excellent', () => {
-    expect(scale.map(({ value }) => value)).toEqual([1, 2, 3, 4, 5]);
-    expect([scale[0].label, scale[4].label]).toEqual(['Very poor', 'Excellent']);
+    for (const { answer } of [...archery.questions, ...ball.questions]) {
+      expect(answer).toMatchObject({ kind: 'likert', from: 1, to: 5 });
+      expect(answer.kind === 'likert' && [answer.labels?.[0], answer.labels?.[4]]).toEqual(['Very poor', 'Excellent']);
+    }
   });
 
   test('may be answered in any order, and changed', () => {
@@ -34,6 +43,7 @@ describe('the questionnaires', () => {
     [{ Q8: 6 }, 'Q8: expected a whole number from 1 to 5'],
     [{ Q8: 3.5 }, 'Q8: expected a whole number from 1 to 5'],
     [{ Q8: '3' }, 'Q8: expected a whole number from 1 to 5'],
+    [{ Q8: Number.NaN }, 'Q8: expected'],
     [{ Q1: 3 }, 'Q1: the questionnaire "ball" does not ask this'],
   ])('refuse %o', (answers, message) => {
     expect(() => checkedDraft(ball, answers)).toThrow(message);
@@ -44,43 +54,206 @@ describe('the questionnaires', () => {
   });
 });
 
-describe('demographics', () => {
-  test('are what the paper asked for, and the preferred hand', () => {
-    expect(checkedDemographics(aWomanOf26)).toEqual(aWomanOf26);
-    expect(demographicFields.map(({ id }) => id).toSorted()).toEqual(Object.keys(aWomanOf26).toSorted());
+const scored = (id: string, answers: Answers) => {
+  const questionnaire = shipped(id);
+  checkedAnswers(questionnaire, answers);
+  return Object.fromEntries(questionnaire.scales.map((scale) => [scale.id, scaleScore(questionnaire, scale, answers)]));
+};
+const alike = (id: string, value: number): Answers =>
+  Object.fromEntries(shipped(id).questions.map((question) => [question.id, value]));
+
+describe('scores of the shipped questionnaires', () => {
+  test('System Usability Scale: the example of Brooke (1996) comes to 55', () => {
+    const given = [5, 4, 2, 1, 2, 3, 2, 4, 5, 2];
+    const answers = Object.fromEntries(given.map((value, index) => [`U${index + 1}`, value]));
+    expect(scored('system-usability', answers)).toEqual({ usability: 55 });
   });
 
-  test('every choice of the form is accepted', () => {
-    for (const field of demographicFields) {
-      if (field.kind !== 'choice') continue;
-      for (const { value } of field.options)
-        expect(() => checkedDemographics({ ...aWomanOf26, [field.id]: value })).not.toThrow();
-    }
+  test('System Usability Scale: from 0, every statement at its worst, to 100', () => {
+    const ends = (odd: number, even: number) =>
+      Object.fromEntries(Array.from({ length: 10 }, (_, index) => [`U${index + 1}`, index % 2 === 0 ? odd : even]));
+    expect(scored('system-usability', ends(1, 5))).toEqual({ usability: 0 });
+    expect(scored('system-usability', ends(5, 1))).toEqual({ usability: 100 });
   });
 
-  test.each<[string, unknown]>([
-    ['age', 7],
-    ['age', 'twenty'],
-    ['gender', 'yes'],
-    ['major', '   '],
-    ['major', 'x'.repeat(81)],
-    ['handedness', undefined],
-  ])('%s = %o is refused by name', (field, value) => {
-    expect(() => checkedDemographics({ ...aWomanOf26, [field]: value })).toThrow(`${field}: `);
+  test('SSQ: all symptoms severe are the published maxima, and counting begins at nought', () => {
+    const severe = scored('ssq', alike('ssq', 3));
+    expect(severe['nausea-score']).toBeCloseTo(200.34, 9);
+    expect(severe.oculomotor).toBeCloseTo(159.18, 9);
+    expect(severe.disorientation).toBeCloseTo(292.32, 9);
+    expect(severe.total).toBeCloseTo(235.62, 9);
+    expect(scored('ssq', alike('ssq', 0))).toEqual({ 'nausea-score': 0, oculomotor: 0, disorientation: 0, total: 0 });
+  });
+
+  test('SSQ: a symptom of two clusters counts in both, and twice in the total', () => {
+    const nauseous = scored('ssq', { ...alike('ssq', 0), nausea: 1 });
+    expect(nauseous['nausea-score']).toBeCloseTo(9.54, 9);
+    expect(nauseous.oculomotor).toBe(0);
+    expect(nauseous.disorientation).toBeCloseTo(13.92, 9);
+    expect(nauseous.total).toBeCloseTo(7.48, 9);
+  });
+
+  test('NASA-TLX: ratings 30, 15, 60, 40, 30, 40 chosen 3, 0, 5, 1, 3, 3 times weigh 640 / 15', () => {
+    const ratings = { mental: 30, physical: 15, temporal: 60, performance: 40, frustration: 30, effort: 40 };
+    const choices = {
+      'mental-or-physical': 'mental',
+      'mental-or-temporal': 'temporal',
+      'mental-or-performance': 'mental',
+      'mental-or-effort': 'mental',
+      'mental-or-frustration': 'frustration',
+      'physical-or-temporal': 'temporal',
+      'physical-or-performance': 'performance',
+      'physical-or-effort': 'effort',
+      'physical-or-frustration': 'frustration',
+      'temporal-or-performance': 'temporal',
+      'temporal-or-effort': 'temporal',
+      'temporal-or-frustration': 'temporal',
+      'performance-or-effort': 'effort',
+      'performance-or-frustration': 'frustration',
+      'effort-or-frustration': 'effort',
+    };
+    const { weighted, raw } = scored('nasa-tlx', { ...ratings, ...choices });
+    expect(weighted).toBeCloseTo(640 / 15, 9);
+    expect(raw).toBeCloseTo(215 / 6, 9);
+    expect(scored('nasa-tlx-raw', ratings).raw).toBeCloseTo(215 / 6, 9);
+    expect(() => checkedDraft(shipped('nasa-tlx'), { mental: 32 })).toThrow('in steps of 5');
+  });
+
+  test('lie within the range that is stated for each', () => {
+    const ranges = Object.values(shippedQuestionnaires).flatMap((one) =>
+      one.scales.map(
+        (scale) =>
+          `${one.id} ${scale.id} ${scaleRange(one, scale)
+            .map((end) => end.toFixed(2))
+            .join(' to ')}`,
+      ),
+    );
+    expect(ranges).toEqual([
+      'nasa-tlx weighted 0.00 to 100.00',
+      'nasa-tlx raw 0.00 to 100.00',
+      'nasa-tlx-raw raw 0.00 to 100.00',
+      'ssq nausea-score 0.00 to 200.34',
+      'ssq oculomotor 0.00 to 159.18',
+      'ssq disorientation 0.00 to 292.32',
+      'ssq total 0.00 to 235.62',
+      'system-usability usability 0.00 to 100.00',
+    ]);
+  });
+
+  test('are none where an answer is missing', () => {
+    const [scale] = shipped('nasa-tlx-raw').scales;
+    if (!scale) throw new Error('expected a scale');
+    expect(scaleScore(shipped('nasa-tlx-raw'), scale, { mental: 5 })).toBeNull();
+  });
+
+  test('each names its source', () => {
+    for (const { source } of Object.values(shippedQuestionnaires)) expect(source?.length).toBeGreaterThan(40);
   });
 });
 
-describe('consent', () => {
-  const given = { version: 'v1', given: true, motion: false, at: 1_800_000_000 };
+const file = (change: Partial<QuestionnaireFile> = {}): QuestionnaireFile => ({
+  id: 'mine',
+  title: 'Mine',
+  answer: { kind: 'likert', from: 1, to: 7 },
+  questions: [
+    { id: 'a', text: 'A?' },
+    { id: 'b', text: 'B?', reversed: true },
+    {
+      id: 'word',
+      text: 'Which?',
+      answer: {
+        kind: 'choice',
+        options: [
+          { value: 'x', label: 'X' },
+          { value: 'y', label: 'Y' },
+        ],
+      },
+    },
+  ],
+  ...change,
+});
 
-  test('counts for the text that was shown', () => {
-    expect(checkedConsent(given, 'v1')).toEqual(given);
-    expect(() => checkedConsent(given, 'v2')).toThrow('version: consent was given to text v1, but the study shows v2');
-  });
-
-  test('is given or is none', () => {
-    expect(() => checkedConsent({ ...given, given: false }, 'v1')).toThrow(
-      'given: nothing is recorded without consent',
+describe('a questionnaire of one’s own', () => {
+  test('turns reversed answers round in scales, and records them as given', () => {
+    const mine = resolvedQuestionnaire(
+      file({ scales: [{ id: 'm', label: 'M', method: 'mean', questions: ['a', 'b'] }] }),
     );
+    const answers = checkedAnswers(mine, { a: 7, b: 1, word: 'x' });
+    expect(answers).toEqual({ a: 7, b: 1, word: 'x' });
+    expect(mine.scales.map((scale) => scaleScore(mine, scale, answers))).toEqual([7]);
   });
+
+  test('counts answers from a value on, as SUS (presence) does', () => {
+    const mine = resolvedQuestionnaire(
+      file({ scales: [{ id: 'n', label: 'N', method: 'count', atLeast: 6, questions: ['a', 'b'] }] }),
+    );
+    expect(mine.scales.map((scale) => scaleScore(mine, scale, { a: 6, b: 5 }))).toEqual([1]);
+  });
+
+  test.each<[string, Partial<QuestionnaireFile>, string]>([
+    [
+      'ends that are the wrong way round',
+      { answer: { kind: 'likert', from: 7, to: 1 } },
+      'answer.to: expected more than 7',
+    ],
+    [
+      'steps that miss the end',
+      { answer: { kind: 'likert', from: 0, to: 10, step: 3 } },
+      'answer.step: 0 to 10 is no whole',
+    ],
+    [
+      'a label too few',
+      { answer: { kind: 'likert', from: 1, to: 3, labels: ['a', 'b'] } },
+      'answer.labels: expected 3',
+    ],
+    [
+      'a question twice',
+      {
+        questions: [
+          { id: 'a', text: 'A' },
+          { id: 'a', text: 'B' },
+        ],
+      },
+      'questions[1].id: "a" is the name of',
+    ],
+    [
+      'a choice that is reversed',
+      {
+        questions: [{ id: 'a', text: 'A', reversed: true, answer: { kind: 'text', maxLength: 9 } }],
+      },
+      'questions[0].reversed: a text has no other way round',
+    ],
+    [
+      'a scale of a question that is not there',
+      { scales: [{ id: 's', label: 'S', method: 'sum', questions: ['a', 'z'] }] },
+      'scales[0].questions[1]: there is no question "z"',
+    ],
+    [
+      'a mean of words',
+      { scales: [{ id: 's', label: 'S', method: 'mean', questions: ['word'] }] },
+      'scales[0].questions[0]: "word" is not answered with a number',
+    ],
+    [
+      'a count from nowhere on',
+      { scales: [{ id: 's', label: 'S', method: 'count', questions: ['a'] }] },
+      'scales[0].atLeast: is missing',
+    ],
+  ])('with %s is refused by field', (_, change, message) => {
+    expect(() => resolvedQuestionnaire(file(change))).toThrow(message);
+  });
+
+  test('with a question that nothing says how to answer is refused', () => {
+    const { answer: _, ...bare } = file();
+    expect(() => resolvedQuestionnaire(bare)).toThrow('questions[0].answer: is missing');
+  });
+});
+
+test('what is typed is an answer as soon as it is one', () => {
+  const age = { kind: 'number', from: 16, to: 120, whole: true } as const;
+  expect(typedAnswer(age, '1')).toBeNull();
+  expect(typedAnswer(age, '17')).toBe(17);
+  expect(typedAnswer(age, '17.5')).toBeNull();
+  expect(typedAnswer({ kind: 'number', from: -1, to: 1 }, '−0,5')).toBe(-0.5);
+  expect(typedAnswer({ kind: 'text', maxLength: 5 }, '  ')).toBeNull();
+  expect(typedAnswer({ kind: 'text', maxLength: 5 }, ' yes ')).toBe('yes');
 });

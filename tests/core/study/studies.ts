@@ -3,7 +3,8 @@ import { fileURLToPath } from 'node:url';
 import { advance, type ProgressEvent } from '../../../src/core/study/advance';
 import { parsePlan, type Schedule, type StudyPlan, type StudyStep } from '../../../src/core/study/plan';
 import { begin, currentStep, type Progress } from '../../../src/core/study/progress';
-import { questionnaires } from '../../../src/core/study/questionnaires';
+import type { AnswerForm } from '../../../src/core/study/questionnaire-schema';
+import { type Answer, nearestOn } from '../../../src/core/study/questionnaires';
 import type { StudyRecord } from '../../../src/core/study/study-record';
 import { createTrialLog, type TrialOutcome } from '../../../src/core/study/trial-log';
 
@@ -34,6 +35,20 @@ export function outcomeOf(score = 40): TrialOutcome {
   log.shot();
   log.event({ time: 3.5, type: 'hit', points: 10 });
   return log.finish({ seconds: 42, ended: 'arrows', score, maximum: 50, motionFrames: 0 });
+}
+
+/** The shipped example, which asks questions of every kind in two languages. */
+export const examplePlan = (): StudyPlan =>
+  parsePlan(
+    readFileSync(fileURLToPath(new URL('../../../public/studies/example.json', import.meta.url)), 'utf8'),
+    'example.json',
+  );
+
+/** This number where a form takes it, or what is nearest to it; a text that says it. */
+function answerFor(form: AnswerForm, value: number): Answer {
+  if (form.kind === 'text') return `${value}`.slice(0, form.maxLength);
+  if (form.kind === 'choice') return form.options[0]?.value ?? '';
+  return form.kind === 'number' ? Math.min(form.to, Math.max(form.from, value)) : nearestOn(form, value);
 }
 
 /** A session that is driven by events, with a clock that the test sets. */
@@ -84,9 +99,9 @@ export function session(schedule: Schedule, simulated = false) {
         now += step.seconds;
         tell({ type: 'tick' });
       } else if (step.kind === 'questionnaire') {
-        for (const { id } of questionnaires[step.questionnaire].questions) {
+        for (const { id, answer: form } of step.questionnaire.questions) {
           now += 5;
-          tell({ type: 'answer', question: id, value: answer });
+          tell({ type: 'answer', question: id, value: answerFor(form, answer) });
         }
         tell({ type: 'submit' });
       }

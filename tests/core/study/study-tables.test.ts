@@ -15,10 +15,10 @@ const completed = (participant: string, simulated = false) => {
 describe('the tables of a study', () => {
   test('have a row per answer and per trial, for every participant', () => {
     const tables = new Map(
-      studyTables(participantsOf(plan).flatMap((participant) => completed(participant))).map((table) => [
-        table.name,
-        table,
-      ]),
+      studyTables(
+        participantsOf(plan).flatMap((participant) => completed(participant)),
+        plan,
+      ).map((table) => [table.name, table]),
     );
     expect(tables.get('participants')?.rows).toHaveLength(15);
     expect(tables.get('answers')?.rows).toHaveLength(15 * 2 * 12);
@@ -28,7 +28,7 @@ describe('the tables of a study', () => {
   });
 
   test('become files: every row has every column', () => {
-    for (const table of studyTables(completed('P01'))) {
+    for (const table of studyTables(completed('P01'), plan)) {
       const lines = tidyCsv(table).trimEnd().split('\r\n');
       expect(lines).toHaveLength(table.rows.length + 1);
       for (const { description } of table.columns) expect(description).not.toBe('');
@@ -43,13 +43,14 @@ describe('the tables of a study', () => {
     one.doUntil(({ kind }) => kind === 'end');
     const second = trialsIn(one.records).filter(({ task, condition }) => task === 'archery' && condition);
     expect(second.map(({ excluded }) => excluded)).toEqual(['', 'voided: fire alarm', '']);
-    expect(answersIn(one.records).every(({ excluded }) => excluded === '')).toBe(true);
+    expect(answersIn(one.records, plan).every(({ excluded }) => excluded === '')).toBe(true);
   });
 
   test('mark simulated people in every row and never mix them with people', () => {
-    for (const { name, rows } of studyTables(completed('P01', true))) {
-      if (name !== 'questions') for (const row of rows) expect(row.simulated, name).toBe(true);
+    for (const { name, rows } of studyTables(completed('P01', true), plan)) {
+      if (name !== 'questions' && name !== 'scale-definitions')
+        for (const row of rows) expect(row.simulated, name).toBe(true);
     }
-    expect(() => studyTables([...completed('P01', true), ...completed('P02')])).toThrow('must not be mixed');
+    expect(() => studyTables([...completed('P01', true), ...completed('P02')], plan)).toThrow('must not be mixed');
   });
 });

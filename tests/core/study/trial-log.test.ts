@@ -116,7 +116,7 @@ describe('a record', () => {
     ['trial', { kind: 'diary' }, 'kind: '],
     ['event', { body: { type: 'remark', text: '' } }, 'body.text: expected text'],
   ])('%s with %o is refused by field', (kind, change, message) => {
-    expect(() => checkedRecord({ ...ofKind(kind), ...change })).toThrow(message);
+    expect(() => checkedRecord({ ...ofKind(kind), ...change }, {})).toThrow(message);
   });
 
   test('with an answer left out or off the scale is refused by question', () => {
@@ -125,8 +125,8 @@ describe('a record', () => {
       ...answers,
       body: { ...answers.body, answers: { ...answers.body.answers, ...change } },
     });
-    expect(() => checkedRecord(changed({ Q3: undefined }))).toThrow('body.answers.Q3');
-    expect(() => checkedRecord(changed({ Q3: 9 }))).toThrow('body.answers.Q3: expected a whole number from 1 to 5');
+    expect(() => checkedRecord(changed({ Q3: undefined }), {})).toThrow('body.answers.Q3');
+    expect(() => checkedRecord(changed({ Q3: 9 }), {})).toThrow('body.answers.Q3: expected a whole number from 1 to 5');
   });
 
   test('is bounded', () => {
@@ -138,6 +138,6 @@ describe('a record', () => {
       note: 'x'.repeat(400),
     }));
     const long = { ...trial, body: { ...trial.body, outcome: { ...trial.body.outcome, events } } };
-    expect(() => checkedRecord(long)).toThrow('at most 65536 characters');
+    expect(() => checkedRecord(long, {})).toThrow('at most 65536 characters');
   });
 });

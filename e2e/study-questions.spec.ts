@@ -1,0 +1,155 @@
+import { readFileSync } from 'node:fs';
+import type { Page } from '@playwright/test';
+import { parsePlan } from '../src/core/study/plan';
+import { enterVr, expect, keepPicture } from './page-fixture';
+import {
+  calibrate,
+  openResults,
+  press,
+  reaches,
+  recordsOf,
+  stretched,
+  study,
+  takePart,
+  tenHertz,
+  test,
+} from './study-participant';
+import { experimenter } from './study-server';
+
+/** The shipped example with questions of every kind, its times cut short. */
+function shortExample(id: string) {
+  const plan = parsePlan(readFileSync('public/studies/example.json', 'utf8'), 'example.json');
+  return {
+    ...plan,
+    id,
+    tasks: plan.tasks.map((task) => ({
+      ...task,
+      trialSeconds: 5,
+      restSeconds: 1,
+      tutorial: { ...task.tutorial, when: 'never' as const },
+    })),
+  };
+}
+
+/** Gives each of these ratings of NASA-TLX 35 and hands in after the last. */
+async function rateAtDesk(page: Page, ratings: readonly string[]): Promise<void> {
+  for (const [index, id] of ratings.entries()) {
+    await reaches(page, `question-${id}`);
+    await page.getByRole('radio', { name: '35' }).check();
+    await page.getByRole('button', { name: index === ratings.length - 1 ? 'Hand in' : 'Next' }).click();
+  }
+}
+
+test('questions of every kind are answered alike in the headset and at the desk, read in German @full', async ({
+  page,
+  origin,
+}) => {
+  // Twenty presses in the headset, each some frames of a software renderer.
+  test.setTimeout(480_000);
+  await experimenter(origin).begin(shortExample('every-kind'), true);
+  const headset = await takePart(page, origin, 'every-kind', 'P01');
+  await page.getByLabel('Language').selectOption('de');
+  await expect(page.getByRole('heading', { name: 'Teilnahme' })).toBeVisible();
+  await keepPicture(page, 'study-consent-language');
+  await page.getByLabel(/I have read this/).check();
+  await page.getByRole('button', { name: 'I agree' }).click();
+  await page.getByRole('button', { name: 'I have noted it' }).click();
+  await page.getByLabel('I prefer not to say').check();
+  await page.getByLabel(/Age/).fill('26');
+  await page.getByLabel(/Field of study/).fill('Computer science');
+  await page.getByLabel('Once or twice').check();
+  await page.getByLabel('Right', { exact: true }).check();
+  await page.getByLabel('Well without correction').check();
+  await page.getByRole('button', { name: 'Continue' }).click();
+
+  await enterVr(page, tenHertz);
+  await headset.place(stretched);
+  await calibrate(page);
+  await reaches(page, 'trial-ready');
+  await press(page, 'start');
+  await reaches(page, 'question-mine', 60_000);
+  await keepPicture(page, 'study-question-likert');
+  await press(page, 'answer-6');
+  await press(page, 'next');
+  await press(page, 'answer-2');
+  await press(page, 'next');
+  await press(page, 'answer-36');
+  await press(page, 'more');
+  await keepPicture(page, 'study-question-slider');
+  await press(page, 'next');
+  await press(page, 'answer-arms');
+  await keepPicture(page, 'study-question-choice');
+  await press(page, 'next');
+  await press(page, 'key-3');
+  await keepPicture(page, 'study-question-number');
+  await press(page, 'next');
+  for (const key of ['key-o', 'key-k']) await press(page, key);
+  await keepPicture(page, 'study-question-text');
+  await press(page, 'submit');
+  await reaches(page, 'question-mental');
+  await keepPicture(page, 'study-question-tlx');
+  await press(page, 'answer-35');
+  await press(page, 'next');
+  // What was begun in the headset goes on at the desk.
+  await headset.endSession();
+  await reaches(page, 'question-physical');
+  await rateAtDesk(page, ['physical', 'temporal', 'performance', 'effort', 'frustration']);
+
+  await enterVr(page, tenHertz);
+  await headset.place(stretched);
+  await reaches(page, 'trial-ready');
+  await press(page, 'start');
+  await reaches(page, 'question-mine', 60_000);
+  await headset.endSession();
+  await expect(page.getByText('Der virtuelle Körper fühlte sich wie mein eigener an.')).toBeVisible();
+  await page.getByRole('radio', { name: '6' }).check();
+  await keepPicture(page, 'study-question-likert-desktop');
+  const next = page.getByRole('button', { name: 'Next' });
+  await next.click();
+  await page.getByRole('radio', { name: '2' }).check();
+  await next.click();
+  const line = page.getByRole('slider');
+  await line.focus();
+  await keepPicture(page, 'study-question-slider-open-desktop');
+  await page.keyboard.press('Home');
+  for (let steps = 0; steps < 37; steps++) await page.keyboard.press('ArrowRight');
+  await keepPicture(page, 'study-question-slider-desktop');
+  await next.click();
+  await page.getByRole('radio', { name: 'Meine Arme' }).check();
+  await keepPicture(page, 'study-question-choice-desktop');
+  await next.click();
+  const field = page.getByRole('textbox', { name: 'Answer' });
+  await field.fill('9');
+  await expect(page.getByText('Expected a whole number from 0 to 4.')).toBeVisible();
+  await keepPicture(page, 'study-question-number-desktop');
+  await field.fill('3');
+  await next.click();
+  await field.pressSequentially('ok');
+  await page.getByRole('button', { name: 'Hand in' }).click();
+  await reaches(page, 'question-mental');
+  await keepPicture(page, 'study-question-tlx-desktop');
+  await rateAtDesk(page, ['mental', 'physical', 'temporal', 'performance', 'effort', 'frustration']);
+  await reaches(page, 'end');
+  await expect.poll(async () => (await study(page)).unsent).toBe(0);
+
+  const answers = (await recordsOf(origin, 'every-kind')).flatMap((record) =>
+    record.kind === 'answers' ? [record.body] : [],
+  );
+  expect(answers.map(({ questionnaire, language }) => [questionnaire, language])).toEqual([
+    ['body', 'de'],
+    ['nasa-tlx-raw', 'de'],
+    ['body', 'de'],
+    ['nasa-tlx-raw', 'de'],
+  ]);
+  const [inHeadset, begunInHeadset, atDesk, ratedAtDesk] = answers;
+  expect(ratedAtDesk?.answers).toEqual(begunInHeadset?.answers);
+  expect(inHeadset?.answers).toEqual({
+    ...{ mine: 6, strange: 2, delay: 37, watched: 'arms', guess: 3, remarks: 'ok' },
+  });
+  expect(atDesk?.answers).toEqual(inHeadset?.answers);
+
+  await openResults(page, 'every-kind');
+  await expect(page.getByRole('heading', { name: 'Scales' })).toBeVisible();
+  await expect(page.getByRole('row', { name: /^Embodiment, Archery 1 6\.00/ })).toBeVisible();
+  await page.screenshot({ path: 'artifacts/screenshots/study-scales.png', fullPage: true });
+});

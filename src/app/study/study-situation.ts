@@ -1,0 +1,41 @@
+import type { ProgressEvent } from '../../core/study/advance';
+import type { Question } from '../../core/study/questionnaire-schema';
+import type { Answer } from '../../core/study/questionnaires';
+import type { CalibrationStep } from '../../ui/calibration-dialog';
+import type { ParticipantSession } from './participant-session';
+import type { Prepared } from './trial-preparation';
+
+/** Everything that decides what a participant sees. */
+export interface StudySituation {
+  readonly session: ParticipantSession;
+  readonly inSession: boolean;
+  /** Index of the question shown. */
+  readonly question: number;
+  /** What stands in the field of that question, where it has been typed in; null: nothing has. */
+  readonly typed: string | null;
+  /** Handing in failed for want of an answer. */
+  readonly triedToSubmit: boolean;
+  /** null: no one is being measured. */
+  readonly calibration: CalibrationStep | null;
+  /** Of the step at hand; null: not asked for yet. */
+  readonly prepared: Prepared | null;
+  /** Why the last wish changed nothing; null: it did. */
+  readonly refusal: string | null;
+  readonly playing: boolean;
+  /** Others without whom a trial that was started cannot begin; null: it waits for no one. */
+  readonly waitingFor: string | null;
+  /** The game stands because another of the group pauses. */
+  readonly standing: boolean;
+}
+
+export interface ScreenActions {
+  apply(event: ProgressEvent): void;
+  goTo(index: number): void;
+  choose(question: string, value: Answer): void;
+  /** What stands in the field of a question now. */
+  type(question: Question, typed: string): void;
+  submit(): void;
+  calibrate(): void;
+  enterVr(): void;
+  prepareAgain(): void;
+}

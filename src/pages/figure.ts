@@ -1,0 +1,23 @@
+import { offerDownload } from '../ui/downloads';
+import { button, element } from '../ui/element';
+import { pngOf, svgText } from './charts';
+
+/** A picture with its caption, which saves as SVG and PNG under the name of a file without its ending. */
+export function figure(svg: SVGSVGElement, caption: string, file: string): HTMLElement {
+  svg.setAttribute('role', 'img');
+  svg.setAttribute('aria-label', caption);
+  return element(
+    'figure',
+    {},
+    svg,
+    element(
+      'div',
+      { class: 'bar' },
+      element('figcaption', { class: 'soft' }, caption),
+      button('SVG', () => offerDownload(`${file}.svg`, 'image/svg+xml', svgText(svg)), { class: 'small' }),
+      button('PNG', () => void pngOf(svg).then((blob) => offerDownload(`${file}.png`, 'image/png', blob)), {
+        class: 'small',
+      }),
+    ),
+  );
+}

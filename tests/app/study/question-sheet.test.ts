@@ -1,0 +1,113 @@
+import { describe, expect, test } from 'vitest';
+import type { ParticipantSession } from '../../../src/app/study/participant-session';
+import { questionPart } from '../../../src/app/study/question-screen';
+import { questionTargets } from '../../../src/app/study/question-sheet';
+import { height, width } from '../../../src/app/study/sheet-target';
+import { scheduleFor } from '../../../src/core/study/plan';
+import { begin } from '../../../src/core/study/progress';
+import type { Question } from '../../../src/core/study/questionnaire-schema';
+import { type Answer, type Answers, shippedQuestionnaires, typedAnswer } from '../../../src/core/study/questionnaires';
+import { examplePlan } from '../../core/study/studies';
+
+const plan = examplePlan();
+const schedule = scheduleFor(plan, 'P01');
+const body = schedule.steps.flatMap((step) => (step.kind === 'questionnaire' ? [step.questionnaire] : []))[0];
+const questions = body?.questions ?? [];
+
+/** A participant before these questions, who presses what stands on the sheet. */
+function reader(asked: readonly Question[], language = 'en') {
+  let draft: Record<string, Answer> = {};
+  let typed: string | null = null;
+  let at = 0;
+  const choose = (id: string, value: Answer) => {
+    draft = { ...draft, [id]: value };
+  };
+  const part = () => {
+    const progress = { ...begin(schedule), draft: draft as Answers, language };
+    const session = { plan, progress } as unknown as ParticipantSession;
+    return questionPart(
+      asked,
+      at,
+      { session, typed, triedToSubmit: false, refusal: null },
+      {
+        choose,
+        goTo: () => undefined,
+        type(question, text) {
+          typed = text;
+          const value = typedAnswer(question.answer, text);
+          const { [question.id]: _, ...others } = draft;
+          draft = value === null ? others : { ...others, [question.id]: value };
+        },
+      },
+    );
+  };
+  return {
+    goTo(id: string) {
+      at = asked.findIndex((question) => question.id === id);
+      typed = null;
+      return this;
+    },
+    press(...ids: readonly string[]) {
+      for (const id of ids) {
+        const target = questionTargets(part().question).find((one) => one.id === id);
+        if (!target) throw new Error(`there is no "${id}" on the sheet`);
+        if (target.look !== 'off') target.act();
+      }
+      return this;
+    },
+    part,
+    answerTo: (id: string) => draft[id],
+  };
+}
+
+describe('a question on the sheet in the headset', () => {
+  test('of every kind is answered by pressing: points, a place on the line, an option, keys', () => {
+    const one = reader(questions);
+    one.goTo('mine').press('answer-6');
+    one.goTo('delay').press('answer-37');
+    one.goTo('watched').press('answer-arms');
+    one.goTo('guess').press('key-4', 'key-delete', 'key-3');
+    one.goTo('remarks').press('key-b', 'key-o', 'key-w', 'key-space', 'key-o', 'key-k');
+    expect(questions.map(({ id }) => one.answerTo(id))).toEqual([6, undefined, 37, 'arms', 3, 'bow ok']);
+  });
+
+  test('a place on the line is corrected by one step, and has none before it is given', () => {
+    const one = reader(questions).goTo('delay');
+    expect(one.press('more').answerTo('delay')).toBeUndefined();
+    expect(one.press('answer-100', 'more', 'less', 'less').answerTo('delay')).toBe(98);
+  });
+
+  test('a number that cannot be is no answer, and what is expected is said', () => {
+    const one = reader(questions).goTo('guess').press('key-9');
+    expect(one.answerTo('guess')).toBeUndefined();
+    expect(one.part().hint).toBe('* Expected a whole number from 0 to 4.');
+  });
+
+  test('is read in the language of the participant', () => {
+    expect(reader(questions, 'de').goTo('watched').part().question).toMatchObject({
+      text: 'Worauf haben Sie am meisten geachtet?',
+      field: { points: [{ label: 'Meine Hände' }, {}, {}, {}] },
+    });
+  });
+
+  test('has all it is pressed on within the sheet, large enough and none upon another', () => {
+    const all = [...questions, ...Object.values(shippedQuestionnaires).flatMap((shipped) => shipped.questions)];
+    for (const question of all) {
+      const targets = questionTargets(reader([question]).part().question);
+      for (const [index, { id, at, kind }] of targets.entries()) {
+        const [x, y, wide, high] = at;
+        expect(
+          x >= 0 && y >= 0 && x + wide <= width + 1e-6 && y + high <= Math.min(height, 646),
+          `${question.id} ${id}`,
+        ).toBe(true);
+        if (kind !== 'tick') expect(Math.min(wide, high), `${question.id} ${id}`).toBeGreaterThan(40);
+        for (const other of targets.slice(index + 1)) {
+          const [left, top, w, h] = other.at;
+          const apart =
+            x + wide <= left + 1e-6 || left + w <= x + 1e-6 || y + high <= top + 1e-6 || top + h <= y + 1e-6;
+          expect(apart, `${question.id}: ${id} and ${other.id}`).toBe(true);
+        }
+      }
+    }
+  });
+});

@@ -1,0 +1,45 @@
+import { describe, expect, test } from 'vitest';
+import { checkedConsent } from '../../../src/core/study/consent';
+import { checkedDemographics, demographicFields } from '../../../src/core/study/demographics';
+import { aWomanOf26 } from './studies';
+
+describe('demographics', () => {
+  test('are what the paper asked for, and the preferred hand', () => {
+    expect(checkedDemographics(aWomanOf26)).toEqual(aWomanOf26);
+    expect(demographicFields.map(({ id }) => id).toSorted()).toEqual(Object.keys(aWomanOf26).toSorted());
+  });
+
+  test('every choice of the form is accepted', () => {
+    for (const field of demographicFields) {
+      if (field.kind !== 'choice') continue;
+      for (const { value } of field.options)
+        expect(() => checkedDemographics({ ...aWomanOf26, [field.id]: value })).not.toThrow();
+    }
+  });
+
+  test.each<[string, unknown]>([
+    ['age', 7],
+    ['age', 'twenty'],
+    ['gender', 'yes'],
+    ['major', '   '],
+    ['major', 'x'.repeat(81)],
+    ['handedness', undefined],
+  ])('%s = %o is refused by name', (field, value) => {
+    expect(() => checkedDemographics({ ...aWomanOf26, [field]: value })).toThrow(`${field}: `);
+  });
+});
+
+describe('consent', () => {
+  const given = { version: 'v1', given: true, motion: false, at: 1_800_000_000 };
+
+  test('counts for the text that was shown', () => {
+    expect(checkedConsent(given, 'v1')).toEqual(given);
+    expect(() => checkedConsent(given, 'v2')).toThrow('version: consent was given to text v1, but the study shows v2');
+  });
+
+  test('is given or is none', () => {
+    expect(() => checkedConsent({ ...given, given: false }, 'v1')).toThrow(
+      'given: nothing is recorded without consent',
+    );
+  });
+});
