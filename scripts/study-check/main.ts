@@ -1,0 +1,58 @@
+import { existsSync, readFileSync } from 'node:fs';
+import { languagesOf, parsePlan, participantsOf, planComplaints, type StudyPlan } from '../../src/core/study/plan';
+import { durationOf, orderCounts, outlineOf } from '../../src/core/study/plan-outline';
+import { ValidationError } from '../../src/core/study/validation';
+
+const [file = '', participant] = process.argv.slice(2);
+
+const clock = (seconds: number) => {
+  const whole = Math.round(seconds);
+  return `${Math.floor(whole / 60)}:${String(whole % 60).padStart(2, '0')}`;
+};
+
+function summary(plan: StudyPlan): readonly string[] {
+  const { played, rests, questionnaires } = durationOf(plan);
+  const lines = [
+    `"${plan.title}" (${plan.id}): ${plan.participants} participants, in ${languagesOf(plan).join(', ')}, seed ${plan.seed}.`,
+    `A participant takes at most ${clock(played + rests + questionnaires)} min: ${clock(played)} of play, ${clock(rests)} of rest, ` +
+      `${clock(questionnaires)} of questionnaires; consent, measures and the questions about them come on top.`,
+  ];
+  for (const task of plan.tasks) {
+    const counts = [...orderCounts(plan, task)];
+    lines.push(`${task.title}: ${counts.map(([order, count]) => `${order} ${count} times`).join('; ')}.`);
+    if (new Set(counts.map(([, count]) => count)).size > 1) {
+      const who = task.groupSize === 1 ? 'participants' : `groups of ${task.groupSize}`;
+      const even = counts.length * task.groupSize;
+      lines.push(
+        `  These orders do not come out even: ${who} × ${counts.length} orders want a multiple of ${even} participants.`,
+      );
+    }
+  }
+  return lines;
+}
+
+function check(): void {
+  if (!existsSync(file)) throw new ValidationError('', `there is no file ${file}`);
+  const text = readFileSync(file, 'utf8');
+  const complaints = planComplaints(text, file);
+  if (complaints.length > 0) {
+    for (const complaint of complaints) console.error(complaint);
+    console.error(`${complaints.length === 1 ? 'One mistake' : `${complaints.length} mistakes`} in ${file}.`);
+    process.exitCode = 1;
+    return;
+  }
+  const plan = parsePlan(text, file);
+  const shown = participant ?? (participantsOf(plan)[0] as string);
+  const screens = outlineOf(plan, shown).map(
+    ({ at, seconds, shows }) => `  ${at.padEnd(8)} ${(seconds === null ? '' : clock(seconds)).padStart(6)}  ${shows}`,
+  );
+  console.log([`${file}: a sound plan.`, ...summary(plan), '', `What ${shown} sees:`, ...screens].join('\n'));
+}
+
+try {
+  check();
+} catch (error) {
+  if (!(error instanceof ValidationError)) throw error;
+  console.error(error.message);
+  process.exitCode = 1;
+}

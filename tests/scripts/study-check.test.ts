@@ -1,0 +1,111 @@
+import { spawnSync } from 'node:child_process';
+import { readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { describe, expect, test } from 'vitest';
+import { planJsonSchema } from '../../scripts/study-check/plan-json-schema';
+import { checkedPlan, planComplaints, type StudyTask } from '../../src/core/study/plan';
+import { durationOf, orderCounts, outlineOf } from '../../src/core/study/plan-outline';
+import { examplePlan, paperFile, paperPlan } from '../core/study/studies';
+import { directoryWith } from '../temporary-directory';
+
+const root = fileURLToPath(new URL('../..', import.meta.url));
+const read = (path: string) => readFileSync(join(root, path), 'utf8');
+
+describe('the schema for editors', () => {
+  test('is made from the schema by which the program reads plans (npm run build:study-schema)', () => {
+    expect(JSON.parse(read('public/studies/plan.schema.json'))).toEqual(JSON.parse(JSON.stringify(planJsonSchema())));
+  });
+
+  test('knows every field of the shipped plans, and that there are no others', () => {
+    const { properties, additionalProperties, required } = planJsonSchema() as {
+      properties: Record<string, unknown>;
+      additionalProperties: boolean;
+      required: string[];
+    };
+    for (const file of ['public/studies/paper.json', 'public/studies/example.json']) {
+      const plan = JSON.parse(read(file)) as object;
+      expect(Object.keys(properties)).toEqual(expect.arrayContaining(Object.keys(plan)));
+      expect(Object.keys(plan)).toEqual(expect.arrayContaining(required));
+    }
+    expect(additionalProperties).toBe(false);
+  });
+});
+
+describe('what is wrong with a plan', () => {
+  test('is nothing with the shipped ones', () => {
+    for (const name of ['paper', 'example']) {
+      expect(planComplaints(read(`public/studies/${name}.json`), `${name}.json`)).toEqual([]);
+    }
+  });
+
+  test('is all said at once, each with file, field and reason', () => {
+    const wrong = JSON.parse(paperFile);
+    wrong.seed = 'seven';
+    wrong.conditions[1].estimator = 'magic';
+    delete wrong.tasks[0].title;
+    expect(planComplaints(JSON.stringify(wrong), 'mine.json')).toEqual([
+      'mine.json: seed: expected a whole number from 0 to 2147483647',
+      expect.stringContaining('mine.json: conditions[1].estimator: expected one of hands-only'),
+      'mine.json: tasks[0].title: is missing',
+    ]);
+  });
+
+  test('is what its parts demand of each other, once each is right', () => {
+    expect(planComplaints(JSON.stringify({ ...paperPlan(), participants: 16 }), 'mine.json')).toEqual([
+      'mine.json: tasks[1].groupSize: 16 participants cannot be divided into groups of 3',
+    ]);
+    expect(planComplaints('{', 'mine.json')[0]).toContain('mine.json: this is no JSON');
+  });
+});
+
+describe('what a plan comes to', () => {
+  test('is as long as its rounds, rests and questionnaires', () => {
+    // Archery: practice 70, two rounds of 70; ball: practice 90 and its rest, two rounds of 90. Four rests, four questionnaires.
+    expect(durationOf(paperPlan())).toEqual({ played: 480, rests: 300, questionnaires: 1680 });
+  });
+
+  test('is every screen in order, every question among them', () => {
+    const screens = outlineOf(examplePlan(), 'P01');
+    expect(screens[0]?.shows).toBe('Consent: Taking part');
+    expect(screens.filter(({ at, shows }) => at === 'either' && / of 6, /.test(shows))).toHaveLength(2 * 12);
+    expect(screens.at(-1)?.shows).toBe('Thank you');
+  });
+
+  test('says how often each order comes, also one that never does', () => {
+    const [task] = paperPlan().tasks as [StudyTask];
+    expect([...orderCounts(paperPlan(), task).values()].toSorted()).toEqual([7, 8]);
+    const few = checkedPlan({ ...examplePlan(), participants: 1 });
+    expect([...orderCounts(few, few.tasks[0] as StudyTask).values()].toSorted()).toEqual([0, 1]);
+  });
+});
+
+describe('npm run study:check', () => {
+  const check = (...args: readonly string[]) =>
+    spawnSync(process.execPath, ['scripts/study-check.mjs', ...args], { cwd: root, encoding: 'utf8' });
+
+  test('says what a participant sees and how long it takes, and that orders do not come out even', () => {
+    const { status, stdout } = check('public/studies/paper.json', '--participant', 'P02');
+    expect(stdout).toContain('A participant takes at most 41:00 min');
+    expect(stdout).toContain('orders do not come out even');
+    expect(stdout).toContain('What P02 sees:');
+    expect(stdout).toContain('1 of 7, Q1 (likert 1 to 5)');
+    expect(status).toBe(0);
+  });
+
+  test('names the mistakes and fails', () => {
+    const file = join(directoryWith(), 'mine.json');
+    writeFileSync(file, JSON.stringify({ ...paperPlan(), participants: 0, seed: -1 }));
+    const { status, stderr } = check(file);
+    expect(stderr).toContain(`${file}: seed: expected a whole number`);
+    expect(stderr).toContain(`${file}: participants: expected a whole number`);
+    expect(stderr).toContain('2 mistakes in');
+    expect(status).toBe(1);
+  });
+
+  test('says that a file or a participant is not there', () => {
+    expect(check('nowhere.json').stderr).toContain('there is no file');
+    expect(check('public/studies/paper.json', '--participant', 'P99').stderr).toContain('P01 to P15, not P99');
+    expect(check().stderr).toContain('one plan is needed');
+  });
+});
