@@ -63,7 +63,11 @@ export const press = (page: Page, id: string, leave = false): Promise<void> =>
       const [x, y, z] = await until(() => study()?.targets.find((target) => target.id === id)?.at);
       left.position.set(-0.19, 1.4, -0.6);
       right.position.set(x, y, z + 0.35);
-      for (const hand of [left, right]) hand.quaternion.set(...upright);
+      for (const hand of [left, right]) {
+        hand.quaternion.set(...upright);
+        // The built-in archer may hold a bow drawn when its round ends: a trigger that is held cannot be pulled.
+        hand.updateButtonValue('trigger', 0);
+      }
       await until(() => study()?.pointedAt === id);
       const before = JSON.stringify(study()?.screen);
       right.updateButtonValue('trigger', 1);
