@@ -20,7 +20,7 @@ export const fistInWrist: Vec3 = vec3(0, -0.025, -0.08);
 /** The skin of the palm lies this far below the wrist's middle [m]. */
 const palm = 0.015;
 
-/** The middle of a ball of this radius [m] that lies in the palm of a hand: drawn there, while the rules know the fist alone. */
+/** The middle of a ball of this radius [m] that lies in the palm of a hand: it is drawn there, and thrown from there. */
 export function ballInPalm(wrist: Pose<Frame>, radius: number, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 {
   setVec3(target, 0, -palm - radius, fistInWrist.z);
   return add(wrist.position, rotate(wrist.orientation, target, target), target);

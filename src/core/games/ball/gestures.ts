@@ -19,9 +19,10 @@ import {
   pressureOf,
   releasedBelow,
 } from '../button-presses';
-import { fistOf } from '../fist';
+import { ballInPalm, fistOf } from '../fist';
 import type { BallAction, BallDeed, BallEvent, BallState } from './ball-state';
 import { slowestThrow } from './deeds';
+import { ballRadius } from './flight';
 import { createHandSpeed, type HandSpeed } from './hand-speed';
 import { rackPosition } from './stations';
 
@@ -111,6 +112,8 @@ interface HandMemory {
   unthrown: boolean;
   /** The middle of the fist in this frame, arena frame. */
   readonly fist: MutableVec3;
+  /** The middle of the ball that it holds, or would, arena frame: from there it is thrown. */
+  readonly palm: MutableVec3;
   /** As the match hears of it. */
   readonly pose: MutablePose<'arena'>;
 }
@@ -121,6 +124,7 @@ const makeHandMemory = (): HandMemory => ({
   thrown: null,
   unthrown: false,
   fist: vec3(0, 0, 0),
+  palm: vec3(0, 0, 0),
   pose: makePose<'arena'>(),
 });
 
@@ -232,11 +236,12 @@ class PlayerGestures implements BallGestures {
   }
 
   private followHand(side: Side, wrist: TrackedPose | null, buttons: Buttons, playing: boolean, paused: boolean): void {
-    const { speed, fist, holding } = this.hands[side];
+    const { speed, fist, palm, holding } = this.hands[side];
     const pressed = this.presses.follow(side, buttons[side] ?? allReleased, wrist !== null);
     if (!wrist || paused) speed.reset();
     if (wrist) {
       transformPoint(this.now.arenaFromFloor, fistOf(wrist, fist), fist);
+      transformPoint(this.now.arenaFromFloor, ballInPalm(wrist, ballRadius, palm), palm);
       speed.follow(this.time, copyVec3(fist));
     }
     if (holding) {
@@ -287,8 +292,8 @@ class PlayerGestures implements BallGestures {
       held.opened = null;
       return;
     }
-    const { fist, speed } = this.hands[side];
-    const now: Opened = { time: this.time, position: copyVec3(fist), velocity: speed.velocity() };
+    const { palm, speed } = this.hands[side];
+    const now: Opened = { time: this.time, position: copyVec3(palm), velocity: speed.velocity() };
     if (held.button === 'pinch' && !held.opened) held.opened = now;
     else this.letGo(side, held, held.opened ?? now);
   }

@@ -250,7 +250,8 @@ class SteeredThrower implements SteeredPlayer {
     const velocity = scale(level, speed * Math.cos(angle), this.#velocity);
     velocity.y += speed * Math.sin(angle);
     this.#swung.aim(this.#side, velocity, target);
-    transformPoint(this.#arenaFromFloor, from, this.#aim.position);
+    this.#moves.leaving(this.#side, normalise(velocity, undefined, level), this.#aim.position);
+    transformPoint(this.#arenaFromFloor, this.#aim.position, this.#aim.position);
     rotate(this.#arenaFromFloor.orientation, velocity, this.#aim.velocity);
     this.#aims = true;
   }

@@ -1,4 +1,5 @@
 import { clamp } from '../../math/damper';
+import { makePose } from '../../math/pose';
 import { otherSide, type Side } from '../../math/side';
 import {
   add,
@@ -14,6 +15,8 @@ import {
   type Vec3,
   vec3,
 } from '../../math/vec3';
+import { ballInPalm, wristAround } from '../fist';
+import { ballRadius } from './flight';
 import { type MutablePosture, makePosture, type PlayerPosture, type PlayerPostures } from './player-postures';
 
 /** The arm runs up over this way [m], then is evenly fast for as long as a throw's speed is measured and a slow frame more [s]. */
@@ -138,6 +141,7 @@ const setPalmAhead = (outward: -1 | 1, target: MutableVec3): MutableVec3 =>
 // Memory of one call: a frame makes no garbage.
 const shoulder = vec3(0, 0, 0);
 const offset = vec3(0, 0, 0);
+const wrist = makePose<'floor'>();
 
 /** What throws are made of, for a player who faces −Z of their floor; floor frame throughout. */
 export class ThrowPostures {
@@ -187,9 +191,15 @@ export class ThrowPostures {
     return target;
   }
 
-  /** Where a thrown ball leaves the hand. */
+  /** Where the fist is when it opens. */
   release(side: Side): Vec3 {
     return this.#release[side];
+  }
+
+  /** Where a ball that sets off that way (a unit direction) leaves the hand: it lies in the palm. */
+  leaving(side: Side, way: Vec3, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 {
+    wristAround(side, this.#release[side], way, setPalmAhead(outwardOf(side), offset), wrist);
+    return ballInPalm(wrist, ballRadius, target);
   }
 
   /** A throw, to be aimed. */

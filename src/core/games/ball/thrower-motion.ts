@@ -7,6 +7,7 @@ import {
   copyVec3,
   distance,
   lerp,
+  normalise,
   scale,
   setVec3,
   subtract,
@@ -189,10 +190,11 @@ class Thrower implements BallBot {
     const target = add(basket, vec3(scatter * this.#chance(), 0, scatter * this.#chance()));
     const reach = moves.reaching(side, at);
     const ready = moves.carrying(side, basket);
-    const velocity = add(
-      scale(subtract(target, moves.release(side)), 1 / flightSeconds),
-      vec3(0, 0.5 * gravity * flightSeconds, 0),
-    );
+    const velocityFrom = (start: Vec3) =>
+      add(scale(subtract(target, start), 1 / flightSeconds), vec3(0, 0.5 * gravity * flightSeconds, 0));
+    // Where the ball lies in the hand depends on the throw a little, and the other way round.
+    const nearly = velocityFrom(moves.release(side));
+    const velocity = velocityFrom(moves.leaving(side, normalise(nearly)));
     const swung = moves.makeThrow();
     swung.aim(side, velocity, basket);
     const { wound, thrown, seconds } = swung;

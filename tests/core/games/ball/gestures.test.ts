@@ -1,12 +1,13 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import type { BallAction, BallState } from '../../../../src/core/games/ball/ball-state';
+import { ballRadius } from '../../../../src/core/games/ball/flight';
 import { createBallGestures, holdSeconds } from '../../../../src/core/games/ball/gestures';
 import { createHandSpeed, throwWindow } from '../../../../src/core/games/ball/hand-speed';
 import { ballRules } from '../../../../src/core/games/ball/rules';
 import { rackPosition, stations } from '../../../../src/core/games/ball/stations';
 import { allReleased, type Button, type HandButtons } from '../../../../src/core/games/button-presses';
-import { fistOf, wristAround } from '../../../../src/core/games/fist';
+import { ballInPalm, fistOf, wristAround } from '../../../../src/core/games/fist';
 import { invertTransform, type TrackedPose, transformPoint, transformPose } from '../../../../src/core/math/pose';
 import { fromAxisAngle, identity } from '../../../../src/core/math/quat';
 import { add, addScaled, distance, scale, up, type Vec3, vec3 } from '../../../../src/core/math/vec3';
@@ -82,7 +83,9 @@ describe('a hand', () => {
     const [thrown] = deeds(done);
     if (thrown?.type !== 'throw') throw new Error('nothing thrown');
     expect(distance(thrown.velocity, velocity)).toBeLessThan(1e-9);
-    expect(distance(thrown.position, fist(12))).toBeLessThan(1e-9);
+    // From where it is drawn.
+    const wrist = wristAround<'arena'>(side, fist(12), vec3(0, 0, -1), up);
+    expect(distance(thrown.position, ballInPalm(wrist, ballRadius))).toBeLessThan(1e-9);
     expect(thrown.at).toBeCloseTo(button === 'pinch' ? now() - 1 / 90 : now(), 9);
     expect(settings.state.balls[0]?.on).toBe('air');
     expect(done.held).toEqual({ left: null, right: null });
