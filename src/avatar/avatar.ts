@@ -4,6 +4,7 @@ import { handBoneRotation } from '../core/body/arm-rotations';
 import type { AvatarPose, UpperBodyPose } from '../core/body/avatar-pose';
 import type { Calibration } from '../core/body/calibration';
 import { forwardKinematics, makeJointPoses } from '../core/body/forward-kinematics';
+import { type HandGeometry, scaledHand } from '../core/body/hand-geometry';
 import type { HandShape } from '../core/body/hand-shape';
 import { headJointOf } from '../core/body/head-joint';
 import { type JointName, jointNames } from '../core/body/joints';
@@ -41,6 +42,8 @@ export interface Avatar {
   setOpacity(opacity: number): void;
   /** How a hand's fingers are bent from the next `apply` on; null: they are not seen, keep their bend for a while and relax. Copied. */
   setFingers(side: Side, shape: HandShape | null): void;
+  /** The hand as it is drawn [m]; null: the rig lacks a bone of a finger. The same object until the body is fitted anew. */
+  handGeometry(side: Side): HandGeometry | null;
   /** Where the joints of the bones are drawn, floor frame [m]; only bones that the rig has. The same object in every frame: copy what must stay. */
   jointPositions(): Readonly<Partial<Record<AvatarJoint, Vec3>>>;
   dispose(): void;
@@ -113,6 +116,7 @@ class VrmAvatar implements Avatar {
     rightHand: this.joints.rightHand.position,
   };
   private readonly headJoint = vec3(0, 0, 0);
+  private readonly hands: Record<Side, HandGeometry | null> = { left: null, right: null };
   private readonly handBone = quat(0, 0, 0, 1);
   private readonly joint = vec3(0, 0, 0);
 
@@ -145,6 +149,10 @@ class VrmAvatar implements Avatar {
     const legs = this.legs.fit(calibration.eyeHeight, tPose.hips.position.y, this.scale);
     this.rig.fit(tPose, legs, this.scale);
     // The file's own size is what its scene was before it was settled.
+    for (const side of ['left', 'right'] as const) {
+      const own = this.fingers.geometry(side);
+      this.hands[side] = own && scaledHand(own, this.scale);
+    }
     this.springs.scaleTo(this.scale * Math.abs(this.vrm.scene.scale.x));
   }
 
@@ -238,6 +246,10 @@ class VrmAvatar implements Avatar {
 
   setFingers(side: Side, shape: HandShape | null): void {
     this.fingers.set(side, shape);
+  }
+
+  handGeometry(side: Side): HandGeometry | null {
+    return this.hands[side];
   }
 
   jointPositions(): Readonly<Partial<Record<AvatarJoint, Vec3>>> {

@@ -45,20 +45,25 @@ interface Rim extends Ball {
   readonly tube: number;
 }
 
-/** Closes hands round what they hold, on the average hand of an eye height. All poses and places are of one frame. */
+/** Closes hands round what they hold. All poses and places are of one frame. */
 export class Holding {
   readonly #held = { left: makeHeld(), right: makeHeld() };
   readonly #middle = vec3(0, 0, 0);
   readonly #axis = vec3(0, 0, 0);
-  #geometry: HandGeometry = averageHand(1.59);
+  #average: HandGeometry = averageHand(1.59);
   #eyeHeight = 1.59;
+  readonly #hands: Record<Side, HandGeometry> = { left: this.#average, right: this.#average };
 
-  /** Whose hands [m]. */
-  fitTo(eyeHeight: number): void {
-    if (eyeHeight === this.#eyeHeight) return;
-    this.#eyeHeight = eyeHeight;
-    this.#geometry = averageHand(eyeHeight);
-    this.#held.left.kind = this.#held.right.kind = 'nothing';
+  /** Whose hand it is that is drawn [m]; null: a rig without fingers of its own, which goes by the average hand of this eye height. */
+  fitTo(side: Side, hand: HandGeometry | null, eyeHeight: number): void {
+    if (eyeHeight !== this.#eyeHeight) {
+      this.#eyeHeight = eyeHeight;
+      this.#average = averageHand(eyeHeight);
+    }
+    const fitted = hand ?? this.#average;
+    if (fitted === this.#hands[side]) return;
+    this.#hands[side] = fitted;
+    this.#held[side].kind = 'nothing';
   }
 
   /** A round rod along a unit axis. */
@@ -97,7 +102,7 @@ export class Holding {
       copyVec3(this.#middle, held.middle);
       copyVec3(this.#axis, held.axis);
       current = held;
-      closeRound(surfaceOfCurrent, this.#geometry, held.shape);
+      closeRound(surfaceOfCurrent, this.#hands[side], held.shape);
     }
     copyHandShape(held.shape, target);
   }

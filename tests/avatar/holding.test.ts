@@ -1,13 +1,14 @@
 import { expect, test } from 'vitest';
 import { Holding } from '../../src/avatar/holding';
-import { averageHand, fingerPoints, makeFingerPoints } from '../../src/core/body/hand-geometry';
+import { averageHand, fingerPoints, makeFingerPoints, scaledHand } from '../../src/core/body/hand-geometry';
 import { fingerNames, makeHandShape } from '../../src/core/body/hand-shape';
 import { basketInHands } from '../../src/core/games/ball/basket';
 import { basketRadius, rimTube } from '../../src/core/games/ball/flight';
 import { wristAround } from '../../src/core/games/fist';
 import { type Pose, transformPoint } from '../../src/core/math/pose';
+import { identity } from '../../src/core/math/quat';
 import type { Side } from '../../src/core/math/side';
-import { dot, forward, length, reject, subtract, up, vec3 } from '../../src/core/math/vec3';
+import { distance, dot, forward, length, reject, subtract, up, vec3 } from '../../src/core/math/vec3';
 
 const wrists: Readonly<Record<Side, Pose<'floor'>>> = {
   left: wristAround('left', vec3(-basketRadius, 1.1, -0.4), forward, up),
@@ -18,9 +19,9 @@ test('both hands of a holder lie round the basket’s rim: no fingertip is in th
   const opening = basketInHands(wrists.left, wrists.right)!;
   const rim = { at: opening.position, normal: opening.normal, radius: basketRadius, tube: rimTube };
   const holding = new Holding();
-  holding.fitTo(1.59);
   const hand = averageHand(1.59);
   for (const side of ['left', 'right'] as const) {
+    holding.fitTo(side, null, 1.59);
     const shape = makeHandShape();
     holding.rim(side, wrists[side], rim, shape);
     for (const name of fingerNames) {
@@ -53,4 +54,23 @@ test('a thing that does not move in its hand is held the same way, wherever the 
   }
   expect(first).not.toEqual(makeHandShape());
   expect(second).toEqual(first);
+});
+
+test('an avatar’s own fingers close round a ball: long and short ones both lie on its surface', () => {
+  const at = vec3(0, -0.09, -0.08);
+  const radius = 0.075;
+  for (const size of [0.75, 1, 1.3]) {
+    const own = scaledHand(averageHand(1.59), size);
+    const holding = new Holding();
+    holding.fitTo('left', own, 1.59);
+    const wrist = { position: vec3(0, 0, 0), orientation: identity };
+    const shape = makeHandShape();
+    holding.ball('left', wrist, { at, radius }, shape);
+    for (const name of ['index', 'middle', 'ring'] as const) {
+      const [, , , tip] = fingerPoints(name, own[name], shape[name], makeFingerPoints());
+      const gap = distance(tip, at) - radius - own[name].tipRadius;
+      expect(gap, `${name} of a hand ${size} times as large`).toBeGreaterThan(-0.003);
+      expect(gap, `${name} of a hand ${size} times as large`).toBeLessThan(0.012);
+    }
+  }
 });

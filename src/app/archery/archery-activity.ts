@@ -21,6 +21,8 @@ const floorFromArena = { position: zero, orientation: identity };
 
 /** The leather of the bow's grip, as thick as its riser is there [m]. */
 const grip = { at: vec3(0, 0, 0), axis: vec3(0, 1, 0), radius: 0.019 };
+/** The string, with the arrow's nock on it, where fingers hook it [m]. */
+const string = { at: vec3(0, 0, 0), axis: vec3(0, 1, 0), radius: 0.005 };
 
 export interface ArcheryActivityOptions {
   readonly quality: Quality;
@@ -90,10 +92,18 @@ export function createArcheryActivity(options: ArcheryActivityOptions): ArcheryA
     setHovered: (hovered) => view.result.setHovered(hovered),
     grasp(side, wrist, holding, target) {
       const bow = play.newest?.bow;
-      if (bow?.bowSide !== side) return false;
-      copyVec3(bow.bow.position, grip.at);
-      rotate(bow.bow.orientation, up, grip.axis);
-      holding.rod(side, wrist, grip, target);
+      if (!bow) return false;
+      if (bow.bowSide === side) {
+        copyVec3(bow.bow.position, grip.at);
+        rotate(bow.bow.orientation, up, grip.axis);
+        holding.rod(side, wrist, grip, target);
+        return true;
+      }
+      // The other hand has the string while an arrow is on it.
+      if (!bow.arrow || settings().oneHanded) return false;
+      copyVec3(bow.arrow.nock, string.at);
+      rotate(bow.bow.orientation, up, string.axis);
+      holding.rod(side, wrist, string, target);
       return true;
     },
     round() {

@@ -1,4 +1,5 @@
 import { Holding } from '../../avatar/holding';
+import type { HandGeometry } from '../../core/body/hand-geometry';
 import type { MutableHandShape } from '../../core/body/hand-shape';
 import { firstLine, reasonOf } from '../../core/errors/reasons';
 import { type Buttons, nothingPressed } from '../../core/games/button-presses';
@@ -256,9 +257,12 @@ export class Activities {
     return haptics;
   }
 
-  /** Closes a hand, whose wrist is there in the floor frame, round what it holds; false: it holds nothing. */
-  grasp(side: Side, wrist: Pose<'floor'>, target: MutableHandShape): boolean {
-    this.#holding.fitTo(this.#options.body.calibration.eyeHeight);
+  /**
+   * Closes a hand, whose wrist is there in the floor frame, round what it holds; false: it holds nothing. `hand`: of the avatar that is drawn; null:
+   * not known.
+   */
+  grasp(side: Side, wrist: Pose<'floor'>, hand: HandGeometry | null, target: MutableHandShape): boolean {
+    this.#holding.fitTo(side, hand, this.#options.body.calibration.eyeHeight);
     if (!this.#options.study.idle && this.#archery?.grasp(side, wrist, this.#holding, target)) return true;
     return this.#ball?.grasp(side, wrist, this.#holding, target) ?? false;
   }

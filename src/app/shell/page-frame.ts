@@ -95,7 +95,8 @@ export class PageFrame implements FrameParts<XRFrame> {
     const { activities, source, avatar } = this.#options;
     const target = this.#shapes[side];
     const wrist = side === 'left' ? leftHand : rightHand;
-    const held = wrist && activities.grasp(side, wrist, target) ? target : null;
+    const hand = avatar.current?.handGeometry(side) ?? null;
+    const held = wrist && activities.grasp(side, wrist, hand, target) ? target : null;
     const shape = held ?? (fingers ? fingers[side] : shapeOfButtons(source.buttons[side], target));
     this.#fingers[side] = shape;
     avatar.current?.setFingers(side, shape);

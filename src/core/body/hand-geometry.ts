@@ -10,6 +10,7 @@ import {
   normalise,
   reject,
   right,
+  scale,
   setVec3,
   subtract,
   up,
@@ -166,6 +167,23 @@ export function averageHand(eyeHeight: number): HandGeometry {
     rootRadius: radius * size,
   });
   const { thumb, index, middle, ring, little } = proportions;
+  return {
+    thumb: fingerOf(thumb),
+    index: fingerOf(index),
+    middle: fingerOf(middle),
+    ring: fingerOf(ring),
+    little: fingerOf(little),
+  };
+}
+
+/** The same hand so much larger. */
+export function scaledHand({ thumb, index, middle, ring, little }: HandGeometry, size: number): HandGeometry {
+  const fingerOf = ({ root, lengths, tipRadius, rootRadius }: FingerGeometry): FingerGeometry => ({
+    root: scale(root, size),
+    lengths: [lengths[0] * size, lengths[1] * size, lengths[2] * size],
+    tipRadius: tipRadius * size,
+    rootRadius: rootRadius * size,
+  });
   return {
     thumb: fingerOf(thumb),
     index: fingerOf(index),
