@@ -19,10 +19,12 @@ export interface AllocationBytes {
   readonly ball3: number;
   /** A court with seven others whose packets come 30 times a second: received, decoded, played back, bent, drawn. */
   readonly ball8: number;
+  /** One's own body before the mirror with both hands tracked: the device's own poses were there before. */
+  readonly hands: number;
   /** What three.js leaves for drawing an arena that nothing moves in. */
   readonly stillScene: number;
   /** What of a frame is allocated below a call of three.js's renderer: its own, and what the browser makes of its calls. */
-  readonly threeAlone: Readonly<Record<'mirror' | 'archery' | 'ball3' | 'ball8', number>>;
+  readonly threeAlone: Readonly<Record<'mirror' | 'archery' | 'ball3' | 'ball8' | 'hands', number>>;
 }
 
 /** A function of the page and what it leaves in a frame. */
@@ -167,7 +169,7 @@ const realPages = {
 } as const;
 type RealPage = (typeof realPages)[keyof typeof realPages];
 
-const benchScenes: readonly AllocationScene[] = ['ik', 'paper', 'learned', 'ball8', 'stillScene'];
+const benchScenes: readonly AllocationScene[] = ['ik', 'paper', 'learned', 'ball8', 'hands', 'stillScene'];
 
 const phaseOf = (page: Page): Promise<string | undefined> =>
   page.evaluate(() => window.threepoint?.probe().game?.phase);
@@ -315,12 +317,14 @@ function summarise(samples: ReadonlyMap<string, Sample>, sourceOf: SourceOf): Al
       archery: of('archery'),
       ball3: of('ball3'),
       ball8: of('ball8'),
+      hands: of('hands'),
       stillScene: of('stillScene'),
       threeAlone: {
         mirror: three('mirror'),
         archery: three('archery'),
         ball3: three('ball3'),
         ball8: three('ball8'),
+        hands: three('hands'),
       },
     },
     sites: Object.fromEntries([...samples].map(([name, sampled]) => [name, sitesOf(sampled, sourceOf)])),

@@ -81,6 +81,10 @@ export interface EmulatedHeadset {
   place(placement: Placement): Promise<void>;
   setConnected(side: Side, connected: boolean): Promise<void>;
   useInput(mode: 'controller' | 'hand'): Promise<void>;
+  /** How far a tracked hand pinches, 0 to 1. */
+  pinch(side: Side, closed: number): Promise<void>;
+  /** How far a controller's trigger is pressed, 0 to 1. */
+  pull(side: Side, pressed: number): Promise<void>;
   recentre(): Promise<void>;
   setVisibility(state: 'visible' | 'visible-blurred' | 'hidden'): Promise<void>;
   endSession(): Promise<void>;
@@ -176,6 +180,16 @@ export async function emulatedHeadset(page: Page): Promise<EmulatedHeadset> {
       page.evaluate((mode) => {
         window.emulatedDevice.primaryInputMode = mode;
       }, mode),
+    pinch: (side, closed) =>
+      page.evaluate(([side, closed]) => window.emulatedDevice.hands[side].updatePinchValue(closed), [
+        side,
+        closed,
+      ] as const),
+    pull: (side, pressed) =>
+      page.evaluate(
+        ([side, pressed]) => window.emulatedDevice.controllers[side].updateButtonValue('trigger', pressed),
+        [side, pressed] as const,
+      ),
     recentre: () => page.evaluate(() => window.emulatedDevice.recenter()),
     setVisibility: (state) => page.evaluate((state) => window.emulatedDevice.updateVisibilityState(state), state),
     endSession: () => page.evaluate(() => window.emulatedDevice.activeSession?.end()),

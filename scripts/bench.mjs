@@ -2,7 +2,7 @@
 // headless Chromium. Named parts only are measured; all of them take an hour on two cores without a graphics device, "frames --rounds 3" minutes.
 // npm run bench networks -- --device: WebGPU on the machine's graphics device instead of in software.
 // Each part prints how long it took and is written to FILE when it is through; ratios of frames have intervals of 95 % confidence.
-// npm run bench -- --allocations [ik paper learned mirror archery ball3 ball8 stillScene]: only what frames leave to the collector, and which
+// npm run bench -- --allocations [ik paper learned mirror archery ball3 ball8 hands stillScene]: only what frames leave to the collector, and which
 // functions leave it.
 import { resolve } from 'node:path';
 import { parseArgs } from 'node:util';

@@ -2,17 +2,20 @@ import { PerspectiveCamera } from 'three';
 import { createStudio } from '../../src/app/studio/studio';
 import { createAvatar } from '../../src/avatar/avatar';
 import { parseAvatar } from '../../src/avatar/load-avatar';
+import { createMirror } from '../../src/avatar/mirror';
 import { defaultCalibration } from '../../src/core/body/calibration';
 import { createEstimator } from '../../src/core/estimation/estimators';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
 import { createInferenceWorker } from '../../src/inference/create-inference-worker';
 import { loadRegressor } from '../../src/inference/load-regressor';
 import { createRenderer } from '../../src/scene/renderer';
+import { createTracker } from '../../src/xr/tracker';
 import { Court } from './court';
 import { createSenders } from './senders';
+import { trackedHandsDevice } from './tracked-hands';
 
 /** What is measured on this page; the real page is measured as it is. */
-export type AllocationScene = 'ik' | 'paper' | 'learned' | 'ball8' | 'stillScene';
+export type AllocationScene = 'ik' | 'paper' | 'learned' | 'ball8' | 'hands' | 'stillScene';
 
 declare global {
   interface Window {
@@ -52,7 +55,7 @@ function picture() {
   const camera = new PerspectiveCamera(42, 480 / 270, 0.05, 90);
   camera.position.set(1.2, 2.1, 3.4);
   camera.lookAt(0, 0.9, -2.5);
-  return { studio, draw: () => renderer.render(studio.scene, camera) };
+  return { renderer, studio, camera, draw: () => renderer.render(studio.scene, camera) };
 }
 
 function stillScene(): FrameOf {
@@ -83,10 +86,35 @@ async function crowd(): Promise<FrameOf> {
   };
 }
 
+/** One's own body before the mirror, its hands tracked: read, estimated, bent finger by finger, drawn twice. */
+async function hands(): Promise<FrameOf> {
+  const { renderer, studio, camera, draw } = picture();
+  const mannequin = await (await fetch('/avatars/mannequin.vrm')).arrayBuffer();
+  const avatar = createAvatar(await parseAvatar(mannequin, 'mannequin.vrm'));
+  avatar.fitTo(defaultCalibration);
+  const mirror = createMirror({ distance: 1.5, resolution: 256, samples: 0 });
+  studio.scene.add(mirror.object, avatar.object);
+  const estimator = createEstimator('ik', defaultCalibration);
+  const moves = Array.from({ length: preparedFrames }, (_, i) => actorFrame(i / rateHz, defaultCalibration));
+  const device = trackedHandsDevice(moves);
+  const tracker = createTracker(device.session, device.floor);
+  return (index) => {
+    const time = index / rateHz;
+    const frame = tracker.read(device.at(index), time);
+    if (!frame) throw new Error('the device sees no head');
+    avatar.setFingers('left', frame.fingers?.left ?? null);
+    avatar.setFingers('right', frame.fingers?.right ?? null);
+    avatar.apply(estimator.update(frame).pose, time);
+    mirror.reflect(renderer, studio.scene, camera);
+    draw();
+  };
+}
+
 /** The frame of a scene by its name. */
 function frameOf(scene: string | null): Promise<FrameOf> | FrameOf {
   if (scene === 'ik' || scene === 'paper' || scene === 'learned') return estimates(scene);
   if (scene === 'ball8') return crowd();
+  if (scene === 'hands') return hands();
   if (scene === 'stillScene') return stillScene();
   throw new Error(`the address asks for the scene ${scene}`);
 }

@@ -5,7 +5,7 @@ import type { AvatarPose, UpperBodyPose } from '../core/body/avatar-pose';
 import type { Calibration } from '../core/body/calibration';
 import { forwardKinematics, makeJointPoses } from '../core/body/forward-kinematics';
 import { type HandGeometry, scaledHand } from '../core/body/hand-geometry';
-import type { HandShape } from '../core/body/hand-shape';
+import type { FingerName, HandShape } from '../core/body/hand-shape';
 import { headJointOf } from '../core/body/head-joint';
 import { type JointName, jointNames } from '../core/body/joints';
 import { type Skeleton, skeletonFromCalibration } from '../core/body/skeleton';
@@ -44,6 +44,8 @@ export interface Avatar {
   setFingers(side: Side, shape: HandShape | null): void;
   /** The hand as it is drawn [m]; null: the rig lacks a bone of a finger. The same object until the body is fitted anew. */
   handGeometry(side: Side): HandGeometry | null;
+  /** Where the fingers end that the rig has, as drawn, floor frame [m]; new objects: for tools. */
+  fingertips(side: Side): Readonly<Partial<Record<FingerName, Vec3>>>;
   /** Where the joints of the bones are drawn, floor frame [m]; only bones that the rig has. The same object in every frame: copy what must stay. */
   jointPositions(): Readonly<Partial<Record<AvatarJoint, Vec3>>>;
   dispose(): void;
@@ -250,6 +252,10 @@ class VrmAvatar implements Avatar {
 
   handGeometry(side: Side): HandGeometry | null {
     return this.hands[side];
+  }
+
+  fingertips(side: Side): Readonly<Partial<Record<FingerName, Vec3>>> {
+    return this.fingers.tips(side);
   }
 
   jointPositions(): Readonly<Partial<Record<AvatarJoint, Vec3>>> {

@@ -51,6 +51,8 @@ export interface RigFinger {
   readonly bones: readonly FingerBone[];
   /** The inverse of each bone's frame at rest (hand-geometry). */
   readonly fromRest: readonly [Quat, Quat, Quat];
+  /** Where the finger ends, in the frame of the node of its last bone. */
+  readonly tip: Vector3;
 }
 
 export interface RigHand {
@@ -108,7 +110,7 @@ function readFinger(vrm: VRM, side: Side, name: FingerName, hand: Object3D): Fou
   const whole = nodes.every(Boolean);
   return {
     name,
-    finger: { name, bones: bonesOf(nodes, side), fromRest },
+    finger: { name, bones: bonesOf(nodes, side), fromRest, tip: tipOf(points, nodes, hand, side) },
     geometry: whole ? { root, lengths, tipRadius, rootRadius: taper * tipRadius } : null,
   };
 }
@@ -120,6 +122,13 @@ const handAt = new Vector3();
 function placeIn(at: Vector3, hand: Object3D, side: Side, target: FingerPoints[number]): void {
   at.sub(hand.getWorldPosition(handAt));
   setVec3(target, at.z, at.y, side === 'left' ? -at.x : at.x);
+}
+
+/** The end of a finger in the frame of its last bone that the rig has. */
+function tipOf([, , , tip]: FingerPoints, nodes: readonly (Object3D | null)[], hand: Object3D, side: Side): Vector3 {
+  const { x, y, z } = tip;
+  const inWorld = new Vector3(side === 'left' ? -z : z, y, x).add(hand.getWorldPosition(handAt));
+  return nodes.findLast((node) => node !== null)?.worldToLocal(inWorld) ?? inWorld;
 }
 
 /** Joints and tip by the bones alone; a bone that the rig lacks lies where the one before it ends. */

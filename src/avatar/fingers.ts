@@ -1,10 +1,11 @@
 import type { VRM } from '@pixiv/three-vrm';
 import { closePinch } from '../core/body/close-pinch';
 import { FingerMemory } from '../core/body/finger-memory';
-import { fingerFrames, makeFingerFrames } from '../core/body/hand-geometry';
-import { copyHandShape, type HandShape, makeHandShape } from '../core/body/hand-shape';
+import { fingerFrames, type HandGeometry, makeFingerFrames } from '../core/body/hand-geometry';
+import { copyHandShape, type FingerName, type HandShape, makeHandShape } from '../core/body/hand-shape';
 import { conjugate, multiply, quat } from '../core/math/quat';
 import type { Side } from '../core/math/side';
+import type { Vec3 } from '../core/math/vec3';
 import { ofSide, type RigFinger, type RigHand, readHand } from './finger-bones';
 
 const sides = ['left', 'right'] as const;
@@ -31,6 +32,20 @@ class HandFingers {
   constructor(vrm: VRM, side: Side) {
     this.#side = side;
     this.#rig = readHand(vrm, side);
+  }
+
+  get geometry(): HandGeometry | null {
+    return this.#rig.geometry;
+  }
+
+  tips(): Partial<Record<FingerName, Vec3>> {
+    const found: Partial<Record<FingerName, Vec3>> = {};
+    for (const { name, bones, tip } of this.#rig.fingers) {
+      const last = bones.at(-1)?.node;
+      last?.updateWorldMatrix(true, false);
+      if (last) found[name] = last.localToWorld(tip.clone());
+    }
+    return found;
   }
 
   set(shape: HandShape | null): void {
@@ -80,5 +95,15 @@ export class Fingers {
   /** Bends the bones, so long after the last time [s]. */
   update(deltaSeconds: number): void {
     for (const side of sides) this.#hands[side].update(deltaSeconds);
+  }
+
+  /** Where the fingers end that the rig has, as drawn, world frame [m]: for tools and tests, new objects. */
+  tips(side: Side): Readonly<Partial<Record<FingerName, Vec3>>> {
+    return this.#hands[side].tips();
+  }
+
+  /** Of the rig, in its own metres; null: it lacks a bone of a finger. */
+  geometry(side: Side): HandGeometry | null {
+    return this.#hands[side].geometry;
   }
 }

@@ -1,5 +1,7 @@
 import type { Calibration } from '../../core/body/calibration';
+import type { FingerName } from '../../core/body/hand-shape';
 import type { EstimatorName } from '../../core/estimation/pose-estimator';
+import type { Side } from '../../core/math/side';
 import type { Vec3 } from '../../core/math/vec3';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 import type { BareBody } from '../../lib/bare-body';
@@ -35,7 +37,12 @@ export interface Probe {
     readonly count: number;
   };
   /** Joints of the avatar's bones as drawn, floor frame [m]. */
-  readonly avatar: { readonly name: string; readonly joints: Readonly<Record<string, Triple>> };
+  readonly avatar: {
+    readonly name: string;
+    readonly joints: Readonly<Record<string, Triple>>;
+    /** Where its fingers end. */
+    readonly fingertips: Readonly<Record<Side, Readonly<Partial<Record<FingerName, Triple>>>>>;
+  };
   /** What was tracked in the newest frame, floor frame [m]; null: not seen. */
   readonly tracking: {
     /** The frame's own time [s]: what estimators and filters go by. */
@@ -101,7 +108,15 @@ function trackingOf(newest: TrackingFrame | null): Probe['tracking'] {
 
 function avatarOf({ current, name }: ProbeParts['avatar']): Probe['avatar'] {
   const joints = Object.entries(current?.jointPositions() ?? {});
-  return { name, joints: Object.fromEntries(joints.map(([joint, at]) => [joint, triple(at)])) };
+  const tips = (side: Side) => {
+    const found = Object.entries(current?.fingertips(side) ?? {});
+    return Object.fromEntries(found.map(([finger, at]) => [finger, triple(at)]));
+  };
+  return {
+    name,
+    joints: Object.fromEntries(joints.map(([joint, at]) => [joint, triple(at)])),
+    fingertips: { left: tips('left'), right: tips('right') },
+  };
 }
 
 function drawingOf({ renderer, vignette }: ProbeParts['stage']): Probe['drawing'] {

@@ -1,0 +1,62 @@
+import type { EmulatedHeadset } from './emulated-headset';
+import { distance, enterVr, expect, openWithHeadset, probe, test } from './page-fixture';
+
+type Page = Parameters<typeof probe>[0];
+type Finger = 'thumb' | 'index' | 'middle' | 'ring' | 'little';
+
+const before = {
+  head: { position: [0, 1.6, 0], orientation: [0, 0, 0, 1] },
+  left: { position: [-0.25, 1.2, -0.35], orientation: [0, 0, 0, 1] },
+  right: { position: [0.25, 1.2, -0.35], orientation: [0, 0, 0, 1] },
+} as const;
+
+/** Where a finger of the avatar ends, as drawn [m]. */
+async function tip(page: Page, side: 'left' | 'right', finger: Finger) {
+  const found = (await probe(page)).avatar.fingertips[side][finger];
+  if (!found) throw new Error(`the avatar has no ${side} ${finger}`);
+  return found;
+}
+
+async function worn(page: Page): Promise<EmulatedHeadset> {
+  const headset = await openWithHeadset(page, 'estimator=ik');
+  await enterVr(page);
+  await headset.place(before);
+  return headset;
+}
+
+/** How far the tips of thumb and index finger are apart [cm]. */
+const gap = async (page: Page, side: 'left' | 'right') =>
+  100 * distance(await tip(page, side, 'thumb'), await tip(page, side, 'index'));
+
+test('a tracked hand pinches: the tips of the avatar’s thumb and index finger meet, those of the other hand stay apart', async ({
+  page,
+}) => {
+  const headset = await worn(page);
+  await headset.useInput('hand');
+  for (const side of ['left', 'right'] as const) {
+    const other = side === 'left' ? 'right' : 'left';
+    await headset.pinch(other, 0);
+    await headset.pinch(side, 1);
+    // From the middle of one tip’s roundness to the other’s: two fingers that touch.
+    await expect.poll(() => gap(page, side), { message: `${side}, pinching` }).toBeLessThan(2.2);
+    await expect.poll(() => gap(page, other), { message: `${other}, open` }).toBeGreaterThan(3.5);
+  }
+  await headset.pinch('right', 0);
+  await headset.useInput('controller');
+});
+
+test('a controller’s trigger bends the index finger of its hand, and no other finger', async ({ page }) => {
+  const headset = await worn(page);
+  const open = {
+    index: await tip(page, 'right', 'index'),
+    middle: await tip(page, 'right', 'middle'),
+    left: await tip(page, 'left', 'index'),
+  };
+  await headset.pull('right', 1);
+  const moved = async () => 100 * distance(await tip(page, 'right', 'index'), open.index);
+  await expect.poll(moved, { message: 'right index [cm]' }).toBeGreaterThan(2);
+  expect(100 * distance(await tip(page, 'right', 'middle'), open.middle)).toBeLessThan(0.2);
+  expect(100 * distance(await tip(page, 'left', 'index'), open.left)).toBeLessThan(0.2);
+  await headset.pull('right', 0);
+  await expect.poll(moved, { message: 'right index let go [cm]' }).toBeLessThan(0.2);
+});
