@@ -1,30 +1,49 @@
 import { fingerBones } from '../../src/core/body/finger-bones';
-import { armDepth, armHeight, armJoints, fingerPoint, fingers } from './rig';
-import { type DistanceField, ellipsoid, type Point, roundedBox, smoothUnion, taperedCapsule } from './signed-distance';
+import type { BodyRig } from './rig';
+import {
+  boxOf,
+  type DistanceField,
+  distanceToBox,
+  ellipsoid,
+  moved,
+  type Point,
+  roundedBox,
+  type Solid,
+  smoothUnion,
+  taperedCapsule,
+} from './signed-distance';
 
 /** A piece of the body: a solid, the bone it moves with and how softly its weight fades beyond its surface [m]. */
 export interface Part {
-  readonly solid: DistanceField;
+  readonly solid: Solid;
   /** A bone of the left side or the trunk; `trunk`: shared among the spine by height. */
   readonly bone: string;
   readonly softness: number;
 }
 
-interface Region {
+export interface Region {
   readonly parts: readonly Part[];
   /** Fillet between its own parts, and where it meets what came before [m]. */
   readonly inner: number;
   readonly joint: number;
 }
 
-const y = armHeight;
-const { shoulder, elbow, wrist } = armJoints;
-/** Arm and palm are modelled about z = 0 and put where the shoulder is. */
-const onArm = (part: Part): Part => ({ ...part, solid: (x, y, z) => part.solid(x, y, z - armDepth) });
+/** A body to be meshed. */
+export interface Anatomy {
+  readonly rig: BodyRig;
+  readonly parts: readonly Part[];
+  readonly body: DistanceField;
+}
 
-const part = (bone: string, softness: number, solid: DistanceField): Part => ({ bone, softness, solid });
+export const part = (bone: string, softness: number, solid: Solid): Part => ({ bone, softness, solid });
 
-const torso: Region = {
+const each = (region: Region, change: (part: Part) => Part): Region => ({ ...region, parts: region.parts.map(change) });
+
+/** The same region elsewhere, or larger about a point. */
+export const movedRegion = (region: Region, move: Parameters<typeof moved>[1]): Region =>
+  each(region, (one) => ({ ...one, solid: moved(one.solid, move) }));
+
+export const mannequinTorso: Region = {
   inner: 0.055,
   joint: 0.05,
   parts: [
@@ -40,7 +59,7 @@ const torso: Region = {
   ],
 };
 
-const neck: Region = {
+export const averageNeck: Region = {
   inner: 0.02,
   joint: 0.045,
   parts: [
@@ -49,7 +68,7 @@ const neck: Region = {
   ],
 };
 
-const head: Region = {
+export const averageHead: Region = {
   inner: 0.03,
   joint: 0.022,
   parts: [
@@ -62,7 +81,7 @@ const head: Region = {
   ],
 };
 
-const face: Region = {
+export const averageFace: Region = {
   inner: 0.008,
   joint: 0.014,
   parts: [
@@ -73,76 +92,118 @@ const face: Region = {
   ],
 };
 
-const ears: Region = {
+export const averageEars: Region = {
   inner: 0.006,
   joint: 0.01,
   parts: [part('head', 0.02, ellipsoid([0.0745, 1.582, -0.012], [0.009, 0.028, 0.016], -0.25))],
 };
 
-const arm: Region = {
-  inner: 0.028,
-  joint: 0.06,
-  parts: [
-    part('leftUpperArm', 0.018, ellipsoid([shoulder + 0.012, y - 0.004, 0.004], [0.066, 0.058, 0.054])),
-    part('leftUpperArm', 0.016, taperedCapsule([shoulder + 0.02, y, 0], [elbow - 0.02, y, 0], 0.043, 0.034)),
-    part('leftUpperArm', 0.016, ellipsoid([shoulder + 0.14, y, 0.016], [0.085, 0.035, 0.034])),
-    part('leftUpperArm', 0.016, ellipsoid([shoulder + 0.14, y + 0.002, -0.018], [0.095, 0.036, 0.032])),
-    part('leftLowerArm', 0.016, taperedCapsule([elbow, y, 0], [wrist - 0.01, y, -0.002], 0.0365, 0.0225)),
-    part('leftLowerArm', 0.016, ellipsoid([elbow + 0.075, y + 0.003, 0.008], [0.085, 0.034, 0.036])),
-    part('leftLowerArm', 0.016, ellipsoid([elbow + 0.08, y - 0.002, -0.018], [0.09, 0.034, 0.03])),
-    part('leftLowerArm', 0.012, ellipsoid([wrist - 0.03, y, -0.001], [0.05, 0.0205, 0.0275])),
-  ].map(onArm),
-};
+/** How thick limbs are against the mannequin's. */
+export interface Girths {
+  readonly shoulder: number;
+  readonly upperArm: number;
+  readonly forearm: number;
+  readonly thigh: number;
+  readonly calf: number;
+}
 
-const palm: Region = {
-  inner: 0.014,
-  joint: 0.018,
-  parts: [
-    part('leftHand', 0.009, roundedBox([wrist + 0.05, y - 0.001, 0], [0.046, 0.0145, 0.037], 0.0135)),
-    part('leftHand', 0.009, taperedCapsule([wrist + 0.004, y, -0.001], [wrist + 0.03, y, 0], 0.021, 0.022)),
-    part('leftHand', 0.009, ellipsoid([wrist + 0.038, y - 0.009, 0.02], [0.032, 0.015, 0.019])),
-    part('leftHand', 0.009, ellipsoid([wrist + 0.045, y - 0.009, -0.026], [0.034, 0.013, 0.014])),
-    ...fingers
-      .filter(({ name }) => name !== 'Thumb')
-      .map(({ knuckle, radius }) =>
-        part('leftHand', 0.007, taperedCapsule([wrist + 0.04, y, knuckle[2] * 0.8], knuckle, 0.012, radius * 1.12)),
-      ),
-  ].map(onArm),
-};
+export const averageGirths: Girths = { shoulder: 1, upperArm: 1, forearm: 1, thigh: 1, calf: 1 };
 
-const fingerRegions: Region[] = fingers.map((finger) => {
-  const names = fingerBones(finger.name);
-  const segment = (index: number): Part => {
-    const from = fingerPoint(finger, index);
-    const to = fingerPoint(finger, index + 1);
-    const radius = (step: number) => finger.radius * (1 - 0.085 * step);
-    const tip: Point =
-      index < 2
-        ? to
-        : [
-            to[0] - finger.direction[0] * 0.006,
-            to[1] - finger.direction[1] * 0.006,
-            to[2] - finger.direction[2] * 0.006,
-          ];
-    return part(`left${names[index]}`, 0.0035, taperedCapsule(from, tip, radius(index), radius(index + 1)));
+/** Arm and palm are modelled about z = 0 and put where the shoulder is. */
+const onArm = (region: Region, { armDepth }: BodyRig): Region => movedRegion(region, { by: [0, 0, armDepth] });
+
+export function armOf(rig: BodyRig, { shoulder: d, upperArm: u, forearm: f }: Girths): Region {
+  const { armHeight: y } = rig;
+  const { shoulder, elbow, wrist } = rig.armJoints;
+  return onArm(
+    {
+      inner: 0.028,
+      joint: 0.06,
+      parts: [
+        part('leftUpperArm', 0.018, ellipsoid([shoulder + 0.012, y - 0.004, 0.004], [0.066 * d, 0.058 * d, 0.054 * d])),
+        part(
+          'leftUpperArm',
+          0.016,
+          taperedCapsule([shoulder + 0.02, y, 0], [elbow - 0.02, y, 0], 0.043 * u, 0.034 * u),
+        ),
+        part('leftUpperArm', 0.016, ellipsoid([shoulder + 0.14, y, 0.016], [0.085, 0.035 * u, 0.034 * u])),
+        part('leftUpperArm', 0.016, ellipsoid([shoulder + 0.14, y + 0.002, -0.018], [0.095, 0.036 * u, 0.032 * u])),
+        part('leftLowerArm', 0.016, taperedCapsule([elbow, y, 0], [wrist - 0.01, y, -0.002], 0.0365 * f, 0.0225 * f)),
+        part('leftLowerArm', 0.016, ellipsoid([elbow + 0.075, y + 0.003, 0.008], [0.085, 0.034 * f, 0.036 * f])),
+        part('leftLowerArm', 0.016, ellipsoid([elbow + 0.08, y - 0.002, -0.018], [0.09, 0.034 * f, 0.03 * f])),
+        part('leftLowerArm', 0.012, ellipsoid([wrist - 0.03, y, -0.001], [0.05, 0.0205 * f, 0.0275 * f])),
+      ],
+    },
+    rig,
+  );
+}
+
+/** A palm so large against the average one. */
+export function palmOf(rig: BodyRig, size: number): Region {
+  const { armHeight: y, fingers } = rig;
+  const { wrist } = rig.armJoints;
+  const about: Point = [wrist, y, 0];
+  const palm: Region = {
+    inner: 0.014,
+    joint: 0.018,
+    parts: [
+      part('leftHand', 0.009, roundedBox([wrist + 0.05, y - 0.001, 0], [0.046, 0.0145, 0.037], 0.0135)),
+      part('leftHand', 0.009, taperedCapsule([wrist + 0.004, y, -0.001], [wrist + 0.03, y, 0], 0.021, 0.022)),
+      part('leftHand', 0.009, ellipsoid([wrist + 0.038, y - 0.009, 0.02], [0.032, 0.015, 0.019])),
+      part('leftHand', 0.009, ellipsoid([wrist + 0.045, y - 0.009, -0.026], [0.034, 0.013, 0.014])),
+    ],
   };
-  return { inner: 0.004, joint: finger.name === 'Thumb' ? 0.016 : 0.008, parts: [segment(0), segment(1), segment(2)] };
-});
+  const knuckles = fingers
+    .filter(({ name }) => name !== 'Thumb')
+    .map(({ knuckle, radius }) =>
+      part(
+        'leftHand',
+        0.007,
+        taperedCapsule([wrist + 0.04 * size, y, knuckle[2] * 0.8], knuckle, 0.012 * size, radius * 1.12),
+      ),
+    );
+  const larger = size === 1 ? palm : movedRegion(palm, { about, factor: [size, size, size] });
+  return onArm({ ...larger, parts: [...larger.parts, ...knuckles] }, rig);
+}
 
-const leg: Region = {
+export const fingersOf = ({ fingers, fingerPoint }: BodyRig): Region[] =>
+  fingers.map((finger) => {
+    const names = fingerBones(finger.name);
+    const segment = (index: number): Part => {
+      const from = fingerPoint(finger, index);
+      const to = fingerPoint(finger, index + 1);
+      const radius = (step: number) => finger.radius * (1 - 0.085 * step);
+      const tip: Point =
+        index < 2
+          ? to
+          : [
+              to[0] - finger.direction[0] * 0.006,
+              to[1] - finger.direction[1] * 0.006,
+              to[2] - finger.direction[2] * 0.006,
+            ];
+      return part(`left${names[index]}`, 0.0035, taperedCapsule(from, tip, radius(index), radius(index + 1)));
+    };
+    return {
+      inner: 0.004,
+      joint: finger.name === 'Thumb' ? 0.016 : 0.008,
+      parts: [segment(0), segment(1), segment(2)],
+    };
+  });
+
+export const legOf = ({ thigh: t, calf: c }: Girths): Region => ({
   inner: 0.05,
   joint: 0.06,
   parts: [
-    part('leftUpperLeg', 0.022, taperedCapsule([0.088, 0.9, -0.004], [0.096, 0.53, 0.002], 0.082, 0.052)),
-    part('leftUpperLeg', 0.022, ellipsoid([0.098, 0.74, 0.02], [0.064, 0.17, 0.056])),
-    part('leftUpperLeg', 0.022, ellipsoid([0.092, 0.76, -0.03], [0.06, 0.16, 0.05])),
-    part('leftLowerLeg', 0.02, ellipsoid([0.096, 0.5, 0.012], [0.049, 0.055, 0.048])),
-    part('leftLowerLeg', 0.02, taperedCapsule([0.096, 0.47, 0], [0.098, 0.1, -0.02], 0.048, 0.032)),
-    part('leftLowerLeg', 0.02, ellipsoid([0.097, 0.36, -0.026], [0.05, 0.115, 0.046])),
+    part('leftUpperLeg', 0.022, taperedCapsule([0.088, 0.9, -0.004], [0.096, 0.53, 0.002], 0.082 * t, 0.052 * t)),
+    part('leftUpperLeg', 0.022, ellipsoid([0.098, 0.74, 0.02], [0.064 * t, 0.17, 0.056 * t])),
+    part('leftUpperLeg', 0.022, ellipsoid([0.092, 0.76, -0.03], [0.06 * t, 0.16, 0.05 * t])),
+    part('leftLowerLeg', 0.02, ellipsoid([0.096, 0.5, 0.012], [0.049 * c, 0.055, 0.048 * c])),
+    part('leftLowerLeg', 0.02, taperedCapsule([0.096, 0.47, 0], [0.098, 0.1, -0.02], 0.048 * c, 0.032 * c)),
+    part('leftLowerLeg', 0.02, ellipsoid([0.097, 0.36, -0.026], [0.05 * c, 0.115, 0.046 * c])),
   ],
-};
+});
 
-const foot: Region = {
+export const averageFoot: Region = {
   inner: 0.03,
   joint: 0.035,
   parts: [
@@ -153,23 +214,55 @@ const foot: Region = {
   ],
 };
 
-const regions: readonly Region[] = [torso, neck, head, face, ears, leg, foot, arm, palm, ...fingerRegions];
-
-/** Every part with its weight's bone. */
-export const parts: readonly Part[] = regions.flatMap((region) => region.parts);
-
 /** Both halves of the body meet without a crease: |x|, rounded within a centimetre of the middle. */
 export const foldedX = (x: number): number => Math.sqrt(x * x + 0.006 * 0.006);
 
-/** The whole surface: regions joined one after the other, cut flat at the floor. */
-export const body: DistanceField = (worldX, worldY, worldZ) => {
-  const x = foldedX(worldX);
-  let distance = 1;
-  for (const region of regions) {
+/** Further from a region than this its field is the distance to its box [m]: no fillet reaches so far. */
+const far = 0.12;
+
+/** The field of a region's own parts, x ≥ 0. */
+export function fieldOf({ parts, inner }: Region): DistanceField {
+  const { min, max } = boxOf(parts.map(({ solid }) => solid));
+  return (x, y, z) => {
+    const away = distanceToBox(x, y, z, min, max);
+    if (away > far) return away;
     let own = 1;
-    for (const { solid } of region.parts) own = smoothUnion(own, solid(x, worldY, worldZ), region.inner);
-    distance = smoothUnion(distance, own, region.joint);
-  }
-  // The soles: a flat cut with a rounded edge.
-  return -smoothUnion(-distance, worldY, 0.012);
-};
+    for (const { solid } of parts) own = smoothUnion(own, solid.distance(x, y, z), inner);
+    return own;
+  };
+}
+
+/** Regions joined one after the other, x ≥ 0. */
+export function joined(regions: readonly Region[]): DistanceField {
+  const fields = regions.map((region) => ({ field: fieldOf(region), joint: region.joint }));
+  return (x, y, z) => {
+    let distance = 1;
+    for (const { field, joint } of fields) distance = smoothUnion(distance, field(x, y, z), joint);
+    return distance;
+  };
+}
+
+/** The soles: a flat cut at the floor with a rounded edge. */
+export const onFloor = (distance: number, y: number): number => -smoothUnion(-distance, y, 0.012);
+
+/** The mannequin, cut flat at the floor. */
+export function mannequinAnatomy(rig: BodyRig): Anatomy {
+  const regions = [
+    mannequinTorso,
+    averageNeck,
+    averageHead,
+    averageFace,
+    averageEars,
+    legOf(averageGirths),
+    averageFoot,
+    armOf(rig, averageGirths),
+    palmOf(rig, 1),
+    ...fingersOf(rig),
+  ];
+  const whole = joined(regions);
+  return {
+    rig,
+    parts: regions.flatMap(({ parts }) => parts),
+    body: (x, y, z) => onFloor(whole(foldedX(x), y, z), y),
+  };
+}

@@ -4,8 +4,58 @@ export type Point = readonly [number, number, number];
 /** Distance [m] to a surface, negative inside. */
 export type DistanceField = (x: number, y: number, z: number) => number;
 
+/** A piece with the box that holds it [m]. */
+export interface Solid {
+  readonly distance: DistanceField;
+  readonly min: Point;
+  readonly max: Point;
+}
+
+const solid = (distance: DistanceField, min: Point, max: Point): Solid => ({ distance, min, max });
+
+/** Distance [m] to a box, 0 inside. */
+export function distanceToBox(x: number, y: number, z: number, min: Point, max: Point): number {
+  const dx = Math.max(min[0] - x, 0, x - max[0]);
+  const dy = Math.max(min[1] - y, 0, y - max[1]);
+  const dz = Math.max(min[2] - z, 0, z - max[2]);
+  return Math.sqrt(dx * dx + dy * dy + dz * dz);
+}
+
+/** The box that holds all. */
+export const boxOf = (solids: readonly Pick<Solid, 'min' | 'max'>[]): Pick<Solid, 'min' | 'max'> => {
+  const bound = (of: 'min' | 'max', axis: number) => Math[of](...solids.map((each) => each[of][axis]!));
+  return {
+    min: [bound('min', 0), bound('min', 1), bound('min', 2)],
+    max: [bound('max', 0), bound('max', 1), bound('max', 2)],
+  };
+};
+
+/** The same piece elsewhere, larger by `factor` about a point, which moves by `by`. */
+export function moved(piece: Solid, { about = [0, 0, 0], factor = [1, 1, 1], by = [0, 0, 0] }: Move): Solid {
+  const there = (p: Point): Point => [
+    about[0] + (p[0] - about[0]) * factor[0] + by[0],
+    about[1] + (p[1] - about[1]) * factor[1] + by[1],
+    about[2] + (p[2] - about[2]) * factor[2] + by[2],
+  ];
+  const least = Math.min(...factor);
+  const [ax, ay, az] = [about[0] + by[0], about[1] + by[1], about[2] + by[2]];
+  return solid(
+    (x, y, z) =>
+      least *
+      piece.distance(about[0] + (x - ax) / factor[0], about[1] + (y - ay) / factor[1], about[2] + (z - az) / factor[2]),
+    there(piece.min),
+    there(piece.max),
+  );
+}
+
+interface Move {
+  readonly about?: Point;
+  readonly factor?: Point;
+  readonly by?: Point;
+}
+
 /** A tapered capsule: the hull of two spheres. */
-export function taperedCapsule(a: Point, b: Point, radiusA: number, radiusB: number): DistanceField {
+export function taperedCapsule(a: Point, b: Point, radiusA: number, radiusB: number): Solid {
   const bx = b[0] - a[0];
   const by = b[1] - a[1];
   const bz = b[2] - a[2];
@@ -13,7 +63,8 @@ export function taperedCapsule(a: Point, b: Point, radiusA: number, radiusB: num
   const taper = radiusA - radiusB;
   const a2 = l2 - taper * taper;
   const inverse = 1 / l2;
-  return (x, y, z) => {
+  const box = boxOf([ball(a, radiusA), ball(b, radiusB)]);
+  const distance: DistanceField = (x, y, z) => {
     const px = x - a[0];
     const py = y - a[1];
     const pz = z - a[2];
@@ -30,13 +81,19 @@ export function taperedCapsule(a: Point, b: Point, radiusA: number, radiusB: num
     if (Math.sign(along) * a2 * y2 < k) return Math.sqrt(x2 + y2) * inverse - radiusA;
     return (Math.sqrt(x2 * a2 * inverse) + along * taper) * inverse - radiusA;
   };
+  return solid(distance, box.min, box.max);
 }
 
+const ball = ([x, y, z]: Point, radius: number): Pick<Solid, 'min' | 'max'> => ({
+  min: [x - radius, y - radius, z - radius],
+  max: [x + radius, y + radius, z + radius],
+});
+
 /** An ellipsoid, exact on its surface and nearly so around it; `pitch` [rad] turns it about X, top towards +Z. */
-export function ellipsoid(centre: Point, radii: Point, pitch = 0): DistanceField {
+export function ellipsoid(centre: Point, radii: Point, pitch = 0): Solid {
   const c = Math.cos(pitch);
   const s = Math.sin(pitch);
-  return (x, y, z) => {
+  const distance: DistanceField = (x, y, z) => {
     const px = x - centre[0];
     const wy = y - centre[1];
     const wz = z - centre[2];
@@ -46,17 +103,21 @@ export function ellipsoid(centre: Point, radii: Point, pitch = 0): DistanceField
     const k1 = Math.hypot(px / radii[0] ** 2, py / radii[1] ** 2, pz / radii[2] ** 2);
     return k1 < 1e-9 ? -Math.min(...radii) : (k0 * (k0 - 1)) / k1;
   };
+  const { min, max } = ball(centre, Math.max(...radii));
+  return solid(distance, min, max);
 }
 
 /** A box with rounded edges; half sizes include the rounding. */
-export function roundedBox(centre: Point, half: Point, rounding: number): DistanceField {
-  return (x, y, z) => {
+export function roundedBox(centre: Point, half: Point, rounding: number): Solid {
+  const distance: DistanceField = (x, y, z) => {
     const qx = Math.abs(x - centre[0]) - half[0] + rounding;
     const qy = Math.abs(y - centre[1]) - half[1] + rounding;
     const qz = Math.abs(z - centre[2]) - half[2] + rounding;
     const outside = Math.hypot(Math.max(qx, 0), Math.max(qy, 0), Math.max(qz, 0));
     return outside + Math.min(Math.max(qx, qy, qz), 0) - rounding;
   };
+  const [x, y, z] = centre;
+  return solid(distance, [x - half[0], y - half[1], z - half[2]], [x + half[0], y + half[1], z + half[2]]);
 }
 
 /** The union of two surfaces with a fillet of about `blend` [m] between them. */
@@ -64,6 +125,9 @@ export function smoothUnion(a: number, b: number, blend: number): number {
   const h = Math.max(blend - Math.abs(a - b), 0) / blend;
   return Math.min(a, b) - (h * h * h * blend) / 6;
 }
+
+/** What is inside both, its edge rounded by about `blend` [m]. */
+export const smoothBoth = (a: number, b: number, blend: number): number => -smoothUnion(-a, -b, blend);
 
 /** The unit normal: the direction in which the distance grows. */
 export function gradient(field: DistanceField, x: number, y: number, z: number, step = 5e-4): [number, number, number] {

@@ -220,6 +220,55 @@ export function cutAlong(surface: Surface, value: (x: number, y: number, z: numb
   return { positions: new Float32Array(positions), indices: new Uint32Array(indices) };
 }
 
+/** Halves edges until none is longer than `longest` allows at its middle [m]; triangles stay joined. */
+export function refine(surface: Surface, longest: (x: number, y: number, z: number) => number): Surface {
+  const positions = Array.from(surface.positions);
+  let indices = Array.from(surface.indices);
+  const at = (v: number, axis: number): number => positions[3 * v + axis]!;
+  for (let round = 0; round < 4; round++) {
+    const halves = new Map<string, number | null>();
+    const half = (a: number, b: number): number | null => {
+      const key = a < b ? `${a},${b}` : `${b},${a}`;
+      const known = halves.get(key);
+      if (known !== undefined) return known;
+      const middle = [0, 1, 2].map((axis) => (at(a, axis) + at(b, axis)) / 2) as [number, number, number];
+      const length = Math.hypot(at(a, 0) - at(b, 0), at(a, 1) - at(b, 1), at(a, 2) - at(b, 2));
+      const vertex = length > longest(...middle) ? positions.push(...middle) / 3 - 1 : null;
+      halves.set(key, vertex);
+      return vertex;
+    };
+    const next: number[] = [];
+    for (let t = 0; t < indices.length; t += 3) {
+      const corners = [indices[t]!, indices[t + 1]!, indices[t + 2]!];
+      const polygon = corners.flatMap((corner, e) => [corner, half(corner, corners[(e + 1) % 3]!) ?? -1]);
+      next.push(...trianglesOf(polygon));
+    }
+    if (next.length === indices.length) break;
+    indices = next;
+  }
+  return { positions: new Float32Array(positions), indices: new Uint32Array(indices) };
+}
+
+/** A triangle's corners, each followed by the middle of the edge after it or −1, as triangles. */
+function trianglesOf(polygon: readonly number[]): number[] {
+  const split = [1, 3, 5].filter((i) => polygon[i]! >= 0).length;
+  const corner = (from: number, i: number): number => polygon[(from + i) % 6]!;
+  if (split === 3) {
+    const [a, ab, b, bc, c, ca] = polygon as [number, number, number, number, number, number];
+    return [a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca];
+  }
+  if (split === 0) return [polygon[0]!, polygon[2]!, polygon[4]!];
+  if (split === 1) {
+    const from = [0, 2, 4].find((i) => polygon[i + 1]! >= 0)!;
+    const [a, ab, b, c] = [corner(from, 0), corner(from, 1), corner(from, 2), corner(from, 4)];
+    return [a, ab, c, ab, b, c];
+  }
+  // The corner before the whole edge, whose other edges are halved.
+  const from = [0, 2, 4].find((i) => polygon[(i + 1) % 6]! >= 0 && polygon[(i + 3) % 6]! >= 0)!;
+  const [a, ab, b, bc, c] = [0, 1, 2, 3, 4].map((i) => corner(from, i)) as [number, number, number, number, number];
+  return [ab, b, bc, a, ab, bc, a, bc, c];
+}
+
 /** The mean of a value per vertex over its neighbours, `rounds` times; channels are interleaved. */
 export function smoothOver(
   surface: Surface,

@@ -1,5 +1,5 @@
-import { foldedX, parts } from './anatomy';
-import { armJoints, bones } from './rig';
+import { type Anatomy, foldedX } from './anatomy';
+import type { BodyRig } from './rig';
 import { type Surface, smoothOver } from './surface';
 
 /** Four bones and weights per vertex; weights sum to 1. */
@@ -8,7 +8,6 @@ export interface SkinWeights {
   readonly weights: Float32Array;
 }
 
-const boneIndex = new Map(bones.map((bone, index) => [bone.name, index]));
 const influences = 4;
 
 const smoothstep = (start: number, end: number, value: number): number => {
@@ -40,7 +39,9 @@ function shoulderShare(x: number, y: number): number {
  * Weights by nearness to the parts of the anatomy, then spread over the surface: neighbours across a gap (fingers, arm and
  * flank) share nothing.
  */
-export function skinWeights(surface: Surface): SkinWeights {
+export function skinWeights(surface: Surface, { parts, rig }: Pick<Anatomy, 'parts' | 'rig'>): SkinWeights {
+  const { bones } = rig;
+  const boneIndex = new Map(bones.map((bone, index) => [bone.name, index]));
   const vertices = surface.positions.length / 3;
   const dense = new Float32Array(vertices * bones.length);
   for (let v = 0; v < vertices; v++) {
@@ -52,9 +53,10 @@ export function skinWeights(surface: Surface): SkinWeights {
       const name = bone.replace('left', side);
       found.set(name, Math.max(found.get(name) ?? 0, weight));
     };
-    const nearest = Math.min(...parts.map(({ solid }) => solid(x, y, z)));
-    for (const { solid, bone, softness } of parts) {
-      const weight = Math.exp(-((Math.max(solid(x, y, z) - nearest, 0) / softness) ** 2));
+    const distances = parts.map(({ solid }) => solid.distance(x, y, z));
+    const nearest = Math.min(...distances);
+    for (const [index, { bone, softness }] of parts.entries()) {
+      const weight = Math.exp(-((Math.max(distances[index]! - nearest, 0) / softness) ** 2));
       if (weight < 1e-3) continue;
       if (bone !== 'trunk') {
         give(bone, weight);
@@ -67,20 +69,21 @@ export function skinWeights(surface: Surface): SkinWeights {
     const sum = [...found.values()].reduce((total, weight) => total + weight, 0);
     for (const [name, weight] of found) dense[v * bones.length + boneIndex.get(name)!] = weight / sum;
   }
-  sharpenHinges(surface, dense);
+  sharpenHinges(surface, dense, rig);
   smoothOver(surface, dense, bones.length, 6, 0.5);
-  return strongest(dense, vertices);
+  return strongest(dense, vertices, bones.length);
 }
 
 /** At elbow and wrist the hand-over is by the distance along the arm, evenly round the limb. */
-function sharpenHinges(surface: Surface, dense: Float32Array): void {
+function sharpenHinges(surface: Surface, dense: Float32Array, { bones, armJoints }: BodyRig): void {
+  const boneIndex = new Map(bones.map((bone, index) => [bone.name, index]));
   const hinges = [
     { at: armJoints.elbow, before: 'UpperArm', after: 'LowerArm', width: 0.045 },
     { at: armJoints.wrist - 0.002, before: 'LowerArm', after: 'Hand', width: 0.03 },
   ];
   for (let v = 0; v < surface.positions.length / 3; v++) {
     const x = surface.positions[3 * v]!;
-    if (Math.abs(x) < 0.3) continue;
+    if (Math.abs(x) < armJoints.shoulder + 0.11) continue;
     const side = x < 0 ? 'right' : 'left';
     for (const { at, before, after, width } of hinges) {
       const a = v * bones.length + boneIndex.get(`${side}${before}`)!;
@@ -95,11 +98,11 @@ function sharpenHinges(surface: Surface, dense: Float32Array): void {
 }
 
 /** The four strongest influences of each vertex, made to sum to 1. */
-function strongest(dense: Float32Array, vertices: number): SkinWeights {
+function strongest(dense: Float32Array, vertices: number, bones: number): SkinWeights {
   const joints = new Uint8Array(vertices * influences);
   const weights = new Float32Array(vertices * influences);
   for (let v = 0; v < vertices; v++) {
-    const row = Array.from(dense.subarray(v * bones.length, (v + 1) * bones.length), (weight, bone) => ({
+    const row = Array.from(dense.subarray(v * bones, (v + 1) * bones), (weight, bone) => ({
       bone,
       weight,
     }));

@@ -1,31 +1,27 @@
 import { type Accessor, Document, type Material, NodeIO } from '@gltf-transform/core';
-import { bones } from './rig';
+import type { Figure, MeshPlan } from './figure';
 import type { Surface } from './surface';
+import { type Label, labels, type MaterialName, tintOf } from './surface-labels';
 import type { SkinWeights } from './weights';
 
-/** Materials by name: the page recolours them, one palette per player. */
-export type MaterialName = 'Suit' | 'Accent' | 'Head' | 'Visor';
+/** A body's skin, cut and weighed. */
+export interface Skinned {
+  readonly surface: Surface;
+  readonly normals: Float32Array;
+  readonly skin: SkinWeights;
+  /** Of each triangle: what it is, and whether it belongs to the head. */
+  readonly labels: readonly Label[];
+  readonly ofHead: readonly boolean[];
+  /** How far each vertex goes when the eyes close [m]; null: nothing blinks. */
+  readonly blink: Float32Array | null;
+}
 
-const look: Readonly<Record<MaterialName, { color: [number, number, number]; roughness: number; metallic: number }>> = {
-  Suit: { color: [0.62, 0.66, 0.72], roughness: 0.62, metallic: 0 },
-  Accent: { color: [0.075, 0.24, 0.5], roughness: 0.5, metallic: 0.05 },
-  Head: { color: [0.84, 0.82, 0.79], roughness: 0.55, metallic: 0 },
-  Visor: { color: [0.03, 0.035, 0.045], roughness: 0.16, metallic: 0.4 },
-};
-
-/** Only seen by others: the own head would be seen from inside. */
-const headMaterials: readonly MaterialName[] = ['Head', 'Visor'];
-
-/** Fingers, toes and all as VRM 1.0 wants them. */
-export async function writeVrm(
-  surface: Surface,
-  normals: Float32Array,
-  skin: SkinWeights,
-  materials: readonly MaterialName[],
-): Promise<Uint8Array> {
+/** A body as VRM 1.0 wants it: fingers, toes and all. */
+export async function writeVrm(figure: Figure, skinned: Skinned): Promise<Uint8Array> {
+  const { bones } = figure.rig;
   const document = new Document();
   const buffer = document.createBuffer();
-  const scene = document.createScene('mannequin');
+  const scene = document.createScene(figure.name);
   const nodes = new Map(bones.map((bone) => [bone.name, document.createNode(bone.name)]));
   const jointOf = new Map(bones.map((bone) => [bone.name, bone.joint]));
   for (const { name, parent, joint } of bones) {
@@ -44,62 +40,81 @@ export async function writeVrm(
     .setSkeleton(nodes.get('hips')!)
     .setInverseBindMatrices(document.createAccessor().setType('MAT4').setArray(inverseBinds).setBuffer(buffer));
   for (const { name } of bones) skeleton.addJoint(nodes.get(name)!);
-
-  const accessor = (
-    type: 'VEC3' | 'VEC4' | 'SCALAR',
-    array: Float32Array | Uint8Array | Uint16Array,
-    normalized = false,
-  ): Accessor => document.createAccessor().setType(type).setArray(array).setNormalized(normalized).setBuffer(buffer);
-  const attributes = {
-    POSITION: accessor('VEC3', surface.positions),
-    NORMAL: accessor('VEC3', normals),
-    JOINTS_0: accessor('VEC4', skin.joints),
-    WEIGHTS_0: accessor('VEC4', eighths(skin.weights), true),
-  };
-  const parts = [
-    { name: 'bodySkin', materials: ['Suit', 'Accent'] as MaterialName[] },
-    { name: 'headSkin', materials: [...headMaterials] },
-  ];
-  for (const part of parts) {
-    const mesh = document.createMesh(part.name);
-    for (const name of part.materials) {
-      const indices: number[] = [];
-      materials.forEach((material, t) => {
-        if (material === name) indices.push(...surface.indices.subarray(3 * t, 3 * t + 3));
-      });
-      // A primitive of its own vertices: a shared buffer would be skinned once for every primitive.
-      const renumbered = [...new Set(indices)];
-      const index = new Map(renumbered.map((vertex, i) => [vertex, i]));
-      const primitive = document.createPrimitive().setMaterial(material(document, name));
-      for (const [semantic, whole] of Object.entries(attributes)) {
-        const size = whole.getElementSize();
-        const array = whole.getArray()!;
-        const own = new (array.constructor as Float32ArrayConstructor)(renumbered.length * size);
-        for (const [i, vertex] of renumbered.entries()) {
-          own.set(array.subarray(vertex * size, (vertex + 1) * size) as Float32Array, i * size);
-        }
-        primitive.setAttribute(semantic, accessor(whole.getType() as 'VEC3', own, whole.getNormalized()));
+  for (const plan of figure.meshes) {
+    const mesh = document.createMesh(plan.name);
+    for (const name of plan.materials) {
+      const own = ownVertices(skinned, name, plan);
+      if (own.indices.length === 0) continue;
+      const primitive = document.createPrimitive().setMaterial(material(document, figure, name));
+      const accessor = (type: 'VEC3' | 'VEC4' | 'SCALAR', array: Float32Array | Uint8Array | Uint16Array): Accessor =>
+        document.createAccessor().setType(type).setArray(array).setBuffer(buffer);
+      const pick = (size: number, from: ArrayLike<number>): number[] =>
+        own.vertices.flatMap((vertex) => Array.from({ length: size }, (_, i) => from[vertex * size + i]!));
+      primitive
+        .setAttribute('POSITION', accessor('VEC3', new Float32Array(pick(3, skinned.surface.positions))))
+        .setAttribute('NORMAL', accessor('VEC3', new Float32Array(pick(3, skinned.normals))))
+        .setAttribute('JOINTS_0', accessor('VEC4', new Uint8Array(pick(4, skinned.skin.joints))))
+        .setAttribute(
+          'WEIGHTS_0',
+          accessor('VEC4', bytesOf(new Float32Array(pick(4, skinned.skin.weights)))).setNormalized(true),
+        )
+        .setIndices(accessor('SCALAR', Uint16Array.from(own.indices)));
+      if (own.tints) {
+        primitive.setAttribute('COLOR_0', accessor('VEC4', Uint8Array.from(own.tints)).setNormalized(true));
       }
-      primitive.setIndices(
-        accessor(
-          'SCALAR',
-          Uint16Array.from(indices, (vertex) => index.get(vertex)!),
-        ),
-      );
+      if (plan.blinks && skinned.blink) {
+        const moves = accessor('VEC3', new Float32Array(pick(3, skinned.blink))).setSparse(true);
+        primitive.addTarget(document.createPrimitiveTarget('blink').setAttribute('POSITION', moves));
+      }
       mesh.addPrimitive(primitive);
     }
-    scene.addChild(document.createNode(part.name).setMesh(mesh).setSkin(skeleton));
+    if (plan.blinks) mesh.setWeights([0]).setExtras({ targetNames: ['blink'] });
+    scene.addChild(document.createNode(plan.name).setMesh(mesh).setSkin(skeleton));
   }
-  for (const whole of Object.values(attributes)) whole.dispose();
-  return withVrm(await new NodeIO().writeBinary(document));
+  return withVrm(await new NodeIO().writeBinary(document), figure);
+}
+
+/** A vertex is there once for each label it has triangles of, where labels of one material differ in tint. */
+interface OwnVertices {
+  /** By their number on the surface. */
+  readonly vertices: readonly number[];
+  readonly indices: readonly number[];
+  /** Bytes, four a vertex; null: all are white. */
+  readonly tints: readonly number[] | null;
+}
+
+/** The vertices of one material in one mesh. A primitive has its own: a shared buffer would be skinned once for every primitive. */
+function ownVertices(skinned: Skinned, name: MaterialName, { ofHead }: MeshPlan): OwnVertices {
+  const index = new Map<string, number>();
+  const vertices: number[] = [];
+  const tints: number[] = [];
+  const indices: number[] = [];
+  skinned.labels.forEach((label, t) => {
+    if (labels[label].material !== name || skinned.ofHead[t] !== ofHead) return;
+    const tint = tintOf(label).map((share) => Math.round(255 * share));
+    for (let corner = 0; corner < 3; corner++) {
+      const vertex = skinned.surface.indices[3 * t + corner]!;
+      const key = `${vertex} ${tint}`;
+      let own = index.get(key);
+      if (own === undefined) {
+        own = vertices.push(vertex) - 1;
+        tints.push(...tint, 255);
+        index.set(key, own);
+      }
+      indices.push(own);
+    }
+  });
+  return { vertices, indices, tints: tints.every((byte) => byte === 255) ? null : tints };
 }
 
 const made = new WeakMap<Document, Map<MaterialName, Material>>();
 
-function material(document: Document, name: MaterialName): Material {
+function material(document: Document, { colors }: Figure, name: MaterialName): Material {
   const known = made.get(document) ?? new Map<MaterialName, Material>();
   made.set(document, known);
-  const { color, roughness, metallic } = look[name];
+  const look = colors[name];
+  if (!look) throw new Error(`build-avatar: no colour for ${name}`);
+  const { color, roughness, metallic = 0 } = look;
   const material =
     known.get(name) ??
     document
@@ -112,7 +127,7 @@ function material(document: Document, name: MaterialName): Material {
 }
 
 /** Weights as bytes whose four sum to 255 exactly. */
-function eighths(weights: Float32Array): Uint8Array {
+function bytesOf(weights: Float32Array): Uint8Array {
   const bytes = new Uint8Array(weights.length);
   for (let v = 0; v < weights.length; v += 4) {
     let left = 255;
@@ -133,11 +148,12 @@ interface GltfJson {
 }
 
 /** Puts the VRM 1.0 extension into a GLB: which node is which bone, what is hidden in first person, the licence. */
-function withVrm(glb: Uint8Array): Uint8Array {
+function withVrm(glb: Uint8Array, { title, rig, meshes }: Figure): Uint8Array {
   const view = new DataView(glb.buffer, glb.byteOffset, glb.byteLength);
   const jsonLength = view.getUint32(12, true);
   const json = JSON.parse(new TextDecoder().decode(glb.subarray(20, 20 + jsonLength))) as GltfJson;
   const node = (name: string): number => json.nodes.findIndex((candidate) => candidate.name === name);
+  const blinking = meshes.filter(({ blinks }) => blinks);
   json.asset.generator = 'threepoint build-avatar';
   json.extensionsUsed = [...(json.extensionsUsed ?? []), 'VRMC_vrm'];
   json.extensions = {
@@ -145,7 +161,7 @@ function withVrm(glb: Uint8Array): Uint8Array {
     VRMC_vrm: {
       specVersion: '1.0',
       meta: {
-        name: 'threepoint mannequin',
+        name: title,
         version: '1',
         authors: ['threepoint'],
         licenseUrl: 'https://vrm.dev/licenses/1.0/',
@@ -159,13 +175,20 @@ function withVrm(glb: Uint8Array): Uint8Array {
         allowRedistribution: true,
         modification: 'allowModificationRedistribution',
       },
-      humanoid: { humanBones: Object.fromEntries(bones.map(({ name }) => [name, { node: node(name) }])) },
+      humanoid: { humanBones: Object.fromEntries(rig.bones.map(({ name }) => [name, { node: node(name) }])) },
       firstPerson: {
-        meshAnnotations: [
-          { node: node('bodySkin'), type: 'both' },
-          { node: node('headSkin'), type: 'thirdPersonOnly' },
-        ],
+        meshAnnotations: meshes.map(({ name, ofHead }) => ({
+          node: node(name),
+          type: ofHead ? 'thirdPersonOnly' : 'both',
+        })),
       },
+      ...(blinking.length > 0 && {
+        expressions: {
+          preset: {
+            blink: { morphTargetBinds: blinking.map(({ name }) => ({ node: node(name), index: 0, weight: 1 })) },
+          },
+        },
+      }),
     },
   };
   const text = new TextEncoder().encode(JSON.stringify(json));

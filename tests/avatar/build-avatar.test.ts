@@ -2,56 +2,63 @@ import { readFileSync } from 'node:fs';
 import { NodeIO, type Primitive } from '@gltf-transform/core';
 import { validateBytes } from 'gltf-validator';
 import { beforeAll, describe, expect, test } from 'vitest';
-import { buildMannequin } from '../../scripts/build-avatar/mannequin';
-import { bones } from '../../scripts/build-avatar/rig';
+import { figures } from '../../scripts/build-avatar/bodies';
+import { buildBody } from '../../scripts/build-avatar/build-body';
 import { isNightly } from '../nightly';
-
-const file = readFileSync(new URL('../../public/avatars/mannequin.vrm', import.meta.url));
 
 interface Vertex {
   readonly position: readonly number[];
+  /** How far it goes when the eyes close. */
+  readonly closing: readonly number[];
   readonly weights: readonly number[];
 }
 
-/** All triangles of all primitives, each corner by a key of its position: seams between materials close again. */
-let corners: string[] = [];
-let vertices: Vertex[] = [];
+describe.each(figures.map((figure) => [figure.name, figure] as const))('the %s', (name, figure) => {
+  const file = readFileSync(new URL(`../../public/avatars/${name}.vrm`, import.meta.url));
 
-beforeAll(async () => {
-  const document = await new NodeIO().readBinary(file);
-  const primitives: Primitive[] = document
-    .getRoot()
-    .listMeshes()
-    .flatMap((mesh) => mesh.listPrimitives());
-  corners = [];
-  vertices = [];
-  for (const primitive of primitives) {
-    const positions = primitive.getAttribute('POSITION');
-    const weights = primitive.getAttribute('WEIGHTS_0');
-    const indices = primitive.getIndices();
-    if (!positions || !weights || !indices) throw new Error('a primitive without positions, weights or indices');
-    const own: Vertex[] = [];
-    for (let i = 0; i < positions.getCount(); i++) {
-      own.push({ position: positions.getElement(i, []), weights: weights.getElement(i, []) });
-    }
-    vertices.push(...own);
-    for (let i = 0; i < indices.getCount(); i++) {
-      corners.push((own[indices.getScalar(i)]?.position ?? []).map((value) => value.toFixed(6)).join());
-    }
-  }
-});
+  /** All triangles of all primitives, each corner by a key of its position: seams between materials close again. */
+  let corners: string[] = [];
+  let vertices: Vertex[] = [];
 
-describe('the mannequin', () => {
+  beforeAll(async () => {
+    const document = await new NodeIO().readBinary(file);
+    const primitives: Primitive[] = document
+      .getRoot()
+      .listMeshes()
+      .flatMap((mesh) => mesh.listPrimitives());
+    corners = [];
+    vertices = [];
+    for (const primitive of primitives) {
+      const positions = primitive.getAttribute('POSITION');
+      const weights = primitive.getAttribute('WEIGHTS_0');
+      const indices = primitive.getIndices();
+      const target = primitive.listTargets()[0]?.getAttribute('POSITION');
+      if (!positions || !weights || !indices) throw new Error('a primitive without positions, weights or indices');
+      const own: Vertex[] = [];
+      for (let i = 0; i < positions.getCount(); i++) {
+        own.push({
+          position: positions.getElement(i, []),
+          weights: weights.getElement(i, []),
+          closing: target?.getElement(i, []) ?? [0, 0, 0],
+        });
+      }
+      vertices.push(...own);
+      for (let i = 0; i < indices.getCount(); i++) {
+        corners.push((own[indices.getScalar(i)]?.position ?? []).map((value) => value.toFixed(6)).join());
+      }
+    }
+  });
+
   test('is a VRM 1.0 file that the Khronos validator finds nothing wrong with', async () => {
     const report = await validateBytes(new Uint8Array(file), { ignoredIssues: ['UNSUPPORTED_EXTENSION'] });
     expect(report.issues.messages.filter(({ severity }) => severity === 0)).toEqual([]);
     expect(report.info.extensionsUsed).toContain('VRMC_vrm');
   });
 
-  test('has 5,000 to 15,000 triangles in less than a megabyte', () => {
+  test('has 5,000 to 15,000 triangles in less than 400 kB', () => {
     expect(corners.length / 3).toBeGreaterThan(5000);
     expect(corners.length / 3).toBeLessThan(15_000);
-    expect(file.byteLength).toBeLessThan(1e6);
+    expect(file.byteLength).toBeLessThan(400e3);
   });
 
   test('is one closed surface: every edge is passed as often one way as the other, all triangles hang together', () => {
@@ -80,11 +87,12 @@ describe('the mannequin', () => {
     expect(new Set(corners.map(root)).size).toBe(1);
   });
 
-  test('stands on the floor, 1.70 m tall, as wide to the left as to the right', () => {
+  test('stands on the floor, about 1.70 m tall, as wide to the left as to the right', () => {
     const of = (axis: number) => vertices.map(({ position }) => position[axis] ?? Number.NaN);
     expect(Math.min(...of(1))).toBeGreaterThan(-0.004);
     expect(Math.min(...of(1))).toBeLessThan(0.004);
-    expect(Math.max(...of(1))).toBeCloseTo(1.7, 1);
+    expect(Math.max(...of(1))).toBeGreaterThan(1.66);
+    expect(Math.max(...of(1))).toBeLessThan(1.8);
     expect(Math.max(...of(0)) + Math.min(...of(0))).toBeCloseTo(0, 2);
   });
 
@@ -95,16 +103,39 @@ describe('the mannequin', () => {
   test('has every bone of the humanoid, fingers included', () => {
     const json = JSON.parse(new TextDecoder().decode(file.subarray(20, 20 + file.readUInt32LE(12))));
     const { humanBones } = json.extensions.VRMC_vrm.humanoid;
+    const { bones } = figure.rig;
     expect(Object.keys(humanBones).sort()).toEqual(bones.map(({ name }) => name).sort());
     for (const [name, { node }] of Object.entries<{ node: number }>(humanBones))
       expect(json.nodes[node].name).toBe(name);
     expect(bones).toHaveLength(6 + 2 * (4 + 15 + 4));
   });
 
+  test.runIf(figure.blink)('blinks: its eyes have a shape of closed lids, which moves nothing else', () => {
+    const json = JSON.parse(new TextDecoder().decode(file.subarray(20, 20 + file.readUInt32LE(12))));
+    const [bind] = json.extensions.VRMC_vrm.expressions.preset.blink.morphTargetBinds;
+    expect(json.nodes[bind.node].name).toBe('faceSkin');
+    let moved = 0;
+    let still = 0;
+    for (const { position, closing } of vertices) {
+      const [x = 0, y = 0, z = 0] = position;
+      const far = Math.hypot(...closing);
+      if (far === 0) still += 1;
+      else {
+        moved += 1;
+        expect(far).toBeLessThan(0.03);
+        expect(Math.abs(x)).toBeLessThan(0.09);
+        expect(y).toBeGreaterThan(1.55);
+        expect(z).toBeGreaterThan(0);
+      }
+    }
+    expect(moved).toBeGreaterThan(100);
+    expect(still).toBeGreaterThan(4000);
+  });
+
   // A minute of a core, and nothing that changes by the day.
   if (isNightly) {
     test('comes out of its script byte by byte', { timeout: 240_000 }, async () => {
-      expect(Buffer.from(await buildMannequin()).equals(file)).toBe(true);
+      expect(Buffer.from(await buildBody(figure)).equals(file)).toBe(true);
     });
   }
 });

@@ -1,0 +1,75 @@
+import type { Figure } from './figure';
+import type { Point } from './signed-distance';
+import { compact, cutAlong, decimate, mesh, normalsOf, projectOnto, refine, type Surface } from './surface';
+import type { Label } from './surface-labels';
+import { skinWeights } from './weights';
+import { writeVrm } from './write-vrm';
+
+/** Finer than a finger's fillet [m]. */
+const cell = 0.0042;
+
+const smoothstep = (start: number, end: number, value: number): number => {
+  const t = Math.max(0, Math.min(1, (value - start) / (end - start)));
+  return t * t * (3 - 2 * t);
+};
+
+/** Where people look: face, hands, shoulders. */
+function importance({ positions }: Surface, wrist: number): Float32Array {
+  return Float32Array.from({ length: positions.length / 3 }, (_, v) => {
+    const x = Math.abs(positions[3 * v]!);
+    const y = positions[3 * v + 1]!;
+    const z = positions[3 * v + 2]!;
+    const face = smoothstep(1.47, 1.53, y) * smoothstep(-0.01, 0.05, z);
+    const hand = smoothstep(wrist - 0.02, wrist + 0.03, x);
+    return Math.max(face, hand, 0.25 * smoothstep(1.3, 1.36, y));
+  });
+}
+
+const middleOf = ({ positions, indices }: Surface, t: number): Point =>
+  [0, 1, 2].map(
+    (axis) => [0, 1, 2].reduce((sum, corner) => sum + positions[3 * indices[t + corner]! + axis]!, 0) / 3,
+  ) as unknown as Point;
+
+/** How far each vertex goes when the eyes close [m]; null: nothing blinks. */
+function blinkOf({ blink, body }: Figure, surface: Surface): Float32Array | null {
+  if (!blink) return null;
+  const moves = new Float32Array(surface.positions.length);
+  for (let i = 0; i < moves.length; i += 3) {
+    const [x, y, z] = [surface.positions[i]!, surface.positions[i + 1]!, surface.positions[i + 2]!];
+    const to = blink(x, y, z);
+    if (!to) continue;
+    const { positions } = projectOnto(body, { positions: new Float32Array(to), indices: new Uint32Array() });
+    moves.set([positions[0]! - x, positions[1]! - y, positions[2]! - z], i);
+  }
+  return moves;
+}
+
+/** A body as a VRM 1.0 file; the same bytes every time. `coarser`: cells so many times larger, for a quick look. */
+export async function buildBody(figure: Figure, report?: (what: string) => void, coarser = 1): Promise<Uint8Array> {
+  const { body, seams, rest, rig, box } = figure;
+  const fine = projectOnto(body, mesh(body, ...box, coarser * cell), 2);
+  report?.(`${fine.indices.length / 3} triangles of ${coarser * cell * 1000} mm`);
+  const weighed = importance(fine, rig.armJoints.wrist);
+  const coarse = await decimate(fine, normalsOf(body, fine.positions), weighed, figure.triangles);
+  let surface = projectOnto(body, coarse);
+  if (figure.finer) surface = projectOnto(body, refine(surface, figure.finer));
+  for (const { value } of seams) surface = cutAlong(surface, value);
+  surface = compact(surface);
+  report?.(`${surface.indices.length / 3} triangles`);
+  const kinds: Label[] = [];
+  const ofHead: boolean[] = [];
+  for (let t = 0; t < surface.indices.length; t += 3) {
+    const middle = middleOf(surface, t);
+    const label = seams.find(({ value }) => value(...middle) < 0)?.label ?? rest;
+    kinds.push(label);
+    ofHead.push(figure.ofHead(label, middle));
+  }
+  return writeVrm(figure, {
+    surface,
+    normals: normalsOf(body, surface.positions),
+    skin: skinWeights(surface, figure),
+    labels: kinds,
+    ofHead,
+    blink: blinkOf(figure, surface),
+  });
+}

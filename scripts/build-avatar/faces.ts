@@ -1,0 +1,177 @@
+import { averageFace, averageHead, foldedX, movedRegion, type Part, part, type Region } from './anatomy';
+import { ellipsoid, moved, type Point } from './signed-distance';
+import type { Seam } from './surface-labels';
+
+/** A face against the average one. */
+export interface FaceMeasures {
+  /** Of the whole head, and of its width besides. */
+  readonly size: number;
+  readonly width: number;
+  /** Half width and half height of an eye, how far out of the middle it lies and how much higher its outer corner is [m]. */
+  readonly eye: { readonly radii: readonly [number, number]; readonly out: number; readonly slant: number };
+  /** Half of a brow's thickness, and how far above the eye it lies [m]. */
+  readonly brow: { readonly thickness: number; readonly above: number };
+  /** Half width and half height of the mouth [m]. */
+  readonly mouth: readonly [number, number];
+  /** Of the jaw's width; absent: 1. */
+  readonly jaw?: number;
+  /** Of the nose; absent: 1. */
+  readonly nose?: number;
+  /** Fuller cheeks and chin [m]; absent: the average ones. */
+  readonly cheeks?: number;
+}
+
+/** Where heads are made larger from: the head's joint. */
+const root: Point = [0, 1.516, -0.012];
+const eyeHeight = 1.594;
+const mouthHeight = 1.536;
+
+/** The same region on a head of these measures. */
+export const inHead = (region: Region, { size, width }: FaceMeasures): Region =>
+  movedRegion(region, { about: root, factor: [size * width, size, size] });
+
+/** A place on a head of these measures as it lies on the average one, x ≥ 0. */
+export const onAverageHead = ({ size, width }: FaceMeasures, x: number, y: number, z: number): Point => [
+  foldedX(x) / (size * width),
+  root[1] + (y - root[1]) / size,
+  root[2] + (z - root[2]) / size,
+];
+
+const fromAverageHead = ({ size, width }: FaceMeasures, [x, y, z]: Point, left: boolean): Point => [
+  (left ? 1 : -1) * x * size * width,
+  root[1] + (y - root[1]) * size,
+  root[2] + (z - root[2]) * size,
+];
+
+/** Skull, jaw and chin. */
+export function skullOf({ jaw = 1 }: FaceMeasures): Region {
+  const [skull, middle, ...rest] = averageHead.parts;
+  const [chin, mandible, ...upper] = rest;
+  const narrower = (one: Part | undefined): Part[] =>
+    one ? [{ ...one, solid: moved(one.solid, { factor: [jaw, 1, 1] }) }] : [];
+  const above = [skull, middle].flatMap((one) => one ?? []);
+  return { ...averageHead, parts: [...above, ...narrower(chin), ...narrower(mandible), ...upper] };
+}
+
+/** Nose and lips. */
+export function featuresOf({ nose = 1 }: FaceMeasures): Region {
+  const about: Point = [0, 1.585, 0.08];
+  const [bridge, wings, ...lips] = averageFace.parts;
+  const smaller = (one: Part): Part => ({ ...one, solid: moved(one.solid, { about, factor: [nose, nose, nose] }) });
+  return { ...averageFace, parts: [...[bridge, wings].flatMap((one) => (one ? [smaller(one)] : [])), ...lips] };
+}
+
+/** Eyeballs, bulging a little under their lids. */
+export const eyesOf = ({ eye }: FaceMeasures): Region => ({
+  inner: 0.004,
+  joint: 0.008,
+  parts: [
+    part('head', 0.02, ellipsoid([eye.out, eyeHeight, 0.068], [eye.radii[0] * 1.15, eye.radii[1] * 1.4, 0.0155])),
+  ],
+});
+
+export const cheeksOf = (fullness: number): Region => ({
+  inner: 0.02,
+  joint: 0.03,
+  parts: [
+    part('head', 0.02, ellipsoid([0.036, 1.552, 0.044], [0.022 + fullness, 0.024 + fullness, 0.022 + fullness])),
+    part('head', 0.02, ellipsoid([0.012, 1.514, 0.044], [0.024 + fullness, 0.016 + fullness, 0.02 + fullness])),
+  ],
+});
+
+/** How far outside an eye's edge a place is, in eyes: 1 on the edge. */
+function eyeRadius({ eye }: FaceMeasures, x: number, y: number, larger = 1): number {
+  const [a, b] = eye.radii;
+  const dx = (x - eye.out) / a;
+  const dy = (y - eyeHeight - eye.slant * dx) / b;
+  // Pointed towards the nose, round outside.
+  const pointed = dx < 0 ? 1 + 0.25 * dx * dx * Math.abs(dy) : 1;
+  return (Math.hypot(dx, dy) * pointed) / larger;
+}
+
+const circle = (x: number, y: number, cx: number, cy: number, radius: number): number =>
+  Math.hypot(x - cx, y - cy) - radius;
+
+/** Seams of eyes, brows and mouth; each is 0 on its line and negative inside. */
+export function faceSeams(face: FaceMeasures): readonly Seam[] {
+  const { eye, brow, mouth } = face;
+  const [a, b] = eye.radii;
+  const inFace = (value: (x: number, y: number) => number): Seam['value'] => {
+    return (worldX, worldY, worldZ) => {
+      const [x, y, z] = onAverageHead(face, worldX, worldY, worldZ);
+      return Math.max(value(x, y), 0.03 - z);
+    };
+  };
+  const eyeEdge = (x: number, y: number) => b * (eyeRadius(face, x, y) - 1);
+  const irisRadius = 0.94 * b;
+  const irisHeight = eyeHeight + 0.12 * b;
+  const line = (x: number) => mouthHeight + 6 * x * x;
+  return [
+    { label: 'Shine', value: inFace((x, y) => circle(x, y, eye.out + 0.0022, irisHeight + 0.3 * b, 0.0015)) },
+    {
+      label: 'Pupil',
+      value: inFace((x, y) => Math.max(circle(x, y, eye.out, irisHeight, 0.46 * irisRadius), eyeEdge(x, y))),
+    },
+    { label: 'Iris', value: inFace((x, y) => Math.max(circle(x, y, eye.out, irisHeight, irisRadius), eyeEdge(x, y))) },
+    { label: 'EyeWhite', value: inFace(eyeEdge) },
+    {
+      label: 'Lash',
+      value: inFace((x, y) =>
+        Math.max(b * (eyeRadius(face, x, y - 0.0006, 1.16) - 1), eyeHeight + 0.18 * b - y + eye.slant * 0.5),
+      ),
+    },
+    {
+      label: 'Brow',
+      value: inFace((x, y) => {
+        const dx = x - eye.out - 0.001;
+        const middle = eyeHeight + brow.above + eye.slant * (dx / a) - 9 * dx * dx;
+        const taper = brow.thickness * (1 - 18 * Math.max(0, dx));
+        return Math.hypot(Math.max(Math.abs(dx) - 0.0145, 0), y - middle) - taper;
+      }),
+    },
+    {
+      label: 'MouthLine',
+      value: inFace((x, y) =>
+        Math.max(Math.abs(y - line(x)) - 0.0013 * (1 - (x / mouth[0]) ** 2), x - 0.94 * mouth[0]),
+      ),
+    },
+    {
+      label: 'Lips',
+      value: inFace((x, y) => mouth[1] * (Math.hypot(x / mouth[0], (y - line(x) + 0.0008) / mouth[1]) - 1)),
+    },
+  ];
+}
+
+const smoothstep = (start: number, end: number, value: number): number => {
+  const t = Math.max(0, Math.min(1, (value - start) / (end - start)));
+  return t * t * (3 - 2 * t);
+};
+
+/** How long a triangle's edges may be there [m]: short at eyes and mouth. */
+export function faceFineness(face: FaceMeasures, worldX: number, worldY: number, worldZ: number): number {
+  const [x, y, z] = onAverageHead(face, worldX, worldY, worldZ);
+  if (z < 0.03) return 1;
+  if (eyeRadius(face, x, y) < 1.25) return 0.0031 * face.size;
+  const atMouth = Math.hypot(x / face.mouth[0], (y - mouthHeight) / (1.4 * face.mouth[1])) < 1.1;
+  const atBrow = Math.abs(y - eyeHeight - face.brow.above) < 0.006 && Math.abs(x - face.eye.out) < 0.02;
+  if (atMouth) return 0.0034 * face.size;
+  return atBrow ? 0.0044 * face.size : 1;
+}
+
+/** How far around an eye the skin goes along with its lids [eyes]. */
+const lidReach = 1.9;
+
+/** Where a place of the face goes when the eyes close: both lids onto one line a little below the middle; null: it stays. */
+export function closedEyes(face: FaceMeasures, worldX: number, worldY: number, worldZ: number): Point | null {
+  const [x, y, z] = onAverageHead(face, worldX, worldY, worldZ);
+  const radius = eyeRadius(face, x, y);
+  if (z < 0.03 || radius >= lidReach) return null;
+  const [a, b] = face.eye.radii;
+  // A place outside goes as the edge does on its way to the middle.
+  const share = Math.max(1, radius);
+  const dx = (x - face.eye.out) / share;
+  const dy = (y - eyeHeight - (face.eye.slant * (x - face.eye.out)) / a) / share;
+  const closed = -0.45 * b * Math.sqrt(Math.max(0, 1 - (dx / a) ** 2)) + 0.03 * dy;
+  const moved = (closed - dy) * (1 - smoothstep(1, lidReach, radius));
+  return fromAverageHead(face, [x, y + moved, z], worldX >= 0);
+}

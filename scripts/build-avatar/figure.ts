@@ -1,0 +1,39 @@
+import type { Anatomy } from './anatomy';
+import type { Point } from './signed-distance';
+import type { Label, MaterialName, Seam } from './surface-labels';
+
+export interface MaterialLook {
+  /** Linear. */
+  readonly color: readonly [number, number, number];
+  readonly roughness: number;
+  readonly metallic?: number;
+}
+
+export interface MeshPlan {
+  readonly name: string;
+  readonly materials: readonly MaterialName[];
+  /** Only seen by others: the own head would be seen from inside. */
+  readonly ofHead: boolean;
+  /** Whether it has the shape of closed eyes. */
+  readonly blinks?: boolean;
+}
+
+/** A body to be built and written. */
+export interface Figure extends Anatomy {
+  /** Of the file. */
+  readonly name: string;
+  readonly title: string;
+  /** The first seam that has a triangle's middle on its inner side says what it is; all else is this. */
+  readonly rest: Label;
+  readonly seams: readonly Seam[];
+  /** Holds all of it: least and greatest corner [m]. */
+  readonly box: readonly [Point, Point];
+  readonly triangles: number;
+  readonly colors: Readonly<Partial<Record<MaterialName, MaterialLook>>>;
+  readonly meshes: readonly MeshPlan[];
+  readonly ofHead: (label: Label, middle: Point) => boolean;
+  /** How long edges may be at a place [m]; absent: as they come. */
+  readonly finer?: (x: number, y: number, z: number) => number;
+  /** Where a place of the skin goes when the eyes are closed; null: it stays. Absent: nothing blinks. */
+  readonly blink?: (x: number, y: number, z: number) => Point | null;
+}

@@ -1,0 +1,146 @@
+import {
+  type Anatomy,
+  armOf,
+  averageEars,
+  averageFoot,
+  averageNeck,
+  fieldOf,
+  fingersOf,
+  foldedX,
+  type Girths,
+  joined,
+  legOf,
+  movedRegion,
+  onFloor,
+  type Part,
+  palmOf,
+  part,
+  type Region,
+} from './anatomy';
+import {
+  cheeksOf,
+  closedEyes,
+  eyesOf,
+  type FaceMeasures,
+  faceFineness,
+  faceSeams,
+  featuresOf,
+  inHead,
+  skullOf,
+} from './faces';
+import { type GarmentStyle, type Garments, garmentsOf } from './garments';
+import { type HairStyle, hairOf } from './hair';
+import { makeRig, type RigMeasures } from './rig';
+import { ellipsoid, type Point, smoothUnion, taperedCapsule } from './signed-distance';
+import type { Seam } from './surface-labels';
+
+/** Half width and half depth [m]. */
+type Girth = readonly [number, number];
+
+/** A person to be modelled, at 1.70 m. */
+export interface PersonMeasures {
+  readonly rig: RigMeasures;
+  readonly chest: Girth;
+  readonly waist: Girth;
+  readonly hips: Girth;
+  /** Muscles of the chest, or a bust: where, and how large; the belly and the seat likewise. */
+  readonly breast: { readonly at: Point; readonly radii: Point };
+  readonly belly?: { readonly at: Point; readonly radii: Point };
+  readonly seat: number;
+  /** Of the neck and of what runs down from it to the shoulders. */
+  readonly neck: number;
+  readonly trapezius: number;
+  readonly limbs: Girths;
+  readonly feet: number;
+  readonly head: FaceMeasures;
+  readonly hair: HairStyle;
+  readonly wears: GarmentStyle;
+}
+
+/** A body with clothes, hair and a face: what to mesh, and the seams between its materials. */
+export interface Person extends Anatomy {
+  readonly seams: readonly Seam[];
+  /** Places on the face where triangles must be no longer than so much [m]. */
+  readonly finer: (x: number, y: number, z: number) => number;
+  /** Where a place of the skin goes when the eyes are closed; null: it stays. */
+  readonly blink: (x: number, y: number, z: number) => Point | null;
+  /** Whether a place belongs to what the own eyes do not see: head, neck and hair. */
+  readonly ofHead: (x: number, y: number, z: number) => boolean;
+}
+
+function torsoOf({ rig, chest, waist, hips, breast, belly, seat, trapezius }: PersonMeasures): Region {
+  const shoulder = rig.shoulder ?? 0.181;
+  const t = trapezius;
+  const trunk = (solid: Part['solid']) => part('trunk', 0.02, solid);
+  return {
+    inner: 0.055,
+    joint: 0.05,
+    parts: [
+      trunk(ellipsoid([0, 1.255, -0.008], [chest[0], 0.185, chest[1]])),
+      trunk(ellipsoid([0, 1.1, 0], [waist[0], 0.15, waist[1]])),
+      trunk(ellipsoid([0, 0.975, -0.004], [hips[0], 0.105, hips[1]])),
+      trunk(ellipsoid(breast.at, breast.radii, 0.2)),
+      trunk(ellipsoid([0.7 * chest[0], 1.24, -0.048], [0.42 * chest[0], 0.13, 0.46 * chest[1]])),
+      trunk(taperedCapsule([0.02, 1.445, -0.03], [shoulder - 0.036, 1.396, -0.016], 0.046 * t, 0.04 * t)),
+      trunk(taperedCapsule([0.03, 1.375, 0.02], [shoulder - 0.051, 1.385, 0.008], 0.045 * t, 0.042 * t)),
+      trunk(ellipsoid([0.072, 0.93, -0.046], [0.074 * seat, 0.085, 0.062 * seat])),
+      ...(belly ? [trunk(ellipsoid(belly.at, belly.radii))] : []),
+    ],
+  };
+}
+
+export function personOf(measures: PersonMeasures): Person {
+  const rig = makeRig(measures.rig);
+  const { head: face, neck: n, feet } = measures;
+  const torso = torsoOf(measures);
+  const neck = movedRegion(averageNeck, { about: [0, 1.47, -0.01], factor: [n, 1, n] });
+  const leg = legOf(measures.limbs);
+  const foot = movedRegion(averageFoot, { about: [0.1, 0, 0.02], factor: [feet, feet, feet] });
+  const arm = armOf(rig, measures.limbs);
+  const hand = [palmOf(rig, measures.rig.hand ?? 1), ...fingersOf(rig)];
+  const heads = [
+    skullOf(face),
+    ...(face.cheeks ? [cheeksOf(face.cheeks)] : []),
+    featuresOf(face),
+    eyesOf(face),
+    averageEars,
+  ].map((region) => inHead(region, face));
+  const skin = joined([torso, neck, ...heads, leg, foot, arm, ...hand]);
+  const hair = hairOf(measures.hair, face, joined(heads.slice(0, -1)));
+  const garments: Garments = garmentsOf(measures.wears, {
+    rig,
+    torso: fieldOf(torso),
+    leg: fieldOf(leg),
+    arm: fieldOf(arm),
+    foot: fieldOf(foot),
+  });
+  const covers = [{ label: 'Hair', field: hair } as const, ...garments];
+  const body = (worldX: number, y: number, z: number): number => {
+    const x = foldedX(worldX);
+    let distance = skin(x, y, z);
+    for (const { field } of covers) distance = smoothUnion(distance, field(x, y, z), 0.004);
+    return onFloor(distance, y);
+  };
+  const collar = (z: number) => 1.452 - 0.12 * z;
+  return {
+    rig,
+    parts: [torso, neck, ...heads, leg, foot, arm, ...hand].flatMap(({ parts }) => parts),
+    body,
+    seams: [
+      ...faceSeams(face),
+      ...covers.map(({ label, field }) => ({
+        label,
+        value: (worldX: number, y: number, z: number) => {
+          const x = foldedX(worldX);
+          let others = skin(x, y, z);
+          for (const other of covers) if (other.field !== field) others = Math.min(others, other.field(x, y, z));
+          return field(x, y, z) - others;
+        },
+      })),
+      { label: 'Skin', value: (_: number, y: number, z: number) => collar(z) - y },
+    ],
+    finer: (x, y, z) => faceFineness(face, x, y, z),
+    blink: (x, y, z) => closedEyes(face, x, y, z),
+    ofHead: (_, y, z) => y > collar(z),
+  };
+}
