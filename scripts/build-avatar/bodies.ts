@@ -29,7 +29,9 @@ function person(name: string, measures: PersonMeasures, { skin, hair, top, botto
       [-0.92, -0.02, -0.24],
       [0.92, 1.82, 0.28],
     ],
-    triangles: 8_200,
+    triangles: 8_600,
+    // The edge of a top about the neck.
+    careful: (x, y) => (x < 0.14 && y > 1.38 && y < 1.47 ? 0.9 : 0),
     colors: {
       Skin: { color: linear(skin), roughness: 0.6 },
       Hair: { color: linear(hair), roughness: 0.62 },

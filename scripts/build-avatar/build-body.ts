@@ -14,14 +14,16 @@ const smoothstep = (start: number, end: number, value: number): number => {
 };
 
 /** Where people look: face, hands, shoulders. */
-function importance({ positions }: Surface, wrist: number): Float32Array {
+function importance({ positions }: Surface, { rig, careful }: Figure): Float32Array {
+  const { wrist } = rig.armJoints;
   return Float32Array.from({ length: positions.length / 3 }, (_, v) => {
     const x = Math.abs(positions[3 * v]!);
     const y = positions[3 * v + 1]!;
     const z = positions[3 * v + 2]!;
     const face = smoothstep(1.47, 1.53, y) * smoothstep(-0.01, 0.05, z);
     const hand = smoothstep(wrist - 0.02, wrist + 0.03, x);
-    return Math.max(face, hand, 0.25 * smoothstep(1.3, 1.36, y));
+    const more = careful ? careful(x, y, z) : 0;
+    return Math.max(face, hand, more, 0.25 * smoothstep(1.3, 1.36, y));
   });
 }
 
@@ -46,10 +48,10 @@ function blinkOf({ blink, body }: Figure, surface: Surface): Float32Array | null
 
 /** A body as a VRM 1.0 file; the same bytes every time. `coarser`: cells so many times larger, for a quick look. */
 export async function buildBody(figure: Figure, report?: (what: string) => void, coarser = 1): Promise<Uint8Array> {
-  const { body, seams, rest, rig, box } = figure;
+  const { body, seams, rest, box } = figure;
   const fine = projectOnto(body, mesh(body, ...box, coarser * cell), 2);
   report?.(`${fine.indices.length / 3} triangles of ${coarser * cell * 1000} mm`);
-  const weighed = importance(fine, rig.armJoints.wrist);
+  const weighed = importance(fine, figure);
   const coarse = await decimate(fine, normalsOf(body, fine.positions), weighed, figure.triangles);
   let surface = projectOnto(body, coarse);
   if (figure.finer) surface = projectOnto(body, refine(surface, figure.finer));

@@ -149,6 +149,8 @@ export class BodyMeshes {
       Accent: palette.color,
       Head: palette.head,
       Visor: palette.visor,
+      Top: palette.color,
+      Bottom: palette.suit,
     };
     for (const { mesh } of this.meshes) {
       for (const material of materialsOf(mesh)) {

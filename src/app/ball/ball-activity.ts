@@ -17,7 +17,7 @@ import { rotate } from '../../core/math/quat';
 import type { Ray } from '../../core/math/ray';
 import type { Side } from '../../core/math/side';
 import { type Vec3, vec3 } from '../../core/math/vec3';
-import { plainAvatar, type WornAvatar } from '../../core/protocol/worn-avatar';
+import { type OwnAvatar, plainAvatar, type WornAvatar } from '../../core/protocol/worn-avatar';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 import type { AvatarExchange } from '../../net/avatar-exchange';
 import { bannerText, connectionText } from '../../net/banner';
@@ -40,6 +40,8 @@ export interface BallActivityOptions {
   readonly surroundings: SurroundingsHost;
   /** The file of the body that others have. */
   readonly mannequin: ArrayBuffer;
+  /** The file of another body of our own. */
+  fetchOwn(name: OwnAvatar): Promise<ArrayBuffer>;
   readonly visitor: Visitor;
   /** The visitor's name was given by the page: its player reads “You” instead. */
   readonly unnamed: boolean;
@@ -157,7 +159,7 @@ class CourtActivity implements BallActivity {
     this.play = createBallPlay(options);
     this.#view = createBallView({ quality, balls: defaultBallOptions.balls, onCaption });
     this.sound = this.#view.sound;
-    this.#seen = new SeenAvatars(mannequin, options.avatars);
+    this.#seen = new SeenAvatars(mannequin, options.fetchOwn, options.avatars);
     this.#others = createRemoteAvatars({
       load: (avatar) => this.#seen.load(avatar),
       plain: options.plainOthers,

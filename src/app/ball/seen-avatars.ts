@@ -3,7 +3,13 @@ import { decoders } from '../../avatar/decoders';
 import { seenAvatarLimits } from '../../avatar/inspect-avatar';
 import { type LoadedAvatar, parseAvatar, parseChecked } from '../../avatar/load-avatar';
 import { reasonOf } from '../../core/errors/reasons';
-import { type AvatarHash, isAvatarHash, type WornAvatar } from '../../core/protocol/worn-avatar';
+import {
+  type AvatarHash,
+  isOwnAvatar,
+  type OwnAvatar,
+  plainAvatar,
+  type WornAvatar,
+} from '../../core/protocol/worn-avatar';
 import type { AvatarExchange } from '../../net/avatar-exchange';
 import { type FileKind, readLimited } from '../../ui/limited-files';
 
@@ -17,19 +23,29 @@ const patienceMs = 60_000;
  * the one that was told of; and is looked at in a worker before anything of it is read here.
  */
 export class SeenAvatars {
-  readonly #mannequin: ArrayBuffer;
+  /** The files of our own bodies that were needed. */
+  readonly #own = new Map<OwnAvatar, Promise<ArrayBuffer>>();
+  readonly #fetchOwn: (name: OwnAvatar) => Promise<ArrayBuffer>;
   readonly #exchange: AvatarExchange | null;
   readonly #leaving = new AbortController();
 
-  /** `mannequin`: the plain one's file. `exchange`: null where there is no server, or its rooms are a study's. */
-  constructor(mannequin: ArrayBuffer, exchange: AvatarExchange | null) {
-    this.#mannequin = mannequin;
+  /** `mannequin`: the plain one's file; `fetchOwn` brings that of another of ours. `exchange`: null where there is no server, or its rooms are a study's. */
+  constructor(
+    mannequin: ArrayBuffer,
+    fetchOwn: (name: OwnAvatar) => Promise<ArrayBuffer>,
+    exchange: AvatarExchange | null,
+  ) {
+    this.#own.set(plainAvatar, Promise.resolve(mannequin));
+    this.#fetchOwn = fetchOwn;
     this.#exchange = exchange;
   }
 
   async load(avatar: WornAvatar): Promise<LoadedAvatar> {
-    if (isAvatarHash(avatar)) return this.#loadFile(avatar);
-    return parseAvatar(this.#mannequin, 'mannequin.vrm');
+    if (!isOwnAvatar(avatar)) return this.#loadFile(avatar);
+    const known = this.#own.get(avatar);
+    const file = known ?? this.#fetchOwn(avatar);
+    if (!known) this.#own.set(avatar, file);
+    return parseAvatar(await file, `${avatar}.vrm`);
   }
 
   /** Ends what is on its way. */

@@ -1,3 +1,4 @@
+import { plainAvatar } from '../../core/protocol/worn-avatar';
 import type { PageClock } from '../../core/tracking/page-clock';
 import type { BareBody } from '../../lib/bare-body';
 import type { ServerPresence } from '../../net/server-presence';
@@ -71,12 +72,13 @@ export class PageGames implements Games {
     const [{ createBallActivity }, connections, mannequin] = await Promise.all([
       import('../ball/ball-activity'),
       import('../ball/ball-connections'),
-      fetchOwnAvatar(),
+      fetchOwnAvatar(plainAvatar),
     ]);
     return createBallActivity({
       quality,
       surroundings: stage.studio,
       mannequin,
+      fetchOwn: (name) => fetchOwnAvatar(name),
       ...(await this.#place(connections, seed(), place)),
       worn: () => (settings.shareAvatar || avatar.own ? avatar.worn : null),
       plainOthers: () => settings.plainOthers,

@@ -78,7 +78,7 @@ function createGround(options: PageOptions) {
   const timing = createFrameTiming(() => performance.now());
 
   // Everything that travels starts at once; only then is anything built.
-  const ownAvatar = fetchOwnAvatar((part) => loading.report('the avatar', part));
+  const ownAvatar = fetchOwnAvatar(settings.ownBody, (part) => loading.report('the avatar', part));
   const ground = createBody(options, timing);
 
   const canvas = pageElement('stage', HTMLCanvasElement);

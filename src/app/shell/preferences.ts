@@ -2,7 +2,7 @@ import * as v from 'valibot';
 import { type BoneName, boneNames } from '../../avatar/bone-names';
 import { calibrationComplaint } from '../../core/body/calibration';
 import { estimatorNames } from '../../core/estimation/pose-estimator';
-import { avatarHash } from '../../core/protocol/worn-avatar';
+import { avatarHash, ownAvatars } from '../../core/protocol/worn-avatar';
 import { handTiltsSchema } from '../../core/study/validation';
 
 const calibration = v.pipe(
@@ -26,6 +26,7 @@ const schema = v.object({
   calibration: v.optional(calibration),
   estimator: v.optional(v.picklist(estimatorNames)),
   palette: v.optional(v.pipe(v.string(), v.maxLength(32))),
+  ownBody: v.optional(v.picklist(ownAvatars)),
   upperBodyOnly: v.optional(v.boolean()),
   mirror: v.optional(v.boolean()),
   overlay: v.optional(v.boolean()),

@@ -1,4 +1,5 @@
 import type { Side } from '../../core/math/side';
+import { type OwnAvatar, plainAvatar } from '../../core/protocol/worn-avatar';
 import type { PreferenceStore } from './preferences';
 import type { Switches } from './switches';
 
@@ -12,6 +13,8 @@ export interface Settings {
   readonly vrOverlay: boolean;
   readonly largerText: boolean;
   readonly palette: string;
+  /** Which of our own bodies is worn where no other avatar is. */
+  readonly ownBody: OwnAvatar;
   /** Players of the same room see an avatar that is a file of this one's. */
   readonly shareAvatar: boolean;
   /** Everybody else is shown as a mannequin. */
@@ -50,6 +53,7 @@ export function createSettings(switches: Switches, { preferences }: Pick<Prefere
     vrOverlay: false,
     largerText: preferences.largerText ?? false,
     palette: preferences.palette ?? 'porcelain',
+    ownBody: preferences.ownBody ?? plainAvatar,
     shareAvatar: preferences.shareAvatar ?? true,
     plainOthers: preferences.plainOthers ?? false,
     actor: switches.actor,
@@ -77,6 +81,7 @@ export type LastingSettings = Partial<
     | 'overlay'
     | 'largerText'
     | 'palette'
+    | 'ownBody'
     | 'shareAvatar'
     | 'plainOthers'
     | 'bowSide'

@@ -7,9 +7,10 @@ import { hashOf } from '../../avatar/file-hash';
 import { avatarLimits } from '../../avatar/inspect-avatar';
 import { parseAvatar, parseChecked } from '../../avatar/load-avatar';
 import { withNamedBones } from '../../avatar/name-bones';
+import { labelOf } from '../../avatar/own-bodies';
 import { UnknownBones } from '../../avatar/unknown-bones';
 import { firstLine, reasonOf } from '../../core/errors/reasons';
-import { plainAvatar } from '../../core/protocol/worn-avatar';
+import { type OwnAvatar, plainAvatar } from '../../core/protocol/worn-avatar';
 import type { BareBody } from '../../lib/bare-body';
 import { type FileKind, nameOf, readLimited } from '../../ui/limited-files';
 import type { Notices } from '../../ui/notices';
@@ -21,7 +22,7 @@ import type { Settings } from './settings';
 
 export interface ShownAvatarOptions {
   readonly scene: Studio['scene'];
-  readonly settings: Pick<Settings, 'palette' | 'upperBodyOnly'>;
+  readonly settings: Pick<Settings, 'palette' | 'upperBodyOnly' | 'ownBody'>;
   readonly body: Pick<BareBody, 'calibration'>;
   readonly notices: Pick<Notices, 'show'>;
   /** The maps of bones that were given for files of unknown naming. */
@@ -33,12 +34,11 @@ export interface ShownAvatarOptions {
 
 /** A body from a file. */
 export const avatarFile: FileKind = { what: 'an avatar', megabytes: avatarLimits.megabytes };
-const ownName = 'Mannequin';
 const howToTell = 'Say which is which: Controls, Avatar, Bones of this file.';
 
-/** The file of our own avatar, which lies beside the page, on its way; `onProgress` hears the share [0, 1] that has come. */
-export const fetchOwnAvatar = (onProgress?: (share: number) => void): Promise<ArrayBuffer> =>
-  readLimited(`${pageFolder()}/avatars/mannequin.vrm`, avatarFile, onProgress && { onProgress });
+/** The file of one of our own bodies, which lie beside the page, on its way; `onProgress` hears the share [0, 1] that has come. */
+export const fetchOwnAvatar = (name: OwnAvatar, onProgress?: (share: number) => void): Promise<ArrayBuffer> =>
+  readLimited(`${pageFolder()}/avatars/${name}.vrm`, avatarFile, onProgress && { onProgress });
 
 /** A file that came whole, but whose bones are to be told first. */
 export interface WaitingForBones {
@@ -76,7 +76,7 @@ interface Asked {
 export class ShownAvatar {
   readonly #options: ShownAvatarOptions;
   #avatar: Avatar | null = null;
-  #name = ownName;
+  #name = labelOf(plainAvatar);
   #worn: OwnWear = plainAvatar;
   #pending: string | null = null;
   /** Counts what was asked for; and which of that is shown. */
@@ -102,6 +102,11 @@ export class ShownAvatar {
   /** Whether it is our own, whose colours can be chosen. */
   get own(): boolean {
     return typeof this.#worn === 'string';
+  }
+
+  /** Which of our own it is; null: another. */
+  get ownBody(): OwnAvatar | null {
+    return typeof this.#worn === 'string' ? this.#worn : null;
   }
 
   /** As what it is told to others: the same object for as long as it is shown. */
@@ -144,13 +149,15 @@ export class ShownAvatar {
   }
 
   /**
-   * Our own takes its place, or stays there; what is still on its way is not waited for. `bytes`: its file, where that travels already.
-   * False and a notice where it cannot be had.
+   * The body of our own that the user chose takes its place, or stays there; what is still on its way is not waited for. `bytes`: its file, where
+   * that travels already. False and a notice where it cannot be had.
    */
-  openOwn(bytes = fetchOwnAvatar()): Promise<boolean> {
-    return this.#arrive(this.#ask(ownName, true), async () => ({
-      avatar: await createAvatarBetweenFrames(await parseAvatar(await bytes, ownName)),
-      worn: plainAvatar,
+  openOwn(bytes?: Promise<ArrayBuffer>): Promise<boolean> {
+    const { ownBody } = this.#options.settings;
+    const label = labelOf(ownBody);
+    return this.#arrive(this.#ask(label, true), async () => ({
+      avatar: await createAvatarBetweenFrames(await parseAvatar(await (bytes ?? fetchOwnAvatar(ownBody)), label)),
+      worn: ownBody,
     }));
   }
 

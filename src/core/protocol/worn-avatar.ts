@@ -1,6 +1,8 @@
 /** Bodies that every page has a file of, by name; the first is worn by those who say nothing, and by all in a study. */
-export const ownAvatars = ['mannequin'] as const;
+export const ownAvatars = ['mannequin', 'woman', 'man', 'stout', 'child'] as const;
 export type OwnAvatar = (typeof ownAvatars)[number];
+
+export const isOwnAvatar = (name: unknown): name is OwnAvatar => ownAvatars.some((own) => own === name);
 
 /** The SHA-256 of a file of no more than `mostAvatarBytes`, as base64url without padding: 43 characters, which no own avatar's name has. */
 export type AvatarHash = string;

@@ -4,7 +4,13 @@ import { HeadsetControls } from '../../../src/app/shell/controls/headset-control
 import { PageStudy } from '../../../src/app/shell/page-study';
 import { createSettings, SettingsWriter } from '../../../src/app/shell/settings';
 import { readSwitches } from '../../../src/app/shell/switches';
-import { menuButtons, type VrMenuActions, type VrMenuState } from '../../../src/app/shell/vr-menu/menu-buttons';
+import {
+  menuButtons,
+  menuHeight,
+  noticesTop,
+  type VrMenuActions,
+  type VrMenuState,
+} from '../../../src/app/shell/vr-menu/menu-buttons';
 import type { CalibrationStep } from '../../../src/ui/calibration-dialog';
 import type { Pointer } from '../../../src/ui/vr-pointers';
 import { drawNowhere } from './drawing-in-node';
@@ -58,6 +64,7 @@ function headset() {
     },
     actions: {
       chooseEstimator: (name) => void done.push(`estimate by ${name}`),
+      chooseOwnBody: (name) => void done.push(`wear ${name}`),
       recentre: () => void done.push('recentre'),
       exitVr: () => void done.push('exit'),
     },
@@ -69,12 +76,12 @@ function headset() {
       step = next;
       controls.show();
     },
-    /** Where the middle of this canvas point of the menu's sheet (640 × 1000) lies in the world. */
+    /** Where the middle of this canvas point of the menu's sheet (640 wide) lies in the world. */
     onMenu(x: number, y: number) {
       menu.updateWorldMatrix(true, true);
       const sheet = menu.children[0];
       if (!sheet) throw new Error('the menu has no sheet');
-      return sheet.localToWorld(new Vector3((x - 320) / 1000, (500 - y) / 1000, 0));
+      return sheet.localToWorld(new Vector3((x - 320) / 1000, (menuHeight / 2 - y) / 1000, 0));
     },
   };
 }
@@ -142,7 +149,7 @@ describe('in the headset', () => {
     hands.push(handAt(onMenu(320, 162)).hand);
     controls.point();
     expect(done.filter((each) => !each.includes('sheet'))).toEqual([]);
-    hands[0] = handAt(onMenu(320, 916)).hand;
+    hands[0] = handAt(onMenu(320, menuHeight - 84)).hand;
     controls.point();
     expect(done).toContain('cancel');
   });
@@ -151,7 +158,7 @@ describe('in the headset', () => {
 describe('the buttons of the menu', () => {
   const studio: VrMenuState = {
     ...{ estimator: 'ik', unavailable: {}, calibration: null, overlay: false, activity: 'studio' },
-    ...{ bowSide: 'left', roundOver: false, ready: null, notice: null },
+    ...{ ownBody: 'mannequin', bowSide: 'left', roundOver: false, ready: null, notice: null },
   };
   const done: string[] = [];
   const actions: VrMenuActions = {
@@ -161,6 +168,7 @@ describe('the buttons of the menu', () => {
     recentre: () => undefined,
     setOverlay: (on) => void done.push(`overlay ${on}`),
     goTo: () => undefined,
+    chooseOwnBody: (name) => void done.push(`wear ${name}`),
     setBowSide: (side) => void done.push(`bow ${side}`),
     restart: () => undefined,
     ready: (on) => void done.push(`ready ${on}`),
@@ -175,7 +183,7 @@ describe('the buttons of the menu', () => {
       expect(buttons.length).toBeGreaterThan(8);
       for (const [index, { at }] of buttons.entries()) {
         const [x, y, w, h] = at;
-        expect(Math.min(x, y, 640 - x - w, 900 - y - h)).toBeGreaterThanOrEqual(0);
+        expect(Math.min(x, y, 640 - x - w, noticesTop - y - h)).toBeGreaterThanOrEqual(0);
         for (const { at: other } of buttons.slice(index + 1)) {
           const beside = other[0] >= x + w || other[0] + other[2] <= x;
           const below = other[1] >= y + h || other[1] + other[3] <= y;
@@ -186,7 +194,8 @@ describe('the buttons of the menu', () => {
   });
 
   test('offer what can be done here', () => {
-    expect(labels()).toEqual(expect.arrayContaining(['Archery', 'Ball game']));
+    expect(labels()).toEqual(expect.arrayContaining(['Archery', 'Ball game', 'Body: Mannequin']));
+    expect(labels({ ownBody: 'child' })).toContain('Body: Child');
     expect(labels({ activity: 'archery' })).toEqual(expect.arrayContaining(['To the mirror', 'Bow: left hand']));
     expect(labels({ activity: 'archery', roundOver: true })).toContain('New round');
     expect(labels({ activity: 'ball', ready: false })).toContain('Ready');

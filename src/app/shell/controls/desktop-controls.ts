@@ -87,6 +87,7 @@ export class DesktopControls {
       avatarOnItsWay: avatar.onItsWay || avatar.waiting !== null,
       waitingForBones: avatar.waiting,
       ownAvatarOffered: !avatar.own || avatar.pending !== null || avatar.current === null,
+      ownBody: avatar.ownBody,
       palette: avatar.own ? settings.palette : null,
       heightCm: centimetres(statureFromEyeHeight(eyeHeight)),
       armSpanCm: centimetres(fingertipSpanFromArmSpan(armSpan)),

@@ -16,7 +16,7 @@ export interface HeadsetControlsOptions extends Pick<ControlledParts, 'settings'
   readonly body: Pick<BareBody, 'estimator' | 'unavailable'>;
   readonly activities: Pick<Activities, 'name' | 'archery' | 'ball' | 'goTo' | 'rule' | 'restartRound' | 'point'>;
   readonly measuring: Pick<Measuring, 'step' | 'begin' | 'cancel'>;
-  readonly actions: Pick<PanelActions, 'chooseEstimator' | 'recentre' | 'exitVr'>;
+  readonly actions: Pick<PanelActions, 'chooseEstimator' | 'chooseOwnBody' | 'recentre' | 'exitVr'>;
 }
 
 /** What can be pressed in the headset: the menu, or a study's sheet in its place, and the sheets of a game. */
@@ -78,6 +78,7 @@ export class HeadsetControls {
       recentre: () => actions.recentre(),
       setOverlay: (on) => writer.change({ vrOverlay: on }),
       goTo: (activity) => void activities.goTo(activity),
+      chooseOwnBody: (name) => actions.chooseOwnBody(name),
       setBowSide: (side) => activities.rule({ bowSide: side }),
       restart: () => activities.restartRound(),
       ready: (on) => activities.ball?.play.ready(on),
@@ -93,6 +94,7 @@ export class HeadsetControls {
       calibration: measuring.step,
       overlay: settings.vrOverlay,
       activity: activities.name,
+      ownBody: settings.ownBody,
       bowSide: settings.bowSide,
       roundOver: activities.archery?.round()?.over ?? false,
       ...this.#ballState(),

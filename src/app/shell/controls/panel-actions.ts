@@ -39,6 +39,10 @@ function avatarActions({ writer, avatar, files }: PanelActionsOptions): AvatarAc
       writer.keep({ palette });
       avatar.wear(null);
     },
+    chooseOwnBody(ownBody) {
+      writer.keep({ ownBody });
+      files.showOwnAvatar();
+    },
     openAvatarFile: (file) => void files.open(file),
     openAvatarUrl: (url) => void files.openAvatar(url),
     showOwnAvatar: () => files.showOwnAvatar(),

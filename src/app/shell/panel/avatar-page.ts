@@ -1,3 +1,4 @@
+import { ownBodies } from '../../../avatar/own-bodies';
 import { button, element } from '../../../ui/element';
 import { fileButton } from '../../../ui/file-button';
 import { toggle } from '../../../ui/toggle';
@@ -17,6 +18,10 @@ function createShown(palettes: readonly PaletteChoice[], actions: AvatarActions)
   const pending = element('p', { class: 'hint', role: 'status' });
   const own = button('Back to ours', () => actions.showOwnAvatar());
   const cancel = button('Cancel loading', () => actions.cancelAvatar());
+  const bodies = ownBodies.map((body) => ({
+    name: body.name,
+    node: button(body.label, () => actions.chooseOwnBody(body.name)),
+  }));
   const swatches = palettes.map((palette) => {
     const attributes = { class: 'swatch', 'aria-label': palette.label, title: palette.label };
     const node = button('', () => actions.choosePalette(palette.name), attributes);
@@ -32,15 +37,17 @@ function createShown(palettes: readonly PaletteChoice[], actions: AvatarActions)
       name,
       pending,
       cancel,
+      element('div', { class: 'chips', role: 'group', 'aria-label': 'Our bodies' }, ...bodies.map(({ node }) => node)),
       element('div', colours, ...swatches.map(({ node }) => node)),
       own,
     ),
-    show({ avatarName, avatarPending, avatarOnItsWay, ownAvatarOffered, palette: worn }: PanelState) {
+    show({ avatarName, avatarPending, avatarOnItsWay, ownAvatarOffered, ownBody, palette: worn }: PanelState) {
       name.textContent = avatarName;
       pending.textContent = avatarPending;
       pending.hidden = avatarPending === null;
       own.hidden = !ownAvatarOffered;
       cancel.hidden = !avatarOnItsWay;
+      for (const { name, node } of bodies) node.setAttribute('aria-pressed', String(name === ownBody));
       for (const { palette, node } of swatches) {
         node.setAttribute('aria-pressed', String(palette === worn));
         node.disabled = worn === null;

@@ -1,5 +1,6 @@
 import type { BoneMap } from '../../../avatar/bone-names';
 import type { EstimatorName } from '../../../core/estimation/pose-estimator';
+import type { OwnAvatar } from '../../../core/protocol/worn-avatar';
 import type { ViewName } from '../../../scene/desktop-view';
 import type { WaitingForBones } from '../shown-avatar';
 
@@ -48,6 +49,8 @@ export interface PanelState {
   readonly waitingForBones: WaitingForBones | null;
   readonly shareAvatar: boolean;
   readonly plainOthers: boolean;
+  /** Which body of our own is shown; null: another avatar is. */
+  readonly ownBody: OwnAvatar | null;
   /** Colours of our own avatar; null: another avatar is shown, which keeps its own. */
   readonly palette: string | null;
   readonly heightCm: number;
@@ -72,6 +75,7 @@ export interface BodyActions {
 
 export interface AvatarActions {
   choosePalette(name: string): void;
+  chooseOwnBody(name: OwnAvatar): void;
   openAvatarFile(file: File): void;
   openAvatarUrl(url: string): void;
   showOwnAvatar(): void;

@@ -1,5 +1,7 @@
+import { labelOf, ownBodies } from '../../../avatar/own-bodies';
 import type { EstimatorName } from '../../../core/estimation/pose-estimator';
 import type { Side } from '../../../core/math/side';
+import type { OwnAvatar } from '../../../core/protocol/worn-avatar';
 import type { CalibrationStep } from '../../../ui/calibration-dialog';
 import { estimatorOrder, estimatorTexts } from '../estimator-texts';
 import type { ActivityName } from '../play-bar';
@@ -11,6 +13,8 @@ export interface VrMenuState {
   readonly calibration: CalibrationStep | null;
   readonly overlay: boolean;
   readonly activity: ActivityName;
+  /** Which of our bodies is worn, or would be in place of another avatar. */
+  readonly ownBody: OwnAvatar;
   readonly bowSide: Side;
   readonly roundOver: boolean;
   /** In the ball game, before and after a match: whether one is ready; null: not asked. */
@@ -26,6 +30,7 @@ export interface VrMenuActions {
   recentre(): void;
   setOverlay(on: boolean): void;
   goTo(activity: ActivityName): void;
+  chooseOwnBody(name: OwnAvatar): void;
   setBowSide(side: Side): void;
   restart(): void;
   ready(on: boolean): void;
@@ -43,8 +48,10 @@ export interface MenuButton {
 
 /** The sheet, and what is left free at its edges [pixels]. */
 export const menuWidth = 640;
-export const menuHeight = 1000;
+export const menuHeight = 1112;
 export const menuMargin = 36;
+/** Below the buttons: notices [pixels from the top]. */
+export const noticesTop = 1012;
 
 const full = menuWidth - 2 * menuMargin;
 const gap = 16;
@@ -74,13 +81,23 @@ function estimatorButtons({ estimator, unavailable }: VrMenuState, actions: VrMe
   }));
 }
 
+/** The next of our bodies; after the last the first. */
+function bodyAfter(name: OwnAvatar): OwnAvatar {
+  const index = ownBodies.findIndex((body) => body.name === name);
+  return ownBodies[(index + 1) % ownBodies.length]?.name ?? name;
+}
+
 /** Where one can go from here, and what one can do here. */
-function playEntries({ activity, ready, roundOver, bowSide }: VrMenuState, actions: VrMenuActions): readonly Entry[] {
+function playEntries(
+  { activity, ready, roundOver, bowSide, ownBody }: VrMenuState,
+  actions: VrMenuActions,
+): readonly Entry[] {
   const studio: Entry = ['studio', 'To the mirror', () => actions.goTo('studio')];
   if (activity === 'studio')
     return [
       ['archery', 'Archery', () => actions.goTo('archery')],
       ['ball', 'Ball game', () => actions.goTo('ball')],
+      ['body', `Body: ${labelOf(ownBody)}`, () => actions.chooseOwnBody(bodyAfter(ownBody))],
     ];
   if (activity === 'ball')
     return ready === null

@@ -1,6 +1,6 @@
 import { type CalibrationStep, calibrationHeadline, calibrationInstruction } from '../../../ui/calibration-dialog';
 import { fillRounded, vrColors, vrFont, wrap } from '../../../ui/vr-panel';
-import { type MenuButton, menuHeight, menuMargin, menuWidth, type VrMenuState } from './menu-buttons';
+import { type MenuButton, menuHeight, menuMargin, menuWidth, noticesTop, type VrMenuState } from './menu-buttons';
 
 const inner = menuWidth - 2 * menuMargin;
 
@@ -36,7 +36,7 @@ function drawNotice(context: CanvasRenderingContext2D, notice: string): void {
   context.fillStyle = vrColors.inkSoft;
   context.font = `400 22px ${vrFont}`;
   const lines = wrap(context, notice, inner).slice(0, 3);
-  for (const [index, line] of lines.entries()) context.fillText(line, menuMargin, 908 + index * 28);
+  for (const [index, line] of lines.entries()) context.fillText(line, menuMargin, noticesTop + 8 + index * 28);
 }
 
 /** The whole sheet; hovered: the id of the button that a hand points at, or null. */

@@ -1,0 +1,12 @@
+import type { OwnAvatar } from '../core/protocol/worn-avatar';
+
+/** Our own bodies as people call them, in the order in which they are offered. */
+export const ownBodies: readonly { readonly name: OwnAvatar; readonly label: string }[] = [
+  { name: 'mannequin', label: 'Mannequin' },
+  { name: 'woman', label: 'Woman' },
+  { name: 'man', label: 'Man' },
+  { name: 'stout', label: 'Stout' },
+  { name: 'child', label: 'Child' },
+];
+
+export const labelOf = (name: OwnAvatar): string => ownBodies.find((body) => body.name === name)?.label ?? name;
