@@ -1,0 +1,21 @@
+import { expect, open, probe, test } from './page-fixture';
+
+test('a body of our own is chosen in the panel, worn, and remembered', async ({ page }) => {
+  await open(page, 'quality=low&estimator=ik');
+  await page.getByRole('tab', { name: 'Avatar' }).click();
+  const choose = (name: string) => page.getByRole('button', { name, exact: true }).click();
+  const worn = async () => (await probe(page)).avatar;
+  for (const name of ['Woman', 'Man', 'Stout', 'Child']) {
+    await choose(name);
+    await expect.poll(async () => (await worn()).name).toBe(name);
+    const { joints, fingertips } = await worn();
+    expect(Object.keys(joints).length).toBeGreaterThan(15);
+    expect(Object.keys(fingertips.left)).toHaveLength(5);
+    await expect(page.getByRole('button', { name, exact: true })).toHaveAttribute('aria-pressed', 'true');
+  }
+  await page.reload();
+  await expect.poll(async () => (await worn()).name, { timeout: 60_000 }).toBe('Child');
+  await page.getByRole('tab', { name: 'Avatar' }).click();
+  await choose('Mannequin');
+  await expect.poll(async () => (await worn()).name).toBe('Mannequin');
+});
