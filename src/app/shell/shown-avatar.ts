@@ -116,7 +116,7 @@ export class ShownAvatar {
 
   /** The file of the avatar that is shown. Rejects with a sentence where it can be had no longer. */
   file(): Promise<ArrayBuffer> {
-    return typeof this.#worn === 'string' ? fetchOwnAvatar() : this.#worn.file.arrayBuffer();
+    return typeof this.#worn === 'string' ? fetchOwnAvatar(this.#worn) : this.#worn.file.arrayBuffer();
   }
 
   /** What became of the avatar that was asked for last, in words: on its way, or refused; null: it is shown. */
