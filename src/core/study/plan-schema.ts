@@ -1,0 +1,98 @@
+import * as v from 'valibot';
+import { estimatorNames } from '../estimation/pose-estimator';
+import { questionnaireSchema } from './questionnaire-schema';
+import { identifier, integerBetween, numberBetween, text } from './validation';
+import { languageTag, words } from './words';
+
+export const planFormat = 'threepoint-study';
+export const planVersion = 1;
+
+const estimator = v.picklist(estimatorNames, `expected one of ${estimatorNames.join(', ')}`);
+const seconds = (max: number) => numberBetween(0, max);
+
+const conditionSchema = v.strictObject({
+  id: identifier,
+  /** For the experimenter and the results; participants never see it. */
+  label: text(60),
+  estimator,
+});
+
+const taskSchema = v.strictObject({
+  id: identifier,
+  title: text(60),
+  game: v.picklist(['archery', 'ball'], 'expected archery or ball'),
+  /** How many play together; they share the order of conditions. */
+  groupSize: integerBetween(1, 6),
+  /** Trials of one block, all under its condition. */
+  repetitions: integerBetween(1, 20),
+  /** Time limit of one trial. */
+  trialSeconds: numberBetween(1, 3600),
+  tutorial: v.strictObject({
+    estimator,
+    /** once: before the first block; each: before every block; never. */
+    when: v.picklist(['never', 'once', 'each'], 'expected never, once or each'),
+    seconds: numberBetween(1, 3600),
+    restSeconds: seconds(3600),
+  }),
+  calibrateBeforeBlock: v.boolean('expected true or false'),
+  /** Between the last trial of a block and its questionnaire. */
+  restSeconds: seconds(3600),
+  /** Ids of the plan's own questionnaires or of shipped ones, asked in this order. */
+  questionnaire: v.union(
+    [
+      identifier,
+      v.pipe(v.array(identifier), v.minLength(1, 'expected at least one'), v.maxLength(8, 'expected at most eight')),
+    ],
+    'expected the id of a questionnaire, or a list of ids',
+  ),
+  /** Time to answer each; who needs longer may finish, and it is recorded. */
+  questionnaireSeconds: numberBetween(10, 7200),
+});
+
+/** The schema of a plan, but for what its parts demand of each other. */
+export const planSchema = v.strictObject({
+  /** Where editors find the schema; the program does not ask for it. */
+  $schema: v.exactOptional(text(500)),
+  format: v.literal(planFormat, `expected "${planFormat}": this is no study file`),
+  version: v.literal(planVersion, `expected ${planVersion}, the version that this program reads`),
+  id: identifier,
+  title: text(120),
+  /** Decides groups and orders: the same seed gives the same study. */
+  seed: integerBetween(0, 2 ** 31 - 1),
+  participants: integerBetween(1, 999),
+  /** Who may take a place: the holder of its own invitation (invited, where nothing is said), or of the study's one (open). */
+  entry: v.exactOptional(v.picklist(['invited', 'open'], 'expected invited or open')),
+  /** all: every order of the conditions; williams: as many rows as conditions (twice that if odd), each after each equally often. */
+  orders: v.picklist(['all', 'williams'], 'expected all or williams'),
+  conditions: v.pipe(
+    v.array(conditionSchema, 'expected a list'),
+    v.minLength(2, 'expected at least two conditions to compare'),
+    v.maxLength(8, 'expected at most eight conditions'),
+  ),
+  tasks: v.pipe(
+    v.array(taskSchema, 'expected a list'),
+    v.minLength(1, 'expected at least one task'),
+    v.maxLength(8, 'expected at most eight tasks'),
+  ),
+  /** Those that participants may choose from; the first is the one that is chosen. One, English, where nothing is said. */
+  languages: v.exactOptional(
+    v.pipe(v.array(languageTag, 'expected a list of languages'), v.minLength(1, 'expected at least one language')),
+  ),
+  questionnaires: v.exactOptional(
+    v.pipe(v.array(questionnaireSchema, 'expected a list'), v.maxLength(20, 'expected at most twenty')),
+  ),
+  consent: v.strictObject({
+    /** Changes with every change of the text. */
+    version: text(40),
+    title: words(120),
+    paragraphs: v.pipe(
+      v.array(words(2000), 'expected a list of paragraphs'),
+      v.minLength(1, 'expected at least one paragraph'),
+      v.maxLength(40, 'expected at most forty paragraphs'),
+    ),
+    /** Asked apart: whether tracked frames may be kept; null: this study never records them. */
+    motion: v.nullable(words(1000)),
+  }),
+  /** After this many days the server deletes what was recorded. */
+  retentionDays: integerBetween(1, 36_500),
+});
