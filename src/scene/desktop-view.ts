@@ -196,7 +196,10 @@ class DesktopCamera implements DesktopView {
   }
 
   setHeight(height: number): void {
-    this.#rise = Math.max(0, height - tallest) / 2;
+    const rise = Math.max(0, height - tallest) / 2;
+    if (rise === this.#rise) return;
+    this.#rise = rise;
+    this.#project();
   }
 
   update(pelvis: Point, { position, orientation }: Eyes, elapsed: number): void {
@@ -247,7 +250,9 @@ class DesktopCamera implements DesktopView {
     const shiftX = whole ? 0 : (right - left) / 2;
     const shiftY = whole ? 0 : bottom / 2;
     // What is left above a tall sheet of controls still holds the whole body.
-    camera.zoom = whole ? 1 : Math.min(1, (1 - bottom / height) / 0.75);
+    const room = Math.min(1, (1 - bottom / height) / 0.75);
+    // Half of what is taller is met by looking higher, the other half from further away.
+    camera.zoom = whole ? 1 : (room * tallest) / (tallest + 2 * this.#rise);
     camera.setViewOffset(width, height, shiftX, shiftY, width, height);
     camera.updateProjectionMatrix();
   }
