@@ -34,7 +34,7 @@ _MATRICES = ("clavicle", "pole", "measuredPole")
 class FitIkConfig:
     """frames_per_person balances people; ridge is in squared metres per squared parameter unit and frame."""
 
-    frames_per_person: int = 2500
+    frames_per_person: int = 500
     iterations: int = 12
     ridge: float = 2e-5
     robust_scale: float = 0.08  # [m]: errors beyond count linearly (Huber)

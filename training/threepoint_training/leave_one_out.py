@@ -1,10 +1,10 @@
 """What a new wearer may expect: each person held out in turn, proportions, IK and network made of all the others, as what ships is.
 
-`npm run train -- --mocap DIR --leave-one-out` calls this and renews two tables of docs/training.md.
+`npm run train -- --mocap DIR --leave-one-out` calls this and renews three tables of docs/training.md.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -16,7 +16,7 @@ from .accuracy_tables import renew, table
 from .fit_ik import FitIkConfig
 from .model import CorrectionNetwork
 from .prepared_corpus import PreparedCorpus
-from .train_learned import TrainLearnedConfig
+from .train_learned import Condition, HeldOut, TrainLearnedConfig
 from .train_paper import predict
 
 PAGE = Path(__file__).parents[2] / "docs/training.md"
@@ -25,6 +25,17 @@ COLUMNS = ("IK", "ours", "ours / IK", "elbows, ours / IK", "minutes")
 # Of each person, for a fit of IK: with as many people as there are fits, more takes hours.
 IK_FRAMES = 400
 POSTURE_COLUMNS = ("of all frames", "IK", "ours", "ours / IK", "elbows, ours / IK")
+HAND_COLUMNS = ("IK", "ours", "ours / IK", "elbows: IK", "ours", "ours / IK")
+# What the guided calibration knows of the hands: rows of a table.
+HANDS = {
+    "measured by the other clips, error 5° (as above)": Condition(),
+    "as recorded, nothing measured": Condition(hands_measured=False),
+    "measured with wrists bent by 10°": Condition(bent_wrists=np.radians(10.0)),
+    "by 20°": Condition(bent_wrists=np.radians(20.0)),
+    "by 30°": Condition(bent_wrists=np.radians(30.0)),
+}
+# Of the frames, for that table.
+HAND_STRIDE = 3
 # Parts of all frames, from those nearest to what was trained on to those furthest from it.
 DISTANCES = (0.0, 0.25, 0.5, 0.75, 0.9, 1.0)
 
@@ -37,14 +48,17 @@ class HeldOutPerson:
     ours: NDArray[np.float64]
     postures: dict[str, NDArray[np.bool_]]
     distance: NDArray[np.float32]
+    # By what is known of the hands: mean errors [2, 6] of IK and ours in cm.
+    hands: dict[str, NDArray[np.float64]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class Tables:
-    """Rows by person and by posture."""
+    """Rows by person, by posture, and by what is known of the hands."""
 
     people: list[list[str]]
     postures: list[list[str]]
+    hands: list[list[str]]
 
 
 def groups_of(people: tuple[str, ...], count: int | None) -> list[tuple[str, ...]]:
@@ -87,9 +101,19 @@ def judge(corpus: PreparedCorpus, name: str, network: CorrectionNetwork, window_
     """A person by the kinematics in use and this network."""
     person = train_learned.held_out(corpus, (name,), window_seconds)
     ours = train_learned.fitted_errors_cm(predict(network, person.inputs), person)
+    by_hands = {}
+    for told, condition in HANDS.items():
+        seen = train_learned.held_out(corpus, (name,), window_seconds, condition=condition)
+        by_hands[told] = _mean_errors(seen.subset(np.arange(0, len(seen.inputs), HAND_STRIDE)), network)
     return HeldOutPerson(
-        train_learned.ik_errors_cm(person), ours, postures.of_frames(person.inputs), postures.distance(network, person.inputs)
+        train_learned.ik_errors_cm(person), ours, postures.of_frames(person.inputs), postures.distance(network, person.inputs), by_hands
     )
+
+
+def _mean_errors(person: HeldOut, network: CorrectionNetwork) -> NDArray[np.float64]:
+    """Of IK and of ours [2, 6]."""
+    ours = train_learned.fitted_errors_cm(predict(network, person.inputs), person)
+    return np.stack([train_learned.ik_errors_cm(person).mean(axis=0), ours.mean(axis=0)])
 
 
 def tables(corpus: PreparedCorpus, found: dict[str, HeldOutPerson]) -> Tables:
@@ -101,7 +125,19 @@ def tables(corpus: PreparedCorpus, found: dict[str, HeldOutPerson]) -> Tables:
             rows += [[name, *_cells(found[name].of_ik, found[name].ours), _minutes(corpus, name)] for name in names]
             means = (np.stack([getattr(found[name], method).mean(axis=0) for name in names]) for method in ("of_ik", "ours"))
             rows.append([mean, *_cells(*means), ""])
-    return Tables(rows, _posture_rows([found[name] for name in trainable]))
+    judged = [found[name] for name in trainable]
+    return Tables(rows, _posture_rows(judged), _hand_rows(judged))
+
+
+def _hand_rows(people: list[HeldOutPerson]) -> list[list[str]]:
+    """All people counted alike."""
+    rows = []
+    for told in people[0].hands:
+        of_ik, ours = np.mean([person.hands[told] for person in people], axis=0)
+        cells = [f"{value:.2f}" for joints in (slice(None), slice(0, 2)) for value in (of_ik[joints].mean(), ours[joints].mean())]
+        ratios = [f"{ours[joints].mean() / of_ik[joints].mean():.3f}" for joints in (slice(None), slice(0, 2))]
+        rows.append([told, *cells[:2], ratios[0], *cells[2:], ratios[1]])
+    return rows
 
 
 def _posture_rows(people: list[HeldOutPerson]) -> list[list[str]]:
@@ -136,5 +172,6 @@ def _minutes(corpus: PreparedCorpus, name: str) -> str:
 
 def write(rows: Tables, page: Path = PAGE) -> None:
     """Renews the page's tables."""
-    renewed = {"leave-one-out": table(["cm", *COLUMNS], rows.people), "postures": table(["cm", *POSTURE_COLUMNS], rows.postures)}
-    page.write_text(renew(page.read_text(), renewed))
+    columns = {"leave-one-out": COLUMNS, "postures": POSTURE_COLUMNS, "hands": HAND_COLUMNS}
+    cells = {"leave-one-out": rows.people, "postures": rows.postures, "hands": rows.hands}
+    page.write_text(renew(page.read_text(), {name: table(["cm", *columns[name]], cells[name]) for name in columns}))

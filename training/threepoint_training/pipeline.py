@@ -88,7 +88,7 @@ def _leave_one_out(run: TrainingRun) -> None:
             advance(done, f"without {people}")
 
         rows = leave_one_out.main(run.corpus, run.config.learned, run.config.ik, report, groups)
-    for row in [*rows.people, *rows.postures]:
+    for row in [*rows.people, *rows.postures, *rows.hands]:
         run.report.console.print("  ".join(row))
     leave_one_out.write(rows)
 

@@ -30,14 +30,14 @@ class TrainLearnedConfig:
     width: int = 192
     dropout: float = 0.2
     hidden_layers: int = 2
-    steps: int = 3000
+    steps: int = 1800
     batch: int = 1024
     learning_rate: float = 5e-3
     weight_decay: float = 1e-2
     average_half_life_steps: float = 300.0
     # Of the learned corrections of trunk and arm: what holds for the people trained on holds for others in part.
     shrinkage: float = 0.9
-    arm_shrinkage: float = 0.8
+    arm_shrinkage: float = 1.0
     # Of errors of joints after torso and arm fitting, and of raw joints, so that what fitting takes back is kept small.
     fitted_loss_weight: float = 1.0
     auxiliary_loss_weight: float = 0.1
