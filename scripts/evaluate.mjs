@@ -1,4 +1,4 @@
-// npm run evaluate -- --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,135] [--models DIR] [--robustness] [--hands-as-recorded] [--figures FILE] [--fp32 DIR] [--legs]:
+// npm run evaluate -- --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,135] [--models DIR] [--robustness] [--hands-measured] [--figures FILE] [--fp32 DIR] [--legs]:
 // the shipping path on recorded motion. Python prepares the recordings with their truth, TypeScript drives them.
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -9,7 +9,7 @@ import { pythonEnvironment } from './python-environment.mjs';
 import { main, root, run, SetupError } from './run-command.mjs';
 
 const usage =
-  'npm run evaluate -- --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,135] [--models DIR] [--robustness] [--hands-as-recorded] [--figures FILE] [--fp32 DIR]\n' +
+  'npm run evaluate -- --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,135] [--models DIR] [--robustness] [--hands-measured] [--figures FILE] [--fp32 DIR]\n' +
   'npm run evaluate -- --legs --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,135] [--models DIR] [--gaits DIR]\n' +
   'DIR holds .asf and .amc or .bvh files; docs/evaluation.md says the rest.';
 const twoHours = 2 * 3600;
@@ -25,7 +25,7 @@ function options() {
         people: text,
         models: text,
         robustness: { type: 'boolean' },
-        'hands-as-recorded': { type: 'boolean' },
+        'hands-measured': { type: 'boolean' },
         figures: text,
         fp32: text,
         legs: { type: 'boolean' },
@@ -33,7 +33,7 @@ function options() {
       },
     });
     if (!values.mocap) throw new Error('--mocap is needed');
-    const other = ['robustness', 'hands-as-recorded', 'figures', 'fp32'].find((name) => values[name]);
+    const other = ['robustness', 'hands-measured', 'figures', 'fp32'].find((name) => values[name]);
     if (values.gaits && !values.legs) throw new Error('--gaits are the networks of legs: with --legs');
     if (values.legs && other) throw new Error(`--legs measures legs alone: without --${other}`);
     return values;
@@ -64,7 +64,7 @@ await main(async () => {
     drive.push('--models', given.models ? path(given.models) : join(root, 'public/models'));
     if (given.json) drive.push('--json', path(given.json));
     for (const name of ['figures', 'fp32', 'gaits']) if (given[name]) drive.push(`--${name}`, path(given[name]));
-    for (const name of ['robustness', 'hands-as-recorded']) if (given[name]) drive.push(`--${name}`);
+    for (const name of ['robustness', 'hands-measured']) if (given[name]) drive.push(`--${name}`);
     const { code } = await run(process.execPath, drive, { cwd: root, limitSeconds: twoHours });
     return code;
   } finally {

@@ -27,15 +27,15 @@ const { values: options } = parseArgs({
     models: { type: 'string' },
     json: { type: 'string' },
     robustness: { type: 'boolean' },
-    'hands-as-recorded': { type: 'boolean' },
+    'hands-measured': { type: 'boolean' },
     figures: { type: 'string' },
     fp32: { type: 'string' },
   },
 });
 
-/** What estimators are told of a clip's person: what the guided calibration measures, or without the hands' tilts. */
+/** What estimators are told of a clip's person: height and span, and on request the hands' tilts that the guided calibration measures too. */
 const toldOf = (index: RecordingIndex, clip: RecordingIndex['clips'][number]) =>
-  options['hands-as-recorded'] ? calibrationOf(index, clip.person) : guidedCalibrationOf(index, clip);
+  options['hands-measured'] ? guidedCalibrationOf(index, clip) : calibrationOf(index, clip.person);
 
 type Exact = Partial<Record<MeasuredMethod, Report>>;
 
