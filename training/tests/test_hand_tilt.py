@@ -4,11 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from threepoint_training import fit_ik, hand_tilt, quaternion, solve_ik, train_learned
-from threepoint_training.chest_features import MEASURED
-from threepoint_training.features import FEATURES, frame_features
+from threepoint_training import fit_ik, hand_tilt, quaternion, solve_ik
+from threepoint_training.features import frame_features
 from threepoint_training.generated_motion import generate_corpus
-from threepoint_training.kinematic_limits import LIMB
 from threepoint_training.simulate_trackers import TrackerConfig, measured_tilts
 from threepoint_training.skeleton import body_from_calibration, load_proportions
 
@@ -63,15 +61,6 @@ def test_with_exact_tilts_it_does_not_matter_how_hands_are_worn():
     as_they_are, _ = frame_features(positions, rotations, BODY.with_hands(np.zeros((2, 2)), known))
     put_right, _ = frame_features(positions, turned, BODY.with_hands(tilts, known))
     np.testing.assert_allclose(put_right, as_they_are, atol=1e-9)
-
-
-def test_a_bent_wrist_is_not_believed():
-    steepest = LIMB["steepestHandTilt"]
-    assert hand_tilt.believed(np.array([[steepest - 0.01, 0.0], [0.0, -steepest - 0.01]])).tolist() == [True, False]
-    bent = train_learned.held_out(CORPUS, ("001",), (0.0,), condition=train_learned.Condition(bent_wrists=1.5))
-    assert (bent.inputs[:, FEATURES:][:, MEASURED] == 0).all()
-    untold = train_learned.held_out(CORPUS, ("001",), (0.0,), condition=train_learned.Condition(hands_measured=False))
-    np.testing.assert_array_equal(bent.inputs, untold.inputs)
 
 
 def test_the_calibration_errs_by_its_standard_deviation():
