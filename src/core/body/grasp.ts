@@ -1,8 +1,9 @@
-import { dot, length, lerp, type MutableVec3, subtract, type Vec3, vec3 } from '../math/vec3';
+import { copyVec3, distance, dot, length, lerp, type MutableVec3, subtract, type Vec3, vec3 } from '../math/vec3';
 import { type FingerGeometry, fingerPoints, type HandGeometry, makeFingerPoints } from './hand-geometry';
 import {
   closedHand,
   copyBend,
+  type FingerBend,
   type FingerName,
   fingerBend,
   fingerNames,
@@ -32,22 +33,47 @@ const halvings = 7;
 const joints = ['knuckle', 'middle', 'end'] as const;
 /** A thumb stretched away above the palm, to be closed over what the hand holds. */
 const openThumb = fingerBend(-0.3, 0.75, -0.05, -0.05);
+/** A thumb that stands out of the palm, to be closed from before it round a rod that lies across it. */
+const opposedThumb = fingerBend(1.2, 0.3, -0.05, -0.05);
 
 const points = makeFingerPoints();
 const at: MutableVec3 = vec3(0, 0, 0);
 const bent = fingerBend(0, 0, 0, 0);
+const opposed = fingerBend(0, 0, 0, 0);
 
 /**
  * Closes each finger joint by joint, knuckle first, until its skin lies on the surface; what meets nothing closes to a fist. A finger that
- * is inside from the start stays open.
+ * is inside from the start stays open. The thumb closes from above the palm or from before it, whichever brings it further round.
  */
 export function closeRound(surface: Surface, geometry: HandGeometry, target: MutableHandShape): void {
   for (let i = 0; i < fingerNames.length; i++) {
     const name = fingerNames[i]!;
-    const bend = copyBend(name === 'thumb' ? openThumb : flatHand[name], target[name]);
-    for (let joint = 0; joint < 3; joint++) closeJoint(surface, name, geometry[name], joint as 0 | 1 | 2, bend);
+    closeFinger(surface, name, geometry[name], name === 'thumb' ? openThumb : flatHand[name], target[name]);
+  }
+  const { thumb } = geometry;
+  if (isClear(surface, 'thumb', thumb, 0, opposedThumb)) {
+    closeFinger(surface, 'thumb', thumb, opposedThumb, opposed);
+    if (fromFist(thumb, opposed) < fromFist(thumb, target.thumb)) copyBend(opposed, target.thumb);
   }
   target.pinch = 0;
+}
+
+/** How far a thumb's tip is from where it is in a fist [m]. */
+function fromFist(thumb: FingerGeometry, bend: FingerBend): number {
+  fingerPoints('thumb', thumb, closedHand.thumb, points);
+  copyVec3(points[3], at);
+  return distance(at, fingerPoints('thumb', thumb, bend, points)[3]);
+}
+
+function closeFinger(
+  surface: Surface,
+  name: FingerName,
+  finger: FingerGeometry,
+  open: FingerBend,
+  target: MutableFingerBend,
+): void {
+  copyBend(open, target);
+  for (let joint = 0; joint < 3; joint++) closeJoint(surface, name, finger, joint as 0 | 1 | 2, target);
 }
 
 /** Bends a joint by this share of its way into the fist; the spread of a first bone goes along. */
@@ -93,7 +119,7 @@ function isClear(
   name: FingerName,
   finger: FingerGeometry,
   joint: 0 | 1 | 2,
-  bend: MutableFingerBend,
+  bend: FingerBend,
 ): boolean {
   fingerPoints(name, finger, bend, points);
   const { rootRadius, tipRadius } = finger;

@@ -35,6 +35,16 @@ describe.each(Object.entries(things))('a hand round %s', (_, surface) => {
   });
 });
 
+test('the thumb of a hand round a bow’s grip lies across it, over against the palm', () => {
+  const shape = makeHandShape();
+  closeRound(things['a bow’s grip across the palm']!, hand, shape);
+  const [, , joint, tip] = fingerPoints('thumb', hand.thumb, shape.thumb, makeFingerPoints());
+  // The grip's axis is 36 mm before the palm.
+  expect(tip.y).toBeLessThan(-0.05);
+  expect(joint.y).toBeLessThan(-0.04);
+  expect(things['a bow’s grip across the palm']!(tip) - hand.thumb.tipRadius).toBeLessThan(0.02);
+});
+
 test('a hand round nothing is a fist', () => {
   const shape = makeHandShape();
   closeRound(() => 1, hand, shape);
