@@ -20,13 +20,13 @@ export class FingerMemory {
   /** Overwritten by the next `follow`. */
   readonly shape: HandShape;
   readonly #shape: MutableHandShape = copyHandShape(relaxedHand, makeHandShape());
-  /** For how long each finger has not been seen [s]. */
+  /** For how long each finger has not been seen [s]. Not in the order of a hand's shape, whose objects would box these numbers: see `Vec3`. */
   readonly #unseen = {
-    thumb: heldSeconds,
-    index: heldSeconds,
-    middle: heldSeconds,
-    ring: heldSeconds,
     little: heldSeconds,
+    ring: heldSeconds,
+    middle: heldSeconds,
+    index: heldSeconds,
+    thumb: heldSeconds,
   };
 
   constructor() {

@@ -163,10 +163,11 @@ export function isFiniteHand(shape: HandShape): boolean {
 
 /** The range of motion of a hand's joints [rad], with some room: what is tracked or sent beyond it is wrong. */
 const limits = {
-  knuckle: { low: -0.7, high: 1.9 },
-  spread: { low: -0.7, high: 1.3 },
-  middle: { low: -0.5, high: 2.1 },
+  // Not in the order of a bend: objects in its place would box the numbers of every bend, see `Vec3`.
   end: { low: -0.6, high: 1.7 },
+  middle: { low: -0.5, high: 2.1 },
+  spread: { low: -0.7, high: 1.3 },
+  knuckle: { low: -0.7, high: 1.9 },
 } as const;
 
 /** Keeps each joint within a hand's limits; what is no number stays as it is. */
