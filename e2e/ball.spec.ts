@@ -5,7 +5,7 @@ import type { Browser } from '@playwright/test';
 import type { BallProbe } from '../src/app/ball/ball-frame';
 import { driveTime, goOn, holdAt } from './driven-time';
 import { emulatedHeadset } from './emulated-headset';
-import { enterVr, expect, keepPicture, open, probe, test } from './page-fixture';
+import { enterVr, expect, joinedRoom, keepPicture, open, probe, test } from './page-fixture';
 
 // What is played does not depend on how many pixels show it.
 test.use({ viewport: { width: 480, height: 300 } });
@@ -141,14 +141,7 @@ async function join(browser: Browser, port: number, room: string, query: string)
   await page.goto(
     `http://localhost:${port}/?play=ball&room=${room}&panel=off&quality=low&estimator=ik&overlay=off&${query}`,
   );
-  await page.waitForFunction(
-    () => {
-      const now = window.threepoint?.probe();
-      return now?.ready === true && now.game?.name === 'ball' && now.game.connection === 'joined';
-    },
-    undefined,
-    { timeout: 90_000 },
-  );
+  await joinedRoom(page);
   return page;
 }
 

@@ -1,4 +1,4 @@
-import { expect, freshTest, keepPicture, open, probe, test } from './page-fixture';
+import { expect, freshTest, joinedRoom, keepPicture, open, probe, test } from './page-fixture';
 import { serveStudies } from './study-server';
 
 type Page = Parameters<typeof open>[0];
@@ -38,15 +38,6 @@ freshTest(
     // Another server than the one of the other tests: nothing else is asked for.
     complaints.allow(new RegExp(`asked ${server.origin}:`));
     try {
-      const joined = (of: Page) =>
-        of.waitForFunction(
-          () => {
-            const now = window.threepoint?.probe();
-            return now?.ready === true && now.game?.name === 'ball' && now.game.connection === 'joined';
-          },
-          undefined,
-          { timeout: 90_000 },
-        );
       await page.goto(`${server.origin}/?play=ball&panel=off&quality=low&estimator=ik&bots=off`);
       await page.waitForFunction(() => window.threepoint?.probe().game?.name === 'ball', undefined, {
         timeout: 60_000,
@@ -58,7 +49,7 @@ freshTest(
       expect(link).toMatch(new RegExp(`^${server.origin}/\\?play=ball&room=[a-z]{6}$`));
       await keepPicture(page, 'ball-invitation');
       await dialog.getByRole('button', { name: 'Close' }).click();
-      await joined(page);
+      await joinedRoom(page);
       await expect(bar(page)).toContainText(/Connection (good|fair|poor), \d/);
 
       const pass = await page.evaluate(() => JSON.stringify({ ...sessionStorage }));
@@ -67,7 +58,7 @@ freshTest(
         for (const [key, value] of Object.entries(JSON.parse(kept))) sessionStorage.setItem(key, String(value));
       }, pass);
       await other.goto(`${link}&panel=off&quality=low&estimator=ik`);
-      await joined(other);
+      await joinedRoom(other);
       await page.bringToFront();
       await expect(bar(page)).toContainText('You opened this room somewhere else');
       await expect(bar(page).getByRole('button', { name: 'Watch' })).toBeDisabled();
@@ -77,7 +68,7 @@ freshTest(
       }
       await keepPicture(page, 'ball-taken-over');
       await bar(page).getByRole('button', { name: 'Take over again' }).click();
-      await joined(page);
+      await joinedRoom(page);
       await expect(bar(page).getByRole('button', { name: 'Watch' })).toBeEnabled();
       await other.bringToFront();
       await expect(bar(other).getByRole('button', { name: 'Take over again' })).toBeVisible();

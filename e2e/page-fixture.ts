@@ -18,6 +18,18 @@ export function probe(page: Page): Promise<Probe> {
   });
 }
 
+/** Waits until the page plays the ball game in a room that has taken it in. */
+export async function joinedRoom(page: Page): Promise<void> {
+  await page.waitForFunction(
+    () => {
+      const now = window.threepoint?.probe();
+      return now?.ready === true && now.game?.name === 'ball' && now.game.connection === 'joined';
+    },
+    undefined,
+    { timeout: 90_000 },
+  );
+}
+
 /** Where a joint is now [m], floor frame; an avatar that has only just been opened is waited for. */
 export async function joint(page: Page, name: string): Promise<Point> {
   const shown = await page.waitForFunction((name) => window.threepoint?.probe().avatar.joints[name], name);

@@ -4,7 +4,7 @@ import { once } from 'node:events';
 import { fileURLToPath } from 'node:url';
 import { changed, type GltfJson } from '../tests/avatar/glb';
 import type { GuestAnswer, GuestOrder } from './guest-process';
-import { expect, freshTest, joint, keepPicture, probe, test } from './page-fixture';
+import { expect, freshTest, joinedRoom, joint, keepPicture, probe, test } from './page-fixture';
 import { serveStudies } from './study-server';
 
 type Page = Parameters<typeof probe>[0];
@@ -88,14 +88,7 @@ const malicious: Readonly<Record<string, readonly [file: () => ArrayBuffer, sent
 /** Ben's page in a room on this server, joined. */
 async function join(page: Page, origin: string, room: string, query = ''): Promise<void> {
   await page.goto(`${origin}/?play=ball&room=${room}&bots=off&panel=off&quality=low&estimator=ik&overlay=off${query}`);
-  await page.waitForFunction(
-    () => {
-      const now = window.threepoint?.probe();
-      return now?.ready === true && now.game?.name === 'ball' && now.game.connection === 'joined';
-    },
-    undefined,
-    { timeout: 90_000 },
-  );
+  await joinedRoom(page);
 }
 
 /** Another person in the room, who comes without a page. */

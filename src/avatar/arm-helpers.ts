@@ -1,5 +1,5 @@
 import type { Object3D } from 'three';
-import { alongArm } from '../core/body/arm-rotations';
+import { alongArm, unwrapTwist } from '../core/body/arm-rotations';
 import type { MutableJointPoses } from '../core/body/forward-kinematics';
 import { conjugate, fromAxisAngle, multiply, type Quat, quat, slerp, twistAngle, twistOf } from '../core/math/quat';
 import type { Side } from '../core/math/side';
@@ -46,12 +46,6 @@ function angleAbout(from: Quat, to: Quat, along: (typeof alongArm)[Side]): numbe
   return twistAngle(twistOf(against, along, twist), along);
 }
 
-/** The angle nearest to what it was, but for one that has run away by more than 1¼ turns. */
-function unwrapped(angle: number, before: number): number {
-  const near = angle + 2 * Math.PI * Math.round((before - angle) / (2 * Math.PI));
-  return Math.abs(near) > 1.25 * Math.PI ? angle : near;
-}
-
 /**
  * Joints between those of an arm, so that its skin is nowhere wrung and no joint folds: the turn of the hand spreads over the forearm and that of
  * the upper arm over itself, and shoulder, elbow and wrist bend in two steps. The skin of any rig is shared among them (spread-weights); twist
@@ -84,7 +78,7 @@ export class ArmHelperJoints {
       const lower = (left ? joints.leftLowerArm : joints.rightLowerArm).orientation;
       const collar = (left ? joints.leftShoulder : joints.rightShoulder).orientation;
       const hand = (left ? joints.leftHand : joints.rightHand).orientation;
-      arm.upperTwist = unwrapped(angleAbout(collar, upper, along), arm.upperTwist);
+      arm.upperTwist = unwrapTwist(angleAbout(collar, upper, along), arm.upperTwist);
       const atWrist = angleAbout(lower, hand, along);
       const atElbow = angleAbout(upper, lower, along);
       arm.lowerTwist = atElbow + atWrist;

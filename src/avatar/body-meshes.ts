@@ -93,7 +93,8 @@ function topOf(meshes: readonly AvatarMesh[], head: Object3D | undefined): numbe
   return top;
 }
 
-const isBelow = (node: Object3D | null, above: Object3D): boolean =>
+/** Whether a node is another one or hangs from it. */
+export const isBelow = (node: Object3D | null, above: Object3D): boolean =>
   node !== null && (node === above || isBelow(node.parent, above));
 
 function materialsOf(mesh: Mesh): Material[] {

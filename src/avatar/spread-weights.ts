@@ -8,6 +8,7 @@ import {
   SkinnedMesh,
   Vector3,
 } from 'three';
+import { isBelow } from './body-meshes';
 import type { Steps } from './in-steps';
 
 /** The bones of an arm and the joints between them among which its skin is to be shared. */
@@ -48,9 +49,6 @@ interface ArmIndices {
   readonly alongLower: readonly number[];
   readonly places: SpreadArm['places'];
 }
-
-const isBelow = (node: Object3D | null, above: Object3D): boolean =>
-  node !== null && (node === above || isBelow(node.parent, above));
 
 /** Twist bones that lie beside the way to the next bone, by what Unreal, Character Creator and 3ds Max call them. */
 const twistName = /twist|roll/i;

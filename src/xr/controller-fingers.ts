@@ -10,8 +10,8 @@ import {
 import { smoothingFactor } from '../core/math/damper';
 
 /** WebXR's standard mapping of buttons. */
-const triggerButton = 0;
-const squeezeButton = 1;
+export const triggerButton = 0;
+export const squeezeButton = 1;
 /** Touchpad, stick, the two buttons of the face and the rest beside them: what lies under the thumb. */
 const thumbButtons = [2, 3, 4, 5, 6] as const;
 

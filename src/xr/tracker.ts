@@ -7,16 +7,15 @@ import { scale, subtract, up } from '../core/math/vec3';
 import { headingOf } from '../core/tracking/heading';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import { Belief } from './believed';
-import { ControllerFingers } from './controller-fingers';
+import { ControllerFingers, squeezeButton, triggerButton } from './controller-fingers';
 import { handleFit, wristFromGrip } from './grip-offsets';
 import { HandReader } from './hand-reader';
 import { toTrackedPose } from './tracked-pose';
 
-/** WebXR's standard mapping: the first button is the trigger, the second the squeeze. */
 const pressed = (gamepad: Gamepad | undefined): HandButtons => ({
   ...allReleased,
-  trigger: gamepad?.buttons[0]?.value ?? 0,
-  grip: gamepad?.buttons[1]?.value ?? 0,
+  trigger: gamepad?.buttons[triggerButton]?.value ?? 0,
+  grip: gamepad?.buttons[squeezeButton]?.value ?? 0,
 });
 
 const more = (a: HandButtons, b: HandButtons): HandButtons => ({

@@ -35,3 +35,12 @@ export function clavicleRoot(
 /** From the clavicle's root to the shoulder joint [m] on a clavicle at rest, clavicle's frame. */
 export const clavicleRest = (side: Side, { restOffsets }: Skeleton): Vec3 =>
   side === 'left' ? restOffsets.leftUpperArm : restOffsets.rightUpperArm;
+
+/**
+ * An angle [rad] about an arm's bone, unwrapped: the equal one that is nearest to `before`, so that it does not flip at a half turn; one that has
+ * run away by more than 1¼ half turns begins anew as it is, in [−π, π].
+ */
+export function unwrapTwist(angle: number, before: number): number {
+  const near = angle + 2 * Math.PI * Math.round((before - angle) / (2 * Math.PI));
+  return Math.abs(near) > 1.25 * Math.PI ? angle : near;
+}

@@ -1,7 +1,7 @@
 import { estimatedJoints } from '../body/joints';
 import { smoothingFactor, trapezoidalEasing } from '../math/damper';
 import type { Pose } from '../math/pose';
-import { type Quat, rotate, rotateInverse } from '../math/quat';
+import { type Quat, rotate } from '../math/quat';
 import {
   add,
   addScaled,
@@ -78,13 +78,17 @@ const confidenceIn = ({ source, confidence }: CompletedHand): number => (source 
 const settlesIn = ({ source, jumped, confidence }: CompletedHand): number =>
   jumped && source === 'tracked' ? confidenceSeconds * (1 - confidence) : 0;
 
-/** When a hand is seen again, notes by how much the joints jump; its elbow, half-way to it, goes along with half of its shoulder's. */
+/** Turns the jumps along with the body. When a hand is seen again, notes by how much the joints jump; its elbow, half-way to it, goes along with half of its shoulder's. */
 function followJumps(
   state: FilterJointsState,
   joints: JointPositions,
   { head, bodyTurn, leftHand, rightHand }: CompletedFrame,
   deltaSeconds: number,
 ): void {
+  for (let index = 0; state.secondsLeft > 0 && index < estimatedJoints.length; index++) {
+    const jump = state.jump[estimatedJoints[index]!];
+    rotate(bodyTurn, jump, jump);
+  }
   const seconds = Math.max(settlesIn(leftHand), settlesIn(rightHand));
   state.secondsLeft = Math.max(state.secondsLeft - deltaSeconds, 0);
   if (seconds === 0) return;
@@ -92,10 +96,8 @@ function followJumps(
   state.settleSeconds = state.secondsLeft;
   for (let index = 0; index < estimatedJoints.length; index++) {
     const joint = estimatedJoints[index]!;
-    const jump = state.jump[joint];
     subtract(joints[joint], head.position, goal);
-    // The loop below turns every jump along with the body, this one too: it is noted as it was before the turn.
-    subtract(state.relative[joint], rotateInverse(bodyTurn, goal, goal), jump);
+    subtract(rotate(bodyTurn, state.relative[joint], carried), goal, state.jump[joint]);
   }
   if (leftHand.jumped) scale(state.jump.leftUpperArm, 0.5, state.jump.leftLowerArm);
   if (rightHand.jumped) scale(state.jump.rightUpperArm, 0.5, state.jump.rightLowerArm);
@@ -133,7 +135,7 @@ export function filterJoints(
     const relative = state.relative[joint];
     const hand = joint === 'leftLowerArm' ? leftHand : joint === 'rightLowerArm' ? rightHand : null;
     subtract(joints[joint], head.position, goal);
-    if (left > 0) addScaled(goal, rotate(bodyTurn, state.jump[joint], state.jump[joint]), left, goal);
+    if (left > 0) addScaled(goal, state.jump[joint], left, goal);
     if (!state.known || hand?.jumped) copyVec3(goal, relative);
     else followJoint(relative, share, hand ? Number.POSITIVE_INFINITY : most, bodyTurn);
     add(state.position, relative, state.joints[joint]);

@@ -1,4 +1,4 @@
-import { alongArm, armBoneRotation, elbowHinge, handBoneRotation } from '../body/arm-rotations';
+import { alongArm, armBoneRotation, elbowHinge, handBoneRotation, unwrapTwist } from '../body/arm-rotations';
 import type { Skeleton } from '../body/skeleton';
 import { elbowCircle, elbowOnCircle, type LimbBones, makeElbowCircle } from '../body/two-bone-ik';
 import { clamp } from '../math/damper';
@@ -238,9 +238,7 @@ function turnBones(side: Side, state: ArmState, deltaSeconds: number): void {
 function turnForearm(state: ArmState, along: Vec3, deltaSeconds: number): void {
   multiply(conjugate(untwisted, inverse), hand, inForearm);
   const raw = twistAngle(twistOf(inForearm, along, twist), along);
-  const previous = state.known ? state.twist : 0;
-  const unwrapped = raw + 2 * Math.PI * Math.round((previous - raw) / (2 * Math.PI));
-  state.twist = Math.abs(unwrapped) > 1.25 * Math.PI ? raw : unwrapped;
+  state.twist = unwrapTwist(raw, state.known ? state.twist : 0);
   const half = clamp(state.twist, -Math.PI, Math.PI) / 2;
   const most = forearmSpeed * Math.max(deltaSeconds, 0);
   state.forearmTwist = state.known ? clamp(half, state.forearmTwist - most, state.forearmTwist + most) : half;
