@@ -175,7 +175,7 @@ export function legReport(m: LegMeasures): LegReport {
   };
 }
 
-/** Everybody alike: the mean over people of each figure. */
+/** All people alike: the mean over people of each figure. */
 export function meanReport(reports: readonly LegReport[]): LegReport {
   const mean = (key: keyof LegReport): number =>
     rounded(reports.reduce((sum, report) => sum + report[key], 0) / reports.length, 3);

@@ -55,7 +55,7 @@ export async function runWork<Result>(work: Work<Result>, { onProgress, signal }
       turnBegan = performance.now();
     }
   } finally {
-    // Whatever the work holds open it lets go; after its end this does nothing.
+    // The work closes what it holds open; after its end this does nothing.
     await work.return(undefined as Result);
   }
 }

@@ -62,7 +62,7 @@ class Tables:
 
 
 def groups_of(people: tuple[str, ...], count: int | None) -> list[tuple[str, ...]]:
-    """Who is held out together: everybody alone (None), or so many groups of like size, neighbours in the list apart."""
+    """Who is held out together: each person alone (None), or so many groups of like size, neighbours in the list apart."""
     count = len(people) if count is None else min(count, len(people))
     return [people[number::count] for number in range(count)]
 

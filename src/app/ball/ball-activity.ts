@@ -50,7 +50,7 @@ export interface BallActivityOptions {
   readonly avatars: AvatarExchange | null;
   /** What the player has on, for the others; null: they are to see the plain one. Asked for in every frame. */
   worn(): OwnWear | null;
-  /** Everybody else is drawn as the plain one. */
+  /** All other players are drawn as the mannequin. */
   plainOthers(): boolean;
   notify(level: 'info' | 'warning', text: string): void;
   bots(): boolean;

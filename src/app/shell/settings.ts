@@ -17,7 +17,7 @@ export interface Settings {
   readonly ownBody: OwnAvatar;
   /** Players of the same room see an avatar that is a file of this one's. */
   readonly shareAvatar: boolean;
-  /** Everybody else is shown as a mannequin. */
+  /** All other players are shown as mannequins. */
   readonly plainOthers: boolean;
   /** The built-in actor moves the body where no person does. */
   readonly actor: boolean;
