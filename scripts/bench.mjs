@@ -22,6 +22,7 @@ await main(async () => {
       allocations: { type: 'boolean' },
       rounds: { type: 'string' },
       device: { type: 'boolean' },
+      avatar: { type: 'string' },
     },
     allowPositionals: true,
   });
@@ -34,8 +35,10 @@ await main(async () => {
   const page = await vite('--config', 'bench/vite.config.ts', ...(values.allocations ? readable : []));
   if (page.code !== 0) return page.code;
   const measure = ['--import', 'tsx', 'bench/main.ts'];
-  // The path means what it means to the person who typed it.
-  if (values.json) measure.push('--json', resolve(process.env.INIT_CWD ?? process.cwd(), values.json));
+  // Paths mean what they mean to the person who typed it.
+  const from = process.env.INIT_CWD ?? process.cwd();
+  if (values.json) measure.push('--json', resolve(from, values.json));
+  if (values.avatar) measure.push('--avatar', resolve(from, values.avatar));
   if (values.rounds) measure.push('--rounds', values.rounds);
   if (values.allocations) measure.push('--allocations');
   if (values.device) measure.push('--device');

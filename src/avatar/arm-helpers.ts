@@ -1,7 +1,17 @@
 import type { Object3D } from 'three';
 import { alongArm, unwrapTwist } from '../core/body/arm-rotations';
 import type { MutableJointPoses } from '../core/body/forward-kinematics';
-import { conjugate, fromAxisAngle, multiply, type Quat, quat, slerp, twistAngle, twistOf } from '../core/math/quat';
+import {
+  conjugate,
+  copyQuat,
+  fromAxisAngle,
+  multiply,
+  type Quat,
+  quat,
+  slerp,
+  twistAngle,
+  twistOf,
+} from '../core/math/quat';
 import type { Side } from '../core/math/side';
 import type { Steps } from './in-steps';
 import type { HelperJoint, Rig } from './rig';
@@ -16,28 +26,24 @@ interface ArmHelpers {
   readonly shoulder: HelperJoint;
   readonly elbow: HelperJoint;
   readonly wrist: HelperJoint;
-  /** From the shoulder on, with so much of the upper arm's twist; the bone itself has all of it. */
-  readonly upper: readonly Twisted[];
-  /** From the elbow on, with so much of the hand's twist; the bone itself has none of it. */
-  readonly lower: readonly Twisted[];
+  /** From the shoulder on, in equal steps of the upper arm's twist: the first has none of it, the bone itself all. */
+  readonly upper: readonly HelperJoint[];
+  /** From the elbow on, in equal steps of the hand's twist: the bone itself has none of it, the last all. */
+  readonly lower: readonly HelperJoint[];
   /** Unwrapped angle [rad] by which the upper arm is turned about itself against the clavicle. */
   upperTwist: number;
   /** By which the hand is turned about the forearm. */
   lowerTwist: number;
 }
 
-interface Twisted {
-  readonly joint: HelperJoint;
-  readonly share: number;
-}
-
-const upperShares = [0, 0.5] as const;
-const lowerShares = [1 / 3, 2 / 3, 1] as const;
+const upperJoints = 2;
+const lowerJoints = 3;
 
 const against = quat(0, 0, 0, 1);
 const inverse = quat(0, 0, 0, 1);
 const twist = quat(0, 0, 0, 1);
 const turned = quat(0, 0, 0, 1);
+const step = quat(0, 0, 0, 1);
 const begin = quat(0, 0, 0, 1);
 
 /** The angle [rad] by which `to` is turned against `from` about an axis of both. */
@@ -97,15 +103,16 @@ export class ArmHelperJoints {
       const hand = left ? joints.leftHand : joints.rightHand;
       const along = alongArm[arm.side];
       const rig = this.#rig;
-      for (const { joint, share } of arm.upper) {
-        turnAbout(upper.orientation, along, (share - 1) * arm.upperTwist);
-        rig.placeHelper(joint, upper.position, turned);
+      fromAxisAngle(along, -arm.upperTwist / upperJoints, step);
+      copyQuat(upper.orientation, turned);
+      for (let k = upperJoints - 1; k >= 0; k--) {
+        rig.placeHelper(arm.upper[k]!, upper.position, multiply(turned, step, turned));
       }
-      turnAbout(upper.orientation, along, -arm.upperTwist);
       rig.placeHelper(arm.shoulder, upper.position, slerp(collar.orientation, turned, 0.5, begin));
-      for (const { joint, share } of arm.lower) {
-        turnAbout(lower.orientation, along, share * arm.lowerTwist);
-        rig.placeHelper(joint, lower.position, turned);
+      fromAxisAngle(along, arm.lowerTwist / lowerJoints, step);
+      copyQuat(lower.orientation, turned);
+      for (let k = 0; k < lowerJoints; k++) {
+        rig.placeHelper(arm.lower[k]!, lower.position, multiply(turned, step, turned));
       }
       rig.placeHelper(arm.wrist, hand.position, slerp(turned, hand.orientation, 0.5, begin));
       rig.placeHelper(arm.elbow, lower.position, slerp(upper.orientation, lower.orientation, 0.5, begin));
@@ -116,15 +123,11 @@ export class ArmHelperJoints {
   straighten(): void {
     for (const { shoulder, elbow, wrist, upper, lower } of this.#arms) {
       for (const joint of [shoulder, elbow, wrist]) this.#rig.straighten(joint);
-      for (const { joint } of upper) this.#rig.straighten(joint);
-      for (const { joint } of lower) this.#rig.straighten(joint);
+      for (const joint of upper) this.#rig.straighten(joint);
+      for (const joint of lower) this.#rig.straighten(joint);
     }
   }
 }
-
-/** An orientation turned by an angle [rad] about an axis of its own, in `turned`. */
-const turnAbout = (orientation: Quat, along: (typeof alongArm)[Side], angle: number): Quat =>
-  multiply(orientation, fromAxisAngle(along, angle, twist), turned);
 
 function makeHelpers(rig: Rig, side: Side): ArmHelpers {
   const [upperArm, lowerArm, hand] = [`${side}UpperArm`, `${side}LowerArm`, `${side}Hand`] as const;
@@ -133,8 +136,8 @@ function makeHelpers(rig: Rig, side: Side): ArmHelpers {
     shoulder: rig.addHelper(upperArm, 'half'),
     elbow: rig.addHelper(lowerArm, 'half'),
     wrist: rig.addHelper(hand, 'half'),
-    upper: upperShares.map((share) => ({ share, joint: rig.addHelper(upperArm, `twist ${share.toFixed(2)}`) })),
-    lower: lowerShares.map((share) => ({ share, joint: rig.addHelper(lowerArm, `twist ${share.toFixed(2)}`) })),
+    upper: Array.from({ length: upperJoints }, (_, k) => rig.addHelper(upperArm, `twist ${k} of ${upperJoints}`)),
+    lower: Array.from({ length: lowerJoints }, (_, k) => rig.addHelper(lowerArm, `twist ${k + 1} of ${lowerJoints}`)),
     upperTwist: 0,
     lowerTwist: 0,
   };
@@ -155,7 +158,7 @@ function spreadOf(rig: Rig, { side, shoulder, elbow, wrist, upper, lower }: ArmH
     shoulder: shoulder.node,
     elbow: elbow.node,
     wrist: wrist.node,
-    alongUpper: [...upper.map(({ joint }) => joint.node), upperArm.node],
-    alongLower: [lowerArm.node, ...lower.map(({ joint }) => joint.node)],
+    alongUpper: [...upper.map(({ node }) => node), upperArm.node],
+    alongLower: [lowerArm.node, ...lower.map(({ node }) => node)],
   };
 }

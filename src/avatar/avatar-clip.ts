@@ -90,7 +90,7 @@ function nodeRotation({ bone, above, before, after }: DrivenBone, { rotations }:
   turned.set(x, y, z, w);
   if (above >= 0) {
     const q = rotations[above]!;
-    turned.premultiply(carried.set(q.x, q.y, q.z, q.w).invert());
+    turned.premultiply(carried.copy(q).invert());
   }
   return turned.premultiply(before).multiply(after);
 }

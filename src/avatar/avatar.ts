@@ -13,6 +13,7 @@ import type { GaitPoints } from '../core/estimation/gait-features';
 import { identity, type Quat, quat, rotate } from '../core/math/quat';
 import type { Side } from '../core/math/side';
 import { addScaled, setVec3, subtract, type Vec3, vec3 } from '../core/math/vec3';
+import type { SkinTone } from '../core/protocol/worn-avatar';
 import { ArmHelperJoints } from './arm-helpers';
 import { type AvatarMesh, BodyMeshes, readMeshes } from './body-meshes';
 import { Face } from './face';
@@ -38,6 +39,8 @@ export interface Avatar {
   setUpperBodyOnly(on: boolean): void;
   /** Recolours the materials of our mannequin; other avatars keep their own. Unknown names change nothing. */
   setPalette(name: string): void;
+  /** Recolours the skin of our people; null: it stays as it is. */
+  setSkinTone(tone: SkinTone | null): void;
   /** 1: solid. Less: a ghost that things behind it shine through. */
   setOpacity(opacity: number): void;
   /** How a hand's fingers are bent from the next `apply` on; null: they are not seen, keep their bend for a while and relax. Copied. */
@@ -240,6 +243,10 @@ class VrmAvatar implements Avatar {
 
   setPalette(name: string): void {
     this.meshes.setPalette(name);
+  }
+
+  setSkinTone(tone: SkinTone | null): void {
+    this.meshes.setSkinTone(tone);
   }
 
   setOpacity(opacity: number): void {

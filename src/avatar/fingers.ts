@@ -62,7 +62,8 @@ class HandFingers {
   }
 
   #changed({ name }: RigFinger): boolean {
-    const [a, b] = [this.#shown[name], this.#bent[name]];
+    const a = this.#shown[name];
+    const b = this.#bent[name];
     return !this.#begun || a.knuckle !== b.knuckle || a.spread !== b.spread || a.middle !== b.middle || a.end !== b.end;
   }
 
@@ -73,7 +74,7 @@ class HandFingers {
       if (carrier === null) ofSide(this.#side, turned[index], against);
       else ofSide(this.#side, multiply(conjugate(turned[carrier], carried), turned[index], carried), against);
       multiply(before, multiply(against, after, against), against);
-      node.quaternion.set(against.x, against.y, against.z, against.w);
+      node.quaternion.copy(against);
     }
   }
 }

@@ -124,6 +124,8 @@ class StandingMirror implements Mirror {
     target.texture.colorSpace = renderer.outputColorSpace;
     // What holds the glass lies between it and the reflecting camera; clipping it away is not exact everywhere.
     this.object.visible = false;
+    const { render } = renderer.info;
+    const { frame } = render;
     this.reflections[index]!.call(
       glass,
       renderer,
@@ -133,6 +135,8 @@ class StandingMirror implements Mirror {
       glass.material as never,
       null as never,
     );
+    // All pictures of a frame have one number: bones go to the graphics device for the first of them, not for each.
+    render.frame = frame;
     this.object.visible = true;
   }
 

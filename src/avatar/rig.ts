@@ -216,9 +216,8 @@ export class Rig {
 
 /** The world matrix of a bone whose joint is there and that is turned like this. */
 function setWorld(bone: RigBone, at: Vec3, rotationFromRest: Quat, target: Matrix4): void {
-  const { x, y, z, w } = multiply(rotationFromRest, ourFacing, facing);
-  rotation.set(x, y, z, w).multiply(bone.restRotation);
-  target.compose(position.set(at.x, at.y, at.z), rotation, unitScale).multiply(bone.stretch);
+  rotation.copy(multiply(rotationFromRest, ourFacing, facing)).multiply(bone.restRotation);
+  target.compose(position.copy(at), rotation, unitScale).multiply(bone.stretch);
 }
 
 /** scale·(1 + (factor − 1)·d·dᵀ): longer along a direction only. */

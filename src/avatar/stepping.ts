@@ -1,3 +1,4 @@
+import { wrapAngle } from '../core/math/angle';
 import { clamp, damp, smoothingFactor } from '../core/math/damper';
 import type { Side } from '../core/math/side';
 import { type MutableVec3, setVec3, type Vec3, vec3 } from '../core/math/vec3';
@@ -109,8 +110,6 @@ const liftHalfLife = 0.03;
 const ballAhead = 1.6;
 const mostTilt = 0.35;
 
-const wrap = (angle: number): number => Math.atan2(Math.sin(angle), Math.cos(angle));
-
 const makeFoot = (): FootState => ({
   position: vec3(0, 0, 0),
   yaw: 0,
@@ -171,7 +170,7 @@ class TwoFeet implements Stepping {
     const z = goal.z - foot.position.z;
     const way = Math.sqrt(x * x + z * z) / legLength;
     const lifts = foot.standing < liftBelow && foot.seconds > shortestStance && way > leastWay;
-    const far = way > farthest || Math.abs(wrap(goal.yaw - foot.yaw)) > turnLimit;
+    const far = way > farthest || Math.abs(wrapAngle(goal.yaw - foot.yaw)) > turnLimit;
     if (!lifts && !far) return;
     foot.planted = false;
     foot.leftBehind = !lifts;
@@ -200,7 +199,7 @@ class TwoFeet implements Stepping {
     const { position } = foot;
     position.x += (goal.x + foot.velocityX * lead - position.x) * share;
     position.z += (goal.z + foot.velocityZ * lead - position.z) * share;
-    foot.yaw += wrap(goal.yaw - foot.yaw) * share;
+    foot.yaw += wrapAngle(goal.yaw - foot.yaw) * share;
   }
 }
 

@@ -205,8 +205,8 @@ class DesktopCamera implements DesktopView {
   update(pelvis: Point, { position, orientation }: Eyes, elapsed: number): void {
     const { camera } = this;
     if (this.#view === 'first-person') {
-      camera.position.set(position.x, position.y, position.z);
-      camera.quaternion.set(orientation.x, orientation.y, orientation.z, orientation.w);
+      camera.position.copy(position);
+      camera.quaternion.copy(orientation);
       return;
     }
     const part = 1 - 0.5 ** (elapsed / followHalfLife);

@@ -9,6 +9,7 @@ import { createEstimator } from '../../src/core/estimation/estimators';
 import { fromAxisAngle, multiply, quat, rotate } from '../../src/core/math/quat';
 import { add, vec3 } from '../../src/core/math/vec3';
 import '../../src/core/study/study-api';
+import { ImpairedTracking } from '../../src/core/tracking/impaired-tracking';
 import '../../src/net/loopback-connection';
 
 const calls = 20_000;
@@ -51,4 +52,20 @@ const vector = await bytesPerCall(() => {
 const quaternion = await bytesPerCall(() => {
   multiply(turn, product, product);
 });
-console.log(JSON.stringify({ vector, quaternion }));
+const hand = {
+  position: vec3(0.3, 1.2, -0.4),
+  orientation: fromAxisAngle(vec3(0, 1, 0), 0.4),
+  tracking: 'tracked',
+} as const;
+const frame = { time: 3.1, head: hand, leftHand: hand, rightHand: hand };
+const impairedTracking = new ImpairedTracking();
+impairedTracking.impair({
+  latencyMs: 100,
+  trackerNoise: { positionMm: 5, rotationDegrees: 1 },
+  dropouts: { perMinute: 20, seconds: 0.5 },
+});
+const impaired = await bytesPerCall(() => {
+  frame.time += 1 / 72;
+  impairedTracking.follow(frame);
+});
+console.log(JSON.stringify({ vector, quaternion, impaired }));

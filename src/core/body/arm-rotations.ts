@@ -1,4 +1,5 @@
-import { alignDirections, type MutableQuat, multiply, type Quat, rotate } from '../math/quat';
+import { wrapAngle } from '../math/angle';
+import { alignDirections, type MutableQuat, multiply, type Quat, restDirections, rotate } from '../math/quat';
 import type { Side } from '../math/side';
 import { add, cross, type MutableVec3, subtract, type Vec3, vec3 } from '../math/vec3';
 import { type Skeleton, wristFromHandBone } from './skeleton';
@@ -9,12 +10,17 @@ export const alongArm: Readonly<Record<Side, Vec3>> = { left: vec3(-1, 0, 0), ri
 /** The elbow's hinge in T-pose: it bends forearms forward. */
 const hingeAtRest: Readonly<Record<Side, Vec3>> = { left: vec3(0, -1, 0), right: vec3(0, 1, 0) };
 
+const armAtRest = {
+  left: restDirections(alongArm.left, hingeAtRest.left),
+  right: restDirections(alongArm.right, hingeAtRest.right),
+} as const;
+
 /** The hinge of an elbow, at right angles to shoulder, elbow and wrist: pole × axis of its circle. */
 export const elbowHinge = (pole: Vec3, axis: Vec3, target?: MutableVec3): MutableVec3 => cross(pole, axis, target);
 
 /** The rotation of an upper arm or an untwisted forearm that points in `direction` and bends about `hinge`, floor frame. */
 export const armBoneRotation = (side: Side, direction: Vec3, hinge: Vec3, target?: MutableQuat): MutableQuat =>
-  alignDirections(alongArm[side], hingeAtRest[side], direction, hinge, target);
+  alignDirections(armAtRest[side], direction, hinge, target);
 
 /** The rotation of the hand's bone under a wrist that is turned like this, floor frame. */
 export const handBoneRotation = (side: Side, wrist: Quat, target?: MutableQuat): MutableQuat =>
@@ -41,6 +47,6 @@ export const clavicleRest = (side: Side, { restOffsets }: Skeleton): Vec3 =>
  * run away by more than 1¼ half turns begins anew as it is, in [−π, π].
  */
 export function unwrapTwist(angle: number, before: number): number {
-  const near = angle + 2 * Math.PI * Math.round((before - angle) / (2 * Math.PI));
+  const near = before + wrapAngle(angle - before);
   return Math.abs(near) > 1.25 * Math.PI ? angle : near;
 }

@@ -1,7 +1,8 @@
+import { wrapAngle } from '../math/angle';
 import { clamp, smoothingFactor } from '../math/damper';
-import { fromAxisAngle, type MutableQuat, type Quat, quat } from '../math/quat';
+import { fromAxisAngle, type MutableQuat, quat } from '../math/quat';
 import { up } from '../math/vec3';
-import { headingConfidence, yawOf } from '../tracking/heading';
+import type { Heading } from '../tracking/heading';
 
 /** As far [rad] as people turn their head without their body: 40°. Beyond it the body comes along. */
 const headTurn = 0.7;
@@ -27,23 +28,21 @@ export const makeBodyHeading = (): BodyHeading => ({ yaw: Number.NaN });
  */
 export function followBodyHeading(
   state: BodyHeading,
-  head: Quat,
+  head: Heading,
   deltaSeconds: number,
   target: MutableQuat = quat(0, 0, 0, 1),
 ): MutableQuat {
-  const heading = yawOf(head);
-  if (Number.isNaN(state.yaw)) state.yaw = heading;
-  const confidence = headingConfidence(head);
+  if (Number.isNaN(state.yaw)) state.yaw = head.yaw;
   const steps = Math.ceil(Math.max(deltaSeconds, 0) / longestStep);
   const step = deltaSeconds / steps;
   const follow = smoothingFactor(followHalfLife, step);
   const settle = smoothingFactor(settleHalfLife, step);
   let { yaw } = state;
   for (let i = 0; i < steps; i++) {
-    const error = Math.atan2(Math.sin(heading - yaw), Math.cos(heading - yaw));
+    const error = wrapAngle(head.yaw - yaw);
     const within = clamp(error, -headTurn, headTurn);
     const turn = (error - within) * follow + within * settle;
-    yaw += confidence * clamp(turn, -turnSpeed * step, turnSpeed * step);
+    yaw += head.confidence * clamp(turn, -turnSpeed * step, turnSpeed * step);
   }
   state.yaw = yaw;
   return fromAxisAngle(up, yaw, target);

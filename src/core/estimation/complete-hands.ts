@@ -41,6 +41,7 @@ import {
   type Vec3,
   vec3,
 } from '../math/vec3';
+import { type Heading, readHeading } from '../tracking/heading';
 import type { TrackingFrame } from '../tracking/tracking-frame';
 import { type BodyHeading, followBodyHeading, makeBodyHeading } from './body-heading';
 import { alongArc, type DirectionArc, directionArc, makeDirectionArc } from './direction-arc';
@@ -69,6 +70,8 @@ export interface CompletedHand extends MutablePose<'floor'> {
 export interface CompletedFrame {
   readonly head: Pose<'floor'>;
   readonly headJoint: Vec3;
+  /** Which way the head faces. */
+  readonly heading: Readonly<Heading>;
   /** How the body has turned about +Y since the frame before. */
   readonly bodyTurn: Quat;
   readonly leftHand: CompletedHand;
@@ -90,13 +93,12 @@ interface HandState {
   known: boolean;
   /** Since the first frame without it [s]; negative while it is seen. */
   lostSeconds: number;
-  readonly rest: MutablePose<'body'>;
   readonly arc: DirectionArc;
 }
 
 /** What `completeHands` remembers of one wearer, and the frame it returns. */
 export interface CompleteHandsState {
-  readonly heading: BodyHeading;
+  readonly bodyHeading: BodyHeading;
   /** Origin on the floor under the head joint, yaw of the body. */
   readonly floorFromBody: MutableTransform<'floor', 'body'>;
   readonly left: HandState;
@@ -104,6 +106,7 @@ export interface CompleteHandsState {
   readonly frame: CompletedFrame & {
     head: Pose<'floor'>;
     readonly headJoint: MutableVec3;
+    readonly heading: Heading;
     readonly bodyTurn: MutableQuat;
   };
 }
@@ -115,20 +118,20 @@ const makeHandState = (): HandState => ({
   last: makeReach(),
   known: false,
   lostSeconds: Number.NaN,
-  rest: makePose(),
   arc: makeDirectionArc(),
 });
 
 export function makeCompleteHandsState(): CompleteHandsState {
   const [left, right] = [makeHandState(), makeHandState()];
   return {
-    heading: makeBodyHeading(),
+    bodyHeading: makeBodyHeading(),
     floorFromBody: makeTransform(),
     left,
     right,
     frame: {
       head: makePose(),
       headJoint: vec3(0, 0, 0),
+      heading: { yaw: Number.NaN, confidence: Number.NaN },
       bodyTurn: quat(0, 0, 0, 1),
       leftHand: left.hand,
       rightHand: right.hand,
@@ -176,6 +179,7 @@ function reachOf(pose: Pose<'body'>, shoulder: Vec3, target: Reach): Reach {
 }
 
 const shoulder = vec3(0, 0, 0);
+const rest = makePose<'body'>();
 const resting = makeReach();
 const inBody = makePose<'body'>();
 const inverse = quat(0, 0, 0, 1);
@@ -213,11 +217,12 @@ function followSeen(
 function followLost(
   state: HandState,
   side: Side,
+  rest: Pose<'body'>,
   floorFromBody: Transform<'floor', 'body'>,
   deltaSeconds: number,
 ): void {
   const { hand, last, arc } = state;
-  reachOf(state.rest, shoulder, resting);
+  reachOf(rest, shoulder, resting);
   if (!state.known) {
     copyVec3(resting.direction, last.direction);
     last.distance = resting.distance;
@@ -238,7 +243,7 @@ function followLost(
   slerp(last.orientation, resting.orientation, share, inBody.orientation);
   transformPose(floorFromBody, inBody, hand);
   if (held) copyPose(hand, hand.goal);
-  else transformPose(floorFromBody, state.rest, hand.goal);
+  else transformPose(floorFromBody, rest, hand.goal);
 }
 
 function completeHand(
@@ -251,9 +256,8 @@ function completeHand(
   const { floorFromBody } = state;
   const { y } = state.frame.headJoint;
   uprightShoulder(side, y, body, shoulder);
-  restingHand(side, y, body, state[side].rest);
   if (tracked !== null && tracked.tracking === 'tracked') followSeen(state[side], tracked, floorFromBody, deltaSeconds);
-  else followLost(state[side], side, floorFromBody, deltaSeconds);
+  else followLost(state[side], side, restingHand(side, y, body, rest), floorFromBody, deltaSeconds);
   state[side].known = true;
 }
 
@@ -272,9 +276,10 @@ export function completeHands(
   frame.head = head;
   headJointOf(head, body.eyesInHead, frame.headJoint);
   setVec3(floorFromBody.position, frame.headJoint.x, 0, frame.headJoint.z);
-  const yawBefore = state.heading.yaw;
-  followBodyHeading(state.heading, head.orientation, deltaSeconds, floorFromBody.orientation);
-  fromAxisAngle(up, Number.isNaN(yawBefore) ? 0 : state.heading.yaw - yawBefore, frame.bodyTurn);
+  const yawBefore = state.bodyHeading.yaw;
+  readHeading(head.orientation, frame.heading);
+  followBodyHeading(state.bodyHeading, frame.heading, deltaSeconds, floorFromBody.orientation);
+  fromAxisAngle(up, Number.isNaN(yawBefore) ? 0 : state.bodyHeading.yaw - yawBefore, frame.bodyTurn);
   completeHand(state, 'left', leftHand, body, deltaSeconds);
   completeHand(state, 'right', rightHand, body, deltaSeconds);
   return frame;
@@ -282,7 +287,7 @@ export function completeHands(
 
 /** Forgets the past: the next frame is the first. */
 export function resetCompleteHands(state: CompleteHandsState): void {
-  state.heading.yaw = Number.NaN;
+  state.bodyHeading.yaw = Number.NaN;
   state.left.known = false;
   state.right.known = false;
 }

@@ -14,7 +14,6 @@ import {
   subtract,
   vec3,
 } from '../math/vec3';
-import { headingConfidence } from '../tracking/heading';
 import { type CompletedFrame, type CompletedHand, confidenceSeconds } from './complete-hands';
 import { type JointPositions, type MutableJointPositions, makeJoints } from './joint-positions';
 
@@ -122,8 +121,8 @@ export function filterJoints(
   completed: CompletedFrame,
   deltaSeconds: number,
 ): MutableJointPositions {
-  const { head, bodyTurn, leftHand, rightHand } = completed;
-  const confidence = Math.min(headingConfidence(head.orientation), confidenceIn(leftHand), confidenceIn(rightHand));
+  const { head, heading, bodyTurn, leftHand, rightHand } = completed;
+  const confidence = Math.min(heading.confidence, confidenceIn(leftHand), confidenceIn(rightHand));
   const most = (doubtfulTrunkSpeed + (trunkSpeed - doubtfulTrunkSpeed) * confidence) * Math.max(deltaSeconds, 0);
   const share = smoothingFactor(jointHalfLife, deltaSeconds);
   if (state.known) followHead(state, head, deltaSeconds);

@@ -2,7 +2,17 @@ import { clavicleRest, clavicleRoot } from '../body/arm-rotations';
 import limbLimits from '../body/limb-limits.json';
 import type { Skeleton } from '../body/skeleton';
 import { clamp, smoothingFactor, smoothstep } from '../math/damper';
-import { alignDirections, limitAngle, type MutableQuat, multiply, quat, rotate, rotationBetween } from '../math/quat';
+import {
+  alignDirections,
+  limitAngle,
+  type MutableQuat,
+  multiply,
+  quat,
+  type RestDirections,
+  restDirections,
+  rotate,
+  rotationBetween,
+} from '../math/quat';
 import type { Side } from '../math/side';
 import {
   add,
@@ -25,7 +35,6 @@ import {
   type Vec3,
   vec3,
 } from '../math/vec3';
-import { headingOf } from '../tracking/heading';
 import type { CompletedFrame, CompletedHand } from './complete-hands';
 import type { JointPositions } from './joint-positions';
 import limits from './kinematic-limits.json';
@@ -116,11 +125,12 @@ export const makeFitTorsoState = (): FitTorsoState => ({
 /** What the fitting of the torso needs of a skeleton, measured once. */
 export interface TorsoBones {
   readonly skeleton: Skeleton;
-  /** From chest joint to neck, and from hips to chest joint, at rest. */
-  readonly thorax: Vec3;
+  /** From chest joint to neck, from hips to chest joint, and from the neck to the head, at rest; their side is the body's right. */
+  readonly thorax: RestDirections;
   readonly thoraxLength: number;
-  readonly lowerBack: Vec3;
+  readonly lowerBack: RestDirections;
   readonly lowerBackLength: number;
+  readonly neck: RestDirections;
   readonly neckLength: number;
   /** From the neck to the middle of the shoulders, at rest. */
   readonly shouldersFromNeck: Vec3;
@@ -137,10 +147,11 @@ export function torsoBones(skeleton: Skeleton): TorsoBones {
   const rightShoulder = add(offsets.rightShoulder, offsets.rightUpperArm);
   return {
     skeleton,
-    thorax,
+    thorax: restDirections(thorax, right),
     thoraxLength: length(thorax),
-    lowerBack,
+    lowerBack: restDirections(lowerBack, right),
     lowerBackLength: length(lowerBack),
+    neck: restDirections(offsets.head, right),
     neckLength: length(offsets.head),
     shouldersFromNeck: subtract(lerp(left, rightShoulder, 0.5), offsets.neck),
     shoulderWidth: 2 * rightShoulder.x,
@@ -182,7 +193,7 @@ export function fitTorso(
 ): TorsoPose {
   const { pose, lean } = state;
   const goal: TorsoGoal = { joints, frame, bones, deltaSeconds };
-  rotate(headingOf(frame.head.orientation, rotation), right, headingRight);
+  setVec3(headingRight, Math.cos(frame.heading.yaw), 0, -Math.sin(frame.heading.yaw));
   setVec3(lean.left.wanted, 0, 0, 0);
   setVec3(lean.right.wanted, 0, 0, 0);
   for (let pass = 0; pass <= anatomicalPasses + extremePasses; pass++) {
@@ -280,9 +291,9 @@ function placeThorax(
 
   // The neck's base that these shoulders hang from, then brought onto the neck's length from the head.
   normalise(subtract(middle, joints.chest, roughUp), up, roughUp);
-  const roughChest = alignDirections(bones.thorax, right, roughUp, shoulderLine, rotation);
+  const roughChest = alignDirections(bones.thorax, roughUp, shoulderLine, rotation);
   const impliedNeck = subtract(middle, rotate(roughChest, bones.shouldersFromNeck, b), a);
-  const neckRest = rotate(roughChest, bones.skeleton.restOffsets.head, b);
+  const neckRest = rotate(roughChest, bones.neck.main, b);
   limitAngle(rotationBetween(neckRest, subtract(frame.headJoint, impliedNeck, c), swing), within.neckBend, swing);
   subtract(frame.headJoint, rotate(swing, neckRest, c), pose.neck);
 
@@ -293,7 +304,7 @@ function placeThorax(
   subtract(pose.neck, add(joints.chest, moved, b), thoraxUp);
   normalise(thoraxUp, roughUp, thoraxUp);
   addScaled(pose.neck, thoraxUp, -bones.thoraxLength, pose.chest);
-  alignDirections(bones.thorax, right, thoraxUp, shoulderLine, upperChest);
+  alignDirections(bones.thorax, thoraxUp, shoulderLine, upperChest);
   placeShoulder('left', pose, bones, within);
   placeShoulder('right', pose, bones, within);
 }
@@ -320,13 +331,13 @@ function placeSpine(state: FitTorsoState, { joints, frame, bones, deltaSeconds }
   hangHips(state, add(joints.hips, moved, a), bones.lowerBackLength, deltaSeconds);
   const lowerBackUp = normalise(subtract(chest, hips, a), up, a);
   const pelvisLine = normalise(lerp(shoulderLine, headingRight, shares.pelvisToHead, b), shoulderLine, b);
-  alignDirections(bones.lowerBack, right, lowerBackUp, pelvisLine, rotations.hips);
+  alignDirections(bones.lowerBack, lowerBackUp, pelvisLine, rotations.hips);
   lerp(pelvisLine, shoulderLine, spineToShoulders, c);
-  alignDirections(bones.lowerBack, right, lowerBackUp, c, rotations.spine);
+  alignDirections(bones.lowerBack, lowerBackUp, c, rotations.spine);
   lerp(pelvisLine, shoulderLine, shares.chestToShoulders, c);
-  alignDirections(bones.thorax, right, thoraxUp, c, rotations.chest);
+  alignDirections(bones.thorax, thoraxUp, c, rotations.chest);
   lerp(shoulderLine, rotate(head.orientation, right, a), 0.5, c);
-  alignDirections(bones.skeleton.restOffsets.head, right, subtract(headJoint, neck, a), c, rotations.neck);
+  alignDirections(bones.neck, subtract(headJoint, neck, a), c, rotations.neck);
 }
 
 /**

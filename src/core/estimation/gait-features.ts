@@ -1,3 +1,4 @@
+import { wrapAngle } from '../math/angle';
 import type { Pose } from '../math/pose';
 import { type Quat, rotate } from '../math/quat';
 import { addScaled, forward, scale, up, type Vec3, vec3 } from '../math/vec3';
@@ -36,8 +37,7 @@ export function yawOfHips(orientation: Quat): number {
 }
 
 /** The angle that differs from `angle` by whole turns and lies nearest to `before`. */
-const unwrapped = (angle: number, before: number): number =>
-  before + Math.atan2(Math.sin(angle - before), Math.cos(angle - before));
+const unwrapped = (angle: number, before: number): number => before + wrapAngle(angle - before);
 
 function writePoint(target: Float32Array, at: number, { x, y, z }: Vec3): void {
   target[at] = x;

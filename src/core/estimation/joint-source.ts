@@ -1,5 +1,6 @@
 import type { ChestSpaceBody } from '../body/skeleton';
 import type { Transform } from '../math/pose';
+import type { DeviceBody } from '../tracking/device-body';
 import type { CompletedFrame } from './complete-hands';
 import type { MutableJointPositions } from './joint-positions';
 import type { IkSolution, ThreePoints } from './solve-ik';
@@ -15,6 +16,8 @@ export interface SolvedFrame {
   readonly points: ThreePoints;
   /** Heading frame. */
   readonly ik: IkSolution;
+  /** null: the device reports none in this frame. */
+  readonly deviceBody: DeviceBody | null;
 }
 
 /** Stage 3: where a method's six joints come from; every other stage is the same for all methods. One per wearer. */

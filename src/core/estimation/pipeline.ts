@@ -1,10 +1,11 @@
 import { type MutableUpperBodyPose, makeUpperBodyPose } from '../body/avatar-pose';
 import type { Calibration } from '../body/calibration';
 import { chestSpaceBody, skeletonFromCalibration } from '../body/skeleton';
-import { makePose, makeTransform, type TrackedPose, transformPose } from '../math/pose';
+import { invertTransform, makePose, makeTransform, type TrackedPose, transformPose } from '../math/pose';
 import { rotate } from '../math/quat';
 import { vec3 } from '../math/vec3';
-import { floorFromHeading, headingFromFloor } from '../tracking/heading';
+import type { DeviceBody } from '../tracking/device-body';
+import { floorFromHeading } from '../tracking/heading';
 import type { TrackingFrame } from '../tracking/tracking-frame';
 import { completeHands, makeCompleteHandsState, resetCompleteHands } from './complete-hands';
 import { composeBody } from './compose-body';
@@ -42,6 +43,7 @@ function makeEstimatorState() {
       floorFromHeading: makeTransform<'floor', 'heading'>(),
       points: makeThreePoints(),
       ik: makeIkSolution(),
+      deviceBody: null as DeviceBody | null,
     } satisfies SolvedFrame,
     /** The six joints of the third stage, floor frame. */
     joints: makeJoints(),
@@ -120,7 +122,7 @@ export class Pipeline implements PoseEstimator {
     const head = this.#pitch.level(frame.head);
 
     const completed = completeHands(state.hands, head, frame, body.chestSpace, deltaSeconds);
-    const solved = this.#solve(frame.time);
+    const solved = this.#solve(frame);
     this.source.joints(solved, deltaSeconds, state.joints);
     const joints = filterJoints(state.filter, state.joints, completed, deltaSeconds);
     const torso = fitTorso(state.torso, joints, completed, body.torso, deltaSeconds);
@@ -145,17 +147,18 @@ export class Pipeline implements PoseEstimator {
   }
 
   /** Stage 2 in the heading frame. */
-  #solve(time: number): SolvedFrame {
+  #solve({ time, deviceBody }: TrackingFrame): SolvedFrame {
     const { solved, hands } = this.state;
     const { head, leftHand, rightHand } = hands.frame;
     solved.time = time;
-    headingFromFloor(head, this.#headingFromFloor);
+    solved.deviceBody = deviceBody ?? null;
+    floorFromHeading(head, solved.floorFromHeading);
+    invertTransform(solved.floorFromHeading, this.#headingFromFloor);
     transformPose(this.#headingFromFloor, head, solved.points.head);
     transformPose(this.#headingFromFloor, leftHand, solved.points.leftHand);
     transformPose(this.#headingFromFloor, rightHand, solved.points.rightHand);
     turnHands(solved.points, this.#body.chestSpace);
     solveIk(solved.points, this.#body.chestSpace, solved.ik);
-    floorFromHeading(head, solved.floorFromHeading);
     rotate(solved.floorFromHeading.orientation, solved.ik.poles.left, this.#poles.left);
     rotate(solved.floorFromHeading.orientation, solved.ik.poles.right, this.#poles.right);
     return solved;

@@ -2,7 +2,11 @@ import type { AvatarPose } from '../body/avatar-pose';
 import type { Calibration } from '../body/calibration';
 import type { TrackingFrame } from '../tracking/tracking-frame';
 
-export const estimatorNames = ['hands-only', 'ik', 'paper', 'learned'] as const;
+/** Methods that need nothing of a device but three points. */
+export const threePointNames = ['hands-only', 'ik', 'paper', 'learned'] as const;
+export type ThreePointName = (typeof threePointNames)[number];
+
+export const estimatorNames = [...threePointNames, 'device'] as const;
 export type EstimatorName = (typeof estimatorNames)[number];
 
 /** The question that one frame puts to a network. */

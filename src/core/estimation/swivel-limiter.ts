@@ -1,5 +1,6 @@
 import { sideSign } from '../body/skeleton';
 import { type ElbowCircle, poleAcross } from '../body/two-bone-ik';
+import { wrapAngle } from '../math/angle';
 import { clamp, smoothingFactor, smoothstep } from '../math/damper';
 import { fromAxes, quat, rotate, rotateInverse, rotationBetween } from '../math/quat';
 import type { Side } from '../math/side';
@@ -121,7 +122,7 @@ export function limitSwivel(
   const kept = angleOf(carried);
   const inside = limited && nearestWithin(kept) !== kept;
   // Free to turn both ways round, the elbow takes the shorter; else the one that does not lead through the trunk.
-  const toGo = limited && !inside ? wanted - kept : Math.atan2(Math.sin(wanted - kept), Math.cos(wanted - kept));
+  const toGo = limited && !inside ? wanted - kept : wrapAngle(wanted - kept);
   const defined = wantedPole.confidence * smoothstep(handAtShoulder * armLength, handAway * armLength, circle.span);
   const followed = inside ? toGo : toGo * smoothingFactor(swivelHalfLife * (1 - defined) ** 3, deltaSeconds);
   const most = (guessedSwivelSpeed + (swivelSpeed - guessedSwivelSpeed) * confidence) * Math.max(deltaSeconds, 0);

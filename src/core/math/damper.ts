@@ -1,4 +1,4 @@
-import easing from './easing.json';
+import easing from './easing.json' with { type: 'json' };
 import { lerp, type MutableVec3, type Vec3 } from './vec3';
 
 /**

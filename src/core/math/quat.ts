@@ -1,4 +1,4 @@
-import { cross, dot, length, type MutableVec3, normalise, setVec3, type Vec3, vec3 } from './vec3';
+import { cross, dot, length, type MutableVec3, normalise, scale, setVec3, type Vec3, vec3 } from './vec3';
 
 /** A rotation as a unit quaternion, component order xyzw wherever it becomes an array. */
 export interface Quat {
@@ -126,33 +126,43 @@ const frameX = vec3(0, 0, 0);
 const frameY = vec3(0, 0, 0);
 const frameZ = vec3(0, 0, 0);
 const toFrame = quat(0, 0, 0, 1);
-const fromFrame = quat(0, 0, 0, 1);
 
 /** Writes the rotation whose x axis is along main and whose z axis is normal to main and side; false where these are parallel. */
 function frameOf(main: Vec3, side: Vec3, target: MutableQuat): boolean {
   normalise(main, undefined, frameX);
   cross(frameX, side, frameZ);
-  if (length(frameZ) < 1e-6 * (length(side) + 1e-12)) return false;
-  normalise(frameZ, undefined, frameZ);
+  const across = length(frameZ);
+  if (across < 1e-6 * (length(side) + 1e-12)) return false;
+  scale(frameZ, 1 / across, frameZ);
   fromAxes(frameX, cross(frameZ, frameX, frameY), frameZ, target);
   return true;
 }
 
+/** Two directions of a thing at rest, in its own frame, measured once. */
+export interface RestDirections {
+  readonly main: Vec3;
+  /** From its own frame to the one that main and side span; null: they are parallel. */
+  readonly inverse: Quat | null;
+}
+
+export function restDirections(main: Vec3, side: Vec3): RestDirections {
+  const spanned = quat(0, 0, 0, 1);
+  return { main, inverse: frameOf(main, side, spanned) ? conjugate(spanned) : null };
+}
+
 /**
- * The rotation that takes the direction `fromMain` to `toMain` exactly and `fromSide` as near to `toSide` as that allows.
+ * The rotation that takes the main direction at rest to `toMain` exactly and the side as near to `toSide` as that allows.
  * Parallel main and side: the twist is the smallest rotation's.
  */
-export function alignDirections(
-  fromMain: Vec3,
-  fromSide: Vec3,
+export const alignDirections = (
+  { main, inverse }: RestDirections,
   toMain: Vec3,
   toSide: Vec3,
   target: MutableQuat = quat(0, 0, 0, 1),
-): MutableQuat {
-  return frameOf(toMain, toSide, toFrame) && frameOf(fromMain, fromSide, fromFrame)
-    ? multiply(toFrame, conjugate(fromFrame, fromFrame), target)
-    : rotationBetween(fromMain, toMain, target);
-}
+): MutableQuat =>
+  inverse && frameOf(toMain, toSide, toFrame)
+    ? multiply(toFrame, inverse, target)
+    : rotationBetween(main, toMain, target);
 
 /** Along the shorter arc from a (t = 0) to b (t = 1). */
 export function slerp(a: Quat, b: Quat, t: number, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat {
@@ -197,8 +207,9 @@ export function twistAngle(q: Quat, axis: Vec3): number {
 
 /** The rotation by at most `limit` [rad] in the direction of q. */
 export function limitAngle(q: Quat, limit: number, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat {
-  const angle = angleBetween(identity, q);
-  return angle <= limit ? copyQuat(q, target) : slerp(identity, q, limit / angle, target);
+  // Mostly it is not reached: a cosine tells so without the angle.
+  if (Math.abs(q.w) >= Math.cos(Math.min(limit, Math.PI) / 2)) return copyQuat(q, target);
+  return slerp(identity, q, limit / angleBetween(identity, q), target);
 }
 
 /** Angles [rad] about x, y, z of the intrinsic decomposition Ry·Rx·Rz. */

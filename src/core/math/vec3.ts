@@ -60,7 +60,8 @@ export const cross = (a: Vec3, b: Vec3, target: MutableVec3 = vec3(0, 0, 0)): Mu
 /** Math.hypot is several times slower: only where squares overflow or vanish. */
 function hypotenuse(x: number, y: number, z: number): number {
   const squares = x * x + y * y + z * z;
-  return squares > 1e-280 && squares < 1e280 ? Math.sqrt(squares) : Math.hypot(x, y, z);
+  if (squares > 1e-280 && squares < 1e280) return Math.sqrt(squares);
+  return x === 0 && y === 0 && z === 0 ? 0 : Math.hypot(x, y, z);
 }
 
 export const length = (a: Vec3): number => hypotenuse(a.x, a.y, a.z);

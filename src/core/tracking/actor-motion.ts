@@ -2,7 +2,7 @@ import type { Calibration } from '../body/calibration';
 import { type ChestSpaceBody, chestSpaceBody, sideSign } from '../body/skeleton';
 import { clamp } from '../math/damper';
 import type { TrackedPose } from '../math/pose';
-import { fromAxes, fromAxisAngle, type MutableQuat, multiply, type Quat, quat, rotate, slerp } from '../math/quat';
+import { fromAxes, fromAxisAngle, type MutableQuat, multiply, quat, rotate, slerp } from '../math/quat';
 import type { Side } from '../math/side';
 import {
   add,
@@ -13,10 +13,10 @@ import {
   type MutableVec3,
   normalise,
   reject,
+  right,
   scale,
   setVec3,
   up,
-  type Vec3,
   vec3,
 } from '../math/vec3';
 import type { TrackingFrame } from './tracking-frame';
@@ -138,25 +138,25 @@ export function actorFrame(timeSeconds: number, calibration: Calibration): Track
 
   const body = bodyOf(calibration);
   const e = calibration.eyeHeight;
-  const breath = Math.sin(timeSeconds * 1.5);
-  const drift = vec3(0.012 * Math.sin(timeSeconds * 0.61), 0.003 * breath, 0.01 * Math.sin(timeSeconds * 0.43 + 1));
-  const height =
-    from.height === undefined && to.height === undefined ? 1 : 1 + mixed((from.height ?? 1) - 1, (to.height ?? 1) - 1);
-  const trunk = fromAxisAngle(up, radians(mixed(from.turn, to.turn)));
-  const sway = vec3(-mixed(from.sway?.[0], to.sway?.[0]), 0, -mixed(from.sway?.[1], to.sway?.[1]));
-  const eyes = add(add(vec3(0, e * height, 0), drift), rotate(trunk, sway));
-  const nod = radians(mixed(from.pitch, to.pitch) + 1.2 * Math.sin(timeSeconds * 0.8));
-  const glance = radians(mixed(from.look, to.look) + 2 * Math.sin(timeSeconds * 0.37));
-  const orientation = multiply(trunk, multiply(fromAxisAngle(up, glance), fromAxisAngle(vec3(1, 0, 0), nod)));
+  fromAxisAngle(up, radians(mixed(from.turn, to.turn)), trunk);
+  setVec3(sway, -mixed(from.sway?.[0], to.sway?.[0]), 0, -mixed(from.sway?.[1], to.sway?.[1]));
+  const height = e * (1 + mixed((from.height ?? 1) - 1, (to.height ?? 1) - 1));
+  const breath = 0.003 * Math.sin(timeSeconds * 1.5);
+  const eyes = vec3(0.012 * Math.sin(timeSeconds * 0.61), height + breath, 0.01 * Math.sin(timeSeconds * 0.43 + 1));
+  add(eyes, rotate(trunk, sway, sway), eyes);
+  fromAxisAngle(right, radians(mixed(from.pitch, to.pitch) + 1.2 * Math.sin(timeSeconds * 0.8)), nod);
+  const orientation = fromAxisAngle(up, radians(mixed(from.look, to.look) + 2 * Math.sin(timeSeconds * 0.37)));
+  multiply(trunk, multiply(orientation, nod, orientation), orientation);
   // The trunk hangs under the head joint of a head that looks ahead, so that a glance moves no shoulder.
-  const neck = addScaled(eyes, rotate(trunk, vec3(0, -body.eyesInHead.y - body.neckToHead.y, -body.eyesInHead.z)), 1);
+  setVec3(neck, 0, -body.eyesInHead.y - body.neckToHead.y, -body.eyesInHead.z);
+  add(eyes, rotate(trunk, neck, neck), neck);
 
   const moment = { from, to, share, timeSeconds, body, shoulderAhead: 0.01 * e };
   return {
     time: timeSeconds,
     head: { position: eyes, orientation, tracking: 'tracked' },
-    leftHand: handAt('left', moment, neck, trunk),
-    rightHand: handAt('right', moment, neck, trunk),
+    leftHand: handAt('left', moment),
+    rightHand: handAt('right', moment),
   };
 }
 
@@ -171,6 +171,11 @@ interface Moment {
   readonly shoulderAhead: number;
 }
 
+// Scratch of one frame: the trunk's yaw, and what hangs on it.
+const trunk = quat(0, 0, 0, 1);
+const sway = vec3(0, 0, 0);
+const nod = quat(0, 0, 0, 1);
+const neck = vec3(0, 0, 0);
 // Scratch of one hand.
 const shoulder = vec3(0, 0, 0);
 const reachFrom = vec3(0, 0, 0);
@@ -182,7 +187,7 @@ const side = vec3(0, 0, 0);
 const turnedFrom = quat(0, 0, 0, 1);
 const turnedTo = quat(0, 0, 0, 1);
 
-function handAt(which: Side, moment: Moment, neck: Vec3, trunk: Quat): TrackedPose {
+function handAt(which: Side, moment: Moment): TrackedPose {
   const { from, to, share, timeSeconds, body } = moment;
   const sigma = sideSign(which);
   setVec3(shoulder, sigma * (body.clavicleRoot.x + body.clavicle.x), body.clavicle.y, moment.shoulderAhead);

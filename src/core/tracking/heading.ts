@@ -1,7 +1,7 @@
 import { smoothstep } from '../math/damper';
-import { type MutableTransform, makeTransform, type Pose, type Transform } from '../math/pose';
-import { conjugate, fromAxisAngle, type MutableQuat, type Quat, quat, rotate } from '../math/quat';
-import { forward, right, scale, setVec3, up, vec3 } from '../math/vec3';
+import { invertTransform, type MutableTransform, makeTransform, type Pose, type Transform } from '../math/pose';
+import { fromAxisAngle, type MutableQuat, type Quat, quat, rotate } from '../math/quat';
+import { forward, right, setVec3, up, vec3 } from '../math/vec3';
 
 const axis = vec3(0, 0, 0);
 
@@ -21,12 +21,6 @@ export function yawOf(orientation: Quat): number {
 export const headingOf = (orientation: Quat, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat =>
   fromAxisAngle(up, yawOf(orientation), target);
 
-/** The length in [0, 1] of the horizontal part of a head's right axis: 0 for a head on its side. */
-function headingDefinition(orientation: Quat): number {
-  const side = rotate(orientation, right, axis);
-  return Math.sqrt(side.x * side.x + side.z * side.z);
-}
-
 /** From the heading frame (origin on the floor under the headset, yaw of the head) to the floor frame. */
 export function floorFromHeading(
   head: Pose<'floor'>,
@@ -38,19 +32,23 @@ export function floorFromHeading(
 }
 
 /** The inverse of `floorFromHeading`. */
-export function headingFromFloor(
-  head: Pose<'floor'>,
-  target: MutableTransform<'heading', 'floor'> = makeTransform(),
-): Transform<'heading', 'floor'> {
-  conjugate(headingOf(head.orientation, target.orientation), target.orientation);
-  setVec3(target.position, head.position.x, 0, head.position.z);
-  scale(rotate(target.orientation, target.position, target.position), -1, target.position);
-  return target;
-}
+export const headingFromFloor = (head: Pose<'floor'>): Transform<'heading', 'floor'> =>
+  invertTransform(floorFromHeading(head));
 
 /** The horizontal part of a head's right axis at which its heading begins to mean something, and at which it is certain. */
 const [undefinedHeading, definedHeading] = [0.35, 0.7];
 
-/** Confidence in [0, 1] of a head's heading: 0 for a head on its side, whose heading says nothing of the body's. */
-export const headingConfidence = (orientation: Quat): number =>
-  smoothstep(undefinedHeading, definedHeading, headingDefinition(orientation));
+/** Which way a head faces along the floor. */
+export interface Heading {
+  /** About +Y [rad], see `yawOf`. */
+  yaw: number;
+  /** In [0, 1]; 0 for a head on its side, whose heading says nothing of the body's. */
+  confidence: number;
+}
+
+export function readHeading(orientation: Quat, target: Heading = { yaw: Number.NaN, confidence: Number.NaN }): Heading {
+  target.yaw = yawOf(orientation);
+  const { x, z } = rotate(orientation, right, axis);
+  target.confidence = smoothstep(undefinedHeading, definedHeading, Math.sqrt(x * x + z * z));
+  return target;
+}

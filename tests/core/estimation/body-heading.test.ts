@@ -3,6 +3,7 @@ import { describe, expect, test } from 'vitest';
 import { followBodyHeading, makeBodyHeading } from '../../../src/core/estimation/body-heading';
 import { angleBetween, fromAxisAngle, multiply, type Quat, twistAngle } from '../../../src/core/math/quat';
 import { up, vec3 } from '../../../src/core/math/vec3';
+import { readHeading } from '../../../src/core/tracking/heading';
 import { number, rotation, seed } from '../arbitraries';
 import { fromEulerYxz } from '../euler-angles';
 
@@ -12,9 +13,9 @@ const yawOf = (q: Quat): number => twistAngle(q, up);
 /** The body's yaw after the head did what `at` says for so long. */
 function yawAfter(seconds: number, at: (time: number) => Quat, rateHz = 60): number {
   const heading = makeBodyHeading();
-  let yaw = yawOf(followBodyHeading(heading, at(0), 0));
+  let yaw = yawOf(followBodyHeading(heading, readHeading(at(0)), 0));
   for (let i = 1; i <= Math.round(seconds * rateHz); i++)
-    yaw = yawOf(followBodyHeading(heading, at(i / rateHz), 1 / rateHz));
+    yaw = yawOf(followBodyHeading(heading, readHeading(at(i / rateHz)), 1 / rateHz));
   return yaw;
 }
 
@@ -47,9 +48,9 @@ describe('a body under a head', () => {
     fc.assert(
       fc.property(fc.array(rotation, { minLength: 2, maxLength: 20 }), number(0.001, 0.1), (heads, step) => {
         const heading = makeBodyHeading();
-        let before = followBodyHeading(heading, heads[0]!, 0);
+        let before = followBodyHeading(heading, readHeading(heads[0]!), 0);
         for (const head of heads) {
-          const now = followBodyHeading(heading, head, step);
+          const now = followBodyHeading(heading, readHeading(head), step);
           expect(angleBetween(before, now)).toBeLessThan(14.001 * step);
           before = now;
         }
@@ -65,8 +66,8 @@ describe('a body under a head', () => {
 
   test('forgotten, it faces where the head does again', () => {
     const heading = makeBodyHeading();
-    followBodyHeading(heading, turned(0), 0);
+    followBodyHeading(heading, readHeading(turned(0)), 0);
     heading.yaw = Number.NaN;
-    expect(yawOf(followBodyHeading(heading, turned(-2), 1 / 60))).toBeCloseTo(-2, 9);
+    expect(yawOf(followBodyHeading(heading, readHeading(turned(-2)), 1 / 60))).toBeCloseTo(-2, 9);
   });
 });

@@ -13,6 +13,7 @@ import type { PoseEstimator } from '../../../src/core/estimation/pose-estimator'
 import type { Pose } from '../../../src/core/math/pose';
 import { copyQuat, identity } from '../../../src/core/math/quat';
 import { copyVec3, normalise, vec3 } from '../../../src/core/math/vec3';
+import { readHeading } from '../../../src/core/tracking/heading';
 import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
 
 /** Every joint of a body, floor frame. */
@@ -54,6 +55,7 @@ export const completedFrame = (
 ): CompletedFrame => ({
   head,
   headJoint: headJointOf(head, skeletonFromCalibration(calibration).eyesInHead, vec3(0, 0, 0)),
+  heading: readHeading(head.orientation),
   bodyTurn: identity,
   leftHand: seenHand(leftHand),
   rightHand: seenHand(rightHand),

@@ -2,7 +2,7 @@ import type { Calibration } from '../../../src/core/body/calibration';
 import { chestSpaceBody, sideSign } from '../../../src/core/body/skeleton';
 import { type Frame, type TrackedPose, type Transform, transformPose } from '../../../src/core/math/pose';
 import { fromAxes, fromAxisAngle, multiply, type Quat, rotate } from '../../../src/core/math/quat';
-import { nextRandom } from '../../../src/core/math/random';
+import { randomNumbers } from '../../../src/core/math/random';
 import type { Side } from '../../../src/core/math/side';
 import { add, addScaled, cross, normalise, right, subtract, up, type Vec3, vec3 } from '../../../src/core/math/vec3';
 import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
@@ -34,12 +34,7 @@ export function movingPerson(
   standpoint: Standpoint,
 ): (time: number) => TrackingFrame {
   const body = chestSpaceBody(calibration);
-  let state = { seed };
-  const random = (): number => {
-    const next = nextRandom(state);
-    state = next.state;
-    return next.value;
-  };
+  const random = randomNumbers(seed);
   const wave = (amplitude: number): ((time: number) => number) => {
     const parts = [1, 2, 3].map(() => ({ rate: 0.3 + 3 * random(), phase: 7 * random() }));
     return (time) =>
