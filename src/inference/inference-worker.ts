@@ -7,11 +7,11 @@ let session: InferenceSession | null = null;
 async function answer(question: Question): Promise<Answer> {
   const { id } = question;
   if ('model' in question) {
-    session = await createSession(question.model, 'wasm', { wasmPaths: question.wasmPaths });
+    session = await createSession(question.model, question.tensors, 'wasm', { wasmPaths: question.wasmPaths });
     return { id, inputNames: session.inputNames, outputNames: session.outputNames };
   }
   if (!session) throw new Error('no model is open');
-  return { id, numbers: await session.run(question.input, question.features, question.output) };
+  return { id, numbers: await session.run(question.features) };
 }
 
 self.addEventListener('message', ({ data: question }: MessageEvent<Question>) => {

@@ -1,6 +1,6 @@
 import { reasonOf } from '../core/errors/reasons';
 import type { ModelContract, PoseRegressor } from '../core/estimation/pose-regressor';
-import { outputNumbers } from './model-contract';
+import { outputNumbers, tensorsOf } from './model-contract';
 import { fetchContract, fetchStated, named } from './model-files';
 import { createSession, type ExecutionProvider, type InferenceSession, type WasmPaths } from './session';
 import { createWorkerSession } from './worker-session';
@@ -35,21 +35,21 @@ export async function startRegressor(
 ): Promise<PoseRegressor> {
   let session: InferenceSession | null = null;
   let fallback: Promise<InferenceSession> | null = null;
-  const input = contract.inputs[0]!;
-  const output = contract.outputs[0]!;
+  const tensors = tensorsOf(contract);
+  const { input, inputShape, output } = tensors;
 
   async function open(where: ExecutionProvider, bundle = where): Promise<InferenceSession> {
     const inWorker = where === 'wasm' && bundle === 'wasm' ? createWorker : undefined;
     const opened = await (inWorker
-      ? createWorkerSession(model, inWorker, wasmPaths)
-      : createSession(model, where, { bundle, wasmPaths }));
-    if (!opened.inputNames.includes(input.name) || !opened.outputNames.includes(output.name)) {
+      ? createWorkerSession(model, tensors, inWorker, wasmPaths)
+      : createSession(model, tensors, where, { bundle, wasmPaths }));
+    if (!opened.inputNames.includes(input) || !opened.outputNames.includes(output)) {
       await opened.release();
       const has = `${opened.inputNames.join(', ')} → ${opened.outputNames.join(', ')}`;
-      throw new Error(`${contract.file}: has the tensors ${has}, its contract says ${input.name} → ${output.name}`);
+      throw new Error(`${contract.file}: has the tensors ${has}, its contract says ${input} → ${output}`);
     }
     // The first run compiles and allocates: it must not happen in a frame of the wearer's.
-    const numbers = await opened.run(input, new Float32Array(input.shape.reduce((a, b) => a * b, 1)), output.name);
+    const numbers = await opened.run(new Float32Array(inputShape.reduce((a, b) => a * b, 1)));
     if (numbers.length !== outputNumbers || !numbers.every(Number.isFinite)) {
       await opened.release();
       throw new Error(`${contract.file}: the first run gave ${numbers.length} numbers, or some that are not finite`);
@@ -69,7 +69,7 @@ export async function startRegressor(
   /** On a graphics device, or where that is lost in WebAssembly. */
   async function runOnDevice(device: InferenceSession, features: Float32Array): Promise<Float32Array> {
     try {
-      return await device.run(input, features, output.name);
+      return await device.run(features);
     } catch (error) {
       // A lost device takes its session along; WASM needs nothing of it, and the loaded bundle has it.
       fallback ??= open('wasm', 'webgpu')
@@ -79,7 +79,7 @@ export async function startRegressor(
           onProviderFallback?.(`The graphics device was lost (${reasonOf(error)}): WebAssembly takes over.`);
           return opened;
         });
-      return (await fallback).run(input, features, output.name);
+      return (await fallback).run(features);
     }
   }
 
@@ -90,7 +90,7 @@ export async function startRegressor(
     },
     run(features) {
       if (session === null) return Promise.reject(new Error(`${contract.file}: already disposed of`));
-      return session.provider === 'webgpu' ? runOnDevice(session, features) : session.run(input, features, output.name);
+      return session.provider === 'webgpu' ? runOnDevice(session, features) : session.run(features);
     },
     async dispose() {
       const closing = session;

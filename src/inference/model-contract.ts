@@ -2,6 +2,7 @@ import * as v from 'valibot';
 import { reasonOf } from '../core/errors/reasons';
 import type { ModelContract } from '../core/estimation/pose-regressor';
 import { inputCountWithoutHandTilts, learnedInputCount } from '../core/estimation/residual';
+import type { ModelTensors } from './session';
 
 const statedFile = {
   file: v.pipe(v.string(), v.regex(/^[\w.-]+$/, 'expected a file name beside the contract')),
@@ -73,4 +74,10 @@ export function parseContract(file: string, text: string): ModelContract {
     ...(correctionHalfLife !== undefined && { correctionHalfLife }),
     ...(weights !== undefined && { weights }),
   };
+}
+
+/** The tensors that a contract states, as a session has them. */
+export function tensorsOf({ inputs, outputs }: ModelContract): ModelTensors {
+  const [input, output] = [inputs[0]!, outputs[0]!];
+  return { input: input.name, inputShape: input.shape, output: output.name };
 }

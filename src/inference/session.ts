@@ -1,5 +1,4 @@
 import type { InferenceSession as OrtSession } from 'onnxruntime-web';
-import type { TensorContract } from '../core/estimation/pose-regressor';
 
 export type ExecutionProvider = 'wasm' | 'webgpu';
 
@@ -12,6 +11,13 @@ export interface SessionOptions {
   readonly wasmPaths?: WasmPaths | undefined;
 }
 
+/** What goes into a model, and what of it comes out. */
+export interface ModelTensors {
+  readonly input: string;
+  readonly inputShape: readonly number[];
+  readonly output: string;
+}
+
 /** The part of a GPUDevice that tells of its end. */
 interface GraphicsDevice {
   readonly lost: Promise<{ readonly message: string; readonly reason: string }>;
@@ -22,7 +28,8 @@ export interface InferenceSession {
   readonly provider: ExecutionProvider;
   readonly inputNames: readonly string[];
   readonly outputNames: readonly string[];
-  run(input: TensorContract, features: Float32Array, output: string): Promise<Float32Array>;
+  /** features: the input tensor's numbers; resolves to the output tensor's, in an array of their own. */
+  run(features: Float32Array): Promise<Float32Array>;
   release(): Promise<void>;
 }
 
@@ -33,6 +40,7 @@ export interface InferenceSession {
  */
 export async function createSession(
   model: Uint8Array,
+  { input, inputShape, output }: ModelTensors,
   provider: ExecutionProvider,
   { bundle = provider, wasmPaths }: SessionOptions = {},
 ): Promise<InferenceSession> {
@@ -55,9 +63,9 @@ export async function createSession(
     provider,
     inputNames: session.inputNames,
     outputNames: session.outputNames,
-    run(input, features, output) {
+    run(features) {
       const start = async (): Promise<Float32Array> => {
-        const results = await session.run({ [input.name]: new ort.Tensor('float32', features, input.shape) });
+        const results = await session.run({ [input]: new ort.Tensor('float32', features, inputShape) });
         const tensor = results[output];
         if (!tensor) throw new Error(`no output “${output}”`);
         // Outputs arrive in main memory, in an array of their own.

@@ -1,10 +1,14 @@
-import type { TensorContract } from '../core/estimation/pose-regressor';
-import type { WasmPaths } from './session';
+import type { ModelTensors, WasmPaths } from './session';
 
 /** What the page asks of the worker that runs a model: to open it, then to run it. */
 export type Question =
-  | { readonly id: number; readonly model: Uint8Array; readonly wasmPaths: WasmPaths | undefined }
-  | { readonly id: number; readonly input: TensorContract; readonly features: Float32Array; readonly output: string };
+  | {
+      readonly id: number;
+      readonly model: Uint8Array;
+      readonly tensors: ModelTensors;
+      readonly wasmPaths: WasmPaths | undefined;
+    }
+  | { readonly id: number; readonly features: Float32Array };
 
 /** The answer to the question of that number. */
 export type Answer =

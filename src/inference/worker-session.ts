@@ -1,5 +1,5 @@
 import { reasonOf } from '../core/errors/reasons';
-import type { InferenceSession, WasmPaths } from './session';
+import type { InferenceSession, ModelTensors, WasmPaths } from './session';
 import type { Answer, Question } from './worker-messages';
 
 interface Waiting {
@@ -21,6 +21,7 @@ function numbersOf(answer: Answer): Float32Array {
  */
 export async function createWorkerSession(
   model: Uint8Array,
+  tensors: ModelTensors,
   createWorker: () => Worker,
   wasmPaths?: WasmPaths,
 ): Promise<InferenceSession> {
@@ -62,17 +63,17 @@ export async function createWorkerSession(
   worker.addEventListener('error', ({ message }) => breakDown(message || 'the worker for inference did not start'));
   worker.addEventListener('messageerror', () => breakDown('the worker for inference cannot be understood'));
 
-  const tensors = await ask({ id: asked++, model, wasmPaths }).catch((error: unknown) => {
+  const names = await ask({ id: asked++, model, tensors, wasmPaths }).catch((error: unknown) => {
     breakDown(reasonOf(error));
     throw error;
   });
-  if (!('inputNames' in tensors)) throw new Error('the worker for inference answers what no one asked');
+  if (!('inputNames' in names)) throw new Error('the worker for inference answers what no one asked');
   opened = true;
   return {
     provider: 'wasm',
-    inputNames: tensors.inputNames,
-    outputNames: tensors.outputNames,
-    run: (input, features, output) => ask({ id: asked++, input, features, output }).then(numbersOf),
+    inputNames: names.inputNames,
+    outputNames: names.outputNames,
+    run: (features) => ask({ id: asked++, features }).then(numbersOf),
     async release() {
       breakDown('already released');
     },
