@@ -3,6 +3,13 @@ import { enterVr, expect, freshTest, joint, load, openWithHeadset, probe, test }
 
 const withHeadset = 'emulate&actor=off&quality=low';
 
+/** The pose of the guided calibration. */
+const armsAhead = {
+  head: { position: [0, 1.72, 0], orientation: [0, 0, 0, 1] },
+  left: { position: [-0.19, 1.4, -0.6], orientation: [0, 0, 0, 1] },
+  right: { position: [0.19, 1.4, -0.6], orientation: [0, 0, 0, 1] },
+} as const;
+
 test('by hand: height and arm span are taken over, remembered after a reload, and forgotten on request @full', async ({
   page,
 }) => {
@@ -36,15 +43,45 @@ test('by hand: what no person measures is refused where it is typed', async ({ p
   expect((await probe(page)).calibration).toEqual(before);
 });
 
+test('by hand: a forearm divides the arm, outlasts a guided calibration and a reload, and is forgotten where it is emptied', async ({
+  page,
+}) => {
+  const headset = await openWithHeadset(page, 'estimator=ik');
+  const forearm = page.getByRole('spinbutton', { name: 'Forearm in centimetres' });
+  const told = async () => (await probe(page)).calibration.forearm;
+  await expect(forearm).toHaveValue('');
+  await forearm.fill('45');
+  await page.keyboard.press('Tab');
+  expect(await forearm.evaluate((input: HTMLInputElement) => input.validity.valid)).toBe(false);
+  await forearm.fill('38');
+  await page.keyboard.press('Tab');
+  await expect(page.getByText(/A forearm of 0\.38 m does not go with an arm span of/)).toBeVisible();
+  expect(await told()).toBeUndefined();
+  await forearm.fill('25');
+  await page.keyboard.press('Tab');
+  await expect.poll(told).toBe(0.25);
+
+  await headset.place(armsAhead);
+  await page.getByRole('button', { name: 'Calibrate', exact: true }).click();
+  const dialog = page.getByRole('dialog', { name: 'Calibrate' });
+  await expect(dialog.getByRole('status')).toHaveText('Done', { timeout: 30_000 });
+  await dialog.getByRole('button', { name: 'Close' }).click();
+  expect((await probe(page)).calibration.handTilts).toBeDefined();
+  expect(await told()).toBe(0.25);
+
+  await load(page, withHeadset);
+  expect(await told()).toBe(0.25);
+  await forearm.fill('');
+  await page.keyboard.press('Tab');
+  await expect.poll(told).toBeUndefined();
+  expect((await probe(page)).calibration.handTilts).toBeDefined();
+});
+
 test('guided: standing still with the arms stretched forward measures the person, and it is remembered', async ({
   page,
 }) => {
   const headset = await openWithHeadset(page, 'estimator=ik');
-  await headset.place({
-    head: { position: [0, 1.72, 0], orientation: [0, 0, 0, 1] },
-    left: { position: [-0.19, 1.4, -0.6], orientation: [0, 0, 0, 1] },
-    right: { position: [0.19, 1.4, -0.6], orientation: [0, 0, 0, 1] },
-  });
+  await headset.place(armsAhead);
   await page.getByRole('button', { name: 'Calibrate', exact: true }).click();
   const dialog = page.getByRole('dialog', { name: 'Calibrate' });
   await expect(dialog).toBeVisible();

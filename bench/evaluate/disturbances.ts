@@ -1,6 +1,6 @@
 import type { TrackedPose } from '../../src/core/math/pose';
 import { rotate, slerp } from '../../src/core/math/quat';
-import { nextRandom } from '../../src/core/math/random';
+import { randomNumbers } from '../../src/core/math/random';
 import type { Side } from '../../src/core/math/side';
 import { add, lerp, type Vec3 } from '../../src/core/math/vec3';
 import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
@@ -28,12 +28,7 @@ export function seedOf(text: string): number {
 
 /** Losses of `seconds` at seeded times, of either hand; none where the clip is too short for one and its aftermath. */
 export function scheduleLosses(frames: number, rateHz: number, seconds: number, seed: number): Loss[] {
-  let state = { seed };
-  const random = (): number => {
-    const next = nextRandom(state);
-    state = next.state;
-    return next.value;
-  };
+  const random = randomNumbers(seed);
   const losses: Loss[] = [];
   const length = Math.max(1, Math.round(seconds * rateHz));
   let start = Math.round((earliestSeconds + startSpreadSeconds * random()) * rateHz);

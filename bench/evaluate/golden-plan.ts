@@ -106,7 +106,7 @@ export function planGoldens(index: RecordingIndex, trainedOn: ReadonlySet<string
 export function readPiece(folder: string, index: RecordingIndex, { name, clip, first, frames }: ListedPiece): Piece {
   return {
     name,
-    calibration: calibrationOf(index, clip.person),
+    calibration: calibrationOf(index, clip),
     frames: readClip(folder, index, clip).slice(first, first + frames),
   };
 }

@@ -7,7 +7,7 @@ import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
 import type { Pose } from '../../src/core/math/pose';
 import type { LegClip } from './leg-measures';
 import { type Contact, contactsOf, footHeights, readLegs, type TrueLegs } from './leg-truth';
-import { guidedCalibrationOf, type RecordedFrame, type RecordingIndex, readClip } from './recordings';
+import { calibrationOf, type RecordedFrame, type RecordingIndex, readClip } from './recordings';
 
 /** Whose hips the legs hang from: the recorded ones, or those of the bodies that the page draws. */
 export const legDrivers = ['truth', 'ik', 'learned'] as const;
@@ -58,7 +58,7 @@ export async function driveLegs(
   const driven: DrivenLegs[] = [];
   for (const { clip, truth } of whole) {
     const frames = readClip(recordings, index, clip);
-    const calibration = guidedCalibrationOf(index, clip);
+    const calibration = calibrationOf(index, clip, { hands: true });
     driven.push({
       person,
       calibration,

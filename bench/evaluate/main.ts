@@ -3,19 +3,11 @@ import { parseArgs } from 'node:util';
 import { reasonOf } from '../../src/core/errors/reasons';
 import { drive, type MeasuredMethod, measuredMethods } from './drive';
 import { addFigures, emptyCollection, figuresOf } from './figures';
-import {
-  addClip,
-  emptyMeasures,
-  type MeasuredFrame,
-  type Measures,
-  merge,
-  type Report,
-  report,
-  reportNames,
-} from './measures';
+import { addClip, emptyMeasures, type MeasuredFrame, type Measures, merge, type Report, report } from './measures';
 import { loadRegressors } from './networks';
 import { addReach, emptyReach, mergeReaches, type Reach, reachReport, reachText } from './reach';
-import { calibrationOf, guidedCalibrationOf, type RecordingIndex, readClip, readIndex } from './recordings';
+import { calibrationOf, type RecordingIndex, readClip, readIndex } from './recordings';
+import { printReports } from './report-text';
 import { chooseClips, measureRobustness, robustnessText } from './robustness';
 
 /** Robustness drives forty variants of each clip: beyond so many frames, a selection stands for the rest. */
@@ -28,14 +20,15 @@ const { values: options } = parseArgs({
     json: { type: 'string' },
     robustness: { type: 'boolean' },
     'hands-measured': { type: 'boolean' },
+    'forearm-typed': { type: 'boolean' },
     figures: { type: 'string' },
     fp32: { type: 'string' },
   },
 });
 
-/** What estimators are told of a clip's person: height and span, and on request the hands' tilts that the guided calibration measures too. */
+/** What estimators are told of a clip's person: height and span, and on request what else a calibration can know. */
 const toldOf = (index: RecordingIndex, clip: RecordingIndex['clips'][number]) =>
-  options['hands-measured'] ? guidedCalibrationOf(index, clip) : calibrationOf(index, clip.person);
+  calibrationOf(index, clip, { hands: options['hands-measured'], forearm: options['forearm-typed'] });
 
 type Exact = Partial<Record<MeasuredMethod, Report>>;
 
@@ -162,8 +155,8 @@ function printResult(
   for (const problem of index.problems) console.log(`  ${problem}`);
   console.log(reachText(reaches));
   const named = people.map((person) => (seen.has(person) ? `${person} (seen)` : person)).join(', ');
-  print(`All: ${named}`, result.estimators);
-  if (result.unseen) print(`Never trained on: ${unseen.join(', ')}`, result.unseen);
+  printReports(`All: ${named}`, result.estimators);
+  if (result.unseen) printReports(`Never trained on: ${unseen.join(', ')}`, result.unseen);
   for (const person of people) {
     const own = result.people[person];
     if (own && people.length > 1) {
@@ -213,53 +206,6 @@ async function main(): Promise<void> {
   if (disturbed) console.log(robustnessText(disturbed, rateHz));
   const complete = { ...result, ...(disturbed ? { robustness: disturbed } : {}) };
   if (json) writeFileSync(json, `${JSON.stringify(complete, null, 2)}\n`);
-}
-
-function print(title: string, reports: Record<MeasuredMethod, Report>): void {
-  console.log(`\n${title}`);
-  const row = (label: string, cells: readonly string[]) =>
-    console.log(`  ${label.padEnd(34)}${cells.map((cell) => cell.padStart(22)).join('')}`);
-  row('', [...measuredMethods]);
-  const spreadCell = ({ mean, median, p95 }: Report['mpjpeCm']) =>
-    `${mean.toFixed(2)} / ${median.toFixed(2)} / ${p95.toFixed(2)}`;
-  const each = (cell: (r: Report) => string) => measuredMethods.map((name) => cell(reports[name]));
-  row(
-    'MPJPE mean / median / p95 [cm]',
-    each((r) => spreadCell(r.mpjpeCm)),
-  );
-  for (const name of reportNames)
-    row(
-      `  ${name}`,
-      each((r) => spreadCell(r.joints[name])),
-    );
-  row(
-    'network alone, MPJPE [cm]',
-    each((r) => r.rawMpjpeCm?.toFixed(2) ?? '–'),
-  );
-  row(
-    'elbow swivel error [°]',
-    each((r) => r.swivelDeg.toFixed(1)),
-  );
-  row(
-    'MSE per coordinate [cm²]',
-    each((r) => r.mseCm2.toFixed(2)),
-  );
-  row(
-    'MAE per coordinate [cm]',
-    each((r) => r.maeCm.toFixed(2)),
-  );
-  row(
-    'jerk against the truth',
-    each((r) => `${r.jerkRatio.toFixed(2)} ×`),
-  );
-  row(
-    'bone-length variation [mm]',
-    each((r) => r.boneVariationMm.toFixed(3)),
-  );
-  row(
-    'hand error mean / max [mm]',
-    each((r) => `${r.handErrorMm.toFixed(3)} / ${r.handErrorMaxMm.toFixed(1)}`),
-  );
 }
 
 await main().catch((error: unknown) => {

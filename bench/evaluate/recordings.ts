@@ -15,7 +15,7 @@ const indexSchema = v.object({
   rateHz: v.pipe(v.number(), v.minValue(1)),
   corpusHash: v.string(),
   columns: v.array(v.string()),
-  people: v.record(v.string(), v.object({ eyeHeight: v.number(), armSpan: v.number() })),
+  people: v.record(v.string(), v.object({ eyeHeight: v.number(), armSpan: v.number(), forearm: v.number() })),
   clips: v.array(
     v.object({
       name: v.string(),
@@ -53,18 +53,25 @@ export interface RecordedFrame {
   readonly truth: Readonly<Record<TruthJoint, Vec3>>;
 }
 
-/** The body that the calibration of a clip's person would give, hands measured: by what the other clips of that person show. */
-export const guidedCalibrationOf = (index: RecordingIndex, { person, handTilts }: RecordingIndex['clips'][number]) => ({
-  ...calibrationOf(index, person),
-  handTilts,
-});
+/** What a calibration knows beside height and span. */
+export interface Told {
+  /** How the hands stand to their forearms, as the guided calibration measures it: by what the person's other clips show. */
+  readonly hands?: boolean | undefined;
+  /** How long the forearm is, as its owner types it. */
+  readonly forearm?: boolean | undefined;
+}
 
-/** The body that the heights and spans of a person would give, hands as they come. */
-export const calibrationOf = (index: RecordingIndex, person: string): Calibration => {
-  const calibration = index.people[person];
-  if (!calibration) throw new Error(`index.json: clips of ${person}, but no such person`);
-  return calibration;
-};
+/** The body that a clip's person would have calibrated. */
+export function calibrationOf(
+  index: RecordingIndex,
+  { person, handTilts }: RecordingIndex['clips'][number],
+  told: Told = {},
+): Calibration {
+  const measures = index.people[person];
+  if (!measures) throw new Error(`index.json: clips of ${person}, but no such person`);
+  const { eyeHeight, armSpan, forearm } = measures;
+  return { eyeHeight, armSpan, ...(told.forearm && { forearm }), ...(told.hands && { handTilts }) };
+}
 
 /** The numbers of one clip: `point(name)` reads the three columns name.x, .y and .z of a row. */
 export function openClip(folder: string, index: RecordingIndex, clip: RecordingIndex['clips'][number]) {

@@ -1,7 +1,7 @@
 import type { Calibration } from '../../src/core/body/calibration';
 import type { TrackedPose } from '../../src/core/math/pose';
 import { fromAxisAngle, identity, multiply, type Quat } from '../../src/core/math/quat';
-import { nextRandom } from '../../src/core/math/random';
+import { normalNumbers } from '../../src/core/math/random';
 import { add, dot, length, normalise, scale, subtract, type Vec3, vec3 } from '../../src/core/math/vec3';
 import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
 import type { Driver } from './drive';
@@ -115,15 +115,7 @@ export async function measureTremble(
   joints: readonly string[],
   rateHz = 60,
 ): Promise<Readonly<Record<string, number>>> {
-  let state = { seed: 15 };
-  const normal = (): number => {
-    const draw = () => {
-      const next = nextRandom(state);
-      state = next.state;
-      return next.value;
-    };
-    return Math.sqrt(-2 * Math.log(1 - draw())) * Math.cos(2 * Math.PI * draw());
-  };
+  const normal = normalNumbers(15);
   const noisy = <P extends TrackedPose | null>(pose: P): P => {
     if (!pose) return pose;
     const by = (size: number) => vec3(normal() * size, normal() * size, normal() * size);

@@ -7,7 +7,7 @@ import {
   transformPose,
 } from '../../src/core/math/pose';
 import { fromAxisAngle, multiply } from '../../src/core/math/quat';
-import { nextRandom } from '../../src/core/math/random';
+import { randomNumbers } from '../../src/core/math/random';
 import { right, up, type Vec3, vec3 } from '../../src/core/math/vec3';
 import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
 import {
@@ -120,14 +120,7 @@ const atRate =
   });
 
 /** Numbers in [0, 1) of a text. */
-function randomOf(text: string): () => number {
-  let state = { seed: seedOf(text) };
-  return () => {
-    const next = nextRandom(state);
-    state = next.state;
-    return next.value;
-  };
-}
+const randomOf = (text: string): (() => number) => randomNumbers(seedOf(text));
 
 /** The wearer resets the reference space every three to five seconds: the floor turns and moves, and the page forgets the past. */
 const recentred: Stage = (piece, rateHz, number) => {

@@ -18,7 +18,7 @@ CORPUS = generate_corpus(people=3, clips=2, frames=80, seed=6)
 PARTS = BodyParts(CORPUS, tuple(CORPUS.people))
 EXACT = TrackerConfig(*[0.0] * 7)
 PLAIN = AugmentConfig(
-    recombined=0, lost_hand=0, late=0, seated=0, arm_scale=0, eye_height_error=0, arm_span_error=0, unmeasured_hands=1, trackers=EXACT
+    recombined=0, lost_hand=0, late=0, seated=0, arm_scale=0, eye_height_error=0, arm_span_error=0, unmeasured_hands=1, typed_forearms=0, trackers=EXACT
 )
 STILL = np.array([0.0, 0.0, 0.0, 1.0])
 
@@ -76,6 +76,22 @@ def test_arms_have_the_length_that_the_calibration_knows(recombined):
         length = np.linalg.norm(joints[:, elbow] - joints[:, shoulder], axis=1) + np.linalg.norm(wrist - joints[:, elbow], axis=1)
         # Generated people are 0.24 of the eye height between the shoulders, the calibrated skeleton a little less.
         assert np.abs(length / span_ratio - 1).max() < 0.06
+
+
+def test_typed_forearms_are_those_of_the_arms_that_were_drawn():
+    """On either side, in a mirror or not: IK's arms have more of the drawn ones' own bones."""
+    untold, told = (
+        draw_batch(PARTS, 300, replace(PLAIN, recombined=1.0, typed_forearms=part, forearm_error=0.0), np.random.default_rng(10)) for part in (0, 1)
+    )
+
+    def upper_arms(joints):
+        return np.linalg.norm(joints[:, :2] - joints[:, 2:4], axis=-1)
+
+    # The frames drawn are the same ones, and so is the truth.
+    own = upper_arms(joints_of(told))
+    np.testing.assert_allclose(own, upper_arms(joints_of(untold)), atol=1e-4)
+    average, believed = (upper_arms(batch.inputs[:, IK_JOINTS].reshape(-1, 6, 3)) for batch in (untold, told))
+    assert np.corrcoef((own - average).ravel(), (believed - average).ravel())[0, 1] > 0.99
 
 
 def test_a_lost_hand_says_so_and_comes_to_rest_beside_the_hips_in_time():

@@ -7,10 +7,10 @@ from golden_file import assert_as_committed
 from threepoint_training import golden
 from threepoint_training.chest_features import ARM_COLUMNS, ARMS, CHEST_FEATURES, REACH_LENGTHS
 from threepoint_training.differentiable_kinematics import DifferentiableKinematics
-from threepoint_training.features import ARM_LENGTH
+from threepoint_training.features import ARM_LENGTH, IK_JOINTS
 from threepoint_training.generated_motion import generate_corpus
-from threepoint_training.skeleton import body_from_calibration
-from threepoint_training.train_learned import HeldOut, fitted_errors_cm, held_out, ik_errors_cm, raw_errors_cm
+from threepoint_training.skeleton import load_proportions
+from threepoint_training.train_learned import Condition, HeldOut, fitted_errors_cm, held_out, ik_errors_cm, raw_errors_cm
 
 pytestmark = pytest.mark.training
 
@@ -34,22 +34,27 @@ def test_ik_stays_within_a_centimetre_where_hands_are_in_reach():
     torch.testing.assert_close(moved[in_reach], torch.zeros_like(moved[in_reach]), atol=6.5e-3, rtol=0)
 
 
-def test_elbows_lie_where_both_bones_let_them_be():
-    fitted = DifferentiableKinematics()(corrections_of(0.02), INPUTS).numpy()
+@pytest.mark.parametrize("typed", [False, True])
+def test_elbows_lie_where_both_bones_let_them_be(typed):
+    """The calibrated ones, whether the forearm is typed or the average's."""
+    people = held_out(CORPUS, tuple(CORPUS.people)[:1], (0.0, 0.1, 0.25), condition=Condition(forearm_typed=typed))
+    inputs = torch.from_numpy(people.inputs)
+    fitted = DifferentiableKinematics()(corrections_of(0.02)[: len(inputs)], inputs).numpy()
     elbow_shift, shoulder_shift = fitted[:, :2], fitted[:, 2:4]
-    arm = PEOPLE.inputs[:, ARM_LENGTH]
-    person = next(iter(CORPUS.people.values()))
-    body = body_from_calibration(np.array(person.eye_height), np.array(person.arm_span))
-    share = float(body.upper_arm[0] / body.arm[0])
-    arms = PEOPLE.inputs[:, -CHEST_FEATURES:][:, ARMS].reshape(-1, 2, ARM_COLUMNS // 3, 3)
+    arm = people.inputs[:, ARM_LENGTH]
+    ik = people.inputs[:, IK_JOINTS].reshape(-1, 6, 3)
+    upper = np.linalg.norm(ik[:, 0] - ik[:, 2], axis=1)
+    average = load_proportions()["upperArmShare"]
+    assert (np.abs(upper / arm - average).max() > 1e-3) == typed
+    arms = people.inputs[:, -CHEST_FEATURES:][:, ARMS].reshape(-1, 2, ARM_COLUMNS // 3, 3)
     for side in (0, 1):
         # From IK's shoulder, chest frame.
         wrist, elbow, shoulder = arms[:, side, 0] * arm[:, None], arms[:, side, 3] + elbow_shift[:, side], shoulder_shift[:, side]
         reachable = np.linalg.norm(wrist - shoulder, axis=1) < 0.95 * arm
         assert reachable.sum() > 50
-        for end, bone in ((wrist, 1 - share), (shoulder, share)):
+        for end, bone in ((wrist, arm - upper), (shoulder, upper)):
             length = np.linalg.norm(end - elbow, axis=1)
-            np.testing.assert_allclose(length[reachable], bone * arm[reachable], atol=1e-3)
+            np.testing.assert_allclose(length[reachable], bone[reachable], atol=1e-3)
 
 
 def test_gradients_are_finite_wherever_joints_are_estimated():

@@ -93,17 +93,18 @@ def test_both_hands_to_the_right_turn_the_chest_to_the_right():
     assert across[2] > 0.05  # Facing −Z, turning right brings the right shoulder back.
 
 
-def test_bone_lengths_are_those_of_the_calibrated_body(motion):
-    joints = solve_ik.solve(*motion, BODY)
-    for elbow, shoulder, hand in ((LEFT_ELBOW, LEFT_SHOULDER, 1), (RIGHT_ELBOW, RIGHT_SHOULDER, 2)):
+@pytest.mark.parametrize("body", [BODY, BODY.with_forearms(np.array([0.2, 0.32]))])
+def test_bone_lengths_are_those_of_the_calibrated_body(motion, body):
+    joints = solve_ik.solve(*motion, body)
+    for side, (elbow, shoulder, hand) in enumerate(((LEFT_ELBOW, LEFT_SHOULDER, 1), (RIGHT_ELBOW, RIGHT_SHOULDER, 2))):
         upper = np.linalg.norm(joints[:, elbow] - joints[:, shoulder], axis=-1)
-        np.testing.assert_allclose(upper, float(BODY.upper_arm[0]), rtol=1e-6)
+        np.testing.assert_allclose(upper, float(body.upper_arm[side]), rtol=1e-6)
         wrist = motion[0][:, hand]
         reach = np.linalg.norm(wrist - joints[:, shoulder], axis=-1)
         within = reach < float(BODY.arm[0]) * 0.999
         assert within.sum() > 20
         forearm = np.linalg.norm(wrist - joints[:, elbow], axis=-1)
-        np.testing.assert_allclose(forearm[within], float(BODY.forearm[0]), rtol=1e-6)
+        np.testing.assert_allclose(forearm[within], float(body.forearm[side]), rtol=1e-6)
     np.testing.assert_allclose(np.linalg.norm(joints[:, CHEST] - joints[:, HIPS], axis=-1), float(BODY.lower_back[0]), rtol=1e-6)
 
 
@@ -143,7 +144,7 @@ def test_parameters_survive_the_way_through_a_vector():
 
 
 def test_the_rest_skeleton_stands_as_tall_as_its_calibration():
-    offsets = rest_offsets(EYES, SPAN)
+    offsets = rest_offsets(BODY)
     spine = ["hips", "spine", "chest", "upperChest", "neck", "head", "eyesInHead"]
     assert sum(offsets[joint][1] for joint in spine) == pytest.approx(EYES, abs=0.04)
     wrist = sum(offsets[f"right{joint}"][0] for joint in ("Shoulder", "UpperArm", "LowerArm", "Hand"))

@@ -28,6 +28,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--no-frame-random", action="store_true", help="leave the paper's own protocol out; what an earlier run found stays")
     parser.add_argument("--refit-kinematics", action="store_true", help="also fit the page's body proportions and IK anew")
     parser.add_argument("--ablate", action="store_true", help="instead of all that: the recipe without each of its parts, for docs/training.md")
+    parser.add_argument("--noticed", action="store_true", help="instead of all that: what minutes of wearing tell of a wrong calibration, for docs/accuracy.md")
     parser.add_argument("--leave-one-out", action="store_true", help="instead of all that: each subject held out in turn, for docs/training.md")
     parser.add_argument("--groups", type=int, help="with --leave-one-out: so many groups in turn instead of one subject at a time")
     parser.add_argument("--steps", type=int, default=TrainConfig.learned.steps, help="of our network's training (default: %(default)s)")
@@ -49,6 +50,7 @@ def _config() -> TrainConfig:
         networks=tuple(given.networks.split(",")),
         frame_random=not given.no_frame_random,
         ablate=given.ablate,
+        noticed=given.noticed,
         leave_one_out=given.leave_one_out,
         groups=given.groups,
         refit_kinematics=given.refit_kinematics,

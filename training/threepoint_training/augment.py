@@ -16,7 +16,7 @@ from .prepare import EYES_FROM_HEAD_JOINT
 from .posture_balance import BalanceConfig, weights
 from .prepared_corpus import JOINTS, MIRRORED_JOINTS, PreparedCorpus
 from .residual import residual
-from .simulate_trackers import TrackerConfig, measured_tilts
+from .simulate_trackers import FOREARM_ERROR, TrackerConfig, measured_tilts
 from .skeleton import body_from_calibration
 
 Array = NDArray[np.float64]
@@ -48,6 +48,9 @@ class AugmentConfig:
     arm_span_error: float = 0.02
     # Wearers who were not measured with their arms ahead: their hands are as they come.
     unmeasured_hands: float = 0.3
+    # Wearers who typed how long their forearm is, and by how much they err [m].
+    typed_forearms: float = 0.5
+    forearm_error: float = FOREARM_ERROR
     balance: BalanceConfig = BalanceConfig()
     trackers: TrackerConfig = TrackerConfig(headset_offset=0.025, wrist_offset=0.02)
 
@@ -102,6 +105,10 @@ class BodyParts:
         self.arm_length = [
             np.linalg.norm(arm[:, 1] - arm[:, 0], axis=-1) + np.linalg.norm(arm[:, 2] - arm[:, 1], axis=-1) for arm in self.arms
         ]
+        # Of the left and the right forearm [F, 2], of their arms.
+        self.forearm_shares = np.stack(
+            [np.linalg.norm(arm[:, 2] - arm[:, 1], axis=-1) / length for arm, length in zip(self.arms, self.arm_length, strict=True)], axis=1
+        )
         trunks = weights(self.person, self._trunk_postures(), balance.trunk_clusters, (balance.people, balance.trunks), balance.seed)
         owners, postures = np.tile(self.person, 2), np.concatenate([self._arm_postures(side) for side in (0, 1)])
         arms = weights(owners, postures, balance.arm_clusters, (balance.people, balance.arms), balance.seed)
@@ -181,6 +188,11 @@ class _Bodies:
         left, right = (self.parts.tilts[self.parts.person[frames], sides] for frames, sides in zip(self.arm_frames, self.arm_sides, strict=True))
         return np.stack([left * hand_tilt.MIRRORED_TILT, right], axis=1)
 
+    def forearms(self) -> Array:
+        """Lengths of the left and of the right forearm [N, 2], in arms of the body's length."""
+        left, right = (self.parts.forearm_shares[frames, sides] for frames, sides in zip(self.arm_frames, self.arm_sides, strict=True))
+        return np.stack([left, right], axis=1) * self.arm_length[:, None]
+
     def hand_at(self, side: int, ago: NDArray[np.int64], unseen: NDArray[np.int64]) -> tuple[Array, Array]:
         """A wrist and its rotation that many frames before the newest; unseen for so many: where it was last, carried along with the head."""
         arm, turn = self.arm_at(side, ago + unseen)
@@ -251,6 +263,9 @@ def draw_batch(parts: BodyParts, count: int, config: AugmentConfig, random: np.r
     tilts = measured_tilts(tilts, worn[:, 1:], config.trackers, random)
     measured = random.uniform(size=(count, 1)) >= config.unmeasured_hands
     calibrated = calibrated.with_hands(tilts, measured & hand_tilt.believed(tilts))
+    forearms = bodies.forearms()
+    forearms = np.where(mirrored[:, None], forearms[:, ::-1], forearms) + random.normal(size=(count, 1)) * config.forearm_error
+    calibrated = calibrated.with_forearms(forearms, random.uniform(size=(count, 1)) < config.typed_forearms)
     columns = []
     targets = in_chest_frame = np.empty(0)
     for age in config.window_frames:

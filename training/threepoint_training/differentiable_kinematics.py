@@ -8,13 +8,14 @@ of vertebrae, forearms and hands.
 import math
 from dataclasses import dataclass, fields
 
+import numpy as np
 import torch
 from torch import Tensor
 
 from .chest_features import ARM_COLUMNS, ARMS, CHEST_FEATURES, CHEST_HEAD_AXES
 from .features import ARM_LENGTH, IK_JOINTS
 from .kinematic_limits import LIMB, REACH, TORSO, TORSO_EXTREME
-from .skeleton import load_proportions, rest_offsets
+from .skeleton import body_from_calibration, rest_offsets
 from .swivel_limiter import ElbowCircles, Trunk, limit_swivel
 
 
@@ -50,22 +51,23 @@ def as_the_page_fits(eye_height: float) -> FittingConfig:
 
 @dataclass(frozen=True)
 class _Goal:
-    """What fitting starts from [N, …]: estimated joints, wrists [N, 2, 3], the head joint, and the heading's right axis."""
+    """What fitting starts from [N, …]: estimated joints, wrists [N, 2, 3], the head joint, the heading's right axis, the arm's length and its upper arms'."""
 
     estimated: Tensor
     wrists: Tensor
     head_joint: Tensor
     heading_right: Tensor
     arm: Tensor
+    upper_arm: Tensor
 
 
 class DifferentiableKinematics:
     """Fits joints to the skeleton of the proportions in use."""
 
     def __init__(self, dtype: torch.dtype = torch.float32) -> None:
-        self.rest = {joint: torch.tensor(offset, dtype=dtype) for joint, offset in rest_offsets(1.0, 1.0).items()}
+        unit = body_from_calibration(np.array(1.0), np.array(1.0))
+        self.rest = {joint: torch.tensor(offset, dtype=dtype) for joint, offset in rest_offsets(unit).items()}
         self.x = torch.tensor([1.0, 0.0, 0.0], dtype=dtype)
-        self.upper_arm_share: float = load_proportions()["upperArmShare"]
         self.thorax = self.rest["upperChest"] + self.rest["neck"]
         self.lower_back_length = (self.rest["spine"] + self.rest["chest"]).norm()
         # Of shoulders at rest, their middle from the neck's base.
@@ -86,6 +88,8 @@ class DifferentiableKinematics:
             head_joint=self._head_joint(chest_features),
             heading_right=axes[:, :, 0],
             arm=arm,
+            # IK's arms have the calibrated bones.
+            upper_arm=(ik_joints[:, :2] - ik_joints[:, 2:4]).norm(dim=-1, keepdim=True),
         )
         trunk, shoulders = self.fit_torso(goal, config)
         elbows, limited = self.fit_arms(goal, trunk, shoulders, config)
@@ -140,8 +144,8 @@ class DifferentiableKinematics:
 
         Also which of them the swivel limiter moved [N, 2].
         """
-        estimated, wrists, arm = goal.estimated, goal.wrists, goal.arm
-        upper, fore = self.upper_arm_share * arm, (1 - self.upper_arm_share) * arm
+        estimated, wrists, arm, upper = goal.estimated, goal.wrists, goal.arm, goal.upper_arm
+        fore = arm - upper
         own, axis = _unit(wrists - estimated[:, 2:4]), _unit(wrists - shoulders)
         pole = _carried(_across(estimated[:, :2] - estimated[:, 2:4], own), own, axis)
         reached = torch.minimum(torch.maximum(_length(wrists - shoulders), (upper - fore).abs() + config.most_bent), config.straightest * arm)

@@ -29,7 +29,9 @@ HAND_COLUMNS = ("IK", "ours", "ours / IK", "elbows: IK", "ours", "ours / IK")
 # What the guided calibration knows of the hands: rows of a table.
 HANDS = {
     "measured by the other clips, error 5° (as above)": Condition(),
+    "and the forearm typed, error 1 cm": Condition(forearm_typed=True),
     "as recorded, nothing measured": Condition(hands_measured=False),
+    "nothing measured, the forearm typed": Condition(hands_measured=False, forearm_typed=True),
     "measured with wrists bent by 10°": Condition(bent_wrists=np.radians(10.0)),
     "by 20°": Condition(bent_wrists=np.radians(20.0)),
     "by 30°": Condition(bent_wrists=np.radians(30.0)),

@@ -6,7 +6,7 @@ A run is seeded: the same data and options write the same weights on the same ma
 import torch
 from rich.console import Console
 
-from . import ablation, cross_validate, fit_networks, golden, leave_one_out, neutral_pose, prepare, train_learned, train_paper
+from . import ablation, cross_validate, fit_networks, golden, leave_one_out, neutral_pose, noticed_wear, prepare, train_learned, train_paper
 from .fit_networks import Destination, TrainingRun
 from .generated_motion import generate_corpus
 from .model import CorrectionNetwork
@@ -26,6 +26,9 @@ def main(config: TrainConfig, console: Console | None = None) -> dict[str, dict[
         run = TrainingRun(config, _corpus(config, report), report)
         if config.ablate:
             return _ablate(run)
+        if config.noticed:
+            noticed_wear.write(noticed_wear.main(run.corpus, report=report.console.print))
+            return {}
         if config.leave_one_out:
             _leave_one_out(run)
             return {}

@@ -11,20 +11,21 @@ from numpy.typing import NDArray
 from . import quaternion
 from .mocap_asf_amc import AsfSkeleton, parse_amc, parse_asf
 from .mocap_bvh import parse_bvh
+from .mocap_rules import RULES
 from .motion import MocapError, Motion
 from .motion_files import Source, frame_rate, index_rates, motion_files
 from .prepared_corpus import JOINTS, LEG_JOINTS, Person, PreparedCorpus
 from .rest_pose import check_rest, face_forward, rest_from_frame
-from .skeleton_map import CMU_METRES_PER_UNIT, SkeletonMap, find_skeleton_map, read_skeleton_map
+from .skeleton_map import SkeletonMap, find_skeleton_map, read_skeleton_map
 
-RATE_HZ = 60
+RATE_HZ: int = RULES["rateHz"]
 
 # Faster than any limb: the hands of boxers and of a sprinter's swing stay below 15 m/s, a fall below 8.
-TELEPORT_SPEED = 25.0
-SHORTEST_SEGMENT_SECONDS = 0.5
+TELEPORT_SPEED: float = RULES["teleportSpeed"]
+SHORTEST_SEGMENT_SECONDS: float = RULES["shortestPieceSeconds"]
 
 # Where a headset's origin (between the eyes) sits from the head joint, in the head's frame: up and forward [m].
-EYES_FROM_HEAD_JOINT = np.array([0.0, 0.075, -0.10])
+EYES_FROM_HEAD_JOINT = np.array(RULES["eyesFromHeadJoint"])
 
 # The wrist's −Z points to the knuckles, +Y out of the back of the hand; in T-pose the knuckles point sideways, palms down.
 _HAND_REST = {
@@ -64,8 +65,9 @@ def _scale(motion: Motion, skeleton: SkeletonMap, file_name: str) -> float:
         np.linalg.norm(rest[a] - rest[b]) for a, b in (("leftUpperArm", "leftLowerArm"), ("leftLowerArm", "leftHand"))
     )
     # Shoulder to wrist of 5th-percentile women to 95th-percentile men is 0.46–0.62 m; children and odd definitions widen it.
-    for scale in (1.0, 0.01, CMU_METRES_PER_UNIT, 0.0254, 0.001):
-        if 0.35 < arm * scale < 0.75:
+    shortest, longest = RULES["armLength"]
+    for scale in RULES["units"]:
+        if shortest < arm * scale < longest:
             return scale
     raise MocapError(f"{file_name}: an arm of {arm:.3g} units fits no known unit; give “scale” (metres per unit) in a skeleton map")
 

@@ -69,6 +69,12 @@ class PreparedCorpus:
         """The six estimated joints [frames, 6, 3]."""
         return self.positions[frames][:, [JOINTS.index(joint) for joint in ESTIMATED_JOINTS]]
 
+    def forearm(self, person: str) -> float:
+        """How long a person's forearms are, from elbow to wrist, left and right together [m]."""
+        frames = np.concatenate([self.positions[self.clip_slice(clip)] for clip in self.clips_of({person})])
+        forearms = [frames[:, JOINTS.index(f"{side}Hand")] - frames[:, JOINTS.index(f"{side}LowerArm")] for side in ("left", "right")]
+        return float(np.linalg.norm(forearms, axis=-1).mean())
+
     def save(self, path: Path) -> None:
         """Writes one .npz."""
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import hand_tilt, prepare
+from .mocap_rules import RULES
 from .motion import MocapError
 from .prepared_corpus import JOINTS, LEG_JOINTS, ROTATIONS, PreparedCorpus
-from .simulate_trackers import TrackerConfig, draw_wearer, measured_tilts, simulate
+from .simulate_trackers import FOREARM_ERROR, TrackerConfig, draw_wearer, measured_tilts, simulate
 
 VERSION = 1
 COLUMNS = tuple(f"{point}.{part}" for point in ROTATIONS for part in ("px", "py", "pz", "qx", "qy", "qz", "qw")) + tuple(
@@ -27,7 +28,7 @@ class RecordingsConfig:
 
     prepare: prepare.PrepareConfig
     out: Path
-    seed: int = 2460
+    seed: int = RULES["seed"]
     trackers: TrackerConfig = field(default_factory=TrackerConfig)
 
 
@@ -59,13 +60,20 @@ def write(corpus: PreparedCorpus, config: RecordingsConfig) -> Path:
         "trackers": asdict(config.trackers),
         "columns": COLUMNS,
         "joints": JOINTS,
-        "people": {name: {"eyeHeight": person.eye_height, "armSpan": person.arm_span} for name, person in corpus.people.items()},
+        "people": {name: _measures(corpus, name, config.seed) for name in corpus.people},
         "clips": clips,
         "problems": corpus.problems,
     }
     path = config.out / "index.json"
     path.write_text(json.dumps(index, ensure_ascii=False, indent=1))
     return path
+
+
+def _measures(corpus: PreparedCorpus, name: str, seed: int) -> dict[str, float]:
+    """Of a person [m]; the forearm as its owner would type it."""
+    person = corpus.people[name]
+    error = np.random.default_rng([seed, 3, zlib.crc32(name.encode())]).normal() * FOREARM_ERROR
+    return {"eyeHeight": person.eye_height, "armSpan": person.arm_span, "forearm": corpus.forearm(name) + error}
 
 
 def _as_calibrated(tilts: NDArray[np.float64]) -> dict[str, dict[str, float]]:

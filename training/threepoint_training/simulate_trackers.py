@@ -6,22 +6,29 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import hand_tilt, quaternion
+from .mocap_rules import RULES
 from .prepare import EYES_FROM_HEAD_JOINT
 from .prepared_corpus import TRACKED_COLUMNS
 
 Array = NDArray[np.float64]
+
+_TRACKERS: dict[str, float] = RULES["trackers"]
+
+
+# Standard deviation [m] of a forearm's length that its owner has measured and typed.
+FOREARM_ERROR = 0.01
 
 
 @dataclass(frozen=True)
 class TrackerConfig:
     """Standard deviations. Offsets are constant for a wearer: how this headset sits, what the grip table does not know."""
 
-    headset_offset: float = 0.010  # [m] per axis
-    headset_pitch: float = np.radians(2.0)  # [rad]
-    wrist_offset: float = 0.007  # [m] per axis
-    hand_turn: float = np.radians(3.0)  # [rad] about a random axis
-    position_noise: float = 0.0003  # [m] per frame
-    rotation_noise: float = np.radians(0.1)  # [rad] per frame
+    headset_offset: float = _TRACKERS["headsetOffset"]  # [m] per axis
+    headset_pitch: float = np.radians(_TRACKERS["headsetPitchDegrees"])  # [rad]
+    wrist_offset: float = _TRACKERS["wristOffset"]  # [m] per axis
+    hand_turn: float = np.radians(_TRACKERS["handTurnDegrees"])  # [rad] about a random axis
+    position_noise: float = _TRACKERS["positionNoise"]  # [m] per frame
+    rotation_noise: float = np.radians(_TRACKERS["rotationNoiseDegrees"])  # [rad] per frame
     hand_tilt_error: float = np.radians(5.0)  # [rad], of the calibration that measures the hands
 
 

@@ -26,8 +26,8 @@ class Body:
 
     eye_height: Array
     arm: Array
-    upper_arm: Array
-    forearm: Array
+    upper_arm: Array  # of the left and the right arm [..., 2]
+    forearm: Array  # likewise; both make up the arm
     eyes_in_head: Array
     neck_to_head: Array
     thorax: Array  # chest to neck
@@ -37,6 +37,12 @@ class Body:
     # Of the left and the right hand (hand_tilt): tilts [..., 2, 2], zero where they are not measured, and whether they are [..., 2]. None: no hand is.
     hand_tilts: Array | None = None
     hands_measured: NDArray[np.bool_] | None = None
+
+    def with_forearms(self, lengths: Array, known: NDArray[np.bool_] | bool = True) -> "Body":
+        """The same body, its left and right forearm told to be this long [..., 2] [m], where they are known; believed as far as the page does."""
+        told = np.clip(lengths, LIMB["forearmShare"]["min"] * self.arm, LIMB["forearmShare"]["max"] * self.arm)
+        forearm = np.where(known, self.forearm + LIMB["forearmTrust"] * (told - self.forearm), self.forearm)
+        return replace(self, upper_arm=self.arm - forearm, forearm=forearm)
 
     def with_hands(self, tilts: Array, measured: NDArray[np.bool_]) -> "Body":
         """The same body with these tilts [..., 2, 2] of its hands, where they are measured [..., 2]."""
@@ -50,13 +56,14 @@ def body_from_calibration(eye_height: Array, arm_span: Array, proportions: dict[
     span = np.asarray(arm_span, np.float64)[..., None]
     zero = np.zeros_like(e)
     arm = np.maximum((span - 2 * (p["clavicleRoot"] + p["clavicle"][0]) * e) / 2, LIMB["shortestArm"] * e)
+    upper_arm = np.broadcast_to(p["upperArmShare"] * arm, (*arm.shape[:-1], 2))
     root = np.concatenate([p["clavicleRoot"] * e, zero, zero], -1)
     clavicle = np.concatenate([p["clavicle"][0] * e, p["clavicle"][1] * e, -p["clavicle"][2] * e], -1)
     return Body(
         eye_height=e,
         arm=arm,
-        upper_arm=p["upperArmShare"] * arm,
-        forearm=(1 - p["upperArmShare"]) * arm,
+        upper_arm=upper_arm,
+        forearm=arm - upper_arm,
         eyes_in_head=np.concatenate([zero, p["eyesInHead"][0] * e, -p["eyesInHead"][1] * e], -1),
         neck_to_head=np.concatenate([zero, p["neckToHead"][0] * e, -p["neckToHead"][1] * e], -1),
         thorax=p["chestToNeck"] * e,
@@ -66,11 +73,10 @@ def body_from_calibration(eye_height: Array, arm_span: Array, proportions: dict[
     )
 
 
-def rest_offsets(eye_height: float, arm_span: float) -> dict[str, list[float]]:
-    """Every joint's offset from its parent and `eyesInHead`, as `skeletonFromCalibration` must give them."""
+def rest_offsets(body: Body) -> dict[str, list[float]]:
+    """Every joint's offset from its parent and `eyesInHead` of one body, as `skeletonFromCalibration` must give them."""
     p = load_proportions()
-    body = body_from_calibration(np.array(eye_height), np.array(arm_span), p)
-    e = eye_height
+    e = body.eye_height.item()
 
     def lean(v: Array, angle: float) -> list[float]:
         c, s = np.cos(angle), np.sin(angle)
@@ -87,12 +93,12 @@ def rest_offsets(eye_height: float, arm_span: float) -> dict[str, list[float]]:
         "head": lean(body.neck_to_head, thorax),
         "eyesInHead": body.eyes_in_head.tolist(),
     }
-    for side, sign in (("left", -1.0), ("right", 1.0)):
+    for number, (side, sign) in enumerate((("left", -1.0), ("right", 1.0))):
         clavicle = lean(body.shoulder - body.clavicle_root, thorax)
         offsets |= {
             f"{side}Shoulder": [sign * p["clavicleRoot"] * e, half[1], half[2]],
             f"{side}UpperArm": [sign * clavicle[0], clavicle[1], clavicle[2]],
-            f"{side}LowerArm": [sign * body.upper_arm[0], 0.0, 0.0],
-            f"{side}Hand": [sign * body.forearm[0], 0.0, 0.0],
+            f"{side}LowerArm": [sign * body.upper_arm[number], 0.0, 0.0],
+            f"{side}Hand": [sign * body.forearm[number], 0.0, 0.0],
         }
     return {joint: [float(value) for value in offset] for joint, offset in offsets.items()}

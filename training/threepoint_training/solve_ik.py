@@ -116,7 +116,8 @@ def solve(positions: Array, rotations: Array, body: Body, parameters: dict[str, 
         columns = np.concatenate([one, q, in_chest(hand[..., :, 1]), in_chest(hand[..., :, 2])], -1)
         direction = np.where(measured[..., side, None], columns @ measured_pole.T, columns @ pole.T)
         direction = _apply(chest, direction * mirror)
-        elbows.append(two_bone_elbow(shoulder, wrist, body.upper_arm, body.forearm, direction, chest=chest))
+        bones = body.upper_arm[..., side, None], body.forearm[..., side, None]
+        elbows.append(two_bone_elbow(shoulder, wrist, *bones, direction, chest=chest))
         shoulders.append(shoulder)
     return np.stack([*elbows, *shoulders, chest_joint, hips], axis=1)
 

@@ -1,5 +1,6 @@
 """Trains our network: the residual of the IK solution on recombined bodies; small, averaged, stopped early."""
 
+import zlib
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields, replace
 
@@ -16,7 +17,7 @@ from .features import FEATURES, frame_features
 from .model import CorrectionNetwork
 from .prepared_corpus import PreparedCorpus
 from .residual import OUTPUTS, network_input, residual
-from .simulate_trackers import TrackerConfig, Wearer, draw_wearer, measured_tilts, simulate
+from .simulate_trackers import FOREARM_ERROR, TrackerConfig, Wearer, draw_wearer, measured_tilts, simulate
 from .skeleton import Body, body_from_calibration
 from .subject_effects import SubjectEffects
 
@@ -87,6 +88,8 @@ class Condition:
     # The guided calibration has measured the hands' tilts; and its wearer bent the wrists inwards by so much meanwhile [rad].
     hands_measured: bool = True
     bent_wrists: float = 0.0
+    # The wearer has typed how long the forearm is.
+    forearm_typed: bool = False
 
 
 def held_out(
@@ -102,9 +105,11 @@ def held_out(
     tilt = quaternion.from_rotation_vector(np.array([-condition.tilt, 0.0, 0.0]))
     forearms = hand_tilt.ForearmMeans(corpus, people)
     rows = []
-    for number, name in enumerate(people):
+    for name in people:
         person = corpus.people[name]
-        worn = draw_wearer(trackers, np.random.default_rng([seed, number]))
+        # Keyed by the name: a person wears the same in every selection of people, and not what another person does.
+        key = zlib.crc32(name.encode())
+        worn = draw_wearer(trackers, np.random.default_rng([seed, key]))
         aside = condition.offset * np.array([0.0, 0.0, 1.0])
         wearer = replace(
             worn,
@@ -114,10 +119,12 @@ def held_out(
         )
         eye_height = person.eye_height * condition.eye_height
         body = body_from_calibration(np.array(eye_height), np.array(person.arm_span))
+        if condition.forearm_typed:
+            body = body.with_forearms(corpus.forearm(name) + np.random.default_rng([seed, 3, key]).normal(size=1) * FOREARM_ERROR)
         for clip in corpus.clips_of({name}):
             frames = corpus.clip_slice(clip)
             random = np.random.default_rng([seed, 1, clip])
-            body = _with_measured_hands(body, forearms.elsewhere(clip), wearer, trackers, condition, np.random.default_rng([seed, 2, number]))
+            body = _with_measured_hands(body, forearms.elsewhere(clip), wearer, trackers, condition, np.random.default_rng([seed, 2, key]))
             positions, rotations = simulate(corpus.positions[frames], corpus.rotations[frames], wearer, trackers, random)
             truth = corpus.truth(frames).astype(np.float64)
             count = len(truth)

@@ -28,6 +28,7 @@ class TrainConfig:
     networks: tuple[str, ...] = ("paper", "learned")
     frame_random: bool = True
     ablate: bool = False
+    noticed: bool = False
     leave_one_out: bool = False
     # People held out in turn are held out so many groups at a time; None: one by one.
     groups: int | None = None

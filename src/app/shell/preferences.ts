@@ -2,13 +2,14 @@ import * as v from 'valibot';
 import { type BoneName, boneNames } from '../../avatar/bone-names';
 import { calibrationComplaint } from '../../core/body/calibration';
 import { estimatorNames } from '../../core/estimation/pose-estimator';
-import { avatarHash, ownAvatars } from '../../core/protocol/worn-avatar';
+import { avatarHash, ownBodies, skinTones } from '../../core/protocol/worn-avatar';
 import { handTiltsSchema } from '../../core/study/validation';
 
 const calibration = v.pipe(
   v.object({
     eyeHeight: v.number(),
     armSpan: v.number(),
+    forearm: v.optional(v.number()),
     gazePitch: v.optional(v.number()),
     handTilts: v.optional(handTiltsSchema),
   }),
@@ -26,7 +27,8 @@ const schema = v.object({
   calibration: v.optional(calibration),
   estimator: v.optional(v.picklist(estimatorNames)),
   palette: v.optional(v.pipe(v.string(), v.maxLength(32))),
-  ownBody: v.optional(v.picklist(ownAvatars)),
+  ownBody: v.optional(v.picklist(ownBodies)),
+  skinTone: v.optional(v.picklist(skinTones)),
   upperBodyOnly: v.optional(v.boolean()),
   mirror: v.optional(v.boolean()),
   overlay: v.optional(v.boolean()),

@@ -6,6 +6,8 @@ export interface Calibration {
   readonly eyeHeight: number;
   /** Distance [m] from wrist to wrist, arms stretched out sideways. */
   readonly armSpan: number;
+  /** From elbow to wrist [m]. Absent: not told, and the part of the arm that it is of an average one. */
+  readonly forearm?: number | undefined;
   /**
    * How far up [rad] the headset points when its wearer looks straight ahead: it sits tilted on nearly every wearer. Absent: not
    * measured, and taken for level.
@@ -25,6 +27,9 @@ const EYE_HEIGHT_PER_STATURE = 0.936;
 // The arms and shoulders of the people we trained on, bone by bone, add up to 0.945 eye heights from wrist to wrist. A tape
 // between the wrists finds less, because shoulders give; but an arm a little too long bends its elbow, one too short misses the hand.
 const ARM_SPAN_PER_EYE_HEIGHT = 0.945;
+
+// The forearm of an average arm, as a share of the span.
+const ORDINARY_FOREARM = 0.185;
 
 // Fingertip span equals stature within 3 % on average (Drillis & Contini; ANSUR II).
 const ARM_SPAN_PER_FINGERTIP_SPAN = ARM_SPAN_PER_EYE_HEIGHT * EYE_HEIGHT_PER_STATURE;
@@ -55,14 +60,21 @@ export const eyeHeightRange: MeasureRange = {
 };
 export const armSpanRange: MeasureRange = { min: 0.65, max: 2.25 };
 
+export const forearmRange: MeasureRange = { min: 0.1, max: 0.4 };
+
 /** An adult of 1.70 m. */
 export const defaultCalibration: Calibration = {
   eyeHeight: eyeHeightFromStature(1.7),
   armSpan: armSpanFromFingertipSpan(1.7),
 };
 
+/** Whether two people have the same body. */
+export const sameMeasures = (a: Calibration, b: Calibration): boolean =>
+  a.eyeHeight === b.eyeHeight && a.armSpan === b.armSpan && a.forearm === b.forearm;
+
 /** Why these numbers are no person's body, in a sentence; null where they can be. */
-export function calibrationComplaint({ eyeHeight, armSpan }: Calibration): string | null {
+export function calibrationComplaint(calibration: Calibration): string | null {
+  const { eyeHeight, armSpan, forearm } = calibration;
   const told = (value: number) => `${value.toFixed(2)} m`;
   // Written so that NaN is refused too.
   if (!(eyeHeight >= eyeHeightRange.min && eyeHeight <= eyeHeightRange.max)) {
@@ -73,9 +85,19 @@ export function calibrationComplaint({ eyeHeight, armSpan }: Calibration): strin
     return `An arm span of ${told(armSpan)} is outside ${told(armSpanRange.min)} to ${told(armSpanRange.max)}.`;
   }
   const ratio = armSpan / eyeHeight / ARM_SPAN_PER_EYE_HEIGHT;
-  return ratio < 0.72 || ratio > 1.35
-    ? `An arm span of ${told(armSpan)} from wrist to wrist does not go with a height of ${told(statureFromEyeHeight(eyeHeight))}.`
-    : null;
+  if (ratio < 0.72 || ratio > 1.35) {
+    return `An arm span of ${told(armSpan)} from wrist to wrist does not go with a height of ${told(statureFromEyeHeight(eyeHeight))}.`;
+  }
+  const forearms = forearm === undefined ? ORDINARY_FOREARM : forearm / armSpan;
+  return forearms > 0.65 * ORDINARY_FOREARM && forearms < 1.35 * ORDINARY_FOREARM
+    ? null
+    : `A forearm of ${told(forearm!)} does not go with an arm span of ${told(armSpan)} from wrist to wrist.`;
+}
+
+/** These measures and this forearm [m], where such an arm can have it. */
+export function withForearm(calibration: Calibration, forearm: number | undefined): Calibration {
+  const told = { ...calibration, forearm };
+  return forearm !== undefined && calibrationComplaint(told) === null ? told : calibration;
 }
 
 // Below it the person sits or the floor is wrong; a child that low needs the guided calibration.

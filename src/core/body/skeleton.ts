@@ -1,3 +1,4 @@
+import { clamp } from '../math/damper';
 import { fromAxisAngle, type Quat } from '../math/quat';
 import type { Side } from '../math/side';
 import { add, length, up, type Vec3, vec3 } from '../math/vec3';
@@ -5,7 +6,7 @@ import proportions from './body-proportions.json';
 import type { Calibration } from './calibration';
 import { turnOfTilt } from './hand-tilt';
 import type { JointName } from './joints';
-import { shortestArm } from './limb-limits.json';
+import { forearmShare, forearmTrust, shortestArm } from './limb-limits.json';
 import type { LimbBones } from './two-bone-ik';
 
 /**
@@ -32,6 +33,18 @@ export function armLength({ eyeHeight, armSpan }: Calibration): number {
   return Math.max((armSpan - shoulders) / 2, shortestArm * eyeHeight);
 }
 
+/**
+ * Upper arm and forearm, as long as the arm together. A forearm that is told counts by `forearmTrust`, the average arm's by the rest; one that
+ * no such arm has is taken for the longest or shortest that it can have.
+ */
+export function armBones(calibration: Calibration): LimbBones {
+  const arm = armLength(calibration);
+  const average = (1 - proportions.upperArmShare) * arm;
+  const told = clamp(calibration.forearm ?? average, forearmShare.min * arm, forearmShare.max * arm);
+  const lower = average + forearmTrust * (told - average);
+  return { upper: arm - lower, lower };
+}
+
 const leanForward = (angle: number, v: Vec3): Vec3 => {
   const c = Math.cos(angle);
   const s = Math.sin(angle);
@@ -42,14 +55,14 @@ const leanForward = (angle: number, v: Vec3): Vec3 => {
 export function skeletonFromCalibration(calibration: Calibration): Skeleton {
   const p = proportions;
   const e = calibration.eyeHeight;
-  const arm = armLength(calibration);
+  const bones = armBones(calibration);
   const lowerBack = (y: number) => leanForward(p.lowerBackTilt, vec3(0, y * e, 0));
   const thorax = (v: Vec3) => leanForward(p.thoraxTilt, v);
   const halfThorax = thorax(vec3(0, (p.chestToNeck * e) / 2, 0));
   const shoulderOf = (side: Side): Vec3 => add(halfThorax, vec3(sideSign(side) * p.clavicleRoot * e, 0, 0));
   const upperArmOf = (side: Side): Vec3 =>
     thorax(vec3(sideSign(side) * p.clavicle[0]! * e, p.clavicle[1]! * e, -p.clavicle[2]! * e));
-  const alongArm = (side: Side, share: number): Vec3 => vec3(sideSign(side) * share * arm, 0, 0);
+  const alongArm = (side: Side, bone: number): Vec3 => vec3(sideSign(side) * bone, 0, 0);
   return {
     restOffsets: {
       hips: vec3(0, p.hipsHeight * e, 0),
@@ -60,12 +73,12 @@ export function skeletonFromCalibration(calibration: Calibration): Skeleton {
       head: thorax(vec3(0, p.neckToHead[0]! * e, -p.neckToHead[1]! * e)),
       leftShoulder: shoulderOf('left'),
       leftUpperArm: upperArmOf('left'),
-      leftLowerArm: alongArm('left', p.upperArmShare),
-      leftHand: alongArm('left', 1 - p.upperArmShare),
+      leftLowerArm: alongArm('left', bones.upper),
+      leftHand: alongArm('left', bones.lower),
       rightShoulder: shoulderOf('right'),
       rightUpperArm: upperArmOf('right'),
-      rightLowerArm: alongArm('right', p.upperArmShare),
-      rightHand: alongArm('right', 1 - p.upperArmShare),
+      rightLowerArm: alongArm('right', bones.upper),
+      rightHand: alongArm('right', bones.lower),
     },
     eyesInHead: vec3(0, p.eyesInHead[0]! * e, -p.eyesInHead[1]! * e),
   };
@@ -96,12 +109,11 @@ function handTurn(side: Side, { handTilts }: Calibration): Quat | null {
 export function chestSpaceBody(calibration: Calibration): ChestSpaceBody {
   const p = proportions;
   const e = calibration.eyeHeight;
-  const arm = armLength(calibration);
   const clavicle = vec3(p.clavicle[0]! * e, p.clavicle[1]! * e, -p.clavicle[2]! * e);
   return {
     eyeHeight: e,
-    arm,
-    armBones: { upper: p.upperArmShare * arm, lower: (1 - p.upperArmShare) * arm },
+    arm: armLength(calibration),
+    armBones: armBones(calibration),
     eyesInHead: vec3(0, p.eyesInHead[0]! * e, -p.eyesInHead[1]! * e),
     neckToHead: vec3(0, p.neckToHead[0]! * e, -p.neckToHead[1]! * e),
     thorax: p.chestToNeck * e,

@@ -9,6 +9,7 @@ import {
   fingertipSpanFromArmSpan,
   provisionalCalibration,
   statureFromEyeHeight,
+  withForearm,
 } from '../../../src/core/body/calibration';
 import { number, seed } from '../arbitraries';
 
@@ -50,9 +51,19 @@ describe('what is a person’s body', () => {
     ['a span of nothing', { eyeHeight: 1.6, armSpan: 0 }, /arm span of 0\.00 m/],
     ['no number for a span', { eyeHeight: 1.6, armSpan: Number.NaN }, /arm span/],
     ['a giant with a child’s arms', { eyeHeight: 2.1, armSpan: 0.9 }, /does not go with/],
+    ['a forearm as long as an arm', { ...defaultCalibration, forearm: 0.5 }, /forearm of 0\.50 m/],
+    ['a forearm of inches', { ...defaultCalibration, forearm: 0.11 }, /does not go with an arm span of/],
+    ['no number for a forearm', { ...defaultCalibration, forearm: Number.NaN }, /forearm/],
   ])('%s is not, and the sentence says why', (_, calibration, sentence) => {
     expect(calibrationComplaint(calibration)).toMatch(sentence);
   });
+});
+
+test('a forearm that was typed stays with other measures, unless no such arm has it', () => {
+  const { eyeHeight, armSpan } = defaultCalibration;
+  expect(withForearm({ eyeHeight, armSpan }, 0.26)).toEqual({ eyeHeight, armSpan, forearm: 0.26 });
+  expect(withForearm({ eyeHeight, armSpan }, 0.4)).toEqual({ eyeHeight, armSpan });
+  expect(withForearm({ eyeHeight, armSpan }, undefined)).toEqual({ eyeHeight, armSpan });
 });
 
 describe('before the first calibration', () => {

@@ -2,7 +2,7 @@ import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
 import { jointNames, parentOf } from '../../../src/core/body/joints';
-import { armLength, skeletonFromCalibration } from '../../../src/core/body/skeleton';
+import { armBones, armLength, skeletonFromCalibration } from '../../../src/core/body/skeleton';
 import { fromAxisAngle, identity, type Quat } from '../../../src/core/math/quat';
 import { add, distance, length, up, vec3 } from '../../../src/core/math/vec3';
 import { evenly, rotation, seed, vector } from '../arbitraries';
@@ -62,6 +62,27 @@ describe('the calibrated skeleton', () => {
     const wide = skeletonFromCalibration({ eyeHeight: 1, armSpan: 1.1 }).restOffsets;
     expect(wide.leftUpperArm).toEqual(small.leftUpperArm);
     expect(length(wide.leftLowerArm)).toBeGreaterThan(length(small.leftLowerArm));
+  });
+
+  test('a forearm that is told divides the arm and moves nothing else: half-way between the average’s and what is told', () => {
+    const told = { eyeHeight: 1.6, armSpan: 1.5, forearm: 0.25 };
+    const average = skeletonFromCalibration({ eyeHeight: 1.6, armSpan: 1.5 }).restOffsets;
+    const { restOffsets } = skeletonFromCalibration(told);
+    for (const joint of jointNames) {
+      if (!/LowerArm|Hand/.test(joint)) expect(restOffsets[joint]).toEqual(average[joint]);
+    }
+    for (const side of ['left', 'right'] as const) {
+      const forearm = (length(average[`${side}Hand`]) + 0.25) / 2;
+      expect(length(restOffsets[`${side}Hand`])).toBeCloseTo(forearm, 12);
+      expect(length(restOffsets[`${side}LowerArm`])).toBeCloseTo(armLength(told) - forearm, 12);
+    }
+  });
+
+  test('no told forearm makes a bone vanish', () => {
+    for (const forearm of [0, 0.05, 1, 9]) {
+      const { upper, lower } = armBones({ eyeHeight: 1.6, armSpan: 1.5, forearm });
+      expect(Math.min(upper, lower)).toBeGreaterThan(0.2);
+    }
   });
 
   test('an arm never vanishes, however small the span', () => {

@@ -1,10 +1,11 @@
+import { withForearm } from '../../../core/body/calibration';
 import type { TrackingFrame } from '../../../core/tracking/tracking-frame';
 import { type CalibrationDialog, type CalibrationStep, createCalibrationDialog } from '../../../ui/calibration-dialog';
 import { type CalibrationGuide, createCalibrationGuide } from '../../../ui/calibration-guide';
 import { Emitter } from '../emitter';
 import type { ControlledParts } from './controlled-parts';
 
-export type MeasuringOptions = Pick<ControlledParts, 'headset' | 'settings' | 'notices' | 'wearer'>;
+export type MeasuringOptions = Pick<ControlledParts, 'body' | 'headset' | 'settings' | 'notices' | 'wearer'>;
 
 /** The guided calibration of this page: told by a dialog on the desktop, by the menu in the headset. */
 export class Measuring {
@@ -16,7 +17,7 @@ export class Measuring {
   #step: CalibrationStep | null = null;
 
   constructor(options: MeasuringOptions) {
-    const { headset, wearer } = options;
+    const { body, headset, wearer } = options;
     this.#options = options;
     this.#dialog = createCalibrationDialog(
       () => this.cancel(),
@@ -24,7 +25,9 @@ export class Measuring {
     );
     this.#guide = createCalibrationGuide({
       onStep: (step) => this.#show(step),
-      onMeasured: (calibration) => wearer.calibrateForGood(calibration, 'measured'),
+      // Three points do not tell how long a forearm is: the typed one stays.
+      onMeasured: (calibration) =>
+        wearer.calibrateForGood(withForearm(calibration, body.wearerCalibration.forearm), 'measured'),
       closesItself: () => headset.worn,
     });
   }

@@ -1,12 +1,11 @@
+import type { MeasureRange } from '../../../core/body/calibration';
 import { button, element } from '../../../ui/element';
+import { toggle } from '../../../ui/toggle';
 import { estimatorOrder, estimatorTexts } from '../estimator-texts';
 import type { BodyActions, PanelPage, PanelState } from './panel-state';
 
 /** What can be typed [cm]. */
-export interface MeasureRanges {
-  readonly height: { readonly min: number; readonly max: number };
-  readonly armSpan: { readonly min: number; readonly max: number };
-}
+export type MeasureRanges = Readonly<Record<'height' | 'armSpan' | 'forearm', MeasureRange>>;
 
 /** The choice of the estimator; one that is not to be had says why. */
 function createEstimators(actions: Pick<BodyActions, 'chooseEstimator'>) {
@@ -29,20 +28,34 @@ function createEstimators(actions: Pick<BodyActions, 'chooseEstimator'>) {
       element('legend', {}, 'Estimator'),
       ...choices.map(({ node }) => node),
     ),
-    show({ estimator, unavailable }: PanelState) {
+    show({ estimator, unavailable, bodyComplaint }: PanelState) {
       for (const { name, input, about, node } of choices) {
         const reason = unavailable[name];
         input.checked = name === estimator;
         input.disabled = reason !== undefined;
         node.classList.toggle('unavailable', reason !== undefined);
-        about.textContent = reason ?? estimatorTexts[name].text;
+        const missing = name === 'device' && bodyComplaint !== null ? `Learned draws: ${bodyComplaint}.` : null;
+        about.textContent = reason ?? missing ?? estimatorTexts[name].text;
       }
     },
   };
 }
 
+/** Whether the headset is asked for its own body. */
+function createDeviceBody(actions: Pick<BodyActions, 'setDeviceBody'>) {
+  const ask = toggle('Ask the headset for its body', (on) => actions.setDeviceBody(on));
+  const about =
+    'From the next time VR is entered, for this visit. Off at first: headset browsers have crashed when asked.';
+  return {
+    node: element('section', {}, ask.node, element('p', { class: 'hint' }, about)),
+    show({ deviceBody }: PanelState) {
+      ask.input.checked = deviceBody;
+    },
+  };
+}
+
 /** A length to be typed, in whole centimetres. */
-function createMeasure(label: string, range: { readonly min: number; readonly max: number }, onChange: () => void) {
+function createMeasure(label: string, range: MeasureRange, onChange: () => void) {
   const input = element('input', {
     type: 'number',
     inputmode: 'numeric',
@@ -55,9 +68,11 @@ function createMeasure(label: string, range: { readonly min: number; readonly ma
   return {
     input,
     node: element('label', { class: 'measure' }, element('span', {}, label), input, element('i', {}, 'cm')),
-    show(centimetres: number) {
+    /** null: not told. */
+    show(centimetres: number | null) {
       // A number that is being typed must not change under the fingers.
-      if (document.activeElement !== input) input.value = String(Math.round(centimetres));
+      if (document.activeElement === input) return;
+      input.value = centimetres === null ? '' : String(Math.round(centimetres));
     },
   };
 }
@@ -65,18 +80,23 @@ function createMeasure(label: string, range: { readonly min: number; readonly ma
 /** The measures of the person, typed or measured. */
 function createMeasures(ranges: MeasureRanges, actions: BodyActions) {
   const apply = () => {
-    const valid = [height.input, armSpan.input].every((input) => input.reportValidity() && input.value !== '');
-    if (valid) actions.setMeasures({ heightCm: height.input.valueAsNumber, armSpanCm: armSpan.input.valueAsNumber });
+    const valid = [height, armSpan, forearm].every(({ input }) => input.reportValidity());
+    const heightCm = height.input.valueAsNumber;
+    const armSpanCm = armSpan.input.valueAsNumber;
+    if (!valid || Number.isNaN(heightCm) || Number.isNaN(armSpanCm)) return;
+    const forearmCm = forearm.input.value === '' ? null : forearm.input.valueAsNumber;
+    actions.setMeasures({ heightCm, armSpanCm, forearmCm });
   };
   const height = createMeasure('Height', ranges.height, apply);
   const armSpan = createMeasure('Arm span', ranges.armSpan, apply);
+  const forearm = createMeasure('Forearm', ranges.forearm, apply);
   const eyeHeight = element('small', { class: 'hint' });
   return {
     node: element(
       'section',
       { class: 'calibration' },
       element('h2', {}, 'Your measures'),
-      element('div', { class: 'row' }, height.node, armSpan.node),
+      element('div', { class: 'row' }, height.node, armSpan.node, forearm.node),
       eyeHeight,
       element(
         'div',
@@ -85,11 +105,14 @@ function createMeasures(ranges: MeasureRanges, actions: BodyActions) {
         button('Reset', () => actions.resetCalibration(), { 'aria-label': 'Reset calibration' }),
       ),
     ),
-    show({ heightCm, armSpanCm, eyeHeightCm, calibrationSource }: PanelState) {
+    show({ heightCm, armSpanCm, forearmCm, eyeHeightCm, calibrationSource }: PanelState) {
       height.show(heightCm);
       armSpan.show(armSpanCm);
+      forearm.show(forearmCm);
       const eyes = Math.round(eyeHeightCm);
-      eyeHeight.textContent = `Without shoes, fingertip to fingertip. Eyes at ${eyes} cm, ${calibrationSource}.`;
+      eyeHeight.textContent =
+        'Without shoes, fingertip to fingertip; the forearm, if you know it, from the tip of the bent elbow to the ' +
+        `wrist. Eyes at ${eyes} cm, ${calibrationSource}.`;
     },
   };
 }
@@ -97,12 +120,14 @@ function createMeasures(ranges: MeasureRanges, actions: BodyActions) {
 /** What the body is estimated by, and whose it is. */
 export function createBodyPage(ranges: MeasureRanges, actions: BodyActions): PanelPage {
   const estimators = createEstimators(actions);
+  const deviceBody = createDeviceBody(actions);
   const measures = createMeasures(ranges, actions);
   return {
     name: 'Body',
-    content: [estimators.node, measures.node],
+    content: [estimators.node, deviceBody.node, measures.node],
     show(state) {
       estimators.show(state);
+      deviceBody.show(state);
       measures.show(state);
     },
   };
