@@ -55,32 +55,36 @@ function hold(avatar: Avatar, frame: TrackingFrame, from: number): void {
   }
 }
 
-function fromOutside(): PerspectiveCamera {
+/** From so far to the right [m] and ahead [m]; hands spread or raised are in the picture. */
+function fromOutside(x: number, z: number): PerspectiveCamera {
   const camera = new PerspectiveCamera(38, width / height, 0.05, 20);
-  camera.position.set(-0.7, 1.25, -3.1);
-  camera.lookAt(0, 1.02, 0);
+  camera.position.set(x, 1.3, z);
+  camera.lookAt(0, 1.08, 0);
   camera.layers.enable(thirdPersonOnlyLayer);
   return camera;
 }
 
-/** What the wearer sees who looks down at the own hands. */
-function fromInside({ position }: TrackingFrame['head']): PerspectiveCamera {
+/** What the wearer sees who looks down by so much [rad]. */
+function fromInside({ position }: TrackingFrame['head'], down: number): PerspectiveCamera {
   const camera = new PerspectiveCamera(95, width / height, 0.02, 20);
   camera.position.set(position.x, position.y, position.z);
-  camera.rotation.x = -0.75;
+  camera.rotation.x = -down;
   return camera;
 }
+
+/** How far the wearer looks down [rad] on a picture of a posture through the own eyes. */
+const ownEyes: Readonly<Record<string, number>> = { crouch: 0.75, 'bow drawn': 0.2 };
 
 function shoot(
   sheet: CanvasRenderingContext2D,
   scene: Scene,
   camera: PerspectiveCamera,
-  at: number,
-  text: string,
+  { column, row, text }: { column: number; row: number; text: string },
 ): void {
   renderer.render(scene, camera);
-  sheet.drawImage(renderer.domElement, at * width, headline);
-  sheet.fillText(text, at * width + 8, headline + 20);
+  const top = headline + row * height;
+  sheet.drawImage(renderer.domElement, column * width, top);
+  sheet.fillText(text, column * width + 8, top + 20);
 }
 
 async function draw(sheet: CanvasRenderingContext2D, address: string, name: string): Promise<number> {
@@ -92,14 +96,18 @@ async function draw(sheet: CanvasRenderingContext2D, address: string, name: stri
   const scene = createScene();
   scene.add(avatar.object);
   avatar.fitTo(defaultCalibration);
-  const outside = fromOutside();
-  for (const [index, { name: posture, frame }] of postures.entries()) {
+  const outside = [fromOutside(-0.9, -3.8), fromOutside(2.4, 3.1)];
+  let seenFromInside = 0;
+  for (const [column, { name: posture, frame }] of postures.entries()) {
     avatar.setFirstPerson(false);
-    hold(avatar, frame, index * 10);
-    shoot(sheet, scene, outside, index, posture);
-    if (posture !== 'crouch') continue;
+    hold(avatar, frame, column * 10);
+    for (const [row, camera] of outside.entries()) shoot(sheet, scene, camera, { column, row, text: posture });
+    const down = ownEyes[posture];
+    if (down === undefined) continue;
     avatar.setFirstPerson(true);
-    shoot(sheet, scene, fromInside(frame.head), postures.length, 'own eyes, crouched');
+    const row = seenFromInside++;
+    const text = `${posture}, own eyes`;
+    shoot(sheet, scene, fromInside(frame.head, down), { column: postures.length, row, text });
   }
   avatar.dispose();
   return loadMs;
@@ -108,7 +116,7 @@ async function draw(sheet: CanvasRenderingContext2D, address: string, name: stri
 window.makeSheet = async (address, name) => {
   const canvas = document.createElement('canvas');
   canvas.width = width * (postures.length + 1);
-  canvas.height = headline + height;
+  canvas.height = headline + 2 * height;
   const sheet = canvas.getContext('2d');
   if (!sheet) throw new Error('no 2D canvas');
   sheet.fillStyle = '#ffffff';

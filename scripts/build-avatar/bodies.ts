@@ -29,7 +29,8 @@ function person(name: string, measures: PersonMeasures, { skin, hair, top, botto
       [-0.92, -0.02, -0.24],
       [0.92, 1.82, 0.28],
     ],
-    triangles: 8_600,
+    triangles: 5_350,
+    shadedOver: 4e-3,
     // The edge of a top about the neck.
     careful: (x, y) => (x < 0.14 && y > 1.38 && y < 1.47 ? 0.9 : 0),
     colors: {
@@ -72,8 +73,8 @@ const woman = person(
     },
     hair: 'bob',
     wears: {
-      top: { off: 0.007, sleeve: 0.6, hem: 0.9, neck: 0.035, ribbed: false },
-      bottom: { off: 0.004, cuffOff: 0.006, cuff: 0.1 },
+      top: { off: 0.007, sleeve: 0.6, hem: 0.95, neck: 0.035, ribbed: false },
+      bottom: { off: 0.003, cuffOff: 0.006, cuff: 0.1 },
       shoes: 0.085,
     },
   },
@@ -102,7 +103,7 @@ const man = person(
     },
     hair: 'short',
     wears: {
-      top: { off: 0.009, sleeve: 0.345, hem: 0.9, neck: 0.012, ribbed: false },
+      top: { off: 0.009, sleeve: 0.345, hem: 0.95, neck: 0.012, ribbed: false },
       bottom: { off: 0.006, cuffOff: 0.016, cuff: 0.075 },
       shoes: 0.085,
     },
@@ -134,8 +135,8 @@ const stout = person(
     },
     hair: 'curls',
     wears: {
-      top: { off: 0.014, sleeve: 0.665, hem: 0.9, neck: 0.01, ribbed: true },
-      bottom: { off: 0.007, cuffOff: 0.018, cuff: 0.075 },
+      top: { off: 0.014, sleeve: 0.665, hem: 0.95, neck: 0.01, ribbed: true },
+      bottom: { off: 0.004, cuffOff: 0.018, cuff: 0.075 },
       shoes: 0.085,
     },
   },
@@ -166,8 +167,8 @@ const child = person(
     },
     hair: 'tousled',
     wears: {
-      top: { off: 0.01, sleeve: 0.3, hem: 0.905, neck: 0.01, ribbed: false },
-      bottom: { off: 0.012, cuffOff: 0.026, cuff: 0.46 },
+      top: { off: 0.01, sleeve: 0.3, hem: 0.95, neck: 0.01, ribbed: false },
+      bottom: { off: 0.006, cuffOff: 0.026, cuff: 0.46 },
       shoes: 0.09,
     },
   },

@@ -48,11 +48,11 @@ function blinkOf({ blink, body }: Figure, surface: Surface): Float32Array | null
 
 /** A body as a VRM 1.0 file; the same bytes every time. `coarser`: cells so many times larger, for a quick look. */
 export async function buildBody(figure: Figure, report?: (what: string) => void, coarser = 1): Promise<Uint8Array> {
-  const { body, seams, rest, box } = figure;
+  const { body, seams, rest, box, shadedOver } = figure;
   const fine = projectOnto(body, mesh(body, ...box, coarser * cell), 2);
   report?.(`${fine.indices.length / 3} triangles of ${coarser * cell * 1000} mm`);
   const weighed = importance(fine, figure);
-  const coarse = await decimate(fine, normalsOf(body, fine.positions), weighed, figure.triangles);
+  const coarse = await decimate(fine, normalsOf(body, fine.positions, shadedOver), weighed, figure.triangles);
   let surface = projectOnto(body, coarse);
   if (figure.finer) surface = projectOnto(body, refine(surface, figure.finer));
   for (const { value } of seams) surface = cutAlong(surface, value);
@@ -68,7 +68,7 @@ export async function buildBody(figure: Figure, report?: (what: string) => void,
   }
   return writeVrm(figure, {
     surface,
-    normals: normalsOf(body, surface.positions),
+    normals: normalsOf(body, surface.positions, shadedOver),
     skin: skinWeights(surface, figure),
     labels: kinds,
     ofHead,

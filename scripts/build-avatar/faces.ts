@@ -25,6 +25,8 @@ export interface FaceMeasures {
 const root: Point = [0, 1.516, -0.012];
 const eyeHeight = 1.594;
 const mouthHeight = 1.536;
+/** Below it is the neck. */
+const chin = 1.49;
 
 /** The same region on a head of these measures. */
 export const inHead = (region: Region, { size, width }: FaceMeasures): Region =>
@@ -103,8 +105,9 @@ export function faceSeams(face: FaceMeasures): readonly Seam[] {
     };
   };
   const eyeEdge = (x: number, y: number) => b * (eyeRadius(face, x, y) - 1);
-  const irisRadius = 0.94 * b;
-  const irisHeight = eyeHeight + 0.12 * b;
+  // The upper lid lies over a part of the iris: one that shows whole stares.
+  const irisRadius = 1.04 * b;
+  const irisHeight = eyeHeight + 0.2 * b;
   const line = (x: number) => mouthHeight + 6 * x * x;
   return [
     { label: 'Shine', value: inFace((x, y) => circle(x, y, eye.out + 0.0022, irisHeight + 0.3 * b, 0.0015)) },
@@ -147,15 +150,15 @@ const smoothstep = (start: number, end: number, value: number): number => {
   return t * t * (3 - 2 * t);
 };
 
-/** How long a triangle's edges may be there [m]: short at eyes and mouth. */
+/** How long a triangle's edges may be there [m]: short on a face, shortest at eyes and mouth. */
 export function faceFineness(face: FaceMeasures, worldX: number, worldY: number, worldZ: number): number {
   const [x, y, z] = onAverageHead(face, worldX, worldY, worldZ);
-  if (z < 0.03) return 1;
+  if (z < 0.03 || y < chin) return 1;
   if (eyeRadius(face, x, y) < 1.25) return 0.0031 * face.size;
   const atMouth = Math.hypot(x / face.mouth[0], (y - mouthHeight) / (1.4 * face.mouth[1])) < 1.1;
   const atBrow = Math.abs(y - eyeHeight - face.brow.above) < 0.006 && Math.abs(x - face.eye.out) < 0.02;
   if (atMouth) return 0.0034 * face.size;
-  return atBrow ? 0.0044 * face.size : 1;
+  return (atBrow ? 0.0044 : 0.012) * face.size;
 }
 
 /** How far around an eye the skin goes along with its lids [eyes]. */

@@ -47,7 +47,7 @@ const neckline = ({ top }: GarmentStyle, x: number, y: number, z: number): numbe
 /** An edge as of cloth. */
 const edge = 0.005;
 /** Where trousers end above: under every hem. */
-const waist = 1.0;
+const waist = 1.04;
 
 export function garmentsOf(style: GarmentStyle, { rig, torso, leg, arm, foot }: Undressed): Garments {
   const { top, bottom, shoes } = style;

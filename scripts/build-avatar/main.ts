@@ -20,5 +20,5 @@ for (const figure of figures.filter(({ name }) => positionals.length === 0 || po
     : fileURLToPath(new URL(`../../public/avatars/${figure.name}.vrm`, import.meta.url));
   mkdirSync(dirname(target), { recursive: true });
   writeFileSync(target, file);
-  console.log(`${target}: ${(file.byteLength / 1024).toFixed(0)} kB`);
+  console.log(`${target}: ${(file.byteLength / 1000).toFixed(0)} kB`);
 }

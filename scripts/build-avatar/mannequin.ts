@@ -5,14 +5,14 @@ import type { Seam } from './surface-labels';
 
 const rig = makeRig();
 
-/** Height [m] of the collar, where the head's mesh begins: under the chin, a little higher at the nape. */
-const collar = (z: number): number => 1.452 - 0.12 * z;
+/** Height [m] of the collar, where the head's mesh begins: under the chin, a little higher at the nape, and further out clear of the shoulders. */
+const collar = (x: number, z: number): number => 1.452 - 0.12 * z + 0.4 * Math.max(0, Math.abs(x) - 0.06);
 
 /** A yoke: from the collar over the shoulders, pointed at the breastbone; stops before the deltoid. */
 function yoke(x: number, y: number, z: number): number {
   const side = Math.abs(x);
   const hem = z > 0 ? 1.345 + 0.28 * side : 1.33 + 0.25 * side;
-  return Math.max(hem - y, y - collar(z), side - 0.15);
+  return Math.max(hem - y, y - collar(x, z), side - 0.15);
 }
 
 const seams: readonly Seam[] = [
@@ -25,7 +25,7 @@ const seams: readonly Seam[] = [
   { label: 'Accent', value: (x) => rig.armJoints.wrist - 0.045 - Math.abs(x) },
   { label: 'Accent', value: (_, y, z) => y - 0.13 - 0.12 * z },
   { label: 'Accent', value: (x, y, z) => yoke(x, y, z) },
-  { label: 'Head', value: (_, y, z) => collar(z) - y },
+  { label: 'Head', value: (x, y, z) => collar(x, z) - y },
   // No change of colour: a clean edge for those who show the upper body alone.
   { label: 'Suit', value: (_, y) => y - hipLine },
 ];

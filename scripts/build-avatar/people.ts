@@ -60,7 +60,7 @@ export interface PersonMeasures {
 /** A body with clothes, hair and a face: what to mesh, and the seams between its materials. */
 export interface Person extends Anatomy {
   readonly seams: readonly Seam[];
-  /** Places on the face where triangles must be no longer than so much [m]. */
+  /** No edge of a triangle may be longer there [m]: on the face and where a top ends. */
   readonly finer: (x: number, y: number, z: number) => number;
   /** Where a place of the skin goes when the eyes are closed; null: it stays. */
   readonly blink: (x: number, y: number, z: number) => Point | null;
@@ -88,6 +88,9 @@ function torsoOf({ rig, chest, waist, hips, breast, belly, seat, trapezius }: Pe
     ],
   };
 }
+
+/** So near to the edge of a top, at neck, cuffs and hem, triangles are small [m]; less than any cloth lies off what it covers. */
+const atEdge = 0.0025;
 
 export function personOf(measures: PersonMeasures): Person {
   const rig = makeRig(measures.rig);
@@ -122,24 +125,26 @@ export function personOf(measures: PersonMeasures): Person {
     return onFloor(distance, y);
   };
   const collar = (z: number) => 1.452 - 0.12 * z;
+  const coverSeams = covers.map(({ label, field }): Seam => {
+    const value = (worldX: number, y: number, z: number): number => {
+      const x = foldedX(worldX);
+      let others = skin(x, y, z);
+      for (const other of covers) if (other.field !== field) others = Math.min(others, other.field(x, y, z));
+      return field(x, y, z) - others;
+    };
+    return { label, value };
+  });
+  const top = coverSeams.find(({ label }) => label === 'Top')!;
   return {
     rig,
     parts: [torso, neck, ...heads, leg, foot, arm, ...hand].flatMap(({ parts }) => parts),
     body,
     seams: [
       ...faceSeams(face),
-      ...covers.map(({ label, field }) => ({
-        label,
-        value: (worldX: number, y: number, z: number) => {
-          const x = foldedX(worldX);
-          let others = skin(x, y, z);
-          for (const other of covers) if (other.field !== field) others = Math.min(others, other.field(x, y, z));
-          return field(x, y, z) - others;
-        },
-      })),
+      ...coverSeams,
       { label: 'Skin', value: (_: number, y: number, z: number) => collar(z) - y },
     ],
-    finer: (x, y, z) => faceFineness(face, x, y, z),
+    finer: (x, y, z) => (Math.abs(top.value(x, y, z)) < atEdge ? 0.011 : faceFineness(face, x, y, z)),
     blink: (x, y, z) => closedEyes(face, x, y, z),
     ofHead: (_, y, z) => y > collar(z),
   };

@@ -104,11 +104,11 @@ export function projectOnto(field: DistanceField, { positions, indices }: Surfac
   return { positions: projected, indices };
 }
 
-/** Unit normals of the field at every vertex. */
-export function normalsOf(field: DistanceField, positions: Float32Array): Float32Array {
+/** Unit normals of the field at every vertex, taken over so much [m] to both sides. */
+export function normalsOf(field: DistanceField, positions: Float32Array, over = 1e-3): Float32Array {
   const normals = new Float32Array(positions.length);
   for (let i = 0; i < positions.length; i += 3) {
-    normals.set(gradient(field, positions[i]!, positions[i + 1]!, positions[i + 2]!, 1e-3), i);
+    normals.set(gradient(field, positions[i]!, positions[i + 1]!, positions[i + 2]!, over), i);
   }
   return normals;
 }

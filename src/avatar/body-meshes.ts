@@ -9,8 +9,9 @@ import {
   SkinnedMesh,
   Vector3,
 } from 'three';
+import type { SkinTone } from '../core/protocol/worn-avatar';
 import type { Steps } from './in-steps';
-import { palettes } from './palettes';
+import { palettes, skinColors } from './palettes';
 import type { Rig } from './rig';
 import { type SkinPart, sortByPart } from './skin-parts';
 
@@ -145,14 +146,22 @@ export class BodyMeshes {
   setPalette(name: string): void {
     const palette = palettes.find((candidate) => candidate.name === name);
     if (!palette) return;
-    const colors: Record<string, string> = {
+    this.recolour({
       Suit: palette.suit,
       Accent: palette.color,
       Head: palette.head,
       Visor: palette.visor,
       Top: palette.color,
       Bottom: palette.suit,
-    };
+    });
+  }
+
+  /** Recolours the skin of our people; null: it stays as it is. */
+  setSkinTone(tone: SkinTone | null): void {
+    if (tone) this.recolour({ Skin: skinColors[tone] });
+  }
+
+  private recolour(colors: Readonly<Record<string, string>>): void {
     for (const { mesh } of this.meshes) {
       for (const material of materialsOf(mesh)) {
         const color = colors[material.name];

@@ -1,7 +1,7 @@
-import type { OwnAvatar } from '../core/protocol/worn-avatar';
+import type { OwnBody } from '../core/protocol/worn-avatar';
 
 /** Our own bodies as people call them, in the order in which they are offered. */
-export const ownBodies: readonly { readonly name: OwnAvatar; readonly label: string }[] = [
+export const bodyLabels: readonly { readonly name: OwnBody; readonly label: string }[] = [
   { name: 'mannequin', label: 'Mannequin' },
   { name: 'woman', label: 'Woman' },
   { name: 'man', label: 'Man' },
@@ -9,4 +9,4 @@ export const ownBodies: readonly { readonly name: OwnAvatar; readonly label: str
   { name: 'child', label: 'Child' },
 ];
 
-export const labelOf = (name: OwnAvatar): string => ownBodies.find((body) => body.name === name)?.label ?? name;
+export const labelOf = (name: OwnBody): string => bodyLabels.find((body) => body.name === name)?.label ?? name;

@@ -1,3 +1,5 @@
+import type { SkinTone } from '../core/protocol/worn-avatar';
+
 /** Colours of the mannequin's materials (docs/avatar.md), one palette per player. CSS colours. */
 export interface Palette {
   readonly name: string;
@@ -18,3 +20,13 @@ export const palettes: readonly Palette[] = [
   { name: 'sand', label: 'Sand', color: '#c79a3b', suit: '#8d8577', head: '#eadfca', visor: '#17130c' },
   { name: 'ink', label: 'Ink', color: '#35b6c9', suit: '#20252e', head: '#9aa4b1', visor: '#070a0e' },
 ];
+
+/** Colours of the skin of our people (docs/avatar.md). CSS colours. */
+export const skinColors: Readonly<Record<SkinTone, string>> = {
+  fair: '#f0c9ac',
+  light: '#e0ac86',
+  beige: '#d39a72',
+  tan: '#b9805c',
+  brown: '#7a4e35',
+  dark: '#4b3023',
+};

@@ -1,11 +1,11 @@
 import { Group, type Mesh, type MeshBasicMaterial, type Object3D, type PlaneGeometry } from 'three';
 import type { AvatarPose } from '../core/body/avatar-pose';
-import type { Calibration } from '../core/body/calibration';
+import { type Calibration, sameMeasures } from '../core/body/calibration';
 import type { Fingers } from '../core/body/hand-shape';
 import { type MutableTransform, makeTransform, type Transform, transformPoint } from '../core/math/pose';
 import { copyQuat } from '../core/math/quat';
 import { copyVec3, type Vec3 } from '../core/math/vec3';
-import { isAvatarHash, plainAvatar, type WornAvatar } from '../core/protocol/worn-avatar';
+import { bodyOf, isAvatarHash, isOwnAvatar, plainAvatar, toneOf, type WornAvatar } from '../core/protocol/worn-avatar';
 import { createBlobShadow } from '../scene/blob-shadow';
 import { type Avatar, createAvatarBetweenFrames } from './avatar';
 import type { LoadedAvatar } from './load-avatar';
@@ -210,8 +210,11 @@ class OthersBodies implements RemoteAvatars {
   #add(avatar: Avatar, of: WornAvatar): void {
     const fromFile = isAvatarHash(of);
     // One of ours stays for as long as the others do; a file's memory is given back body by body.
-    const first = this.#bodies.find((body) => body.of === of);
-    if (first && !fromFile) shareGeometry(first.avatar.object, avatar.object);
+    if (isOwnAvatar(of)) {
+      const first = this.#bodies.find((body) => isOwnAvatar(body.of) && bodyOf(body.of) === bodyOf(of));
+      if (first) shareGeometry(first.avatar.object, avatar.object);
+      avatar.setSkinTone(toneOf(of));
+    }
     const place = new Group();
     const shadow = createBlobShadow();
     place.visible = false;
@@ -240,7 +243,7 @@ function take(body: Body, id: number): Body {
 function draw(body: Body, person: SeenPerson, time: number): void {
   const { avatar, place, shadow } = body;
   const { calibration, palette, pose, placement, fingers, opacity } = person;
-  if (body.fitted?.eyeHeight !== calibration.eyeHeight || body.fitted.armSpan !== calibration.armSpan) {
+  if (!body.fitted || !sameMeasures(body.fitted, calibration)) {
     avatar.fitTo(calibration);
     body.fitted = calibration;
   }

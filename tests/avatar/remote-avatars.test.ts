@@ -11,12 +11,14 @@ import { createIk } from '../../src/core/estimation/estimators';
 import { transformPoint } from '../../src/core/math/pose';
 import { fromAxisAngle } from '../../src/core/math/quat';
 import { distance, up, vec3 } from '../../src/core/math/vec3';
-import { plainAvatar } from '../../src/core/protocol/worn-avatar';
+import { bodyOf, isOwnAvatar, type OwnBody, ownAvatarOf, plainAvatar } from '../../src/core/protocol/worn-avatar';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
 import { poseOf } from '../core/estimation/drawn';
 
-const file = readFileSync(new URL('../../public/avatars/mannequin.vrm', import.meta.url));
-const bytes = file.buffer.slice(file.byteOffset, file.byteOffset + file.byteLength) as ArrayBuffer;
+function bytesOf(body: OwnBody): ArrayBuffer {
+  const file = readFileSync(new URL(`../../public/avatars/${body}.vrm`, import.meta.url));
+  return file.buffer.slice(file.byteOffset, file.byteOffset + file.byteLength) as ArrayBuffer;
+}
 const estimator = createIk(defaultCalibration);
 
 const person = (id: number, more: Partial<SeenPerson> = {}): SeenPerson => ({
@@ -34,11 +36,11 @@ const person = (id: number, more: Partial<SeenPerson> = {}): SeenPerson => ({
 /** Draws these people until each of them has a body. */
 async function gathered(people: readonly SeenPerson[]): Promise<RemoteAvatars> {
   const others = createRemoteAvatars({
-    load: () => parseAvatar(bytes, 'mannequin.vrm'),
+    load: (avatar) => (isOwnAvatar(avatar) ? parseAvatar(bytesOf(bodyOf(avatar)), avatar) : Promise.reject(avatar)),
     plain: () => false,
     onRefused: (avatar, reason) => expect([avatar, reason]).toBeNull(),
   });
-  for (let i = 0; i < 5000 && !people.every(({ id }) => others.jointsOf(id)); i++) {
+  for (let i = 0; i < 5000 && !people.every(({ id, avatar }) => others.drawnAs(id) === avatar); i++) {
     others.show(people, i / 60);
     await new Promise((resolve) => setTimeout(resolve));
   }
@@ -61,9 +63,14 @@ describe('bodies of others', () => {
     others.dispose();
   });
 
-  test('share vertices, not colours', async () => {
-    const others = await gathered([person(1, { palette: 'ember' }), person(2, { palette: 'moss' })]);
-    const skins: SkinnedMesh[][] = others.object.children.map((place) => {
+  const unlike: Record<string, readonly [Partial<SeenPerson>, Partial<SeenPerson>]> = {
+    palettes: [{ palette: 'ember' }, { palette: 'moss' }],
+    'tones of skin': [{ avatar: ownAvatarOf('woman', 'fair') }, { avatar: ownAvatarOf('woman', 'dark') }],
+  };
+  test.each(Object.entries(unlike))('share vertices, not colours: %s', async (_, [one, other]) => {
+    const others = await gathered([person(1, one), person(2, other)]);
+    const bodies = others.object.children.filter(({ visible }) => visible);
+    const skins: SkinnedMesh[][] = bodies.map((place) => {
       const found: SkinnedMesh[] = [];
       place.traverse((node) => {
         if (node instanceof SkinnedMesh) found.push(node);

@@ -10,7 +10,7 @@ import { withNamedBones } from '../../avatar/name-bones';
 import { labelOf } from '../../avatar/own-bodies';
 import { UnknownBones } from '../../avatar/unknown-bones';
 import { firstLine, reasonOf } from '../../core/errors/reasons';
-import { type OwnAvatar, plainAvatar } from '../../core/protocol/worn-avatar';
+import { bodyOf, type OwnBody, ownAvatarOf, plainAvatar, toneOf } from '../../core/protocol/worn-avatar';
 import type { BareBody } from '../../lib/bare-body';
 import { type FileKind, nameOf, readLimited } from '../../ui/limited-files';
 import type { Notices } from '../../ui/notices';
@@ -22,7 +22,7 @@ import type { Settings } from './settings';
 
 export interface ShownAvatarOptions {
   readonly scene: Studio['scene'];
-  readonly settings: Pick<Settings, 'palette' | 'upperBodyOnly' | 'ownBody'>;
+  readonly settings: Pick<Settings, 'palette' | 'upperBodyOnly' | 'ownBody' | 'skinTone'>;
   readonly body: Pick<BareBody, 'calibration'>;
   readonly notices: Pick<Notices, 'show'>;
   /** The maps of bones that were given for files of unknown naming. */
@@ -37,7 +37,7 @@ export const avatarFile: FileKind = { what: 'an avatar', megabytes: avatarLimits
 const howToTell = 'Say which is which: Controls, Avatar, Bones of this file.';
 
 /** The file of one of our own bodies, which lie beside the page, on its way; `onProgress` hears the share [0, 1] that has come. */
-export const fetchOwnAvatar = (name: OwnAvatar, onProgress?: (share: number) => void): Promise<ArrayBuffer> =>
+export const fetchOwnAvatar = (name: OwnBody, onProgress?: (share: number) => void): Promise<ArrayBuffer> =>
   readLimited(`${pageFolder()}/avatars/${name}.vrm`, avatarFile, onProgress && { onProgress });
 
 /** A file that came whole, but whose bones are to be told first. */
@@ -78,6 +78,7 @@ export class ShownAvatar {
   #avatar: Avatar | null = null;
   #name = labelOf(plainAvatar);
   #worn: OwnWear = plainAvatar;
+  #seatPalette: string | null = null;
   #pending: string | null = null;
   /** Counts what was asked for; and which of that is shown. */
   #asked = 0;
@@ -105,8 +106,8 @@ export class ShownAvatar {
   }
 
   /** Which of our own it is; null: another. */
-  get ownBody(): OwnAvatar | null {
-    return typeof this.#worn === 'string' ? this.#worn : null;
+  get ownBody(): OwnBody | null {
+    return typeof this.#worn === 'string' ? bodyOf(this.#worn) : null;
   }
 
   /** As what it is told to others: the same object for as long as it is shown. */
@@ -116,7 +117,7 @@ export class ShownAvatar {
 
   /** The file of the avatar that is shown. Rejects with a sentence where it can be had no longer. */
   file(): Promise<ArrayBuffer> {
-    return typeof this.#worn === 'string' ? fetchOwnAvatar(this.#worn) : this.#worn.file.arrayBuffer();
+    return typeof this.#worn === 'string' ? fetchOwnAvatar(bodyOf(this.#worn)) : this.#worn.file.arrayBuffer();
   }
 
   /** What became of the avatar that was asked for last, in words: on its way, or refused; null: it is shown. */
@@ -134,9 +135,15 @@ export class ShownAvatar {
     return this.#waiting;
   }
 
-  /** One of our own avatar's palettes; null: the one the user chose. */
+  /** The palette of a seat; null: the one the user chose. */
   wear(palette: string | null): void {
-    if (this.own) this.#avatar?.setPalette(palette ?? this.#options.settings.palette);
+    this.#seatPalette = palette;
+    this.recolour();
+  }
+
+  /** The palette of the seat, else the one the user chose, is on our own bodies. */
+  recolour(): void {
+    if (this.own) this.#avatar?.setPalette(this.#seatPalette ?? this.#options.settings.palette);
   }
 
   /** Gives up what is on its way, or waits for its bones; what is shown stays. */
@@ -153,11 +160,11 @@ export class ShownAvatar {
    * that travels already. False and a notice where it cannot be had.
    */
   openOwn(bytes?: Promise<ArrayBuffer>): Promise<boolean> {
-    const { ownBody } = this.#options.settings;
+    const { ownBody, skinTone } = this.#options.settings;
     const label = labelOf(ownBody);
     return this.#arrive(this.#ask(label, true), async () => ({
       avatar: await createAvatarBetweenFrames(await parseAvatar(await (bytes ?? fetchOwnAvatar(ownBody)), label)),
-      worn: ownBody,
+      worn: ownAvatarOf(ownBody, skinTone),
     }));
   }
 
@@ -279,7 +286,8 @@ export class ShownAvatar {
     this.#waiting = null;
     if (turn === this.#asked) this.#pending = null;
     scene.add(avatar.object);
-    this.wear(null);
+    this.recolour();
+    if (typeof worn === 'string') avatar.setSkinTone(toneOf(worn));
     avatar.setUpperBodyOnly(settings.upperBodyOnly);
     avatar.fitTo(body.calibration);
   }

@@ -1,4 +1,6 @@
-import { ownBodies } from '../../../avatar/own-bodies';
+import { bodyLabels } from '../../../avatar/own-bodies';
+import { skinColors } from '../../../avatar/palettes';
+import { plainAvatar, skinTones } from '../../../core/protocol/worn-avatar';
 import { button, element } from '../../../ui/element';
 import { fileButton } from '../../../ui/file-button';
 import { toggle } from '../../../ui/toggle';
@@ -18,17 +20,25 @@ function createShown(palettes: readonly PaletteChoice[], actions: AvatarActions)
   const pending = element('p', { class: 'hint', role: 'status' });
   const own = button('Back to ours', () => actions.showOwnAvatar());
   const cancel = button('Cancel loading', () => actions.cancelAvatar());
-  const bodies = ownBodies.map((body) => ({
+  const bodies = bodyLabels.map((body) => ({
     name: body.name,
     node: button(body.label, () => actions.chooseOwnBody(body.name)),
   }));
-  const swatches = palettes.map((palette) => {
-    const attributes = { class: 'swatch', 'aria-label': palette.label, title: palette.label };
-    const node = button('', () => actions.choosePalette(palette.name), attributes);
-    node.style.setProperty('--swatch', palette.color);
-    return { palette: palette.name, node };
-  });
-  const colours = { class: 'swatches', role: 'group', 'aria-label': 'Colours' };
+  const swatch = (label: string, color: string, act: () => void): HTMLButtonElement => {
+    const node = button('', act, { class: 'swatch', 'aria-label': label, title: label });
+    node.style.setProperty('--swatch', color);
+    return node;
+  };
+  const colours = palettes.map(({ name: palette, label, color }) => ({
+    palette,
+    node: swatch(label, color, () => actions.choosePalette(palette)),
+  }));
+  const tones = skinTones.map((tone) => ({
+    tone,
+    node: swatch(`Skin: ${tone}`, skinColors[tone], () => actions.chooseSkinTone(tone)),
+  }));
+  const row = (label: string, all: readonly { readonly node: HTMLElement }[]) =>
+    element('div', { class: 'swatches', role: 'group', 'aria-label': label }, ...all.map(({ node }) => node));
   return {
     node: element(
       'section',
@@ -38,19 +48,32 @@ function createShown(palettes: readonly PaletteChoice[], actions: AvatarActions)
       pending,
       cancel,
       element('div', { class: 'chips', role: 'group', 'aria-label': 'Our bodies' }, ...bodies.map(({ node }) => node)),
-      element('div', colours, ...swatches.map(({ node }) => node)),
+      row('Colours', colours),
+      row('Skin', tones),
       own,
     ),
-    show({ avatarName, avatarPending, avatarOnItsWay, ownAvatarOffered, ownBody, palette: worn }: PanelState) {
+    show({
+      avatarName,
+      avatarPending,
+      avatarOnItsWay,
+      ownAvatarOffered,
+      ownBody,
+      skinTone,
+      palette: worn,
+    }: PanelState) {
       name.textContent = avatarName;
       pending.textContent = avatarPending;
       pending.hidden = avatarPending === null;
       own.hidden = !ownAvatarOffered;
       cancel.hidden = !avatarOnItsWay;
       for (const { name, node } of bodies) node.setAttribute('aria-pressed', String(name === ownBody));
-      for (const { palette, node } of swatches) {
+      for (const { palette, node } of colours) {
         node.setAttribute('aria-pressed', String(palette === worn));
         node.disabled = worn === null;
+      }
+      for (const { tone, node } of tones) {
+        node.setAttribute('aria-pressed', String(tone === skinTone));
+        node.disabled = ownBody === null || ownBody === plainAvatar;
       }
     },
   };
@@ -80,7 +103,7 @@ function otherAvatars(actions: AvatarActions): HTMLElement {
     element(
       'div',
       { class: 'row' },
-      ...fileButton('Open VRM or GLB', '.vrm,.glb,.fbx', (file) => actions.openAvatarFile(file)),
+      ...fileButton('Open VRM or GLB', '.vrm,.glb,.fbx', ([file]) => actions.openAvatarFile(file)),
     ),
     form,
   );
@@ -89,7 +112,7 @@ function otherAvatars(actions: AvatarActions): HTMLElement {
 /** Who sees whose avatar. */
 function createSight(actions: AvatarActions) {
   const share = toggle('Others see my avatar', (on) => actions.setShareAvatar(on));
-  const plain = toggle('Show everybody as mannequin', (on) => actions.setPlainOthers(on));
+  const plain = toggle('Show all others as mannequins', (on) => actions.setPlainOthers(on));
   return {
     node: element(
       'section',
