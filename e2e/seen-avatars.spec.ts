@@ -1,7 +1,13 @@
 import { fork } from 'node:child_process';
 import { createHash, randomBytes } from 'node:crypto';
 import { once } from 'node:events';
+import { mkdtempSync, rmSync } from 'node:fs';
+import { createServer } from 'node:https';
+import type { AddressInfo } from 'node:net';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
+import { certificateFor } from '../server/certificate';
 import { changed, type GltfJson } from '../tests/avatar/glb';
 import type { GuestAnswer, GuestOrder } from './guest-process';
 import { expect, freshTest, joinedRoom, joint, keepPicture, probe, test } from './page-fixture';
@@ -86,7 +92,7 @@ const malicious: Readonly<Record<string, readonly [file: () => ArrayBuffer, sent
 };
 
 /** Ben's page in a room on this server, joined. */
-async function join(page: Page, origin: string, room: string, query = ''): Promise<void> {
+async function enter(page: Page, origin: string, room: string, query = ''): Promise<void> {
   await page.goto(`${origin}/?play=ball&room=${room}&bots=off&panel=off&quality=low&estimator=ik&overlay=off${query}`);
   await joinedRoom(page);
 }
@@ -139,8 +145,8 @@ freshTest(
         ({ pathname }) => pathname === '/elsewhere/blue.vrm',
         (route) => route.fulfill(glb(file)),
       );
-      await join(page, server.origin, 'meadow', '&name=Ben');
-      await join(other, server.origin, 'meadow', '&name=Ann&avatar=/elsewhere/blue.vrm');
+      await enter(page, server.origin, 'meadow', '&name=Ben');
+      await enter(other, server.origin, 'meadow', '&name=Ann&avatar=/elsewhere/blue.vrm');
       await expect(other.getByText('The others see you as blue.vrm now.')).toBeVisible({ timeout: 60_000 });
       await shows(page, 'Ann', hashOf(file));
       await keepPicture(page, 'others-own-avatar');
@@ -148,10 +154,10 @@ freshTest(
       // What this page's switch says, at once and back again.
       await page.getByRole('button', { name: 'Controls' }).click();
       await page.getByRole('tab', { name: 'Avatar' }).click();
-      await page.getByLabel('Show everybody as mannequin').check();
+      await page.getByLabel('Show all others as mannequins').check();
       await shows(page, 'Ann', 'mannequin');
       await keepPicture(page, 'others-as-mannequins');
-      await page.getByLabel('Show everybody as mannequin').uncheck();
+      await page.getByLabel('Show all others as mannequins').uncheck();
       await shows(page, 'Ann', hashOf(file));
 
       // Ann no longer wants it to be seen: nor does the server keep it.
@@ -167,6 +173,91 @@ freshTest(
 );
 
 freshTest(
+  'people in bodies of ours see each other in them, in the tone of skin that was chosen @full',
+  async ({ browser }) => {
+    test.setTimeout(240_000);
+    const server = await serveStudies();
+    // Two browsers: what is chosen in one is not remembered by the other.
+    const contexts = [await browser.newContext(), await browser.newContext()];
+    try {
+      const [ben, ann] = (await Promise.all(contexts.map((context) => context.newPage()))) as [Page, Page];
+      await enter(ben, server.origin, 'meadow', '&name=Ben');
+      await enter(ann, server.origin, 'meadow', '&name=Ann');
+      for (const [page, name, tone] of [
+        [ben, 'Man', 'dark'],
+        [ann, 'Woman', 'light'],
+      ] as const) {
+        await page.bringToFront();
+        await page.getByRole('button', { name: 'Controls' }).click();
+        await page.getByRole('tab', { name: 'Avatar' }).click();
+        await page.getByRole('button', { name, exact: true }).click();
+        await page.getByRole('button', { name: `Skin: ${tone}` }).click();
+        await page.getByRole('button', { name: 'Controls' }).click();
+      }
+      await shows(ann, 'Ben', 'man-dark');
+      await keepPicture(ann, 'others-ben-in-our-man');
+      await ben.bringToFront();
+      await shows(ben, 'Ann', 'woman-light');
+      await keepPicture(ben, 'others-ann-in-our-woman');
+    } finally {
+      for (const context of contexts) await context.close();
+      await server.close();
+    }
+  },
+);
+
+/** Another server with one avatar, at an address that the pages of others may ask; `asked` fills with what it was asked for. */
+async function serveElsewhere(file: ArrayBuffer) {
+  const folder = mkdtempSync(join(tmpdir(), 'threepoint-elsewhere-'));
+  const asked: string[] = [];
+  const server = createServer(await certificateFor([], folder, new Date()), ({ method, url, headers }, response) => {
+    asked.push(`${method} ${url}${headers.authorization ?? ''}`);
+    const found = url === `/avatars/${hashOf(file)}`;
+    response.writeHead(found ? 200 : 404, { 'access-control-allow-origin': '*', 'content-type': 'model/gltf-binary' });
+    response.end(found && method === 'GET' ? Buffer.from(file) : undefined);
+  });
+  await new Promise<void>((resolve) => server.listen(0, '127.0.0.1', resolve));
+  return {
+    folder: `https://127.0.0.1:${(server.address() as AddressInfo).port}/avatars/`,
+    asked,
+    async close() {
+      server.closeAllConnections();
+      await new Promise((resolve) => server.close(resolve));
+      rmSync(folder, { recursive: true, force: true });
+    },
+  };
+}
+
+freshTest(
+  'an avatar of a server that ours names is seen by the others, and stored nowhere else @full',
+  async ({ browser }) => {
+    test.setTimeout(240_000);
+    const file = blue();
+    const elsewhere = await serveElsewhere(file);
+    const server = await serveStudies({ THREEPOINT_AVATARS_FROM: elsewhere.folder, THREEPOINT_AVATAR_MEGABYTES: '0' });
+    const context = await browser.newContext({
+      baseURL: server.origin,
+      ignoreHTTPSErrors: true,
+      serviceWorkers: 'block',
+    });
+    try {
+      const [ben, ann] = [await context.newPage(), await context.newPage()];
+      await enter(ben, server.origin, 'meadow', '&name=Ben');
+      await enter(ann, server.origin, 'meadow', `&name=Ann&avatar=${elsewhere.folder}${hashOf(file)}`);
+      await expect(ann.getByText(/The others see you as .* now\.$/)).toBeVisible({ timeout: 60_000 });
+      await ben.bringToFront();
+      await shows(ben, 'Ann', hashOf(file));
+      const path = `/avatars/${hashOf(file)}`;
+      expect(elsewhere.asked).toEqual([`GET ${path}`, `HEAD ${path}`, `GET ${path}`]);
+    } finally {
+      await context.close();
+      await server.close();
+      await elsewhere.close();
+    }
+  },
+);
+
+freshTest(
   'a malicious avatar changes nothing for the others but that its owner is a mannequin @full',
   async ({ page, complaints }) => {
     test.setTimeout(300_000);
@@ -174,7 +265,7 @@ freshTest(
     complaints.allow(new RegExp(`asked ${server.origin}:`));
     const people: { stop(): Promise<void> }[] = [];
     try {
-      await join(page, server.origin, 'birch', '&name=Ben');
+      await enter(page, server.origin, 'birch', '&name=Ben');
       let eve = await comes(server.origin, 'birch', 'Eve');
       people.push(eve);
       await shows(page, 'Eve', 'mannequin');

@@ -2,7 +2,7 @@ import { createHash } from 'node:crypto';
 import type { IncomingMessage } from 'node:http';
 import { RateLimiterMemory, RateLimiterRes } from 'rate-limiter-flexible';
 import { avatarHash, mostAvatarBytes } from '../src/core/protocol/worn-avatar';
-import type { AvatarStore, Reservation } from './avatar-store';
+import type { AvatarOwner, AvatarStore, Reservation } from './avatar-store';
 import { clientAddress, networkOf } from './client-address';
 import { type Answer, done, HttpError, json } from './http/answer';
 import { readBody } from './http/body';
@@ -90,7 +90,7 @@ export class AvatarRoutes {
     await this.#spend(this.#uploads, identity, 'upload');
     const address = networkOf(clientAddress(request, this.#options.configuration.trustProxy));
     await this.#spend(this.#uploadsFrom, address, 'upload');
-    const reserved = this.#reserve(room, identity, length);
+    const reserved = this.#reserve({ room, identity, address }, length);
     try {
       reserved.keep(hash, await this.#receive(request, length, hash));
       return done;
@@ -99,11 +99,13 @@ export class AvatarRoutes {
     }
   }
 
-  #reserve(room: string, identity: string, length: number): Reservation {
-    const reserved = this.#options.store.reserve(room, identity, length);
+  #reserve(owner: AvatarOwner, length: number): Reservation {
+    const reserved = this.#options.store.reserve(owner, length);
     if (typeof reserved === 'object') return reserved;
     this.#options.metrics.refused('avatar', reserved);
     if (reserved === 'busy') throw new HttpError(409, 'another avatar of yours is on its way');
+    if (reserved === 'crowded')
+      throw new HttpError(507, 'the people of your network have no place for another avatar here now');
     throw new HttpError(507, 'there is no place for another avatar on this server now');
   }
 

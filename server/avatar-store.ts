@@ -1,4 +1,4 @@
-import { type AvatarHash, isAvatarHash, type WornAvatar } from '../src/core/protocol/worn-avatar';
+import { type AvatarHash, isAvatarHash, mostAvatarBytes, type WornAvatar } from '../src/core/protocol/worn-avatar';
 
 export interface AvatarStoreOptions {
   /** All files together, those on their way included [bytes]; 0: none is taken. */
@@ -17,9 +17,15 @@ export interface Reservation {
   cancel(): void;
 }
 
-interface StoredAvatar {
+/** Whose file it is. */
+export interface AvatarOwner {
   readonly room: string;
   readonly identity: string;
+  /** The network that the person comes from. */
+  readonly address: string;
+}
+
+interface StoredAvatar extends AvatarOwner {
   readonly hash: AvatarHash;
   readonly bytes: Uint8Array;
   readonly storedAt: number;
@@ -27,6 +33,9 @@ interface StoredAvatar {
 
 /** A file may lie here for so long [s] before its owner has said that they have it on. */
 const graceSeconds = 30;
+
+/** So much of all may come from one address, as a person can have seats in many rooms; at least one file. */
+const shareOfAddress = 1 / 4;
 
 const ownerOf = (room: string, identity: string): string => `${room} ${identity}`;
 
@@ -37,8 +46,8 @@ const ownerOf = (room: string, identity: string): string => `${room} ${identity}
 export class AvatarStore {
   readonly #options: AvatarStoreOptions;
   readonly #files = new Map<string, StoredAvatar>();
-  /** Bytes reserved for files on their way, by owner. */
-  readonly #coming = new Map<string, number>();
+  /** Files on their way, by owner. */
+  readonly #coming = new Map<string, { readonly address: string; readonly length: number }>();
 
   constructor(options: AvatarStoreOptions) {
     this.#options = options;
@@ -48,7 +57,14 @@ export class AvatarStore {
   get bytes(): number {
     let sum = 0;
     for (const { bytes } of this.#files.values()) sum += bytes.length;
-    for (const bytes of this.#coming.values()) sum += bytes;
+    for (const { length } of this.#coming.values()) sum += length;
+    return sum;
+  }
+
+  #bytesFrom(asked: string): number {
+    let sum = 0;
+    for (const { address, bytes } of this.#files.values()) if (address === asked) sum += bytes.length;
+    for (const { address, length } of this.#coming.values()) if (address === asked) sum += length;
     return sum;
   }
 
@@ -56,17 +72,22 @@ export class AvatarStore {
     return this.#files.size;
   }
 
-  /** Room for a file of this length; full: there is none. busy: the person's last one is still on its way. */
-  reserve(room: string, identity: string, length: number): Reservation | 'full' | 'busy' {
+  /** Room for a file of this length; full: there is none, or (crowded) none for this address. busy: the person's last one is still on its way. */
+  reserve({ room, identity, address }: AvatarOwner, length: number): Reservation | 'full' | 'crowded' | 'busy' {
+    const { mostBytes } = this.#options;
     const owner = ownerOf(room, identity);
     if (this.#coming.has(owner)) return 'busy';
-    const freed = this.#files.get(owner)?.bytes.length ?? 0;
-    if (this.bytes - freed + length > this.#options.mostBytes) return 'full';
-    this.#coming.set(owner, length);
+    const before = this.#files.get(owner);
+    const freed = before?.bytes.length ?? 0;
+    if (this.bytes - freed + length > mostBytes) return 'full';
+    const freedHere = before?.address === address ? freed : 0;
+    const mostHere = Math.max(mostAvatarBytes, shareOfAddress * mostBytes);
+    if (this.#bytesFrom(address) - freedHere + length > mostHere) return 'crowded';
+    this.#coming.set(owner, { address, length });
     return {
       keep: (hash, bytes) => {
         this.#coming.delete(owner);
-        this.#files.set(owner, { room, identity, hash, bytes, storedAt: this.#options.now() });
+        this.#files.set(owner, { room, identity, address, hash, bytes, storedAt: this.#options.now() });
       },
       cancel: () => this.#coming.delete(owner),
     };

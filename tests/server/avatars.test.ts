@@ -6,6 +6,7 @@ import { createAvatarExchange } from '../../src/net/avatar-exchange';
 import { createRoomPass } from '../../src/net/room-pass';
 import { changed } from '../avatar/glb';
 import { paperPlan } from '../core/study/studies';
+import { measured } from '../reliability/measured';
 import { type RunningRelay, rawGuest, startRelay, tokenFor, until } from './running-relay';
 import { studySeats } from './running-studies';
 
@@ -81,7 +82,7 @@ describe('an avatar in the store', () => {
     const hash = hashOf(bytes);
     await ann.store(bytes);
     ann.say({ type: 'wear', avatar: hash });
-    await until('ben to hear of it', () => ben.heard.some((m) => m.type === 'seat' && m.info?.[5] === hash));
+    await until('ben to hear of it', () => ben.heard.some((m) => m.type === 'seat' && m.info?.[6] === hash));
     expect((await ben.ask('GET', hash)).status).toBe(200);
     ann.say({ type: 'leave' });
     await until('the file gone', () => relay.relay.avatars.get('fir', hash) === null);
@@ -179,6 +180,29 @@ describe('the store takes no', () => {
     const answers = await Promise.all(many.map((person) => person.store(file(2 * megabyte))));
     expect(answers.map(({ status }) => status).toSorted()).toEqual([204, 204, 507]);
     expect(relay.relay.avatars.bytes).toBeLessThanOrEqual(8 * megabyte);
+  });
+});
+
+test('seats in many rooms fill no more than the share of their address: the others find place for theirs', async () => {
+  await relay.close();
+  relay = await startRelay({ THREEPOINT_AVATAR_MEGABYTES: '96', THREEPOINT_TRUST_PROXY: '1' });
+  const upload = async (room: string, address: string, bytes: Uint8Array) => {
+    const person = await seated(room);
+    const answer = await person.ask('PUT', hashOf(bytes), bytes, { 'x-forwarded-for': address });
+    return answer.ok ? answer.status : `${answer.status}: ${await sentence(answer)}`;
+  };
+  const [eve, ann] = ['203.0.113.1', '203.0.113.2'];
+  const large = file(8 * megabyte);
+  const eves = [];
+  for (const room of ['one', 'two', 'three', 'four']) eves.push(await upload(room, eve, large));
+  const crowded = '507: the people of your network have no place for another avatar here now';
+  expect(eves).toEqual([204, 204, crowded, crowded]);
+  const anns = await upload('one', ann, large);
+  expect(anns).toBe(204);
+  measured('avatar-store', {
+    'stored of four files of 8 MB from one address, of 96 MB': eves.filter((status) => status === 204).length,
+    'answer to another address afterwards': anns,
+    'kept in all': `${Math.round(relay.relay.avatars.bytes / megabyte)} MB`,
   });
 });
 

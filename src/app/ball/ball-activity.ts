@@ -17,7 +17,7 @@ import { rotate } from '../../core/math/quat';
 import type { Ray } from '../../core/math/ray';
 import type { Side } from '../../core/math/side';
 import { type Vec3, vec3 } from '../../core/math/vec3';
-import { type OwnAvatar, plainAvatar, type WornAvatar } from '../../core/protocol/worn-avatar';
+import { type OwnBody, plainAvatar, type WornAvatar } from '../../core/protocol/worn-avatar';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 import type { AvatarExchange } from '../../net/avatar-exchange';
 import { bannerText, connectionText } from '../../net/banner';
@@ -41,7 +41,7 @@ export interface BallActivityOptions {
   /** The file of the body that others have. */
   readonly mannequin: ArrayBuffer;
   /** The file of another body of our own. */
-  fetchOwn(name: OwnAvatar): Promise<ArrayBuffer>;
+  fetchOwn(name: OwnBody): Promise<ArrayBuffer>;
   readonly visitor: Visitor;
   /** The visitor's name was given by the page: its player reads “You” instead. */
   readonly unnamed: boolean;

@@ -5,8 +5,9 @@ import { type LoadedAvatar, parseAvatar, parseChecked } from '../../avatar/load-
 import { reasonOf } from '../../core/errors/reasons';
 import {
   type AvatarHash,
+  bodyOf,
   isOwnAvatar,
-  type OwnAvatar,
+  type OwnBody,
   plainAvatar,
   type WornAvatar,
 } from '../../core/protocol/worn-avatar';
@@ -24,15 +25,15 @@ const patienceMs = 60_000;
  */
 export class SeenAvatars {
   /** The files of our own bodies that were needed. */
-  readonly #own = new Map<OwnAvatar, Promise<ArrayBuffer>>();
-  readonly #fetchOwn: (name: OwnAvatar) => Promise<ArrayBuffer>;
+  readonly #own = new Map<OwnBody, Promise<ArrayBuffer>>();
+  readonly #fetchOwn: (name: OwnBody) => Promise<ArrayBuffer>;
   readonly #exchange: AvatarExchange | null;
   readonly #leaving = new AbortController();
 
   /** `mannequin`: the plain one's file; `fetchOwn` brings that of another of ours. `exchange`: null where there is no server, or its rooms are a study's. */
   constructor(
     mannequin: ArrayBuffer,
-    fetchOwn: (name: OwnAvatar) => Promise<ArrayBuffer>,
+    fetchOwn: (name: OwnBody) => Promise<ArrayBuffer>,
     exchange: AvatarExchange | null,
   ) {
     this.#own.set(plainAvatar, Promise.resolve(mannequin));
@@ -42,10 +43,11 @@ export class SeenAvatars {
 
   async load(avatar: WornAvatar): Promise<LoadedAvatar> {
     if (!isOwnAvatar(avatar)) return this.#loadFile(avatar);
-    const known = this.#own.get(avatar);
-    const file = known ?? this.#fetchOwn(avatar);
-    if (!known) this.#own.set(avatar, file);
-    return parseAvatar(await file, `${avatar}.vrm`);
+    const body = bodyOf(avatar);
+    const known = this.#own.get(body);
+    const file = known ?? this.#fetchOwn(body);
+    if (!known) this.#own.set(body, file);
+    return parseAvatar(await file, `${body}.vrm`);
   }
 
   /** Ends what is on its way. */

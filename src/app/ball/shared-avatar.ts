@@ -31,6 +31,16 @@ export interface SharedAvatarOptions {
 
 const megabytes = (bytes: number): string => `${Math.round(bytes / 2 ** 20)} MB`;
 
+/** Into the room's store, unless it lies there. Rejects with a sentence where the server does not take it. */
+async function bring(exchange: AvatarExchange, hash: AvatarHash, file: Blob): Promise<void> {
+  const { mostBytes, yours } = await exchange.terms();
+  if (yours === hash) return;
+  if (mostBytes === 0) throw new Error('this server takes no avatars');
+  if (file.size > mostBytes)
+    throw new Error(`it has ${megabytes(file.size)}; this server takes ${megabytes(mostBytes)}`);
+  await exchange.store(hash, file);
+}
+
 /** Shows the others what the wearer has on: brings a file to the room's store, then tells the room of it. */
 export class SharedAvatar {
   readonly #options: SharedAvatarOptions;
@@ -67,14 +77,11 @@ export class SharedAvatar {
       if (hash === null) throw new Error('this page is not on a secure connection (https)');
       if (file.size > mostAvatarBytes)
         throw new Error(`it has ${megabytes(file.size)}, of at most ${megabytes(mostAvatarBytes)}`);
-      const { mostBytes, yours } = await exchange.terms();
-      if (mostBytes === 0) throw new Error('this server takes no avatars');
-      if (file.size > mostBytes)
-        throw new Error(`it has ${megabytes(file.size)}; this server takes ${megabytes(mostBytes)}`);
-      if (yours !== hash && isNewest()) await exchange.store(hash, file);
+      const kept = (await exchange.liesElsewhere(hash)) ? '' : ' The server keeps the file until you leave.';
+      if (kept && isNewest()) await bring(exchange, hash, file);
       if (!isNewest()) return;
       tell(hash);
-      if (!quiet) notify('info', `The others see you as ${name} now. The server keeps the file until you leave.`);
+      if (!quiet) notify('info', `The others see you as ${name} now.${kept}`);
     } catch (error) {
       if (!isNewest()) return;
       tell(plainAvatar);
