@@ -7,16 +7,14 @@ import {
   type BodyEvents,
   type Calibration,
   createPageClock,
-  exportMotion,
   forwardKinematics,
   loadLearned,
   type PoseRegressor,
   parseRecording,
   skeletonFromCalibration,
   type TrackingFrame,
-  toXRBody,
-  type XRBodyJoints,
 } from 'threepoint';
+import { exportMotion, toXRBody, type XRBodyJoints } from 'threepoint/motion';
 import { type OnnxOptions, onnxNetworks } from 'threepoint/onnx';
 import 'threepoint/onnx-worker';
 import { type EmulatedBody, installBodyTracking } from 'threepoint/polyfill';

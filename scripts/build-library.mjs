@@ -8,7 +8,7 @@ import { rolldown } from 'rolldown';
 import { main, root, run, SetupError } from './run-command.mjs';
 
 const out = join(root, 'dist-library');
-const entries = ['index', 'three', 'onnx', 'onnx-worker', 'polyfill'];
+const entries = ['index', 'motion', 'three', 'onnx', 'onnx-worker', 'polyfill'];
 const own = JSON.parse(readFileSync(join(root, 'package.json'), 'utf8'));
 const version = (name) => own.dependencies[name];
 /** The next minor versions of a package keep what we use; three has no such promise, its peers say from which on it works. */
@@ -43,6 +43,7 @@ const manifest = {
   sideEffects: ['./onnx-worker.js'],
   exports: {
     '.': entry('index'),
+    './motion': entry('motion'),
     './three': entry('three'),
     './onnx': entry('onnx'),
     './onnx-worker': entry('onnx-worker'),

@@ -6,7 +6,7 @@ import { ensureInstalled } from './installation.mjs';
 import { main, run, SetupError } from './run-command.mjs';
 
 const usage =
-  'npm run motion -- FILE --to bvh|csv|vrma|glb [--estimator learned|ik|paper] [--out FILE] [--unit m|cm] [--rate HZ] [--avatar FILE]\n' +
+  'npm run motion -- FILE --to bvh|csv|vrma|glb [--estimator learned|ik|paper|device] [--out FILE] [--unit m|cm] [--rate HZ] [--avatar FILE]\n' +
   'FILE is a recording that the page made; docs/motion.md says the rest.';
 const twoHours = 2 * 3600;
 

@@ -1,5 +1,5 @@
 import { type Calibration, provisionalCalibration } from '../core/body/calibration';
-import { createEstimator, type NetworkName, needsRegressor } from '../core/estimation/estimators';
+import { createEstimator, type NetworkName, networkOf } from '../core/estimation/estimators';
 import type { EstimatorName } from '../core/estimation/pose-estimator';
 import type { PoseRegressor } from '../core/estimation/pose-regressor';
 import type { Motion } from '../core/motion/motion';
@@ -70,7 +70,8 @@ export async function exportMotionBare(recording: Recording, options: BareExport
   const calibration =
     options.calibration ?? recording.calibration ?? provisionalCalibration(recording.frames[0]!.head.position.y);
   options.signal?.throwIfAborted();
-  const regressor = needsRegressor(estimator) ? await networks(estimator) : null;
+  const network = networkOf(estimator);
+  const regressor = network && (await networks(network));
   try {
     const parts = await runWork(exportWork(recording, calibration, regressor, options, writer), options);
     return { extension: writer.extension, type: writer.type, parts };

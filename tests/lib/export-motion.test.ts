@@ -5,7 +5,8 @@ import { closedHand } from '../../src/core/body/hand-shape';
 import { skeletonFromCalibration } from '../../src/core/body/skeleton';
 import { createEstimator, needsRegressor } from '../../src/core/estimation/estimators';
 import { distance } from '../../src/core/math/vec3';
-import { makeBvhPose, poseBvh, readBvh } from '../../src/core/motion/read-bvh';
+import { makeJointPoses } from '../../src/core/motion/file-motion';
+import { poseBvh, readBvh } from '../../src/core/motion/read-bvh';
 import { turnPoint } from '../../src/core/motion/skeleton';
 import { finishWork } from '../../src/core/motion/work';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
@@ -33,7 +34,7 @@ describe('a recording', () => {
     const { parts, extension } = await exportMotion(recording, { to: 'bvh', estimator: name, networks });
     expect(extension).toBe('bvh');
     const file = finishWork(readBvh(textOf(parts)));
-    const pose = makeBvhPose(file);
+    const pose = makeJointPoses(file.joints.length);
     const regressor = needsRegressor(name) ? await networks(name) : null;
     const live = createEstimator(name, defaultCalibration, regressor);
     const skeleton = skeletonFromCalibration(defaultCalibration);

@@ -5,12 +5,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from synthetic_skeletons import IDENTITY, along, angles_of, game_bvh, write_asf_amc, write_cmuconvert_bvh
 from threepoint_training import prepare, quaternion
 from threepoint_training.mocap_bvh import parse_bvh
 from threepoint_training.motion import MocapError
 from threepoint_training.prepared_corpus import JOINTS, LEG_JOINTS, PreparedCorpus
 from threepoint_training.skeleton_map import read_skeleton_map
+from threepoint_training.synthetic_skeletons import IDENTITY, along, angles_of, game_bvh, write_asf_amc, write_cmuconvert_bvh
 
 X, Y, Z = np.eye(3)
 
@@ -195,3 +195,10 @@ def test_legs_are_kept_as_truth_in_the_same_floor_frame(tmp_path: Path) -> None:
     foot, hip = (corpus.legs[:, LEG_JOINTS.index(joint)] for joint in ("leftFoot", "leftUpperLeg"))
     np.testing.assert_allclose(hip[:, 1] - foot[:, 1], 0.85, atol=1e-5)
     np.testing.assert_allclose(corpus.positions[:, JOINTS.index("hips"), 1] - foot[:, 1], 0.89, atol=1e-5)
+
+
+def test_a_forearm_without_length_is_refused(tmp_path: Path) -> None:
+    text = game_bvh({name: IDENTITY for name in along(X)}, *moving())[0]
+    (folder(tmp_path, "p") / "walk.bvh").write_text(text.replace("OFFSET 26.000000000 0.000000000 0.000000000", "OFFSET 0 0 0"))
+    with pytest.raises(MocapError, match=r"walk.bvh: LeftHand \(leftHand\) lies on LeftForeArm \(leftLowerArm\) in the rest pose"):
+        prepared(tmp_path)

@@ -32,6 +32,13 @@ def test_golden_mocap_files_are_read_as_before():
     assert [case["text"] for case in committed("bvh.json")] == [case["text"] for case in golden.bvh_vectors()]
 
 
+def test_golden_mocap_makes_the_recordings_that_it_made():
+    now, before = golden.mocap_vectors(), committed("mocap.json")
+    assert [case["files"] for case in before] == [case["files"] for case in now]
+    assert [[clip["name"] for clip in case["clips"]] for case in before] == [["11_07"], ["7_02"], ["someone_walks#1", "someone_walks#2"]]
+    assert_as_committed("mocap.json", now, atol=1e-5)
+
+
 def test_golden_frames_start_turned_and_away_from_the_origin():
     for case in committed("features.json"):
         first = case["frames"][0]

@@ -10,13 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .bvh_hierarchy import BvhHierarchy
+from .mocap_rules import RULES
 
+_LOST = RULES["cmuconvert"]
 # The thorax bone by those of lower and upper back, each axis by itself: least squares on the skeletons of 26 people of the database. With
 # each person left out in turn its end is 0.4 cm off on average, 1.1 cm at most; the upper back's own bone once more would be 0.9 and 2.5 cm off.
-_FROM_LOWER_BACK = np.array([-0.95, 0.26, -0.76])
-_FROM_UPPER_BACK = np.array([1.35, 0.74, 1.375])
+_FROM_LOWER_BACK = np.array(_LOST["thoraxFromLowerBack"])
+_FROM_UPPER_BACK = np.array(_LOST["thoraxFromUpperBack"])
 # In every skeleton of the database the wrist bone is half as long as the radius, and lies along it in rest.
-_WRIST_OF_RADIUS = 0.5
+_WRIST_OF_RADIUS = float(_LOST["wristOfRadius"])
 
 _HUNG_ON_THORAX = ("Neck", "LeftShoulder", "RightShoulder")
 _TRUNK = ("LowerBack", "Spine", "Spine1", *_HUNG_ON_THORAX)

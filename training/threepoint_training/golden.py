@@ -3,7 +3,7 @@
 import argparse
 import json
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +15,7 @@ from .chest_features import chest_axes
 from .features import frame_features
 from .generated_motion import generate_clip
 from .golden_bvh import bvh_vectors
+from .golden_mocap import mocap_vectors
 from .paper_features import paper_features
 from .prepared_corpus import Person
 from .residual import network_input
@@ -24,11 +25,42 @@ from .skeleton import Body, body_from_calibration, rest_offsets
 Array = NDArray[np.float64]
 
 GOLDEN = Path(__file__).parents[2] / "tests/golden"
-# Eye height, span, and the tilts of the hands that are measured.
-BODIES: tuple[tuple[float, float, dict[str, tuple[float, float]]], ...] = (
-    (1.62, 1.56, {}),
-    (1.15, 1.05, {"left": (0.25, -0.1), "right": (-0.15, 0.3)}),
-    (2.02, 2.05, {"right": (0.05, -0.4)}),
+
+
+@dataclass(frozen=True)
+class GoldenBody:
+    """Measures [m], and the tilts of the hands that are measured; a forearm that is not told is None."""
+
+    eye_height: float
+    arm_span: float
+    forearm: float | None = None
+    tilts: dict[str, tuple[float, float]] = field(default_factory=dict)
+
+    def body(self) -> Body:
+        """With the tilts of its hands."""
+        hands = np.array([self.tilts.get(side, (0.0, 0.0)) for side in ("left", "right")])
+        return self.body_without_tilts().with_hands(hands, np.array([side in self.tilts for side in ("left", "right")]))
+
+    def body_without_tilts(self) -> Body:
+        """As hands come."""
+        body = body_from_calibration(np.array(self.eye_height), np.array(self.arm_span))
+        return body if self.forearm is None else body.with_forearms(np.full(2, self.forearm))
+
+    def measures(self) -> dict[str, Any]:
+        """As the page has them, without tilts."""
+        return {"eyeHeight": self.eye_height, "armSpan": self.arm_span} | ({} if self.forearm is None else {"forearm": self.forearm})
+
+    def calibration(self) -> dict[str, Any]:
+        """As the page has it."""
+        hands = {side: {"pitch": pitch, "yaw": yaw} for side, (pitch, yaw) in self.tilts.items()}
+        return self.measures() | ({"handTilts": hands} if hands else {})
+
+
+BODIES = (
+    GoldenBody(1.62, 1.56),
+    GoldenBody(1.15, 1.05, 0.18, {"left": (0.25, -0.1), "right": (-0.15, 0.3)}),
+    # No such arm has so long a forearm.
+    GoldenBody(2.02, 2.05, 0.9, {"right": (0.05, -0.4)}),
 )
 FRAMES = 14
 STRIDE = 9
@@ -43,17 +75,6 @@ def _tracked(eye_height: float, arm_span: float, random: np.random.Generator) ->
     return positions[::STRIDE], rotations[::STRIDE]
 
 
-def _body(eye_height: float, arm_span: float, tilts: dict[str, tuple[float, float]]) -> Body:
-    hands = np.array([tilts.get(side, (0.0, 0.0)) for side in ("left", "right")])
-    return body_from_calibration(np.array(eye_height), np.array(arm_span)).with_hands(hands, np.array([side in tilts for side in ("left", "right")]))
-
-
-def _calibration(eye_height: float, arm_span: float, tilts: dict[str, tuple[float, float]]) -> dict[str, Any]:
-    """As the page has it."""
-    hands = {side: {"pitch": pitch, "yaw": yaw} for side, (pitch, yaw) in tilts.items()}
-    return {"eyeHeight": eye_height, "armSpan": arm_span} | ({"handTilts": hands} if hands else {})
-
-
 def _in_floor_frame(joints: Array, positions: Array, rotations: Array) -> Array:
     """Points [F, N, 3] of the heading frames of these trackers."""
     yaw, origin = quaternion.heading(rotations[:, 0]), positions[:, 0] * [1, 0, 1]
@@ -63,18 +84,18 @@ def _in_floor_frame(joints: Array, positions: Array, rotations: Array) -> Array:
 def feature_vectors() -> list[dict[str, Any]]:
     """Rotated and moved people in three sizes, one hand unseen now and then: what goes in and what must come out."""
     cases = []
-    for number, (eye_height, arm_span, tilts) in enumerate(BODIES):
+    for number, person in enumerate(BODIES):
         random = np.random.default_rng([11, number])
-        positions, rotations = _tracked(eye_height, arm_span, random)
+        positions, rotations = _tracked(person.eye_height, person.arm_span, random)
         seen = random.uniform(size=(FRAMES, 2)) > 0.15
         times = np.arange(FRAMES) * STRIDE / 60 + random.uniform(0, 0.01, FRAMES)
-        body = _body(eye_height, arm_span, tilts)
+        body = person.body()
         vector, ik_joints = frame_features(positions, rotations, body, seen)
         floor_joints = _in_floor_frame(ik_joints, positions, rotations)
         cases.append(
             {
-                "calibration": _calibration(eye_height, arm_span, tilts),
-                "restOffsets": rest_offsets(eye_height, arm_span),
+                "calibration": person.calibration(),
+                "restOffsets": rest_offsets(body),
                 "window": WINDOW,
                 "frames": [
                     {
@@ -131,21 +152,21 @@ def fitted_vectors() -> list[dict[str, Any]]:
 
     fitting = DifferentiableKinematics(torch.float64)
     cases = []
-    for number, (eye_height, arm_span, _) in enumerate(BODIES):
-        body = body_from_calibration(np.array(eye_height), np.array(arm_span))
+    for number, person in enumerate(BODIES):
+        body = person.body_without_tilts()
         frames = []
         for kind, (situation, (move, elbows, others)) in enumerate(SITUATIONS.items()):
             random = np.random.default_rng([13, number, kind])
-            positions, rotations = _tracked(eye_height, arm_span, random)
+            positions, rotations = _tracked(person.eye_height, person.arm_span, random)
             local, turns, _, _ = solve_ik.to_heading(positions, rotations)
             positions = _in_floor_frame(move(local, solve_ik.solve(local, turns, body), body, random), positions, rotations)
             vector, ik_joints = frame_features(positions, rotations, body)
             inputs = torch.from_numpy(network_input(vector, np.arange(FRAMES) / 60, WINDOW, body))
             corrections = random.normal(size=ik_joints.shape) * np.array([elbows] * 2 + [others] * 4)[:, None]
-            fitted, limited = fitting.fit(torch.from_numpy(corrections), inputs, as_the_page_fits(eye_height))
+            fitted, limited = fitting.fit(torch.from_numpy(corrections), inputs, as_the_page_fits(person.eye_height))
             axes = chest_axes(vector)
             estimated, placed = (
-                _in_floor_frame(ik_joints + eye_height * shift @ axes, positions, rotations) for shift in (corrections, fitted.numpy())
+                _in_floor_frame(ik_joints + person.eye_height * shift @ axes, positions, rotations) for shift in (corrections, fitted.numpy())
             )
             frames += [
                 {
@@ -158,7 +179,7 @@ def fitted_vectors() -> list[dict[str, Any]]:
                 }
                 for i in range(FRAMES)
             ]
-        cases.append({"calibration": {"eyeHeight": eye_height, "armSpan": arm_span}, "frames": frames})
+        cases.append({"calibration": person.measures(), "frames": frames})
     return cases
 
 
@@ -215,11 +236,12 @@ class GoldenConfig:
 
 
 def main(config: GoldenConfig) -> None:
-    """Writes tests/golden/features.json, fitted-joints.json and bvh.json, and models.json where there are models."""
+    """Writes tests/golden/features.json, fitted-joints.json, bvh.json and mocap.json, and models.json where there are models."""
     GOLDEN.mkdir(parents=True, exist_ok=True)
     (GOLDEN / "features.json").write_text(json.dumps(plain(feature_vectors())) + "\n")
     (GOLDEN / "fitted-joints.json").write_text(json.dumps(plain(fitted_vectors())) + "\n")
     (GOLDEN / "bvh.json").write_text(json.dumps(plain(bvh_vectors())) + "\n")
+    (GOLDEN / "mocap.json").write_text(json.dumps(plain(mocap_vectors())) + "\n")
     if list(config.models.glob("*.json")):
         (GOLDEN / "models.json").write_text(json.dumps(plain(model_vectors(config.models))) + "\n")
 

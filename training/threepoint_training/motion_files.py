@@ -7,12 +7,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from .mocap_rules import RULES
 from .motion import MocapError
 from .skeleton_map import SkeletonMap
 
 # AMC files carry no frame rate. The database was recorded at 120 Hz, but for these subjects, recorded at 60 Hz
 # (the frame rates of mocap.cs.cmu.edu's trial pages).
-_CMU_60_HZ_SUBJECTS = frozenset({"60", "61", "75", "87", "88"})
+_CMU_60_HZ_SUBJECTS = frozenset(map(str, RULES["cmu"]["subjectsAt60Hz"]))
 _CMU_NAME = re.compile(r"^0*(\d+)_\d+$")
 
 
@@ -94,5 +95,5 @@ def frame_rate(path: Path, skeleton: SkeletonMap, rates: dict[str, float]) -> fl
     if match and f"{match[1]}_{match[2]}" in rates:
         return rates[f"{match[1]}_{match[2]}"]
     if match and _CMU_NAME.match(path.stem):
-        return 60.0 if match[1] in _CMU_60_HZ_SUBJECTS else 120.0
+        return 60.0 if match[1] in _CMU_60_HZ_SUBJECTS else float(RULES["cmu"]["rateHz"])
     raise MocapError(f"{path.name}: frame rate unknown; give “frameRate” in a skeleton map, or an index.csv beside the files")

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import quaternion
+from .mocap_rules import RULES
 from .motion import MocapError, Motion
 
 Points = Mapping[str, NDArray[np.float64]]
@@ -66,7 +67,7 @@ def check_rest(rest: Points, joints: Mapping[str, str], where: str) -> None:
     a bone of no length, a trunk that lies, shoulders that are not left and right, raised or folded arms, legs that do not stand.
     """
     for near, far in (("hips", "chest"), ("chest", "neck"), ("neck", "head")):
-        if np.linalg.norm(rest[far] - rest[near]) < 0.01:
+        if np.linalg.norm(rest[far] - rest[near]) < RULES["shortestBone"]:
             raise MocapError(
                 f"{where}: {joints[far]} ({far}) lies on {joints[near]} ({near}) in the rest pose: the file lost a bone of the trunk, and head and "
                 "shoulders would be too low. Take the original (ASF/AMC), or name other joints in a skeleton map: docs/evaluation.md"
@@ -84,6 +85,12 @@ def check_rest(rest: Points, joints: Mapping[str, str], where: str) -> None:
         raise refuse(f"the shoulders, {joints['leftUpperArm']} and {joints['rightUpperArm']}, {is_so}", "left and right")
     for side, outward in (("left", -_RIGHT), ("right", _RIGHT)):
         shoulder, elbow, hand = (rest[f"{side}{part}"] for part in ("UpperArm", "LowerArm", "Hand"))
+        for near, far in (("UpperArm", "LowerArm"), ("LowerArm", "Hand")):
+            if np.linalg.norm(rest[f"{side}{far}"] - rest[f"{side}{near}"]) < RULES["shortestBone"]:
+                raise MocapError(
+                    f"{where}: {joints[side + far]} ({side}{far}) lies on {joints[side + near]} ({side}{near}) in the rest pose: the file lost a "
+                    f"bone of the {side} arm. Take the original, or name other joints in a skeleton map: docs/evaluation.md"
+                )
         arm = _direction(hand - shoulder)
         if arm @ _UP > 0.5 or arm @ outward < -0.3:
             raise refuse(f"the {side} arm, {joints[f'{side}UpperArm']} to {joints[f'{side}Hand']}, points {_told(arm)}", "sideways")

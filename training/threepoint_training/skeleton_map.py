@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .mocap_rules import RULES
 from .motion import MocapError
 
 REQUIRED_JOINTS = (
@@ -21,9 +22,6 @@ OPTIONAL_JOINTS = (
     "rightUpperLeg", "rightLowerLeg", "rightFoot", "rightToes",
 )  # fmt: skip
 _AXES = {"+x": (1, 0, 0), "-x": (-1, 0, 0), "+y": (0, 1, 0), "-y": (0, -1, 0), "+z": (0, 0, 1), "-z": (0, 0, -1)}
-
-# The database measures in units of 1/0.45 inch (the ASF header's `length 0.45`).
-CMU_METRES_PER_UNIT = 0.0254 / 0.45
 
 
 @dataclass(frozen=True)
@@ -50,35 +48,7 @@ class SkeletonMap:
         return np.stack([np.cross(forward, up), up, -forward])
 
 
-CMU_ASF = SkeletonMap(
-    name="CMU ASF",
-    scale=CMU_METRES_PER_UNIT,
-    joints={
-        "hips": "root", "spine": "lowerback:end", "chest": "upperback:end", "neck": "thorax:end", "head": "head",
-        "leftUpperArm": "lhumerus", "leftLowerArm": "lradius", "leftHand": "lwrist:end",
-        "rightUpperArm": "rhumerus", "rightLowerArm": "rradius", "rightHand": "rwrist:end",
-        "leftUpperLeg": "lfemur", "leftLowerLeg": "ltibia", "leftFoot": "lfoot", "leftToes": "ltoes",
-        "rightUpperLeg": "rfemur", "rightLowerLeg": "rtibia", "rightFoot": "rfoot", "rightToes": "rtoes",
-    },
-    rotations={"leftHand": "lhand", "rightHand": "rhand"},
-)  # fmt: skip
-
-
-def _bvh(name: str, spine: tuple[str, str, str, str], arms: tuple[str, str, str], legs: tuple[str, str, str, str]) -> SkeletonMap:
-    joints = dict(zip(("hips", "spine", "chest", "neck"), ("Hips", *spine[:3]), strict=True)) | {"head": spine[3]}
-    for side in ("left", "right"):
-        prefix = side.capitalize()
-        ours = ("UpperArm", "LowerArm", "Hand", "UpperLeg", "LowerLeg", "Foot", "Toes")
-        joints |= {f"{side}{joint}": f"{prefix}{theirs}" for joint, theirs in zip(ours, (*arms, *legs), strict=True)}
-    return SkeletonMap(name=name, joints=joints)
-
-
-BUILT_IN = (
-    CMU_ASF,
-    _bvh("BVH of CMU (cmuconvert)", ("Spine", "Spine1", "Neck", "Head"), ("Arm", "ForeArm", "FingerBase"), ("UpLeg", "Leg", "Foot", "ToeBase")),
-    _bvh("BVH with three spine joints", ("Spine", "Spine1", "Neck", "Head"), ("Arm", "ForeArm", "Hand"), ("UpLeg", "Leg", "Foot", "ToeBase")),
-    _bvh("BVH with three spine joints and toes", ("Spine", "Spine1", "Neck", "Head"), ("Arm", "ForeArm", "Hand"), ("UpLeg", "Leg", "Foot", "Toe")),
-)  # fmt: skip
+BUILT_IN = tuple(SkeletonMap(**known) for known in RULES["skeletons"])
 
 
 def read_skeleton_map(path: Path) -> SkeletonMap:

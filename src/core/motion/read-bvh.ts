@@ -1,5 +1,7 @@
-import { fromAxisAngle, type MutableQuat, multiply, quat, rotate, setQuat } from '../math/quat';
-import { add, backward, copyVec3, type MutableVec3, right, up, type Vec3, vec3 } from '../math/vec3';
+import { fromAxisAngle, multiply, quat, rotate, setQuat } from '../math/quat';
+import { add, backward, copyVec3, right, up, type Vec3, vec3, zero } from '../math/vec3';
+import type { FileMotion, JointPoses } from './file-motion';
+import { Lines, Rows, shown, type Word } from './lines';
 
 type Axis = 'x' | 'y' | 'z';
 export interface BvhChannel {
@@ -31,47 +33,7 @@ export interface BvhMotion {
 
 /** No skeleton of a person has as many. */
 const mostJoints = 5000;
-const mostShown = 40;
 const linesPerStep = 64;
-
-const shown = (text: string): string => `“${text.length > mostShown ? `${text.slice(0, mostShown)}…` : text}”`;
-
-/** Lines of a text one by one, with the place of what is read. */
-class Lines {
-  /** Of the line at hand, from 1. */
-  number = 0;
-  line = '';
-  #next = 0;
-
-  constructor(readonly text: string) {}
-
-  /** Share [0, 1] of the text that was read. */
-  get share(): number {
-    return this.text.length === 0 ? 1 : Math.min(1, this.#next / this.text.length);
-  }
-
-  /** Goes on to the next line that is not blank; false: there is none. */
-  next(): boolean {
-    while (this.#next <= this.text.length) {
-      const feed = this.text.indexOf('\n', this.#next);
-      const end = feed < 0 ? this.text.length : feed;
-      this.line = this.text.slice(this.#next, end);
-      this.#next = end + 1;
-      this.number += 1;
-      if (this.line.trim() !== '') return true;
-    }
-    return false;
-  }
-
-  /** Words of the line with the columns [from 1] at which they begin. */
-  words(): { readonly word: string; readonly column: number }[] {
-    return [...this.line.matchAll(/\S+/g)].map(({ 0: word, index }) => ({ word, column: index + 1 }));
-  }
-
-  fail(column: number, message: string): never {
-    throw new Error(`line ${this.number}, column ${column}: ${message}`);
-  }
-}
 
 interface OpenJoint {
   readonly name: string;
@@ -80,18 +42,9 @@ interface OpenJoint {
   channels: readonly BvhChannel[];
 }
 
-type Word = ReturnType<Lines['words']>[number];
-
-function numberOf(lines: Lines, { word, column }: Word): number {
-  const value = Number(word);
-  // Number takes '0x10' and 'Infinity' too; the latter is refused as not finite.
-  if (!Number.isFinite(value)) lines.fail(column, `${shown(word)} is no finite number`);
-  return value;
-}
-
 function readOffset(lines: Lines, words: readonly Word[]): Vec3 {
   if (words.length !== 4) lines.fail(words[0]!.column, `OFFSET should be three numbers, has ${words.length - 1}`);
-  const [x, y, z] = words.slice(1).map((word) => numberOf(lines, word));
+  const [x, y, z] = words.slice(1).map((word) => lines.numberOf(word));
   return vec3(x!, y!, z!);
 }
 
@@ -171,26 +124,6 @@ function readDeclaration(lines: Lines, declared: Declared): boolean {
   return true;
 }
 
-/** Writes the numbers of a line. */
-function readRow(lines: Lines, width: number, values: Float64Array, at: number): void {
-  const { line } = lines;
-  let count = 0;
-  for (let i = 0; i < line.length; ) {
-    if (line.charCodeAt(i) <= 32) {
-      i++;
-      continue;
-    }
-    let end = i + 1;
-    while (end < line.length && line.charCodeAt(end) > 32) end++;
-    const value = Number(line.slice(i, end));
-    if (!Number.isFinite(value)) lines.fail(i + 1, `${shown(line.slice(i, end))} is no finite number`);
-    if (count < width) values[at + count] = value;
-    count += 1;
-    i = end;
-  }
-  if (count !== width) lines.fail(1, `a frame has ${count} numbers, the hierarchy has ${width} channels`);
-}
-
 /**
  * Reads the text of a BVH file. Yields the share [0, 1] that was read. Throws a sentence with line and column where the text is none: cut
  * short, counts that do not agree, numbers that are none.
@@ -201,45 +134,30 @@ export function* readBvh(text: string): Generator<number, BvhMotion> {
   const width = joints.reduce((sum, { channels }) => sum + channels.length, 0);
   if (width === 0) lines.fail(1, 'no joint of the hierarchy has channels: nothing moves');
   const declared: Declared = { count: null, seconds: null };
-  let values = new Float64Array(width * 64);
-  let frameCount = 0;
+  const rows = new Rows(width);
   while (lines.next()) {
     if (readDeclaration(lines, declared)) continue;
-    if (declared.count !== null && frameCount >= declared.count)
+    if (declared.count !== null && rows.count >= declared.count)
       lines.fail(1, `Frames says ${declared.count}, but more follow`);
-    if ((frameCount + 1) * width > values.length) {
-      const larger = new Float64Array(2 * values.length);
-      larger.set(values);
-      values = larger;
-    }
-    readRow(lines, width, values, frameCount * width);
-    frameCount += 1;
-    if (frameCount % linesPerStep === 0) yield lines.share;
+    const at = rows.add();
+    const count = lines.numbers(0, rows.values, at, width);
+    if (count !== width) lines.fail(1, `a frame has ${count} numbers, the hierarchy has ${width} channels`);
+    if (rows.count % linesPerStep === 0) yield lines.share;
   }
+  const frameCount = rows.count;
   if (frameCount === 0) lines.fail(1, 'the file ends without a frame');
   if (declared.count !== null && declared.count !== frameCount)
     lines.fail(1, `Frames says ${declared.count}, but the file ends after ${frameCount}`);
   if (declared.seconds === null) throw new Error('a line “Frame Time: seconds” is needed, and there is none');
-  return { joints, frameSeconds: declared.seconds, frameCount, width, values: values.subarray(0, frameCount * width) };
+  return { joints, frameSeconds: declared.seconds, frameCount, width, values: rows.finish() };
 }
-
-/** Where every joint of a file is and how it is turned, in the file's unit and axes. */
-export interface BvhPose {
-  readonly positions: readonly MutableVec3[];
-  readonly rotations: readonly MutableQuat[];
-}
-
-export const makeBvhPose = ({ joints }: BvhMotion): BvhPose => ({
-  positions: joints.map(() => vec3(0, 0, 0)),
-  rotations: joints.map(() => quat(0, 0, 0, 1)),
-});
 
 const axes: Readonly<Record<Axis, Vec3>> = { x: right, y: up, z: backward };
 const turn = quat(0, 0, 0, 1);
 const local = vec3(0, 0, 0);
 
 /** Every joint in one frame. A position that a file states takes the place of the joint's offset. */
-export function poseBvh({ joints, width, values }: BvhMotion, frame: number, target: BvhPose): BvhPose {
+export function poseBvh({ joints, width, values }: BvhMotion, frame: number, target: JointPoses): JointPoses {
   let column = frame * width;
   for (const [i, { parent, offset, channels }] of joints.entries()) {
     const position = target.positions[i]!;
@@ -258,4 +176,17 @@ export function poseBvh({ joints, width, values }: BvhMotion, frame: number, tar
     }
   }
   return target;
+}
+
+/** A BVH file as any file of motion: at rest all its angles are zero. `joints`: those of the file, or what was put right of them. */
+export function bvhFileMotion(motion: BvhMotion, joints = motion.joints, notes: readonly string[] = []): FileMotion {
+  const rest: Vec3[] = [];
+  for (const { parent, offset } of joints) rest.push(parent < 0 ? zero : add(rest[parent]!, offset));
+  const { frameCount, frameSeconds } = motion;
+  const mended = { ...motion, joints };
+  const names = joints.map(({ name }) => name);
+  return {
+    ...{ names, rest, frameCount, notes, rateHz: 1 / frameSeconds },
+    pose: (frame, target) => poseBvh(mended, frame, target),
+  };
 }

@@ -2,7 +2,8 @@ import { readFileSync } from 'node:fs';
 import { expect, test } from 'vitest';
 import type { Quat } from '../../../src/core/math/quat';
 import { distance, type Vec3 } from '../../../src/core/math/vec3';
-import { makeBvhPose, poseBvh, readBvh } from '../../../src/core/motion/read-bvh';
+import { makeJointPoses } from '../../../src/core/motion/file-motion';
+import { poseBvh, readBvh } from '../../../src/core/motion/read-bvh';
 import { finishWork } from '../../../src/core/motion/work';
 
 interface GoldenFile {
@@ -22,7 +23,7 @@ test.each(files)('a BVH is read as Python reads it, every order of channels with
   expect(file.joints.map(({ name }) => name)).toEqual(golden.names);
   expect(1 / file.frameSeconds).toBeCloseTo(golden.frameRate, 6);
   expect(file.frameCount).toBe(golden.positions.length);
-  const pose = makeBvhPose(file);
+  const pose = makeJointPoses(file.joints.length);
   for (const [frame, positions] of golden.positions.entries()) {
     poseBvh(file, frame, pose);
     for (const [joint, [x, y, z]] of positions.entries()) {

@@ -1,0 +1,46 @@
+import { add, length, scale, type Vec3, vec3 } from '../math/vec3';
+import type { BvhJoint } from '../motion/read-bvh';
+import { cmuconvert } from './mocap-rules.json';
+
+/** What hung on the thorax whose bone is lost, and the joints by which files of cmuconvert are known. */
+const hungOnThorax = ['Neck', 'LeftShoulder', 'RightShoulder'];
+const trunk = ['LowerBack', 'Spine', 'Spine1', ...hungOnThorax];
+const sides = ['Left', 'Right'] as const;
+
+const lost = (offset: Vec3, beside: Vec3): boolean => length(offset) < 0.01 * length(beside);
+const eachAxis = ([x, y, z]: readonly number[], v: Vec3): Vec3 => vec3(x! * v.x, y! * v.y, z! * v.z);
+
+/**
+ * Gives a skeleton of cmuconvert the bones that it lost of the CMU database (the thorax, and the wrist of either arm; training/.../cmuconvert.py
+ * says how they are known); other skeletons stay as they are. `notes`: what was done, a sentence each.
+ */
+export function putBackLostBones(joints: readonly BvhJoint[]): {
+  readonly joints: readonly BvhJoint[];
+  readonly notes: readonly string[];
+} {
+  const offsets = new Map(joints.map(({ name, offset }) => [name, offset]));
+  const notes: string[] = [];
+  const placed = new Map<string, Vec3>();
+  if (trunk.every((name) => offsets.has(name))) {
+    const upper = offsets.get('Spine1')!;
+    if (hungOnThorax.every((name) => lost(offsets.get(name)!, upper))) {
+      const { thoraxFromLowerBack, thoraxFromUpperBack } = cmuconvert;
+      const thorax = add(eachAxis(thoraxFromLowerBack, offsets.get('Spine')!), eachAxis(thoraxFromUpperBack, upper));
+      for (const name of hungOnThorax) placed.set(name, thorax);
+      notes.push(
+        'cmuconvert lost the thorax bone; it is put back, estimated from the two below (0.4 cm off on average)',
+      );
+    }
+  }
+  for (const side of sides) {
+    const hand = offsets.get(`${side}Hand`);
+    const base = offsets.get(`${side}FingerBase`);
+    if (!hand || !base || !lost(base, hand)) continue;
+    const wrist = scale(hand, cmuconvert.wristOfRadius);
+    placed.set(`${side}FingerBase`, wrist);
+    const thumb = offsets.get(`${side[0]}Thumb`);
+    if (thumb && lost(thumb, hand)) placed.set(`${side[0]}Thumb`, wrist);
+    notes.push(`cmuconvert lost the ${side.toLowerCase()} wrist bone; it is put back, half as long as the radius`);
+  }
+  return { joints: joints.map((joint) => ({ ...joint, offset: placed.get(joint.name) ?? joint.offset })), notes };
+}

@@ -1,0 +1,73 @@
+import { conjugate, multiply, type Quat, quat, setQuat, slerp } from '../math/quat';
+import { rateHz, shortestPieceSeconds, teleportSpeed } from './mocap-rules.json';
+import { type OurMotion, positionsWidth, rotationsWidth } from './our-joints';
+import type { Piece } from './person';
+import { bodyJoints, trackedJoints } from './skeleton-map';
+
+/** Where a motion leaps [frames], and what is left between leaps: pieces long enough to be motion. */
+export function cutAtLeaps({ positions, rateHz: rate, frameCount }: OurMotion): {
+  readonly cuts: readonly number[];
+  readonly pieces: readonly Piece[];
+} {
+  const cuts: number[] = [];
+  for (let frame = 1; frame < frameCount; frame++) {
+    const at = frame * positionsWidth;
+    for (let i = 0; i < 3 * bodyJoints.length; i += 3) {
+      const [x, y, z] = [0, 1, 2].map((axis) => positions[at + i + axis]! - positions[at - positionsWidth + i + axis]!);
+      if (Math.hypot(x!, y!, z!) * rate <= teleportSpeed) continue;
+      cuts.push(frame);
+      break;
+    }
+  }
+  const bounds = [0, ...cuts, frameCount];
+  const shortest = Math.max(4, Math.round(shortestPieceSeconds * rate));
+  const pieces = bounds.slice(1).map((to, i) => ({ from: bounds[i]!, to }));
+  return { cuts, pieces: pieces.filter(({ from, to }) => to - from >= shortest) };
+}
+
+/** A piece of a motion at 60 Hz in single precision, with the numbers of `OurMotion`. */
+export interface EvenClip {
+  readonly frameCount: number;
+  readonly positions: Float32Array<ArrayBuffer>;
+  readonly rotations: Float32Array<ArrayBuffer>;
+}
+
+const a = quat(0, 0, 0, 1);
+const b = quat(0, 0, 0, 1);
+
+const rotationAt = ({ rotations }: OurMotion, frame: number, joint: number, target: typeof a) => {
+  const at = frame * rotationsWidth + 4 * joint;
+  return setQuat(target, rotations[at]!, rotations[at + 1]!, rotations[at + 2]!, rotations[at + 3]!);
+};
+
+/** The piece at 60 Hz: every nth frame where that is exact, else interpolated; above a floor at this height [m], its head turned back by `neutral`. */
+export function evenClip(motion: OurMotion, { from, to }: Piece, floor: number, neutral: Quat): EvenClip {
+  const { positions, rateHz: rate } = motion;
+  const length = to - from;
+  const step = rate / rateHz;
+  const every = Math.abs(step - Math.round(step)) < 1e-3 && step >= 1 ? Math.round(step) : null;
+  const frameCount = every ? Math.ceil(length / every) : Math.floor(((length - 1) / rate) * rateHz) + 1;
+  const clip: EvenClip = {
+    frameCount,
+    positions: new Float32Array(frameCount * positionsWidth),
+    rotations: new Float32Array(frameCount * rotationsWidth),
+  };
+  const back = conjugate(neutral);
+  for (let frame = 0; frame < frameCount; frame++) {
+    const time = every ? frame * every : (frame / rateHz) * rate;
+    const before = Math.min(Math.floor(time), Math.max(0, length - 2));
+    const share = time - before;
+    const [first, second] = [from + before, from + Math.min(before + 1, length - 1)];
+    for (let i = 0; i < positionsWidth; i++) {
+      const value =
+        positions[first * positionsWidth + i]! * (1 - share) + positions[second * positionsWidth + i]! * share;
+      clip.positions[frame * positionsWidth + i] = i % 3 === 1 ? value - floor : value;
+    }
+    for (let joint = 0; joint < trackedJoints.length; joint++) {
+      const turn = slerp(rotationAt(motion, first, joint, a), rotationAt(motion, second, joint, b), share, a);
+      if (joint === 0) multiply(turn, back, turn);
+      clip.rotations.set([turn.x, turn.y, turn.z, turn.w], frame * rotationsWidth + 4 * joint);
+    }
+  }
+  return clip;
+}

@@ -1,0 +1,106 @@
+import type { Calibration } from '../body/calibration';
+import { conjugate, fromAxisAngle, multiply, type Quat, quat, rotate, setQuat } from '../math/quat';
+import { distance, forward, length, right, subtract, vec3 } from '../math/vec3';
+import { headingOf } from '../tracking/heading';
+import { eyesFromHeadJoint } from './mocap-rules.json';
+import { type OurMotion, positionsWidth, rotationsWidth } from './our-joints';
+import type { RestPose } from './rest-pose';
+import { type TruthJoint, truthJoints } from './skeleton-map';
+
+/** Frames of a motion, from one to before another. */
+export interface Piece {
+  readonly from: number;
+  readonly to: number;
+}
+
+const sides = ['left', 'right'] as const;
+/** The ankle's height above the sole as a share of thigh and shin (Winter, Biomechanics: 0.039 and 0.491 of stature). */
+const soleOfLeg = 0.039 / 0.491;
+/** A trunk that deviates less from upright (as a cosine) than this is. */
+const upright = 0.94;
+/** A foot's lowest joint lies so high above the floor [m], and may lie so far off before the floor is taken to lie elsewhere. */
+const footHeight = 0.025;
+const floorTolerance = 0.04;
+
+const columnOf = (joint: TruthJoint): number => 3 * truthJoints.indexOf(joint);
+
+/** The value [linear between neighbours] below which this share of the values lies. */
+function quantile(values: number[], share: number): number {
+  values.sort((a, b) => a - b);
+  const at = share * (values.length - 1);
+  const below = Math.floor(at);
+  const next = values[Math.min(below + 1, values.length - 1)]!;
+  return values[below]! + (next - values[below]!) * (at - below);
+}
+
+const median = (values: number[]): number => quantile(values, 0.5);
+
+/** Heights [m] of a joint over pieces. */
+function* heightsOf({ positions }: OurMotion, pieces: readonly Piece[], joint: TruthJoint): Generator<number> {
+  for (const { from, to } of pieces)
+    for (let frame = from; frame < to; frame++) yield positions[frame * positionsWidth + columnOf(joint) + 1]!;
+}
+
+/** Eye height [m] with straight legs and the trunk as at rest; null: a file without legs. */
+function standingEyeHeight(rest: RestPose): number | null {
+  const legs = sides.flatMap((side) => {
+    const [hip, knee, ankle] = (['UpperLeg', 'LowerLeg', 'Foot'] as const).map((part) => rest.get(`${side}${part}`));
+    return hip && knee && ankle ? [distance(hip, knee) + distance(knee, ankle)] : [];
+  });
+  if (!rest.has('leftFoot') || legs.length === 0) return null;
+  const hips = sides.flatMap((side) => rest.get(`${side}UpperLeg`)?.y ?? []);
+  const mean = (values: readonly number[]): number => values.reduce((sum, value) => sum + value, 0) / values.length;
+  const leg = mean(legs);
+  return leg + soleOfLeg * leg + rest.get('head')!.y - mean(hips) + eyesFromHeadJoint[1]!;
+}
+
+/** What a calibration would find of the person in a motion. */
+export function measuresOf(motion: OurMotion, pieces: readonly Piece[]): Calibration {
+  const { rest } = motion;
+  const between = (a: TruthJoint, b: TruthJoint): number => distance(rest.get(a)!, rest.get(b)!);
+  const arm = (side: 'left' | 'right'): number =>
+    between(`${side}UpperArm`, `${side}LowerArm`) + between(`${side}LowerArm`, `${side}Hand`);
+  return {
+    eyeHeight: standingEyeHeight(rest) ?? quantile([...heightsOf(motion, pieces, 'head')], 0.9) + eyesFromHeadJoint[1]!,
+    armSpan: between('leftUpperArm', 'rightUpperArm') + arm('left') + arm('right'),
+  };
+}
+
+/** The head's rotation when this person looks ahead: its median pitch and roll over frames with an upright trunk. */
+export function neutralHead({ positions, rotations }: OurMotion, pieces: readonly Piece[]): Quat {
+  const pitches: number[] = [];
+  const rolls: number[] = [];
+  const point = (frame: number, joint: TruthJoint) => {
+    const at = frame * positionsWidth + columnOf(joint);
+    return vec3(positions[at]!, positions[at + 1]!, positions[at + 2]!);
+  };
+  const head = quat(0, 0, 0, 1);
+  const gaze = vec3(0, 0, 0);
+  for (const { from, to } of pieces) {
+    for (let frame = from; frame < to; frame++) {
+      const trunk = subtract(point(frame, 'neck'), point(frame, 'hips'));
+      if (!(trunk.y > upright * length(trunk))) continue;
+      const at = frame * rotationsWidth;
+      setQuat(head, rotations[at]!, rotations[at + 1]!, rotations[at + 2]!, rotations[at + 3]!);
+      multiply(conjugate(headingOf(head)), head, head);
+      rotate(head, forward, gaze);
+      pitches.push(Math.atan2(gaze.y, -gaze.z));
+      rolls.push(Math.asin(Math.max(-1, Math.min(1, rotate(head, right, gaze).y))));
+    }
+  }
+  if (pitches.length === 0) return quat(0, 0, 0, 1);
+  return multiply(fromAxisAngle(right, median(pitches)), fromAxisAngle({ x: 0, y: 0, z: 1 }, median(rolls)));
+}
+
+/** How high [m] the floor lies that the lowest joint of the feet usually stands on; 0 where there are no feet or it lies where it should. */
+export function floorHeight(motion: OurMotion, pieces: readonly Piece[]): number {
+  const { positions, rest } = motion;
+  const feet = sides.flatMap((side) => [`${side}Foot`, `${side}Toes`] as const).filter((joint) => rest.has(joint));
+  if (feet.length === 0) return 0;
+  const lowest: number[] = [];
+  for (const { from, to } of pieces)
+    for (let frame = from; frame < to; frame++)
+      lowest.push(Math.min(...feet.map((joint) => positions[frame * positionsWidth + columnOf(joint) + 1]!)));
+  const offset = quantile(lowest, 0.1) - footHeight;
+  return Math.abs(offset) > floorTolerance ? offset : 0;
+}

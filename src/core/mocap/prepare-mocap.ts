@@ -1,0 +1,115 @@
+import type { Calibration } from '../body/calibration';
+import type { FileMotion } from '../motion/file-motion';
+import { readAmc } from '../motion/read-amc';
+import { type AsfSkeleton, readAsf } from '../motion/read-asf';
+import { bvhFileMotion, readBvh } from '../motion/read-bvh';
+import { readVrma } from '../motion/read-vrma';
+import { portionOf } from '../motion/work';
+import { putBackLostBones } from './cmuconvert';
+import { cutAtLeaps, evenClip } from './even-clip';
+import { cmu, rateHz } from './mocap-rules.json';
+import { type OurMotion, toOurJoints } from './our-joints';
+import { floorHeight, measuresOf, neutralHead } from './person';
+import { simulateTrackers } from './simulate-trackers';
+
+/** The content of a file of motion, with its name. */
+export type MocapSource = { readonly name: string } & (
+  | { readonly format: 'bvh'; readonly text: string }
+  | {
+      readonly format: 'amc';
+      readonly text: string;
+      readonly skeleton: { readonly name: string; readonly text: string };
+    }
+  | { readonly format: 'vrma'; readonly description: unknown; readonly binary: Uint8Array }
+);
+
+/** A person's motion as a headset and two hands saw it, with the truth beside it; 60 frames a second. */
+export interface MocapClip {
+  readonly name: string;
+  readonly calibration: Calibration;
+  readonly frameCount: number;
+  /** `trackedWidth` numbers for each frame: head, left wrist, right wrist. */
+  readonly tracked: Float32Array<ArrayBuffer>;
+  /** x, y, z of `truthJoints` for each frame, floor frame [m]; NaN: the file has no such joint. */
+  readonly truth: Float32Array<ArrayBuffer>;
+}
+
+/** Frames per second of every clip. */
+export const mocapRateHz = rateHz;
+
+/** The clips of a file, and what was put right in it, a sentence each. */
+export interface PreparedMocap {
+  readonly clips: readonly MocapClip[];
+  readonly notes: readonly string[];
+}
+
+/** The same fault as a sentence that begins with the name of its file. */
+const faultIn = (name: string, error: unknown): Error =>
+  new Error(`${name}: ${error instanceof Error ? error.message : String(error)}`, { cause: error });
+
+function readSkeleton({ name, text }: { readonly name: string; readonly text: string }): AsfSkeleton {
+  try {
+    return readAsf(text);
+  } catch (error) {
+    throw faultIn(name, error);
+  }
+}
+
+function* readFile(source: MocapSource): Generator<number, FileMotion> {
+  if (source.format === 'vrma') return readVrma(source.description, source.binary);
+  if (source.format === 'amc') return yield* readAmc(source.text, readSkeleton(source.skeleton), source.skeleton.name);
+  const motion = yield* readBvh(source.text);
+  const { joints, notes } = putBackLostBones(motion.joints);
+  return bvhFileMotion(motion, joints, notes);
+}
+
+const stemOf = (name: string): string => name.replace(/\.[^.]*$/, '');
+
+/** The rate [Hz] of a file that does not say it: known of the CMU database by the file's name. */
+function rateOf(name: string): number {
+  const found = /^0*(\d+)_0*\d+$/.exec(stemOf(name));
+  if (!found)
+    throw new Error(
+      'an AMC file does not say its frame rate; it is known of files named as the CMU database names them, as 01_02.amc',
+    );
+  return cmu.subjectsAt60Hz.includes(Number(found[1])) ? 60 : cmu.rateHz;
+}
+
+/** Whose motion it is, as the evaluation takes it of files in one folder: the start of the name. */
+function personOf(name: string): string {
+  const person = stemOf(name).split('_')[0]!;
+  return /^\d+$/.test(person) ? String(Number(person)).padStart(3, '0') : person;
+}
+
+/**
+ * Simulates what a headset and two hands would have seen of the person in a file, as the evaluation does (docs/evaluation.md). Where the motion
+ * leaps it is cut. Yields the share [0, 1] that is done. Throws a sentence that begins with the file's name.
+ */
+export function* prepareMocap(source: MocapSource): Generator<number, PreparedMocap> {
+  const { name } = source;
+  try {
+    const file = yield* portionOf(readFile(source), 0, 0.6);
+    const motion = yield* portionOf(toOurJoints(file, file.rateHz ?? rateOf(name)), 0.6, 0.8);
+    return yield* portionOf(clipsOf(name, motion, file.notes), 0.8, 1);
+  } catch (error) {
+    throw faultIn(name, error);
+  }
+}
+
+function* clipsOf(name: string, motion: OurMotion, notes: readonly string[]): Generator<number, PreparedMocap> {
+  const { cuts, pieces } = cutAtLeaps(motion);
+  if (pieces.length === 0) throw new Error('nothing in it moves as a person for half a second');
+  const calibration = measuresOf(motion, pieces);
+  const neutral = neutralHead(motion, pieces);
+  const floor = floorHeight(motion, pieces);
+  const clips: MocapClip[] = [];
+  for (const [i, piece] of pieces.entries()) {
+    yield i / pieces.length;
+    const clip = pieces.length === 1 ? stemOf(name) : `${stemOf(name)}#${i + 1}`;
+    const even = evenClip(motion, piece, floor, neutral);
+    const tracked = simulateTrackers(even, personOf(name), clip);
+    clips.push({ name: clip, calibration, frameCount: even.frameCount, tracked, truth: even.positions });
+  }
+  const leaps = cuts.slice(0, 5).map((cut) => cut + 1).join(', '); // biome-ignore format: one thought
+  return { clips, notes: cuts.length > 0 ? [...notes, `it leaps at frame ${leaps}; cut there`] : notes };
+}

@@ -1,0 +1,63 @@
+import { sideSign } from '../body/skeleton';
+import { distance, dot, down, length, normalise, right, scale, subtract, up, type Vec3, zero } from '../math/vec3';
+import { shortestBone } from './mocap-rules.json';
+import type { SkeletonMap, TruthJoint } from './skeleton-map';
+
+/** Where joints rest [m], +Y up, facing −Z; those that a file lacks are not there. */
+export type RestPose = ReadonlyMap<TruthJoint, Vec3>;
+
+const trunk = [
+  ['hips', 'chest'],
+  ['chest', 'neck'],
+  ['neck', 'head'],
+] as const;
+
+const direction = (v: Vec3): Vec3 => normalise(v, zero);
+
+/** A direction of a body that faces −Z, in a word. */
+function told({ x, y, z }: Vec3): string {
+  const [ax, ay, az] = [Math.abs(x), Math.abs(y), Math.abs(z)];
+  if (ax >= ay && ax >= az) return x > 0 ? 'to the right' : 'to the left';
+  if (ay >= az) return y > 0 ? 'up' : 'down';
+  return z > 0 ? 'backward' : 'forward';
+}
+
+/**
+ * Throws a sentence where joints at rest are no person in T-pose, with arms anywhere between level and hanging: a bone of no length, a trunk
+ * that lies, shoulders that are not left and right, raised or folded arms, legs that do not stand.
+ */
+export function checkRest(rest: RestPose, { joints }: SkeletonMap): void {
+  const at = (joint: TruthJoint): Vec3 => rest.get(joint)!;
+  const refuse = (what: string, should: string): never => {
+    throw new Error(`the rest pose is no T-pose: ${what} instead of ${should}`);
+  };
+  const bone = (near: TruthJoint, far: TruthJoint, part: string): void => {
+    if (distance(at(near), at(far)) < shortestBone)
+      throw new Error(
+        `${joints[far]} (${far}) lies on ${joints[near]} (${near}) in the rest pose: the file lost a bone of ${part}`,
+      );
+  };
+  for (const [near, far] of trunk) bone(near, far, 'the trunk');
+  const spine = direction(subtract(at('neck'), at('hips')));
+  if (dot(spine, up) < 0.7) refuse(`the trunk, ${joints.hips} to ${joints.neck}, points ${told(spine)}`, 'up');
+  const across = subtract(at('rightUpperArm'), at('leftUpperArm'));
+  if (dot(direction(across), right) < 0.7 || length(across) < 0.1) {
+    const so = length(across) < 0.02 ? 'lie on each other' : `lie ${told(across)} of each other`;
+    refuse(`the shoulders, ${joints.leftUpperArm} and ${joints.rightUpperArm}, ${so}`, 'left and right');
+  }
+  for (const side of ['left', 'right'] as const) {
+    const outward = scale(right, sideSign(side));
+    const [shoulder, elbow, hand] = [`${side}UpperArm`, `${side}LowerArm`, `${side}Hand`] as const;
+    bone(shoulder, elbow, `the ${side} arm`);
+    bone(elbow, hand, `the ${side} arm`);
+    const arm = direction(subtract(at(hand), at(shoulder)));
+    if (dot(arm, up) > 0.5 || dot(arm, outward) < -0.3)
+      refuse(`the ${side} arm, ${joints[shoulder]} to ${joints[hand]}, points ${told(arm)}`, 'sideways');
+    if (dot(direction(subtract(at(elbow), at(shoulder))), direction(subtract(at(hand), at(elbow)))) < 0)
+      refuse(`the ${side} arm is folded at ${joints[elbow]}`, 'straight');
+    const [hip, foot] = [`${side}UpperLeg`, `${side}Foot`] as const;
+    if (!rest.has(hip) || !rest.has(foot)) continue;
+    const leg = direction(subtract(at(foot), at(hip)));
+    if (dot(leg, down) < 0.7) refuse(`the ${side} leg, ${joints[hip]} to ${joints[foot]}, points ${told(leg)}`, 'down');
+  }
+}

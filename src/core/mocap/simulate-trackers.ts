@@ -1,0 +1,87 @@
+import { fromAxisAngle, multiply, type Quat, quat, rotate, setQuat } from '../math/quat';
+import { add, length, normalise, type Vec3, vec3 } from '../math/vec3';
+import type { EvenClip } from './even-clip';
+import { eyesFromHeadJoint, seed, trackers } from './mocap-rules.json';
+import { NumpyRandom } from './numpy-random';
+import { positionsWidth, rotationsWidth } from './our-joints';
+import { trackedJoints, truthJoints } from './skeleton-map';
+
+/** Numbers of a frame: position [m] and rotation (xyzw) of headset, left wrist and right wrist. */
+export const trackedWidth = 7 * trackedJoints.length;
+
+const radians = (degrees: number): number => (degrees * Math.PI) / 180;
+
+/** Three normal numbers of this deviation. */
+const drawVector = (random: NumpyRandom, deviation: number): Vec3 =>
+  vec3(random.normal() * deviation, random.normal() * deviation, random.normal() * deviation);
+
+/** The rotation by |v| [rad] about v. */
+const fromRotationVector = (v: Vec3): Quat => fromAxisAngle(normalise(v), length(v));
+
+const crcTable = Int32Array.from(Array(256).keys(), (byte) => {
+  let word = byte;
+  for (let bit = 0; bit < 8; bit++) word = word & 1 ? (word >>> 1) ^ 0xedb88320 : word >>> 1;
+  return word;
+});
+
+/** CRC-32 of a text's UTF-8. */
+function checksum(text: string): number {
+  const bytes = encodeURIComponent(text).replace(/%(..)/g, (_, hex: string) =>
+    String.fromCharCode(Number.parseInt(hex, 16)),
+  );
+  let sum = -1;
+  for (const unit of bytes) sum = (sum >>> 8) ^ crcTable[(sum ^ unit.charCodeAt(0)) & 0xff]!;
+  return ~sum >>> 0;
+}
+
+/** How a headset and two hands sit on a person, constant for a wearer: offsets [m] in the frames of head and wrists, and turns. */
+function drawWearer(person: string): { readonly offsets: readonly Vec3[]; readonly turns: readonly Quat[] } {
+  const random = new NumpyRandom([seed, checksum(person)]);
+  const handTurn = radians(trackers.handTurnDegrees) / Math.sqrt(3);
+  const hands = [drawVector(random, handTurn), drawVector(random, handTurn)].map(fromRotationVector);
+  const [x, y, z] = eyesFromHeadJoint as [number, number, number];
+  const eyes = add(vec3(x, y, z), drawVector(random, trackers.headsetOffset));
+  const pitch = random.normal() * radians(trackers.headsetPitchDegrees);
+  const wrists = [drawVector(random, trackers.wristOffset), drawVector(random, trackers.wristOffset)];
+  return { offsets: [eyes, ...wrists], turns: [fromAxisAngle(vec3(1, 0, 0), pitch), ...hands] };
+}
+
+/**
+ * What a headset and two hands would have reported of a person while the clip of this name was recorded, `trackedWidth` numbers for each frame;
+ * the same as the evaluation's, which draws its errors by person and clip.
+ */
+export function simulateTrackers(
+  { positions, rotations, frameCount }: EvenClip,
+  person: string,
+  clip: string,
+): Float32Array<ArrayBuffer> {
+  const { offsets, turns } = drawWearer(person);
+  const random = new NumpyRandom([seed, checksum(clip)]);
+  const tracked = new Float32Array(frameCount * trackedWidth);
+  const columns = trackedJoints.map((joint) => 3 * truthJoints.indexOf(joint));
+  const rotation = quat(0, 0, 0, 1);
+  const read = (frame: number, joint: number): Quat => {
+    const at = frame * rotationsWidth + 4 * joint;
+    return setQuat(rotation, rotations[at]!, rotations[at + 1]!, rotations[at + 2]!, rotations[at + 3]!);
+  };
+  // All positions come before all rotations: the order in which the errors are drawn.
+  for (let frame = 0; frame < frameCount; frame++) {
+    for (const [joint, column] of columns.entries()) {
+      const from = frame * positionsWidth + column;
+      const moved = rotate(read(frame, joint), offsets[joint]!);
+      const noise = drawVector(random, trackers.positionNoise);
+      const at = frame * trackedWidth + 7 * joint;
+      tracked[at] = positions[from]! + moved.x + noise.x;
+      tracked[at + 1] = positions[from + 1]! + moved.y + noise.y;
+      tracked[at + 2] = positions[from + 2]! + moved.z + noise.z;
+    }
+  }
+  const jitter = radians(trackers.rotationNoiseDegrees) / Math.sqrt(3);
+  for (let frame = 0; frame < frameCount; frame++) {
+    for (const [joint, turn] of turns.entries()) {
+      const turned = multiply(multiply(read(frame, joint), turn), fromRotationVector(drawVector(random, jitter)));
+      tracked.set([turned.x, turned.y, turned.z, turned.w], frame * trackedWidth + 7 * joint + 3);
+    }
+  }
+  return tracked;
+}

@@ -1,0 +1,28 @@
+import { type MutableQuat, quat } from '../math/quat';
+import { type MutableVec3, type Vec3, vec3 } from '../math/vec3';
+
+/** Where joints are and how they are turned since the rest pose, in the unit and axes of their file. */
+export interface JointPoses {
+  readonly positions: readonly MutableVec3[];
+  readonly rotations: readonly MutableQuat[];
+}
+
+/** Poses of so many joints, all at the origin, as at rest. */
+export const makeJointPoses = (count: number): JointPoses => ({
+  positions: Array.from({ length: count }, () => vec3(0, 0, 0)),
+  rotations: Array.from({ length: count }, () => quat(0, 0, 0, 1)),
+});
+
+/** What a file of motion says of all joints of a skeleton, whichever format it has; in its own unit and axes. */
+export interface FileMotion {
+  readonly names: readonly string[];
+  /** Of every joint at rest, from the root. */
+  readonly rest: readonly Vec3[];
+  /** Frames per second; null: the file does not say. */
+  readonly rateHz: number | null;
+  readonly frameCount: number;
+  /** What was put right, a sentence each. */
+  readonly notes: readonly string[];
+  /** Writes every joint of one frame. */
+  pose(frame: number, target: JointPoses): JointPoses;
+}

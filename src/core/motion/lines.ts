@@ -1,0 +1,105 @@
+const mostShown = 40;
+/** No line of a motion file is longer [characters]. */
+const longestLine = 2 ** 20;
+
+/** What a file says, as sentences quote it. */
+export const shown = (text: string): string => `“${text.length > mostShown ? `${text.slice(0, mostShown)}…` : text}”`;
+
+/** A word of a line and the column [from 1] at which it begins. */
+export interface Word {
+  readonly word: string;
+  readonly column: number;
+}
+
+/** Lines of a text one by one, with the place of what is read. */
+export class Lines {
+  /** Of the line at hand, from 1. */
+  number = 0;
+  line = '';
+  #next = 0;
+
+  constructor(readonly text: string) {}
+
+  /** Share [0, 1] of the text that was read. */
+  get share(): number {
+    return this.text.length === 0 ? 1 : Math.min(1, this.#next / this.text.length);
+  }
+
+  /** Goes on to the next line that is not blank; false: there is none. */
+  next(): boolean {
+    while (this.#next <= this.text.length) {
+      const feed = this.text.indexOf('\n', this.#next);
+      const end = feed < 0 ? this.text.length : feed;
+      this.number += 1;
+      if (end - this.#next > longestLine) this.fail(longestLine, 'the line does not end: this is no motion file');
+      this.line = this.text.slice(this.#next, end);
+      this.#next = end + 1;
+      if (this.line.trim() !== '') return true;
+    }
+    return false;
+  }
+
+  /** Words of the line, up to a `#` where that begins a comment. */
+  words(comment = false): readonly Word[] {
+    const line = comment ? this.line.split('#', 1)[0]! : this.line;
+    return [...line.matchAll(/\S+/g)].map(({ 0: word, index }) => ({ word, column: index + 1 }));
+  }
+
+  /** The number that a word is. */
+  numberOf({ word, column }: Word): number {
+    const value = Number(word);
+    // Number takes '0x10' and 'Infinity' too; the latter is refused as not finite.
+    if (!Number.isFinite(value)) this.fail(column, `${shown(word)} is no finite number`);
+    return value;
+  }
+
+  /** Writes the numbers of the line from a character on, as many as `width` at most; returns how many there are. */
+  numbers(from: number, target: Float64Array, at: number, width: number): number {
+    const { line } = this;
+    let count = 0;
+    for (let i = from; i < line.length; ) {
+      if (line.charCodeAt(i) <= 32) {
+        i++;
+        continue;
+      }
+      let end = i + 1;
+      while (end < line.length && line.charCodeAt(end) > 32) end++;
+      const value = Number(line.slice(i, end));
+      if (!Number.isFinite(value)) this.fail(i + 1, `${shown(line.slice(i, end))} is no finite number`);
+      if (count < width) target[at + count] = value;
+      count += 1;
+      i = end;
+    }
+    return count;
+  }
+
+  fail(column: number, message: string): never {
+    throw new Error(`line ${this.number}, column ${column}: ${message}`);
+  }
+}
+
+/** Rows of so many numbers, as many as come. */
+export class Rows {
+  values: Float64Array;
+  count = 0;
+
+  constructor(readonly width: number) {
+    this.values = new Float64Array(width * 64);
+  }
+
+  /** Makes room for another row of zeros; returns where it begins. */
+  add(): number {
+    const at = this.count * this.width;
+    if (at + this.width > this.values.length) {
+      const larger = new Float64Array(2 * this.values.length);
+      larger.set(this.values);
+      this.values = larger;
+    }
+    this.count += 1;
+    return at;
+  }
+
+  finish(): Float64Array {
+    return this.values.subarray(0, this.count * this.width);
+  }
+}

@@ -1,0 +1,168 @@
+import { fromAxisAngle, type MutableQuat, multiply, type Quat, quat } from '../math/quat';
+import { backward, normalise, right, scale, up, type Vec3, vec3, zero } from '../math/vec3';
+import { Lines, shown, type Word } from './lines';
+
+/** A bone in rest: from the end of its parent, in the file's unit and axes. */
+export interface AsfBone {
+  readonly name: string;
+  /** From its start to its end. */
+  readonly way: Vec3;
+  /** The axes that its angles are about. */
+  readonly axis: Quat;
+  /** What an AMC file says of it, in order, as `rx`. */
+  readonly freedoms: readonly string[];
+  /** Index of the parent among the bones; −1: the root. */
+  readonly parent: number;
+}
+
+/** An Acclaim skeleton. */
+export interface AsfSkeleton {
+  /** Parents before children. */
+  readonly bones: readonly AsfBone[];
+  /** What an AMC file says of the root, in order, as `tx`. */
+  readonly rootFreedoms: readonly string[];
+  readonly rootAxis: Quat;
+  readonly rootPosition: Vec3;
+  readonly radiansPerUnit: number;
+}
+
+/** No skeleton of a person has as many. */
+const mostBones = 2000;
+const axes = { x: right, y: up, z: backward };
+const turn = quat(0, 0, 0, 1);
+
+/** Writes the rotation by angles [rad] about x, y and z, applied in this order (“xyz”: R = Rz·Ry·Rx). */
+export function fromEuler(angles: Vec3, order: string, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat {
+  target.x = target.y = target.z = 0;
+  target.w = 1;
+  for (const axis of order) {
+    if (axis !== 'x' && axis !== 'y' && axis !== 'z') continue;
+    multiply(fromAxisAngle(axes[axis], angles[axis], turn), target, target);
+  }
+  return target;
+}
+
+/** A bone as :bonedata has it; angles in the file's unit. */
+interface RawBone {
+  readonly name: string;
+  readonly way: Vec3;
+  readonly angles: Vec3;
+  readonly order: string;
+  readonly freedoms: readonly string[];
+}
+
+type Block = Map<string, readonly Word[]>;
+
+/** What a file says before its bones are put in order. */
+class Sections {
+  radiansPerUnit = Math.PI / 180;
+  readonly root: Block = new Map();
+  readonly bones = new Map<string, RawBone>();
+  /** Parents by child. */
+  readonly parents = new Map<string, string>();
+  readonly #lines: Lines;
+  #block: Block | null = null;
+
+  constructor(lines: Lines) {
+    this.#lines = lines;
+    let section = '';
+    while (lines.next()) {
+      const words = lines.words(true);
+      const first = words[0]?.word;
+      if (first === undefined) continue;
+      if (first.startsWith(':')) section = first;
+      else this.#take(section, first, words);
+    }
+    if (this.bones.size === 0) lines.fail(1, 'no :bonedata with bones, so this is no ASF skeleton');
+  }
+
+  #take(section: string, first: string, words: readonly Word[]): void {
+    if (section === ':units' && first === 'angle') this.radiansPerUnit = words[1]?.word === 'deg' ? Math.PI / 180 : 1;
+    else if (section === ':root') this.root.set(first, words);
+    else if (section === ':bonedata') this.#takeBone(first, words);
+    else if (section === ':hierarchy' && first !== 'begin' && first !== 'end')
+      for (const { word } of words.slice(1)) this.parents.set(word, first);
+  }
+
+  #takeBone(first: string, words: readonly Word[]): void {
+    if (first === 'begin') this.#block = new Map();
+    else if (first === 'end') {
+      const bone = rawBone(this.#lines, words[0]!, this.#block);
+      this.bones.set(bone.name, bone);
+      this.#block = null;
+      if (this.bones.size > mostBones) this.#lines.fail(1, `more than ${mostBones} bones: no person's skeleton`);
+    } else if (['direction', 'length', 'axis'].includes(first)) {
+      this.#block?.set(first, words);
+      numbersOf(this.#lines, words, first === 'length' ? 1 : 3);
+    } else this.#block?.set(first, words);
+  }
+}
+
+/** The first numbers after a keyword. */
+function numbersOf(lines: Lines, words: readonly Word[], count: number): number[] {
+  const given = words.slice(1, 1 + count);
+  const { word, column } = words[0]!;
+  if (given.length < count) lines.fail(column, `${word} should have ${count} numbers, has ${given.length}`);
+  return given.map((each) => lines.numberOf(each));
+}
+
+const vectorOf = ([x, y, z]: readonly number[]): Vec3 => vec3(x!, y!, z!);
+
+function rawBone(lines: Lines, at: Word, block: Block | null): RawBone {
+  const name = block?.get('name')?.[1]?.word;
+  if (!block || name === undefined) return lines.fail(at.column, 'a bone without a name ends here');
+  const numbers = (key: string, count: number): number[] =>
+    numbersOf(lines, block.get(key) ?? lines.fail(at.column, `the bone ${shown(name)} has no ${key}`), count);
+  const [length] = numbers('length', 1);
+  const axis = block.get('axis');
+  return {
+    name,
+    way: scale(normalise(vectorOf(numbers('direction', 3)), zero), length!),
+    angles: axis ? vectorOf(numbersOf(lines, axis, 3)) : zero,
+    order: axis?.[4]?.word.toLowerCase() ?? 'xyz',
+    freedoms: (block.get('dof') ?? []).slice(1).map(({ word }) => word.toLowerCase()),
+  };
+}
+
+/** Parents before children; bones that the hierarchy does not name are left out. */
+function orderedBones({ bones, parents, radiansPerUnit }: Sections): readonly AsfBone[] {
+  for (const child of parents.keys())
+    if (!bones.has(child)) throw new Error(`the hierarchy names ${shown(child)}, but :bonedata has no such bone`);
+  const ordered: AsfBone[] = [];
+  const placed = new Map([['root', -1]]);
+  let remaining = [...bones.values()].filter(({ name }) => parents.has(name));
+  while (remaining.length > 0) {
+    const ready = remaining.filter(({ name }) => placed.has(parents.get(name)!));
+    if (ready.length === 0)
+      throw new Error(`the hierarchy does not lead from the root to ${shown(remaining[0]!.name)}`);
+    for (const { name, way, angles, order, freedoms } of ready) {
+      const axis = fromEuler(scale(angles, radiansPerUnit), order);
+      ordered.push({ name, way, axis, freedoms, parent: placed.get(parents.get(name)!)! });
+      placed.set(name, ordered.length - 1);
+    }
+    remaining = remaining.filter(({ name }) => !placed.has(name));
+  }
+  return ordered;
+}
+
+/** Reads the text of an ASF file. Throws a sentence, where a line is wrong with line and column, where the text is none. */
+export function readAsf(text: string): AsfSkeleton {
+  const lines = new Lines(text);
+  const sections = new Sections(lines);
+  const { root, radiansPerUnit } = sections;
+  const rootVector = (key: string): Vec3 => {
+    const words = root.get(key);
+    return words ? vectorOf(numbersOf(lines, words, 3)) : zero;
+  };
+  const order = (root.get('order') ?? []).slice(1).map(({ word }) => word.toLowerCase());
+  return {
+    bones: orderedBones(sections),
+    rootFreedoms: order.length > 0 ? order : ['tx', 'ty', 'tz', 'rx', 'ry', 'rz'],
+    rootAxis: fromEuler(
+      scale(rootVector('orientation'), radiansPerUnit),
+      root.get('axis')?.[1]?.word.toLowerCase() ?? 'xyz',
+    ),
+    rootPosition: rootVector('position'),
+    radiansPerUnit,
+  };
+}

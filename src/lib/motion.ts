@@ -1,0 +1,11 @@
+// "threepoint/motion": recordings as files of other programs, and a pose as the joints of WebXR Body Tracking.
+export type { Motion } from '../core/motion/motion';
+export type { MotionBone } from '../core/motion/skeleton';
+export type { XRBodyJoints } from '../core/motion/xr-body';
+export { toXRBody, XRBodyPoser } from '../core/motion/xr-body';
+export type { MotionFile, MotionWriter } from './bare-export';
+export type { ExportOptions } from './export-motion';
+export { exportMotion } from './export-motion';
+export type { MotionFormat } from './motion-formats';
+export { motionFormats } from './motion-formats';
+export type { WorkOptions, WorkProgress } from './run-work';
