@@ -1,5 +1,5 @@
 /** Takes files dropped anywhere on the page, and shows where they may be dropped while one is dragged. */
-export function acceptDroppedFiles(onFile: (file: File) => void): void {
+export function acceptDroppedFiles(onFiles: (files: readonly File[]) => void): void {
   let depth = 0;
   const hover = (by: number) => {
     depth = Math.max(0, depth + by);
@@ -12,6 +12,6 @@ export function acceptDroppedFiles(onFile: (file: File) => void): void {
     event.preventDefault();
     depth = 0;
     hover(0);
-    for (const file of event.dataTransfer?.files ?? []) onFile(file);
+    onFiles([...(event.dataTransfer?.files ?? [])]);
   });
 }

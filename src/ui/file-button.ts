@@ -1,11 +1,16 @@
 import { button, element } from './element';
 
-/** A button that opens a file dialog. */
-export function fileButton(label: string, accept: string, onFile: (file: File) => void): HTMLElement[] {
-  const input = element('input', { type: 'file', accept, hidden: true, 'aria-label': label });
+/** A button that opens a file dialog for one file, or for several at once. */
+export function fileButton(
+  label: string,
+  accept: string,
+  onFiles: (files: readonly [File, ...File[]]) => void,
+  { multiple = false } = {},
+): HTMLElement[] {
+  const input = element('input', { type: 'file', accept, multiple, hidden: true, 'aria-label': label });
   input.addEventListener('change', () => {
-    const [file] = input.files ?? [];
-    if (file) onFile(file);
+    const [file, ...others] = input.files ?? [];
+    if (file) onFiles([file, ...others]);
     // The same file again must be a change again.
     input.value = '';
   });

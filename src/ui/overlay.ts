@@ -17,6 +17,8 @@ export interface FrameReport {
   readonly rateHz: number;
   readonly estimator: string;
   readonly provider: string;
+  /** How far the drawn joints are from where the device's own body has them [cm]; null: it has none now. */
+  readonly fromDevice: readonly { readonly name: string; readonly cm: number }[] | null;
 }
 
 export interface Overlay {
@@ -37,6 +39,15 @@ export function missedFrames(report: Pick<FrameReport, 'missed' | 'frames' | 'ra
   return `${share.toFixed(share > 0 && share < 9.95 ? 1 : 0)} % missed at ${Math.round(report.rateHz)} Hz`;
 }
 
+/** How far the drawn body is from the device's, joint by joint, in two lines; left before right. */
+export function differenceLines(fromDevice: NonNullable<FrameReport['fromDevice']>): readonly [string, string] {
+  const of = (joint: string) => {
+    const found = fromDevice.filter(({ name }) => name.endsWith(joint)).map(({ cm }) => cm.toFixed(1));
+    return `${joint}${found.length > 1 ? 's' : ''} ${found.join(', ')}`;
+  };
+  return [`cm from the device’s: ${of('elbow')}`, `${of('shoulder')} · ${of('spine')} · ${of('pelvis')}`];
+}
+
 /** Frame time by stage, as a card on the desktop. Call `show` a few times a second, not per frame. */
 export function createOverlay(region: HTMLElement): Overlay {
   const total = element('strong', {}, '–');
@@ -45,6 +56,7 @@ export function createOverlay(region: HTMLElement): Overlay {
   const method = element('p', { class: 'method' });
   const bar = element('div', { class: 'stage-bar', 'aria-hidden': 'true' });
   const rows = element('tbody');
+  const difference = element('p', { class: 'difference' });
   const cells = new Map<string, { row: HTMLElement; part: HTMLElement; p50: HTMLElement; p95: HTMLElement }>();
   region.append(
     element('p', { class: 'total' }, total, tail),
@@ -67,6 +79,7 @@ export function createOverlay(region: HTMLElement): Overlay {
     ),
     missed,
     method,
+    difference,
   );
 
   function cellsOf(name: string) {
@@ -102,6 +115,8 @@ export function createOverlay(region: HTMLElement): Overlay {
       }
       missed.textContent = missedFrames(report);
       method.textContent = `${report.estimator} · ${report.provider}`;
+      difference.hidden = report.fromDevice === null;
+      if (report.fromDevice) difference.textContent = differenceLines(report.fromDevice).join(' · ');
     },
   };
 }

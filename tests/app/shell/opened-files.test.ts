@@ -42,11 +42,13 @@ function files() {
   const notices: Notice[] = [];
   const done: string[] = [];
   const opened: (string | File)[] = [];
+  const mocap: (readonly (string | File)[])[] = [];
   const recorder = new Recorder();
   return {
     notices,
     done,
     opened,
+    mocap,
     recorder,
     files: new OpenedFiles({
       recorder,
@@ -60,6 +62,7 @@ function files() {
         openOwn: async () => true,
         giveBones: async () => true,
       },
+      mocap: { open: async (sources) => void mocap.push(sources) },
       body: { jumped: () => void done.push(`the body begins anew while ${recorder.mode}`) },
       onChange: () => void done.push('shown'),
     }),
@@ -110,5 +113,17 @@ describe('a dropped file', () => {
     expect(opened).toEqual([file]);
     expect(recorder.mode).toBe('idle');
     expect(notices).toEqual([{ level: 'info', text: 'robot.vrm is your avatar now.' }]);
+  });
+
+  test('of motion capture goes with its skeleton, and what came with both is opened too', () => {
+    const { files: page, opened, mocap } = files();
+    const [motion, skeleton, robot] = ['01_02.AMC', '01.asf', 'robot.vrm'].map((name) => new File([''], name)) as [
+      File,
+      File,
+      File,
+    ];
+    page.openAll([robot, motion, skeleton]);
+    expect(mocap).toEqual([[motion, skeleton]]);
+    expect(opened).toEqual([robot]);
   });
 });

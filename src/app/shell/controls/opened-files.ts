@@ -4,6 +4,7 @@ import type { BareBody } from '../../../lib/bare-body';
 import { type FileKind, nameOf, readLimited } from '../../../ui/limited-files';
 import type { Notices } from '../../../ui/notices';
 import type { Recorder } from '../../studio/recorder';
+import type { PageMocap } from '../page-mocap';
 import type { ShownAvatar } from '../shown-avatar';
 
 /** Twice what the recorder keeps at most. */
@@ -14,15 +15,25 @@ export interface OpenedFilesOptions {
   readonly recorder: Pick<Recorder, 'open' | 'replay'>;
   readonly notices: Pick<Notices, 'show'>;
   readonly body: Pick<BareBody, 'jumped'>;
+  readonly mocap: Pick<PageMocap, 'open'>;
   onChange(): void;
 }
 
-/** Avatars and recordings that the user brings along, as files of this device or as addresses. */
+const isMocap = ({ name }: File): boolean => /\.(bvh|asf|amc|vrma)$/i.test(name);
+
+/** Avatars, recordings and motion capture that the user brings along, as files of this device or as addresses. */
 export class OpenedFiles {
   readonly #options: OpenedFilesOptions;
 
   constructor(options: OpenedFilesOptions) {
     this.#options = options;
+  }
+
+  /** Files that came together: those of motion capture make one motion, others are opened one by one. */
+  openAll(files: readonly File[]): void {
+    const mocap = files.filter(isMocap);
+    if (mocap.length > 0) void this.#options.mocap.open(mocap);
+    for (const file of files) if (!isMocap(file)) void this.open(file);
   }
 
   /** A file by its ending: a recording, else an avatar. Never rejects: what goes wrong becomes a notice. */

@@ -1,0 +1,90 @@
+import { writeFileSync } from 'node:fs';
+import type { Page } from '@playwright/test';
+import { goldenMocap } from '../tests/core/mocap/golden-mocap';
+import { expect, keepPicture, open, probe, test } from './page-fixture';
+
+const [acclaim, , leaping] = goldenMocap;
+const card = (page: Page) => page.getByRole('region', { name: 'Motion capture' });
+const filesOf = ({ files }: { readonly files: Readonly<Record<string, string>> }) =>
+  Object.entries(files).map(([name, text]) => ({ name, mimeType: 'text/plain', buffer: Buffer.from(text) }));
+
+/** Opens these files as a person does who chooses them in the panel. */
+async function choose(page: Page, files: Parameters<ReturnType<Page['locator']>['setInputFiles']>[0]): Promise<void> {
+  await page.getByRole('tab', { name: 'Recording' }).click();
+  await page.getByLabel('Open motion capture').and(page.locator('input')).setInputFiles(files);
+}
+
+/** The numbers of a row of the card [cm]: of the picture and of the clip, for each method. */
+const errors = async (page: Page, joint: string): Promise<number[]> =>
+  (await card(page).getByRole('row', { name: joint }).getByRole('cell').allTextContents()).map(Number);
+
+test('motion capture is shown with its truth, and methods are compared on the same second', async ({ page }) => {
+  await open(page, 'emulate&quality=low&estimator=ik&actor=off');
+  await choose(page, filesOf(acclaim!));
+  await expect(card(page).getByRole('heading', { name: '11_07' })).toBeVisible();
+  expect((await probe(page)).recorder.mode).toBe('replaying');
+  await card(page).getByRole('button', { name: 'Pause' }).click();
+  await card(page).getByLabel('Time of the clip').fill('0.3');
+  await expect.poll(() => errors(page, 'Left elbow')).toEqual([expect.any(Number), expect.any(Number)]);
+  await expect.poll(async () => (await errors(page, 'Mean')).every((error) => error > 0 && error < 30)).toBe(true);
+
+  await card(page).getByLabel('On its right').selectOption('learned');
+  await expect.poll(async () => (await errors(page, 'Mean')).filter((error) => error > 0)).toHaveLength(4);
+  expect((await probe(page)).recorder.seconds).toBeCloseTo(0.3, 6);
+  await keepPicture(page, 'motion-capture');
+
+  await card(page).getByLabel('Method').selectOption('hands-only');
+  await expect(card(page)).toContainText('Hands only: it draws no body');
+  await card(page).getByRole('button', { name: 'Close' }).click();
+  await expect(card(page)).toBeHidden();
+  expect((await probe(page)).recorder.mode).toBe('idle');
+});
+
+test('a link leads to the same second, method and body beside it', async ({ page }) => {
+  for (const [name, text] of Object.entries(leaping!.files))
+    await page.route(`**/clips/${name}`, (route) => route.fulfill({ body: text, contentType: 'text/plain' }));
+  await open(
+    page,
+    'emulate&quality=low&estimator=ik&mocap=clips/someone_walks.bvh&clip=1&at=0.25&beside=ik&truth=beside',
+  );
+  await expect(card(page).getByRole('heading', { name: 'someone_walks#1' })).toBeVisible();
+  await expect(card(page).getByLabel('On its right')).toHaveValue('ik');
+  await expect(card(page).getByLabel('Truth')).toHaveValue('beside');
+  expect((await probe(page)).recorder.seconds).toBe(0.25);
+  await expect(page.getByRole('status').filter({ hasText: 'it leaps at frame 39' })).toBeVisible();
+
+  await card(page).getByLabel('Clip', { exact: true }).selectOption('someone_walks#2');
+  await card(page).getByLabel('Time of the clip').fill('0.5');
+  await card(page).getByRole('button', { name: 'Copy link' }).click();
+  const link = new URL(page.url()).searchParams;
+  expect(link.get('mocap')).toBe('clips/someone_walks.bvh');
+  expect([link.get('clip'), link.get('beside'), link.get('estimator')]).toEqual(['2', 'ik', 'ik']);
+  expect(Math.abs(Number(link.get('at')) - 0.5)).toBeLessThan(0.25);
+});
+
+test('a damaged file is refused with line and column, and what is shown stays', async ({ page, complaints }) => {
+  complaints.allow(/could not be shown/);
+  await open(page, 'emulate&quality=low&estimator=ik&actor=off');
+  await choose(page, filesOf(leaping!));
+  const heading = card(page).getByRole('heading', { name: /someone_walks#/ });
+  await expect(heading).toBeVisible();
+  const broken = leaping!.files['someone_walks.bvh']!.replace('MOTION\n', 'MOTION\nNaN ');
+  await choose(page, [{ name: 'broken.bvh', mimeType: '', buffer: Buffer.from(broken) }]);
+  await expect(page.getByRole('alert')).toContainText(/broken\.bvh could not be shown: line \d+, column \d+: /);
+  await expect(heading).toBeVisible();
+});
+
+test('a large file says how far it is, and is given up at once', async ({ page }, testInfo) => {
+  const [head, frames] = leaping!.files['someone_walks.bvh']!.split(/Frames: \d+\n/) as [string, string];
+  const [time, ...rows] = frames.trimEnd().split('\n');
+  const many = Array.from({ length: 1500 }, () => rows.join('\n')).join('\n');
+  const path = testInfo.outputPath('large.bvh');
+  writeFileSync(path, `${head}Frames: ${1500 * rows.length}\n${time}\n${many}\n`);
+  await open(page, 'emulate&quality=low&estimator=ik&actor=off');
+  await choose(page, path);
+  await expect(card(page)).toContainText(/Reading large\.bvh: \d+\s%/);
+  await card(page).getByRole('button', { name: 'Cancel' }).click();
+  await expect(card(page)).toBeHidden();
+  expect((await probe(page)).recorder.mode).toBe('idle');
+  expect((await probe(page)).notices).toEqual([]);
+});

@@ -1,0 +1,67 @@
+import { firstLine, reasonOf } from '../../core/errors/reasons';
+import { createEstimator, needsRegressor } from '../../core/estimation/estimators';
+import type { EstimatorName } from '../../core/estimation/pose-estimator';
+import type { Recording } from '../../core/tracking/recording';
+import type { BareBodyOptions } from '../../lib/bare-body';
+import { runWork, type WorkProgress } from '../../lib/run-work';
+import { type JointErrors, meanErrors } from './joint-errors';
+import type { Truth } from './truth';
+
+/** Mean errors of a method over a clip, how far measuring them is, or why there are none. */
+export type ClipMean = JointErrors | WorkProgress | string;
+
+const notBegun: WorkProgress = { share: 0, secondsLeft: null };
+
+/** Measures methods over a whole clip, one after the other, while the page goes on drawing. */
+export class ClipMeans {
+  readonly #recording: Recording;
+  readonly #truth: Truth;
+  readonly #networks: BareBodyOptions['networks'];
+  readonly #means = new Map<EstimatorName, ClipMean>();
+  readonly #giveUp = new AbortController();
+  #busy = false;
+
+  constructor(recording: Recording, truth: Truth, networks: BareBodyOptions['networks']) {
+    this.#recording = recording;
+    this.#truth = truth;
+    this.#networks = networks;
+  }
+
+  /** What is known of a method; the first that nothing is known of is measured next. */
+  of(name: EstimatorName): ClipMean {
+    if (!this.#busy && !this.#means.has(name)) void this.#measure(name);
+    return this.#means.get(name) ?? notBegun;
+  }
+
+  /** Gives up what is being measured. */
+  dispose(): void {
+    this.#giveUp.abort();
+  }
+
+  async #measure(name: EstimatorName): Promise<void> {
+    const { signal } = this.#giveUp;
+    this.#busy = true;
+    this.#means.set(name, notBegun);
+    try {
+      this.#means.set(name, await this.#run(name, signal));
+    } catch (error) {
+      this.#means.set(name, firstLine(reasonOf(error)));
+    } finally {
+      // What was given up begins no other.
+      this.#busy = signal.aborted;
+    }
+  }
+
+  async #run(name: EstimatorName, signal: AbortSignal): Promise<JointErrors> {
+    const regressor = needsRegressor(name) ? await this.#networks(name) : null;
+    try {
+      const estimator = createEstimator(name, this.#recording.calibration!, regressor);
+      return await runWork(meanErrors(this.#recording, this.#truth, estimator), {
+        signal,
+        onProgress: (progress) => this.#means.set(name, progress),
+      });
+    } finally {
+      await regressor?.dispose();
+    }
+  }
+}

@@ -1,0 +1,62 @@
+import type { UpperBodyPose } from '../../core/body/avatar-pose';
+import type { Calibration } from '../../core/body/calibration';
+import { forwardKinematics, makeJointPoses } from '../../core/body/forward-kinematics';
+import { estimatedJoints } from '../../core/body/joints';
+import { skeletonFromCalibration } from '../../core/body/skeleton';
+import type { PoseEstimator } from '../../core/estimation/pose-estimator';
+import { distance, type Vec3 } from '../../core/math/vec3';
+import type { TruthJoint } from '../../core/mocap/skeleton-map';
+import type { Recording } from '../../core/tracking/recording';
+import type { Truth } from './truth';
+
+/** Distances [cm] between joints as drawn and as they were, in the order of `estimatedJoints`. */
+export type JointErrors = Float64Array;
+
+/** Measures what a method draws of a person of these measures, as the evaluation does. */
+export class ErrorMeter {
+  readonly #skeleton;
+  readonly #drawn = makeJointPoses();
+
+  constructor(calibration: Calibration) {
+    this.#skeleton = skeletonFromCalibration(calibration);
+  }
+
+  measure(body: UpperBodyPose, truth: Readonly<Partial<Record<TruthJoint, Vec3>>>, target: JointErrors): JointErrors {
+    forwardKinematics(this.#skeleton, body, this.#drawn);
+    for (let i = 0; i < estimatedJoints.length; i++) {
+      const joint = estimatedJoints[i]!;
+      target[i] = 100 * distance(this.#drawn[joint].position, truth[joint]!);
+    }
+    return target;
+  }
+}
+
+export const makeJointErrors = (): JointErrors => new Float64Array(estimatedJoints.length);
+export const meanOf = (errors: JointErrors): number => errors.reduce((sum, error) => sum + error, 0) / errors.length;
+
+const framesPerStep = 8;
+
+/**
+ * Mean errors of a method over a whole clip, frame after frame, each answer of its network waited for: the evaluation's figures. Yields the share
+ * [0, 1] that is done. Throws a sentence where the method draws no body or fails.
+ */
+export async function* meanErrors(
+  { frames, calibration }: Recording,
+  truth: Truth,
+  estimator: PoseEstimator,
+): AsyncGenerator<number, JointErrors> {
+  const meter = new ErrorMeter(calibration!);
+  const sums = makeJointErrors();
+  const errors = makeJointErrors();
+  for (const [index, frame] of frames.entries()) {
+    const { pose, request } = estimator.update(frame);
+    await request?.ask();
+    const fault = estimator.fault();
+    if (fault !== null) throw new Error(`it failed in frame ${index + 1}: ${fault}`);
+    if (!pose.body) throw new Error('it draws no body');
+    meter.measure(pose.body, truth.at(frame.time), errors);
+    for (let i = 0; i < sums.length; i++) sums[i]! += errors[i]!;
+    if (index % framesPerStep === 0) yield index / frames.length;
+  }
+  return sums.map((sum) => sum / frames.length);
+}

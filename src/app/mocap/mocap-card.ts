@@ -1,0 +1,234 @@
+import { type EstimatedJoint, estimatedJoints } from '../../core/body/joints';
+import { type EstimatorName, threePointNames } from '../../core/estimation/pose-estimator';
+import type { WorkProgress } from '../../lib/run-work';
+import { button, element } from '../../ui/element';
+import type { ClipMean } from './clip-means';
+import { type JointErrors, meanOf } from './joint-errors';
+import { type TruthPlace, truthPlaces } from './truth-places';
+import './mocap.css';
+
+/** What one method does with the clip. */
+export interface MethodErrors {
+  readonly estimator: EstimatorName;
+  /** Of the picture; null: nothing is drawn. */
+  readonly now: JointErrors | null;
+  /** Of the whole clip. */
+  readonly mean: ClipMean;
+}
+
+/** What the card shows of an opened clip. */
+export interface CardState {
+  readonly clips: readonly string[];
+  readonly clip: number;
+  readonly paused: boolean;
+  readonly seconds: number;
+  readonly duration: number;
+  readonly truth: TruthPlace;
+  /** Whether others can open what the file came from. */
+  readonly shareable: boolean;
+  /** Of the body, and of the one beside it where there is one. */
+  readonly methods: readonly MethodErrors[];
+}
+
+export interface CardActions {
+  chooseClip(index: number): void;
+  setPaused(on: boolean): void;
+  seek(seconds: number): void;
+  choose(estimator: EstimatorName): void;
+  /** null: no second body. */
+  compare(estimator: EstimatorName | null): void;
+  placeTruth(place: TruthPlace): void;
+  copyLink(): void;
+  cancel(): void;
+  close(): void;
+}
+
+export type Labels = Readonly<Record<EstimatorName, string>>;
+
+const jointLabels: Readonly<Record<EstimatedJoint, string>> = {
+  leftLowerArm: 'Left elbow',
+  rightLowerArm: 'Right elbow',
+  leftUpperArm: 'Left shoulder',
+  rightUpperArm: 'Right shoulder',
+  chest: 'Chest',
+  hips: 'Pelvis',
+};
+const none = '–';
+const centimetres = (value: number): string => value.toFixed(1);
+const percent = ({ share, secondsLeft }: WorkProgress): string =>
+  `${Math.floor(100 * share)}\u00a0%${secondsLeft === null ? '' : `, ${Math.ceil(secondsLeft)} s left`}`;
+
+/** A choice among a few. */
+function choice<Value extends string>(
+  label: string,
+  options: readonly (readonly [Value, string])[],
+  onChoose: (value: Value) => void,
+) {
+  const select = element(
+    'select',
+    { 'aria-label': label },
+    ...options.map(([value, text]) => element('option', { value }, text)),
+  );
+  select.addEventListener('change', () => onChoose(select.value as Value));
+  return { select, node: element('label', {}, element('span', {}, label), select) };
+}
+
+function createErrorTable(labels: Labels) {
+  const head = element('tr');
+  const under = element('tr');
+  const rows = ['Mean', ...estimatedJoints.map((joint) => jointLabels[joint])].map((label) =>
+    element('tr', {}, element('th', { scope: 'row' }, label)),
+  );
+  const told = element('p', { class: 'hint', role: 'status' });
+  const cell = (errors: MethodErrors['mean'] | null, row: number): string => {
+    if (!(errors instanceof Float64Array)) return none;
+    return centimetres(row === 0 ? meanOf(errors) : errors[row - 1]!);
+  };
+  let shown = '';
+  return {
+    nodes: [element('table', {}, element('thead', {}, head, under), element('tbody', {}, ...rows)), told],
+    show(methods: readonly MethodErrors[]) {
+      const names = methods.map(({ estimator }) => labels[estimator]);
+      if (shown !== names.join()) {
+        shown = names.join();
+        head.replaceChildren(
+          element('td', {}, 'cm'),
+          ...names.map((name) => element('th', { scope: 'colgroup', colspan: 2 }, name)),
+        );
+        under.replaceChildren(
+          element('td'),
+          ...names.flatMap(() => ['now', 'clip'].map((text) => element('th', { scope: 'col' }, text))),
+        );
+        for (const row of rows)
+          row.replaceChildren(row.firstChild!, ...names.flatMap(() => [element('td'), element('td')]));
+      }
+      for (const [i, row] of rows.entries()) {
+        const cells = [...row.querySelectorAll('td')];
+        for (const [k, { now, mean }] of methods.entries()) {
+          cells[2 * k]!.textContent = cell(now, i);
+          cells[2 * k + 1]!.textContent = cell(mean, i);
+        }
+      }
+      told.textContent = methods
+        .flatMap(({ estimator, mean }) => {
+          if (mean instanceof Float64Array) return [];
+          return [`${labels[estimator]}: ${typeof mean === 'string' ? mean : `measuring the clip, ${percent(mean)}`}`];
+        })
+        .join(' · ');
+      told.hidden = told.textContent === '';
+    },
+  };
+}
+
+/** Where the clip is, and the way through it. */
+function createTimeline(actions: CardActions) {
+  const play = button('Pause', () => actions.setPaused(play.getAttribute('aria-pressed') !== 'true'), {
+    'aria-pressed': 'false',
+  });
+  const slider = element('input', {
+    type: 'range',
+    min: 0,
+    max: 1,
+    step: 0.01,
+    value: 0,
+    'aria-label': 'Time of the clip in seconds',
+  });
+  slider.addEventListener('input', () => actions.seek(slider.valueAsNumber));
+  const text = element('span', { class: 'time' });
+  return {
+    node: element('div', { class: 'timeline' }, play, slider, text),
+    show({ paused, seconds, duration }: CardState) {
+      play.setAttribute('aria-pressed', String(paused));
+      play.textContent = paused ? 'Play' : 'Pause';
+      slider.max = String(duration);
+      slider.value = String(seconds);
+      text.textContent = `${seconds.toFixed(1)} / ${duration.toFixed(1)} s`;
+    },
+  };
+}
+
+export interface MocapCard {
+  readonly node: HTMLElement;
+  /** What it covers of the window; null: it is not shown. */
+  readonly covers: DOMRect | null;
+  /** A file is on its way; null: none is. */
+  showProgress(name: string, progress: WorkProgress | null): void;
+  /** null: no clip is open. */
+  show(state: CardState | null): void;
+}
+
+/** What is known of an opened motion: errors by joint, the time, which methods draw it. */
+export function createMocapCard(labels: Labels, actions: CardActions): MocapCard {
+  const methods = threePointNames.map((name) => [name, labels[name]] as const);
+  const clip = choice<string>('Clip', [], (index) => actions.chooseClip(Number(index)));
+  const method = choice('Method', methods, actions.choose);
+  const beside = choice<EstimatorName | 'none'>('On its right', [['none', 'nothing'], ...methods], (name) =>
+    actions.compare(name === 'none' ? null : name),
+  );
+  const truth = choice(
+    'Truth',
+    truthPlaces.map((place) => [place, place] as const),
+    actions.placeTruth,
+  );
+  const table = createErrorTable(labels);
+  const timeline = createTimeline(actions);
+  const link = button('Copy link', () => actions.copyLink());
+  const title = element('h2');
+  const bar = element('progress', { max: 1, value: 0, 'aria-label': 'Progress of reading' });
+  const told = element('p', { role: 'status' });
+  const reading = element(
+    'div',
+    { class: 'reading', hidden: true },
+    told,
+    bar,
+    button('Cancel', () => actions.cancel()),
+  );
+  const opened = element(
+    'div',
+    { class: 'opened' },
+    element(
+      'div',
+      { class: 'title' },
+      title,
+      button('Close', () => actions.close(), { class: 'quiet' }),
+    ),
+    timeline.node,
+    ...table.nodes,
+    element('div', { class: 'choices' }, clip.node, method.node, beside.node, truth.node, link),
+  );
+  const node = element('section', { class: 'mocap', 'aria-label': 'Motion capture', hidden: true }, reading, opened);
+  const showOpened = (state: CardState): void => {
+    title.textContent = state.clips[state.clip]!;
+    clip.node.hidden = state.clips.length === 1;
+    if (clip.select.length !== state.clips.length)
+      clip.select.replaceChildren(...state.clips.map((name, i) => element('option', { value: i }, name)));
+    clip.select.value = String(state.clip);
+    const [first, second] = state.methods;
+    method.select.value = first!.estimator;
+    beside.select.value = second?.estimator ?? 'none';
+    truth.select.value = state.truth;
+    link.disabled = !state.shareable;
+    link.title = state.shareable
+      ? 'To this second and this method'
+      : 'A file of this device has no address that others could open';
+    table.show(state.methods);
+    timeline.show(state);
+  };
+  return {
+    node,
+    get covers() {
+      return node.hidden ? null : node.getBoundingClientRect();
+    },
+    showProgress(name, progress) {
+      reading.hidden = progress === null;
+      told.textContent = progress ? `Reading ${name}: ${percent(progress)}` : '';
+      bar.value = progress?.share ?? 0;
+      node.hidden = reading.hidden && opened.hidden;
+    },
+    show(state) {
+      opened.hidden = state === null;
+      node.hidden = reading.hidden && opened.hidden;
+      if (state) showOpened(state);
+    },
+  };
+}

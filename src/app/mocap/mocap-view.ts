@@ -1,0 +1,319 @@
+import type { Object3D } from 'three';
+import type { Avatar } from '../../avatar/avatar';
+import type { AvatarPose } from '../../core/body/avatar-pose';
+import { firstLine, reasonOf } from '../../core/errors/reasons';
+import type { EstimatorName } from '../../core/estimation/pose-estimator';
+import type { MocapClip, PreparedMocap } from '../../core/mocap/prepare-mocap';
+import type { Recording } from '../../core/tracking/recording';
+import type { TrackingFrame } from '../../core/tracking/tracking-frame';
+import type { BareBodyOptions } from '../../lib/bare-body';
+import { runWork } from '../../lib/run-work';
+import { nameOf } from '../../ui/limited-files';
+import { ClipMeans } from './clip-means';
+import { Ghost } from './ghost';
+import { ErrorMeter, makeJointErrors } from './joint-errors';
+import { type CardActions, createMocapCard, type Labels, type MocapCard } from './mocap-card';
+import { fetchMocap, pairFiles } from './mocap-files';
+import { readMocap } from './read-mocap';
+import { SecondBody } from './second-body';
+import { recordingOf, Truth } from './truth';
+import type { TruthPlace } from './truth-places';
+
+/** The page's replay, which brings a recording's frames to its body. */
+export interface Replay {
+  readonly recording: Recording | null;
+  readonly mode: string;
+  readonly paused: boolean;
+  readonly seconds: number;
+  readonly duration: number;
+  begin(name: string, recording: Recording): void;
+  seek(seconds: number): void;
+  setPaused(on: boolean): void;
+  stop(): void;
+}
+
+/** How a clip is to be looked at; what is absent stays as it is. */
+export interface Outlook {
+  /** Of several pieces, from 0. */
+  readonly clip?: number | undefined;
+  /** Stands still at this second. */
+  readonly at?: number | undefined;
+  readonly beside?: EstimatorName | undefined;
+  readonly truth?: TruthPlace | undefined;
+}
+
+export interface MocapViewOptions {
+  readonly scene: Object3D;
+  readonly region: HTMLElement;
+  readonly labels: Labels;
+  readonly replay: Replay;
+  /** The method of the page's body. */
+  readonly method: { readonly wanted: EstimatorName; choose(estimator: EstimatorName): void };
+  readonly networks: BareBodyOptions['networks'];
+  loadAvatar(): Promise<Avatar>;
+  /** The card came or went. */
+  onCovered(): void;
+  tell(level: 'info' | 'warning' | 'error', sentence: string): void;
+}
+
+/** A clip on the stage. */
+interface Opened {
+  readonly name: string;
+  /** Where others can have it; null: it is of this device. */
+  readonly addresses: readonly string[] | null;
+  readonly clips: readonly MocapClip[];
+  readonly index: number;
+  readonly recording: Recording;
+  readonly truth: Truth;
+  readonly meter: ErrorMeter;
+  readonly means: ClipMeans;
+}
+
+/** Metres to the right of the body: a second body, and the truth where it stands beside. */
+const secondAside = 1.15;
+const truthAside = -0.85;
+
+/** Motion capture on the stage: the truth as a ghost, what methods draw of its three points, and how far they are off. */
+export class MocapView {
+  readonly #options: MocapViewOptions;
+  readonly #ghosts = [new Ghost(), new Ghost()] as const;
+  readonly #card: MocapCard;
+  #opened: Opened | null = null;
+  #second: SecondBody | null = null;
+  #truthPlace: TruthPlace = 'inside';
+  #reading = new AbortController();
+  /** Errors of the picture: of the body, and of the second. */
+  readonly #errors = [makeJointErrors(), makeJointErrors()] as const;
+  readonly #drawn = [false, false];
+  /** Of the newest frame's replay. */
+  #seconds = 0;
+
+  constructor(options: MocapViewOptions) {
+    this.#options = options;
+    this.#card = createMocapCard(options.labels, this.#actions());
+    options.region.append(this.#card.node);
+    for (const ghost of this.#ghosts) options.scene.add(ghost.object);
+    this.#card.show(null);
+    this.#hide();
+  }
+
+  /** Reads files of this device or addresses, and shows their motion. Never rejects: faults are told, and what is shown stays. */
+  async open(sources: readonly (File | string)[], outlook: Outlook = {}): Promise<void> {
+    const { tell } = this.#options;
+    this.#reading.abort();
+    const reading = new AbortController();
+    const { signal } = reading;
+    this.#reading = reading;
+    const name = nameOf(sources[0]!);
+    const onProgress = (progress: Parameters<MocapCard['showProgress']>[1]) => this.#card.showProgress(name, progress);
+    try {
+      onProgress({ share: 0, secondsLeft: null });
+      const { others, ...files } = pairFiles(await fetchMocap(sources, { signal }));
+      const prepared = await readMocap(files, { signal, onProgress });
+      const addresses = sources.every((source) => typeof source === 'string') ? sources : null;
+      await this.#show(files.motion.name, prepared, addresses, { outlook, signal });
+      for (const note of prepared.notes) tell('info', `${files.motion.name}: ${note}.`);
+      if (others.length > 0) tell('warning', `One motion is shown at a time: ${others.join(', ')} was not opened.`);
+    } catch (error) {
+      if (!signal.aborted)
+        tell('error', `${name} could not be shown: ${firstLine(reasonOf(error)).replace(`${name}: `, '')}`);
+    } finally {
+      if (this.#reading === reading) this.#card.showProgress(name, null);
+      this.#options.onCovered();
+    }
+  }
+
+  /** What the card covers of the window; null: it is not shown. */
+  get covers(): DOMRect | null {
+    return this.#card.covers;
+  }
+
+  /** How far right of the page's body the middle of what stands on the stage lies [m]. */
+  get aside(): number {
+    if (!this.#opened || this.#options.replay.mode !== 'replaying') return 0;
+    const [left, right] = [this.#truthPlace === 'beside' ? truthAside : 0, this.#second ? secondAside : 0];
+    return (left + right) / 2;
+  }
+
+  /** One frame of the page: what was tracked, and the body that its method draws. */
+  frame(frame: TrackingFrame, { body }: AvatarPose): void {
+    const { replay } = this.#options;
+    if (this.#opened && replay.recording !== this.#opened.recording) this.close();
+    const opened = this.#opened;
+    if (!opened) return;
+    if (replay.mode !== 'replaying') {
+      this.#hide();
+      return;
+    }
+    const { seconds } = replay;
+    // The clip begins anew: no body is drawn on the way from its end.
+    if (seconds < this.#seconds) this.#seek(seconds);
+    this.#seconds = seconds;
+    const places = opened.truth.at(seconds);
+    const second = this.#second?.update(frame) ?? null;
+    for (const [i, drawn] of [body, second].entries()) {
+      this.#drawn[i] = drawn !== null;
+      if (drawn) opened.meter.measure(drawn, places, this.#errors[i as 0]);
+    }
+    for (const [i, ghost] of this.#ghosts.entries()) {
+      ghost.object.visible =
+        this.#truthPlace !== 'off' && (i === 0 || (this.#second !== null && this.#truthPlace === 'inside'));
+      if (ghost.object.visible) ghost.show(places);
+    }
+    if (this.#second) this.#second.place.visible = true;
+  }
+
+  /** Brings the card up to date; some times a second. */
+  show(): void {
+    const opened = this.#opened;
+    if (!opened) return;
+    const { replay, method } = this.#options;
+    const methods = [method.wanted, ...(this.#second ? [this.#second.estimator] : [])];
+    this.#card.show({
+      clips: opened.clips.map(({ name }) => name),
+      clip: opened.index,
+      paused: replay.paused,
+      seconds: replay.seconds,
+      duration: replay.duration,
+      truth: this.#truthPlace,
+      shareable: opened.addresses !== null,
+      methods: methods.map((estimator, i) => ({
+        estimator,
+        now: this.#drawn[i] ? this.#errors[i as 0] : null,
+        mean: opened.means.of(estimator),
+      })),
+    });
+  }
+
+  /** Takes the clip from the stage; the replay stays as it is. */
+  close(): void {
+    this.#opened?.means.dispose();
+    this.#opened = null;
+    this.#compare(null);
+    this.#hide();
+    this.#card.show(null);
+    this.#options.onCovered();
+  }
+
+  #actions(): CardActions {
+    const { replay, method } = this.#options;
+    return {
+      chooseClip: (index) => void this.#chooseClip(index),
+      setPaused: (on) => {
+        replay.setPaused(on);
+        this.show();
+      },
+      seek: (seconds) => {
+        this.#seek(seconds);
+        this.show();
+      },
+      choose: (estimator) => method.choose(estimator),
+      compare: (estimator) => this.#compare(estimator),
+      placeTruth: (place) => this.#placeTruth(place),
+      copyLink: () => void this.#copyLink(),
+      cancel: () => this.#reading.abort(),
+      close: () => {
+        replay.stop();
+        this.close();
+      },
+    };
+  }
+
+  async #show(
+    name: string,
+    { clips }: PreparedMocap,
+    addresses: Opened['addresses'],
+    { outlook, signal }: { readonly outlook: Outlook; readonly signal: AbortSignal },
+  ): Promise<void> {
+    const longest = clips.reduce((best, { frameCount }, i) => (frameCount > clips[best]!.frameCount ? i : best), 0);
+    const index = clips[outlook.clip ?? longest] ? (outlook.clip ?? longest) : longest;
+    const clip = clips[index]!;
+    const recording = await runWork(recordingOf(clip), { signal });
+    this.close();
+    const { replay, networks } = this.#options;
+    const truth = new Truth(clip);
+    const means = new ClipMeans(recording, truth, networks);
+    this.#opened = {
+      ...{ name, addresses, clips, index, recording, truth, means },
+      meter: new ErrorMeter(clip.calibration),
+    };
+    replay.begin(`${clip.name}.json`, recording);
+    this.#placeTruth(outlook.truth ?? this.#truthPlace);
+    if (outlook.beside) this.#compare(outlook.beside);
+    if (outlook.at !== undefined) {
+      replay.seek(outlook.at);
+      replay.setPaused(true);
+    }
+    this.show();
+  }
+
+  async #chooseClip(clip: number): Promise<void> {
+    const opened = this.#opened;
+    if (!opened) return;
+    const beside = this.#second?.estimator;
+    const { signal } = new AbortController();
+    await this.#show(opened.name, { clips: opened.clips, notes: [] }, opened.addresses, {
+      outlook: { clip, beside },
+      signal,
+    });
+  }
+
+  #seek(seconds: number): void {
+    this.#options.replay.seek(seconds);
+    this.#second?.jumped();
+  }
+
+  #placeTruth(place: TruthPlace): void {
+    this.#truthPlace = place;
+    const [first, second] = this.#ghosts;
+    first.object.position.x = place === 'beside' ? truthAside : 0;
+    second.object.position.x = secondAside;
+  }
+
+  #compare(estimator: EstimatorName | null): void {
+    this.#second?.dispose();
+    this.#second = null;
+    this.#drawn[1] = false;
+    const clip = this.#opened?.clips[this.#opened.index];
+    if (!clip || !estimator) return;
+    const { scene, networks, loadAvatar, labels, tell } = this.#options;
+    this.#second = new SecondBody({
+      ...{ scene, networks, loadAvatar, estimator, calibration: clip.calibration, aside: secondAside },
+      onFallback: (name, reason) =>
+        tell('warning', `${labels[name]} could not be used (${firstLine(reason)}): inverse kinematics takes over.`),
+    });
+    this.#second.ready.catch((error: unknown) =>
+      tell('error', `The second body could not be shown: ${firstLine(reasonOf(error))}`),
+    );
+  }
+
+  #hide(): void {
+    for (const ghost of this.#ghosts) ghost.object.visible = false;
+    if (this.#second) this.#second.place.visible = false;
+    this.#drawn.fill(false);
+  }
+
+  /** To this file, second and methods; the address of the page becomes it too. */
+  async #copyLink(): Promise<void> {
+    const { replay, method, tell } = this.#options;
+    const opened = this.#opened;
+    if (!opened?.addresses) return;
+    const link = new URL(location.href);
+    const { searchParams } = link;
+    searchParams.set('mocap', opened.addresses.join(' '));
+    searchParams.set('at', replay.seconds.toFixed(2));
+    searchParams.set('estimator', method.wanted);
+    searchParams.set('truth', this.#truthPlace);
+    if (this.#second) searchParams.set('beside', this.#second.estimator);
+    else searchParams.delete('beside');
+    if (opened.clips.length > 1) searchParams.set('clip', String(opened.index + 1));
+    history.replaceState(null, '', link);
+    try {
+      await navigator.clipboard.writeText(link.href);
+      tell('info', 'The link is copied.');
+    } catch {
+      // reason: a browser may refuse; the address bar has the link then.
+      tell('info', 'The link stands in the address bar.');
+    }
+  }
+}

@@ -1,0 +1,65 @@
+import { Group, type Object3D } from 'three';
+import type { Avatar } from '../../avatar/avatar';
+import type { UpperBodyPose } from '../../core/body/avatar-pose';
+import type { Calibration } from '../../core/body/calibration';
+import type { EstimatorName } from '../../core/estimation/pose-estimator';
+import type { TrackingFrame } from '../../core/tracking/tracking-frame';
+import { BareBody, type BareBodyOptions } from '../../lib/bare-body';
+
+export interface SecondBodyOptions {
+  readonly scene: Object3D;
+  readonly calibration: Calibration;
+  readonly estimator: EstimatorName;
+  readonly networks: BareBodyOptions['networks'];
+  /** Where it stands beside the first [m], to the right. */
+  readonly aside: number;
+  loadAvatar(): Promise<Avatar>;
+  onFallback(estimator: EstimatorName, reason: string): void;
+}
+
+/** Another method's body of the same person, beside the first. */
+export class SecondBody {
+  readonly place = new Group();
+  readonly #body: BareBody;
+  #avatar: Avatar | null = null;
+  #gone = false;
+
+  /** The avatar comes when it has loaded; `ready` rejects where it cannot. */
+  readonly ready: Promise<void>;
+
+  constructor({ scene, calibration, estimator, networks, aside, loadAvatar, onFallback }: SecondBodyOptions) {
+    this.#body = new BareBody({ calibration, estimator, networks, events: { fallback: onFallback } });
+    this.place.position.x = aside;
+    scene.add(this.place);
+    this.ready = loadAvatar().then((avatar) => {
+      if (this.#gone) return avatar.dispose();
+      avatar.fitTo(calibration);
+      this.place.add(avatar.object);
+      this.#avatar = avatar;
+    });
+  }
+
+  /** What was chosen, which may still be loading. */
+  get estimator(): EstimatorName {
+    return this.#body.wanted;
+  }
+
+  /** One frame; the body that is drawn, null: this method draws none. */
+  update(frame: TrackingFrame): UpperBodyPose | null {
+    const pose = this.#body.update(frame);
+    if (pose) this.#avatar?.apply(pose, frame.time);
+    return pose?.body ?? null;
+  }
+
+  /** The next frame lies elsewhere. */
+  jumped(): void {
+    this.#body.jumped();
+  }
+
+  dispose(): void {
+    this.#gone = true;
+    this.#avatar?.dispose();
+    this.place.removeFromParent();
+    void this.#body.dispose();
+  }
+}

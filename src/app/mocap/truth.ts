@@ -1,0 +1,66 @@
+import type { TrackedPose } from '../../core/math/pose';
+import { normaliseQuat, quat } from '../../core/math/quat';
+import { type MutableVec3, setVec3, type Vec3, vec3 } from '../../core/math/vec3';
+import { type MocapClip, mocapRateHz } from '../../core/mocap/prepare-mocap';
+import { trackedWidth } from '../../core/mocap/simulate-trackers';
+import { type TruthJoint, truthJoints } from '../../core/mocap/skeleton-map';
+import type { Recording } from '../../core/tracking/recording';
+import type { TrackingFrame } from '../../core/tracking/tracking-frame';
+
+const width = 3 * truthJoints.length;
+const framesPerStep = 64;
+
+/** Where a person's joints truly were, floor frame [m]. */
+export class Truth {
+  /** Those that the file has. */
+  readonly joints: readonly TruthJoint[];
+  readonly frameCount: number;
+  readonly #numbers: Float32Array;
+  readonly #places: Partial<Record<TruthJoint, MutableVec3>> = {};
+
+  constructor({ truth, frameCount }: MocapClip) {
+    this.#numbers = truth;
+    this.frameCount = frameCount;
+    this.joints = truthJoints.filter((_, i) => Number.isFinite(truth[3 * i]));
+    for (const joint of this.joints) this.#places[joint] = vec3(0, 0, 0);
+  }
+
+  /** At a time [s] of the clip, interpolated; the same object in every call. */
+  at(seconds: number): Readonly<Partial<Record<TruthJoint, Vec3>>> {
+    const time = Math.max(0, Math.min(this.frameCount - 1, seconds * mocapRateHz));
+    const before = Math.floor(time);
+    const share = time - before;
+    const [from, to] = [width * before, width * Math.min(before + 1, this.frameCount - 1)];
+    for (let i = 0; i < truthJoints.length; i++) {
+      const place = this.#places[truthJoints[i]!];
+      if (!place) continue;
+      const mix = (axis: number): number => {
+        const value = this.#numbers[from + 3 * i + axis]!;
+        return value + (this.#numbers[to + 3 * i + axis]! - value) * share;
+      };
+      setVec3(place, mix(0), mix(1), mix(2));
+    }
+    return this.#places;
+  }
+}
+
+/** What the trackers saw, as a recording that any method replays. Yields the share [0, 1] that is done. */
+export function* recordingOf({ tracked, frameCount, calibration }: MocapClip): Generator<number, Recording> {
+  const at = (index: number): number => tracked[index]!;
+  const pose = (from: number): TrackedPose => {
+    const orientation = quat(at(from + 3), at(from + 4), at(from + 5), at(from + 6));
+    return {
+      position: vec3(at(from), at(from + 1), at(from + 2)),
+      // Single precision leaves quaternions a little off their length.
+      orientation: normaliseQuat(orientation, orientation),
+      tracking: 'tracked',
+    };
+  };
+  const frames: TrackingFrame[] = [];
+  for (let frame = 0; frame < frameCount; frame++) {
+    const from = frame * trackedWidth;
+    frames.push({ time: frame / mocapRateHz, head: pose(from), leftHand: pose(from + 7), rightHand: pose(from + 14) });
+    if (frame % framesPerStep === 0) yield frame / frameCount;
+  }
+  return { device: 'simulated from motion capture', rateHz: mocapRateHz, calibration, frames };
+}

@@ -1,0 +1,142 @@
+import type { Object3D } from 'three';
+import { type Avatar, createAvatarBetweenFrames } from '../../avatar/avatar';
+import { parseAvatar } from '../../avatar/load-avatar';
+import { labelOf } from '../../avatar/own-bodies';
+import { palettes } from '../../avatar/palettes';
+import type { AvatarPose } from '../../core/body/avatar-pose';
+import { firstLine, reasonOf } from '../../core/errors/reasons';
+import { type EstimatorName, estimatorNames } from '../../core/estimation/pose-estimator';
+import type { TrackingFrame } from '../../core/tracking/tracking-frame';
+import type { BareBody, BareBodyOptions } from '../../lib/bare-body';
+import type { Notices } from '../../ui/notices';
+import type { MocapView, Outlook, Replay } from '../mocap/mocap-view';
+import type { Recorder } from '../studio/recorder';
+import { estimatorTexts } from './estimator-texts';
+import type { Settings } from './settings';
+import { fetchOwnAvatar } from './shown-avatar';
+
+export interface PageMocapOptions {
+  readonly scene: Object3D;
+  readonly recorder: Recorder;
+  readonly settings: Pick<Settings, 'ownBody' | 'palette'>;
+  readonly body: Pick<BareBody, 'wanted' | 'choose' | 'jumped'>;
+  readonly networks: BareBodyOptions['networks'];
+  readonly notices: Pick<Notices, 'show'>;
+  onChange(): void;
+  /** What its card covers of the window has changed. */
+  onCovered(): void;
+}
+
+const labels = Object.fromEntries(estimatorNames.map((name) => [name, estimatorTexts[name].label])) as Record<
+  EstimatorName,
+  string
+>;
+
+/** Motion capture on this page; the code for it comes with the first file. */
+export class PageMocap {
+  readonly #options: PageMocapOptions;
+  #view: MocapView | null = null;
+
+  constructor(options: PageMocapOptions) {
+    this.#options = options;
+  }
+
+  /** Shows the motion of files of this device, or of what addresses answer. Never rejects: faults become notices. */
+  async open(sources: readonly (File | string)[], outlook: Outlook = {}): Promise<void> {
+    try {
+      const { MocapView } = await import('../mocap/mocap-view');
+      this.#view ??= this.#build(MocapView);
+    } catch (error) {
+      const reason = firstLine(reasonOf(error));
+      this.#options.notices.show('error', `What shows motion capture could not be loaded: ${reason}`);
+    }
+    await this.#view?.open(sources, outlook);
+  }
+
+  /** What its card covers of the window; null: it is not shown. */
+  get covers(): DOMRect | null {
+    return this.#view?.covers ?? null;
+  }
+
+  /** How far right of the body the middle of what is shown lies [m]. */
+  get aside(): number {
+    return this.#view?.aside ?? 0;
+  }
+
+  /** One frame of the page. */
+  frame(frame: TrackingFrame, pose: AvatarPose): void {
+    this.#view?.frame(frame, pose);
+  }
+
+  /** Brings on the screen what changes by itself; some times a second. */
+  show(): void {
+    this.#view?.show();
+  }
+
+  #build(View: typeof MocapView): MocapView {
+    const { scene, body, networks, notices, onChange } = this.#options;
+    return new View({
+      ...{ scene, networks, labels },
+      region: document.body,
+      replay: this.#replay(),
+      method: {
+        get wanted() {
+          return body.wanted;
+        },
+        choose(estimator) {
+          void body.choose(estimator);
+          onChange();
+        },
+      },
+      loadAvatar: () => this.#loadAvatar(),
+      onCovered: this.#options.onCovered,
+      tell: (level, sentence) => notices.show(level, sentence),
+    });
+  }
+
+  /** One of our own, in other colours than those of the first. */
+  async #loadAvatar(): Promise<Avatar> {
+    const { ownBody, palette } = this.#options.settings;
+    const avatar = await createAvatarBetweenFrames(await parseAvatar(await fetchOwnAvatar(ownBody), labelOf(ownBody)));
+    avatar.setPalette(palettes.find(({ name }) => name !== palette)!.name);
+    return avatar;
+  }
+
+  #replay(): Replay {
+    const { recorder, body, onChange } = this.#options;
+    const changed = (change: () => void): void => {
+      change();
+      body.jumped();
+      onChange();
+    };
+    return {
+      get recording() {
+        return recorder.recording;
+      },
+      get mode() {
+        return recorder.mode;
+      },
+      get paused() {
+        return recorder.paused;
+      },
+      get seconds() {
+        return recorder.seconds;
+      },
+      get duration() {
+        return recorder.duration;
+      },
+      begin(name, recording) {
+        changed(() => {
+          recorder.take(name, recording);
+          recorder.replay();
+        });
+      },
+      seek: (seconds) => changed(() => recorder.seek(seconds)),
+      setPaused(on) {
+        recorder.setPaused(on);
+        onChange();
+      },
+      stop: () => changed(() => recorder.stop()),
+    };
+  }
+}
