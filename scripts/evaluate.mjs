@@ -1,5 +1,7 @@
-// npm run evaluate -- --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,135] [--models DIR] [--robustness] [--hands-measured] [--figures FILE] [--fp32 DIR] [--legs]:
+// npm run evaluate -- --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,135] [--models DIR] [--robustness] [--hands-measured] [--forearm-typed] [--figures FILE] [--fp32 DIR] [--legs]:
 // the shipping path on recorded motion. Python prepares the recordings with their truth, TypeScript drives them.
+// npm run evaluate -- --recording FILE [--recording FILE] [--json FILE] [--models DIR]: on the page's own recordings, the body that their device
+// reported as the truth.
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
@@ -9,8 +11,9 @@ import { pythonEnvironment } from './python-environment.mjs';
 import { main, root, run, SetupError } from './run-command.mjs';
 
 const usage =
-  'npm run evaluate -- --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,135] [--models DIR] [--robustness] [--hands-measured] [--figures FILE] [--fp32 DIR]\n' +
+  'npm run evaluate -- --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,135] [--models DIR] [--robustness] [--hands-measured] [--forearm-typed] [--figures FILE] [--fp32 DIR]\n' +
   'npm run evaluate -- --legs --mocap DIR [--skeleton MAP.json] [--json FILE] [--people 005,135] [--models DIR] [--gaits DIR]\n' +
+  'npm run evaluate -- --recording FILE [--recording FILE] [--json FILE] [--models DIR]\n' +
   'DIR holds .asf and .amc or .bvh files; docs/evaluation.md says the rest.';
 const twoHours = 2 * 3600;
 
@@ -20,20 +23,25 @@ function options() {
     const { values } = parseArgs({
       options: {
         mocap: text,
+        recording: { type: 'string', multiple: true },
         skeleton: text,
         json: text,
         people: text,
         models: text,
         robustness: { type: 'boolean' },
         'hands-measured': { type: 'boolean' },
+        'forearm-typed': { type: 'boolean' },
         figures: text,
         fp32: text,
         legs: { type: 'boolean' },
         gaits: text,
       },
     });
-    if (!values.mocap) throw new Error('--mocap is needed');
-    const other = ['robustness', 'hands-measured', 'figures', 'fp32'].find((name) => values[name]);
+    if (!values.mocap && !values.recording) throw new Error('--mocap is needed, or --recording');
+    const beside = Object.keys(values).find((name) => !['recording', 'json', 'models'].includes(name));
+    if (values.recording && beside)
+      throw new Error(`--recording measures against what a device reported: without --${beside}`);
+    const other = ['robustness', 'hands-measured', 'forearm-typed', 'figures', 'fp32'].find((name) => values[name]);
     if (values.gaits && !values.legs) throw new Error('--gaits are the networks of legs: with --legs');
     if (values.legs && other) throw new Error(`--legs measures legs alone: without --${other}`);
     return values;
@@ -47,6 +55,14 @@ await main(async () => {
   // Paths on the command line mean what they mean to the person who typed them.
   const path = (name) => resolve(process.env.INIT_CWD ?? process.cwd(), name);
   await ensureInstalled();
+  if (given.recording) {
+    const measure = ['--import', 'tsx', 'bench/evaluate/recorded.ts', '--models'];
+    measure.push(given.models ? path(given.models) : join(root, 'public/models'));
+    for (const file of given.recording) measure.push('--recording', path(file));
+    if (given.json) measure.push('--json', path(given.json));
+    const { code } = await run(process.execPath, measure, { cwd: root, limitSeconds: twoHours });
+    return code;
+  }
   const python = await pythonEnvironment();
   const recordings = mkdtempSync(join(tmpdir(), 'threepoint-recordings-'));
   try {
@@ -64,7 +80,7 @@ await main(async () => {
     drive.push('--models', given.models ? path(given.models) : join(root, 'public/models'));
     if (given.json) drive.push('--json', path(given.json));
     for (const name of ['figures', 'fp32', 'gaits']) if (given[name]) drive.push(`--${name}`, path(given[name]));
-    for (const name of ['robustness', 'hands-measured']) if (given[name]) drive.push(`--${name}`);
+    for (const name of ['robustness', 'hands-measured', 'forearm-typed']) if (given[name]) drive.push(`--${name}`);
     const { code } = await run(process.execPath, drive, { cwd: root, limitSeconds: twoHours });
     return code;
   } finally {

@@ -1,6 +1,6 @@
 import type { Calibration } from '../core/body/calibration';
 import { reasonOf } from '../core/errors/reasons';
-import { type NetworkName, needsRegressor } from '../core/estimation/estimators';
+import { type NetworkName, needsRegressor, networkOf } from '../core/estimation/estimators';
 import type { EstimatorName, PoseEstimator } from '../core/estimation/pose-estimator';
 import type { PoseRegressor } from '../core/estimation/pose-regressor';
 
@@ -82,16 +82,18 @@ export function createEstimatorChoice(options: EstimatorChoiceOptions): Estimato
     async choose(name) {
       if (disposed || unavailable[name] !== undefined) return;
       wanted = name;
-      if (!needsRegressor(name)) {
+      const needed = networkOf(name);
+      if (needed === null) {
         drawWith(name, null);
         return;
       }
       try {
-        const loaded = await network(name);
+        const loaded = await network(needed);
         // While it loaded, the user may have thought of something else, or it may have failed at its first run.
         if (!disposed && wanted === name && unavailable[name] === undefined) drawWith(name, loaded);
       } catch (error) {
-        giveUp(name, error);
+        if (needsRegressor(name)) giveUp(name, error);
+        else if (!disposed && wanted === name) drawWith(name, null);
       }
     },
     calibrate(next) {

@@ -1,4 +1,6 @@
 import { reasonOf } from '../core/errors/reasons';
+import { bodyFeature } from './device-body-reader';
+
 /** What the browser offers; `sentence` tells the user why not, or null. */
 export interface XrSupport {
   readonly kind: 'device' | 'none';
@@ -20,13 +22,16 @@ export async function describeXrSupport(): Promise<XrSupport> {
   }
 }
 
-/** Starts an immersive session on the floor, with hands where the device tracks them. Rejects with a sentence. Needs a click. */
-export async function requestVrSession(): Promise<XRSession> {
+/**
+ * Starts an immersive session on the floor, with hands where the device tracks them, and with its own body where that is wanted and the device has
+ * one. Rejects with a sentence. Needs a click.
+ */
+export async function requestVrSession(deviceBody = false): Promise<XRSession> {
   if (!navigator.xr) throw new Error('this browser has no WebXR');
   try {
     return await navigator.xr.requestSession('immersive-vr', {
       requiredFeatures: ['local-floor'],
-      optionalFeatures: ['hand-tracking', 'bounded-floor', 'layers'],
+      optionalFeatures: ['hand-tracking', 'bounded-floor', 'layers', ...(deviceBody ? [bodyFeature] : [])],
     });
   } catch (error) {
     const name = error instanceof DOMException ? error.name : '';

@@ -8,6 +8,7 @@ import { headingOf } from '../core/tracking/heading';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import { Belief } from './believed';
 import { ControllerFingers, squeezeButton, triggerButton } from './controller-fingers';
+import type { DeviceBodyReader } from './device-body-reader';
 import { handleFit, wristFromGrip } from './grip-offsets';
 import { HandReader } from './hand-reader';
 import { toTrackedPose } from './tracked-pose';
@@ -55,19 +56,22 @@ const stickBack = 0.35;
 /**
  * Reads by handedness, never by index, so that swapped and returning controllers stay where they belong. `onSpace` hears of the
  * reference space that drawing must use too, after each `recentre` and `turn`. When the device recentres by itself, what was turned
- * here before is forgotten. Behind a menu of the device (session not `visible`) no hand is read: it is busy there.
+ * here before is forgotten. Behind a menu of the device (session not `visible`) no hand is read: it is busy there. `bodyReader` reads the
+ * device's own body into each frame; without it none is read.
  */
 export const createTracker = (
   session: XRSession,
   floor: XRReferenceSpace,
   onSpace?: (space: XRReferenceSpace) => void,
-): Tracker => new SessionTracker(session, floor, onSpace);
+  bodyReader: DeviceBodyReader | null = null,
+): Tracker => new SessionTracker(session, floor, bodyReader, onSpace);
 
 class SessionTracker implements Tracker {
   readonly kinds: Record<Side, InputKind> = { left: 'none', right: 'none' };
   readonly buttons: Record<Side, HandButtons> = { left: allReleased, right: allReleased };
   readonly #session: XRSession;
   readonly #onSpace: ((space: XRReferenceSpace) => void) | undefined;
+  readonly #bodyReader: DeviceBodyReader | null;
   readonly #held = { controller: false, hand: false };
   readonly #sticks = new TurningSticks();
   readonly #belief = new Belief();
@@ -85,8 +89,14 @@ class SessionTracker implements Tracker {
     if (this.#space !== this.#floor) this.#moveTo(this.#floor);
   };
 
-  constructor(session: XRSession, floor: XRReferenceSpace, onSpace?: (space: XRReferenceSpace) => void) {
+  constructor(
+    session: XRSession,
+    floor: XRReferenceSpace,
+    bodyReader: DeviceBodyReader | null,
+    onSpace?: (space: XRReferenceSpace) => void,
+  ) {
     this.#session = session;
+    this.#bodyReader = bodyReader;
     this.#floor = floor;
     this.#space = floor;
     this.#onSpace = onSpace;
@@ -108,8 +118,9 @@ class SessionTracker implements Tracker {
     const head = viewer && toTrackedPose(viewer);
     if (!head) return null;
     this.#lastHead = head;
+    const deviceBody = this.#bodyReader?.read(frame, this.#space);
     const poses = { time, head, leftHand: left, rightHand: right, fingers: this.#fingers };
-    return this.#belief.of({ ...poses, ...(suspended && { suspended }) });
+    return this.#belief.of({ ...poses, ...(deviceBody && { deviceBody }), ...(suspended && { suspended }) });
   }
 
   recentre(): void {

@@ -5,8 +5,15 @@ export const estimatorTexts: Readonly<Record<EstimatorName, { readonly label: st
   learned: { label: 'Learned', text: 'A network trained on motion capture corrects the IK body.' },
   ik: { label: 'Inverse kinematics', text: 'Spine, clavicles and elbows in closed form.' },
   paper: { label: 'Paper', text: 'The network of Anvari, Park and Kim (2023), as published.' },
+  device: { label: 'Device', text: 'The body that the headset itself tracks; Learned where it reports none.' },
   'hands-only': { label: 'Hands only', text: 'Head and hands as tracked, no body between them.' },
 };
 
-/** The order in which they are offered: best first. */
-export const estimatorOrder = ['learned', 'ik', 'paper', 'hands-only'] as const satisfies readonly EstimatorName[];
+/** The order in which they are offered: best first, then what needs more than three points. */
+export const estimatorOrder = [
+  'learned',
+  'ik',
+  'paper',
+  'hands-only',
+  'device',
+] as const satisfies readonly EstimatorName[];

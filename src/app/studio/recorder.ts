@@ -9,7 +9,7 @@ import {
 } from '../../core/tracking/recording';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 
-/** Frames kept at most: a quarter of an hour at 120 Hz, some 50 MB. Longer recordings stop by themselves. */
+/** Frames kept at most: a quarter of an hour at 120 Hz, some 50 MB, with a device's body 100. Longer recordings stop by themselves. */
 const most = 108_000;
 
 /** What a new recording says of itself. */
@@ -29,9 +29,10 @@ export class Recorder {
   /** Of the recording that is being made. */
   #frames: TrackingFrame[] = [];
   #about: Omit<Recording, 'frames'> = { device: '', rateHz: 60, calibration: null };
-  /** When the replay began. */
-  #startTime: number | null = null;
+  /** When the replay's newest frame was asked for; null: none was yet. */
+  #sampledAt: number | null = null;
   #seconds = 0;
+  #paused = false;
   /** Recordings made so far. */
   #count = 0;
 
@@ -51,6 +52,11 @@ export class Recorder {
 
   get loop(): boolean {
     return this.#loop;
+  }
+
+  /** Whether the replay stands still. */
+  get paused(): boolean {
+    return this.#paused;
   }
 
   /** Seconds since recording or replay began. */
@@ -90,7 +96,12 @@ export class Recorder {
     if (this.#mode !== 'recording') return;
     const last = this.#frames.at(-1);
     if (last && frame.time <= last.time) return;
-    this.#frames.push(frame.fingers ? { ...frame, fingers: copyFingers(frame.fingers) } : frame);
+    const { fingers, deviceBody } = frame;
+    this.#frames.push({
+      ...frame,
+      ...(fingers && { fingers: copyFingers(fingers) }),
+      ...(deviceBody && { deviceBody: deviceBody.slice() }),
+    });
     this.#seconds = frame.time - (this.#frames[0]?.time ?? frame.time);
     if (this.#frames.length >= most) this.stop();
   }
@@ -105,7 +116,8 @@ export class Recorder {
     this.#frames = [];
     this.#mode = 'idle';
     this.#seconds = 0;
-    this.#startTime = null;
+    this.#paused = false;
+    this.#sampledAt = null;
   }
 
   /** Plays the recording at hand from its beginning; nothing happens without one. */
@@ -120,25 +132,41 @@ export class Recorder {
     const recording = this.#recording;
     const first = recording?.frames[0];
     if (this.#mode !== 'replaying' || !recording || !first) return null;
-    this.#startTime ??= time;
-    if (time - this.#startTime > recordingDuration(recording)) {
+    if (!this.#paused) this.#seconds += time - (this.#sampledAt ?? time);
+    this.#sampledAt = time;
+    if (this.#seconds > recordingDuration(recording)) {
       if (!this.#loop) {
         this.stop();
         return null;
       }
-      this.#startTime = time;
+      this.#seconds = 0;
     }
-    this.#seconds = time - this.#startTime;
     return { ...sampleRecording(recording, first.time + this.#seconds), time };
+  }
+
+  /** The replay stands still, or goes on. */
+  setPaused(on: boolean): void {
+    this.#paused = on && this.#mode === 'replaying';
+  }
+
+  /** Replays the recording at hand from this second on, or stands there where the replay is paused. */
+  seek(seconds: number): void {
+    if (this.#mode !== 'replaying') this.replay();
+    if (this.#mode === 'replaying') this.#seconds = Math.max(0, Math.min(this.duration, seconds));
   }
 
   /** Takes a recording from the text of a file; throws a sentence when it is none. */
   open(name: string, text: string): Recording {
     const recording = parseRecording(text);
+    this.take(name, recording);
+    return recording;
+  }
+
+  /** Takes a recording; the one at hand is forgotten. */
+  take(name: string, recording: Recording): void {
     this.stop();
     this.#recording = recording;
     this.#name = name;
-    return recording;
   }
 
   /** The file of the recording at hand; null without one. */

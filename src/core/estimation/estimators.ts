@@ -1,4 +1,5 @@
 import type { Calibration } from '../body/calibration';
+import { createDeviceSource } from './device';
 import { createHandsOnly } from './hands-only';
 import { transformJoints } from './joint-positions';
 import type { JointSource } from './joint-source';
@@ -13,6 +14,10 @@ export type NetworkName = 'paper' | 'learned';
 
 /** Whether a method needs a network. */
 export const needsRegressor = (name: EstimatorName): name is NetworkName => name === 'paper' || name === 'learned';
+
+/** The network that a method draws with; the device's body can do without: learned draws where the device reports none. null: no network. */
+export const networkOf = (name: EstimatorName): NetworkName | null =>
+  needsRegressor(name) ? name : name === 'device' ? 'learned' : null;
 
 /** Inverse kinematics alone: the competitor that the networks are measured against, with the same calibration. */
 const ikAlone: JointSource = {
@@ -41,12 +46,16 @@ export function createWithNetwork(
   );
 }
 
-/** One estimator by name; `paper` and `learned` throw without their regressor. */
+/** One estimator by name; `paper` and `learned` throw without their regressor, `device` falls back on IK without that of `learned`. */
 export function createEstimator(
   name: EstimatorName,
   calibration: Calibration,
   regressor: PoseRegressor | null = null,
 ): PoseEstimator {
   if (needsRegressor(name)) return createWithNetwork(name, calibration, regressor);
+  if (name === 'device') {
+    const otherwise = regressor ? createResidual(calibration, regressor) : ikAlone;
+    return new Pipeline(name, calibration, createDeviceSource(otherwise));
+  }
   return name === 'ik' ? createIk(calibration) : createHandsOnly(calibration);
 }

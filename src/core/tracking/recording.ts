@@ -5,6 +5,7 @@ import { clamp } from '../math/damper';
 import type { TrackedPose } from '../math/pose';
 import { slerp } from '../math/quat';
 import { lerp } from '../math/vec3';
+import { type DeviceBody, deviceBodySize, deviceJointNames, mixDeviceBodies } from './device-body';
 import type { TrackingFrame } from './tracking-frame';
 
 /** What was tracked over a while, as it was tracked: full precision, lost hands as null. */
@@ -20,16 +21,17 @@ export interface Recording {
 }
 
 const format = 'threepoint-recording';
-const version = 2;
-/** Of an older format: frames without fingers. */
-const fingerlessVersion = 1;
+/** 3: frames may have the device's body. 2: they may have fingers. 1: they have neither. */
+const version = 3;
+const fingersSince = 2;
+const bodySince = 3;
 
 const poseColumns = 7;
 /** Five fingers of four joints and a pinch. */
 const bendColumns = 21;
 const columns =
   'time [s]; head, left hand, right hand: position [m], orientation xyzw, tracking; where known, fingers of the left hand, of the right: ' +
-  'knuckle, spread, middle, end [rad] from thumb to little finger, pinch';
+  'knuckle, spread, middle, end [rad] from thumb to little finger, pinch; where the device reports a body, its joints: x, y, z [m]';
 
 /** A hand's angles to a ten-thousandth of a radian. */
 const bends = (shape: HandShape | null): readonly number[] | null =>
@@ -42,18 +44,23 @@ const bends = (shape: HandShape | null): readonly number[] | null =>
     shape.pinch,
   ].map((angle) => Math.round(1e4 * angle) / 1e4);
 
+/** A device's joints to a tenth of a millimetre. */
+const bodyNumbers = (body: DeviceBody): readonly number[] => Array.from(body, (value) => Math.round(1e4 * value) / 1e4);
+
 /** The text of a recording file: JSON with one frame per line. */
 export function writeRecording({ device, rateHz, calibration, frames }: Recording): string {
-  const header = JSON.stringify({ format, version, device, rateHz, calibration });
+  const bodyJoints = frames.some(({ deviceBody }) => deviceBody) ? { bodyJoints: deviceJointNames } : {};
+  const header = JSON.stringify({ format, version, device, rateHz, calibration, ...bodyJoints });
   const pose = (tracked: TrackedPose | null) =>
     tracked && [
       ...[tracked.position.x, tracked.position.y, tracked.position.z],
       ...[tracked.orientation.x, tracked.orientation.y, tracked.orientation.z, tracked.orientation.w],
       tracked.tracking,
     ];
-  const lines = frames.map(({ time, head, leftHand, rightHand, fingers }) => {
+  const lines = frames.map(({ time, head, leftHand, rightHand, fingers, deviceBody }) => {
     const poses = [time, pose(head), pose(leftHand), pose(rightHand)];
-    return JSON.stringify(fingers ? [...poses, bends(fingers.left), bends(fingers.right)] : poses);
+    const bent = fingers || deviceBody ? [bends(fingers?.left ?? null), bends(fingers?.right ?? null)] : [];
+    return JSON.stringify([...poses, ...bent, ...(deviceBody ? [bodyNumbers(deviceBody)] : [])]);
   });
   return `${header.slice(0, -1)},"columns":"${columns}","frames":[\n${lines.join(',\n')}\n]}\n`;
 }
@@ -62,14 +69,17 @@ export function writeRecording({ device, rateHz, calibration, frames }: Recordin
 export function parseRecording(text: string): Recording {
   const file = parseJson(text);
   if (!isRecord(file) || file.format !== format) throw new Error('This is no recording of threepoint.');
-  if (file.version !== version && file.version !== fingerlessVersion) {
-    throw new Error(`The recording has version ${String(file.version)}; this page reads versions 1 and ${version}.`);
+  const written = file.version;
+  if (!isFiniteNumber(written) || !Number.isInteger(written) || written < 1 || written > version) {
+    throw new Error(`The recording has version ${String(written)}; this page reads versions 1 to ${version}.`);
   }
   if (typeof file.device !== 'string') throw new Error('The recording does not say its device.');
   if (!isFiniteNumber(file.rateHz) || file.rateHz <= 0) throw new Error('The recording does not say its rate in Hz.');
+  if (file.bodyJoints !== undefined && JSON.stringify(file.bodyJoints) !== JSON.stringify(deviceJointNames)) {
+    throw new Error('The recording’s body has other joints than this page knows.');
+  }
   if (!Array.isArray(file.frames) || file.frames.length === 0) throw new Error('The recording has no frames.');
-  const mayHaveFingers = file.version === version;
-  const frames = file.frames.map((frame, index) => parseFrame(frame, index, mayHaveFingers));
+  const frames = file.frames.map((frame, index) => parseFrame(frame, index, written));
   for (let i = 1; i < frames.length; i++) {
     if (frames[i]!.time <= frames[i - 1]!.time) {
       throw new Error(`Frame ${i + 1} of the recording is not later than the one before it.`);
@@ -121,23 +131,29 @@ function parseHandTilts(value: unknown): HandTilts | null {
 function parseCalibration(value: unknown): Calibration | null {
   if (value === null || value === undefined) return null;
   if (isRecord(value) && isFiniteNumber(value.eyeHeight) && isFiniteNumber(value.armSpan)) {
-    const { eyeHeight, armSpan, gazePitch } = value;
+    const { eyeHeight, armSpan, forearm, gazePitch } = value;
     const handTilts = parseHandTilts(value.handTilts);
     if (eyeHeight > 0 && armSpan > 0) {
-      return { eyeHeight, armSpan, ...(isFiniteNumber(gazePitch) && { gazePitch }), ...(handTilts && { handTilts }) };
+      return {
+        eyeHeight,
+        armSpan,
+        ...(isFiniteNumber(forearm) && { forearm }),
+        ...(isFiniteNumber(gazePitch) && { gazePitch }),
+        ...(handTilts && { handTilts }),
+      };
     }
   }
   throw new Error('The recording’s calibration is neither null nor an eye height and an arm span in metres.');
 }
 
-function parseFrame(value: unknown, index: number, mayHaveFingers: boolean): TrackingFrame {
+function parseFrame(value: unknown, index: number, written: number): TrackingFrame {
   const where = `Frame ${index + 1} of the recording`;
-  const withFingers = mayHaveFingers && Array.isArray(value) && value.length === 6;
-  if (!Array.isArray(value) || (value.length !== 4 && !withFingers)) {
-    const fingers = mayHaveFingers ? ', with the fingers of both or without' : '';
-    throw new Error(`${where} is not a time, a head, a left hand and a right hand${fingers}.`);
+  const lengths = [4, ...(written >= fingersSince ? [6] : []), ...(written >= bodySince ? [7] : [])];
+  if (!Array.isArray(value) || !lengths.includes(value.length)) {
+    const more = ['', ', with the fingers of both or without', ', with the fingers of both and a body or without'];
+    throw new Error(`${where} is not a time, a head, a left hand and a right hand${more[lengths.length - 1]}.`);
   }
-  const [time, head, leftHand, rightHand, leftFingers, rightFingers] = value;
+  const [time, head, leftHand, rightHand, leftFingers, rightFingers, body] = value;
   if (!isFiniteNumber(time)) throw new Error(`${where} has no time.`);
   if (head === null) throw new Error(`${where} has no head.`);
   return {
@@ -145,12 +161,13 @@ function parseFrame(value: unknown, index: number, mayHaveFingers: boolean): Tra
     head: parsePose(head, `${where}: the head`),
     leftHand: leftHand === null ? null : parsePose(leftHand, `${where}: the left hand`),
     rightHand: rightHand === null ? null : parsePose(rightHand, `${where}: the right hand`),
-    ...(withFingers && {
+    ...(value.length > 4 && {
       fingers: {
         left: leftFingers === null ? null : parseBends(leftFingers, `${where}: the fingers of the left hand`),
         right: rightFingers === null ? null : parseBends(rightFingers, `${where}: the fingers of the right hand`),
       },
     }),
+    ...(body !== undefined && { deviceBody: parseBody(body, `${where}: the body`) }),
   };
 }
 
@@ -182,12 +199,19 @@ function parseBends(value: unknown, what: string): HandShape {
   return shape;
 }
 
+function parseBody(value: unknown, what: string): DeviceBody {
+  if (!Array.isArray(value) || value.length !== deviceBodySize || !value.every(isFiniteNumber)) {
+    throw new Error(`${what} is not ${deviceBodySize} finite numbers.`);
+  }
+  return Float32Array.from(value);
+}
+
 /** Seconds from the first frame to the last. */
 export const recordingDuration = ({ frames }: Recording): number => frames.at(-1)!.time - frames[0]!.time;
 
 /**
  * The frame at a time [s] of the recording's own clock, interpolated; before the first and after the last: that frame. A hand
- * that either neighbour lacks is null: never on its way from or to nowhere.
+ * that either neighbour lacks is null, its device's body absent: never on its way from or to nowhere.
  */
 export function sampleRecording({ frames }: Recording, time: number): TrackingFrame {
   let low = 0;
@@ -208,6 +232,8 @@ export function sampleRecording({ frames }: Recording, time: number): TrackingFr
     leftHand: hand(before.leftHand, after.leftHand),
     rightHand: hand(before.rightHand, after.rightHand),
     ...(before.fingers && { fingers: mixFingers(before.fingers, after.fingers ?? before.fingers, share) }),
+    ...(before.deviceBody &&
+      after.deviceBody && { deviceBody: mixDeviceBodies(before.deviceBody, after.deviceBody, share) }),
   };
 }
 

@@ -1,5 +1,6 @@
 import type { Fingers } from '../body/hand-shape';
 import type { TrackedPose } from '../math/pose';
+import type { DeviceBody } from './device-body';
 
 /**
  * One frame of the three tracked points. Head: the viewer pose (origin between the eyes, −Z is the gaze).
@@ -14,6 +15,8 @@ export interface TrackingFrame {
   readonly rightHand: TrackedPose | null;
   /** Absent: of neither hand known. In memory of the tracker's own, which the next frame overwrites: copy what must stay. */
   readonly fingers?: Fingers;
+  /** Absent: the device reports no body in this frame. In memory of the tracker's own, too. */
+  readonly deviceBody?: DeviceBody;
   /** The device shows something of its own before the page: no hand is for the page, and a player who holds something goes on holding it. */
   readonly suspended?: true;
 }

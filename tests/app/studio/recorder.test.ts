@@ -50,6 +50,30 @@ describe('the recorder', () => {
     expect(recorder.mode).toBe('idle');
   });
 
+  test('a replay that is paused stands at its second while time passes, and goes on from there', () => {
+    const recorder = recorded(0, 4);
+    recorder.replay();
+    recorder.sample(50);
+    recorder.sample(51);
+    recorder.setPaused(true);
+    expect(recorder.sample(58)?.head.position.x).toBeCloseTo(1, 6);
+    expect(recorder.sample(59)?.time).toBe(59);
+    recorder.setPaused(false);
+    expect(recorder.sample(59.5)?.head.position.x).toBeCloseTo(1.5, 6);
+  });
+
+  test('a replay goes on from the second that is asked for, also where none was running', () => {
+    const recorder = recorded(0, 4);
+    recorder.seek(3);
+    expect(recorder.mode).toBe('replaying');
+    expect(recorder.sample(50)?.head.position.x).toBeCloseTo(3, 6);
+    expect(recorder.sample(50.5)?.head.position.x).toBeCloseTo(3.5, 6);
+    recorder.seek(99);
+    expect(recorder.seconds).toBe(recorder.duration);
+    recorder.seek(-1);
+    expect(recorder.sample(51)?.head.position.x).toBeCloseTo(0.5, 6);
+  });
+
   test('its file is read back to the bit', () => {
     const recorder = recorded(1 / 3, 1);
     const file = recorder.file();

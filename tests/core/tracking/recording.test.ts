@@ -4,6 +4,7 @@ import { flatHand } from '../../../src/core/body/hand-shape';
 import type { TrackedPose } from '../../../src/core/math/pose';
 import { slerp } from '../../../src/core/math/quat';
 import { distance, lerp, vec3 } from '../../../src/core/math/vec3';
+import { deviceBodySize } from '../../../src/core/tracking/device-body';
 import {
   parseRecording,
   type Recording,
@@ -34,6 +35,11 @@ const hand = fc.record({
 
 const tilt = fc.record({ pitch: evenly(-1, 1), yaw: evenly(-1, 1) });
 
+/** A device's joints as a file has them: to a tenth of a millimetre. */
+const deviceBody = fc
+  .array(fc.integer({ min: -50_000, max: 50_000 }), { minLength: deviceBodySize, maxLength: deviceBodySize })
+  .map((steps) => Float32Array.from(steps, (step) => step / 1e4));
+
 const recording: fc.Arbitrary<Recording> = fc.record({
   device: fc.string(),
   rateHz: number(1, 144),
@@ -42,6 +48,7 @@ const recording: fc.Arbitrary<Recording> = fc.record({
       {
         eyeHeight: number(0.9, 2.2),
         armSpan: number(0.6, 2.3),
+        forearm: number(0.2, 0.3),
         gazePitch: evenly(-0.2, 0.2),
         handTilts: fc.record({ left: tilt, right: tilt }, { requiredKeys: ['left'] }),
       },
@@ -56,6 +63,7 @@ const recording: fc.Arbitrary<Recording> = fc.record({
         leftHand: fc.option(tracked),
         rightHand: fc.option(tracked),
         fingers: fc.option(fc.record({ left: fc.option(hand), right: fc.option(hand) }), { nil: undefined }),
+        deviceBody: fc.option(deviceBody, { nil: undefined }),
       }),
       { minLength: 1, maxLength: 8 },
     )
@@ -63,8 +71,10 @@ const recording: fc.Arbitrary<Recording> = fc.record({
       let time = 1000 / 3;
       return frames.map(({ step, ...frame }): TrackingFrame => {
         time += step;
-        const { fingers, ...poses } = frame;
-        return { time, ...poses, ...(fingers && { fingers }) };
+        const { fingers, deviceBody, ...poses } = frame;
+        // Frames with a body have a place for fingers, which may be empty.
+        const known = fingers ?? (deviceBody && { left: null, right: null });
+        return { time, ...poses, ...(known && { fingers: known }), ...(deviceBody && { deviceBody }) };
       });
     }),
 });
@@ -73,7 +83,7 @@ const recording: fc.Arbitrary<Recording> = fc.record({
 const withoutNegativeZero = (value: unknown): unknown =>
   typeof value === 'number'
     ? value + 0
-    : typeof value === 'object' && value !== null
+    : typeof value === 'object' && value !== null && !ArrayBuffer.isView(value)
       ? Array.isArray(value)
         ? value.map(withoutNegativeZero)
         : Object.fromEntries(Object.entries(value).map(([key, part]) => [key, withoutNegativeZero(part)]))
@@ -98,6 +108,12 @@ const withFingers = writeRecording({
   frames: [{ ...some.frames[0]!, fingers: { left: { ...flatHand, pinch: 0.5 }, right: null } }],
 });
 
+/** One frame of a body whose joints all lie in one point. */
+const withBody = writeRecording({
+  ...some,
+  frames: [{ ...some.frames[0]!, deviceBody: new Float32Array(deviceBodySize) }],
+});
+
 describe('a recording', () => {
   test('comes back from its file to the last bit, lost hands as null', () => {
     fc.assert(
@@ -110,24 +126,39 @@ describe('a recording', () => {
 
   test('is JSON with a frame per line', () => {
     const text = writeRecording(some);
-    expect(JSON.parse(text)).toMatchObject({ format: 'threepoint-recording', version: 2, rateHz: 72 });
+    expect(JSON.parse(text)).toMatchObject({ format: 'threepoint-recording', version: 3, rateHz: 72 });
     expect(text.trimEnd().split('\n').length).toBe(some.frames.length + 2);
   });
 
-  test('of version 1, which knew no fingers, still opens', () => {
-    const old = writeRecording(some).replace('"version":2', '"version":1');
-    expect(parseRecording(old)).toEqual(some);
+  test('of version 1, which knew no fingers, and of version 2, which knew no bodies, still open', () => {
+    expect(parseRecording(writeRecording(some).replace('"version":3', '"version":1'))).toEqual(some);
+    expect(parseRecording(withFingers.replace('"version":3', '"version":2'))).toEqual(parseRecording(withFingers));
+  });
+
+  test('gives the device’s body half-way between two frames, and none where one has none', () => {
+    const [first, second, third] = some.frames as [TrackingFrame, TrackingFrame, TrackingFrame];
+    const body = (value: number) => ({ deviceBody: new Float32Array(deviceBodySize).fill(value) });
+    const embodied = { ...some, frames: [{ ...first, ...body(1) }, { ...second, ...body(2) }, third] };
+    expect(sampleRecording(embodied, 5.05).deviceBody?.[7]).toBeCloseTo(1.5, 6);
+    expect(sampleRecording(embodied, 5.15).deviceBody).toBeUndefined();
   });
 
   test.each([
     ['fingers that are too few', withFingers.replace(',0.5],', '],'), /Frame 1 .*fingers of the left hand.*21/],
     ['a bend that is no number', withFingers.replace('0.5],', '"bent"],'), /Frame 1 .*fingers of the left hand.*21/],
-    ['fingers in a file of version 1', withFingers.replace('"version":2', '"version":1'), /Frame 1 .*is not a time/],
+    [
+      'a body that is too short',
+      withBody.replace('null,null,[0,', 'null,null,['),
+      /Frame 1 .*the body is not 105 finite/,
+    ],
+    ['a body with other joints', withBody.replace('"hips"', '"tail"'), /other joints/],
+    ['a body in a file of version 2', withBody.replace('"version":3', '"version":2'), /Frame 1 .*is not a time/],
+    ['fingers in a file of version 1', withFingers.replace('"version":3', '"version":1'), /Frame 1 .*is not a time/],
     ['nothing', '', /no JSON/],
     ['prose', 'Dear Sir', /no JSON/],
     ['other JSON', '{"photos": []}', /no recording of threepoint/],
     ['an array', '[]', /no recording of threepoint/],
-    ['a later version', writeRecording(some).replace('"version":2', '"version":7'), /version 7/],
+    ['a later version', writeRecording(some).replace('"version":3', '"version":7'), /version 7/],
     ['no frames', '{"format":"threepoint-recording","version":1,"device":"","rateHz":60,"frames":[]}', /no frames/],
     ['no rate', writeRecording(some).replace('"rateHz":72', '"rateHz":"often"'), /rate/],
     ['a damaged line', writeRecording(some).replace('[5.1,', '[5.1 oops,'), /line 3 is damaged/],

@@ -1,0 +1,58 @@
+import type { AvatarPose } from '../../core/body/avatar-pose';
+import type { Calibration } from '../../core/body/calibration';
+import { forwardKinematics, makeJointPoses } from '../../core/body/forward-kinematics';
+import { type EstimatedJoint, estimatedJoints } from '../../core/body/joints';
+import { type Skeleton, skeletonFromCalibration } from '../../core/body/skeleton';
+import { smoothingFactor } from '../../core/math/damper';
+import { distance, vec3 } from '../../core/math/vec3';
+import { deviceJoint } from '../../core/tracking/device-body';
+import type { TrackingFrame } from '../../core/tracking/tracking-frame';
+
+/** Half-life of the mean [s]: long enough to be read. */
+const halfLife = 0.5;
+
+/** What the joints are called on the page. */
+const labels: Readonly<Record<EstimatedJoint, string>> = {
+  leftLowerArm: 'left elbow',
+  rightLowerArm: 'right elbow',
+  leftUpperArm: 'left shoulder',
+  rightUpperArm: 'right shoulder',
+  chest: 'spine',
+  hips: 'pelvis',
+};
+
+const place = vec3(0, 0, 0);
+
+/** How far the drawn joints are from where the device has them, over the last moments. */
+export class DeviceDifference {
+  readonly #joints = makeJointPoses();
+  /** [m], in the order of `estimatedJoints`. */
+  readonly #means = new Float64Array(estimatedJoints.length);
+  #skeleton: Skeleton | null = null;
+  #skeletonOf: Calibration | null = null;
+  #time = Number.NaN;
+
+  /** Every frame that is drawn; one without a body of the device says nothing. */
+  observe({ time, deviceBody }: TrackingFrame, { body }: AvatarPose, calibration: Calibration): void {
+    if (!deviceBody || !body) {
+      this.#time = Number.NaN;
+      return;
+    }
+    if (this.#skeletonOf !== calibration) this.#skeleton = skeletonFromCalibration(calibration);
+    this.#skeletonOf = calibration;
+    forwardKinematics(this.#skeleton!, body, this.#joints);
+    const share = Number.isNaN(this.#time) ? 1 : smoothingFactor(halfLife, Math.max(0, time - this.#time));
+    this.#time = time;
+    for (let index = 0; index < estimatedJoints.length; index++) {
+      const joint = estimatedJoints[index]!;
+      const off = distance(this.#joints[joint].position, deviceJoint(deviceBody, joint, place));
+      this.#means[index] = this.#means[index]! + share * (off - this.#means[index]!);
+    }
+  }
+
+  /** By joint [cm]; null: the device reports no body now. */
+  report(): readonly { readonly name: string; readonly cm: number }[] | null {
+    if (Number.isNaN(this.#time)) return null;
+    return estimatedJoints.map((joint, index) => ({ name: labels[joint], cm: 100 * this.#means[index]! }));
+  }
+}

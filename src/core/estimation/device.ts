@@ -1,0 +1,66 @@
+import { type EstimatedJoint, estimatedJoints } from '../body/joints';
+import { rotate, rotateInverse } from '../math/quat';
+import { addScaled, distance, subtract, type Vec3, vec3 } from '../math/vec3';
+import { type DeviceBody, deviceJoint, type SharedJoint } from '../tracking/device-body';
+import { makeJoints, mapJoints } from './joint-positions';
+import type { JointSource, SolvedFrame } from './joint-source';
+
+/** A body whose head, or an arm whose wrist, is so far [m] from where it is tracked is another's, or of another moment. */
+const strayHead = 0.3;
+const strayWrist = 0.2;
+/** From the device's joints to the other source's, and back, in so long [s]. */
+const handOverSeconds = 0.3;
+
+const armOf: Partial<Record<EstimatedJoint, 'leftHand' | 'rightHand'>> = {
+  leftLowerArm: 'leftHand',
+  rightLowerArm: 'rightHand',
+};
+
+const place = vec3(0, 0, 0);
+
+const isNear = (body: DeviceBody, joint: SharedJoint, tracked: Vec3, most: number): boolean =>
+  distance(deviceJoint(body, joint, place), tracked) <= most;
+
+/**
+ * The device's own body. Where it reports none, or one that is not where head and hands are, `otherwise` draws: an elbow alone, or all six joints; what
+ * the device was different by fades, and comes, within 0.3 s.
+ */
+export function createDeviceSource(otherwise: JointSource): JointSource {
+  /** What the device's joints differ by from the other source's [m], heading frame, and how much of it counts [0, 1]. */
+  const differences = makeJoints();
+  const shares = mapJoints(() => 0);
+  let known = false;
+
+  function believed(joint: EstimatedJoint, { deviceBody, completed }: SolvedFrame): boolean {
+    if (!deviceBody || !isNear(deviceBody, 'head', completed.headJoint, strayHead)) return false;
+    const hand = armOf[joint];
+    return hand === undefined || isNear(deviceBody, hand, completed[hand].position, strayWrist);
+  }
+
+  return {
+    takesHandTilts: otherwise.takesHandTilts,
+    network: otherwise.network,
+    calibrate: (body) => otherwise.calibrate(body),
+    reset() {
+      otherwise.reset();
+      known = false;
+    },
+    joints(solved, deltaSeconds, target) {
+      otherwise.joints(solved, deltaSeconds, target);
+      const { orientation } = solved.floorFromHeading;
+      const step = known ? deltaSeconds / handOverSeconds : 1;
+      known = true;
+      for (let index = 0; index < estimatedJoints.length; index++) {
+        const joint = estimatedJoints[index]!;
+        const difference = differences[joint];
+        const sees = believed(joint, solved);
+        if (sees && solved.deviceBody) {
+          subtract(deviceJoint(solved.deviceBody, joint, place), target[joint], place);
+          rotateInverse(orientation, place, difference);
+        }
+        shares[joint] = sees ? Math.min(1, shares[joint] + step) : Math.max(0, shares[joint] - step);
+        addScaled(target[joint], rotate(orientation, difference, place), shares[joint], target[joint]);
+      }
+    },
+  };
+}

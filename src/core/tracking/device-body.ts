@@ -1,0 +1,53 @@
+import type { JointName } from '../body/joints';
+import { type MutableVec3, setVec3 } from '../math/vec3';
+
+const sides = ['left', 'right'] as const;
+
+/** What is kept of WebXR Body Tracking's joints, in the specification's order: all but what lies within a hand, whose fingers a frame has anyway. */
+export const deviceJointNames: readonly string[] = [
+  ...['hips', 'spine-lower', 'spine-middle', 'spine-upper', 'chest', 'neck', 'head'],
+  ...sides.flatMap((side) =>
+    ['shoulder', 'scapula', 'arm-upper', 'arm-lower', 'hand-wrist-twist'].map((joint) => `${side}-${joint}`),
+  ),
+  ...sides.flatMap((side) => ['hand-palm', 'hand-wrist'].map((joint) => `${side}-${joint}`)),
+  ...sides.flatMap((side) =>
+    ['upper-leg', 'lower-leg', 'foot-ankle-twist', 'foot-ankle', 'foot-subtalar', 'foot-transverse', 'foot-ball'].map(
+      (joint) => `${side}-${joint}`,
+    ),
+  ),
+];
+
+/** Where a device places its wearer's joints: x, y, z of each of `deviceJointNames` [m], floor frame, finite. */
+export type DeviceBody = Float32Array;
+
+/** Numbers of a DeviceBody. */
+export const deviceBodySize = 3 * deviceJointNames.length;
+
+const named = (joint: string): number => 3 * deviceJointNames.indexOf(joint);
+
+/** Our joints that a device has too, and where in a DeviceBody they begin; our `chest` lies where the thorax begins, a device's `spine-upper`. */
+const places = {
+  hips: named('hips'),
+  chest: named('spine-upper'),
+  neck: named('neck'),
+  head: named('head'),
+  leftUpperArm: named('left-arm-upper'),
+  leftLowerArm: named('left-arm-lower'),
+  leftHand: named('left-hand-wrist'),
+  rightUpperArm: named('right-arm-upper'),
+  rightLowerArm: named('right-arm-lower'),
+  rightHand: named('right-hand-wrist'),
+} as const satisfies Partial<Record<JointName, number>>;
+
+/** A joint of ours that devices have too. */
+export type SharedJoint = keyof typeof places;
+
+/** Where the device has this joint [m], floor frame. */
+export function deviceJoint(body: DeviceBody, joint: SharedJoint, target: MutableVec3): MutableVec3 {
+  const at = places[joint];
+  return setVec3(target, body[at]!, body[at + 1]!, body[at + 2]!);
+}
+
+/** Between two of them, joint by joint; share 0: the first. In memory of its own. */
+export const mixDeviceBodies = (a: DeviceBody, b: DeviceBody, share: number): DeviceBody =>
+  a.map((value, index) => value + (b[index]! - value) * share);

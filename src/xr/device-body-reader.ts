@@ -1,0 +1,90 @@
+import { reasonOf } from '../core/errors/reasons';
+import { type DeviceBody, deviceBodySize, deviceJointNames } from '../core/tracking/device-body';
+
+/** The feature of a session by which a device reports its wearer's body (WebXR Body Tracking). */
+export const bodyFeature = 'body-tracking';
+
+/** The module's body of a frame: 83 joints by name, 84 where the device still has a root. */
+interface DeviceXRBody {
+  get(name: string): XRSpace | undefined;
+}
+
+/** As devices with the module have it. */
+interface BodyFrame {
+  readonly body?: DeviceXRBody | null;
+  fillPoses?(spaces: readonly XRSpace[], base: XRSpace, transforms: Float32Array): boolean;
+  getPose(space: XRSpace, base: XRSpace): XRPose | null | undefined;
+}
+
+/** Numbers of a matrix, and where in it the place begins. */
+const matrixSize = 16;
+const placeInMatrix = 12;
+
+/** Reads the device's own body, frame by frame, in memory of its own. Never throws: what goes wrong is a sentence. */
+export class DeviceBodyReader {
+  readonly #joints: DeviceBody = new Float32Array(deviceBodySize);
+  readonly #matrices = new Float32Array(matrixSize * deviceJointNames.length);
+  /** Whose joints `spaces` are; a session has one body. */
+  #body: DeviceXRBody | null = null;
+  #spaces: readonly XRSpace[] | null = null;
+  #fault: string | null = null;
+  #seen = false;
+
+  /** Why there never was a body, or is none any more; null: it is there. */
+  get complaint(): string | null {
+    if (this.#fault !== null) return this.#fault;
+    if (this.#body === null) return 'the device reports no body';
+    return this.#seen ? null : 'the device has lost the body, or not found it yet';
+  }
+
+  /** The joints [m] in the space, overwritten by the next; null: the device reports none in this frame, or not all of them. */
+  read(frame: XRFrame, space: XRReferenceSpace): DeviceBody | null {
+    try {
+      this.#seen = this.#fill(frame as BodyFrame, space);
+    } catch (error) {
+      this.#seen = false;
+      this.#fault = `the device's body cannot be read: ${reasonOf(error)}`;
+    }
+    return this.#seen ? this.#joints : null;
+  }
+
+  #fill(frame: BodyFrame, space: XRReferenceSpace): boolean {
+    const body = frame.body ?? null;
+    if (body !== this.#body) this.#learn(body);
+    if (!this.#spaces) return false;
+    if (!(frame.fillPoses ? this.#fillAtOnce(frame, space) : this.#fillOneByOne(frame, space))) return false;
+    for (let index = 0; index < deviceBodySize; index++) if (!Number.isFinite(this.#joints[index])) return false;
+    return true;
+  }
+
+  #learn(body: DeviceXRBody | null): void {
+    this.#body = body;
+    this.#spaces = null;
+    this.#fault = null;
+    if (!body) return;
+    const spaces = deviceJointNames.map((name) => body.get(name));
+    const missing = deviceJointNames.filter((_, index) => !spaces[index]);
+    if (missing.length > 0) this.#fault = `the device's body has no ${missing.join(', ')}`;
+    else this.#spaces = spaces as XRSpace[];
+  }
+
+  #fillAtOnce(frame: BodyFrame, space: XRReferenceSpace): boolean {
+    if (!frame.fillPoses?.(this.#spaces!, space, this.#matrices)) return false;
+    for (let joint = 0; joint < deviceJointNames.length; joint++)
+      for (let axis = 0; axis < 3; axis++)
+        this.#joints[3 * joint + axis] = this.#matrices[matrixSize * joint + placeInMatrix + axis]!;
+    return true;
+  }
+
+  #fillOneByOne(frame: BodyFrame, space: XRReferenceSpace): boolean {
+    for (let joint = 0; joint < deviceJointNames.length; joint++) {
+      const pose = frame.getPose(this.#spaces![joint]!, space);
+      if (!pose) return false;
+      const { x, y, z } = pose.transform.position;
+      this.#joints[3 * joint] = x;
+      this.#joints[3 * joint + 1] = y;
+      this.#joints[3 * joint + 2] = z;
+    }
+    return true;
+  }
+}

@@ -1,0 +1,101 @@
+import { describe, expect, test } from 'vitest';
+import { defaultCalibration } from '../../src/core/body/calibration';
+import { identity } from '../../src/core/math/quat';
+import { vec3 } from '../../src/core/math/vec3';
+import { XRBodyPoser } from '../../src/core/motion/xr-body';
+import { deviceJoint, deviceJointNames } from '../../src/core/tracking/device-body';
+import { DeviceBodyReader } from '../../src/xr/device-body-reader';
+import { createTracker } from '../../src/xr/tracker';
+import { fakeHeadset, type Seen } from './fake-headset';
+
+/** The specification's joints, as a device lists them. */
+const names = new XRBodyPoser(defaultCalibration).names;
+/** Each joint at a place of its own, which its name's rank tells. */
+const placeOf = (name: string) => vec3(names.indexOf(name) / 100, 1, 0.25);
+
+/** A headset that reports a body, which the test may change before each frame. */
+function headsetWithBody() {
+  const headset = fakeHeadset();
+  const joints = new Map<string, { at: Seen }>(
+    names.map((name) => [name, { at: { position: placeOf(name), orientation: identity } }]),
+  );
+  const frame = headset.frame as unknown as Record<string, unknown>;
+  frame.body = joints;
+  return { ...headset, frame, joints };
+}
+
+const read = (reader: DeviceBodyReader, { frame, floor }: { frame: unknown; floor: XRReferenceSpace }) =>
+  reader.read(frame as XRFrame, floor);
+
+const missing = 'left-arm-lower';
+
+describe('the body that a device reports', () => {
+  test.each<[string, (headset: ReturnType<typeof headsetWithBody>) => void]>([
+    ['of 83 joints', () => undefined],
+    [
+      'of 84, a root first, the odd one spelt as the specification has it',
+      ({ frame, joints }) => {
+        const [odd, rest] = ['left-hand-middle-metacarpal', new Map(joints)];
+        const spelt = rest.get(odd);
+        rest.delete(odd);
+        frame.body = new Map([['root', { at: null }], ['left-hand-middle-phalanx-metacarpal', spelt], ...rest]);
+      },
+    ],
+    ['of a browser that fills no poses at once', ({ frame }) => void delete frame.fillPoses],
+  ])('%s is read joint by joint, into the same memory', (_, change) => {
+    const headset = headsetWithBody();
+    change(headset);
+    const reader = new DeviceBodyReader();
+    const body = read(reader, headset);
+    expect(reader.complaint).toBeNull();
+    for (const [index, name] of deviceJointNames.entries())
+      expect([...(body ?? []).slice(3 * index, 3 * index + 3)]).toEqual([
+        expect.closeTo(placeOf(name).x, 6),
+        1,
+        expect.closeTo(0.25, 6),
+      ]);
+    expect(deviceJoint(body!, 'leftLowerArm', vec3(0, 0, 0)).x).toBeCloseTo(placeOf('left-arm-lower').x, 6);
+    expect(read(reader, headset)).toBe(body);
+  });
+
+  test.each<[string, (headset: ReturnType<typeof headsetWithBody>) => void, RegExp]>([
+    ['is not there', ({ frame }) => void delete frame.body, /reports no body/],
+    ['is null', ({ frame }) => void Object.assign(frame, { body: null }), /reports no body/],
+    ['is not seen', ({ joints }) => void joints.set(missing, { at: null }), /lost the body/],
+    [
+      'has no numbers',
+      ({ joints }) => void joints.set(missing, { at: { position: vec3(Number.NaN, 0, 0), orientation: identity } }),
+      /lost the body/,
+    ],
+    ['lacks a joint', ({ joints }) => void joints.delete(missing), /has no left-arm-lower/],
+    [
+      'cannot be asked',
+      ({ frame }) => {
+        frame.fillPoses = () => {
+          throw new DOMException('the frame is over', 'InvalidStateError');
+        };
+      },
+      /cannot be read: the frame is over/,
+    ],
+  ])('that %s is none, with a sentence, and comes back when the device has it again', (_, spoil, sentence) => {
+    const headset = headsetWithBody();
+    const reader = new DeviceBodyReader();
+    const { getPose: ask } = headset.frame;
+    const { fillPoses } = headset.frame;
+    spoil(headset);
+    expect(read(reader, headset)).toBeNull();
+    expect(reader.complaint).toMatch(sentence);
+    const well = headsetWithBody();
+    Object.assign(headset.frame, { body: well.joints, fillPoses, getPose: ask });
+    expect(read(reader, headset)).not.toBeNull();
+    expect(reader.complaint).toBeNull();
+  });
+
+  test('is in the tracked frame of a tracker that reads it, and in no other', () => {
+    const headset = headsetWithBody();
+    const frame = headset.frame as unknown as XRFrame;
+    const reads = createTracker(headset.session, headset.floor, undefined, new DeviceBodyReader());
+    expect(reads.read(frame, 1)?.deviceBody).toHaveLength(3 * deviceJointNames.length);
+    expect(createTracker(headset.session, headset.floor).read(frame, 1)).not.toHaveProperty('deviceBody');
+  });
+});
