@@ -3,14 +3,8 @@ import type { StudyPlan } from '../src/core/study/plan';
 import type { StudyRecord } from '../src/core/study/study-record';
 import { studyTables } from '../src/core/study/study-tables';
 import { codebookOf, tidyCsv } from '../src/core/study/tidy-csv';
-
-/** A recording of tracked frames, as recording.ts writes it. */
-export interface MotionFile {
-  readonly participant: string;
-  /** Id of the trial's record. */
-  readonly trial: string;
-  readonly text: string;
-}
+import { bidsDataset } from './study-bids';
+import type { MotionFile } from './study-motion';
 
 /** What an export is made of. */
 export interface ExportContent {
@@ -28,7 +22,7 @@ const day = (seconds: number) => new Date(seconds * 1000).toISOString().slice(0,
 const simulatedNotice =
   'SIMULATED: a program made this. It says nothing about people and must never be analysed with theirs.';
 
-function readme({ plan, simulated, records, at, retentionUntil }: ExportContent): string {
+function readme({ plan, simulated, records, at, retentionUntil }: ExportContent, leftOut: readonly string[]): string {
   const participants = new Set(records.map(({ participant }) => participant));
   return [
     ...(simulated ? [simulatedNotice, ''] : []),
@@ -43,6 +37,9 @@ function readme({ plan, simulated, records, at, retentionUntil }: ExportContent)
     'codebook.csv  every column of the other tables',
     'The tables are tidy: UTF-8, a row per observation, an empty field where there is no value.',
     'An apostrophe before text that begins like a formula was put there by us.',
+    'motion/       where there is consent to it: tracked frames as they were recorded',
+    'bids/         the same as a BIDS data set (motion)',
+    ...leftOut.map((reason) => `  left out: ${reason}`),
     '',
   ].join('\r\n');
 }
@@ -51,8 +48,9 @@ function readme({ plan, simulated, records, at, retentionUntil }: ExportContent)
 export function exportFiles(content: ExportContent): Readonly<Record<string, string>> {
   const { plan, simulated, records, motion, at } = content;
   const tables = studyTables(records, plan);
+  const bids = bidsDataset(content);
   const files: Record<string, string> = {
-    'README.txt': readme(content),
+    'README.txt': readme(content, bids.leftOut),
     'plan.json': `${JSON.stringify(plan, null, 2)}\n`,
     'records.json': `${JSON.stringify({ study: plan.id, simulated, exportedAt: at, records }, null, 2)}\n`,
     'codebook.csv': tidyCsv(codebookOf(tables)),
@@ -61,6 +59,7 @@ export function exportFiles(content: ExportContent): Readonly<Record<string, str
   for (const { participant, trial, text } of motion) {
     files[`motion/${participant}-${trial.replace(/[^a-z0-9]+/g, '-')}.json`] = text;
   }
+  for (const [path, text] of Object.entries(bids.files)) files[`bids/${path}`] = text;
   return files;
 }
 

@@ -1,7 +1,14 @@
 import { gunzipSync, gzipSync } from 'node:zlib';
 import { StoreRefusal, type StudyDatabase } from './study-database';
-import type { MotionFile } from './study-export';
 import type { StudyPlaces } from './study-places';
+
+/** A recording of tracked frames, as recording.ts writes it. */
+export interface MotionFile {
+  readonly participant: string;
+  /** Id of the trial's record. */
+  readonly trial: string;
+  readonly text: string;
+}
 
 /** Compressed bytes of tracked frames. */
 export const mostMotionPerParticipant = 256 * 2 ** 20;
