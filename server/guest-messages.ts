@@ -34,33 +34,33 @@ export class GuestMessages {
     this.#options = options;
   }
 
-  onPose(guest: Guest, bytes: unknown): void {
+  onPose(guest: Guest, bytes: Uint8Array): void {
     const { rooms, metrics, now } = this.#options;
     const { counts } = metrics;
     counts.posesIn += 1;
     if (guest.ended) return;
-    if (!(bytes instanceof Uint8Array)) {
-      this.#countBad(guest, 'pose');
-      return;
-    }
     counts.bytesIn += bytes.length;
-    if (!this.#isWithin(guest, guest.poses)) {
+    const at = now();
+    if (!this.#isWithin(guest, guest.poses, at)) {
       counts.posesIgnored += 1;
       return;
     }
-    const result = rooms.get(guest.pass.room)?.room.onPose(guest.id, bytes, now());
+    const hosted = rooms.get(guest.pass.room);
+    const result = hosted?.room.onPose(guest.id, bytes, at);
     if (result === 'bad') this.#countBad(guest, 'pose');
-    if (result !== 'taken') counts.posesIgnored += 1;
+    if (hosted && result === 'taken') rooms.sendPoses(hosted);
+    else counts.posesIgnored += 1;
   }
 
   onMessage(guest: Guest, value: unknown): void {
     const { rooms, metrics, log, now } = this.#options;
     metrics.counts.messagesIn += 1;
-    if (guest.ended || !this.#isWithin(guest, guest.events)) return;
+    const at = now();
+    if (guest.ended || !this.#isWithin(guest, guest.events, at)) return;
     const message = clientMessageFrom(value);
     if (message?.type === 'join') this.#join(guest, message);
     else if (message) {
-      const result = rooms.get(guest.pass.room)?.room.onMessage(guest.id, message, now());
+      const result = rooms.wake(guest.pass.room)?.room.onMessage(guest.id, message, at);
       if (result === 'bad') this.#countBad(guest, message.type);
     } else if (isOtherVersion(value)) {
       log.info({ room: guest.pass.room, client: guest.id }, 'page of another version');
@@ -70,7 +70,7 @@ export class GuestMessages {
 
   /** The connection has ended. */
   onEnd({ id, pass }: Guest): void {
-    const hosted = this.#options.rooms.get(pass.room);
+    const hosted = this.#options.rooms.wake(pass.room);
     hosted?.guests.delete(id);
     hosted?.room.disconnect(id, this.#options.now());
   }
@@ -105,8 +105,7 @@ export class GuestMessages {
   }
 
   /** Whether this message is still within what a client may send. */
-  #isWithin(guest: Guest, budget: Budget): boolean {
-    const at = this.#options.now();
+  #isWithin(guest: Guest, budget: Budget, at: number): boolean {
     if (!guest.flood.spend(at)) {
       this.kick(guest, 'misbehaved', 'flood');
       return false;

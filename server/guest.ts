@@ -1,7 +1,10 @@
+import type { Socket as NetSocket } from 'node:net';
 import type { Socket } from 'socket.io';
 import type { Farewell, RoomMessage } from '../src/core/protocol/messages';
+import { frameLength, writeFrame } from '../src/core/protocol/pose-frame';
 import { messageEvent } from '../src/core/protocol/small-frames';
 import type { HostedGame } from '../src/core/room/match-policy';
+import type { FreshPose } from '../src/core/room/room-outlet';
 import { type Budget, createBudget } from './budget';
 import type { RelayConfiguration } from './relay-configuration';
 import type { RelayCounts } from './relay-metrics';
@@ -12,6 +15,8 @@ import type { RoomPass } from './room-tokens';
 export interface Guest {
   readonly id: string;
   readonly socket: Socket;
+  /** The connection below. */
+  readonly wire: NetSocket;
   readonly pass: RoomPass;
   /** [s] */
   readonly connectedAt: number;
@@ -31,6 +36,8 @@ const floodPerSecond = 300;
 /** A connection that could take no frame for this long [s], or has this many packets waiting, is too slow. */
 const slowSeconds = 5;
 const mostWaiting = 256;
+/** A connection may have so many bytes waiting and still be sent poses: one that encrypts takes a moment for each write. */
+const mostBytesWaiting = 4096;
 
 /** `now`: seconds, monotonic. */
 export const createGuest = (
@@ -40,6 +47,7 @@ export const createGuest = (
 ): Guest => ({
   id: socket.id,
   socket,
+  wire: socket.conn.request.socket,
   pass: socket.data.pass,
   connectedAt: now,
   poses: createBudget(posesPerSecond),
@@ -71,35 +79,46 @@ const packetsWaiting = (conn: Socket['conn']): number =>
 /** Whether this guest reads too slowly to take part; asked again and again, `now` in seconds. */
 export function isSlow(guest: Guest, now: number): boolean {
   const { conn } = guest.socket;
-  if (conn.transport.writable) guest.writableAt = now;
+  if (conn.transport.writable && guest.wire.writableLength <= mostBytesWaiting) guest.writableAt = now;
   return now - guest.writableAt > slowSeconds || packetsWaiting(conn) > mostWaiting;
 }
 
-/** The bytes as one unmasked binary WebSocket frame, so that it is made once for a whole room. */
-function webSocketFrame(bytes: Uint8Array): Buffer {
-  const short = bytes.length < 126;
-  const frame = Buffer.allocUnsafe((short ? 2 : 4) + bytes.length);
-  frame[0] = 0x82;
-  frame[1] = short ? bytes.length : 126;
-  if (!short) frame.writeUInt16BE(bytes.length, 2);
-  frame.set(bytes, short ? 2 : 4);
-  return frame;
+/** The packets of all seats but one as a binary WebSocket message, unmasked, ready for the wire; null: there are none. */
+function poseMessage(poses: readonly FreshPose[], except: number | null): Buffer | null {
+  const length = frameLength(poses, except);
+  if (length === 0) return null;
+  const head = length < 126 ? 2 : 4;
+  const message = Buffer.allocUnsafe(head + length);
+  message[0] = 0x82;
+  message[1] = Math.min(length, 126);
+  if (head === 4) message.writeUInt16BE(length, 2);
+  writeFrame(poses, except, message, head);
+  return message;
 }
 
-/** To all guests with a free connection; the others miss this one. `now`: [s] */
-export function sendFrame(to: Iterable<Guest>, bytes: Uint8Array, now: number, counts: RelayCounts): void {
-  const payload = Buffer.from(bytes.buffer, bytes.byteOffset, bytes.length);
-  const sending = { compress: false, wsPreEncodedFrame: [webSocketFrame(bytes)] };
+/** The seat of the poses that came from this guest; null: none did. */
+function seatAmong(poses: readonly FreshPose[], guest: string): number | null {
+  for (const { from, seat } of poses) if (from === guest) return seat;
+  return null;
+}
+
+/**
+ * To all guests with a free connection, to each but their own; the others miss these. Straight to the wire: nothing of socket.io, Engine.IO
+ * or ws lies between a message and it there, as none is compressed, and their queues cost as much as the system's call.
+ */
+export function sendPoses(to: Iterable<Guest>, poses: readonly FreshPose[], counts: RelayCounts): void {
+  let shared: Buffer | null = null;
   for (const guest of to) {
     if (guest.ended) continue;
-    const { conn } = guest.socket;
-    if (conn.transport.writable) {
-      guest.writableAt = now;
-      conn.write(payload, sending);
+    const own = seatAmong(poses, guest.id);
+    if (own === null) shared ??= poseMessage(poses, null);
+    const message = own === null ? shared : poseMessage(poses, own);
+    if (!message) continue;
+    const { wire, socket } = guest;
+    if (wire.writable && wire.writableLength <= mostBytesWaiting && socket.conn.readyState === 'open') {
+      wire.write(message);
       counts.framesOut += 1;
-      counts.bytesOut += bytes.length;
-    } else {
-      counts.framesDropped += 1;
-    }
+      counts.bytesOut += message.length;
+    } else counts.framesDropped += 1;
   }
 }

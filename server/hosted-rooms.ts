@@ -3,11 +3,13 @@ import type { Logger } from 'pino';
 import type { RoomMessage } from '../src/core/protocol/messages';
 import type { HostedGame } from '../src/core/room/match-policy';
 import { Room, type RoomCensus } from '../src/core/room/room';
-import { dismiss, type Guest, sendFrame, tell } from './guest';
+import { dismiss, type Guest, sendPoses, tell } from './guest';
+import { PoseSchedule, type PoseSender } from './pose-schedule';
 import type { RelayConfiguration } from './relay-configuration';
 import type { HostCensus, RelayMetrics } from './relay-metrics';
 import type { RoomKinds } from './room-kinds';
 import type { RoomPass } from './room-tokens';
+import { createTicker } from './tick';
 
 /** A room as others may know it; those whose places are assigned are known to their people alone. */
 export interface RoomListing extends Omit<RoomCensus, 'empty'> {
@@ -16,13 +18,15 @@ export interface RoomListing extends Omit<RoomCensus, 'empty'> {
   readonly phase: HostedGame['state']['phase'];
 }
 
-export interface HostedRoom {
+export interface HostedRoom extends PoseSender {
   readonly room: Room<HostedGame>;
   /** Whether the lobby may show it. */
   readonly listed: boolean;
   /** Connections that have joined. */
   readonly guests: Map<string, Guest>;
   emptySince: number | null;
+  /** When it is to be ticked next [s]. */
+  tickAt: number;
 }
 
 /** The rooms of this process. */
@@ -30,13 +34,17 @@ export interface HostedRooms {
   readonly listings: readonly RoomListing[];
   readonly census: HostCensus;
   get(name: string): HostedRoom | undefined;
+  /** The room of this name, which has heard a message or lost a guest: it is ticked soon, and until it is still again. */
+  wake(name: string): HostedRoom | undefined;
+  /** Sends the poses that have come into a room when it is time, and ticks it until it is still again. */
+  sendPoses(hosted: HostedRoom): void;
   /** The room of this pass, made where there is none; null: there are too many, or its game is none of this server's. */
   enter(pass: RoomPass): HostedRoom | null;
-  tick(): void;
   /** Closes rooms that have been empty for long; asked again and again, `now` in seconds. */
   sweep(now: number): void;
   /** Ends a room for all in it; false: there is none. */
   end(name: string): boolean;
+  /** Forgets all rooms, and ticks no more. */
   clear(): void;
 }
 
@@ -55,7 +63,7 @@ export interface HostedRoomsOptions {
 const emptyRoomSeconds = 5;
 
 /** Makes rooms: the first to come decides how long a round is, within what the server signed. */
-function roomMaker({ kinds, log, metrics, now, broadcast }: HostedRoomsOptions) {
+function roomMaker({ kinds, log, metrics, broadcast }: HostedRoomsOptions) {
   const epoch = randomBytes(6).toString('base64url');
   let made = 0;
   return ({ room: id, kind, terms, assigned }: RoomPass): HostedRoom | null => {
@@ -72,7 +80,7 @@ function roomMaker({ kinds, log, metrics, now, broadcast }: HostedRoomsOptions) 
           if (guest) tell(guest, message);
         },
         broadcast: (message) => broadcast(id, message),
-        frame: (bytes) => sendFrame(joined.values(), bytes, now(), metrics.counts),
+        poses: (poses) => sendPoses(joined.values(), poses, metrics.counts),
         drop(client, reason) {
           const guest = joined.get(client);
           joined.delete(client);
@@ -85,14 +93,69 @@ function roomMaker({ kinds, log, metrics, now, broadcast }: HostedRoomsOptions) 
       },
     );
     log.info({ room: id, kind, terms }, 'room opened');
-    return { room, listed: assigned === null, guests: joined, emptySince: null };
+    return { room, listed: assigned === null, guests: joined, sentAt: 0, emptySince: null, tickAt: 0 };
   };
 }
 
+/** Rooms where something has come of late, or goes on by itself: they are ticked until they are still. */
+class AwakeRooms {
+  readonly #rooms = new Set<HostedRoom>();
+  readonly #options: HostedRoomsOptions;
+  readonly #ticker: ReturnType<typeof createTicker>;
+
+  constructor(options: HostedRoomsOptions) {
+    this.#options = options;
+    this.#ticker = createTicker(options.configuration.tickHz, options.now, () => this.#tick());
+  }
+
+  add(hosted: HostedRoom): void {
+    this.#rooms.add(hosted);
+    this.#ticker.wake();
+  }
+
+  /** As `add`, and it is ticked with the next tick. */
+  wake(hosted: HostedRoom): HostedRoom {
+    hosted.tickAt = 0;
+    this.add(hosted);
+    return hosted;
+  }
+
+  delete(hosted: HostedRoom): void {
+    this.#rooms.delete(hosted);
+  }
+
+  stop(): void {
+    this.#ticker.stop();
+    this.#rooms.clear();
+  }
+
+  /** Whether any is still awake. */
+  #tick(): boolean {
+    const { configuration, metrics, now } = this.#options;
+    const started = now();
+    const latest = started + 0.5 / configuration.tickHz;
+    for (const hosted of this.#rooms) {
+      if (hosted.tickAt > latest) continue;
+      hosted.room.tick(now());
+      hosted.tickAt = started + hosted.room.tickPeriod;
+      if (hosted.room.isStill) this.#rooms.delete(hosted);
+    }
+    metrics.tick.observe(now() - started);
+    return this.#rooms.size > 0;
+  }
+}
+
 export function createHostedRooms(options: HostedRoomsOptions): HostedRooms {
-  const { configuration, log } = options;
+  const { configuration, log, now } = options;
   const rooms = new Map<string, HostedRoom>();
+  const awake = new AwakeRooms(options);
   const make = roomMaker(options);
+  const schedule = new PoseSchedule(now);
+
+  function forget(name: string, hosted: HostedRoom): void {
+    rooms.delete(name);
+    awake.delete(hosted);
+  }
   return {
     get listings() {
       return [...rooms].flatMap(([room, { room: hosted, listed }]): readonly RoomListing[] => {
@@ -107,17 +170,22 @@ export function createHostedRooms(options: HostedRoomsOptions): HostedRooms {
       return { rooms: rooms.size, players: sum('players'), bots: sum('bots'), spectators: sum('spectators') };
     },
     get: (name) => rooms.get(name),
+    wake(name) {
+      const hosted = rooms.get(name);
+      return hosted && awake.wake(hosted);
+    },
+    sendPoses(hosted) {
+      schedule.add(hosted);
+      awake.add(hosted);
+    },
     enter(pass) {
       const existing = rooms.get(pass.room);
-      if (existing) return existing;
+      if (existing) return awake.wake(existing);
       if (rooms.size >= configuration.mostRooms) return null;
       const hosted = make(pass);
       if (!hosted) return null;
       rooms.set(pass.room, hosted);
-      return hosted;
-    },
-    tick() {
-      for (const { room } of rooms.values()) room.tick(options.now());
+      return awake.wake(hosted);
     },
     sweep(now) {
       for (const [id, hosted] of rooms) {
@@ -127,17 +195,21 @@ export function createHostedRooms(options: HostedRoomsOptions): HostedRooms {
         }
         hosted.emptySince ??= now;
         if (now - hosted.emptySince < emptyRoomSeconds) continue;
-        rooms.delete(id);
+        forget(id, hosted);
         log.info({ room: id }, 'room closed');
       }
     },
     end(name) {
       const hosted = rooms.get(name);
       if (!hosted) return false;
-      rooms.delete(name);
+      forget(name, hosted);
       for (const guest of hosted.guests.values()) dismiss(guest, 'closed');
       return true;
     },
-    clear: () => rooms.clear(),
+    clear() {
+      awake.stop();
+      schedule.stop();
+      rooms.clear();
+    },
   };
 }

@@ -9,7 +9,7 @@ export interface RelayConfiguration {
   readonly origins: readonly string[];
   /** Names of the server besides localhost, this machine's own and those of the origins. */
   readonly hosts: readonly string[];
-  /** How often a room's poses are passed on, and its match stepped, per second. */
+  /** How often the rooms' matches are stepped per second, at most. */
   readonly tickHz: number;
   readonly posesPerSecond: number;
   readonly eventsPerSecond: number;
@@ -45,7 +45,7 @@ export const relayEnvironment = `Environment of the relay (docs/relay.md):
   THREEPOINT_ORIGINS            origins of pages that may connect, with commas between; default: the server's own
   THREEPOINT_HOSTS              names of the server, with commas between, where it has others than localhost, its addresses,
                                 this machine's name and those in THREEPOINT_ORIGINS
-  THREEPOINT_TICK_HZ            how often a room's poses are passed on a second, 20 to 120; default 90
+  THREEPOINT_TICK_HZ            how often matches are stepped a second, 20 to 120; default 60
   THREEPOINT_POSES_PER_SECOND   budget of each client; default 40
   THREEPOINT_EVENTS_PER_SECOND  budget of each client; default 10
   THREEPOINT_JOINS_PER_MINUTE   budget of new people of each address; default 5, on this machine itself 120
@@ -160,7 +160,7 @@ export function relayConfigurationFrom(environment: Environment): RelayConfigura
     secret,
     origins: originsFrom(environment.THREEPOINT_ORIGINS),
     hosts: hostsFrom(environment.THREEPOINT_HOSTS),
-    tickHz: number('THREEPOINT_TICK_HZ', 90, 20, 120),
+    tickHz: number('THREEPOINT_TICK_HZ', 60, 20, 120),
     posesPerSecond: whole('THREEPOINT_POSES_PER_SECOND', 40, 1, 200),
     eventsPerSecond: whole('THREEPOINT_EVENTS_PER_SECOND', 10, 1, 1000),
     joinsPerMinute: whole('THREEPOINT_JOINS_PER_MINUTE', 5, 1, 100_000),

@@ -1,3 +1,4 @@
+import type { EventEmitter } from 'node:events';
 import type { IncomingMessage } from 'node:http';
 import type { Socket as NetSocket } from 'node:net';
 import type { Duplex } from 'node:stream';
@@ -23,6 +24,11 @@ export interface RelayTransport {
   readonly io: Server;
   /** Every WebSocket that is open, silent ones included. */
   readonly sockets: number;
+  /**
+   * Binary messages are poses and pass Engine.IO and socket.io by, which do more with a message than a room with a pose. A connection that
+   * sends one without having a listener is closed.
+   */
+  onPose(socket: Socket, listener: (bytes: Uint8Array) => void): void;
   /** Opens a WebSocket, or answers why not; false where the address is not the relay's. */
   upgrade(request: IncomingMessage, socket: Duplex, head: Buffer): boolean;
   close(): void;
@@ -61,6 +67,19 @@ function complaintAbout({ method, headers }: IncomingMessage, query: URLSearchPa
   return null;
 }
 
+/** Lets `listener` have a connection's binary messages; Engine.IO gets the others, as before. */
+function divert(conn: Socket['conn'], listener: (bytes: Uint8Array) => void): void {
+  // reason: Engine.IO leaves the WebSocket there for its own transport, and does not say so in its types.
+  const { websocket } = conn.request as unknown as { readonly websocket: EventEmitter };
+  for (const engines of websocket.listeners('message')) {
+    websocket.off('message', engines as () => void);
+    websocket.on('message', (received: Buffer, isBinary: boolean) => {
+      if (isBinary) listener(received);
+      else engines.call(websocket, received, isBinary);
+    });
+  }
+}
+
 /** Opens WebSockets at `relayPath`, so many for each address. */
 export function createRelayTransport(
   configuration: RelayConfiguration,
@@ -79,8 +98,14 @@ export function createRelayTransport(
   });
   const io = new Server({ serveClient: false, connectTimeout: handshakeMs, parser: relayParser });
   io.bind(engine);
+  const poseListeners = new WeakMap<Socket['conn'], (bytes: Uint8Array) => void>();
   engine.on('connection', (conn: Socket['conn']) => {
     const raw = conn.request.socket;
+    divert(conn, (bytes) => {
+      const listener = poseListeners.get(conn);
+      if (listener) listener(bytes);
+      else conn.close();
+    });
     conn.once('close', () => destroySoon(raw));
   });
 
@@ -105,6 +130,7 @@ export function createRelayTransport(
     get sockets() {
       return engine.clientsCount;
     },
+    onPose: (socket, listener) => void poseListeners.set(socket.conn, listener),
     upgrade(request, socket, head) {
       const target = targetOf(request.url);
       if (!target || target.path.replace(/\/$/, '') !== relayPath) return false;

@@ -1,7 +1,7 @@
 import type { Logger } from 'pino';
 import { RateLimiterMemory, RateLimiterRes } from 'rate-limiter-flexible';
 import type { Server, Socket } from 'socket.io';
-import { messageEvent, poseEvent } from '../src/core/protocol/small-frames';
+import { messageEvent } from '../src/core/protocol/small-frames';
 import type { HostedGame } from '../src/core/room/match-policy';
 import type { Room } from '../src/core/room/room';
 import { createGuest, dismiss, type Guest, isSlow } from './guest';
@@ -12,7 +12,6 @@ import type { HostCensus, RelayMetrics } from './relay-metrics';
 import type { RelayTransport } from './relay-transport';
 import type { RoomKinds } from './room-kinds';
 import type { RoomTokens } from './room-tokens';
-import { startTicking } from './tick';
 
 export interface SocketHostOptions {
   readonly configuration: RelayConfiguration;
@@ -40,6 +39,8 @@ export interface SocketHost {
 
 /** A guest who has not joined a room this long after connecting is disconnected [s]. */
 const joinPatience = 5;
+/** Guests who do harm, and rooms that are empty, are looked for this often [ms]. */
+const sweepMs = 1000;
 /** Connections a minute that one person may make. */
 const connectsPerMinute = 30;
 
@@ -75,7 +76,7 @@ function createGate({ kinds, tokens, metrics, log }: SocketHostOptions): Paramet
 }
 
 /** Serves rooms on the transport's WebSockets. */
-export function createSocketHost({ io, close }: RelayTransport, options: SocketHostOptions): SocketHost {
+export function createSocketHost({ io, onPose, close }: RelayTransport, options: SocketHostOptions): SocketHost {
   const { configuration, kinds, log, metrics, now } = options;
   const guests = new Set<Guest>();
   const rooms = createHostedRooms({
@@ -94,10 +95,10 @@ export function createSocketHost({ io, close }: RelayTransport, options: SocketH
   io.on('connection', (socket) => {
     const guest = createGuest(socket, configuration, now());
     guests.add(guest);
-    socket.on(poseEvent, (bytes: unknown) => messages.onPose(guest, bytes));
+    onPose(socket, (bytes) => messages.onPose(guest, bytes));
     socket.on(messageEvent, (value: unknown) => messages.onMessage(guest, value));
     socket.onAny((event: string) => {
-      if (event !== poseEvent && event !== messageEvent) messages.kick(guest, 'misbehaved', 'unknown-event');
+      if (event !== messageEvent) messages.kick(guest, 'misbehaved', 'unknown-event');
     });
     socket.on('disconnect', (reason) => {
       guest.ended = true;
@@ -107,22 +108,15 @@ export function createSocketHost({ io, close }: RelayTransport, options: SocketH
     });
   });
 
-  let swept = now();
-  const ticking = startTicking(configuration.tickHz, now, () => {
-    const started = now();
-    rooms.tick();
-    if (started - swept > 1) {
-      swept = started;
-      for (const guest of guests) {
-        if (guest.ended) continue;
-        if (isSlow(guest, started)) messages.kick(guest, 'slow', 'slow');
-        else if (!guest.joined && started - guest.connectedAt > joinPatience)
-          messages.kick(guest, 'misbehaved', 'no-join');
-      }
-      rooms.sweep(started);
+  const sweeping = setInterval(() => {
+    const at = now();
+    for (const guest of guests) {
+      if (guest.ended) continue;
+      if (isSlow(guest, at)) messages.kick(guest, 'slow', 'slow');
+      else if (!guest.joined && at - guest.connectedAt > joinPatience) messages.kick(guest, 'misbehaved', 'no-join');
     }
-    metrics.tick.observe(now() - started);
-  });
+    rooms.sweep(at);
+  }, sweepMs);
 
   return {
     io,
@@ -135,7 +129,7 @@ export function createSocketHost({ io, close }: RelayTransport, options: SocketH
     room: (name) => rooms.get(name)?.room ?? null,
     end: rooms.end,
     async close() {
-      ticking.stop();
+      clearInterval(sweeping);
       for (const guest of guests) dismiss(guest, 'stopping');
       rooms.clear();
       await new Promise((resolve) => setTimeout(resolve, 50));

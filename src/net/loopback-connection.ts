@@ -2,6 +2,7 @@ import type { BallAction, BallOptions } from '../core/games/ball/ball-state';
 import { type BallGame, BallPolicy } from '../core/match-policies/ball-policy';
 import type { BallRoomMessage } from '../core/protocol/ball-messages';
 import type { ClientMessage, Farewell } from '../core/protocol/messages';
+import { encodeFrame } from '../core/protocol/pose-frame';
 import { Room, type RoomOptions } from '../core/room/room';
 import type { ClientId, RoomRefusal } from '../core/room/room-outlet';
 import type { Connection, ConnectionStatus, ConnectionUpdate, Visitor } from './connection';
@@ -46,8 +47,9 @@ class LoopbackRoom {
         broadcast: (message) => {
           for (const guest of this.#guests.values()) guest.hear(message, this.#now);
         },
-        frame: (bytes) => {
-          for (const guest of this.#guests.values()) guest.see(bytes, this.#now);
+        poses: (poses) => {
+          const frame = encodeFrame(poses);
+          for (const guest of this.#guests.values()) guest.see(frame, this.#now);
         },
         drop: (client, reason) => {
           this.#guests.get(client)?.end(reason);
@@ -79,6 +81,7 @@ class LoopbackRoom {
     if (this.#now <= this.#ticked) return;
     this.#ticked = this.#now;
     this.room.tick(this.#now);
+    this.room.sendPoses();
   }
 }
 

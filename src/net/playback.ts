@@ -8,14 +8,19 @@ import { TransitWindow } from './transit-window';
 export interface PlaybackReport {
   /** How far behind the newest that could be shown it is [s]. */
   readonly delay: number;
+  /** The time of the sender's clock that is drawn [s, as packets tell it, unwrapped]; NaN: nothing is. Behind it nothing stands still. */
+  readonly shownTime: number;
   /** Times it stood still for more than 250 ms, and all of them together [s]. */
   readonly freezes: number;
   readonly frozenSeconds: number;
 }
 
-/** Playback is this far behind [s], at first and at the ends of what the network's unevenness may make of it. */
+/**
+ * Playback is this far behind [s], at first and at the ends of what the network's unevenness may make of it. At thirty packets a second an
+ * even network makes 43 ms of it: the next packet has just come when the picture leaves the one before.
+ */
 export const firstDelay = 0.1;
-export const shortestDelay = 0.066;
+export const shortestDelay = 0.04;
 export const longestDelay = 0.2;
 /** No one is drawn further ahead of their newest packet [s]. */
 export const longestExtrapolation = 0.1;
@@ -115,6 +120,7 @@ export class Playback {
   /** What is drawn; the same object in every frame. */
   readonly shown = new ShownPlayer();
   private isShown = false;
+  private shownTime = Number.NaN;
   /** Where playback stood still, and when it went on. */
   private readonly rejoinFrom = new ShownPlayer();
   private rejoinAt = Number.NaN;
@@ -165,13 +171,14 @@ export class Playback {
     const nowhere = isBetweenPaths(samples, at);
     this.watchStall(nowhere || at > last.time + longestExtrapolation, time);
     if (!nowhere || !this.isShown) sampleAt(samples, at, shown);
+    this.shownTime = Math.min(at, last.time + longestExtrapolation);
     this.isShown = true;
     this.rejoin(time, at);
     return opacityAfter(silence);
   }
 
   report(): PlaybackReport {
-    return { delay: this.delay, freezes: this.freezes, frozenSeconds: this.frozenSeconds };
+    return { delay: this.delay, shownTime: this.shownTime, freezes: this.freezes, frozenSeconds: this.frozenSeconds };
   }
 
   /** The time of the sender's clock that is drawn now; never goes back. */

@@ -1,3 +1,4 @@
+import { sameMeasures } from '../core/body/calibration';
 import { type Skeleton, skeletonFromCalibration } from '../core/body/skeleton';
 import type { BallDeed, BallEvent, BallState } from '../core/games/ball/ball-state';
 import { answersDeed, followBallEvent, predictDeed, withMatchTime } from '../core/games/ball/replica';
@@ -12,9 +13,6 @@ export interface KnownRoom
   extends Pick<Welcome<SentBallGame>, 'room' | 'epoch' | 'seat' | 'spectators' | 'rotate' | 'matchStart' | 'paused'> {
   readonly seats: readonly (SeatInfo | null)[];
 }
-
-const sameMeasures = (a: SeatInfo, b: SeatInfo): boolean =>
-  a.calibration.eyeHeight === b.calibration.eyeHeight && a.calibration.armSpan === b.calibration.armSpan;
 
 const skeletonOf = (info: SeatInfo | null): Skeleton | null => info && skeletonFromCalibration(info.calibration);
 
@@ -120,6 +118,7 @@ export class RoomReplica {
     if (seat >= known.seats.length) return;
     const before = known.seats[seat];
     this.#known = { ...known, seats: known.seats.map((other, index) => (index === seat ? info : other)) };
-    if (!info || !before || !sameMeasures(before, info)) this.#skeletons[seat] = skeletonOf(info);
+    if (!info || !before || !sameMeasures(before.calibration, info.calibration))
+      this.#skeletons[seat] = skeletonOf(info);
   }
 }

@@ -3,7 +3,7 @@ import { type Skeleton, skeletonFromCalibration } from '../core/body/skeleton';
 import type { BallDeed, BallEvent } from '../core/games/ball/ball-state';
 import type { Transform } from '../core/math/pose';
 import type { BallRoomMessage } from '../core/protocol/ball-messages';
-import type { ClientMessage, Joining } from '../core/protocol/messages';
+import { type ClientMessage, type Joining, toMillimetres } from '../core/protocol/messages';
 import { decodePose, encodePose } from '../core/protocol/pose-codec';
 import { decodeFrame } from '../core/protocol/pose-frame';
 import { plainAvatar, type WornAvatar } from '../core/protocol/worn-avatar';
@@ -23,11 +23,6 @@ const poseSeconds = 1 / 30;
 
 /** The last frames while no one asks (a hidden page) are not kept longer than this [packets]. */
 const mostWaiting = 256;
-
-const toMillimetres = ({ eyeHeight, armSpan }: Calibration): Calibration => ({
-  eyeHeight: Math.round(eyeHeight * 1000) / 1000,
-  armSpan: Math.round(armSpan * 1000) / 1000,
-});
 
 /** A client's half of the protocol. Each kind of connection carries it over a wire of its own, in `transmit` and `transmitPose`. */
 export abstract class RoomSession implements Connection {

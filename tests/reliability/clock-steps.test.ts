@@ -3,7 +3,6 @@ import { createArcheryPlay, probeOf } from '../../src/app/archery/archery-play';
 import { createBallPlay } from '../../src/app/ball/ball-play';
 import { createFrameLoop } from '../../src/app/shell/frame-loop';
 import { createFrameTiming } from '../../src/app/shell/frame-timing';
-import { createArcheryRunner } from '../../src/app/shell/study-archery';
 import { Recorder } from '../../src/app/studio/recorder';
 import { type PlayedStep, playTrial } from '../../src/app/study/study-trial';
 import type { AvatarPose } from '../../src/core/body/avatar-pose';
@@ -16,6 +15,7 @@ import { createPageClock } from '../../src/core/tracking/page-clock';
 import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
 import { Body } from '../../src/lib/body';
 import { createLoopbackHost } from '../../src/net/loopback-connection';
+import { studiedArcher } from '../app/study/played-round';
 import { measured } from './measured';
 
 const frameMs = 1000 / 72;
@@ -177,20 +177,7 @@ describe.each(steps)('page time leaps by %d s, and back 4 s later', (step) => {
 
   test('a recording and the log of a trial have every frame once, in order', () => {
     const recorder = new Recorder();
-    const play = createArcheryPlay(
-      defaultCalibration,
-      () => ({ bowSide: 'left', oneHanded: false, everyHitCounts: false, startSignal: true }),
-      () => 7,
-    );
-    const runner = createArcheryRunner({
-      goToArchery: async () => undefined,
-      startRound() {
-        play.restart(defaultCalibration);
-        play.signal();
-      },
-      resetRound: () => undefined,
-      assists: () => [],
-    });
+    const { play, runner } = studiedArcher(7);
     const trial = playTrial(
       {
         kind: 'trial',
@@ -199,7 +186,7 @@ describe.each(steps)('page time leaps by %d s, and back 4 s later', (step) => {
         block: 1,
         repetition: 1,
         condition: 'ik',
-        estimator: 'ik',
+        embodiment: { estimator: 'ik' },
         seconds: 70,
       } as PlayedStep,
       runner,
@@ -209,7 +196,7 @@ describe.each(steps)('page time leaps by %d s, and back 4 s later', (step) => {
         estimator: () => 'ik',
         listenToFrames: () => undefined,
       },
-      { key: 'a', motion: true, seed: 7 },
+      { key: 'a', motion: true, seed: 7, now: () => 1e9 },
     );
     recorder.record({ device: 'actor', rateHz: 72, calibration: defaultCalibration });
     let finished: ReturnType<typeof trial.follow> = null;

@@ -236,6 +236,13 @@ export const attackRows = {
     target: '0 open after the deadline; health of other addresses at most 5 ms later (p95)',
     tests: ['tests/server/door.test.ts'],
   },
+  'avatar-store': {
+    inject:
+      'The store of avatars: filled by seats in several rooms, by uploads without an end, with what is no avatar or another one than its name says',
+    sees: 'A sentence; what others have stored stays, and they find place for theirs; all goes with its owner’s seat',
+    target: 'a quarter of the store for an address; nothing beyond its bound, nothing stored that was refused',
+    tests: ['tests/server/avatars.test.ts', 'e2e/seen-avatars.spec.ts'],
+  },
   'full-disk': {
     inject: 'The disk of the studies is full',
     sees: '507 and a sentence; what was acknowledged stays; writing goes on once there is room',

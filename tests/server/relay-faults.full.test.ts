@@ -251,7 +251,7 @@ test('a reader that stalls is kicked within 10 s, and the others do not notice',
   stalled.pause();
   const start = seconds();
   for (const { gaps } of movers) gaps.length = 0;
-  await until('the kick', () => slowSeat()?.info?.[3] === 2, 12);
+  await until('the kick', () => slowSeat()?.info?.[4] === 2, 12);
   const kicked = seconds() - start;
   const after = await relay.measure();
   const gaps = movers.flatMap((moving) => moving.gaps);

@@ -1,5 +1,5 @@
 import { expect, onTestFinished, test } from 'vitest';
-import { scheduleFor } from '../../src/core/study/plan';
+import { scheduleFor } from '../../src/core/study/schedule';
 import { paperPlan, session } from '../core/study/studies';
 import { fists, holding, opening, releaseOf } from '../net/people';
 import { measured } from '../reliability/measured';

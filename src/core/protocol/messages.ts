@@ -1,13 +1,13 @@
 import * as v from 'valibot';
 import type { Calibration } from '../body/calibration';
 import { cleanName } from './names';
-import { avatarHash, ownAvatars, type WornAvatar } from './worn-avatar';
+import { avatarHash, isOwnAvatar, type OwnAvatar, type WornAvatar } from './worn-avatar';
 
 /**
  * Bumped with every change that an older page or server would misunderstand: of these messages, of pose packets and of their frames, which each
  * have a version of their own. Who joins with another one is told so, and shows nothing to those who could not read it.
  */
-export const protocolVersion = 4;
+export const protocolVersion = 6;
 
 /** No control message is longer [bytes of UTF-8]; a snapshot takes at most half of it. */
 export const longestMessage = 4096;
@@ -23,11 +23,12 @@ const seat = wholeFrom(0, mostSeats - 1);
 const calibration = v.strictObject({
   eyeHeight: v.pipe(finiteWithin(3), v.minValue(0.5)),
   armSpan: v.pipe(finiteWithin(3), v.minValue(0.5)),
+  forearm: v.optional(v.pipe(finiteWithin(1), v.minValue(0.05))),
 });
 
 const name = v.pipe(v.string(), v.maxLength(200), v.transform(cleanName));
 /** A WornAvatar. */
-const avatar = v.union([v.picklist(ownAvatars), v.pipe(v.string(), v.regex(avatarHash))]);
+const avatar = v.union([v.custom<OwnAvatar>(isOwnAvatar), v.pipe(v.string(), v.regex(avatarHash))]);
 
 /** First of all: who this is to the others. Where a seat is free and none is named, the first. */
 const join = v.strictObject({
@@ -101,28 +102,39 @@ export interface SeatInfo {
 }
 const presences = ['here', 'away', 'gone'] as const;
 
-/** Name, eye height, arm span [m], presence (index), 1 for a bot, avatar; null: the seat is empty. */
+/** Name, eye height, arm span and forearm [m] (null: not told), presence (index), 1 for a bot, avatar; null: the seat is empty. */
 const packedSeatInfo = v.nullable(
-  v.tuple([v.string(), finiteWithin(3), finiteWithin(3), wholeFrom(0, presences.length - 1), wholeFrom(0, 1), avatar]),
+  v.tuple([
+    v.string(),
+    finiteWithin(3),
+    finiteWithin(3),
+    v.nullable(finiteWithin(1)),
+    wholeFrom(0, presences.length - 1),
+    wholeFrom(0, 1),
+    avatar,
+  ]),
 );
 export type PackedSeatInfo = v.InferOutput<typeof packedSeatInfo>;
 
 const millimetres = (metres: number): number => Math.round(metres * 1000) / 1000;
 
-export const packSeatInfo = (info: SeatInfo | null): PackedSeatInfo =>
-  info && [
-    info.name,
-    millimetres(info.calibration.eyeHeight),
-    millimetres(info.calibration.armSpan),
-    presences.indexOf(info.presence),
-    info.bot ? 1 : 0,
-    info.avatar,
-  ];
+/** A body as it is told to others. */
+export const toMillimetres = ({ eyeHeight, armSpan, forearm }: Calibration): Calibration => ({
+  eyeHeight: millimetres(eyeHeight),
+  armSpan: millimetres(armSpan),
+  ...(forearm !== undefined && { forearm: millimetres(forearm) }),
+});
+
+export function packSeatInfo(info: SeatInfo | null): PackedSeatInfo {
+  if (!info) return null;
+  const { eyeHeight, armSpan, forearm = null } = toMillimetres(info.calibration);
+  return [info.name, eyeHeight, armSpan, forearm, presences.indexOf(info.presence), info.bot ? 1 : 0, info.avatar];
+}
 
 export function unpackSeatInfo(packed: PackedSeatInfo): SeatInfo | null {
   if (!packed) return null;
-  const [name, eyeHeight, armSpan, presence, bot, avatar] = packed;
-  const calibration = { eyeHeight, armSpan };
+  const [name, eyeHeight, armSpan, forearm, presence, bot, avatar] = packed;
+  const calibration = { eyeHeight, armSpan, ...(forearm !== null && { forearm }) };
   return { name, calibration, presence: presences[presence] ?? 'gone', bot: bot === 1, avatar };
 }
 

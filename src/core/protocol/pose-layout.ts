@@ -12,6 +12,7 @@ import {
   handBits,
   headBits,
   heightBits,
+  makePacketSteps,
   type PacketSteps,
   sides,
   stretchBits,
@@ -58,6 +59,34 @@ export function writePacket(packet: PacketSteps): Uint8Array {
   }
   if (hasBody) writeBody(writer, body);
   return writer.bytes();
+}
+
+/** Steps of no one, to see how long a packet with such flags is. */
+const anyone = makePacketSteps();
+/** By the eleven flags of a packet [bytes]; 0: there is no such packet. */
+const lengths: (number | undefined)[] = [];
+
+function lengthWith(flags: number): number {
+  const flag = (bit: number): boolean => ((flags >> bit) & 1) === 1;
+  const { hands, fingers, body } = anyone;
+  const { left, right } = hands;
+  anyone.hasBody = flag(9);
+  [fingers.left.known, fingers.right.known] = [flag(7), flag(6)];
+  [body.arms.left.free, body.arms.right.free] = [flag(5), flag(4)];
+  const trackingOf = (bits: number): Tracking | undefined => trackings[bits & 3];
+  const [tracking, other] = [trackingOf(flags >> 2), trackingOf(flags)];
+  if (tracking === undefined || other === undefined) return 0;
+  left.placed = anyone.hasBody || tracking !== 'lost';
+  right.placed = anyone.hasBody || other !== 'lost';
+  body.bits = bodyBitsFor(body.arms);
+  return writePacket(anyone).length;
+}
+
+/** How long the packet that begins at this byte is, by its flags alone [bytes]; 0: no packet begins so. */
+export function packetLengthAt(bytes: Uint8Array, at: number): number {
+  const flags = (((bytes[at]! & 0x0f) << 8) | (bytes[at + 1] ?? 0)) >> 1;
+  lengths[flags] ??= lengthWith(flags);
+  return lengths[flags];
 }
 
 function writeBody(to: BitWriter, { bits, trunk, arms }: BodySteps): void {

@@ -1,5 +1,5 @@
 /**
- * A parser for socket.io that puts every packet into one WebSocket frame. Pose packets and frames of poses are their bytes and nothing
+ * Parsers for socket.io that put every packet into one WebSocket frame. Pose packets and frames of poses are their bytes and nothing
  * else; all other packets are text: the digit of the packet's type and JSON. What is not like that throws, and socket.io closes
  * the connection.
  */
@@ -25,11 +25,7 @@ type Listener = (packet: SocketPacket) => void;
 
 const isBytes = (value: unknown): value is Uint8Array => value instanceof Uint8Array;
 
-function encodePacket(packet: SocketPacket, bytesEvent: string): string | Uint8Array {
-  const { type, nsp, data, id } = packet;
-  const [event, payload] = Array.isArray(data) ? data : [];
-  // A cluster's adapter turns events with bytes into another type of packet.
-  if (nsp === '/' && event === bytesEvent && isBytes(payload)) return payload;
+function encodeText({ type, nsp, data, id }: SocketPacket): string {
   const parts = id !== undefined ? [nsp, data, id] : data !== undefined ? [nsp, data] : [nsp];
   return `${type}${JSON.stringify(parts)}`;
 }
@@ -46,47 +42,57 @@ function decodeText(text: string): SocketPacket {
   return { type, nsp, data, ...(id !== undefined && { id: id as number }) };
 }
 
-/** The parser of one end: which event its incoming bytes are, and which its outgoing ones. */
-function parserOf(incoming: string, outgoing: string) {
-  class Encoder {
-    encode(packet: SocketPacket): (string | Uint8Array)[] {
-      return [encodePacket(packet, outgoing)];
-    }
+/** The relay's encoder: text alone, its frames of poses are written below socket.io. */
+class RelayEncoder {
+  encode(packet: SocketPacket): (string | Uint8Array)[] {
+    return [encodeText(packet)];
   }
-
-  /** Speaks as an event emitter does, because socket.io expects one. */
-  class Decoder {
-    private listeners: Listener[] = [];
-
-    on(_event: 'decoded', listener: Listener): this {
-      this.listeners.push(listener);
-      return this;
-    }
-
-    off(_event: 'decoded', listener: Listener): this {
-      this.listeners = this.listeners.filter((other) => other !== listener);
-      return this;
-    }
-
-    removeListener(event: 'decoded', listener: Listener): this {
-      return this.off(event, listener);
-    }
-
-    add(chunk: string | Uint8Array | ArrayBuffer): void {
-      const packet =
-        typeof chunk === 'string'
-          ? decodeText(chunk)
-          : { type: eventType, nsp: '/', data: [incoming, isBytes(chunk) ? chunk : new Uint8Array(chunk)] };
-      for (const listener of this.listeners) listener(packet);
-    }
-
-    destroy(): void {
-      this.listeners = [];
-    }
-  }
-
-  return { Encoder, Decoder };
 }
 
-export const relayParser = parserOf(poseEvent, frameEvent);
-export const pageParser = parserOf(frameEvent, poseEvent);
+class PageEncoder {
+  encode(packet: SocketPacket): (string | Uint8Array)[] {
+    const [event, payload] = Array.isArray(packet.data) ? packet.data : [];
+    return [event === poseEvent && isBytes(payload) ? payload : encodeText(packet)];
+  }
+}
+
+/** The relay's decoder: bytes are poses, which are heard below socket.io. Speaks as an event emitter does, because socket.io expects one. */
+class RelayDecoder {
+  private listeners: Listener[] = [];
+
+  on(_event: 'decoded', listener: Listener): this {
+    this.listeners.push(listener);
+    return this;
+  }
+
+  off(_event: 'decoded', listener: Listener): this {
+    this.listeners = this.listeners.filter((other) => other !== listener);
+    return this;
+  }
+
+  removeListener(event: 'decoded', listener: Listener): this {
+    return this.off(event, listener);
+  }
+
+  add(chunk: string | Uint8Array | ArrayBuffer): void {
+    if (typeof chunk === 'string') this.tell(decodeText(chunk));
+  }
+
+  destroy(): void {
+    this.listeners = [];
+  }
+
+  protected tell(packet: SocketPacket): void {
+    for (const listener of this.listeners) listener(packet);
+  }
+}
+
+class PageDecoder extends RelayDecoder {
+  override add(chunk: string | Uint8Array | ArrayBuffer): void {
+    if (typeof chunk === 'string') super.add(chunk);
+    else this.tell({ type: eventType, nsp: '/', data: [frameEvent, isBytes(chunk) ? chunk : new Uint8Array(chunk)] });
+  }
+}
+
+export const relayParser = { Encoder: RelayEncoder, Decoder: RelayDecoder };
+export const pageParser = { Encoder: PageEncoder, Decoder: PageDecoder };

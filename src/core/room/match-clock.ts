@@ -52,6 +52,16 @@ export class MatchClock<Game extends HostedGame> {
     return this.#stoppedAt !== null;
   }
 
+  /** A match runs, and its clock with it. */
+  get isRunning(): boolean {
+    return this.state.phase === 'running' && !this.isPaused;
+  }
+
+  /** Time alone changes nothing: no match runs, and no action waits. */
+  get isStill(): boolean {
+    return this.#waiting.length === 0 && !this.isRunning;
+  }
+
   /** The second of the match at which its clock stands; null: it runs. */
   get pausedAt(): number | null {
     return this.#stoppedAt === null ? null : this.#stoppedAt - this.#matchStart;

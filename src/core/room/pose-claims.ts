@@ -8,6 +8,8 @@ export const poseMemory = 1.9;
 export const fastestHead = 20;
 /** A head may be moved this far [m] by rounding and by a hiccup of its device. */
 const headTolerance = 0.1;
+/** Packets of a seat that wait to be passed on, at most: more come together only after the host stood still. */
+const mostFresh = 16;
 /** What was refused for its speed is believed after this [s]: a device that lost its place has found it again. */
 const disbeliefSeconds = 1;
 
@@ -19,7 +21,7 @@ export class PoseClaims {
   /** Of the newest pose that is remembered, here or in the match; null: none is. */
   #posedAt: number | null = null;
   #head: Vec3 | null = null;
-  #fresh: Uint8Array | null = null;
+  #fresh: Uint8Array[] = [];
 
   constructor(time: number) {
     this.#heardAt = time;
@@ -47,7 +49,7 @@ export class PoseClaims {
     this.#head = null;
   }
 
-  /** Takes a packet in, unless it is older than the newest one or its head is further from there than a person gets. */
+  /** Takes a packet in, and keeps its bytes until they are passed on, unless it is older than the newest one or its head is further from there than a person gets. */
   take(packet: PointsPacket, bytes: Uint8Array, time: number): 'believed' | 'old' | 'too-fast' {
     const packetTime = time + packetSecondsBetween(time * 1000, packet.timeMs);
     const { position } = packet.pose.head;
@@ -61,16 +63,21 @@ export class PoseClaims {
     this.#head = position;
     this.#heardAt = time;
     this.#posedAt = time;
-    // A packet is kept until the next tick and no longer: until then a receiver may still draw it.
-    this.#fresh = bytes.slice();
+    this.#fresh.push(bytes);
+    if (this.#fresh.length > mostFresh) this.#fresh.shift();
     return 'believed';
   }
 
-  /** The newest packet that has not been passed on yet, once. */
-  takeFresh(): Uint8Array | null {
+  /** The packets that have not been passed on yet, oldest first, once. */
+  takeFresh(): readonly Uint8Array[] {
     const fresh = this.#fresh;
-    this.#fresh = null;
+    if (fresh.length > 0) this.#fresh = [];
     return fresh;
+  }
+
+  /** A pose of the player is remembered, here or in the match. */
+  get remembered(): boolean {
+    return this.#posedAt !== null;
   }
 
   /** Forgets a pose that is older than `poseMemory`; true: it did so now. */

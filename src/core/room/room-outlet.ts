@@ -1,4 +1,5 @@
 import type { Farewell, RoomMessage } from '../protocol/messages';
+import type { SeatPose } from '../protocol/pose-frame';
 import type { HostedGame, MatchAction } from './match-policy';
 
 /** One connection; a person who comes back has another one. */
@@ -23,14 +24,19 @@ export interface RoomRefusal {
   readonly reason: string;
 }
 
+/** A pose packet that is to be passed on, and by which connection it came; null: that has ended since. */
+export interface FreshPose extends SeatPose {
+  readonly from: ClientId | null;
+}
+
 /** How a Room speaks. Called from within its methods, never at another time. */
 export interface RoomOutlet<Game extends HostedGame> {
   /** Reliable and in order. */
   send(to: ClientId, message: RoomMessage<Game>): void;
   /** The same to all who have joined. */
   broadcast(message: RoomMessage<Game>): void;
-  /** To all who have joined; worth nothing once there is a newer one. */
-  frame(bytes: Uint8Array): void;
+  /** To all who have joined, to each but their own: the packets that have come since the last call, seat by seat. At least one. */
+  poses(poses: readonly FreshPose[]): void;
   /** The Room has forgotten this client. */
   drop(client: ClientId, reason: Farewell): void;
   refused(refusal: RoomRefusal): void;

@@ -27,6 +27,9 @@ export interface RoomCensus extends SeatCensus {
 
 type Received<Type extends ClientMessage['type']> = Extract<ClientMessage, { type: Type }>;
 
+/** Where no match runs, time is followed in steps of this [s]: who has fallen silent, whose pose is forgotten. */
+const watchSeconds = 0.1;
+
 /** A wrist that was seen, in the arena. */
 const seenWrist = (arenaFromFloor: Transform<'arena', 'floor'>, hand: TrackedPose | null): Pose<'arena'> | null =>
   hand?.tracking === 'tracked' ? transformPose(arenaFromFloor, hand) : null;
@@ -34,7 +37,7 @@ const seenWrist = (arenaFromFloor: Transform<'arena', 'floor'>, hand: TrackedPos
 /**
  * The authority over one room and the matches played in it: seats, presence, the match's clock, rematches, newest poses. It knows no
  * game, which its policy brings, no socket and no clock: times are the room clock's [s], they never go back, and its host says when
- * to tick.
+ * to tick and when poses leave.
  */
 export class Room<Game extends HostedGame> {
   readonly options: RoomOptions;
@@ -150,13 +153,27 @@ export class Room<Game extends HostedGame> {
     return 'taken';
   }
 
-  /** Steps the match as far as `time`, says what happened, and sends the newest poses. */
+  /** Time alone changes nothing here: no match runs and no one is waited for. Until something comes, ticks are in vain. */
+  get isStill(): boolean {
+    return this.#match.isStill && this.#seats.areStill;
+  }
+
+  /** So long after a tick the next is of use, unless a message comes [s]. */
+  get tickPeriod(): number {
+    return this.#match.isRunning ? this.#policy.tickSeconds : watchSeconds;
+  }
+
+  /** Steps the match as far as `time`, and says what happened. */
   tick(time: number): void {
     this.#match.begin(time);
     this.#seats.watch(time);
     this.#match.step(time, this.#seats.wantPause);
-    const frame = this.#seats.takeFrame();
-    if (frame) this.#outlet.frame(frame);
+  }
+
+  /** Sends the pose packets that have come since the last call. */
+  sendPoses(): void {
+    const poses = this.#seats.takeFresh();
+    if (poses.length > 0) this.#outlet.poses(poses);
   }
 
   #onControl(

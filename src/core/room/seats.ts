@@ -1,10 +1,9 @@
 import type { Calibration } from '../body/calibration';
 import type { SeatInfo } from '../protocol/messages';
-import { encodeFrame, type SeatPose } from '../protocol/pose-frame';
 import type { WornAvatar } from '../protocol/worn-avatar';
 import type { SeatAction } from '../tracking/seat-action';
 import { PoseClaims } from './pose-claims';
-import type { ClientId } from './room-outlet';
+import type { ClientId, FreshPose } from './room-outlet';
 
 /** Seats are held this long after a connection is lost [s]. */
 export const seatHoldSeconds = 30;
@@ -84,6 +83,14 @@ export class Seats {
   /** Whether one of the players wants the match's clock to stand. */
   get wantPause(): boolean {
     return this.#seats.some((seat) => seat?.wantsPause);
+  }
+
+  /** Time alone changes nothing of them: none is held, all who are silent are known to be, and no pose is remembered. */
+  get areStill(): boolean {
+    return this.#seats.every((seat) => {
+      if (!seat) return true;
+      return seat.lostAt === null && seat.presence !== 'here' && !seat.poses.remembered;
+    });
   }
 
   /** As others know it; null: the seat is empty. */
@@ -214,13 +221,14 @@ export class Seats {
     }
   }
 
-  /** The newest packet of each seat that has one, as one frame; null: there is none. */
-  takeFrame(): Uint8Array | null {
-    const poses: SeatPose[] = [];
+  /** The packets that have not been passed on yet, seat by seat, once. */
+  takeFresh(): FreshPose[] {
+    const poses: FreshPose[] = [];
     for (let index = 0; index < this.#seats.length; index++) {
-      const bytes = this.#seats[index]?.poses.takeFresh();
-      if (bytes) poses.push({ seat: index, bytes });
+      const seat = this.#seats[index];
+      if (!seat) continue;
+      for (const bytes of seat.poses.takeFresh()) poses.push({ seat: index, bytes, from: seat.client });
     }
-    return poses.length > 0 ? encodeFrame(poses) : null;
+    return poses;
   }
 }

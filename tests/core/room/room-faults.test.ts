@@ -1,7 +1,7 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import type { BallDeed, BallState } from '../../../src/core/games/ball/ball-state';
-import { nextRandom } from '../../../src/core/math/random';
+import { randomNumbers } from '../../../src/core/math/random';
 import { addScaled, isFiniteVec3, vec3 } from '../../../src/core/math/vec3';
 import { ballRoomMessageFrom } from '../../../src/core/protocol/ball-messages';
 import { packBall, unpackBall } from '../../../src/core/protocol/ball-snapshot';
@@ -15,16 +15,6 @@ import { tell } from '../../tell';
 import { countingPolicy } from './counting-game';
 import { joining, packetAt, toldRoom } from './told-room';
 
-/** Numbers in [0, 1). */
-function chanceOf(seed: number): () => number {
-  let state = { seed };
-  return () => {
-    const next = nextRandom(state);
-    state = next.state;
-    return next.value;
-  };
-}
-
 const allFinite = (value: unknown): boolean => {
   if (typeof value === 'number') return Number.isFinite(value);
   return typeof value !== 'object' || value === null || Object.values(value).every(allFinite);
@@ -32,7 +22,7 @@ const allFinite = (value: unknown): boolean => {
 
 test('fuzzed packets of every kind throw nothing and leave no NaN in any state', () => {
   const packets = isNightly ? 1_000_000 : 100_000;
-  const chance = chanceOf(20261121);
+  const chance = randomNumbers(20261121);
   const pick = (count: number) => Math.floor(chance() * count);
   const told = toldRoom();
   told.begin();
@@ -117,7 +107,7 @@ test('fuzzed packets of every kind throw nothing and leave no NaN in any state',
 
 test('deeds told twice, out of order and again later score once', () => {
   const deeds = 100_000;
-  const chance = chanceOf(5);
+  const chance = randomNumbers(5);
   const balls = 20;
   let [sent, doubles, caught, rounds] = [0, 0, 0, 0];
   while (sent < deeds) {
@@ -168,7 +158,7 @@ test('deeds told twice, out of order and again later score once', () => {
 describe('latency', () => {
   /** A throw at a moving basket, all clients this long from the Room [s one way, and by how much that varies]; what became of it. */
   function verdict(seed: number, delay: number, jitter: number): string {
-    const chance = chanceOf(seed);
+    const chance = randomNumbers(seed);
     const [dx, dy, dz] = [0, 0, 0].map(() => (chance() - 0.5) * 0.8) as [number, number, number];
     const aim = vec3(opening.x + dx * 0.6, opening.y + dy * 0.3, opening.z + dz * 0.6);
     const flight = 0.8 + 0.5 * chance();
@@ -176,7 +166,7 @@ describe('latency', () => {
     const basketAt = (time: number) =>
       addScaled(opening, vec3(1, 0, 0), sway.x * Math.sin(sway.speed * time + sway.phase));
     // How late each message is must not change what the throw was.
-    const late = chanceOf(seed + 1_000_003);
+    const late = randomNumbers(seed + 1_000_003);
     const told = toldRoom();
     told.begin();
     told.pose('ann', 0, atRack(0), told.time + 0.01);
@@ -311,7 +301,7 @@ describe('a page that comes at t = 60 s', () => {
       {
         send: (_, message) => sent.push(Buffer.byteLength(JSON.stringify(message))),
         broadcast: () => undefined,
-        frame: () => undefined,
+        poses: () => undefined,
         drop: () => undefined,
         refused: () => undefined,
       },

@@ -1,7 +1,7 @@
 import { expect, test } from 'vitest';
 import type { RoomMessage } from '../../../src/core/protocol/messages';
 import { Room } from '../../../src/core/room/room';
-import type { RoomRefusal } from '../../../src/core/room/room-outlet';
+import type { FreshPose, RoomRefusal } from '../../../src/core/room/room-outlet';
 import { fists, opening } from '../../net/people';
 import { type CountingGame, countingPolicy } from './counting-game';
 import { joining, packetAt } from './told-room';
@@ -10,14 +10,14 @@ import { joining, packetAt } from './told-room';
 function countingRoom() {
   const said: { readonly to: string; readonly message: RoomMessage<CountingGame> }[] = [];
   const refusals: RoomRefusal[] = [];
-  const frames: Uint8Array[] = [];
+  const frames: (readonly FreshPose[])[] = [];
   const room = new Room(
     countingPolicy(2),
     { id: 'room', epoch: 'one', pausable: true },
     {
       send: (to, message) => said.push({ to, message }),
       broadcast: (message) => said.push({ to: 'all', message }),
-      frame: (bytes) => frames.push(bytes),
+      poses: (poses) => frames.push(poses),
       drop: () => undefined,
       refused: (refusal) => refusals.push(refusal),
     },
@@ -34,6 +34,7 @@ function countingRoom() {
     /** In steps of two of the game's ticks. */
     pass(seconds: number) {
       for (const end = time + seconds - 1e-9; time < end; room.tick(time)) time += 0.2;
+      room.sendPoses();
     },
     say: (client: string, message: Parameters<typeof room.onMessage>[1]) => room.onMessage(client, message, time),
     count: (client: string, to: number) => told.say(client, { type: 'action', action: { type: 'count', to } }),

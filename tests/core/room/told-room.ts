@@ -6,6 +6,7 @@ import { type BallGame, BallPolicy } from '../../../src/core/match-policies/ball
 import { type BallRoomMessage, ballRoomMessageFrom } from '../../../src/core/protocol/ball-messages';
 import type { Joining } from '../../../src/core/protocol/messages';
 import { encodePose } from '../../../src/core/protocol/pose-codec';
+import { encodeFrame } from '../../../src/core/protocol/pose-frame';
 import { plainAvatar } from '../../../src/core/protocol/worn-avatar';
 import { Room, type RoomOptions } from '../../../src/core/room/room';
 import type { RoomRefusal } from '../../../src/core/room/room-outlet';
@@ -56,7 +57,7 @@ export function toldRoom({ ball, ...options }: ToldOptions = {}) {
     {
       send: hear,
       broadcast: (message) => hear('all', message),
-      frame: (bytes) => frames.push(bytes),
+      poses: (poses) => frames.push(encodeFrame(poses)),
       drop: (client, reason) => dropped.push({ client, reason }),
       refused: (refusal) => refusals.push(refusal),
       stepped: (actions) => log.push(actions),
@@ -84,6 +85,7 @@ export function toldRoom({ ball, ...options }: ToldOptions = {}) {
     tick(seconds = 1 / 60) {
       time += seconds;
       room.tick(time);
+      room.sendPoses();
     },
     pass(seconds: number, everyTick: () => void = () => undefined) {
       for (let i = 0; i < Math.round(seconds * 60); i++) {

@@ -1,0 +1,78 @@
+import fc from 'fast-check';
+import { beforeAll, describe, expect, test } from 'vitest';
+import { unknownFingers } from '../../../src/core/body/hand-shape';
+import { mostSeats } from '../../../src/core/protocol/messages';
+import { encodePose } from '../../../src/core/protocol/pose-codec';
+import {
+  decodeFrame,
+  encodeFrame,
+  frameLength,
+  type SeatPose,
+  writeFrame,
+} from '../../../src/core/protocol/pose-frame';
+import { packetOf, senders } from './sent-bodies';
+
+const seed = 20261122;
+/** Of people in any movement, with and without bodies, hands and fingers. */
+const packets: Uint8Array[] = [];
+
+beforeAll(async () => {
+  for (const sender of fc.sample(senders, { seed, numRuns: 120 })) {
+    const { packet, skeleton } = await packetOf(sender);
+    const bodiless = { ...packet, pose: { ...packet.pose, body: null } };
+    for (const sent of [packet, bodiless, { ...bodiless, fingers: unknownFingers }]) {
+      packets.push(encodePose(sent, skeleton)!);
+    }
+  }
+});
+
+const onSeats = fc.array(fc.tuple(fc.nat(mostSeats - 1), fc.nat(359)), { minLength: 1, maxLength: 24 });
+const posesOf = (choices: readonly (readonly [number, number])[]): SeatPose[] =>
+  choices.map(([seat, index]) => ({ seat, bytes: packets[index]! })).sort((a, b) => a.seat - b.seat);
+const plain = (poses: readonly SeatPose[] | null) => poses?.map(({ seat, bytes }) => [seat, [...bytes]]);
+
+describe('frames of poses', () => {
+  test('hold every packet as it was sent, and not a byte more', () => {
+    fc.assert(
+      fc.property(onSeats, (choices) => {
+        const poses = posesOf(choices);
+        const frame = encodeFrame(poses);
+        expect(frame).toHaveLength(poses.reduce((sum, { bytes }) => sum + bytes.length, 0));
+        expect(plain(decodeFrame(frame))).toEqual(plain(poses));
+      }),
+      { seed },
+    );
+  });
+
+  test('leave one seat out, and begin where they are told to', () => {
+    fc.assert(
+      fc.property(onSeats, fc.nat(mostSeats - 1), fc.nat(5), (choices, except, at) => {
+        const poses = posesOf(choices);
+        const others = poses.filter(({ seat }) => seat !== except);
+        expect(frameLength(poses, except)).toBe(others.reduce((sum, { bytes }) => sum + bytes.length, 0));
+        const target = new Uint8Array(at + frameLength(poses, except));
+        writeFrame(poses, except, target, at);
+        expect(target.subarray(0, at)).toEqual(new Uint8Array(at));
+        expect(plain(decodeFrame(target.subarray(at)))).toEqual(others.length > 0 ? plain(others) : undefined);
+      }),
+      { seed },
+    );
+  });
+
+  test('are refused when empty, cut short, out of order or with flags that no packet has', () => {
+    const frame = encodeFrame(
+      posesOf([
+        [1, 0],
+        [4, 3],
+      ]),
+    );
+    const first = packets[0]!.length;
+    for (let length = 0; length < frame.length; length++) {
+      expect(decodeFrame(frame.subarray(0, length)) === null, `${length} bytes`).toBe(length !== first);
+    }
+    expect(decodeFrame(Uint8Array.of(...frame.subarray(first), ...frame.subarray(0, first)))).toBeNull();
+    const odd = frame.slice();
+    odd[1]! |= 0b110;
+    expect(decodeFrame(odd)).toBeNull();
+  });
+});
