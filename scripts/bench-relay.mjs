@@ -1,4 +1,4 @@
-// npm run bench:relay [-- --json FILE]: how many clients a relay process carries, beside a plain socket.io relay.
+// npm run bench:relay [-- --json FILE] [--quick]: how many clients a relay process carries, beside a plain socket.io relay.
 import { resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { ensureInstalled } from './installation.mjs';
@@ -6,12 +6,18 @@ import { main, root, run } from './run-command.mjs';
 
 await main(async () => {
   const names = ['json', 'rooms', 'hz', 'seconds', 'count'];
-  const { values } = parseArgs({ options: Object.fromEntries(names.map((name) => [name, { type: 'string' }])) });
+  const { values } = parseArgs({
+    options: {
+      quick: { type: 'boolean' },
+      ...Object.fromEntries(names.map((name) => [name, /** @type {const} */ ({ type: 'string' })])),
+    },
+  });
   await ensureInstalled();
   const measure = ['--import', 'tsx', 'bench/relay/main.ts'];
   for (const [name, value] of Object.entries(values)) {
+    if (value === true) measure.push(`--${name}`);
     // The path means what it means to the person who typed it.
-    measure.push(`--${name}`, name === 'json' ? resolve(process.env.INIT_CWD ?? process.cwd(), value) : value);
+    else measure.push(`--${name}`, name === 'json' ? resolve(process.env.INIT_CWD ?? process.cwd(), value) : value);
   }
   const { code } = await run(process.execPath, measure, { cwd: root, limitSeconds: 3600 });
   return code;

@@ -1,15 +1,18 @@
 // The load, in a process of its own: lean clients that speak WebSocket without socket.io's client, so that the relay is what is measured.
 import { WebSocket } from 'ws';
+import { createRoomTokens } from '../../server/room-tokens';
 import { defaultCalibration } from '../../src/core/body/calibration';
 import { relaxedHand } from '../../src/core/body/hand-shape';
 import { skeletonFromCalibration } from '../../src/core/body/skeleton';
 import { createIk } from '../../src/core/estimation/estimators';
+import { ballKind } from '../../src/core/protocol/ball-messages';
 import { protocolVersion } from '../../src/core/protocol/messages';
 import { encodePose } from '../../src/core/protocol/pose-codec';
 import { decodeFrame } from '../../src/core/protocol/pose-frame';
 import { plainAvatar } from '../../src/core/protocol/worn-avatar';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
-import type { Heard, Load } from './conversation';
+import { countingKind } from '../../tests/core/room/counting-game';
+import type { ClientAnswer, Heard, Load, Meeting } from './conversation';
 
 /** A pose packet as players send it most: two controllers and a body. */
 function packet(): Uint8Array {
@@ -45,64 +48,78 @@ function timeOf(bytes: Uint8Array): number {
 /** Announces the pose packet that follows, where the relay is the plain one. */
 const head = '451-["pose",{"_placeholder":true,"num":0}]';
 
-/** What the clients of all rooms count between the start and the end of the measurement. */
+/** The delays of each part of a measurement are judged by themselves [s]. */
+const partSeconds = 0.5;
+/** A pose that arrives later than this after the measurement has not arrived [s]. */
+const patienceSeconds = 0.25;
+
+/** What the clients count of the poses that leave in some seconds. Times: this process's clock [ms]. */
 class Measurement {
-  /** Announced by the first frame after the start. */
-  running = false;
-  start = 0;
-  sent = 0;
-  delivered = 0;
-  bytesUp = 0;
-  bytesDown = 0;
-  /** The delays of each second [ms]. */
-  readonly #windows: readonly number[][];
-  #cpu = process.cpuUsage();
+  readonly #start: number;
+  readonly #end: number;
+  readonly #parts: readonly number[][];
+  readonly #cpu = process.cpuUsage();
+  #sent = 0;
+  #delivered = 0;
+  #bytesUp = 0;
+  #bytesDown = 0;
 
-  constructor(seconds: number) {
-    this.#windows = Array.from({ length: seconds }, () => []);
+  constructor(start: number, seconds: number) {
+    this.#start = start;
+    this.#end = start + seconds * 1000;
+    this.#parts = Array.from({ length: Math.ceil(seconds / partSeconds) }, () => []);
   }
 
-  begin(): void {
-    this.running = true;
-    this.#cpu = process.cpuUsage();
-    process.send?.('measuring');
+  /** A pose leaves. */
+  left(now: number, bytes: number): void {
+    if (!this.#counts(now)) return;
+    this.#sent += 1;
+    this.#bytesUp += bytes;
   }
 
-  /** A pose has arrived that left at `left` [ms]. */
+  /** A message with poses has arrived. */
+  heard(bytes: number): void {
+    if (this.#counts(performance.now())) this.#bytesDown += bytes;
+  }
+
+  /** A pose has arrived that left at `left`. */
   arrived(left: number): void {
-    this.delivered += 1;
-    const now = performance.now();
-    this.#windows[Math.floor((now - this.start) / 1000)]?.push(now - left);
+    if (!this.#counts(left)) return;
+    this.#delivered += 1;
+    this.#parts[Math.floor((left - this.#start) / (1000 * partSeconds))]?.push(performance.now() - left);
   }
 
-  end(): Heard {
-    this.running = false;
+  result(): Heard {
     const used = process.cpuUsage(this.#cpu);
-    const seconds = this.#windows.length;
-    for (const window of this.#windows) window.sort((x, y) => x - y);
-    const { sent, delivered, bytesUp, bytesDown } = this;
+    const seconds = (this.#end - this.#start) / 1000;
+    for (const part of this.#parts) part.sort((x, y) => x - y);
     return {
       p50Ms: this.#typical(0.5),
       p99Ms: this.#typical(0.99),
-      sent,
-      delivered,
-      bytesUp,
-      bytesDown,
+      sent: this.#sent,
+      delivered: this.#delivered,
+      bytesUp: this.#bytesUp,
+      bytesDown: this.#bytesDown,
       seconds,
-      clientLoad: (used.user + used.system) / (seconds * 1e6),
+      clientLoad: (used.user + used.system) / ((seconds + patienceSeconds) * 1e6),
     };
   }
 
-  /** The median over the seconds: one in which the machine did something else says nothing about the relay. */
+  #counts(time: number): boolean {
+    return time >= this.#start && time < this.#end;
+  }
+
+  /** The median over the parts: one in which the machine did something else says nothing about the relay. */
   #typical(share: number): number {
-    const values = this.#windows.map(
-      (window) => window[Math.floor((window.length - 1) * share)] ?? Number.POSITIVE_INFINITY,
-    );
+    const values = this.#parts.map((part) => part[Math.floor((part.length - 1) * share)] ?? Number.POSITIVE_INFINITY);
     return values.sort((x, y) => x - y)[Math.floor((values.length - 1) / 2)] ?? Number.NaN;
   }
 }
 
-/** The place of a client in the load: its room, with the clients who came before it, and what lets it in. */
+/** What is counted now; null: nothing is. One for all clients of the process. */
+let measurement: Measurement | null = null;
+
+/** The place of a client: its room, with the clients who came before it, and what lets it in. */
 interface Place {
   readonly room: Client[];
   readonly roomName: string;
@@ -113,8 +130,7 @@ interface Place {
 class Client {
   /** When its next packet is to leave [ms]. */
   due = 0;
-  readonly #load: Load;
-  readonly #measurement: Measurement;
+  readonly #plain: boolean;
   readonly #room: readonly Client[];
   readonly #token: string;
   readonly #socket: WebSocket;
@@ -129,14 +145,13 @@ class Client {
   /** Of the plain relay: whose pose comes with the next binary message. */
   #from = 0;
 
-  constructor(load: Load, measurement: Measurement, template: Uint8Array, { room, roomName, seat, token }: Place) {
-    this.#load = load;
-    this.#measurement = measurement;
+  constructor({ relay, port }: Meeting, template: Uint8Array, { room, roomName, seat, token }: Place) {
+    this.#plain = relay === 'plain';
     this.#room = room;
     this.#token = token;
     this.#seat = seat;
     this.#bytes = template.slice();
-    const address = `ws://127.0.0.1:${load.port}/relay/?EIO=4&transport=websocket&room=${roomName}&seat=${seat}`;
+    const address = `ws://127.0.0.1:${port}/relay/?EIO=4&transport=websocket&room=${roomName}&seat=${seat}`;
     const socket = new WebSocket(address, { perMessageDeflate: false });
     this.#socket = socket;
     this.#joined = new Promise((resolve, reject) => {
@@ -153,22 +168,13 @@ class Client {
   }
 
   send(): void {
-    const plain = this.#load.relay === 'plain';
-    const timeMs = Math.round(performance.now() + this.#ahead) & 0xffff;
+    const now = performance.now();
+    const timeMs = Math.round(now + this.#ahead) & 0xffff;
     setTime(this.#bytes, timeMs);
-    this.#sent[timeMs] = performance.now();
-    if (plain) this.#socket.send(head);
+    this.#sent[timeMs] = now;
+    if (this.#plain) this.#socket.send(head);
     this.#socket.send(this.#bytes);
-    if (!this.#measurement.running) return;
-    this.#measurement.sent += 1;
-    this.#measurement.bytesUp += this.#bytes.length + (plain ? head.length : 0);
-  }
-
-  close(): void {
-    const socket = this.#socket;
-    socket.removeAllListeners();
-    socket.on('error', () => socket.terminate());
-    socket.terminate();
+    measurement?.left(now, this.#bytes.length + (this.#plain ? head.length : 0));
   }
 
   #say(text: string): void {
@@ -176,25 +182,28 @@ class Client {
   }
 
   #hear(received: Buffer, isBinary: boolean): void {
-    if (this.#measurement.running) this.#measurement.bytesDown += received.length;
-    if (!isBinary) this.#hearText(received.toString());
-    else if (this.#load.relay === 'plain') this.#hearPose(this.#from, received);
+    if (!isBinary) {
+      this.#hearText(received.toString());
+      return;
+    }
+    measurement?.heard(received.length);
+    if (this.#plain) this.#hearPose(this.#from, received);
     else for (const { seat, bytes } of decodeFrame(received) ?? []) this.#hearPose(seat, bytes);
   }
 
   #hearPose(seat: number, bytes: Uint8Array): void {
-    if (seat === this.#seat || !this.#measurement.running) return;
+    if (seat === this.#seat) return;
     for (const client of this.#room) {
       if (client.#seat !== seat) continue;
       const left = client.#sent[timeOf(bytes)];
-      if (left) this.#measurement.arrived(left);
+      if (left) measurement?.arrived(left);
       return;
     }
   }
 
   /** The words of socket.io's protocol, as far as the relays speak it with a client. */
   #hearText(text: string): void {
-    const plain = this.#load.relay === 'plain';
+    const plain = this.#plain;
     if (text === '2') this.#say('3');
     else if (text[0] === '0') this.#say(plain ? '40' : `40${JSON.stringify(['/', { token: this.#token }])}`);
     else if (plain) this.#hearPlain(text);
@@ -204,8 +213,10 @@ class Client {
 
   #hearPlain(text: string): void {
     const pose = /^451-\["pose",(\d+),/.exec(text);
-    if (pose) this.#from = Number(pose[1]);
-    else if (text.startsWith('40')) this.#join();
+    if (pose) {
+      this.#from = Number(pose[1]);
+      measurement?.heard(text.length);
+    } else if (text.startsWith('40')) this.#join();
   }
 
   #askIn(): void {
@@ -228,64 +239,82 @@ class Client {
   }
 }
 
-/** One after the other: a room's seats are given in the order in which its clients come. */
-async function connectAll(load: Load, measurement: Measurement): Promise<readonly Client[]> {
-  const template = packet();
-  const clients: Client[] = [];
-  for (let r = 0; r < load.rooms; r++) {
+/** All who have come, room by room, and the load that they are. */
+class Crowd {
+  readonly #meeting: Meeting;
+  readonly #template = packet();
+  readonly #rooms: Client[][] = [];
+
+  constructor(meeting: Meeting) {
+    this.#meeting = meeting;
+  }
+
+  /** Plays in so many rooms; more people come where there are not as many yet. */
+  async play({ rooms, warmUpSeconds, seconds }: Load): Promise<Heard> {
+    while (this.#rooms.length < rooms) await this.#open();
+    const clients = this.#rooms.slice(0, rooms).flat();
+    const start = performance.now() + warmUpSeconds * 1000;
+    const end = start + (seconds + patienceSeconds) * 1000;
+    await this.#sendUntil(start, clients);
+    measurement = new Measurement(performance.now(), seconds);
+    process.send?.('measuring' satisfies ClientAnswer);
+    await this.#sendUntil(end, clients);
+    const heard = measurement.result();
+    measurement = null;
+    return heard;
+  }
+
+  /** Another room, with people who come one after the other: its seats are given in that order. */
+  async #open(): Promise<void> {
+    const { relay, secret, room: people } = this.#meeting;
+    const tokens = createRoomTokens(secret, () => Date.now() / 1000);
+    const roomName = `room-${this.#rooms.length}`;
     const room: Client[] = [];
-    for (let seat = 0; seat < load.room; seat++) {
-      const token = load.tokens[clients.length] ?? '';
-      const client = new Client(load, measurement, template, { room, roomName: `room-${r}`, seat, token });
+    for (let seat = 0; seat < people; seat++) {
+      const token = relay === 'ours' ? await tokens.issue(roomName, kindFor(people)) : '';
+      const client = new Client(this.#meeting, this.#template, { room, roomName, seat, token });
       await client.joined();
       room.push(client);
-      clients.push(client);
     }
+    this.#rooms.push(room);
   }
-  return clients;
+
+  /** Lets each client send at the meeting's rate until then [ms]. No two clients' frames keep step. */
+  #sendUntil(end: number, clients: readonly Client[]): Promise<void> {
+    const period = 1000 / this.#meeting.hz;
+    const begin = performance.now();
+    clients.forEach((client, i) => {
+      if (client.due < begin - period) client.due = begin + period * ((i * 0.618034) % 1);
+    });
+    return new Promise((resolve) => {
+      const timer = setInterval(() => {
+        const now = performance.now();
+        for (const client of clients) {
+          if (client.due > now) continue;
+          client.send();
+          client.due = Math.max(client.due + period, now - period);
+        }
+        if (now < end) return;
+        clearInterval(timer);
+        resolve();
+      }, 1);
+    });
+  }
 }
 
-/** Lets each client send at the load's rate, through the warm-up and the measurement. */
-function sendAll(clients: readonly Client[], measurement: Measurement, load: Load): Promise<void> {
-  const period = 1000 / load.hz;
-  const begin = performance.now();
-  // No two clients' frames keep step.
-  clients.forEach((client, i) => {
-    client.due = begin + period * ((i * 0.618034) % 1);
+/** Rooms of three play the ball game; others a small game of the tests, as no game of ours has as many seats. */
+const kindFor = (people: number): string => (people === 3 ? ballKind : countingKind);
+
+let crowd: Crowd | null = null;
+
+async function hear(message: Meeting | Load): Promise<void> {
+  if ('port' in message) crowd = new Crowd(message);
+  else if (crowd) process.send?.((await crowd.play(message)) satisfies ClientAnswer);
+}
+
+process.on('message', (message: Meeting | Load) => {
+  hear(message).catch((error: Error) => {
+    console.error(error.message);
+    process.exit(1);
   });
-  measurement.start = begin + load.warmUpSeconds * 1000;
-  const end = measurement.start + load.seconds * 1000;
-  return new Promise((resolve) => {
-    const timer = setInterval(() => {
-      const now = performance.now();
-      if (!measurement.running && now >= measurement.start) measurement.begin();
-      for (const client of clients) {
-        if (client.due > now) continue;
-        client.send();
-        client.due = Math.max(client.due + period, now - period);
-      }
-      if (now < end) return;
-      clearInterval(timer);
-      resolve();
-    }, 1);
-  });
-}
-
-async function play(load: Load): Promise<Heard> {
-  const measurement = new Measurement(load.seconds);
-  const clients = await connectAll(load, measurement);
-  await sendAll(clients, measurement, load);
-  const heard = measurement.end();
-  for (const client of clients) client.close();
-  return heard;
-}
-
-process.on('message', (load: Load) => {
-  play(load).then(
-    (heard) => process.send?.(heard),
-    (error: Error) => {
-      console.error(error.message);
-      process.exit(1);
-    },
-  );
 });

@@ -1,0 +1,180 @@
+import type { AvatarPose } from '../../src/core/body/avatar-pose';
+import { defaultCalibration } from '../../src/core/body/calibration';
+import { forwardKinematics } from '../../src/core/body/forward-kinematics';
+import { unknownFingers } from '../../src/core/body/hand-shape';
+import { skeletonFromCalibration } from '../../src/core/body/skeleton';
+import { createIk } from '../../src/core/estimation/estimators';
+import type { TrackedPose } from '../../src/core/math/pose';
+import { normalNumbers, randomNumbers } from '../../src/core/math/random';
+import { type Vec3, vec3 } from '../../src/core/math/vec3';
+import { decodePose, encodePose } from '../../src/core/protocol/pose-codec';
+import type { PosePacket } from '../../src/core/protocol/pose-packet';
+import { actorFrame } from '../../src/core/tracking/actor-motion';
+import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
+import { createRemotePlayers } from '../../src/net/remote-players';
+
+/** A way from one page over the relay to another. */
+export interface Way {
+  /** Of a message and its answer between the two pages [s]. */
+  readonly roundTrip: number;
+  /** A packet takes up to so much longer or shorter [s]. */
+  readonly jitter: number;
+  /** Share of the packets that are lost, and sent again. */
+  readonly loss: number;
+}
+
+/** What a person sees of another. */
+export interface Seen {
+  readonly way: Way;
+  /** From the frame of the other's headset to the picture in which it is shown [ms]. */
+  readonly p50Ms: number;
+  readonly p95Ms: number;
+  /** Standstills of more than 250 ms, a minute. */
+  readonly freezes: number;
+  /** Mean jerk of head, hands and elbows as they are drawn, to that in the other's own mirror. */
+  readonly jerkRatio: number;
+}
+
+/** Standard deviation of what a headset says of a place, along each axis [m]: an assumption, which jerk depends on (docs/scaling.md). */
+const tremor = 1e-4;
+const displayHz = 72;
+const posesPerSecond = 30;
+/** The first seconds are not counted: clocks and delays are found out in them. */
+const settling = 6;
+const joints = ['head', 'leftHand', 'rightHand', 'leftLowerArm', 'rightLowerArm'] as const;
+
+const skeleton = skeletonFromCalibration(defaultCalibration);
+
+/** Where a body's joints are, one after the other [m]. */
+function placesOf(pose: AvatarPose): readonly Vec3[] {
+  if (!pose.body) throw new Error('bench/relay: the actor has no body');
+  const places = forwardKinematics(skeleton, pose.body);
+  return joints.map((name) => places[name].position);
+}
+
+/** Sums of the third differences of places at the display's rate. */
+class Jerk {
+  readonly #last: (readonly Vec3[])[] = [];
+  sum = 0;
+
+  add(places: readonly Vec3[]): void {
+    this.#last.push(places.map(({ x, y, z }) => ({ x, y, z })));
+    if (this.#last.length > 4) this.#last.shift();
+    const [a, b, c, d] = this.#last;
+    if (!a || !b || !c || !d) return;
+    for (let i = 0; i < joints.length; i++) {
+      const along = (axis: 'x' | 'y' | 'z') => d[i]![axis] - 3 * c[i]![axis] + 3 * b[i]![axis] - a[i]![axis];
+      this.sum += Math.hypot(along('x'), along('y'), along('z'));
+    }
+  }
+}
+
+/** When each packet arrives [s], by when it leaves: over TCP, so in order, and what is lost holds up all behind it until it is sent again. */
+function arrivals(leaving: readonly number[], { roundTrip, jitter, loss }: Way, seed: number): readonly number[] {
+  const chance = randomNumbers(seed);
+  let last = 0;
+  return leaving.map((time) => {
+    // Three later packets tell of a loss; then half a round trip to the sender, and half a one back.
+    const again = chance() < loss ? roundTrip + 3 / posesPerSecond : 0;
+    last = Math.max(last, time + Math.max(0, roundTrip / 2 + jitter * (2 * chance() - 1)) + again);
+    return last;
+  });
+}
+
+/** As a headset would see it: places with noise of its own. */
+function trembling(frame: TrackingFrame, noise: () => number): TrackingFrame {
+  const moved = (pose: TrackedPose): TrackedPose => {
+    const { x, y, z } = pose.position;
+    return { ...pose, position: vec3(x + tremor * noise(), y + tremor * noise(), z + tremor * noise()) };
+  };
+  const { head, leftHand, rightHand } = frame;
+  return {
+    ...frame,
+    head: moved(head),
+    leftHand: leftHand && moved(leftHand),
+    rightHand: rightHand && moved(rightHand),
+  };
+}
+
+interface SentFrame {
+  readonly time: number;
+  readonly pose: AvatarPose;
+}
+
+/** By its seconds, for it is the same over every way. */
+const performances = new Map<number, readonly SentFrame[]>();
+
+/** What the other's mirror shows, picture by picture. */
+function performed(seconds: number): readonly SentFrame[] {
+  const before = performances.get(seconds);
+  if (before) return before;
+  const ik = createIk(defaultCalibration);
+  const noise = normalNumbers(1);
+  const frames = Array.from({ length: Math.floor(seconds * displayHz) }, (_, i) => {
+    const time = i / displayHz;
+    const { pose } = ik.update(trembling(actorFrame(time, defaultCalibration), noise));
+    return { time, pose: structuredClone(pose) };
+  });
+  performances.set(seconds, frames);
+  return frames;
+}
+
+/** Thirty of them a second, as a page sends them. */
+function sentOf(frames: readonly SentFrame[]): readonly SentFrame[] {
+  let due = 0;
+  return frames.filter(({ time }) => {
+    if (time < due) return false;
+    due = Math.max(due + 1 / posesPerSecond, time + 0.5 / posesPerSecond);
+    return true;
+  });
+}
+
+/** As it is after the wire. */
+function packetOf({ time, pose }: SentFrame): PosePacket {
+  const timeMs = Math.round(time * 1000) & 0xffff;
+  const bytes = encodePose({ timeMs, jump: false, pose, fingers: unknownFingers }, skeleton);
+  const packet = bytes && decodePose(bytes, skeleton);
+  if (!packet) throw new Error('bench/relay: the actor has no pose');
+  return packet;
+}
+
+/** So many seconds of one person seen by another over this way, through a page's own codec and playback; `seed`: of the network. */
+export function seenOver(way: Way, seconds: number, seed: number): Seen {
+  const frames = performed(seconds);
+  const sent = sentOf(frames);
+  const arrived = arrivals(
+    sent.map(({ time }) => time),
+    way,
+    seed,
+  );
+  const players = createRemotePlayers();
+  const ages: number[] = [];
+  const [own, drawn] = [new Jerk(), new Jerk()];
+  let next = 0;
+  for (const { time, pose } of frames) {
+    for (; next < sent.length && arrived[next]! <= time; next++) {
+      players.receive({ seat: 1, packet: packetOf(sent[next]!), arrivedAt: arrived[next]! });
+    }
+    const [remote] = players.follow(time);
+    if (!remote || time < settling) continue;
+    own.add(placesOf(pose));
+    drawn.add(placesOf(remote.pose));
+    ages.push(time - players.report(1)!.shownTime);
+  }
+  ages.sort((a, b) => a - b);
+  const at = (share: number): number => 1000 * ages[Math.floor((ages.length - 1) * share)]!;
+  return {
+    way,
+    p50Ms: at(0.5),
+    p95Ms: at(0.95),
+    freezes: (60 * players.report(1)!.freezes) / seconds,
+    jerkRatio: drawn.sum / own.sum,
+  };
+}
+
+/** From calm to uneven ones that lose, in one house, one country and between continents. */
+export const ways: readonly Way[] = [0, 0.05, 0.15].flatMap((roundTrip) => [
+  { roundTrip, jitter: 0, loss: 0 },
+  { roundTrip, jitter: 0.005, loss: 0 },
+  { roundTrip, jitter: 0.02, loss: 0.02 },
+]);
