@@ -1,4 +1,5 @@
 import type { StudyPlan } from '../core/study/plan';
+import { remarksOn } from '../core/study/plan-remarks';
 import type { ParticipantState, Receipt } from '../core/study/study-api';
 import { button, element } from '../ui/element';
 import { pageFolder } from '../ui/page-folder';
@@ -44,6 +45,7 @@ function studyHead({ plan, simulated, retentionUntil }: OpenStudy, actions: Stud
       { class: 'soft' },
       `${plan.id} · ${plan.participants} participants · consent ${plan.consent.version} · deleted after ${until}`,
     ),
+    ...remarkList(remarksOn(plan)),
     element(
       'div',
       { class: 'bar', style: 'margin-top:12px' },
@@ -52,6 +54,18 @@ function studyHead({ plan, simulated, retentionUntil }: OpenStudy, actions: Stud
     ),
   ];
 }
+
+/** What to know before the first participant comes. */
+const remarkList = (remarks: readonly string[]): readonly Node[] =>
+  remarks.length === 0
+    ? []
+    : [
+        element(
+          'ul',
+          { class: 'remarks', 'aria-label': 'Before you begin' },
+          ...remarks.map((text) => element('li', {}, text)),
+        ),
+      ];
 
 const receiptList = (receipts: readonly Receipt[]): readonly Node[] =>
   receipts.length === 0

@@ -1,4 +1,5 @@
-import { type Schedule, type StudyPlan, scheduleFor } from '../core/study/plan';
+import type { StudyPlan } from '../core/study/plan';
+import { type Schedule, scheduleFor } from '../core/study/schedule';
 import type { ParticipantState, StudyCommand } from '../core/study/study-api';
 import { studyLink } from '../net/study-link';
 import { button, element } from '../ui/element';

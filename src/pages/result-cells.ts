@@ -1,5 +1,5 @@
+import type { Interval } from '../core/statistics/summaries';
 import { shippedQuestionnaires } from '../core/study/questionnaires';
-import type { Interval } from '../core/study/statistics';
 import { type Table, tidyCsv } from '../core/study/tidy-csv';
 import { offerDownload } from '../ui/downloads';
 import { button, element } from '../ui/element';

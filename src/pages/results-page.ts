@@ -1,8 +1,9 @@
 import { reasonOf } from '../core/errors/reasons';
 import '../styles/document.css';
 import { button, element, pageElement } from '../ui/element';
+import { overallResults } from './overall-results';
 import { paperCheck } from './paper-check';
-import { studyResults } from './results-view';
+import { simulatedNotice, studyResults } from './results-view';
 import type { ShownStudy } from './shown-results';
 import { StudyAccess } from './study-access';
 import { openStudyFile } from './study-file';
@@ -18,6 +19,7 @@ function showStudy(study: ShownStudy, source: string): void {
   shown = { ...study, source };
   // The paper subtracts inverse kinematics: what comes first in the plan is what others are compared with.
   const [baseline, other] = study.plan.conditions;
+  // null: conditions of one are compared between cohorts alone.
   conditions = other && baseline ? [other.id, baseline.id] : null;
   complaint = '';
   render();
@@ -84,15 +86,16 @@ function conditionBar({ plan }: ShownStudy): readonly Node[] {
 }
 
 function results(): readonly Node[] {
-  if (!shown || !conditions) return [];
+  if (!shown) return [];
   const { plan, source } = shown;
   const heading = element('h2', {}, plan.title);
   const where = element('p', { class: 'soft' }, `${plan.id}, from ${source}.`);
-  if (conditions[0] === conditions[1]) {
+  if (conditions && conditions[0] === conditions[1]) {
     return [heading, ...conditionBar(shown), element('p', { class: 'complaint' }, 'Choose two different conditions.')];
   }
   try {
-    return [heading, where, ...conditionBar(shown), ...studyResults(shown, conditions)];
+    const pairs = conditions ? studyResults(shown, conditions) : [];
+    return [heading, where, ...simulatedNotice(shown), ...overallResults(shown), ...conditionBar(shown), ...pairs];
   } catch (error) {
     return [heading, where, element('p', { class: 'complaint', role: 'alert' }, reasonOf(error))];
   }

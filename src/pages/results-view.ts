@@ -104,16 +104,19 @@ function compared(study: ShownStudy, conditions: readonly [string, string]): Com
   };
 }
 
+/** What stands above all results of simulated participants. */
+export const simulatedNotice = ({ simulated }: Pick<ShownStudy, 'simulated'>): readonly Node[] => {
+  const text = 'SIMULATED: a program made these data. They say nothing about people.';
+  return simulated ? [element('p', { class: 'simulated', role: 'note' }, text)] : [];
+};
+
 /** Everything computed from a study: figures, tables, exclusions. `conditions`: first − second. */
 export function studyResults(study: ShownStudy, conditions: readonly [string, string]): readonly Node[] {
-  const text = 'SIMULATED: a program made these data. They say nothing about people.';
-  const notice = study.simulated ? [element('p', { class: 'simulated', role: 'note' }, text)] : [];
   if (!study.records.some(({ kind }) => kind === 'answers' || kind === 'trial')) {
-    return [...notice, element('p', { class: 'card' }, 'Nothing has been answered or played yet.')];
+    return [element('p', { class: 'card' }, 'Nothing has been answered or played yet.')];
   }
   const results = compared(study, conditions);
   return [
-    ...notice,
     summary(results),
     ...answerParts(results),
     ...scaleParts(results),

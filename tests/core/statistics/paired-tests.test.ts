@@ -1,6 +1,8 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
-import { holm, meanSummary, pairedTTest, signedRankTest, twoSidedP } from '../../../src/core/study/statistics';
+import { holm } from '../../../src/core/statistics/holm';
+import { pairedTTest, signedRankTest } from '../../../src/core/statistics/paired-tests';
+import { meanSummary, twoSidedP } from '../../../src/core/statistics/summaries';
 import { number, seed } from '../arbitraries';
 
 // R's data set "sleep" (Cushny and Peebles, 1905): hours of sleep gained with two drugs, ten patients.

@@ -1,0 +1,58 @@
+import * as v from 'valibot';
+import { mostSimulated, type PowerRow, powerTable } from '../../src/core/statistics/power';
+import { checked, integerBetween, numberBetween, ValidationError } from '../../src/core/study/validation';
+
+const given = <Schema extends v.GenericSchema<number, number>>(schema: Schema, otherwise: string) =>
+  v.pipe(v.optional(v.string(), otherwise), v.transform(Number), schema);
+
+const asked = v.object({
+  effect: v.pipe(
+    v.string('is missing: the difference in standard deviations, as 0.5'),
+    v.transform(Number),
+    numberBetween(0.05, 10),
+  ),
+  design: v.optional(v.picklist(['paired', 'between'], 'expected paired or between'), 'paired'),
+  power: given(numberBetween(0.1, 0.99), '0.8'),
+  alpha: given(numberBetween(0.0001, 0.5), '0.05'),
+  studies: given(integerBetween(100, 1_000_000), '10000'),
+  seed: given(integerBetween(0, 2 ** 31 - 1), '1'),
+});
+
+/** Every row is shown whose power is nearer to the one wanted; below it every fifth. */
+const closeToIt = 0.05;
+
+/** The first row at which a test reaches the power, in words. */
+function needed(rows: readonly PowerRow[], test: 't' | 'wilcoxon', power: number): string {
+  const row = rows.find((one) => one[test] >= power);
+  return row ? `${row.n}` : `more than ${mostSimulated}`;
+}
+
+function tell(): void {
+  const { design, power, seed, studies, ...planned } = checked(asked, JSON.parse(process.argv[2] ?? '{}'));
+  const rows = powerTable({ design, ...planned }, power, { seed, studies });
+  const paired = design === 'paired';
+  const whom = paired ? 'participants' : 'participants in each cohort';
+  console.log(
+    [
+      `${paired ? 'Paired, d_z' : 'Between participants, d_s'} = ${planned.effect}, two-sided α = ${planned.alpha}: ${studies} simulated studies a row, normal values, seed ${seed}.`,
+      '',
+      `${whom}   t-test   Wilcoxon`,
+      ...rows
+        .filter((row) => row.n % 5 === 0 || row.t >= power - closeToIt)
+        .map(
+          ({ n, t, wilcoxon }) =>
+            `${String(n).padStart(whom.length)}   ${t.toFixed(3).padStart(6)}   ${wilcoxon.toFixed(3).padStart(8)}`,
+        ),
+      '',
+      `For a power of ${power}: ${needed(rows, 't', power)} ${whom} by the t-test, ${needed(rows, 'wilcoxon', power)} by Wilcoxon’s.`,
+    ].join('\n'),
+  );
+}
+
+try {
+  tell();
+} catch (error) {
+  if (!(error instanceof ValidationError)) throw error;
+  console.error(`study:power: --${error.message}`);
+  process.exitCode = 1;
+}

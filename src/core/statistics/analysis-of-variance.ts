@@ -1,0 +1,145 @@
+import { fTail, noncentralityOfF } from './noncentral';
+import { type Interval, meanOf } from './summaries';
+
+/** One effect of an analysis of variance. */
+export interface Effect {
+  /** null where there is no spread to measure the effect with; so is what follows from it. */
+  readonly f: number | null;
+  readonly df: readonly [number, number];
+  readonly p: number | null;
+  /** Greenhouse and Geisser's ε and the p with degrees of freedom times it; null for effects that have none: between participants. */
+  readonly epsilon: number | null;
+  readonly correctedP: number | null;
+  /** Partial η²: the share of the variance that is not of other effects. */
+  readonly partialEtaSquared: number | null;
+  /** Of 90 %, as is usual for a share that has but one side; null also where F is too large for it to be computed. */
+  readonly interval: Interval | null;
+}
+
+/** What an analysis of variance of one measure tests. */
+export interface VarianceAnalysis {
+  /** Participants. */
+  readonly n: number;
+  /** Of the conditions that each participant met; null: there was one. */
+  readonly within: Effect | null;
+  /** Of the cohorts; null: there is one. */
+  readonly between: Effect | null;
+  readonly interaction: Effect | null;
+}
+
+const confidence = 0.9;
+/** Spread this small against the values is rounding. */
+const constantBelow = 1e-20;
+
+interface Squares {
+  readonly effect: number;
+  readonly error: number;
+  readonly df: readonly [number, number];
+  /** ε; null: it does not apply. */
+  readonly epsilon: number | null;
+  /** Of all values about 0: what rounding is measured by. */
+  readonly scale: number;
+}
+
+function effectOf({ effect, error, df, epsilon, scale }: Squares): Effect {
+  const none = { f: null, p: null, correctedP: null, partialEtaSquared: null, interval: null };
+  if (df[1] < 1 || error <= constantBelow * scale) return { ...none, df, epsilon: null };
+  const f = effect / df[0] / (error / df[1]);
+  const noncentrality = noncentralityOfF(f, df[0], df[1], confidence);
+  const share = (lambda: number) => lambda / (lambda + df[0] + df[1] + 1);
+  return {
+    f,
+    df,
+    p: fTail(f, df[0], df[1]),
+    epsilon,
+    correctedP: epsilon === null ? null : fTail(f, epsilon * df[0], epsilon * df[1]),
+    partialEtaSquared: effect / (effect + error),
+    interval: noncentrality && { low: share(noncentrality.low), high: share(noncentrality.high) },
+  };
+}
+
+/** Helmert's contrasts of k values, orthonormal: what is left of them without their mean. */
+function contrasts(count: number): readonly (readonly number[])[] {
+  return Array.from({ length: count - 1 }, (_, index) => {
+    const before = index + 1;
+    const length = Math.sqrt(before * (before + 1));
+    return Array.from({ length: count }, (_, at) => (at < before ? 1 / length : at === before ? -before / length : 0));
+  });
+}
+
+const dotOf = (a: readonly number[], b: readonly number[]) =>
+  a.reduce((sum, value, index) => sum + value * (b[index] as number), 0);
+
+/** One contrast's value of every participant, cohort by cohort: the squares of its mean, of the cohorts about it, and within them. */
+function squaresOf(cohorts: readonly (readonly number[])[]) {
+  const n = cohorts.reduce((sum, { length }) => sum + length, 0);
+  const means = cohorts.map(meanOf);
+  const weighted = meanOf(cohorts.flat());
+  // Cohorts count alike however large they are (type III).
+  const unweighted = meanOf(means);
+  const inverse = cohorts.reduce((sum, { length }) => sum + 1 / length, 0) / cohorts.length ** 2;
+  return {
+    n,
+    mean: unweighted ** 2 / inverse,
+    between: cohorts.reduce((sum, { length }, index) => sum + length * ((means[index] as number) - weighted) ** 2, 0),
+    residuals: cohorts.flatMap((values, index) => values.map((value) => value - (means[index] as number))),
+  };
+}
+
+/** ε of the covariances of the contrasts: 1 where the differences of all conditions spread alike, at least 1 / (k − 1). */
+function greenhouseGeisser(residuals: readonly (readonly number[])[]): number {
+  const covariance = residuals.map((a) => residuals.map((b) => dotOf(a, b)));
+  const trace = covariance.reduce((sum, row, index) => sum + (row[index] as number), 0);
+  const squares = covariance.flat().reduce((sum, value) => sum + value * value, 0);
+  return trace ** 2 / (residuals.length * squares);
+}
+
+/**
+ * Analysis of variance of participants who met all conditions (within) and belong to cohorts (between): repeated measures where there is one
+ * cohort, one-way where there is one condition, else mixed. `cohorts[c][p][k]`: of participant p of cohort c under condition k. As SPSS and
+ * R's car of type III: cohorts of unequal size count alike. Throws where a cohort is empty or values are missing.
+ */
+export function varianceAnalysis(cohorts: readonly (readonly (readonly number[])[])[]): VarianceAnalysis {
+  const conditions = cohorts[0]?.[0]?.length ?? 0;
+  const participants = cohorts.flat();
+  if (conditions === 0 || cohorts.some(({ length }) => length === 0)) throw new Error('a cohort has no participants');
+  if (participants.some(({ length }) => length !== conditions)) throw new Error('a participant lacks a condition');
+  const n = participants.length;
+  const groups = cohorts.length;
+  const scale = participants.flat().reduce((sum, value) => sum + value * value, 0);
+  const common = { epsilon: null, scale };
+
+  const size = Math.sqrt(conditions);
+  const sums = squaresOf(cohorts.map((members) => members.map((values) => meanOf(values) * size)));
+  const between =
+    groups < 2
+      ? null
+      : effectOf({
+          ...common,
+          effect: sums.between,
+          error: dotOf(sums.residuals, sums.residuals),
+          df: [groups - 1, n - groups],
+        });
+  if (conditions < 2) return { n, within: null, between, interaction: null };
+
+  const parts = contrasts(conditions).map((contrast) =>
+    squaresOf(cohorts.map((members) => members.map((values) => dotOf(values, contrast)))),
+  );
+  const residuals = parts.map((part) => part.residuals);
+  const error = residuals.reduce((sum, one) => sum + dotOf(one, one), 0);
+  const epsilon = error <= constantBelow * scale ? null : greenhouseGeisser(residuals);
+  const effect = (squares: (part: (typeof parts)[number]) => number, df: number) =>
+    effectOf({
+      effect: parts.reduce((sum, part) => sum + squares(part), 0),
+      error,
+      df: [df * (conditions - 1), (n - groups) * (conditions - 1)],
+      epsilon,
+      scale,
+    });
+  return {
+    n,
+    within: effect(({ mean }) => mean, 1),
+    between,
+    interaction: groups < 2 ? null : effect((part) => part.between, groups - 1),
+  };
+}

@@ -1,0 +1,81 @@
+import betainc from '@stdlib/math-base-special-betainc';
+import normalCdf from '@stdlib/stats-base-dists-normal-cdf';
+import { bisect } from '../math/bisection';
+import type { Interval } from './summaries';
+
+/** Terms of a series that are so small, behind its greatest, add nothing to a double. */
+const negligible = 1e-17;
+const halvings = 80;
+
+/** Probability of an F at least this large. */
+export const fTail = (f: number, df1: number, df2: number): number =>
+  f <= 0 ? 1 : betainc(df2 / (df2 + df1 * f), df2 / 2, df1 / 2);
+
+/** The values of a function of whole numbers, each computed once: a search for a noncentrality asks for the same over and over. */
+function kept(value: (index: number) => number): (index: number) => number {
+  const values: number[] = [];
+  return (index) => {
+    values[index] ??= value(index);
+    return values[index];
+  };
+}
+
+/** The distribution function at t of the noncentral t with df degrees of freedom, of the noncentrality (Lenth 1989, AS 243). */
+export function noncentralT(t: number, df: number): (noncentrality: number) => number {
+  if (t < 0) {
+    const mirrored = noncentralT(-t, df);
+    return (noncentrality) => 1 - mirrored(-noncentrality);
+  }
+  const x = (t * t) / (t * t + df);
+  const even = kept((j) => betainc(x, j + 0.5, df / 2));
+  const odd = kept((j) => betainc(x, j + 1, df / 2));
+  return (noncentrality) => {
+    const half = (noncentrality * noncentrality) / 2;
+    let p = Math.exp(-half);
+    let q = noncentrality * Math.sqrt(2 / Math.PI) * p;
+    let sum = 0;
+    for (let j = 0; j < half || Math.abs(p) + Math.abs(q) > negligible; j++) {
+      sum += p * even(j) + q * odd(j);
+      p *= half / (j + 1);
+      q *= half / (j + 1.5);
+    }
+    return Math.min(1, Math.max(0, normalCdf(-noncentrality, 0, 1) + sum / 2));
+  };
+}
+
+/** The distribution function at F of the noncentral F, of the noncentrality λ: central ones weighted by Poisson's probabilities. */
+export function noncentralF(f: number, df1: number, df2: number): (noncentrality: number) => number {
+  const x = (df1 * f) / (df1 * f + df2);
+  const central = kept((j) => betainc(x, df1 / 2 + j, df2 / 2));
+  return (noncentrality) => {
+    const half = noncentrality / 2;
+    let weight = Math.exp(-half);
+    let sum = 0;
+    for (let j = 0; j < half || weight > negligible; j++) {
+      sum += weight * central(j);
+      weight *= half / (j + 1);
+    }
+    return sum;
+  };
+}
+
+/** Noncentralities beyond these make the first weight of a series 0. */
+const mostOfT = 37;
+const mostOfF = 1400;
+
+/** The noncentralities under which a t as far out is not surprising; null: t is too far out for its interval to be computed. */
+export function noncentralityOfT(t: number, df: number, confidence = 0.95): Interval | null {
+  if (Math.abs(t) > mostOfT / 2) return null;
+  const below = noncentralT(t, df);
+  const at = (share: number) => bisect(-mostOfT, mostOfT, (noncentrality) => below(noncentrality) < share, halvings);
+  return { low: at((1 + confidence) / 2), high: at((1 - confidence) / 2) };
+}
+
+/** The noncentralities λ under which an F as large is not surprising, at least 0; null: F is too large for its interval to be computed. */
+export function noncentralityOfF(f: number, df1: number, df2: number, confidence: number): Interval | null {
+  if (f * df1 > mostOfF / 2) return null;
+  const below = noncentralF(f, df1, df2);
+  const at = (share: number) =>
+    below(0) < share ? 0 : bisect(0, mostOfF, (noncentrality) => below(noncentrality) < share, halvings);
+  return { low: at((1 + confidence) / 2), high: at((1 - confidence) / 2) };
+}

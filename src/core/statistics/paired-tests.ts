@@ -1,0 +1,99 @@
+import normalCdf from '@stdlib/stats-base-dists-normal-cdf';
+import signedRankCdf from '@stdlib/stats-base-dists-signrank-cdf';
+import { noncentralityOfT } from './noncentral';
+import { cubesOf, ranksOf } from './ranks';
+import { constantBelow, type Interval, meanSummary, twoSidedP } from './summaries';
+
+/** The two-sided paired t-test of first − second. */
+export interface PairedTTest {
+  readonly n: number;
+  /** Of the differences. */
+  readonly meanDifference: number;
+  readonly interval: Interval | null;
+  readonly df: number;
+  /** null where all differences are alike (or there are fewer than two): there is no spread to measure the mean with. */
+  readonly t: number | null;
+  readonly p: number | null;
+  /** Cohen's d_z: mean of the differences in their standard deviations; null where t is. */
+  readonly dz: number | null;
+  /** null also where t is too far out for it to be computed. */
+  readonly dzInterval: Interval | null;
+}
+
+function refuseUnpaired(first: readonly number[], second: readonly number[]): void {
+  if (first.length !== second.length) {
+    throw new Error(`paired values: ${first.length} of the first kind, ${second.length} of the second`);
+  }
+  if (first.length === 0) throw new Error('paired values: there are none');
+}
+
+/** As R's `t.test(first, second, paired = TRUE)`. Throws where the lists differ in length or are empty. */
+export function pairedTTest(first: readonly number[], second: readonly number[], confidence = 0.95): PairedTTest {
+  refuseUnpaired(first, second);
+  const differences = first.map((value, index) => value - (second[index] as number));
+  const { n, mean, standardDeviation, interval } = meanSummary(differences, confidence);
+  const df = n - 1;
+  const error = (standardDeviation ?? 0) / Math.sqrt(n);
+  if (standardDeviation === null || error <= constantBelow * Math.abs(mean)) {
+    return { n, meanDifference: mean, interval: null, df, t: null, p: null, dz: null, dzInterval: null };
+  }
+  const t = mean / error;
+  const noncentrality = noncentralityOfT(t, df, confidence);
+  const root = Math.sqrt(n);
+  const dzInterval = noncentrality && { low: noncentrality.low / root, high: noncentrality.high / root };
+  return { n, meanDifference: mean, interval, df, t, p: twoSidedP(t, df), dz: mean / standardDeviation, dzInterval };
+}
+
+/** Wilcoxon's signed-rank test of first − second, two-sided. */
+export interface SignedRankTest {
+  /** Pairs that differ; the others say nothing and are left out. */
+  readonly n: number;
+  readonly zeros: number;
+  /** Sum of the ranks of the positive differences: R's V. */
+  readonly v: number;
+  /** exact: the distribution of V; normal: its approximation with correction for continuity and ties. */
+  readonly method: 'exact' | 'normal';
+  /** null where no pair differs. */
+  readonly p: number | null;
+  /** Rank-biserial correlation in [−1, 1]: (V − the ranks of the negative) / all ranks; null where no pair differs. */
+  readonly effect: number | null;
+}
+
+/** Below this many pairs R takes the exact distribution, if there are neither ties nor zeros. */
+const exactBelow = 50;
+
+/**
+ * As R's `wilcox.test(first, second, paired = TRUE)` up to R 4.5: exact for fewer than 50 pairs without ties and zeros, else the
+ * normal approximation with continuity correction, zeros dropped (Wilcoxon's way). Throws where the lists differ in length or are
+ * empty.
+ */
+export function signedRankTest(first: readonly number[], second: readonly number[]): SignedRankTest {
+  refuseUnpaired(first, second);
+  const all = first.map((value, index) => value - (second[index] as number));
+  const differences = all.filter((difference) => difference !== 0);
+  const n = differences.length;
+  const zeros = all.length - n;
+  if (n === 0) return { n, zeros, v: 0, method: 'exact', p: null, effect: null };
+  const { ranks, ties } = ranksOf(differences.map(Math.abs));
+  const v = ranks.reduce((sum, rank, index) => sum + ((differences[index] as number) > 0 ? rank : 0), 0);
+  const total = (n * (n + 1)) / 2;
+  const effect = (2 * v - total) / total;
+  const exact = zeros === 0 && ties.length === 0 && n < exactBelow;
+  const p = exact ? exactP(v, n) : normalP(v, n, ties);
+  return { n, zeros, v, method: exact ? 'exact' : 'normal', p, effect };
+}
+
+function exactP(v: number, n: number): number {
+  const tail = v > (n * (n + 1)) / 4 ? 1 - signedRankCdf(v - 1, n) : signedRankCdf(v, n);
+  return Math.min(1, 2 * tail);
+}
+
+function normalP(v: number, n: number, ties: readonly number[]): number {
+  const deviation = Math.sqrt((n * (n + 1) * (2 * n + 1)) / 24 - cubesOf(ties) / 48);
+  const distance = v - (n * (n + 1)) / 4;
+  const z = (distance - Math.sign(distance) / 2) / deviation;
+  return Math.min(1, 2 * normalCdf(-Math.abs(z), 0, 1));
+}
+
+/** The two-sided p of a V of n pairs that all differ by different amounts. */
+export const signedRankP = (v: number, n: number): number => (n < exactBelow ? exactP(v, n) : normalP(v, n, []));

@@ -1,0 +1,103 @@
+import { normalNumbers } from '../math/random';
+import { rankSumP, standardError } from './between-tests';
+import { signedRankP } from './paired-tests';
+import { ranksOf } from './ranks';
+import { criticalT, deviationOf, meanOf, twoSidedP } from './summaries';
+
+/** A study that is yet to be run, of two conditions or two cohorts. */
+export interface PlannedTest {
+  /** paired: all meet both conditions; between: two cohorts of n each. */
+  readonly design: 'paired' | 'between';
+  /** The true difference: paired in standard deviations of the differences (d_z), between in those of the values (d_s). */
+  readonly effect: number;
+  /** Two-sided: how often a study without any effect may find one. */
+  readonly alpha: number;
+}
+
+export interface Simulation {
+  readonly seed: number;
+  /** Studies that are simulated for each number of participants. */
+  readonly studies: number;
+}
+
+/** The share of simulated studies that find the effect. */
+export interface Power {
+  readonly t: number;
+  /** Wilcoxon's tests: signed ranks where paired, rank sums between. */
+  readonly wilcoxon: number;
+}
+
+/** Whether one simulated study finds the effect, by either test. */
+interface Finding {
+  readonly t: boolean;
+  readonly wilcoxon: boolean;
+}
+
+/** A p for each value of a statistic, each computed once. */
+function remembered(pOf: (statistic: number) => number): (statistic: number) => number {
+  const known = new Map<number, number>();
+  return (statistic) => {
+    const p = known.get(statistic) ?? pOf(statistic);
+    known.set(statistic, p);
+    return p;
+  };
+}
+
+function pairedStudy({ effect, alpha }: PlannedTest, n: number, normal: () => number): () => Finding {
+  const critical = criticalT(1 - alpha, n - 1);
+  const pOf = remembered((v) => signedRankP(v, n));
+  return () => {
+    const differences = Array.from({ length: n }, () => effect + normal());
+    const t = (meanOf(differences) / deviationOf(differences)) * Math.sqrt(n);
+    const { ranks } = ranksOf(differences.map(Math.abs));
+    const v = ranks.reduce((sum, rank, index) => sum + ((differences[index] as number) > 0 ? rank : 0), 0);
+    return { t: Math.abs(t) >= critical, wilcoxon: pOf(v) <= alpha };
+  };
+}
+
+function betweenStudy({ effect, alpha }: PlannedTest, n: number, normal: () => number): () => Finding {
+  const pOf = remembered((w) => rankSumP(w, n, n));
+  return () => {
+    const first = Array.from({ length: n }, () => effect + normal());
+    const second = Array.from({ length: n }, normal);
+    const { error, df } = standardError([deviationOf(first) ** 2, deviationOf(second) ** 2], [n, n]);
+    const t = (meanOf(first) - meanOf(second)) / error;
+    const { ranks } = ranksOf([...first, ...second]);
+    const w = ranks.slice(0, n).reduce((sum, rank) => sum + rank, 0) - (n * (n + 1)) / 2;
+    return { t: twoSidedP(t, df) <= alpha, wilcoxon: pOf(w) <= alpha };
+  };
+}
+
+/** The power of a study of n participants (between: n in each cohort, at least 2), values normally distributed. The same seed, the same power. */
+export function simulatedPower(planned: PlannedTest, n: number, { seed, studies }: Simulation): Power {
+  const study = (planned.design === 'paired' ? pairedStudy : betweenStudy)(planned, n, normalNumbers(seed + 7919 * n));
+  const found = { t: 0, wilcoxon: 0 };
+  for (let i = 0; i < studies; i++) {
+    const finding = study();
+    found.t += Number(finding.t);
+    found.wilcoxon += Number(finding.wilcoxon);
+  }
+  return { t: found.t / studies, wilcoxon: found.wilcoxon / studies };
+}
+
+/** A row of the table by which a number of participants is chosen. */
+export interface PowerRow extends Power {
+  readonly n: number;
+}
+
+/** Participants (between: in each cohort) beyond which no study is simulated. */
+export const mostSimulated = 1000;
+
+/**
+ * The power of growing studies, from far too few participants to the first at which both tests reach `power` or there are `mostSimulated`.
+ * Beyond a hundred, steps are a twentieth of the number.
+ */
+export function powerTable(planned: PlannedTest, power: number, simulation: Simulation): readonly PowerRow[] {
+  const rows: PowerRow[] = [];
+  for (let n = 4; n <= mostSimulated; n += n < 100 ? 1 : Math.floor(n / 20)) {
+    const row = { n, ...simulatedPower(planned, n, simulation) };
+    rows.push(row);
+    if (Math.min(row.t, row.wilcoxon) >= power) break;
+  }
+  return rows;
+}

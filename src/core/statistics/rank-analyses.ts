@@ -1,0 +1,50 @@
+import chiSquaredCdf from '@stdlib/stats-base-dists-chisquare-cdf';
+import { cubesOf, ranksOf } from './ranks';
+
+/** A test of several conditions or cohorts by ranks, by its χ² approximation. */
+export interface RankAnalysis {
+  readonly chiSquared: number | null;
+  readonly df: number;
+  /** null where nothing differs. */
+  readonly p: number | null;
+  /** In [0, 1]: Kendall's W, or for cohorts ε² = H / (n − 1); null where p is. */
+  readonly effect: number | null;
+}
+
+const upperTail = (chiSquared: number, df: number) => 1 - chiSquaredCdf(chiSquared, df);
+
+/** As R's `friedman.test`: `participants[p][k]` of participant p under condition k. Throws where there are none. */
+export function friedmanTest(participants: readonly (readonly number[])[]): RankAnalysis {
+  const n = participants.length;
+  const k = participants[0]?.length ?? 0;
+  if (n === 0 || k < 2) throw new Error("Friedman's test needs participants and two conditions");
+  const ranked = participants.map(ranksOf);
+  const sums = Array.from({ length: k }, (_, at) => ranked.reduce((sum, { ranks }) => sum + (ranks[at] as number), 0));
+  const spread = n * k * (k + 1) - ranked.reduce((sum, { ties }) => sum + cubesOf(ties), 0) / (k - 1);
+  const df = k - 1;
+  if (spread === 0) return { chiSquared: null, df, p: null, effect: null };
+  const expected = (n * (k + 1)) / 2;
+  const chiSquared = (12 * sums.reduce((sum, value) => sum + (value - expected) ** 2, 0)) / spread;
+  return { chiSquared, df, p: upperTail(chiSquared, df), effect: chiSquared / (n * df) };
+}
+
+/** As R's `kruskal.test`: the values of each cohort. Throws where one is empty. */
+export function kruskalWallisTest(cohorts: readonly (readonly number[])[]): RankAnalysis {
+  if (cohorts.length < 2 || cohorts.some(({ length }) => length === 0)) {
+    throw new Error("Kruskal and Wallis's test needs two cohorts and values in each");
+  }
+  const { ranks, ties } = ranksOf(cohorts.flat());
+  const n = ranks.length;
+  const df = cohorts.length - 1;
+  const correction = 1 - cubesOf(ties) / (n ** 3 - n);
+  if (correction === 0) return { chiSquared: null, df, p: null, effect: null };
+  let start = 0;
+  let squares = 0;
+  for (const { length } of cohorts) {
+    const sum = ranks.slice(start, start + length).reduce((total, rank) => total + rank, 0);
+    squares += (sum * sum) / length;
+    start += length;
+  }
+  const chiSquared = ((12 * squares) / (n * (n + 1)) - 3 * (n + 1)) / correction;
+  return { chiSquared, df, p: upperTail(chiSquared, df), effect: chiSquared / (n - 1) };
+}

@@ -1,0 +1,89 @@
+import type { Effect } from '../core/statistics/analysis-of-variance';
+import { cohortsByParticipant } from '../core/study/allocation';
+import type { AnswerRow } from '../core/study/answer-tables';
+import { compareAll, type OverallComparison } from '../core/study/compare-all';
+import { answersIn, scalesIn } from '../core/study/study-tables';
+import { element } from '../ui/element';
+import { fixed, none, pText } from './result-cells';
+import type { ShownStudy } from './shown-results';
+import { tableNode } from './table';
+
+const heads = [
+  { text: 'Measure' },
+  { text: 'n', title: 'Participants whose answers are complete', numeric: true },
+  { text: 'effect' },
+  { text: 'F', numeric: true },
+  { text: 'df', numeric: true },
+  { text: 'p', title: 'Corrected by Greenhouse and Geisser’s ε where there is one', numeric: true },
+  { text: 'ε', title: 'Greenhouse and Geisser', numeric: true },
+  { text: 'partial η²', title: 'With its 90 % confidence interval', numeric: true },
+  { text: 'Holm p', title: 'Adjusted over all measures of this table', numeric: true },
+  {
+    text: 'χ²',
+    title: 'Friedman’s test of the conditions; with one condition, Kruskal and Wallis’s of the cohorts',
+    numeric: true,
+  },
+  { text: 'p (χ²)', numeric: true },
+  { text: 'Holm p (χ²)', numeric: true },
+] as const;
+
+function etaText({ partialEtaSquared, interval }: Effect): string {
+  const between = interval ? ` [${fixed(interval.low, 2)}, ${fixed(interval.high, 2)}]` : '';
+  return `${fixed(partialEtaSquared, 2)}${between}`;
+}
+
+/** The rows of one measure: an effect each. What is tested by ranks stands beside the first. */
+function rowsOf({ of, n, variance, ranks, holmP, ranksHolmP }: OverallComparison) {
+  const effects = [
+    ['conditions', variance?.within ?? null],
+    ['cohorts', variance?.between ?? null],
+    ['conditions × cohorts', variance?.interaction ?? null],
+  ] as const;
+  return effects
+    .flatMap(([name, effect]) => (effect ? [[name, effect] as const] : []))
+    .map(([name, effect], index) => {
+      const first = index === 0;
+      return {
+        cells: [
+          first ? of : '',
+          first ? String(n) : '',
+          name,
+          fixed(effect.f, 3),
+          effect.df.join(', '),
+          pText(effect.correctedP ?? effect.p),
+          fixed(effect.epsilon, 3),
+          etaText(effect),
+          first ? pText(holmP) : none,
+          first ? fixed(ranks?.chiSquared, 3) : none,
+          first ? pText(ranks?.p) : none,
+          first ? pText(ranksHolmP) : none,
+        ],
+      };
+    });
+}
+
+/** Analyses of all conditions and cohorts at once; none for two conditions without cohorts, which are compared in pairs. */
+export function overallResults({ plan, records }: ShownStudy): readonly Node[] {
+  if (plan.conditions.length < 3 && !plan.cohorts) return [];
+  const cohorts = cohortsByParticipant(plan);
+  const options = {
+    conditions: plan.conditions.map(({ id }) => id),
+    cohortOf: (participant: string) => cohorts.get(participant)?.id ?? '',
+  };
+  const table = (name: string, rows: readonly AnswerRow[]) => {
+    const compared = compareAll(rows, options);
+    const leftOut = [...new Set(compared.flatMap((one) => one.leftOut))];
+    if (compared.length === 0) return [];
+    return [
+      tableNode(`${name}: analyses of variance, and tests by ranks`, heads, compared.flatMap(rowsOf)),
+      ...(leftOut.length === 0
+        ? []
+        : [element('p', { class: 'soft' }, `Left out somewhere for want of a valid answer: ${leftOut.join(', ')}.`)]),
+    ];
+  };
+  return [
+    element('h2', {}, plan.cohorts ? 'All conditions and cohorts together' : 'All conditions together'),
+    ...table('Questions', answersIn(records, plan)),
+    ...table('Scales', scalesIn(records, plan)),
+  ];
+}

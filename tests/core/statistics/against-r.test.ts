@@ -1,0 +1,200 @@
+import fc from 'fast-check';
+import { describe, expect, test } from 'vitest';
+import { type Effect, varianceAnalysis } from '../../../src/core/statistics/analysis-of-variance';
+import { rankSumCounts, rankSumTest, welchTest } from '../../../src/core/statistics/between-tests';
+import { noncentralF, noncentralT } from '../../../src/core/statistics/noncentral';
+import { pairedTTest } from '../../../src/core/statistics/paired-tests';
+import { friedmanTest, kruskalWallisTest } from '../../../src/core/statistics/rank-analyses';
+import { evenly, seed } from '../arbitraries';
+import { chicks, grasses, insectSprays, ozone, placenta, plantGrowth, roundingTimes, sleep } from './data-sets';
+
+/** To a millionth of R's figure. */
+function expectAsInR(ours: number | null | undefined, r: number): void {
+  expect(ours).not.toBeNull();
+  expect(Math.abs((ours as number) - r)).toBeLessThanOrEqual(1e-6 * Math.abs(r));
+}
+
+interface InR {
+  readonly f: number;
+  readonly df: readonly [number, number];
+  readonly p: number;
+  readonly correctedP?: number;
+  readonly epsilon?: number;
+}
+
+function expectEffect(ours: Effect | null, { f, df, p, correctedP, epsilon }: InR): void {
+  expect(ours?.df).toEqual(df);
+  expectAsInR(ours?.f, f);
+  expectAsInR(ours?.p, p);
+  if (correctedP !== undefined) expectAsInR(ours?.correctedP, correctedP);
+  if (epsilon !== undefined) expectAsInR(ours?.epsilon, epsilon);
+}
+
+describe('two groups', () => {
+  test("Welch's t-test of the sleep data: t.test(first, second)", () => {
+    const result = welchTest(sleep.first, sleep.second);
+    expectAsInR(result.t, -1.86081346748685);
+    expectAsInR(result.df, 17.7764735161785);
+    expectAsInR(result.p, 0.0793941401873582);
+    expectAsInR(result.interval?.low, -3.36548323071171);
+    expectAsInR(result.interval?.high, 0.20548323071171);
+  });
+
+  test("their effect in pooled standard deviations, its interval by R's pt with a noncentrality", () => {
+    const { ds, dsInterval } = welchTest(sleep.first, sleep.second);
+    expectAsInR(ds, -0.832181081349539);
+    expectAsInR(dsInterval?.low, -1.73881689910343);
+    expectAsInR(dsInterval?.high, 0.0954503982114231);
+  });
+
+  test('rank sums: exact of the placenta data, by the normal approximation with ties', () => {
+    const exact = rankSumTest(placenta.term, placenta.early);
+    expect(exact).toMatchObject({ w: 35, method: 'exact' });
+    expectAsInR(exact.p, 0.254412254412254);
+    const tied = rankSumTest(ozone.may, ozone.august);
+    expect(tied).toMatchObject({ w: 127.5, method: 'normal' });
+    expectAsInR(tied.p, 0.000120807830768774);
+    const slept = rankSumTest(sleep.first, sleep.second);
+    expect(slept.w).toBe(25.5);
+    expectAsInR(slept.p, 0.0693275754336266);
+  });
+
+  test('the ways to choose ranks are as many as there are', () => {
+    const binomial = (n: number, k: number): number => (k === 0 ? 1 : (binomial(n - 1, k - 1) * n) / k);
+    for (const [m, n] of [
+      [1, 1],
+      [3, 4],
+      [7, 5],
+      [10, 12],
+    ] as const) {
+      const counts = rankSumCounts(m, n);
+      expect(counts.reduce((sum, count) => sum + count, 0)).toBeCloseTo(binomial(m + n, m), 6);
+      expect(counts).toEqual(counts.toReversed());
+    }
+  });
+
+  test('say nothing where nothing spreads, and need values', () => {
+    expect(welchTest([3, 3], [4, 4])).toMatchObject({ meanDifference: -1, t: null, p: null, ds: null });
+    expect(rankSumTest([3, 3], [3, 3])).toMatchObject({ p: null, effect: 0 });
+    expect(() => welchTest([], [1])).toThrow('one of them is empty');
+  });
+});
+
+test("the effect of a paired test and its interval, by R's pt: sleep", () => {
+  const { dz, dzInterval } = pairedTTest(sleep.first, sleep.second);
+  expect(dz).toBeCloseTo(-1.284558, 6);
+  expectAsInR(dzInterval?.low, -2.11801651397707);
+  expectAsInR(dzInterval?.high, -0.414627756380144);
+});
+
+test("noncentral distributions are R's pt and pf", () => {
+  expectAsInR(noncentralT(1.3, 7)(0.4), 0.790543299501163);
+  expectAsInR(noncentralT(-2, 12)(1.5), 0.000630224900413978);
+  expectAsInR(noncentralT(5, 30)(3), 0.950893731432426);
+  expectAsInR(noncentralF(2.5, 3, 20)(4), 0.591930649143179);
+  expectAsInR(noncentralF(0.4, 2, 42)(9), 0.00794975601529174);
+});
+
+describe('more than two', () => {
+  test('repeated measures, sphericity and Greenhouse and Geisser\'s correction: anova(lm(cbind(…) ~ 1), X = ~1, test = "Spherical")', () => {
+    const { within, between, interaction, n } = varianceAnalysis([roundingTimes]);
+    expect([n, between, interaction]).toEqual([22, null, null]);
+    expectEffect(within, {
+      f: 6.28830791835167,
+      df: [2, 42],
+      p: 0.00408410071404835,
+      correctedP: 0.00843979903189373,
+      epsilon: 0.773501463270562,
+    });
+    expectAsInR(within?.partialEtaSquared, 0.230439642398007);
+    expectAsInR(within?.interval?.low, 0.0499905626442714);
+    expectAsInR(within?.interval?.high, 0.373146452670905);
+  });
+
+  test('one way between participants: aov(weight ~ group, PlantGrowth)', () => {
+    const { within, between } = varianceAnalysis(plantGrowth.map((values) => values.map((value) => [value])));
+    expect(within).toBeNull();
+    expectEffect(between, { f: 4.84608786238014, df: [2, 27], p: 0.0159099583256229 });
+    expectAsInR(between?.partialEtaSquared, 0.26414829683212);
+    expectAsInR(between?.interval?.low, 0.031888248130582);
+    expectAsInR(between?.interval?.high, 0.428798990149255);
+  });
+
+  test('mixed, cohorts alike in size: CO2', () => {
+    const { within, between, interaction } = varianceAnalysis(grasses);
+    expectEffect(between, { f: 22.4867344878817, df: [1, 10], p: 0.000789697889182747 });
+    expectEffect(within, {
+      f: 101.32171858935,
+      df: [6, 60],
+      p: 1.65613201821161e-29,
+      correctedP: 1.11499309118684e-10,
+      epsilon: 0.314814201471423,
+    });
+    expectEffect(interaction, {
+      f: 9.3240333168495,
+      df: [6, 60],
+      p: 3.23264219777969e-7,
+      correctedP: 0.00174925939985155,
+    });
+  });
+
+  test('mixed, cohorts of unequal size, type III: ChickWeight', () => {
+    const { within, between, interaction } = varianceAnalysis(chicks);
+    expectEffect(between, { f: 5.72867481212132, df: [3, 42], p: 0.00222188047648344 });
+    expectEffect(within, {
+      f: 337.447538427839,
+      df: [2, 84],
+      p: 7.11372586853184e-41,
+      correctedP: 3.25825930660355e-24,
+      epsilon: 0.565697411351349,
+    });
+    expectEffect(interaction, {
+      f: 5.14215109116182,
+      df: [6, 84],
+      p: 0.000152320378004942,
+      correctedP: 0.00261124577939712,
+    });
+  });
+
+  test("by ranks: friedman.test and kruskal.test, with Kendall's W", () => {
+    const friedman = friedmanTest(roundingTimes);
+    expectAsInR(friedman.chiSquared, 11.1428571428571);
+    expectAsInR(friedman.p, 0.00380504077551136);
+    expectAsInR(friedman.effect, 0.253246753246753);
+    const plants = kruskalWallisTest(plantGrowth);
+    expectAsInR(plants.chiSquared, 7.98822874944372);
+    expectAsInR(plants.p, 0.018423755731472);
+    const insects = kruskalWallisTest(insectSprays);
+    expectAsInR(insects.chiSquared, 54.6913446223714);
+    expectAsInR(insects.p, 1.51084443941851e-10);
+  });
+
+  test('of two conditions is the paired t-test: F is t², and the correction changes nothing', () => {
+    fc.assert(
+      fc.property(fc.array(fc.tuple(evenly(-5, 5), evenly(-5, 5)), { minLength: 3, maxLength: 30 }), (pairs) => {
+        const { t, p } = pairedTTest(
+          pairs.map(([first]) => first),
+          pairs.map(([, second]) => second),
+        );
+        const { within } = varianceAnalysis([pairs]);
+        if (t === null || p === null) return;
+        expect(within?.f).toBeCloseTo(t * t, 6);
+        expect(within?.p).toBeCloseTo(p, 8);
+        expect(within?.epsilon).toBeCloseTo(1, 12);
+      }),
+      { seed },
+    );
+  });
+
+  test('say nothing where nothing spreads, and need every value', () => {
+    const alike = [
+      [1, 2, 3],
+      [2, 3, 4],
+      [4, 5, 6],
+    ];
+    expect(varianceAnalysis([alike]).within).toMatchObject({ f: null, p: null, df: [2, 4] });
+    expect(friedmanTest([[1, 1, 1]])).toMatchObject({ chiSquared: null, p: null });
+    expect(() => varianceAnalysis([[[1, 2], [1]]])).toThrow('lacks a condition');
+    expect(() => varianceAnalysis([[[1, 2]], []])).toThrow('no participants');
+  });
+});

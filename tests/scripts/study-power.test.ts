@@ -1,0 +1,18 @@
+import { spawnSync } from 'node:child_process';
+import { fileURLToPath } from 'node:url';
+import { expect, test } from 'vitest';
+
+const root = fileURLToPath(new URL('../..', import.meta.url));
+const power = (...args: readonly string[]) =>
+  spawnSync(process.execPath, ['scripts/study-power.mjs', ...args], { cwd: root, encoding: 'utf8' });
+
+test('npm run study:power says how many participants a study needs, or what is wrong with the question', () => {
+  const { stdout, status } = power('--effect', '1', '--studies', '2000');
+  expect(stdout).toContain('Paired, d_z = 1, two-sided α = 0.05: 2000 simulated studies a row, normal values, seed 1.');
+  expect(stdout).toMatch(/For a power of 0.8: (10|11) participants by the t-test/);
+  expect(status).toBe(0);
+  const wrong = power('--effect', 'large');
+  expect(wrong.stderr).toContain('study:power: --effect: expected a number from 0.05 to 10');
+  expect(wrong.status).toBe(1);
+  expect(power().stderr).toContain('--effect: is missing');
+});
