@@ -68,6 +68,8 @@ export const press = (page: Page, id: string, leave = false): Promise<void> =>
         // The built-in archer may hold a bow drawn when its round ends: a trigger that is held cannot be pulled.
         hand.updateButtonValue('trigger', 0);
       }
+      // The ray may lie on the target already: a frame must see the trigger let go.
+      await frame();
       await until(() => study()?.pointedAt === id);
       const before = JSON.stringify(study()?.screen);
       right.updateButtonValue('trigger', 1);
@@ -90,6 +92,25 @@ export async function takePart(page: Page, origin: string, id: string, participa
 export async function headsetOf(page: Page): Promise<EmulatedHeadset> {
   await page.waitForFunction(() => window.threepoint?.probe().ready === true, undefined, { timeout: 60_000 });
   return emulatedHeadset(page);
+}
+
+/** Says about oneself what has to be said; not handed in yet. */
+export async function tellOfOneself(page: Page): Promise<void> {
+  await page.getByLabel('I prefer not to say').check();
+  await page.getByLabel(/Age/).fill('26');
+  await page.getByLabel(/Field of study/).fill('Computer science');
+  await page.getByLabel('Once or twice').check();
+  await page.getByLabel('Right', { exact: true }).check();
+  await page.getByLabel('Well without correction').check();
+}
+
+/** Consents to what is shown, notes the code and hands in what has to be said about oneself. */
+export async function agreeAndTell(page: Page): Promise<void> {
+  await page.getByLabel(/I have read this/).check();
+  await page.getByRole('button', { name: 'I agree' }).click();
+  await page.getByRole('button', { name: 'I have noted it' }).click();
+  await tellOfOneself(page);
+  await page.getByRole('button', { name: 'Continue' }).click();
 }
 
 export async function calibrate(page: Page): Promise<void> {

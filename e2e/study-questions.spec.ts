@@ -3,6 +3,7 @@ import type { Page } from '@playwright/test';
 import { parsePlan } from '../src/core/study/plan';
 import { enterVr, expect, keepPicture } from './page-fixture';
 import {
+  agreeAndTell,
   calibrate,
   openResults,
   press,
@@ -51,16 +52,7 @@ test('questions of every kind are answered alike in the headset and at the desk,
   await page.getByLabel('Language').selectOption('de');
   await expect(page.getByRole('heading', { name: 'Teilnahme' })).toBeVisible();
   await keepPicture(page, 'study-consent-language');
-  await page.getByLabel(/I have read this/).check();
-  await page.getByRole('button', { name: 'I agree' }).click();
-  await page.getByRole('button', { name: 'I have noted it' }).click();
-  await page.getByLabel('I prefer not to say').check();
-  await page.getByLabel(/Age/).fill('26');
-  await page.getByLabel(/Field of study/).fill('Computer science');
-  await page.getByLabel('Once or twice').check();
-  await page.getByLabel('Right', { exact: true }).check();
-  await page.getByLabel('Well without correction').check();
-  await page.getByRole('button', { name: 'Continue' }).click();
+  await agreeAndTell(page);
 
   await enterVr(page, tenHertz);
   await headset.place(stretched);

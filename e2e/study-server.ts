@@ -12,12 +12,12 @@ export const experimenterToken = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 
 const atRoot = (path: string) => fileURLToPath(new URL(`../${path}`, import.meta.url));
 
-/** The server as `npm start` runs it, on a port of its own; what is recorded is gone when it closes. */
-export async function serveStudies() {
+/** The server as `npm start` runs it, with these settings, on a port of its own; what is recorded is gone when it closes. */
+export async function serveStudies(settings: Readonly<Record<string, string>> = {}) {
   const directory = mkdtempSync(join(tmpdir(), 'threepoint-studies-'));
   const child = spawn(process.execPath, ['--import', 'tsx', 'server/main.ts', '--port', '0', '--studies', directory], {
     cwd: atRoot('.'),
-    env: { ...process.env, EXPERIMENTER_TOKEN: experimenterToken, THREEPOINT_LOG_LEVEL: 'error' },
+    env: { ...process.env, EXPERIMENTER_TOKEN: experimenterToken, THREEPOINT_LOG_LEVEL: 'error', ...settings },
     stdio: ['ignore', 'pipe', 'inherit'],
   });
   let said = '';

@@ -1,7 +1,17 @@
 import type { Page } from '@playwright/test';
 import { type EmulatedHeadset, emulatedHeadset, frames } from './emulated-headset';
 import { enterVr, expect, keepPicture } from './page-fixture';
-import { calibrate, press, reaches, recordsOf, screen, stretched, study, test } from './study-participant';
+import {
+  agreeAndTell,
+  calibrate,
+  press,
+  reaches,
+  recordsOf,
+  screen,
+  stretched,
+  study,
+  test,
+} from './study-participant';
 import { experimenter, shortBallStudy } from './study-server';
 
 // Three headsets in software rendering take minutes.
@@ -33,15 +43,7 @@ test('three participants play the ball game together, each in a headset of their
     await page.goto(await experimenter(origin).link('trio', people[index] as string, '&emulate&quality=low'));
     await page.waitForFunction(() => window.threepoint?.probe().ready === true, undefined, { timeout: 90_000 });
     headsets.push(await emulatedHeadset(page));
-    await page.getByLabel(/I have read this/).check();
-    await page.getByRole('button', { name: 'I agree' }).click();
-    await page.getByRole('button', { name: 'I have noted it' }).click();
-    for (const answer of ['I prefer not to say', 'Once or twice', 'Well without correction'])
-      await page.getByLabel(answer).check();
-    await page.getByLabel('Right', { exact: true }).check();
-    await page.getByLabel(/Age/).fill('26');
-    await page.getByLabel(/Field of study/).fill('Computer science');
-    await page.getByRole('button', { name: 'Continue' }).click();
+    await agreeAndTell(page);
     // Three clocks that one relay keeps together cannot be driven.
     await enterVr(page, { stepMs: null });
     await headsets[index]?.place(stretched);

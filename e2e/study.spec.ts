@@ -10,6 +10,7 @@ import {
   stretched,
   study,
   takePart,
+  tellOfOneself,
   tenHertz,
   test,
 } from './study-participant';
@@ -38,12 +39,7 @@ test('a participant from consent to the end, with a reload in a questionnaire wh
 
   await page.getByRole('button', { name: 'Continue' }).click();
   await expect(page.getByRole('alert').filter({ hasText: 'still needs an answer' })).toBeVisible();
-  await page.getByLabel('I prefer not to say').check();
-  await page.getByLabel(/Age/).fill('26');
-  await page.getByLabel(/Field of study/).fill('Computer science');
-  await page.getByLabel('Once or twice').check();
-  await page.getByLabel('Right', { exact: true }).check();
-  await page.getByLabel('Well without correction').check();
+  await tellOfOneself(page);
   await keepPicture(page, 'study-demographics');
   await page.getByRole('button', { name: 'Continue' }).click();
 

@@ -1,6 +1,6 @@
 import { createHash, randomBytes, timingSafeEqual } from 'node:crypto';
-import { scheduleFor } from '../src/core/study/plan';
 import { type Progress, resumed } from '../src/core/study/progress';
+import { scheduleFor } from '../src/core/study/schedule';
 import { StoreRefusal, type StudyDatabase } from './study-database';
 import type { StudyPlans } from './study-plans';
 import { newCode, normalisedCode } from './study-schema';

@@ -1,6 +1,7 @@
 import { createHmac, randomBytes } from 'node:crypto';
 import { ballKind } from '../src/core/protocol/ball-messages';
-import { type StudyPlan, scheduleFor } from '../src/core/study/plan';
+import type { StudyPlan } from '../src/core/study/plan';
+import { scheduleFor } from '../src/core/study/schedule';
 import type { PlayedTogether, SignedSeat } from '../src/core/study/study-api';
 import { ValidationError } from '../src/core/study/validation';
 import type { RoomTokens } from './room-tokens';

@@ -1,12 +1,12 @@
-import { type StudyPlan, scheduleFor } from '../src/core/study/plan';
+import type { StudyPlan } from '../src/core/study/plan';
 import { currentStep, type Progress, remainingSeconds, resumed } from '../src/core/study/progress';
+import { scheduleFor } from '../src/core/study/schedule';
 import type { ParticipantState, Receipt, StudyCommand, StudyInfo } from '../src/core/study/study-api';
 import type { StudyRecord } from '../src/core/study/study-record';
 import { type NumberedCommand, StudyCommands } from './study-commands';
 import { StudyDatabase } from './study-database';
 import { StudyDeletion } from './study-deletion';
-import type { MotionFile } from './study-export';
-import { StudyMotion } from './study-motion';
+import { type MotionFile, StudyMotion } from './study-motion';
 import { type PlaceRow, StudyPlaces } from './study-places';
 import { StudyPlans } from './study-plans';
 import { StudyRecords } from './study-records';

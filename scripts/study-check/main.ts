@@ -1,6 +1,8 @@
 import { existsSync, readFileSync } from 'node:fs';
+import { embodimentInWords } from '../../src/core/study/embodiment';
 import { languagesOf, parsePlan, participantsOf, planComplaints, type StudyPlan } from '../../src/core/study/plan';
-import { durationOf, orderCounts, outlineOf } from '../../src/core/study/plan-outline';
+import { durationOf, outlineOf } from '../../src/core/study/plan-outline';
+import { cohortCounts, orderCounts, remarksOn } from '../../src/core/study/plan-remarks';
 import { ValidationError } from '../../src/core/study/validation';
 
 const [file = '', participant] = process.argv.slice(2);
@@ -17,18 +19,20 @@ function summary(plan: StudyPlan): readonly string[] {
     `A participant takes at most ${clock(played + rests + questionnaires)} min: ${clock(played)} of play, ${clock(rests)} of rest, ` +
       `${clock(questionnaires)} of questionnaires; consent, measures and the questions about them come on top.`,
   ];
+  for (const { id, label, ...said } of plan.conditions) {
+    lines.push(`Condition "${id}", ${label}: ${embodimentInWords(said) || 'as its cohort'}.`);
+  }
+  const sizes = cohortCounts(plan);
+  for (const { id, label, ...said } of plan.cohorts ?? []) {
+    lines.push(`Cohort "${id}", ${label}, ${sizes.get(id)} participants: ${embodimentInWords(said)}.`);
+  }
   for (const task of plan.tasks) {
-    const counts = [...orderCounts(plan, task)];
-    lines.push(`${task.title}: ${counts.map(([order, count]) => `${order} ${count} times`).join('; ')}.`);
-    if (new Set(counts.map(([, count]) => count)).size > 1) {
-      const who = task.groupSize === 1 ? 'participants' : `groups of ${task.groupSize}`;
-      const even = counts.length * task.groupSize;
-      lines.push(
-        `  These orders do not come out even: ${who} × ${counts.length} orders want a multiple of ${even} participants.`,
-      );
+    for (const cohort of plan.cohorts ?? [null]) {
+      const counts = [...orderCounts(plan, task, cohort)].map(([order, count]) => `${order} ${count} times`);
+      lines.push(`${task.title}${cohort ? `, cohort ${cohort.id}` : ''}: ${counts.join('; ')}.`);
     }
   }
-  return lines;
+  return [...lines, ...remarksOn(plan).map((remark) => `Before you begin: ${remark}`)];
 }
 
 function check(): void {

@@ -1,7 +1,8 @@
 import { advance, type ProgressEvent } from '../../src/core/study/advance';
 import type { Demographics } from '../../src/core/study/demographics';
-import { participantsOf, type Schedule, type StudyPlan, type StudyStep, scheduleFor } from '../../src/core/study/plan';
+import { participantsOf, type StudyPlan } from '../../src/core/study/plan';
 import { begin, currentStep, type Progress, resumed } from '../../src/core/study/progress';
+import { type Schedule, type StudyStep, scheduleFor } from '../../src/core/study/schedule';
 import type { StudyRecord } from '../../src/core/study/study-record';
 import type { TrialOutcome } from '../../src/core/study/trial-log';
 import { type AnswerModel, drawAnswers, drawPerson } from './answer-model';
@@ -93,7 +94,7 @@ class SimulatedRounds {
     const group = groups[step.task];
     if (!task || !group) throw new Error(`the plan has no task "${step.task}"`);
     const circumstances = {
-      estimator: step.estimator,
+      estimator: step.embodiment.estimator,
       condition: step.kind === 'trial' ? step.condition : null,
       block: step.block,
       seconds: step.seconds,

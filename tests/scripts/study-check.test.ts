@@ -5,7 +5,8 @@ import { fileURLToPath } from 'node:url';
 import { describe, expect, test } from 'vitest';
 import { planJsonSchema } from '../../scripts/study-check/plan-json-schema';
 import { checkedPlan, planComplaints, type StudyTask } from '../../src/core/study/plan';
-import { durationOf, orderCounts, outlineOf } from '../../src/core/study/plan-outline';
+import { durationOf, outlineOf } from '../../src/core/study/plan-outline';
+import { orderCounts } from '../../src/core/study/plan-remarks';
 import { examplePlan, paperFile, paperPlan } from '../core/study/studies';
 import { directoryWith } from '../temporary-directory';
 

@@ -8,8 +8,8 @@ import { nullAnswerModel, plantedAnswerModel } from '../../scripts/study-simulat
 import { statedPerformanceModel } from '../../scripts/study-simulate/performance-model';
 import { randomSource } from '../../scripts/study-simulate/random-source';
 import { simulatedPlan, simulateStudy } from '../../scripts/study-simulate/simulate-study';
+import { groupsOf } from '../../src/core/study/allocation';
 import { compareAnswers, compareScores } from '../../src/core/study/compare-conditions';
-import { groupsOf } from '../../src/core/study/plan';
 import { checkedRecord } from '../../src/core/study/study-record';
 import { answersIn, trialsIn } from '../../src/core/study/study-tables';
 import { paperPlan } from '../core/study/studies';

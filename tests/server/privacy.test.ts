@@ -3,7 +3,7 @@ import { join } from 'node:path';
 import { DatabaseSync } from '@photostructure/sqlite';
 import { expect, onTestFinished, test } from 'vitest';
 import { openStudyStore } from '../../server/study-store';
-import { scheduleFor } from '../../src/core/study/plan';
+import { scheduleFor } from '../../src/core/study/schedule';
 import { packetAt, toldRoom } from '../core/room/told-room';
 import { paperPlan, session } from '../core/study/studies';
 import { fists, releaseOf } from '../net/people';

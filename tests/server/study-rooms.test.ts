@@ -3,7 +3,7 @@ import { afterEach, beforeEach, describe, expect, test } from 'vitest';
 import { createRoomTokens } from '../../server/room-tokens';
 import { createStudySeats } from '../../server/study-seats';
 import { pageParser } from '../../src/core/protocol/small-frames';
-import { scheduleFor } from '../../src/core/study/plan';
+import { scheduleFor } from '../../src/core/study/schedule';
 import { createRoomPass } from '../../src/net/room-pass';
 import { paperPlan } from '../core/study/studies';
 import { measured } from '../reliability/measured';

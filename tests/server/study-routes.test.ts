@@ -1,8 +1,8 @@
 import { strFromU8, unzipSync } from 'fflate';
 import { describe, expect, test } from 'vitest';
 import { bodyLimits } from '../../server/study-routes';
-import { scheduleFor } from '../../src/core/study/plan';
 import { begin } from '../../src/core/study/progress';
+import { scheduleFor } from '../../src/core/study/schedule';
 import type { StudyRecord } from '../../src/core/study/study-record';
 import { writeRecording } from '../../src/core/tracking/recording';
 import { paperPlan, session } from '../core/study/studies';

@@ -8,8 +8,8 @@ import { describe, expect, onTestFinished, test } from 'vitest';
 import { exportZip } from '../../server/study-export';
 import { normalisedCode } from '../../server/study-schema';
 import { openStudyStore, type StudyStore } from '../../server/study-store';
-import { scheduleFor } from '../../src/core/study/plan';
 import { begin } from '../../src/core/study/progress';
+import { scheduleFor } from '../../src/core/study/schedule';
 import type { StudyRecord } from '../../src/core/study/study-record';
 import { paperPlan, session } from '../core/study/studies';
 import { directoryWith } from '../temporary-directory';
@@ -298,10 +298,12 @@ describe('an export', () => {
         'README.txt',
         'answers.csv',
         'codebook.csv',
+        'conditions.csv',
         'events.csv',
         'frame-times.csv',
         'hits.csv',
         'participants.csv',
+        'pauses.csv',
         'plan.json',
         'questions.csv',
         'records.json',

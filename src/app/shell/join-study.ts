@@ -1,9 +1,10 @@
 import type { BareBody } from '../../lib/bare-body';
 import type { Activities } from './activities';
+import { type EmbodyingParts, embody } from './embody';
 import type { FrameTiming } from './frame-timing';
 import type { Headset } from './headset';
 import type { JoinedStudy } from './page-study';
-import type { Settings, SettingsWriter } from './settings';
+import type { Settings } from './settings';
 import { createArcheryRunner } from './study-archery';
 import { createBallRunner } from './study-ball';
 import type { Switches } from './switches';
@@ -12,15 +13,14 @@ import type { Wearer } from './wearer';
 /** Characters of the device's name that a record keeps. */
 const longestDeviceName = 160;
 
-export interface JoinStudyOptions {
+export interface JoinStudyOptions extends EmbodyingParts {
   readonly asked: NonNullable<Switches['study']>;
   readonly switches: Pick<Switches, 'actor'>;
   readonly settings: Settings;
-  readonly writer: Pick<SettingsWriter, 'change'>;
   readonly headset: Headset;
   readonly activities: Activities;
   readonly timing: FrameTiming;
-  readonly body: Pick<BareBody, 'choose' | 'estimator' | 'wearerCalibration'>;
+  readonly body: EmbodyingParts['body'] & Pick<BareBody, 'wearerCalibration'>;
   readonly wearer: Pick<Wearer, 'calibrate' | 'forget'>;
 }
 
@@ -57,7 +57,7 @@ export async function joinStudy(options: JoinStudyOptions): Promise<JoinedStudy>
       if (calibration) wearer.calibrate(calibration, 'measured');
       else wearer.forget();
     },
-    chooseEstimator: (name) => body.choose(name),
+    embody: (embodiment, seed) => embody(options, embodiment, seed),
     estimator: () => body.estimator,
     setActor(on) {
       writer.change({ actor: on && switches.actor });

@@ -1,8 +1,8 @@
 import type { Calibration } from '../../core/body/calibration';
 import type { Side } from '../../core/math/side';
 import { advance, type ProgressEvent } from '../../core/study/advance';
-import { type Schedule, type StudyStep, scheduleFor } from '../../core/study/plan';
 import { begin, currentStep, type Progress, remainingSeconds } from '../../core/study/progress';
+import { type Schedule, type StudyStep, scheduleFor } from '../../core/study/schedule';
 import type { Claim, NumberedCommand, PlayedTogether, SignedSeat } from '../../core/study/study-api';
 import { type ParticipantClient, ServerRefusal, ServerUnreachable } from '../../net/study-client';
 import { sendRecords } from './send-records';

@@ -224,8 +224,7 @@ export class RunningStudy {
   async #load(step: PlayedStep): Promise<void> {
     const runner = this.#runnerOf(step);
     if (!runner) throw new Error('This page cannot play the game of this task.');
-    await Promise.all([runner.prepare(this.#placeFor(step)), this.#host.chooseEstimator(step.estimator)]);
-    if (this.#host.estimator() !== step.estimator) throw new Error('The body of this round could not be loaded.');
+    await Promise.all([runner.prepare(this.#placeFor(step)), this.#host.embody(step.embodiment, this.#seedOf(step))]);
   }
 
   #runnerOf(step: PlayedStep): TaskRunner | null {
@@ -257,11 +256,16 @@ export class RunningStudy {
     if (!runner) return;
     const { plan, progress } = this.session;
     const motion = progress.motion === true && plan.consent.motion !== null && step.kind === 'trial';
-    // The same round for each participant's first, second … trial: what differs between conditions is not the layout.
-    const repetition = step.kind === 'trial' ? step.repetition : 0;
-    const { seed } = randomFor(plan.seed, `layout of ${step.task} ${repetition}`);
-    this.#trial = playTrial(step, runner, this.#host, { key: this.#attempt(), motion, seed: seed >>> 1 });
+    const { now } = this.#page;
+    const seed = this.#seedOf(step);
+    this.#trial = playTrial(step, runner, this.#host, { key: this.#attempt(), motion, seed, now });
     this.show();
+  }
+
+  /** The same round for each participant's first, second … trial: what differs between conditions is not the layout. */
+  #seedOf(step: PlayedStep): number {
+    const repetition = step.kind === 'trial' ? step.repetition : 0;
+    return randomFor(this.session.plan.seed, `layout of ${step.task} ${repetition}`).seed >>> 1;
   }
 
   #dropTrial(): void {

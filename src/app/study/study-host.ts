@@ -1,6 +1,6 @@
 import type { Calibration } from '../../core/body/calibration';
-import type { EstimatorName } from '../../core/estimation/pose-estimator';
 import type { Side } from '../../core/math/side';
+import type { Embodiment } from '../../core/study/embodiment';
 import type { TrialHost } from './study-trial';
 import type { TaskRunner } from './task-runner';
 
@@ -12,8 +12,8 @@ export interface StudyHost extends TrialHost {
   inSession(): boolean;
   /** Of this participant, for this visit; not remembered for others. null: not measured yet, and what the page had is another person's. */
   setCalibration(calibration: Calibration | null): void;
-  /** Resolves when it draws, or when it turned out that it cannot. */
-  chooseEstimator(name: EstimatorName): Promise<void>;
+  /** Gives the participant this body; resolves when it is drawn, rejects with a sentence. `seed`: of what is random in it. */
+  embody(embodiment: Embodiment, seed: number): Promise<void>;
   setActor(on: boolean): void;
   setBowSide(side: Side): void;
 }

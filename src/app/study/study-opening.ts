@@ -1,6 +1,6 @@
 import { reasonOf } from '../../core/errors/reasons';
-import { scheduleFor } from '../../core/study/plan';
 import type { Progress } from '../../core/study/progress';
+import { scheduleFor } from '../../core/study/schedule';
 import type { PublicStudy } from '../../core/study/study-api';
 import { type ParticipantClient, ServerRefusal, ServerUnreachable } from '../../net/study-client';
 import { createParticipantSession, isLater, type ParticipantSession, startSession } from './participant-session';

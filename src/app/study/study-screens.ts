@@ -1,5 +1,5 @@
-import { blindLabel, type StudyStep } from '../../core/study/plan';
 import type { Question } from '../../core/study/questionnaire-schema';
+import { blindLabel, type StudyStep } from '../../core/study/schedule';
 import { type CalibrationStep, calibrationHeadline, calibrationInstruction } from '../../ui/calibration-dialog';
 import type { ParticipantSession, Safekeeping } from './participant-session';
 import { questionPart } from './question-screen';

@@ -1,6 +1,7 @@
 import type { Calibration } from '../../core/body/calibration';
 import type { EstimatorName } from '../../core/estimation/pose-estimator';
-import type { StudyStep } from '../../core/study/plan';
+import type { StudyStep } from '../../core/study/schedule';
+import { TrialSeconds } from '../../core/study/trial-clock';
 import { createTrialLog, type FrameListener, type TrialLog, type TrialOutcome } from '../../core/study/trial-log';
 import { writeRecording } from '../../core/tracking/recording';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
@@ -45,7 +46,7 @@ export interface PlayedTrial {
 /** The end of a round is seen before the sheet comes [s]. */
 const afterglow = 2.5;
 /** What participants agree to have kept is the motion of head and wrists. */
-const withoutFingers = ({ fingers: _, ...frame }: TrackingFrame): TrackingFrame => frame;
+const headAndWrists = ({ fingers: _, deviceBody: __, ...frame }: TrackingFrame): TrackingFrame => frame;
 
 /** Tracked frames kept per trial: some 14 MB, below what the server takes at once. */
 const mostMotionFrames = 40_000;
@@ -58,6 +59,8 @@ export interface TrialOptions {
   readonly motion: boolean;
   /** Lays the trial out. */
   readonly seed: number;
+  /** Seconds since 1970. */
+  readonly now: () => number;
 }
 
 /** Gives the start signal. */
@@ -72,23 +75,22 @@ class LoggedTrial implements PlayedTrial {
   readonly #log: TrialLog;
   /** null: none are kept. */
   readonly #frames: TrackingFrame[] | null;
-  /** On the trial's clock, which stands in pauses [s]; null: not yet. */
-  #startTime: number | null = null;
+  readonly #seconds: TrialSeconds;
+  #begun = false;
+  /** Second of the trial; null: not yet. */
   #endedAt: number | null = null;
-  #lastTime = 0;
+  #lastTime = -1;
   #fellBack = false;
   #paused = false;
-  /** For how long the trial stood in all [s], and since when on the page's clock it stands now. */
-  #stood = 0;
-  #stoppedAt: number | null = null;
 
-  constructor(step: PlayedStep, runner: TaskRunner, host: TrialHost, { key, motion, seed }: TrialOptions) {
+  constructor(step: PlayedStep, runner: TaskRunner, host: TrialHost, { key, motion, seed, now }: TrialOptions) {
     this.key = key;
     this.#step = step;
     this.#runner = runner;
     this.#host = host;
     this.#log = createTrialLog(host.device(), host.calibration());
     this.#frames = motion ? [] : null;
+    this.#seconds = new TrialSeconds(now);
     for (const name of runner.assists()) this.#log.assist(name);
     host.listenToFrames((spent, late) => {
       if (!this.#stands && this.#endedAt === null && runner.waitingFor === null) this.#log.frame(spent, late);
@@ -113,16 +115,14 @@ class LoggedTrial implements PlayedTrial {
   follow(pageTime: number, frame: TrackingFrame | null): FinishedTrial | null {
     if (this.#runner.waitingFor !== null) return null;
     if (this.#stands) {
-      this.#stoppedAt ??= pageTime;
+      this.#seconds.stand(pageTime);
       return null;
     }
-    if (this.#stoppedAt !== null) this.#stood += pageTime - this.#stoppedAt;
-    this.#stoppedAt = null;
-    const time = pageTime - this.#stood;
-    this.#startTime ??= this.#begin(time, frame);
+    const time = this.#seconds.run(pageTime);
+    if (!this.#begun) this.#begin(frame);
     for (const event of this.#runner.take()) {
       if (event.type === 'shot') this.#log.shot();
-      else this.#log.event(event);
+      else this.#log.event({ ...event, onset: time });
     }
     const { end } = this.#runner;
     if (this.#endedAt !== null) return end && time - this.#endedAt > afterglow ? this.#finish(end) : null;
@@ -140,35 +140,34 @@ class LoggedTrial implements PlayedTrial {
     return this.#paused || this.#runner.standing;
   }
 
-  /** The first frame of the trial; returns its time. */
-  #begin(time: number, frame: TrackingFrame | null): number {
+  /** The first frame of the trial. */
+  #begin(frame: TrackingFrame | null): void {
+    this.#begun = true;
     const { eyeHeight } = this.#host.calibration();
     if ((frame?.head.position.y ?? eyeHeight) < eyeHeight - seatedDrop) this.#log.assist('seated');
-    return time;
   }
 
-  /** What is seen and drawn in a frame of the trial. */
+  /** What is seen and drawn in a frame of the trial, at this second of it. */
   #note(time: number, frame: TrackingFrame | null): void {
-    this.#log.tracked(time - (this.#startTime ?? time), {
+    this.#log.tracked(time, {
       head: frame !== null,
       leftHand: frame?.leftHand != null,
       rightHand: frame?.rightHand != null,
     });
     const drawn = this.#host.estimator();
-    if (drawn !== this.#step.estimator && !this.#fellBack) {
+    if (drawn !== this.#step.embodiment.estimator && !this.#fellBack) {
       this.#fellBack = true;
       this.#log.assist(`estimator fell back to ${drawn}`);
     }
     const frames = this.#frames;
-    if (frame && frames && frames.length < mostMotionFrames && time > this.#lastTime)
-      frames.push(withoutFingers(frame));
+    if (frame && frames && frames.length < mostMotionFrames && time > this.#lastTime) frames.push(headAndWrists(frame));
     this.#lastTime = time;
   }
 
   #finish(end: TaskEnd): FinishedTrial {
     this.abort();
     const frames = this.#frames ?? [];
-    const outcome = this.#log.finish({ ...end, motionFrames: frames.length });
+    const outcome = this.#log.finish({ ...end, motionFrames: frames.length, clock: this.#seconds.clock });
     const { device, calibration } = outcome;
     const recorded = { device: device.name, rateHz: device.refreshRateHz ?? 60, calibration, frames };
     return { outcome, recording: frames.length > 0 ? writeRecording(recorded) : null };

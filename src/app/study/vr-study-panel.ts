@@ -1,4 +1,5 @@
 import { Group, Vector3 } from 'three';
+import { wrapAngle } from '../../core/math/angle';
 import { createVrPanel } from '../../ui/vr-panel';
 import type { Pointer } from '../../ui/vr-pointers';
 import { createPanelTouch } from '../../ui/vr-touch';
@@ -109,9 +110,7 @@ class StudySheet implements VrStudyPanel {
     // Where the person stood when the sheet was placed.
     const fromX = position.x + reach * Math.sin(rotation.y);
     const fromZ = position.z + reach * Math.cos(rotation.y);
-    return (
-      Math.abs(Math.atan2(Math.sin(turn), Math.cos(turn))) >= mostTurn || Math.hypot(fromX - x, fromZ - z) >= mostStep
-    );
+    return Math.abs(wrapAngle(turn)) >= mostTurn || Math.hypot(fromX - x, fromZ - z) >= mostStep;
   }
 
   #redraw(): void {

@@ -1,9 +1,9 @@
 import type { Calibration } from '../body/calibration';
 import { checkedConsent } from './consent';
 import { checkedDemographics } from './demographics';
-import type { Schedule, StudyStep } from './plan';
 import { currentStep, elapsedSeconds, type Progress, placeOf } from './progress';
 import { type Answer, checkedAnswers, checkedDraft } from './questionnaires';
+import type { Schedule, StudyStep } from './schedule';
 import { type Place, recordVersion, type StudyEvent, type StudyRecord } from './study-record';
 import { checkedOutcome, type TrialOutcome } from './trial-log';
 import { checked, text, ValidationError } from './validation';
@@ -201,7 +201,7 @@ function trialFinished(at: Moment, { outcome }: EventOf<'trial-finished'>): Adva
   const body = {
     place,
     condition: step.kind === 'trial' ? step.condition : null,
-    estimator: step.estimator,
+    estimator: step.embodiment.estimator,
     repetition: step.kind === 'trial' ? step.repetition : 1,
     group: at.schedule.groups[step.task]?.number ?? 1,
     outcome: checkedOutcome(outcome),
@@ -222,13 +222,13 @@ function submit(at: Moment): Advance | null {
   if (step.kind !== 'questionnaire' || !place) return null;
   const answers = checkedAnswers(step.questionnaire, progress.draft);
   const seconds = elapsedSeconds(progress, at.now);
-  const { estimator } = at.schedule.steps.find(
+  const { embodiment } = at.schedule.steps.find(
     (other) => other.kind === 'trial' && other.task === step.task && other.block === step.block,
   ) as Extract<StudyStep, { kind: 'trial' }>;
   const body = {
     place,
     condition: step.condition,
-    estimator,
+    estimator: embodiment.estimator,
     questionnaire: step.questionnaire.id,
     ...(progress.language !== undefined && { language: progress.language }),
     answers: { ...answers },

@@ -3,7 +3,7 @@ import type { AnswerForm } from './questionnaire-schema';
 import { scaleRange, scaleScore } from './questionnaire-scores';
 import { type Answer, type Questionnaire, questionnaireNamed, stepOf } from './questionnaires';
 import type { Place, StudyRecord } from './study-record';
-import type { Table } from './tidy-csv';
+import { number, type Table, text } from './tidy-csv';
 import { inLanguage } from './words';
 
 /** Answers to each question, one per row; of a scale that is computed from them: its value. */
@@ -85,9 +85,6 @@ function formText(form: AnswerForm, language: string): string {
   }
 }
 
-const text = (name: string, description: string) => ({ name, type: 'text', unit: '', description }) as const;
-const number = (name: string, description: string) => ({ name, type: 'number', unit: '', description }) as const;
-
 /** What was asked, a row for each question and language. */
 export const questionTable = (plan: StudyPlan): Table => ({
   name: 'questions',
@@ -132,11 +129,11 @@ export const scaleTable = (plan: StudyPlan): Table => ({
     ),
     text('questions', 'Ids, divided by spaces; one that is named twice counts twice.'),
     text('choices', 'Ids of the choices that weight; empty: none.'),
-    number('at_least', 'Answers from here on are counted; empty: not of this scale.'),
-    number('factor', 'The result is factor × (mean, sum or count) + offset.'),
-    number('offset', 'See factor.'),
-    number('from', 'Least value.'),
-    number('to', 'Greatest value.'),
+    number('at_least', '', 'Answers from here on are counted; empty: not of this scale.'),
+    number('factor', '', 'The result is factor × (mean, sum or count) + offset.'),
+    number('offset', '', 'See factor.'),
+    number('from', '', 'Least value.'),
+    number('to', '', 'Greatest value.'),
   ],
   rows: questionnairesOf(plan).flatMap((asked) =>
     asked.scales.map((scale) => ({

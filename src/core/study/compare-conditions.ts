@@ -1,13 +1,7 @@
+import { holm } from '../statistics/holm';
+import { type PairedTTest, pairedTTest, type SignedRankTest, signedRankTest } from '../statistics/paired-tests';
+import { type MeanSummary, meanSummary } from '../statistics/summaries';
 import type { AnswerRow } from './answer-tables';
-import {
-  holm,
-  type MeanSummary,
-  meanSummary,
-  type PairedTTest,
-  pairedTTest,
-  type SignedRankTest,
-  signedRankTest,
-} from './statistics';
 import { refuseMixture, type TrialRow } from './study-tables';
 
 /** A participant or an answer left out, and why: results state it. */
@@ -114,7 +108,7 @@ const incomplete = (alone: readonly { readonly who: string; readonly missing: st
   alone.map(({ who, missing }) => ({ participant: who, of, reason: `no valid value under "${missing}"` }));
 
 /** What is asked with a number, in the order first met, and what each is called: its id, where that is of one place alone. */
-function askedIn(rows: readonly AnswerRow[]): readonly { readonly of: string; readonly asked: Asked }[] {
+export function askedIn(rows: readonly AnswerRow[]): readonly { readonly of: string; readonly asked: Asked }[] {
   const places = new Map<string, Asked>();
   for (const { task, questionnaire, question, answer } of rows) {
     const key = `${task}/${questionnaire}/${question}`;
@@ -125,7 +119,8 @@ function askedIn(rows: readonly AnswerRow[]): readonly { readonly of: string; re
   return [...places].map(([key, asked]) => ({ of: times.get(asked.question) === 1 ? asked.question : key, asked }));
 }
 
-const isOf = (row: AnswerRow, { task, questionnaire, question }: Asked) =>
+/** Whether a row answers this question. */
+export const isOf = (row: AnswerRow, { task, questionnaire, question }: Asked) =>
   row.question === question && row.questionnaire === questionnaire && row.task === task;
 
 /**

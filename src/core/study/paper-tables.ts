@@ -1,4 +1,5 @@
-import { holm, twoSidedP } from './statistics';
+import { holm } from '../statistics/holm';
+import { twoSidedP } from '../statistics/summaries';
 
 /** A row of the paper's tables 9 and 10: paired t-tests of its method (ours) against IK, fifteen participants. */
 export interface PaperRow {

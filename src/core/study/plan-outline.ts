@@ -1,14 +1,6 @@
-import {
-  blindLabel,
-  languagesOf,
-  ordersByGroup,
-  ordersOf,
-  type StudyPlan,
-  type StudyStep,
-  type StudyTask,
-  scheduleFor,
-} from './plan';
+import { languagesOf, type StudyPlan } from './plan';
 import type { Question } from './questionnaire-schema';
+import { blindLabel, type StudyStep, scheduleFor } from './schedule';
 import { inLanguage } from './words';
 
 /** One screen that a participant meets. */
@@ -46,7 +38,7 @@ function screensOf(plan: StudyPlan, step: StudyStep): readonly OutlinedScreen[] 
     case 'calibration':
       return [at(`${title}: measures of the body`, 'headset')];
     case 'tutorial':
-      return [at(`${title}: practice with ${step.estimator}`, 'headset', step.seconds)];
+      return [at(`${title}: practice with ${step.embodiment.estimator}`, 'headset', step.seconds)];
     case 'trial':
       return [at(`${title}, ${blindLabel(step)}: played under "${step.condition}"`, 'headset', step.seconds)];
     case 'rest':
@@ -89,15 +81,4 @@ export function durationOf(plan: StudyPlan): PlanDuration {
     else if (step.kind === 'questionnaire') total.questionnaires += step.seconds;
   }
   return total;
-}
-
-/** How often each order of conditions comes in a task, by the names of the conditions in order; those that never come too. */
-export function orderCounts(plan: StudyPlan, task: StudyTask): ReadonlyMap<string, number> {
-  const nameOf = (order: StudyPlan['conditions']) => order.map(({ id }) => id).join(', ');
-  const counts = new Map(ordersOf(plan).map((order) => [nameOf([...order]), 0]));
-  for (const order of ordersByGroup(plan, task)) {
-    const name = nameOf([...order]);
-    counts.set(name, (counts.get(name) ?? 0) + 1);
-  }
-  return counts;
 }

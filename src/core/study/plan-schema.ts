@@ -1,5 +1,5 @@
 import * as v from 'valibot';
-import { estimatorNames } from '../estimation/pose-estimator';
+import { embodimentFields, estimatorSchema } from './embodiment';
 import { questionnaireSchema } from './questionnaire-schema';
 import { identifier, integerBetween, numberBetween, text } from './validation';
 import { languageTag, words } from './words';
@@ -7,14 +7,13 @@ import { languageTag, words } from './words';
 export const planFormat = 'threepoint-study';
 export const planVersion = 1;
 
-const estimator = v.picklist(estimatorNames, `expected one of ${estimatorNames.join(', ')}`);
 const seconds = (max: number) => numberBetween(0, max);
 
 const conditionSchema = v.strictObject({
   id: identifier,
   /** For the experimenter and the results; participants never see it. */
   label: text(60),
-  estimator,
+  ...embodimentFields,
 });
 
 const taskSchema = v.strictObject({
@@ -28,7 +27,7 @@ const taskSchema = v.strictObject({
   /** Time limit of one trial. */
   trialSeconds: numberBetween(1, 3600),
   tutorial: v.strictObject({
-    estimator,
+    estimator: estimatorSchema,
     /** once: before the first block; each: before every block; never. */
     when: v.picklist(['never', 'once', 'each'], 'expected never, once or each'),
     seconds: numberBetween(1, 3600),
@@ -57,17 +56,25 @@ export const planSchema = v.strictObject({
   version: v.literal(planVersion, `expected ${planVersion}, the version that this program reads`),
   id: identifier,
   title: text(120),
-  /** Decides groups and orders: the same seed gives the same study. */
+  /** Decides groups, cohorts, orders and layouts: the same seed gives the same study. */
   seed: integerBetween(0, 2 ** 31 - 1),
   participants: integerBetween(1, 999),
   /** Who may take a place: the holder of its own invitation (invited, where nothing is said), or of the study's one (open). */
   entry: v.exactOptional(v.picklist(['invited', 'open'], 'expected invited or open')),
-  /** all: every order of the conditions; williams: as many rows as conditions (twice that if odd), each after each equally often. */
+  /** all: every order of the conditions; williams: a Latin square, for odd numbers two, each after each equally often. */
   orders: v.picklist(['all', 'williams'], 'expected all or williams'),
   conditions: v.pipe(
     v.array(conditionSchema, 'expected a list'),
-    v.minLength(2, 'expected at least two conditions to compare'),
-    v.maxLength(8, 'expected at most eight conditions'),
+    v.minLength(1, 'expected at least one condition'),
+    v.maxLength(20, 'expected at most twenty conditions'),
+  ),
+  /** Compared between participants, who are divided among them: what each says holds under all conditions. */
+  cohorts: v.exactOptional(
+    v.pipe(
+      v.array(conditionSchema, 'expected a list'),
+      v.minLength(2, 'expected at least two cohorts to compare'),
+      v.maxLength(8, 'expected at most eight cohorts'),
+    ),
   ),
   tasks: v.pipe(
     v.array(taskSchema, 'expected a list'),

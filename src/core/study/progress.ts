@@ -1,6 +1,6 @@
 import * as v from 'valibot';
-import type { Schedule, StudyStep } from './plan';
 import { checkedDraft } from './questionnaires';
+import type { Schedule, StudyStep } from './schedule';
 import type { Place } from './study-record';
 import { checked, identifier, integerBetween, numberBetween, participantId, text, ValidationError } from './validation';
 import { languageTag } from './words';

@@ -1,15 +1,8 @@
 import type { Comparison } from './compare-conditions';
 import type { FrameTimeRow } from './frame-times';
 import { checkedPaperRows } from './paper-tables';
-import type { Column, Table } from './tidy-csv';
+import { type Column, number, type Table, text } from './tidy-csv';
 
-const text = (name: string, description: string): Column => ({ name, type: 'text', unit: '', description });
-const number = (name: string, unit: string, description: string): Column => ({
-  name,
-  type: 'number',
-  unit,
-  description,
-});
 const simulatedColumn: Column = {
   name: 'simulated',
   type: 'boolean',

@@ -1,5 +1,5 @@
 import * as v from 'valibot';
-import { estimatorNames } from '../estimation/pose-estimator';
+import { threePointNames } from '../estimation/pose-estimator';
 import { checkedConsent } from './consent';
 import { checkedDemographics } from './demographics';
 import type { StudyPlan } from './plan';
@@ -35,7 +35,7 @@ const placeSchema = v.object({
   attempt: blockNumber,
 });
 
-const condition = v.object({ condition: identifier, estimator: v.picklist(estimatorNames) });
+const condition = v.object({ condition: identifier, estimator: v.picklist(threePointNames) });
 
 const eventSchema = v.variant('type', [
   v.object({
@@ -69,7 +69,7 @@ const bodies = {
     place: placeSchema,
     /** null: a tutorial, which is never evaluated. */
     condition: v.nullable(identifier),
-    estimator: v.picklist(estimatorNames),
+    estimator: v.picklist(threePointNames),
     repetition: blockNumber,
     group: blockNumber,
     outcome: v.looseObject({}),

@@ -1,16 +1,9 @@
+import { cohortsByParticipant } from './allocation';
 import { type AnswerRow, answerRows, type BlockExclusion, questionTable, scaleRows, scaleTable } from './answer-tables';
+import { conditionTable } from './condition-table';
 import type { StudyPlan } from './plan';
 import type { Place, StudyRecord } from './study-record';
-import type { Cell, Column, Table } from './tidy-csv';
-
-const text = (name: string, description: string): Column => ({ name, type: 'text', unit: '', description });
-const number = (name: string, unit: string, description: string): Column => ({
-  name,
-  type: 'number',
-  unit,
-  description,
-});
-const boolean = (name: string, description: string): Column => ({ name, type: 'boolean', unit: '', description });
+import { boolean, type Cell, number, type Table, text } from './tidy-csv';
 
 const who = [
   text('study', 'Id of the study.'),
@@ -31,6 +24,7 @@ const time = number('at', 's', 'When, in seconds since 1970-01-01 UTC, by the cl
 
 const participantColumns = [
   ...who,
+  text('cohort', 'Id of the cohort; empty: the study has none.'),
   text('consent_version', 'Version of the text consented to.'),
   boolean('motion_consent', 'Whether tracked frames may be kept.'),
   text('language', 'In which the text was read; empty: the study has only one.'),
@@ -97,6 +91,7 @@ const trialColumns = [
   text('input', 'controllers, hands, mixed, emulated, simulated.'),
   number('eye_height', 'm', 'Calibration: height of the eyes above the floor.'),
   number('arm_span', 'm', 'Calibration: from wrist to wrist, arms sideways.'),
+  number('forearm', 'm', 'Calibration: from elbow to wrist; empty: not told.'),
   number(
     'gaze_pitch',
     'rad',
@@ -118,6 +113,12 @@ const trialColumns = [
   number('right_hand_lost', 's', 'For how long.'),
   text('assists', 'Aids that were on, divided by semicolons.'),
   number('motion_frames', '', 'Tracked frames recorded beside this.'),
+  number('started', 's', 'Second 0, in seconds since 1970-01-01 UTC, by the clock of the device; empty: not known.'),
+  number(
+    'recording_start',
+    's',
+    'Second 0 on the clock of the recorded frames, which runs on in pauses (pauses.csv); empty: not known.',
+  ),
   time,
   excluded,
 ];
@@ -136,9 +137,21 @@ const frameTimeColumns = [
 
 const hitColumns = [
   ...trialNames,
-  number('time', 's', 'Second of the trial.'),
+  number('time', 's', "Second of the game's own clock, which also stands while the head is lost."),
+  number(
+    'onset',
+    's',
+    'Second of the trial at the frame that showed it; with recording_start and the pauses before it, its place among recorded frames. Empty: not known.',
+  ),
   text('type', 'hit, miss, catch.'),
   number('points', 'points', 'What it scored.'),
+  excluded,
+];
+
+const pauseColumns = [
+  ...trialNames,
+  number('time', 's', 'Second of the trial at which it stood.'),
+  number('seconds', 's', 'For how long.'),
   excluded,
 ];
 
@@ -216,13 +229,14 @@ export const trialsIn = (records: readonly StudyRecord[]): readonly TrialRow[] =
     maximum: outcome.maximum,
   }));
 
-function participantRows(records: readonly StudyRecord[]) {
+function participantRows(records: readonly StudyRecord[], plan: StudyPlan) {
+  const cohorts = cohortsByParticipant(plan);
   const rows = new Map<string, Record<string, Cell>>();
   for (const record of records) {
     let row = rows.get(record.participant);
     if (!row) {
       row = Object.fromEntries(participantColumns.map(({ name }) => [name, null]));
-      Object.assign(row, identity(record));
+      Object.assign(row, identity(record), { cohort: cohorts.get(record.participant)?.id ?? null });
       rows.set(record.participant, row);
     }
     if (record.kind === 'consent') {
@@ -281,6 +295,7 @@ const trialTableRow = ({ common, group, at, outcome }: ReturnType<typeof trialRo
   input: outcome.device.input,
   eye_height: outcome.calibration?.eyeHeight ?? null,
   arm_span: outcome.calibration?.armSpan ?? null,
+  forearm: outcome.calibration?.forearm ?? null,
   gaze_pitch: outcome.calibration?.gazePitch ?? null,
   left_hand_pitch: outcome.calibration?.handTilts?.left?.pitch ?? null,
   left_hand_yaw: outcome.calibration?.handTilts?.left?.yaw ?? null,
@@ -294,6 +309,8 @@ const trialTableRow = ({ common, group, at, outcome }: ReturnType<typeof trialRo
   right_hand_lost: outcome.tracking.rightHand.seconds,
   assists: outcome.assists.join('; '),
   motion_frames: outcome.motionFrames,
+  started: outcome.clock?.epoch ?? null,
+  recording_start: outcome.clock?.start ?? null,
   at,
 });
 
@@ -303,7 +320,8 @@ export function studyTables(records: readonly StudyRecord[], plan: StudyPlan): r
   const exclusion = voidedBlocks(records);
   const trials = trialRows(records, exclusion);
   return [
-    { name: 'participants', columns: participantColumns, rows: participantRows(records) },
+    { name: 'participants', columns: participantColumns, rows: participantRows(records, plan) },
+    conditionTable(plan),
     {
       name: 'answers',
       columns: answerColumns,
@@ -348,7 +366,16 @@ export function studyTables(records: readonly StudyRecord[], plan: StudyPlan): r
     {
       name: 'hits',
       columns: hitColumns,
-      rows: trials.flatMap(({ common, outcome }) => outcome.events.map((event) => ({ ...common, ...event }))),
+      rows: trials.flatMap(({ common, outcome }) =>
+        outcome.events.map(({ onset = null, ...event }) => ({ ...common, ...event, onset })),
+      ),
+    },
+    {
+      name: 'pauses',
+      columns: pauseColumns,
+      rows: trials.flatMap(({ common, outcome }) =>
+        (outcome.clock?.pauses ?? []).map((pause) => ({ ...common, ...pause })),
+      ),
     },
     { name: 'events', columns: eventColumns, rows: eventRows(records) },
   ];

@@ -7,6 +7,25 @@ export interface Column {
   readonly description: string;
 }
 
+/** A column of text. */
+export const text = (name: string, description: string): Column => ({ name, type: 'text', unit: '', description });
+
+/** A column of numbers; `unit`: SI or a word. */
+export const number = (name: string, unit: string, description: string): Column => ({
+  name,
+  type: 'number',
+  unit,
+  description,
+});
+
+/** A column of TRUE and FALSE. */
+export const boolean = (name: string, description: string): Column => ({
+  name,
+  type: 'boolean',
+  unit: '',
+  description,
+});
+
 export type Cell = string | number | boolean | null;
 
 /** A tidy table: one observation per row, one variable per column, every row with a cell for every column. */
@@ -46,15 +65,14 @@ export function tidyCsv({ name, columns, rows }: Table): string {
 
 /** The table that explains the columns of the tables. */
 export function codebookOf(tables: readonly Pick<Table, 'name' | 'columns'>[]): Table {
-  const column = (name: string, description: string): Column => ({ name, type: 'text', unit: '', description });
   return {
     name: 'codebook',
     columns: [
-      column('table', 'File of the column, without its ending.'),
-      column('column', 'Name of the column.'),
-      column('type', 'text, number or boolean (TRUE, FALSE). An empty field: no value.'),
-      column('unit', 'Unit; empty: none.'),
-      column('description', 'What it means.'),
+      text('table', 'File of the column, without its ending.'),
+      text('column', 'Name of the column.'),
+      text('type', 'text, number or boolean (TRUE, FALSE). An empty field: no value.'),
+      text('unit', 'Unit; empty: none.'),
+      text('description', 'What it means.'),
     ],
     rows: tables.flatMap((table) =>
       table.columns.map(({ name, type, unit, description }) => ({

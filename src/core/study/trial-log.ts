@@ -1,5 +1,6 @@
 import * as v from 'valibot';
 import type { Calibration } from '../body/calibration';
+import { type TrialClock, trialClockSchema } from './trial-clock';
 import { checked, handTiltsSchema, integerBetween, numberBetween, text } from './validation';
 
 /** Of what is recorded per trial; grows with every change of meaning. */
@@ -39,10 +40,17 @@ const outcomeSchema = v.object({
   /** Arrows or balls sent off by this participant, and how many of them counted. */
   shots: count,
   hits: count,
-  /** What scored or missed, at which second of the trial, for how many points. */
+  /** What scored or missed, for how many points. */
   events: v.pipe(
     v.array(
-      v.object({ time: duration, type: v.picklist(['hit', 'miss', 'catch']), points: numberBetween(0, 100_000) }),
+      v.object({
+        /** On the game's clock, which also stands while the head is lost. */
+        time: duration,
+        /** Second of the trial at the frame that showed it: `clock` leads from there to the recording. Absent in older records. */
+        onset: v.exactOptional(duration),
+        type: v.picklist(['hit', 'miss', 'catch']),
+        points: numberBetween(0, 100_000),
+      }),
     ),
     v.maxLength(mostTrialEvents, `expected at most ${mostTrialEvents} events`),
   ),
@@ -72,6 +80,7 @@ const outcomeSchema = v.object({
     v.object({
       eyeHeight: numberBetween(0.3, 2.5),
       armSpan: numberBetween(0.3, 2.5),
+      forearm: v.optional(numberBetween(0.1, 0.6)),
       gazePitch: v.optional(numberBetween(-0.5, 0.5)),
       handTilts: v.optional(handTiltsSchema),
     }),
@@ -81,6 +90,8 @@ const outcomeSchema = v.object({
   assists: v.pipe(v.array(text(60)), v.maxLength(16, 'expected at most sixteen assists')),
   /** Tracked frames recorded beside this; 0 without consent to it. */
   motionFrames: count,
+  /** Absent: of an older record, or not known. */
+  clock: v.exactOptional(trialClockSchema),
 });
 
 /** What happened in one trial, measured on the participant's device. */
@@ -153,6 +164,8 @@ export interface TrialLog {
     readonly score: number;
     readonly maximum: number;
     readonly motionFrames: number;
+    /** null: not known. */
+    readonly clock?: TrialClock | null;
   }): TrialOutcome;
 }
 
@@ -207,7 +220,7 @@ export function createTrialLog(device: TrialOutcome['device'], calibration: Cali
     assist(name) {
       assists.add(name);
     },
-    finish({ seconds, ended, score, maximum, motionFrames }) {
+    finish({ seconds, ended, score, maximum, motionFrames, clock }) {
       const loss = (part: Tracked) => ({ losses: losses[part].losses, seconds: losses[part].seconds });
       const summaries: Record<string, StageSummary> = {};
       for (const [name, statistics] of stages) {
@@ -230,6 +243,7 @@ export function createTrialLog(device: TrialOutcome['device'], calibration: Cali
         tracking: { head: loss('head'), leftHand: loss('leftHand'), rightHand: loss('rightHand') },
         assists: [...assists],
         motionFrames,
+        ...(clock && { clock }),
       });
     },
   };

@@ -65,6 +65,8 @@ function headset() {
     actions: {
       chooseEstimator: (name) => void done.push(`estimate by ${name}`),
       chooseOwnBody: (name) => void done.push(`wear ${name}`),
+      chooseSkinTone: (tone) => void done.push(`in ${tone}`),
+      setPlainOthers: (on) => void done.push(`plain others ${on}`),
       recentre: () => void done.push('recentre'),
       exitVr: () => void done.push('exit'),
     },
@@ -157,8 +159,16 @@ describe('in the headset', () => {
 
 describe('the buttons of the menu', () => {
   const studio: VrMenuState = {
-    ...{ estimator: 'ik', unavailable: {}, calibration: null, overlay: false, activity: 'studio' },
-    ...{ ownBody: 'mannequin', bowSide: 'left', roundOver: false, ready: null, notice: null },
+    ...{ estimator: 'ik', unavailable: {}, calibration: null, overlay: false, deviceBody: false, activity: 'studio' },
+    ...{
+      ownBody: 'mannequin',
+      skinTone: undefined,
+      plainOthers: false,
+      bowSide: 'left',
+      roundOver: false,
+      ready: null,
+      notice: null,
+    },
   };
   const done: string[] = [];
   const actions: VrMenuActions = {
@@ -169,6 +179,8 @@ describe('the buttons of the menu', () => {
     setOverlay: (on) => void done.push(`overlay ${on}`),
     goTo: () => undefined,
     chooseOwnBody: (name) => void done.push(`wear ${name}`),
+    chooseSkinTone: (tone) => void done.push(`in ${tone}`),
+    setPlainOthers: (on) => void done.push(`plain others ${on}`),
     setBowSide: (side) => void done.push(`bow ${side}`),
     restart: () => undefined,
     ready: (on) => void done.push(`ready ${on}`),
@@ -177,9 +189,13 @@ describe('the buttons of the menu', () => {
   const labels = (change: Partial<VrMenuState> = {}) =>
     menuButtons({ ...studio, ...change }, actions).map(({ label }) => label);
 
-  test('lie apart and inside the sheet in every game', () => {
+  test.each([
+    ['', false],
+    [', where the device was asked for its body', true],
+  ])('lie apart and inside the sheet in every game%s', (_, deviceBody) => {
     for (const activity of ['studio', 'archery', 'ball'] as const) {
-      const buttons = menuButtons({ ...studio, activity, ready: true }, actions);
+      const buttons = menuButtons({ ...studio, activity, ready: true, ownBody: 'woman', deviceBody }, actions);
+      expect(buttons.some(({ id }) => id === 'device')).toBe(deviceBody);
       expect(buttons.length).toBeGreaterThan(8);
       for (const [index, { at }] of buttons.entries()) {
         const [x, y, w, h] = at;
@@ -195,7 +211,8 @@ describe('the buttons of the menu', () => {
 
   test('offer what can be done here', () => {
     expect(labels()).toEqual(expect.arrayContaining(['Archery', 'Ball game', 'Body: Mannequin']));
-    expect(labels({ ownBody: 'child' })).toContain('Body: Child');
+    expect(labels({ ownBody: 'child' })).toEqual(expect.arrayContaining(['Body: Child', 'Skin: own']));
+    expect(labels().join()).not.toContain('Skin');
     expect(labels({ activity: 'archery' })).toEqual(expect.arrayContaining(['To the mirror', 'Bow: left hand']));
     expect(labels({ activity: 'archery', roundOver: true })).toContain('New round');
     expect(labels({ activity: 'ball', ready: false })).toContain('Ready');
@@ -211,7 +228,12 @@ describe('the buttons of the menu', () => {
     press('overlay', { overlay: true });
     press('bow', { activity: 'archery', bowSide: 'right' });
     press('ready', { activity: 'ball', ready: true });
-    expect(done).toEqual(['overlay false', 'bow left', 'ready false']);
+    press('body', { ownBody: 'child' });
+    press('skin', { ownBody: 'child' });
+    press('skin', { ownBody: 'child', skinTone: 'dark' });
+    press('others', { activity: 'ball', plainOthers: true });
+    const bodies = ['wear mannequin', 'in fair', 'in fair', 'plain others false'];
+    expect(done).toEqual(['overlay false', 'bow left', 'ready false', ...bodies]);
   });
 
   test('an estimator that is not to be had is shown and cannot be pressed', () => {

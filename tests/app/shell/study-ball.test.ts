@@ -24,7 +24,7 @@ const step = {
   block: 1,
   repetition: 1,
   condition: 'ik',
-  estimator: 'ik',
+  embodiment: { estimator: 'ik' },
   seconds,
 } as PlayedStep;
 
@@ -66,7 +66,7 @@ async function group() {
                 timeFrame = listener && (() => listener(spent, false));
               },
             },
-            { key: participant, motion: true, seed: 1 },
+            { key: participant, motion: true, seed: 1, now: () => 1e9 },
           );
           return trial;
         },

@@ -14,6 +14,7 @@ describe('the address of the page', () => {
         avatar: null,
         quality: null,
         replay: null,
+        mocap: null,
         view: null,
         play: 'studio',
         seed: null,
@@ -41,6 +42,17 @@ describe('the address of the page', () => {
       avatar: '/a.vrm',
       quality: 'low',
     });
+  });
+
+  test('opens motion capture with its skeleton at a second, with another method beside it', () => {
+    const { switches, complaints } = readSwitches(
+      '?mocap=a/01_02.amc+a/01.asf&at=12.5&beside=paper&truth=inside&clip=2',
+    );
+    expect(complaints).toEqual([]);
+    const outlook = { at: 12.5, beside: 'paper', truth: 'inside', clip: 1 };
+    expect(switches.mocap).toEqual({ addresses: ['a/01_02.amc', 'a/01.asf'], ...outlook });
+    expect(readSwitches('?at=3').switches.mocap).toBe(null);
+    expect(readSwitches('?mocap=a.bvh&at=soon').complaints).toHaveLength(1);
   });
 
   test('names a study and who takes part; a participant alone is none', () => {

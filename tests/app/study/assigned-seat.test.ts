@@ -3,7 +3,7 @@ import { relayConfigurationFrom } from '../../../server/relay-configuration';
 import { startServer } from '../../../server/start';
 import { assignedSeat } from '../../../src/app/ball/ball-connections';
 import { plainAvatar } from '../../../src/core/protocol/worn-avatar';
-import { scheduleFor } from '../../../src/core/study/plan';
+import { scheduleFor } from '../../../src/core/study/schedule';
 import type { ParticipantState } from '../../../src/core/study/study-api';
 import { createExperimenterClient, createParticipantClient } from '../../../src/net/study-client';
 import { paperPlan } from '../../core/study/studies';

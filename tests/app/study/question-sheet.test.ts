@@ -3,10 +3,10 @@ import type { ParticipantSession } from '../../../src/app/study/participant-sess
 import { questionPart } from '../../../src/app/study/question-screen';
 import { questionTargets } from '../../../src/app/study/question-sheet';
 import { height, width } from '../../../src/app/study/sheet-target';
-import { scheduleFor } from '../../../src/core/study/plan';
 import { begin } from '../../../src/core/study/progress';
 import type { Question } from '../../../src/core/study/questionnaire-schema';
 import { type Answer, type Answers, shippedQuestionnaires, typedAnswer } from '../../../src/core/study/questionnaires';
+import { scheduleFor } from '../../../src/core/study/schedule';
 import { examplePlan } from '../../core/study/studies';
 
 const plan = examplePlan();

@@ -10,6 +10,7 @@ import type { TaskEnd, TaskEvent, TaskPlace, TaskRunner } from '../../../src/app
 import { type Calibration, defaultCalibration } from '../../../src/core/body/calibration';
 import type { EstimatorName } from '../../../src/core/estimation/pose-estimator';
 import type { Side } from '../../../src/core/math/side';
+import type { Embodiment } from '../../../src/core/study/embodiment';
 import type { FrameListener } from '../../../src/core/study/trial-log';
 import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
 import { createParticipantClient } from '../../../src/net/study-client';
@@ -160,7 +161,7 @@ class TestHost implements StudyHost {
   worn = false;
   /** null: of no one. */
   measures: Calibration | null = ofAnother;
-  drawn: EstimatorName = 'hands-only';
+  embodiment: Embodiment = { estimator: 'hands-only' };
   /** Estimators that this page cannot load. */
   readonly missing = new Set<EstimatorName>();
   bowSide: Side | null = null;
@@ -175,10 +176,11 @@ class TestHost implements StudyHost {
   setCalibration(calibration: Calibration | null): void {
     this.measures = calibration;
   }
-  async chooseEstimator(name: EstimatorName): Promise<void> {
-    if (!this.missing.has(name)) this.drawn = name;
+  async embody(embodiment: Embodiment): Promise<void> {
+    if (this.missing.has(embodiment.estimator)) throw new Error('The body of this round could not be loaded.');
+    this.embodiment = embodiment;
   }
-  estimator = (): EstimatorName => this.drawn;
+  estimator = (): EstimatorName => this.embodiment.estimator;
   setActor(on: boolean): void {
     this.actor = on;
   }

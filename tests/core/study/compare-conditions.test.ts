@@ -7,9 +7,10 @@ import {
   plantedAnswerModel,
 } from '../../../scripts/study-simulate/answer-model';
 import { randomSource } from '../../../scripts/study-simulate/random-source';
+import { ordersByGroup } from '../../../src/core/study/allocation';
 import type { AnswerRow } from '../../../src/core/study/answer-tables';
 import { compareAnswers, compareScores } from '../../../src/core/study/compare-conditions';
-import { ordersByGroup, questionnairesOf, type StudyTask } from '../../../src/core/study/plan';
+import { questionnairesOf, type StudyTask } from '../../../src/core/study/plan';
 import type { TrialRow } from '../../../src/core/study/study-tables';
 import { paperPlan } from './studies';
 

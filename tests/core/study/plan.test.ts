@@ -1,17 +1,8 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
-import {
-  blindLabel,
-  checkedPlan,
-  groupsOf,
-  ordersByGroup,
-  ordersOf,
-  parsePlan,
-  participantsOf,
-  type StudyPlan,
-  type StudyTask,
-  scheduleFor,
-} from '../../../src/core/study/plan';
+import { groupsOf, ordersByGroup, ordersOf } from '../../../src/core/study/allocation';
+import { checkedPlan, parsePlan, participantsOf, type StudyPlan, type StudyTask } from '../../../src/core/study/plan';
+import { blindLabel, scheduleFor } from '../../../src/core/study/schedule';
 import { seed } from '../arbitraries';
 import { paperFile, paperPlan } from './studies';
 
@@ -132,7 +123,7 @@ describe('the order of conditions', () => {
     expect(drawn.size).toBeGreaterThan(10);
   });
 
-  test.each([4, 5, 6, 7])(
+  test.each([2, 3, 4, 5, 6, 7, 12, 15, 20])(
     'of %i conditions as Williams: each at each place and after each other equally often',
     (count) => {
       const orders = ordersOf({ orders: 'williams', conditions: conditionsOf(count) });

@@ -1,8 +1,8 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import type { ProgressEvent } from '../../../src/core/study/advance';
-import { scheduleFor } from '../../../src/core/study/plan';
 import { begin, elapsedSeconds, remainingSeconds, resumed } from '../../../src/core/study/progress';
+import { scheduleFor } from '../../../src/core/study/schedule';
 import { checkedRecord } from '../../../src/core/study/study-record';
 import { seed } from '../arbitraries';
 import { aWomanOf26, outcomeOf, paperPlan, session } from './studies';

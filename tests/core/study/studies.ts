@@ -1,10 +1,11 @@
 import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { advance, type ProgressEvent } from '../../../src/core/study/advance';
-import { parsePlan, type Schedule, type StudyPlan, type StudyStep } from '../../../src/core/study/plan';
+import { parsePlan, type StudyPlan } from '../../../src/core/study/plan';
 import { begin, currentStep, type Progress } from '../../../src/core/study/progress';
 import type { AnswerForm } from '../../../src/core/study/questionnaire-schema';
 import { type Answer, nearestOn } from '../../../src/core/study/questionnaires';
+import type { Schedule, StudyStep } from '../../../src/core/study/schedule';
 import type { StudyRecord } from '../../../src/core/study/study-record';
 import { createTrialLog, type TrialOutcome } from '../../../src/core/study/trial-log';
 

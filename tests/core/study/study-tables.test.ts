@@ -1,5 +1,6 @@
 import { describe, expect, test } from 'vitest';
-import { participantsOf, scheduleFor } from '../../../src/core/study/plan';
+import { participantsOf } from '../../../src/core/study/plan';
+import { scheduleFor } from '../../../src/core/study/schedule';
 import { answersIn, studyTables, trialsIn } from '../../../src/core/study/study-tables';
 import { tidyCsv } from '../../../src/core/study/tidy-csv';
 import { paperPlan, session } from './studies';
@@ -48,7 +49,7 @@ describe('the tables of a study', () => {
 
   test('mark simulated people in every row and never mix them with people', () => {
     for (const { name, rows } of studyTables(completed('P01', true), plan)) {
-      if (name !== 'questions' && name !== 'scale-definitions')
+      if (!['conditions', 'questions', 'scale-definitions'].includes(name))
         for (const row of rows) expect(row.simulated, name).toBe(true);
     }
     expect(() => studyTables([...completed('P01', true), ...completed('P02')], plan)).toThrow('must not be mixed');

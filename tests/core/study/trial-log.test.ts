@@ -1,6 +1,6 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
-import { scheduleFor } from '../../../src/core/study/plan';
+import { scheduleFor } from '../../../src/core/study/schedule';
 import { checkedRecord, longestRecord } from '../../../src/core/study/study-record';
 import {
   checkedOutcome,

@@ -1,0 +1,34 @@
+import type { Embodiment } from '../../core/study/embodiment';
+import type { ImpairedTracking } from '../../core/tracking/impaired-tracking';
+import type { BareBody } from '../../lib/bare-body';
+import type { SettingsWriter } from './settings';
+import type { ShownAvatar } from './shown-avatar';
+
+/** The parts of the page that a study's condition changes. */
+export interface EmbodyingParts {
+  readonly writer: Pick<SettingsWriter, 'change'>;
+  readonly avatar: Pick<ShownAvatar, 'openOwn' | 'ownBody'>;
+  readonly body: Pick<BareBody, 'choose' | 'estimator'>;
+  readonly impaired: Pick<ImpairedTracking, 'impair'>;
+}
+
+/** What goes wrong with a body, for a participant to read. */
+const notLoaded = 'The body of this round could not be loaded.';
+
+/**
+ * Gives the participant the body of a round for this visit; resolves when it is drawn. Rejects with a sentence where it cannot be. What the
+ * embodiment does not say stays, but for impairments: there are none then. `seed`: of what is random in them.
+ */
+export async function embody(parts: EmbodyingParts, embodiment: Embodiment, seed: number): Promise<void> {
+  const { writer, avatar, body, impaired } = parts;
+  const { estimator, avatar: ownBody, mirror, upperBodyOnly, ...impairments } = embodiment;
+  writer.change({
+    ...(mirror !== undefined && { mirror }),
+    ...(upperBodyOnly !== undefined && { upperBodyOnly }),
+    ...(ownBody !== undefined && { ownBody }),
+  });
+  impaired.impair(impairments, seed);
+  const wears = ownBody === undefined || ownBody === avatar.ownBody || avatar.openOwn();
+  const [worn] = await Promise.all([wears, body.choose(estimator)]);
+  if (!worn || body.estimator !== estimator) throw new Error(notLoaded);
+}

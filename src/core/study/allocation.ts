@@ -1,0 +1,85 @@
+import {
+  largestGroup,
+  participantsOf,
+  type StudyCohort,
+  type StudyCondition,
+  type StudyPlan,
+  type StudyTask,
+} from './plan';
+import { randomFor, shuffle } from './shuffle';
+
+/** Every order of the items, in the order of the items. */
+function permutations<T>(items: readonly T[]): readonly (readonly T[])[] {
+  if (items.length < 2) return [items];
+  return items.flatMap((first, index) =>
+    permutations(items.filter((_, other) => other !== index)).map((rest) => [first, ...rest]),
+  );
+}
+
+/**
+ * Williams' Latin square (Australian Journal of Scientific Research 2, 1949): each item at each place equally often and each
+ * directly after each other equally often. An odd number needs the mirrored square too.
+ */
+function williams<T>(items: readonly T[]): readonly (readonly T[])[] {
+  const count = items.length;
+  if (count < 2) return [items];
+  const first = Array.from({ length: count }, (_, place) =>
+    place % 2 === 0 ? (count - place / 2) % count : (place + 1) / 2,
+  );
+  const rows = items.map((_, shift) => first.map((index) => items[(index + shift) % count] as T));
+  return count % 2 === 0 ? rows : [...rows, ...rows.map((row) => row.toReversed())];
+}
+
+/** The orders of conditions among which participants and groups are divided. */
+export function ordersOf(plan: Pick<StudyPlan, 'orders' | 'conditions'>): readonly (readonly StudyCondition[])[] {
+  return plan.orders === 'all' ? permutations(plan.conditions) : williams(plan.conditions);
+}
+
+/** Items for so many, drawn in blocks: each block is every item once in random sequence, so that counts differ by at most one. */
+function drawnInBlocks<T>(items: readonly T[], count: number, { seed }: StudyPlan, purpose: string): readonly T[] {
+  const drawn: T[] = [];
+  let random = randomFor(seed, purpose);
+  while (drawn.length < count) {
+    const block = shuffle(items, random);
+    random = block.random;
+    drawn.push(...block.items);
+  }
+  return drawn.slice(0, count);
+}
+
+/** Who plays a task together: groups drawn by the seed, alike for all tasks of the same size; alone: one each, in order. */
+export function groupsOf(plan: StudyPlan, groupSize: number): readonly (readonly string[])[] {
+  const participants = participantsOf(plan);
+  if (groupSize === 1) return participants.map((participant) => [participant]);
+  const drawn = shuffle(participants, randomFor(plan.seed, `groups of ${groupSize}`)).items;
+  return Array.from({ length: drawn.length / groupSize }, (_, index) =>
+    drawn.slice(index * groupSize, (index + 1) * groupSize).toSorted(),
+  );
+}
+
+/** The cohort of every participant, those who play together in one; empty: the plan has none. */
+export function cohortsByParticipant(plan: StudyPlan): ReadonlyMap<string, StudyCohort> {
+  const { cohorts = [] } = plan;
+  if (cohorts.length === 0) return new Map();
+  const groups = groupsOf(plan, largestGroup(plan));
+  const drawn = drawnInBlocks(cohorts, groups.length, plan, 'cohorts');
+  return new Map(groups.flatMap((members, index) => members.map((member) => [member, drawn[index] as StudyCohort])));
+}
+
+/** The order of conditions for each group of a task: drawn in blocks, in each cohort for itself. */
+export function ordersByGroup(plan: StudyPlan, task: StudyTask): readonly (readonly StudyCondition[])[] {
+  const orders = ordersOf(plan);
+  const groups = groupsOf(plan, task.groupSize);
+  if (!plan.cohorts) return drawnInBlocks(orders, groups.length, plan, `orders of ${task.id}`);
+  const cohorts = cohortsByParticipant(plan);
+  const drawn = new Map(
+    plan.cohorts.map(({ id }) => [
+      id,
+      [...drawnInBlocks(orders, groups.length, plan, `orders of ${task.id} in ${id}`)],
+    ]),
+  );
+  return groups.map(([member = '']) => {
+    const { id } = cohorts.get(member) as StudyCohort;
+    return drawn.get(id)?.shift() as readonly StudyCondition[];
+  });
+}

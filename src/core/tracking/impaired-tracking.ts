@@ -1,0 +1,224 @@
+import { copyHandShape, type HandShape, type MutableHandShape, makeHandShape, mixHandShape } from '../body/hand-shape';
+import { copyPose, type MutablePose, makePose, type TrackedPose } from '../math/pose';
+import { fromAxisAngle, multiply, quat, slerp } from '../math/quat';
+import { seedAfter, uniformOf } from '../math/random';
+import type { Side } from '../math/side';
+import { add, length, lerp, scale, setVec3, vec3 } from '../math/vec3';
+import type { TrackingFrame } from './tracking-frame';
+
+/** What a body is to suffer on purpose, so that its effect on people can be studied. */
+export interface Impairments {
+  /** By how much the body follows later than it could [ms], up to `mostLatencyMs`. */
+  readonly latencyMs?: number;
+  /** Normal and new in every frame: standard deviation along and about each axis. */
+  readonly trackerNoise?: { readonly positionMm: number; readonly rotationDegrees: number };
+  /** Each hand is lost for `seconds` each time, after waits that are exponentially distributed. */
+  readonly dropouts?: { readonly perMinute: number; readonly seconds: number };
+}
+
+export const mostLatencyMs = 200;
+/** Frames that are kept: the longest latency at 300 Hz. */
+const kept = 64;
+const sides = ['left', 'right'] as const;
+const handOf = { left: 'leftHand', right: 'rightHand' } as const;
+
+type MutableTrackedPose = MutablePose<'floor'> & { tracking: TrackedPose['tracking'] };
+const makeTrackedPose = (): MutableTrackedPose => ({ ...makePose<'floor'>(), tracking: 'tracked' });
+
+/** A hand of a frame, in memory of its own. */
+class KeptHand {
+  readonly pose = makeTrackedPose();
+  readonly shape = makeHandShape();
+  seen = false;
+  shapeKnown = false;
+
+  keep(pose: TrackedPose | null, shape: HandShape | null): void {
+    this.seen = pose !== null;
+    this.shapeKnown = shape !== null;
+    if (pose) keepPose(pose, this.pose);
+    if (shape) copyHandShape(shape, this.shape);
+  }
+}
+
+function keepPose(pose: TrackedPose, target: MutableTrackedPose): void {
+  copyPose(pose, target);
+  target.tracking = pose.tracking;
+}
+
+/** A frame in memory of its own. */
+class KeptFrame {
+  time = 0;
+  readonly head = makeTrackedPose();
+  readonly hands = { left: new KeptHand(), right: new KeptHand() };
+  hasFingers = false;
+
+  keep({ time, head, leftHand, rightHand, fingers }: TrackingFrame): void {
+    this.time = time;
+    keepPose(head, this.head);
+    this.hasFingers = fingers !== undefined;
+    this.hands.left.keep(leftHand, fingers?.left ?? null);
+    this.hands.right.keep(rightHand, fingers?.right ?? null);
+  }
+}
+
+/** When a hand is lost next and until when it is [s]. */
+interface Loss {
+  next: number;
+  until: number;
+}
+
+type Writable<T> = { -readonly [Key in keyof T]: T[Key] };
+type WrittenFrame = Writable<Pick<TrackingFrame, 'time' | 'head' | 'leftHand' | 'rightHand'>>;
+
+const offset = vec3(0, 0, 0);
+const axis = vec3(0, 0, 0);
+const turn = quat(0, 0, 0, 1);
+
+function mixPose(a: TrackedPose, b: TrackedPose, t: number, target: MutableTrackedPose): void {
+  lerp(a.position, b.position, t, target.position);
+  slerp(a.orientation, b.orientation, t, target.orientation);
+  target.tracking = a.tracking;
+}
+
+/** Head and hands as a worse tracker would have them: later, noisy, with hands that are lost. Leaves no garbage. */
+export class ImpairedTracking {
+  #impairments: Impairments | null = null;
+  /** A ring; `#newest` is the index of the newest frame, `#count` how many there are. */
+  readonly #ring = Array.from({ length: kept }, () => new KeptFrame());
+  #newest = 0;
+  #count = 0;
+  /** Of the generator, see `nextRandom`; in an array, which holds whole numbers of 32 bits without boxes. */
+  readonly #seed = new Int32Array(1);
+  /** For three axes of a position and three of a rotation. */
+  readonly #normals = new Float64Array(6);
+  readonly #losses: Record<Side, Loss> = { left: { next: 0, until: 0 }, right: { next: 0, until: 0 } };
+  #lossesDrawn = false;
+  readonly #head = makeTrackedPose();
+  readonly #hands = { left: makeTrackedPose(), right: makeTrackedPose() };
+  readonly #shapes = { left: makeHandShape(), right: makeHandShape() };
+  readonly #fingers: Record<Side, MutableHandShape | null> = { left: null, right: null };
+  readonly #bare: WrittenFrame = { time: 0, head: this.#head, leftHand: null, rightHand: null };
+  readonly #fingered = { time: 0, head: this.#head, leftHand: null, rightHand: null, fingers: this.#fingers };
+
+  /** From the next frame on; null: nothing. What is random follows from the seed and the frames' times. */
+  impair(impairments: Impairments | null, seed = 0): void {
+    this.#impairments = impairments;
+    this.#seed[0] = seed;
+    this.#lossesDrawn = false;
+    this.reset();
+  }
+
+  /** What was tracked before is no way to what is tracked next. */
+  reset(): void {
+    this.#count = 0;
+  }
+
+  /** The frame as the body is to have it, at the same time [s]: itself, or a frame that the next call overwrites. */
+  follow(frame: TrackingFrame): TrackingFrame {
+    const impairments = this.#impairments;
+    if (!impairments) return frame;
+    if (frame.suspended) {
+      this.reset();
+      return frame;
+    }
+    this.#push(frame);
+    const written = this.#delay(frame, impairments);
+    written.time = frame.time;
+    if (impairments.dropouts) this.#drop(written, impairments.dropouts);
+    if (impairments.trackerNoise) this.#shake(written, impairments.trackerNoise);
+    return written;
+  }
+
+  #push(frame: TrackingFrame): void {
+    this.#newest = (this.#newest + 1) % kept;
+    this.#count = Math.min(kept, this.#count + 1);
+    this.#ring[this.#newest]!.keep(frame);
+  }
+
+  #frameBefore(steps: number): KeptFrame {
+    return this.#ring[(this.#newest - steps + kept) % kept]!;
+  }
+
+  /** What was tracked by the latency earlier: between two frames, or the oldest where it is later. */
+  #delay(frame: TrackingFrame, { latencyMs = 0 }: Impairments): WrittenFrame {
+    const time = frame.time - latencyMs / 1000;
+    let steps = 0;
+    while (steps < this.#count - 1 && this.#frameBefore(steps).time > time) steps += 1;
+    const older = this.#frameBefore(steps);
+    const newer = this.#frameBefore(Math.max(0, steps - 1));
+    const span = newer.time - older.time;
+    const share = span > 0 ? Math.min(1, Math.max(0, (time - older.time) / span)) : 0;
+    mixPose(older.head, newer.head, share, this.#head);
+    const written = older.hasFingers ? this.#fingered : this.#bare;
+    for (let i = 0; i < sides.length; i++) this.#delayHand(sides[i]!, older, newer, share, written);
+    return written;
+  }
+
+  #delayHand(side: Side, older: KeptFrame, newer: KeptFrame, share: number, written: WrittenFrame): void {
+    const before = older.hands[side];
+    const after = newer.hands[side].seen ? newer.hands[side] : before;
+    const pose = this.#hands[side];
+    if (before.seen) mixPose(before.pose, after.pose, share, pose);
+    written[handOf[side]] = before.seen ? pose : null;
+    const shape = this.#shapes[side];
+    if (before.shapeKnown) mixHandShape(before.shape, (after.shapeKnown ? after : before).shape, share, shape);
+    this.#fingers[side] = before.shapeKnown ? shape : null;
+  }
+
+  #drop(written: WrittenFrame, dropouts: NonNullable<Impairments['dropouts']>): void {
+    const { time } = written;
+    for (let i = 0; i < sides.length; i++) {
+      const side = sides[i]!;
+      const loss = this.#losses[side];
+      if (!this.#lossesDrawn) {
+        loss.until = Number.NEGATIVE_INFINITY;
+        loss.next = time + this.#wait(dropouts.perMinute);
+      }
+      while (time >= loss.next) {
+        loss.until = loss.next + dropouts.seconds;
+        loss.next = loss.until + this.#wait(dropouts.perMinute);
+      }
+      if (time < loss.until) written[handOf[side]] = null;
+    }
+    this.#lossesDrawn = true;
+  }
+
+  #shake(written: WrittenFrame, noise: NonNullable<Impairments['trackerNoise']>): void {
+    this.#shakePose(this.#head, noise);
+    if (written.leftHand) this.#shakePose(this.#hands.left, noise);
+    if (written.rightHand) this.#shakePose(this.#hands.right, noise);
+  }
+
+  #shakePose({ position, orientation }: MutableTrackedPose, noise: NonNullable<Impairments['trackerNoise']>): void {
+    const normals = this.#drawNormals();
+    const far = noise.positionMm / 1000;
+    setVec3(offset, far * normals[0]!, far * normals[1]!, far * normals[2]!);
+    add(position, offset, position);
+    const wide = (noise.rotationDegrees * Math.PI) / 180;
+    setVec3(axis, wide * normals[3]!, wide * normals[4]!, wide * normals[5]!);
+    const angle = length(axis);
+    if (angle === 0) return;
+    scale(axis, 1 / angle, axis);
+    multiply(fromAxisAngle(axis, angle, turn), orientation, orientation);
+  }
+
+  /** Standard normal numbers by Box and Muller, in an array that stores them without boxes; 1 − u is never 0. */
+  #drawNormals(): Float64Array {
+    for (let i = 0; i < this.#normals.length; i++) {
+      const radius = Math.sqrt(-2 * Math.log(1 - this.#uniform()));
+      this.#normals[i] = radius * Math.cos(2 * Math.PI * this.#uniform());
+    }
+    return this.#normals;
+  }
+
+  /** Seconds until a hand is lost. */
+  #wait(perMinute: number): number {
+    return (-60 * Math.log(1 - this.#uniform())) / perMinute;
+  }
+
+  /** In [0, 1). */
+  #uniform(): number {
+    this.#seed[0] = seedAfter(this.#seed[0]!);
+    return uniformOf(this.#seed[0]!);
+  }
+}

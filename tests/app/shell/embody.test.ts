@@ -1,0 +1,78 @@
+import { describe, expect, test } from 'vitest';
+import { type EmbodyingParts, embody } from '../../../src/app/shell/embody';
+import type { Settings } from '../../../src/app/shell/settings';
+import type { EstimatorName } from '../../../src/core/estimation/pose-estimator';
+import type { OwnBody } from '../../../src/core/protocol/worn-avatar';
+import { ImpairedTracking } from '../../../src/core/tracking/impaired-tracking';
+
+const head = {
+  position: { x: 0, y: 1.6, z: 0 },
+  orientation: { x: 0, y: 0, z: 0, w: 1 },
+  tracking: 'tracked',
+} as const;
+const frameAt = (time: number, height: number) => ({
+  time,
+  head: { ...head, position: { x: 0, y: height, z: 0 } },
+  leftHand: null,
+  rightHand: null,
+});
+
+/** A page without a device to draw on; `missing`: what it cannot load. */
+function pageOf(missing: readonly string[] = []) {
+  const settings: Partial<Settings> = {};
+  const impaired = new ImpairedTracking();
+  let worn: OwnBody = 'mannequin';
+  let drawn: EstimatorName = 'ik';
+  const parts: EmbodyingParts = {
+    writer: { change: (part) => void Object.assign(settings, part) },
+    impaired,
+    avatar: {
+      get ownBody() {
+        return worn;
+      },
+      async openOwn() {
+        const { ownBody = 'mannequin' } = settings;
+        if (missing.includes(ownBody)) return false;
+        worn = ownBody;
+        return true;
+      },
+    },
+    body: {
+      get estimator() {
+        return drawn;
+      },
+      async choose(name) {
+        drawn = missing.includes(name) ? 'ik' : name;
+      },
+    },
+  };
+  return { parts, settings, impaired, worn: () => worn, drawn: () => drawn };
+}
+
+describe('the body of a round', () => {
+  test('is all that its condition says, and what it does not say stays', async () => {
+    const page = pageOf();
+    await embody(page.parts, { estimator: 'learned', avatar: 'stout', mirror: false, upperBodyOnly: true }, 1);
+    expect(page.settings).toEqual({ mirror: false, upperBodyOnly: true, ownBody: 'stout' });
+    expect([page.worn(), page.drawn()]).toEqual(['stout', 'learned']);
+    await embody(page.parts, { estimator: 'ik' }, 1);
+    expect([page.settings.mirror, page.worn(), page.drawn()]).toEqual([false, 'stout', 'ik']);
+  });
+
+  test('is impaired for as long as a condition says so', async () => {
+    const { parts, impaired } = pageOf();
+    await embody(parts, { estimator: 'ik', latencyMs: 100 }, 1);
+    impaired.follow(frameAt(1, 1.6));
+    expect(impaired.follow(frameAt(1.05, 1.7)).head.position.y).toBe(1.6);
+    await embody(parts, { estimator: 'ik' }, 1);
+    impaired.follow(frameAt(1.1, 1.7));
+    expect(impaired.follow(frameAt(1.15, 1.8)).head.position.y).toBe(1.8);
+  });
+
+  test.each(['paper', 'child'])('is refused where "%s" cannot be had', async (missing) => {
+    const page = pageOf([missing]);
+    await expect(embody(page.parts, { estimator: 'paper', avatar: 'child' }, 1)).rejects.toThrow(
+      'The body of this round could not be loaded.',
+    );
+  });
+});

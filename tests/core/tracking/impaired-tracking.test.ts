@@ -1,0 +1,172 @@
+import fc from 'fast-check';
+import { describe, expect, test } from 'vitest';
+import { closedHand, mixHandShape, relaxedHand } from '../../../src/core/body/hand-shape';
+import type { TrackedPose } from '../../../src/core/math/pose';
+import { angleBetween, fromAxisAngle, multiply } from '../../../src/core/math/quat';
+import { distance, vec3 } from '../../../src/core/math/vec3';
+import { ImpairedTracking, type Impairments } from '../../../src/core/tracking/impaired-tracking';
+import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
+import { evenly, seed } from '../arbitraries';
+
+/** A person who stands turned and swings head and hands; where they are at any time [s]. */
+function swinging(time: number, offset: number): TrackedPose {
+  const turned = fromAxisAngle(vec3(0, 1, 0), 2.1);
+  const bent = fromAxisAngle(vec3(1, 0, 0), 0.8 * Math.sin(2 * time + offset));
+  return {
+    position: vec3(offset + 0.3 * Math.sin(3 * time), 1.2 + 0.2 * Math.cos(2 * time + offset), -0.4),
+    orientation: multiply(turned, bent),
+    tracking: 'tracked',
+  };
+}
+
+const frameAt = (time: number): TrackingFrame => ({
+  time,
+  head: swinging(time, 0.1),
+  leftHand: swinging(time, 0.7),
+  rightHand: swinging(time, 1.3),
+});
+
+/** Frames of a device of so many Hz, each up to a third of a frame late, as this tracking has them; a copy of each. */
+function followed(impairments: Impairments, seconds: number, rateHz = 72, of = 7): readonly TrackingFrame[] {
+  const tracking = new ImpairedTracking();
+  tracking.impair(impairments, of);
+  return Array.from({ length: seconds * rateHz }, (_, index) => {
+    const time = 50 + (index + (index % 4) / 12) / rateHz;
+    return structuredClone(tracking.follow(frameAt(time)));
+  });
+}
+
+const parts = ['head', 'leftHand', 'rightHand'] as const;
+
+describe('an added latency', () => {
+  test.each([0, 13, 100, 200])(
+    'of %i ms shows head and hands where they were then, at any rate of frames',
+    (latencyMs) => {
+      fc.assert(
+        fc.property(evenly(60, 240), (rateHz) => {
+          for (const frame of followed({ latencyMs }, 1, Math.round(rateHz)).slice(Math.round(rateHz / 2))) {
+            const then = frameAt(frame.time - latencyMs / 1000);
+            for (const part of parts) {
+              const [is, was] = [frame[part] as TrackedPose, then[part] as TrackedPose];
+              // Between two frames the way is taken for straight.
+              expect(1000 * distance(is.position, was.position)).toBeLessThan(0.2);
+              expect(angleBetween(is.orientation, was.orientation)).toBeLessThan(0.001);
+            }
+          }
+        }),
+        { seed, numRuns: 12 },
+      );
+    },
+  );
+
+  test('leaves the time of the frame, so that estimators see every one', () => {
+    const times = followed({ latencyMs: 100 }, 1).map(({ time }) => time);
+    expect(times).toEqual(followed({}, 1).map(({ time }) => time));
+  });
+
+  test('holds the first pose until there is an older one, also after a jump', () => {
+    const tracking = new ImpairedTracking();
+    tracking.impair({ latencyMs: 100 });
+    for (const time of [1, 1.02, 1.04]) expect(tracking.follow(frameAt(time)).head).toMatchObject(frameAt(1).head);
+    tracking.reset();
+    expect(tracking.follow(frameAt(1.06)).head).toMatchObject(frameAt(1.06).head);
+  });
+
+  test('loses a hand, finds it and bends its fingers as much later', () => {
+    const tracking = new ImpairedTracking();
+    tracking.impair({ latencyMs: 50 });
+    const shapes = [0, 0.25, 0.5, 0.75, 1].map((share) => mixHandShape(relaxedHand, closedHand, share));
+    const seen = shapes.map((shape, index) => {
+      const time = 3 + index * 0.05;
+      const leftHand = index === 1 ? null : swinging(time, 0.7);
+      const fingers = { left: index === 1 ? null : shape, right: null };
+      return structuredClone(tracking.follow({ ...frameAt(time), leftHand, fingers }));
+    });
+    expect(seen.map(({ leftHand }) => leftHand !== null)).toEqual([true, true, false, true, true]);
+    expect(seen[4]?.fingers?.left?.index.knuckle).toBeCloseTo(shapes[3]?.index.knuckle ?? 0, 6);
+    expect(seen[2]?.fingers?.left).toBeNull();
+    // A device without fingers says nothing of them, then as now.
+    expect(tracking.follow(frameAt(3.25)).fingers).toBeDefined();
+    expect(tracking.follow(frameAt(3.3)).fingers).toBeUndefined();
+  });
+});
+
+describe('noise of the tracker', () => {
+  const spread = (values: readonly number[]) =>
+    Math.sqrt(values.reduce((sum, value) => sum + value * value, 0) / values.length);
+
+  test('has the stated deviation along and about every axis, and no drift', () => {
+    const noisy = followed({ trackerNoise: { positionMm: 8, rotationDegrees: 2 } }, 120);
+    for (const part of parts) {
+      const errors = noisy.map((frame) => {
+        const { position, orientation } = frameAt(frame.time)[part] as TrackedPose;
+        const is = frame[part] as TrackedPose;
+        return {
+          x: 1000 * (is.position.x - position.x),
+          y: 1000 * (is.position.y - position.y),
+          z: 1000 * (is.position.z - position.z),
+          angle: (angleBetween(is.orientation, orientation) * 180) / Math.PI,
+        };
+      });
+      for (const axis of ['x', 'y', 'z'] as const) {
+        expect(spread(errors.map((error) => error[axis]))).toBeCloseTo(8, 0);
+        expect(errors.reduce((sum, error) => sum + error[axis], 0) / errors.length).toBeCloseTo(0, 0);
+      }
+      // Three axes of 2° each.
+      expect(spread(errors.map(({ angle }) => angle))).toBeCloseTo(2 * Math.sqrt(3), 0);
+    }
+  });
+
+  test('is the same again by the same seed, and another by another', () => {
+    const noise = { trackerNoise: { positionMm: 5, rotationDegrees: 0 } };
+    expect(followed(noise, 1)).toEqual(followed(noise, 1));
+    expect(followed(noise, 1, 72, 8)).not.toEqual(followed(noise, 1));
+  });
+});
+
+describe('dropouts', () => {
+  const dropouts = { perMinute: 12, seconds: 0.5 };
+  const lossesOf = (frames: readonly TrackingFrame[], part: 'leftHand' | 'rightHand') => {
+    const lengths: number[] = [];
+    let since: number | null = null;
+    for (const frame of frames) {
+      if (frame[part] === null) since ??= frame.time;
+      else if (since !== null) {
+        lengths.push(frame.time - since);
+        since = null;
+      }
+    }
+    return lengths;
+  };
+
+  test('take each hand as often as stated, for as long, and the head never', () => {
+    const minutes = 40;
+    const frames = followed({ dropouts }, 60 * minutes, 30);
+    expect(frames.every(({ head }) => head !== null)).toBe(true);
+    for (const part of ['leftHand', 'rightHand'] as const) {
+      const lengths = lossesOf(frames, part);
+      // A wait of 5 s on average and a loss of 0.5 s.
+      const expected = (60 * minutes) / 5.5;
+      expect(Math.abs(lengths.length - expected)).toBeLessThan(3 * Math.sqrt(expected));
+      // One that follows at once makes a loss longer; none is shorter.
+      expect(Math.min(...lengths)).toBeGreaterThan(0.45);
+      expect(lengths.toSorted((a, b) => a - b)[lengths.length >> 1]).toBeCloseTo(0.5, 1);
+    }
+  });
+
+  test('take the hands one by one', () => {
+    const frames = followed({ dropouts }, 600, 30);
+    const both = frames.filter(({ leftHand, rightHand }) => leftHand === null && rightHand === null);
+    const either = frames.filter(({ leftHand, rightHand }) => leftHand === null || rightHand === null);
+    expect(both.length).toBeLessThan(0.3 * either.length);
+  });
+});
+
+test('without impairments a frame goes on as it came', () => {
+  const tracking = new ImpairedTracking();
+  const frame = frameAt(4);
+  expect(tracking.follow(frame)).toBe(frame);
+  tracking.impair({ latencyMs: 100 });
+  tracking.impair(null);
+  expect(tracking.follow(frame)).toBe(frame);
+});
