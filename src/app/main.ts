@@ -70,7 +70,7 @@ async function start(): Promise<void> {
   const visit = beginVisit(notices);
   const { switches, store } = visit;
   const page = createPage({ visit, notices, loading });
-  const { avatar, body, controls, headset, activities, timing } = page;
+  const { avatar, body, controls, headset, activities, timing, mocap } = page;
 
   // Ours stands there until another has arrived, and stays where that does not.
   if (switches.avatar) void avatar.open(switches.avatar);
@@ -83,6 +83,7 @@ async function start(): Promise<void> {
   void chosen.then(() => loading.report('the network', 1));
   await showFirstBody(page, loading);
   if (switches.replay) void controls.openRecording(switches.replay);
+  if (switches.mocap) void mocap.open(switches.mocap.addresses, switches.mocap);
   await Promise.all([chosen, sessionsOffered, activities.goTo(switches.play)]);
   await takePart(page, visit);
   loading.finish();

@@ -3,6 +3,7 @@ import { type Buttons, nothingPressed } from '../../core/games/button-presses';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 import { easeEmulatedPicture, type Quality } from '../../scene/renderer';
 import type { Notices } from '../../ui/notices';
+import { DeviceBodyReader } from '../../xr/device-body-reader';
 import { type Emulator, installEmulator } from '../../xr/emulator';
 import { giveFramesToEvents } from '../../xr/frameless-events';
 import { buzz, type Pulse } from '../../xr/haptics';
@@ -29,7 +30,7 @@ export interface HeadsetOptions {
   readonly renderer: Stage['renderer'];
   readonly quality: Quality;
   readonly switches: Pick<Switches, 'emulate'>;
-  readonly settings: Pick<Settings, 'actor' | 'emulatorPanel'>;
+  readonly settings: Pick<Settings, 'actor' | 'emulatorPanel' | 'deviceBody'>;
   readonly notices: Pick<Notices, 'show'>;
 }
 
@@ -50,6 +51,8 @@ export interface HeadsetListener {
 interface Session {
   readonly xr: XRSession;
   readonly tracker: Tracker;
+  /** null: the device was not asked for its own body. */
+  readonly bodyReader: DeviceBodyReader | null;
 }
 
 /** The headset that is worn, real or emulated, and the session in it. */
@@ -93,6 +96,13 @@ export class Headset {
   /** What frame times are measured against [Hz]. */
   get pictureRateHz(): number {
     return this.#session && !this.#emulator ? (this.#session.xr.frameRate ?? usualRateHz) : windowRateHz;
+  }
+
+  /** Why the device's own body is not there; null: it is, or no headset is worn. */
+  get bodyComplaint(): string | null {
+    if (!this.#session) return null;
+    const { bodyReader } = this.#session;
+    return bodyReader ? bodyReader.complaint : 'the headset was not asked for its body';
   }
 
   get buttons(): Buttons {
@@ -163,14 +173,15 @@ export class Headset {
 
   async #begin(): Promise<void> {
     const { renderer, quality, settings } = this.#options;
-    const xr = await requestVrSession();
+    const xr = await requestVrSession(settings.deviceBody);
     giveFramesToEvents(xr);
     await renderer.xr.setSession(xr);
     const space = renderer.xr.getReferenceSpace();
     if (!space) throw new Error('the headset offers no floor to stand on (local-floor)');
     if (this.#emulator) easeEmulatedPicture(renderer, quality);
-    const tracker = createTracker(xr, space, (moved) => renderer.xr.setReferenceSpace(moved));
-    this.#session = { xr, tracker };
+    const bodyReader = settings.deviceBody ? new DeviceBodyReader() : null;
+    const tracker = createTracker(xr, space, (moved) => renderer.xr.setReferenceSpace(moved), bodyReader);
+    this.#session = { xr, tracker, bodyReader };
     const jumped = () => this.#listener?.jumped();
     space.addEventListener('reset', jumped);
     xr.addEventListener('end', () => {

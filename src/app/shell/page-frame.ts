@@ -3,14 +3,17 @@ import type { AvatarPose } from '../../core/body/avatar-pose';
 import { type HandShape, makeHandShape } from '../../core/body/hand-shape';
 import { firstLine, reasonOf } from '../../core/errors/reasons';
 import type { Side } from '../../core/math/side';
+import type { ImpairedTracking } from '../../core/tracking/impaired-tracking';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 import type { BareBody } from '../../lib/bare-body';
 import type { Notices } from '../../ui/notices';
 import type { Recorder } from '../studio/recorder';
 import type { Activities } from './activities';
 import type { Controls } from './controls/controls';
+import type { DeviceDifference } from './device-difference';
 import type { FrameParts } from './frame-loop';
 import type { Headset } from './headset';
+import type { PageMocap } from './page-mocap';
 import type { PageStudy } from './page-study';
 import type { Settings } from './settings';
 import type { ShownAvatar } from './shown-avatar';
@@ -21,14 +24,18 @@ export interface PageFrameOptions {
   readonly settings: Pick<Settings, 'mirror'>;
   readonly notices: Pick<Notices, 'show'>;
   readonly source: TrackingSource;
-  readonly body: Pick<BareBody, 'update' | 'jumped'>;
+  /** Between what is tracked and the body, where a study wants the body worse than it could be. */
+  readonly impaired: Pick<ImpairedTracking, 'follow' | 'reset'>;
+  readonly body: Pick<BareBody, 'update' | 'jumped' | 'calibration'>;
   readonly recorder: Pick<Recorder, 'observe'>;
+  readonly difference: Pick<DeviceDifference, 'observe'>;
   readonly avatar: Pick<ShownAvatar, 'current'>;
   readonly headset: Headset;
   readonly activities: Activities;
   readonly controls: Pick<Controls, 'observe' | 'point'>;
   readonly study: Pick<PageStudy, 'run'>;
   readonly stage: Pick<Stage, 'look' | 'draw' | 'vignette'>;
+  readonly mocap: Pick<PageMocap, 'frame' | 'aside'>;
 }
 
 /** One frame of this page, part by part. */
@@ -36,6 +43,8 @@ export class PageFrame implements FrameParts<XRFrame> {
   readonly #options: PageFrameOptions;
   readonly #fingers: Record<Side, HandShape | null> = { left: null, right: null };
   readonly #shapes = { left: makeHandShape(), right: makeHandShape() };
+  /** The newest tracked frame as the body has it. */
+  #embodied: TrackingFrame | null = null;
   #count = 0;
   #lastFault = '';
 
@@ -53,23 +62,30 @@ export class PageFrame implements FrameParts<XRFrame> {
   }
 
   observe(frame: TrackingFrame): void {
-    const { recorder, controls, headset, activities, source } = this.#options;
+    const { recorder, controls, headset, activities, source, impaired } = this.#options;
     recorder.observe(frame);
     controls.observe(frame);
-    headset.buzz(activities.play(frame, source.buttons));
+    this.#embodied = impaired.follow(frame);
+    headset.buzz(activities.play(this.#embodied, source.buttons));
   }
 
   estimate(frame: TrackingFrame | null): AvatarPose | null {
-    const { body, source } = this.#options;
-    return body.update(frame, source.standIn);
+    const { body, source, impaired } = this.#options;
+    if (frame) return body.update(this.#embodied, source.standIn);
+    impaired.reset();
+    return body.update(null, source.standIn);
   }
 
-  skin(pose: AvatarPose, frame: TrackingFrame): void {
-    const { avatar, activities } = this.#options;
+  skin(pose: AvatarPose): void {
+    const { avatar, activities, mocap, difference, body } = this.#options;
+    const frame = this.#embodied;
+    if (!frame) return;
+    difference.observe(frame, pose, body.calibration);
     this.#bendFingers('left', frame);
     this.#bendFingers('right', frame);
     avatar.current?.apply(pose, frame.time);
     activities.ball?.send(frame, pose, this.#fingers);
+    mocap.frame(frame, pose);
   }
 
   render(time: number, frame: TrackingFrame | null): void {
@@ -116,9 +132,10 @@ export class PageFrame implements FrameParts<XRFrame> {
   }
 
   #shot(time: number, frame: TrackingFrame | null): Shot {
-    const { avatar, headset, activities } = this.#options;
+    const { avatar, headset, activities, mocap } = this.#options;
     return {
       time,
+      aside: mocap.aside,
       frame,
       avatar: avatar.current,
       inSession: headset.worn,

@@ -1,6 +1,7 @@
 import type { Object3D } from 'three';
 import type { Calibration } from '../../core/body/calibration';
 import { firstLine } from '../../core/errors/reasons';
+import { ImpairedTracking } from '../../core/tracking/impaired-tracking';
 import { createPageClock } from '../../core/tracking/page-clock';
 import { BareBody, type CalibrationSource } from '../../lib/bare-body';
 import { ServerPresence } from '../../net/server-presence';
@@ -15,6 +16,7 @@ import { KeptPage } from '../offline/kept-page';
 import { Recorder } from '../studio/recorder';
 import { Activities } from './activities';
 import { Controls } from './controls/controls';
+import { DeviceDifference } from './device-difference';
 import { Emitter } from './emitter';
 import { estimatorTexts } from './estimator-texts';
 import { createFrameTiming, type FrameTiming } from './frame-timing';
@@ -25,6 +27,7 @@ import { createNetworkLoader } from './network-loading';
 import { surviveLostGraphics } from './page-faults';
 import { PageFrame } from './page-frame';
 import type { PageLoading } from './page-loading';
+import { PageMocap } from './page-mocap';
 import { PageStudy } from './page-study';
 import { exposeProbe, readProbe } from './probe';
 import { SessionChanges } from './session-changes';
@@ -88,6 +91,7 @@ function createGround(options: PageOptions) {
   loading.mark('scene');
 
   const recorder = new Recorder();
+  const difference = new DeviceDifference();
   const { body } = ground;
   const onChange = changes.emit;
   const knownBones = new KnownBones(store);
@@ -96,7 +100,7 @@ function createGround(options: PageOptions) {
   const avatar = new ShownAvatar({ scene, settings, body, notices, knownBones, prepare, onChange });
   const avatarShown = avatar.openOwn(ownAvatar);
   const headset = new Headset({ renderer: stage.renderer, quality, switches, settings, notices });
-  return { ...ground, canvas, quality, timing, stage, recorder, avatar, avatarShown, headset };
+  return { ...ground, canvas, quality, timing, stage, recorder, difference, avatar, avatarShown, headset };
 }
 
 /** What people do on that stage: the games, and the body that plays them. */
@@ -104,6 +108,7 @@ function createPlay({ visit, notices }: PageOptions, ground: ReturnType<typeof c
   const { switches, settings, writer, store, changes } = visit;
   const { canvas, quality, stage, body, clock, avatar, headset, recorder } = ground;
   const study = new PageStudy();
+  const impaired = new ImpairedTracking();
   const server = new ServerPresence(pageFolder(), changes.emit);
   const actor = createActor();
   const mouse = createMouseAim(canvas);
@@ -138,8 +143,11 @@ function createPlay({ visit, notices }: PageOptions, ground: ReturnType<typeof c
     avatar.current?.fitTo(calibration);
   });
   ground.outgrown.listen((difference) => wearer.outgrown(difference));
-  ground.jumps.listen(() => activities.jumped());
-  return { study, server, activities, captions, arrivals, wearer, source };
+  ground.jumps.listen(() => {
+    impaired.reset();
+    activities.jumped();
+  });
+  return { study, impaired, server, activities, captions, arrivals, wearer, source };
 }
 
 /** Builds the parts of the page and introduces them to each other. */
@@ -148,11 +156,15 @@ export function createPage(options: PageOptions) {
   const { switches, settings, writer, store } = visit;
   const ground = createGround(options);
   const play = createPlay(options, ground);
-  const { body, networks, canvas, timing, stage, recorder, avatar, headset } = ground;
-  const { study, server, activities, wearer, source } = play;
+  const { body, networks, canvas, timing, stage, recorder, difference, avatar, headset } = ground;
+  const { study, impaired, server, activities, wearer, source } = play;
+  const { scene } = stage.studio;
+  const onChange = visit.changes.emit;
+  const onCovered = () => controls.layOut();
+  const mocap = new PageMocap({ scene, recorder, settings, body, networks, notices, onChange, onCovered });
   const controls = new Controls({
-    ...{ switches, settings, writer, store, notices, onChange: visit.changes.emit },
-    ...{ timing, stage, recorder, headset, avatar, activities, body, networks, wearer, study, server },
+    ...{ switches, settings, writer, store, notices, onChange, mocap },
+    ...{ timing, difference, stage, recorder, headset, avatar, activities, body, networks, wearer, study, server },
   });
   const sessions = new SessionChanges({
     headset,
@@ -165,7 +177,22 @@ export function createPage(options: PageOptions) {
     study,
   });
   const frame = new PageFrame({
-    ...{ settings, notices, source, body, recorder, avatar, headset, activities, controls, study, stage },
+    ...{
+      settings,
+      notices,
+      source,
+      impaired,
+      body,
+      recorder,
+      difference,
+      avatar,
+      headset,
+      activities,
+      controls,
+      study,
+    },
+    stage,
+    mocap,
   });
 
   headset.listen(sessions);
@@ -188,7 +215,7 @@ export function createPage(options: PageOptions) {
   const kept = new KeptPage();
   const probed = { loading, kept, settings, notices, timing, frame, source, body, avatar, headset, recorder };
   exposeProbe(() => readProbe({ ...probed, activities, study, stage }));
-  return { ...ground, ...play, controls, frame, kept };
+  return { ...ground, ...play, controls, frame, kept, mocap };
 }
 
 /** The parts of the page, all built and none of them running. */

@@ -1,5 +1,5 @@
 import type { Side } from '../../core/math/side';
-import { type OwnAvatar, plainAvatar } from '../../core/protocol/worn-avatar';
+import { type OwnBody, plainAvatar, type SkinTone } from '../../core/protocol/worn-avatar';
 import type { PreferenceStore } from './preferences';
 import type { Switches } from './switches';
 
@@ -14,7 +14,9 @@ export interface Settings {
   readonly largerText: boolean;
   readonly palette: string;
   /** Which of our own bodies is worn where no other avatar is. */
-  readonly ownBody: OwnAvatar;
+  readonly ownBody: OwnBody;
+  /** Of people; undefined: the one that the body comes with. */
+  readonly skinTone: SkinTone | undefined;
   /** Players of the same room see an avatar that is a file of this one's. */
   readonly shareAvatar: boolean;
   /** All other players are shown as mannequins. */
@@ -24,6 +26,8 @@ export interface Settings {
   /** In a game, without a headset: the mouse plays instead of the actor. */
   readonly mouse: boolean;
   readonly emulatorPanel: boolean;
+  /** The next session asks the headset for the body that it tracks itself; never remembered, because a browser has crashed when it was asked. */
+  readonly deviceBody: boolean;
   readonly bowSide: Side;
   readonly oneHanded: boolean;
   readonly everyHitCounts: boolean;
@@ -54,11 +58,13 @@ export function createSettings(switches: Switches, { preferences }: Pick<Prefere
     largerText: preferences.largerText ?? false,
     palette: preferences.palette ?? 'porcelain',
     ownBody: preferences.ownBody ?? plainAvatar,
+    skinTone: preferences.skinTone,
     shareAvatar: preferences.shareAvatar ?? true,
     plainOthers: preferences.plainOthers ?? false,
     actor: switches.actor,
     mouse: false,
     emulatorPanel: true,
+    deviceBody: false,
     bowSide: preferences.bowSide ?? 'left',
     oneHanded: preferences.oneHanded ?? false,
     everyHitCounts: preferences.everyHitCounts ?? false,
@@ -82,6 +88,7 @@ export type LastingSettings = Partial<
     | 'largerText'
     | 'palette'
     | 'ownBody'
+    | 'skinTone'
     | 'shareAvatar'
     | 'plainOthers'
     | 'bowSide'

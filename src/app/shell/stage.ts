@@ -37,6 +37,8 @@ export interface Shot {
   /** null: not loaded yet. */
   readonly avatar: Avatar | null;
   readonly inSession: boolean;
+  /** How far right of the body the middle of what is looked at lies [m]. */
+  readonly aside: number;
   /** Whom a camera without a body of its own looks at; null: there is a body. */
   readonly watched: Watched | null;
   /** never; always; or only for a camera that does not stand behind the mirror: from there one wants to see the body. */
@@ -95,7 +97,7 @@ export function createStage(canvas: HTMLCanvasElement, quality: Quality): Stage 
       view.resize();
       fitToWindow(renderer, quality);
     },
-    look({ time, frame, avatar, inSession, watched }) {
+    look({ time, frame, avatar, inSession, aside, watched }) {
       const elapsed = Math.min(longestStep, Math.max(0, time - lastTime));
       lastTime = time;
       const hips = avatar?.jointPositions().hips;
@@ -106,7 +108,8 @@ export function createStage(canvas: HTMLCanvasElement, quality: Quality): Stage 
       if (watched) view.update(watched.pelvis, watched.eyes, elapsed);
       else if (frame) {
         const { position } = frame.head;
-        view.update(hips ?? { ...position, y: position.y * pelvisShare }, frame.head, elapsed);
+        const pelvis = hips ?? { ...position, y: position.y * pelvisShare };
+        view.update(aside === 0 ? pelvis : { ...pelvis, x: pelvis.x + aside }, frame.head, elapsed);
       }
     },
     draw({ time, frame, avatar, inSession, watched, mirror: wanted }) {

@@ -1,7 +1,9 @@
 import * as v from 'valibot';
-import { type EstimatorName, estimatorNames } from '../../core/estimation/pose-estimator';
+import { type EstimatorName, estimatorNames, threePointNames } from '../../core/estimation/pose-estimator';
 import { type ViewName, viewNames } from '../../scene/desktop-view';
 import type { Quality } from '../../scene/renderer';
+import type { Outlook } from '../mocap/mocap-view';
+import { truthPlaces } from '../mocap/truth-places';
 import { type ActivityName, activityNames } from './play-bar';
 
 /** What the address asks for; null: nothing asked, the page decides. Listed in docs/page.md. */
@@ -13,6 +15,8 @@ export interface Switches {
   readonly avatar: string | null;
   readonly quality: Quality | null;
   readonly replay: string | null;
+  /** Addresses of the files of one motion, and how it is to be looked at; null: none is asked for. */
+  readonly mocap: ({ readonly addresses: readonly string[] } & Outlook) | null;
   readonly view: ViewName | null;
   readonly panel: boolean;
   /** What the page opens with. */
@@ -47,6 +51,11 @@ const schema = v.object({
   avatar: v.optional(address),
   quality: v.optional(v.picklist(['high', 'low'])),
   replay: v.optional(address),
+  mocap: v.optional(address),
+  clip: v.optional(wholeNumber(1, 9999)),
+  at: v.optional(v.pipe(v.string(), v.regex(/^\d{1,5}(\.\d{1,6})?$/), v.transform(Number))),
+  beside: v.optional(v.picklist(threePointNames)),
+  truth: v.optional(v.picklist(truthPlaces)),
   view: v.optional(v.picklist(viewNames)),
   play: v.optional(v.picklist(activityNames), 'studio'),
   seconds: v.optional(wholeNumber(1, 9999)),
@@ -68,6 +77,11 @@ const takes: Readonly<Record<keyof typeof schema.entries, string>> = {
   avatar: 'the address of a VRM file',
   quality: 'high or low',
   replay: 'the address of a recording',
+  mocap: 'the addresses of a BVH, of a VRM Animation, or of an AMC and its ASF with a space between them',
+  clip: 'a whole number from 1 to 9999',
+  at: 'a number of seconds',
+  beside: oneOf(threePointNames),
+  truth: oneOf(truthPlaces),
   view: oneOf(viewNames),
   play: oneOf(activityNames),
   seconds: 'a whole number from 1 to 9999',
@@ -92,6 +106,11 @@ function complaintOf(key: keyof typeof takes, value: string): string {
       ? `The address says ${key}= and no value`
       : `The address says ${key}=${shown}, which this page does not know`;
   return `${said}: ${key} takes ${takes[key]}.`;
+}
+
+function mocapOf({ mocap, clip, at, beside, truth }: v.InferOutput<typeof schema>): Switches['mocap'] {
+  if (mocap === undefined) return null;
+  return { addresses: mocap.split(/\s+/), clip: clip && clip - 1, at, beside, truth };
 }
 
 /** Reads the query of the address. A value that a switch does not take counts as not given and yields a sentence. */
@@ -120,6 +139,7 @@ export function readSwitches(query: string): { readonly switches: Switches; read
       avatar: output.avatar ?? null,
       quality: output.quality ?? null,
       replay: output.replay ?? null,
+      mocap: mocapOf(output),
       view: output.view ?? null,
       play: output.play,
       seed: output.seed ?? null,

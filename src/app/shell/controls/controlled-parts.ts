@@ -3,8 +3,10 @@ import type { ServerPresence } from '../../../net/server-presence';
 import type { Notices } from '../../../ui/notices';
 import type { Recorder } from '../../studio/recorder';
 import type { Activities } from '../activities';
+import type { DeviceDifference } from '../device-difference';
 import type { FrameTiming } from '../frame-timing';
 import type { Headset } from '../headset';
+import type { PageMocap } from '../page-mocap';
 import type { PageStudy } from '../page-study';
 import type { PreferenceStore } from '../preferences';
 import type { Settings, SettingsWriter } from '../settings';
@@ -21,6 +23,7 @@ export interface ControlledParts {
   readonly store: Pick<PreferenceStore, 'remember'>;
   readonly notices: Pick<Notices, 'show' | 'current'>;
   readonly timing: Pick<FrameTiming, 'summary'>;
+  readonly difference: Pick<DeviceDifference, 'report'>;
   readonly stage: Pick<Stage, 'renderer' | 'studio' | 'view' | 'layOut' | 'setSkeletonVisible'>;
   readonly body: BareBody;
   /** Brings networks of their own for what is made of recordings. */
@@ -32,6 +35,7 @@ export interface ControlledParts {
   readonly wearer: Wearer;
   readonly study: Pick<PageStudy, 'run'>;
   readonly server: ServerPresence;
+  readonly mocap: Pick<PageMocap, 'open' | 'show' | 'covers'>;
   /** Something changed that is on the screen. */
   onChange(): void;
 }

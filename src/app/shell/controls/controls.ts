@@ -43,10 +43,15 @@ export class Controls {
     this.#desktop = new DesktopControls(panelRegion, { ...parts, measuring, motionExport, actions });
     const pointers = createVrPointers(stage.renderer);
     this.#inHeadset = new HeadsetControls({ ...parts, measuring, actions, pointers });
-    this.#layout = new WindowLayout({ stage, panelRegion, panelOpen: () => this.#desktop.panelOpen });
+    this.#layout = new WindowLayout({
+      stage,
+      panelRegion,
+      panelOpen: () => this.#desktop.panelOpen,
+      card: () => parts.mocap.covers,
+    });
     stage.studio.scene.add(...this.#inHeadset.objects);
     measuring.steps.listen(() => this.#inHeadset.show());
-    acceptDroppedFiles((file) => void this.#files.open(file));
+    acceptDroppedFiles((files) => this.#files.openAll(files));
     setInterval(() => this.#report(), reportEveryMs);
   }
 
@@ -103,10 +108,11 @@ export class Controls {
 
   /** What changes by itself: frame times, a replay's progress, a round. */
   #report(): void {
-    const { recorder, activities } = this.#parts;
+    const { recorder, activities, mocap } = this.#parts;
     const report = frameReport(this.#parts);
     this.#overlay.show(report);
     this.#inHeadset.showReport(report);
+    mocap.show();
     if (recorder.mode !== 'idle') this.show();
     else if (activities.name !== 'studio') this.#play.show();
     if (activities.ball) this.#inHeadset.show();

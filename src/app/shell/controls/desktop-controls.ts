@@ -2,6 +2,7 @@ import { palettes } from '../../../avatar/palettes';
 import {
   armSpanRange,
   fingertipSpanFromArmSpan,
+  forearmRange,
   statureFromEyeHeight,
   statureRange,
 } from '../../../core/body/calibration';
@@ -39,6 +40,7 @@ export class DesktopControls {
           min: centimetres(fingertipSpanFromArmSpan(armSpanRange.min)),
           max: centimetres(fingertipSpanFromArmSpan(armSpanRange.max)),
         },
+        forearm: { min: centimetres(forearmRange.min), max: centimetres(forearmRange.max) },
       },
       actions,
     );
@@ -76,7 +78,7 @@ export class DesktopControls {
 
   #state(): PanelState {
     const { settings, body, stage, avatar, headset, recorder, motionExport } = this.#options;
-    const { eyeHeight, armSpan } = body.wearerCalibration;
+    const { eyeHeight, armSpan, forearm } = body.wearerCalibration;
     return {
       ...settings,
       estimator: body.wanted,
@@ -91,9 +93,11 @@ export class DesktopControls {
       palette: avatar.own ? settings.palette : null,
       heightCm: centimetres(statureFromEyeHeight(eyeHeight)),
       armSpanCm: centimetres(fingertipSpanFromArmSpan(armSpan)),
+      forearmCm: forearm === undefined ? null : centimetres(forearm),
       eyeHeightCm: centimetres(eyeHeight),
       emulated: headset.emulator !== null,
       inSession: headset.worn,
+      bodyComplaint: headset.bodyComplaint,
       recorder,
       exporting: motionExport.state,
     };

@@ -16,7 +16,10 @@ export interface HeadsetControlsOptions extends Pick<ControlledParts, 'settings'
   readonly body: Pick<BareBody, 'estimator' | 'unavailable'>;
   readonly activities: Pick<Activities, 'name' | 'archery' | 'ball' | 'goTo' | 'rule' | 'restartRound' | 'point'>;
   readonly measuring: Pick<Measuring, 'step' | 'begin' | 'cancel'>;
-  readonly actions: Pick<PanelActions, 'chooseEstimator' | 'chooseOwnBody' | 'recentre' | 'exitVr'>;
+  readonly actions: Pick<
+    PanelActions,
+    'chooseEstimator' | 'chooseOwnBody' | 'chooseSkinTone' | 'setPlainOthers' | 'recentre' | 'exitVr'
+  >;
 }
 
 /** What can be pressed in the headset: the menu, or a study's sheet in its place, and the sheets of a game. */
@@ -79,6 +82,8 @@ export class HeadsetControls {
       setOverlay: (on) => writer.change({ vrOverlay: on }),
       goTo: (activity) => void activities.goTo(activity),
       chooseOwnBody: (name) => actions.chooseOwnBody(name),
+      chooseSkinTone: (tone) => actions.chooseSkinTone(tone),
+      setPlainOthers: (on) => actions.setPlainOthers(on),
       setBowSide: (side) => activities.rule({ bowSide: side }),
       restart: () => activities.restartRound(),
       ready: (on) => activities.ball?.play.ready(on),
@@ -93,8 +98,11 @@ export class HeadsetControls {
       unavailable: body.unavailable,
       calibration: measuring.step,
       overlay: settings.vrOverlay,
+      deviceBody: settings.deviceBody,
       activity: activities.name,
       ownBody: settings.ownBody,
+      skinTone: settings.skinTone,
+      plainOthers: settings.plainOthers,
       bowSide: settings.bowSide,
       roundOver: activities.archery?.round()?.over ?? false,
       ...this.#ballState(),

@@ -13,23 +13,28 @@ export interface PanelActionsOptions extends ControlledParts {
   readonly measuring: Pick<Measuring, 'start'>;
 }
 
-function bodyActions({ store, body, notices, wearer, measuring }: PanelActionsOptions): BodyActions {
+function bodyActions({ store, writer, body, notices, wearer, measuring }: PanelActionsOptions): BodyActions {
   return {
     chooseEstimator(name) {
       store.remember({ estimator: name });
       void body.choose(name);
     },
     calibrate: () => measuring.start(),
-    setMeasures({ heightCm, armSpanCm }) {
+    setMeasures({ heightCm, armSpanCm, forearmCm }) {
+      // What is measured of hands and gaze stays: no one types that.
+      const { forearm, ...measured } = body.wearerCalibration;
       const calibration = {
+        ...measured,
         eyeHeight: eyeHeightFromStature(heightCm / 100),
         armSpan: armSpanFromFingertipSpan(armSpanCm / 100),
+        ...(forearmCm !== null && { forearm: forearmCm / 100 }),
       };
       const complaint = calibrationComplaint(calibration);
       if (complaint) notices.show('warning', complaint);
       else wearer.calibrateForGood(calibration, 'by hand');
     },
     resetCalibration: () => wearer.resetCalibration(),
+    setDeviceBody: (deviceBody) => writer.change({ deviceBody }),
   };
 }
 
@@ -37,10 +42,14 @@ function avatarActions({ writer, avatar, files }: PanelActionsOptions): AvatarAc
   return {
     choosePalette(palette) {
       writer.keep({ palette });
-      avatar.wear(null);
+      avatar.recolour();
     },
     chooseOwnBody(ownBody) {
       writer.keep({ ownBody });
+      files.showOwnAvatar();
+    },
+    chooseSkinTone(skinTone) {
+      writer.keep({ skinTone });
       files.showOwnAvatar();
     },
     openAvatarFile: (file) => void files.open(file),
@@ -77,7 +86,16 @@ function recordingActions(options: PanelActionsOptions): RecordingActions {
     },
     exportMotion: (choice) => void motionExport.begin(choice),
     cancelExport: () => motionExport.cancel(),
-    openRecording: (file) => void files.openRecording(file),
+    openFiles: (chosen) => files.openAll(chosen),
+    seek(seconds) {
+      recorder.seek(seconds);
+      body.jumped();
+      onChange();
+    },
+    setPaused(on) {
+      recorder.setPaused(on);
+      onChange();
+    },
     setLoop(on) {
       recorder.setLoop(on);
       onChange();

@@ -18,6 +18,8 @@ export interface WindowLayoutOptions {
   /** Tells of the panel that opens or closes by an event, `toggle`. */
   readonly panelRegion: HTMLElement;
   panelOpen(): boolean;
+  /** What a card covers of the window, on the left or, of a narrow one, below; null: there is none. */
+  card(): DOMRect | null;
 }
 
 /** Controls cover a part of the window: the body stands in the middle of the rest. */
@@ -34,13 +36,16 @@ export class WindowLayout {
   }
 
   layOut(): void {
-    const { stage, panelOpen } = this.#options;
+    const { stage, panelOpen, card } = this.#options;
     const narrow = isNarrow();
     const open = panelOpen();
     const right = narrow || !open ? 0 : panelWidth;
     document.body.classList.toggle('panel-open', open);
     document.body.style.setProperty('--panel-inset', `${right}px`);
-    stage.layOut({ left: 0, right, bottom: narrow && open ? window.innerHeight * panelShare : this.#coveredBelow() });
+    const covered = card();
+    const left = narrow ? 0 : (covered?.right ?? 0);
+    const below = narrow && covered?.height ? window.innerHeight - covered.top : this.#coveredBelow();
+    stage.layOut({ left, right, bottom: narrow && open ? window.innerHeight * panelShare : below });
   }
 
   /** What the button that enters VR covers [CSS pixels]. */

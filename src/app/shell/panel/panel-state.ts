@@ -1,12 +1,13 @@
 import type { BoneMap } from '../../../avatar/bone-names';
 import type { EstimatorName } from '../../../core/estimation/pose-estimator';
-import type { OwnAvatar } from '../../../core/protocol/worn-avatar';
+import type { OwnBody, SkinTone } from '../../../core/protocol/worn-avatar';
 import type { ViewName } from '../../../scene/desktop-view';
 import type { WaitingForBones } from '../shown-avatar';
 
 /** What the recorder is doing; seconds since its start, of how many. */
 export interface RecorderState {
   readonly mode: 'idle' | 'recording' | 'replaying';
+  readonly paused: boolean;
   readonly seconds: number;
   readonly duration: number;
   readonly loop: boolean;
@@ -50,11 +51,15 @@ export interface PanelState {
   readonly shareAvatar: boolean;
   readonly plainOthers: boolean;
   /** Which body of our own is shown; null: another avatar is. */
-  readonly ownBody: OwnAvatar | null;
+  readonly ownBody: OwnBody | null;
+  /** Of people among our bodies; undefined: the one that the body comes with. */
+  readonly skinTone: SkinTone | undefined;
   /** Colours of our own avatar; null: another avatar is shown, which keeps its own. */
   readonly palette: string | null;
   readonly heightCm: number;
   readonly armSpanCm: number;
+  /** null: not told. */
+  readonly forearmCm: number | null;
   readonly eyeHeightCm: number;
   readonly calibrationSource: string;
   readonly actor: boolean;
@@ -64,18 +69,24 @@ export interface PanelState {
   /** null: nothing is being made. */
   readonly exporting: ExportState | null;
   readonly inSession: boolean;
+  /** Whether the next session asks the headset for its own body. */
+  readonly deviceBody: boolean;
+  /** Why the body of the headset that is worn is not there; null: it is, or none is worn. */
+  readonly bodyComplaint: string | null;
 }
 
 export interface BodyActions {
   chooseEstimator(name: EstimatorName): void;
   calibrate(): void;
-  setMeasures(measures: { readonly heightCm: number; readonly armSpanCm: number }): void;
+  setMeasures(measures: Pick<PanelState, 'heightCm' | 'armSpanCm' | 'forearmCm'>): void;
   resetCalibration(): void;
+  setDeviceBody(on: boolean): void;
 }
 
 export interface AvatarActions {
   choosePalette(name: string): void;
-  chooseOwnBody(name: OwnAvatar): void;
+  chooseOwnBody(name: OwnBody): void;
+  chooseSkinTone(tone: SkinTone): void;
   openAvatarFile(file: File): void;
   openAvatarUrl(url: string): void;
   showOwnAvatar(): void;
@@ -94,7 +105,10 @@ export interface RecordingActions {
   download(): void;
   exportMotion(choice: ExportChoice): void;
   cancelExport(): void;
-  openRecording(file: File): void;
+  /** Recordings, or the files of one motion. */
+  openFiles(files: readonly File[]): void;
+  seek(seconds: number): void;
+  setPaused(on: boolean): void;
   setLoop(on: boolean): void;
   setActor(on: boolean): void;
   setEmulatorPanel(on: boolean): void;

@@ -12,7 +12,8 @@ export function recorderText({ mode, name, seconds: passed, duration }: Recorder
   return name ? `${name}, ${seconds(duration)}` : 'Nothing recorded yet.';
 }
 
-const about = 'Keeps what is tracked, in full precision, on this device; any recording replays through any estimator.';
+const about =
+  'Keeps what is tracked, in full precision, on this device; any recording replays through any estimator. Motion capture (BVH, ASF with AMC, VRM Animation) is shown with the truth beside it.';
 
 function createRecorderSection(actions: RecordingActions) {
   const record = button('Record', () => actions.record(), { class: 'record' });
@@ -20,9 +21,14 @@ function createRecorderSection(actions: RecordingActions) {
   const replay = button('Replay', () => actions.replay());
   const download = button('Download', () => actions.download());
   const text = element('p', { class: 'recorder-text', role: 'status' });
-  const bar = element('progress', { max: 1, value: 0, 'aria-label': 'Progress of the replay' });
+  const slider = element('input', { type: 'range', min: 0, step: 0.01, 'aria-label': 'Second of the replay' });
+  slider.addEventListener('input', () => actions.seek(slider.valueAsNumber));
+  const pause = button('Pause', () => actions.setPaused(pause.textContent === 'Pause'));
   const loop = toggle('Loop', (on) => actions.setLoop(on));
-  const open = fileButton('Open recording', '.json,application/json', (file) => actions.openRecording(file));
+  const open = fileButton('Open recording', '.json,application/json', (files) => actions.openFiles(files));
+  const openMocap = fileButton('Open motion capture', '.bvh,.asf,.amc,.vrma', (files) => actions.openFiles(files), {
+    multiple: true,
+  });
   return {
     node: element(
       'section',
@@ -31,9 +37,9 @@ function createRecorderSection(actions: RecordingActions) {
       element('p', { class: 'hint' }, about),
       element('div', { class: 'row' }, record, stop, replay, download),
       text,
-      bar,
+      element('div', { class: 'row timeline' }, pause, slider),
       loop.node,
-      element('div', { class: 'row' }, ...open),
+      element('div', { class: 'row' }, ...open, ...openMocap),
     ),
     show(recorder: RecorderState) {
       const { mode, name, duration } = recorder;
@@ -41,8 +47,10 @@ function createRecorderSection(actions: RecordingActions) {
       stop.disabled = mode === 'idle';
       replay.disabled = mode === 'recording' || name === null;
       download.disabled = mode === 'recording' || name === null;
-      bar.hidden = mode !== 'replaying';
-      bar.value = duration > 0 ? recorder.seconds / duration : 0;
+      for (const node of [pause, slider]) node.hidden = mode !== 'replaying';
+      pause.textContent = recorder.paused ? 'Play' : 'Pause';
+      slider.max = String(duration);
+      slider.value = String(recorder.seconds);
       text.textContent = recorderText(recorder);
       loop.input.checked = recorder.loop;
     },

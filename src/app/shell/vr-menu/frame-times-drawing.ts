@@ -1,9 +1,9 @@
-import { type FrameReport, milliseconds, missedFrames } from '../../../ui/overlay';
+import { differenceLines, type FrameReport, milliseconds, missedFrames } from '../../../ui/overlay';
 import { fillRounded, vrColors, vrFont } from '../../../ui/vr-panel';
 
 /** The sheet of the frame times [pixels]. */
 export const frameTimesWidth = 520;
-export const frameTimesHeight = 460;
+export const frameTimesHeight = 530;
 
 interface Row {
   readonly label: string;
@@ -25,7 +25,7 @@ function drawRow(context: CanvasRenderingContext2D, y: number, { label, p50, p95
 
 /** Frame time by stage, on its sheet in the headset. */
 export function drawFrameTimes(context: CanvasRenderingContext2D, report: FrameReport): void {
-  const { p50Ms, p95Ms, stages, estimator, provider } = report;
+  const { p50Ms, p95Ms, stages, estimator, provider, fromDevice } = report;
   const times = (p50: number, p95: number) => ({ p50: milliseconds(p50), p95: milliseconds(p95) });
   const { glass, line, inkSoft, accent, ink } = vrColors;
   fillRounded(context, [2, 2, frameTimesWidth - 4, frameTimesHeight - 4], 32, glass, line);
@@ -42,4 +42,8 @@ export function drawFrameTimes(context: CanvasRenderingContext2D, report: FrameR
   context.font = `500 25px ${vrFont}`;
   context.fillText(missedFrames(report), 32, 386, 456);
   context.fillText(`${estimator} · ${provider}`, 32, 424, 456);
+  if (!fromDevice) return;
+  const [arms, trunk] = differenceLines(fromDevice);
+  context.fillText(arms, 32, 462, 456);
+  context.fillText(trunk, 32, 500, 456);
 }

@@ -1,7 +1,7 @@
-import { labelOf, ownBodies } from '../../../avatar/own-bodies';
+import { labelOf } from '../../../avatar/own-bodies';
 import type { EstimatorName } from '../../../core/estimation/pose-estimator';
 import type { Side } from '../../../core/math/side';
-import type { OwnAvatar } from '../../../core/protocol/worn-avatar';
+import { type OwnBody, ownBodies, plainAvatar, type SkinTone, skinTones } from '../../../core/protocol/worn-avatar';
 import type { CalibrationStep } from '../../../ui/calibration-dialog';
 import { estimatorOrder, estimatorTexts } from '../estimator-texts';
 import type { ActivityName } from '../play-bar';
@@ -12,9 +12,15 @@ export interface VrMenuState {
   readonly unavailable: Partial<Readonly<Record<EstimatorName, string>>>;
   readonly calibration: CalibrationStep | null;
   readonly overlay: boolean;
+  /** The device was asked for its own body. */
+  readonly deviceBody: boolean;
   readonly activity: ActivityName;
   /** Which of our bodies is worn, or would be in place of another avatar. */
-  readonly ownBody: OwnAvatar;
+  readonly ownBody: OwnBody;
+  /** Of people among them; undefined: the one that the body comes with. */
+  readonly skinTone: SkinTone | undefined;
+  /** Whether others are shown as mannequins. */
+  readonly plainOthers: boolean;
   readonly bowSide: Side;
   readonly roundOver: boolean;
   /** In the ball game, before and after a match: whether one is ready; null: not asked. */
@@ -30,7 +36,9 @@ export interface VrMenuActions {
   recentre(): void;
   setOverlay(on: boolean): void;
   goTo(activity: ActivityName): void;
-  chooseOwnBody(name: OwnAvatar): void;
+  chooseOwnBody(name: OwnBody): void;
+  chooseSkinTone(tone: SkinTone): void;
+  setPlainOthers(on: boolean): void;
   setBowSide(side: Side): void;
   restart(): void;
   ready(on: boolean): void;
@@ -53,6 +61,11 @@ export const menuMargin = 36;
 /** Below the buttons: notices [pixels from the top]. */
 export const noticesTop = 1012;
 
+/** Where the methods stand, as many as there are [pixels]. */
+const estimatorsTop = 116;
+const estimatorsHeight = 404;
+const estimatorGap = 12;
+
 const full = menuWidth - 2 * menuMargin;
 const gap = 16;
 const half = (full - gap) / 2;
@@ -71,38 +84,44 @@ function cancelButton(step: CalibrationStep, actions: VrMenuActions): MenuButton
   };
 }
 
-function estimatorButtons({ estimator, unavailable }: VrMenuState, actions: VrMenuActions): readonly MenuButton[] {
-  return estimatorOrder.map((name, index) => ({
+function estimatorButtons(
+  { estimator, unavailable, deviceBody }: VrMenuState,
+  actions: VrMenuActions,
+): readonly MenuButton[] {
+  const offered = estimatorOrder.filter((name) => deviceBody || name !== 'device');
+  const each = (estimatorsHeight + estimatorGap) / offered.length;
+  return offered.map((name, index) => ({
     id: name,
     label: estimatorTexts[name].label,
-    at: [menuMargin, 116 + index * 104, full, 92],
+    at: [menuMargin, estimatorsTop + index * each, full, each - estimatorGap],
     look: unavailable[name] !== undefined ? 'off' : name === estimator ? 'chosen' : 'plain',
     act: () => actions.chooseEstimator(name),
   }));
 }
 
-/** The next of our bodies; after the last the first. */
-function bodyAfter(name: OwnAvatar): OwnAvatar {
-  const index = ownBodies.findIndex((body) => body.name === name);
-  return ownBodies[(index + 1) % ownBodies.length]?.name ?? name;
-}
+/** What a button brings that goes round: after the last the first. */
+const after = <T>(all: readonly [T, ...T[]], chosen: T | undefined): T =>
+  all[chosen === undefined ? 0 : all.indexOf(chosen) + 1] ?? all[0];
 
 /** Where one can go from here, and what one can do here. */
-function playEntries(
-  { activity, ready, roundOver, bowSide, ownBody }: VrMenuState,
-  actions: VrMenuActions,
-): readonly Entry[] {
+function playEntries(state: VrMenuState, actions: VrMenuActions): readonly Entry[] {
+  const { activity, ready, roundOver, bowSide, ownBody, skinTone, plainOthers } = state;
   const studio: Entry = ['studio', 'To the mirror', () => actions.goTo('studio')];
   if (activity === 'studio')
     return [
       ['archery', 'Archery', () => actions.goTo('archery')],
       ['ball', 'Ball game', () => actions.goTo('ball')],
-      ['body', `Body: ${labelOf(ownBody)}`, () => actions.chooseOwnBody(bodyAfter(ownBody))],
+      ['body', `Body: ${labelOf(ownBody)}`, () => actions.chooseOwnBody(after(ownBodies, ownBody))],
+      ...(ownBody === plainAvatar
+        ? []
+        : [['skin', `Skin: ${skinTone ?? 'own'}`, () => actions.chooseSkinTone(after(skinTones, skinTone))] as const]),
     ];
   if (activity === 'ball')
-    return ready === null
-      ? [studio]
-      : [studio, ['ready', ready ? 'Wait for me' : 'Ready', () => actions.ready(!ready)]];
+    return [
+      studio,
+      ...(ready === null ? [] : [['ready', ready ? 'Wait for me' : 'Ready', () => actions.ready(!ready)] as const]),
+      ['others', `Others: ${plainOthers ? 'plain' : 'as worn'}`, () => actions.setPlainOthers(!plainOthers)],
+    ];
   if (roundOver) return [studio, ['restart', 'New round', () => actions.restart()]];
   const other = bowSide === 'left' ? 'right' : 'left';
   return [studio, ['bow', `Bow: ${bowSide} hand`, () => actions.setBowSide(other)]];
