@@ -9,11 +9,13 @@ const coreFolders = {
   tracking: ['math', 'body', 'errors'],
   estimation: ['math', 'body', 'tracking', 'errors'],
   motion: ['math', 'body', 'tracking', 'estimation', 'errors'],
+  mocap: ['math', 'body', 'tracking', 'motion', 'errors'],
   games: ['math', 'tracking'],
   protocol: ['math', 'body', 'tracking', 'games'],
   room: ['math', 'body', 'tracking', 'protocol', 'errors'],
   'match-policies': ['math', 'games', 'protocol', 'room'],
-  study: ['math', 'body', 'tracking', 'estimation', 'errors'],
+  statistics: ['math'],
+  study: ['math', 'body', 'tracking', 'estimation', 'protocol', 'statistics', 'errors'],
 };
 
 const coreRules = Object.entries(coreFolders).map(([folder, known]) => ({
@@ -51,7 +53,7 @@ export default {
       severity: 'error',
       from: {
         path: '^src/core/',
-        pathNot: '^src/core/study/|^src/core/protocol/(messages|ball-messages|ball-snapshot)\\.ts$',
+        pathNot: '^src/core/(study|statistics)/|^src/core/protocol/(messages|ball-messages|ball-snapshot)\\.ts$',
       },
       to: { pathNot: '^src/core/' },
     },
@@ -65,19 +67,19 @@ export default {
     {
       name: 'core-study-is-pure',
       comment:
-        'As core-is-pure, with two exceptions, both of them functions of their arguments alone: valibot, because study files and ' +
-        'records arrive from outside and errors must name the field; and, in statistics.ts, the distribution functions of ' +
-        'stdlib, because p-values belong to a library that agrees with R.',
+        'As core-is-pure, with valibot, a function of its arguments alone: study files and records arrive from outside, and errors ' +
+        'must name the field.',
       severity: 'error',
-      from: { path: '^src/core/study/', pathNot: '^src/core/study/statistics\\.ts$' },
+      from: { path: '^src/core/study/' },
       to: { pathNot: ['^src/core/', packagePath('valibot')] },
     },
     {
       name: 'core-statistics-is-pure',
-      comment: 'See core-study-is-pure.',
+      comment:
+        'As core-is-pure, with the distribution functions of stdlib: p-values belong to a library that agrees with R.',
       severity: 'error',
-      from: { path: '^src/core/study/statistics\\.ts$' },
-      to: { pathNot: ['^src/core/', packagePath('@stdlib/stats-base-dists-[^/]+')] },
+      from: { path: '^src/core/statistics/' },
+      to: { pathNot: ['^src/core/', packagePath('@stdlib/(stats-base-dists|math-base-special)-[^/]+')] },
     },
     {
       name: 'library-knows-no-page',
@@ -155,9 +157,9 @@ export default {
     {
       name: 'activities-are-strangers',
       comment:
-        'A game, the studio and the study can each be taken away: they know neither each other nor the shell, which introduces them.',
+        'A game, the studio, motion capture and the study can each be taken away: they know neither each other nor the shell, which introduces them.',
       severity: 'error',
-      from: { path: '^src/app/(archery|ball|study|studio)/' },
+      from: { path: '^src/app/(archery|ball|mocap|study|studio)/' },
       to: { path: '^src/app/', pathNot: '^src/app/$1/' },
     },
     {

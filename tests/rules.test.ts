@@ -87,7 +87,7 @@ describe('the import rules', () => {
       'core-study-is-pure',
       { 'src/core/study/plan.ts': "import '@stdlib/stats-base-dists-t-cdf';" },
     ],
-    ['which needs nothing else', 'core-statistics-is-pure', { 'src/core/study/statistics.ts': "import 'valibot';" }],
+    ['which needs nothing else', 'core-statistics-is-pure', { 'src/core/statistics/a.ts': "import 'valibot';" }],
     ['core imports no Node', 'core-is-pure', { 'src/core/math/a.ts': "import 'node:fs';" }],
     ['adapters do not meet', 'adapters-are-strangers', { 'src/ui/a.ts': "import '../xr/b';", 'src/xr/b.ts': empty }],
     [
@@ -201,7 +201,7 @@ describe('the import rules', () => {
       'src/core/estimation/estimators.ts':
         "import '../math/vec3';\nimport '../body/skeleton';\nimport '../tracking/tracking-frame';",
       'src/core/study/plan.ts': "import 'valibot';",
-      'src/core/study/statistics.ts': "import '@stdlib/stats-base-dists-t-cdf';",
+      'src/core/statistics/a.ts': "import '@stdlib/stats-base-dists-t-cdf';",
       'src/scene/renderer.ts': "import 'three';",
       'src/avatar/mirror.ts':
         "import 'three';\nimport '@pixiv/three-vrm';\nimport '../scene/renderer';\nimport '../core/body/skeleton';",
