@@ -20,15 +20,10 @@ async function match(page: Page): Promise<BallProbe | null> {
 /** Waits until the match is as asked; fails with how it is. */
 async function until(page: Page, what: (game: BallProbe) => boolean, timeout = 60_000): Promise<BallProbe> {
   let last: BallProbe | null = null;
-  await expect
-    .poll(
-      async () => {
-        last = await match(page);
-        return last !== null && what(last);
-      },
-      { timeout, message: () => `the match: ${JSON.stringify(last)}` } as { timeout: number },
-    )
-    .toBe(true);
+  await expect(async () => {
+    last = await match(page);
+    expect(last !== null && what(last), `the match: ${JSON.stringify(last)}`).toBe(true);
+  }).toPass({ timeout, intervals: [100, 250, 500] });
   return last as unknown as BallProbe;
 }
 
