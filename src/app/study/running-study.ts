@@ -1,3 +1,4 @@
+import { reasonOf } from '../../core/errors/reasons';
 import type { Side } from '../../core/math/side';
 import type { ProgressEvent } from '../../core/study/advance';
 import { placeOf } from '../../core/study/progress';
@@ -13,7 +14,14 @@ import type { StudyHost } from './study-host';
 import type { StudyPage } from './study-page';
 import { lockedOutScreen, screenOf, screenQuestions } from './study-screens';
 import type { ScreenActions } from './study-situation';
-import { type FinishedTrial, isPlayed, type PlayedStep, type PlayedTrial, playTrial } from './study-trial';
+import {
+  type FinishedTrial,
+  isPlayed,
+  lastPlayedBefore,
+  type PlayedStep,
+  type PlayedTrial,
+  playTrial,
+} from './study-trial';
 import type { TaskPlace, TaskRunner } from './task-runner';
 import { TrialPreparation } from './trial-preparation';
 
@@ -47,6 +55,8 @@ export class RunningStudy {
   #triedToSubmit = false;
   #refusal: string | null = null;
   #shownStep = '';
+  /** Whether this visit of the page has put a body on yet. */
+  #embodied = false;
   /** null: no one is being measured. */
   #calibration: CalibrationStep | null = null;
 
@@ -209,6 +219,26 @@ export class RunningStudy {
     this.#calibration = null;
     // After a reload a questionnaire goes on where the first answer is missing.
     this.#question = Math.max(0, this.#firstOpenQuestion());
+    if (!this.#embodied) void this.#wearAgain();
+  }
+
+  /** Before a reload the participant wore the body of what was played last, and still does in the rest and the questions that follow. */
+  async #wearAgain(): Promise<void> {
+    const { step } = this.session;
+    const played = isPlayed(step) ? undefined : lastPlayedBefore(this.session.schedule, step);
+    if (!played) return;
+    try {
+      await this.#embody(played);
+    } catch (error) {
+      if (this.session.step !== step) return;
+      this.#refusal = reasonOf(error);
+      this.show();
+    }
+  }
+
+  #embody(step: PlayedStep): Promise<void> {
+    this.#embodied = true;
+    return this.#host.embody(step.embodiment, this.#seedOf(step));
   }
 
   #settleTrial(step: PlayedStep): void {
@@ -224,7 +254,7 @@ export class RunningStudy {
   async #load(step: PlayedStep): Promise<void> {
     const runner = this.#runnerOf(step);
     if (!runner) throw new Error('This page cannot play the game of this task.');
-    await Promise.all([runner.prepare(this.#placeFor(step)), this.#host.embody(step.embodiment, this.#seedOf(step))]);
+    await Promise.all([runner.prepare(this.#placeFor(step)), this.#embody(step)]);
   }
 
   #runnerOf(step: PlayedStep): TaskRunner | null {

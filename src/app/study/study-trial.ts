@@ -1,6 +1,6 @@
 import type { Calibration } from '../../core/body/calibration';
 import type { EstimatorName } from '../../core/estimation/pose-estimator';
-import type { StudyStep } from '../../core/study/schedule';
+import type { Schedule, StudyStep } from '../../core/study/schedule';
 import { TrialSeconds } from '../../core/study/trial-clock';
 import { createTrialLog, type FrameListener, type TrialLog, type TrialOutcome } from '../../core/study/trial-log';
 import { writeRecording } from '../../core/tracking/recording';
@@ -11,6 +11,15 @@ import type { TaskEnd, TaskRunner } from './task-runner';
 export type PlayedStep = Extract<StudyStep, { kind: 'trial' | 'tutorial' }>;
 
 export const isPlayed = (step: StudyStep): step is PlayedStep => step.kind === 'trial' || step.kind === 'tutorial';
+
+/** What was played last before a step; undefined: nothing. */
+export const lastPlayedBefore = ({ steps }: Pick<Schedule, 'steps'>, { id }: StudyStep): PlayedStep | undefined =>
+  steps
+    .slice(
+      0,
+      steps.findIndex((step) => step.id === id),
+    )
+    .findLast(isPlayed);
 
 /** What a trial needs of the page. */
 export interface TrialHost {

@@ -331,7 +331,7 @@ function answer(tab: Tab, questions: readonly string[]): void {
 }
 
 describe('a questionnaire', () => {
-  test('goes on after a reload where the first answer is missing', async () => {
+  test('goes on after a reload where the first answer is missing, in the body of its round', async () => {
     const { device, tab } = await beforeTheQuestions(await studyServer());
     choose(tab, 3);
     tab.display.press('next');
@@ -340,9 +340,13 @@ describe('a questionnaire', () => {
     choose(tab, 5);
     await tab.exchange();
     tab.close();
+    const { embodiment } = tab.host;
 
     const again = await device.open();
     expect(again.display.shown).toBe('question-Q2');
+    // A fresh page has hands alone, as the practice had.
+    expect(again.host.embodiment).toEqual(embodiment);
+    expect(embodiment.estimator).not.toBe('hands-only');
     expect(again.display.screen?.question?.all.map(({ state }) => state)).toEqual([
       ...['answered', 'open', 'answered'],
       ...['open', 'open', 'open', 'open'],
