@@ -16,6 +16,7 @@ const coreFolders = {
   'match-policies': ['math', 'games', 'protocol', 'room'],
   statistics: ['math'],
   study: ['math', 'body', 'tracking', 'estimation', 'protocol', 'statistics', 'errors'],
+  rehearsal: ['math', 'study'],
 };
 
 const coreRules = Object.entries(coreFolders).map(([folder, known]) => ({

@@ -1,8 +1,8 @@
 import { readFileSync } from 'node:fs';
 import { strFromU8, unzipSync } from 'fflate';
-import { plantedAnswerModel } from '../scripts/study-simulate/answer-model';
-import { statedPerformanceModel } from '../scripts/study-simulate/performance-model';
-import { simulatedPlan, simulateStudy } from '../scripts/study-simulate/simulate-study';
+import { answerModelWith } from '../src/core/rehearsal/answer-model';
+import { statedPerformanceModel } from '../src/core/rehearsal/performance-model';
+import { simulatedPlan, simulateStudy } from '../src/core/rehearsal/simulate-study';
 import { parsePlan, type StudyPlan } from '../src/core/study/plan';
 import { expect } from './page-fixture';
 import { openResults, test } from './study-participant';
@@ -13,7 +13,7 @@ async function simulateOn(origin: string): Promise<StudyPlan> {
   const plan = simulatedPlan(parsePlan(readFileSync('public/studies/paper.json', 'utf8'), 'paper.json'));
   const experimenting = experimenter(origin);
   await experimenting.begin(plan, true);
-  const models = { answers: plantedAnswerModel('learned', 0.8), performance: statedPerformanceModel };
+  const models = { answers: answerModelWith({ learned: 0.8 }), performance: statedPerformanceModel };
   for (const { participant, records } of simulateStudy(plan, models, 3, 1_767_600_000)) {
     const path = `/${plan.id}/participants/${participant}`;
     await experimenting.ask(`${path}/claim`, 'POST', {});

@@ -1,20 +1,26 @@
-// npm run study:simulate -- --participants 15 --out DIR [--seed 7] [--effect 0.5] [--plan STUDY.json]:
-// a whole study of simulated participants through the sessions, the store and the exports; docs/study.md says how they are modelled.
-import { join, resolve } from 'node:path';
+// npm run study:simulate -- STUDY.json [--out DIR] [--participants 15] [--seed 7] [--effect late-200=-0.8 …] [--score-effect late-200=-0.1 …]:
+// a rehearsal, a whole study of simulated participants through the sessions, the store and the exports; docs/study.md says how they are modelled.
+import { basename, join, resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { ensureInstalled } from './installation.mjs';
 import { main, root, run, SetupError } from './run-command.mjs';
 
 const usage =
-  'npm run study:simulate -- --out DIR [--participants 15] [--seed NUMBER] [--effect POINTS] [--plan STUDY.json]\n' +
-  'DIR must be empty or new: simulated files are never put among others.';
+  'npm run study:simulate -- [STUDY.json] [--out DIR] [--participants 15] [--seed NUMBER] [--effect CONDITION=POINTS …] ' +
+  '[--score-effect CONDITION=CHANCE …]\n' +
+  "Without a study: the paper's. DIR must be empty or new: simulated files are never put among others.";
 
 function options() {
   const text = { type: 'string' };
+  const several = { type: 'string', multiple: true };
   try {
-    const { values } = parseArgs({ options: { participants: text, out: text, seed: text, effect: text, plan: text } });
-    if (!values.out) throw new Error('--out is needed');
-    return values;
+    const { values, positionals } = parseArgs({
+      allowPositionals: true,
+      options: { participants: text, out: text, seed: text, plan: text, effect: several, 'score-effect': several },
+    });
+    const plans = [...positionals, ...(values.plan ? [values.plan] : [])];
+    if (plans.length > 1) throw new Error(`one study at a time, not ${plans.join(' and ')}`);
+    return { ...values, plan: plans[0] };
   } catch (error) {
     throw new SetupError(`study:simulate: ${error.message}\n${usage}`);
   }
@@ -22,12 +28,15 @@ function options() {
 
 await main(async () => {
   const { out, plan, ...rest } = options();
+  const study = plan ?? join(root, 'public/studies/paper.json');
+  const into = out ?? `SIMULATED-${basename(study, '.json')}`;
   await ensureInstalled();
   // Paths on the command line mean what they mean to the person who typed them.
   const path = (name) => resolve(process.env.INIT_CWD ?? process.cwd(), name);
-  const args = ['--import', 'tsx', 'scripts/study-simulate/main.ts', '--out', path(out)];
-  args.push('--plan', plan ? path(plan) : join(root, 'public/studies/paper.json'));
-  for (const [name, value] of Object.entries(rest)) args.push(`--${name}=${value}`);
+  const args = ['--import', 'tsx', 'scripts/study-simulate/main.ts', '--out', path(into), '--plan', path(study)];
+  for (const [name, value] of Object.entries(rest)) {
+    for (const one of [value].flat()) args.push(`--${name}=${one}`);
+  }
   const { code } = await run(process.execPath, args);
   return code;
 });

@@ -1,51 +1,64 @@
 import { existsSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
-import { parseArgs } from 'node:util';
 import { exportFiles, exportName, exportZip } from '../../server/study-export';
 import { openStudyStore } from '../../server/study-store';
+import { modelsWith, simulatedPlan, simulateStudy, statedInWords } from '../../src/core/rehearsal/simulate-study';
+import { cohortsByParticipant } from '../../src/core/study/allocation';
+import { compareAll } from '../../src/core/study/compare-all';
 import { compareAnswers, compareScores } from '../../src/core/study/compare-conditions';
-import { checkedPlan, parsePlan } from '../../src/core/study/plan';
+import { checkedPlan, parsePlan, type StudyPlan } from '../../src/core/study/plan';
+import type { StudyRecord } from '../../src/core/study/study-record';
 import { answersIn, trialsIn } from '../../src/core/study/study-tables';
 import { ValidationError } from '../../src/core/study/validation';
-import { nullAnswerModel, plantedAnswerModel } from './answer-model';
-import { statedPerformanceModel } from './performance-model';
-import { simulatedPlan, simulateStudy } from './simulate-study';
+import { simulateOptions } from './options';
 
 /** When the first simulated participant begins: a fixed day, so that the same seed gives the same files. */
 const firstSession = Date.UTC(2026, 0, 5, 9) / 1000;
 
-function options() {
-  const text = { type: 'string' } as const;
-  const { values } = parseArgs({
-    options: { participants: text, out: text, seed: text, effect: text, plan: text },
-  });
-  if (!values.out || !values.plan) throw new ValidationError('', 'both --out and --plan are needed');
-  const whole = (name: 'participants' | 'seed') => {
-    const given = values[name];
-    if (given === undefined) return null;
-    if (!/^\d{1,9}$/.test(given)) throw new ValidationError(`--${name}`, `expected a whole number, not "${given}"`);
-    return Number(given);
-  };
-  const effect = Number(values.effect ?? 0);
-  if (!Number.isFinite(effect)) throw new ValidationError('--effect', `expected a number, not "${values.effect}"`);
-  return { out: values.out, plan: values.plan, participants: whole('participants'), seed: whole('seed'), effect };
+/** Everything that was found, line by line. */
+function findings(records: readonly StudyRecord[], plan: StudyPlan): readonly string[] {
+  const [baseline, other] = plan.conditions;
+  const answers = answersIn(records, plan);
+  const lines: string[] = [];
+  if (plan.conditions.length > 2 || plan.cohorts) {
+    const cohorts = cohortsByParticipant(plan);
+    const all = compareAll(answers, {
+      conditions: plan.conditions.map(({ id }) => id),
+      cohortOf: (participant) => cohorts.get(participant)?.id ?? '',
+    });
+    lines.push('Analyses of variance, Holm over all questions:');
+    for (const { of, variance, holmP } of all) {
+      const effect = variance?.within ?? variance?.between ?? null;
+      lines.push(`  ${of}: F(${effect?.df.join(', ')}) = ${effect?.f?.toFixed(2)}, Holm p = ${holmP?.toFixed(4)}`);
+    }
+  }
+  if (!baseline || !other) return lines;
+  const { comparisons } = compareAnswers(answers, [other.id, baseline.id]);
+  lines.push(`${other.id} − ${baseline.id}, paired t-tests, Holm over all questions:`);
+  for (const { of, test, holmP } of comparisons) {
+    const found =
+      test?.t == null ? 'all differences alike' : `t(${test.df}) = ${test.t.toFixed(2)}, Holm p = ${holmP?.toFixed(4)}`;
+    lines.push(`  ${of.padEnd(4)} ${found}`);
+  }
+  for (const { of, first, second, test } of compareScores(trialsIn(records), [other.id, baseline.id]).points
+    .comparisons) {
+    const p = test?.p == null ? '' : `, p = ${test.p.toFixed(3)}`;
+    lines.push(`  ${of}: ${first?.mean.toFixed(2)} against ${second?.mean.toFixed(2)} points (n = ${test?.n})${p}`);
+  }
+  return lines;
 }
 
 function run(): void {
-  const { out, plan: planFile, participants, seed: givenSeed, effect } = options();
+  const { out, plan: planFile, participants, seed: givenSeed, effectsOn } = simulateOptions();
   if (existsSync(out) && readdirSync(out).length > 0) {
     throw new ValidationError('--out', `${out} is not empty: simulated files are never put among others`);
   }
   if (!existsSync(planFile)) throw new ValidationError('--plan', `there is no file ${planFile}`);
-  const shipped = parsePlan(readFileSync(planFile, 'utf8'), planFile);
-  const seed = givenSeed ?? shipped.seed;
-  const plan = checkedPlan(simulatedPlan({ ...shipped, seed, ...(participants !== null && { participants }) }));
-  const [baseline, treated] = plan.conditions;
-  if (!baseline || !treated) throw new ValidationError('conditions', 'expected at least two conditions to compare');
-  const models = {
-    answers: effect === 0 ? nullAnswerModel : plantedAnswerModel(treated.id, effect),
-    performance: statedPerformanceModel,
-  };
+  const given = parsePlan(readFileSync(planFile, 'utf8'), planFile);
+  const seed = givenSeed ?? given.seed;
+  const plan = checkedPlan(simulatedPlan({ ...given, seed, ...(participants !== null && { participants }) }));
+  const effects = effectsOn(plan);
+  const models = modelsWith(plan, effects);
   const simulated = simulateStudy(plan, models, seed, firstSession);
 
   const write = (path: string, content: string | Uint8Array) => {
@@ -73,28 +86,12 @@ function run(): void {
       const own = content(participant);
       write(join('participants', `${exportName(own, participant)}.zip`), exportZip(own, participant));
     }
-    const conditions: [string, string] = [treated.id, baseline.id];
-    const answers = compareAnswers(answersIn(all.records, plan), conditions);
-    const scores = compareScores(trialsIn(all.records), conditions);
-    write('SIMULATED-models.json', `${JSON.stringify({ simulated: true, seed, effect, models }, null, 2)}\n`);
-    write('SIMULATED-results.json', `${JSON.stringify({ simulated: true, conditions, answers, scores }, null, 2)}\n`);
+    write('SIMULATED-models.json', `${JSON.stringify({ simulated: true, seed, effects, models }, null, 2)}\n`);
 
     console.log(`SIMULATED study of ${simulated.length} participants, ${all.records.length} records, seed ${seed}.`);
-    console.log(
-      `Put in: ${effect} points for "${treated.id}". ${conditions.join(' − ')}, paired t-tests, Holm over all questions:`,
-    );
-    for (const { of, test, holmP } of answers.comparisons) {
-      const numbers =
-        test?.t == null
-          ? 'all differences alike'
-          : `t(${test.df}) = ${test.t.toFixed(2)}, Holm p = ${holmP?.toFixed(4)}`;
-      console.log(`  ${of.padEnd(4)} ${numbers}`);
-    }
-    for (const { of, first, second, test } of scores.points.comparisons) {
-      const p = test?.p == null ? '' : `, p = ${test.p.toFixed(3)}`;
-      console.log(`  ${of}: ${first?.mean.toFixed(2)} against ${second?.mean.toFixed(2)} points (n = ${test?.n})${p}`);
-    }
-    console.log(`Left out: ${answers.excluded.length + scores.points.excluded.length}. Files are in ${out}.`);
+    console.log(`Put in: ${statedInWords(effects)}`);
+    for (const line of findings(all.records, plan)) console.log(line);
+    console.log(`Open ${join(out, `${name}.zip`)} on /results: all tables and figures.`);
   } finally {
     store.close();
   }

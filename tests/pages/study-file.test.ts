@@ -1,9 +1,9 @@
 import { strToU8, zipSync } from 'fflate';
 import { expect, test } from 'vitest';
-import { nullAnswerModel } from '../../scripts/study-simulate/answer-model';
-import { statedPerformanceModel } from '../../scripts/study-simulate/performance-model';
-import { simulatedPlan, simulateStudy } from '../../scripts/study-simulate/simulate-study';
 import { exportZip } from '../../server/study-export';
+import { nullAnswerModel } from '../../src/core/rehearsal/answer-model';
+import { statedPerformanceModel } from '../../src/core/rehearsal/performance-model';
+import { simulatedPlan, simulateStudy } from '../../src/core/rehearsal/simulate-study';
 import { compareAnswers } from '../../src/core/study/compare-conditions';
 import { comparisonTable, paperTable } from '../../src/core/study/result-tables';
 import { answersIn } from '../../src/core/study/study-tables';

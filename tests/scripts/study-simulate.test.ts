@@ -4,15 +4,15 @@ import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { strFromU8, unzipSync } from 'fflate';
 import { describe, expect, test } from 'vitest';
-import { nullAnswerModel, plantedAnswerModel } from '../../scripts/study-simulate/answer-model';
-import { statedPerformanceModel } from '../../scripts/study-simulate/performance-model';
-import { randomSource } from '../../scripts/study-simulate/random-source';
-import { simulatedPlan, simulateStudy } from '../../scripts/study-simulate/simulate-study';
+import { answerModelWith, nullAnswerModel } from '../../src/core/rehearsal/answer-model';
+import { statedPerformanceModel } from '../../src/core/rehearsal/performance-model';
+import { randomSource } from '../../src/core/rehearsal/random-source';
+import { simulatedPlan, simulateStudy } from '../../src/core/rehearsal/simulate-study';
 import { groupsOf } from '../../src/core/study/allocation';
 import { compareAnswers, compareScores } from '../../src/core/study/compare-conditions';
 import { checkedRecord } from '../../src/core/study/study-record';
 import { answersIn, trialsIn } from '../../src/core/study/study-tables';
-import { paperPlan } from '../core/study/studies';
+import { latencyPlan, paperPlan } from '../core/study/studies';
 import { directoryWith } from '../temporary-directory';
 
 const root = fileURLToPath(new URL('../..', import.meta.url));
@@ -77,7 +77,7 @@ describe('a simulated study', () => {
 
   test('shows the analysis what was put in: answers and scores', () => {
     const performance = { ...statedPerformanceModel, hitChance: [0.6, 0.5, 0.4, 0.3], effects: { learned: 0.5 } };
-    const records = simulate({ answers: plantedAnswerModel('learned', 1.5), performance });
+    const records = simulate({ answers: answerModelWith({ learned: 1.5 }), performance });
     const answers = compareAnswers(answersIn(records, plan), ['learned', 'ik']);
     expect(answers.simulated).toBe(true);
     expect(answers.comparisons.filter(({ holmP }) => (holmP ?? 1) < 0.05).length).toBeGreaterThan(6);
@@ -110,7 +110,6 @@ describe('npm run study:simulate', () => {
       'SIMULATED-models.json',
       'SIMULATED-paper-simulated',
       'SIMULATED-paper-simulated.zip',
-      'SIMULATED-results.json',
       'SIMULATED-studies.db',
       'participants',
     ]);
@@ -122,7 +121,43 @@ describe('npm run study:simulate', () => {
     expect(simulateInto(out).stderr).toContain('is not empty');
   });
 
+  test('rehearses any plan with the effects that are stated: between cohorts, three conditions, several questionnaires', {
+    timeout: 60_000,
+  }, () => {
+    const mixed = latencyPlan({
+      cohorts: [
+        { id: 'own-size', label: 'Adult', avatar: 'woman' },
+        { id: 'small', label: 'Child', avatar: 'child' },
+      ],
+    });
+    const directory = directoryWith({ 'mixed.json': JSON.stringify(mixed) });
+    const out = join(directory, 'out');
+    const effects = ['--effect', 'late-200=-1.5', '--effect', 'small=1', '--score-effect', 'late-200=-0.2'];
+    const { status, stdout, stderr } = simulateInto(
+      out,
+      join(directory, 'mixed.json'),
+      '--seed',
+      '4',
+      '--participants',
+      '24',
+      ...effects,
+    );
+    expect(stderr).toBe('');
+    expect(status).toBe(0);
+    expect(stdout).toContain(
+      'answers −1.5 points under "late-200"; answers +1 points under "small"; chances to hit −0.2 under "late-200".',
+    );
+    expect(stdout).toMatch(/own-body: F\(2, 44\) = \d+\.\d+, Holm p = 0\.0000/);
+    const { seed, effects: stated } = JSON.parse(readFileSync(join(out, 'SIMULATED-models.json'), 'utf8'));
+    expect({ seed, stated }).toEqual({
+      seed: 4,
+      stated: { answers: { 'late-200': -1.5, small: 1 }, scores: { 'late-200': -0.2 } },
+    });
+  });
+
   test.each<[string[], string]>([
+    [['--effect', 'sideways=1'], 'there is no condition or cohort "sideways"'],
+    [['--effect', 'learned=much'], '--effect: expected a number'],
     [['--participants', '16'], 'cannot be divided into groups of 3'],
     [['--participants', 'many'], '--participants: expected a whole number'],
     [['--plan', 'none.json'], 'there is no file'],

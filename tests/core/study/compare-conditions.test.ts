@@ -1,12 +1,12 @@
 import { describe, expect, test } from 'vitest';
 import {
   type AnswerModel,
+  answerModelWith,
   drawAnswers,
   drawPerson,
   nullAnswerModel,
-  plantedAnswerModel,
-} from '../../../scripts/study-simulate/answer-model';
-import { randomSource } from '../../../scripts/study-simulate/random-source';
+} from '../../../src/core/rehearsal/answer-model';
+import { randomSource } from '../../../src/core/rehearsal/random-source';
 import { ordersByGroup } from '../../../src/core/study/allocation';
 import type { AnswerRow } from '../../../src/core/study/answer-tables';
 import { compareAnswers, compareScores } from '../../../src/core/study/compare-conditions';
@@ -25,20 +25,20 @@ function simulatedAnswers(model: AnswerModel, study: number): AnswerRow[] {
     const person = drawPerson(model, random);
     return order.flatMap(({ id: condition }, place) =>
       questionnairesOf(plan).flatMap((questionnaire) =>
-        Object.entries(drawAnswers(model, questionnaire, { person, condition, block: place + 1 }, random)).map(
-          ([question, answer]) => ({
-            participant: `P${String(index + 1).padStart(2, '0')}`,
-            simulated: true,
-            task: questionnaire.id,
-            block: place + 1,
-            run: 1,
-            condition,
-            questionnaire: questionnaire.id,
-            question,
-            answer,
-            excluded: '',
-          }),
-        ),
+        Object.entries(
+          drawAnswers(model, questionnaire, { person, cohort: null, condition, block: place + 1 }, random),
+        ).map(([question, answer]) => ({
+          participant: `P${String(index + 1).padStart(2, '0')}`,
+          simulated: true,
+          task: questionnaire.id,
+          block: place + 1,
+          run: 1,
+          condition,
+          questionnaire: questionnaire.id,
+          question,
+          answer,
+          excluded: '',
+        })),
       ),
     );
   });
@@ -61,7 +61,7 @@ describe('an analysis of simulated studies', () => {
 
   test('finds an effect of 1.5 points in most questions of every study, and in the direction put in', () => {
     for (let study = 0; study < 20; study++) {
-      const { comparisons } = compareAnswers(simulatedAnswers(plantedAnswerModel('learned', 1.5), study), [
+      const { comparisons } = compareAnswers(simulatedAnswers(answerModelWith({ learned: 1.5 }), study), [
         ...conditions,
       ]);
       const found = comparisons.filter(({ holmP }) => (holmP ?? 1) < 0.05);

@@ -1,7 +1,7 @@
 import { describe, expect, test } from 'vitest';
-import { nullAnswerModel } from '../../../scripts/study-simulate/answer-model';
-import { statedPerformanceModel } from '../../../scripts/study-simulate/performance-model';
-import { simulateStudy } from '../../../scripts/study-simulate/simulate-study';
+import { nullAnswerModel } from '../../../src/core/rehearsal/answer-model';
+import { statedPerformanceModel } from '../../../src/core/rehearsal/performance-model';
+import { simulateStudy } from '../../../src/core/rehearsal/simulate-study';
 import { compareAnswers } from '../../../src/core/study/compare-conditions';
 import { checkedPlan, languagesOf, participantsOf, type StudyPlan } from '../../../src/core/study/plan';
 import { resumed } from '../../../src/core/study/progress';

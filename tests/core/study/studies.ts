@@ -45,6 +45,15 @@ export const examplePlan = (): StudyPlan =>
     'example.json',
   );
 
+/** The second shipped study: three latencies, questionnaires on the body and on the work load. */
+export const latencyPlan = (changes: Partial<StudyPlan> = {}): StudyPlan => ({
+  ...parsePlan(
+    readFileSync(fileURLToPath(new URL('../../../public/studies/latency.json', import.meta.url)), 'utf8'),
+    'latency.json',
+  ),
+  ...changes,
+});
+
 /** This number where a form takes it, or what is nearest to it; a text that says it. */
 function answerFor(form: AnswerForm, value: number): Answer {
   if (form.kind === 'text') return `${value}`.slice(0, form.maxLength);

@@ -1,5 +1,5 @@
-import type { Question } from '../../src/core/study/questionnaire-schema';
-import { type Answer, type Answers, nearestOn, type Questionnaire } from '../../src/core/study/questionnaires';
+import type { Question } from '../study/questionnaire-schema';
+import { type Answer, type Answers, nearestOn, type Questionnaire } from '../study/questionnaires';
 import type { RandomSource } from './random-source';
 
 /**
@@ -14,7 +14,7 @@ export interface AnswerModel {
   readonly personDeviation: number;
   /** Standard deviation of one answer about its leaning. */
   readonly answerDeviation: number;
-  /** Added under a condition to a question: effects[condition][question]; "*" is every question not named. */
+  /** Added under a condition, or in a cohort, to a question: effects[its id][question]; "*" is every question not named. */
   readonly effects: Readonly<Record<string, Readonly<Record<string, number>>>>;
   /** Added in the second and later blocks: practice, or weariness. */
   readonly orderEffect: number;
@@ -30,10 +30,10 @@ export const nullAnswerModel: AnswerModel = {
   orderEffect: 0,
 };
 
-/** All questions better under one condition by this many points of the scale before rounding. */
-export const plantedAnswerModel = (condition: string, effect: number): AnswerModel => ({
+/** All questions better by so many points, by the id of a condition or a cohort. */
+export const answerModelWith = (effects: Readonly<Record<string, number>>): AnswerModel => ({
   ...nullAnswerModel,
-  effects: { [condition]: { '*': effect } },
+  effects: Object.fromEntries(Object.entries(effects).map(([id, effect]) => [id, { '*': effect }])),
 });
 
 /** How this person leans, drawn once. */
@@ -52,22 +52,30 @@ function answerAt({ answer: form, reversed }: Question, leaning: number, random:
   return nearestOn(form, value);
 }
 
+/** Who answers, and in which circumstances; `cohort` null: the plan has none. */
+export interface Answering {
+  readonly person: number;
+  readonly condition: string;
+  readonly cohort: string | null;
+  readonly block: number;
+}
+
 /** All answers of a questionnaire. */
 export function drawAnswers(
   model: AnswerModel,
   questionnaire: Questionnaire,
-  { person, condition, block }: { readonly person: number; readonly condition: string; readonly block: number },
+  { person, condition, cohort, block }: Answering,
   random: RandomSource,
 ): Answers {
-  const effects = model.effects[condition] ?? {};
+  const effectOn = (question: string) =>
+    [condition, cohort].reduce((sum, id) => {
+      const effects = id === null ? undefined : model.effects[id];
+      return sum + (effects?.[question] ?? effects?.['*'] ?? 0);
+    }, 0);
   return Object.fromEntries(
     questionnaire.questions.map((question) => {
       const { id } = question;
-      const leaning =
-        (model.base[id] ?? model.elsewhere) +
-        person +
-        (effects[id] ?? effects['*'] ?? 0) +
-        (block > 1 ? model.orderEffect : 0);
+      const leaning = (model.base[id] ?? model.elsewhere) + person + effectOn(id) + (block > 1 ? model.orderEffect : 0);
       return [id, answerAt(question, leaning + model.answerDeviation * random.normal(), random)];
     }),
   );

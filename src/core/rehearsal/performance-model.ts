@@ -1,4 +1,4 @@
-import { createTrialLog, type TrialOutcome } from '../../src/core/study/trial-log';
+import { createTrialLog, type TrialOutcome } from '../study/trial-log';
 import type { RandomSource } from './random-source';
 
 /**
@@ -12,7 +12,7 @@ export interface PerformanceModel {
   readonly catchChance: number;
   /** Standard deviation of skill between persons (groups, in the ball game), added to the chances. */
   readonly skillDeviation: number;
-  /** Added to the chances under a condition. */
+  /** Added to the chances under a condition, or in a cohort, by its id. */
   readonly effects: Readonly<Record<string, number>>;
   /** Added to the chances in the second and later blocks. */
   readonly practice: number;
@@ -64,6 +64,8 @@ interface Circumstances {
   readonly estimator: string;
   /** null: a tutorial. */
   readonly condition: string | null;
+  /** null: the plan has none. */
+  readonly cohort: string | null;
   readonly block: number;
   /** Time limit of the trial. */
   readonly seconds: number;
@@ -71,8 +73,10 @@ interface Circumstances {
 
 const clampChance = (chance: number) => Math.min(0.98, Math.max(0.02, chance));
 
-const chanceUnder = (model: PerformanceModel, { condition, block }: Circumstances) =>
-  (condition === null ? 0 : (model.effects[condition] ?? 0)) + (block > 1 ? model.practice : 0);
+function chanceUnder({ effects, practice }: PerformanceModel, { condition, cohort, block }: Circumstances): number {
+  const effectOf = (id: string | null) => (id === null ? 0 : (effects[id] ?? 0));
+  return effectOf(condition) + effectOf(cohort) + (block > 1 ? practice : 0);
+}
 
 function logFor(model: PerformanceModel, player: Player) {
   const { refreshRateHz } = model;

@@ -1,17 +1,57 @@
-import { advance, type ProgressEvent } from '../../src/core/study/advance';
-import type { Demographics } from '../../src/core/study/demographics';
-import { participantsOf, type StudyPlan } from '../../src/core/study/plan';
-import { begin, currentStep, type Progress, resumed } from '../../src/core/study/progress';
-import { type Schedule, type StudyStep, scheduleFor } from '../../src/core/study/schedule';
-import type { StudyRecord } from '../../src/core/study/study-record';
-import type { TrialOutcome } from '../../src/core/study/trial-log';
-import { type AnswerModel, drawAnswers, drawPerson } from './answer-model';
-import { drawArchery, drawBall, drawPlayer, type PerformanceModel, type Player } from './performance-model';
+import { advance, type ProgressEvent } from '../study/advance';
+import { cohortsByParticipant } from '../study/allocation';
+import type { Demographics } from '../study/demographics';
+import { participantsOf, type StudyPlan } from '../study/plan';
+import { begin, currentStep, type Progress, resumed } from '../study/progress';
+import { type Schedule, type StudyStep, scheduleFor } from '../study/schedule';
+import type { StudyRecord } from '../study/study-record';
+import type { TrialOutcome } from '../study/trial-log';
+import { ValidationError } from '../study/validation';
+import { type AnswerModel, answerModelWith, drawAnswers, drawPerson } from './answer-model';
+import {
+  drawArchery,
+  drawBall,
+  drawPlayer,
+  type PerformanceModel,
+  type Player,
+  statedPerformanceModel,
+} from './performance-model';
 import { type RandomSource, randomSource } from './random-source';
 
 export interface SimulationModels {
   readonly answers: AnswerModel;
   readonly performance: PerformanceModel;
+}
+
+/** What is put into a simulated study: added under a condition, or in a cohort, by its id. */
+export interface StatedEffects {
+  /** Points of a scale from 1 to 5, stretched to each question's own. */
+  readonly answers: Readonly<Record<string, number>>;
+  /** Of a chance to hit or catch. */
+  readonly scores: Readonly<Record<string, number>>;
+}
+
+/** The models with these effects; throws a ValidationError where the plan has no such condition or cohort. */
+export function modelsWith(
+  { conditions, cohorts = [] }: StudyPlan,
+  { answers, scores }: StatedEffects,
+): SimulationModels {
+  const known = [...conditions, ...cohorts].map(({ id }) => id);
+  for (const id of [...Object.keys(answers), ...Object.keys(scores)]) {
+    if (known.includes(id)) continue;
+    throw new ValidationError('effect', `there is no condition or cohort "${id}": expected one of ${known.join(', ')}`);
+  }
+  return { answers: answerModelWith(answers), performance: { ...statedPerformanceModel, effects: scores } };
+}
+
+/** "answers +0.5 points under "late-100".": what was put in, or that nothing was. */
+export function statedInWords({ answers, scores }: StatedEffects): string {
+  const signed = (value: number) => `${value < 0 ? '−' : '+'}${Math.abs(value)}`;
+  const parts = [
+    ...Object.entries(answers).map(([id, value]) => `answers ${signed(value)} points under "${id}"`),
+    ...Object.entries(scores).map(([id, value]) => `chances to hit ${signed(value)} under "${id}"`),
+  ];
+  return parts.length === 0 ? 'no effect: an analysis that finds one is wrong.' : `${parts.join('; ')}.`;
 }
 
 /** What one simulated participant leaves behind. */
@@ -21,12 +61,17 @@ export interface SimulatedParticipant {
   readonly records: readonly StudyRecord[];
 }
 
-/** The plan under a name that cannot be taken for a study of people. */
-export const simulatedPlan = (plan: StudyPlan): StudyPlan => ({
+const renamed = (plan: StudyPlan, ending: string): StudyPlan => ({
   ...plan,
-  id: `${plan.id.slice(0, 37)}-simulated`,
+  id: `${plan.id.slice(0, 37)}-${ending}`,
   title: `SIMULATED: ${plan.title}`.slice(0, 120),
 });
+
+/** The plan under a name that cannot be taken for a study of people. */
+export const simulatedPlan = (plan: StudyPlan): StudyPlan => renamed(plan, 'simulated');
+
+/** The plan of a study's rehearsal. */
+export const rehearsalPlan = (plan: StudyPlan): StudyPlan => renamed(plan, 'rehearsal');
 
 const oneOf = <T>(random: RandomSource, options: readonly T[]): T =>
   options[Math.floor(random.uniform() * options.length)] as T;
@@ -50,20 +95,25 @@ const slotSeconds = 7200;
 const mostSteps = 10_000;
 
 /**
- * A whole study of simulated participants through the same sessions as people's, mishaps included: reloads in the middle of
- * trials, voided blocks. `at`: when the first one begins [s since 1970]. The same plan, models and seed give the same records.
+ * A whole study of simulated participants, one after the other, through the same sessions as people's, mishaps included: reloads in the
+ * middle of trials, voided blocks. `at`: when the first one begins [s since 1970]. The same plan, models and seed give the same records.
  */
-export function simulateStudy(
+export function* simulatedParticipants(
   plan: StudyPlan,
   models: SimulationModels,
   seed: number,
   at: number,
-): readonly SimulatedParticipant[] {
+): Generator<SimulatedParticipant> {
   const rounds = new SimulatedRounds(plan, models.performance, seed);
-  return participantsOf(plan).map((participant, index) =>
-    new SimulatedSession(rounds, models, participant, at + index * slotSeconds).run(),
-  );
+  for (const [index, participant] of participantsOf(plan).entries()) {
+    yield new SimulatedSession(rounds, models, participant, at + index * slotSeconds).run();
+  }
 }
+
+/** The same, all at once. */
+export const simulateStudy = (...study: Parameters<typeof simulatedParticipants>): readonly SimulatedParticipant[] => [
+  ...simulatedParticipants(...study),
+];
 
 /** The players of a study and what their trials bring. */
 class SimulatedRounds {
@@ -71,11 +121,13 @@ class SimulatedRounds {
   readonly seed: number;
   readonly #performance: PerformanceModel;
   readonly #players: ReadonlyMap<string, Player>;
+  readonly #cohorts: ReturnType<typeof cohortsByParticipant>;
 
   constructor(plan: StudyPlan, performance: PerformanceModel, seed: number) {
     this.plan = plan;
     this.seed = seed;
     this.#performance = performance;
+    this.#cohorts = cohortsByParticipant(plan);
     this.#players = new Map(
       participantsOf(plan).map((participant) => [
         participant,
@@ -88,6 +140,10 @@ class SimulatedRounds {
     return this.#players.get(participant) as Player;
   }
 
+  cohortOf(participant: string): string | null {
+    return this.#cohorts.get(participant)?.id ?? null;
+  }
+
   /** What a trial brings; those who play together draw the same round. */
   outcomeOf({ participant, groups }: Schedule, step: GameStep, run: number, attempt: number): TrialOutcome {
     const task = this.plan.tasks.find(({ id }) => id === step.task);
@@ -96,6 +152,7 @@ class SimulatedRounds {
     const circumstances = {
       estimator: step.embodiment.estimator,
       condition: step.kind === 'trial' ? step.condition : null,
+      cohort: this.cohortOf(participant),
       block: step.block,
       seconds: step.seconds,
     };
@@ -200,7 +257,8 @@ class SimulatedSession {
   }
 
   #answer({ condition, block, questionnaire }: QuestionnaireStep): void {
-    const about = { person: this.#person, condition, block };
+    const cohort = this.#rounds.cohortOf(this.#schedule.participant);
+    const about = { person: this.#person, condition, cohort, block };
     const drawn = drawAnswers(this.#models.answers, questionnaire, about, this.#random);
     for (const [question, value] of Object.entries(drawn)) {
       this.#now += 4 + Math.round(8 * this.#random.uniform());

@@ -1,0 +1,55 @@
+import { parseArgs } from 'node:util';
+import type { StatedEffects } from '../../src/core/rehearsal/simulate-study';
+import type { StudyPlan } from '../../src/core/study/plan';
+import { ValidationError } from '../../src/core/study/validation';
+
+/** What the command line asks for, read but for what the plan must say. */
+export interface SimulateOptions {
+  readonly plan: string;
+  readonly out: string;
+  readonly participants: number | null;
+  readonly seed: number | null;
+  effectsOn(plan: StudyPlan): StatedEffects;
+}
+
+function wholeNumber(name: string, given: string | undefined): number | null {
+  if (given === undefined) return null;
+  if (!/^\d{1,9}$/.test(given)) throw new ValidationError(`--${name}`, `expected a whole number, not "${given}"`);
+  return Number(given);
+}
+
+/** "late-200=-0.8"; a number alone is of the second condition, where there is one, else of the second cohort. */
+function effectsIn(name: string, given: readonly string[], plan: StudyPlan): Readonly<Record<string, number>> {
+  const { conditions, cohorts = [] } = plan;
+  const usual = (conditions[1] ?? cohorts[1])?.id ?? '';
+  return Object.fromEntries(
+    given.map((one) => {
+      const at = one.lastIndexOf('=');
+      const value = one.slice(at + 1);
+      if (value.trim() === '' || !Number.isFinite(Number(value))) {
+        throw new ValidationError(`--${name}`, `expected a number, or a condition and one (id=0.5), not "${one}"`);
+      }
+      return [at < 0 ? usual : one.slice(0, at), Number(value)];
+    }),
+  );
+}
+
+/** Throws a ValidationError that names the option. */
+export function simulateOptions(): SimulateOptions {
+  const text = { type: 'string' } as const;
+  const several = { type: 'string', multiple: true } as const;
+  const { values } = parseArgs({
+    options: { participants: text, out: text, seed: text, plan: text, effect: several, 'score-effect': several },
+  });
+  if (!values.out || !values.plan) throw new ValidationError('', 'both --out and --plan are needed');
+  return {
+    plan: values.plan,
+    out: values.out,
+    participants: wholeNumber('participants', values.participants),
+    seed: wholeNumber('seed', values.seed),
+    effectsOn: (plan) => ({
+      answers: effectsIn('effect', values.effect ?? [], plan),
+      scores: effectsIn('score-effect', values['score-effect'] ?? [], plan),
+    }),
+  };
+}
