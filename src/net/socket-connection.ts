@@ -24,6 +24,8 @@ const runningTime: LocalClock = { now: () => performance.now() / 1000, leftOut: 
 
 /** Without an answer in this time [ms] an attempt has failed. */
 const patienceMs = 4000;
+/** A server that does not end a connection which was left is not waited for any longer [ms]. */
+const farewellMs = 1000;
 /** So many refusals of fresh passes are an answer. */
 const mostRefusals = 3;
 
@@ -82,8 +84,10 @@ class SocketConnection extends RoomSession {
   }
 
   leave(): void {
+    const said = this.#isJoined;
     this.transmit({ type: 'leave' });
-    this.#end('left');
+    // socket.io forgets what came with the very bytes that ended the connection: the server ends it, when it has heard.
+    this.#end('left', said ? farewellMs : 0);
   }
 
   protected transmit(message: ClientMessage): void {
@@ -128,7 +132,7 @@ class SocketConnection extends RoomSession {
 
   #onValue(value: unknown): void {
     const message = ballRoomMessageFrom(value);
-    if (!message) return;
+    if (!message || (this.#phase === 'ended' && message.type !== 'farewell')) return;
     if (message.type === 'farewell') {
       if (message.reason !== 'stopping') this.#end(message.reason);
       else this.#reason = 'stopping';
@@ -172,12 +176,14 @@ class SocketConnection extends RoomSession {
     this.#wait(seconds * 1000, () => this.#attempt());
   }
 
-  #end(because: ConnectionStatus['reason']): void {
+  /** `afterMs`: how long the other side has to end the connection. */
+  #end(because: ConnectionStatus['reason'], afterMs = 0): void {
     this.#stopWaiting();
     this.#phase = 'ended';
     this.#reason = because;
     this.#retryAt = null;
-    this.#socket.disconnect();
+    if (afterMs > 0) this.#wait(afterMs, () => this.#socket.disconnect());
+    else this.#socket.disconnect();
   }
 
   #wait(milliseconds: number, then: () => void): void {

@@ -36,6 +36,22 @@ describe('a relay', () => {
     }
   });
 
+  test('a seat that is left is free at once', async () => {
+    const ann = arrive(server.url, 'left', 'Ann');
+    const ben = arrive(server.url, 'left', 'Ben');
+    try {
+      await until('both in', () =>
+        [ann, ben].every(({ connection }) => connection.room?.seats.filter(Boolean).length === 2),
+      );
+      const seat = ann.seat;
+      ann.connection.leave();
+      await until('the seat free', () => ben.connection.room?.seats[seat] === null, 2);
+      expect(ann.connection.status).toMatchObject({ phase: 'ended', reason: 'left' });
+    } finally {
+      for (const person of [ann, ben]) person.stop();
+    }
+  });
+
   test('makes a room as the first to come asks for it, and as no one after', async () => {
     const ann = arrive(server.url, 'short', 'Ann', { terms: { seconds: 30, balls: 6 } });
     const people = [ann];
