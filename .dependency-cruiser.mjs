@@ -54,7 +54,7 @@ export default {
       severity: 'error',
       from: {
         path: '^src/core/',
-        pathNot: '^src/core/(study|statistics)/|^src/core/protocol/(messages|ball-messages|ball-snapshot)\\.ts$',
+        pathNot: '^src/core/(study|statistics)/|^src/core/protocol/(messages|ball-messages|ball-snapshot|voice-messages)\\.ts$',
       },
       to: { pathNot: '^src/core/' },
     },
@@ -62,7 +62,7 @@ export default {
       name: 'core-messages-are-checked',
       comment: 'As core-is-pure, with valibot: messages arrive from strangers and are checked field by field.',
       severity: 'error',
-      from: { path: '^src/core/protocol/(messages|ball-messages|ball-snapshot)\\.ts$' },
+      from: { path: '^src/core/protocol/(messages|ball-messages|ball-snapshot|voice-messages)\\.ts$' },
       to: { pathNot: ['^src/core/', packagePath('valibot')] },
     },
     {

@@ -4,12 +4,13 @@ import { RateLimiterMemory, RateLimiterRes } from 'rate-limiter-flexible';
 import { avatarHash, mostAvatarBytes } from '../src/core/protocol/worn-avatar';
 import type { AvatarOwner, AvatarStore, Reservation } from './avatar-store';
 import { clientAddress, networkOf } from './client-address';
+import { guestPassOf } from './guest-pass';
 import { type Answer, done, HttpError, json } from './http/answer';
 import { readBody } from './http/body';
 import type { Call, Route } from './http/router';
 import type { RelayConfiguration } from './relay-configuration';
 import type { RelayMetrics } from './relay-metrics';
-import type { RoomPass, RoomTokens } from './room-tokens';
+import type { RoomTokens } from './room-tokens';
 
 export interface AvatarRoutesOptions {
   readonly configuration: Pick<RelayConfiguration, 'avatarMegabytes' | 'avatarsFrom' | 'trustProxy'>;
@@ -66,13 +67,13 @@ export class AvatarRoutes {
   /** What may be stored, and what of the person who asks is. */
   async #terms(call: Call): Promise<Answer> {
     const { configuration, store } = this.#options;
-    const { room, identity } = await this.#passOf(call);
+    const { room, identity } = await guestPassOf(call, this.#options.tokens);
     const taken = Math.min(mostAvatarBytes, configuration.avatarMegabytes * 2 ** 20);
     return json({ mostBytes: taken, elsewhere: configuration.avatarsFrom, yours: store.keptOf(room, identity) });
   }
 
   async #download(call: Call): Promise<Answer> {
-    const { room, identity } = await this.#passOf(call);
+    const { room, identity } = await guestPassOf(call, this.#options.tokens);
     await this.#spend(this.#downloads, identity, 'download');
     const bytes = this.#options.store.get(room, hashIn(call));
     if (!bytes) throw new HttpError(404, 'no one in this room has stored such an avatar');
@@ -81,7 +82,7 @@ export class AvatarRoutes {
 
   async #upload(call: Call): Promise<Answer> {
     const { request } = call;
-    const { room, identity, assigned } = await this.#passOf(call);
+    const { room, identity, assigned } = await guestPassOf(call, this.#options.tokens);
     const hash = hashIn(call);
     if (assigned) throw new HttpError(403, 'in the rooms of a study all wear the same avatar');
     if (!this.#options.isSeated(room, identity)) throw new HttpError(403, 'this is for people on a seat of the room');
@@ -122,15 +123,6 @@ export class AvatarRoutes {
     if (hash.digest('base64url') !== expected) throw new HttpError(422, 'the file is not the one that its name says');
     if (!isGlb(bytes)) throw new HttpError(422, 'this is no VRM or GLB file');
     return bytes;
-  }
-
-  /** Throws unless the request bears a pass to the room that its address names. */
-  async #passOf({ request, query }: Call): Promise<RoomPass> {
-    const token = /^Bearer (\S{1,1024})$/.exec(request.headers.authorization ?? '')?.[1];
-    const pass = token === undefined ? null : await this.#options.tokens.verify(token);
-    if (!pass) throw new HttpError(401, 'this needs a pass to the room');
-    if (query.get('room') !== pass.room) throw new HttpError(403, 'this pass is to another room');
-    return pass;
   }
 
   async #spend(limiter: RateLimiterMemory, who: string, what: string): Promise<void> {

@@ -23,6 +23,9 @@ const isOtherVersion = (value: unknown): boolean => {
   return type === 'join' && typeof version === 'number' && version !== protocolVersion;
 };
 
+/** What pages tell each other about their voices has a budget of its own. */
+const isSignal = (value: unknown): boolean => ((value ?? {}) as { readonly type?: unknown }).type === 'signal';
+
 /**
  * What guests say, on its way to their rooms: what is well formed and within its budget is passed on, and a guest who keeps sending
  * anything else is disconnected.
@@ -56,7 +59,7 @@ export class GuestMessages {
     const { rooms, metrics, log, now } = this.#options;
     metrics.counts.messagesIn += 1;
     const at = now();
-    if (guest.ended || !this.#isWithin(guest, guest.events, at)) return;
+    if (guest.ended || !this.#isWithin(guest, isSignal(value) ? guest.signals : guest.events, at)) return;
     const message = clientMessageFrom(value);
     if (message?.type === 'join') this.#join(guest, message);
     else if (message) {

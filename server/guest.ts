@@ -22,6 +22,8 @@ export interface Guest {
   readonly connectedAt: number;
   readonly poses: Budget;
   readonly events: Budget;
+  /** Of pages that set up their voices with each other. */
+  readonly signals: Budget;
   /** Messages of any kind. */
   readonly flood: Budget;
   joined: boolean;
@@ -33,6 +35,9 @@ export interface Guest {
 
 /** More than this many messages of any kind in a second is an attack. */
 const floodPerSecond = 300;
+/** Two pages that connect need a dozen signals, and begin anew after a lost network; a page may have five others to connect to. */
+const signalsPerSecond = 20;
+const signalsAtOnce = 80;
 /** A connection that could take no frame for this long [s], or has this many packets waiting, is too slow. */
 const slowSeconds = 5;
 const mostWaiting = 256;
@@ -52,6 +57,7 @@ export const createGuest = (
   connectedAt: now,
   poses: createBudget(posesPerSecond),
   events: createBudget(eventsPerSecond, 2 * eventsPerSecond),
+  signals: createBudget(signalsPerSecond, signalsAtOnce),
   flood: createBudget(floodPerSecond),
   joined: false,
   badMessages: 0,

@@ -63,7 +63,7 @@ export interface HostedRoomsOptions {
 const emptyRoomSeconds = 5;
 
 /** Makes rooms: the first to come decides how long a round is, within what the server signed. */
-function roomMaker({ kinds, log, metrics, broadcast }: HostedRoomsOptions) {
+function roomMaker({ configuration, kinds, log, metrics, broadcast }: HostedRoomsOptions) {
   const epoch = randomBytes(6).toString('base64url');
   let made = 0;
   return ({ room: id, kind, terms, assigned }: RoomPass): HostedRoom | null => {
@@ -73,7 +73,11 @@ function roomMaker({ kinds, log, metrics, broadcast }: HostedRoomsOptions) {
     const joined = new Map<string, Guest>();
     const room = new Room(
       policy,
-      { id, epoch: `${epoch}${made}`, pausable: terms.pausable ?? false, assigned: assigned !== null },
+      {
+        ...{ id, epoch: `${epoch}${made}`, pausable: terms.pausable ?? false, assigned: assigned !== null },
+        // A study has no consent to voices to ask for.
+        voices: configuration.voices !== null && assigned === null,
+      },
       {
         send(to, message) {
           const guest = joined.get(to);

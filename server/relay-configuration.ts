@@ -1,5 +1,6 @@
 import { ConfigurationError } from './configuration';
 import { weaknessOf } from './secret-bits';
+import { type VoiceConfiguration, voiceConfigurationFrom, voiceEnvironment } from './voice-configuration';
 
 /** How the relay behaves, from the environment. */
 export interface RelayConfiguration {
@@ -24,6 +25,8 @@ export interface RelayConfiguration {
   readonly avatarMegabytes: number;
   /** The folder of another server that has avatars by the same names, with a slash at its end; null: there is none. */
   readonly avatarsFrom: string | null;
+  /** null: people in a room cannot talk to each other. */
+  readonly voices: VoiceConfiguration | null;
   /** Believe what a proxy in front says of a client's address. */
   readonly trustProxy: boolean;
   /** Of the lobby that several processes share; null: this process is alone. */
@@ -54,6 +57,7 @@ export const relayEnvironment = `Environment of the relay (docs/relay.md):
   THREEPOINT_BALL_SECONDS       length of a round of the ball game; default 90
   THREEPOINT_AVATAR_MEGABYTES   of avatars that people show each other, in memory; default 256, 0: none
   THREEPOINT_AVATARS_FROM       https:// address of a folder that has more of them, each named by its SHA-256 as base64url
+${voiceEnvironment}
   THREEPOINT_TRUST_PROXY        1: a proxy stands in front and tells the clients' addresses; default 0
   THREEPOINT_REDIS_URL          redis://HOST:PORT of the lobby that several processes share
   THREEPOINT_ADMIN_TOKEN        lets its holder end rooms; 128 bits or more
@@ -170,6 +174,7 @@ export function relayConfigurationFrom(environment: Environment): RelayConfigura
     ballSeconds: number('THREEPOINT_BALL_SECONDS', 90, 1, 3600),
     avatarMegabytes: whole('THREEPOINT_AVATAR_MEGABYTES', 256, 0, 65_536),
     avatarsFrom: folderFrom(environment.THREEPOINT_AVATARS_FROM),
+    voices: voiceConfigurationFrom(environment),
     trustProxy: whole('THREEPOINT_TRUST_PROXY', 0, 0, 1) === 1,
     redisUrl,
     host: environment.THREEPOINT_HOST || null,

@@ -18,6 +18,7 @@ import type { RelayCensus, RelayMetrics } from './relay-metrics';
 import { relayPath } from './relay-transport';
 import type { RoomKinds } from './room-kinds';
 import { assignedRoomName, type RoomTokens, roomName } from './room-tokens';
+import type { VoiceRoutes } from './voice-routes';
 
 export interface RelayRoutesOptions {
   readonly configuration: RelayConfiguration;
@@ -33,6 +34,7 @@ export interface RelayRoutesOptions {
   /** Where a fleet counts who joins from where; null: this process is alone. */
   readonly redis: Redis | null;
   readonly avatars: Pick<AvatarRoutes, 'routes'>;
+  readonly voices: Pick<VoiceRoutes, 'routes'>;
 }
 
 const longestBody = 4096;
@@ -131,6 +133,7 @@ export class RelayRoutes implements Service<RelayAccess> {
       }),
       post('/api/rooms/token', 'anyone', (call) => this.#token(call)),
       ...options.avatars.routes,
+      ...options.voices.routes,
     ];
   }
 

@@ -15,6 +15,7 @@ import { createRelayTransport } from './relay-transport';
 import { type RoomKinds, shippedRoomKinds } from './room-kinds';
 import { createRoomTokens } from './room-tokens';
 import { createSocketHost, type SocketHost } from './socket-host';
+import { VoiceRoutes } from './voice-routes';
 import type { UpgradeListener } from './web-server';
 
 /** A relay for a server: its sockets and its part of the HTTP. */
@@ -28,6 +29,8 @@ export interface Relay {
   close(): Promise<void>;
 }
 
+/** Seconds since 1970. */
+const unixTime = (): number => Date.now() / 1000;
 /** How often avatars that no one has on any more are forgotten [ms]. */
 const sweepMs = 1000;
 
@@ -63,7 +66,7 @@ export function createRelay(
   const log = pino({ level: configuration.logLevel, base: { node: process.pid } });
   const now = (): number => performance.now() / 1000;
   const node = randomBytes(6).toString('hex');
-  const tokens = createRoomTokens(secret, () => Date.now() / 1000);
+  const tokens = createRoomTokens(secret, unixTime);
   const census = (): RelayCensus => ({
     ...host.census,
     sockets: transport.sockets,
@@ -102,6 +105,7 @@ export function createRelay(
       ...{ configuration, store: avatars, tokens, metrics },
       isSeated: (room, identity) => wornBy(room, identity) !== null,
     }),
+    voices: new VoiceRoutes({ voices: configuration.voices, tokens, now: unixTime }),
   });
   return {
     host,

@@ -16,10 +16,14 @@ export const contentSecurityPolicy = [
   "frame-ancestors 'self'",
 ].join('; ');
 
+/** What the browser lets a page use of the device. */
+export const permissionsPolicy = (microphone: boolean): string =>
+  `xr-spatial-tracking=(self), camera=(), microphone=(${microphone ? 'self' : ''}), geolocation=()`;
+
 /** On every answer, errors included. */
 export const securityHeaders: Readonly<Record<string, string>> = {
   'content-security-policy': contentSecurityPolicy,
-  'permissions-policy': 'xr-spatial-tracking=(self), camera=(), microphone=(), geolocation=()',
+  'permissions-policy': permissionsPolicy(false),
   'x-content-type-options': 'nosniff',
   'referrer-policy': 'no-referrer',
   'cross-origin-resource-policy': 'same-origin',

@@ -40,7 +40,7 @@ export interface RunningServer {
 export async function startServer(options: StartOptions): Promise<RunningServer> {
   const { relay: relaying, host, port, credentials, log } = options;
   const now = () => Date.now() / 1000;
-  const page = createPageHandler(options.pageDirectory);
+  const page = createPageHandler(options.pageDirectory, { microphone: relaying.voices !== null });
   const studies = openStudyService({
     directory: options.studyDirectory,
     token: options.experimenterToken,

@@ -227,6 +227,7 @@ class Client {
       bot: false,
       seat: null,
       avatar: plainAvatar,
+      voice: null,
     };
     const message = { type: 'join', version: protocolVersion, ...person };
     this.#say(`42${JSON.stringify(['/', ['message', message]])}`);

@@ -3,6 +3,7 @@ import type { BallDeed, BallEvent, BallState } from '../core/games/ball/ball-sta
 import type { Transform } from '../core/math/pose';
 import type { Farewell, SeatInfo } from '../core/protocol/messages';
 import type { PosePacket } from '../core/protocol/pose-packet';
+import type { SignalBody, Voice } from '../core/protocol/voice-messages';
 import type { WornAvatar } from '../core/protocol/worn-avatar';
 
 /** This page's clock, that of the tracked frames [s]; it never goes back. */
@@ -71,6 +72,24 @@ export interface ConnectionUpdate {
 /** What one frame of this avatar shows to the others, floor frame. */
 export type ShownPose = Omit<PosePacket, 'timeMs'>;
 
+/** What a room says of its voices: told at once and not with a frame, as a page that is hidden draws none. */
+export interface VoiceListener {
+  /** The room's seats are known anew: others may take part or no longer. */
+  seatsChanged(): void;
+  /** The page with this session among the voices has something to say about the connection to it. */
+  signalled(from: string, body: SignalBody): void;
+}
+
+/** How a page sets up its voices with the others of its room. */
+export interface VoiceLine {
+  /** Takes part as this says; null: not. Said again after every return. */
+  say(voice: Voice | null): void;
+  /** To the page with this session; lost without a word while there is no connection. */
+  signal(to: string, body: SignalBody): void;
+  /** One listener; null: none. */
+  listen(listener: VoiceListener | null): void;
+}
+
 /**
  * A place in a room, whether the Room runs on a server or in this page. Times are this page's clock [s], that of the tracked frames.
  */
@@ -92,6 +111,7 @@ export interface Connection {
   /** Another seat that is free; null: watch. */
   sit(seat: number | null): void;
   calibrate(calibration: Calibration): void;
+  readonly voices: VoiceLine;
   /** To be seen with another avatar from now on. Said again after every return. */
   wear(avatar: WornAvatar): void;
   /** Where a seat's floor lies in the arena. */

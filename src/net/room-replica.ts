@@ -78,7 +78,7 @@ export class RoomReplica {
   }
 
   /** A change of a room that is known; false: none is yet, and nothing was taken in. */
-  onChange(message: Exclude<BallRoomMessage, { type: 'welcome' | 'pong' }>): boolean {
+  onChange(message: Exclude<BallRoomMessage, { type: 'welcome' | 'pong' | 'signal' }>): boolean {
     if (!this.#known) return false;
     switch (message.type) {
       case 'seat':

@@ -6,6 +6,7 @@ import type { BallRoomMessage } from '../core/protocol/ball-messages';
 import { type ClientMessage, type Joining, toMillimetres } from '../core/protocol/messages';
 import { decodePose, encodePose } from '../core/protocol/pose-codec';
 import { decodeFrame } from '../core/protocol/pose-frame';
+import type { SignalBody, Voice } from '../core/protocol/voice-messages';
 import { plainAvatar, type WornAvatar } from '../core/protocol/worn-avatar';
 import { createClockSync } from './clock-sync';
 import type {
@@ -16,6 +17,8 @@ import type {
   RoomView,
   ShownPose,
   Visitor,
+  VoiceLine,
+  VoiceListener,
 } from './connection';
 import { RoomReplica } from './room-replica';
 
@@ -26,6 +29,13 @@ const mostWaiting = 256;
 
 /** A client's half of the protocol. Each kind of connection carries it over a wire of its own, in `transmit` and `transmitPose`. */
 export abstract class RoomSession implements Connection {
+  readonly voices: VoiceLine = {
+    say: (voice) => this.#sayVoice(voice),
+    signal: (to: string, body: SignalBody) => this.transmit({ type: 'signal', to, body }),
+    listen: (listener) => {
+      this.#voiceListener = listener;
+    },
+  };
   readonly #visitor: Visitor;
   /** The Room's clock is this page's own. */
   readonly #knowsClock: boolean;
@@ -33,6 +43,8 @@ export abstract class RoomSession implements Connection {
   readonly #replica = new RoomReplica();
   #calibration: Calibration;
   #avatar: WornAvatar;
+  #voice: Voice | null = null;
+  #voiceListener: VoiceListener | null = null;
   #skeleton: Skeleton;
   #wishes: { spectate: boolean; seat: number | null };
   /** Whether the clock is to stand; null: never asked for. */
@@ -135,7 +147,7 @@ export abstract class RoomSession implements Connection {
   /** What to say first on every new connection. */
   protected joining(): Joining {
     const { name, bot = false } = this.#visitor;
-    return { name, calibration: this.#calibration, bot, avatar: this.#avatar, ...this.#wishes };
+    return { name, calibration: this.#calibration, bot, avatar: this.#avatar, voice: this.#voice, ...this.#wishes };
   }
 
   /** Takes a message of the Room in, heard at this time of the page's clock [s]. */
@@ -146,6 +158,9 @@ export abstract class RoomSession implements Connection {
       case 'pong':
         this.#clock.hear(message.sent, message.time, at);
         return;
+      case 'signal':
+        this.#voiceListener?.signalled(message.from, message.body);
+        return;
       case 'welcome':
         if (this.#replica.onWelcome(message)) this.#news.push('voided');
         this.#news.push('welcome');
@@ -154,6 +169,7 @@ export abstract class RoomSession implements Connection {
         if (message.seat !== null) this.#wishes = { spectate: false, seat: message.seat };
         // The room may have forgotten the wish, or have been told otherwise before the connection was lost.
         if (this.#pauseWish !== null && message.seat !== null) this.transmit({ type: 'pause', pause: this.#pauseWish });
+        this.#voiceListener?.seatsChanged();
         return;
       default:
         if (this.#replica.onChange(message)) this.#afterChange(message);
@@ -190,15 +206,22 @@ export abstract class RoomSession implements Connection {
     return since;
   }
 
+  #sayVoice(voice: Voice | null): void {
+    this.#voice = voice;
+    if (this.#replica.known) this.transmit({ type: 'voice', voice });
+  }
+
   #afterChange(message: BallRoomMessage): void {
     switch (message.type) {
       case 'seat':
         this.#news.push('seats');
+        this.#voiceListener?.seatsChanged();
         return;
       case 'seated':
         this.#wishes = { spectate: message.seat === null, seat: message.seat };
         this.#news.push('seats');
         if (this.#pauseWish && message.seat !== null) this.transmit({ type: 'pause', pause: true });
+        this.#voiceListener?.seatsChanged();
         return;
       case 'match':
         this.#news.push('match');

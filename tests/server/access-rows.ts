@@ -85,6 +85,12 @@ export const httpRows: Readonly<Record<string, HttpRow>> = {
     status: forAll(401),
     also: { who: 'player', status: 204 },
   },
+  'GET /api/voices': {
+    gives: 'whether people can talk in the room, and the servers by which their pages find each other',
+    query: '?room=meadow',
+    status: forAll(401),
+    also: { who: 'player', status: 200 },
+  },
   'GET /api/studies': { gives: 'the list of studies', status: forExperimenter(200) },
   'POST /api/studies': { gives: 'a new study', json: 'plan', status: forExperimenter(201) },
   [`GET ${study}`]: { gives: 'title and consent text', status: forAll(200) },
@@ -142,7 +148,7 @@ export const socketRoles = {
 export type SocketRole = keyof typeof socketRoles;
 
 /** What becomes of it: taken; refused, with the room's reason; ends the connection. */
-export type Outcome = 'taken' | 'no-seat' | 'not-pausable' | 'assigned' | 'ends';
+export type Outcome = 'taken' | 'no-seat' | 'not-pausable' | 'assigned' | 'no-voices' | 'ends';
 
 export interface SocketRow {
   readonly gives: string;
@@ -155,6 +161,7 @@ const all = (outcome: Outcome): SocketRow['outcome'] => ({
   participant: outcome,
   experimenter: outcome,
 });
+const inVoices: SocketRow['outcome'] = { ...all('no-voices'), player: 'taken', spectator: 'no-seat' };
 const seated: SocketRow['outcome'] = { ...all('taken'), spectator: 'no-seat', experimenter: 'no-seat' };
 
 /** One row for every message of a client, and for what is none. */
@@ -173,6 +180,8 @@ export const socketRows: Readonly<Record<ClientMessage['type'] | 'pose' | 'unkno
     gives: 'another avatar to the own seat',
     outcome: { ...all('taken'), participant: 'assigned', experimenter: 'assigned' },
   },
+  voice: { gives: 'a part in the voices of the room', outcome: inVoices },
+  signal: { gives: 'what connects two pages of the voices, and nothing else', outcome: inVoices },
   pause: { gives: 'a clock that stands', outcome: { ...seated, player: 'not-pausable' } },
   ping: { gives: 'the room’s time', outcome: all('taken') },
   leave: { gives: 'the own seat back', outcome: all('taken') },

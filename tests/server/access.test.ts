@@ -276,13 +276,15 @@ describe('a message to a room', () => {
     sit: { type: 'sit', seat: 2 },
     calibration: { type: 'calibration', calibration: defaultCalibration },
     wear: { type: 'wear', avatar: 'a'.repeat(43) },
+    voice: { type: 'voice', voice: { session: 'annas-page', muted: true } },
+    signal: { type: 'signal', to: 'bens-page', body: { description: { type: 'offer', sdp: 'v=0' } } },
     pause: { type: 'pause', pause: true },
     ping: { type: 'ping', sent: 7 },
     leave: { type: 'leave' },
     action: { type: 'action', action: { type: 'drop', sequence: 1, side: 'left' } },
   };
   /** Reasons of admission; what the rules of a game refuse, everyone on a seat may try. */
-  const reasons: readonly Outcome[] = ['no-seat', 'not-pausable', 'assigned'];
+  const reasons: readonly Outcome[] = ['no-seat', 'not-pausable', 'assigned', 'no-voices'];
 
   async function outcomeOf(type: string, role: SocketRole, room: string): Promise<Outcome> {
     const guest = await guestAs(role, room);

@@ -159,6 +159,20 @@ test('every answer, errors included, says what the page may do', async () => {
   }
 });
 
+test('the microphone is for the page itself alone, and only where its people can talk', async () => {
+  const files = directoryWith({ 'index.html': 'page', 'results.html': 'results', 'assets/a.js': '1' });
+  const policies = async (microphone: boolean) => {
+    const server = await serve(createPageHandler(files, { microphone }), { host: '127.0.0.1', port: 0 });
+    onTestFinished(() => server.close());
+    const paths = ['/', '/results', '/assets/a.js', '/missing'];
+    const origin = `http://127.0.0.1:${server.port}`;
+    return Promise.all(paths.map(async (path) => String((await ask(origin, path)).headers['permissions-policy'])));
+  };
+  const shut = 'xr-spatial-tracking=(self), camera=(), microphone=(), geolocation=()';
+  expect(await policies(false)).toEqual([shut, shut, shut, shut]);
+  expect(await policies(true)).toEqual([shut.replace('microphone=()', 'microphone=(self)'), shut, shut, shut]);
+});
+
 test('/healthz answers while the page is being served', async () => {
   const { origin } = await served();
   const { status, body } = await ask(origin, '/healthz');

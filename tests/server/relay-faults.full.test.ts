@@ -235,6 +235,7 @@ test('a reader that stalls is kicked within 10 s, and the others do not notice',
           bot: false,
           seat: null,
           avatar: plainAvatar,
+          voice: null,
         };
         const message = { ...join, calibration: { eyeHeight: 1.6, armSpan: 1.5 } };
         stalled.send(`42${JSON.stringify(['/', ['message', message]])}`);

@@ -161,6 +161,7 @@ export async function rawGuest(url: string, room: string, token?: string) {
       bot: false,
       seat: null,
       avatar: plainAvatar,
+      voice: null,
     }),
   );
   await until('the raw guest to be welcomed', () => heard.some(({ type }) => type === 'welcome'));

@@ -1,13 +1,14 @@
 import * as v from 'valibot';
 import type { Calibration } from '../body/calibration';
 import { cleanName } from './names';
+import { packedVoice, packVoice, signalFrom, signalTo, unpackVoice, type Voice, voice } from './voice-messages';
 import { avatarHash, isOwnAvatar, type OwnAvatar, type WornAvatar } from './worn-avatar';
 
 /**
  * Bumped with every change that an older page or server would misunderstand: of these messages, of pose packets and of their frames, which each
  * have a version of their own. Who joins with another one is told so, and shows nothing to those who could not read it.
  */
-export const protocolVersion = 6;
+export const protocolVersion = 7;
 
 /** No control message is longer [bytes of UTF-8]; a snapshot takes at most half of it. */
 export const longestMessage = 4096;
@@ -41,6 +42,8 @@ const join = v.strictObject({
   bot: v.boolean(),
   seat: v.nullable(seat),
   avatar,
+  /** How the page takes part in the voices; null: it does not. */
+  voice: v.nullable(voice),
 });
 
 const clientMessage = v.variant('type', [
@@ -56,6 +59,9 @@ const clientMessage = v.variant('type', [
   v.strictObject({ type: v.literal('calibration'), calibration }),
   /** To be seen with another avatar; of a file, the server's store has it. */
   v.strictObject({ type: v.literal('wear'), avatar }),
+  /** To take part in the voices of the room, or no longer (null): from a seat, where the room has voices. */
+  v.strictObject({ type: v.literal('voice'), voice: v.nullable(voice) }),
+  signalTo,
   /** Stop the match's clock, or take that back: in a room whose terms allow it, from a seat. */
   v.strictObject({ type: v.literal('pause'), pause: v.boolean() }),
   /** Answered at once; `sent` comes back as it is. */
@@ -99,10 +105,12 @@ export interface SeatInfo {
   readonly bot: boolean;
   readonly presence: (typeof presences)[number];
   readonly avatar: WornAvatar;
+  /** null: takes no part in the voices. */
+  readonly voice: Voice | null;
 }
 const presences = ['here', 'away', 'gone'] as const;
 
-/** Name, eye height, arm span and forearm [m] (null: not told), presence (index), 1 for a bot, avatar; null: the seat is empty. */
+/** Name, eye height, arm span and forearm [m] (null: not told), presence (index), 1 for a bot, avatar, voice; null: the seat is empty. */
 const packedSeatInfo = v.nullable(
   v.tuple([
     v.string(),
@@ -112,6 +120,7 @@ const packedSeatInfo = v.nullable(
     wholeFrom(0, presences.length - 1),
     wholeFrom(0, 1),
     avatar,
+    packedVoice,
   ]),
 );
 export type PackedSeatInfo = v.InferOutput<typeof packedSeatInfo>;
@@ -128,14 +137,17 @@ export const toMillimetres = ({ eyeHeight, armSpan, forearm }: Calibration): Cal
 export function packSeatInfo(info: SeatInfo | null): PackedSeatInfo {
   if (!info) return null;
   const { eyeHeight, armSpan, forearm = null } = toMillimetres(info.calibration);
-  return [info.name, eyeHeight, armSpan, forearm, presences.indexOf(info.presence), info.bot ? 1 : 0, info.avatar];
+  const { name, presence, bot, avatar } = info;
+  const told = packVoice(info.voice);
+  return [name, eyeHeight, armSpan, forearm, presences.indexOf(presence), bot ? 1 : 0, avatar, told];
 }
 
 export function unpackSeatInfo(packed: PackedSeatInfo): SeatInfo | null {
   if (!packed) return null;
-  const [name, eyeHeight, armSpan, forearm, presence, bot, avatar] = packed;
+  const [name, eyeHeight, armSpan, forearm, presence, bot, avatar, told] = packed;
   const calibration = { eyeHeight, armSpan, ...(forearm !== null && { forearm }) };
-  return { name, calibration, presence: presences[presence] ?? 'gone', bot: bot === 1, avatar };
+  const at = presences[presence] ?? 'gone';
+  return { name, calibration, presence: at, bot: bot === 1, avatar, voice: unpackVoice(told) };
 }
 
 /**
@@ -166,6 +178,7 @@ const controlMessage = v.variant('type', [
   v.strictObject({ type: v.literal('match-start'), matchStart: seconds }),
   v.strictObject({ type: v.literal('pong'), sent: seconds, time: seconds }),
   v.strictObject({ type: v.literal('farewell'), reason: v.picklist(farewells) }),
+  signalFrom,
 ]);
 
 /** The whole room, on joining and on returning, but for the state of its game. */

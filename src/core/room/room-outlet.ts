@@ -13,7 +13,10 @@ export type RoomReason =
   | 'not-joined'
   | 'joined-already'
   | 'not-pausable'
-  | 'assigned';
+  | 'assigned'
+  | 'no-voices'
+  | 'session-taken'
+  | 'not-heard';
 
 /** Something that the Room would not do. */
 export interface RoomRefusal {

@@ -6,6 +6,7 @@ import { plainAvatar, type WornAvatar } from '../protocol/worn-avatar';
 import { MatchClock } from './match-clock';
 import type { HostedGame, MatchPolicy } from './match-policy';
 import type { ClientId, RoomOutlet, RoomReason, RoomRefusal } from './room-outlet';
+import { RoomVoices } from './room-voices';
 import { type Client, type SeatCensus, Seats } from './seats';
 
 export interface RoomOptions {
@@ -16,6 +17,8 @@ export interface RoomOptions {
   readonly pausable?: boolean;
   /** Every seat is one person's own: each who joins names theirs, and no one moves to another. */
   readonly assigned?: boolean;
+  /** The pages on its seats may let their people talk. Default: they may not. */
+  readonly voices?: boolean;
 }
 
 /** Who is in a Room. */
@@ -45,6 +48,7 @@ export class Room<Game extends HostedGame> {
   readonly #outlet: RoomOutlet<Game>;
   readonly #clients = new Map<ClientId, Client>();
   readonly #seats: Seats;
+  readonly #voices: RoomVoices;
   readonly #match: MatchClock<Game>;
 
   constructor(policy: MatchPolicy<Game>, options: RoomOptions, outlet: RoomOutlet<Game>) {
@@ -62,6 +66,7 @@ export class Room<Game extends HostedGame> {
       changed: (seat) => this.#broadcastSeat(seat),
       act: (action) => this.#match.add(action),
     });
+    this.#voices = new RoomVoices(this.#seats, options.voices === true, outlet);
   }
 
   /** The game that is played here. */
@@ -100,7 +105,8 @@ export class Room<Game extends HostedGame> {
     this.#replaceOlder(identity, time);
     const { name, calibration, bot, spectate } = joining;
     const avatar = this.options.assigned ? plainAvatar : joining.avatar;
-    const known: Client = { identity, name, bot, calibration, avatar };
+    const voice = spectate ? null : this.#voices.admitted(identity, joining.voice);
+    const known: Client = { identity, name, bot, calibration, avatar, voice };
     this.#clients.set(client, known);
     const held = this.#seats.heldBy(identity);
     if (held !== null && !spectate) this.#seats.retake(held, client, known, time);
@@ -198,6 +204,12 @@ export class Room<Game extends HostedGame> {
       case 'wear':
         this.#wear(client, known, message);
         return;
+      case 'voice':
+      case 'signal': {
+        const refusal = this.#voices.hear(index, known, message);
+        if (refusal) this.#refuse(client, 'message', refusal);
+        return;
+      }
       case 'away':
         if (index !== null) this.#declareAway(index, message, time);
         return;
@@ -255,10 +267,7 @@ export class Room<Game extends HostedGame> {
 
   #calibrate(index: number | null, known: Client, { calibration }: Received<'calibration'>): void {
     known.calibration = calibration;
-    const seat = index === null ? null : this.#seats.at(index);
-    if (!seat || index === null) return;
-    seat.calibration = calibration;
-    this.#broadcastSeat(index);
+    if (index !== null) this.#seats.tell(index, { calibration });
   }
 
   /** Where places are assigned all look alike: bodies that people bring along would tell who they are. */
@@ -269,10 +278,7 @@ export class Room<Game extends HostedGame> {
     }
     known.avatar = avatar;
     const index = this.#seats.indexOf(client);
-    const seat = index === null ? null : this.#seats.at(index);
-    if (!seat || index === null || seat.avatar === avatar) return;
-    seat.avatar = avatar;
-    this.#broadcastSeat(index);
+    if (index !== null && this.#seats.at(index)?.avatar !== avatar) this.#seats.tell(index, { avatar });
   }
 
   #declareAway(index: number, { away }: Received<'away'>, time: number): void {

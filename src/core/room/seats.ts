@@ -1,5 +1,6 @@
 import type { Calibration } from '../body/calibration';
 import type { SeatInfo } from '../protocol/messages';
+import type { Voice } from '../protocol/voice-messages';
 import type { WornAvatar } from '../protocol/worn-avatar';
 import type { SeatAction } from '../tracking/seat-action';
 import { PoseClaims } from './pose-claims';
@@ -18,6 +19,7 @@ export interface Client {
   readonly bot: boolean;
   calibration: Calibration;
   avatar: WornAvatar;
+  voice: Voice | null;
 }
 
 /** One seat that is taken, with what its player told of themselves. */
@@ -28,6 +30,7 @@ export interface Seat {
   name: string;
   calibration: Calibration;
   avatar: WornAvatar;
+  voice: Voice | null;
   readonly bot: boolean;
   /** Room time [s] of losing the connection. */
   lostAt: number | null;
@@ -97,8 +100,8 @@ export class Seats {
   infoOf(index: number): SeatInfo | null {
     const seat = this.at(index);
     if (!seat) return null;
-    const { name, calibration, bot, presence, avatar } = seat;
-    return { name, calibration, bot, presence, avatar };
+    const { name, calibration, bot, presence, avatar, voice } = seat;
+    return { name, calibration, bot, presence, avatar, voice };
   }
 
   at(index: number): Seat | null {
@@ -109,6 +112,12 @@ export class Seats {
   indexOf(client: ClientId): number | null {
     for (let index = 0; index < this.#seats.length; index++) if (this.#seats[index]?.client === client) return index;
     return null;
+  }
+
+  /** The number of the seat whose page has this session among the voices; null: none has. */
+  withVoice(session: string): number | null {
+    const index = this.#seats.findIndex((seat) => seat?.voice?.session === session);
+    return index < 0 ? null : index;
   }
 
   /** The number of the seat that is held for this person or taken by them; null: none is. */
@@ -133,13 +142,15 @@ export class Seats {
   }
 
   /** Sits a client down on a seat that is empty. */
-  take(index: number, client: ClientId, { identity, name, calibration, avatar, bot }: Client, time: number): void {
+  take(index: number, client: ClientId, known: Client, time: number): void {
+    const { identity, name, calibration, avatar, voice, bot } = known;
     this.#seats[index] = {
       identity,
       client,
       name: name || `Player ${index + 1}`,
       calibration,
       avatar,
+      voice,
       bot,
       lostAt: null,
       playing: true,
@@ -153,7 +164,7 @@ export class Seats {
   }
 
   /** Gives the seat that was held for a person back to them, on their new connection. */
-  retake(index: number, client: ClientId, { name, calibration, avatar }: Client, time: number): void {
+  retake(index: number, client: ClientId, { name, calibration, avatar, voice }: Client, time: number): void {
     const seat = this.at(index);
     if (!seat) return;
     // To the rules a player who was away for long comes anew; within the grace nothing has happened.
@@ -166,6 +177,7 @@ export class Seats {
       presence: 'here',
       calibration,
       avatar,
+      voice,
     });
     if (name) seat.name = name;
     seat.poses.reconnected(time);
@@ -178,6 +190,14 @@ export class Seats {
     if (!seat) return;
     seat.client = null;
     seat.lostAt = time;
+  }
+
+  /** What a player has told of themselves since they sat down. */
+  tell(index: number, told: Partial<Pick<Seat, 'calibration' | 'avatar' | 'voice'>>): void {
+    const seat = this.at(index);
+    if (!seat) return;
+    Object.assign(seat, told);
+    this.#listener.changed(index);
   }
 
   /** Empties a seat. */

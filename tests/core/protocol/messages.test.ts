@@ -6,6 +6,7 @@ import { ballActionFrom, ballRoomMessageFrom } from '../../../src/core/protocol/
 import {
   type ClientMessage,
   clientMessageFrom,
+  longestMessage,
   packSeatInfo,
   protocolVersion,
   unpackSeatInfo,
@@ -14,6 +15,7 @@ import { cleanName } from '../../../src/core/protocol/names';
 import { encodeFrame } from '../../../src/core/protocol/pose-frame';
 import { poseVersion } from '../../../src/core/protocol/pose-packet';
 import { pageParser, relayParser, type SocketPacket } from '../../../src/core/protocol/small-frames';
+import { longestDescription, mostCandidates } from '../../../src/core/protocol/voice-messages';
 import { ownAvatarOf, ownBodies, plainAvatar, skinTones } from '../../../src/core/protocol/worn-avatar';
 
 const fileHash = createHash('sha256').update('a bear').digest('base64url');
@@ -27,7 +29,10 @@ const join = {
   bot: false,
   seat: null,
   avatar: plainAvatar,
+  voice: null,
 };
+const signal = { type: 'signal', to: 'bens-page', body: { description: { type: 'offer', sdp: 'v=0' } } };
+const address = { candidate: '', sdpMid: '0', sdpMLineIndex: 0, usernameFragment: null };
 const throwing = {
   type: 'throw',
   sequence: 3,
@@ -57,8 +62,25 @@ describe('control messages', () => {
       { type: 'wear', avatar: fileHash },
       { type: 'pause', pause: true },
       { type: 'ping', sent: 1.5 },
+      { type: 'voice', voice: { session: 'annas-page', muted: false } },
+      { type: 'voice', voice: null },
+      signal,
+      { ...signal, body: { candidates: [address] } },
     ]) {
       expect(readInBallRoom(JSON.parse(JSON.stringify(message)))).toEqual(message);
+    }
+  });
+
+  test('a signal that is as long as it may be fits into a message', () => {
+    const line = 'a=rtpmap:111 opus/48000/2\r\n';
+    const sdp = line.repeat(Math.floor(longestDescription / line.length));
+    const offer = { type: 'signal', to: 'a'.repeat(16), body: { description: { type: 'offer', sdp } } };
+    const candidate = `candidate:1 1 udp 2113937151 ${'f'.repeat(36)}.local 53186 typ host generation 0 network-cost 999`;
+    const told = { ...address, candidate, usernameFragment: 'abcd' };
+    const addresses = { type: 'signal', to: 'a'.repeat(16), body: { candidates: Array(mostCandidates).fill(told) } };
+    for (const message of [offer, addresses]) {
+      expect(clientMessageFrom(message)).toEqual(message);
+      expect(`2["/",["message",${JSON.stringify(message)}]]`.length).toBeLessThanOrEqual(longestMessage);
     }
   });
 
@@ -73,6 +95,13 @@ describe('control messages', () => {
     ['a body that no page has', { type: 'wear', avatar: 'dragon' }],
     ['an address instead of a hash', { type: 'wear', avatar: '//elsewhere.example/a/bear/that/is/worn.vrm#' }],
     ['half a seat', { type: 'sit', seat: 0.5 }],
+    ['a voice under a name with spaces', { type: 'voice', voice: { session: 'anna of page', muted: true } }],
+    ['a signal that says who it is from', { ...signal, from: 'bens-page' }],
+    ['a signal to a seat', { ...signal, to: 2 }],
+    ['a description as long as a book', { ...signal, body: { description: { type: 'offer', sdp: 'v'.repeat(3201) } } }],
+    ['a description that takes one back', { ...signal, body: { description: { type: 'rollback', sdp: '' } } }],
+    ['more addresses than a page has', { ...signal, body: { candidates: Array(9).fill(address) } }],
+    ['an address with a field too many', { ...signal, body: { candidates: [{ ...address, priority: 1 }] } }],
     ['a giant', { ...join, calibration: { eyeHeight: 40, armSpan: 1.5 } }],
     ['a name as long as a book', { ...join, name: 'a'.repeat(300) }],
     ['a throw from nowhere', { type: 'action', action: { ...throwing, position: { x: Number.NaN, y: 0, z: 0 } } }],
@@ -109,6 +138,7 @@ describe('control messages', () => {
           bot: fc.boolean(),
           presence: fc.constantFrom('here' as const, 'away' as const, 'gone' as const),
           avatar: fc.constantFrom(...ownBodies, ...skinTones.map((tone) => ownAvatarOf('child', tone)), fileHash),
+          voice: fc.constantFrom(null, { session: 'annas-page', muted: true }, { session: 'annas-page', muted: false }),
         }),
         (info) => {
           expect(unpackSeatInfo(JSON.parse(JSON.stringify(packSeatInfo(info))))).toEqual(info);
@@ -136,7 +166,7 @@ test('a change of packets or frames is told to older pages as a change of messag
   // A change of packets, or of the frames they come in, raises the first: pages that would not see each other are told so when they join.
   const frame = encodeFrame([{ seat: 5, bytes: Uint8Array.from({ length: 20 }, () => poseVersion << 4) }]);
   expect({ protocolVersion, poseVersion, seatAndFlags: frame[0] }).toEqual({
-    protocolVersion: 6,
+    protocolVersion: 7,
     poseVersion: 2,
     seatAndFlags: 0x50,
   });

@@ -21,6 +21,7 @@ export const joining = (more: Partial<Joining> = {}): Joining => ({
   bot: false,
   seat: null,
   avatar: plainAvatar,
+  voice: null,
   ...more,
 });
 

@@ -1,0 +1,47 @@
+import * as v from 'valibot';
+
+/** A room in which there are voices has no more seats than this: each page has a connection to each other one. */
+export const mostVoices = 6;
+
+/** Names one page's stay among the voices; another one after a reload, and wherever all its connections begin anew. */
+const session = v.pipe(v.string(), v.regex(/^[\w-]{8,16}$/));
+
+/** How a page takes part in the voices of its room. */
+export const voice = v.strictObject({ session, muted: v.boolean() });
+export type Voice = v.InferOutput<typeof voice>;
+
+/** The same in a seat's packed row: 1 for muted; 0 alone: its player does not take part. */
+export const packedVoice = v.union([v.literal(0), v.tuple([session, v.picklist([0, 1])])]);
+export type PackedVoice = v.InferOutput<typeof packedVoice>;
+
+export const packVoice = (of: Voice | null): PackedVoice => (of ? [of.session, of.muted ? 1 : 0] : 0);
+export const unpackVoice = (packed: PackedVoice): Voice | null =>
+  packed === 0 ? null : { session: packed[0], muted: packed[1] === 1 };
+
+/** Longest description of a connection [characters], and most addresses in one message, so that it fits into a control message. */
+export const longestDescription = 3200;
+export const mostCandidates = 8;
+
+/** One address at which a page may be reached; as RTCIceCandidateInit has it. */
+const candidate = v.strictObject({
+  candidate: v.pipe(v.string(), v.maxLength(300)),
+  sdpMid: v.nullable(v.pipe(v.string(), v.maxLength(16))),
+  sdpMLineIndex: v.nullable(v.pipe(v.number(), v.integer(), v.minValue(0), v.maxValue(7))),
+  usernameFragment: v.nullable(v.pipe(v.string(), v.maxLength(256))),
+});
+
+/** What two pages tell each other to set up the connection between them: what it is to carry, or where they may be reached. */
+const signalBody = v.union([
+  v.strictObject({
+    description: v.strictObject({
+      type: v.picklist(['offer', 'answer']),
+      sdp: v.pipe(v.string(), v.maxLength(longestDescription)),
+    }),
+  }),
+  v.strictObject({ candidates: v.pipe(v.array(candidate), v.minLength(1), v.maxLength(mostCandidates)) }),
+]);
+export type SignalBody = v.InferOutput<typeof signalBody>;
+
+/** From a page to another one's session, which the room passes on; whose it is, the room says itself. */
+export const signalTo = v.strictObject({ type: v.literal('signal'), to: session, body: signalBody });
+export const signalFrom = v.strictObject({ type: v.literal('signal'), from: session, body: signalBody });

@@ -1,0 +1,59 @@
+import type { ClientMessage } from '../protocol/messages';
+import { mostVoices, type Voice } from '../protocol/voice-messages';
+import type { HostedGame } from './match-policy';
+import type { RoomOutlet, RoomReason } from './room-outlet';
+import type { Client, Seats } from './seats';
+
+type Received<Type extends ClientMessage['type']> = Extract<ClientMessage, { type: Type }>;
+
+/**
+ * Who takes part in the voices of a room, and what their pages tell each other to connect. No sound comes by here: pages send it to each other. Who
+ * watches has no seat, and so neither speaks nor hears.
+ */
+export class RoomVoices {
+  readonly #seats: Seats;
+  readonly #on: boolean;
+  readonly #outlet: Pick<RoomOutlet<HostedGame>, 'send'>;
+
+  /** `wanted`: by the room's host; a room with too many seats for it has no voices all the same. */
+  constructor(seats: Seats, wanted: boolean, outlet: Pick<RoomOutlet<HostedGame>, 'send'>) {
+    this.#seats = seats;
+    this.#on = wanted && seats.count <= mostVoices;
+    this.#outlet = outlet;
+  }
+
+  /** How a person who joins takes part, where the room lets them as they ask; else null. */
+  admitted(identity: string, voice: Voice | null): Voice | null {
+    if (!voice || !this.#on) return null;
+    const taken = this.#seats.withVoice(voice.session);
+    // A page that returns finds its own session on the seat that was held for it.
+    return taken !== null && this.#seats.at(taken)?.identity !== identity ? null : voice;
+  }
+
+  /** Hears a client on this seat (null: none); the reason why the room does not do as they say, or null. */
+  hear(index: number | null, known: Client, message: Received<'voice' | 'signal'>): RoomReason | null {
+    if (!this.#on) return 'no-voices';
+    return message.type === 'signal' ? this.#pass(index, message) : this.#change(index, known, message.voice);
+  }
+
+  /** Takes the client in among the voices, or out. */
+  #change(index: number | null, known: Client, voice: Voice | null): RoomReason | null {
+    if (index === null && voice) return 'no-seat';
+    const taken = voice && this.#seats.withVoice(voice.session);
+    if (taken !== null && taken !== index) return 'session-taken';
+    known.voice = voice;
+    if (index !== null) this.#seats.tell(index, { voice });
+    return null;
+  }
+
+  /** Passes a signal on to the page that it is for, with the session that the room knows its sender by. */
+  #pass(index: number | null, { to, body }: Received<'signal'>): RoomReason | null {
+    const sender = index === null ? null : this.#seats.at(index);
+    if (!sender) return 'no-seat';
+    const receiver = this.#seats.withVoice(to);
+    const client = receiver === null || receiver === index ? null : (this.#seats.at(receiver)?.client ?? null);
+    if (!sender.voice || client === null) return 'not-heard';
+    this.#outlet.send(client, { type: 'signal', from: sender.voice.session, body });
+    return null;
+  }
+}
