@@ -8,7 +8,7 @@ import { partOf, type Work } from '../core/motion/work';
 import { type BvhOptions, writeBvh } from '../core/motion/write-bvh';
 import { writeCsv } from '../core/motion/write-csv';
 import { writeVrma } from '../core/motion/write-vrma';
-import type { Recording } from '../core/tracking/recording';
+import type { Replayable } from '../core/tracking/recording';
 import { type MotionFormat, motionFormats } from './motion-formats';
 import { runWork, type WorkOptions } from './run-work';
 
@@ -49,7 +49,7 @@ function writerOf({ to, ...options }: BareExportOptions): MotionWriter {
 const estimating = 0.7;
 
 async function* exportWork(
-  recording: Recording,
+  recording: Replayable,
   calibration: Calibration,
   regressor: PoseRegressor | null,
   { estimator = 'learned' }: BareExportOptions,
@@ -64,11 +64,11 @@ async function* exportWork(
  * A file of what a method draws of a recording, with fingers: BVH, a table of joints (CSV), VRM Animation, or what a writer makes. Rejects with a
  * sentence where the method draws no body or fails, or no network comes; with the signal's reason where it is given up.
  */
-export async function exportMotionBare(recording: Recording, options: BareExportOptions): Promise<MotionFile> {
+export async function exportMotionBare(recording: Replayable, options: BareExportOptions): Promise<MotionFile> {
   const { estimator = 'learned', networks } = options;
   const writer = writerOf(options);
   const calibration =
-    options.calibration ?? recording.calibration ?? provisionalCalibration(recording.frames[0]!.head.position.y);
+    options.calibration ?? recording.calibration ?? provisionalCalibration(recording.frames.at(0)!.head.position.y);
   options.signal?.throwIfAborted();
   const network = networkOf(estimator);
   const regressor = network && (await networks(network));

@@ -1,7 +1,7 @@
 import { firstLine, reasonOf } from '../../core/errors/reasons';
 import { createEstimator, needsRegressor } from '../../core/estimation/estimators';
 import type { EstimatorName } from '../../core/estimation/pose-estimator';
-import type { Recording } from '../../core/tracking/recording';
+import type { Replayable } from '../../core/tracking/recording';
 import type { BareBodyOptions } from '../../lib/bare-body';
 import { runWork, type WorkProgress } from '../../lib/run-work';
 import { type JointErrors, meanErrors } from './joint-errors';
@@ -14,14 +14,14 @@ const notBegun: WorkProgress = { share: 0, secondsLeft: null };
 
 /** Measures methods over a whole clip, one after the other, while the page goes on drawing. */
 export class ClipMeans {
-  readonly #recording: Recording;
+  readonly #recording: Replayable;
   readonly #truth: Truth;
   readonly #networks: BareBodyOptions['networks'];
   readonly #means = new Map<EstimatorName, ClipMean>();
   readonly #giveUp = new AbortController();
   #busy = false;
 
-  constructor(recording: Recording, truth: Truth, networks: BareBodyOptions['networks']) {
+  constructor(recording: Replayable, truth: Truth, networks: BareBodyOptions['networks']) {
     this.#recording = recording;
     this.#truth = truth;
     this.#networks = networks;

@@ -6,7 +6,7 @@ import { skeletonFromCalibration } from '../../core/body/skeleton';
 import type { PoseEstimator } from '../../core/estimation/pose-estimator';
 import { distance, type Vec3 } from '../../core/math/vec3';
 import type { TruthJoint } from '../../core/mocap/skeleton-map';
-import type { Recording } from '../../core/tracking/recording';
+import type { Replayable } from '../../core/tracking/recording';
 import type { Truth } from './truth';
 
 /** Distances [cm] between joints as drawn and as they were, in the order of `estimatedJoints`. */
@@ -41,14 +41,16 @@ const framesPerStep = 8;
  * [0, 1] that is done. Throws a sentence where the method draws no body or fails.
  */
 export async function* meanErrors(
-  { frames, calibration }: Recording,
+  { frames, calibration }: Replayable,
   truth: Truth,
   estimator: PoseEstimator,
 ): AsyncGenerator<number, JointErrors> {
   const meter = new ErrorMeter(calibration!);
   const sums = makeJointErrors();
   const errors = makeJointErrors();
-  for (const [index, frame] of frames.entries()) {
+  let index = -1;
+  for (const frame of frames) {
+    index += 1;
     const { pose, request } = estimator.update(frame);
     await request?.ask();
     const fault = estimator.fault();

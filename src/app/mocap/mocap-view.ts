@@ -4,29 +4,29 @@ import type { AvatarPose } from '../../core/body/avatar-pose';
 import { firstLine, reasonOf } from '../../core/errors/reasons';
 import type { EstimatorName } from '../../core/estimation/pose-estimator';
 import type { MocapClip, PreparedMocap } from '../../core/mocap/prepare-mocap';
-import type { Recording } from '../../core/tracking/recording';
+import type { Replayable } from '../../core/tracking/recording';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 import type { BareBodyOptions } from '../../lib/bare-body';
-import { runWork } from '../../lib/run-work';
 import { nameOf } from '../../ui/limited-files';
 import { ClipMeans } from './clip-means';
 import { Ghost } from './ghost';
 import { ErrorMeter, makeJointErrors } from './joint-errors';
 import { type CardActions, createMocapCard, type Labels, type MocapCard } from './mocap-card';
-import { fetchMocap, pairFiles } from './mocap-files';
+import { pairFiles } from './mocap-files';
 import { readMocap } from './read-mocap';
 import { SecondBody } from './second-body';
-import { recordingOf, Truth } from './truth';
+import { recordingOf } from './simulated-recording';
+import { Truth } from './truth';
 import type { TruthPlace } from './truth-places';
 
 /** The page's replay, which brings a recording's frames to its body. */
 export interface Replay {
-  readonly recording: Recording | null;
+  readonly recording: Replayable | null;
   readonly mode: string;
   readonly paused: boolean;
   readonly seconds: number;
   readonly duration: number;
-  begin(name: string, recording: Recording): void;
+  begin(name: string, recording: Replayable): void;
   seek(seconds: number): void;
   setPaused(on: boolean): void;
   stop(): void;
@@ -51,6 +51,8 @@ export interface MocapViewOptions {
   readonly method: { readonly wanted: EstimatorName; choose(estimator: EstimatorName): void };
   readonly networks: BareBodyOptions['networks'];
   loadAvatar(): Promise<Avatar>;
+  /** Brings what an object needs to the graphics device before it is seen. */
+  prepare(object: Object3D): Promise<void>;
   /** The card came or went. */
   onCovered(): void;
   tell(level: 'info' | 'warning' | 'error', sentence: string): void;
@@ -63,7 +65,7 @@ interface Opened {
   readonly addresses: readonly string[] | null;
   readonly clips: readonly MocapClip[];
   readonly index: number;
-  readonly recording: Recording;
+  readonly recording: Replayable;
   readonly truth: Truth;
   readonly meter: ErrorMeter;
   readonly means: ClipMeans;
@@ -85,6 +87,8 @@ export class MocapView {
   /** Errors of the picture: of the body, and of the second. */
   readonly #errors = [makeJointErrors(), makeJointErrors()] as const;
   readonly #drawn = [false, false];
+  /** Resolves when the ghosts' first picture waits for nothing. */
+  readonly #prepared: Promise<unknown>;
   /** Of the newest frame's replay. */
   #seconds = 0;
 
@@ -92,6 +96,7 @@ export class MocapView {
     this.#options = options;
     this.#card = createMocapCard(options.labels, this.#actions());
     options.region.append(this.#card.node);
+    this.#prepared = Promise.all(this.#ghosts.map((ghost) => options.prepare(ghost.object)));
     for (const ghost of this.#ghosts) options.scene.add(ghost.object);
     this.#card.show(null);
     this.#hide();
@@ -108,11 +113,14 @@ export class MocapView {
     const onProgress = (progress: Parameters<MocapCard['showProgress']>[1]) => this.#card.showProgress(name, progress);
     try {
       onProgress({ share: 0, secondsLeft: null });
-      const { others, ...files } = pairFiles(await fetchMocap(sources, { signal }));
+      const { others, ...files } = pairFiles(sources);
       const prepared = await readMocap(files, { signal, onProgress });
+      await this.#prepared;
+      signal.throwIfAborted();
       const addresses = sources.every((source) => typeof source === 'string') ? sources : null;
-      await this.#show(files.motion.name, prepared, addresses, { outlook, signal });
-      for (const note of prepared.notes) tell('info', `${files.motion.name}: ${note}.`);
+      const motion = nameOf(files.motion);
+      this.#show(motion, prepared, addresses, outlook);
+      for (const note of prepared.notes) tell('info', `${motion}: ${note}.`);
       if (others.length > 0) tell('warning', `One motion is shown at a time: ${others.join(', ')} was not opened.`);
     } catch (error) {
       if (!signal.aborted)
@@ -198,7 +206,7 @@ export class MocapView {
   #actions(): CardActions {
     const { replay, method } = this.#options;
     return {
-      chooseClip: (index) => void this.#chooseClip(index),
+      chooseClip: (index) => this.#chooseClip(index),
       setPaused: (on) => {
         replay.setPaused(on);
         this.show();
@@ -219,16 +227,11 @@ export class MocapView {
     };
   }
 
-  async #show(
-    name: string,
-    { clips }: PreparedMocap,
-    addresses: Opened['addresses'],
-    { outlook, signal }: { readonly outlook: Outlook; readonly signal: AbortSignal },
-  ): Promise<void> {
+  #show(name: string, { clips }: Pick<PreparedMocap, 'clips'>, addresses: Opened['addresses'], outlook: Outlook): void {
     const longest = clips.reduce((best, { frameCount }, i) => (frameCount > clips[best]!.frameCount ? i : best), 0);
     const index = clips[outlook.clip ?? longest] ? (outlook.clip ?? longest) : longest;
     const clip = clips[index]!;
-    const recording = await runWork(recordingOf(clip), { signal });
+    const recording = recordingOf(clip);
     this.close();
     const { replay, networks } = this.#options;
     const truth = new Truth(clip);
@@ -247,15 +250,9 @@ export class MocapView {
     this.show();
   }
 
-  async #chooseClip(clip: number): Promise<void> {
+  #chooseClip(clip: number): void {
     const opened = this.#opened;
-    if (!opened) return;
-    const beside = this.#second?.estimator;
-    const { signal } = new AbortController();
-    await this.#show(opened.name, { clips: opened.clips, notes: [] }, opened.addresses, {
-      outlook: { clip, beside },
-      signal,
-    });
+    if (opened) this.#show(opened.name, opened, opened.addresses, { clip, beside: this.#second?.estimator });
   }
 
   #seek(seconds: number): void {

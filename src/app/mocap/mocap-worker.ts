@@ -1,7 +1,8 @@
 import { chunksOf } from '../../avatar/glb-chunks';
 import { firstLine, reasonOf } from '../../core/errors/reasons';
 import { type MocapSource, type PreparedMocap, prepareMocap } from '../../core/mocap/prepare-mocap';
-import type { MocapFiles } from './mocap-files';
+import { type FileKind, nameOf, readLimited } from '../../ui/limited-files';
+import type { MocapFile, MocapFiles } from './mocap-files';
 
 /** What the worker says: how far it is [0, 1], what it read, or why it could not. */
 export type MocapAnswer =
@@ -12,16 +13,19 @@ export type MocapAnswer =
 const tellEveryMs = 100;
 const tell = (answer: MocapAnswer, transfer: Transferable[] = []): void => self.postMessage(answer, { transfer });
 
-const textOf = (bytes: ArrayBuffer): string => new TextDecoder().decode(bytes);
+/** What the readers take; half an hour of all joints at 120 Hz. */
+const mocapFile: FileKind = { what: 'a motion capture file', megabytes: 200 };
+const bytesOf = (file: MocapFile): Promise<ArrayBuffer> => readLimited(file, mocapFile);
+const textOf = async (file: MocapFile): Promise<string> => new TextDecoder().decode(await bytesOf(file));
 
-function sourceOf({ motion, skeleton }: MocapFiles): MocapSource {
-  const { name, bytes } = motion;
+async function sourceOf({ motion, skeleton }: MocapFiles): Promise<MocapSource> {
+  const name = nameOf(motion);
   if (skeleton) {
-    const bones = { name: skeleton.name, text: textOf(skeleton.bytes) };
-    return { format: 'amc', name, text: textOf(bytes), skeleton: bones };
+    const bones = { name: nameOf(skeleton), text: await textOf(skeleton) };
+    return { format: 'amc', name, text: await textOf(motion), skeleton: bones };
   }
-  if (!/\.vrma$/i.test(name)) return { format: 'bvh', name, text: textOf(bytes) };
-  const chunks = chunksOf(new Uint8Array(bytes));
+  if (!/\.vrma$/i.test(name)) return { format: 'bvh', name, text: await textOf(motion) };
+  const chunks = chunksOf(new Uint8Array(await bytesOf(motion)));
   if (!chunks) throw new Error(`${name}: no VRM Animation: it is no GLB file, or cut short`);
   try {
     return { format: 'vrma', name, description: JSON.parse(chunks.json), binary: chunks.binary };
@@ -30,25 +34,25 @@ function sourceOf({ motion, skeleton }: MocapFiles): MocapSource {
   }
 }
 
-self.addEventListener('message', ({ data: files }: MessageEvent<MocapFiles>) => {
-  try {
-    const work = prepareMocap(sourceOf(files));
-    let told = 0;
-    for (;;) {
-      const step = work.next();
-      if (step.done) {
-        const { clips } = step.value;
-        return tell(
-          { prepared: step.value },
-          clips.flatMap(({ tracked, truth }) => [tracked.buffer, truth.buffer]),
-        );
-      }
-      const now = performance.now();
-      if (now - told < tellEveryMs) continue;
-      told = now;
-      tell({ share: step.value });
+async function read(files: MocapFiles): Promise<void> {
+  const work = prepareMocap(await sourceOf(files));
+  let told = 0;
+  for (;;) {
+    const step = work.next();
+    if (step.done) {
+      const { clips } = step.value;
+      return tell(
+        { prepared: step.value },
+        clips.flatMap(({ tracked, truth }) => [tracked.buffer, truth.buffer]),
+      );
     }
-  } catch (error) {
-    tell({ refused: firstLine(reasonOf(error)) });
+    const now = performance.now();
+    if (now - told < tellEveryMs) continue;
+    told = now;
+    tell({ share: step.value });
   }
+}
+
+self.addEventListener('message', ({ data: files }: MessageEvent<MocapFiles>) => {
+  read(files).catch((error: unknown) => tell({ refused: firstLine(reasonOf(error)) }));
 });

@@ -1,14 +1,21 @@
 import type { PreparedMocap } from '../../core/mocap/prepare-mocap';
 import { secondsLeft } from '../../core/motion/work';
 import type { WorkOptions } from '../../lib/run-work';
-import type { MocapFiles } from './mocap-files';
+import { nameOf } from '../../ui/limited-files';
+import type { MocapFile, MocapFiles } from './mocap-files';
 import type { MocapAnswer } from './mocap-worker';
 
+/** The same to a worker, whose own address is another than the page's. */
+const forWorker = (file: MocapFile): MocapFile => (typeof file === 'string' ? new URL(file, location.href).href : file);
+
 /**
- * Reads motion capture in a worker that lives no longer than that: neither a large file nor a broken one touches the picture. Rejects with a
- * sentence where the file is none, with the signal's reason where it is given up.
+ * Reads motion capture in a worker that lives no longer than that, from the first byte on: neither a large file nor a broken one touches the
+ * picture. Rejects with a sentence where the file is none, with the signal's reason where it is given up.
  */
-export function readMocap(files: MocapFiles, { onProgress, signal }: WorkOptions = {}): Promise<PreparedMocap> {
+export function readMocap(
+  { motion, skeleton }: MocapFiles,
+  { onProgress, signal }: WorkOptions = {},
+): Promise<PreparedMocap> {
   signal?.throwIfAborted();
   const worker = new Worker(new URL('./mocap-worker.ts', import.meta.url), { type: 'module' });
   const begun = performance.now();
@@ -23,9 +30,9 @@ export function readMocap(files: MocapFiles, { onProgress, signal }: WorkOptions
       }
     });
     worker.addEventListener('error', ({ message }) => {
-      reject(new Error(`${files.motion.name}: it cannot be read (${message || 'its reader did not start'})`));
+      reject(new Error(`${nameOf(motion)}: it cannot be read (${message || 'its reader did not start'})`));
     });
-    const { motion, skeleton } = files;
-    worker.postMessage(files, [motion.bytes, ...(skeleton ? [skeleton.bytes] : [])]);
+    const files: MocapFiles = { motion: forWorker(motion), skeleton: skeleton && forWorker(skeleton) };
+    worker.postMessage(files);
   }).finally(() => worker.terminate());
 }

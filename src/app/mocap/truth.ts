@@ -1,14 +1,8 @@
-import type { TrackedPose } from '../../core/math/pose';
-import { normaliseQuat, quat } from '../../core/math/quat';
 import { type MutableVec3, setVec3, type Vec3, vec3 } from '../../core/math/vec3';
 import { type MocapClip, mocapRateHz } from '../../core/mocap/prepare-mocap';
-import { trackedWidth } from '../../core/mocap/simulate-trackers';
 import { type TruthJoint, truthJoints } from '../../core/mocap/skeleton-map';
-import type { Recording } from '../../core/tracking/recording';
-import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 
 const width = 3 * truthJoints.length;
-const framesPerStep = 64;
 
 /** Where a person's joints truly were, floor frame [m]. */
 export class Truth {
@@ -42,25 +36,4 @@ export class Truth {
     }
     return this.#places;
   }
-}
-
-/** What the trackers saw, as a recording that any method replays. Yields the share [0, 1] that is done. */
-export function* recordingOf({ tracked, frameCount, calibration }: MocapClip): Generator<number, Recording> {
-  const at = (index: number): number => tracked[index]!;
-  const pose = (from: number): TrackedPose => {
-    const orientation = quat(at(from + 3), at(from + 4), at(from + 5), at(from + 6));
-    return {
-      position: vec3(at(from), at(from + 1), at(from + 2)),
-      // Single precision leaves quaternions a little off their length.
-      orientation: normaliseQuat(orientation, orientation),
-      tracking: 'tracked',
-    };
-  };
-  const frames: TrackingFrame[] = [];
-  for (let frame = 0; frame < frameCount; frame++) {
-    const from = frame * trackedWidth;
-    frames.push({ time: frame / mocapRateHz, head: pose(from), leftHand: pose(from + 7), rightHand: pose(from + 14) });
-    if (frame % framesPerStep === 0) yield frame / frameCount;
-  }
-  return { device: 'simulated from motion capture', rateHz: mocapRateHz, calibration, frames };
 }

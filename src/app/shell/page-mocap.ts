@@ -22,6 +22,8 @@ export interface PageMocapOptions {
   readonly body: Pick<BareBody, 'wanted' | 'choose' | 'jumped'>;
   readonly networks: BareBodyOptions['networks'];
   readonly notices: Pick<Notices, 'show'>;
+  /** Brings what an object needs to the graphics device before it is seen. */
+  prepare(object: Object3D): Promise<void>;
   onChange(): void;
   /** What its card covers of the window has changed. */
   onCovered(): void;
@@ -74,9 +76,9 @@ export class PageMocap {
   }
 
   #build(View: typeof MocapView): MocapView {
-    const { scene, body, networks, notices, onChange } = this.#options;
+    const { scene, body, networks, notices, prepare, onChange } = this.#options;
     return new View({
-      ...{ scene, networks, labels },
+      ...{ scene, networks, labels, prepare },
       region: document.body,
       replay: this.#replay(),
       method: {
@@ -99,6 +101,7 @@ export class PageMocap {
     const { ownBody, palette } = this.#options.settings;
     const avatar = await createAvatarBetweenFrames(await parseAvatar(await fetchOwnAvatar(ownBody), labelOf(ownBody)));
     avatar.setPalette(palettes.find(({ name }) => name !== palette)!.name);
+    await this.#options.prepare(avatar.object);
     return avatar;
   }
 

@@ -100,7 +100,7 @@ function createGround(options: PageOptions) {
   const avatar = new ShownAvatar({ scene, settings, body, notices, knownBones, prepare, onChange });
   const avatarShown = avatar.openOwn(ownAvatar);
   const headset = new Headset({ renderer: stage.renderer, quality, switches, settings, notices });
-  return { ...ground, canvas, quality, timing, stage, recorder, difference, avatar, avatarShown, headset };
+  return { ...ground, canvas, quality, timing, stage, recorder, difference, avatar, avatarShown, headset, prepare };
 }
 
 /** What people do on that stage: the games, and the body that plays them. */
@@ -156,12 +156,12 @@ export function createPage(options: PageOptions) {
   const { switches, settings, writer, store } = visit;
   const ground = createGround(options);
   const play = createPlay(options, ground);
-  const { body, networks, canvas, timing, stage, recorder, difference, avatar, headset } = ground;
+  const { body, networks, canvas, timing, stage, recorder, difference, avatar, headset, prepare } = ground;
   const { study, impaired, server, activities, wearer, source } = play;
   const { scene } = stage.studio;
   const onChange = visit.changes.emit;
   const onCovered = () => controls.layOut();
-  const mocap = new PageMocap({ scene, recorder, settings, body, networks, notices, onChange, onCovered });
+  const mocap = new PageMocap({ scene, recorder, settings, body, networks, notices, prepare, onChange, onCovered });
   const controls = new Controls({
     ...{ switches, settings, writer, store, notices, onChange, mocap },
     ...{ timing, difference, stage, recorder, headset, avatar, activities, body, networks, wearer, study, server },

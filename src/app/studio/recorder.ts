@@ -2,7 +2,7 @@ import type { Calibration } from '../../core/body/calibration';
 import { copyFingers } from '../../core/body/hand-shape';
 import {
   parseRecording,
-  type Recording,
+  type Replayable,
   recordingDuration,
   sampleRecording,
   writeRecording,
@@ -24,11 +24,11 @@ export class Recorder {
   #mode: 'idle' | 'recording' | 'replaying' = 'idle';
   #loop = true;
   /** The recording at hand. */
-  #recording: Recording | null = null;
+  #recording: Replayable | null = null;
   #name: string | null = null;
   /** Of the recording that is being made. */
   #frames: TrackingFrame[] = [];
-  #about: Omit<Recording, 'frames'> = { device: '', rateHz: 60, calibration: null };
+  #about: Omit<Replayable, 'frames'> = { device: '', rateHz: 60, calibration: null };
   /** When the replay's newest frame was asked for; null: none was yet. */
   #sampledAt: number | null = null;
   #seconds = 0;
@@ -46,7 +46,7 @@ export class Recorder {
   }
 
   /** The recording at hand; null: none. */
-  get recording(): Recording | null {
+  get recording(): Replayable | null {
     return this.#recording;
   }
 
@@ -130,7 +130,7 @@ export class Recorder {
   /** The replay's frame at this time, dated at this time; null: nothing is replayed. */
   sample(time: number): TrackingFrame | null {
     const recording = this.#recording;
-    const first = recording?.frames[0];
+    const first = recording?.frames.at(0);
     if (this.#mode !== 'replaying' || !recording || !first) return null;
     if (!this.#paused) this.#seconds += time - (this.#sampledAt ?? time);
     this.#sampledAt = time;
@@ -156,14 +156,14 @@ export class Recorder {
   }
 
   /** Takes a recording from the text of a file; throws a sentence when it is none. */
-  open(name: string, text: string): Recording {
+  open(name: string, text: string): Replayable {
     const recording = parseRecording(text);
     this.take(name, recording);
     return recording;
   }
 
   /** Takes a recording; the one at hand is forgotten. */
-  take(name: string, recording: Recording): void {
+  take(name: string, recording: Replayable): void {
     this.stop();
     this.#recording = recording;
     this.#name = name;

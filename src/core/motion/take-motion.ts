@@ -17,7 +17,7 @@ import type { PoseEstimator } from '../estimation/pose-estimator';
 import { conjugate, copyQuat, type MutableQuat, multiply, type Quat, quat } from '../math/quat';
 import type { Side } from '../math/side';
 import { vec3 } from '../math/vec3';
-import type { Recording } from '../tracking/recording';
+import type { Replayable } from '../tracking/recording';
 import type { TrackingFrame } from '../tracking/tracking-frame';
 import type { Motion } from './motion';
 import { motionSkeleton, restBend, turnPoint, turnRotation } from './skeleton';
@@ -160,13 +160,15 @@ const framesPerStep = 16;
  * share [0, 1] that is done, now and then. Throws a sentence where the estimator fails or draws no body.
  */
 export async function* estimateMotion(
-  { frames, rateHz }: Recording,
+  { frames, rateHz }: Replayable,
   calibration: Calibration,
   estimator: PoseEstimator,
 ): AsyncGenerator<number, Motion> {
   const taker = new MotionTaker(calibration, frames.length, rateHz);
   estimator.reset();
-  for (const [index, frame] of frames.entries()) {
+  let index = -1;
+  for (const frame of frames) {
+    index += 1;
     const { pose, request } = estimator.update(frame);
     await request?.ask();
     const fault = estimator.fault();

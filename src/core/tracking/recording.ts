@@ -8,8 +8,15 @@ import { lerp } from '../math/vec3';
 import { type DeviceBody, deviceBodySize, deviceJointNames, mixDeviceBodies } from './device-body';
 import type { TrackingFrame } from './tracking-frame';
 
+/** Frames in the order of their times: an array, or what makes each one when it is asked for. */
+export interface TrackingFrames extends Iterable<TrackingFrame> {
+  readonly length: number;
+  /** As an array's: from 0, or below 0 from the end. */
+  at(index: number): TrackingFrame | undefined;
+}
+
 /** What was tracked over a while, as it was tracked: full precision, lost hands as null. */
-export interface Recording {
+export interface Recording<Frames extends TrackingFrames = readonly TrackingFrame[]> {
   /** What the frames come from, in words: a headset's name, 'emulated headset'. */
   readonly device: string;
   /** Frames per second that the device asked for; the frames' own times are what counts. */
@@ -17,8 +24,11 @@ export interface Recording {
   /** The body of the person; null: not known. */
   readonly calibration: Calibration | null;
   /** At least one, times rising. */
-  readonly frames: readonly TrackingFrame[];
+  readonly frames: Frames;
 }
+
+/** A recording whose frames need not lie in memory. */
+export type Replayable = Recording<TrackingFrames>;
 
 const format = 'threepoint-recording';
 /** 3: frames may have the device's body. 2: they may have fingers. 1: they have neither. */
@@ -48,20 +58,22 @@ const bends = (shape: HandShape | null): readonly number[] | null =>
 const bodyNumbers = (body: DeviceBody): readonly number[] => Array.from(body, (value) => Math.round(1e4 * value) / 1e4);
 
 /** The text of a recording file: JSON with one frame per line. */
-export function writeRecording({ device, rateHz, calibration, frames }: Recording): string {
-  const bodyJoints = frames.some(({ deviceBody }) => deviceBody) ? { bodyJoints: deviceJointNames } : {};
-  const header = JSON.stringify({ format, version, device, rateHz, calibration, ...bodyJoints });
+export function writeRecording({ device, rateHz, calibration, frames }: Replayable): string {
+  let hasBody = false;
   const pose = (tracked: TrackedPose | null) =>
     tracked && [
       ...[tracked.position.x, tracked.position.y, tracked.position.z],
       ...[tracked.orientation.x, tracked.orientation.y, tracked.orientation.z, tracked.orientation.w],
       tracked.tracking,
     ];
-  const lines = frames.map(({ time, head, leftHand, rightHand, fingers, deviceBody }) => {
+  const lines = Array.from(frames, ({ time, head, leftHand, rightHand, fingers, deviceBody }) => {
+    hasBody ||= deviceBody !== undefined;
     const poses = [time, pose(head), pose(leftHand), pose(rightHand)];
     const bent = fingers || deviceBody ? [bends(fingers?.left ?? null), bends(fingers?.right ?? null)] : [];
     return JSON.stringify([...poses, ...bent, ...(deviceBody ? [bodyNumbers(deviceBody)] : [])]);
   });
+  const bodyJoints = hasBody ? { bodyJoints: deviceJointNames } : {};
+  const header = JSON.stringify({ format, version, device, rateHz, calibration, ...bodyJoints });
   return `${header.slice(0, -1)},"columns":"${columns}","frames":[\n${lines.join(',\n')}\n]}\n`;
 }
 
@@ -207,22 +219,35 @@ function parseBody(value: unknown, what: string): DeviceBody {
 }
 
 /** Seconds from the first frame to the last. */
-export const recordingDuration = ({ frames }: Recording): number => frames.at(-1)!.time - frames[0]!.time;
+export const recordingDuration = ({ frames }: Replayable): number => frames.at(-1)!.time - frames.at(0)!.time;
+
+/** The last frame that is not later than a time [s]; the first where all are. */
+function indexAt(frames: TrackingFrames, time: number): number {
+  const isLater = (index: number): boolean => frames.at(index)!.time > time;
+  const last = frames.length - 1;
+  const [first, end] = [frames.at(0)!.time, frames.at(-1)!.time];
+  // Devices keep their pace: from where the frame would lie at an even one, doubled steps lead past it.
+  let low = Math.floor(clamp(end > first ? (time - first) / (end - first) : 0, 0, 1) * last);
+  let high = low + 1;
+  for (let step = 1; low > 0 && isLater(low); step *= 2) [low, high] = [Math.max(0, low - step), low];
+  for (let step = 1; high <= last && !isLater(high); step *= 2) [low, high] = [high, high + step];
+  high = Math.min(high, last + 1);
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if (isLater(middle)) high = middle;
+    else low = middle;
+  }
+  return low;
+}
 
 /**
  * The frame at a time [s] of the recording's own clock, interpolated; before the first and after the last: that frame. A hand
  * that either neighbour lacks is null, its device's body absent: never on its way from or to nowhere.
  */
-export function sampleRecording({ frames }: Recording, time: number): TrackingFrame {
-  let low = 0;
-  let high = frames.length - 1;
-  while (low < high) {
-    const middle = (low + high + 1) >> 1;
-    if (frames[middle]!.time <= time) low = middle;
-    else high = middle - 1;
-  }
-  const before = frames[low]!;
-  const after = frames[Math.min(low + 1, frames.length - 1)]!;
+export function sampleRecording({ frames }: Replayable, time: number): TrackingFrame {
+  const low = indexAt(frames, time);
+  const before = frames.at(low)!;
+  const after = frames.at(Math.min(low + 1, frames.length - 1))!;
   const share = after.time > before.time ? (time - before.time) / (after.time - before.time) : 0;
   if (share <= 0) return { ...before, time };
   const hand = (a: TrackedPose | null, b: TrackedPose | null) => a && b && interpolate(a, b, share);

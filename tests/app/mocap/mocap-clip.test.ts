@@ -4,18 +4,25 @@ import { addClip, emptyMeasures, report, reportNames } from '../../../bench/eval
 import type { RecordedFrame } from '../../../bench/evaluate/recordings';
 import { meanErrors, meanOf } from '../../../src/app/mocap/joint-errors';
 import { pairFiles } from '../../../src/app/mocap/mocap-files';
-import { recordingOf, Truth } from '../../../src/app/mocap/truth';
+import { recordingOf } from '../../../src/app/mocap/simulated-recording';
+import { Truth } from '../../../src/app/mocap/truth';
 import { createEstimator } from '../../../src/core/estimation/estimators';
 import { mocapRateHz, prepareMocap } from '../../../src/core/mocap/prepare-mocap';
 import { finishWork } from '../../../src/core/motion/work';
-import type { Recording } from '../../../src/core/tracking/recording';
+import {
+  parseRecording,
+  type Replayable,
+  recordingDuration,
+  sampleRecording,
+  writeRecording,
+} from '../../../src/core/tracking/recording';
 import { goldenMocap, sourceOf } from '../../core/mocap/golden-mocap';
 
 const clip = finishWork(prepareMocap(sourceOf(goldenMocap[0]!))).clips[0]!;
 
 /** The clip as the evaluation reads it. */
-const recorded = (recording: Recording, truth: Truth): RecordedFrame[] =>
-  recording.frames.map((frame) => {
+const recorded = (recording: Replayable, truth: Truth): RecordedFrame[] =>
+  Array.from(recording.frames, (frame) => {
     const places = Object.entries(truth.at(frame.time)).map(([joint, place]) => [joint, { ...place }]);
     return { frame, truth: Object.fromEntries(places) };
   });
@@ -23,7 +30,7 @@ const recorded = (recording: Recording, truth: Truth): RecordedFrame[] =>
 describe('an opened clip', () => {
   test('has the errors over the whole clip that the evaluation reports, joint by joint', async () => {
     const truth = new Truth(clip);
-    const recording = finishWork(recordingOf(clip));
+    const recording = recordingOf(clip);
     const work = meanErrors(recording, truth, createEstimator('ik', clip.calibration, null));
     let step = await work.next();
     while (!step.done) step = await work.next();
@@ -32,6 +39,39 @@ describe('an opened clip', () => {
     const { mpjpeCm, joints } = report(measures);
     expect(meanOf(step.value)).toBeCloseTo(mpjpeCm.mean, 2);
     for (const [i, name] of reportNames.entries()) expect(step.value[i]).toBeCloseTo(joints[name].mean, 2);
+  });
+
+  test('of half an hour is replayed without more of its frames in memory than are looked at', () => {
+    const frameCount = 30 * 60 * mocapRateHz;
+    const tracked = new Float32Array(21 * frameCount);
+    for (let i = 0; i < tracked.length; i++) tracked[i] = clip.tracked[i % clip.tracked.length]!;
+    const { frames, ...about } = recordingOf({ ...clip, frameCount, tracked });
+    let made = 0;
+    const watched: typeof frames = {
+      length: frames.length,
+      at(index) {
+        made += 1;
+        return frames.at(index);
+      },
+      [Symbol.iterator]: () => frames[Symbol.iterator](),
+    };
+    const recording = { ...about, frames: watched };
+    expect(recordingDuration(recording)).toBeCloseTo(30 * 60, 1);
+    for (const second of [0, 1, 17.31, 900.005, 1799]) {
+      made = 0;
+      expect(sampleRecording(recording, second).time).toBe(second);
+      expect(made, `frames made for second ${second}`).toBeLessThan(10);
+    }
+    expect(frames.at(5)).toEqual(frames.at(5 - frameCount));
+    expect(frames.at(5)).not.toBe(frames.at(5));
+    expect(frames.at(frameCount)).toBeUndefined();
+  });
+
+  test('is downloaded as a recording like any other', () => {
+    const recording = recordingOf(clip);
+    const read = parseRecording(writeRecording(recording));
+    expect(read.frames).toEqual([...recording.frames]);
+    expect(read.frames).toHaveLength(clip.frameCount);
   });
 
   test('is true between two frames where a straight line between them is, and stays at its ends', () => {
@@ -47,23 +87,21 @@ describe('an opened clip', () => {
 });
 
 describe('files of one motion', () => {
-  const file = (name: string) => ({ name, bytes: new ArrayBuffer(0) });
-
   test('are an AMC and the ASF whose name its own begins with', () => {
-    const { motion, skeleton, others } = pairFiles(['02.asf', '01.asf', '01_02.amc'].map(file));
-    expect([motion.name, skeleton?.name, others]).toEqual(['01_02.amc', '01.asf', ['02.asf']]);
+    const { motion, skeleton, others } = pairFiles(['02.asf', '01.asf', '01_02.amc']);
+    expect([motion, skeleton, others]).toEqual(['01_02.amc', '01.asf', ['02.asf']]);
   });
 
   test('are named where one is missing', () => {
-    expect(() => pairFiles([file('01_02.amc')])).toThrow(
+    expect(() => pairFiles(['clips/01_02.amc'])).toThrow(
       '01_02.amc: a motion without its skeleton; open its .asf together with it',
     );
-    expect(() => pairFiles([file('01.asf')])).toThrow(
+    expect(() => pairFiles([new File([], '01.asf')])).toThrow(
       '01.asf: a skeleton without motion; open its .amc together with it',
     );
   });
 
   test('are one motion: others are named', () => {
-    expect(pairFiles(['a.bvh', 'b.bvh', 'c.asf'].map(file)).others).toEqual(['b.bvh', 'c.asf']);
+    expect(pairFiles(['a.bvh', 'b.bvh', 'c.asf']).others).toEqual(['b.bvh', 'c.asf']);
   });
 });

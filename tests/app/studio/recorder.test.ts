@@ -79,7 +79,7 @@ describe('the recorder', () => {
     const file = recorder.file();
     const other = new Recorder();
     const read = other.open('copy.json', file?.text ?? '');
-    expect(read.frames[0]).toEqual(frameAt(1 / 3));
+    expect(read.frames.at(0)).toEqual(frameAt(1 / 3));
     expect(read).toMatchObject({ device: source.device, rateHz: source.rateHz, calibration: source.calibration });
     expect(other.file()?.text).toBe(file?.text);
   });

@@ -205,6 +205,29 @@ describe('sampling', () => {
     );
   });
 
+  test('finds its frame however unevenly a device reported', () => {
+    const times = fc.uniqueArray(fc.double({ min: 0, max: 100, noNaN: true }), { minLength: 1, maxLength: 60 });
+    fc.assert(
+      fc.property(times, number(-5, 105), (unsorted, time) => {
+        const sorted = unsorted.toSorted((a, b) => a - b);
+        const frames = sorted.map((at) => ({ ...some.frames[0]!, time: at }));
+        // Interpolated between its neighbours, the head's place tells which they were.
+        const placed = frames.map((frame, i) => ({
+          ...frame,
+          head: { ...frame.head, position: { x: i, y: 0, z: 0 } },
+        }));
+        const { x } = sampleRecording({ ...some, frames: placed }, time).head.position;
+        const before = Math.max(
+          0,
+          sorted.findLastIndex((at) => at <= time),
+        );
+        expect(x).toBeGreaterThanOrEqual(before);
+        expect(x).toBeLessThanOrEqual(Math.min(before + 1, sorted.length - 1));
+      }),
+      { seed },
+    );
+  });
+
   test('a hand that a neighbour lacks is not seen: never half-way to nowhere', () => {
     expect(sampleRecording(some, 5.15).leftHand).toBeNull();
     expect(sampleRecording(some, 5.25).leftHand).toBeNull();

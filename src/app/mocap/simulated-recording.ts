@@ -1,0 +1,53 @@
+import type { TrackedPose } from '../../core/math/pose';
+import { normaliseQuat, quat } from '../../core/math/quat';
+import { vec3 } from '../../core/math/vec3';
+import { type MocapClip, mocapRateHz } from '../../core/mocap/prepare-mocap';
+import { trackedWidth } from '../../core/mocap/simulate-trackers';
+import type { Replayable, TrackingFrames } from '../../core/tracking/recording';
+import type { TrackingFrame } from '../../core/tracking/tracking-frame';
+
+/** What the trackers saw of a clip. A frame is made when it is asked for and not kept: half an hour of them would hold up the page. */
+class SimulatedFrames implements TrackingFrames {
+  readonly length: number;
+  readonly #numbers: Float32Array;
+
+  constructor({ tracked, frameCount }: MocapClip) {
+    this.#numbers = tracked;
+    this.length = frameCount;
+  }
+
+  at(index: number): TrackingFrame | undefined {
+    const frame = index < 0 ? this.length + index : index;
+    if (!(frame >= 0 && frame < this.length)) return undefined;
+    const from = frame * trackedWidth;
+    return {
+      time: frame / mocapRateHz,
+      head: this.#pose(from),
+      leftHand: this.#pose(from + 7),
+      rightHand: this.#pose(from + 14),
+    };
+  }
+
+  *[Symbol.iterator](): Generator<TrackingFrame> {
+    for (let frame = 0; frame < this.length; frame++) yield this.at(frame)!;
+  }
+
+  #pose(from: number): TrackedPose {
+    const number = (index: number): number => this.#numbers[from + index]!;
+    const orientation = quat(number(3), number(4), number(5), number(6));
+    return {
+      position: vec3(number(0), number(1), number(2)),
+      // Single precision leaves quaternions a little off their length.
+      orientation: normaliseQuat(orientation, orientation),
+      tracking: 'tracked',
+    };
+  }
+}
+
+/** What the trackers saw, as a recording that any method replays. */
+export const recordingOf = (clip: MocapClip): Replayable => ({
+  device: 'simulated from motion capture',
+  rateHz: mocapRateHz,
+  calibration: clip.calibration,
+  frames: new SimulatedFrames(clip),
+});
