@@ -6,6 +6,7 @@ import { createRelay } from './relay';
 import type { RelayConfiguration } from './relay-configuration';
 import { createRoomTokens } from './room-tokens';
 import { createSitePolicy } from './site-policy';
+import { softwareIn } from './software';
 import { createStudySeats } from './study-seats';
 import { openStudyService } from './study-service';
 import { serve } from './web-server';
@@ -44,6 +45,7 @@ export async function startServer(options: StartOptions): Promise<RunningServer>
   const studies = openStudyService({
     directory: options.studyDirectory,
     token: options.experimenterToken,
+    software: softwareIn(options.pageDirectory),
     now,
     seats: createStudySeats(options.secret, createRoomTokens(options.secret, now)),
     trustProxy: relaying.trustProxy,

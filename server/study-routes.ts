@@ -12,6 +12,7 @@ import {
 import { parseRecording } from '../src/core/tracking/recording';
 import { type Answer, done, HttpError, json } from './http/answer';
 import { type Call, jsonOf, type Route, type Service } from './http/router';
+import type { Software } from './software';
 import { StoreRefusal } from './study-database';
 import { exportName, exportZip } from './study-export';
 import { createStudyGuard, type StudyAccess, type StudyGuard, type StudyGuardOptions } from './study-guard';
@@ -21,6 +22,8 @@ import type { StudyStore } from './study-store';
 export interface StudyRoutesOptions extends StudyGuardOptions {
   /** Signs participants into the rooms of their trials. */
   readonly seats: StudySeats;
+  /** What serves the studies: exports say it. */
+  readonly software: Software;
   /** Seconds since 1970. */
   readonly now: () => number;
   /** Told of faults of ours; the participant hears only that there was one. */
@@ -98,12 +101,17 @@ interface TableOptions {
   readonly now: () => number;
   readonly guard: StudyGuard;
   readonly seats: StudySeats;
+  readonly software: Software;
 }
 
-function exportOf({ store, now }: Pick<TableOptions, 'store' | 'now'>, study: string, participant?: string): Answer {
-  const { plan, simulated, retentionUntil } = store.study(study);
+type Exporting = Pick<TableOptions, 'store' | 'now' | 'software'>;
+
+function exportOf({ store, now, software: exportedBy }: Exporting, study: string, participant?: string): Answer {
+  const { plan, simulated, createdAt, retentionUntil } = store.study(study);
+  const software = { exportedBy, served: store.softwareSince(createdAt) };
   const records = store.records(study, participant);
-  const content = { plan, simulated, records, motion: store.motion(study, participant), at: now(), retentionUntil };
+  const motion = store.motion(study, participant);
+  const content = { plan, simulated, records, motion, at: now(), retentionUntil, software };
   const name = exportName(content, participant);
   return {
     status: 200,
@@ -113,7 +121,7 @@ function exportOf({ store, now }: Pick<TableOptions, 'store' | 'now'>, study: st
 }
 
 /** What is of one study, and of the server as a whole. */
-function studyTable({ store, now, guard }: TableOptions): Route<StudyAccess>[] {
+function studyTable({ store, now, guard, software }: TableOptions): Route<StudyAccess>[] {
   return [
     route('GET', '', 'experimenter', 0, () =>
       json({
@@ -137,7 +145,7 @@ function studyTable({ store, now, guard }: TableOptions): Route<StudyAccess>[] {
       store.study(study);
       return json({ receipts: store.receipts(study) });
     }),
-    route('GET', '/:study/export', 'experimenter', 0, ({ study }) => exportOf({ store, now }, study)),
+    route('GET', '/:study/export', 'experimenter', 0, ({ study }) => exportOf({ store, now, software }, study)),
     route('GET', '/:study/participants', 'experimenter', 0, ({ study }) =>
       json({ participants: store.overview(study, now()) }),
     ),
@@ -149,7 +157,7 @@ function studyTable({ store, now, guard }: TableOptions): Route<StudyAccess>[] {
 }
 
 /** What is of one participant. */
-function participantTable({ store, now, guard, seats }: TableOptions): Route<StudyAccess>[] {
+function participantTable({ store, now, guard, seats, software }: TableOptions): Route<StudyAccess>[] {
   const own = '/:study/participants/:participant';
   return [
     route('POST', `${own}/claim`, 'invited', bodyLimits.json, async (call) => {
@@ -222,7 +230,7 @@ function participantTable({ store, now, guard, seats }: TableOptions): Route<Stu
       return json(await seats.sign(plan, call.participant, trial, !guard.isParticipant(call)));
     }),
     route('GET', `${own}/export`, 'participant', 0, ({ study, participant }) =>
-      exportOf({ store, now }, study, participant),
+      exportOf({ store, now, software }, study, participant),
     ),
     route('DELETE', own, 'experimenter', 0, ({ study, participant }) =>
       json(store.deleteParticipant(study, participant, 'experimenter', now())),
@@ -231,9 +239,15 @@ function participantTable({ store, now, guard, seats }: TableOptions): Route<Stu
 }
 
 /** The study's part of the server: all below /api/studies. A participant's token opens nothing but that participant. */
-export function createStudyRoutes({ now, onFault, seats, ...guarded }: StudyRoutesOptions): Service<StudyAccess> {
+export function createStudyRoutes({
+  now,
+  onFault,
+  seats,
+  software,
+  ...guarded
+}: StudyRoutesOptions): Service<StudyAccess> {
   const guard = createStudyGuard(guarded);
-  const table = { store: guarded.store, now, guard, seats };
+  const table = { store: guarded.store, now, guard, seats, software };
   return {
     routes: [...studyTable(table), ...participantTable(table)],
     admit: ({ access }, { request, names }) => guard.admit(access, { request, ...namesOf({ names }) }),

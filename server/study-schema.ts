@@ -87,6 +87,7 @@ const migrations: readonly (string | ((database: DatabaseSyncInstance) => void))
       invite.run(newCode(), study, participant);
     }
   },
+  `CREATE TABLE software (number INTEGER PRIMARY KEY, software TEXT NOT NULL, since REAL NOT NULL) STRICT;`,
 ];
 
 /** Brings a database up to date; throws where it is of a later version than this server. */

@@ -5,6 +5,7 @@ import { ConfigurationError } from './configuration';
 import type { WrongGuess } from './guess-limits';
 import type { Service } from './http/router';
 import { weaknessOf } from './secret-bits';
+import type { Software } from './software';
 import { createStudyRoutes } from './study-routes';
 import type { StudySeats } from './study-seats';
 import { openStudyStore } from './study-store';
@@ -14,6 +15,8 @@ export interface StudyServiceOptions {
   readonly directory: string;
   /** The experimenter's token; null: the one kept in the directory, drawn at the first start. */
   readonly token: string | null;
+  /** What serves the studies now. */
+  readonly software: Software;
   /** Seconds since 1970. */
   readonly now: () => number;
   /** Signs participants into the rooms of their trials. */
@@ -50,13 +53,15 @@ const wrongGuess = ({ what, of, address, failures }: WrongGuess): string =>
 
 /** The studies of this server: its database, its routes and, once an hour, what its retention dates demand. */
 export function openStudyService(options: StudyServiceOptions): StudyService {
-  const { directory, token, now, seats, trustProxy, log } = options;
+  const { directory, token, software, now, seats, trustProxy, log } = options;
   mkdirSync(directory, { recursive: true, mode: 0o700 });
   const tokenFile = token === null ? join(directory, 'experimenter-token') : null;
   const experimenterToken = token ?? keptToken(tokenFile as string);
   const store = openStudyStore(join(directory, 'studies.db'));
+  store.noteSoftware(software, now());
   const service = createStudyRoutes({
     store,
+    software,
     experimenterToken,
     now,
     seats,

@@ -3,6 +3,7 @@ import { currentStep, type Progress, remainingSeconds, resumed } from '../src/co
 import { scheduleFor } from '../src/core/study/schedule';
 import type { ParticipantState, Receipt, StudyCommand, StudyInfo } from '../src/core/study/study-api';
 import type { StudyRecord } from '../src/core/study/study-record';
+import type { Software } from './software';
 import { type NumberedCommand, StudyCommands } from './study-commands';
 import { StudyDatabase } from './study-database';
 import { StudyDeletion } from './study-deletion';
@@ -10,6 +11,7 @@ import { type MotionFile, StudyMotion } from './study-motion';
 import { type PlaceRow, StudyPlaces } from './study-places';
 import { StudyPlans } from './study-plans';
 import { StudyRecords } from './study-records';
+import { type ServedSoftware, StudySoftware } from './study-software';
 
 /**
  * Studies and what was recorded in them. Everything that returns has been written through to the disk. Times are seconds
@@ -48,6 +50,10 @@ export interface StudyStore {
   /** Keeps the tracked frames of a trial; refuses without consent to that. */
   storeMotion(study: string, participant: string, trial: string, text: string, at: number): void;
   motion(study: string, participant?: string): readonly MotionFile[];
+  /** This software serves the studies from now on. */
+  noteSoftware(software: Software, at: number): void;
+  /** What has served the studies since this moment, the oldest first. */
+  softwareSince(at: number): readonly ServedSoftware[];
   overview(study: string, now: number): readonly ParticipantState[];
   deleteParticipant(study: string, participant: string, reason: Receipt['reason'], at: number): Receipt;
   /** Deletes everything of the participant who has this code; null: none has. */
@@ -90,6 +96,7 @@ export function openStudyStore(file: string, { mostBytes = 16 * 2 ** 30 } = {}):
   const records = new StudyRecords(database, plans, places);
   const motion = new StudyMotion(database, places);
   const commands = new StudyCommands(database, places);
+  const software = new StudySoftware(database);
   const deletion = new StudyDeletion({ database, plans, places, records, motion, commands });
   return {
     addStudy: (plan, { simulated, at }) => plans.add(plan, simulated, at),
@@ -109,6 +116,8 @@ export function openStudyStore(file: string, { mostBytes = 16 * 2 ** 30 } = {}):
     commands: (study, participant, after) => commands.after(study, participant, after),
     storeMotion: (study, participant, trial, text, at) => motion.store(study, participant, trial, text, at),
     motion: (study, participant) => motion.all(study, participant),
+    noteSoftware: (used, at) => software.note(used, at),
+    softwareSince: (at) => software.since(at),
     overview(study, now) {
       const { plan } = plans.get(study);
       return places.all(study).map((row) => stateOf(row, plan, records.count(study, row.participant), now));

@@ -1,5 +1,7 @@
 import { existsSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { softwareIn } from '../../server/software';
 import { exportFiles, exportName, exportZip } from '../../server/study-export';
 import { openStudyStore } from '../../server/study-store';
 import { modelsWith, simulatedPlan, simulateStudy, statedInWords } from '../../src/core/rehearsal/simulate-study';
@@ -12,6 +14,7 @@ import { answersIn, trialsIn } from '../../src/core/study/study-tables';
 import { ValidationError } from '../../src/core/study/validation';
 import { simulateOptions } from './options';
 
+const root = fileURLToPath(new URL('../..', import.meta.url));
 /** When the first simulated participant begins: a fixed day, so that the same seed gives the same files. */
 const firstSession = Date.UTC(2026, 0, 5, 9) / 1000;
 
@@ -74,9 +77,11 @@ function run(): void {
       store.storeRecords(plan.id, participant, records, firstSession);
       store.saveProgress(plan.id, participant, progress, firstSession);
     }
+    const used = softwareIn(join(root, 'public'));
+    const software = { exportedBy: used, served: [{ since: firstSession, ...used }] };
     const content = (participant?: string) => {
       const records = store.records(plan.id, participant);
-      return { plan, simulated: true, records, motion: [], at: firstSession, retentionUntil };
+      return { plan, simulated: true, records, motion: [], at: firstSession, retentionUntil, software };
     };
     const all = content();
     const name = exportName(all);

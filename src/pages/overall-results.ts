@@ -1,10 +1,11 @@
 import type { Effect } from '../core/statistics/analysis-of-variance';
-import { cohortsByParticipant } from '../core/study/allocation';
 import type { AnswerRow } from '../core/study/answer-tables';
-import { compareAll, type OverallComparison } from '../core/study/compare-all';
+import type { OverallComparison } from '../core/study/compare-all';
+import { comparedAsAWhole, overallComparisons } from '../core/study/exported-results';
+import { effectsOf, overallTable } from '../core/study/result-tables';
 import { answersIn, scalesIn } from '../core/study/study-tables';
 import { element } from '../ui/element';
-import { fixed, none, pText } from './result-cells';
+import { csvButton, fixed, none, pText } from './result-cells';
 import type { ShownStudy } from './shown-results';
 import { tableNode } from './table';
 
@@ -34,48 +35,41 @@ function etaText({ partialEtaSquared, interval }: Effect): string {
 
 /** The rows of one measure: an effect each. What is tested by ranks stands beside the first. */
 function rowsOf({ of, n, variance, ranks, holmP, ranksHolmP }: OverallComparison) {
-  const effects = [
-    ['conditions', variance?.within ?? null],
-    ['cohorts', variance?.between ?? null],
-    ['conditions × cohorts', variance?.interaction ?? null],
-  ] as const;
-  return effects
-    .flatMap(([name, effect]) => (effect ? [[name, effect] as const] : []))
-    .map(([name, effect], index) => {
-      const first = index === 0;
-      return {
-        cells: [
-          first ? of : '',
-          first ? String(n) : '',
-          name,
-          fixed(effect.f, 3),
-          effect.df.join(', '),
-          pText(effect.correctedP ?? effect.p),
-          fixed(effect.epsilon, 3),
-          etaText(effect),
-          first ? pText(holmP) : none,
-          first ? fixed(ranks?.chiSquared, 3) : none,
-          first ? pText(ranks?.p) : none,
-          first ? pText(ranksHolmP) : none,
-        ],
-      };
-    });
+  return effectsOf(variance).map(([name, effect], index) => {
+    const first = index === 0;
+    return {
+      cells: [
+        first ? of : '',
+        first ? String(n) : '',
+        name,
+        fixed(effect.f, 3),
+        effect.df.join(', '),
+        pText(effect.correctedP ?? effect.p),
+        fixed(effect.epsilon, 3),
+        etaText(effect),
+        first ? pText(holmP) : none,
+        first ? fixed(ranks?.chiSquared, 3) : none,
+        first ? pText(ranks?.p) : none,
+        first ? pText(ranksHolmP) : none,
+      ],
+    };
+  });
 }
 
 /** Analyses of all conditions and cohorts at once; none for two conditions without cohorts, which are compared in pairs. */
-export function overallResults({ plan, records }: ShownStudy): readonly Node[] {
-  if (plan.conditions.length < 3 && !plan.cohorts) return [];
-  const cohorts = cohortsByParticipant(plan);
-  const options = {
-    conditions: plan.conditions.map(({ id }) => id),
-    cohortOf: (participant: string) => cohorts.get(participant)?.id ?? '',
-  };
-  const table = (name: string, rows: readonly AnswerRow[]) => {
-    const compared = compareAll(rows, options);
+export function overallResults({ plan, simulated, records }: ShownStudy): readonly Node[] {
+  if (!comparedAsAWhole(plan)) return [];
+  const table = (name: string, file: string, rows: readonly AnswerRow[]) => {
+    const compared = overallComparisons(rows, plan);
     const leftOut = [...new Set(compared.flatMap((one) => one.leftOut))];
     if (compared.length === 0) return [];
     return [
       tableNode(`${name}: analyses of variance, and tests by ranks`, heads, compared.flatMap(rowsOf)),
+      element(
+        'div',
+        { class: 'bar' },
+        csvButton(overallTable(file, compared, simulated), `${simulated ? 'SIMULATED-' : ''}${plan.id}-${file}`),
+      ),
       ...(leftOut.length === 0
         ? []
         : [element('p', { class: 'soft' }, `Left out somewhere for want of a valid answer: ${leftOut.join(', ')}.`)]),
@@ -83,7 +77,7 @@ export function overallResults({ plan, records }: ShownStudy): readonly Node[] {
   };
   return [
     element('h2', {}, plan.cohorts ? 'All conditions and cohorts together' : 'All conditions together'),
-    ...table('Questions', answersIn(records, plan)),
-    ...table('Scales', scalesIn(records, plan)),
+    ...table('Questions', 'answers-overall', answersIn(records, plan)),
+    ...table('Scales', 'scales-overall', scalesIn(records, plan)),
   ];
 }

@@ -9,13 +9,6 @@ import { barChart, pairedChart } from './charts';
 import { figure } from './figure';
 import type { Compared } from './shown-results';
 
-/** What a question asks about, or the name of a scale; empty: nothing is said. */
-export function aboutIn(asked: readonly Questionnaire[], { asked: of }: Comparison): string {
-  const found = asked.find(({ id }) => id === of?.questionnaire);
-  const scale = found?.scales.find(({ id }) => id === of?.question);
-  return scale?.label ?? found?.questions.find(({ id }) => id === of?.question)?.about ?? '';
-}
-
 /** Comparisons on one scale, in one picture. */
 interface Chart {
   readonly comparisons: readonly Comparison[];

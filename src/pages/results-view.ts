@@ -1,4 +1,5 @@
 import { type Comparison, compareAnswers, compareScores, type Exclusion } from '../core/study/compare-conditions';
+import { aboutIn } from '../core/study/exported-results';
 import { frameTimes } from '../core/study/frame-times';
 import { questionnairesOf } from '../core/study/plan';
 import { comparisonTable, frameTimeTable } from '../core/study/result-tables';
@@ -9,7 +10,7 @@ import { offerDownload } from '../ui/downloads';
 import { button, element } from '../ui/element';
 import { barChart, type ChartOptions, pairedChart } from './charts';
 import { figure } from './figure';
-import { aboutIn, questionFigures, scaleFigures } from './questionnaire-figures';
+import { questionFigures, scaleFigures } from './questionnaire-figures';
 import { csvButton, fixed, meanCell, none, pText } from './result-cells';
 import type { Compared, ShownStudy } from './shown-results';
 import { tableNode } from './table';

@@ -10,11 +10,20 @@ import { answersIn } from '../../src/core/study/study-tables';
 import { tidyCsv } from '../../src/core/study/tidy-csv';
 import { openStudyFile } from '../../src/pages/study-file';
 import { paperPlan } from '../core/study/studies';
+import { testSoftware } from '../server/running-studies';
 
 const plan = simulatedPlan(paperPlan());
 const models = { answers: nullAnswerModel, performance: statedPerformanceModel };
 const records = simulateStudy(plan, models, 1, 1e9).flatMap((one) => one.records);
-const exported = exportZip({ plan, simulated: true, records, motion: [], at: 1e9, retentionUntil: null });
+const exported = exportZip({
+  plan,
+  simulated: true,
+  records,
+  motion: [],
+  at: 1e9,
+  retentionUntil: null,
+  software: testSoftware,
+});
 
 test('an export opens again as what was exported, its mark of simulation included', () => {
   expect(openStudyFile(exported)).toEqual({ plan, simulated: true, records });

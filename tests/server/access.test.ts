@@ -34,7 +34,7 @@ import {
   withTables,
 } from './access-rows';
 import { poseBytes, rawGuest, rawSocket, startRelay, testSecret, tokenFor, until } from './running-relay';
-import { experimenter, now, studySeats } from './running-studies';
+import { experimenter, now, studySeats, testSoftware } from './running-studies';
 
 const adminToken = 'admin-kN3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 const plan = paperPlan();
@@ -63,6 +63,7 @@ async function wholeServer() {
     store,
     experimenterToken: experimenter,
     seats: studySeats,
+    software: testSoftware.exportedBy,
     trustProxy: true,
     now: () => now,
     onWrongGuess: () => undefined,

@@ -14,6 +14,13 @@ import { testSecret } from './running-relay';
 
 export const experimenter = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 export const now = 1_800_000_000;
+const software = {
+  name: 'threepoint',
+  version: '0.1.0',
+  weights: [{ file: 'models/learned.onnx', sha256: 'ab'.repeat(32) }],
+};
+/** What an export says of the program that served it. */
+export const testSoftware = { exportedBy: software, served: [{ since: now, ...software }] };
 export const studySeats = createStudySeats(
   testSecret,
   createRoomTokens(testSecret, () => Date.now() / 1000),
@@ -39,6 +46,7 @@ export async function servedStudies({ experimenterToken = experimenter as string
     store,
     experimenterToken,
     seats: studySeats,
+    software: testSoftware.exportedBy,
     trustProxy: true,
     now: () => now,
     onWrongGuess: (guess) => wrongGuesses.push(guess),

@@ -6,12 +6,20 @@ import { openStudyService } from '../../server/study-service';
 import { serve } from '../../server/web-server';
 import { paperPlan } from '../core/study/studies';
 import { directoryWith } from '../temporary-directory';
-import { studySeats } from './running-studies';
+import { studySeats, testSoftware } from './running-studies';
 
 const day = 86_400;
 
 async function served(directory: string, now: () => number, log: (line: string) => void = () => undefined) {
-  const service = openStudyService({ directory, token: null, now, seats: studySeats, trustProxy: false, log });
+  const service = openStudyService({
+    directory,
+    token: null,
+    now,
+    seats: studySeats,
+    software: testSoftware.exportedBy,
+    trustProxy: false,
+    log,
+  });
   const server = await serve(createRouter([service.service], noPage), { host: '127.0.0.1', port: 0 });
   const close = async () => {
     await server.close();

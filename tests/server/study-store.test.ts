@@ -13,6 +13,7 @@ import { scheduleFor } from '../../src/core/study/schedule';
 import type { StudyRecord } from '../../src/core/study/study-record';
 import { paperPlan, session } from '../core/study/studies';
 import { directoryWith } from '../temporary-directory';
+import { testSoftware } from './running-studies';
 
 const root = fileURLToPath(new URL('../..', import.meta.url));
 const now = 1_800_000_000;
@@ -127,7 +128,7 @@ describe('the store', () => {
     store.deleteParticipant('paper', 'P03', 'withdrawn', now);
     store.close();
     const database = new DatabaseSync(file);
-    database.exec('ALTER TABLE participants DROP COLUMN invitation; PRAGMA user_version = 1');
+    database.exec('ALTER TABLE participants DROP COLUMN invitation; DROP TABLE software; PRAGMA user_version = 1');
     database.close();
     const reopened = opened(file).store;
     const invitations = reopened.overview('paper', now).map(({ invitation }) => invitation);
@@ -286,7 +287,8 @@ describe('an export', () => {
   const contentOf = (store: StudyStore, participant?: string) => {
     const { plan, simulated, retentionUntil } = store.study('paper');
     const records = store.records('paper', participant);
-    return { plan, simulated, records, motion: store.motion('paper', participant), at: now, retentionUntil };
+    const motion = store.motion('paper', participant);
+    return { plan, simulated, records, motion, at: now, retentionUntil, software: testSoftware };
   };
 
   test('holds JSON, tidy tables and a codebook, of this participant alone', () => {
@@ -297,6 +299,7 @@ describe('an export', () => {
       [
         'README.txt',
         'answers.csv',
+        'checksums.sha256',
         'codebook.csv',
         'conditions.csv',
         'events.csv',
@@ -309,6 +312,7 @@ describe('an export', () => {
         'records.json',
         'scale-definitions.csv',
         'scales.csv',
+        'software.json',
         'trials.csv',
       ].map((name) => `paper-P01/${name}`),
     );

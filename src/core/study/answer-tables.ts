@@ -3,7 +3,7 @@ import type { AnswerForm } from './questionnaire-schema';
 import { scaleRange, scaleScore } from './questionnaire-scores';
 import { type Answer, type Questionnaire, questionnaireNamed, stepOf } from './questionnaires';
 import type { Place, StudyRecord } from './study-record';
-import { number, type Table, text } from './tidy-csv';
+import { boolean, number, type Table, text } from './tidy-csv';
 import { inLanguage } from './words';
 
 /** Answers to each question, one per row; of a scale that is computed from them: its value. */
@@ -85,19 +85,23 @@ function formText(form: AnswerForm, language: string): string {
   }
 }
 
+const ids = 'small letters, digits, hyphens';
+const codes = 'letters, digits, - and _';
+const asked = (path: string) => `questionnaire: ${path}`;
+
 /** What was asked, a row for each question and language. */
 export const questionTable = (plan: StudyPlan): Table => ({
   name: 'questions',
   columns: [
-    text('questionnaire', 'Id.'),
-    text('question', 'Id.'),
-    text('language', 'Of the words in this row.'),
-    text('about', 'What it asks about.'),
-    text('text', 'The words.'),
-    text('kind', 'likert, slider, choice, number or text.'),
-    text('answers', 'What can be answered: ends of the scale, or options.'),
-    { name: 'reversed', type: 'boolean', unit: '', description: 'Whether scales count from + to − answer.' },
-    text('source', 'Where the questionnaire was published.'),
+    text('questionnaire', ids, 'plan.json, or shipped with the program', 'Id.'),
+    text('question', codes, asked('questions[].id'), 'Id.'),
+    text('language', 'a language tag', 'plan.json: languages', 'Of the words in this row.'),
+    text('about', 'any text', asked('questions[].about'), 'What it asks about.'),
+    text('text', 'any text', asked('questions[].text'), 'The words.'),
+    text('kind', 'likert, slider, choice, number, text', asked('questions[].answer.kind'), 'How it is answered.'),
+    text('answers', 'any text', asked('questions[].answer'), 'What can be answered: ends of the scale, or options.'),
+    boolean('reversed', asked('questions[].reversed'), 'Whether scales count from + to − answer.'),
+    text('source', 'any text', asked('source'), 'Where the questionnaire was published.'),
   ],
   rows: questionnairesOf(plan).flatMap(({ id, questions, source }) =>
     questions.flatMap((question) =>
@@ -120,24 +124,37 @@ export const questionTable = (plan: StudyPlan): Table => ({
 export const scaleTable = (plan: StudyPlan): Table => ({
   name: 'scale-definitions',
   columns: [
-    text('questionnaire', 'Id.'),
-    text('scale', 'Id.'),
-    text('label', 'Its name.'),
+    text('questionnaire', ids, 'plan.json, or shipped with the program', 'Id.'),
+    text('scale', codes, asked('scales[].id'), 'Id.'),
+    text('label', 'any text', asked('scales[].label'), 'Its name.'),
     text(
       'method',
-      'mean, sum, count (of answers of at_least or more) or weighted-mean (by how often each was chosen).',
+      'mean, sum, count, weighted-mean',
+      asked('scales[].method'),
+      'count: of answers of at_least or more; weighted-mean: by how often each was chosen.',
     ),
-    text('questions', 'Ids, divided by spaces; one that is named twice counts twice.'),
-    text('choices', 'Ids of the choices that weight; empty: none.'),
-    number('at_least', '', 'Answers from here on are counted; empty: not of this scale.'),
-    number('factor', '', 'The result is factor × (mean, sum or count) + offset.'),
-    number('offset', '', 'See factor.'),
-    number('from', '', 'Least value.'),
-    number('to', '', 'Greatest value.'),
+    text(
+      'questions',
+      'ids, divided by spaces',
+      asked('scales[].questions'),
+      'What it is computed from; one that is named twice counts twice.',
+    ),
+    text('choices', 'ids, divided by spaces', asked('scales[].choices'), 'Choices that weight; empty: none.'),
+    number(
+      'at_least',
+      '',
+      'any',
+      asked('scales[].atLeast'),
+      'Answers from here on are counted; empty: not of this scale.',
+    ),
+    number('factor', '', 'any', asked('scales[].factor'), 'The result is factor × (mean, sum or count) + offset.'),
+    number('offset', '', 'any', asked('scales[].offset'), 'See factor.'),
+    number('from', '', 'any', 'computed from the answers that can be given', 'Least value.'),
+    number('to', '', 'any', 'computed from the answers that can be given', 'Greatest value.'),
   ],
-  rows: questionnairesOf(plan).flatMap((asked) =>
-    asked.scales.map((scale) => ({
-      questionnaire: asked.id,
+  rows: questionnairesOf(plan).flatMap((questionnaire) =>
+    questionnaire.scales.map((scale) => ({
+      questionnaire: questionnaire.id,
       scale: scale.id,
       label: scale.label,
       method: scale.method,
@@ -146,8 +163,8 @@ export const scaleTable = (plan: StudyPlan): Table => ({
       at_least: scale.atLeast ?? null,
       factor: scale.factor ?? 1,
       offset: scale.offset ?? 0,
-      from: scaleRange(asked, scale)[0],
-      to: scaleRange(asked, scale)[1],
+      from: scaleRange(questionnaire, scale)[0],
+      to: scaleRange(questionnaire, scale)[1],
     })),
   ),
 });

@@ -1,19 +1,41 @@
+import { threePointNames } from '../estimation/pose-estimator';
+import { ownBodies } from '../protocol/worn-avatar';
+import { mostLatencyMs } from '../tracking/impaired-tracking';
 import type { StudyPlan } from './plan';
 import { boolean, number, type Table, text } from './tidy-csv';
 
+const from = (field: string) => `plan.json: conditions[].${field} or cohorts[].${field}`;
+
 const columns = [
-  text('compared', 'condition: within participants; cohort: between them.'),
-  text('id', 'As in the other tables.'),
-  text('label', 'For the experimenter.'),
-  text('estimator', 'Method that draws the body; here and below empty: nothing is said.'),
-  text('avatar', 'Body that is worn.'),
-  boolean('mirror', 'Whether a mirror stands there.'),
-  boolean('upper_body_only', 'Whether the body ends at the hips.'),
-  number('latency', 'ms', 'Added to the body’s motion.'),
-  number('noise_position', 'mm', 'Standard deviation along each axis, added to head and hands.'),
-  number('noise_rotation', 'degrees', 'Standard deviation about each axis.'),
-  number('dropouts_per_minute', '', 'How often each hand is lost.'),
-  number('dropout_seconds', 's', 'For how long each time.'),
+  text('compared', 'condition, cohort', 'plan.json', 'condition: within participants; cohort: between them.'),
+  text('id', 'small letters, digits, hyphens', from('id'), 'As in the other tables.'),
+  text('label', 'any text', from('label'), 'For the experimenter.'),
+  text(
+    'estimator',
+    threePointNames.join(', '),
+    from('estimator'),
+    'Method that draws the body; here and below empty: nothing is said.',
+  ),
+  text('avatar', ownBodies.join(', '), from('avatar'), 'Body that is worn.'),
+  boolean('mirror', from('mirror'), 'Whether a mirror stands there.'),
+  boolean('upper_body_only', from('upperBodyOnly'), 'Whether the body ends at the hips.'),
+  number('latency', 'ms', `0 to ${mostLatencyMs}`, from('latencyMs'), 'Added to the body’s motion.'),
+  number(
+    'noise_position',
+    'mm',
+    '0 to 100',
+    from('trackerNoise.positionMm'),
+    'Standard deviation along each axis, added to head and hands.',
+  ),
+  number(
+    'noise_rotation',
+    'degrees',
+    '0 to 30',
+    from('trackerNoise.rotationDegrees'),
+    'Standard deviation about each axis.',
+  ),
+  number('dropouts_per_minute', '', '0 to 60', from('dropouts.perMinute'), 'How often each hand is lost.'),
+  number('dropout_seconds', 's', '0.1 to 10', from('dropouts.seconds'), 'For how long each time.'),
 ];
 
 /** What the conditions and cohorts of a plan are. */

@@ -54,6 +54,9 @@ const eventSchema = v.variant('type', [
   v.object({ type: v.literal('finished') }),
 ]);
 
+/** What can happen in a session beside what is asked and played. */
+export const eventTypes = eventSchema.options.map(({ entries }) => entries.type.literal);
+
 const bodies = {
   consent: v.looseObject({ version: v.string() }),
   demographics: v.looseObject({}),

@@ -2,168 +2,18 @@ import { cohortsByParticipant } from './allocation';
 import { type AnswerRow, answerRows, type BlockExclusion, questionTable, scaleRows, scaleTable } from './answer-tables';
 import { conditionTable } from './condition-table';
 import type { StudyPlan } from './plan';
+import {
+  answerColumns,
+  eventColumns,
+  frameTimeColumns,
+  hitColumns,
+  participantColumns,
+  pauseColumns,
+  scaleColumns,
+  trialColumns,
+} from './study-columns';
 import type { Place, StudyRecord } from './study-record';
-import { boolean, type Cell, number, type Table, text } from './tidy-csv';
-
-const who = [
-  text('study', 'Id of the study.'),
-  text('participant', 'Code of the participant.'),
-  boolean('simulated', 'TRUE: made by a program. Never analyse together with people.'),
-];
-const where = [
-  text('task', 'Id of the task.'),
-  number('block', '', 'Place of the condition in the order of this participant, from 1.'),
-  number('run', '', 'From 1; a block that was voided and repeated runs again.'),
-];
-const conditionColumns = [
-  text('condition', 'Id of the condition; empty: tutorial.'),
-  text('estimator', 'Method that drew the body.'),
-];
-const excluded = text('excluded', 'Why the row counts for nothing: "voided: reason" or "tutorial"; empty: it counts.');
-const time = number('at', 's', 'When, in seconds since 1970-01-01 UTC, by the clock of the device.');
-
-const participantColumns = [
-  ...who,
-  text('cohort', 'Id of the cohort; empty: the study has none.'),
-  text('consent_version', 'Version of the text consented to.'),
-  boolean('motion_consent', 'Whether tracked frames may be kept.'),
-  text('language', 'In which the text was read; empty: the study has only one.'),
-  text('gender', 'woman, man, non-binary, other, not-said.'),
-  number('age', 'years', 'As told.'),
-  text('major', 'Field of study or work, as typed.'),
-  text('vr_experience', 'none, once-or-twice, several-times, monthly, weekly.'),
-  text('vr_systems', 'Systems used before, as typed.'),
-  text('handedness', 'right, left, both.'),
-  text('vision', 'normal, corrected, impaired.'),
-];
-
-const answerColumns = [
-  ...who,
-  ...where,
-  ...conditionColumns,
-  text('questionnaire', 'Id.'),
-  text('question', 'Id of the question; its words and its scale are in questions.csv.'),
-  number('answer', '', 'As given, reversed questions too; empty: text, a choice, or left open.'),
-  text('answer_text', 'Text as typed, or the value of the option chosen; empty: a number, or left open.'),
-  text('language', 'In which it was read.'),
-  number('seconds', 's', 'From the first question shown to handing in the whole questionnaire, pauses left out.'),
-  boolean('overtime', 'Whether that took longer than the plan gives.'),
-  time,
-  excluded,
-];
-
-const scaleColumns = [
-  ...who,
-  ...where,
-  ...conditionColumns,
-  text('questionnaire', 'Id.'),
-  text('scale', 'Id of the scale; scale-definitions.csv says how it is computed.'),
-  number('value', '', 'Empty: a question that it needs has no answer.'),
-  time,
-  excluded,
-];
-
-const attempt = number('attempt', '', 'From 1; a trial lost by a crash or reload is tried again.');
-
-/** Which trial a row belongs to. */
-const trialNames = [
-  ...who,
-  ...where,
-  attempt,
-  ...conditionColumns,
-  number('repetition', '', 'Trial of the block, from 1.'),
-];
-
-const trialColumns = [
-  ...trialNames,
-  number('group', '', 'Number of the group; tasks played alone: of the participant.'),
-  text('ended', 'arrows, targets, balls, time, or stopped (early).'),
-  number('score', 'points', "In a group the group's."),
-  number('maximum', 'points', 'The most that can be had.'),
-  number('percent', '%', '100 score / maximum.'),
-  number('shots', '', 'Arrows or balls sent off by this participant.'),
-  number('hits', '', 'How many of them counted.'),
-  number('seconds', 's', 'From the start signal to the end.'),
-  number('frames', '', 'Frames drawn.'),
-  number('missed_frames', '', 'Frames shown later than the device wanted.'),
-  text('device', 'Name of the headset or browser.'),
-  number('refresh_rate', 'Hz', 'Frames per second that the device wants; empty: unknown.'),
-  text('input', 'controllers, hands, mixed, emulated, simulated.'),
-  number('eye_height', 'm', 'Calibration: height of the eyes above the floor.'),
-  number('arm_span', 'm', 'Calibration: from wrist to wrist, arms sideways.'),
-  number('forearm', 'm', 'Calibration: from elbow to wrist; empty: not told.'),
-  number(
-    'gaze_pitch',
-    'rad',
-    'Calibration: how far up the headset points when its wearer looks ahead; empty: not measured.',
-  ),
-  ...(['left', 'right'] as const).flatMap((side) => [
-    number(
-      `${side}_hand_pitch`,
-      'rad',
-      `Calibration: how far up of its ${side} hand the forearm points; empty: not measured.`,
-    ),
-    number(`${side}_hand_yaw`, 'rad', `Calibration: how far to the left of its ${side} hand; empty: not measured.`),
-  ]),
-  number('head_losses', '', 'How often the head was not tracked.'),
-  number('head_lost', 's', 'For how long.'),
-  number('left_hand_losses', '', 'How often the left hand was not tracked.'),
-  number('left_hand_lost', 's', 'For how long.'),
-  number('right_hand_losses', '', 'How often the right hand was not tracked.'),
-  number('right_hand_lost', 's', 'For how long.'),
-  text('assists', 'Aids that were on, divided by semicolons.'),
-  number('motion_frames', '', 'Tracked frames recorded beside this.'),
-  number('started', 's', 'Second 0, in seconds since 1970-01-01 UTC, by the clock of the device; empty: not known.'),
-  number(
-    'recording_start',
-    's',
-    'Second 0 on the clock of the recorded frames, which runs on in pauses (pauses.csv); empty: not known.',
-  ),
-  time,
-  excluded,
-];
-
-const frameTimeColumns = [
-  ...trialNames,
-  text('stage', 'Stage of the frame; "frame" is all of its work.'),
-  number('count', '', 'Frames measured.'),
-  number('min', 'ms', 'Shortest.'),
-  number('max', 'ms', 'Longest.'),
-  number('mean', 'ms', 'Mean.'),
-  number('p50', 'ms', 'Median.'),
-  number('p95', 'ms', '95th percentile.'),
-  excluded,
-];
-
-const hitColumns = [
-  ...trialNames,
-  number('time', 's', "Second of the game's own clock, which also stands while the head is lost."),
-  number(
-    'onset',
-    's',
-    'Second of the trial at the frame that showed it; with recording_start and the pauses before it, its place among recorded frames. Empty: not known.',
-  ),
-  text('type', 'hit, miss, catch.'),
-  number('points', 'points', 'What it scored.'),
-  excluded,
-];
-
-const pauseColumns = [
-  ...trialNames,
-  number('time', 's', 'Second of the trial at which it stood.'),
-  number('seconds', 's', 'For how long.'),
-  excluded,
-];
-
-const eventColumns = [
-  ...who,
-  text('event', 'void-block, interrupted, pause, resume, remark, reload, finished.'),
-  text('task', 'Where it concerns one; empty: no particular one.'),
-  number('block', '', 'Where it concerns one.'),
-  number('run', '', 'Where it concerns one.'),
-  text('text', 'Remark or reason, as typed.'),
-  time,
-];
+import type { Cell, Table } from './tidy-csv';
 
 /** Says why what was recorded at a place counts for nothing: "voided: reason"; empty: it counts. */
 export function voidedBlocks(records: readonly StudyRecord[]): BlockExclusion {

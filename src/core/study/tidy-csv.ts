@@ -4,25 +4,40 @@ export interface Column {
   readonly type: 'text' | 'number' | 'boolean';
   /** SI or a word ("points"); empty: none. */
   readonly unit: string;
+  /** What may stand in it: names, a range, a form. */
+  readonly values: string;
+  /** Where it comes from: the way to it in a record or in the plan, or how it is computed. */
+  readonly source: string;
   readonly description: string;
 }
 
 /** A column of text. */
-export const text = (name: string, description: string): Column => ({ name, type: 'text', unit: '', description });
+export const text = (name: string, values: string, source: string, description: string): Column => ({
+  name,
+  type: 'text',
+  unit: '',
+  values,
+  source,
+  description,
+});
 
 /** A column of numbers; `unit`: SI or a word. */
-export const number = (name: string, unit: string, description: string): Column => ({
+export const number = (name: string, unit: string, values: string, source: string, description: string): Column => ({
   name,
   type: 'number',
   unit,
+  values,
+  source,
   description,
 });
 
 /** A column of TRUE and FALSE. */
-export const boolean = (name: string, description: string): Column => ({
+export const boolean = (name: string, source: string, description: string): Column => ({
   name,
   type: 'boolean',
   unit: '',
+  values: 'TRUE, FALSE',
+  source,
   description,
 });
 
@@ -63,25 +78,24 @@ export function tidyCsv({ name, columns, rows }: Table): string {
   return `${lines.join('\r\n')}\r\n`;
 }
 
+const sourceMeaning =
+  'Where it comes from: the way to it in records.json, behind the kind of record where only one kind has it, or in plan.json; or how it is computed.';
+
 /** The table that explains the columns of the tables. */
 export function codebookOf(tables: readonly Pick<Table, 'name' | 'columns'>[]): Table {
   return {
     name: 'codebook',
     columns: [
-      text('table', 'File of the column, without its ending.'),
-      text('column', 'Name of the column.'),
-      text('type', 'text, number or boolean (TRUE, FALSE). An empty field: no value.'),
-      text('unit', 'Unit; empty: none.'),
-      text('description', 'What it means.'),
+      text('table', 'names of files', 'the tables of this export', 'File of the column, without its ending.'),
+      text('column', 'any text', 'the tables of this export', 'Name of the column.'),
+      text('type', 'text, number, boolean', 'the tables of this export', 'In every type an empty field is no value.'),
+      text('unit', 'SI or a word', 'the tables of this export', 'Unit; empty: none.'),
+      text('values', 'any text', 'the tables of this export', 'What may stand in it.'),
+      text('source', 'any text', 'the tables of this export', sourceMeaning),
+      text('description', 'any text', 'the tables of this export', 'What it means.'),
     ],
     rows: tables.flatMap((table) =>
-      table.columns.map(({ name, type, unit, description }) => ({
-        table: table.name,
-        column: name,
-        type,
-        unit,
-        description,
-      })),
+      table.columns.map(({ name, ...said }) => ({ table: table.name, column: name, ...said })),
     ),
   };
 }

@@ -7,7 +7,7 @@ import { serve, type WebServer } from '../../../server/web-server';
 import type { StudyPlan } from '../../../src/core/study/plan';
 import { createExperimenterClient } from '../../../src/net/study-client';
 import { paperPlan } from '../../core/study/studies';
-import { studySeats } from '../../server/running-studies';
+import { studySeats, testSoftware } from '../../server/running-studies';
 import { directoryWith } from '../../temporary-directory';
 
 const experimenterToken = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
@@ -21,6 +21,7 @@ export async function studyServer(changes: Partial<StudyPlan> = {}) {
     store,
     experimenterToken,
     seats: studySeats,
+    software: testSoftware.exportedBy,
     trustProxy: false,
     onWrongGuess: () => undefined,
     now: () => 1e9,

@@ -1,43 +1,16 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
-import { codebookOf, type Table, tidyCsv } from '../../../src/core/study/tidy-csv';
+import { csvRows } from '../../../scripts/study-verify/csv-rows';
+import { codebookOf, type Table, text, tidyCsv } from '../../../src/core/study/tidy-csv';
 import { seed } from '../arbitraries';
 
 const tableOf = (...cells: Table['rows'][number][string][]): Table => ({
   name: 'remarks',
-  columns: [{ name: 'remark', type: 'text', unit: '', description: 'What was said.' }],
+  columns: [text('remark', 'any text', 'event: body.text', 'What was said.')],
   rows: cells.map((remark) => ({ remark })),
 });
 
-/** A reader as RFC 4180 describes it, so that what we write is read by rules that are not ours. */
-function readCsv(csv: string): string[][] {
-  const rows: string[][] = [];
-  let row: string[] = [];
-  let cell = '';
-  let quoted = false;
-  for (let i = 0; i < csv.length; i++) {
-    const character = csv[i] as string;
-    if (quoted) {
-      if (character !== '"') cell += character;
-      else if (csv[i + 1] === '"') {
-        cell += '"';
-        i += 1;
-      } else quoted = false;
-    } else if (character === '"') quoted = true;
-    else if (character === ',') {
-      row.push(cell);
-      cell = '';
-    } else if (character === '\r' && csv[i + 1] === '\n') {
-      rows.push([...row, cell]);
-      row = [];
-      cell = '';
-      i += 1;
-    } else cell += character;
-  }
-  return rows;
-}
-
-const onlyCell = (csv: string) => readCsv(csv)[1]?.[0];
+const onlyCell = (csv: string) => csvRows(csv)[1]?.[0];
 
 describe('a table as CSV', () => {
   test.each([
@@ -76,7 +49,7 @@ describe('a table as CSV', () => {
   test('gives back every text, at most with an apostrophe in front, and no cell that begins like a formula', () => {
     fc.assert(
       fc.property(fc.array(fc.string({ unit: 'binary', maxLength: 30 }), { minLength: 1, maxLength: 5 }), (texts) => {
-        const rows = readCsv(tidyCsv(tableOf(...texts))).slice(1);
+        const rows = csvRows(tidyCsv(tableOf(...texts))).slice(1);
         expect(rows).toHaveLength(texts.length);
         texts.forEach((text, index) => {
           const cell = rows[index]?.[0] as string;
@@ -96,6 +69,14 @@ describe('a table as CSV', () => {
 
 test('the codebook has a line for every column', () => {
   expect(codebookOf([tableOf()]).rows).toEqual([
-    { table: 'remarks', column: 'remark', type: 'text', unit: '', description: 'What was said.' },
+    {
+      table: 'remarks',
+      column: 'remark',
+      type: 'text',
+      unit: '',
+      values: 'any text',
+      source: 'event: body.text',
+      description: 'What was said.',
+    },
   ]);
 });

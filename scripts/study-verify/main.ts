@@ -1,0 +1,30 @@
+import { existsSync, readFileSync } from 'node:fs';
+import { basename } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { softwareIn } from '../../server/software';
+import { reasonOf } from '../../src/core/errors/reasons';
+import { verifyExport } from './verify-export';
+
+const [path = ''] = process.argv.slice(2);
+const file = basename(path);
+/** What is wrong in so many places is one mistake many times. */
+const mostShown = 50;
+
+try {
+  if (!existsSync(path)) throw new Error('there is no such file');
+  const here = softwareIn(fileURLToPath(new URL('../../public', import.meta.url)));
+  const { complaints, files, records, exportedBy } = verifyExport(readFileSync(path));
+  if (exportedBy.version !== here.version) {
+    console.log(
+      `${file} was exported by version ${exportedBy.version}; this is ${here.version}, which may write other columns.`,
+    );
+  }
+  for (const complaint of complaints.slice(0, mostShown)) console.log(`${file}: ${complaint}`);
+  if (complaints.length > mostShown) console.log(`… and ${complaints.length - mostShown} more.`);
+  const what = `${files} files, computed anew from ${records} records`;
+  console.log(complaints.length === 0 ? `${file}: sound: ${what}.` : `${file}: ${complaints.length} faults; ${what}.`);
+  process.exitCode = complaints.length === 0 ? 0 : 1;
+} catch (error) {
+  console.error(`${file}: ${reasonOf(error)}`);
+  process.exitCode = 1;
+}

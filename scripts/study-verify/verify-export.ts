@@ -1,0 +1,144 @@
+import { createHash } from 'node:crypto';
+import { strFromU8, unzipSync } from 'fflate';
+import type { Software } from '../../server/software';
+import { checksumsFile, type ExportContent, exportFiles, motionPath } from '../../server/study-export';
+import { reasonOf } from '../../src/core/errors/reasons';
+import { openStudyFile } from '../../src/pages/study-file';
+import { csvRows } from './csv-rows';
+
+export interface Verdict {
+  /** What differs, each in a sentence; empty: nothing. */
+  readonly complaints: readonly string[];
+  readonly files: number;
+  readonly records: number;
+  readonly exportedBy: Software;
+}
+
+type Files = Readonly<Record<string, Uint8Array>>;
+
+/** The files of an export without the folder that they are all in; throws a sentence. */
+function unpacked(zip: Uint8Array): Files {
+  let all: Files;
+  try {
+    all = unzipSync(zip);
+  } catch (error) {
+    throw new Error(
+      `this is no zip, or its end is missing (${reasonOf(error)}): copy it once more from where it was saved`,
+    );
+  }
+  const inFolder = ([path, bytes]: [string, Uint8Array]) => [path.replace(/^[^/]*\//, ''), bytes] as const;
+  return Object.fromEntries(
+    Object.entries(all)
+      .filter(([path]) => !path.endsWith('/'))
+      .map(inFolder),
+  );
+}
+
+function textOf(files: Files, name: string): string {
+  const bytes = files[name];
+  if (!bytes) throw new Error(`${name} is missing: without it nothing can be computed anew`);
+  return strFromU8(bytes);
+}
+
+/** What the export says of itself, beside its plan and its records. */
+interface Envelope {
+  readonly participant: string | null;
+  readonly exportedAt: number;
+  readonly retentionUntil: number | null;
+}
+
+const rawFiles: readonly string[] = ['plan.json', 'records.json', 'software.json'];
+
+/** The raw part of an export: what everything else follows from. */
+function rawOf(zip: Uint8Array, files: Files): { readonly content: ExportContent; readonly envelope: Envelope } {
+  textOf(files, 'plan.json');
+  const envelope = JSON.parse(textOf(files, 'records.json')) as Envelope;
+  const software = JSON.parse(textOf(files, 'software.json')) as ExportContent['software'];
+  const { plan, simulated, records } = openStudyFile(zip);
+  const motion = records.flatMap((record) => {
+    const file = { participant: record.participant, trial: record.id };
+    const bytes = record.kind === 'trial' ? files[motionPath(file)] : undefined;
+    return bytes ? [{ ...file, text: strFromU8(bytes) }] : [];
+  });
+  const { exportedAt: at, retentionUntil } = envelope;
+  const inOrder = motion.toSorted((a, b) => (`${a.participant} ${a.trial}` < `${b.participant} ${b.trial}` ? -1 : 1));
+  return { content: { plan, simulated, records, motion: inOrder, at, retentionUntil, software }, envelope };
+}
+
+/** Files that are not what they were when the export was made. */
+function checksumComplaints(files: Files): readonly string[] {
+  const listed = strFromU8(files[checksumsFile] ?? new Uint8Array())
+    .split('\n')
+    .filter(Boolean)
+    .map((line) => [line.slice(66), line.slice(0, 64)] as const);
+  return listed.flatMap(([path, hash]) => {
+    const bytes = files[path];
+    if (!bytes) return [`${path} is missing.`];
+    const changed = createHash('sha256').update(bytes).digest('hex') !== hash;
+    return changed ? [`${path} is not as it was exported: its SHA-256 is another than in ${checksumsFile}.`] : [];
+  });
+}
+
+const quoted = (cell: string | undefined): string => (cell === undefined ? 'nothing' : `"${cell}"`);
+
+/** Where two tables differ, cell by cell. */
+function cellComplaints(path: string, found: string, computed: string): readonly string[] {
+  const [theirs, ours] = [csvRows(found), csvRows(computed)];
+  const [heads = []] = ours;
+  const complaints =
+    theirs.length === ours.length ? [] : [`${path}: ${theirs.length - 1} rows, the records give ${ours.length - 1}.`];
+  for (let line = 0; line < Math.min(theirs.length, ours.length); line++) {
+    const [there = [], here = []] = [theirs[line], ours[line]];
+    for (let at = 0; at < Math.max(there.length, here.length); at++) {
+      if (there[at] === here[at]) continue;
+      const column = heads[at] ?? `column ${at + 1}`;
+      complaints.push(`${path}, row ${line}, ${column}: ${quoted(there[at])}, the records give ${quoted(here[at])}.`);
+    }
+  }
+  return complaints;
+}
+
+function lineComplaint(path: string, found: string, computed: string): string {
+  const [theirs, ours] = [found.split('\n'), computed.split('\n')];
+  const line = Math.max(
+    0,
+    ours.findIndex((text, index) => text !== theirs[index]),
+  );
+  const shown = (text: string | undefined) => quoted(text?.trim().slice(0, 120));
+  return `${path}, line ${line + 1}: ${shown(theirs[line])}, the records give ${shown(ours[line])}.`;
+}
+
+/** Files that do not follow from the raw part. */
+function contentComplaints(files: Files, computed: Readonly<Record<string, string>>): readonly string[] {
+  const complaints: string[] = [];
+  for (const [path, text] of Object.entries(computed)) {
+    const bytes = files[path];
+    // The raw part follows from nothing: its hashes speak for it.
+    if (bytes && (rawFiles.includes(path) || path === checksumsFile)) continue;
+    if (!bytes) {
+      complaints.push(`${path} is missing.`);
+      continue;
+    }
+    const found = strFromU8(bytes);
+    if (found === text) continue;
+    const cells = path.endsWith('.csv') ? cellComplaints(path, found, text) : [];
+    complaints.push(...(cells.length > 0 ? cells : [lineComplaint(path, found, text)]));
+  }
+  for (const path of Object.keys(files)) {
+    if (!(path in computed)) complaints.push(`${path} does not follow from the records.`);
+  }
+  return complaints;
+}
+
+/** Computes everything in the zip of an export anew from its raw records, its plan and its recordings. Throws a sentence where that cannot be done. */
+export function verifyExport(zip: Uint8Array): Verdict {
+  const files = unpacked(zip);
+  const { content, envelope } = rawOf(zip, files);
+  const computed = exportFiles(content, envelope.participant ?? undefined);
+  return {
+    complaints: [...new Set([...checksumComplaints(files), ...contentComplaints(files, computed)])],
+    files: Object.keys(computed).length,
+    records: content.records.length,
+    exportedBy: content.software.exportedBy,
+  };
+}

@@ -1,0 +1,27 @@
+import { createHash } from 'node:crypto';
+import { existsSync, readdirSync, readFileSync } from 'node:fs';
+import { join } from 'node:path';
+
+/** What drew the bodies of a study. */
+export interface Software {
+  readonly name: string;
+  readonly version: string;
+  /** Of the networks that it serves, by name. */
+  readonly weights: readonly { readonly file: string; readonly sha256: string }[];
+}
+
+const isWeights = (file: string): boolean => /\.(onnx|bin)$/.test(file);
+
+/** This program, and the networks below `pageDirectory`, which may have none. */
+export function softwareIn(pageDirectory: string): Software {
+  const { name, version } = JSON.parse(readFileSync(new URL('../package.json', import.meta.url), 'utf8')) as Software;
+  const models = join(pageDirectory, 'models');
+  const files = existsSync(models) ? readdirSync(models).filter(isWeights).toSorted() : [];
+  const weights = files.map((file) => ({
+    file: `models/${file}`,
+    sha256: createHash('sha256')
+      .update(readFileSync(join(models, file)))
+      .digest('hex'),
+  }));
+  return { name, version, weights };
+}

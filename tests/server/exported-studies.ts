@@ -1,0 +1,60 @@
+import type { ExportContent } from '../../server/study-export';
+import { answerModelWith } from '../../src/core/rehearsal/answer-model';
+import { statedPerformanceModel } from '../../src/core/rehearsal/performance-model';
+import { simulatedPlan, simulateStudy } from '../../src/core/rehearsal/simulate-study';
+import { checkedPlan, type StudyPlan } from '../../src/core/study/plan';
+import { examplePlan, paperPlan } from '../core/study/studies';
+import { now, testSoftware } from './running-studies';
+
+const late = (latencyMs: number) =>
+  ({ id: `late-${latencyMs}`, label: `${latencyMs} ms`, estimator: 'learned', latencyMs }) as const;
+const cohorts = [
+  { id: 'women', label: 'As a woman', avatar: 'woman' },
+  { id: 'men', label: 'As a man', avatar: 'man' },
+] as const;
+const [archery] = paperPlan().tasks as [StudyPlan['tasks'][number]];
+const archeryAlone = { tasks: [{ ...archery, questionnaire: ['archery', 'nasa-tlx-raw'] }] };
+
+/** A study of every design that the page analyses. */
+export const designs: Readonly<Record<string, StudyPlan>> = {
+  'two conditions, two tasks, groups of three': paperPlan(),
+  'two conditions, questions of every kind, two languages': examplePlan(),
+  'three conditions': paperPlan({
+    ...archeryAlone,
+    id: 'latency',
+    participants: 18,
+    orders: 'williams',
+    conditions: [late(0), late(80), late(160)],
+  }),
+  'two conditions in two cohorts': paperPlan({
+    ...archeryAlone,
+    id: 'mixed',
+    participants: 14,
+    cohorts: [...cohorts],
+    conditions: [late(0), late(120)],
+  }),
+  'one condition in two cohorts': paperPlan({
+    ...archeryAlone,
+    id: 'between',
+    participants: 16,
+    cohorts: [...cohorts],
+    conditions: [late(0)],
+  }),
+};
+
+/** A study of simulated participants, mishaps included, as the server would export it; `seed` decides what they do. */
+export function exportedStudy(plan: StudyPlan, seed = 7): ExportContent {
+  const simulated = checkedPlan(simulatedPlan(plan));
+  const last = simulated.conditions.at(-1)?.id ?? '';
+  const models = { answers: answerModelWith({ [last]: 0.6 }), performance: statedPerformanceModel };
+  const records = simulateStudy(simulated, models, seed, now).flatMap((one) => one.records);
+  return {
+    plan: simulated,
+    simulated: true,
+    records,
+    motion: [],
+    at: now,
+    retentionUntil: null,
+    software: testSoftware,
+  };
+}

@@ -1,0 +1,93 @@
+import { spawnSync } from 'node:child_process';
+import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { dirname, join } from 'node:path';
+import { describe, expect, test } from 'vitest';
+import { csvRows } from '../../scripts/study-verify/csv-rows';
+import { exportFiles } from '../../server/study-export';
+import type { StudyRecord } from '../../src/core/study/study-record';
+import { directoryWith } from '../temporary-directory';
+import { designs, exportedStudy } from './exported-studies';
+import { installed } from './installed';
+
+/** Python with the packages of requirements.txt, or the first that is found; null: none has SciPy. */
+function pythonWithScipy(): string | null {
+  const python = process.env.STUDY_PYTHON ?? installed('python3');
+  if (python === null) return null;
+  if (spawnSync(python, ['-c', 'import numpy, scipy']).status === 0) return python;
+  if (process.env.THREEPOINT_PROGRAMS === 'required')
+    throw new Error(
+      'SciPy is not installed (server/study-analysis/requirements.txt), and THREEPOINT_PROGRAMS=required asks for every test',
+    );
+  return null;
+}
+
+const languages = [
+  {
+    name: 'R',
+    program: installed('Rscript'),
+    script: 'analysis/analyse.R',
+    missing: 'R is not installed (r-base-core)',
+  },
+  {
+    name: 'Python',
+    program: pythonWithScipy(),
+    script: 'analysis/analyse.py',
+    missing: 'no Python with SciPy was found (STUDY_PYTHON, server/study-analysis/requirements.txt)',
+  },
+];
+
+function written(files: Readonly<Record<string, string>>): string {
+  const directory = directoryWith();
+  for (const [path, text] of Object.entries(files)) {
+    mkdirSync(dirname(join(directory, path)), { recursive: true });
+    writeFileSync(join(directory, path), text);
+  }
+  return directory;
+}
+
+const analysed = (program: string, script: string, directory: string) => {
+  const { status, stdout, stderr } = spawnSync(program, [join(directory, script)], { encoding: 'utf8' });
+  return { status, said: stdout, complaint: stderr };
+};
+
+describe.each(languages)('the analysis in $name of an exported study', ({ program, script, missing }) => {
+  const analysing = program === null ? test.skip : test;
+  const unless = program === null ? ` (left out: ${missing})` : '';
+
+  analysing.each(Object.entries(designs))(`computes the tables of the page to a millionth: %s${unless}`, (_, plan) => {
+    const files = exportFiles(exportedStudy(plan));
+    const { status, said, complaint } = analysed(program as string, script, written(files));
+    expect(complaint).toBe('');
+    expect(said).not.toContain('differences');
+    expect(said.match(/rows, as computed here/g)).toHaveLength(6);
+    expect(status).toBe(0);
+  });
+
+  analysing(`of answers that are all alike finds nothing to test, as the page does${unless}`, () => {
+    const content = exportedStudy(designs['three conditions'] as (typeof designs)[string]);
+    const records = content.records.map((record): StudyRecord => {
+      if (record.kind !== 'answers') return record;
+      const answers = Object.fromEntries(Object.keys(record.body.answers).map((id) => [id, 4]));
+      return { ...record, body: { ...record.body, answers } };
+    });
+    const { status, said } = analysed(program as string, script, written(exportFiles({ ...content, records })));
+    expect(said).not.toContain('differences');
+    expect(status).toBe(0);
+  });
+
+  analysing(`says which cell of the export is another${unless}`, () => {
+    const files = exportFiles(exportedStudy(designs['three conditions'] as (typeof designs)[string]));
+    const table = files['results/answers-overall.csv'] as string;
+    const [heads = [], first = []] = csvRows(table);
+    const f = first[heads.indexOf('f')] as string;
+    const changed = { ...files, 'results/answers-overall.csv': table.replace(f, `${Number(f) * 1.00001}`) };
+    const directory = written(changed);
+    const { status, said } = analysed(program as string, script, directory);
+    expect(said).toMatch(/results\/answers-overall\.csv: \d+ rows, 1 differences\n\s+line 2, f: /);
+    expect(status).toBe(1);
+    const folder = script.endsWith('R') ? 'r' : 'python';
+    expect(readFileSync(join(directory, 'analysis', folder, 'answers-overall.csv'), 'utf8')).toContain(
+      'partial_eta_squared',
+    );
+  });
+});
