@@ -12,6 +12,7 @@ const sources = [
   'index.html',
   'results.html',
   'experimenter.html',
+  'preview.html',
   'vite.config.ts',
   'tsconfig.json',
   'package-lock.json',

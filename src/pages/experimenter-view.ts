@@ -2,6 +2,7 @@ import type { StudyPlan } from '../core/study/plan';
 import { remarksOn } from '../core/study/plan-remarks';
 import type { ParticipantState, Receipt } from '../core/study/study-api';
 import { button, element } from '../ui/element';
+import { leavePlan } from '../ui/left-plan';
 import { pageFolder } from '../ui/page-folder';
 import { type ParticipantActions, participantHeads, participantRow } from './participant-row';
 import { tableNode } from './table';
@@ -51,8 +52,16 @@ function studyHead({ plan, simulated, retentionUntil }: OpenStudy, actions: Stud
       { class: 'bar', style: 'margin-top:12px' },
       button('Export all', actions.exportAll, { class: 'primary' }),
       element('a', { href: `./results.html?study=${plan.id}` }, 'Results'),
+      previewLink(plan),
     ),
   ];
+}
+
+/** To every screen of the plan as participants see it. */
+function previewLink(plan: StudyPlan): HTMLElement {
+  const link = element('a', { href: './preview.html' }, 'Preview');
+  link.addEventListener('click', () => leavePlan(plan));
+  return link;
 }
 
 /** What to know before the first participant comes. */
@@ -102,6 +111,7 @@ export function newStudyCard(begin: (study: NewStudy) => void): HTMLElement {
         begin({ name: 'The paper’s study', simulated: simulated.checked, json: paper }),
       ),
       element('label', {}, element('span', {}, 'Or a study file (JSON, docs/study.md)'), file),
+      element('a', { href: './preview.html' }, 'Look at a study file first'),
       element('label', { class: 'inline' }, simulated, element('span', {}, 'simulated: a program takes part')),
     ),
   );

@@ -8,6 +8,7 @@ const built = {
   'index.html': '<title>page</title>',
   'results.html': '<title>results</title>',
   'experimenter.html': '<title>experimenter</title>',
+  'preview.html': '<title>preview</title>',
   'api/rooms': '{"rooms":null}',
   'studies/paper.json': '{}',
   '.source-hash': 'hash',
@@ -18,6 +19,7 @@ const built = {
   'assets/archery-2.js': 'later',
   'assets/shared-3.js': 'of two pages',
   'assets/results-4.js': 'charts',
+  'assets/preview-8.js': 'a study, screen by screen',
   'assets/worker-5.js': 'in no manifest',
   'assets/ort.webgpu.bundle.min-6.js': 'webgpu',
   'assets/ort-wasm-simd-threaded.asyncify-7.wasm': 'webgpu',
@@ -28,6 +30,7 @@ const manifest = {
   _shared: { file: 'assets/shared-3.js' },
   'results.html': { file: 'assets/results-4.js', imports: ['_shared'] },
   'experimenter.html': { file: 'assets/results-4.js' },
+  'preview.html': { file: 'assets/preview-8.js', imports: ['_shared'] },
 };
 
 test('what the page may ever load is kept, and nothing of a server, of other pages or of WebGPU', () => {

@@ -2,17 +2,16 @@ import { reasonOf } from '../../core/errors/reasons';
 import type { Side } from '../../core/math/side';
 import type { ProgressEvent } from '../../core/study/advance';
 import { placeOf } from '../../core/study/progress';
-import type { Question } from '../../core/study/questionnaire-schema';
-import { type Answer, typedAnswer, unanswered } from '../../core/study/questionnaires';
 import { randomFor } from '../../core/study/shuffle';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 import type { CalibrationStep } from '../../ui/calibration-dialog';
 import { type CalibrationGuide, createCalibrationGuide } from '../../ui/calibration-guide';
+import { Answering } from './answering';
 import { ExchangeTimer } from './exchange-timer';
 import type { ParticipantSession } from './participant-session';
 import type { StudyHost } from './study-host';
 import type { StudyPage } from './study-page';
-import { lockedOutScreen, screenOf, screenQuestions } from './study-screens';
+import { lockedOutScreen, screenOf } from './study-screens';
 import type { ScreenActions } from './study-situation';
 import {
   type FinishedTrial,
@@ -49,10 +48,8 @@ export class RunningStudy {
   readonly #guide: CalibrationGuide;
   readonly #actions: ScreenActions;
   #trial: PlayedTrial | null = null;
-  /** Of the step at hand: the question shown, what was typed into its field, whether handing in failed for want of an answer, why the last wish changed nothing. */
-  #question = 0;
-  #typed: string | null = null;
-  #triedToSubmit = false;
+  readonly #answering: Answering;
+  /** Why the last wish changed nothing; null: it did. */
   #refusal: string | null = null;
   #shownStep = '';
   /** Whether this visit of the page has put a body on yet. */
@@ -65,6 +62,7 @@ export class RunningStudy {
     this.#host = host;
     this.#page = page;
     this.#forget = forget;
+    this.#answering = new Answering(session);
     this.#exchanges = new ExchangeTimer(session, page.after);
     this.#preparation = new TrialPreparation(
       (step) => this.#load(step),
@@ -86,8 +84,8 @@ export class RunningStudy {
     this.#actions = {
       apply: (event) => this.#apply(event),
       goTo: (index) => this.#goTo(index),
-      choose: (question, value) => this.#choose(question, value),
-      type: (question, typed) => this.#type(question, typed),
+      choose: (question, value) => this.#said(this.#answering.choose(question, value)),
+      type: (question, typed) => this.#said(this.#answering.type(question, typed)),
       submit: () => this.#submit(),
       calibrate: () => this.#guide.start(),
       enterVr: () => void host.enterVr(),
@@ -166,9 +164,9 @@ export class RunningStudy {
       {
         session: this.session,
         inSession: this.#host.inSession(),
-        question: this.#question,
-        typed: this.#typed,
-        triedToSubmit: this.#triedToSubmit,
+        question: this.#answering.question,
+        typed: this.#answering.typed,
+        triedToSubmit: this.#answering.triedToSubmit,
         calibration: this.#calibration,
         prepared: this.#preparation.of(this.#attempt()),
         refusal: this.#refusal,
@@ -211,14 +209,11 @@ export class RunningStudy {
 
   #enterStep(): void {
     this.#shownStep = this.session.step.id;
-    this.#typed = null;
-    this.#triedToSubmit = false;
     this.#refusal = null;
     this.#guide.cancel();
     // The guide's last word on an earlier measuring may have come when its step was over.
     this.#calibration = null;
-    // After a reload a questionnaire goes on where the first answer is missing.
-    this.#question = Math.max(0, this.#firstOpenQuestion());
+    this.#answering.enterStep();
     if (!this.#embodied) void this.#wearAgain();
   }
 
@@ -319,40 +314,19 @@ export class RunningStudy {
   }
 
   #goTo(index: number): void {
-    this.#question = index;
-    this.#typed = null;
-    this.#refusal = null;
-    this.show();
-  }
-
-  #choose(question: string, value: Answer): void {
-    this.#refusal = this.session.apply({ type: 'answer', question, value });
-    this.show();
-  }
-
-  /** What stands in a field is the answer as soon as it is one; until then there is none. */
-  #type(question: Question, typed: string): void {
-    this.#typed = typed;
-    const value = typedAnswer(question.answer, typed);
-    this.#refusal = this.session.apply({ type: 'answer', question: question.id, value });
-    this.show();
+    this.#answering.goTo(index);
+    this.#said(null);
   }
 
   #submit(): void {
-    const open = this.#firstOpenQuestion();
-    if (open < 0) {
-      this.#apply({ type: 'submit' });
-      return;
-    }
-    this.#triedToSubmit = true;
-    this.#goTo(open);
+    if (this.#answering.readyToSubmit()) this.#apply({ type: 'submit' });
+    else this.#said(null);
   }
 
-  /** Index of the first question without an answer; −1: there is none. */
-  #firstOpenQuestion(): number {
-    const questions = screenQuestions(this.session);
-    const [open] = unanswered({ questions }, this.session.progress.draft);
-    return questions.findIndex(({ id }) => id === open);
+  /** Shows what came of a wish; null: all went well. */
+  #said(refusal: string | null): void {
+    this.#refusal = refusal;
+    this.show();
   }
 
   /** Why the answers cannot be taken; null: they are. */

@@ -12,7 +12,8 @@ export interface StudyCard {
   ask(form: StudyForm): void;
 }
 
-export function createStudyCard(): StudyCard {
+/** `parent`: what the card lies over. */
+export function createStudyCard(parent: HTMLElement = document.body): StudyCard {
   const kicker = element('p', { class: 'kicker' });
   const content = element('div', { class: 'content' });
   const figure = element('p', { class: 'figure', role: 'timer', 'aria-live': 'off' });
@@ -23,7 +24,7 @@ export function createStudyCard(): StudyCard {
   const card = element('section', { class: 'study-card', 'aria-label': 'Study' });
   const layer = element('div', { class: 'study-layer' }, card);
   layer.hidden = true;
-  document.body.append(layer);
+  parent.append(layer);
   const dots = element('nav', { 'aria-label': 'Questions', class: 'dots' });
   let shownKey = '';
   let shownDots = '';

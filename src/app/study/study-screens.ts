@@ -1,10 +1,10 @@
-import type { Question } from '../../core/study/questionnaire-schema';
 import { blindLabel, type StudyStep } from '../../core/study/schedule';
 import { type CalibrationStep, calibrationHeadline, calibrationInstruction } from '../../ui/calibration-dialog';
-import type { ParticipantSession, Safekeeping } from './participant-session';
+import { screenQuestions } from './answering';
+import type { Safekeeping } from './participant-session';
 import { questionPart } from './question-screen';
 import type { ScreenButton, StudyScreen } from './study-screen';
-import type { ScreenActions, StudySituation } from './study-situation';
+import type { ScreenActions, ShownSession, StudySituation } from './study-situation';
 import type { PlayedStep } from './study-trial';
 
 const clock = (seconds: number): string => {
@@ -38,12 +38,8 @@ export function safekeepingText({
   return unsent > 0 ? ['Sending …', false] : ['Everything is saved.', false];
 }
 
-export function screenQuestions({ step }: Pick<ParticipantSession, 'step'>): readonly Question[] {
-  return step.kind === 'questionnaire' ? step.questionnaire.questions : [];
-}
-
 /** Participants know rounds by number, never by condition. */
-function kickerOf(session: ParticipantSession, step: StudyStep): string {
+function kickerOf(session: ShownSession, step: StudyStep): string {
   if (!('task' in step)) return session.plan.title;
   const { title } = session.plan.tasks.find(({ id }) => id === step.task) ?? { title: step.task };
   if (step.kind === 'tutorial' || (step.kind === 'rest' && step.id.endsWith('after-tutorial')))
@@ -52,7 +48,7 @@ function kickerOf(session: ParticipantSession, step: StudyStep): string {
 }
 
 /** In the headset, when the place is no longer this device's; the page has more to say. */
-export const lockedOutScreen = (session: ParticipantSession): StudyScreen => ({
+export const lockedOutScreen = (session: ShownSession): StudyScreen => ({
   id: 'locked-out',
   kicker: session.plan.title,
   title: 'Please call the experimenter',
@@ -265,7 +261,7 @@ function readyScreen(
 function restScreen(
   base: ScreenBase,
   { seconds }: Extract<StudyStep, { kind: 'rest' }>,
-  session: ParticipantSession,
+  session: ShownSession,
   actions: ScreenActions,
 ): StudyScreen {
   const left = session.remaining() ?? 0;
@@ -280,7 +276,7 @@ function restScreen(
   };
 }
 
-function endScreen(base: ScreenBase, { plan, safekeeping }: ParticipantSession): StudyScreen {
+function endScreen(base: ScreenBase, { plan, safekeeping }: ShownSession): StudyScreen {
   return {
     ...base,
     id: 'end',

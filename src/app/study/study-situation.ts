@@ -5,9 +5,15 @@ import type { CalibrationStep } from '../../ui/calibration-dialog';
 import type { ParticipantSession } from './participant-session';
 import type { Prepared } from './trial-preparation';
 
+/** What screens show of a session. */
+export type ShownSession = Pick<
+  ParticipantSession,
+  'plan' | 'step' | 'progress' | 'simulated' | 'safekeeping' | 'remaining'
+>;
+
 /** Everything that decides what a participant sees. */
 export interface StudySituation {
-  readonly session: ParticipantSession;
+  readonly session: ShownSession;
   readonly inSession: boolean;
   /** Index of the question shown. */
   readonly question: number;

@@ -1,0 +1,88 @@
+import { readFileSync } from 'node:fs';
+import { expect, keepPicture } from './page-fixture';
+import { test } from './study-participant';
+import { experimenter } from './study-server';
+
+test.use({ viewport: { width: 1280, height: 800 } });
+
+test('every screen of a plan, in the headset and at the desk, in both languages, and nothing is recorded @full', async ({
+  page,
+  origin,
+}) => {
+  const sent: string[] = [];
+  page.on('request', (request) => {
+    if (request.url().includes('/api/')) sent.push(request.url());
+  });
+  await page.goto(`${origin}/preview?plan=/studies/example.json`);
+  await expect(page.getByRole('heading', { name: 'Two avatars in archery' })).toBeVisible();
+  const view = page.locator('#view');
+  const next = page.getByRole('button', { name: 'Next', exact: true }).first();
+  await expect(page.getByRole('heading', { name: 'Taking part' })).toBeVisible();
+  await keepPicture(page, 'study-preview-consent');
+  await page.getByRole('combobox', { name: 'Language' }).first().selectOption('de');
+  await expect(page.getByRole('heading', { name: 'Teilnahme' })).toBeVisible();
+
+  const stops = page.locator('#stops button');
+  const count = await stops.count();
+  const met: (string | undefined)[] = [];
+  for (let index = 0; index < count; index++) {
+    met.push(await view.evaluate(({ dataset }) => `${dataset.stop} ${dataset.place}`));
+    await expect(view.locator('.study-card:visible, canvas:visible, .playing:visible')).toHaveCount(1);
+    if (index < count - 1) await next.click();
+  }
+  expect(new Set(met).size).toBe(count);
+  await expect(next).toBeDisabled();
+
+  await page
+    .getByRole('button', { name: /^delay: / })
+    .first()
+    .click();
+  await expect(page.locator('canvas')).toHaveAccessibleName(/Wie groß erschien Ihnen die Verzögerung/);
+  // Pressed on the drawn sheet as by a ray: a value on the line, then the button to the next question.
+  await page.locator('canvas').click({ position: await onSheet(page, 800, 470) });
+  await keepPicture(page, 'study-preview-headset');
+  await page.locator('canvas').click({ position: await onSheet(page, 960, 750) });
+  await expect(view).toHaveAttribute('data-stop', /watched$/);
+  await page.getByRole('button', { name: 'At the desk' }).click();
+  await page.getByRole('radio', { name: 'Meine Arme' }).check();
+  await keepPicture(page, 'study-preview-desk');
+  await page.getByRole('button', { name: 'before Round 1' }).first().click();
+  await keepPicture(page, 'study-preview-ready');
+  await next.click();
+  await expect(page.getByText('the participant plays, 70 s at most')).toBeVisible();
+  await keepPicture(page, 'study-preview-playing');
+  await page.reload();
+  await expect(page.getByText('the participant plays, 70 s at most')).toBeVisible();
+
+  expect(sent).toEqual([]);
+  const { studies } = (await (await experimenter(origin).ask('')).json()) as { studies: unknown[] };
+  expect(studies).toEqual([]);
+});
+
+test('mistakes of a plan are named as study:check names them @full', async ({ page, origin, complaints }) => {
+  const plan = JSON.parse(readFileSync('public/studies/latency.json', 'utf8')) as {
+    conditions: object[];
+    seed: number;
+  };
+  const wrong = {
+    ...plan,
+    seed: -1,
+    conditions: [{ ...plan.conditions[0], latencyMs: 900 }, ...plan.conditions.slice(1)],
+  };
+  await page.goto(`${origin}/preview`);
+  await page
+    .getByLabel('Study file', { exact: true })
+    .setInputFiles({ name: 'mine.json', mimeType: 'application/json', buffer: Buffer.from(JSON.stringify(wrong)) });
+  await expect(page.getByRole('alert').getByText(/^mine\.json: seed: /)).toBeVisible();
+  await expect(page.getByText('mine.json: conditions[0].latencyMs: expected a number from 0 to 200')).toBeVisible();
+  await keepPicture(page, 'study-preview-mistakes');
+  complaints.allow(/404 \(Not Found\)/);
+  await page.goto(`${origin}/preview?plan=/studies/none.json`);
+  await expect(page.getByRole('alert')).toContainText('none.json');
+});
+
+/** Where a pixel of the sheet is on the drawn one, as Playwright wants it. */
+async function onSheet(page: import('@playwright/test').Page, x: number, y: number) {
+  const { width, height } = (await page.locator('canvas').boundingBox()) as { width: number; height: number };
+  return { x: (x / 1200) * width, y: (y / 880) * height };
+}

@@ -1,0 +1,21 @@
+import { parsePlan, planComplaints, type StudyPlan } from '../../../core/study/plan';
+import { type FileKind, nameOf, readLimited } from '../../../ui/limited-files';
+
+/** A plan, or everything that is wrong with its file, each with file, field and reason. */
+export type ReadPlan =
+  | { readonly name: string; readonly plan: StudyPlan }
+  | { readonly name: string; readonly complaints: readonly string[] };
+
+const planFile: FileKind = { what: 'a study file', megabytes: 1 };
+
+/** A plan from the text of its file. */
+export function planFrom(json: string, name: string): ReadPlan {
+  const complaints = planComplaints(json, name);
+  return complaints.length > 0 ? { name, complaints } : { name, plan: parsePlan(json, name) };
+}
+
+/** A plan from an address or a file. Rejects with a sentence where it cannot be read at all. */
+export async function readPlan(source: string | File): Promise<ReadPlan> {
+  const bytes = await readLimited(source, planFile);
+  return planFrom(new TextDecoder().decode(bytes), nameOf(source));
+}

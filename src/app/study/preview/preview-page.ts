@@ -1,0 +1,209 @@
+import { reasonOf } from '../../../core/errors/reasons';
+import { languagesOf, participantsOf, type StudyPlan } from '../../../core/study/plan';
+import { durationOf } from '../../../core/study/plan-outline';
+import { remarksOn } from '../../../core/study/plan-remarks';
+import { button, element, pageElement } from '../../../ui/element';
+import { leftPlan } from '../../../ui/left-plan';
+import { pageFolder } from '../../../ui/page-folder';
+import { createStudyCard } from '../study-card';
+import { createDrawnSheet } from './drawn-sheet';
+import { planFrom, type ReadPlan, readPlan } from './plan-source';
+import { PreviewWalk } from './preview-walk';
+
+const shipped = ['paper.json', 'latency.json', 'example.json'] as const;
+
+/** The page that walks through every screen of a plan. */
+class PreviewPage {
+  readonly #bar = pageElement('bar', HTMLElement);
+  readonly #list = pageElement('stops', HTMLElement);
+  readonly #stage = pageElement('view', HTMLElement);
+  readonly #said = pageElement('said', HTMLElement);
+  readonly #card = createStudyCard(this.#stage);
+  readonly #sheet = createDrawnSheet();
+  readonly #playing = element('p', { class: 'playing' });
+  #plan: StudyPlan | null = null;
+  #name = '';
+  #participant = '';
+  #walk: PreviewWalk | null = null;
+  /** What the card of the desk was last built from: a form that is being filled in is not built anew. */
+  #builtForm = '';
+
+  async start(): Promise<void> {
+    this.#stage.append(this.#sheet.node, this.#playing);
+    document.addEventListener('dragover', (event) => event.preventDefault());
+    document.addEventListener('drop', (event) => {
+      event.preventDefault();
+      const [file] = event.dataTransfer?.files ?? [];
+      if (file) void this.#read(file);
+    });
+    document.addEventListener('keydown', (event) => this.#key(event));
+    const address = new URLSearchParams(location.search).get('plan');
+    const left = leftPlan();
+    if (address !== null) await this.#read(address);
+    else if (left !== null) this.#take(planFrom(left, 'the study of the experimenter’s page'));
+    else this.#render();
+  }
+
+  async #read(source: string | File): Promise<void> {
+    try {
+      this.#take(await readPlan(source));
+    } catch (error) {
+      this.#take({ name: '', complaints: [reasonOf(error)] });
+    }
+  }
+
+  #take(read: ReadPlan): void {
+    this.#name = read.name;
+    if ('complaints' in read) {
+      this.#plan = null;
+      this.#walk = null;
+      this.#render(read.complaints);
+      return;
+    }
+    this.#plan = read.plan;
+    this.#begin(participantsOf(read.plan)[0] as string);
+  }
+
+  #begin(participant: string): void {
+    if (!this.#plan) return;
+    const before = this.#walk;
+    this.#participant = participant;
+    this.#builtForm = '';
+    const walk = new PreviewWalk({ plan: this.#plan, participant, onChange: () => this.#render() });
+    this.#walk = walk;
+    // Another participant at the same screen, where there is one.
+    if (before) walk.read(before.language);
+    const asked = before?.stop.id ?? decodeURIComponent(location.hash.slice(1));
+    walk.goTo(walk.stops.findIndex(({ id }) => id === asked));
+  }
+
+  /** Arrow keys walk, unless they are needed by what has the focus. */
+  #key({ key, target }: KeyboardEvent): void {
+    if (target instanceof HTMLElement && target.closest('input, textarea, select')) return;
+    if (key === 'ArrowRight') this.#walk?.next();
+    else if (key === 'ArrowLeft') this.#walk?.back();
+  }
+
+  #render(complaints: readonly string[] = []): void {
+    const walk = this.#walk;
+    this.#bar.replaceChildren(...this.#controls());
+    this.#said.replaceChildren(...this.#words(complaints));
+    this.#list.replaceChildren(
+      ...(walk ? walk.stops.map((stop, index) => this.#stopButton(walk, index, stop.label)) : []),
+    );
+    this.#list.querySelector('[aria-current]')?.scrollIntoView({ block: 'nearest' });
+    this.#stage.hidden = !walk;
+    if (walk) this.#showStop(walk);
+  }
+
+  #stopButton(walk: PreviewWalk, index: number, label: string): HTMLElement {
+    const here = index === walk.index;
+    const { at, kind } = walk.stops[index] as (typeof walk.stops)[number];
+    const where = { desk: 'desk', headset: 'headset', either: 'desk or headset' }[at];
+    return element(
+      'li',
+      { class: kind === 'question' ? 'question' : undefined },
+      button(label, () => walk.goTo(index), { ...(here && { 'aria-current': 'step' }), title: `At: ${where}` }),
+    );
+  }
+
+  #showStop(walk: PreviewWalk): void {
+    history.replaceState(null, '', `#${walk.stop.id}`);
+    const shown = walk.shown();
+    const { place } = walk;
+    this.#stage.dataset.place = place;
+    this.#stage.dataset.stop = walk.stop.id;
+    this.#playing.hidden = shown.kind !== 'playing';
+    if (shown.kind === 'playing') this.#playing.textContent = shown.text;
+    const screen = shown.kind === 'screen' ? shown.screen : null;
+    this.#sheet.show(place === 'headset' ? screen : null);
+    const form = shown.kind === 'form' ? `${walk.stop.id} ${walk.language}` : '';
+    if (shown.kind !== 'form') this.#card.show(place === 'desk' ? screen : null);
+    else if (form !== this.#builtForm) {
+      // A form keeps what is filled in as long as it is the same; in another language it is another.
+      this.#card.show(null);
+      this.#card.ask(shown.form);
+    }
+    this.#builtForm = form;
+  }
+
+  #controls(): readonly Node[] {
+    const walk = this.#walk;
+    const file = element('input', { type: 'file', accept: '.json,application/json', 'aria-label': 'Study file' });
+    file.addEventListener('change', () => {
+      const [chosen] = file.files ?? [];
+      if (chosen) void this.#read(chosen);
+    });
+    const fromServer = choice('Shipped study', ['', ...shipped], '', (name) => {
+      if (name) void this.#read(`${pageFolder()}/studies/${name}`);
+    });
+    const source = [element('label', {}, element('span', {}, 'Study file, or drop one here'), file), fromServer];
+    if (!walk || !this.#plan) return source;
+    const plan = this.#plan;
+    const at = (place: 'desk' | 'headset', label: string) =>
+      button(label, () => walk.showAt(place), {
+        'aria-pressed': String(walk.place === place),
+        disabled: walk.stop.at !== 'either',
+      });
+    const languages = languagesOf(plan);
+    return [
+      ...source,
+      choice('Participant', participantsOf(plan), this.#participant, (participant) => this.#begin(participant)),
+      ...(languages.length > 1
+        ? [choice('Language', languages, walk.language, (language) => walk.read(language))]
+        : []),
+      element(
+        'div',
+        { class: 'places', role: 'group', 'aria-label': 'Shown' },
+        at('headset', 'In the headset'),
+        at('desk', 'At the desk'),
+      ),
+      element(
+        'div',
+        { class: 'steps' },
+        button('Back', () => walk.back(), { disabled: walk.index === 0 }),
+        element('span', {}, `${walk.index + 1} of ${walk.stops.length}`),
+        button('Next', () => walk.next(), { class: 'primary', disabled: walk.index === walk.stops.length - 1 }),
+      ),
+    ];
+  }
+
+  #words(complaints: readonly string[]): readonly Node[] {
+    if (complaints.length > 0) {
+      const count = complaints.length === 1 ? 'One mistake' : `${complaints.length} mistakes`;
+      const where = this.#name ? ` in ${this.#name}` : '';
+      return [
+        element('h2', {}, this.#name ? `${count}${where}` : 'The file cannot be read'),
+        element('ul', { class: 'complaints', role: 'alert' }, ...complaints.map((text) => element('li', {}, text))),
+      ];
+    }
+    if (!this.#plan) {
+      return [
+        element('p', {}, 'Choose or drop a study file: every screen of it is shown here. Nothing is recorded or sent.'),
+      ];
+    }
+    const { title, id } = this.#plan;
+    const { played, rests, questionnaires } = durationOf(this.#plan);
+    const minutes = Math.round((played + rests + questionnaires) / 60);
+    return [
+      element('h2', {}, title),
+      element(
+        'p',
+        {},
+        `${id}, from ${this.#name}: at most ${minutes} min for a participant. Nothing is recorded here.`,
+      ),
+      ...remarksOn(this.#plan).map((remark) => element('p', { class: 'remark' }, remark)),
+    ];
+  }
+}
+
+function choice(name: string, values: readonly string[], chosen: string, choose: (value: string) => void): HTMLElement {
+  const options = values.map((value) =>
+    element('option', { value, selected: value === chosen }, value === '' ? 'Choose …' : value),
+  );
+  const select = element('select', { 'aria-label': name }, ...options);
+  select.addEventListener('change', () => choose(select.value));
+  return element('label', {}, element('span', {}, name), select);
+}
+
+void new PreviewPage().start();

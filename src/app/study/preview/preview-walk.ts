@@ -1,0 +1,264 @@
+import { advance, type ProgressEvent } from '../../../core/study/advance';
+import { embodimentInWords } from '../../../core/study/embodiment';
+import { languagesOf, type StudyPlan } from '../../../core/study/plan';
+import { begin, currentStep, type Progress } from '../../../core/study/progress';
+import { type Schedule, type StudyStep, scheduleFor } from '../../../core/study/schedule';
+import type { CalibrationStep } from '../../../ui/calibration-dialog';
+import { Answering } from '../answering';
+import type { Safekeeping } from '../participant-session';
+import type { StudyForm } from '../study-form';
+import type { StudyScreen } from '../study-screen';
+import { screenOf } from '../study-screens';
+import type { ScreenActions, ShownSession, StudySituation } from '../study-situation';
+import { type PreviewStop, previewStops } from './preview-stops';
+
+/** What stands at a stop: a screen, a form of the desk, or a sentence where the participant plays. */
+export type PreviewShown =
+  | { readonly kind: 'screen'; readonly screen: StudyScreen }
+  | { readonly kind: 'form'; readonly form: StudyForm }
+  | { readonly kind: 'playing'; readonly text: string };
+
+const allSaved: Safekeeping = {
+  unsent: 0,
+  unsaved: 0,
+  storageFault: null,
+  online: true,
+  refusal: null,
+  lockedOut: false,
+};
+
+/** As a participant's code looks; it opens nothing. */
+const exampleCode = '0000-0000-0000-0000';
+
+/** A session that stands at any step, keeps its answers in the page and records nothing. */
+class PreviewSession implements ShownSession {
+  readonly plan: StudyPlan;
+  readonly simulated = false;
+  readonly safekeeping = allSaved;
+  readonly #schedule: Schedule;
+  readonly #drafts = new Map<string, Progress['draft']>();
+  #progress: Progress;
+
+  constructor(plan: StudyPlan, participant: string, language: string) {
+    this.plan = plan;
+    this.#schedule = scheduleFor(plan, participant);
+    this.#progress = { ...begin(this.#schedule), motion: false, language };
+  }
+
+  get progress(): Progress {
+    return this.#progress;
+  }
+
+  get step(): StudyStep {
+    return currentStep(this.#schedule, this.#progress);
+  }
+
+  /** The clock stands at the beginning of every step. */
+  remaining(): number | null {
+    return 'seconds' in this.step ? this.step.seconds : null;
+  }
+
+  goTo(step: string): void {
+    this.#progress = { ...this.#progress, step, paused: false, draft: this.#drafts.get(step) ?? {} };
+  }
+
+  read(language: string): void {
+    this.#progress = { ...this.#progress, language };
+  }
+
+  apply(event: ProgressEvent): string | null {
+    const { progress, refusal } = advance(this.#schedule, this.#progress, event, 0);
+    if (refusal !== null) return refusal;
+    this.#drafts.set(this.#progress.step, event.type === 'answer' ? progress.draft : this.#progress.draft);
+    this.#progress = { ...progress, draft: this.#drafts.get(progress.step) ?? {} };
+    return null;
+  }
+}
+
+export interface PreviewWalkOptions {
+  readonly plan: StudyPlan;
+  readonly participant: string;
+  /** Hears when something else is to be shown. */
+  readonly onChange: () => void;
+}
+
+/** A walk through every screen of a plan, forwards, backwards or by a leap; nothing is recorded anywhere. */
+export class PreviewWalk {
+  readonly stops: readonly PreviewStop[];
+  readonly #session: PreviewSession;
+  readonly #answering: Answering;
+  readonly #onChange: () => void;
+  readonly #actions: ScreenActions;
+  readonly #participant: string;
+  #at = 0;
+  #place: 'desk' | 'headset' = 'headset';
+  #refusal: string | null = null;
+
+  constructor({ plan, participant, onChange }: PreviewWalkOptions) {
+    this.stops = previewStops(plan, participant);
+    this.#participant = participant;
+    this.#session = new PreviewSession(plan, participant, languagesOf(plan)[0]);
+    this.#answering = new Answering(this.#session);
+    this.#onChange = onChange;
+    const next = () => this.next();
+    this.#actions = {
+      apply: (event) => this.#apply(event),
+      goTo: (index) => this.#goToQuestion(index),
+      choose: (question, value) => this.#said(this.#answering.choose(question, value)),
+      type: (question, typed) => this.#said(this.#answering.type(question, typed)),
+      submit: () => (this.#answering.readyToSubmit() ? this.#apply({ type: 'submit' }) : this.#followQuestion()),
+      calibrate: next,
+      enterVr: next,
+      prepareAgain: next,
+    };
+  }
+
+  get index(): number {
+    return this.#at;
+  }
+
+  get stop(): PreviewStop {
+    return this.stops[this.#at] as PreviewStop;
+  }
+
+  get language(): string {
+    return this.#session.progress.language ?? languagesOf(this.#session.plan)[0];
+  }
+
+  /** Where the stop is shown: most are met at one place alone. */
+  get place(): 'desk' | 'headset' {
+    const { at } = this.stop;
+    return at === 'either' ? this.#place : at;
+  }
+
+  /** What can be met at either place is shown at this one from now on. */
+  showAt(place: 'desk' | 'headset'): void {
+    this.#place = place;
+    this.#onChange();
+  }
+
+  read(language: string): void {
+    this.#session.read(language);
+    this.#onChange();
+  }
+
+  next(): void {
+    this.goTo(this.#at + 1);
+  }
+
+  back(): void {
+    this.goTo(this.#at - 1);
+  }
+
+  /** To a stop by its place in the list; beyond the ends: to the last one there. */
+  goTo(index: number): void {
+    this.#at = Math.min(this.stops.length - 1, Math.max(0, index));
+    const { step, question } = this.stop;
+    if (this.#session.step.id !== step || this.#session.progress.paused) {
+      this.#session.goTo(step);
+      this.#answering.enterStep();
+    }
+    this.#answering.goTo(question);
+    this.#said(null);
+  }
+
+  /** What stands at this stop. */
+  shown(): PreviewShown {
+    const { kind } = this.stop;
+    const form = this.#form();
+    if (form) return { kind: 'form', form };
+    const screen = kind === 'playing' ? null : screenOf(this.#situation(), this.#actions);
+    return screen ? { kind: 'screen', screen } : { kind: 'playing', text: this.#playedText() };
+  }
+
+  #form(): StudyForm | null {
+    const { plan } = this.#session;
+    const next = () => this.next();
+    switch (this.stop.kind) {
+      case 'consent': {
+        const { id, title, consent } = plan;
+        const others = languagesOf(plan).filter((language) => language !== this.language);
+        const study = { id, title, consent, languages: [this.language, ...others], simulated: false };
+        const agree = async () => {
+          next();
+          return null;
+        };
+        return { kind: 'consent', study, participant: this.#participant, agree, decline: next };
+      }
+      case 'code':
+        return { kind: 'code', code: exampleCode, noted: next };
+      case 'demographics':
+        return {
+          kind: 'demographics',
+          done() {
+            next();
+            return null;
+          },
+        };
+      default:
+        return null;
+    }
+  }
+
+  #situation(): StudySituation {
+    const { kind } = this.stop;
+    const measuring: CalibrationStep = { kind: 'measuring', part: 0.5 };
+    return {
+      session: this.#session,
+      inSession: kind !== 'enter',
+      question: this.#answering.question,
+      typed: this.#answering.typed,
+      triedToSubmit: this.#answering.triedToSubmit,
+      calibration: kind === 'measuring' ? measuring : null,
+      prepared: { state: 'ready', reason: '' },
+      refusal: this.#refusal,
+      playing: kind === 'waiting',
+      waitingFor: kind === 'waiting' ? this.#others() : null,
+      standing: false,
+    };
+  }
+
+  #others(): string {
+    const { step, plan } = this.#session;
+    const members = 'task' in step ? (scheduleFor(plan, this.#participant).groups[step.task]?.members ?? []) : [];
+    const others = members.filter((member) => member !== this.#participant);
+    return others.length < 2 ? others.join('') : `${others.slice(0, -1).join(', ')} and ${others.at(-1)}`;
+  }
+
+  #playedText(): string {
+    const { step, plan } = this.#session;
+    if (step.kind !== 'trial' && step.kind !== 'tutorial') return '';
+    const task = plan.tasks.find(({ id }) => id === step.task);
+    const what = step.kind === 'trial' ? `Condition “${step.condition}”` : 'Practice';
+    return `${task?.title}: the participant plays, ${Math.round(step.seconds)} s at most. ${what}: ${embodimentInWords(step.embodiment)}.`;
+  }
+
+  #apply(event: ProgressEvent): void {
+    if (event.type === 'start') {
+      this.next();
+      return;
+    }
+    const { id } = this.#session.step;
+    const refusal = this.#session.apply(event);
+    const { step } = this.#session;
+    if (step.id === id) this.#said(refusal);
+    else this.goTo(this.stops.findIndex((stop) => stop.step === step.id));
+  }
+
+  #goToQuestion(index: number): void {
+    this.#answering.goTo(index);
+    this.#followQuestion();
+  }
+
+  /** The list follows the question that is shown. */
+  #followQuestion(): void {
+    const { step } = this.stop;
+    this.#at = this.stops.findIndex((stop) => stop.step === step && stop.question === this.#answering.question);
+    this.#said(null);
+  }
+
+  #said(refusal: string | null): void {
+    this.#refusal = refusal;
+    this.#onChange();
+  }
+}

@@ -1,0 +1,86 @@
+import { expect, test } from 'vitest';
+import { planFrom } from '../../../src/app/study/preview/plan-source';
+import { PreviewWalk } from '../../../src/app/study/preview/preview-walk';
+import { planComplaints } from '../../../src/core/study/plan';
+import { outlineOf } from '../../../src/core/study/plan-outline';
+import { examplePlan, latencyPlan, paperPlan } from '../../core/study/studies';
+
+const walkOf = (plan = examplePlan(), participant = 'P01') =>
+  new PreviewWalk({ plan, participant, onChange: () => undefined });
+
+function screenAt(walk: PreviewWalk) {
+  const shown = walk.shown();
+  if (shown.kind !== 'screen') throw new Error(`${walk.stop.id} shows no screen`);
+  return shown.screen;
+}
+const press = (walk: PreviewWalk, id: string) =>
+  screenAt(walk)
+    .buttons.find((button) => button.id === id)
+    ?.act();
+
+test.each([examplePlan(), latencyPlan(), paperPlan()])(
+  'every question and every step of "$id" is a stop, and each shows something',
+  (plan) => {
+    const walk = walkOf(plan);
+    const questions = walk.stops.filter(({ kind }) => kind === 'question');
+    // The outline has a line for each questionnaire as a whole, too.
+    const outlined = outlineOf(plan, 'P01').filter(({ at, shows }) => at === 'either' && / of \d+, /.test(shows));
+    expect(questions).toHaveLength(outlined.length);
+    expect(new Set(walk.stops.map(({ id }) => id)).size).toBe(walk.stops.length);
+    for (const [index, stop] of walk.stops.entries()) {
+      expect(walk.index).toBe(index);
+      const shown = walk.shown();
+      expect(shown.kind === 'playing').toBe(stop.kind === 'playing');
+      if (shown.kind === 'screen' && stop.kind === 'question') {
+        expect(shown.screen.id).toBe(`question-${stop.id.split('/').at(-1)}`);
+      }
+      walk.next();
+    }
+    expect(walk.stop.kind).toBe('end');
+  },
+);
+
+test('answers stay while one walks on and comes back, and handing in leads to what is missing', () => {
+  const walk = walkOf();
+  walk.goTo(walk.stops.findIndex(({ id }) => id.endsWith('/mine')));
+  const { field } = screenAt(walk).question ?? {};
+  if (field?.kind !== 'likert') throw new Error('expected a scale');
+  field.choose(6);
+  walk.goTo(walk.stops.length - 1);
+  walk.goTo(walk.stops.findIndex(({ id }) => id.endsWith('/remarks')));
+  expect(screenAt(walk).question?.all[0]?.state).toBe('answered');
+  press(walk, 'submit');
+  expect(walk.stop.id).toMatch(/strange$/);
+  expect(screenAt(walk).hint).toContain('still needs an answer');
+});
+
+test('a pause can be seen and left; a language holds for all that follows', () => {
+  const walk = walkOf();
+  walk.read('de');
+  walk.goTo(walk.stops.findIndex(({ id }) => id.endsWith('/mine')));
+  expect(screenAt(walk).title).toEqual(expect.anything());
+  expect(screenAt(walk).question?.text).toContain('Der virtuelle Körper');
+  press(walk, 'pause');
+  expect(screenAt(walk).id).toBe('paused');
+  press(walk, 'resume');
+  expect(screenAt(walk).id).toBe('question-mine');
+});
+
+test('what is met at one place alone is shown there; the rest where one wants it', () => {
+  const walk = walkOf(paperPlan());
+  expect(walk.place).toBe('desk');
+  walk.goTo(walk.stops.findIndex(({ kind }) => kind === 'waiting'));
+  expect(walk.place).toBe('headset');
+  expect(screenAt(walk).text[0]).toMatch(/as soon as P\d\d and P\d\d are ready/);
+  walk.showAt('desk');
+  expect(walk.place).toBe('headset');
+  walk.goTo(walk.stops.findIndex(({ kind }) => kind === 'question'));
+  expect(walk.place).toBe('desk');
+});
+
+test('a file with mistakes is answered with every one of them, as npm run study:check does', () => {
+  const wrong = JSON.stringify({ ...examplePlan(), seed: -1, participants: 'many' });
+  const read = planFrom(wrong, 'mine.json');
+  expect('complaints' in read && read.complaints).toEqual(planComplaints(wrong, 'mine.json'));
+  expect('complaints' in read && read.complaints).toHaveLength(2);
+});
