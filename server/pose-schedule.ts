@@ -21,6 +21,11 @@ const followed = 0.25;
 /** In a room of so many each hears one other, of whom hardly ever two packets come within the pace: waiting would save no message. */
 const pair = 2;
 
+function send(sender: PoseSender, now: number): void {
+  sender.sentAt = now;
+  sender.room.sendPoses();
+}
+
 /** Share of the time since the last call that this process's event loop was busy. */
 function ownBusyShare(): () => number {
   let last = performance.eventLoopUtilization();
@@ -40,9 +45,13 @@ function ownBusyShare(): () => number {
 export class PoseSchedule {
   readonly #now: () => number;
   readonly #busyShare: () => number;
+  /** In this turn of the event loop, and those whose turn comes with the timer. */
+  readonly #fresh = new Set<PoseSender>();
   readonly #waiting = new Set<PoseSender>();
   #immediate: NodeJS.Immediate | null = null;
   #timer: NodeJS.Timeout | null = null;
+  /** When the timer fires [s]. */
+  #timerAt = Number.POSITIVE_INFINITY;
   #pace = 0;
   #judgedAt = 0;
 
@@ -53,34 +62,58 @@ export class PoseSchedule {
 
   /** There is something to send. */
   add(sender: PoseSender): void {
-    this.#waiting.add(sender);
-    this.#immediate ??= setImmediate(this.#flush);
+    if (this.#waiting.has(sender)) return;
+    this.#fresh.add(sender);
+    this.#immediate ??= setImmediate(this.#sendFresh);
   }
 
   stop(): void {
     if (this.#immediate) clearImmediate(this.#immediate);
     if (this.#timer) clearTimeout(this.#timer);
+    this.#fresh.clear();
     this.#waiting.clear();
   }
 
-  readonly #flush = (): void => {
+  readonly #sendFresh = (): void => {
     this.#immediate = null;
     const now = this.#now();
     this.#judge(now);
     let next = Number.POSITIVE_INFINITY;
-    for (const sender of this.#waiting) {
+    for (const sender of this.#fresh) {
       const due = sender.guests.size > pair ? sender.sentAt + this.#pace : now;
+      if (due <= now) send(sender, now);
+      else {
+        this.#waiting.add(sender);
+        next = Math.min(next, due);
+      }
+    }
+    this.#fresh.clear();
+    this.#wakeAt(next, now);
+  };
+
+  readonly #sendDue = (): void => {
+    this.#timer = null;
+    this.#timerAt = Number.POSITIVE_INFINITY;
+    const now = this.#now();
+    let next = Number.POSITIVE_INFINITY;
+    for (const sender of this.#waiting) {
+      const due = sender.sentAt + this.#pace;
       if (due > now) {
         next = Math.min(next, due);
         continue;
       }
       this.#waiting.delete(sender);
-      sender.sentAt = now;
-      sender.room.sendPoses();
+      send(sender, now);
     }
-    if (this.#timer) clearTimeout(this.#timer);
-    this.#timer = next < Number.POSITIVE_INFINITY ? setTimeout(this.#flush, (next - now) * 1000) : null;
+    this.#wakeAt(next, now);
   };
+
+  #wakeAt(time: number, now: number): void {
+    if (time >= this.#timerAt) return;
+    if (this.#timer) clearTimeout(this.#timer);
+    this.#timer = setTimeout(this.#sendDue, (time - now) * 1000);
+    this.#timerAt = time;
+  }
 
   #judge(now: number): void {
     if (now - this.#judgedAt < judgedEvery) return;

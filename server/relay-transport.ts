@@ -13,6 +13,7 @@ import { HttpError, refusal, sendRawAnswer } from './http/answer';
 import { targetOf } from './http/target';
 import type { RelayConfiguration } from './relay-configuration';
 import type { RelayMetrics } from './relay-metrics';
+import { type ReceivingWebSocket, takeShortMessages } from './short-messages';
 import { createSitePolicy } from './site-policy';
 import { handshakeMs } from './web-server';
 
@@ -70,7 +71,7 @@ function complaintAbout({ method, headers }: IncomingMessage, query: URLSearchPa
 /** Lets `listener` have a connection's binary messages; Engine.IO gets the others, as before. */
 function divert(conn: Socket['conn'], listener: (bytes: Uint8Array) => void): void {
   // reason: Engine.IO leaves the WebSocket there for its own transport, and does not say so in its types.
-  const { websocket } = conn.request as unknown as { readonly websocket: EventEmitter };
+  const { websocket } = conn.request as unknown as { readonly websocket: EventEmitter & ReceivingWebSocket };
   for (const engines of websocket.listeners('message')) {
     websocket.off('message', engines as () => void);
     websocket.on('message', (received: Buffer, isBinary: boolean) => {
@@ -78,6 +79,7 @@ function divert(conn: Socket['conn'], listener: (bytes: Uint8Array) => void): vo
       else engines.call(websocket, received, isBinary);
     });
   }
+  takeShortMessages(websocket, listener);
 }
 
 /** Opens WebSockets at `relayPath`, so many for each address. */

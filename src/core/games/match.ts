@@ -35,6 +35,11 @@ export function createMatch<State, Action, Event, Options>(
   let last = 0;
   let waiting: Action[] = [];
 
+  /** Adds the actions of a frame, `delay` [s] into their tick. */
+  function place(actions: readonly Action[], delay: number, due: Action[]): void {
+    for (const action of actions) due.push(hooks.delayed ? hooks.delayed(action, delay) : action);
+  }
+
   return {
     get state() {
       return state;
@@ -51,12 +56,11 @@ export function createMatch<State, Action, Event, Options>(
       const tick = Math.floor(now / rules.tickSeconds);
       const inTick = Math.min(Math.max(now - tick * rules.tickSeconds, 0), rules.tickSeconds * (1 - 1e-9));
       const events: Event[] = [];
-      const { delayed } = hooks;
-      const placed = (delay: number) => (delayed ? actions.map((action) => delayed(action, delay)) : actions);
-      if (tick < stepped) waiting.push(...placed(0));
+      if (tick < stepped) place(actions, 0, waiting);
       while (stepped <= tick) {
-        const due = stepped === tick ? [...waiting, ...placed(inTick)] : waiting;
+        const due = waiting;
         waiting = [];
+        if (stepped === tick) place(actions, inTick, due);
         hooks.onTick?.(due);
         const done = rules.step(state, due);
         state = done.state;

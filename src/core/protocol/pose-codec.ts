@@ -6,7 +6,7 @@ import { type Skeleton, wristFromHandBone } from '../body/skeleton';
 import { type MutablePose, makePose, type Pose, type TrackedPose } from '../math/pose';
 import { conjugate, multiply, type Quat, quat } from '../math/quat';
 import type { Side } from '../math/side';
-import { copyVec3, isFiniteVec3 } from '../math/vec3';
+import { copyVec3, isFiniteVec3, type Vec3, vec3 } from '../math/vec3';
 import { writeBodySteps } from './body-steps';
 import { handShapeOf, toFingerSteps } from './finger-steps';
 import { readPacket, writePacket } from './pose-layout';
@@ -87,38 +87,68 @@ function writeFingers(side: Side, { fingers }: PosePacket, hand: TrackedPose | n
   toFingerSteps(shape, target);
 }
 
-/** A new pose of a hand in `steps`; null: lost. */
-function handOf(side: Side, head: Pose<'floor'>): TrackedPose | null {
+type MutableTracked = MutablePose<'floor'> & { tracking: TrackedPose['tracking'] };
+
+/** Head and hands of a packet, in memory that the next packet may use. */
+export interface PointsBuffer extends PointsPacket {
+  timeMs: number;
+  jump: boolean;
+  readonly pose: {
+    readonly head: MutableTracked;
+    leftHand: TrackedPose | null;
+    rightHand: TrackedPose | null;
+    readonly body: null;
+  };
+  readonly hands: Readonly<Record<Side, MutableTracked>>;
+}
+
+const makeTracked = (): MutableTracked => ({
+  position: vec3(0, 0, 0),
+  orientation: quat(0, 0, 0, 1),
+  tracking: 'tracked',
+});
+
+export const makePoints = (): PointsBuffer => ({
+  timeMs: 0,
+  jump: false,
+  pose: { head: makeTracked(), leftHand: null, rightHand: null, body: null },
+  hands: { left: makeTracked(), right: makeTracked() },
+});
+
+/** A hand in `steps`; null: lost. */
+function handOf(side: Side, head: Vec3, target: MutableTracked): TrackedPose | null {
   const { placed, tracking, at } = steps.hands[side];
   if (!placed || tracking === 'lost') return null;
-  const hand: MutablePose<'floor'> & TrackedPose = { ...makePose<'floor'>(), tracking };
-  handPose(head.position, at, hand);
-  return hand;
+  target.tracking = tracking;
+  handPose(head, at, target);
+  return target;
 }
 
 /** What `steps` tell, the body apart. */
-function pointsOf(): PointsPacket {
-  const { timeMs, jump, head: headNumbers, headTracking } = steps;
-  const position = headPosition(headNumbers.position);
-  const head = { position, orientation: fromQuatSteps(headNumbers.orientation, trackedBits), tracking: headTracking };
-  return {
-    timeMs,
-    jump,
-    pose: { head, leftHand: handOf('left', head), rightHand: handOf('right', head), body: null },
-  };
+function pointsOf(target: PointsBuffer): PointsBuffer {
+  const { pose, hands } = target;
+  const { head } = pose;
+  target.timeMs = steps.timeMs;
+  target.jump = steps.jump;
+  headPosition(steps.head.position, head.position);
+  fromQuatSteps(steps.head.orientation, trackedBits, head.orientation);
+  head.tracking = steps.headTracking;
+  pose.leftHand = handOf('left', head.position, hands.left);
+  pose.rightHand = handOf('right', head.position, hands.right);
+  return target;
 }
 
 /** What a relay needs: the whole packet checked, head and hands read; null for bytes that are no packet. */
-export const decodePoints = (bytes: Uint8Array): PointsPacket | null => (readPacket(bytes, steps) ? pointsOf() : null);
+export const decodePoints = (bytes: Uint8Array, target: PointsBuffer = makePoints()): PointsPacket | null =>
+  readPacket(bytes, steps) ? pointsOf(target) : null;
 
 /** The packet as it was sent, up to rounding; null for bytes that are no packet. The skeleton is the sender's. */
 export function decodePose(bytes: Uint8Array, skeleton: Skeleton): PosePacket | null {
   if (!readPacket(bytes, steps)) return null;
-  const points = pointsOf();
-  const { timeMs, jump, pose } = points;
+  const { timeMs, jump, pose } = pointsOf(makePoints());
   const fingers = { left: handShapeOf(steps.fingers.left), right: handShapeOf(steps.fingers.right) };
-  if (!steps.hasBody) return { timeMs, jump, pose, fingers };
   const { head, leftHand, rightHand } = pose;
+  if (!steps.hasBody) return { timeMs, jump, pose, fingers };
   handPose(head.position, steps.hands.left.at, handsAsSent.left);
   handPose(head.position, steps.hands.right.at, handsAsSent.right);
   const body = placeBody(head, handsAsSent, steps.body, skeleton);

@@ -7,7 +7,7 @@ import type { BitReader, BitWriter } from './bits';
  * Numbers on the wire. A signed number of b bits is a step in [−m, m] with m = 2^(b−1) − 1, written as step + m: zero is exact,
  * and the code 2^b − 1 means nothing, so that a reader knows that the bytes are bad.
  */
-export const mostSteps = (bits: number): number => 2 ** (bits - 1) - 1;
+export const mostSteps = (bits: number): number => (1 << (bits - 1)) - 1;
 
 /** The nearest step to a value of [−range, range]; beyond: the end of the range. */
 export const toStep = (value: number, range: number, bits: number): number =>
@@ -20,8 +20,9 @@ export const writeStep = (writer: BitWriter, step: number, bits: number): void =
 
 /** The step, or null for the code that means nothing. */
 export function readStep(reader: BitReader, bits: number): number | null {
-  const step = reader.read(bits) - mostSteps(bits);
-  return step <= mostSteps(bits) ? step : null;
+  const most = mostSteps(bits);
+  const step = reader.read(bits) - most;
+  return step <= most ? step : null;
 }
 
 /** A rotation as steps: which of x, y, z, w is largest (and taken as positive), and the other three in order. A buffer. */

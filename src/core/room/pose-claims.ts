@@ -1,4 +1,4 @@
-import { distance, type Vec3 } from '../math/vec3';
+import { copyVec3, distance, setVec3, vec3 } from '../math/vec3';
 import { packetSecondsBetween } from '../protocol/packet-time';
 import type { PointsPacket } from '../protocol/pose-packet';
 
@@ -20,7 +20,9 @@ export class PoseClaims {
   #packetTime: number | null = null;
   /** Of the newest pose that is remembered, here or in the match; null: none is. */
   #posedAt: number | null = null;
-  #head: Vec3 | null = null;
+  /** Where the head was; known as long as the pose is remembered. */
+  readonly #head = vec3(0, 0, 0);
+  #isHeadKnown = false;
   #fresh: Uint8Array[] = [];
 
   constructor(time: number) {
@@ -46,7 +48,7 @@ export class PoseClaims {
   reconnected(time: number): void {
     this.#heardAt = time;
     this.#packetTime = null;
-    this.#head = null;
+    this.#isHeadKnown = false;
   }
 
   /** Takes a packet in, and keeps its bytes until they are passed on, unless it is older than the newest one or its head is further from there than a person gets. */
@@ -57,10 +59,11 @@ export class PoseClaims {
       const elapsed = packetTime - this.#packetTime;
       if (elapsed <= 0) return 'old';
       const reachable = headTolerance + fastestHead * elapsed;
-      if (this.#head && !packet.jump && distance(position, this.#head) > reachable) return 'too-fast';
+      if (this.#isHeadKnown && !packet.jump && distance(position, this.#head) > reachable) return 'too-fast';
     }
     this.#packetTime = packetTime;
-    this.#head = position;
+    copyVec3(position, this.#head);
+    this.#isHeadKnown = true;
     this.#heardAt = time;
     this.#posedAt = time;
     this.#fresh.push(bytes);
@@ -84,7 +87,8 @@ export class PoseClaims {
   forgetOld(time: number): boolean {
     if (this.#posedAt === null || time - this.#posedAt <= poseMemory) return false;
     this.#posedAt = null;
-    this.#head = null;
+    this.#isHeadKnown = false;
+    setVec3(this.#head, 0, 0, 0);
     return true;
   }
 }

@@ -1,6 +1,6 @@
 import { type Pose, type TrackedPose, type Transform, transformPoint, transformPose } from '../math/pose';
 import { type ClientMessage, type Joining, packSeatInfo, protocolVersion } from '../protocol/messages';
-import { decodePoints } from '../protocol/pose-codec';
+import { decodePoints, makePoints } from '../protocol/pose-codec';
 import type { PointsPacket } from '../protocol/pose-packet';
 import { plainAvatar, type WornAvatar } from '../protocol/worn-avatar';
 import { MatchClock } from './match-clock';
@@ -32,6 +32,9 @@ type Received<Type extends ClientMessage['type']> = Extract<ClientMessage, { typ
 
 /** Where no match runs, time is followed in steps of this [s]: who has fallen silent, whose pose is forgotten. */
 const watchSeconds = 0.1;
+
+/** Of the packet that is being taken. */
+const points = makePoints();
 
 /** A wrist that was seen, in the arena. */
 const seenWrist = (arenaFromFloor: Transform<'arena', 'floor'>, hand: TrackedPose | null): Pose<'arena'> | null =>
@@ -147,7 +150,7 @@ export class Room<Game extends HostedGame> {
 
   /** bad: not a pose packet. ignored: a good one that changes nothing, because it is old, unbelievable or from a spectator. */
   onPose(client: ClientId, bytes: Uint8Array, time: number): 'taken' | 'ignored' | 'bad' {
-    const packet = decodePoints(bytes);
+    const packet = decodePoints(bytes, points);
     if (!packet) return 'bad';
     const index = this.#seats.indexOf(client);
     const seat = index === null ? null : this.#seats.at(index);
