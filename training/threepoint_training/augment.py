@@ -183,6 +183,13 @@ class _Bodies:
         arm = neck[:, None] + quaternion.rotate(np.broadcast_to(chest[:, None], (*arm.shape[:-1], 4)), arm)
         return arm, quaternion.multiply(chest, wrist)
 
+    def truth(self) -> Array:
+        """The six estimated joints [N, 6, 3] of the newest frames."""
+        now = np.zeros(len(self.newest), np.int64)
+        torso, _ = self.torso_at(now)
+        left, right = (self.arm_at(side, now)[0] for side in (0, 1))
+        return np.stack([left[:, 1], right[:, 1], left[:, 0], right[:, 0], torso[:, 1], torso[:, 0]], axis=1)
+
     def tilts(self) -> Array:
         """Of the left and the right hand [N, 2, 2]: those of the people whose arms they are."""
         left, right = (self.parts.tilts[self.parts.person[frames], sides] for frames, sides in zip(self.arm_frames, self.arm_sides, strict=True))
@@ -232,13 +239,12 @@ def _draw_worn(count: int, trackers: TrackerConfig, random: np.random.Generator)
     return offsets, np.concatenate([head[:, None], hands], axis=1)
 
 
-def _mirror_some(mirrored: NDArray[np.bool_], trackers: Array, rotations: Array, truth: Array) -> tuple[Array, Array, Array]:
-    """These of the bodies [N] seen in a mirror: tracked points [N, 3, 3], rotations [N, 3, 4] and true joints [N, 6, 3]."""
+def _mirror_some(mirrored: NDArray[np.bool_], trackers: Array, rotations: Array) -> tuple[Array, Array]:
+    """These of the bodies [N] seen in a mirror: tracked points [N, 3, 3] and rotations [N, 3, 4]."""
     flip = mirrored[:, None, None]
     return (
         np.where(flip, trackers[:, [0, 2, 1]] * _MIRROR, trackers),
         np.where(flip, rotations[:, [0, 2, 1]] * _MIRROR_TURN, rotations),
-        np.where(flip, truth[:, MIRRORED_JOINTS] * _MIRROR, truth),
     )
 
 
@@ -266,20 +272,18 @@ def draw_batch(parts: BodyParts, count: int, config: AugmentConfig, random: np.r
     forearms = bodies.forearms()
     forearms = np.where(mirrored[:, None], forearms[:, ::-1], forearms) + random.normal(size=(count, 1)) * config.forearm_error
     calibrated = calibrated.with_forearms(forearms, random.uniform(size=(count, 1)) < config.typed_forearms)
+    truth = bodies.truth()
+    truth = np.where(mirrored[:, None, None], truth[:, MIRRORED_JOINTS] * _MIRROR, truth)
     columns = []
     targets = in_chest_frame = np.empty(0)
     for age in config.window_frames:
         now = np.full(count, age)
-        torso, _ = bodies.torso_at(now)
-        arms = [bodies.arm_at(side, now)[0] for side in (0, 1)]
-        truth = np.stack([arms[0][:, 1], arms[1][:, 1], arms[0][:, 0], arms[1][:, 0], torso[:, 1], torso[:, 0]], axis=1)
         # Trackers may report what was true a frame before.
         torso, frames = bodies.torso_at(now + late)
         hands = [bodies.hand_at(side, now + late, unseen_arms[:, side]) for side in (0, 1)]
         anchors = np.stack([torso[:, TORSO.index("head")], hands[0][0], hands[1][0]], axis=1)
         rotations = np.stack([parts.head_turn[frames], hands[0][1], hands[1][1]], axis=1)
-        anchors, rotations, truth = _mirror_some(mirrored, anchors, rotations, truth)
-
+        anchors, rotations = _mirror_some(mirrored, anchors, rotations)
         positions = anchors + quaternion.rotate(rotations, offsets)
         positions = positions + random.normal(size=positions.shape) * config.trackers.position_noise
         rotations = quaternion.multiply(rotations, worn)

@@ -28,8 +28,11 @@ def conjugate(q: Array) -> Array:
 
 def rotate(q: Array, v: Array) -> Array:
     """The vectors v [..., 3] rotated by q."""
-    t = 2.0 * np.cross(q[..., :3], v)
-    return v + q[..., 3:] * t + np.cross(q[..., :3], t)
+    x, y, z, w = (q[..., part] for part in range(4))
+    vx, vy, vz = (v[..., part] for part in range(3))
+    # By components: np.cross takes three times as long.
+    tx, ty, tz = 2.0 * (y * vz - z * vy), 2.0 * (z * vx - x * vz), 2.0 * (x * vy - y * vx)
+    return np.stack([vx + w * tx + (y * tz - z * ty), vy + w * ty + (z * tx - x * tz), vz + w * tz + (x * ty - y * tx)], axis=-1)
 
 
 def from_axis_angle(axis: Array, angle: Array) -> Array:
