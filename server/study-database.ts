@@ -3,7 +3,8 @@ import { migrate } from './study-schema';
 
 /** Why the store will not do it; the message is for the person who asked. */
 export class StoreRefusal extends Error {
-  readonly reason: 'unknown' | 'conflict' | 'forbidden' | 'full';
+  /** begun: a plan that has participants would change; it can become a new version. */
+  readonly reason: 'unknown' | 'conflict' | 'begun' | 'forbidden' | 'full';
 
   constructor(reason: StoreRefusal['reason'], message: string) {
     super(message);

@@ -20,6 +20,8 @@ export interface ExportContent {
   /** Seconds since 1970: when it is made, and when the server will delete what it has; null: it has nothing. */
   readonly at: number;
   readonly retentionUntil: number | null;
+  /** Of the plan, where it has several; who follows another one is not in it. */
+  readonly planVersion?: number;
   readonly software: {
     readonly exportedBy: Software;
     /** What has served the study since it began. */
@@ -111,9 +113,12 @@ export function exportFiles(content: ExportContent, participant?: string): Reado
 
 /** The name of an export, so that simulated people are not taken for people. */
 export const exportName = (
-  { plan, simulated }: Pick<ExportContent, 'plan' | 'simulated'>,
+  { plan, simulated, planVersion }: Pick<ExportContent, 'plan' | 'simulated' | 'planVersion'>,
   participant?: string,
-): string => [simulated ? 'SIMULATED' : '', plan.id, participant ?? ''].filter(Boolean).join('-');
+): string =>
+  [simulated ? 'SIMULATED' : '', plan.id, planVersion === undefined ? '' : `version-${planVersion}`, participant ?? '']
+    .filter(Boolean)
+    .join('-');
 
 /** The export as a zip file, everything in one folder of its name; the same content gives the same bytes. */
 export function exportZip(content: ExportContent, participant?: string): Uint8Array {

@@ -12,6 +12,8 @@ export interface PlaceRow {
   readonly withdrawal_hash: Uint8Array | null;
   readonly invitation: string | null;
   readonly withdrawn: number;
+  /** Of the plan that the participant follows; null: the newest. */
+  readonly plan_version: number | null;
   readonly motion_consent: number | null;
   readonly progress: string | null;
   readonly progress_at: number | null;
@@ -86,7 +88,8 @@ export class StudyPlaces {
       const token = newToken();
       const withdrawalCode = row.withdrawal_hash ? null : newCode();
       this.#database.run(
-        `UPDATE participants SET token_hash = ?, withdrawal_hash = coalesce(withdrawal_hash, ?)
+        `UPDATE participants SET token_hash = ?, withdrawal_hash = coalesce(withdrawal_hash, ?),
+         plan_version = coalesce(plan_version, (SELECT max(version) FROM plan_versions WHERE plan_versions.study = participants.study))
          WHERE study = ? AND participant = ?`,
         ...[hashOf(token), withdrawalCode && hashOf(withdrawalCode), study, participant],
       );
@@ -125,8 +128,11 @@ export class StudyPlaces {
   }
 
   saveProgress(study: string, participant: string, progress: unknown, at: number): void {
-    const { plan, simulated } = this.#plans.get(study);
-    const checked = resumed(scheduleFor(plan, participant), JSON.stringify(progress));
+    const { simulated } = this.#plans.get(study);
+    const checked = resumed(
+      scheduleFor(this.#plans.planFor(study, participant), participant),
+      JSON.stringify(progress),
+    );
     if (checked.simulated !== simulated) {
       throw new StoreRefusal(
         'forbidden',
@@ -144,7 +150,9 @@ export class StudyPlaces {
 
   progress(study: string, participant: string): Progress | null {
     const { progress } = this.get(study, participant);
-    return progress === null ? null : resumed(scheduleFor(this.#plans.get(study).plan, participant), progress);
+    return progress === null
+      ? null
+      : resumed(scheduleFor(this.#plans.planFor(study, participant), participant), progress);
   }
 
   /** Forgets all that a place holds, inside a transaction. `withdrawn`: the participant stays out. */

@@ -1,26 +1,38 @@
+import { togetherWith } from '../src/core/study/allocation';
 import { checkedPlan, participantsOf, type StudyPlan } from '../src/core/study/plan';
-import type { StudyInfo } from '../src/core/study/study-api';
+import type { PlanVersion, StudyInfo } from '../src/core/study/study-api';
+import { ValidationError } from '../src/core/study/validation';
 import { StoreRefusal, type StudyDatabase } from './study-database';
 import { newCode } from './study-schema';
 
 interface StudyRow {
   readonly id: string;
-  readonly plan: string;
   readonly simulated: number;
   readonly created_at: number;
   readonly retention_until: number;
 }
 
+interface VersionRow {
+  readonly version: number;
+  readonly plan: string;
+  readonly since: number;
+}
+
+export interface AddOptions {
+  readonly simulated: boolean;
+  /** Seconds since 1970. */
+  readonly at: number;
+  /** Where the study has begun with another plan: this one is for those who come later. */
+  readonly newVersion?: boolean;
+}
+
 const secondsPerDay = 86_400;
 
-const infoOf = (row: StudyRow): StudyInfo => ({
-  plan: checkedPlan(JSON.parse(row.plan)),
-  simulated: row.simulated === 1,
-  createdAt: row.created_at,
-  retentionUntil: row.retention_until,
-});
+/** "P01, P02 and 3 more". */
+const listed = (names: readonly string[]) =>
+  names.length > 4 ? `${names.slice(0, 3).join(', ')} and ${names.length - 3} more` : names.join(', ');
 
-/** The studies themselves: their plans, and the places that these have. */
+/** The studies themselves: their plans, version by version, and the places that these have. */
 export class StudyPlans {
   readonly #database: StudyDatabase;
 
@@ -28,64 +40,193 @@ export class StudyPlans {
     this.#database = database;
   }
 
-  /** The study of this id; throws a StoreRefusal where there is none. */
-  get(id: string): StudyInfo {
+  /** The study of this id, its plan in this version or in the newest; throws a StoreRefusal where there is none. */
+  get(id: string, version?: number): StudyInfo {
     const row = this.#row(id);
     if (!row) throw new StoreRefusal('unknown', `there is no study "${id}"`);
-    return infoOf(row);
+    return this.#infoOf(row, version);
+  }
+
+  /** The plan that a participant follows: the one that they began with, else the newest. */
+  planFor(id: string, participant: string): StudyPlan {
+    this.#refuseUnknown(id);
+    const { plan } = this.#database.getOne<VersionRow>(
+      `SELECT * FROM plan_versions WHERE study = ? AND version = coalesce(
+         (SELECT plan_version FROM participants WHERE study = ? AND participant = ?),
+         (SELECT max(version) FROM plan_versions WHERE study = ?))`,
+      ...[id, id, participant, id],
+    );
+    return checkedPlan(JSON.parse(plan));
   }
 
   /** Oldest first. */
   all(): readonly StudyInfo[] {
-    return this.#database.all<StudyRow>('SELECT * FROM studies ORDER BY created_at, id').map(infoOf);
+    return this.#database
+      .all<StudyRow>('SELECT * FROM studies ORDER BY created_at, id')
+      .map((row) => this.#infoOf(row));
   }
 
-  /** Adds a study, or finds the same one there; refuses another plan under the id of a study that has begun. */
-  add(plan: StudyPlan, simulated: boolean, at: number): StudyInfo {
+  /**
+   * Adds a study, or finds the same one there. Another plan under the id of a study that has begun is refused, unless it is asked for as a
+   * new version: those who began, and who play with them, stay with theirs.
+   */
+  add(plan: StudyPlan, { simulated, at, newVersion = false }: AddOptions): StudyInfo {
     return this.#database.transaction(() => {
       const checked = checkedPlan(plan);
       const stored = this.#row(checked.id);
-      if (stored && stored.simulated !== Number(simulated)) {
+      if (!stored) {
+        this.#insert(checked, simulated, at);
+        return this.get(checked.id);
+      }
+      if (stored.simulated !== Number(simulated)) {
         throw new StoreRefusal(
           'conflict',
           `the study "${checked.id}" is ${stored.simulated ? 'simulated' : 'of people'}: give this one another id`,
         );
       }
-      if (stored?.plan === JSON.stringify(checked)) return infoOf(stored);
-      if (stored) this.#removeUnbegun(checked.id);
-      this.#insert(checked, simulated, at);
+      const known = this.#infoOf(stored);
+      if (JSON.stringify(known.plan) === JSON.stringify(checked)) return known;
+      const begun = this.#begun(checked.id);
+      if (begun.length === 0) {
+        this.remove(checked.id);
+        this.#insert(checked, simulated, at);
+      } else if (newVersion) this.#addVersion(known, checked, at);
+      else {
+        const text =
+          `the study "${checked.id}" has begun: ${listed(begun.map(({ participant }) => participant))} keep its plan. ` +
+          `What has changed can be version ${known.version + 1}, for those who come later; or give it another id`;
+        throw new StoreRefusal('begun', text);
+      }
       return this.get(checked.id);
     });
+  }
+
+  /** Inside a transaction, of a study in which nothing is recorded. */
+  remove(id: string): void {
+    for (const table of ['commands', 'participants', 'plan_versions']) {
+      this.#database.run(`DELETE FROM ${table} WHERE study = ?`, id);
+    }
+    this.#database.run('DELETE FROM studies WHERE id = ?', id);
   }
 
   #row(id: string): StudyRow | undefined {
     return this.#database.get<StudyRow>('SELECT * FROM studies WHERE id = ?', id);
   }
 
-  #removeUnbegun(id: string): void {
-    const begun = this.#database.get(
-      'SELECT 1 FROM participants WHERE study = ? AND (token_hash IS NOT NULL OR withdrawn = 1) LIMIT 1',
+  #refuseUnknown(id: string): void {
+    if (!this.#row(id)) throw new StoreRefusal('unknown', `there is no study "${id}"`);
+  }
+
+  #infoOf(row: StudyRow, asked?: number): StudyInfo {
+    const places = this.#database.all<{ participant: string; plan_version: number | null }>(
+      'SELECT participant, plan_version FROM participants WHERE study = ? ORDER BY participant',
+      row.id,
+    );
+    const versions = this.#database
+      .all<VersionRow>('SELECT * FROM plan_versions WHERE study = ? ORDER BY version', row.id)
+      .map(
+        ({ version, plan, since }): PlanVersion => ({
+          version,
+          plan: checkedPlan(JSON.parse(plan)),
+          since,
+          participants: places.filter((place) => place.plan_version === version).map(({ participant }) => participant),
+        }),
+      );
+    const shown = asked === undefined ? versions.at(-1) : versions.find(({ version }) => version === asked);
+    if (!shown) throw new StoreRefusal('unknown', `the plan of "${row.id}" has no version ${asked}`);
+    return {
+      plan: shown.plan,
+      version: shown.version,
+      versions,
+      simulated: row.simulated === 1,
+      createdAt: row.created_at,
+      retentionUntil: row.retention_until,
+    };
+  }
+
+  /** Who has taken a place, or left something recorded. */
+  #begun(id: string): readonly { readonly participant: string; readonly plan_version: number }[] {
+    return this.#database.all(
+      `SELECT participant, coalesce(plan_version, 1) AS plan_version FROM participants AS place
+       WHERE study = ? AND (token_hash IS NOT NULL OR withdrawal_hash IS NOT NULL OR withdrawn = 1 OR EXISTS
+         (SELECT 1 FROM records WHERE records.study = place.study AND records.participant = place.participant))
+       ORDER BY participant`,
       id,
     );
-    const recorded = this.#database.get('SELECT 1 FROM records WHERE study = ? LIMIT 1', id);
-    if (begun || recorded) {
-      throw new StoreRefusal('conflict', `the study "${id}" has begun: a changed plan needs another id`);
+  }
+
+  #addVersion({ versions, version, plan: before, retentionUntil }: StudyInfo, plan: StudyPlan, at: number): void {
+    const { id } = plan;
+    const [text, textBefore] = [plan, before].map(({ consent }) => JSON.stringify({ ...consent, version: '' }));
+    if (text !== textBefore && plan.consent.version === before.consent.version) {
+      throw new ValidationError('consent.version', 'the text has changed, and its version has not');
     }
-    this.#database.run('DELETE FROM participants WHERE study = ?', id);
-    this.#database.run('DELETE FROM studies WHERE id = ?', id);
+    const kept = new Map<string, number>();
+    for (const { participant, plan_version } of this.#begun(id)) {
+      const own = versions.find((one) => one.version === plan_version)?.plan ?? before;
+      for (const member of togetherWith(own, participant)) kept.set(member, plan_version);
+    }
+    for (const participant of participantsOf(plan)) {
+      const mixed = kept.has(participant)
+        ? undefined
+        : [...togetherWith(plan, participant)].find((one) => kept.has(one));
+      if (mixed === undefined) continue;
+      throw new StoreRefusal(
+        'conflict',
+        `${participant} would play with ${mixed}, who stays with version ${kept.get(mixed)}: leave seed, participants and ` +
+          'group sizes as they are, or give the plan another id',
+      );
+    }
+    this.#database.run(
+      'INSERT INTO plan_versions (study, version, plan, since) VALUES (?, ?, ?, ?)',
+      ...[id, version + 1, JSON.stringify(plan), at],
+    );
+    // What those who take part were promised holds for all.
+    const until = Math.min(retentionUntil, at + plan.retentionDays * secondsPerDay);
+    this.#database.run('UPDATE studies SET retention_until = ? WHERE id = ?', until, id);
+    this.#database.run('UPDATE participants SET plan_version = NULL WHERE study = ?', id);
+    for (const [participant, itsVersion] of kept) {
+      this.#database.run(
+        'UPDATE participants SET plan_version = ? WHERE study = ? AND participant = ?',
+        ...[itsVersion, id, participant],
+      );
+    }
+    this.#renewFreePlaces(plan, plan.entry === before.entry);
+  }
+
+  /** The places that no one has are those of the new plan; links that were sent already open them still, if one may. */
+  #renewFreePlaces(plan: StudyPlan, linksHold: boolean): void {
+    const { id } = plan;
+    const free = this.#database.all<{ participant: string; invitation: string | null }>(
+      'SELECT participant, invitation FROM participants WHERE study = ? AND plan_version IS NULL',
+      id,
+    );
+    const links = new Map(free.map(({ participant, invitation }) => [participant, invitation]));
+    this.#database.run('DELETE FROM participants WHERE study = ? AND plan_version IS NULL', id);
+    this.#addPlaces(plan, (participant) => (linksHold ? (links.get(participant) ?? null) : null));
   }
 
   #insert(plan: StudyPlan, simulated: boolean, at: number): void {
     const retentionUntil = at + plan.retentionDays * secondsPerDay;
     this.#database.run(
-      'INSERT INTO studies (id, plan, simulated, created_at, retention_until) VALUES (?, ?, ?, ?, ?)',
-      ...[plan.id, JSON.stringify(plan), Number(simulated), at, retentionUntil],
+      'INSERT INTO studies (id, simulated, created_at, retention_until) VALUES (?, ?, ?, ?)',
+      ...[plan.id, Number(simulated), at, retentionUntil],
     );
+    this.#database.run(
+      'INSERT INTO plan_versions (study, version, plan, since) VALUES (?, 1, ?, ?)',
+      ...[plan.id, JSON.stringify(plan), at],
+    );
+    this.#addPlaces(plan, () => null);
+  }
+
+  /** The places of a plan that are not there yet; `linkOf`: the invitation that a place had before, null: none. */
+  #addPlaces(plan: StudyPlan, linkOf: (participant: string) => string | null): void {
     const common = plan.entry === 'open' ? newCode() : null;
     for (const participant of participantsOf(plan)) {
       this.#database.run(
-        'INSERT INTO participants (study, participant, invitation) VALUES (?, ?, ?)',
-        ...[plan.id, participant, common ?? newCode()],
+        `INSERT INTO participants (study, participant, invitation) VALUES (?, ?, ?)
+         ON CONFLICT (study, participant) DO NOTHING`,
+        ...[plan.id, participant, linkOf(participant) ?? common ?? newCode()],
       );
     }
   }

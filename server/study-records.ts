@@ -22,7 +22,8 @@ export class StudyRecords {
 
   /** Stores what is not there yet, all or nothing; returns the ids of all. */
   store(study: string, participant: string, records: readonly StudyRecord[], at: number): readonly string[] {
-    const { plan, simulated } = this.#plans.get(study);
+    const { simulated } = this.#plans.get(study);
+    const plan = this.#plans.planFor(study, participant);
     return this.#database.transaction(() => {
       let { motion_consent: consented } = this.#places.getPresent(study, participant);
       for (const record of records) {

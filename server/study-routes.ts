@@ -1,5 +1,6 @@
 import * as v from 'valibot';
 import { checkedPlan, languagesOf, type StudyPlan } from '../src/core/study/plan';
+import type { PlanVersion, StudyInfo } from '../src/core/study/study-api';
 import { checkedRecord } from '../src/core/study/study-record';
 import {
   checked,
@@ -77,7 +78,12 @@ const commandSchema = v.variant('type', [
   v.strictObject({ type: v.literal('void-block'), reason: text(500), repeat: v.boolean('expected true or false') }),
 ]);
 
-const newStudySchema = v.strictObject({ plan: v.unknown(), simulated: v.boolean('expected true or false') });
+const newStudySchema = v.strictObject({
+  plan: v.unknown(),
+  simulated: v.boolean('expected true or false'),
+  newVersion: v.optional(v.boolean('expected true or false')),
+});
+const versionSchema = v.object({ version: v.optional(integerBetween(1, 10_000)) });
 const withdrawalSchema = v.object({ code: text(60) });
 const claimSchema = v.strictObject({ invitation: v.optional(text(60)) });
 const seatSchema = v.strictObject({ step: text(120), run: integerBetween(1, 99) });
@@ -94,7 +100,7 @@ const publicPlan = (plan: StudyPlan, simulated: boolean) => {
   return { id, title, consent, languages: languagesOf(plan), simulated };
 };
 
-const statusOfRefusal = { unknown: 404, conflict: 409, forbidden: 403, full: 507 } as const;
+const statusOfRefusal = { unknown: 404, conflict: 409, begun: 409, forbidden: 403, full: 507 } as const;
 
 interface TableOptions {
   readonly store: StudyStore;
@@ -106,12 +112,42 @@ interface TableOptions {
 
 type Exporting = Pick<TableOptions, 'store' | 'now' | 'software'>;
 
-function exportOf({ store, now, software: exportedBy }: Exporting, study: string, participant?: string): Answer {
-  const { plan, simulated, createdAt, retentionUntil } = store.study(study);
+/** The version of the plan that is asked for; undefined: the newest. */
+function versionIn(query: URLSearchParams): number | undefined {
+  const asked = query.get('version');
+  return checked(versionSchema, asked === null ? {} : { version: Number(asked) }).version;
+}
+
+/** What was recorded of those who follow this version of the plan. */
+const ofVersion = <Row extends { readonly participant: string }>(rows: readonly Row[], info: StudyInfo) => {
+  const { participants } = info.versions.find(({ version }) => version === info.version) as PlanVersion;
+  return rows.filter(({ participant }) => participants.includes(participant));
+};
+
+function refusalOf({ reason, message }: StoreRefusal): HttpError {
+  return new HttpError(statusOfRefusal[reason], message, { field: reason === 'begun' ? 'newVersion' : null });
+}
+
+interface ExportAsked {
+  readonly study: string;
+  readonly participant?: string;
+  readonly version?: number | undefined;
+}
+
+function exportOf({ store, now, software: exportedBy }: Exporting, asked: ExportAsked): Answer {
+  const { study, participant } = asked;
+  const info = store.study(study, asked.version);
+  const plan = participant === undefined ? info.plan : store.planFor(study, participant);
+  const { simulated, createdAt, retentionUntil, versions, version } = info;
   const software = { exportedBy, served: store.softwareSince(createdAt) };
   const records = store.records(study, participant);
   const motion = store.motion(study, participant);
-  const content = { plan, simulated, records, motion, at: now(), retentionUntil, software };
+  const content = {
+    ...{ plan, simulated, at: now(), retentionUntil, software },
+    records: participant === undefined ? ofVersion(records, info) : records,
+    motion: participant === undefined ? ofVersion(motion, info) : motion,
+    ...(participant === undefined && versions.length > 1 && { planVersion: version }),
+  };
   const name = exportName(content, participant);
   return {
     status: 200,
@@ -127,25 +163,31 @@ function studyTable({ store, now, guard, software }: TableOptions): Route<StudyA
       json({
         studies: store
           .studies()
-          .map(({ plan: { id, title, participants }, ...rest }) => ({ id, title, participants, ...rest })),
+          .map(({ plan: { id, title, participants }, versions: _, ...rest }) => ({ id, title, participants, ...rest })),
       }),
     ),
     route('POST', '', 'experimenter', bodyLimits.json, (call) => {
-      const { plan, simulated } = checked(newStudySchema, jsonOf(call));
-      return json(store.addStudy(checkedPlan(plan), { simulated, at: now() }), 201);
+      const { plan, simulated, newVersion = false } = checked(newStudySchema, jsonOf(call));
+      return json(store.addStudy(checkedPlan(plan), { simulated, newVersion, at: now() }), 201);
     }),
-    route('GET', '/:study', 'anyone', 0, ({ study }) => {
+    // A participant who has begun reads the text of the version that is theirs.
+    route('GET', '/:study', 'anyone', 0, ({ study, query }) => {
       const { plan, simulated } = store.study(study);
-      return json(publicPlan(plan, simulated));
+      const participant = query.get('participant');
+      const read = participant === null ? plan : store.planFor(study, checked(participantId, participant));
+      return json(publicPlan(read, simulated));
     }),
-    route('GET', '/:study/records', 'experimenter', 0, ({ study }) =>
-      json({ ...store.study(study), records: store.records(study) }),
-    ),
+    route('GET', '/:study/records', 'experimenter', 0, ({ study, query }) => {
+      const info = store.study(study, versionIn(query));
+      return json({ ...info, records: ofVersion(store.records(study), info) });
+    }),
     route('GET', '/:study/receipts', 'experimenter', 0, ({ study }) => {
       store.study(study);
       return json({ receipts: store.receipts(study) });
     }),
-    route('GET', '/:study/export', 'experimenter', 0, ({ study }) => exportOf({ store, now, software }, study)),
+    route('GET', '/:study/export', 'experimenter', 0, ({ study, query }) =>
+      exportOf({ store, now, software }, { study, version: versionIn(query) }),
+    ),
     route('GET', '/:study/participants', 'experimenter', 0, ({ study }) =>
       json({ participants: store.overview(study, now()) }),
     ),
@@ -164,8 +206,9 @@ function participantTable({ store, now, guard, seats, software }: TableOptions):
       const { study, participant } = call;
       const { invitation } = checked(claimSchema, jsonOf(call));
       await guard.admitInvited(call, invitation);
-      const { plan, simulated } = store.study(study);
       const { token, withdrawalCode } = store.claim(study, participant, now());
+      const { simulated } = store.study(study);
+      const plan = store.planFor(study, participant);
       // A session that another device began goes on where that one was.
       const progress = store.progress(study, participant);
       return json({ token, withdrawalCode, plan, simulated, progress }, 201);
@@ -180,7 +223,7 @@ function participantTable({ store, now, guard, seats, software }: TableOptions):
     }),
     route('POST', `${own}/records`, 'participant', bodyLimits.json, (call) => {
       const { records } = checked(batchSchema, jsonOf(call));
-      const { plan } = store.study(call.study);
+      const plan = store.planFor(call.study, call.participant);
       const valid = records.map((record, index) => {
         try {
           return checkedRecord(record, plan);
@@ -225,12 +268,12 @@ function participantTable({ store, now, guard, seats, software }: TableOptions):
     }),
     route('POST', `${own}/seat`, 'participant', bodyLimits.json, async (call) => {
       const trial = checked(seatSchema, jsonOf(call));
-      const { plan } = store.study(call.study);
+      const plan = store.planFor(call.study, call.participant);
       // Let in without being this participant: an experimenter, who watches.
       return json(await seats.sign(plan, call.participant, trial, !guard.isParticipant(call)));
     }),
     route('GET', `${own}/export`, 'participant', 0, ({ study, participant }) =>
-      exportOf({ store, now, software }, study, participant),
+      exportOf({ store, now, software }, { study, participant }),
     ),
     route('DELETE', own, 'experimenter', 0, ({ study, participant }) =>
       json(store.deleteParticipant(study, participant, 'experimenter', now())),
@@ -252,7 +295,7 @@ export function createStudyRoutes({
     routes: [...studyTable(table), ...participantTable(table)],
     admit: ({ access }, { request, names }) => guard.admit(access, { request, ...namesOf({ names }) }),
     refusalOf(error) {
-      if (error instanceof StoreRefusal) return new HttpError(statusOfRefusal[error.reason], error.message);
+      if (error instanceof StoreRefusal) return refusalOf(error);
       return null;
     },
     onFault,

@@ -88,6 +88,21 @@ const migrations: readonly (string | ((database: DatabaseSyncInstance) => void))
     }
   },
   `CREATE TABLE software (number INTEGER PRIMARY KEY, software TEXT NOT NULL, since REAL NOT NULL) STRICT;`,
+  // The plan of a study could not change once it had begun: all who had begun did so with the first version.
+  `
+  CREATE TABLE plan_versions (
+    study TEXT NOT NULL REFERENCES studies (id),
+    version INTEGER NOT NULL,
+    plan TEXT NOT NULL,
+    since REAL NOT NULL,
+    PRIMARY KEY (study, version)
+  ) STRICT;
+  INSERT INTO plan_versions SELECT id, 1, plan, created_at FROM studies;
+  ALTER TABLE studies DROP COLUMN plan;
+  ALTER TABLE participants ADD COLUMN plan_version INTEGER;
+  UPDATE participants SET plan_version = 1 WHERE token_hash IS NOT NULL OR withdrawal_hash IS NOT NULL OR withdrawn = 1
+    OR EXISTS (SELECT 1 FROM records WHERE records.study = participants.study AND records.participant = participants.participant);
+  `,
 ];
 
 /** Brings a database up to date; throws where it is of a later version than this server. */

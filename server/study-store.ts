@@ -1,7 +1,7 @@
 import type { StudyPlan } from '../src/core/study/plan';
 import { currentStep, type Progress, remainingSeconds, resumed } from '../src/core/study/progress';
 import { scheduleFor } from '../src/core/study/schedule';
-import type { ParticipantState, Receipt, StudyCommand, StudyInfo } from '../src/core/study/study-api';
+import type { ParticipantState, PlanVersion, Receipt, StudyCommand, StudyInfo } from '../src/core/study/study-api';
 import type { StudyRecord } from '../src/core/study/study-record';
 import type { Software } from './software';
 import { type NumberedCommand, StudyCommands } from './study-commands';
@@ -9,7 +9,7 @@ import { StudyDatabase } from './study-database';
 import { StudyDeletion } from './study-deletion';
 import { type MotionFile, StudyMotion } from './study-motion';
 import { type PlaceRow, StudyPlaces } from './study-places';
-import { StudyPlans } from './study-plans';
+import { type AddOptions, StudyPlans } from './study-plans';
 import { StudyRecords } from './study-records';
 import { type ServedSoftware, StudySoftware } from './study-software';
 
@@ -18,9 +18,12 @@ import { type ServedSoftware, StudySoftware } from './study-software';
  * since 1970, given by the caller.
  */
 export interface StudyStore {
-  /** Adds a study, or finds the same one there; refuses another plan under the id of a study that has begun. */
-  addStudy(plan: StudyPlan, options: { readonly simulated: boolean; readonly at: number }): StudyInfo;
-  study(id: string): StudyInfo;
+  /** Adds a study, or finds the same one there; refuses another plan under the id of a study that has begun, but as a new version. */
+  addStudy(plan: StudyPlan, options: AddOptions): StudyInfo;
+  /** Its plan in this version, else in the newest. */
+  study(id: string, version?: number): StudyInfo;
+  /** The plan that a participant follows. */
+  planFor(study: string, participant: string): StudyPlan;
   studies(): readonly StudyInfo[];
   /** Whether this is the invitation to the place, however it was typed. */
   invites(study: string, participant: string, code: string): boolean;
@@ -65,11 +68,12 @@ export interface StudyStore {
 }
 
 /** A place as the experimenter sees it, at this time [s]. */
-function stateOf(row: PlaceRow, plan: StudyPlan, records: number, now: number): ParticipantState {
+function stateOf(row: PlaceRow, { plan, version }: PlanVersion, records: number, now: number): ParticipantState {
   const schedule = scheduleFor(plan, row.participant);
   const progress = row.progress === null ? null : resumed(schedule, row.progress);
   return {
     participant: row.participant,
+    version,
     invitation: row.invitation,
     claimed: row.token_hash !== null,
     withdrawn: row.withdrawn === 1,
@@ -99,8 +103,9 @@ export function openStudyStore(file: string, { mostBytes = 16 * 2 ** 30 } = {}):
   const software = new StudySoftware(database);
   const deletion = new StudyDeletion({ database, plans, places, records, motion, commands });
   return {
-    addStudy: (plan, { simulated, at }) => plans.add(plan, simulated, at),
-    study: (id) => plans.get(id),
+    addStudy: (plan, options) => plans.add(plan, options),
+    study: (id, version) => plans.get(id, version),
+    planFor: (study, participant) => plans.planFor(study, participant),
     studies: () => plans.all(),
     invites: (study, participant, code) => places.invites(study, participant, code),
     reinvite: (study, participant) => places.reinvite(study, participant),
@@ -119,8 +124,11 @@ export function openStudyStore(file: string, { mostBytes = 16 * 2 ** 30 } = {}):
     noteSoftware: (used, at) => software.note(used, at),
     softwareSince: (at) => software.since(at),
     overview(study, now) {
-      const { plan } = plans.get(study);
-      return places.all(study).map((row) => stateOf(row, plan, records.count(study, row.participant), now));
+      const { version: newest, versions } = plans.get(study);
+      return places.all(study).map((row) => {
+        const followed = versions.find(({ version }) => version === (row.plan_version ?? newest)) as PlanVersion;
+        return stateOf(row, followed, records.count(study, row.participant), now);
+      });
     },
     deleteParticipant: (study, participant, reason, at) => deletion.delete(study, participant, reason, at),
     withdraw: (study, code, at) => deletion.withdraw(study, code, at),

@@ -102,9 +102,12 @@ const answersOf = (server: string) =>
 const of = (study: string, participant?: string) =>
   `/${encodeURIComponent(study)}${participant === undefined ? '' : `/participants/${encodeURIComponent(participant)}`}`;
 
+const versionPart = (version: number | undefined) => (version === undefined ? '' : `?version=${version}`);
+
 /** What a participant's page asks of the server. Every call throws ServerRefusal or ServerUnreachable. */
 export interface ParticipantClient {
-  study(study: string): Promise<PublicStudy>;
+  /** As this participant may read it. */
+  study(study: string, participant: string): Promise<PublicStudy>;
   /** `invitation` as it stands in the link, or as it was typed. */
   claim(study: string, participant: string, invitation: string): Promise<Claim>;
   /** Returns the ids that are safely stored now. */
@@ -121,7 +124,7 @@ export interface ParticipantClient {
 export function createParticipantClient(server: string): ParticipantClient {
   const answer = answersOf(server);
   return {
-    study: (study) => answer(of(study)),
+    study: (study, participant) => answer(`${of(study)}?participant=${encodeURIComponent(participant)}`),
     claim: (study, participant, invitation) =>
       answer(`${of(study, participant)}/claim`, { method: 'POST', body: { invitation } }),
     async send(study, participant, token, records) {
@@ -153,8 +156,10 @@ export function createParticipantClient(server: string): ParticipantClient {
 /** What the experimenter's pages ask of the server. */
 export interface ExperimenterClient {
   studies(): Promise<readonly StudyListing[]>;
-  addStudy(plan: unknown, simulated: boolean): Promise<StudyInfo>;
-  records(study: string): Promise<RecordedStudy>;
+  /** `newVersion`: also where the study has begun with another plan. */
+  addStudy(plan: unknown, simulated: boolean, newVersion?: boolean): Promise<StudyInfo>;
+  /** What was recorded under this version of the plan, else under the newest. */
+  records(study: string, version?: number): Promise<RecordedStudy>;
   participants(study: string): Promise<readonly ParticipantState[]>;
   receipts(study: string): Promise<readonly Receipt[]>;
   command(study: string, participant: string, command: StudyCommand): Promise<void>;
@@ -162,8 +167,11 @@ export interface ExperimenterClient {
   release(study: string, participant: string): Promise<void>;
   /** Another invitation; links with the old one open nothing any more. */
   reinvite(study: string, participant: string): Promise<void>;
-  /** The zip file of a participant, or of all. */
-  export(study: string, participant?: string): Promise<{ readonly name: string; readonly zip: Blob }>;
+  /** The zip file of a participant, or of all under a version of the plan. */
+  export(
+    study: string,
+    of?: { readonly participant?: string; readonly version?: number },
+  ): Promise<{ readonly name: string; readonly zip: Blob }>;
   delete(study: string, participant: string): Promise<Receipt>;
 }
 
@@ -171,8 +179,9 @@ export function createExperimenterClient(token: string, server: string): Experim
   const answer = answersOf(server);
   return {
     studies: async () => (await answer<{ studies: StudyListing[] }>('', { token })).studies,
-    addStudy: (plan, simulated) => answer('', { method: 'POST', token, body: { plan, simulated } }),
-    records: (study) => answer(`${of(study)}/records`, { token }),
+    addStudy: (plan, simulated, newVersion = false) =>
+      answer('', { method: 'POST', token, body: { plan, simulated, newVersion } }),
+    records: (study, version) => answer(`${of(study)}/records${versionPart(version)}`, { token }),
     participants: async (study) =>
       (await answer<{ participants: ParticipantState[] }>(`${of(study)}/participants`, { token })).participants,
     receipts: async (study) => (await answer<{ receipts: Receipt[] }>(`${of(study)}/receipts`, { token })).receipts,
@@ -184,8 +193,8 @@ export function createExperimenterClient(token: string, server: string): Experim
     },
     release: (study, participant) => answer(`${of(study, participant)}/release`, { method: 'POST', token }),
     reinvite: (study, participant) => answer(`${of(study, participant)}/invitation`, { method: 'POST', token }),
-    async export(study, participant) {
-      const response = await ask(server, `${of(study, participant)}/export`, { token });
+    async export(study, { participant, version } = {}) {
+      const response = await ask(server, `${of(study, participant)}/export${versionPart(version)}`, { token });
       const name = /filename="([^"]+)"/.exec(response.headers.get('content-disposition') ?? '')?.[1];
       return { name: name ?? `${study}.zip`, zip: await response.blob() };
     },

@@ -1,7 +1,7 @@
 import '../styles/document.css';
 import { reasonOf } from '../core/errors/reasons';
-import { checkedPlan } from '../core/study/plan';
-import type { StudyCommand } from '../core/study/study-api';
+import { checkedPlan, type StudyPlan } from '../core/study/plan';
+import type { StudyCommand, StudyInfo } from '../core/study/study-api';
 import { type ExperimenterClient, ServerRefusal } from '../net/study-client';
 import { offerDownload } from '../ui/downloads';
 import { element, pageElement } from '../ui/element';
@@ -13,6 +13,7 @@ import {
   openStudy,
   receiptText,
   type StudyActions,
+  versionsText,
 } from './experimenter-view';
 import { askForSentence } from './sentence-dialog';
 import { StudyAccess } from './study-access';
@@ -60,9 +61,9 @@ class ExperimenterPage {
     const { client } = this.#access;
     if (!client || !id) return;
     try {
-      const { plan, simulated, retentionUntil } = await this.#access.open(client, id);
+      const { records: _, ...info } = await this.#access.open(client, id);
       const receipts = await client.receipts(id);
-      this.#study = { plan, simulated, retentionUntil, receipts, states: await client.participants(id) };
+      this.#study = { ...info, receipts, states: await client.participants(id) };
       this.#complaint = '';
     } catch (error) {
       this.#complaint = reasonOf(error);
@@ -107,18 +108,19 @@ class ExperimenterPage {
       const added = simulated
         ? { ...checked, id: `${checked.id}-simulated`, title: `SIMULATED: ${checked.title}` }
         : checked;
-      await client.addStudy(added, simulated);
+      const info = await addOrChange(client, added, simulated);
+      if (!info) return `Nothing was changed: the study “${added.id}” keeps its plan.`;
       await this.#access.list(client);
       await this.#open(added.id);
-      return `${name} is on this server.`;
+      return `${name} is on this server. ${versionsText(info)}`.trim();
     });
   }
 
   #actionsOn({ plan }: OpenStudy): StudyActions {
     const { id } = plan;
     return {
-      exportAll: () => void this.#exportZip(id),
-      exportZip: (participant) => void this.#exportZip(id, participant),
+      exportAll: (version) => void this.#exportZip(id, { version }),
+      exportZip: (participant) => void this.#exportZip(id, { participant }),
       command: (participant, command) => void this.#command(id, participant, command),
       voidBlock: (participant) => void this.#voidBlock(id, participant),
       remark: (participant) => void this.#remark(id, participant),
@@ -197,9 +199,9 @@ class ExperimenterPage {
     });
   }
 
-  #exportZip(study: string, participant?: string): Promise<void> {
+  #exportZip(study: string, of: Parameters<ExperimenterClient['export']>[1]): Promise<void> {
     return this.#attempt(async (client) => {
-      const file = await client.export(study, participant);
+      const file = await client.export(study, of);
       offerDownload(file.name, 'application/zip', file.zip);
       return `${file.name} is in your downloads.`;
     });
@@ -260,6 +262,19 @@ class ExperimenterPage {
     ];
   }
 }
+
+/** Adds a study; where one of the same id has begun with another plan, as a new version of it, if the experimenter wants that. null: no. */
+async function addOrChange(client: ExperimenterClient, plan: StudyPlan, simulated: boolean): Promise<StudyInfo | null> {
+  try {
+    return await client.addStudy(plan, simulated);
+  } catch (error) {
+    if (!(error instanceof ServerRefusal) || error.field !== 'newVersion') throw error;
+    if (!confirm(`${sentence(error.message)}\n\nMake it a new version? Results keep the versions apart.`)) return null;
+    return client.addStudy(plan, simulated, true);
+  }
+}
+
+const sentence = (text: string) => `${text.charAt(0).toUpperCase()}${text.slice(1)}.`;
 
 const anotherStudy = () =>
   element(

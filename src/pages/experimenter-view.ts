@@ -1,6 +1,6 @@
 import type { StudyPlan } from '../core/study/plan';
 import { remarksOn } from '../core/study/plan-remarks';
-import type { ParticipantState, Receipt } from '../core/study/study-api';
+import type { ParticipantState, Receipt, StudyInfo } from '../core/study/study-api';
 import { button, element } from '../ui/element';
 import { leavePlan } from '../ui/left-plan';
 import { pageFolder } from '../ui/page-folder';
@@ -8,21 +8,32 @@ import { type ParticipantActions, participantHeads, participantRow } from './par
 import { tableNode } from './table';
 
 /** A study as the experimenter's page has it open. */
-export interface OpenStudy {
-  readonly plan: StudyPlan;
-  readonly simulated: boolean;
-  /** When the server deletes its records by itself [s since 1970]. */
-  readonly retentionUntil: number;
+export interface OpenStudy extends StudyInfo {
   readonly states: readonly ParticipantState[];
   readonly receipts: readonly Receipt[];
 }
 
 export interface StudyActions extends ParticipantActions {
-  exportAll(): void;
+  /** Of this version of the plan. */
+  exportAll(version: number): void;
 }
 
 export const receiptText = ({ number, participant, reason, records, motionFiles, at }: Receipt) =>
   `Receipt ${number}: ${participant}, ${reason}, ${records} records and ${motionFiles} recordings, ${new Date(at * 1000).toLocaleString()}`;
+
+/** "Version 2 is for those who come now; P01 and P02 stay with version 1."; empty: there is only one. */
+export function versionsText({ versions }: Pick<OpenStudy, 'versions'>): string {
+  const newest = versions.at(-1);
+  if (!newest || versions.length < 2) return '';
+  const stays = versions
+    .slice(0, -1)
+    .filter(({ participants }) => participants.length > 0)
+    .map(({ version, participants }) => `${participants.join(', ')} with version ${version}`);
+  return (
+    `The plan was changed: version ${newest.version} is for those who begin now. ` +
+    `There stay ${stays.join('; ')}. Results and exports keep the versions apart.`
+  );
+}
 
 /** An open study, as of `now` [s since 1970]: what it is, its participants, what was deleted. */
 export const openStudy = (study: OpenStudy, now: number, actions: StudyActions): readonly Node[] => [
@@ -30,12 +41,16 @@ export const openStudy = (study: OpenStudy, now: number, actions: StudyActions):
   tableNode(
     'Participants',
     participantHeads,
-    study.states.map((state) => participantRow(state, study.plan, now, actions)),
+    study.states.map((state) => {
+      const followed = study.versions.find(({ version }) => version === state.version)?.plan ?? study.plan;
+      return participantRow(state, { plan: followed, several: study.versions.length > 1 }, now, actions);
+    }),
   ),
   ...receiptList(study.receipts),
 ];
 
-function studyHead({ plan, simulated, retentionUntil }: OpenStudy, actions: StudyActions): readonly Node[] {
+function studyHead(study: OpenStudy, actions: StudyActions): readonly Node[] {
+  const { plan, simulated, retentionUntil, versions } = study;
   const until = new Date(retentionUntil * 1000).toLocaleDateString();
   const notice = 'SIMULATED: in this study a program takes part. Its data say nothing about people.';
   return [
@@ -46,11 +61,16 @@ function studyHead({ plan, simulated, retentionUntil }: OpenStudy, actions: Stud
       { class: 'soft' },
       `${plan.id} · ${plan.participants} participants · consent ${plan.consent.version} · deleted after ${until}`,
     ),
+    ...(versions.length > 1 ? [element('p', {}, versionsText(study))] : []),
     ...remarkList(remarksOn(plan)),
     element(
       'div',
       { class: 'bar', style: 'margin-top:12px' },
-      button('Export all', actions.exportAll, { class: 'primary' }),
+      ...versions.toReversed().map(({ version }, index) =>
+        button(versions.length > 1 ? `Export version ${version}` : 'Export all', () => actions.exportAll(version), {
+          class: index === 0 ? 'primary' : undefined,
+        }),
+      ),
       element('a', { href: `./results.html?study=${plan.id}` }, 'Results'),
       previewLink(plan),
     ),

@@ -32,10 +32,16 @@ export const participantHeads = [
   { text: 'Page' },
 ] as const;
 
+/** The plan that a participant follows; `several`: not all follow the same version. */
+export interface FollowedPlan {
+  readonly plan: StudyPlan;
+  readonly several: boolean;
+}
+
 /** A participant's line in the table, as of `now` [s since 1970]. */
 export function participantRow(
   state: ParticipantState,
-  plan: StudyPlan,
+  { plan, several }: FollowedPlan,
   now: number,
   actions: ParticipantActions,
 ): TableRow {
@@ -45,7 +51,7 @@ export function participantRow(
   return {
     look: silence > silentAfter ? 'stale' : '',
     cells: [
-      participant,
+      several ? `${participant}, version ${state.version}` : participant,
       stateBadge(state, silence),
       session ? placeText(schedule, session.step) : '',
       session?.remainingSeconds != null && session.kind !== 'end' ? clock(session.remainingSeconds) : '',

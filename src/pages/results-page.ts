@@ -25,11 +25,12 @@ function showStudy(study: ShownStudy, source: string): void {
   render();
 }
 
-async function load(id: string): Promise<void> {
+async function load(id: string, version?: number): Promise<void> {
   if (!access.client || !id) return;
   try {
-    const { plan, simulated, records } = await access.open(access.client, id);
-    showStudy({ plan, simulated, records }, 'this server');
+    const { plan, simulated, records, version: shownVersion, versions } = await access.open(access.client, id, version);
+    const several = versions.length > 1 ? { planVersion: shownVersion, versions } : {};
+    showStudy({ plan, simulated, records, ...several }, 'this server');
   } catch (error) {
     complaint = reasonOf(error);
     render();
@@ -58,10 +59,39 @@ function sourceBar(): HTMLElement {
     'section',
     { class: 'card bar' },
     access.select(shown?.plan.id, 'This server has no studies yet', (id) => void load(id)),
-    ...(shown ? [button('Refresh', () => void load(shown?.plan.id ?? ''))] : []),
+    ...(shown ? [button('Refresh', () => void load(shown?.plan.id ?? '', shown?.planVersion))] : []),
     fileField,
     access.forgetButton(),
   );
+}
+
+/** Of a plan that was changed: which version is shown, and who is in the others. */
+function versionBar({ plan, planVersion, versions = [] }: ShownStudy): readonly Node[] {
+  if (planVersion === undefined) return [];
+  const select = element(
+    'select',
+    { 'aria-label': 'Version of the plan' },
+    ...versions.map(({ version, participants }) =>
+      element(
+        'option',
+        { value: version, selected: version === planVersion },
+        `Version ${version}: ${participants.length} participants`,
+      ),
+    ),
+  );
+  select.addEventListener('change', () => void load(plan.id, Number(select.value)));
+  return [
+    element(
+      'div',
+      { class: 'bar' },
+      element('label', {}, element('span', {}, 'Version of the plan'), select),
+      element(
+        'p',
+        { class: 'soft' },
+        'The plan was changed while the study ran. What is below is of one version alone.',
+      ),
+    ),
+  ];
 }
 
 function conditionBar({ plan }: ShownStudy): readonly Node[] {
@@ -91,11 +121,24 @@ function results(): readonly Node[] {
   const heading = element('h2', {}, plan.title);
   const where = element('p', { class: 'soft' }, `${plan.id}, from ${source}.`);
   if (conditions && conditions[0] === conditions[1]) {
-    return [heading, ...conditionBar(shown), element('p', { class: 'complaint' }, 'Choose two different conditions.')];
+    return [
+      heading,
+      ...versionBar(shown),
+      ...conditionBar(shown),
+      element('p', { class: 'complaint' }, 'Choose two different conditions.'),
+    ];
   }
   try {
     const pairs = conditions ? studyResults(shown, conditions) : [];
-    return [heading, where, ...simulatedNotice(shown), ...overallResults(shown), ...conditionBar(shown), ...pairs];
+    return [
+      heading,
+      where,
+      ...versionBar(shown),
+      ...simulatedNotice(shown),
+      ...overallResults(shown),
+      ...conditionBar(shown),
+      ...pairs,
+    ];
   } catch (error) {
     return [heading, where, element('p', { class: 'complaint', role: 'alert' }, reasonOf(error))];
   }

@@ -90,7 +90,8 @@ function demographicsText(records: readonly StudyRecord[]): string {
 }
 
 function compared(study: ShownStudy, conditions: readonly [string, string]): Compared {
-  const { plan, simulated, records } = study;
+  const { plan, simulated, records, planVersion } = study;
+  const versionPart = planVersion === undefined ? '' : `-version-${planVersion}`;
   const labelOf = (id: string) => plan.conditions.find((condition) => condition.id === id)?.label ?? id;
   return {
     study,
@@ -101,7 +102,7 @@ function compared(study: ShownStudy, conditions: readonly [string, string]): Com
     labels: { first: labelOf(conditions[0]), second: labelOf(conditions[1]) },
     labelOf,
     titleOf: (task) => plan.tasks.find(({ id }) => id === task)?.title ?? task,
-    fileOf: (name) => `${simulated ? 'SIMULATED-' : ''}${plan.id}-${name}`,
+    fileOf: (name) => `${simulated ? 'SIMULATED-' : ''}${plan.id}${versionPart}-${name}`,
   };
 }
 

@@ -1,5 +1,6 @@
 import type { compareScores, Results } from '../core/study/compare-conditions';
 import type { StudyPlan } from '../core/study/plan';
+import type { PlanVersion } from '../core/study/study-api';
 import type { StudyRecord } from '../core/study/study-record';
 
 /** What the results are computed from. */
@@ -7,6 +8,9 @@ export interface ShownStudy {
   readonly plan: StudyPlan;
   readonly simulated: boolean;
   readonly records: readonly StudyRecord[];
+  /** Of the plan, where it has several: the records are of those who followed this one. */
+  readonly planVersion?: number;
+  readonly versions?: readonly PlanVersion[];
 }
 
 /** A study's results as they are shown: first − second condition, and what things are called. */

@@ -38,9 +38,9 @@ export class StudyAccess {
     return new URLSearchParams(location.search).get('study') || null;
   }
 
-  /** Plan and records of a study, which the address asks for from now on. */
-  async open(client: ExperimenterClient, id: string): Promise<RecordedStudy> {
-    const recorded = await client.records(id);
+  /** Plan and records of a study, of this version of its plan or of the newest, which the address asks for from now on. */
+  async open(client: ExperimenterClient, id: string, version?: number): Promise<RecordedStudy> {
+    const recorded = await client.records(id, version);
     const address = new URL(location.href);
     address.searchParams.set('study', id);
     history.replaceState(null, '', address);

@@ -121,28 +121,6 @@ describe('the store', () => {
     expect(() => openStudyStore(file)).toThrow('has version 99');
   });
 
-  test('from before invitations gives each place one, and loses nothing', () => {
-    const { store, file } = withPaperStudy();
-    const { token, withdrawalCode } = store.claim('paper', 'P02', now);
-    store.storeRecords('paper', 'P02', completed('P02'), now);
-    store.deleteParticipant('paper', 'P03', 'withdrawn', now);
-    store.close();
-    const database = new DatabaseSync(file);
-    database.exec('ALTER TABLE participants DROP COLUMN invitation; DROP TABLE software; PRAGMA user_version = 1');
-    database.close();
-    const reopened = opened(file).store;
-    const invitations = reopened.overview('paper', now).map(({ invitation }) => invitation);
-    expect(invitations[2]).toBeNull();
-    const given = invitations.filter((invitation) => invitation !== null);
-    expect(new Set(given).size).toBe(14);
-    for (const invitation of given) expect(invitation).toMatch(/^(\w{4}-){3}\w{4}$/);
-    expect(reopened.invites('paper', 'P01', given[0] as string)).toBe(true);
-    expect(reopened.invites('paper', 'P04', given[0] as string)).toBe(false);
-    expect(reopened.holds('paper', 'P02', token)).toBe(true);
-    expect(reopened.records('paper')).toEqual(completed('P02'));
-    expect(reopened.withdraw('paper', withdrawalCode as string, now)).toMatchObject({ participant: 'P02' });
-  });
-
   test('knows where each participant is', () => {
     const { store } = withPaperStudy();
     store.claim('paper', 'P02', now);

@@ -86,7 +86,7 @@ export async function openSession(place: Place, { client, now, onChange }: Openi
     session.apply({ type: 'reload' });
     return { kind: 'resumed', session };
   }
-  const study = await client.study(id);
+  const study = await client.study(id, participant);
   return {
     kind: 'new',
     study,

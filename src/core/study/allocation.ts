@@ -57,6 +57,17 @@ export function groupsOf(plan: StudyPlan, groupSize: number): readonly (readonly
   );
 }
 
+/** All whom a participant meets in some task, directly or through others, and the participant. */
+export function togetherWith(plan: StudyPlan, participant: string): ReadonlySet<string> {
+  const groups = [...new Set(plan.tasks.map(({ groupSize }) => groupSize))].flatMap((size) => groupsOf(plan, size));
+  const met = new Set([participant]);
+  // Iteration over a set reaches what is added meanwhile.
+  for (const member of met) {
+    for (const group of groups) if (group.includes(member)) for (const other of group) met.add(other);
+  }
+  return met;
+}
+
 /** The cohort of every participant, those who play together in one; empty: the plan has none. */
 export function cohortsByParticipant(plan: StudyPlan): ReadonlyMap<string, StudyCohort> {
   const { cohorts = [] } = plan;

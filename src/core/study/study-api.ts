@@ -24,6 +24,8 @@ export interface Receipt {
 /** What the experimenter sees of a participant. */
 export interface ParticipantState {
   readonly participant: string;
+  /** Of the plan that this participant follows. */
+  readonly version: number;
   /** What takes the place; null: the participant has withdrawn. */
   readonly invitation: string | null;
   readonly claimed: boolean;
@@ -42,8 +44,23 @@ export interface ParticipantState {
   } | null;
 }
 
+/** A plan as it was for some of a study's participants: those who began with it stay with it. */
+export interface PlanVersion {
+  /** From 1. */
+  readonly version: number;
+  readonly plan: StudyPlan;
+  /** Seconds since 1970. */
+  readonly since: number;
+  /** Who began with it, and who plays with them. */
+  readonly participants: readonly string[];
+}
+
 export interface StudyInfo {
   readonly plan: StudyPlan;
+  /** Of the plan. */
+  readonly version: number;
+  /** Every version, the oldest first. */
+  readonly versions: readonly PlanVersion[];
   readonly simulated: boolean;
   readonly createdAt: number;
   readonly retentionUntil: number;

@@ -1,0 +1,13 @@
+/** SQL that takes from a database of studies what came with its fourth version: plans that change. */
+export const withoutPlanVersions = `
+  ALTER TABLE studies ADD COLUMN plan TEXT NOT NULL DEFAULT '';
+  UPDATE studies SET plan = (SELECT plan FROM plan_versions WHERE study = id);
+  ALTER TABLE participants DROP COLUMN plan_version;
+  DROP TABLE plan_versions;
+  PRAGMA user_version = 3;`;
+
+/** The same, and what came with the second: invitations. */
+export const withoutInvitations = `${withoutPlanVersions}
+  DROP TABLE software;
+  ALTER TABLE participants DROP COLUMN invitation;
+  PRAGMA user_version = 1;`;

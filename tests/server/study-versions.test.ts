@@ -1,0 +1,160 @@
+import { strFromU8, unzipSync } from 'fflate';
+import { describe, expect, test } from 'vitest';
+import { togetherWith } from '../../src/core/study/allocation';
+import type { StudyPlan } from '../../src/core/study/plan';
+import { scheduleFor } from '../../src/core/study/schedule';
+import { latencyPlan, paperPlan, session } from '../core/study/studies';
+import { experimenter, now, servedStudies } from './running-studies';
+
+const later = latencyPlan({ title: 'A body that follows much later' });
+
+/** Everything that a participant does by this plan. */
+function recordsOf(plan: StudyPlan, participant: string) {
+  const one = session(scheduleFor(plan, participant));
+  one.doUntil(({ kind }) => kind === 'end');
+  return one;
+}
+
+/** A real server with the study of three latencies, which P01 has finished. */
+async function begunStudy() {
+  const server = await servedStudies();
+  const plan = latencyPlan();
+  server.store.addStudy(plan, { simulated: false, at: now });
+  const of = (participant: string) => `/api/studies/latency/participants/${participant}`;
+  const take = async (participant: string, by: StudyPlan) => {
+    const { json } = await server.ask('POST', `${of(participant)}/claim`, { token: experimenter, json: {} });
+    const { records, progress } = recordsOf(by, participant);
+    const sent = await server.ask('POST', `${of(participant)}/records`, { token: json.token, json: { records } });
+    expect(sent.status).toBe(200);
+    expect((await server.ask('PUT', `${of(participant)}/progress`, { token: json.token, json: progress })).status).toBe(
+      204,
+    );
+    return json as { token: string; plan: StudyPlan };
+  };
+  const change = (changed: StudyPlan, newVersion?: boolean) =>
+    server.ask('POST', '/api/studies', {
+      token: experimenter,
+      json: { plan: changed, simulated: false, ...(newVersion && { newVersion }) },
+    });
+  const see = async (path: string) =>
+    (await server.ask('GET', `/api/studies/latency${path}`, { token: experimenter })).json;
+  await take('P01', plan);
+  return { ...server, plan, of, take, change, see };
+}
+
+/** A question more after each round. */
+const asksMore = latencyPlan({
+  questionnaires:
+    latencyPlan().questionnaires?.map((asked) => ({
+      ...asked,
+      questions: [...asked.questions, { id: 'late', text: 'My body came too late.' }],
+    })) ?? [],
+});
+
+describe('a plan that has participants', () => {
+  test('is frozen: a change is refused in a sentence that says who keeps it and what can be done', async () => {
+    const { change, see } = await begunStudy();
+    const { status, json } = await change(later);
+    expect(status).toBe(409);
+    expect(json.field).toBe('newVersion');
+    expect(json.error).toContain('has begun: P01 keep its plan. What has changed can be version 2');
+    expect((await see('/records')).versions).toHaveLength(1);
+  });
+
+  test('becomes a new version for those who come later; who began stays with theirs', async () => {
+    const { plan, change, take, see, ask, of } = await begunStudy();
+    expect((await change(asksMore, true)).json).toMatchObject({
+      version: 2,
+      versions: [{ participants: ['P01'] }, { participants: [] }],
+    });
+    const { token, plan: followed } = await take('P02', asksMore);
+    expect(followed).toEqual(asksMore);
+    const states = (await see('/participants')).participants as { participant: string; version: number }[];
+    expect(states.map(({ version }) => version)).toEqual([1, ...states.slice(1).map(() => 2)]);
+    // What P01 sends later is checked by their own plan, what P02 sends by theirs.
+    const [, answers] = recordsOf(asksMore, 'P01').records.filter(({ kind }) => kind === 'answers');
+    const more = { ...answers, id: 'archery/1/questionnaire@9.1:answers' };
+    const p01 = await ask('POST', `${of('P01')}/records`, { token: experimenter, json: { records: [more] } });
+    expect(p01.status).toBe(200);
+    const consent = await ask('GET', '/api/studies/latency?participant=P01');
+    expect(consent.json.title).toBe(plan.title);
+    expect(token).toMatch(/./);
+  });
+
+  test('has results and exports of each version apart', async () => {
+    const { change, take, see, ask } = await begunStudy();
+    await change(asksMore, true);
+    await take('P02', asksMore);
+    const who = (recorded: { records: { participant: string }[] }) => [
+      ...new Set(recorded.records.map((one) => one.participant)),
+    ];
+    expect(who(await see('/records'))).toEqual(['P02']);
+    expect(who(await see('/records?version=1'))).toEqual(['P01']);
+    for (const [version, participant, questions] of [
+      [1, 'P01', 14],
+      [2, 'P02', 15],
+    ] as const) {
+      const zip = await ask('GET', `/api/studies/latency/export?version=${version}`, { token: experimenter });
+      expect(zip.headers.get('content-disposition')).toContain(`latency-version-${version}.zip`);
+      const files = unzipSync(zip.body);
+      const answers = strFromU8(files[`latency-version-${version}/answers.csv`] as Uint8Array)
+        .trimEnd()
+        .split('\r\n')
+        .slice(1);
+      expect(answers).toHaveLength(3 * questions);
+      for (const row of answers) expect(row).toContain(`latency,${participant},`);
+    }
+    expect((await ask('GET', '/api/studies/latency/export?version=3', { token: experimenter })).status).toBe(404);
+  });
+
+  test('keeps links that were sent, its withdrawal and its retention date', async () => {
+    const { change, see, store } = await begunStudy();
+    const invitations = async () =>
+      (await see('/participants')).participants.map(({ invitation }: { invitation: string }) => invitation);
+    const before = await invitations();
+    await change({ ...later, participants: 24, retentionDays: 3650 }, true);
+    const after = await invitations();
+    expect(after.slice(0, 18)).toEqual(before);
+    expect(new Set(after).size).toBe(24);
+    expect(store.study('latency').retentionUntil).toBe(now + 365 * 86_400);
+  });
+
+  test('does not change its consent text under the same version of the text', async () => {
+    const { change, plan } = await begunStudy();
+    const consent = { ...plan.consent, paragraphs: ['Another text.'] };
+    expect((await change({ ...plan, consent }, true)).json).toMatchObject({ field: 'consent.version' });
+    expect((await change({ ...plan, consent: { ...consent, version: '2' } }, true)).status).toBe(201);
+  });
+
+  test('that no one has begun is replaced as before, without a version', async () => {
+    const { store } = await servedStudies();
+    store.addStudy(latencyPlan(), { simulated: false, at: now });
+    expect(store.addStudy(later, { simulated: false, at: now })).toMatchObject({ version: 1, plan: later });
+  });
+});
+
+describe('those who play together', () => {
+  test('follow one version: the group of a participant who began stays with them', async () => {
+    const { store } = await servedStudies();
+    const plan = paperPlan();
+    store.addStudy(plan, { simulated: false, at: now });
+    store.claim('paper', 'P04', now);
+    const changed = paperPlan({ title: 'Changed' });
+    store.addStudy(changed, { simulated: false, newVersion: true, at: now });
+    const group = togetherWith(plan, 'P04');
+    expect(group.size).toBe(3);
+    for (const { participant, version } of store.overview('paper', now)) {
+      expect(version).toBe(group.has(participant) ? 1 : 2);
+      expect(store.planFor('paper', participant).title).toBe(group.has(participant) ? plan.title : 'Changed');
+    }
+  });
+
+  test('are never mixed: a change that would put others into their group is refused, and says so', async () => {
+    const { store } = await servedStudies();
+    store.addStudy(paperPlan(), { simulated: false, at: now });
+    store.claim('paper', 'P04', now);
+    const change = () => store.addStudy(paperPlan({ seed: 1 }), { simulated: false, newVersion: true, at: now });
+    expect(change).toThrow(/would play with P\d\d, who stays with version 1: leave seed/);
+    expect(store.study('paper').versions).toHaveLength(1);
+  });
+});
