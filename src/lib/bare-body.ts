@@ -208,6 +208,17 @@ export class BareBody {
     return pose;
   }
 
+  /**
+   * Draws a moment as if the body had come there moving: these frames of tracking lead up to it, floor frame, times rising. Each answer of a
+   * network is waited for; with one that answers at once `pose` is the moment's when this returns, else when it resolves. Nothing comes of it
+   * where the body jumps meanwhile, or another method is chosen.
+   */
+  relive(frames: Iterable<TrackingFrame>): Promise<void> {
+    return this.#choice.relive(frames, (pose) => {
+      this.#pose = pose;
+    });
+  }
+
   /** Nothing is told from now on; resolves when every network is let go that was loaded for this body. */
   dispose(): Promise<void> {
     this.#events = {};

@@ -1,8 +1,10 @@
+import type { AvatarPose } from '../core/body/avatar-pose';
 import type { Calibration } from '../core/body/calibration';
 import { reasonOf } from '../core/errors/reasons';
 import { type NetworkName, needsRegressor, networkOf } from '../core/estimation/estimators';
 import type { EstimatorName, PoseEstimator } from '../core/estimation/pose-estimator';
 import type { PoseRegressor } from '../core/estimation/pose-regressor';
+import type { TrackingFrame } from '../core/tracking/tracking-frame';
 
 export interface EstimatorChoiceOptions {
   readonly calibration: Calibration;
@@ -28,6 +30,11 @@ export interface EstimatorChoice {
   /** For every estimator from the next frame on. */
   calibrate(calibration: Calibration): void;
   reset(): void;
+  /**
+   * An estimator of the current method lives through these frames, each answer of its network waited for, and draws from then on; `then` hears
+   * what it draws of the last. Not where another draws by then, or everything was forgotten.
+   */
+  relive(frames: Iterable<TrackingFrame>, then: (pose: AvatarPose) => void): Promise<void>;
   /** Gives up on an estimator whose network has failed while running; call it now and then. */
   check(): void;
   /** Lets every network go that was loaded, and those that still arrive. Nothing is told from then on. */
@@ -42,9 +49,15 @@ export function createEstimatorChoice(options: EstimatorChoiceOptions): Estimato
   let current = options.create('ik', calibration);
   let regressor: PoseRegressor | null = null;
   let disposed = false;
+  /** How often what draws has changed or forgotten. */
+  let changes = 0;
+
+  const make = (name: EstimatorName, network: PoseRegressor | null): PoseEstimator =>
+    network ? options.create(name, calibration, network) : options.create(name, calibration);
 
   function drawWith(name: EstimatorName, network: PoseRegressor | null): void {
-    current = network ? options.create(name, calibration, network) : options.create(name, calibration);
+    current = make(name, network);
+    changes += 1;
     regressor = network;
     options.onChange();
   }
@@ -98,15 +111,36 @@ export function createEstimatorChoice(options: EstimatorChoiceOptions): Estimato
     },
     calibrate(next) {
       calibration = next;
+      changes += 1;
       current.calibrate(next);
     },
-    reset: () => current.reset(),
+    reset() {
+      changes += 1;
+      current.reset();
+    },
+    async relive(frames, then) {
+      changes += 1;
+      const begun = changes;
+      const living = make(current.name, regressor);
+      let lived: AvatarPose | null = null;
+      for (const frame of frames) {
+        const { pose, request } = living.update(frame);
+        // What answers within its frame is not waited for: such a method has lived through all of them at once.
+        if (request) await request.ask();
+        if (changes !== begun) return;
+        lived = pose;
+      }
+      if (!lived) return;
+      current = living;
+      then(lived);
+    },
     check() {
       const fault = current.fault();
       if (fault !== null) giveUp(current.name, fault);
     },
     async dispose() {
       disposed = true;
+      changes += 1;
       current = options.create('ik', calibration);
       regressor = null;
       for (const arriving of await Promise.allSettled(loading.values())) {

@@ -7,6 +7,7 @@ import type { MocapClip, PreparedMocap } from '../../core/mocap/prepare-mocap';
 import type { Replayable } from '../../core/tracking/recording';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 import type { BareBodyOptions } from '../../lib/bare-body';
+import type { MovingReplay } from '../../lib/replayed-body';
 import { nameOf } from '../../ui/limited-files';
 import { ClipMeans } from './clip-means';
 import { Ghost } from './ghost';
@@ -20,11 +21,7 @@ import { Truth } from './truth';
 import type { TruthPlace } from './truth-places';
 
 /** The page's replay, which brings a recording's frames to its body. */
-export interface Replay {
-  readonly recording: Replayable | null;
-  readonly mode: string;
-  readonly paused: boolean;
-  readonly seconds: number;
+export interface Replay extends MovingReplay {
   readonly duration: number;
   begin(name: string, recording: Replayable): void;
   seek(seconds: number): void;
@@ -166,7 +163,7 @@ export class MocapView {
     for (const [i, ghost] of this.#ghosts.entries()) {
       ghost.object.visible =
         this.#truthPlace !== 'off' && (i === 0 || (this.#second !== null && this.#truthPlace === 'inside'));
-      if (ghost.object.visible) ghost.show(places);
+      if (ghost.object.visible) ghost.show(places, frame.head.orientation);
     }
     if (this.#second) this.#second.place.visible = true;
   }
@@ -273,9 +270,9 @@ export class MocapView {
     this.#drawn[1] = false;
     const clip = this.#opened?.clips[this.#opened.index];
     if (!clip || !estimator) return;
-    const { scene, networks, loadAvatar, labels, tell } = this.#options;
+    const { scene, networks, replay, loadAvatar, labels, tell } = this.#options;
     this.#second = new SecondBody({
-      ...{ scene, networks, loadAvatar, estimator, calibration: clip.calibration, aside: secondAside },
+      ...{ scene, networks, replay, loadAvatar, estimator, calibration: clip.calibration, aside: secondAside },
       onFallback: (name, reason) =>
         tell('warning', `${labels[name]} could not be used (${firstLine(reason)}): inverse kinematics takes over.`),
     });

@@ -5,12 +5,15 @@ import type { Calibration } from '../../core/body/calibration';
 import type { EstimatorName } from '../../core/estimation/pose-estimator';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 import { BareBody, type BareBodyOptions } from '../../lib/bare-body';
+import { type MovingReplay, ReplayedBody } from '../../lib/replayed-body';
 
 export interface SecondBodyOptions {
   readonly scene: Object3D;
   readonly calibration: Calibration;
   readonly estimator: EstimatorName;
   readonly networks: BareBodyOptions['networks'];
+  /** Moves it. */
+  readonly replay: MovingReplay;
   /** Where it stands beside the first [m], to the right. */
   readonly aside: number;
   loadAvatar(): Promise<Avatar>;
@@ -21,14 +24,16 @@ export interface SecondBodyOptions {
 export class SecondBody {
   readonly place = new Group();
   readonly #body: BareBody;
+  readonly #replayed: ReplayedBody;
   #avatar: Avatar | null = null;
   #gone = false;
 
   /** The avatar comes when it has loaded; `ready` rejects where it cannot. */
   readonly ready: Promise<void>;
 
-  constructor({ scene, calibration, estimator, networks, aside, loadAvatar, onFallback }: SecondBodyOptions) {
+  constructor({ scene, calibration, estimator, networks, replay, aside, loadAvatar, onFallback }: SecondBodyOptions) {
     this.#body = new BareBody({ calibration, estimator, networks, events: { fallback: onFallback } });
+    this.#replayed = new ReplayedBody(this.#body, replay);
     this.place.position.x = aside;
     scene.add(this.place);
     this.ready = loadAvatar().then((avatar) => {
@@ -46,7 +51,7 @@ export class SecondBody {
 
   /** One frame; the body that is drawn, null: this method draws none. */
   update(frame: TrackingFrame): UpperBodyPose | null {
-    const pose = this.#body.update(frame);
+    const pose = this.#replayed.update(frame, null);
     if (pose) this.#avatar?.apply(pose, frame.time);
     return pose?.body ?? null;
   }

@@ -6,6 +6,7 @@ import type { Side } from '../../core/math/side';
 import type { ImpairedTracking } from '../../core/tracking/impaired-tracking';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 import type { BareBody } from '../../lib/bare-body';
+import { type MovingReplay, ReplayedBody } from '../../lib/replayed-body';
 import type { Notices } from '../../ui/notices';
 import type { Recorder } from '../studio/recorder';
 import type { Activities } from './activities';
@@ -26,8 +27,8 @@ export interface PageFrameOptions {
   readonly source: TrackingSource;
   /** Between what is tracked and the body, where a study wants the body worse than it could be. */
   readonly impaired: Pick<ImpairedTracking, 'follow' | 'reset'>;
-  readonly body: Pick<BareBody, 'update' | 'jumped' | 'calibration'>;
-  readonly recorder: Pick<Recorder, 'observe'>;
+  readonly body: Pick<BareBody, 'update' | 'relive' | 'pose' | 'estimator' | 'jumped' | 'calibration'>;
+  readonly recorder: Pick<Recorder, 'observe'> & MovingReplay;
   readonly difference: Pick<DeviceDifference, 'observe'>;
   readonly avatar: Pick<ShownAvatar, 'current'>;
   readonly headset: Headset;
@@ -41,6 +42,7 @@ export interface PageFrameOptions {
 /** One frame of this page, part by part. */
 export class PageFrame implements FrameParts<XRFrame> {
   readonly #options: PageFrameOptions;
+  readonly #replayed: ReplayedBody;
   readonly #fingers: Record<Side, HandShape | null> = { left: null, right: null };
   readonly #shapes = { left: makeHandShape(), right: makeHandShape() };
   /** The newest tracked frame as the body has it. */
@@ -50,6 +52,7 @@ export class PageFrame implements FrameParts<XRFrame> {
 
   constructor(options: PageFrameOptions) {
     this.#options = options;
+    this.#replayed = new ReplayedBody(options.body, options.recorder);
   }
 
   /** Frames drawn since the page opened. */
@@ -70,10 +73,10 @@ export class PageFrame implements FrameParts<XRFrame> {
   }
 
   estimate(frame: TrackingFrame | null): AvatarPose | null {
-    const { body, source, impaired } = this.#options;
-    if (frame) return body.update(this.#embodied, source.standIn);
+    const { source, impaired } = this.#options;
+    if (frame) return this.#replayed.update(this.#embodied, source.standIn);
     impaired.reset();
-    return body.update(null, source.standIn);
+    return this.#replayed.update(null, source.standIn);
   }
 
   skin(pose: AvatarPose): void {
