@@ -35,6 +35,17 @@ test('motion capture is shown with its truth, and methods are compared on the sa
 
   await card(page).getByLabel('Method').selectOption('hands-only');
   await expect(card(page)).toContainText('Hands only: it draws no body');
+
+  await page.getByRole('tab', { name: 'Body' }).click();
+  await page.getByRole('radio', { name: 'Device' }).check();
+  await expect(card(page).getByLabel('Method')).toHaveValue('device');
+  await expect(
+    card(page)
+      .getByLabel('Method')
+      .getByRole('option', { name: /Learned draws/ }),
+  ).toBeDisabled();
+  await expect.poll(async () => (await errors(page, 'Mean')).filter((error) => error > 0)).toHaveLength(4);
+
   await card(page).getByRole('button', { name: 'Close' }).click();
   await expect(card(page)).toBeHidden();
   expect((await probe(page)).recorder.mode).toBe('idle');

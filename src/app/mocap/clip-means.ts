@@ -1,5 +1,5 @@
 import { firstLine, reasonOf } from '../../core/errors/reasons';
-import { createEstimator, needsRegressor } from '../../core/estimation/estimators';
+import { createEstimator, networkOf } from '../../core/estimation/estimators';
 import type { EstimatorName } from '../../core/estimation/pose-estimator';
 import type { Replayable } from '../../core/tracking/recording';
 import type { BareBodyOptions } from '../../lib/bare-body';
@@ -53,7 +53,8 @@ export class ClipMeans {
   }
 
   async #run(name: EstimatorName, signal: AbortSignal): Promise<JointErrors> {
-    const regressor = needsRegressor(name) ? await this.#networks(name) : null;
+    const network = networkOf(name);
+    const regressor = network && (await this.#networks(network));
     try {
       const estimator = createEstimator(name, this.#recording.calibration!, regressor);
       return await runWork(meanErrors(this.#recording, this.#truth, estimator), {

@@ -11,6 +11,7 @@ import {
   SphereGeometry,
   Vector3,
 } from 'three';
+import type { Quat } from '../../core/math/quat';
 import type { Vec3 } from '../../core/math/vec3';
 import type { TruthJoint } from '../../core/mocap/skeleton-map';
 
@@ -35,8 +36,8 @@ const bones: readonly (readonly [TruthJoint, TruthJoint])[] = [
 const joints: readonly TruthJoint[] = [...new Set(bones.flat())];
 const boneRadius = 0.014;
 const jointRadius = 0.024;
-/** Of the head, whose centre lies so far [m] beyond its joint as seen from the neck. */
-const skull = { radius: 0.09, beyond: 0.085 };
+/** Of the head: its radius, and from its joint to its middle in the head's frame [m]. */
+const skull = { radius: 0.075, middle: new Vector3(0, 0.07, -0.015) };
 
 const colour = new Color('#7ff0d2');
 const up = new Vector3(0, 1, 0);
@@ -81,21 +82,18 @@ export class Ghost {
     }
   }
 
-  /** Joints that are not there are not drawn. */
-  show(places: Places): void {
+  /** Joints that are not there are not drawn. `headTurn`: how the head is turned, floor frame. */
+  show(places: Places, headTurn: Quat): void {
     for (const [i, [from, to]] of bones.entries()) this.#placeStick(i, places[from], places[to]);
     for (const [i, joint] of joints.entries()) {
       const at = places[joint];
       this.#placeBall(i, at ? this.#from.set(at.x, at.y, at.z) : null, jointRadius);
     }
-    const { neck, head } = places;
-    if (neck && head) {
-      const along = this.#along.set(head.x - neck.x, head.y - neck.y, head.z - neck.z).normalize();
-      this.#placeBall(
-        joints.length,
-        this.#from.set(head.x, head.y, head.z).addScaledVector(along, skull.beyond),
-        skull.radius,
-      );
+    const { head } = places;
+    if (head) {
+      const { x, y, z, w } = headTurn;
+      const middle = this.#from.copy(skull.middle).applyQuaternion(this.#turn.set(x, y, z, w));
+      this.#placeBall(joints.length, middle.add(head), skull.radius);
     }
     this.#sticks[0]!.instanceMatrix.needsUpdate = true;
     this.#balls[0]!.instanceMatrix.needsUpdate = true;

@@ -161,7 +161,13 @@ export interface MocapCard {
 export function createMocapCard(labels: Labels, actions: CardActions): MocapCard {
   const methods = threePointNames.map((name) => [name, labels[name]] as const);
   const clip = choice<string>('Clip', [], (index) => actions.chooseClip(Number(index)));
-  const method = choice('Method', methods, actions.choose);
+  const method = choice<EstimatorName>(
+    'Method',
+    [...methods, ['device', `${labels.device} (not in the file: ${labels.learned} draws)`]],
+    actions.choose,
+  );
+  // No file has it; where it was chosen before, it is shown as what is.
+  method.select.options[methods.length]!.disabled = true;
   const beside = choice<EstimatorName | 'none'>('On its right', [['none', 'nothing'], ...methods], (name) =>
     actions.compare(name === 'none' ? null : name),
   );
