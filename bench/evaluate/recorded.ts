@@ -1,5 +1,5 @@
 // npm run evaluate -- --recording FILE: every method against the body that the recording's device reported.
-import { readFileSync, writeFileSync } from 'node:fs';
+import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { basename } from 'node:path';
 import { parseArgs } from 'node:util';
 import { reasonOf } from '../../src/core/errors/reasons';
@@ -21,6 +21,7 @@ async function run(files: readonly string[], models: string): Promise<void> {
   const measured: Record<string, MeasuredRecording> = {};
   for (const file of files) {
     try {
+      if (!existsSync(file)) throw new Error('there is no such file');
       const recording = parseRecording(readFileSync(file, 'utf8'));
       const result = await measureRecording(recording, regressors);
       measured[basename(file)] = result;

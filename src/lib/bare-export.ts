@@ -48,6 +48,15 @@ function writerOf({ to, ...options }: BareExportOptions): MotionWriter {
 /** Of all work, what estimating takes; the rest is writing. */
 const estimating = 0.7;
 
+/** Throws a sentence where no frame has a body of its device: another method would draw all of them. */
+function* demandBody({ frames }: Replayable): Generator<number, void> {
+  for (const { deviceBody } of frames) {
+    if (deviceBody) return;
+    yield 0;
+  }
+  throw new Error('The recording has no body of its device: choose another method.');
+}
+
 async function* exportWork(
   recording: Replayable,
   calibration: Calibration,
@@ -55,6 +64,7 @@ async function* exportWork(
   { estimator = 'learned' }: BareExportOptions,
   writer: MotionWriter,
 ): AsyncGenerator<number, MotionFile['parts']> {
+  if (estimator === 'device') yield* demandBody(recording);
   const drawn = createEstimator(estimator, calibration, regressor);
   const motion = yield* partOf(estimateMotion(recording, calibration, drawn), 0, estimating);
   return yield* partOf(writer.write(motion), estimating, 1);
@@ -62,7 +72,7 @@ async function* exportWork(
 
 /**
  * A file of what a method draws of a recording, with fingers: BVH, a table of joints (CSV), VRM Animation, or what a writer makes. Rejects with a
- * sentence where the method draws no body or fails, or no network comes; with the signal's reason where it is given up.
+ * sentence where the method draws no body or fails, no network comes, or the device's body is asked for that no frame has; with the signal's reason where it is given up.
  */
 export async function exportMotionBare(recording: Replayable, options: BareExportOptions): Promise<MotionFile> {
   const { estimator = 'learned', networks } = options;

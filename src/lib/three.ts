@@ -8,6 +8,7 @@ import type { Calibration } from '../core/body/calibration';
 import { reasonOf } from '../core/errors/reasons';
 import type { EstimatorName } from '../core/estimation/pose-estimator';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
+import { DeviceBodyReader } from '../xr/device-body-reader';
 import { createTracker, type Tracker } from '../xr/tracker';
 import type { CalibrationSource, TrackedPoint } from './bare-body';
 import type { MotionWriter } from './bare-export';
@@ -63,6 +64,11 @@ async function read(source: string | URL | Blob | ArrayBuffer): Promise<{ name: 
 export interface BodyTrackerOptions extends Omit<BodyOptions, 'events'> {
   /** From `loadAvatar`; put `tracker.object` into the scene, or into what moves its cameras. */
   readonly avatar: Avatar;
+  /**
+   * Whether frames get the body that the device itself tracks (WebXR Body Tracking), which the estimator 'device' draws. Default: false. The page
+   * asks for it: its session has the feature 'body-tracking'.
+   */
+  readonly deviceBody?: boolean;
   /** Where another contract of the learned network lies (.json), its weights beside it. */
   readonly modelUrl?: string | URL;
 }
@@ -95,13 +101,15 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   /** What is estimated, without session and avatar: what was wanted, what cannot be had, where the network runs. */
   readonly body: Body;
   readonly #renderer: WebGLRenderer;
+  readonly #deviceBody: boolean;
   #reading: Reading | null = null;
   readonly #jumped = () => this.body.jumped();
 
   /** Throws a RangeError where the calibration is no person's. */
-  constructor(renderer: WebGLRenderer, { avatar, modelUrl, ...options }: BodyTrackerOptions) {
+  constructor(renderer: WebGLRenderer, { avatar, modelUrl, deviceBody = false, ...options }: BodyTrackerOptions) {
     super();
     this.avatar = avatar;
+    this.#deviceBody = deviceBody;
     this.#renderer = renderer;
     const networks =
       modelUrl === undefined
@@ -214,14 +222,16 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   }
 
   #enter(session: XRSession, space: XRReferenceSpace, begins = true): void {
+    const moveTo = (moved: XRReferenceSpace) => {
+      reading.space = moved;
+      this.#renderer.xr.setReferenceSpace(moved);
+    };
+    const bodyReader = this.#deviceBody ? new DeviceBodyReader() : null;
     const reading: Reading = {
       session,
       base: space,
       space,
-      tracker: createTracker(session, space, (moved) => {
-        reading.space = moved;
-        this.#renderer.xr.setReferenceSpace(moved);
-      }),
+      tracker: createTracker(session, space, moveTo, bodyReader),
     };
     space.addEventListener('reset', this.#jumped);
     this.#reading = reading;

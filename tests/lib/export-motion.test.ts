@@ -10,6 +10,7 @@ import { poseBvh, readBvh } from '../../src/core/motion/read-bvh';
 import { turnPoint } from '../../src/core/motion/skeleton';
 import { finishWork } from '../../src/core/motion/work';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
+import { deviceBodySize } from '../../src/core/tracking/device-body';
 import type { Recording } from '../../src/core/tracking/recording';
 import { exportMotion } from '../../src/lib/export-motion';
 import { show } from '../core/estimation/drawn';
@@ -54,6 +55,15 @@ describe('a recording', () => {
     const { parts, extension, type } = await exportMotion(recording, { to, estimator: 'ik' });
     expect(extension).toBe(to);
     expect(new Blob([...parts], { type }).size).toBeGreaterThan(10_000);
+  });
+
+  test('is refused in a sentence where the device’s body is asked for and no frame has one', async () => {
+    await expect(exportMotion(recording, { to: 'csv', estimator: 'device', networks })).rejects.toThrow(
+      'The recording has no body of its device: choose another method.',
+    );
+    const seen = { ...recording.frames[3]!, deviceBody: new Float32Array(deviceBodySize) };
+    const some = { ...recording, frames: recording.frames.with(3, seen) };
+    expect((await exportMotion(some, { to: 'csv', estimator: 'device', networks })).extension).toBe('csv');
   });
 
   test('is refused in a sentence where the method draws no body', async () => {

@@ -1,9 +1,12 @@
 import type { WebGLRenderer } from 'three';
 import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
 import { defaultCalibration } from '../../src/core/body/calibration';
+import { forwardKinematics } from '../../src/core/body/forward-kinematics';
+import { skeletonFromCalibration } from '../../src/core/body/skeleton';
 import { createIk } from '../../src/core/estimation/estimators';
 import { fromAxisAngle, identity } from '../../src/core/math/quat';
 import { distance, up } from '../../src/core/math/vec3';
+import { toXRBody } from '../../src/core/motion/xr-body';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
 import { BodyTracker, type BodyTrackerOptions, loadAvatar } from '../../src/lib/three';
 import { changed, mannequin } from '../avatar/glb';
@@ -86,6 +89,28 @@ describe('a body in a session of three.js', () => {
     run(1);
     expect(tracker.object.visible).toBe(false);
     expect(told).toEqual(['found head', 'found left', 'found right']);
+  });
+
+  test.each([true, false])('draws the body that the device tracks where it is asked to (%s)', async (deviceBody) => {
+    const { headset, tracker, run } = await begin({ calibration: defaultCalibration, estimator: 'device', deviceBody });
+    headset.putOn();
+    run(20);
+    const body = structuredClone(tracker.pose!.body);
+    const joints = toXRBody(body!, defaultCalibration);
+    // A device that sees the wearer's elbows 4 cm further out than they would be guessed.
+    const seen = new Map(
+      [...joints].map(([name, { position, orientation }]) => {
+        const aside = name.endsWith('arm-lower') ? 0.04 * Math.sign(position.x) : 0;
+        return [name, { at: { position: { ...position, x: position.x + aside }, orientation } }];
+      }),
+    );
+    (headset.frame as unknown as Record<string, unknown>).body = seen;
+    run(60);
+    const skeleton = skeletonFromCalibration(defaultCalibration);
+    const elbow = (pose: typeof body) => forwardKinematics(skeleton, pose!).leftLowerArm.position;
+    const moved = distance({ ...elbow(tracker.pose!.body) }, { ...elbow(body) });
+    if (deviceBody) expect(moved).toBeGreaterThan(0.01);
+    else expect(moved).toBeLessThan(0.001);
   });
 
   test('takes its height from the headset', async () => {
