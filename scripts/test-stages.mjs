@@ -102,9 +102,10 @@ export const stages = {
   'unit-nightly': {
     suite: 'nightly',
     runner: 'vitest',
-    limitSeconds: 3600,
+    limitSeconds: 5400,
     commands: (report) => {
       process.env.PROPERTY_RUNS ??= '5000';
+      process.env.STUDY_KILLS ??= '1000';
       return vitest('all', report, '--testTimeout=600000');
     },
   },

@@ -38,9 +38,10 @@ const simulatedNotice =
   'SIMULATED: a program made this. It says nothing about people and must never be analysed with theirs.';
 
 /** The analysis in other languages, as it lies beside this file. */
-const analysisFiles = ['analyse.py', 'analyse.R', 'requirements.txt'].map(
-  (name) => [`analysis/${name}`, readFileSync(new URL(`./study-analysis/${name}`, import.meta.url), 'utf8')] as const,
-);
+const analysisFiles = () =>
+  ['analyse.py', 'analyse.R', 'requirements.txt'].map(
+    (name) => [`analysis/${name}`, readFileSync(new URL(`./study-analysis/${name}`, import.meta.url), 'utf8')] as const,
+  );
 
 function readme(content: ExportContent, leftOut: readonly string[], whole: boolean): string {
   const { plan, simulated, records, at, retentionUntil } = content;
@@ -104,7 +105,7 @@ export function exportFiles(content: ExportContent, participant?: string): Reado
     'codebook.csv': tidyCsv(codebookOf([...tables, codebookOf([])])),
   };
   for (const table of tables) files[`${table.name}.csv`] = tidyCsv(table);
-  if (whole) for (const [path, text] of analysisFiles) files[path] = text;
+  if (whole) for (const [path, text] of analysisFiles()) files[path] = text;
   for (const file of motion) files[motionPath(file)] = file.text;
   for (const [path, text] of Object.entries(bids.files)) files[`bids/${path}`] = text;
   const lines = Object.entries(files).map(([path, text]) => `${sha256(text)}  ${path}\n`);
