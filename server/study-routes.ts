@@ -75,6 +75,7 @@ const commandSchema = v.variant('type', [
   v.strictObject({ type: v.literal('start') }),
   v.strictObject({ type: v.literal('pause') }),
   v.strictObject({ type: v.literal('resume') }),
+  v.strictObject({ type: v.literal('stop'), by: v.literal('experimenter'), reason: text(500) }),
   v.strictObject({ type: v.literal('void-block'), reason: text(500), repeat: v.boolean('expected true or false') }),
 ]);
 

@@ -123,6 +123,7 @@ class ExperimenterPage {
       exportZip: (participant) => void this.#exportZip(id, { participant }),
       command: (participant, command) => void this.#command(id, participant, command),
       voidBlock: (participant) => void this.#voidBlock(id, participant),
+      stop: (participant) => void this.#stop(id, participant),
       remark: (participant) => void this.#remark(id, participant),
       release: (participant) => void this.#release(id, participant),
       remove: (participant) => void this.#remove(id, participant),
@@ -174,6 +175,19 @@ class ExperimenterPage {
     await this.#attempt(async (client) => {
       await client.command(study, participant, { type: 'void-block', reason, repeat: repeat.checked });
       return `${participant}: the block is being voided.`;
+    });
+  }
+
+  async #stop(study: string, participant: string): Promise<void> {
+    const reason = await askForSentence({
+      title: `Stop the session of ${participant}`,
+      label: 'Why? It is recorded. The session is over at once and cannot be taken up again; what was recorded stays.',
+      confirm: 'Stop it',
+    });
+    if (reason === null) return;
+    await this.#attempt(async (client) => {
+      await client.command(study, participant, { type: 'stop', by: 'experimenter', reason });
+      return `${participant}: the session is being stopped.`;
     });
   }
 

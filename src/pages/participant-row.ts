@@ -12,6 +12,8 @@ const silentAfter = 12;
 export interface ParticipantActions {
   command(participant: string, command: StudyCommand): void;
   voidBlock(participant: string): void;
+  /** Ends the participant's session. */
+  stop(participant: string): void;
   remark(participant: string): void;
   release(participant: string): void;
   exportZip(participant: string): void;
@@ -77,7 +79,7 @@ const heardText = (seconds: number) =>
 function placeText(schedule: Schedule, id: string): string {
   const step = schedule.steps.find((other) => other.id === id);
   if (!step) return id;
-  if (!('task' in step)) return step.kind === 'end' ? 'finished' : step.kind;
+  if (!('task' in step)) return step.kind === 'end' ? 'the end' : step.kind;
   const condition = schedule.steps.find(
     (other) => other.kind === 'trial' && other.task === step.task && other.block === step.block,
   );
@@ -101,8 +103,9 @@ function stateBadge({ session, claimed, withdrawn }: ParticipantState, silence: 
   const badge = (text: string, look = '') => element('span', { class: `badge ${look}` }, text);
   if (withdrawn) return badge('withdrawn');
   if (!session) return badge(claimed ? 'begins' : 'free');
-  if (session.kind === 'end') return badge('finished');
+  if (session.kind === 'end') return badge(session.stopped ? 'stopped' : 'finished', session.stopped ? 'lost' : '');
   if (silence > silentAfter) return badge('no contact', 'lost');
+  if (session.unwell) return badge('unwell?', 'lost');
   if (session.paused) return badge('paused', 'paused');
   return badge(session.running ? 'running' : 'waiting', 'live');
 }
@@ -124,6 +127,7 @@ function actionsCell(
       ? small('Go on', () => actions.command(participant, { type: 'resume' }), !active)
       : small('Pause', () => actions.command(participant, { type: 'pause' }), !active),
     small('Void block …', () => actions.voidBlock(participant), !active || !session.step.includes('/')),
+    small('Stop …', () => actions.stop(participant), !active, 'danger'),
     small('Remark …', () => actions.remark(participant), records === 0 || withdrawn),
     small('Release', () => actions.release(participant), !claimed),
     small('Export', () => actions.exportZip(participant), records === 0),

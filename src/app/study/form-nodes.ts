@@ -119,7 +119,7 @@ function fieldNode(field: DemographicField): { readonly node: HTMLElement; value
   };
 }
 
-function demographicsForm({ done }: FormOf<'demographics'>): readonly Node[] {
+function demographicsForm({ done, stop }: FormOf<'demographics'>): readonly Node[] {
   const complaint = complaintLine();
   const fields = demographicFields.map((field) => ({ field, ...fieldNode(field) }));
   for (const { node } of fields) {
@@ -158,7 +158,7 @@ function demographicsForm({ done }: FormOf<'demographics'>): readonly Node[] {
     element('p', { class: 'soft' }, '* An answer is needed.'),
     ...fields.map(({ node }) => node),
     complaint.node,
-    element('div', { class: 'row' }, go),
+    element('div', { class: 'row' }, go, button('Stop the study', stop)),
   ];
 }
 

@@ -9,6 +9,7 @@ import { type CalibrationGuide, createCalibrationGuide } from '../../ui/calibrat
 import { Answering } from './answering';
 import { ExchangeTimer } from './exchange-timer';
 import type { ParticipantSession } from './participant-session';
+import { RaisedHands } from './raised-hands';
 import type { StudyHost } from './study-host';
 import type { StudyPage } from './study-page';
 import { lockedOutScreen, screenOf } from './study-screens';
@@ -51,6 +52,9 @@ export class RunningStudy {
   readonly #answering: Answering;
   /** Why the last wish changed nothing; null: it did. */
   #refusal: string | null = null;
+  /** The participant wants to stop and has not confirmed it yet. */
+  #stopping = false;
+  readonly #raised = new RaisedHands();
   #shownStep = '';
   /** Whether this visit of the page has put a body on yet. */
   #embodied = false;
@@ -89,6 +93,10 @@ export class RunningStudy {
       submit: () => this.#submit(),
       calibrate: () => this.#guide.start(),
       enterVr: () => void host.enterVr(),
+      askToStop: (on) => {
+        this.#stopping = on;
+        this.show();
+      },
       prepareAgain: () => {
         this.#preparation.forget();
         this.show();
@@ -124,6 +132,8 @@ export class RunningStudy {
   /** Every frame drawn; null: the head was not seen. */
   frame(time: number, frame: TrackingFrame | null): void {
     if (frame) this.#guide.observe(frame);
+    // No sheet hangs there while a round is played: this is how it is stopped.
+    if (this.#raised.follow(this.playing ? frame : null)) this.#apply({ type: 'pause' });
     const finished = this.#trial?.follow(time, frame);
     if (finished) this.#finishTrial(finished);
   }
@@ -153,7 +163,11 @@ export class RunningStudy {
     if (session.withdrawalCode !== null) {
       display.ask({ kind: 'code', code: session.withdrawalCode, noted: () => session.codeNoted() });
     } else if (session.step.kind === 'demographics') {
-      display.ask({ kind: 'demographics', done: (answers) => this.#takeDemographics(answers) });
+      display.ask({
+        kind: 'demographics',
+        stop: () => this.#apply({ type: 'stop', by: 'participant' }),
+        done: (answers) => this.#takeDemographics(answers),
+      });
     } else {
       display.show(this.#screen(), this.#host.inSession());
     }
@@ -170,6 +184,7 @@ export class RunningStudy {
         calibration: this.#calibration,
         prepared: this.#preparation.of(this.#attempt()),
         refusal: this.#refusal,
+        stopping: this.#stopping,
         playing: this.#trial !== null,
         waitingFor: this.#trial?.waitingFor ?? null,
         standing: this.#trial?.standing ?? false,
@@ -210,6 +225,7 @@ export class RunningStudy {
   #enterStep(): void {
     this.#shownStep = this.session.step.id;
     this.#refusal = null;
+    this.#stopping = false;
     this.#guide.cancel();
     // The guide's last word on an earlier measuring may have come when its step was over.
     this.#calibration = null;

@@ -38,6 +38,8 @@ export type StudyForm =
   | { readonly kind: 'code'; readonly code: string; noted(): void }
   | {
       readonly kind: 'demographics';
+      /** The participant does not want to go on. */
+      stop(): void;
       /** Answers with a complaint, or null. */
       done(answers: Record<string, unknown>): string | null;
     }

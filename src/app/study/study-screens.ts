@@ -1,3 +1,4 @@
+import type { Progress } from '../../core/study/progress';
 import { blindLabel, type StudyStep } from '../../core/study/schedule';
 import { type CalibrationStep, calibrationHeadline, calibrationInstruction } from '../../ui/calibration-dialog';
 import { screenQuestions } from './answering';
@@ -79,6 +80,7 @@ export function screenOf(situation: StudySituation, actions: ScreenActions): Stu
     footnote: session.simulated ? `SIMULATED · ${kept}` : kept,
     trouble: worrying,
   };
+  if (step.kind !== 'end' && (progress.unwell || situation.stopping)) return stopScreen(base, progress, actions);
   if (progress.paused) return pausedScreen(base, actions);
   switch (step.kind) {
     case 'calibration':
@@ -116,7 +118,35 @@ const pausedScreen = (base: ScreenBase, actions: ScreenActions): StudyScreen => 
   id: 'paused',
   title: 'Paused',
   text: ['Nothing runs on. Take the headset off if you like.'],
-  buttons: [{ id: 'resume', label: 'Continue', look: 'primary', act: () => actions.apply({ type: 'resume' }) }],
+  buttons: [
+    { id: 'ask-to-stop', label: 'Stop the study', look: 'plain', act: () => actions.askToStop(true) },
+    { id: 'resume', label: 'Continue', look: 'primary', act: () => actions.apply({ type: 'resume' }) },
+  ],
+});
+
+/** Whether to stop: asked because of answers, or because the participant wants to. */
+const stopScreen = (base: ScreenBase, { unwell }: Progress, actions: ScreenActions): StudyScreen => ({
+  ...base,
+  id: unwell ? 'unwell' : 'stopping',
+  title: unwell ? 'How are you?' : 'Stop here?',
+  text: [
+    ...(unwell ? ['Your answers say that you may not feel well. Take the headset off if you like.'] : []),
+    'If you stop, your part is over. You need not say why, and what you have done until now is kept.',
+  ],
+  buttons: [
+    {
+      id: 'stop',
+      label: 'Stop',
+      look: unwell ? 'primary' : 'plain',
+      act: () => actions.apply({ type: 'stop', by: 'participant' }),
+    },
+    {
+      id: 'go-on',
+      label: unwell ? 'I am well: go on' : 'Go on',
+      look: unwell ? 'plain' : 'primary',
+      act: () => (unwell ? actions.apply({ type: 'go-on' }) : actions.askToStop(false)),
+    },
+  ],
 });
 
 function calibrationScreen(
@@ -245,6 +275,7 @@ function readyScreen(
       practice
         ? `Try it for ${seconds} seconds. This does not count.`
         : `You have ${seconds} seconds from the start. Stay inside the marked zone.`,
+      'To pause or to stop, hold both hands above your head.',
     ],
     buttons: [
       {
@@ -276,14 +307,16 @@ function restScreen(
   };
 }
 
-function endScreen(base: ScreenBase, { plan, safekeeping }: ShownSession): StudyScreen {
+function endScreen(base: ScreenBase, { plan, progress, safekeeping }: ShownSession): StudyScreen {
   return {
     ...base,
     id: 'end',
     kicker: plan.title,
     title: 'Thank you',
     text: [
-      'You have done everything.',
+      progress.stopped
+        ? 'Your part is over. Take the headset off and rest. With your withdrawal code everything can be deleted.'
+        : 'You have done everything.',
       safekeeping.unsent === 0
         ? 'All your answers have arrived. You can close this page.'
         : 'Please keep this page open until your answers have arrived.',

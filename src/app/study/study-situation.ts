@@ -30,6 +30,8 @@ export interface StudySituation {
   readonly playing: boolean;
   /** Others without whom a trial that was started cannot begin; null: it waits for no one. */
   readonly waitingFor: string | null;
+  /** The participant wants to stop and has not confirmed it yet. */
+  readonly stopping: boolean;
   /** The game stands because another of the group pauses. */
   readonly standing: boolean;
 }
@@ -44,4 +46,6 @@ export interface ScreenActions {
   calibrate(): void;
   enterVr(): void;
   prepareAgain(): void;
+  /** Asks whether to stop; false: not any more. */
+  askToStop(on: boolean): void;
 }

@@ -6,6 +6,7 @@ import { type Answer, checkedAnswers, checkedDraft } from './questionnaires';
 import type { Schedule, StudyStep } from './schedule';
 import { type Place, recordVersion, type StudyEvent, type StudyRecord } from './study-record';
 import { checkedOutcome, type TrialOutcome } from './trial-log';
+import { unwellBy } from './unwell';
 import { checked, text, ValidationError } from './validation';
 
 /** What participant, experimenter, game or clock report. */
@@ -24,6 +25,10 @@ export type ProgressEvent =
   /** Time has passed. */
   | { readonly type: 'tick' }
   | { readonly type: 'pause' }
+  /** Ends the session here and now, whatever the participant is at. */
+  | { readonly type: 'stop'; readonly by: 'participant' | 'experimenter'; readonly reason?: string }
+  /** Asked for their answers whether to stop, the participant goes on. */
+  | { readonly type: 'go-on' }
   | { readonly type: 'resume' }
   /** The present block counts for nothing; repeat: it starts again, otherwise the next one follows. */
   | { readonly type: 'void-block'; readonly reason: string; readonly repeat: boolean }
@@ -50,12 +55,20 @@ const takenInPause: readonly ProgressEvent['type'][] = [
   'trial-finished',
   'reload',
   'tick',
+  'stop',
+  'go-on',
 ];
+
+/** What waits until a participant who may be unwell has decided. */
+const notWhileAsked: readonly ProgressEvent['type'][] = ['start', 'calibrated', 'answer', 'submit'];
 
 /** What an event makes of a session at `now` [s since 1970]. Events out of place change nothing and say why. */
 export function advance(schedule: Schedule, progress: Progress, event: ProgressEvent, now: number): Advance {
   const at = new Moment(schedule, progress, now);
   if (progress.paused && !takenInPause.includes(event.type)) return at.refused('the session is paused');
+  if (progress.unwell && notWhileAsked.includes(event.type)) {
+    return at.refused('the participant is asked whether to stop');
+  }
   try {
     return follow(at, event) ?? at.refused(`"${event.type}" has no place in the step "${at.step.id}"`);
   } catch (error) {
@@ -87,6 +100,10 @@ function follow(at: Moment, event: ProgressEvent): Advance | null {
       return pause(at);
     case 'resume':
       return resume(at);
+    case 'stop':
+      return stop(at, event);
+    case 'go-on':
+      return goOn(at);
     case 'void-block':
       return voidBlock(at, event);
     case 'remark':
@@ -235,7 +252,12 @@ function submit(at: Moment): Advance | null {
     seconds,
     overtime: seconds > step.seconds,
   };
-  return at.moveOn(progress, [{ ...at.envelope, kind: 'answers', id: at.recordId('answers'), body }]);
+  const handedIn = [{ ...at.envelope, kind: 'answers', id: at.recordId('answers'), body } as const];
+  const unwell = unwellBy(at.schedule.askToStop, step.questionnaire, body.answers);
+  if (!unwell) return at.moveOn(progress, handedIn);
+  const { questionnaire, measure, value } = unwell;
+  const told = at.withEvent({ ...progress, unwell: true }, { type: 'unwell', place, questionnaire, measure, value });
+  return at.moveOn(told.progress, [...handedIn, ...told.records]);
 }
 
 function tick(at: Moment): Advance {
@@ -249,6 +271,24 @@ function pause(at: Moment): Advance | null {
   if (step.kind === 'end') return null;
   const stopped = { ...progress, paused: true, since: null, elapsed: elapsedSeconds(progress, at.now) };
   return at.withEvent(stopped, { type: 'pause' });
+}
+
+function stop(at: Moment, { by, reason }: EventOf<'stop'>): Advance | null {
+  const { step, place, progress, schedule } = at;
+  if (step.kind === 'end') return null;
+  if (progress.motion === null) return at.refused('nothing is recorded before consent');
+  const { unwell: _, ...decided } = progress;
+  const said = reason === undefined ? {} : { reason: checked(text(500), reason) };
+  const told = at.withEvent(
+    { ...decided, stopped: true, paused: false },
+    { type: 'stop', by, ...said, place, step: step.id },
+  );
+  return at.taken(at.entered(told.progress, schedule.steps.at(-1) as StudyStep), told.records);
+}
+
+function goOn(at: Moment): Advance | null {
+  const { unwell, ...decided } = at.progress;
+  return unwell ? at.withEvent(decided, { type: 'go-on' }) : null;
 }
 
 function resume(at: Moment): Advance | null {

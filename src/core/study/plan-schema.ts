@@ -1,6 +1,7 @@
 import * as v from 'valibot';
 import { embodimentFields, estimatorSchema } from './embodiment';
 import { questionnaireSchema } from './questionnaire-schema';
+import { askToStopSchema } from './unwell';
 import { identifier, integerBetween, numberBetween, text } from './validation';
 import { languageTag, words } from './words';
 
@@ -87,6 +88,10 @@ export const planSchema = v.strictObject({
   ),
   questionnaires: v.exactOptional(
     v.pipe(v.array(questionnaireSchema, 'expected a list'), v.maxLength(20, 'expected at most twenty')),
+  ),
+  /** Who reaches one of these values is asked whether to stop. */
+  askToStop: v.exactOptional(
+    v.pipe(v.array(askToStopSchema, 'expected a list'), v.maxLength(8, 'expected at most eight')),
   ),
   consent: v.strictObject({
     /** Changes with every change of the text. */

@@ -8,6 +8,7 @@ import {
   resolvedQuestionnaire,
   shippedQuestionnaires,
 } from './questionnaires';
+import { refuseUnaskedLimits } from './unwell';
 import { checked, complaintsAbout, ValidationError } from './validation';
 import { missingLanguage, type Words } from './words';
 
@@ -160,6 +161,7 @@ export function checkedPlan(value: unknown): StudyPlan {
   }
   refuseUnclearBodies(plan);
   refuseQuestionnaires(plan);
+  refuseUnaskedLimits(plan.askToStop ?? [], questionnairesOf(plan));
   refuseUntranslatedConsent(plan);
   plan.tasks.forEach(({ groupSize }, index) => {
     if (plan.participants % groupSize !== 0) {

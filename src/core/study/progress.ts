@@ -33,6 +33,10 @@ const progressSchema = v.object({
   language: v.exactOptional(languageTag),
   /** "task/block" to its run, where that is not the first. */
   runs: v.record(v.string(), integerBetween(1, 1000)),
+  /** What was answered says that the participant may be unwell, and whether to stop is not decided yet; absent: no such question. */
+  unwell: v.exactOptional(v.boolean()),
+  /** The participant stopped, or was stopped, before the end; absent: not. */
+  stopped: v.exactOptional(v.boolean()),
   /** Attempts at the present step, from 1. */
   attempt: integerBetween(1, 1000),
   /** Events recorded so far: their ids count on after a reload. */

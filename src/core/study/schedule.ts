@@ -2,6 +2,7 @@ import { cohortsByParticipant, groupsOf, ordersByGroup } from './allocation';
 import { type Embodiment, embodimentOf, type PartialEmbodiment } from './embodiment';
 import { participantsOf, questionnairesAfter, type StudyCondition, type StudyPlan, type StudyTask } from './plan';
 import { type Questionnaire, questionnaireNamed } from './questionnaires';
+import type { StopLimit } from './unwell';
 import { ValidationError } from './validation';
 
 interface StepOf<Kind extends string> {
@@ -41,6 +42,8 @@ export interface Schedule {
   readonly study: string;
   readonly participant: string;
   readonly consentVersion: string;
+  /** From which answers on a participant is asked whether to stop. */
+  readonly askToStop: readonly StopLimit[];
   /** Per task: with whom, and the group's number from 1 (for tasks alone: the participant's). */
   readonly groups: Readonly<Record<string, { readonly number: number; readonly members: readonly string[] }>>;
   readonly steps: readonly StudyStep[];
@@ -74,7 +77,14 @@ export function scheduleFor(plan: StudyPlan, participant: string): Schedule {
     );
   }
   steps.push({ kind: 'end', id: 'end' });
-  return { study: plan.id, participant, consentVersion: plan.consent.version, groups, steps };
+  return {
+    study: plan.id,
+    participant,
+    consentVersion: plan.consent.version,
+    askToStop: plan.askToStop ?? [],
+    groups,
+    steps,
+  };
 }
 
 interface Block {

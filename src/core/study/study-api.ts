@@ -7,6 +7,7 @@ export type StudyCommand =
   | { readonly type: 'start' }
   | { readonly type: 'pause' }
   | { readonly type: 'resume' }
+  | { readonly type: 'stop'; readonly by: 'experimenter'; readonly reason: string }
   | { readonly type: 'void-block'; readonly reason: string; readonly repeat: boolean };
 
 /** Proof that something was deleted; it holds nothing of what was. */
@@ -37,6 +38,10 @@ export interface ParticipantState {
     readonly kind: string;
     readonly running: boolean;
     readonly paused: boolean;
+    /** Asked whether to stop, because of what was answered. */
+    readonly unwell: boolean;
+    /** Ended before its end. */
+    readonly stopped: boolean;
     /** null: the step has no time limit. */
     readonly remainingSeconds: number | null;
     /** When the page last reported, in seconds since 1970. */

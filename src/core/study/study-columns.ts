@@ -263,6 +263,11 @@ export const eventColumns = [
   text('task', ids, 'event: body.place.task or body.task', 'Where it concerns one; empty: no particular one.'),
   number('block', '', ordinals, 'event: body.place.block or body.block', 'Where it concerns one.'),
   number('run', '', ordinals, 'event: body.place.run or body.run', 'Where it concerns one.'),
-  text('text', 'any text', 'event: body.text or body.reason', 'Remark or reason, as typed.'),
+  text(
+    'text',
+    'any text',
+    'event: body.text, body.reason, or by, measure and value',
+    'Remark or reason, as typed; what was found.',
+  ),
   time,
 ];

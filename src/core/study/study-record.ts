@@ -47,6 +47,24 @@ const eventSchema = v.variant('type', [
     repeat: v.boolean(),
   }),
   v.object({ type: v.literal('interrupted'), place: placeSchema, step: text(120) }),
+  /** Answers reached a value at which the plan asks whether to stop. */
+  v.object({
+    type: v.literal('unwell'),
+    place: placeSchema,
+    questionnaire: identifier,
+    measure: v.string(),
+    value: v.number(),
+  }),
+  /** Asked so, the participant wanted to go on. */
+  v.object({ type: v.literal('go-on') }),
+  /** The session is over before its end, at this step. */
+  v.object({
+    type: v.literal('stop'),
+    by: v.picklist(['participant', 'experimenter']),
+    reason: v.exactOptional(text(500)),
+    place: v.nullable(placeSchema),
+    step: text(120),
+  }),
   v.object({ type: v.literal('pause') }),
   v.object({ type: v.literal('resume') }),
   v.object({ type: v.literal('remark'), text: text(2000) }),

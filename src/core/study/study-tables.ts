@@ -12,7 +12,7 @@ import {
   scaleColumns,
   trialColumns,
 } from './study-columns';
-import type { Place, StudyRecord } from './study-record';
+import type { Place, StudyEvent, StudyRecord } from './study-record';
 import type { Cell, Table } from './tidy-csv';
 
 /** Says why what was recorded at a place counts for nothing: "voided: reason"; empty: it counts. */
@@ -100,12 +100,27 @@ function participantRows(records: readonly StudyRecord[], plan: StudyPlan) {
   return [...rows.values()];
 }
 
+/** What was typed, or found. */
+function saidIn(body: StudyEvent): string {
+  switch (body.type) {
+    case 'remark':
+      return body.text;
+    case 'void-block':
+      return body.reason;
+    case 'stop':
+      return [`by the ${body.by}`, body.reason].filter(Boolean).join(': ');
+    case 'unwell':
+      return `${body.questionnaire} ${body.measure}: ${body.value}`;
+    default:
+      return '';
+  }
+}
+
 function eventRows(records: readonly StudyRecord[]) {
   return records.flatMap((record) => {
     if (record.kind !== 'event') return [];
     const { body } = record;
-    const place = body.type === 'interrupted' ? body.place : body.type === 'void-block' ? body : null;
-    const said = body.type === 'remark' ? body.text : body.type === 'void-block' ? body.reason : '';
+    const place = 'place' in body ? body.place : body.type === 'void-block' ? body : null;
     return [
       {
         ...identity(record),
@@ -113,7 +128,7 @@ function eventRows(records: readonly StudyRecord[]) {
         task: place?.task ?? null,
         block: place?.block ?? null,
         run: place?.run ?? null,
-        text: said,
+        text: saidIn(body),
         at: record.at,
       },
     ];

@@ -198,10 +198,14 @@ class TestHost implements StudyHost {
 
 const ahead = { x: 0, y: 0, z: 0, w: 1 };
 
-/** A person of 1.6 m eye height who stretches both arms forward, as calibration wants it. */
-function stretched(time: number): TrackingFrame {
+/** A person of 1.6 m eye height who stretches both arms forward, as calibration wants it; `raised`: above the head. */
+function stretched(time: number, raised: boolean): TrackingFrame {
   const hand = (x: number) =>
-    ({ position: { x, y: 1.33, z: -0.56 }, orientation: ahead, tracking: 'tracked' }) as const;
+    ({
+      position: raised ? { x, y: 1.9, z: -0.1 } : { x, y: 1.33, z: -0.56 },
+      orientation: ahead,
+      tracking: 'tracked',
+    }) as const;
   return {
     time,
     head: { position: { x: 0, y: 1.6, z: 0 }, orientation: ahead, tracking: 'tracked' },
@@ -261,12 +265,12 @@ export function browser(server: StudyServer) {
       },
       /** Time passes by the clock, and nothing is drawn. */
       pass: (seconds: number) => clock.pass(seconds),
-      /** So many seconds are drawn at 30 Hz. */
-      draw(seconds: number): void {
+      /** So many seconds are drawn at 30 Hz; `raised`: with both hands above the head. */
+      draw(seconds: number, raised = false): void {
         for (let i = 0; i < seconds * 30; i++) {
           frameTime += 1 / 30;
           clock.pass(1 / 30);
-          visit.frame(frameTime, stretched(frameTime));
+          visit.frame(frameTime, stretched(frameTime, raised));
           host.drew();
         }
       },

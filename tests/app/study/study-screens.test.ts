@@ -34,6 +34,7 @@ function participant(...events: readonly ProgressEvent[]) {
     calibrate: () => void done.push('calibrate'),
     enterVr: () => void done.push('enter VR'),
     prepareAgain: () => void done.push('prepare again'),
+    askToStop: (on) => void done.push(on ? 'ask to stop' : 'go on'),
   };
   return {
     session,
@@ -54,6 +55,7 @@ function participant(...events: readonly ProgressEvent[]) {
             triedToSubmit: false,
             calibration: null,
             refusal: null,
+            stopping: false,
           },
           ...{ prepared: { state: 'ready', reason: '' }, playing: false, waitingFor: null, standing: false },
           ...situation,
@@ -169,7 +171,7 @@ describe('a participant with a pause', () => {
       ?.act();
     const paused = one.screen({ calibration: { kind: 'failed', text: '' } });
     expect(paused?.id).toBe('paused');
-    paused?.buttons[0]?.act();
+    paused?.buttons.find(({ id }) => id === 'resume')?.act();
     expect(one.screen()?.id).toBe('calibration');
   });
 });

@@ -2,57 +2,9 @@ import { describe, expect, test } from 'vitest';
 import { openStudyVault } from '../../../src/app/study/study-vault';
 import { estimatorNames } from '../../../src/core/estimation/pose-estimator';
 import { aWomanOf26 } from '../../core/study/studies';
+import { agree, beforeTheQuestions, beforeTheRound, canStart, measure, play } from './participant-steps';
 import { browser, ofAnother, type Tab } from './study-browser';
 import { type StudyServer, studyServer } from './study-server';
-
-async function agree(tab: Tab, motion = false): Promise<void> {
-  expect(await tab.display.asked('consent').agree({ motion, language: null })).toBeNull();
-  tab.display.asked('code').noted();
-}
-
-/** With the headset on, the participant is measured; the practice is loaded then. */
-async function measure(tab: Tab): Promise<void> {
-  tab.wear(true);
-  tab.display.press('calibrate');
-  tab.draw(6);
-  await canStart(tab);
-}
-
-const canStart = (tab: Tab) =>
-  tab.display.until(
-    ({ screen }) => screen?.buttons.some(({ id, look }) => id === 'start' && look === 'primary') ?? false,
-  );
-
-/** The practice or round that waits, from the start to its end. */
-function play(tab: Tab, points: number): void {
-  tab.display.press('start');
-  tab.draw(1);
-  tab.host.games.archery.hit(points);
-  tab.draw(3);
-}
-
-/** P01 in the headset before the first round, measured and practised. */
-async function beforeTheRound(server: StudyServer, motion = false) {
-  const device = browser(server);
-  const tab = await device.open();
-  await agree(tab, motion);
-  expect(tab.display.asked('demographics').done(aWomanOf26)).toBeNull();
-  await measure(tab);
-  play(tab, 10);
-  await canStart(tab);
-  expect(tab.visit.state().step).toBe('archery/1/trial-1');
-  return { device, tab };
-}
-
-/** The same, who has played the round and sits before its questions, the headset on. */
-async function beforeTheQuestions(server: StudyServer) {
-  const visit = await beforeTheRound(server);
-  play(visit.tab, 40);
-  expect(visit.tab.display.shown).toBe('rest');
-  visit.tab.pass(61);
-  expect(visit.tab.display.shown).toBe('question-Q1');
-  return visit;
-}
 
 const eventsOf = ({ store }: StudyServer) =>
   store.records('paper').flatMap((record) => (record.kind === 'event' ? [record.body.type] : []));

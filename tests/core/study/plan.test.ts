@@ -18,6 +18,26 @@ function counts(names: readonly string[]): Record<string, number> {
 const conditionsOf = (count: number): StudyPlan['conditions'] =>
   Array.from({ length: count }, (_, index) => ({ id: `c${index}`, label: `Condition ${index}`, estimator: 'ik' }));
 
+describe('limits at which participants are asked to stop', () => {
+  const limited = (limit: object) => () => checkedPlan(paperPlan({ askToStop: [{ ...sick, ...limit }] }));
+  const sick = { questionnaire: 'archery', measure: 'Q2', atLeast: 4 };
+
+  test('are of scales and questions that the study asks', () => {
+    expect(limited({})().askToStop).toEqual([sick]);
+    expect(limited({ questionnaire: 'ssq' })).toThrow('askToStop[0].questionnaire: no task asks "ssq"');
+    expect(limited({ measure: 'Q9' })).toThrow('askToStop[0].measure: "archery" has no scale "Q9"');
+  });
+
+  test('of the simulator sickness questionnaire are of its total', () => {
+    const [archery] = paperPlan().tasks as [StudyTask];
+    const plan = paperPlan({
+      tasks: [{ ...archery, questionnaire: ['ssq'] }],
+      askToStop: [{ questionnaire: 'ssq', measure: 'total', atLeast: 40 }],
+    });
+    expect(checkedPlan(plan).askToStop).toHaveLength(1);
+  });
+});
+
 describe('the shipped study', () => {
   test('is the one of the paper', () => {
     const plan = parsePlan(paperFile, 'paper.json');

@@ -93,6 +93,7 @@ export class PreviewWalk {
   #at = 0;
   #place: 'desk' | 'headset' = 'headset';
   #refusal: string | null = null;
+  #stopping = false;
 
   constructor({ plan, participant, onChange }: PreviewWalkOptions) {
     this.stops = previewStops(plan, participant);
@@ -110,6 +111,10 @@ export class PreviewWalk {
       calibrate: next,
       enterVr: next,
       prepareAgain: next,
+      askToStop: (on) => {
+        this.#stopping = on;
+        this.#onChange();
+      },
     };
   }
 
@@ -190,6 +195,7 @@ export class PreviewWalk {
       case 'demographics':
         return {
           kind: 'demographics',
+          stop: () => this.goTo(this.stops.length),
           done() {
             next();
             return null;
@@ -212,6 +218,7 @@ export class PreviewWalk {
       calibration: kind === 'measuring' ? measuring : null,
       prepared: { state: 'ready', reason: '' },
       refusal: this.#refusal,
+      stopping: this.#stopping,
       playing: kind === 'waiting',
       waitingFor: kind === 'waiting' ? this.#others() : null,
       standing: false,

@@ -1,0 +1,181 @@
+import { describe, expect, test } from 'vitest';
+import { agree, beforeTheQuestions, beforeTheRound, play } from './participant-steps';
+import { browser, type Tab } from './study-browser';
+import { type StudyServer, studyServer } from './study-server';
+
+const stops = ({ store }: StudyServer) =>
+  store
+    .records('paper')
+    .flatMap((record) => (record.kind === 'event' && record.body.type === 'stop' ? [record.body] : []));
+
+const stateOf = ({ store }: StudyServer) => store.overview('paper', 1e9)[0]?.session;
+
+/** That it is over for good: said on the screen and on the experimenter's page, recorded, and the same after a reload. */
+async function expectStopped(server: StudyServer, { device, tab }: { device: ReturnType<typeof browser>; tab: Tab }) {
+  expect(tab.display.shown).toBe('end');
+  expect(tab.display.screen?.text.join(' ')).toContain('Your part is over');
+  expect(tab.host.games.archery.running).toBe(false);
+  await tab.exchange();
+  expect(stateOf(server)).toMatchObject({ kind: 'end', stopped: true });
+  expect(stops(server)).toHaveLength(1);
+  tab.close();
+  const again = await device.open();
+  expect(again.display.shown).toBe('end');
+  expect(again.display.screen?.text.join(' ')).toContain('Your part is over');
+}
+
+describe('a participant stops', () => {
+  test('from the headset in the middle of a round: hands above the head, then two buttons', async () => {
+    const server = await studyServer();
+    const visit = await beforeTheRound(server);
+    const { tab } = visit;
+    tab.display.press('start');
+    tab.draw(1);
+    expect(tab.display.shown).toBe('playing');
+    tab.draw(2, true);
+    expect(tab.display.inHeadset?.id).toBe('paused');
+    expect(tab.host.games.archery.paused).toBe(true);
+    tab.display.press('ask-to-stop');
+    expect(tab.display.inHeadset?.id).toBe('stopping');
+    tab.display.press('stop');
+    await expectStopped(server, visit);
+    expect(stops(server)).toMatchObject([{ by: 'participant', step: 'archery/1/trial-1' }]);
+    expect(server.store.records('paper').filter(({ kind }) => kind === 'trial')).toHaveLength(1);
+  });
+
+  test('and hands that are up for a moment only pause nothing, nor do hands that were not lowered since', async () => {
+    const { tab } = await beforeTheRound(await studyServer());
+    tab.display.press('start');
+    tab.draw(1, true);
+    tab.draw(1);
+    tab.draw(1, true);
+    expect(tab.display.shown).toBe('playing');
+    tab.draw(1, true);
+    expect(tab.display.shown).toBe('paused');
+    tab.display.press('resume');
+    tab.draw(3, true);
+    expect(tab.display.shown).toBe('playing');
+    tab.draw(1);
+    tab.draw(2, true);
+    expect(tab.display.shown).toBe('paused');
+  });
+
+  test('at the desk, in the questions', async () => {
+    const server = await studyServer();
+    const visit = await beforeTheQuestions(server);
+    visit.tab.wear(false);
+    visit.tab.display.press('pause');
+    visit.tab.display.press('ask-to-stop');
+    visit.tab.display.press('stop');
+    await expectStopped(server, visit);
+    expect(stops(server)).toMatchObject([{ by: 'participant', step: 'archery/1/questionnaire' }]);
+  });
+
+  test('at the desk, when asked about themselves', async () => {
+    const server = await studyServer();
+    const device = browser(server);
+    const tab = await device.open();
+    await agree(tab);
+    tab.display.asked('demographics').stop();
+    await expectStopped(server, { device, tab });
+  });
+
+  test('or thinks better of it, and goes on where it paused', async () => {
+    const server = await studyServer();
+    const { tab } = await beforeTheQuestions(server);
+    tab.display.press('pause');
+    tab.display.press('ask-to-stop');
+    tab.display.press('go-on');
+    expect(tab.display.shown).toBe('paused');
+    tab.display.press('resume');
+    expect(tab.display.shown).toBe('question-Q1');
+    await tab.exchange();
+    expect(stops(server)).toEqual([]);
+  });
+});
+
+describe('the experimenter stops a participant', () => {
+  const stop = { type: 'stop', by: 'experimenter', reason: 'looked pale' } as const;
+
+  test('in the middle of a round', async () => {
+    const server = await studyServer();
+    const visit = await beforeTheRound(server);
+    visit.tab.display.press('start');
+    visit.tab.draw(1);
+    server.store.addCommand('paper', 'P01', stop, 1e9);
+    await visit.tab.exchange();
+    await expectStopped(server, visit);
+    expect(stops(server)).toMatchObject([{ by: 'experimenter', reason: 'looked pale', step: 'archery/1/trial-1' }]);
+  });
+
+  test.each(['rest', 'questions', 'pause'])('in the %s', async (where) => {
+    const server = await studyServer();
+    const visit = where === 'questions' ? await beforeTheQuestions(server) : await beforeTheRound(server);
+    if (where === 'rest') play(visit.tab, 40);
+    if (where === 'pause') visit.tab.display.press('pause');
+    server.store.addCommand('paper', 'P01', stop, 1e9);
+    await visit.tab.exchange();
+    await expectStopped(server, visit);
+  });
+
+  test('before they were asked about themselves, at the desk', async () => {
+    const server = await studyServer();
+    const device = browser(server);
+    const tab = await device.open();
+    await agree(tab);
+    server.store.addCommand('paper', 'P01', stop, 1e9);
+    await tab.exchange();
+    await expectStopped(server, { device, tab });
+  });
+});
+
+describe('answers over a value of the plan', () => {
+  const unwellFrom = (atLeast: number) => ({ askToStop: [{ questionnaire: 'archery', measure: 'Q2', atLeast }] });
+
+  const handIn = (tab: Tab, answer: number) => {
+    for (let index = 1; index <= 7; index++) {
+      const field = tab.display.screen?.question?.field;
+      if (field?.kind !== 'likert') throw new Error(`expected a Likert scale on "${tab.display.shown}"`);
+      field.choose(answer);
+      tab.display.press(index < 7 ? 'next' : 'submit');
+    }
+  };
+
+  test('ask to stop, and that a participant was asked and went on is recorded', async () => {
+    const server = await studyServer(unwellFrom(4));
+    const { tab } = await beforeTheQuestions(server);
+    handIn(tab, 4);
+    expect(tab.display.inHeadset?.id).toBe('unwell');
+    expect(tab.display.screen?.title).toBe('How are you?');
+    await tab.exchange();
+    expect(stateOf(server)?.unwell).toBe(true);
+    tab.display.press('go-on');
+    expect(tab.display.shown).toBe('calibration');
+    await tab.exchange();
+    const events = server.store.records('paper').flatMap((record) => (record.kind === 'event' ? [record.body] : []));
+    expect(events).toMatchObject([
+      { type: 'unwell', questionnaire: 'archery', measure: 'Q2', value: 4 },
+      { type: 'go-on' },
+    ]);
+    expect(stateOf(server)?.unwell).toBe(false);
+  });
+
+  test('ask to stop, and the answer holds after a reload in between', async () => {
+    const server = await studyServer(unwellFrom(4));
+    const visit = await beforeTheQuestions(server);
+    handIn(visit.tab, 5);
+    await visit.tab.exchange();
+    visit.tab.close();
+    const tab = await visit.device.open();
+    expect(tab.display.shown).toBe('unwell');
+    tab.display.press('stop');
+    await expectStopped(server, { ...visit, tab });
+  });
+
+  test('below it ask nothing', async () => {
+    const server = await studyServer(unwellFrom(4));
+    const { tab } = await beforeTheQuestions(server);
+    handIn(tab, 3);
+    expect(tab.display.shown).toBe('calibration');
+  });
+});
