@@ -4,9 +4,10 @@ import { forwardKinematics } from '../../src/core/body/forward-kinematics';
 import { unknownFingers } from '../../src/core/body/hand-shape';
 import { skeletonFromCalibration } from '../../src/core/body/skeleton';
 import { createIk } from '../../src/core/estimation/estimators';
+import { clamp } from '../../src/core/math/damper';
 import type { TrackedPose } from '../../src/core/math/pose';
 import { normalNumbers, randomNumbers } from '../../src/core/math/random';
-import { type Vec3, vec3 } from '../../src/core/math/vec3';
+import { distance, lerp, type Vec3, vec3 } from '../../src/core/math/vec3';
 import { decodePose, encodePose } from '../../src/core/protocol/pose-codec';
 import type { PosePacket } from '../../src/core/protocol/pose-packet';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
@@ -33,10 +34,12 @@ export interface Seen {
   readonly freezes: number;
   /** Mean jerk of head, hands and elbows as they are drawn, to that in the other's own mirror. */
   readonly jerkRatio: number;
+  /** How far from where the other's mirror had them at the time that is shown these joints are drawn [mm]: 95 of 100 are nearer. */
+  readonly offP95Mm: number;
 }
 
-/** Standard deviation of what a headset says of a place, along each axis [m]: an assumption, which jerk depends on (docs/scaling.md). */
-const tremor = 1e-4;
+/** Standard deviations of what a headset says of a place, along each axis [m]: assumptions, which jerk depends on (docs/scaling.md). */
+export const tremors = [1e-4, 3e-5, 0] as const;
 const displayHz = 72;
 const posesPerSecond = 30;
 /** The first seconds are not counted: clocks and delays are found out in them. */
@@ -51,6 +54,16 @@ function placesOf(pose: AvatarPose): readonly Vec3[] {
   const places = forwardKinematics(skeleton, pose.body);
   return joints.map((name) => places[name].position);
 }
+
+/** Where they were in the other's mirror at a time between two of its pictures [m]. */
+function placesAt(frames: readonly SentFrame[], time: number): readonly Vec3[] {
+  const after = clamp(Math.ceil(time * displayHz), 1, frames.length - 1);
+  const [a, b] = [frames[after - 1]!.places, frames[after]!.places];
+  return a.map((place, i) => lerp(place, b[i]!, clamp(time * displayHz - (after - 1), 0, 1)));
+}
+
+const distancesBetween = (a: readonly Vec3[], b: readonly Vec3[]): readonly number[] =>
+  a.map((place, i) => distance(place, b[i]!));
 
 /** Sums of the third differences of places at the display's rate. */
 class Jerk {
@@ -82,7 +95,7 @@ function arrivals(leaving: readonly number[], { roundTrip, jitter, loss }: Way, 
 }
 
 /** As a headset would see it: places with noise of its own. */
-function trembling(frame: TrackingFrame, noise: () => number): TrackingFrame {
+function trembling(frame: TrackingFrame, tremor: number, noise: () => number): TrackingFrame {
   const moved = (pose: TrackedPose): TrackedPose => {
     const { x, y, z } = pose.position;
     return { ...pose, position: vec3(x + tremor * noise(), y + tremor * noise(), z + tremor * noise()) };
@@ -99,23 +112,25 @@ function trembling(frame: TrackingFrame, noise: () => number): TrackingFrame {
 interface SentFrame {
   readonly time: number;
   readonly pose: AvatarPose;
+  readonly places: readonly Vec3[];
 }
 
-/** By its seconds, for it is the same over every way. */
-const performances = new Map<number, readonly SentFrame[]>();
+/** By seconds and tremor, for it is the same over every way. */
+const performances = new Map<string, readonly SentFrame[]>();
 
 /** What the other's mirror shows, picture by picture. */
-function performed(seconds: number): readonly SentFrame[] {
-  const before = performances.get(seconds);
+function performed(seconds: number, tremor: number): readonly SentFrame[] {
+  const key = `${seconds} ${tremor}`;
+  const before = performances.get(key);
   if (before) return before;
   const ik = createIk(defaultCalibration);
   const noise = normalNumbers(1);
   const frames = Array.from({ length: Math.floor(seconds * displayHz) }, (_, i) => {
     const time = i / displayHz;
-    const { pose } = ik.update(trembling(actorFrame(time, defaultCalibration), noise));
-    return { time, pose: structuredClone(pose) };
+    const { pose } = ik.update(trembling(actorFrame(time, defaultCalibration), tremor, noise));
+    return { time, pose: structuredClone(pose), places: placesOf(pose).map(({ x, y, z }) => vec3(x, y, z)) };
   });
-  performances.set(seconds, frames);
+  performances.set(key, frames);
   return frames;
 }
 
@@ -138,9 +153,9 @@ function packetOf({ time, pose }: SentFrame): PosePacket {
   return packet;
 }
 
-/** So many seconds of one person seen by another over this way, through a page's own codec and playback; `seed`: of the network. */
-export function seenOver(way: Way, seconds: number, seed: number): Seen {
-  const frames = performed(seconds);
+/** So many seconds of one person seen by another over this way, through a page's own codec and playback; `seed`: of the network; `tremor`: of `tremors`. */
+export function seenOver(way: Way, seconds: number, seed: number, tremor: number = tremors[0]): Seen {
+  const frames = performed(seconds, tremor);
   const sent = sentOf(frames);
   const arrived = arrivals(
     sent.map(({ time }) => time),
@@ -149,19 +164,24 @@ export function seenOver(way: Way, seconds: number, seed: number): Seen {
   );
   const players = createRemotePlayers();
   const ages: number[] = [];
+  const off: number[] = [];
   const [own, drawn] = [new Jerk(), new Jerk()];
   let next = 0;
-  for (const { time, pose } of frames) {
+  for (const { time, places } of frames) {
     for (; next < sent.length && arrived[next]! <= time; next++) {
       players.receive({ seat: 1, packet: packetOf(sent[next]!), arrivedAt: arrived[next]! });
     }
     const [remote] = players.follow(time);
     if (!remote || time < settling) continue;
-    own.add(placesOf(pose));
-    drawn.add(placesOf(remote.pose));
-    ages.push(time - players.report(1)!.shownTime);
+    const seen = placesOf(remote.pose);
+    own.add(places);
+    drawn.add(seen);
+    const { shownTime } = players.report(1)!;
+    ages.push(time - shownTime);
+    off.push(...distancesBetween(placesAt(frames, shownTime), seen));
   }
   ages.sort((a, b) => a - b);
+  off.sort((a, b) => a - b);
   const at = (share: number): number => 1000 * ages[Math.floor((ages.length - 1) * share)]!;
   return {
     way,
@@ -169,6 +189,7 @@ export function seenOver(way: Way, seconds: number, seed: number): Seen {
     p95Ms: at(0.95),
     freezes: (60 * players.report(1)!.freezes) / seconds,
     jerkRatio: drawn.sum / own.sum,
+    offP95Mm: 1000 * off[Math.floor((off.length - 1) * 0.95)]!,
   };
 }
 

@@ -3,7 +3,7 @@ import { writeFileSync } from 'node:fs';
 import { availableParallelism, cpus } from 'node:os';
 import { monitorEventLoopDelay } from 'node:perf_hooks';
 import { parseArgs } from 'node:util';
-import { seenOver, ways } from './ages';
+import { seenOver, tremors, ways } from './ages';
 import type { RelaySort } from './conversation';
 import { bound, type Cell, type Found, search } from './search';
 
@@ -69,13 +69,18 @@ for (const { relay, room, hz, light, most } of rows) {
   ];
   console.log(cells.map((cell) => String(cell).padStart(9)).join(''));
 }
-const ages = ways.map((way) => seenOver(way, ageSeconds, ageSeed));
+const ages = ways.map((way) => ({
+  ...seenOver(way, ageSeconds, ageSeed),
+  /** With each of the tremors. */
+  jerkRatios: tremors.map((tremor) => seenOver(way, ageSeconds, ageSeed, tremor).jerkRatio),
+}));
 console.log('From the frame of the other’s headset to the picture in which it is shown:');
-for (const { way, p50Ms, p95Ms, freezes, jerkRatio } of ages) {
+for (const { way, p50Ms, p95Ms, freezes, offP95Mm, jerkRatios } of ages) {
   console.log(
     `  round trip ${(1000 * way.roundTrip).toFixed(0).padStart(3)} ms ± ${(1000 * way.jitter).toFixed(0).padStart(2)}, ` +
       `${(100 * way.loss).toFixed(0)} % lost: p50 ${p50Ms.toFixed(0)} ms, p95 ${p95Ms.toFixed(0)} ms, ` +
-      `${freezes.toFixed(1)} freezes a minute, jerk ${jerkRatio.toFixed(2)} of their own`,
+      `${freezes.toFixed(1)} freezes a minute, ${offP95Mm.toFixed(1)} mm off (p95), jerk ${jerkRatios.map((ratio) => ratio.toFixed(2)).join(', ')} ` +
+      `of their own with ${tremors.map((tremor) => 1000 * tremor).join(', ')} mm of noise`,
   );
 }
 const machineP99Ms = machine.percentile(99) / 1e6;

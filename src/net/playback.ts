@@ -1,6 +1,7 @@
 import { clamp, smoothingFactor, smoothstep } from '../core/math/damper';
 import { packetSecondsBetween } from '../core/protocol/packet-time';
 import type { PosePacket } from '../core/protocol/pose-packet';
+import { PathFit, type PathSample } from './path-fit';
 import { ShownPlayer } from './shown-player';
 import { TransitWindow } from './transit-window';
 
@@ -31,6 +32,8 @@ const ghostOpacity = 0.35;
 const fadeSeconds = 0.3;
 /** The way from where playback stood still to where it goes on takes this long [s]. */
 const rejoinSeconds = 0.2;
+/** What was run ahead of slower and slower is caught up with at this many times the speed of life. */
+const fastestPlayback = 1.5;
 /** Standing still for longer than this [s] is a freeze. */
 const freezeSeconds = 0.25;
 /** Packets this far apart [s] are no path. */
@@ -45,50 +48,21 @@ const spare = 0.01;
 const posesPerSecond = 30;
 const mostMissing = 15;
 
-interface Sample {
-  /** By the sender's clock, unwrapped [s]. */
-  readonly time: number;
-  readonly packet: PosePacket;
-}
-
 /** Seconds between two packets, as they mostly are. */
-function intervalOf(samples: readonly Sample[]): number {
+function intervalOf(samples: readonly PathSample[]): number {
   const first = samples[0];
   const last = samples[samples.length - 1];
   return first && last && samples.length > 1 ? (last.time - first.time) / (samples.length - 1) : 1 / 30;
 }
 
-/** Writes what is drawn of a player at a time of the sender's clock [s]; before the first packet: as that has it. */
-function sampleAt(samples: readonly Sample[], time: number, target: ShownPlayer): void {
-  const last = samples[samples.length - 1]!;
-  const first = samples[0]!;
-  if (time <= first.time) {
-    target.copy(first.packet);
-    return;
-  }
-  for (let i = samples.length - 2; i >= 0; i--) {
-    const a = samples[i]!;
-    const b = samples[i + 1]!;
-    if (time < a.time && i > 0) continue;
-    const span = b.time - a.time;
-    const path = !b.packet.jump && span <= longestGap;
-    if (time < b.time) {
-      if (path) target.mix(a.packet, b.packet, (time - a.time) / span);
-      else target.copy(a.packet);
-    } else if (!path) target.copy(b.packet);
-    else {
-      // Beyond the newest: on as it went, slower and slower, as it is ever less likely.
-      const beyond = Math.min(time - b.time, 10);
-      const ahead = longestExtrapolation * (1 - Math.exp(-beyond / longestExtrapolation));
-      target.mix(a.packet, b.packet, 1 + ahead / span);
-    }
-    return;
-  }
-  target.copy(last.packet);
+/** Whether something leads from this sample to the next. */
+function leadsOn(samples: readonly PathSample[], i: number): boolean {
+  const next = samples[i + 1];
+  return next !== undefined && !next.packet.jump && next.time - samples[i]!.time <= longestGap;
 }
 
 /** After a long silence nothing says how they got to where the next packet has them: they stand until they are there. */
-function isBetweenPaths(samples: readonly Sample[], time: number): boolean {
+function isBetweenPaths(samples: readonly PathSample[], time: number): boolean {
   for (let i = 1; i < samples.length; i++) {
     const { time: at, packet } = samples[i]!;
     const before = samples[i - 1]!.time;
@@ -98,7 +72,7 @@ function isBetweenPaths(samples: readonly Sample[], time: number): boolean {
 }
 
 /** A player whose space was re-anchored is elsewhere: nothing leads there. */
-function isAcrossJump(samples: readonly Sample[], time: number): boolean {
+function isAcrossJump(samples: readonly PathSample[], time: number): boolean {
   for (const { time: at, packet } of samples) if (packet.jump && at <= time && time - at < rejoinSeconds) return true;
   return false;
 }
@@ -110,7 +84,7 @@ function opacityAfter(silence: number): number {
 
 /** Plays one player's packets back a moment late. Times that are not known are NaN: a number and nothing else stays unboxed. */
 export class Playback {
-  private samples: Sample[] = [];
+  private samples: PathSample[] = [];
   private readonly transits = new TransitWindow(transitMemory);
   private heardAt = 0;
   /** Page's clock minus the sender's clock of what is drawn. */
@@ -119,6 +93,7 @@ export class Playback {
   private followedAt = Number.NaN;
   /** What is drawn; the same object in every frame. */
   readonly shown = new ShownPlayer();
+  private readonly fit = new PathFit();
   private isShown = false;
   private shownTime = Number.NaN;
   /** Where playback stood still, and when it went on. */
@@ -146,14 +121,14 @@ export class Playback {
       const missing = Math.min(Math.round((time - before.time) * posesPerSecond) - 1, mostMissing);
       for (let i = missing; i > 0; i--) this.transits.add(arrivedAt, arrivedAt - time + i / posesPerSecond);
     }
-    this.samples.push({ time, packet });
+    this.samples.push({ time, arrivedAt, packet });
     this.heardAt = arrivedAt;
     this.transits.add(arrivedAt, arrivedAt - time);
   }
 
   /** Writes into `shown` what is drawn at this time of the page's clock [s] and returns how solid it is; null: nothing is drawn. */
   follow(time: number): number | null {
-    const { samples, shown } = this;
+    const { samples } = this;
     const silence = time - this.heardAt;
     if (silence >= hideAfter) {
       // No pose is kept for longer than it is shown.
@@ -164,16 +139,15 @@ export class Playback {
       return null;
     }
     const at = this.playhead(time);
-    this.followedAt = time;
     // One packet from before the playhead is where the path begins.
     while (samples.length > 2 && samples[1]!.time <= at - longestGap) samples.shift();
     const last = samples[samples.length - 1]!;
     const nowhere = isBetweenPaths(samples, at);
     this.watchStall(nowhere || at > last.time + longestExtrapolation, time);
-    if (!nowhere || !this.isShown) sampleAt(samples, at, shown);
-    this.shownTime = Math.min(at, last.time + longestExtrapolation);
+    if (!nowhere || !this.isShown) this.sampleAt(at, time);
     this.isShown = true;
     this.rejoin(time, at);
+    this.followedAt = time;
     return opacityAfter(silence);
   }
 
@@ -192,6 +166,38 @@ export class Playback {
     if (Number.isNaN(this.behind) || Math.abs(goal - this.behind) > 0.5) this.behind = goal;
     else this.behind += clamp(goal - this.behind, -0.1 * passed, 0.1 * passed);
     return time - this.behind;
+  }
+
+  /** Writes what is drawn `at` this time of the sender's clock [s]; before the first packet: as that has it. */
+  private sampleAt(at: number, time: number): void {
+    const { samples, shown, fit } = this;
+    let i = samples.length - 1;
+    while (i > 0 && samples[i]!.time > at) i -= 1;
+    // The path that leads through here: no one is drawn between two spaces, or on a way out of a silence.
+    let from = i;
+    let to = i;
+    while (from > 0 && leadsOn(samples, from - 1)) from -= 1;
+    while (leadsOn(samples, to)) to += 1;
+    const a = samples[i]!;
+    if (from === to || at <= a.time) {
+      shown.copy(a.packet);
+      this.shownTime = at;
+      return;
+    }
+    this.shownTime = this.timeOnPath(at, samples[to]!.time, time);
+    fit.solve(samples, from, to, this.shownTime, time);
+    const b = i < to ? samples[i + 1]! : null;
+    if (b) shown.follow(samples, fit, a.packet, b.packet, (at - a.time) / (b.time - a.time));
+    else shown.follow(samples, fit, a.packet, a.packet, 1);
+  }
+
+  /** Beyond the last packet: on as it went, slower and slower, as it is ever less likely; and no leap when another comes after all. */
+  private timeOnPath(at: number, last: number, time: number): number {
+    const beyond = clamp(at - last, 0, 10);
+    const goal = Math.min(at, last) + longestExtrapolation * (1 - Math.exp(-beyond / longestExtrapolation));
+    const missed = goal - this.shownTime;
+    if (!(missed > 0 && missed < longestExtrapolation)) return goal;
+    return this.shownTime + Math.min(missed, fastestPlayback * (time - this.followedAt));
   }
 
   private watchStall(stalled: boolean, time: number): void {

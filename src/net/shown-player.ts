@@ -8,10 +8,11 @@ import {
 } from '../core/body/hand-shape';
 import { type JointName, jointNames } from '../core/body/joints';
 import { type MutablePose, makePose, type TrackedPose } from '../core/math/pose';
-import { copyQuat, type MutableQuat, quat, slerp } from '../core/math/quat';
+import { copyQuat, type MutableQuat, normaliseQuat, type Quat, quat, setQuat, slerp } from '../core/math/quat';
 import type { Side } from '../core/math/side';
-import { copyVec3, lerp, type MutableVec3, vec3 } from '../core/math/vec3';
+import { addScaled, copyVec3, lerp, type MutableVec3, setVec3, vec3 } from '../core/math/vec3';
 import type { PosePacket } from '../core/protocol/pose-packet';
+import type { PathFit, PathSample } from './path-fit';
 
 /** What is drawn of a player in one frame. */
 export type Shown = Omit<PosePacket, 'timeMs' | 'jump'>;
@@ -63,6 +64,22 @@ export class ShownPlayer implements Shown {
     return this;
   }
 
+  /** Where the samples around have it at a time that is fitted; what one of them lacks: from a (t = 0) to b (t = 1), the two next to it. */
+  follow(samples: readonly PathSample[], fit: PathFit, a: Shown, b: Shown, t: number): this {
+    const { pose, hands, fingers, shapes } = this;
+    fitTracked(samples, fit, 'head', pose.head);
+    pose.head.tracking = (t < 1 ? a : b).pose.head.tracking;
+    pose.leftHand = mixHand(a.pose.leftHand, b.pose.leftHand, t, hands.left);
+    pose.rightHand = mixHand(a.pose.rightHand, b.pose.rightHand, t, hands.right);
+    if (allHave(samples, fit, 'leftHand')) fitTracked(samples, fit, 'leftHand', hands.left);
+    if (allHave(samples, fit, 'rightHand')) fitTracked(samples, fit, 'rightHand', hands.right);
+    if (allHave(samples, fit, 'body')) pose.body = fitBody(samples, fit, this.body);
+    else pose.body = mixBody(a.pose.body, b.pose.body, t, this.body);
+    fingers.left = mixFingers(a.fingers.left, b.fingers.left, t, shapes.left);
+    fingers.right = mixFingers(a.fingers.right, b.fingers.right, t, shapes.right);
+    return this;
+  }
+
   /** From a (t = 0) to b (t = 1), and on beyond b. */
   mix(a: Shown, b: Shown, t: number): this {
     mixTracked(a.pose.head, b.pose.head, t, this.pose.head);
@@ -86,6 +103,62 @@ function mixTracked(a: TrackedPose, b: TrackedPose, t: number, target: MutableTr
   lerp(a.position, b.position, t, target.position);
   slerp(a.orientation, b.orientation, t, target.orientation);
   target.tracking = t < 1 ? a.tracking : b.tracking;
+  return target;
+}
+
+function allHave(
+  samples: readonly PathSample[],
+  { first, count }: PathFit,
+  part: 'leftHand' | 'rightHand' | 'body',
+): boolean {
+  for (let i = first; i < first + count; i++) if (!samples[i]!.packet.pose[part]) return false;
+  return true;
+}
+
+// The sums of one call, in numbers that stay unboxed.
+const sum = quat(0, 0, 0, 0);
+
+/** Adds so much of q, or of −q where that is nearer to `near`, to `sum`. */
+function addShare(q: Quat, share: number, near: Quat): void {
+  const k = q.x * near.x + q.y * near.y + q.z * near.z + q.w * near.w < 0 ? -share : share;
+  sum.x += k * q.x;
+  sum.y += k * q.y;
+  sum.z += k * q.z;
+  sum.w += k * q.w;
+}
+
+function fitTracked(
+  samples: readonly PathSample[],
+  { first, count, shares }: PathFit,
+  part: 'head' | 'leftHand' | 'rightHand',
+  { position, orientation }: MutableTrackedPose,
+): void {
+  const near = samples[first + count - 1]!.packet.pose[part]!.orientation;
+  setVec3(position, 0, 0, 0);
+  setQuat(sum, 0, 0, 0, 0);
+  for (let i = 0; i < count; i++) {
+    const pose = samples[first + i]!.packet.pose[part]!;
+    addScaled(position, pose.position, shares[i]!, position);
+    addShare(pose.orientation, shares[i]!, near);
+  }
+  normaliseQuat(sum, orientation);
+}
+
+function fitBody(samples: readonly PathSample[], { first, count, shares }: PathFit, target: MutableBody): MutableBody {
+  const { hipsPosition } = target;
+  setVec3(hipsPosition, 0, 0, 0);
+  for (let i = 0; i < count; i++) {
+    addScaled(hipsPosition, samples[first + i]!.packet.pose.body!.hipsPosition, shares[i]!, hipsPosition);
+  }
+  for (let j = 0; j < jointNames.length; j++) {
+    const name = jointNames[j]!;
+    const near = samples[first + count - 1]!.packet.pose.body!.localRotations[name];
+    setQuat(sum, 0, 0, 0, 0);
+    for (let i = 0; i < count; i++) {
+      addShare(samples[first + i]!.packet.pose.body!.localRotations[name], shares[i]!, near);
+    }
+    normaliseQuat(sum, target.localRotations[name]);
+  }
   return target;
 }
 

@@ -2,12 +2,12 @@ import { describe, expect, test } from 'vitest';
 import { defaultCalibration } from '../../src/core/body/calibration';
 import { unknownFingers } from '../../src/core/body/hand-shape';
 import { createIk } from '../../src/core/estimation/estimators';
-import { identity } from '../../src/core/math/quat';
+import { angleBetween, fromAxisAngle, identity } from '../../src/core/math/quat';
 import { randomNumbers } from '../../src/core/math/random';
-import { distance, vec3 } from '../../src/core/math/vec3';
+import { distance, up, vec3 } from '../../src/core/math/vec3';
 import type { PosePacket } from '../../src/core/protocol/pose-packet';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
-import { firstDelay, longestExtrapolation } from '../../src/net/playback';
+import { firstDelay, longestExtrapolation, type PlaybackReport } from '../../src/net/playback';
 import { createRemotePlayers } from '../../src/net/remote-players';
 import { poseOf } from '../core/estimation/drawn';
 import { isNightly } from '../nightly';
@@ -41,7 +41,11 @@ function walker(time: number, more: Partial<PosePacket> = {}, lostLeft = false):
 function playback(
   end: number,
   transit: (index: number) => number,
-  each: (time: number, drawn: ReturnType<ReturnType<typeof createRemotePlayers>['follow']>) => void,
+  each: (
+    time: number,
+    drawn: ReturnType<ReturnType<typeof createRemotePlayers>['follow']>,
+    report: PlaybackReport,
+  ) => void,
   make: (time: number, index: number) => PosePacket | null = (time) => walker(time),
 ) {
   const players = createRemotePlayers();
@@ -61,7 +65,9 @@ function playback(
       players.receive({ seat: 1, packet: packets[next]!.packet, arrivedAt: packets[next]!.at });
       next += 1;
     }
-    each(time, players.follow(time));
+    const drawn = players.follow(time);
+    const report = players.report(1);
+    if (report) each(time, drawn, report);
   }
   return players;
 }
@@ -107,6 +113,61 @@ describe('playback of others', () => {
     // A person on a bad line, seen by one on a good line, or the other way round; and, for the record, both on bad ones.
     expect(measure('100 ± 30 ms, 2 % lost', () => badWay() + 0.005)).toBeLessThan(1);
     measure('the same, both players so', () => badWay() + badWay());
+  });
+
+  test('a hand on a circle is drawn within 1.5 mm of it, a head that turns within 0.2°', () => {
+    const radius = 0.3;
+    const turn = (angle: number) => fromAxisAngle(up, 2 * Math.sin(angle));
+    const onCircle = (angle: number) => vec3(radius * Math.cos(angle), 1.2 + radius * Math.sin(angle), 0);
+    const [off, turned]: [number[], number[]] = [[], []];
+    const players = playback(
+      10,
+      () => 0.02,
+      (time, [drawn], { shownTime }) => {
+        if (!drawn || time < 2 || time > 10) return;
+        const angle = 2 * Math.PI * shownTime;
+        off.push(1000 * distance(drawn.pose.rightHand!.position, onCircle(angle)));
+        turned.push((angleBetween(drawn.pose.head.orientation, turn(angle / 2)) * 180) / Math.PI);
+      },
+      (time) => {
+        const { pose, ...packet } = walker(time);
+        const head = { ...pose.head, orientation: turn(Math.PI * time) };
+        return {
+          ...packet,
+          pose: { ...pose, head, rightHand: { ...pose.head, position: onCircle(2 * Math.PI * time) } },
+        };
+      },
+    );
+    tell('a circle of 30 cm once a second', {
+      'off by at most [mm]': Math.max(...off),
+      'head turned off by [°]': Math.max(...turned),
+    });
+    expect(Math.max(...off)).toBeLessThan(1.5);
+    expect(Math.max(...turned)).toBeLessThan(0.2);
+    expect(players.report(1)!.freezes).toBe(0);
+  });
+
+  test('a hand that stops dead from 2 m/s is drawn at most 1 cm beyond, and rests within 0.1 s', () => {
+    const stopAt = 3;
+    let [furthest, settled] = [0, 0];
+    playback(
+      6,
+      () => 0.02,
+      (time, [drawn], { shownTime }) => {
+        if (!drawn || time > 6) return;
+        const beyond = drawn.pose.rightHand!.position.x - 2 * stopAt;
+        furthest = Math.max(furthest, beyond);
+        if (shownTime > stopAt && Math.abs(beyond) > 1e-3) settled = shownTime - stopAt;
+      },
+      (time) => {
+        const { pose, ...packet } = walker(time);
+        const position = vec3(2 * Math.min(time, stopAt), 1, 0);
+        return { ...packet, pose: { ...pose, rightHand: { ...pose.head, position } } };
+      },
+    );
+    tell('a dead stop from 2 m/s', { 'beyond by [mm]': 1000 * furthest, 'rests after [s]': settled });
+    expect(furthest).toBeLessThan(0.01);
+    expect(settled).toBeLessThan(0.1);
   });
 
   test('runs on for a tenth of a second, then stands still, then is a ghost at 1 s and gone at 3 s', () => {
