@@ -1,6 +1,6 @@
 import type { Receipt } from '../src/core/study/study-api';
 import type { StudyCommands } from './study-commands';
-import type { StudyDatabase } from './study-database';
+import { StoreRefusal, type StudyDatabase } from './study-database';
 import type { StudyMotion } from './study-motion';
 import type { StudyPlaces } from './study-places';
 import type { StudyPlans } from './study-plans';
@@ -54,6 +54,21 @@ export class StudyDeletion {
     });
     database.forgetDeleted();
     return receiptOf(receipt);
+  }
+
+  /** Deletes a simulated study to its last record, and its receipts; one of people goes participant by participant. */
+  deleteSimulated(study: string): void {
+    const { database, plans } = this.#parts;
+    if (!plans.get(study).simulated) {
+      throw new StoreRefusal('forbidden', `the study "${study}" is of people: its participants are deleted one by one`);
+    }
+    database.transaction(() => {
+      for (const table of ['records', 'motion', 'receipts']) {
+        database.run(`DELETE FROM ${table} WHERE study = ?`, study);
+      }
+      plans.remove(study);
+    });
+    database.forgetDeleted();
   }
 
   /** Deletes everything of the participant who has this code; null: none has. */

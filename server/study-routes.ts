@@ -178,6 +178,10 @@ function studyTable({ store, now, guard, software }: TableOptions): Route<StudyA
       const read = participant === null ? plan : store.planFor(study, checked(participantId, participant));
       return json(publicPlan(read, simulated));
     }),
+    route('DELETE', '/:study', 'experimenter', 0, ({ study }) => {
+      store.deleteSimulated(study);
+      return done;
+    }),
     route('GET', '/:study/records', 'experimenter', 0, ({ study, query }) => {
       const info = store.study(study, versionIn(query));
       return json({ ...info, records: ofVersion(store.records(study), info) });

@@ -59,6 +59,8 @@ export interface StudyStore {
   softwareSince(at: number): readonly ServedSoftware[];
   overview(study: string, now: number): readonly ParticipantState[];
   deleteParticipant(study: string, participant: string, reason: Receipt['reason'], at: number): Receipt;
+  /** Deletes a simulated study whole; refuses one of people. */
+  deleteSimulated(study: string): void;
   /** Deletes everything of the participant who has this code; null: none has. */
   withdraw(study: string, code: string, at: number): Receipt | null;
   /** Deletes what is past its retention date. */
@@ -133,6 +135,7 @@ export function openStudyStore(file: string, { mostBytes = 16 * 2 ** 30 } = {}):
       });
     },
     deleteParticipant: (study, participant, reason, at) => deletion.delete(study, participant, reason, at),
+    deleteSimulated: (study) => deletion.deleteSimulated(study),
     withdraw: (study, code, at) => deletion.withdraw(study, code, at),
     deleteExpired: (now) => deletion.deleteExpired(now),
     receipts: (study) => deletion.receipts(study),

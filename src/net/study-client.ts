@@ -1,4 +1,5 @@
 import { reasonOf } from '../core/errors/reasons';
+import type { SimulatedParticipant } from '../core/rehearsal/simulate-study';
 import type { Progress } from '../core/study/progress';
 import type {
   Claim,
@@ -153,6 +154,9 @@ export function createParticipantClient(server: string): ParticipantClient {
   };
 }
 
+/** Bodies of the server are 512 KiB at most. */
+const recordsAtOnce = 50;
+
 /** What the experimenter's pages ask of the server. */
 export interface ExperimenterClient {
   studies(): Promise<readonly StudyListing[]>;
@@ -173,6 +177,10 @@ export interface ExperimenterClient {
     of?: { readonly participant?: string; readonly version?: number },
   ): Promise<{ readonly name: string; readonly zip: Blob }>;
   delete(study: string, participant: string): Promise<Receipt>;
+  /** Stores a simulated participant from the first record to the last. */
+  addSimulated(study: string, simulated: SimulatedParticipant): Promise<void>;
+  /** Deletes a simulated study whole. */
+  deleteSimulated(study: string): Promise<void>;
 }
 
 export function createExperimenterClient(token: string, server: string): ExperimenterClient {
@@ -199,5 +207,15 @@ export function createExperimenterClient(token: string, server: string): Experim
       return { name: name ?? `${study}.zip`, zip: await response.blob() };
     },
     delete: (study, participant) => answer(of(study, participant), { method: 'DELETE', token }),
+    async addSimulated(study, { participant, records, progress }) {
+      const place = of(study, participant);
+      await answer(`${place}/claim`, { method: 'POST', token, body: {} });
+      for (let at = 0; at < records.length; at += recordsAtOnce) {
+        const body = { records: records.slice(at, at + recordsAtOnce) };
+        await answer(`${place}/records`, { method: 'POST', token, body });
+      }
+      await answer(`${place}/progress`, { method: 'PUT', token, body: progress });
+    },
+    deleteSimulated: (study) => answer(of(study), { method: 'DELETE', token }),
   };
 }

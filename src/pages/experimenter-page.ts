@@ -1,5 +1,6 @@
 import '../styles/document.css';
 import { reasonOf } from '../core/errors/reasons';
+import { statedInWords } from '../core/rehearsal/simulate-study';
 import { checkedPlan, type StudyPlan } from '../core/study/plan';
 import type { StudyCommand, StudyInfo } from '../core/study/study-api';
 import { type ExperimenterClient, ServerRefusal } from '../net/study-client';
@@ -13,8 +14,9 @@ import {
   openStudy,
   receiptText,
   type StudyActions,
-  versionsText,
 } from './experimenter-view';
+import { askForRehearsal } from './rehearsal-dialog';
+import { rehearse } from './rehearse';
 import { askForSentence } from './sentence-dialog';
 import { StudyAccess } from './study-access';
 
@@ -112,13 +114,15 @@ class ExperimenterPage {
       if (!info) return `Nothing was changed: the study “${added.id}” keeps its plan.`;
       await this.#access.list(client);
       await this.#open(added.id);
-      return `${name} is on this server. ${versionsText(info)}`.trim();
+      return `${name} is on this server${info.versions.length > 1 ? `, as version ${info.version} of the plan` : ''}.`;
     });
   }
 
   #actionsOn({ plan }: OpenStudy): StudyActions {
     const { id } = plan;
     return {
+      rehearse: () => void this.#rehearse(plan),
+      deleteSimulated: () => void this.#deleteSimulated(id),
       exportAll: (version) => void this.#exportZip(id, { version }),
       exportZip: (participant) => void this.#exportZip(id, { participant }),
       command: (participant, command) => void this.#command(id, participant, command),
@@ -130,6 +134,31 @@ class ExperimenterPage {
       copyLink: (participant, link) => void this.#copyLink(participant, link),
       reinvite: (participant) => void this.#reinvite(id, participant, plan.entry === 'open'),
     };
+  }
+
+  async #rehearse(plan: StudyPlan): Promise<void> {
+    const rehearsal = await askForRehearsal(plan);
+    if (!rehearsal) return;
+    await this.#attempt(async (client) => {
+      const onProgress = (done: number, all: number) => {
+        this.#notice = `Rehearsing: ${done} of ${all} simulated participants.`;
+        this.#render();
+      };
+      const id = await rehearse(client, plan, { ...rehearsal, at: Date.now() / 1000, onProgress });
+      await this.#access.list(client);
+      await this.#open(id);
+      return `Put in: ${statedInWords(rehearsal.effects)} The results of the rehearsal can be looked at now.`;
+    });
+  }
+
+  async #deleteSimulated(study: string): Promise<void> {
+    if (!confirm(`Delete “${study}” and everything in it? It is simulated: nothing of people is in it.`)) return;
+    await this.#attempt(async (client) => {
+      await client.deleteSimulated(study);
+      this.#study = null;
+      await this.#access.list(client);
+      return `“${study}” is deleted.`;
+    });
   }
 
   #command(study: string, participant: string, command: StudyCommand): Promise<void> {

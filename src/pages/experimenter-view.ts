@@ -14,6 +14,10 @@ export interface OpenStudy extends StudyInfo {
 }
 
 export interface StudyActions extends ParticipantActions {
+  /** Sends simulated participants through the plan. */
+  rehearse(): void;
+  /** Of a simulated study alone: deletes it whole. */
+  deleteSimulated(): void;
   /** Of this version of the plan. */
   exportAll(version: number): void;
 }
@@ -28,10 +32,10 @@ export function versionsText({ versions }: Pick<OpenStudy, 'versions'>): string 
   const stays = versions
     .slice(0, -1)
     .filter(({ participants }) => participants.length > 0)
-    .map(({ version, participants }) => `${participants.join(', ')} with version ${version}`);
+    .map(({ version, participants }) => `with version ${version}: ${participants.join(', ')}`);
   return (
     `The plan was changed: version ${newest.version} is for those who begin now. ` +
-    `There stay ${stays.join('; ')}. Results and exports keep the versions apart.`
+    `Who stays ${stays.join('; ')}. Results and exports keep the versions apart.`
   );
 }
 
@@ -73,6 +77,9 @@ function studyHead(study: OpenStudy, actions: StudyActions): readonly Node[] {
       ),
       element('a', { href: `./results.html?study=${plan.id}` }, 'Results'),
       previewLink(plan),
+      simulated
+        ? button('Delete this simulated study …', actions.deleteSimulated, { class: 'danger' })
+        : button('Rehearse …', actions.rehearse),
     ),
   ];
 }
@@ -90,9 +97,10 @@ const remarkList = (remarks: readonly string[]): readonly Node[] =>
     ? []
     : [
         element(
-          'ul',
-          { class: 'remarks', 'aria-label': 'Before you begin' },
-          ...remarks.map((text) => element('li', {}, text)),
+          'section',
+          { class: 'remarks' },
+          element('h3', { id: 'before-you-begin' }, 'Before you begin'),
+          element('ul', { 'aria-labelledby': 'before-you-begin' }, ...remarks.map((text) => element('li', {}, text))),
         ),
       ];
 

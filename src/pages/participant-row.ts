@@ -95,7 +95,8 @@ function orderTexts(schedule: Schedule, of: StudyPlan): readonly string[] {
     const group = schedule.groups[id];
     const together =
       groupSize > 1 && group ? ` with ${group.members.filter((name) => name !== schedule.participant).join(', ')}` : '';
-    return `${id}: ${blocks.join(' → ')}${together}`;
+    // A name of a condition is not divided between two lines.
+    return `${id}: ${blocks.map((condition) => condition.replaceAll('-', '\u2011')).join(' → ')}${together}`;
   });
 }
 

@@ -92,6 +92,7 @@ export const httpRows: Readonly<Record<string, HttpRow>> = {
     also: { who: 'player', status: 200 },
   },
   'GET /api/studies': { gives: 'the list of studies', status: forExperimenter(200) },
+  'DELETE /api/studies/:study': { gives: 'the deletion of a simulated study', status: forExperimenter(403) },
   'POST /api/studies': { gives: 'a new study', json: 'plan', status: forExperimenter(201) },
   [`GET ${study}`]: { gives: 'title and consent text', status: forAll(200) },
   [`GET ${study}/records`]: { gives: 'everything recorded', status: forExperimenter(200) },

@@ -40,6 +40,8 @@ const evenParticipants = ({ tasks, cohorts, ...plan }: StudyPlan, { groupSize }:
   (cohorts?.length ?? 1) *
   tasks.reduce((all, task) => leastCommonMultiple(all, task.groupSize), groupSize * ordersOf(plan).length);
 
+const timesText = (count: number) => (count === 0 ? 'never' : count === 1 ? 'once' : `${count} times`);
+
 /** The cohorts and orders that do not come out even, in sentences. */
 function unevenness(plan: StudyPlan): readonly string[] {
   const remarks: string[] = [];
@@ -54,8 +56,8 @@ function unevenness(plan: StudyPlan): readonly string[] {
       if (even(counts)) continue;
       const [least, most] = [Math.min(...counts.values()), Math.max(...counts.values())];
       remarks.push(
-        `${task.title}${cohort ? `, cohort ${cohort.id}` : ''}: the ${counts.size} orders do not come out even, some come ${most} times, ` +
-          `others ${least}; a multiple of ${evenParticipants(plan, task)} participants would make them even.`,
+        `${task.title}${cohort ? `, cohort ${cohort.id}` : ''}: the ${counts.size} orders do not come out even, some come ${timesText(most)}, ` +
+          `others ${timesText(least)}; a multiple of ${evenParticipants(plan, task)} participants would make them even.`,
       );
     }
   }

@@ -68,8 +68,8 @@ describe('cohorts', () => {
 describe('what should be known before the first participant', () => {
   test('is which orders do not come out even, and how many participants would make them', () => {
     expect(remarksOn(paperPlan())).toEqual([
-      'Archery: the 2 orders do not come out even, some come 8 times, others 7; a multiple of 6 participants would make them even.',
-      'Ball game: the 2 orders do not come out even, some come 3 times, others 2; a multiple of 6 participants would make them even.',
+      'Archery: the 2 orders do not come out even, some come 8 times, others 7 times; a multiple of 6 participants would make them even.',
+      'Ball game: the 2 orders do not come out even, some come 3 times, others 2 times; a multiple of 6 participants would make them even.',
     ]);
     expect(remarksOn(paperPlan({ participants: 18 }))).toEqual([]);
   });

@@ -1,0 +1,82 @@
+import { readFileSync } from 'node:fs';
+import type { Page } from '@playwright/test';
+import { expect, keepPicture } from './page-fixture';
+import { signIn, test } from './study-participant';
+import { experimenter } from './study-server';
+
+const plan = (changes: object = {}) => ({
+  ...JSON.parse(readFileSync('public/studies/latency.json', 'utf8')),
+  ...changes,
+});
+
+const choose = (page: Page, study: object) =>
+  page
+    .getByLabel('Study file', { exact: true })
+    .setInputFiles({ name: 'mine.json', mimeType: 'application/json', buffer: Buffer.from(JSON.stringify(study)) });
+
+test.use({ viewport: { width: 1280, height: 860 } });
+
+test('a plan is remarked upon, rehearsed to its results, and the rehearsal deleted @full', async ({ page, origin }) => {
+  test.setTimeout(180_000);
+  await page.goto(`${origin}/experimenter`);
+  await signIn(page);
+  await choose(page, plan({ id: 'uneven', participants: 7 }));
+  const remarks = page.getByRole('list', { name: 'Before you begin' });
+  await expect(remarks.getByText('a multiple of 6 participants would make them even')).toBeVisible();
+  await keepPicture(page, 'study-remarks');
+
+  await page.goto(`${origin}/experimenter`);
+  await choose(page, plan());
+  await expect(page.getByText('mine.json is on this server.')).toBeVisible();
+  await page.getByRole('button', { name: 'Rehearse …' }).click();
+  await page.getByLabel('200 ms (late-200)').fill('-1.2');
+  await keepPicture(page, 'study-rehearsal-dialog');
+  await page.getByRole('button', { name: 'Rehearse', exact: true }).click();
+  await expect(page.getByText('Put in: answers −1.2 points under "late-200"')).toBeVisible({ timeout: 90_000 });
+  await expect(page.getByText('SIMULATED: in this study a program takes part')).toBeVisible();
+  await expect(page.locator('.badge', { hasText: 'finished' })).toHaveCount(18);
+  await page.getByRole('link', { name: 'Results' }).last().click();
+  await expect(page.getByText('SIMULATED: a program made these data')).toBeVisible();
+  await expect(page.getByRole('row', { name: /ownership/i }).first()).toBeVisible();
+  await page.screenshot({ path: 'artifacts/screenshots/study-rehearsed.png', fullPage: true });
+
+  await page.goto(`${origin}/experimenter?study=latency-rehearsal`);
+  page.once('dialog', (dialog) => void dialog.accept());
+  await page.getByRole('button', { name: 'Delete this simulated study' }).click();
+  await expect(page.getByText('“latency-rehearsal” is deleted.')).toBeVisible();
+  const { studies } = (await (await experimenter(origin).ask('')).json()) as { studies: { id: string }[] };
+  expect(studies.map(({ id }) => id)).toEqual(['uneven', 'latency']);
+});
+
+test('a plan with participants changes as a new version, which the experimenter is told and results keep apart @full', async ({
+  page,
+  origin,
+  complaints,
+}) => {
+  complaints.allow(/409 \(Conflict\)/);
+  const experimenting = experimenter(origin);
+  await experimenting.begin(plan({ id: 'changing' }), false);
+  await experimenting.ask('/changing/participants/P01/claim', 'POST', {});
+  await page.goto(`${origin}/experimenter`);
+  await signIn(page);
+  let asked = '';
+  page.once('dialog', (dialog) => {
+    asked = dialog.message();
+    void dialog.dismiss();
+  });
+  const changed = plan({ id: 'changing', title: 'A body that follows much later' });
+  await choose(page, changed);
+  await expect(page.getByText('Nothing was changed')).toBeVisible();
+  expect(asked).toContain('has begun: P01 keep its plan');
+  page.once('dialog', (dialog) => void dialog.accept());
+  await choose(page, changed);
+  await expect(page.getByText('version 2 is for those who begin now. Who stays with version 1: P01.')).toBeVisible();
+  await expect(page.getByRole('row', { name: /^P01, version 1 / })).toBeVisible();
+  await expect(page.getByRole('button', { name: 'Export version 1' })).toBeVisible();
+  await keepPicture(page, 'study-versions');
+  await page.goto(`${origin}/results?study=changing`);
+  const versions = page.getByRole('combobox', { name: 'Version of the plan' });
+  await expect(versions).toHaveValue('2');
+  await versions.selectOption('1');
+  await expect(page.getByRole('heading', { name: 'A body that follows later' })).toBeVisible();
+});

@@ -1,0 +1,72 @@
+import { expect, test } from 'vitest';
+import { compareAll } from '../../src/core/study/compare-all';
+import { answersIn, trialsIn } from '../../src/core/study/study-tables';
+import { createExperimenterClient } from '../../src/net/study-client';
+import { rehearse } from '../../src/pages/rehearse';
+import { latencyPlan } from '../core/study/studies';
+import { experimenter, now, servedStudies } from '../server/running-studies';
+
+const effects = { answers: { 'late-200': -1.5 }, scores: {} };
+
+/** A real server with the study of three latencies, in which a person takes part. */
+async function server() {
+  const served = await servedStudies();
+  const plan = latencyPlan({ participants: 6 });
+  served.store.addStudy(plan, { simulated: false, at: now });
+  served.store.claim('latency', 'P01', now);
+  return { ...served, plan, client: createExperimenterClient(experimenter, served.origin) };
+}
+
+test('a rehearsal goes through the plan to the end, into a study of its own, with what was put in', async () => {
+  const { client, plan } = await server();
+  const told: string[] = [];
+  const onProgress = (done: number, all: number) => told.push(`${done}/${all}`);
+  expect(await rehearse(client, plan, { seed: 3, effects, at: now, onProgress })).toBe('latency-rehearsal');
+  expect(told.at(-1)).toBe('6/6');
+  const { records, simulated, plan: rehearsed } = await client.records('latency-rehearsal');
+  expect(simulated).toBe(true);
+  expect(rehearsed.title).toBe(`SIMULATED: ${plan.title}`);
+  expect(records.every((record) => record.simulated)).toBe(true);
+  expect((await client.participants('latency-rehearsal')).map(({ session }) => session?.kind)).toEqual(
+    Array(6).fill('end'),
+  );
+  expect(trialsIn(records).filter(({ excluded }) => !excluded)).toHaveLength(6 * 3);
+  const compared = compareAll(answersIn(records, rehearsed), {
+    conditions: plan.conditions.map(({ id }) => id),
+    cohortOf: () => '',
+  });
+  expect(compared.filter(({ variance }) => (variance?.within?.p ?? 1) < 0.05).length).toBeGreaterThan(4);
+  expect((await client.records('latency')).records).toEqual([]);
+});
+
+test('another rehearsal takes the place of the first, and is the same for the same seed', async () => {
+  const { client, plan } = await server();
+  const answersOf = async () =>
+    answersIn((await client.records('latency-rehearsal')).records, plan).map(({ answer }) => answer);
+  await rehearse(client, plan, { seed: 3, effects, at: now });
+  const first = await answersOf();
+  await rehearse(client, plan, { seed: 3, effects, at: now });
+  expect(await answersOf()).toEqual(first);
+  await rehearse(client, plan, { seed: 4, effects, at: now });
+  expect(await answersOf()).not.toEqual(first);
+});
+
+test('a simulated study goes at once and whole; one of people does not', async () => {
+  const { client, plan, store } = await server();
+  await rehearse(client, plan, { seed: 3, effects, at: now });
+  await client.delete('latency-rehearsal', 'P02');
+  await client.deleteSimulated('latency-rehearsal');
+  expect((await client.studies()).map(({ id }) => id)).toEqual(['latency']);
+  await expect(client.records('latency-rehearsal')).rejects.toThrow('there is no study');
+  await expect(client.deleteSimulated('latency')).rejects.toThrow('is of people');
+  expect(store.overview('latency', now)[0]?.claimed).toBe(true);
+});
+
+test('an effect on what the plan does not have is named, and nothing is begun', async () => {
+  const { client, plan } = await server();
+  const wrong = { answers: { sideways: 1 }, scores: {} };
+  await expect(rehearse(client, plan, { seed: 1, effects: wrong, at: now })).rejects.toThrow(
+    'no condition or cohort "sideways"',
+  );
+  expect((await client.studies()).map(({ id }) => id)).toEqual(['latency']);
+});
