@@ -54,7 +54,8 @@ export default {
       severity: 'error',
       from: {
         path: '^src/core/',
-        pathNot: '^src/core/(study|statistics)/|^src/core/protocol/(messages|ball-messages|ball-snapshot|voice-messages)\\.ts$',
+        pathNot:
+          '^src/core/(study|statistics)/|^src/core/protocol/(messages|ball-messages|ball-snapshot|voice-messages)\\.ts$',
       },
       to: { pathNot: '^src/core/' },
     },

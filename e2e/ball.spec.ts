@@ -2,6 +2,7 @@ import { spawn } from 'node:child_process';
 import { createServer } from 'node:net';
 import { fileURLToPath } from 'node:url';
 import type { Browser } from '@playwright/test';
+import type { CourtProbe } from '../src/app/ball/ball-activity';
 import type { BallProbe } from '../src/app/ball/ball-frame';
 import { driveTime, goOn, holdAt } from './driven-time';
 import { emulatedHeadset } from './emulated-headset';
@@ -73,7 +74,7 @@ test('without a headset a mouse takes a ball, aims and throws it @full', async (
   await until(page, ({ aim }) => (aim ?? 0) > 5.5);
   await keepPicture(page, 'ball-mouse');
   // Frame by frame: the next ball is soon in the hand.
-  const gone = holdAt<BallProbe>(page, { phase: 'running', aim: null, held: { left: null, right: null } });
+  const gone = holdAt<CourtProbe>(page, { phase: 'running', aim: null, held: { left: null, right: null } });
   await Promise.all([gone, page.mouse.up()]);
   await goOn(page);
   await page.getByRole('button', { name: 'Let the built-in player play' }).click();

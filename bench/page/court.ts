@@ -66,6 +66,7 @@ export class Court {
       pageTime: 0,
       inRoom: true,
       acting: true,
+      voices: { hidden: new Set<number>(), markOf: () => 'none', levelOf: () => 0 },
       paused: false,
       head: nowhere,
     };

@@ -45,6 +45,8 @@ export interface Tracker {
   turn(angle: number): void;
   /** Which way a stick was pushed since the last call: 1 left, −1 right, 0 neither. One push is one turn. */
   takeTurn(): -1 | 0 | 1;
+  /** Whether a stick was pressed down since the last call. */
+  takePress(): boolean;
   /** Ends what it listens to: the session is over, or read by another tracker. */
   dispose(): void;
 }
@@ -52,6 +54,8 @@ export interface Tracker {
 /** A stick pushed this far to the side turns, and may turn again once it is back below the second. */
 const stickPushed = 0.7;
 const stickBack = 0.35;
+/** Where a stick's own button is among those of an “xr-standard” gamepad. */
+const stickButton = 3;
 
 /**
  * Reads by handedness, never by index, so that swapped and returning controllers stay where they belong. `onSpace` hears of the
@@ -73,7 +77,7 @@ class SessionTracker implements Tracker {
   readonly #onSpace: ((space: XRReferenceSpace) => void) | undefined;
   readonly #bodyReader: DeviceBodyReader | null;
   readonly #held = { controller: false, hand: false };
-  readonly #sticks = new TurningSticks();
+  readonly #sticks = new Sticks();
   readonly #belief = new Belief();
   readonly #fingers: Record<Side, HandShape | null> = { left: null, right: null };
   readonly #handReaders = { left: new HandReader('left'), right: new HandReader('right') };
@@ -150,6 +154,10 @@ class SessionTracker implements Tracker {
     return this.#sticks.take();
   }
 
+  takePress(): boolean {
+    return this.#sticks.takePress();
+  }
+
   dispose(): void {
     this.#floor.removeEventListener('reset', this.#reset);
   }
@@ -223,17 +231,23 @@ class SessionTracker implements Tracker {
   }
 }
 
-/** Turns by the sticks of a session's controllers: one push to the side is one turn. */
-class TurningSticks {
+/** The sticks of a session's controllers: one push to the side is one turn, and one press is one press. */
+class Sticks {
   #pushed = false;
   #wanted: -1 | 0 | 1 = 0;
+  #down = false;
+  #pressed = false;
 
   watch(sources: XRInputSourceArray): void {
     let furthest = 0;
+    let down = false;
     for (const { gamepad } of sources) {
+      down ||= gamepad?.buttons[stickButton]?.pressed ?? false;
       const sideways = gamepad?.axes[2] ?? 0;
       if (Math.abs(sideways) > Math.abs(furthest)) furthest = sideways;
     }
+    if (down && !this.#down) this.#pressed = true;
+    this.#down = down;
     if (Math.abs(furthest) < stickBack) this.#pushed = false;
     else if (Math.abs(furthest) > stickPushed && !this.#pushed) {
       this.#pushed = true;
@@ -244,6 +258,13 @@ class TurningSticks {
   /** A stick that is pushed now turns only after it was back. */
   waitForRelease(): void {
     this.#pushed = true;
+    this.#down = true;
+  }
+
+  takePress(): boolean {
+    const pressed = this.#pressed;
+    this.#pressed = false;
+    return pressed;
   }
 
   take(): -1 | 0 | 1 {

@@ -65,7 +65,7 @@ describe('compose.yaml', () => {
         logLevel: 'info',
       });
       expect(configurationFrom([], environment)).toMatchObject({ port: 3333, studyDirectory: '/studies' });
-      const source = ['relay-configuration', 'configuration']
+      const source = ['relay-configuration', 'voice-configuration', 'configuration']
         .map((file) => readFileSync(fileURLToPath(new URL(`../../server/${file}.ts`, import.meta.url)), 'utf8'))
         .join('');
       for (const variable of Object.keys(environment)) expect(source, variable).toContain(variable);

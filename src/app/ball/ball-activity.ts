@@ -17,7 +17,7 @@ import { rotate } from '../../core/math/quat';
 import type { Ray } from '../../core/math/ray';
 import type { Side } from '../../core/math/side';
 import { type Vec3, vec3 } from '../../core/math/vec3';
-import { type OwnBody, plainAvatar, type WornAvatar } from '../../core/protocol/worn-avatar';
+import type { OwnBody, WornAvatar } from '../../core/protocol/worn-avatar';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 import type { AvatarExchange } from '../../net/avatar-exchange';
 import { bannerText, connectionText } from '../../net/banner';
@@ -32,8 +32,10 @@ import { type LobbyButton, ownName, seatOfButton, waitingFor } from './board-dra
 import { roleTexts, seatLooks } from './court-plan';
 import { eventHaptics } from './haptics';
 import { createMatchClock } from './match-clock';
+import { type PlayerProbe, playersOf } from './player-probe';
 import { SeenAvatars } from './seen-avatars';
 import { type OwnWear, SharedAvatar } from './shared-avatar';
+import { Voices, type VoicesOptions, type VoicesProbe } from './voices';
 
 export interface BallActivityOptions {
   readonly quality: Quality;
@@ -48,6 +50,9 @@ export interface BallActivityOptions {
   connect(visitor: Visitor, time: number): Connection;
   /** null: avatars that are files are not exchanged in this room. */
   readonly avatars: AvatarExchange | null;
+  readonly voiceTerms: VoicesOptions['terms'];
+  /** Voices go by a relay alone. */
+  relayOnly(): boolean;
   /** What the player has on, for the others; null: they are to see the plain one. Asked for in every frame. */
   worn(): OwnWear | null;
   /** All other players are drawn as the mannequin. */
@@ -61,24 +66,14 @@ export interface BallActivityOptions {
   readonly onCaption: (text: string) => void;
 }
 
-/** A player whom the tools may know of. */
-export interface PlayerProbe {
-  readonly seat: number;
-  readonly name: string;
-  readonly bot: boolean;
-  readonly presence: string;
-  readonly opacity: number;
-  /** What the player has on, and as what they are drawn. */
-  readonly avatar: WornAvatar;
-  readonly drawnAs: WornAvatar | null;
-  /** Joints as drawn, own floor frame [m]. */
-  readonly joints: Readonly<Record<string, readonly [number, number, number]>>;
-}
+/** What tools may know of a match and of its voices. */
+export type CourtProbe = BallProbe & { readonly voices: VoicesProbe };
 
 /** The ball game in the page: the court, the others' bodies, and one's own part in the match. */
 export interface BallActivity {
   readonly play: BallPlay;
   readonly sound: BallView['sound'];
+  readonly voices: Voices;
   /** Once a frame, first. */
   begin(time: number): void;
   /** Head, hands and buttons of the built-in player on the own seat; null: no seat. */
@@ -101,7 +96,7 @@ export interface BallActivity {
   round(): BallRound | null;
   /** What a person should know of the connection; null: nothing. */
   banner(): string | null;
-  probe(): BallProbe | null;
+  probe(): CourtProbe | null;
   players(): readonly PlayerProbe[];
   dispose(): void;
 }
@@ -121,17 +116,16 @@ const noButtons: Buttons = {
 const noticeSeconds = 8;
 const voidedNotice = 'The server was restarted: this round does not count. A new one can begin.';
 
-const triple = ({ x, y, z }: Vec3): readonly [number, number, number] => [x, y, z];
-
 const roleOf = (state: BallState, player: number): string => roleTexts[state.players[player]?.station ?? player] ?? '';
 
 /** The seats of a match as the bar lists them. */
-const placesOf = (state: BallState, players: Players): BallRound['people'] =>
+const placesOf = (state: BallState, players: Players, voices: Voices): BallRound['people'] =>
   players.map((player, seat) => ({
     seat,
     name: player?.name ?? 'free',
     role: roleOf(state, seat),
     free: player === null || (player.bot && !player.me),
+    ...voices.voiceOf(seat),
   }));
 
 export const createBallActivity = (options: BallActivityOptions): BallActivity => new CourtActivity(options);
@@ -139,6 +133,7 @@ export const createBallActivity = (options: BallActivityOptions): BallActivity =
 class CourtActivity implements BallActivity {
   readonly play: BallPlay;
   readonly sound: BallView['sound'];
+  readonly voices: Voices;
   readonly #options: BallActivityOptions;
   readonly #view: BallView;
   readonly #others: RemoteAvatars;
@@ -159,6 +154,12 @@ class CourtActivity implements BallActivity {
     this.play = createBallPlay(options);
     this.#view = createBallView({ quality, balls: defaultBallOptions.balls, onCaption });
     this.sound = this.#view.sound;
+    this.voices = new Voices({
+      play: this.play,
+      terms: options.voiceTerms,
+      openAudio: () => this.sound.open(),
+      relayOnly: options.relayOnly,
+    });
     this.#seen = new SeenAvatars(mannequin, options.fetchOwn, options.avatars);
     this.#others = createRemoteAvatars({
       load: (avatar) => this.#seen.load(avatar),
@@ -178,6 +179,7 @@ class CourtActivity implements BallActivity {
   begin(time: number): void {
     this.#now = time;
     this.play.begin(time);
+    this.voices.begin();
     this.#shared.follow(this.play.room);
     this.#place();
     const voided = this.play.room?.voided ?? 0;
@@ -215,7 +217,7 @@ class CourtActivity implements BallActivity {
   show(time: number, head: Pose<'floor'>, tracked: boolean): void {
     if (!tracked) this.#follow(time, null, noButtons);
     const seen = this.play.newest;
-    this.#others.show(seen?.bodies ?? noBodies, time);
+    this.#others.show(this.voices.show(seen?.bodies ?? noBodies), time);
     if (!seen) return;
     const { state, me, rotate, opening, aim, paused, events, cues } = seen;
     this.#view.show({
@@ -232,6 +234,7 @@ class CourtActivity implements BallActivity {
       pageTime: time,
       inRoom: !this.#ended,
       acting: this.#acting,
+      voices: this.voices,
     });
     this.#view.hear(events, cues);
   }
@@ -287,7 +290,8 @@ class CourtActivity implements BallActivity {
       ready: own?.ready ?? false,
       rotate,
       spectators,
-      people: placesOf(state, players),
+      people: placesOf(state, players, this.voices),
+      voices: this.voices.state,
     };
   }
 
@@ -296,25 +300,17 @@ class CourtActivity implements BallActivity {
     return bannerText(this.play.status) ?? (notice && this.#now < notice.until ? notice.text : null);
   }
 
-  probe(): BallProbe | null {
+  probe(): CourtProbe | null {
     const seen = this.play.probe();
-    return seen && { ...seen, secondsLeft: this.#clock.secondsLeft };
+    return seen && { ...seen, secondsLeft: this.#clock.secondsLeft, voices: this.voices.probe() };
   }
 
   players(): readonly PlayerProbe[] {
-    const seen = this.play.newest;
-    return (seen?.bodies ?? []).flatMap(({ id, opacity }): PlayerProbe[] => {
-      const player = seen?.players[id];
-      if (!player) return [];
-      const { name, bot, presence } = player;
-      const drawn = Object.entries(this.#others.jointsOf(id) ?? {});
-      const joints = Object.fromEntries(drawn.map(([joint, at]) => [joint, triple(at)] as const));
-      const { avatar = plainAvatar } = this.play.room?.seats[id] ?? {};
-      return [{ seat: id, name, bot, presence, opacity, avatar, drawnAs: this.#others.drawnAs(id), joints }];
-    });
+    return playersOf(this.play, this.#others);
   }
 
   dispose(): void {
+    this.voices.dispose();
     this.play.leave();
     this.#view.own.removeFromParent();
     this.#options.surroundings.setSurroundings(null);

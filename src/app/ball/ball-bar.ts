@@ -2,6 +2,8 @@ import type { ServerState } from '../../net/server-presence';
 import { button, element } from '../../ui/element';
 import { ballRulesText, rulesList } from '../../ui/rules';
 import { toggle } from '../../ui/toggle';
+import { createVoicesBar, type VoicesBarActions } from './voices-bar';
+import type { PersonVoice, VoicesState } from './voices-state';
 
 /** A match as the bar shows it. */
 export interface BallRound {
@@ -28,12 +30,13 @@ export interface BallRound {
   readonly ready: boolean;
   readonly rotate: boolean;
   readonly spectators: number;
-  readonly people: readonly {
+  readonly people: readonly ({
     readonly seat: number;
     readonly name: string;
     readonly role: string;
     readonly free: boolean;
-  }[];
+  } & PersonVoice)[];
+  readonly voices: VoicesState;
 }
 
 /** The ball game as the bar shows it. */
@@ -74,6 +77,7 @@ export interface BallBarActions {
   follow(seat: number | null): void;
   /** The mouse moves the own body, or a built-in player does. */
   steer(on: boolean): void;
+  readonly voices: VoicesBarActions;
 }
 
 /** This page is in the room no longer. */
@@ -273,6 +277,7 @@ export function createBallBar(actions: BallBarActions, setSound: (on: boolean) =
   const seats = createSeats(actions);
   const deeds = createDeeds(actions);
   const company = createCompany(actions);
+  const voices = createVoicesBar(actions.voices);
   const players = createPlayers(actions, setSound);
   const node = element(
     'div',
@@ -285,6 +290,7 @@ export function createBallBar(actions: BallBarActions, setSound: (on: boolean) =
     deeds.node,
     deeds.hint,
     company.node,
+    voices.node,
     players.node,
   );
   node.hidden = true;
@@ -302,6 +308,8 @@ export function createBallBar(actions: BallBarActions, setSound: (on: boolean) =
       deeds.show(state);
       seats.show(state);
       company.show(state);
+      if (round) voices.show(round.voices, round);
+      else voices.node.hidden = true;
       players.show(state, soundOn);
     },
   };

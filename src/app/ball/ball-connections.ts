@@ -3,6 +3,7 @@ import type { SignedSeat } from '../../core/study/study-api';
 import type { AvatarExchange } from '../../net/avatar-exchange';
 import type { Connection, LocalClock, Visitor } from '../../net/connection';
 import { createLoopbackHost } from '../../net/loopback-connection';
+import type { VoiceTerms } from '../../net/voices/voice-terms';
 import { pageFolder } from '../../ui/page-folder';
 
 /** Makes one visitor's place in a room; `time`: the page's clock [s]. */
@@ -23,6 +24,8 @@ export interface BallPlace {
   readonly connect: Connect;
   /** Where its people's avatars are exchanged; null: nowhere. */
   readonly avatars: AvatarExchange | null;
+  /** Asks whether its people can talk; null: they cannot. */
+  readonly voiceTerms: (() => Promise<VoiceTerms>) | null;
 }
 
 /**
@@ -33,7 +36,7 @@ export async function assignedSeat(seat: () => Promise<SignedSeat>, clock: Local
   const pass = { token: async (afresh: boolean) => (afresh ? await seat() : first).token };
   const connect: Connect = (visitor) =>
     createSocketConnection({ url: pageFolder(), room: first.room, visitor, clock, pass });
-  return { connect, avatars: null };
+  return { connect, avatars: null, voiceTerms: null };
 }
 
 /**
@@ -46,13 +49,15 @@ export async function connectionsFor(
 ): Promise<BallPlace> {
   if (room === null) {
     const { pausable: _, ...ball } = terms;
-    return { connect: createLoopbackHost({ seed, ball }).connect, avatars: null };
+    return { connect: createLoopbackHost({ seed, ball }).connect, avatars: null, voiceTerms: null };
   }
-  const [{ createSocketConnection }, { createRoomPass }, { createAvatarExchange }] = await Promise.all([
-    import('../../net/socket-connection'),
-    import('../../net/room-pass'),
-    import('../../net/avatar-exchange'),
-  ]);
+  const [{ createSocketConnection }, { createRoomPass }, { createAvatarExchange }, { askVoiceTerms }] =
+    await Promise.all([
+      import('../../net/socket-connection'),
+      import('../../net/room-pass'),
+      import('../../net/avatar-exchange'),
+      import('../../net/voices/voice-terms'),
+    ]);
   const server = pageFolder();
   const person = createRoomPass(server, room, 'ball', tabStorage(), terms);
   const connect: Connect = (visitor) =>
@@ -64,5 +69,9 @@ export async function connectionsFor(
       // Each bot is a guest of its own.
       pass: visitor.bot ? createRoomPass(server, room, 'ball') : person,
     });
-  return { connect, avatars: createAvatarExchange(server, room, person) };
+  return {
+    connect,
+    avatars: createAvatarExchange(server, room, person),
+    voiceTerms: () => askVoiceTerms(server, room, person),
+  };
 }

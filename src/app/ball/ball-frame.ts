@@ -25,6 +25,7 @@ import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 import type { Connection, ConnectionStatus, RoomView } from '../../net/connection';
 import type { RemotePlayer } from '../../net/remote-players';
 import { seatLooks } from './court-plan';
+import { shownToEyes } from './personal-space';
 
 /** A person or bot at the court in one frame. Heads and palms are the same objects in every frame: copy what must stay. */
 export interface PlayerFrame {
@@ -203,8 +204,8 @@ export class CourtPeople {
         body.palette = seatLooks[body.station]?.palette ?? 'porcelain';
         body.pose = there.pose;
         body.fingers = there.fingers;
-        body.opacity = there.opacity;
         composeTransforms(floorFromArena, arenaFromFloor, body.placement);
+        body.opacity = there.opacity * (frame ? shownToEyes(frame.head.position, there.pose, body.placement) : 1);
         this.bodies.push(body);
       }
       if (!player) continue;

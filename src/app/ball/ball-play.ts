@@ -20,7 +20,7 @@ import type { Side } from '../../core/math/side';
 import { zero } from '../../core/math/vec3';
 import type { WornAvatar } from '../../core/protocol/worn-avatar';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
-import type { Connection, ConnectionStatus, RoomView, Visitor } from '../../net/connection';
+import type { Connection, ConnectionStatus, RoomView, Visitor, VoiceLine } from '../../net/connection';
 import { createRemotePlayers, type RemotePlayer } from '../../net/remote-players';
 import {
   actorFor,
@@ -41,6 +41,8 @@ import { type BallFrame, type BallProbe, CourtPeople, probeOf } from './ball-fra
 export interface BallPlay {
   readonly status: ConnectionStatus;
   readonly room: RoomView | null;
+  /** How this page sets up voices with the others; null: not connected yet. */
+  readonly voices: VoiceLine | null;
   /** Where the arena lies in this room: by the own seat; a spectator stands in the arena's own frame. Another object with every change. */
   readonly floorFromArena: Transform<'floor', 'arena'>;
   readonly newest: BallFrame | null;
@@ -143,6 +145,10 @@ class MatchPlay implements BallPlay {
 
   get room(): RoomView | null {
     return this.connection?.room ?? null;
+  }
+
+  get voices(): VoiceLine | null {
+    return this.connection?.voices ?? null;
   }
 
   get floorFromArena(): Transform<'floor', 'arena'> {

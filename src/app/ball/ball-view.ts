@@ -18,6 +18,7 @@ import { type Court, createCourt } from './court';
 import { createLobbySheet, type LobbySheet } from './lobby-sheet';
 import { createNameLabels, type NameLabels } from './name-labels';
 import { type BallSounds, createBallSounds } from './sounds';
+import type { Voices } from './voices';
 import { createWickerBasket } from './wicker-basket';
 import { createZoneRing } from './zone-ring';
 
@@ -53,6 +54,8 @@ export interface BallScene {
   readonly inRoom: boolean;
   /** A built-in player has the own seat. */
   readonly acting: boolean;
+  /** Who talks, and who is not to be seen here. */
+  readonly voices: Pick<Voices, 'hidden' | 'markOf' | 'levelOf'>;
   /** Whose eyes and ears these are, own floor frame. */
   readonly head: Pose<'floor'>;
 }
@@ -180,13 +183,14 @@ class CourtView implements BallView {
     return time < until && standing.state.phase === 'running' ? text : waitingLine(standing);
   }
 
-  #showNames({ state, attendants }: BallScene, people: readonly (Person | null)[]): void {
+  #showNames({ state, attendants, voices }: BallScene, people: readonly (Person | null)[]): void {
     this.#names.show(
       attendants.map((attendant, player) => {
         const person = people[player];
-        if (!attendant?.head || !person || person.me) return null;
+        if (!attendant?.head || !person || person.me || voices.hidden.has(player)) return null;
         const { head, opacity } = attendant;
-        return { person, station: state.players[player]?.station ?? player, head, opacity };
+        const station = state.players[player]?.station ?? player;
+        return { person, station, head, opacity, voice: voices.markOf(player), level: voices.levelOf(player) };
       }),
     );
   }

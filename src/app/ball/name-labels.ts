@@ -1,4 +1,4 @@
-import { Group, Sprite, SpriteMaterial, Vector3 } from 'three';
+import { type CanvasTexture, Group, type Matrix4, Sprite, SpriteMaterial, Vector3 } from 'three';
 import { clamp } from '../../core/math/damper';
 import type { Vec3 } from '../../core/math/vec3';
 import { ink, signFont } from '../../scene/boards/lettering';
@@ -21,6 +21,10 @@ export interface Label {
   /** Of the eyes. */
   readonly head: Vec3;
   readonly opacity: number;
+  /** Whether the player takes part in the voices, and could be heard. */
+  readonly voice: 'none' | 'muted' | 'open';
+  /** How loud they speak: 0 to 1. */
+  readonly level: number;
 }
 
 const size = { width: 640, height: 160 } as const;
@@ -36,13 +40,68 @@ const mostGrown = 3;
 /** How many times its own size a label is drawn for a camera this far away [m]. */
 export const labelScale = (far: number): number => clamp(far / readableFrom, 1, mostGrown);
 
-function paint(context: CanvasRenderingContext2D, person: Person, station: number): void {
+/** A microphone in a box of this height, its middle here [pixels]; struck through where its player is muted. */
+function paintMicrophone(context: CanvasRenderingContext2D, x: number, y: number, muted: boolean): void {
+  const color = muted ? ink.warning : '#7be0a5';
+  context.strokeStyle = color;
+  context.fillStyle = color;
+  context.lineWidth = 6;
+  context.lineCap = 'round';
+  context.beginPath();
+  context.roundRect(x - 10, y - 32, 20, 38, 10);
+  context.fill();
+  context.beginPath();
+  context.arc(x, y - 6, 20, 0, Math.PI);
+  context.moveTo(x, y + 14);
+  context.lineTo(x, y + 28);
+  context.moveTo(x - 12, y + 29);
+  context.lineTo(x + 12, y + 29);
+  context.stroke();
+  if (!muted) return;
+  for (const [stroke, line] of [
+    ['rgb(16, 24, 33)', 16],
+    [color, 6],
+  ] as const) {
+    context.strokeStyle = stroke;
+    context.lineWidth = line;
+    context.beginPath();
+    context.moveTo(x - 26, y - 30);
+    context.lineTo(x + 26, y + 26);
+    context.stroke();
+  }
+}
+
+/** The ring about the mark of a player who speaks, drawn once for all. */
+function paintRing(context: CanvasRenderingContext2D): void {
+  context.strokeStyle = '#7be0a5';
+  context.lineWidth = 12;
+  context.beginPath();
+  context.arc(64, 64, 54, 0, 2 * Math.PI);
+  context.stroke();
+}
+
+/** Of the ring's picture; its radius is that of the mark and a little more [pixels]. */
+const ringSize = 128;
+const ringScale = 0.86;
+
+/** How wide a label is, and so where its mark is [pixels]. */
+function widthOf(context: CanvasRenderingContext2D, { person, voice }: Pick<Label, 'person' | 'voice'>): number {
+  context.font = `700 54px ${signFont}`;
+  const named = Math.max(context.measureText(nameOf(person)).width, 190) + 132;
+  return Math.min(size.width - 24, named + (voice === 'none' ? 0 : voiceWidth));
+}
+
+/** What the microphone takes of a label's width [pixels]. */
+const voiceWidth = 60;
+
+/** Draws a label; the middle of its mark, from the left [pixels]. */
+function paint(context: CanvasRenderingContext2D, { person, station, voice }: Label): number {
   const { width, height } = size;
   const look = seatLooks[station];
   const name = nameOf(person);
   const under = person.presence === 'here' ? (roleTexts[station] ?? '') : 'Away';
-  context.font = `700 54px ${signFont}`;
-  const wide = Math.min(width - 24, Math.max(context.measureText(name).width, 190) + 132);
+  const wide = widthOf(context, { person, voice });
+  const text = wide - 134 - (voice === 'none' ? 0 : voiceWidth);
   const left = (width - wide) / 2;
   context.fillStyle = 'rgba(16, 24, 33, 0.86)';
   context.beginPath();
@@ -60,13 +119,16 @@ function paint(context: CanvasRenderingContext2D, person: Person, station: numbe
   context.textAlign = 'left';
   context.fillStyle = ink.text;
   context.font = `700 54px ${signFont}`;
-  context.fillText(name, left + 110, height / 2 - 24, wide - 134);
+  context.fillText(name, left + 110, height / 2 - 24, text);
   context.fillStyle = person.presence === 'here' ? ink.soft : ink.warning;
   context.font = `600 36px ${signFont}`;
-  context.fillText(under, left + 110, height / 2 + 34, wide - 134);
+  context.fillText(under, left + 110, height / 2 + 34, text);
+  if (voice !== 'none') paintMicrophone(context, left + wide - 52, height / 2, voice === 'muted');
+  return left + 60;
 }
 
-function createLabel(quality: Quality) {
+/** What a player says is seen by a ring about their mark, which is as clear as they are loud. */
+function createLabel(quality: Quality, ringTexture: CanvasTexture) {
   const { texture, draw } = createDrawnTexture(size.width, size.height, quality);
   const material = new SpriteMaterial({
     map: texture,
@@ -76,38 +138,54 @@ function createLabel(quality: Quality) {
     depthWrite: false,
   });
   const sprite = new Sprite(material);
+  const ring = new Sprite(
+    new SpriteMaterial({ map: ringTexture, transparent: true, fog: false, toneMapped: false, depthWrite: false }),
+  );
+  const wide = (metres * ringSize * ringScale) / size.width;
   const height = (metres * size.height) / size.width;
   const head = new Vector3();
   const there = new Vector3();
   const eye = new Vector3();
   /** For each camera anew: a window's is not where the player's eyes are. */
-  sprite.onBeforeRender = (_renderer, _scene, { matrixWorld }) => {
+  const place = (one: Sprite, matrixWorld: Matrix4, across: number, down: number) => {
     sprite.parent?.localToWorld(there.copy(head));
     const grown = labelScale(there.distanceTo(eye.setFromMatrixPosition(matrixWorld)));
-    sprite.scale.set(grown * metres, grown * height, 1);
-    sprite.position.set(head.x, head.y + above + (grown * height) / 2, head.z);
-    sprite.updateMatrixWorld();
+    one.scale.set(grown * across, grown * down, 1);
+    one.position.set(head.x, head.y + above + (grown * height) / 2, head.z);
+    one.updateMatrixWorld();
   };
+  sprite.onBeforeRender = (_renderer, _scene, { matrixWorld }) => place(sprite, matrixWorld, metres, height);
+  ring.onBeforeRender = (_renderer, _scene, { matrixWorld }) => place(ring, matrixWorld, wide, wide);
   // It is where it is drawn only once it is drawn.
-  sprite.frustumCulled = false;
+  for (const one of [sprite, ring]) {
+    one.frustumCulled = false;
+    one.visible = false;
+  }
   sprite.renderOrder = 4;
-  sprite.visible = false;
+  ring.renderOrder = 5;
   let shown = '';
   return {
-    sprite,
+    sprites: [sprite, ring],
     show(label: Label | null): void {
       sprite.visible = label !== null && label.opacity > 0;
+      ring.visible = sprite.visible && label !== null && label.level > 0;
       if (!label) return;
-      const key = JSON.stringify([label.person, label.station]);
+      const key = JSON.stringify([label.person, label.station, label.voice]);
       if (key !== shown) {
         shown = key;
-        draw((context) => paint(context, label.person, label.station));
+        draw((context) => {
+          const mark = paint(context, label);
+          // A sprite turns about its centre: this one lies off its own, at the mark.
+          ring.center.x = 0.5 - ((mark / size.width - 0.5) * metres) / wide;
+        });
       }
       head.copy(label.head);
       material.opacity = label.opacity;
+      ring.material.opacity = label.opacity * label.level;
     },
     dispose() {
       material.dispose();
+      ring.material.dispose();
       texture.dispose();
     },
   };
@@ -116,8 +194,10 @@ function createLabel(quality: Quality) {
 export function createNameLabels(count: number, quality: Quality): NameLabels {
   const object = new Group();
   object.name = 'names';
-  const labels = Array.from({ length: count }, () => createLabel(quality));
-  object.add(...labels.map(({ sprite }) => sprite));
+  const ring = createDrawnTexture(ringSize, ringSize, quality);
+  ring.draw(paintRing);
+  const labels = Array.from({ length: count }, () => createLabel(quality, ring.texture));
+  object.add(...labels.flatMap(({ sprites }) => sprites));
   return {
     object,
     show(next) {
@@ -128,6 +208,7 @@ export function createNameLabels(count: number, quality: Quality): NameLabels {
     dispose() {
       object.removeFromParent();
       for (const label of labels) label.dispose();
+      ring.texture.dispose();
     },
   };
 }

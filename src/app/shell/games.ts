@@ -80,6 +80,7 @@ export class PageGames implements Games {
       mannequin,
       fetchOwn: (name) => fetchOwnAvatar(name),
       ...(await this.#place(connections, seed(), place)),
+      relayOnly: () => settings.voicesByRelay,
       worn: () => (settings.shareAvatar || avatar.own ? avatar.worn : null),
       plainOthers: () => settings.plainOthers,
       notify: (level, text) => notices.show(level, text),

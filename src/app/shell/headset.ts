@@ -167,6 +167,11 @@ export class Headset {
     return pushed !== 0;
   }
 
+  /** Whether a stick was pressed down since the last call. */
+  takePress(): boolean {
+    return this.#session?.tracker.takePress() ?? false;
+  }
+
   buzz(pulses: readonly Pulse[]): void {
     if (this.#session) buzz(this.#session.xr, pulses);
   }

@@ -128,7 +128,8 @@ export class PageFrame implements FrameParts<XRFrame> {
   }
 
   #turn(time: number): void {
-    const { headset, stage, body } = this.#options;
+    const { headset, stage, body, activities } = this.#options;
+    if (headset.takePress()) activities.ball?.voices.toggleMuted();
     if (!headset.turnByStick()) return;
     stage.vignette.close(time);
     body.jumped();

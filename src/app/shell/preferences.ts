@@ -44,6 +44,7 @@ const schema = v.object({
   bones: v.optional(v.record(v.pipe(v.string(), v.regex(avatarHash)), boneMap)),
   shareAvatar: v.optional(v.boolean()),
   plainOthers: v.optional(v.boolean()),
+  voicesByRelay: v.optional(v.boolean()),
 });
 
 /** What the page remembers from one visit to the next, on this device only. */

@@ -7,8 +7,8 @@ import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 import type { BareBody } from '../../lib/bare-body';
 import type { Notices } from '../../ui/notices';
 import type { ArcheryProbe } from '../archery/archery-play';
-import type { PlayerProbe } from '../ball/ball-activity';
-import type { BallProbe } from '../ball/ball-frame';
+import type { CourtProbe } from '../ball/ball-activity';
+import type { PlayerProbe } from '../ball/player-probe';
 import type { KeptPage, KeptState } from '../offline/kept-page';
 import type { Recorder } from '../studio/recorder';
 import type { StudyProbe } from '../study/study-run';
@@ -70,7 +70,7 @@ export interface Probe {
   /** The others as they are drawn here. */
   readonly players: readonly PlayerProbe[];
   /** The round being played; null in the studio. */
-  readonly game: ArcheryProbe | BallProbe | null;
+  readonly game: ArcheryProbe | CourtProbe | null;
   /** Where a study stands; null: there is none. */
   readonly study: StudyProbe | null;
 }

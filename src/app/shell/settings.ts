@@ -21,6 +21,8 @@ export interface Settings {
   readonly shareAvatar: boolean;
   /** All other players are shown as mannequins. */
   readonly plainOthers: boolean;
+  /** Voices go by a relay alone, so that others do not learn this page's address. */
+  readonly voicesByRelay: boolean;
   /** The built-in actor moves the body where no person does. */
   readonly actor: boolean;
   /** In a game, without a headset: the mouse plays instead of the actor. */
@@ -61,6 +63,7 @@ export function createSettings(switches: Switches, { preferences }: Pick<Prefere
     skinTone: preferences.skinTone,
     shareAvatar: preferences.shareAvatar ?? true,
     plainOthers: preferences.plainOthers ?? false,
+    voicesByRelay: preferences.voicesByRelay ?? false,
     actor: switches.actor,
     mouse: false,
     emulatorPanel: true,
@@ -91,6 +94,7 @@ export type LastingSettings = Partial<
     | 'skinTone'
     | 'shareAvatar'
     | 'plainOthers'
+    | 'voicesByRelay'
     | 'bowSide'
     | 'oneHanded'
     | 'everyHitCounts'

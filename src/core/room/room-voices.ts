@@ -30,14 +30,21 @@ export class RoomVoices {
     return taken !== null && this.#seats.at(taken)?.identity !== identity ? null : voice;
   }
 
-  /** Hears a client on this seat (null: none); the reason why the room does not do as they say, or null. */
-  hear(index: number | null, known: Client, message: Received<'voice' | 'signal'>): RoomReason | null {
-    if (!this.#on) return 'no-voices';
-    return message.type === 'signal' ? this.#pass(index, message) : this.#change(index, known, message.voice);
+  /** Hears a client on this seat (null: none); `refuse` is told why the room does not do as they say. */
+  hear(
+    index: number | null,
+    known: Client,
+    message: Received<'voice' | 'signal'>,
+    refuse: (reason: RoomReason) => void,
+  ): void {
+    const passes = message.type === 'signal';
+    const refusal = passes ? this.#pass(index, message) : this.#change(index, known, message.voice);
+    if (refusal) refuse(refusal);
   }
 
   /** Takes the client in among the voices, or out. */
   #change(index: number | null, known: Client, voice: Voice | null): RoomReason | null {
+    if (!this.#on) return 'no-voices';
     if (index === null && voice) return 'no-seat';
     const taken = voice && this.#seats.withVoice(voice.session);
     if (taken !== null && taken !== index) return 'session-taken';
@@ -48,6 +55,7 @@ export class RoomVoices {
 
   /** Passes a signal on to the page that it is for, with the session that the room knows its sender by. */
   #pass(index: number | null, { to, body }: Received<'signal'>): RoomReason | null {
+    if (!this.#on) return 'no-voices';
     const sender = index === null ? null : this.#seats.at(index);
     if (!sender) return 'no-seat';
     const receiver = this.#seats.withVoice(to);

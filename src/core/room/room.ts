@@ -208,11 +208,9 @@ export class Room<Game extends HostedGame> {
         this.#wear(client, known, message);
         return;
       case 'voice':
-      case 'signal': {
-        const refusal = this.#voices.hear(index, known, message);
-        if (refusal) this.#refuse(client, 'message', refusal);
+      case 'signal':
+        this.#voices.hear(index, known, message, (reason) => this.#refuse(client, 'message', reason));
         return;
-      }
       case 'away':
         if (index !== null) this.#declareAway(index, message, time);
         return;
@@ -302,6 +300,8 @@ export class Room<Game extends HostedGame> {
       return;
     }
     if (index !== null) this.#vacate(index);
+    // To the others it is another player: their pages connect anew.
+    known.voice = null;
     if (wish !== null) this.#takeSeat(wish, client, known, time);
     this.#outlet.send(client, { type: 'seated', seat: wish });
     this.#broadcastAbout();

@@ -12,6 +12,8 @@ export type Recipes = ReadonlyMap<string, Recipe>;
 export interface SoundStage {
   /** Starts the audio; a browser allows it only within a user's gesture. Rejects where there is no audio. */
   unlock(): Promise<void>;
+  /** The same without the sounds of the game: its context, running, for what else is to be heard by the same ears. */
+  open(): Promise<AudioContext>;
   /** null while the audio rests: it would keep everything and play it at once later. */
   readonly player: Player | null;
   listen(head: Pose<'floor'>): void;
@@ -22,7 +24,7 @@ export interface SoundStage {
 }
 
 /** What the page itself does with a stage. */
-export type AudibleStage = Pick<SoundStage, 'unlock' | 'setVolume' | 'setMuted'>;
+export type AudibleStage = Pick<SoundStage, 'unlock' | 'open' | 'setVolume' | 'setMuted'>;
 
 /** Seconds in which volume and mute fade. */
 const fadeSeconds = 0.03;
@@ -128,18 +130,22 @@ export function createSoundStage(
   const applyVolume = () => {
     if (player) player.master.gain.setTargetAtTime(muted ? 0 : volume, player.context.currentTime, fadeSeconds);
   };
+  async function awaken(): Promise<Player> {
+    if (!player) {
+      player = createPlayer(createContext(), recipes);
+      player.master.gain.value = muted ? 0 : volume;
+    }
+    if (player.context.state !== 'running') await player.context.resume();
+    return player;
+  }
   return {
     get player() {
       return player?.context.state === 'running' ? player : null;
     },
     async unlock() {
-      if (!player) {
-        player = createPlayer(createContext(), recipes);
-        player.master.gain.value = muted ? 0 : volume;
-      }
-      if (player.context.state !== 'running') await player.context.resume();
-      await player.warm();
+      await (await awaken()).warm();
     },
+    open: async () => (await awaken()).context,
     listen(head) {
       if (player) placeListener(player.context, head);
     },

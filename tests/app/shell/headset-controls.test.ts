@@ -167,6 +167,7 @@ describe('the buttons of the menu', () => {
       bowSide: 'left',
       roundOver: false,
       ready: null,
+      voices: { phase: 'none', muted: true, deaf: false },
       notice: null,
     },
   };
@@ -184,6 +185,9 @@ describe('the buttons of the menu', () => {
     setBowSide: (side) => void done.push(`bow ${side}`),
     restart: () => undefined,
     ready: (on) => void done.push(`ready ${on}`),
+    askVoices: (on) => void done.push(`ask ${on}`),
+    joinVoices: () => void done.push('join voices'),
+    mute: (on) => void done.push(`mute ${on}`),
     exit: () => undefined,
   };
   const labels = (change: Partial<VrMenuState> = {}) =>
@@ -193,8 +197,11 @@ describe('the buttons of the menu', () => {
     ['', false],
     [', where the device was asked for its body', true],
   ])('lie apart and inside the sheet in every game%s', (_, deviceBody) => {
-    for (const activity of ['studio', 'archery', 'ball'] as const) {
-      const buttons = menuButtons({ ...studio, activity, ready: true, ownBody: 'woman', deviceBody }, actions);
+    const phases = { studio: 'none', archery: 'none', ball: 'in' } as const;
+    for (const [activity, phase] of [...Object.entries(phases), ['ball', 'asked'], ['ball', 'off']] as const) {
+      const voices = { phase, muted: true, deaf: false };
+      const shown = { ...studio, activity: activity as keyof typeof phases, ready: true, voices, deviceBody };
+      const buttons = menuButtons({ ...shown, ownBody: 'woman' }, actions);
       expect(buttons.some(({ id }) => id === 'device')).toBe(deviceBody);
       expect(buttons.length).toBeGreaterThan(8);
       for (const [index, { at }] of buttons.entries()) {
@@ -218,6 +225,14 @@ describe('the buttons of the menu', () => {
     expect(labels({ activity: 'ball', ready: false })).toContain('Ready');
     expect(labels({ activity: 'ball', ready: true })).toContain('Wait for me');
     expect(labels({ activity: 'ball' })).not.toContain('Ready');
+    const talking = (phase: VrMenuState['voices']['phase'], muted = true, deaf = false) =>
+      labels({ activity: 'ball', voices: { phase, muted, deaf } });
+    expect(talking('none').join()).not.toMatch(/Talk|ute me/);
+    expect(talking('off')).toContain('Talk');
+    expect(talking('asked')).toEqual(expect.arrayContaining(['Join, muted', 'Not now']));
+    expect(talking('in')).toContain('Unmute me');
+    expect(talking('in', false)).toContain('Mute me');
+    expect(talking('in', true, true)).toContain('No microphone');
   });
 
   test('that change something ask for the other state', () => {

@@ -60,7 +60,7 @@ export class DesktopControls {
   }
 
   #shortcuts(): Shortcuts {
-    const { actions, settings, stage } = this.#options;
+    const { actions, settings, stage, activities } = this.#options;
     const nextView = () => viewNames[(viewNames.indexOf(stage.view.view) + 1) % viewNames.length] ?? 'third-person';
     const estimators = estimatorOrder.map((name, index) => [String(index + 1), () => actions.chooseEstimator(name)]);
     return {
@@ -72,6 +72,7 @@ export class DesktopControls {
       b: () => actions.setDebugSkeleton(!settings.debugSkeleton),
       u: () => actions.setUpperBodyOnly(!settings.upperBodyOnly),
       o: () => actions.setOverlay(!settings.overlay),
+      t: () => activities.ball?.voices.toggleMuted(),
       p: () => this.#panel.setOpen(!this.#panel.open),
     };
   }

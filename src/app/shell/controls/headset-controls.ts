@@ -1,6 +1,7 @@
 import type { BareBody } from '../../../lib/bare-body';
 import type { FrameReport } from '../../../ui/overlay';
 import type { VrPointers } from '../../../ui/vr-pointers';
+import { consentText, type VoicesState } from '../../ball/voices-state';
 import type { Activities } from '../activities';
 import type { PanelActions } from '../panel/panel';
 import type { VrMenuActions, VrMenuState } from '../vr-menu/menu-buttons';
@@ -8,6 +9,7 @@ import { VrMenu } from '../vr-menu/vr-menu';
 import type { ControlledParts } from './controlled-parts';
 import type { Measuring } from './measuring';
 
+const noVoices: VoicesState = { phase: 'none', muted: true, relay: false, relayOnly: false, said: null, deaf: false };
 /** How much larger the menu in the headset is for a user who wants larger text. */
 const largerMenu = 1.3;
 
@@ -87,6 +89,9 @@ export class HeadsetControls {
       setBowSide: (side) => activities.rule({ bowSide: side }),
       restart: () => activities.restartRound(),
       ready: (on) => activities.ball?.play.ready(on),
+      askVoices: (on) => activities.ball?.voices.ask(on),
+      joinVoices: () => void activities.ball?.voices.join(),
+      mute: (on) => void activities.ball?.voices.setMuted(on),
       exit: () => actions.exitVr(),
     };
   }
@@ -109,14 +114,22 @@ export class HeadsetControls {
     };
   }
 
-  #ballState(): Pick<VrMenuState, 'ready' | 'notice'> {
+  #ballState(): Pick<VrMenuState, 'ready' | 'voices' | 'notice'> {
     const { activities, notices } = this.#options;
     const { ball } = activities;
     const round = ball?.round() ?? null;
+    const { phase, muted, deaf, said } = ball?.voices.state ?? noVoices;
     const asked = round !== null && round.ended === null && round.seat !== null && round.phase !== 'running';
     return {
       ready: asked ? round.ready : null,
-      notice: ball?.banner() ?? notices.current().at(-1)?.text ?? round?.waiting ?? round?.connection ?? null,
+      voices: { phase, muted, deaf },
+      notice:
+        (phase === 'asked' ? consentText : said) ??
+        ball?.banner() ??
+        notices.current().at(-1)?.text ??
+        round?.waiting ??
+        round?.connection ??
+        null,
     };
   }
 }

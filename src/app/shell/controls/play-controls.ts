@@ -85,6 +85,15 @@ export class PlayControls {
       rejoin: () => void activities.rejoin(),
       follow: (seat) => activities.follow(seat),
       steer: (on) => activities.chooseShooter(on ? 'mouse' : 'actor'),
+      voices: {
+        ask: (on) => activities.ball?.voices.ask(on),
+        join: () => void activities.ball?.voices.join(),
+        leave: () => activities.ball?.voices.leave(),
+        mute: (on) => void activities.ball?.voices.setMuted(on),
+        relayOnly: (on) => writer.keep({ voicesByRelay: on }),
+        silence: (seat, on) => activities.ball?.voices.silence(seat, on),
+        hide: (seat, on) => activities.ball?.voices.hide(seat, on),
+      },
     };
   }
 

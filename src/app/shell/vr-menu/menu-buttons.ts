@@ -3,6 +3,7 @@ import type { EstimatorName } from '../../../core/estimation/pose-estimator';
 import type { Side } from '../../../core/math/side';
 import { type OwnBody, ownBodies, plainAvatar, type SkinTone, skinTones } from '../../../core/protocol/worn-avatar';
 import type { CalibrationStep } from '../../../ui/calibration-dialog';
+import type { VoicesState } from '../../ball/voices-state';
 import { estimatorOrder, estimatorTexts } from '../estimator-texts';
 import type { ActivityName } from '../play-bar';
 
@@ -25,6 +26,8 @@ export interface VrMenuState {
   readonly roundOver: boolean;
   /** In the ball game, before and after a match: whether one is ready; null: not asked. */
   readonly ready: boolean | null;
+  /** How one takes part in the voices of a room; none: it has none. */
+  readonly voices: Pick<VoicesState, 'phase' | 'muted' | 'deaf'>;
   /** A sentence to be read in the headset; null: none. */
   readonly notice: string | null;
 }
@@ -42,6 +45,10 @@ export interface VrMenuActions {
   setBowSide(side: Side): void;
   restart(): void;
   ready(on: boolean): void;
+  /** What voices mean is to be read, or no longer. */
+  askVoices(on: boolean): void;
+  joinVoices(): void;
+  mute(on: boolean): void;
   exit(): void;
 }
 
@@ -103,6 +110,23 @@ function estimatorButtons(
 const after = <T>(all: readonly [T, ...T[]], chosen: T | undefined): T =>
   all[chosen === undefined ? 0 : all.indexOf(chosen) + 1] ?? all[0];
 
+/** What one can do about voices now. */
+function voiceEntries({ voices: { phase, muted, deaf } }: VrMenuState, actions: VrMenuActions): readonly Entry[] {
+  switch (phase) {
+    case 'off':
+      return [['voices', 'Talk', () => actions.askVoices(true)]];
+    case 'asked':
+      return [
+        ['voices', 'Join, muted', () => actions.joinVoices()],
+        ['no-voices', 'Not now', () => actions.askVoices(false)],
+      ];
+    case 'in':
+      return [['voices', deaf ? 'No microphone' : muted ? 'Unmute me' : 'Mute me', () => actions.mute(!muted)]];
+    default:
+      return [];
+  }
+}
+
 /** Where one can go from here, and what one can do here. */
 function playEntries(state: VrMenuState, actions: VrMenuActions): readonly Entry[] {
   const { activity, ready, roundOver, bowSide, ownBody, skinTone, plainOthers } = state;
@@ -120,7 +144,17 @@ function playEntries(state: VrMenuState, actions: VrMenuActions): readonly Entry
     return [
       studio,
       ...(ready === null ? [] : [['ready', ready ? 'Wait for me' : 'Ready', () => actions.ready(!ready)] as const]),
-      ['others', `Others: ${plainOthers ? 'plain' : 'as worn'}`, () => actions.setPlainOthers(!plainOthers)],
+      // What voices mean is read before anything else is pressed.
+      ...(state.voices.phase === 'asked'
+        ? []
+        : [
+            [
+              'others',
+              `Others: ${plainOthers ? 'plain' : 'as worn'}`,
+              () => actions.setPlainOthers(!plainOthers),
+            ] as const,
+          ]),
+      ...voiceEntries(state, actions),
     ];
   if (roundOver) return [studio, ['restart', 'New round', () => actions.restart()]];
   const other = bowSide === 'left' ? 'right' : 'left';

@@ -1,0 +1,50 @@
+import type { AvatarPose } from '../../core/body/avatar-pose';
+import { clamp } from '../../core/math/damper';
+import { type Transform, transformPoint } from '../../core/math/pose';
+import { type Vec3, vec3 } from '../../core/math/vec3';
+
+/** Nearer to the own eyes than the first [m] another body begins to fade; at the second it is gone. */
+const fadesFrom = 0.5;
+const goneAt = 0.2;
+/** Of a body whose trunk was not sent: its hips lie about so far below the head [m]. */
+const hipsBelow = 0.62;
+
+const head = vec3(0, 0, 0);
+const low = vec3(0, 0, 0);
+const hand = vec3(0, 0, 0);
+
+/** From a point to the line between two others [m]. */
+function distanceToLine(point: Vec3, from: Vec3, to: Vec3): number {
+  const x = to.x - from.x;
+  const y = to.y - from.y;
+  const z = to.z - from.z;
+  const square = x * x + y * y + z * z;
+  const along = (point.x - from.x) * x + (point.y - from.y) * y + (point.z - from.z) * z;
+  const share = square > 0 ? clamp(along / square, 0, 1) : 0;
+  return Math.hypot(point.x - from.x - share * x, point.y - from.y - share * y, point.z - from.z - share * z);
+}
+
+/**
+ * How much is to be seen of another body from these eyes, floor frame: 1 from half a metre on, 0 where its head, trunk or hands come
+ * as close as 0.2 m. `placement`: where its floor lies.
+ */
+export function shownToEyes(eyes: Vec3, pose: AvatarPose, placement: Transform<'floor', 'floor'>): number {
+  transformPoint(placement, pose.head.position, head);
+  if (pose.body) transformPoint(placement, pose.body.hipsPosition, low);
+  else {
+    low.x = head.x;
+    low.y = head.y - hipsBelow;
+    low.z = head.z;
+  }
+  let nearest = distanceToLine(eyes, head, low);
+  if (pose.leftHand) {
+    transformPoint(placement, pose.leftHand.position, hand);
+    nearest = Math.min(nearest, distanceToLine(eyes, hand, hand));
+  }
+  if (pose.rightHand) {
+    transformPoint(placement, pose.rightHand.position, hand);
+    nearest = Math.min(nearest, distanceToLine(eyes, hand, hand));
+  }
+  const share = clamp((nearest - goneAt) / (fadesFrom - goneAt), 0, 1);
+  return share * share * (3 - 2 * share);
+}

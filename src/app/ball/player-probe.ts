@@ -1,0 +1,36 @@
+import type { RemoteAvatars } from '../../avatar/remote-avatars';
+import type { Vec3 } from '../../core/math/vec3';
+import { plainAvatar, type WornAvatar } from '../../core/protocol/worn-avatar';
+import type { BallPlay } from './ball-play';
+
+/** A player whom the tools may know of. */
+export interface PlayerProbe {
+  readonly seat: number;
+  readonly name: string;
+  readonly bot: boolean;
+  readonly presence: string;
+  readonly opacity: number;
+  /** What the player has on, and as what they are drawn. */
+  readonly avatar: WornAvatar;
+  readonly drawnAs: WornAvatar | null;
+  /** Joints as drawn, own floor frame [m]. */
+  readonly joints: Readonly<Record<string, readonly [number, number, number]>>;
+}
+
+const triple = ({ x, y, z }: Vec3): readonly [number, number, number] => [x, y, z];
+
+/** The other players as they are drawn now. */
+export function playersOf(
+  { newest, room }: Pick<BallPlay, 'newest' | 'room'>,
+  others: Pick<RemoteAvatars, 'jointsOf' | 'drawnAs'>,
+): readonly PlayerProbe[] {
+  return (newest?.bodies ?? []).flatMap(({ id, opacity }): PlayerProbe[] => {
+    const player = newest?.players[id];
+    if (!player) return [];
+    const { name, bot, presence } = player;
+    const drawn = Object.entries(others.jointsOf(id) ?? {});
+    const joints = Object.fromEntries(drawn.map(([joint, at]) => [joint, triple(at)] as const));
+    const { avatar = plainAvatar } = room?.seats[id] ?? {};
+    return [{ seat: id, name, bot, presence, opacity, avatar, drawnAs: others.drawnAs(id), joints }];
+  });
+}

@@ -1,0 +1,144 @@
+import { button, element } from '../../ui/element';
+import { toggle } from '../../ui/toggle';
+import { consentText, type PersonVoice, type VoicesState } from './voices-state';
+
+/** Who is in the room, as far as this part of the bar needs it. */
+export interface ListedPeople {
+  /** The own one; null: a spectator. */
+  readonly seat: number | null;
+  readonly people: readonly (PersonVoice & { readonly seat: number; readonly name: string })[];
+}
+
+export interface VoicesBarActions {
+  /** Shows what voices mean, or puts it away. */
+  ask(on: boolean): void;
+  join(): void;
+  leave(): void;
+  mute(on: boolean): void;
+  relayOnly(on: boolean): void;
+  /** Does not hear a player any more, or does again. */
+  silence(seat: number, on: boolean): void;
+  /** Neither sees nor hears a player any more, or does again. */
+  hide(seat: number, on: boolean): void;
+}
+
+const linkTexts = { none: '', connecting: 'connecting …', connected: '', lost: 'connection lost' } as const;
+
+/** How it stands with a player's voice, in words. */
+function voiceText({ voice, link, silenced, hidden }: ListedPeople['people'][number]): string {
+  if (hidden) return 'hidden';
+  if (voice === 'none') return '';
+  if (silenced) return 'muted by you';
+  return linkTexts[link] || (voice === 'muted' ? 'muted' : 'can be heard');
+}
+
+/** The other players, each with what this page is to show of them. */
+function createPeople(actions: VoicesBarActions) {
+  const node = element('ul', { class: 'people', 'aria-label': 'Other players' });
+  let shown = '';
+  return {
+    node,
+    show(round: ListedPeople | null, withVoices: boolean): void {
+      const others = (round?.people ?? []).filter(({ seat, name }) => seat !== round?.seat && name !== 'free');
+      const key = JSON.stringify([others, withVoices]);
+      node.hidden = others.length === 0;
+      if (key === shown) return;
+      shown = key;
+      node.replaceChildren(
+        ...others.map((person) => {
+          const { seat, name, voice, silenced, hidden } = person;
+          const state = withVoices ? voiceText(person) : hidden ? 'hidden' : '';
+          const mute = button(silenced ? 'Unmute' : 'Mute', () => actions.silence(seat, !silenced), {
+            'aria-label': `${silenced ? 'Unmute' : 'Mute'} ${name}`,
+            disabled: hidden,
+          });
+          mute.hidden = !withVoices || voice === 'none';
+          const hide = button(hidden ? 'Show' : 'Hide', () => actions.hide(seat, !hidden), {
+            'aria-label': `${hidden ? 'Show' : 'Hide'} ${name}`,
+          });
+          return element(
+            'li',
+            {},
+            element('span', { class: 'name' }, name),
+            element('span', { class: 'hint' }, state),
+            mute,
+            hide,
+          );
+        }),
+      );
+    },
+  };
+}
+
+/** What is read before the first time, with the way to take part and the way not to. */
+function createConsent(actions: VoicesBarActions) {
+  const relay = toggle('Hide my address: by the relay only', actions.relayOnly);
+  const without = element(
+    'p',
+    { class: 'hint' },
+    'This server has no relay that could hide your address: if you mind, do not join.',
+  );
+  const node = element(
+    'div',
+    { class: 'consent', role: 'group', 'aria-label': 'Before you join the voices' },
+    element('p', {}, consentText),
+    relay.node,
+    without,
+    element(
+      'div',
+      { class: 'row' },
+      button('Join, muted', actions.join, { class: 'primary' }),
+      button('Not now', () => actions.ask(false)),
+    ),
+  );
+  return {
+    node,
+    show({ phase, relay: has, relayOnly }: VoicesState): void {
+      node.hidden = phase !== 'asked';
+      relay.node.hidden = !has;
+      relay.input.checked = relayOnly;
+      without.hidden = has;
+    },
+  };
+}
+
+/** Talking with the others, and the list of them. */
+export function createVoicesBar(actions: VoicesBarActions) {
+  let muted = true;
+  const ask = button('Talk with the others', () => actions.ask(true));
+  const mute = button('Unmute me', () => actions.mute(!muted), { 'aria-keyshortcuts': 't' });
+  const leave = button('Leave the voices', actions.leave);
+  const said = element('p', { class: 'hint', role: 'status' });
+  const consent = createConsent(actions);
+  const people = createPeople(actions);
+  const node = element(
+    'div',
+    { class: 'voices', role: 'group', 'aria-label': 'Voices' },
+    consent.node,
+    element('div', { class: 'row' }, ask, mute, leave),
+    said,
+    people.node,
+  );
+  return {
+    node,
+    show(state: VoicesState, round: ListedPeople | null): void {
+      const { phase, deaf } = state;
+      muted = state.muted;
+      const isIn = phase === 'in';
+      ask.hidden = phase !== 'off' && phase !== 'joining';
+      ask.disabled = phase === 'joining';
+      ask.textContent = phase === 'joining' ? 'Joining the voices …' : 'Talk with the others';
+      mute.hidden = !isIn || round?.seat === null;
+      mute.textContent = deaf ? 'Look for a microphone' : muted ? 'Unmute me (T)' : 'Mute me (T)';
+      mute.classList.toggle('primary', isIn && !muted);
+      mute.setAttribute('aria-pressed', String(!muted));
+      leave.hidden = !isIn;
+      const sentence = phase === 'none' ? '' : (state.said ?? (isIn && muted ? 'You are muted.' : ''));
+      if (said.textContent !== sentence) said.textContent = sentence;
+      said.hidden = sentence === '';
+      consent.show(state);
+      people.show(round, isIn);
+      node.hidden = phase === 'none' && people.node.hidden;
+    },
+  };
+}

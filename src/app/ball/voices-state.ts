@@ -1,0 +1,27 @@
+/** How the own page takes part in the voices, as it is shown. */
+export interface VoicesState {
+  /** none: the room has no voices. asked: the user reads what they mean. in: hears the others. */
+  readonly phase: 'none' | 'off' | 'asked' | 'joining' | 'in';
+  readonly muted: boolean;
+  /** The server has a relay. */
+  readonly relay: boolean;
+  readonly relayOnly: boolean;
+  /** What a person should know of their voice; null: nothing. */
+  readonly said: string | null;
+  /** There is no microphone, and it may be asked for again. */
+  readonly deaf: boolean;
+}
+
+/** How it stands with the voice of another player. */
+export interface PersonVoice {
+  readonly voice: 'none' | 'muted' | 'open';
+  readonly link: 'none' | 'connecting' | 'connected' | 'lost';
+  /** Not heard here. */
+  readonly silenced: boolean;
+  /** Neither seen nor heard here. */
+  readonly hidden: boolean;
+}
+
+/** What everyone reads before they first take part. */
+export const consentText =
+  'Voices go straight from page to page: people in the room could learn your network address (IP). Nothing is recorded, and you begin muted.';

@@ -1,0 +1,357 @@
+import { firstLine, reasonOf } from '../../core/errors/reasons';
+import { transformPoint } from '../../core/math/pose';
+import { vec3 } from '../../core/math/vec3';
+import type { SignalBody } from '../../core/protocol/voice-messages';
+import type { VoiceLine } from '../../net/connection';
+import { Microphone } from '../../net/voices/microphone';
+import { VoiceMesh } from '../../net/voices/voice-mesh';
+import { hasRelay, type VoiceTerms } from '../../net/voices/voice-terms';
+import { VoiceSound } from '../../scene/sound/voice-sound';
+import type { BodyFrame } from './ball-frame';
+import type { BallPlay } from './ball-play';
+import type { PersonVoice, VoicesState } from './voices-state';
+
+export interface VoicesOptions {
+  readonly play: Pick<BallPlay, 'room' | 'status' | 'voices'>;
+  /** What the room's server says of voices; null: the room is in this page, or a study's. */
+  readonly terms: (() => Promise<VoiceTerms>) | null;
+  /** The audio that the game's own sounds play in. */
+  openAudio(): Promise<AudioContext>;
+  /** Voices go by a relay alone, so that no page learns this one's address. */
+  relayOnly(): boolean;
+}
+
+/** What tools may know of the voices. */
+export interface VoicesProbe {
+  readonly phase: VoicesState['phase'];
+  readonly muted: boolean;
+  readonly said: string | null;
+  /** All voices at the own ears [dB of full scale]; −120: silence. */
+  readonly loudness: number;
+  readonly ownLevel: number;
+  readonly people: readonly (PersonVoice & { readonly seat: number; readonly level: number })[];
+}
+
+/** Connections are looked after this often [ms], seen or hidden. */
+const watchMs = 500;
+
+const newSession = (): string => {
+  const bytes = crypto.getRandomValues(new Uint8Array(8));
+  return Array.from(bytes, (byte) => byte.toString(16).padStart(2, '0')).join('');
+};
+
+/** The own page among the voices: what is needed only there, from joining to leaving. */
+interface Stay {
+  /** Another one wherever the connections begin anew: both pages of each have to. */
+  session: string;
+  readonly mesh: VoiceMesh;
+  /** Sessions that this page has a connection to, and those that it has closed one to. */
+  readonly linked: Set<string>;
+  readonly dropped: Set<string>;
+  readonly sound: VoiceSound;
+  readonly context: AudioContext;
+  readonly watching: ReturnType<typeof setInterval>;
+}
+
+/** The voices of a room of the ball game: who talks, from where, and what the user wants of it. */
+export class Voices {
+  readonly #options: VoicesOptions;
+  readonly #microphone = new Microphone(() => this.#sendTrack());
+  readonly #silenced = new Set<number>();
+  readonly #hidden = new Set<number>();
+  /** By seat: the session of a page that takes part; null: none does. */
+  readonly #sessions: (string | null)[] = [];
+  readonly #names: (string | null)[] = [];
+  readonly #mouth = vec3(0, 0, 0);
+  readonly #seen: BodyFrame[] = [];
+  #line: VoiceLine | null = null;
+  #mySeat: number | null = null;
+  #terms: VoiceTerms | null = null;
+  #asking = false;
+  #phase: 'off' | 'asked' | 'joining' | 'in' = 'off';
+  #muted = true;
+  #fault: string | null = null;
+  #stay: Stay | null = null;
+
+  constructor(options: VoicesOptions) {
+    this.#options = options;
+  }
+
+  get state(): VoicesState {
+    const { play, relayOnly } = this.#options;
+    const there = this.#terms?.voices === true && play.room !== null && play.status.phase !== 'ended';
+    const relay = this.#terms !== null && hasRelay(this.#terms);
+    return {
+      phase: there ? this.#phase : 'none',
+      muted: this.#muted,
+      relay,
+      relayOnly: relay && relayOnly(),
+      said: this.#said,
+      deaf: this.#phase === 'in' && this.#microphone.complaint !== null,
+    };
+  }
+
+  /** Seats whose players are not to be seen here. */
+  get hidden(): ReadonlySet<number> {
+    return this.#hidden;
+  }
+
+  /** Once a frame, when the room has been heard. */
+  begin(): void {
+    const { play, terms } = this.#options;
+    if (play.voices !== this.#line) {
+      this.#line = play.voices;
+      this.#line?.listen({
+        seatsChanged: () => this.#follow(),
+        signalled: (from, body) => this.#hear(from, body),
+      });
+      this.#follow();
+    }
+    if (!this.#asking && terms && play.room) {
+      this.#asking = true;
+      void this.#learnTerms(terms);
+    }
+    if (this.#stay && play.status.phase === 'ended') this.leave();
+  }
+
+  /** Once a frame: lets voices come from where these bodies have their heads. Gives those that are to be seen, until the next call. */
+  show(bodies: readonly BodyFrame[]): readonly BodyFrame[] {
+    this.#seen.length = 0;
+    for (let i = 0; i < bodies.length; i++) {
+      const body = bodies[i]!;
+      const session = this.#sessions[body.id];
+      if (session && this.#stay)
+        this.#stay.sound.place(session, transformPoint(body.placement, body.pose.head.position, this.#mouth));
+      if (!this.#hidden.has(body.id)) this.#seen.push(body);
+    }
+    return this.#seen;
+  }
+
+  /** The user wants to know what voices mean, or no longer. */
+  ask(on: boolean): void {
+    if (this.#phase === 'off' && on) this.#phase = 'asked';
+    else if (this.#phase === 'asked' && !on) this.#phase = 'off';
+  }
+
+  /** Takes part, muted. Within a gesture of the user; never rejects. */
+  async join(): Promise<void> {
+    const { openAudio, terms } = this.#options;
+    if (!terms || this.#stay || this.#phase === 'joining') return;
+    this.#phase = 'joining';
+    this.#fault = null;
+    this.#muted = true;
+    try {
+      const [context, fresh] = await Promise.all([openAudio(), terms()]);
+      this.#terms = fresh;
+      await this.#microphone.open();
+      this.#enter(context, fresh);
+    } catch (error) {
+      this.#microphone.close();
+      this.#phase = 'off';
+      this.#fault = `Voices could not be joined: ${firstLine(reasonOf(error))}`;
+    }
+  }
+
+  leave(): void {
+    const stay = this.#stay;
+    this.#stay = null;
+    this.#phase = 'off';
+    this.#muted = true;
+    this.#line?.say(null);
+    this.#microphone.close();
+    if (!stay) return;
+    clearInterval(stay.watching);
+    stay.mesh.close();
+    stay.sound.dispose();
+  }
+
+  /** Unmuted without a microphone, it is asked for again first. */
+  async setMuted(muted: boolean): Promise<void> {
+    if (this.#phase !== 'in') return;
+    if (!muted && !this.#microphone.track) await this.#microphone.open();
+    this.#muted = muted || !this.#microphone.track;
+    this.#sendTrack();
+    this.#say();
+  }
+
+  toggleMuted(): void {
+    void this.setMuted(!this.#muted);
+  }
+
+  /** Does not hear the player on this seat any more, or does again. */
+  silence(seat: number, on: boolean): void {
+    mark(this.#silenced, seat, on);
+    this.#applySilence(seat);
+  }
+
+  /** Neither sees nor hears the player on this seat any more, or does again. */
+  hide(seat: number, on: boolean): void {
+    mark(this.#hidden, seat, on);
+    this.#applySilence(seat);
+  }
+
+  voiceOf(seat: number): PersonVoice {
+    const voice = this.#options.play.room?.seats[seat]?.voice ?? null;
+    const session = this.#sessions[seat];
+    const state = session ? (this.#stay?.mesh.stateOf(session) ?? null) : null;
+    return {
+      voice: voice === null ? 'none' : voice.muted ? 'muted' : 'open',
+      link: state === null ? 'none' : linkOf(state),
+      silenced: this.#silenced.has(seat),
+      hidden: this.#hidden.has(seat),
+    };
+  }
+
+  /** What the label of a player shows: whether they take part, and could be heard here. */
+  markOf(seat: number): 'none' | 'muted' | 'open' {
+    const voice = this.#options.play.room?.seats[seat]?.voice;
+    if (!voice) return 'none';
+    return voice.muted || this.#silenced.has(seat) || this.#hidden.has(seat) ? 'muted' : 'open';
+  }
+
+  /** How loud a player speaks: 0 to 1; own: the own voice, as others hear it. Once a frame. */
+  levelOf(seat: number): number {
+    const { play } = this.#options;
+    if (!this.#stay) return 0;
+    if (seat === play.room?.mySeat) return this.#muted ? 0 : this.#stay.sound.ownLevel();
+    const session = this.#sessions[seat];
+    return session && this.markOf(seat) === 'open' ? this.#stay.sound.level(session) : 0;
+  }
+
+  probe(): VoicesProbe {
+    const seats = this.#options.play.room?.seats ?? [];
+    const { phase, muted, said } = this.state;
+    return {
+      phase,
+      muted,
+      said,
+      loudness: this.#stay?.sound.loudness() ?? -120,
+      ownLevel: this.#muted ? 0 : (this.#stay?.sound.ownLevel() ?? 0),
+      people: seats.flatMap((info, seat) =>
+        info && seat !== this.#options.play.room?.mySeat
+          ? [{ seat, level: this.levelOf(seat), ...this.voiceOf(seat) }]
+          : [],
+      ),
+    };
+  }
+
+  dispose(): void {
+    this.#line?.listen(null);
+    this.leave();
+  }
+
+  get #said(): string | null {
+    if (this.#phase !== 'in') return this.#fault;
+    if (this.#options.play.room?.mySeat === null) return 'You are watching: voices are for the players on the seats.';
+    const { complaint } = this.#microphone;
+    return complaint && `${complaint} You hear the others all the same.`;
+  }
+
+  /** A server that does not say has no voices. */
+  async #learnTerms(ask: () => Promise<VoiceTerms>): Promise<void> {
+    this.#terms = await ask().catch(() => null);
+  }
+
+  #enter(context: AudioContext, { iceServers }: VoiceTerms): void {
+    const iceTransportPolicy = this.state.relayOnly ? 'relay' : 'all';
+    const sound = new VoiceSound(context);
+    const mesh = new VoiceMesh({
+      configuration: { iceServers: [...iceServers], iceTransportPolicy },
+      signal: (to, body) => this.#line?.signal(to, body),
+      heard: (session, stream) => this.#play(session, stream),
+    });
+    const watching = setInterval(() => this.#watch(), watchMs);
+    const sessions = { session: newSession(), linked: new Set<string>(), dropped: new Set<string>() };
+    this.#stay = { ...sessions, mesh, sound, context, watching };
+    this.#phase = 'in';
+    this.#say();
+    this.#sendTrack();
+    this.#follow();
+  }
+
+  #say(): void {
+    if (this.#stay) this.#line?.say({ session: this.#stay.session, muted: this.#muted });
+  }
+
+  /** A muted microphone stays open, so that no question comes up in a headset; nothing of it is sent. */
+  #sendTrack(): void {
+    const { track } = this.#microphone;
+    if (!this.#stay) return;
+    if (track) track.enabled = !this.#muted;
+    this.#stay.mesh.setTrack(this.#muted ? null : track);
+    this.#stay.sound.setOwn(this.#muted ? null : track);
+  }
+
+  #hear(from: string, body: SignalBody): void {
+    this.#stay?.mesh.take(from, body);
+  }
+
+  /** Connects to those who take part now. Another person on a seat begins unmarked. */
+  #follow(): void {
+    const room = this.#options.play.room;
+    const seats = room?.seats ?? [];
+    const mine = room?.mySeat ?? null;
+    for (let seat = 0; seat < seats.length; seat++) {
+      const info = seats[seat] ?? null;
+      if (this.#names[seat] !== undefined && this.#names[seat] !== (info?.name ?? null)) {
+        this.#silenced.delete(seat);
+        this.#hidden.delete(seat);
+      }
+      this.#names[seat] = info?.name ?? null;
+      this.#sessions[seat] = seat === mine ? null : (info?.voice?.session ?? null);
+    }
+    const moved = mine !== this.#mySeat;
+    this.#mySeat = mine;
+    if (this.#stay) this.#connect(this.#stay, mine !== null, moved);
+  }
+
+  /** `seated`: on a seat; `moved`: on another one than before. */
+  #connect(stay: Stay, seated: boolean, moved: boolean): void {
+    const others = seated ? this.#sessions.filter((session) => session !== null) : [];
+    // Their page may have kept its half of a connection whose other half was closed here: under a new session it closes it too.
+    if (seated && (moved || others.some((session) => stay.dropped.has(session)))) {
+      stay.mesh.close();
+      stay.linked.clear();
+      stay.dropped.clear();
+      stay.session = newSession();
+      this.#say();
+    }
+    for (const session of stay.linked) if (!others.includes(session)) stay.dropped.add(session);
+    stay.linked.clear();
+    for (const session of others) stay.linked.add(session);
+    stay.mesh.follow(seated ? stay.session : null, others);
+  }
+
+  #play(session: string, stream: MediaStream | null): void {
+    if (!stream) {
+      this.#stay?.sound.remove(session);
+      return;
+    }
+    this.#stay?.sound.add(session, stream);
+    const seat = this.#sessions.indexOf(session);
+    if (seat >= 0) this.#applySilence(seat);
+  }
+
+  #applySilence(seat: number): void {
+    const session = this.#sessions[seat];
+    if (session) this.#stay?.sound.setSilent(session, this.#silenced.has(seat) || this.#hidden.has(seat));
+  }
+
+  #watch(): void {
+    const { stay, play } = { stay: this.#stay, play: this.#options.play };
+    if (!stay) return;
+    stay.mesh.watch(performance.now() / 1000, play.status.phase === 'joined');
+    // A headset's sleep stops the audio too.
+    if (stay.context.state === 'suspended' && document.visibilityState === 'visible') void stay.context.resume();
+  }
+}
+
+function mark(set: Set<number>, seat: number, on: boolean): void {
+  if (on) set.add(seat);
+  else set.delete(seat);
+}
+
+function linkOf(state: RTCPeerConnectionState): PersonVoice['link'] {
+  if (state === 'connected') return 'connected';
+  return state === 'new' || state === 'connecting' ? 'connecting' : 'lost';
+}

@@ -1,0 +1,38 @@
+import * as v from 'valibot';
+import type { RoomPass } from '../room-pass';
+
+/** What a server says of the voices in one of its rooms. */
+export interface VoiceTerms {
+  /** Whether the people of the room can talk at all. */
+  readonly voices: boolean;
+  /** By which their pages find each other. */
+  readonly iceServers: readonly RTCIceServer[];
+}
+
+const urls = v.pipe(v.array(v.pipe(v.string(), v.regex(/^(stun|turn)s?:/))), v.minLength(1));
+const terms = v.object({
+  voices: v.boolean(),
+  iceServers: v.array(
+    v.object({ urls, username: v.exactOptional(v.string()), credential: v.exactOptional(v.string()) }),
+  ),
+});
+
+/** Asks the relay at `base`, no slash at its end. Rejects with a sentence where the server does not say. */
+export async function askVoiceTerms(base: string, room: string, pass: RoomPass): Promise<VoiceTerms> {
+  for (const afresh of [false, true]) {
+    const response = await fetch(`${base}/api/voices?room=${room}`, {
+      headers: { authorization: `Bearer ${await pass.token(afresh)}` },
+      cache: 'no-store',
+    });
+    // Once more with a renewed pass where this one has expired.
+    if (response.status === 401 && !afresh) continue;
+    const read = response.ok ? v.safeParse(terms, await response.json().catch(() => null)) : null;
+    if (!read?.success) throw new Error(`the server says nothing of voices (${response.status})`);
+    return read.output;
+  }
+  throw new Error('the server let no one in');
+}
+
+/** Whether there is a server that passes voices on, so that no page learns the address of another. */
+export const hasRelay = ({ iceServers }: VoiceTerms): boolean =>
+  iceServers.some(({ urls }) => [urls].flat().some((url) => url.startsWith('turn')));

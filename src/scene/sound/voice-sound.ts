@@ -1,0 +1,146 @@
+import { clamp } from '../../core/math/damper';
+import type { Vec3 } from '../../core/math/vec3';
+
+/** At this distance [m] a voice is as loud as it was spoken; with each doubling beyond, it loses 6 dB at most. */
+const near = 1;
+const rolloff = 0.8;
+/** What is drawn as silence, and as the loudest voice [dB of full scale]. */
+const quiet = -55;
+const loud = -15;
+/** Samples that a level is read from: 21 ms at 48 kHz. */
+const window = 1024;
+/** The same for tools: a third of a second, longer than a syllable. */
+const longWindow = 16_384;
+/** A level falls by half in so many readings, so that a mark does not flicker between syllables. */
+const fall = 0.85;
+
+/** Root mean square of what an analyser hears now [1: full scale]. */
+function rmsOf(analyser: AnalyserNode, samples: Float32Array<ArrayBuffer>): number {
+  analyser.getFloatTimeDomainData(samples);
+  let sum = 0;
+  for (let i = 0; i < samples.length; i++) sum += samples[i]! * samples[i]!;
+  return Math.sqrt(sum / samples.length);
+}
+
+const decibels = (rms: number): number => 20 * Math.log10(Math.max(rms, 1e-6));
+
+interface Heard {
+  /** A stream of another page stays silent unless an element plays it too (Chromium issue 933677). */
+  readonly element: HTMLAudioElement;
+  readonly source: MediaStreamAudioSourceNode;
+  readonly analyser: AnalyserNode;
+  readonly gain: GainNode;
+  readonly panner: PannerNode;
+  level: number;
+}
+
+/** The voices of others from where their heads are, for the ears of the stage that the context belongs to; floor frame. */
+export class VoiceSound {
+  readonly #context: AudioContext;
+  readonly #heard = new Map<string, Heard>();
+  readonly #bus: GainNode;
+  readonly #meter: AnalyserNode;
+  readonly #samples = new Float32Array(window);
+  #own: { readonly source: MediaStreamAudioSourceNode; readonly analyser: AnalyserNode } | null = null;
+  #ownLevel = 0;
+
+  /** Volume and mute of the game's own sounds do not touch voices. */
+  constructor(context: AudioContext) {
+    this.#context = context;
+    this.#bus = context.createGain();
+    this.#meter = this.#analyser(longWindow);
+    this.#bus.connect(this.#meter).connect(context.destination);
+  }
+
+  add(id: string, stream: MediaStream): void {
+    this.remove(id);
+    const context = this.#context;
+    const element = new Audio();
+    element.muted = true;
+    element.srcObject = stream;
+    // Muted, it needs no gesture; an element that was removed before it played rejects.
+    void element.play().catch(() => undefined);
+    const source = context.createMediaStreamSource(stream);
+    const analyser = this.#analyser();
+    const gain = context.createGain();
+    const panner = context.createPanner();
+    panner.panningModel = 'HRTF';
+    panner.distanceModel = 'inverse';
+    panner.refDistance = near;
+    panner.rolloffFactor = rolloff;
+    source.connect(analyser).connect(gain).connect(panner).connect(this.#bus);
+    this.#heard.set(id, { element, source, analyser, gain, panner, level: 0 });
+  }
+
+  remove(id: string): void {
+    const heard = this.#heard.get(id);
+    if (!heard) return;
+    this.#heard.delete(id);
+    heard.source.disconnect();
+    heard.panner.disconnect();
+    heard.element.srcObject = null;
+  }
+
+  /** Where a voice comes from, floor frame. */
+  place(id: string, { x, y, z }: Vec3): void {
+    const panner = this.#heard.get(id)?.panner;
+    if (!panner) return;
+    panner.positionX.value = x;
+    panner.positionY.value = y;
+    panner.positionZ.value = z;
+  }
+
+  /** Whether a voice is to be heard here. */
+  setSilent(id: string, silent: boolean): void {
+    const heard = this.#heard.get(id);
+    if (heard) heard.gain.gain.value = silent ? 0 : 1;
+  }
+
+  /** How loud a person speaks, however far away: 0 silent to 1. Once a frame. */
+  level(id: string): number {
+    const heard = this.#heard.get(id);
+    if (!heard) return 0;
+    heard.level = this.#shown(heard.analyser, heard.level);
+    return heard.level;
+  }
+
+  /** The own microphone's track, for its level alone; null: there is none. */
+  setOwn(track: MediaStreamTrack | null): void {
+    this.#own?.source.disconnect();
+    this.#own = null;
+    if (!track) return;
+    const source = this.#context.createMediaStreamSource(new MediaStream([track]));
+    const analyser = this.#analyser();
+    source.connect(analyser);
+    this.#own = { source, analyser };
+  }
+
+  ownLevel(): number {
+    this.#ownLevel = this.#own ? this.#shown(this.#own.analyser, this.#ownLevel) : 0;
+    return this.#ownLevel;
+  }
+
+  /** How loud all voices together are at the ears [dB of full scale], for tools; −120: silent. */
+  loudness(): number {
+    return decibels(rmsOf(this.#meter, new Float32Array(longWindow)));
+  }
+
+  dispose(): void {
+    for (const id of [...this.#heard.keys()]) this.remove(id);
+    this.setOwn(null);
+    this.#bus.disconnect();
+    this.#meter.disconnect();
+  }
+
+  #analyser(samples = window): AnalyserNode {
+    const analyser = this.#context.createAnalyser();
+    analyser.fftSize = samples;
+    return analyser;
+  }
+
+  /** A level as it is drawn: up at once, down slowly. */
+  #shown(analyser: AnalyserNode, before: number): number {
+    const now = clamp((decibels(rmsOf(analyser, this.#samples)) - quiet) / (loud - quiet), 0, 1);
+    return Math.max(now, before * fall);
+  }
+}
