@@ -3,7 +3,7 @@ import type { Page } from '@playwright/test';
 import { goldenMocap } from '../tests/core/mocap/golden-mocap';
 import { expect, keepPicture, open, probe, test } from './page-fixture';
 
-const [acclaim, , leaping] = goldenMocap;
+const [acclaim, , leaping, folded] = goldenMocap;
 const card = (page: Page) => page.getByRole('region', { name: 'Motion capture' });
 const filesOf = ({ files }: { readonly files: Readonly<Record<string, string>> }) =>
   Object.entries(files).map(([name, text]) => ({ name, mimeType: 'text/plain', buffer: Buffer.from(text) }));
@@ -84,6 +84,22 @@ test('a damaged file is refused with line and column, and what is shown stays', 
   await choose(page, [{ name: 'broken.bvh', mimeType: '', buffer: Buffer.from(broken) }]);
   await expect(page.getByRole('alert')).toContainText(/broken\.bvh could not be shown: line \d+, column \d+: /);
   await expect(heading).toBeVisible();
+});
+
+test('a skeleton of unknown names asks for a map, which may come with the motion or after it', async ({
+  page,
+  complaints,
+}) => {
+  complaints.allow(/could not be shown/);
+  await open(page, 'emulate&quality=low&estimator=ik&actor=off');
+  const [motion, map] = filesOf(folded!).toSorted((a, b) => a.name.localeCompare(b.name));
+  await choose(page, [motion!]);
+  await expect(page.getByRole('alert')).toContainText('a map of it, a .json that is dropped too');
+  await choose(page, [map!]);
+  await expect(card(page).getByRole('heading', { name: 'folded_1' })).toBeVisible();
+  await card(page).getByRole('button', { name: 'Close' }).click();
+  await choose(page, [map!, motion!]);
+  await expect(card(page).getByRole('heading', { name: 'folded_1' })).toBeVisible();
 });
 
 test('a large file says how far it is, and given up half-way it leaves nothing behind', async ({ page }, testInfo) => {

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from . import prepare, quaternion, recordings
-from .synthetic_skeletons import GAME, IDENTITY, angles_of, game_bvh, write_asf_amc, write_cmuconvert_bvh
+from .synthetic_skeletons import GAME, IDENTITY, along, angles_of, game_bvh, write_asf_amc, write_cmuconvert_bvh
 
 # Of every clip; the page is held against every nth frame.
 FRAMES, STRIDE = 76, 6
@@ -47,15 +47,67 @@ def _leaping(folder: Path) -> str:
     return "someone_walks.bvh"
 
 
+def _moving(times: Any) -> list[dict[str, Any]]:
+    def about(axis: int, angle: float) -> Any:
+        return quaternion.from_axis_angle(np.eye(3)[axis], np.array(angle))
+
+    return [{"Hips": about(1, 0.7 + 0.6 * t), "RightArm": about(2, 0.9 * np.sin(3 * t)), "Head": about(0, 0.2 - 0.3 * t)} for t in times]
+
+
+def _map(folder: Path, **more: Any) -> None:
+    joints = {"hips": "Hips", "spine": "Spine", "chest": "Spine1", "neck": "Neck", "head": "Head"}
+    for side in ("left", "right"):
+        theirs = side.capitalize()
+        joints |= {f"{side}UpperArm": f"{theirs}Arm", f"{side}LowerArm": f"{theirs}ForeArm", f"{side}Hand": f"{theirs}Hand"}
+        joints |= {f"{side}UpperLeg": f"{theirs}UpLeg", f"{side}LowerLeg": f"{theirs}Leg", f"{side}Foot": f"{theirs}Foot", f"{side}Toes": f"{theirs}Toe"}
+    (folder / "map.json").write_text(json.dumps({"joints": {ours: f"bip_{name}" for ours, name in joints.items()}, **more}))
+
+
+def _foreign(text: str) -> str:
+    return text.replace("ROOT ", "ROOT bip_").replace("JOINT ", "JOINT bip_")
+
+
+def _folded(folder: Path) -> str:
+    """All bones along one axis at angles of 0, names of another program: the map gives the angles of the T-pose."""
+    times = np.arange(FRAMES) / 60
+    hips = [np.array([20 * t, 100, 5 * t]) for t in times]
+    text, rest = game_bvh(along(np.eye(3)[0]), _moving(times), hips)
+    (folder / "folded_1.bvh").write_text(_foreign(text))
+    _map(folder, restPose={f"bip_{name}": angles for name, angles in rest.items()})
+    return "folded_1.bvh"
+
+
+def _sideways(folder: Path) -> str:
+    """+Z up, facing +X, in T-pose in its first frame alone, turned there."""
+    times = np.arange(FRAMES) / 60
+    turned = {"Hips": quaternion.from_axis_angle(np.eye(3)[1], np.array(1.1))}
+    hips = [np.array([20 * t, 100, 5 * t]) for t in times]
+    text, _ = game_bvh(along(np.eye(3)[0]), [turned, *_moving(times)[1:]], hips)
+    # x to y, y to z, z to x.
+    lines = []
+    for line in _foreign(text).splitlines():
+        words = line.split()
+        if words[:1] == ["OFFSET"]:
+            line = f"OFFSET {words[3]} {words[1]} {words[2]}"
+        elif words[:1] == ["CHANNELS"]:
+            line = " ".join([*words[:2], *("YZX"["XYZ".index(word[0])] + word[1:] for word in words[2:])])
+        lines.append(line)
+    (folder / "sideways_1.bvh").write_text("\n".join(lines) + "\n")
+    _map(folder, up="+z", forward="+x", restFrame=1, scale=0.01)
+    return "sideways_1.bvh"
+
+
 def mocap_vectors() -> list[dict[str, Any]]:
     """Files, and every nth frame of the recordings that the evaluation would make of each."""
     cases = []
-    for write in (_acclaim, _cmuconvert, _leaping):
+    for write in (_acclaim, _cmuconvert, _leaping, _folded, _sideways):
         with tempfile.TemporaryDirectory() as name:
             mocap, out = Path(name, "mocap"), Path(name, "out")
             mocap.mkdir()
             motion = write(mocap)
-            index = json.loads(recordings.main(recordings.RecordingsConfig(prepare.PrepareConfig(mocap), out)).read_text())
+            skeleton = mocap / "map.json"
+            config = prepare.PrepareConfig(mocap, skeleton if skeleton.exists() else None)
+            index = json.loads(recordings.main(recordings.RecordingsConfig(config, out)).read_text())
             clips = []
             for clip in index["clips"]:
                 rows = np.fromfile(out / clip["file"], "<f4").reshape(clip["frames"], -1)

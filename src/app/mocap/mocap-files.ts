@@ -3,26 +3,35 @@ import { nameOf } from '../../ui/limited-files';
 /** A file of this device, or the address of one. */
 export type MocapFile = File | string;
 
-/** Files that make one motion: a BVH, a VRM Animation, or an AMC with its skeleton. */
+/** Files that make one motion: a BVH, a VRM Animation, or an AMC with its skeleton; with a map of the skeleton where that is needed. */
 export interface MocapFiles {
   readonly motion: MocapFile;
   /** Of an AMC. */
   readonly skeleton: MocapFile | null;
+  /** Which joint of a skeleton that is not known here is which (JSON). */
+  readonly map: MocapFile | null;
 }
 
 const endingOf = (file: MocapFile): string => nameOf(file).split('.').at(-1)!.toLowerCase();
 
+/** Whether a file beside a motion is a map of its skeleton. */
+export const isMap = (file: MocapFile): boolean => endingOf(file) === 'json';
+
 /**
- * Which of these files is the motion and which its skeleton. Throws a sentence where a part is missing; `others`: names of what is left over.
+ * Which of these files is the motion, which its skeleton and which the map of that. Throws a sentence where a part is missing; `others`: names of what is left over.
  */
 export function pairFiles(files: readonly MocapFile[]): MocapFiles & { readonly others: readonly string[] } {
-  const [motion] = files.filter((file) => endingOf(file) !== 'asf');
+  const [motion] = files.filter((file) => !['asf', 'json'].includes(endingOf(file)));
+  const [map = null] = files.filter(isMap);
   const skeletons = files.filter((file) => endingOf(file) === 'asf');
+  if (!motion && map)
+    throw new Error(`${nameOf(map)}: a map of a skeleton without motion; open the motion together with it`);
   if (!motion) throw new Error(`${nameOf(skeletons[0]!)}: a skeleton without motion; open its .amc together with it`);
   const without = (taken: readonly MocapFile[]) => files.filter((file) => !taken.includes(file)).map(nameOf);
-  if (endingOf(motion) !== 'amc') return { motion, skeleton: null, others: without([motion]) };
+  const given = map ? [map] : [];
+  if (endingOf(motion) !== 'amc') return { motion, skeleton: null, map, others: without([motion, ...given]) };
   const name = nameOf(motion);
   const own = skeletons.find((file) => name.startsWith(nameOf(file).replace(/\.asf$/i, ''))) ?? skeletons[0];
   if (!own) throw new Error(`${name}: a motion without its skeleton; open its .asf together with it`);
-  return { motion, skeleton: own, others: without([motion, own]) };
+  return { motion, skeleton: own, map, others: without([motion, own, ...given]) };
 }

@@ -13,7 +13,7 @@ import { ClipMeans } from './clip-means';
 import { Ghost } from './ghost';
 import { ErrorMeter, makeJointErrors } from './joint-errors';
 import { type CardActions, createMocapCard, type Labels, type MocapCard } from './mocap-card';
-import { pairFiles } from './mocap-files';
+import { isMap, type MocapFile, pairFiles } from './mocap-files';
 import { readMocap } from './read-mocap';
 import { SecondBody } from './second-body';
 import { recordingOf } from './simulated-recording';
@@ -81,6 +81,8 @@ export class MocapView {
   #second: SecondBody | null = null;
   #truthPlace: TruthPlace = 'inside';
   #reading = new AbortController();
+  /** What was to be shown last, shown or not. */
+  #asked: readonly MocapFile[] = [];
   /** Errors of the picture: of the body, and of the second. */
   readonly #errors = [makeJointErrors(), makeJointErrors()] as const;
   readonly #drawn = [false, false];
@@ -99,9 +101,12 @@ export class MocapView {
     this.#hide();
   }
 
-  /** Reads files of this device or addresses, and shows their motion. Never rejects: faults are told, and what is shown stays. */
-  async open(sources: readonly (File | string)[], outlook: Outlook = {}): Promise<void> {
+  /** Reads files of this device or addresses, and shows their motion; a map of a skeleton alone is taken for the files before. Never rejects: faults are told, and what is shown stays. */
+  async open(given: readonly MocapFile[], outlook: Outlook = {}): Promise<void> {
     const { tell } = this.#options;
+    // A map that comes alone is of the motion that came before it.
+    const sources = given.every(isMap) ? [...this.#asked.filter((file) => !isMap(file)), ...given] : given;
+    this.#asked = sources;
     this.#reading.abort();
     const reading = new AbortController();
     const { signal } = reading;

@@ -18,17 +18,17 @@ const mocapFile: FileKind = { what: 'a motion capture file', megabytes: 200 };
 const bytesOf = (file: MocapFile): Promise<ArrayBuffer> => readLimited(file, mocapFile);
 const textOf = async (file: MocapFile): Promise<string> => new TextDecoder().decode(await bytesOf(file));
 
-async function sourceOf({ motion, skeleton }: MocapFiles): Promise<MocapSource> {
+const named = async (file: MocapFile) => ({ name: nameOf(file), text: await textOf(file) });
+
+async function sourceOf({ motion, skeleton, map }: MocapFiles): Promise<MocapSource> {
   const name = nameOf(motion);
-  if (skeleton) {
-    const bones = { name: nameOf(skeleton), text: await textOf(skeleton) };
-    return { format: 'amc', name, text: await textOf(motion), skeleton: bones };
-  }
-  if (!/\.vrma$/i.test(name)) return { format: 'bvh', name, text: await textOf(motion) };
+  const mapped = map ? { map: await named(map) } : {};
+  if (skeleton) return { format: 'amc', ...(await named(motion)), skeleton: await named(skeleton), ...mapped };
+  if (!/\.vrma$/i.test(name)) return { format: 'bvh', ...(await named(motion)), ...mapped };
   const chunks = chunksOf(new Uint8Array(await bytesOf(motion)));
   if (!chunks) throw new Error(`${name}: no VRM Animation: it is no GLB file, or cut short`);
   try {
-    return { format: 'vrma', name, description: JSON.parse(chunks.json), binary: chunks.binary };
+    return { format: 'vrma', name, description: JSON.parse(chunks.json), binary: chunks.binary, ...mapped };
   } catch (error) {
     throw new Error(`${name}: its description is no JSON: ${reasonOf(error)}`);
   }

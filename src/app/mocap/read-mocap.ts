@@ -13,7 +13,7 @@ const forWorker = (file: MocapFile): MocapFile => (typeof file === 'string' ? ne
  * picture. Rejects with a sentence where the file is none, with the signal's reason where it is given up.
  */
 export function readMocap(
-  { motion, skeleton }: MocapFiles,
+  { motion, skeleton, map }: MocapFiles,
   { onProgress, signal }: WorkOptions = {},
 ): Promise<PreparedMocap> {
   signal?.throwIfAborted();
@@ -32,7 +32,11 @@ export function readMocap(
     worker.addEventListener('error', ({ message }) => {
       reject(new Error(`${nameOf(motion)}: it cannot be read (${message || 'its reader did not start'})`));
     });
-    const files: MocapFiles = { motion: forWorker(motion), skeleton: skeleton && forWorker(skeleton) };
+    const files: MocapFiles = {
+      motion: forWorker(motion),
+      skeleton: skeleton && forWorker(skeleton),
+      map: map && forWorker(map),
+    };
     worker.postMessage(files);
   }).finally(() => worker.terminate());
 }

@@ -1,7 +1,16 @@
-import { fromAxisAngle, type MutableQuat, multiply, type Quat, quat, rotationBetween } from '../math/quat';
+import {
+  conjugate,
+  fromAxisAngle,
+  type MutableQuat,
+  multiply,
+  type Quat,
+  quat,
+  rotate,
+  rotationBetween,
+} from '../math/quat';
 import { distance, lerp, right, scale, subtract, up, type Vec3, vec3 } from '../math/vec3';
 import { type FileMotion, makeJointPoses } from '../motion/file-motion';
-import { turnPoint, turnRotation } from '../motion/skeleton';
+import { floorFromFile } from './mapped-motion';
 import { armLength, units } from './mocap-rules.json';
 import { checkRest, type RestPose } from './rest-pose';
 import {
@@ -50,13 +59,18 @@ function wristFromRest(side: 'left' | 'right', rest: RestPose): Quat {
 }
 
 /** Brings a file's joints into ours. Yields the share [0, 1] that is done. Throws a sentence where its skeleton is not known or no person's. */
-export function* toOurJoints(file: FileMotion, rateHz: number): Generator<number, OurMotion> {
-  const map = findSkeletonMap(file.names);
+export function* toOurJoints(
+  file: FileMotion,
+  rateHz: number,
+  map: SkeletonMap = findSkeletonMap(file.names),
+): Generator<number, OurMotion> {
+  const floor = floorFromFile(map);
+  const fileFromFloor = conjugate(floor);
   const indexOf = (name: string): number => file.names.indexOf(name);
   const restOf = (joint: TruthJoint): Vec3 => file.rest[indexOf(map.joints[joint]!)]!;
   const unit = metresPerUnit(map, restOf);
   const known = truthJoints.filter((joint) => map.joints[joint] !== undefined);
-  const rest = new Map(known.map((joint) => [joint, scale(turnPoint(restOf(joint)), unit)]));
+  const rest = new Map(known.map((joint) => [joint, scale(rotate(floor, restOf(joint)), unit)]));
   checkRest(rest, map);
   const columns = truthJoints.map((joint) => indexOf(map.joints[joint] ?? ''));
   const turning = trackedJoints.map((joint) => indexOf(map.rotations?.[joint] ?? map.joints[joint]!));
@@ -74,11 +88,11 @@ export function* toOurJoints(file: FileMotion, rateHz: number): Generator<number
     for (const [i, column] of columns.entries()) {
       if (column < 0 && truthJoints[i] !== 'spine') continue;
       if (column < 0) lerp(poses.positions[columns[0]!]!, poses.positions[columns[2]!]!, 0.5, place);
-      const { x, y, z } = scale(turnPoint(column < 0 ? place : poses.positions[column]!, place), unit, place);
+      const { x, y, z } = scale(rotate(floor, column < 0 ? place : poses.positions[column]!, place), unit, place);
       positions.set([x, y, z], frame * positionsWidth + 3 * i);
     }
     for (const [i, joint] of trackedJoints.entries()) {
-      turnRotation(poses.rotations[turning[i]!]!, turn);
+      multiply(multiply(floor, poses.rotations[turning[i]!]!, turn), fileFromFloor, turn);
       const wrist = wrists[joint];
       if (wrist) multiply(turn, wrist, turn);
       rotations.set([turn.x, turn.y, turn.z, turn.w], frame * rotationsWidth + 4 * i);

@@ -1,24 +1,37 @@
 import type { Calibration } from '../body/calibration';
 import type { FileMotion } from '../motion/file-motion';
 import { readAmc } from '../motion/read-amc';
-import { type AsfSkeleton, readAsf } from '../motion/read-asf';
+import { readAsf } from '../motion/read-asf';
 import { bvhFileMotion, readBvh } from '../motion/read-bvh';
 import { readVrma } from '../motion/read-vrma';
 import { portionOf } from '../motion/work';
 import { putBackLostBones } from './cmuconvert';
 import { cutAtLeaps, evenClip } from './even-clip';
+import { fromMappedRest } from './mapped-motion';
 import { cmu, rateHz } from './mocap-rules.json';
 import { type OurMotion, toOurJoints } from './our-joints';
 import { floorHeight, measuresOf, neutralHead } from './person';
+import { readSkeletonMap } from './read-skeleton-map';
 import { simulateTrackers } from './simulate-trackers';
+import type { SkeletonMap } from './skeleton-map';
+
+/** The text of a file that belongs to another, with its name. */
+interface Beside {
+  readonly name: string;
+  readonly text: string;
+}
 
 /** The content of a file of motion, with its name. */
-export type MocapSource = { readonly name: string } & (
+export type MocapSource = {
+  readonly name: string;
+  /** Of a skeleton that is not known here. */
+  readonly map?: Beside;
+} & (
   | { readonly format: 'bvh'; readonly text: string }
   | {
       readonly format: 'amc';
       readonly text: string;
-      readonly skeleton: { readonly name: string; readonly text: string };
+      readonly skeleton: Beside;
     }
   | { readonly format: 'vrma'; readonly description: unknown; readonly binary: Uint8Array }
 );
@@ -47,20 +60,27 @@ export interface PreparedMocap {
 const faultIn = (name: string, error: unknown): Error =>
   new Error(`${name}: ${error instanceof Error ? error.message : String(error)}`, { cause: error });
 
-function readSkeleton({ name, text }: { readonly name: string; readonly text: string }): AsfSkeleton {
+/** What is read of a file that another needs; a fault in it begins with its own name. */
+function readBeside<Result>({ name, text }: Beside, read: (text: string, name: string) => Result): Result {
   try {
-    return readAsf(text);
+    return read(text, name);
   } catch (error) {
     throw faultIn(name, error);
   }
 }
 
-function* readFile(source: MocapSource): Generator<number, FileMotion> {
-  if (source.format === 'vrma') return readVrma(source.description, source.binary);
-  if (source.format === 'amc') return yield* readAmc(source.text, readSkeleton(source.skeleton), source.skeleton.name);
-  const motion = yield* readBvh(source.text);
-  const { joints, notes } = putBackLostBones(motion.joints);
-  return bvhFileMotion(motion, joints, notes);
+function* readFile(source: MocapSource, map: SkeletonMap | undefined): Generator<number, FileMotion> {
+  if (source.format === 'bvh') {
+    const motion = yield* readBvh(source.text);
+    const { joints, notes } = putBackLostBones(motion.joints);
+    const file = bvhFileMotion(motion, joints, notes);
+    return map ? fromMappedRest(file, map, { motion, joints }) : file;
+  }
+  const file =
+    source.format === 'vrma'
+      ? readVrma(source.description, source.binary)
+      : yield* readAmc(source.text, readBeside(source.skeleton, readAsf), source.skeleton.name);
+  return map ? fromMappedRest(file, map, null) : file;
 }
 
 const stemOf = (name: string): string => name.replace(/\.[^.]*$/, '');
@@ -88,8 +108,9 @@ function personOf(name: string): string {
 export function* prepareMocap(source: MocapSource): Generator<number, PreparedMocap> {
   const { name } = source;
   try {
-    const file = yield* portionOf(readFile(source), 0, 0.6);
-    const motion = yield* portionOf(toOurJoints(file, file.rateHz ?? rateOf(name)), 0.6, 0.8);
+    const map = source.map && readBeside(source.map, readSkeletonMap);
+    const file = yield* portionOf(readFile(source, map), 0, 0.6);
+    const motion = yield* portionOf(toOurJoints(file, file.rateHz ?? map?.frameRate ?? rateOf(name), map), 0.6, 0.8);
     return yield* portionOf(clipsOf(name, motion, file.notes), 0.8, 1);
   } catch (error) {
     throw faultIn(name, error);

@@ -35,7 +35,7 @@ export const trackedJoints = ['head', 'leftHand', 'rightHand'] as const satisfie
 /** See trackedJoints. */
 export type TrackedJoint = (typeof trackedJoints)[number];
 
-/** Which joint of a file is which of ours. The file's axes: +Y up, people at rest face +Z. */
+/** Which joint of a file is which of ours. */
 export interface SkeletonMap {
   readonly name: string;
   /** What the file calls ours. */
@@ -44,9 +44,21 @@ export interface SkeletonMap {
   readonly scale?: number;
   /** Whose turn head or hands follow, where that is no joint of theirs. */
   readonly rotations?: Readonly<Partial<Record<TrackedJoint, string>>>;
+  /** The file's axes: which way is up (absent: +y), and which way people at rest face (absent: +z). */
+  readonly up?: FileAxis;
+  readonly forward?: FileAxis;
+  /** Hz, of files that do not say theirs. */
+  readonly frameRate?: number;
+  /** A frame in T-pose, from 1, or the angles of one [degrees] by the file's joint; neither: all angles 0. */
+  readonly restFrame?: number;
+  readonly restPose?: Readonly<Record<string, readonly number[]>>;
 }
 
-const needed: readonly TruthJoint[] = bodyJoints.filter((joint) => joint !== 'spine');
+/** A direction of a file's axes. */
+export type FileAxis = '+x' | '-x' | '+y' | '-y' | '+z' | '-z';
+
+/** Joints that every map has. */
+export const neededJoints: readonly TruthJoint[] = bodyJoints.filter((joint) => joint !== 'spine');
 
 /**
  * The known skeleton that fits these joints: one with all that are needed and most of the others, without those that the file lacks. Throws a
@@ -58,7 +70,7 @@ export function findSkeletonMap(names: readonly string[]): SkeletonMap {
   const among = (map: SkeletonMap): number => truthJoints.filter((joint) => has(map, joint)).length;
   let best: SkeletonMap | null = null;
   for (const map of skeletons as readonly SkeletonMap[])
-    if (needed.every((joint) => has(map, joint)) && (!best || among(map) > among(best))) best = map;
+    if (neededJoints.every((joint) => has(map, joint)) && (!best || among(map) > among(best))) best = map;
   if (best) {
     const joints = Object.fromEntries(Object.entries(best.joints).filter(([, theirs]) => known.has(theirs)));
     return { ...best, joints };
@@ -70,10 +82,11 @@ export function findSkeletonMap(names: readonly string[]): SkeletonMap {
 function unknownSkeleton(names: readonly string[]): string {
   const known = new Set(names);
   const lacks = (skeletons as readonly SkeletonMap[]).map(({ joints }) =>
-    needed.filter((each) => !known.has(joints[each]!)),
+    neededJoints.filter((each) => !known.has(joints[each]!)),
   );
   const least = lacks.reduce((a, b) => (b.length < a.length ? b : a));
   if (least.length <= 2)
     return `the skeleton has no ${least.join(' and no ')}, which head and hands and the truth are made of`;
-  return `a skeleton that is not known here (it has ${names.slice(0, 8).map(shown).join(', ')}, …)`;
+  const some = names.slice(0, 8).map(shown).join(', ');
+  return `a skeleton that is not known here (it has ${some}, …); a map of it, a .json that is dropped too, says which joint is which: docs/evaluation.md`;
 }

@@ -92,6 +92,16 @@ describe('files of one motion', () => {
     expect([motion, skeleton, others]).toEqual(['01_02.amc', '01.asf', ['02.asf']]);
   });
 
+  test('are a BVH and the map of its skeleton', () => {
+    expect(pairFiles(['map.json', 'dance.bvh'])).toEqual({
+      motion: 'dance.bvh',
+      skeleton: null,
+      map: 'map.json',
+      others: [],
+    });
+    expect(() => pairFiles(['map.json'])).toThrow('map.json: a map of a skeleton without motion');
+  });
+
   test('are named where one is missing', () => {
     expect(() => pairFiles(['clips/01_02.amc'])).toThrow(
       '01_02.amc: a motion without its skeleton; open its .asf together with it',

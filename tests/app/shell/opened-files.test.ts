@@ -126,4 +126,15 @@ describe('a dropped file', () => {
     expect(mocap).toEqual([[motion, skeleton]]);
     expect(opened).toEqual([robot]);
   });
+
+  test('takes JSON for a map beside motion and where it is one, else for a recording', async () => {
+    const { files: page, mocap, recorder } = files();
+    const [motion, map] = [new File(['HIERARCHY'], 'dance.bvh'), new File(['{"joints": {}}'], 'map.json')];
+    page.openAll([map, motion]);
+    expect(mocap).toEqual([[map, motion]]);
+    await page.open(map);
+    expect(mocap.at(-1)).toEqual([map]);
+    await page.open(recordingFile());
+    expect([mocap.length, recorder.name]).toEqual([2, 'walk.json']);
+  });
 });

@@ -23,7 +23,9 @@ export const goldenMocap: readonly GoldenMocap[] = JSON.parse(
 /** The file as the page opens it. */
 export function sourceOf({ motion, files }: Pick<GoldenMocap, 'motion' | 'files'>): MocapSource {
   const text = files[motion]!;
-  if (motion.endsWith('.bvh')) return { format: 'bvh', name: motion, text };
+  const map = files['map.json'];
+  if (motion.endsWith('.bvh'))
+    return { format: 'bvh', name: motion, text, ...(map !== undefined && { map: { name: 'map.json', text: map } }) };
   const skeleton = Object.keys(files).find((name) => name.endsWith('.asf'))!;
   return { format: 'amc', name: motion, text, skeleton: { name: skeleton, text: files[skeleton]! } };
 }

@@ -1,5 +1,6 @@
 import type { BoneMap } from '../../../avatar/bone-names';
 import { firstLine, reasonOf } from '../../../core/errors/reasons';
+import { isSkeletonMap } from '../../../core/mocap/is-skeleton-map';
 import type { BareBody } from '../../../lib/bare-body';
 import { type FileKind, nameOf, readLimited } from '../../../ui/limited-files';
 import type { Notices } from '../../../ui/notices';
@@ -19,6 +20,9 @@ export interface OpenedFilesOptions {
   onChange(): void;
 }
 
+const isJson = ({ name }: File): boolean => /\.json$/i.test(name);
+/** A map of a skeleton is a page of text [bytes]. */
+const largestMap = 2 ** 18;
 const isMocap = ({ name }: File): boolean => /\.(bvh|asf|amc|vrma)$/i.test(name);
 
 /** Avatars, recordings and motion capture that the user brings along, as files of this device or as addresses. */
@@ -31,15 +35,17 @@ export class OpenedFiles {
 
   /** Files that came together: those of motion capture make one motion, others are opened one by one. */
   openAll(files: readonly File[]): void {
-    const mocap = files.filter(isMocap);
+    // Beside motion, JSON is a map of its skeleton.
+    const mocap = files.some(isMocap) ? files.filter((file) => isMocap(file) || isJson(file)) : [];
     if (mocap.length > 0) void this.#options.mocap.open(mocap);
-    for (const file of files) if (!isMocap(file)) void this.open(file);
+    for (const file of files) if (!mocap.includes(file)) void this.open(file);
   }
 
-  /** A file by its ending: a recording, else an avatar. Never rejects: what goes wrong becomes a notice. */
+  /** A file by its ending: a recording or a map of a skeleton, else an avatar. Never rejects: what goes wrong becomes a notice. */
   async open(file: File): Promise<void> {
-    if (/\.json$/i.test(file.name)) await this.openRecording(file);
-    else await this.openAvatar(file);
+    if (!isJson(file)) await this.openAvatar(file);
+    else if (file.size <= largestMap && isSkeletonMap(await file.text())) await this.#options.mocap.open([file]);
+    else await this.openRecording(file);
   }
 
   async openAvatar(source: string | File): Promise<void> {

@@ -26,9 +26,14 @@ function createRecorderSection(actions: RecordingActions) {
   const pause = button('Pause', () => actions.setPaused(pause.textContent === 'Pause'));
   const loop = toggle('Loop', (on) => actions.setLoop(on));
   const open = fileButton('Open recording', '.json,application/json', (files) => actions.openFiles(files));
-  const openMocap = fileButton('Open motion capture', '.bvh,.asf,.amc,.vrma', (files) => actions.openFiles(files), {
-    multiple: true,
-  });
+  const openMocap = fileButton(
+    'Open motion capture',
+    '.bvh,.asf,.amc,.vrma,.json',
+    (files) => actions.openFiles(files),
+    {
+      multiple: true,
+    },
+  );
   return {
     node: element(
       'section',

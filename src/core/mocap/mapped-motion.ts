@@ -1,0 +1,83 @@
+import { conjugate, fromAxes, fromAxisAngle, multiply, type Quat, quat, rotate } from '../math/quat';
+import { cross, scale, subtract, up, type Vec3 } from '../math/vec3';
+import { type FileMotion, type JointPoses, makeJointPoses } from '../motion/file-motion';
+import { type BvhJoint, type BvhMotion, poseBvh } from '../motion/read-bvh';
+import { directions } from './read-skeleton-map';
+import type { SkeletonMap } from './skeleton-map';
+
+/** What takes a file's axes to those of the floor (+Y up, people at rest face −Z). */
+export function floorFromFile({ up: upward = '+y', forward = '+z' }: SkeletonMap): Quat {
+  const [above, ahead] = [directions[upward], directions[forward]];
+  return conjugate(fromAxes(cross(ahead, above), above, scale(ahead, -1)));
+}
+
+/** The same motion counted from other poses: where its joints rest, and how each is turned there. */
+function countedFrom(file: FileMotion, { positions, rotations }: JointPoses): FileMotion {
+  const backs = rotations.map((rotation) => conjugate(rotation));
+  return {
+    ...file,
+    rest: positions.map((position) => subtract(position, positions[0]!)),
+    pose(frame, target) {
+      file.pose(frame, target);
+      for (const [i, back] of backs.entries()) multiply(target.rotations[i]!, back, target.rotations[i]!);
+      return target;
+    },
+  };
+}
+
+/** A person in T-pose, taken from a frame or from angles, stands turned as they stood: the same motion counted from one who faces forward. */
+function facingForward(file: FileMotion, map: SkeletonMap): FileMotion {
+  const floor = floorFromFile(map);
+  const restOf = (joint: 'leftUpperArm' | 'rightUpperArm'): Vec3 => file.rest[file.names.indexOf(map.joints[joint]!)]!;
+  const across = rotate(floor, subtract(restOf('rightUpperArm'), restOf('leftUpperArm')));
+  const ours = fromAxisAngle(up, -Math.atan2(-across.z, across.x));
+  const turn = multiply(conjugate(floor), multiply(ours, floor, quat(0, 0, 0, 1)));
+  const turned = makeJointPoses(file.names.length);
+  for (const [i, at] of file.rest.entries()) rotate(turn, at, turned.positions[i]!);
+  for (const rotation of turned.rotations) Object.assign(rotation, turn);
+  return countedFrom(file, turned);
+}
+
+/** A motion counted from the T-pose that a map tells, facing forward; unchanged where it tells none. Throws a sentence where it is none of the file's. */
+export function fromMappedRest(
+  file: FileMotion,
+  map: SkeletonMap,
+  bvh: { readonly motion: BvhMotion; readonly joints: readonly BvhJoint[] } | null,
+): FileMotion {
+  const { restFrame, restPose } = map;
+  for (const [ours, theirs] of Object.entries(map.joints))
+    if (!file.names.includes(theirs))
+      throw new Error(`no joint “${theirs}”, which the map “${map.name}” names as ${ours}`);
+  if (restPose) {
+    if (!bvh) throw new Error('restPose is for BVH files; here restFrame can be given');
+    return facingForward(countedFrom(file, poseOfAngles(bvh.motion, bvh.joints, restPose)), map);
+  }
+  if (restFrame === undefined) return file;
+  if (restFrame > file.frameCount) throw new Error(`restFrame ${restFrame}, but there are ${file.frameCount} frames`);
+  return facingForward(countedFrom(file, file.pose(restFrame - 1, makeJointPoses(file.names.length))), map);
+}
+
+/** Where these angles [degrees] place the joints: the root at the origin, others at their offsets, angles that are not given 0. */
+function poseOfAngles(
+  motion: BvhMotion,
+  joints: readonly BvhJoint[],
+  angles: NonNullable<SkeletonMap['restPose']>,
+): JointPoses {
+  for (const name of Object.keys(angles))
+    if (!joints.some((joint) => joint.name === name))
+      throw new Error(`no joint “${name}”, which the map's restPose turns`);
+  const values = joints.flatMap(({ name, parent, offset, channels }) => {
+    const given = angles[name] ?? [];
+    const turning = channels.filter(({ kind }) => kind === 'rotation').length;
+    if (given.length > 0 && given.length !== turning)
+      throw new Error(`restPose gives ${name} ${given.length} angles, the file ${turning} rotation channels`);
+    let next = 0;
+    return channels.map(({ kind, axis }) => {
+      if (kind === 'position') return parent < 0 ? 0 : offset[axis];
+      next += 1;
+      return given[next - 1] ?? 0;
+    });
+  });
+  const pose = { ...motion, joints, frameCount: 1, values: Float64Array.from(values) };
+  return poseBvh(pose, 0, makeJointPoses(joints.length));
+}

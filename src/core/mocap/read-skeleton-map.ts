@@ -1,0 +1,104 @@
+import { type Vec3, vec3 } from '../math/vec3';
+import { shown } from '../motion/lines';
+import {
+  type FileAxis,
+  neededJoints,
+  type SkeletonMap,
+  type TrackedJoint,
+  type TruthJoint,
+  truthJoints,
+} from './skeleton-map';
+
+/** Directions of a file, by the names that a map gives them. */
+export const directions: Readonly<Record<FileAxis, Vec3>> = {
+  '+x': vec3(1, 0, 0),
+  '-x': vec3(-1, 0, 0),
+  '+y': vec3(0, 1, 0),
+  '-y': vec3(0, -1, 0),
+  '+z': vec3(0, 0, 1),
+  '-z': vec3(0, 0, -1),
+};
+
+const keys = ['name', 'scale', 'frameRate', 'up', 'forward', 'joints', 'rotations', 'restFrame', 'restPose'];
+
+type Content = Readonly<Record<string, unknown>>;
+const isObject = (value: unknown): value is Content =>
+  typeof value === 'object' && value !== null && !Array.isArray(value);
+const isNumber = (value: unknown): value is number => typeof value === 'number' && Number.isFinite(value);
+
+/**
+ * The map of a skeleton in a JSON text, as the evaluation takes it (docs/evaluation.md). Throws a sentence where something is missing, unknown or
+ * of the wrong kind.
+ */
+export function readSkeletonMap(text: string, name: string): SkeletonMap {
+  const content = parse(text);
+  const unknown = Object.keys(content).find((key) => !keys.includes(key));
+  if (unknown !== undefined) throw new Error(`${shown(unknown)} is not known: docs/evaluation.md says what a map has`);
+  const { up = '+y', forward = '+z' } = content;
+  for (const [key, axis] of Object.entries({ up, forward }))
+    if (!Object.hasOwn(directions, String(axis)))
+      throw new Error(`“${key}” should be one of ${Object.keys(directions).join(', ')}`);
+  if (String(up)[1] === String(forward)[1]) throw new Error(`“up” ${up} and “forward” ${forward} are one axis`);
+  const restPose = restPoseOf(content);
+  return {
+    name: typeof content.name === 'string' ? content.name : name.replace(/\.json$/i, ''),
+    joints: jointsOf(content),
+    up: up as FileAxis,
+    forward: forward as FileAxis,
+    ...numberOf(content, 'scale'),
+    ...numberOf(content, 'frameRate'),
+    ...(isObject(content.rotations) && { rotations: content.rotations as Partial<Record<TrackedJoint, string>> }),
+    ...restFrameOf(content),
+    ...(restPose && { restPose }),
+  };
+}
+
+function parse(text: string): Content {
+  let content: unknown;
+  try {
+    content = JSON.parse(text);
+  } catch (error) {
+    throw new Error(`no valid JSON: ${error instanceof Error ? error.message : String(error)}`);
+  }
+  if (!isObject(content) || !isObject(content.joints)) throw new Error('expected an object with “joints”');
+  return content;
+}
+
+function jointsOf({ joints }: Content): Readonly<Partial<Record<TruthJoint, string>>> {
+  const given = joints as Content;
+  for (const joint of neededJoints) if (typeof given[joint] !== 'string') throw new Error(`joints.${joint} is missing`);
+  for (const [joint, theirs] of Object.entries(given)) {
+    if (!(truthJoints as readonly string[]).includes(joint))
+      throw new Error(`joints.${joint} is none of ours (${truthJoints.join(', ')})`);
+    if (typeof theirs !== 'string') throw new Error(`joints.${joint} should be the name of a joint in the file`);
+  }
+  return given as Partial<Record<TruthJoint, string>>;
+}
+
+function numberOf(content: Content, key: 'scale' | 'frameRate') {
+  const value = content[key] ?? null;
+  if (value === null) return {};
+  if (!isNumber(value) || value <= 0) throw new Error(`“${key}” should be a number above zero`);
+  return { [key]: value };
+}
+
+function restFrameOf({ restFrame = null, restPose }: Content) {
+  if (restFrame === null) return {};
+  if (restPose !== undefined) throw new Error('either “restFrame” or “restPose”');
+  if (isObject(restFrame))
+    throw new Error(
+      '“restFrame” of another file is for npm run evaluate; here it is the number of a frame of the file itself',
+    );
+  if (!Number.isInteger(restFrame) || (restFrame as number) < 1)
+    throw new Error('“restFrame” should be the number of a frame, from 1');
+  return { restFrame: restFrame as number };
+}
+
+function restPoseOf({ restPose = null }: Content): Readonly<Record<string, readonly number[]>> | null {
+  if (restPose === null) return null;
+  if (!isObject(restPose)) throw new Error("“restPose” should be an object: angles [degrees] by the file's joint");
+  for (const [joint, angles] of Object.entries(restPose))
+    if (!Array.isArray(angles) || !angles.every(isNumber))
+      throw new Error(`restPose.${joint} should be a list of angles [degrees]`);
+  return restPose as Record<string, number[]>;
+}

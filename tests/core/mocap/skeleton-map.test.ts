@@ -1,0 +1,60 @@
+import { describe, expect, test } from 'vitest';
+import { isSkeletonMap } from '../../../src/core/mocap/is-skeleton-map';
+import { prepareMocap } from '../../../src/core/mocap/prepare-mocap';
+import { finishWork } from '../../../src/core/motion/work';
+import { goldenMocap, sourceOf } from './golden-mocap';
+
+const folded = goldenMocap.find(({ motion }) => motion === 'folded_1.bvh')!;
+const map = JSON.parse(folded.files['map.json']!);
+const withMap = (text: string) =>
+  finishWork(prepareMocap(sourceOf({ ...folded, files: { ...folded.files, 'map.json': text } })));
+const changed = (change: Record<string, unknown>) => () => withMap(JSON.stringify({ ...map, ...change }));
+
+describe('a map of a skeleton', () => {
+  test('is known from a recording and from what is no JSON', () => {
+    expect(isSkeletonMap(folded.files['map.json']!)).toBe(true);
+    expect(isSkeletonMap('{"format": "threepoint-recording", "joints": {}}')).toBe(false);
+    expect(isSkeletonMap('{"photos": []}')).toBe(false);
+    expect(isSkeletonMap('{"joints"')).toBe(false);
+  });
+
+  test('is needed for a skeleton that is not known, which a sentence says', () => {
+    const { 'map.json': _, ...files } = folded.files;
+    expect(() => finishWork(prepareMocap(sourceOf({ ...folded, files })))).toThrow(/^folded_1\.bvh: .*a map of it/);
+  });
+
+  test.each<[string, () => unknown, RegExp]>([
+    ['no JSON', () => withMap('{'), /map\.json: no valid JSON: /],
+    ['no map', () => withMap('[]'), /map\.json: expected an object with “joints”/],
+    ['an unknown key', changed({ bones: 1 }), /map\.json: “bones” is not known/],
+    ['a joint that is missing', changed({ joints: { hips: 'a' } }), /map\.json: joints\.chest is missing/],
+    ['a joint that is none of ours', changed({ joints: { ...map.joints, tail: 'a' } }), /joints\.tail is none of ours/],
+    [
+      'a joint that the file lacks',
+      changed({ joints: { ...map.joints, head: 'Kopf' } }),
+      /^folded_1\.bvh: no joint “Kopf”/,
+    ],
+    ['one axis for two', changed({ up: '-z' }), /“up” -z and “forward” \+z are one axis/],
+    ['an axis that is none', changed({ up: 'north' }), /“up” should be one of \+x/],
+    ['a scale of nothing', changed({ scale: 0 }), /“scale” should be a number above zero/],
+    ['two rests', changed({ restFrame: 1 }), /either “restFrame” or “restPose”/],
+    [
+      'a frame beyond the end',
+      changed({ restPose: undefined, restFrame: 999 }),
+      /restFrame 999, but there are 76 frames/,
+    ],
+    [
+      'a frame of another file',
+      changed({ restPose: undefined, restFrame: { file: 'a.bvh' } }),
+      /here it is the number of a frame/,
+    ],
+    [
+      'angles of too many axes',
+      changed({ restPose: { bip_Hips: [1] } }),
+      /restPose gives bip_Hips 1 angles, the file 3/,
+    ],
+    ['no rest where bones are folded', changed({ restPose: undefined }), /the rest pose is no T-pose/],
+  ])('with %s is refused in a sentence', (_, prepare, sentence) => {
+    expect(prepare).toThrow(sentence);
+  });
+});
