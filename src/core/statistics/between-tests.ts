@@ -1,6 +1,6 @@
 import normalCdf from '@stdlib/stats-base-dists-normal-cdf';
 import { noncentralityOfT } from './noncentral';
-import { cubesOf, ranksOf } from './ranks';
+import { cubesOf, rankBiserialInterval, ranksOf } from './ranks';
 import { constantBelow, criticalT, deviationOf, type Interval, meanOf, twoSidedP } from './summaries';
 
 /** Welch's two-sided t-test of first − second, of different participants. */
@@ -71,6 +71,8 @@ export interface RankSumTest {
   readonly p: number | null;
   /** Rank-biserial correlation in [−1, 1]: how much likelier a value of the first is the larger than the smaller. */
   readonly effect: number;
+  /** Its interval; null where no value of one is beyond one of the other. */
+  readonly effectInterval: Interval | null;
 }
 
 /** From as many values on, or with ties, R takes the normal approximation. */
@@ -111,7 +113,9 @@ export function rankSumTest(first: readonly number[], second: readonly number[])
   const w = ranks.slice(0, m).reduce((sum, rank) => sum + rank, 0) - (m * (m + 1)) / 2;
   const effect = (2 * w) / (m * n) - 1;
   const exact = ties.length === 0 && m < exactBelow && n < exactBelow;
-  return { w, method: exact ? 'exact' : 'normal', p: exact ? exactP(w, m, n) : normalP(w, m, n, ties), effect };
+  const effectInterval = rankBiserialInterval(effect, Math.sqrt((m + n + 1) / (3 * m * n)));
+  const p = exact ? exactP(w, m, n) : normalP(w, m, n, ties);
+  return { w, method: exact ? 'exact' : 'normal', p, effect, effectInterval };
 }
 
 /** null where all values are tied. */

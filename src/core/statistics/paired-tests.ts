@@ -1,7 +1,7 @@
 import normalCdf from '@stdlib/stats-base-dists-normal-cdf';
 import signedRankCdf from '@stdlib/stats-base-dists-signrank-cdf';
 import { noncentralityOfT } from './noncentral';
-import { cubesOf, ranksOf } from './ranks';
+import { cubesOf, rankBiserialInterval, ranksOf } from './ranks';
 import { constantBelow, type Interval, meanSummary, twoSidedP } from './summaries';
 
 /** The two-sided paired t-test of first − second. */
@@ -57,6 +57,8 @@ export interface SignedRankTest {
   readonly p: number | null;
   /** Rank-biserial correlation in [−1, 1]: (V − the ranks of the negative) / all ranks; null where no pair differs. */
   readonly effect: number | null;
+  /** Its interval; null also where all differences have one sign. */
+  readonly effectInterval: Interval | null;
 }
 
 /** Below this many pairs R takes the exact distribution, if there are neither ties nor zeros. */
@@ -73,14 +75,15 @@ export function signedRankTest(first: readonly number[], second: readonly number
   const differences = all.filter((difference) => difference !== 0);
   const n = differences.length;
   const zeros = all.length - n;
-  if (n === 0) return { n, zeros, v: 0, method: 'exact', p: null, effect: null };
+  if (n === 0) return { n, zeros, v: 0, method: 'exact', p: null, effect: null, effectInterval: null };
   const { ranks, ties } = ranksOf(differences.map(Math.abs));
   const v = ranks.reduce((sum, rank, index) => sum + ((differences[index] as number) > 0 ? rank : 0), 0);
   const total = (n * (n + 1)) / 2;
   const effect = (2 * v - total) / total;
   const exact = zeros === 0 && ties.length === 0 && n < exactBelow;
   const p = exact ? exactP(v, n) : normalP(v, n, ties);
-  return { n, zeros, v, method: exact ? 'exact' : 'normal', p, effect };
+  const effectInterval = rankBiserialInterval(effect, Math.sqrt((n * (n + 1) * (2 * n + 1)) / 6) / total);
+  return { n, zeros, v, method: exact ? 'exact' : 'normal', p, effect, effectInterval };
 }
 
 function exactP(v: number, n: number): number {

@@ -1,3 +1,7 @@
+import normalCdf from '@stdlib/stats-base-dists-normal-cdf';
+import { bisect } from '../math/bisection';
+import type { Interval } from './summaries';
+
 /** Ranks from 1, ties sharing their mean rank, and the sizes of the groups of ties. */
 export function ranksOf(values: readonly number[]): {
   readonly ranks: readonly number[];
@@ -18,3 +22,14 @@ export function ranksOf(values: readonly number[]): {
 
 /** Σ (size³ − size) over groups of ties: what they take from the spread of ranks. */
 export const cubesOf = (ties: readonly number[]): number => ties.reduce((sum, size) => sum + size ** 3 - size, 0);
+
+/**
+ * The interval of a rank-biserial correlation by Fisher's z, with the standard error that it has where nothing differs (as R's
+ * effectsize::rank_biserial). null: all ranks are on one side, where z has no end.
+ */
+export function rankBiserialInterval(effect: number, error: number, confidence = 0.95): Interval | null {
+  if (Math.abs(effect) === 1) return null;
+  const critical = bisect(0, 40, (z) => normalCdf(z, 0, 1) > (1 + confidence) / 2, 80);
+  const z = Math.atanh(effect);
+  return { low: Math.tanh(z - critical * error), high: Math.tanh(z + critical * error) };
+}

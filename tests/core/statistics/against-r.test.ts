@@ -3,10 +3,20 @@ import { describe, expect, test } from 'vitest';
 import { type Effect, varianceAnalysis } from '../../../src/core/statistics/analysis-of-variance';
 import { rankSumCounts, rankSumTest, welchTest } from '../../../src/core/statistics/between-tests';
 import { noncentralF, noncentralT } from '../../../src/core/statistics/noncentral';
-import { pairedTTest } from '../../../src/core/statistics/paired-tests';
+import { pairedTTest, signedRankTest } from '../../../src/core/statistics/paired-tests';
 import { friedmanTest, kruskalWallisTest } from '../../../src/core/statistics/rank-analyses';
 import { evenly, seed } from '../arbitraries';
-import { chicks, grasses, insectSprays, ozone, placenta, plantGrowth, roundingTimes, sleep } from './data-sets';
+import {
+  chicks,
+  depression,
+  grasses,
+  insectSprays,
+  ozone,
+  placenta,
+  plantGrowth,
+  roundingTimes,
+  sleep,
+} from './data-sets';
 
 /** To a millionth of R's figure. */
 function expectAsInR(ours: number | null | undefined, r: number): void {
@@ -85,6 +95,28 @@ test("the effect of a paired test and its interval, by R's pt: sleep", () => {
   expect(dz).toBeCloseTo(-1.284558, 6);
   expectAsInR(dzInterval?.low, -2.11801651397707);
   expectAsInR(dzInterval?.high, -0.414627756380144);
+});
+
+describe("rank-biserial correlations, their intervals by R's tanh(atanh(r) + c(-1, 1) * qnorm(.975) * error)", () => {
+  test('of pairs, error sqrt(n (n + 1) (2 n + 1) / 6) / (n (n + 1) / 2): depression', () => {
+    const { v, effect, effectInterval } = signedRankTest(depression.first, depression.second);
+    expect(v).toBe(40);
+    expectAsInR(effect, 0.777777777777778);
+    expectAsInR(effectInterval?.low, 0.295363129336242);
+    expectAsInR(effectInterval?.high, 0.944155901920081);
+  });
+
+  test('of two groups, error sqrt((m + n + 1) / (3 m n)): placenta', () => {
+    const { effect, effectInterval } = rankSumTest(placenta.term, placenta.early);
+    expectAsInR(effect, 0.4);
+    expectAsInR(effectInterval?.low, -0.213153495960508);
+    expectAsInR(effectInterval?.high, 0.787102677126454);
+  });
+
+  test('have none where all ranks are on one side', () => {
+    expect(signedRankTest(sleep.first, sleep.second)).toMatchObject({ effect: -1, effectInterval: null });
+    expect(rankSumTest([4, 5], [1, 2])).toMatchObject({ effect: 1, effectInterval: null });
+  });
 });
 
 test("noncentral distributions are R's pt and pf", () => {

@@ -6,6 +6,12 @@ export const sleep = {
   second: [1.9, 0.8, 1.1, 0.1, -0.1, 4.4, 5.5, 1.6, 4.6, 3.4],
 };
 
+/** Depression of nine patients before and after (Hollander and Wolfe 1973, p. 29 f.): R's ?wilcox.test. */
+export const depression = {
+  first: [1.83, 0.5, 1.62, 2.48, 1.68, 1.88, 1.55, 3.06, 1.3],
+  second: [0.878, 0.647, 0.598, 2.05, 1.06, 1.29, 1.06, 3.14, 1.29],
+};
+
 /** Permeability of the placenta at term and at 12 to 26 weeks (Hollander and Wolfe 1973, p. 69 f.): R's ?wilcox.test. */
 export const placenta = {
   term: [0.8, 0.83, 1.89, 1.04, 1.45, 1.38, 1.91, 1.64, 0.73, 1.46],

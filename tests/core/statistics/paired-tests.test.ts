@@ -4,18 +4,7 @@ import { holm } from '../../../src/core/statistics/holm';
 import { pairedTTest, signedRankTest } from '../../../src/core/statistics/paired-tests';
 import { meanSummary, twoSidedP } from '../../../src/core/statistics/summaries';
 import { number, seed } from '../arbitraries';
-
-// R's data set "sleep" (Cushny and Peebles, 1905): hours of sleep gained with two drugs, ten patients.
-const sleep = {
-  first: [0.7, -1.6, -0.2, -1.2, -0.1, 3.4, 3.7, 0.8, 0.0, 2.0],
-  second: [1.9, 0.8, 1.1, 0.1, -0.1, 4.4, 5.5, 1.6, 4.6, 3.4],
-};
-
-// Hollander and Wolfe (1973), depression of nine patients before and after; the example of R's ?wilcox.test.
-const depression = {
-  first: [1.83, 0.5, 1.62, 2.48, 1.68, 1.88, 1.55, 3.06, 1.3],
-  second: [0.878, 0.647, 0.598, 2.05, 1.06, 1.29, 1.06, 3.14, 1.29],
-};
+import { depression, sleep } from './data-sets';
 
 describe('the paired t-test', () => {
   test('agrees with R on its sleep data', () => {
