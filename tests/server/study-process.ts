@@ -20,3 +20,7 @@ const { service } = openStudyService({
 });
 const { port } = await serve(createRouter([service], noPage), { host: '127.0.0.1', port: 0 });
 process.send?.({ port });
+process.on('message', () => {
+  const { user, system } = process.cpuUsage();
+  process.send?.({ rssBytes: process.memoryUsage.rss(), cpuSeconds: (user + system) / 1e6 });
+});

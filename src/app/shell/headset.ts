@@ -7,7 +7,7 @@ import { DeviceBodyReader } from '../../xr/device-body-reader';
 import { type Emulator, installEmulator } from '../../xr/emulator';
 import { giveFramesToEvents } from '../../xr/frameless-events';
 import { buzz, type Pulse } from '../../xr/haptics';
-import { describeXrSupport, requestVrSession } from '../../xr/session';
+import { describeXrSupport, type PlayRoom, requestVrSession, roomOf } from '../../xr/session';
 import { createTracker, type Tracker } from '../../xr/tracker';
 import type { Settings } from './settings';
 import type { Stage } from './stage';
@@ -50,6 +50,8 @@ export interface HeadsetListener {
 
 interface Session {
   readonly xr: XRSession;
+  /** What the device's boundary leaves [m]; null: it does not tell. */
+  readonly room: PlayRoom | null;
   readonly tracker: Tracker;
   /** null: the device was not asked for its own body. */
   readonly bodyReader: DeviceBodyReader | null;
@@ -61,6 +63,8 @@ export class Headset {
   #listener: HeadsetListener | null = null;
   #emulator: Emulator | null = null;
   #session: Session | null = null;
+  /** Why no real headset can be worn here; null: one can, or the emulated one was asked for. */
+  #fault: string | null = null;
   /** There is a device: the emulator is not needed. */
   #real = false;
 
@@ -74,6 +78,16 @@ export class Headset {
 
   get worn(): boolean {
     return this.#session !== null;
+  }
+
+  /** Why no real headset can be worn here; null: one can, or the emulated one was asked for. */
+  get fault(): string | null {
+    return this.#fault;
+  }
+
+  /** The room that the boundary of the headset leaves; null: it does not tell, or is not worn. */
+  get room(): PlayRoom | null {
+    return this.#session?.room ?? null;
   }
 
   get emulator(): Emulator | null {
@@ -114,8 +128,9 @@ export class Headset {
     const { switches, settings } = this.#options;
     const support = await describeXrSupport();
     this.#real = support.kind === 'device' && !switches.emulate;
+    this.#fault = this.#real || switches.emulate ? null : support.sentence;
     if (switches.emulate || !settings.actor) await this.ensureEmulator();
-    return { real: this.#real, sentence: this.#real || switches.emulate ? null : support.sentence };
+    return { real: this.#real, sentence: this.#fault };
   }
 
   /** The emulator where there is no headset, loaded when it is first needed; null and a notice where it fails. */
@@ -184,9 +199,10 @@ export class Headset {
     const space = renderer.xr.getReferenceSpace();
     if (!space) throw new Error('the headset offers no floor to stand on (local-floor)');
     if (this.#emulator) easeEmulatedPicture(renderer, quality);
+    const room = await roomOf(xr);
     const bodyReader = settings.deviceBody ? new DeviceBodyReader() : null;
     const tracker = createTracker(xr, space, (moved) => renderer.xr.setReferenceSpace(moved), bodyReader);
-    this.#session = { xr, tracker, bodyReader };
+    this.#session = { xr, room, tracker, bodyReader };
     const jumped = () => this.#listener?.jumped();
     space.addEventListener('reset', jumped);
     xr.addEventListener('end', () => {

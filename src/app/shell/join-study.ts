@@ -52,6 +52,8 @@ export async function joinStudy(options: JoinStudyOptions): Promise<JoinedStudy>
     runners: { archery, ball },
     enterVr: () => headset.enter(),
     inSession: () => headset.worn,
+    deviceFault: () => headset.fault,
+    room: () => headset.room,
     calibration: () => body.wearerCalibration,
     setCalibration(calibration) {
       if (calibration) wearer.calibrate(calibration, 'measured');

@@ -2,6 +2,7 @@ import { reasonOf } from '../../core/errors/reasons';
 import type { Side } from '../../core/math/side';
 import type { ProgressEvent } from '../../core/study/advance';
 import { placeOf } from '../../core/study/progress';
+import { setupFaults } from '../../core/study/remote-setup';
 import { randomFor } from '../../core/study/shuffle';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 import type { CalibrationStep } from '../../ui/calibration-dialog';
@@ -52,6 +53,10 @@ export class RunningStudy {
   readonly #answering: Answering;
   /** Why the last wish changed nothing; null: it did. */
   #refusal: string | null = null;
+  /** What the last measuring found wrong. */
+  #measuredFaults: readonly string[] = [];
+  /** How high the eyes were last seen [m]; null: not yet. */
+  #eyes: number | null = null;
   /** The participant wants to stop and has not confirmed it yet. */
   #stopping = false;
   readonly #raised = new RaisedHands();
@@ -78,8 +83,12 @@ export class RunningStudy {
         this.show();
       },
       onMeasured: (calibration) => {
-        host.setCalibration(calibration);
+        // Calibration makes a standing person of one who sits: how high the eyes are now is what tells.
+        const faults = this.#setupFaults(this.#eyes);
         this.#guide.cancel();
+        this.#measuredFaults = faults;
+        if (faults.length > 0) return;
+        host.setCalibration(calibration);
         session.apply({ type: 'calibrated', calibration });
       },
       // What went wrong stays to be read until the participant measures again.
@@ -91,7 +100,10 @@ export class RunningStudy {
       choose: (question, value) => this.#said(this.#answering.choose(question, value)),
       type: (question, typed) => this.#said(this.#answering.type(question, typed)),
       submit: () => this.#submit(),
-      calibrate: () => this.#guide.start(),
+      calibrate: () => {
+        this.#measuredFaults = [];
+        this.#guide.start();
+      },
       enterVr: () => void host.enterVr(),
       askToStop: (on) => {
         this.#stopping = on;
@@ -131,7 +143,10 @@ export class RunningStudy {
 
   /** Every frame drawn; null: the head was not seen. */
   frame(time: number, frame: TrackingFrame | null): void {
-    if (frame) this.#guide.observe(frame);
+    if (frame) {
+      this.#eyes = frame.head.position.y;
+      this.#guide.observe(frame);
+    }
     // No sheet hangs there while a round is played: this is how it is stopped.
     if (this.#raised.follow(this.playing ? frame : null)) this.#apply({ type: 'pause' });
     const finished = this.#trial?.follow(time, frame);
@@ -182,6 +197,7 @@ export class RunningStudy {
         typed: this.#answering.typed,
         triedToSubmit: this.#answering.triedToSubmit,
         calibration: this.#calibration,
+        setupFaults: this.#measuredFaults.length > 0 ? this.#measuredFaults : this.#setupFaults(null),
         prepared: this.#preparation.of(this.#attempt()),
         refusal: this.#refusal,
         stopping: this.#stopping,
@@ -191,6 +207,18 @@ export class RunningStudy {
       },
       this.#actions,
     );
+  }
+
+  /** Of a participant with no one beside them; `eyeHeight` null: not measured yet. */
+  #setupFaults(eyeHeight: number | null): readonly string[] {
+    const { remote } = this.session.plan;
+    if (!remote) return [];
+    const worn = this.#host.inSession();
+    return setupFaults(remote, {
+      deviceFault: worn ? null : this.#host.deviceFault(),
+      room: this.#host.room(),
+      eyeHeight,
+    });
   }
 
   #showLockedOut(): void {
@@ -226,6 +254,7 @@ export class RunningStudy {
     this.#shownStep = this.session.step.id;
     this.#refusal = null;
     this.#stopping = false;
+    this.#measuredFaults = [];
     this.#guide.cancel();
     // The guide's last word on an earlier measuring may have come when its step was over.
     this.#calibration = null;

@@ -9,6 +9,10 @@ export interface StudyHost extends TrialHost {
   /** The games this page can play as tasks, by the name that plans call them. */
   readonly runners: Readonly<Partial<Record<string, TaskRunner>>>;
   enterVr(): Promise<void>;
+  /** Why no headset can be worn on this device; null: one can. */
+  deviceFault(): string | null;
+  /** The room that the headset's boundary leaves [m]; null: it does not tell, or is not worn. */
+  room(): { readonly width: number; readonly depth: number } | null;
   inSession(): boolean;
   /** Of this participant, for this visit; not remembered for others. null: not measured yet, and what the page had is another person's. */
   setCalibration(calibration: Calibration | null): void;

@@ -1,4 +1,5 @@
 import type { Progress } from '../../core/study/progress';
+import type { RemoteTerms } from '../../core/study/remote-setup';
 import { blindLabel, type StudyStep } from '../../core/study/schedule';
 import { type CalibrationStep, calibrationHeadline, calibrationInstruction } from '../../ui/calibration-dialog';
 import { screenQuestions } from './answering';
@@ -151,9 +152,13 @@ const stopScreen = (base: ScreenBase, { unwell }: Progress, actions: ScreenActio
 
 function calibrationScreen(
   base: ScreenBase,
-  { inSession, calibration }: StudySituation,
+  { session, inSession, calibration, setupFaults }: StudySituation,
   actions: ScreenActions,
 ): StudyScreen {
+  const { remote } = session.plan;
+  if (remote && setupFaults.length > 0 && (!calibration || calibration.kind === 'done')) {
+    return setupScreen(base, remote, { faults: setupFaults, inSession }, actions);
+  }
   if (!inSession) {
     return {
       ...base,
@@ -177,6 +182,23 @@ function calibrationScreen(
     buttons: [{ id: 'calibrate', label: 'Measure me', look: 'primary', act: actions.calibrate }, pauseButton(actions)],
   };
 }
+
+/** What keeps a participant who is alone from beginning, and whom they can ask. */
+const setupScreen = (
+  base: ScreenBase,
+  { contact }: RemoteTerms,
+  { faults, inSession }: { readonly faults: readonly string[]; readonly inSession: boolean },
+  actions: ScreenActions,
+): StudyScreen => ({
+  ...base,
+  id: 'setup',
+  title: inSession ? 'Not quite ready' : 'This device cannot be used',
+  text: [...faults, `Does it not help? ${contact}`],
+  trouble: true,
+  buttons: inSession
+    ? [{ id: 'calibrate', label: 'Measure again', look: 'primary', act: actions.calibrate }, pauseButton(actions)]
+    : [{ id: 'ask-to-stop', label: 'Stop the study', look: 'plain', act: () => actions.askToStop(true) }],
+});
 
 function measuringScreen(base: ScreenBase, calibration: CalibrationStep, actions: ScreenActions): StudyScreen {
   const id = `calibration-${calibration.kind}`;
@@ -208,6 +230,7 @@ function playedScreen(
   actions: ScreenActions,
 ): StudyScreen | null {
   const { inSession, playing, waitingFor, standing, prepared } = situation;
+  const { remote } = situation.session.plan;
   if (!inSession) {
     return {
       ...base,
@@ -241,8 +264,8 @@ function playedScreen(
     return {
       ...base,
       id: 'trial-failed',
-      title: 'Please call the experimenter',
-      text: [prepared.reason],
+      title: remote ? 'This round cannot start' : 'Please call the experimenter',
+      text: [prepared.reason, ...(remote ? [remote.contact] : [])],
       trouble: true,
       buttons: [{ id: 'again', label: 'Try again', look: 'primary', act: actions.prepareAgain }],
     };

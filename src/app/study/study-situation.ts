@@ -23,6 +23,8 @@ export interface StudySituation {
   readonly triedToSubmit: boolean;
   /** null: no one is being measured. */
   readonly calibration: CalibrationStep | null;
+  /** What is wrong with device, room or height of a participant who is alone; empty: nothing is known to be. */
+  readonly setupFaults: readonly string[];
   /** Of the step at hand; null: not asked for yet. */
   readonly prepared: Prepared | null;
   /** Why the last wish changed nothing; null: it did. */

@@ -1,6 +1,7 @@
 import * as v from 'valibot';
 import { embodimentFields, estimatorSchema } from './embodiment';
 import { questionnaireSchema } from './questionnaire-schema';
+import { remoteSchema } from './remote-setup';
 import { askToStopSchema } from './unwell';
 import { identifier, integerBetween, numberBetween, text } from './validation';
 import { languageTag, words } from './words';
@@ -89,6 +90,8 @@ export const planSchema = v.strictObject({
   questionnaires: v.exactOptional(
     v.pipe(v.array(questionnaireSchema, 'expected a list'), v.maxLength(20, 'expected at most twenty')),
   ),
+  /** Participants take part elsewhere, with no one beside them; absent: an experimenter is there. */
+  remote: v.exactOptional(remoteSchema),
   /** Who reaches one of these values is asked whether to stop. */
   askToStop: v.exactOptional(
     v.pipe(v.array(askToStopSchema, 'expected a list'), v.maxLength(8, 'expected at most eight')),

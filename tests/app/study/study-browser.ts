@@ -172,6 +172,12 @@ class TestHost implements StudyHost {
     this.worn = true;
   }
   inSession = (): boolean => this.worn;
+  /** How high the eyes are seen [m]. */
+  eyes = 1.6;
+  fault: string | null = null;
+  free: { readonly width: number; readonly depth: number } | null = null;
+  deviceFault = (): string | null => this.fault;
+  room = () => this.free;
   calibration = (): Calibration => this.measures ?? defaultCalibration;
   setCalibration(calibration: Calibration | null): void {
     this.measures = calibration;
@@ -199,16 +205,17 @@ class TestHost implements StudyHost {
 const ahead = { x: 0, y: 0, z: 0, w: 1 };
 
 /** A person of 1.6 m eye height who stretches both arms forward, as calibration wants it; `raised`: above the head. */
-function stretched(time: number, raised: boolean): TrackingFrame {
+function stretched(time: number, raised: boolean, eyes: number): TrackingFrame {
+  const lower = 1.6 - eyes;
   const hand = (x: number) =>
     ({
-      position: raised ? { x, y: 1.9, z: -0.1 } : { x, y: 1.33, z: -0.56 },
+      position: raised ? { x, y: 1.9 - lower, z: -0.1 } : { x, y: 1.33 - lower, z: -0.56 },
       orientation: ahead,
       tracking: 'tracked',
     }) as const;
   return {
     time,
-    head: { position: { x: 0, y: 1.6, z: 0 }, orientation: ahead, tracking: 'tracked' },
+    head: { position: { x: 0, y: eyes, z: 0 }, orientation: ahead, tracking: 'tracked' },
     leftHand: hand(-0.18),
     rightHand: hand(0.18),
   };
@@ -270,7 +277,7 @@ export function browser(server: StudyServer) {
         for (let i = 0; i < seconds * 30; i++) {
           frameTime += 1 / 30;
           clock.pass(1 / 30);
-          visit.frame(frameTime, stretched(frameTime, raised));
+          visit.frame(frameTime, stretched(frameTime, raised, host.eyes));
           host.drew();
         }
       },

@@ -56,6 +56,7 @@ function participant(...events: readonly ProgressEvent[]) {
             calibration: null,
             refusal: null,
             stopping: false,
+            setupFaults: [],
           },
           ...{ prepared: { state: 'ready', reason: '' }, playing: false, waitingFor: null, standing: false },
           ...situation,

@@ -219,6 +219,7 @@ export class PreviewWalk {
       prepared: { state: 'ready', reason: '' },
       refusal: this.#refusal,
       stopping: this.#stopping,
+      setupFaults: [],
       playing: kind === 'waiting',
       waitingFor: kind === 'waiting' ? this.#others() : null,
       standing: false,

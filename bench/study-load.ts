@@ -1,0 +1,181 @@
+// node --import tsx bench/study-load.ts [PARTICIPANTS] [SECONDS]: remote participants of one study at once on one server process, each as the page behaves.
+import { type ChildProcess, fork } from 'node:child_process';
+import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { randomSource } from '../src/core/rehearsal/random-source';
+import { parsePlan, participantsOf, type StudyPlan } from '../src/core/study/plan';
+import { begin } from '../src/core/study/progress';
+import { scheduleFor } from '../src/core/study/schedule';
+import type { ParticipantState } from '../src/core/study/study-api';
+import { recordVersion, type StudyRecord } from '../src/core/study/study-record';
+import { playedRound } from '../tests/app/study/played-round';
+import { paperFile } from '../tests/core/study/studies';
+import { heardFrom, kill } from '../tests/server/child-process';
+
+const experimenter = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
+/** As often as the page asks for commands, and sends what is new [s]. */
+const exchangeSeconds = 2;
+/** Something is recorded about so often: an answer handed in, a pause, a trial [s]. */
+const recordSeconds = 10;
+/** A round with its recording ends about so often [s]. */
+const roundSeconds = 60;
+
+const [count = 200, seconds = 60] = process.argv.slice(2).map(Number);
+
+type Times = Map<string, number[]>;
+
+const quantile = (values: readonly number[], share: number): number =>
+  values.toSorted((a, b) => a - b)[Math.min(values.length - 1, Math.floor(values.length * share))] ?? Number.NaN;
+
+function remotePlan(): StudyPlan {
+  const paper = parsePlan(paperFile, 'paper.json');
+  const tasks = paper.tasks.filter(({ groupSize }) => groupSize === 1);
+  return { ...paper, id: 'remote', participants: count, tasks };
+}
+
+/** Requests on a connection that was closed while they were on their way: sent again, as the page does with its next exchange. */
+let sentAgain = 0;
+
+async function answered(address: string, request: RequestInit): Promise<Response> {
+  for (;;) {
+    try {
+      return await fetch(address, request);
+    } catch (error) {
+      if (!(error instanceof TypeError) || sentAgain > 10_000) throw error;
+      sentAgain += 1;
+    }
+  }
+}
+
+/** How long a request took, by what it asked for; what is refused is counted apart. */
+function client(origin: string, times: Times, refused: string[]) {
+  return async (kind: string, method: string, path: string, token: string, body?: string) => {
+    const start = performance.now();
+    const response = await answered(`${origin}/api/studies${path}`, {
+      method,
+      headers: { 'content-type': 'application/json', authorization: `Bearer ${token}` },
+      ...(body !== undefined && { body }),
+    });
+    const text = await response.text();
+    const known = times.get(kind) ?? [];
+    known.push(performance.now() - start);
+    times.set(kind, known);
+    if (!response.ok) refused.push(`${kind}: ${response.status} ${text}`);
+    return text === '' ? null : JSON.parse(text);
+  };
+}
+
+/** The tracked frames of a round, as every participant sends them. */
+const { recording } = playedRound({}, 10);
+
+const pause = (s: number) => new Promise((resolve) => setTimeout(resolve, 1000 * s));
+
+/** One participant from the claim to the end of the load; returns the ids that were acknowledged. */
+async function takePart(
+  ask: ReturnType<typeof client>,
+  plan: StudyPlan,
+  { participant, invitation }: ParticipantState,
+  until: number,
+): Promise<number> {
+  const random = randomSource(1, participant);
+  const own = `/${plan.id}/participants/${participant}`;
+  await pause(exchangeSeconds * random.uniform());
+  const { token } = await ask('claim', 'POST', `${own}/claim`, experimenter, JSON.stringify({ invitation }));
+  const envelope = { version: recordVersion, study: plan.id, participant, simulated: false } as const;
+  const consent: StudyRecord = {
+    ...{ ...envelope, at: 1e9, kind: 'consent', id: 'consent' },
+    body: { version: plan.consent.version, given: true, motion: true, at: 1e9 },
+  };
+  let acknowledged = 0;
+  const send = async (record: StudyRecord) => {
+    const answer = await ask('records', 'POST', `${own}/records`, token, JSON.stringify({ records: [record] }));
+    acknowledged += answer?.acknowledged?.length ?? 0;
+  };
+  await send(consent);
+  const progress = { ...begin(scheduleFor(plan, participant)), motion: true };
+  for (let number = 1; performance.now() < until; number++) {
+    if (random.uniform() < exchangeSeconds / recordSeconds) {
+      const text = 'an answer handed in '.repeat(20);
+      await send({ ...envelope, at: number, kind: 'event', id: `event-${number}`, body: { type: 'remark', text } });
+      await ask('progress', 'PUT', `${own}/progress`, token, JSON.stringify({ ...progress, events: number }));
+    }
+    if (random.uniform() < exchangeSeconds / roundSeconds) {
+      const trial = `archery/1/trial-1@1.${number}:trial`;
+      await ask('motion', 'PUT', `${own}/motion?trial=${encodeURIComponent(trial)}`, token, recording as string);
+    }
+    await ask('commands', 'GET', `${own}/commands?after=0`, token);
+    await pause(exchangeSeconds * (0.9 + 0.2 * random.uniform()));
+  }
+  return acknowledged;
+}
+
+const inspect = async (server: ChildProcess) => {
+  server.send('inspect');
+  return heardFrom<{ rssBytes: number; cpuSeconds: number }>(server);
+};
+
+const directory = mkdtempSync(join(tmpdir(), 'threepoint-load-'));
+const server = fork(fileURLToPath(new URL('../tests/server/study-process.ts', import.meta.url)), [directory], {
+  execArgv: ['--import', 'tsx'],
+  env: { ...process.env, EXPERIMENTER_TOKEN: experimenter },
+});
+const { port } = await heardFrom<{ port: number }>(server);
+const times: Times = new Map();
+const refused: string[] = [];
+const ask = client(`http://127.0.0.1:${port}`, times, refused);
+const plan = remotePlan();
+await ask('begin', 'POST', '', experimenter, JSON.stringify({ plan, simulated: false }));
+const { participants } = (await ask('overview', 'GET', `/${plan.id}/participants`, experimenter)) as {
+  participants: ParticipantState[];
+};
+if (participants.length !== participantsOf(plan).length) throw new Error('the study has other participants');
+const before = await inspect(server);
+const start = performance.now();
+const until = start + 1000 * seconds;
+// The experimenter's page looks on.
+const watching = (async () => {
+  while (performance.now() < until) {
+    await ask('overview', 'GET', `/${plan.id}/participants`, experimenter);
+    await pause(exchangeSeconds);
+  }
+})();
+const acknowledged = (await Promise.all(participants.map((one) => takePart(ask, plan, one, until)))).reduce(
+  (sum, one) => sum + one,
+  0,
+);
+await watching;
+const took = (performance.now() - start) / 1000;
+const after = await inspect(server);
+const stored = (await ask('all', 'GET', `/${plan.id}/records`, experimenter)) as { records: unknown[] };
+await kill(server);
+rmSync(directory, { recursive: true, force: true });
+
+const rows = [...times].map(([kind, ms]) => ({
+  kind,
+  requests: ms.length,
+  p50Ms: Math.round(10 * quantile(ms, 0.5)) / 10,
+  p99Ms: Math.round(10 * quantile(ms, 0.99)) / 10,
+  maxMs: Math.round(quantile(ms, 1)),
+}));
+const figures = {
+  participants: count,
+  seconds: Math.round(took),
+  cpuShare: (after.cpuSeconds - before.cpuSeconds) / took,
+  rssMegabytes: after.rssBytes / 2 ** 20,
+  acknowledged,
+  stored: stored.records.length,
+  refused: refused.length,
+  rows,
+};
+console.log(
+  `${count} participants at once for ${Math.round(took)} s: ${acknowledged} records acknowledged, ${figures.stored} stored, ${refused.length} requests refused, ${sentAgain} sent again.`,
+);
+console.log(
+  `The server took ${(100 * figures.cpuShare).toFixed(0)} % of a core and ${figures.rssMegabytes.toFixed(0)} MB (${(before.rssBytes / 2 ** 20).toFixed(0)} MB before).`,
+);
+console.table(rows);
+for (const one of refused.slice(0, 5)) console.log(one);
+if (process.env.STUDY_LOAD_JSON) writeFileSync(process.env.STUDY_LOAD_JSON, `${JSON.stringify(figures, null, 2)}\n`);
+process.exitCode = acknowledged === figures.stored && refused.length === 0 ? 0 : 1;

@@ -1,0 +1,76 @@
+import { describe, expect, test } from 'vitest';
+import { setupFaults } from '../../../src/core/study/remote-setup';
+import { aWomanOf26 } from '../../core/study/studies';
+import { agree, canStart } from './participant-steps';
+import { browser, type Tab } from './study-browser';
+import { studyServer } from './study-server';
+
+const remote = { contact: 'Write to lab@example.org', freeSpace: 2 };
+const sound = { deviceFault: null, room: { width: 2.4, depth: 2.1 }, eyeHeight: 1.6 };
+
+async function alone(): Promise<Tab> {
+  const tab = await browser(await studyServer({ remote })).open();
+  await agree(tab);
+  expect(tab.display.asked('demographics').done(aWomanOf26)).toBeNull();
+  return tab;
+}
+
+const textOf = ({ display }: Tab) => display.screen?.text.join(' ') ?? '';
+
+describe('what a participant has who is alone', () => {
+  test('is right with a headset, room and eyes of a person who stands', () => {
+    expect(setupFaults(remote, sound)).toEqual([]);
+    expect(setupFaults(remote, { ...sound, room: null, eyeHeight: null })).toEqual([]);
+  });
+
+  test.each([
+    [{ deviceFault: 'This browser has no WebXR.' }, /no WebXR\. Open this link in the browser of your headset/],
+    [{ room: { width: 3, depth: 1.2 } }, /leaves 3\.0 m by 1\.2 m, the games need 2\.0 m/],
+    [{ eyeHeight: 0.8 }, /0\.8 m above the floor\. Stand up/],
+    [{ eyeHeight: 2.3 }, /2\.3 m above the floor: the headset has the floor too low/],
+  ])('is told in words: %j', (change, words) => {
+    const faults = setupFaults(remote, { ...sound, ...change });
+    expect(faults).toHaveLength(1);
+    expect(faults[0]).toMatch(words);
+  });
+});
+
+describe('a study with no one beside its participants', () => {
+  test('says on a device without a headset that it cannot be used, and whom to ask', async () => {
+    const tab = await alone();
+    expect(tab.display.shown).toBe('calibration-enter');
+    tab.host.fault = 'No headset is connected to this browser.';
+    tab.pass(1);
+    expect(tab.display.shown).toBe('setup');
+    expect(textOf(tab)).toContain('No headset is connected');
+    expect(textOf(tab)).toContain('lab@example.org');
+    expect(tab.display.screen?.buttons.map(({ id }) => id)).toEqual(['ask-to-stop']);
+  });
+
+  test('begins in a boundary that is large enough alone', async () => {
+    const tab = await alone();
+    tab.host.free = { width: 1, depth: 3 };
+    tab.wear(true);
+    expect(tab.display.inHeadset?.id).toBe('setup');
+    expect(textOf(tab)).toContain('1.0 m by 3.0 m');
+    tab.host.free = { width: 2.2, depth: 3 };
+    tab.pass(1);
+    expect(tab.display.inHeadset?.id).toBe('calibration');
+  });
+
+  test('measures again who sat, and takes the measures of who stood up', async () => {
+    const tab = await alone();
+    tab.wear(true);
+    tab.host.eyes = 0.9;
+    tab.display.press('calibrate');
+    tab.draw(6);
+    expect(tab.display.inHeadset?.id).toBe('setup');
+    expect(textOf(tab)).toContain('0.9 m above the floor. Stand up');
+    expect(tab.visit.state().step).toBe('archery/1/calibration');
+    tab.host.eyes = 1.6;
+    tab.display.press('calibrate');
+    tab.draw(6);
+    await canStart(tab);
+    expect(tab.visit.state().step).toBe('archery/1/tutorial');
+  });
+});
