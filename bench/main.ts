@@ -16,6 +16,7 @@ import {
   tellArchery,
   tellCosts,
   tellCourt,
+  tellCrowd,
   tellNetworks,
   tellOpening,
   tellRatios,
@@ -39,7 +40,7 @@ const { values: options, positionals } = parseArgs({
 });
 
 /** What is measured without --allocations; named on the command line, only these. */
-const everyPart = ['visit', 'frames', 'archery', 'ball', 'allocations', 'networks', 'avatar'] as const;
+const everyPart = ['visit', 'frames', 'archery', 'ball', 'crowd', 'allocations', 'networks', 'avatar'] as const;
 type Part = (typeof everyPart)[number];
 const parts: readonly string[] = options.allocations || positionals.length === 0 ? everyPart : positionals;
 const unknown = parts.filter((part) => !everyPart.some((known) => known === part));
@@ -171,7 +172,7 @@ const measurePart: Readonly<Record<Part, (browser: Browser) => Promise<object>>>
     tellRatios(ratios);
     tellStages(result);
     tellOpening(result);
-    const { archery: _archery, ball: _ball, ...frames } = result;
+    const { archery: _archery, ball: _ball, crowd: _crowd, ...frames } = result;
     return { ...frames, ratios };
   },
   async archery(browser) {
@@ -183,6 +184,11 @@ const measurePart: Readonly<Record<Part, (browser: Browser) => Promise<object>>>
     const result = await measureOnPage(browser, 'ball');
     tellCourt(result);
     return { ball: result.ball };
+  },
+  async crowd(browser) {
+    const { crowd } = await measureOnPage(browser, 'crowd');
+    if (crowd) tellCrowd(crowd);
+    return { crowd };
   },
   async allocations(browser) {
     const allocations = await measureAllocations(browser, { page: builtIn('dist'), bench: builtIn('.cache/bench') });

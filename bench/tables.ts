@@ -1,6 +1,7 @@
 import { stageNames } from '../src/app/shell/frame-timing';
 import type { Allocations } from './allocations';
 import type { MeasuredNetwork } from './networks';
+import type { CrowdTimes } from './page/crowd';
 import type { PageResult } from './page/main';
 import { type PairedRatio, pairedRatio } from './paired-ratio';
 
@@ -142,6 +143,13 @@ export function tellCourt(frames: PageResult): void {
       ]);
     }
   }
+}
+
+export function tellCrowd({ others, aloneMs, beyondMs, receivedMs, bentMs, drawnMs }: CrowdTimes): void {
+  console.log(
+    `\n${others} others at 72 Hz take ${beyondMs.toFixed(2)} ms of the page's thread (p50) beyond the ${aloneMs.toFixed(2)} ms of a frame without them: ` +
+      `packets ${receivedMs.toFixed(2)}, bodies played back and bent ${bentMs.toFixed(2)}, drawn ${drawnMs.toFixed(2)}`,
+  );
 }
 
 export function tellOpening({ sessionCreateMs, firstInferenceMs }: PageResult): void {

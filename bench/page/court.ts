@@ -100,6 +100,12 @@ export class Court {
     this.#others.show(this.#people, time);
   }
 
+  /** For a frame without them; they stay where they are. */
+  hideOthers(time: number): void {
+    this.#people.length = 0;
+    this.#others.show(this.#people, time);
+  }
+
   /** What stands about. */
   showCourt(time: number, head: TrackedPose): void {
     this.#shown.time = time;

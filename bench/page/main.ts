@@ -22,11 +22,13 @@ import { createRenderer } from '../../src/scene/renderer';
 import { measureArchery, type RoundTimes } from './archery';
 import { type CourtTimes, measureCourt } from './ball';
 import { createCcdBody } from './ccd-body';
+import { type CrowdTimes, measureSixteen } from './crowd';
 import { nextFrame } from './frame-times';
 
 /** Blocks of one method alternate in a seeded order, so that other work of the machine meets all of them. */
 const blockFrames = 40;
 const usualRounds = 12;
+const crowdRounds = 30;
 const settleFrames = 10;
 
 /**
@@ -72,6 +74,8 @@ export interface PageResult {
   readonly archery: Readonly<Record<string, RoundTimes>>;
   /** The ball court with 1, 3, 8 and 16 avatars, with each estimator. */
   readonly ball: Readonly<Record<string, readonly CourtTimes[]>>;
+  /** The own body and fifteen others; null: not measured. */
+  readonly crowd: CrowdTimes | null;
 }
 
 function quantiles(values: readonly number[]): Quantiles {
@@ -336,6 +340,7 @@ async function measure(): Promise<PageResult> {
   const estimators = await openEstimators();
   const archery = parts.includes('archery') ? await measureArchery({ ...picture, estimators }) : {};
   const ball = parts.includes('ball') ? await measureCourt({ ...picture, estimators }) : {};
+  const crowd = parts.includes('crowd') ? await measureSixteen({ ...picture, estimators }, crowdRounds) : null;
   return {
     costs: bench.costs,
     blocks: bench.blocks,
@@ -345,6 +350,7 @@ async function measure(): Promise<PageResult> {
     frames: rounds * blockFrames,
     archery,
     ball,
+    crowd,
   };
 }
 

@@ -36,8 +36,16 @@ const secret = 'bench-kN3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gAzE4uV7iO';
 const warmUpSeconds = 0.7;
 /** Clients of the light load. */
 const few = 24;
-/** The search ends where the next count would be nearer than this share of it. */
-const nearness = 0.1;
+
+/** How a search is done. */
+export interface SearchOptions {
+  /** Of each load. */
+  readonly seconds: number;
+  /** So many and no search; null: the most. */
+  readonly rooms: number | null;
+  /** The search ends where the next count would be nearer than this share of it. */
+  readonly nearness: number;
+}
 
 const script = (name: string): string => fileURLToPath(new URL(name, import.meta.url));
 const start = (name: string): ChildProcess =>
@@ -147,7 +155,7 @@ export interface Found {
 const growth = ({ cpu, clientLoad }: Trial): number => Math.min(3, Math.max(1.33, 0.75 / Math.max(cpu, clientLoad)));
 
 /** Up until the bound breaks, then halfway between what held and what broke. */
-async function climb(drive: Drive, cell: Cell, light: Trial): Promise<Trial> {
+async function climb(drive: Drive, cell: Cell, light: Trial, nearness: number): Promise<Trial> {
   let most = light;
   let broken = Number.POSITIVE_INFINITY;
   for (;;) {
@@ -161,13 +169,12 @@ async function climb(drive: Drive, cell: Cell, light: Trial): Promise<Trial> {
   }
 }
 
-/** `rooms`: so many and no search; null: the most. */
-export async function search(cell: Cell, seconds: number, rooms: number | null): Promise<Found> {
+export async function search(cell: Cell, { seconds, rooms, nearness }: SearchOptions): Promise<Found> {
   const drive = new Drive(cell, seconds);
   try {
     await drive.begin();
     const light = await attempt(drive, cell, rooms ?? Math.max(1, Math.round(few / cell.room)));
-    return { light, most: rooms === null && holds(light) ? await climb(drive, cell, light) : light };
+    return { light, most: rooms === null && holds(light) ? await climb(drive, cell, light, nearness) : light };
   } finally {
     drive.end();
   }

@@ -32,6 +32,9 @@ class HandFingers {
   constructor(vrm: VRM, side: Side) {
     this.#side = side;
     this.#rig = readHand(vrm, side);
+    // Thirty matrices that are composed anew in every picture, though fingers mostly rest; constraints of a file write rotations alone.
+    if ((vrm.nodeConstraintManager?.constraints.size ?? 0) > 0) return;
+    for (const { bones } of this.#rig.fingers) for (const { node } of bones) node.matrixAutoUpdate = false;
   }
 
   get geometry(): HandGeometry | null {
@@ -75,6 +78,7 @@ class HandFingers {
       else ofSide(this.#side, multiply(conjugate(turned[carrier], carried), turned[index], carried), against);
       multiply(before, multiply(against, after, against), against);
       node.quaternion.copy(against);
+      node.updateMatrix();
     }
   }
 }

@@ -67,12 +67,15 @@ export class ShownPlayer implements Shown {
   /** Where the samples around have it at a time that is fitted; what one of them lacks: from a (t = 0) to b (t = 1), the two next to it. */
   follow(samples: readonly PathSample[], fit: PathFit, a: Shown, b: Shown, t: number): this {
     const { pose, hands, fingers, shapes } = this;
+    const next = (t < 1 ? a : b).pose;
     fitTracked(samples, fit, 'head', pose.head);
-    pose.head.tracking = (t < 1 ? a : b).pose.head.tracking;
-    pose.leftHand = mixHand(a.pose.leftHand, b.pose.leftHand, t, hands.left);
-    pose.rightHand = mixHand(a.pose.rightHand, b.pose.rightHand, t, hands.right);
-    if (allHave(samples, fit, 'leftHand')) fitTracked(samples, fit, 'leftHand', hands.left);
-    if (allHave(samples, fit, 'rightHand')) fitTracked(samples, fit, 'rightHand', hands.right);
+    pose.head.tracking = next.head.tracking;
+    if (allHave(samples, fit, 'leftHand')) pose.leftHand = fitTracked(samples, fit, 'leftHand', hands.left);
+    else pose.leftHand = mixHand(a.pose.leftHand, b.pose.leftHand, t, hands.left);
+    if (allHave(samples, fit, 'rightHand')) pose.rightHand = fitTracked(samples, fit, 'rightHand', hands.right);
+    else pose.rightHand = mixHand(a.pose.rightHand, b.pose.rightHand, t, hands.right);
+    hands.left.tracking = next.leftHand?.tracking ?? 'tracked';
+    hands.right.tracking = next.rightHand?.tracking ?? 'tracked';
     if (allHave(samples, fit, 'body')) pose.body = fitBody(samples, fit, this.body);
     else pose.body = mixBody(a.pose.body, b.pose.body, t, this.body);
     fingers.left = mixFingers(a.fingers.left, b.fingers.left, t, shapes.left);
@@ -131,8 +134,9 @@ function fitTracked(
   samples: readonly PathSample[],
   { first, count, shares }: PathFit,
   part: 'head' | 'leftHand' | 'rightHand',
-  { position, orientation }: MutableTrackedPose,
-): void {
+  target: MutableTrackedPose,
+): MutableTrackedPose {
+  const { position, orientation } = target;
   const near = samples[first + count - 1]!.packet.pose[part]!.orientation;
   setVec3(position, 0, 0, 0);
   setQuat(sum, 0, 0, 0, 0);
@@ -142,6 +146,7 @@ function fitTracked(
     addShare(pose.orientation, shares[i]!, near);
   }
   normaliseQuat(sum, orientation);
+  return target;
 }
 
 function fitBody(samples: readonly PathSample[], { first, count, shares }: PathFit, target: MutableBody): MutableBody {

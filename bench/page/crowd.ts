@@ -1,0 +1,121 @@
+import { defaultCalibration } from '../../src/core/body/calibration';
+import { actorFrame } from '../../src/core/tracking/actor-motion';
+import type { ArcheryStage } from './archery';
+import { Court } from './court';
+import { nextFrame } from './frame-times';
+import { createSenders } from './senders';
+
+/** What fifteen others cost the page's thread beyond the own body, frames of 72 Hz, medians [ms]. */
+export interface CrowdTimes {
+  readonly others: number;
+  /** A frame with the own body alone. */
+  readonly aloneMs: number;
+  /** What a frame takes longer with the others: of pairs of blocks. */
+  readonly beyondMs: number;
+  /** Of that: packets decoded, 450 a second, by frame; bodies played back and bent; and the rest, which is three.js drawing them. */
+  readonly receivedMs: number;
+  readonly bentMs: number;
+  readonly drawnMs: number;
+}
+
+const others = 15;
+const rateHz = 72;
+const packetHz = 30;
+const blockFrames = 36;
+/** Frames of a block that count come after these. */
+const settleFrames = 6;
+
+const median = (values: readonly number[]): number => {
+  const sorted = [...values].sort((a, b) => a - b);
+  return sorted[Math.floor(sorted.length / 2)] ?? Number.NaN;
+};
+const mean = (values: readonly number[]): number => values.reduce((sum, value) => sum + value, 0) / values.length;
+
+/** Draw calls reach no device: in software that would be most of a frame, and the page's thread would wait for it. */
+function withoutDevice(gl: WebGLRenderingContext | WebGL2RenderingContext): void {
+  for (const name of ['clear', 'drawArrays', 'drawElements', 'drawArraysInstanced', 'drawElementsInstanced'])
+    Object.assign(gl, { [name]: () => undefined });
+}
+
+/** Frames with everyone and with the own body alone, block by block in turns, so that what else the machine does meets both. */
+export async function measureSixteen(
+  {
+    renderer,
+    studio,
+    mirror,
+    avatar,
+    camera,
+    estimators,
+    mannequin,
+  }: ArcheryStage & { readonly mannequin: ArrayBuffer },
+  rounds: number,
+): Promise<CrowdTimes> {
+  const court = new Court(studio, mannequin, others + 1);
+  mirror.setVisible(false);
+  camera.position.set(1.2, 2.1, 3.4);
+  camera.lookAt(0, 0.9, -2.5);
+  withoutDevice(renderer.getContext());
+  const { packetsAt } = createSenders(others);
+  const estimator = estimators.ik;
+  let frames = 0;
+  let sent = -1;
+
+  /** One frame; milliseconds: of all, of receiving, of bending. */
+  function draw(everyone: boolean): readonly [all: number, received: number, bent: number] {
+    const time = frames / rateHz;
+    frames += 1;
+    const due = Math.floor(time * packetHz) > sent;
+    if (due) sent = Math.floor(time * packetHz);
+    const packets = due && everyone ? packetsAt(time) : [];
+    const frame = actorFrame(time, defaultCalibration);
+    const started = performance.now();
+    avatar.apply(estimator.update(frame).pose, frame.time);
+    const own = performance.now();
+    court.receive(packets, time);
+    const received = performance.now();
+    if (everyone) court.showOthers(time);
+    else court.hideOthers(time);
+    const bent = performance.now();
+    court.showCourt(time, frame.head);
+    renderer.render(studio.scene, camera);
+    return [performance.now() - started, received - own, bent - received];
+  }
+
+  while (!court.shows(others)) {
+    await nextFrame();
+    if (frames > 3000) throw new Error(`of ${others} others some never came`);
+    draw(true);
+  }
+  const blocks: Record<'alone' | 'all' | 'received' | 'bent', number[]> = {
+    alone: [],
+    all: [],
+    received: [],
+    bent: [],
+  };
+  for (let round = 0; round < rounds; round++) {
+    for (const everyone of round % 2 ? [true, false] : [false, true]) {
+      const times: (readonly [number, number, number])[] = [];
+      for (let i = 0; i < settleFrames + blockFrames; i++) {
+        await nextFrame();
+        const spent = draw(everyone);
+        if (i >= settleFrames) times.push(spent);
+      }
+      blocks[everyone ? 'all' : 'alone'].push(median(times.map(([all]) => all)));
+      if (!everyone) continue;
+      blocks.received.push(mean(times.map(([, received]) => received)));
+      blocks.bent.push(median(times.map(([, , bent]) => bent)));
+    }
+  }
+  court.dispose();
+  const round = (value: number): number => Number(value.toFixed(3));
+  const [receivedMs, bentMs] = [median(blocks.received), median(blocks.bent)];
+  const beyondMs = median(blocks.all.map((all, i) => all - blocks.alone[i]!));
+  return {
+    others,
+    aloneMs: round(median(blocks.alone)),
+    beyondMs: round(beyondMs),
+    receivedMs: round(receivedMs),
+    bentMs: round(bentMs),
+    drawnMs: round(beyondMs - receivedMs - bentMs),
+  };
+}
