@@ -300,7 +300,6 @@ export class Room<Game extends HostedGame> {
       return;
     }
     if (index !== null) this.#vacate(index);
-    // To the others it is another player: their pages connect anew.
     known.voice = null;
     if (wish !== null) this.#takeSeat(wish, client, known, time);
     this.#outlet.send(client, { type: 'seated', seat: wish });
