@@ -135,17 +135,18 @@ const stopScreen = (base: ScreenBase, { unwell }: Progress, actions: ScreenActio
     'If you stop, your part is over. You need not say why, and what you have done until now is kept.',
   ],
   buttons: [
-    {
-      id: 'stop',
-      label: 'Stop',
-      look: unwell ? 'primary' : 'plain',
-      act: () => actions.apply({ type: 'stop', by: 'participant' }),
-    },
+    // Where the wish to stop was pressed stands the way back: pressing twice stops nothing.
     {
       id: 'go-on',
       label: unwell ? 'I am well: go on' : 'Go on',
       look: unwell ? 'plain' : 'primary',
       act: () => (unwell ? actions.apply({ type: 'go-on' }) : actions.askToStop(false)),
+    },
+    {
+      id: 'stop',
+      label: 'Stop',
+      look: unwell ? 'primary' : 'plain',
+      act: () => actions.apply({ type: 'stop', by: 'participant' }),
     },
   ],
 });
