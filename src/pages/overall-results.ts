@@ -2,6 +2,7 @@ import type { Effect } from '../core/statistics/analysis-of-variance';
 import type { AnswerRow } from '../core/study/answer-tables';
 import type { OverallComparison } from '../core/study/compare-all';
 import { comparedAsAWhole, overallComparisons } from '../core/study/exported-results';
+import { plannedAnalyses } from '../core/study/planned';
 import { effectsOf, overallTable } from '../core/study/result-tables';
 import { answersIn, scalesIn } from '../core/study/study-tables';
 import { element } from '../ui/element';
@@ -75,8 +76,23 @@ export function overallResults({ plan, simulated, records }: ShownStudy): readon
         : [element('p', { class: 'soft' }, `Left out somewhere for want of a valid answer: ${leftOut.join(', ')}.`)]),
     ];
   };
+  const planned = plannedAnalyses(
+    [answersIn(records, plan), scalesIn(records, plan)].flatMap((rows) => overallComparisons(rows, plan)),
+    plan,
+  );
+  const plannedPart =
+    planned.length === 0
+      ? []
+      : [
+          tableNode(
+            `Planned: analyses of variance, and tests by ranks; Holm over these ${planned.length} alone. What follows is exploratory`,
+            heads,
+            planned.flatMap(rowsOf),
+          ),
+        ];
   return [
     element('h2', {}, plan.cohorts ? 'All conditions and cohorts together' : 'All conditions together'),
+    ...plannedPart,
     ...table('Questions', 'answers-overall', answersIn(records, plan)),
     ...table('Scales', 'scales-overall', scalesIn(records, plan)),
   ];

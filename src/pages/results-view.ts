@@ -2,6 +2,7 @@ import { type Comparison, compareAnswers, compareScores, type Exclusion } from '
 import { aboutIn } from '../core/study/exported-results';
 import { frameTimes } from '../core/study/frame-times';
 import { questionnairesOf } from '../core/study/plan';
+import { plannedFamily } from '../core/study/planned';
 import { comparisonTable, frameTimeTable } from '../core/study/result-tables';
 import type { StudyRecord } from '../core/study/study-record';
 import { answersIn, scalesIn, studyTables, trialsIn } from '../core/study/study-tables';
@@ -122,6 +123,7 @@ export function studyResults(study: ShownStudy, conditions: readonly [string, st
   const results = compared(study, conditions);
   return [
     summary(results),
+    ...plannedParts(results),
     ...answerParts(results),
     ...scaleParts(results),
     ...scoreParts(results),
@@ -149,6 +151,32 @@ function summary({ study: { plan, records }, answers, labels }: Compared): HTMLE
       `Differences are ${labels.first} − ${labels.second}, paired within participants (scores of groups: within groups). Tests are two-sided; * marks Holm’s p below .05 over all ${answers.comparisons.length} questions.`,
     ),
   );
+}
+
+/** What the plan named beforehand, a family of its own; below it everything is shown once more, as explored. */
+function plannedParts(results: Compared): readonly Node[] {
+  const { study, answers, scales, scores, labels, titleOf } = results;
+  const asked = questionnairesOf(study.plan);
+  const all = [...answers.comparisons, ...scales.comparisons, ...scores.points.comparisons];
+  const family = plannedFamily(all, study.plan);
+  if (family.length === 0) {
+    const text = 'The plan names no measure as planned: everything here is exploratory.';
+    return [element('p', { class: 'soft', role: 'note' }, text)];
+  }
+  const name = (one: Comparison) => (one.asked ? `${one.of} ${aboutIn(asked, one)}` : `${titleOf(one.of)}, points`);
+  return [
+    element('h2', {}, 'Planned'),
+    tableNode(
+      `Planned comparisons: means with 95 % confidence intervals, and tests; Holm over these ${family.length} alone`,
+      comparisonHeads('Measure', labels.first, labels.second),
+      comparisonRows(family, 2, name),
+    ),
+    element(
+      'p',
+      { class: 'soft', role: 'note' },
+      'Everything below is exploratory: Holm’s p there is over the table that it stands in.',
+    ),
+  ];
 }
 
 function answerParts(results: Compared): readonly Node[] {

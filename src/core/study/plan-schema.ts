@@ -96,6 +96,10 @@ export const planSchema = v.strictObject({
   askToStop: v.exactOptional(
     v.pipe(v.array(askToStopSchema, 'expected a list'), v.maxLength(8, 'expected at most eight')),
   ),
+  /** Measures that are tested as planned, a family for Holm's correction; all else is exploratory. "archery/nasa-tlx/raw", "archery/score". */
+  planned: v.exactOptional(
+    v.pipe(v.array(text(200), 'expected a list of measures'), v.maxLength(40, 'expected at most forty measures')),
+  ),
   consent: v.strictObject({
     /** Changes with every change of the text. */
     version: text(40),

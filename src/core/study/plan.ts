@@ -142,6 +142,30 @@ function refuseUntranslatedConsent(plan: StudyPlan): void {
   }
 }
 
+/** What a plan may name as planned: "archery/embodiment/ownership", a question or a scale of a task; "archery/score". */
+export function measuresOf(plan: StudyPlan): readonly string[] {
+  return plan.tasks.flatMap(({ id, questionnaire }) => {
+    const asked = questionnairesAfter({ questionnaire }).flatMap((one) => questionnaireNamed(plan, one) ?? []);
+    const named = asked.flatMap(({ id: of, questions, scales }) =>
+      [...questions, ...scales].map((one) => `${id}/${of}/${one.id}`),
+    );
+    return [...named, `${id}/score`];
+  });
+}
+
+function refuseUnknownMeasures(plan: StudyPlan): void {
+  const { planned = [] } = plan;
+  const known = measuresOf(plan);
+  refuseRepeated(planned, (index) => `planned[${index}]`);
+  planned.forEach((measure, index) => {
+    if (known.includes(measure)) return;
+    throw new ValidationError(
+      `planned[${index}]`,
+      `"${measure}" is measured nowhere: expected task/questionnaire/question, task/questionnaire/scale or task/score, as "${known[0]}"`,
+    );
+  });
+}
+
 /** A study from parsed JSON; throws a ValidationError that names the field. */
 export function checkedPlan(value: unknown): StudyPlan {
   const plan = checked(planSchema, value);
@@ -163,6 +187,7 @@ export function checkedPlan(value: unknown): StudyPlan {
   refuseQuestionnaires(plan);
   refuseUnaskedLimits(plan.askToStop ?? [], questionnairesOf(plan));
   refuseUntranslatedConsent(plan);
+  refuseUnknownMeasures(plan);
   plan.tasks.forEach(({ groupSize }, index) => {
     if (plan.participants % groupSize !== 0) {
       throw new ValidationError(
