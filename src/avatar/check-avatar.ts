@@ -16,6 +16,8 @@ export interface AvatarQuestion {
 /** A file that may be read. */
 export interface CheckedAvatar {
   readonly bytes: ArrayBuffer;
+  /** The same, of which parts can be read without being copied. */
+  readonly file: Blob;
   /** Which of the extensions asked about it uses. */
   readonly packed: readonly string[];
   /** SHA-256 of the file as base64url; null: this page has no secure context, in which alone browsers hash. */
@@ -33,5 +35,5 @@ export const checkAvatar: AvatarCheck = async (bytes, { name, unpacked, limits =
     throw new Error(`${name}: it cannot be checked (${reasonOf(error)})`);
   });
   if (faults.length > 0) throw new Error(`${name}: not valid glTF (${faults[0]})`);
-  return { bytes, packed, hash: await hashOf(bytes) };
+  return { bytes, file: new Blob([bytes]), packed, hash: await hashOf(bytes) };
 };

@@ -5,11 +5,13 @@ import { reasonOf } from '../core/errors/reasons';
 import { restoreBindPose } from './bind-pose';
 import type { BoneMap } from './bone-names';
 import type { CheckedAvatar } from './check-avatar';
+import { chunksOf } from './glb-chunks';
 import { boneNode, demandBones, humanoidOf } from './humanoid';
 import { betweenFrames } from './in-steps';
 import { inspectAvatar } from './inspect-avatar';
 import { makeGeometryPlain } from './plain-geometry';
 import { settleRest } from './rest-pose';
+import { viewsOfFile } from './views-of-file';
 
 /** A body (VRM 0.x or 1.0, or a humanoid of another kind) ready to be fitted, and what to call it. */
 export interface LoadedAvatar {
@@ -36,19 +38,21 @@ export async function parseAvatar(
   { bones, decoders = {} }: ParseOptions = {},
 ): Promise<LoadedAvatar> {
   const packed = inspectAvatar(new Uint8Array(bytes), name, Object.keys(decoders));
-  return parseChecked({ bytes, packed }, name, { bones, decoders });
+  return parseChecked({ bytes, packed, file: new Blob([bytes]) }, name, { bones, decoders });
 }
 
 /** The same from a file that `checkAvatar` has looked at. */
 export async function parseChecked(
-  { bytes, packed }: Pick<CheckedAvatar, 'bytes' | 'packed'>,
+  { bytes, packed, file }: Pick<CheckedAvatar, 'bytes' | 'packed' | 'file'>,
   name: string,
   { bones, decoders = {} }: ParseOptions = {},
 ): Promise<LoadedAvatar> {
   const loader = new GLTFLoader();
   for (const extension of packed) await decoders[extension]?.(loader);
   loader.register((parser) => new VRMLoaderPlugin(parser));
-  const gltf = await loader.parseAsync(bytes, '').catch((error: unknown) => {
+  const chunks = chunksOf(new Uint8Array(bytes))!;
+  loader.register(viewsOfFile(chunks.binary, file));
+  const gltf = await loader.parseAsync(chunks.json, '').catch((error: unknown) => {
     throw new Error(`${name}: no VRM or GLB file (${reasonOf(error)})`);
   });
   await betweenFrames(makeGeometryPlain(gltf.scene));
