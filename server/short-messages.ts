@@ -37,7 +37,7 @@ function takeLeading(chunk: Buffer, listener: (bytes: Uint8Array) => void): numb
 }
 
 /**
- * Poses arrive as one short binary frame each, mostly alone in their chunk: those are told at once, and ws reads whatever else there is, from
+ * Poses arrive as one short binary frame each, mostly alone in their chunk: those are told at once, and ws reads everything else, from
  * the first byte that is none of them. Its state machine takes as long for such a frame as the room does for the pose in it. A ws that keeps its
  * state otherwise reads everything by itself.
  */

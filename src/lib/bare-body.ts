@@ -7,7 +7,7 @@ import { createPageClock, type PageClock } from '../core/tracking/page-clock';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import { createAfterFrame } from './after-frame';
 import { type AskTiming, withTiming } from './ask-timing';
-import { createEstimatorChoice, type EstimatorChoice } from './estimator-choice';
+import { EstimatorChoice } from './estimator-choice';
 import { HeightPolicy } from './height-policy';
 
 /** A point that a headset tracks. */
@@ -100,7 +100,7 @@ export class BareBody {
     this.#given = calibration !== 'auto';
     this.#wearer = calibration === 'auto' ? defaultCalibration : checked(calibration);
     this.#calibration = this.#wearer;
-    this.#choice = createEstimatorChoice({
+    this.#choice = new EstimatorChoice({
       calibration: this.#calibration,
       create: createEstimator,
       load: timing ? async (name) => withTiming(await networks(name), timing) : networks,

@@ -17,7 +17,7 @@ export interface MovingReplay {
 
 /** A body lives through so many seconds before a moment to stand in it as one that came there moving. */
 const leadSeconds = 1;
-/** Frames per second of the lead at most, whatever a file says. */
+/** Frames per second of the lead at most, however many a file has. */
 const mostHz = 120;
 
 /** Frames of a recording up to this second of it, which is dated `time` [s]. */

@@ -1,7 +1,7 @@
 import { describe, expect, test } from 'vitest';
 import type { EstimatorName, PoseEstimator } from '../../src/core/estimation/pose-estimator';
 import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
-import { createEstimatorChoice } from '../../src/lib/estimator-choice';
+import { EstimatorChoice } from '../../src/lib/estimator-choice';
 
 const head = {
   position: { x: 0, y: 1.6, z: 0 },
@@ -32,7 +32,7 @@ function networkOn(provider: string): PoseRegressor {
 
 function choiceThat(load: (name: 'paper' | 'learned') => Promise<PoseRegressor>) {
   const faults: string[] = [];
-  const choice = createEstimatorChoice({
+  const choice = new EstimatorChoice({
     calibration: { eyeHeight: 1.6, armSpan: 1.4 },
     create: estimatorOf,
     load,

@@ -173,7 +173,7 @@ describe('a server without voices', () => {
     guest.socket.disconnect();
   });
 
-  test('the room of a study has none, whatever a page says while joining', async () => {
+  test('the room of a study has none, also for a page that asks for them while joining', async () => {
     const seat = await studySeats.sign(paperPlan(), 'P01', { step: 'ball/1/trial-1', run: 1 }, false);
     const answer = await fetch(`${server.url}/api/voices?room=${seat.room}`, {
       headers: { authorization: `Bearer ${seat.token}` },

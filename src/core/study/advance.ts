@@ -25,7 +25,7 @@ export type ProgressEvent =
   /** Time has passed. */
   | { readonly type: 'tick' }
   | { readonly type: 'pause' }
-  /** Ends the session here and now, whatever the participant is at. */
+  /** Ends the session here and now, at any step. */
   | { readonly type: 'stop'; readonly by: 'participant' | 'experimenter'; readonly reason?: string }
   /** Asked for their answers whether to stop, the participant goes on. */
   | { readonly type: 'go-on' }

@@ -12,7 +12,7 @@ const plan = latencyPlan({ participants: 6 });
 const effects = { answers: { 'late-200': -1 }, scores: {} };
 const records = simulateStudy(plan, modelsWith(plan, effects), 5, 1e9).flatMap((one) => one.records);
 
-test('what a plan names is a family of its own: Holm over it alone, whatever else was asked', () => {
+test('what a plan names is a family of its own: Holm over it alone, however much else was asked', () => {
   const pair = ['late-200', 'late-0'] as const;
   const all = [answersIn(records, plan), scalesIn(records, plan)].flatMap(
     (rows) => compareAnswers(rows, [...pair]).comparisons,
