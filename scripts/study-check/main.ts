@@ -32,6 +32,15 @@ function summary(plan: StudyPlan): readonly string[] {
       lines.push(`${task.title}${cohort ? `, cohort ${cohort.id}` : ''}: ${counts.join('; ')}.`);
     }
   }
+  const { remote, askToStop = [] } = plan;
+  if (remote) {
+    lines.push(
+      `No one is beside the participants (remote): device, ${remote.freeSpace} m of room and height are checked. They read: ${remote.contact}`,
+    );
+  }
+  for (const { questionnaire, measure, atLeast } of askToStop) {
+    lines.push(`Asked whether to stop (askToStop): those with "${measure}" of "${questionnaire}" from ${atLeast} on.`);
+  }
   return [...lines, ...remarksOn(plan).map((remark) => `Before you begin: ${remark}`)];
 }
 

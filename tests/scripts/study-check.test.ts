@@ -94,6 +94,30 @@ describe('npm run study:check', () => {
     expect(status).toBe(0);
   });
 
+  test('says who has no one beside them and who is asked whether to stop, and where they meet that', () => {
+    const file = join(directoryWith(), 'mine.json');
+    const remote = { contact: 'Call 555 0100.', freeSpace: 2.5 };
+    const askToStop = [
+      { questionnaire: 'archery', measure: 'Q2', atLeast: 4 },
+      { questionnaire: 'archery', measure: 'Q3', atLeast: 5 },
+    ];
+    writeFileSync(file, JSON.stringify({ ...paperPlan(), remote, askToStop }));
+    const { status, stdout } = check(file);
+    expect(stdout).toContain('(remote): device, 2.5 m of room and height are checked. They read: Call 555 0100.');
+    expect(stdout).toContain('(askToStop): those with "Q2" of "archery" from 4 on.');
+    expect(stdout).toContain('(askToStop): those with "Q3" of "archery" from 5 on.');
+    const screens = stdout.slice(stdout.indexOf('What P01 sees:'));
+    expect(screens).toMatch(
+      /what is wrong with device, room \(2\.5 m\) or height, if anything\n.*measures of the body/,
+    );
+    expect(screens).toMatch(/7 of 7, .*\n.*How are you\? Go on, or stop: for "Q2" from 4 on or "Q3" from 5 on\n/);
+    // After both rounds of archery; the ball game's questionnaire has no such measure.
+    expect(screens.match(/How are you\?/g)).toHaveLength(2);
+    expect(status).toBe(0);
+    const { stdout: plain } = check('public/studies/paper.json');
+    expect(plain).not.toMatch(/remote|askToStop|How are you|what is wrong/);
+  });
+
   test('names the mistakes and fails', () => {
     const file = join(directoryWith(), 'mine.json');
     writeFileSync(file, JSON.stringify({ ...paperPlan(), participants: 0, seed: -1 }));

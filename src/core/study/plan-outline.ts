@@ -36,7 +36,17 @@ function screensOf(plan: StudyPlan, step: StudyStep): readonly OutlinedScreen[] 
     case 'demographics':
       return [at('About you', 'desk')];
     case 'calibration':
-      return [at(`${title}: measures of the body`, 'headset')];
+      return [
+        ...(plan.remote
+          ? [
+              at(
+                `${title}: what is wrong with device, room (${plan.remote.freeSpace} m) or height, if anything`,
+                'either',
+              ),
+            ]
+          : []),
+        at(`${title}: measures of the body`, 'headset'),
+      ];
     case 'tutorial':
       return [at(`${title}: practice with ${step.embodiment.estimator}`, 'headset', step.seconds)];
     case 'trial':
@@ -53,7 +63,13 @@ function screensOf(plan: StudyPlan, step: StudyStep): readonly OutlinedScreen[] 
         ),
       );
       const heading = `${title}, ${blindLabel(step)}: questionnaire "${step.questionnaire.id}"`;
-      return [at(heading, 'either', step.seconds), ...each];
+      const limits = (plan.askToStop ?? []).filter(({ questionnaire }) => questionnaire === step.questionnaire.id);
+      const unwell = limits.map(({ measure, atLeast }) => `"${measure}" from ${atLeast} on`).join(' or ');
+      return [
+        at(heading, 'either', step.seconds),
+        ...each,
+        ...(unwell === '' ? [] : [at(`How are you? Go on, or stop: for ${unwell}`, 'either')]),
+      ];
     }
     case 'end':
       return [at('Thank you', 'either')];
