@@ -1,5 +1,6 @@
 import { button, element } from './element';
 import { pageFolder } from './page-folder';
+import { qrCode, qrPicture } from './qr-code';
 
 /** Offers the address of a room: as a link to copy, and as a QR code for a device with a camera. */
 export interface Invitation {
@@ -7,59 +8,33 @@ export interface Invitation {
   open(room: string): void;
 }
 
-/** The address of a room of the ball game on this page's server. */
-const roomAddress = (room: string): string => `${pageFolder()}/?play=ball&room=${encodeURIComponent(room)}`;
-
 /** Whether other devices can open an address of this host. */
 const onlyHere = (hostname: string): boolean => /^(localhost|.*\.localhost|127\..*|\[::1\])$/.test(hostname);
 
-const svgNamespace = 'http://www.w3.org/2000/svg';
-/** White around the code, without which cameras do not find it [modules]. */
-const quiet = 4;
-
-/** The QR code of a text. The encoder is loaded when the first one is drawn. */
-async function qrCode(text: string): Promise<SVGSVGElement> {
-  const { encode } = await import('uqr');
-  const { data, size } = encode(text, { ecc: 'M', border: 0 });
-  const side = size + 2 * quiet;
-  const svg = document.createElementNS(svgNamespace, 'svg');
-  svg.setAttribute('viewBox', `0 0 ${side} ${side}`);
-  svg.setAttribute('role', 'img');
-  svg.setAttribute('aria-label', 'QR code of the link');
-  svg.setAttribute('shape-rendering', 'crispEdges');
-  const path = document.createElementNS(svgNamespace, 'path');
-  const modules = data.flatMap((row, y) =>
-    row.flatMap((dark, x) => (dark ? [`M${x + quiet} ${y + quiet}h1v1h-1z`] : [])),
-  );
-  path.setAttribute('d', modules.join(''));
-  svg.append(path);
-  return svg;
+/** What others need to come into a room. */
+export interface RoomLink {
+  readonly room: string;
+  readonly address: string;
+  /** Who cannot come by it, and what to do about that; null: all can. */
+  readonly limit: string | null;
 }
 
-export function createInvitation(): Invitation {
+/** The way into a room of the ball game on this page's server. */
+export const linkTo = (room: string): RoomLink => ({
+  room,
+  address: `${pageFolder()}/?play=ball&room=${encodeURIComponent(room)}`,
+  limit: onlyHere(location.hostname)
+    ? 'This address works on this computer only. For other devices start the server with --lan and open the https:// address that it prints.'
+    : null,
+});
+
+/** The link to a room, to copy and as a QR code; `main`: the button that copies is what one came for. */
+export function createRoomLink({ main }: { readonly main: boolean }) {
   const link = element('input', { type: 'text', readonly: true, 'aria-label': 'Link for the others' });
   const code = element('div', { class: 'qr' });
   const said = element('p', { class: 'hint', role: 'status' });
-  const dialog = element(
-    'dialog',
-    { class: 'invitation', 'aria-labelledby': 'invitation-title' },
-    element('h2', { id: 'invitation-title' }, 'Play with others'),
-    element('p', {}, 'Up to three people play in this room. Send them the link, or let them scan the code.'),
-    code,
-    element(
-      'div',
-      { class: 'row' },
-      link,
-      button('Copy link', () => void copy(), { class: 'primary', autofocus: true }),
-    ),
-    said,
-    element(
-      'div',
-      { class: 'row' },
-      button('Close', () => dialog.close()),
-    ),
-  );
-  document.body.append(dialog);
+  const copies = button('Copy link', () => void copy(), main ? { class: 'primary', autofocus: true } : {});
+  const node = element('div', { class: 'room-link' }, code, element('div', { class: 'row' }, link, copies), said);
   link.addEventListener('focus', () => link.select());
 
   async function copy(): Promise<void> {
@@ -74,17 +49,38 @@ export function createInvitation(): Invitation {
   }
 
   return {
-    open(room) {
-      const address = roomAddress(room);
+    node,
+    show(room: string): void {
+      const { address, limit } = linkTo(room);
       link.value = address;
-      said.textContent = onlyHere(location.hostname)
-        ? 'This address works on this computer only. For other devices start the server with --lan and open the https:// address that it prints.'
-        : '';
+      said.textContent = limit;
       code.replaceChildren();
       qrCode(address).then(
-        (svg) => code.replaceChildren(svg),
+        (made) => code.replaceChildren(qrPicture(made)),
         () => code.remove(),
       );
+    },
+  };
+}
+
+export function createInvitation(): Invitation {
+  const link = createRoomLink({ main: true });
+  const dialog = element(
+    'dialog',
+    { class: 'invitation', 'aria-labelledby': 'invitation-title' },
+    element('h2', { id: 'invitation-title' }, 'Play with others'),
+    element('p', {}, 'Up to three people play in this room. Send them the link, or let them scan the code.'),
+    link.node,
+    element(
+      'div',
+      { class: 'row' },
+      button('Close', () => dialog.close()),
+    ),
+  );
+  document.body.append(dialog);
+  return {
+    open(room) {
+      link.show(room);
       if (!dialog.open) dialog.showModal();
     },
   };

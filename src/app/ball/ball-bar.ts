@@ -1,5 +1,6 @@
 import type { ServerState } from '../../net/server-presence';
 import { button, element } from '../../ui/element';
+import { createRoomLink } from '../../ui/invitation';
 import { ballRulesText, rulesList } from '../../ui/rules';
 import { toggle } from '../../ui/toggle';
 import { createVoicesBar, type VoicesBarActions } from './voices-bar';
@@ -82,6 +83,10 @@ export interface BallBarActions {
 
 /** This page is in the room no longer. */
 const isOut = (round: BallRound | null): boolean => (round?.ended ?? null) !== null;
+
+/** Before and after a match, while another person could take a place. */
+const isWaitedFor = (round: BallRound | null): boolean =>
+  round !== null && !isOut(round) && round.phase !== 'running' && round.people.some(({ free }) => free);
 
 /** A button for a seat; null: for none. */
 interface Offer {
@@ -254,15 +259,30 @@ function createCompany(actions: BallBarActions) {
   const invite = button('Invite others', actions.invite);
   const said = element('p', { class: 'hint', role: 'status' });
   const ask = button('Ask again', actions.askServer);
+  const link = createRoomLink({ main: false });
+  /** The room that the link leads to; null: none yet. */
+  let linked: string | null = null;
   return {
-    node: element('div', { class: 'company' }, said, element('div', { class: 'row' }, openRoom, invite, ask)),
-    show({ room, server }: BallBarState): void {
+    node: element(
+      'div',
+      { class: 'company' },
+      said,
+      link.node,
+      element('div', { class: 'row' }, openRoom, invite, ask),
+    ),
+    show({ room, server, round }: BallBarState): void {
       // In a room the banner says what is the matter with its server.
       const text = room === null ? serverTexts[server] : null;
       if (said.textContent !== (text ?? '')) said.textContent = text;
       said.hidden = text === null;
       openRoom.hidden = room !== null || text !== null;
       openRoom.disabled = server !== 'here';
+      const waited = room !== null && isWaitedFor(round);
+      link.node.hidden = !waited;
+      if (waited && room !== linked) {
+        linked = room;
+        link.show(room);
+      }
       invite.hidden = room === null;
       ask.hidden = text === null;
     },

@@ -42,7 +42,7 @@ function headset() {
   let step: CalibrationStep | null = null;
   const pointers = { objects: new Group(), take: () => hands };
   const controls = new HeadsetControls({
-    ...{ settings, writer, study, pointers },
+    ...{ settings, writer, study, pointers, switches: { room: null }, server: { state: 'here' } },
     notices: { show: () => undefined, current: () => [] },
     body: { estimator: 'ik', unavailable: {} },
     activities: {
@@ -168,6 +168,8 @@ describe('the buttons of the menu', () => {
       roundOver: false,
       ready: null,
       voices: { phase: 'none', muted: true, deaf: false },
+      canInvite: false,
+      invitation: null,
       notice: null,
     },
   };
@@ -188,6 +190,7 @@ describe('the buttons of the menu', () => {
     askVoices: (on) => void done.push(`ask ${on}`),
     joinVoices: () => void done.push('join voices'),
     mute: (on) => void done.push(`mute ${on}`),
+    invite: (on) => void done.push(`invite ${on}`),
     exit: () => undefined,
   };
   const labels = (change: Partial<VrMenuState> = {}) =>
@@ -200,7 +203,14 @@ describe('the buttons of the menu', () => {
     const phases = { studio: 'none', archery: 'none', ball: 'in' } as const;
     for (const [activity, phase] of [...Object.entries(phases), ['ball', 'asked'], ['ball', 'off']] as const) {
       const voices = { phase, muted: true, deaf: false };
-      const shown = { ...studio, activity: activity as keyof typeof phases, ready: true, voices, deviceBody };
+      const shown = {
+        ...studio,
+        activity: activity as keyof typeof phases,
+        ready: true,
+        voices,
+        deviceBody,
+        canInvite: true,
+      };
       const buttons = menuButtons({ ...shown, ownBody: 'woman' }, actions);
       expect(buttons.some(({ id }) => id === 'device')).toBe(deviceBody);
       expect(buttons.length).toBeGreaterThan(8);
@@ -225,6 +235,8 @@ describe('the buttons of the menu', () => {
     expect(labels({ activity: 'ball', ready: false })).toContain('Ready');
     expect(labels({ activity: 'ball', ready: true })).toContain('Wait for me');
     expect(labels({ activity: 'ball' })).not.toContain('Ready');
+    expect(labels({ activity: 'ball', canInvite: true })).toContain('Invite');
+    expect(labels({ activity: 'ball', canInvite: false })).not.toContain('Invite');
     const talking = (phase: VrMenuState['voices']['phase'], muted = true, deaf = false) =>
       labels({ activity: 'ball', voices: { phase, muted, deaf } });
     expect(talking('none').join()).not.toMatch(/Talk|ute me/);

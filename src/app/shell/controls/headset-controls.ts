@@ -1,10 +1,12 @@
 import type { BareBody } from '../../../lib/bare-body';
+import { linkTo } from '../../../ui/invitation';
 import type { FrameReport } from '../../../ui/overlay';
+import { qrCode } from '../../../ui/qr-code';
 import type { VrPointers } from '../../../ui/vr-pointers';
 import { consentText, type VoicesState } from '../../ball/voices-state';
 import type { Activities } from '../activities';
 import type { PanelActions } from '../panel/panel';
-import type { VrMenuActions, VrMenuState } from '../vr-menu/menu-buttons';
+import type { ShownInvitation, VrMenuActions, VrMenuState } from '../vr-menu/menu-buttons';
 import { VrMenu } from '../vr-menu/vr-menu';
 import type { ControlledParts } from './controlled-parts';
 import type { Measuring } from './measuring';
@@ -13,7 +15,9 @@ const noVoices: VoicesState = { phase: 'none', muted: true, relay: false, relayO
 /** How much larger the menu in the headset is for a user who wants larger text. */
 const largerMenu = 1.3;
 
-export interface HeadsetControlsOptions extends Pick<ControlledParts, 'settings' | 'writer' | 'notices' | 'study'> {
+export interface HeadsetControlsOptions
+  extends Pick<ControlledParts, 'switches' | 'settings' | 'writer' | 'notices' | 'study'> {
+  readonly server: Pick<ControlledParts['server'], 'state'>;
   readonly pointers: VrPointers;
   readonly body: Pick<BareBody, 'estimator' | 'unavailable'>;
   readonly activities: Pick<Activities, 'name' | 'archery' | 'ball' | 'goTo' | 'rule' | 'restartRound' | 'point'>;
@@ -28,6 +32,8 @@ export interface HeadsetControlsOptions extends Pick<ControlledParts, 'settings'
 export class HeadsetControls {
   readonly #options: HeadsetControlsOptions;
   readonly #menu: VrMenu;
+  /** What others need to come, while it is held up for them. */
+  #invitation: ShownInvitation | null = null;
 
   constructor(options: HeadsetControlsOptions) {
     this.#options = options;
@@ -43,6 +49,7 @@ export class HeadsetControls {
   /** The headset is on, or off again. A study's sheet takes the place of the menu. */
   setWorn(worn: boolean): void {
     const { study, pointers } = this.#options;
+    this.#invitation = null;
     this.#menu.setVisible(worn && study.run === null);
     pointers.objects.visible = worn;
   }
@@ -92,6 +99,7 @@ export class HeadsetControls {
       askVoices: (on) => activities.ball?.voices.ask(on),
       joinVoices: () => void activities.ball?.voices.join(),
       mute: (on) => void activities.ball?.voices.setMuted(on),
+      invite: (on) => this.#invite(on),
       exit: () => actions.exitVr(),
     };
   }
@@ -114,15 +122,43 @@ export class HeadsetControls {
     };
   }
 
-  #ballState(): Pick<VrMenuState, 'ready' | 'voices' | 'notice'> {
+  /** The room that others can come into; null: there is none. */
+  #openRoom(): string | null {
+    const { switches, server, activities } = this.#options;
+    return activities.ball && server.state !== 'none' ? switches.room : null;
+  }
+
+  #invite(on: boolean): void {
+    const room = on ? this.#openRoom() : null;
+    if (room === null) this.#holdUp(null);
+    else {
+      const link = linkTo(room);
+      this.#holdUp({ ...link, code: 'loading' });
+      const bring = (code: ShownInvitation['code']) => {
+        if (this.#invitation?.code === 'loading') this.#holdUp({ ...link, code });
+      };
+      qrCode(link.address).then(bring, () => bring('not to be had'));
+    }
+  }
+
+  #holdUp(invitation: ShownInvitation | null): void {
+    this.#invitation = invitation;
+    this.show();
+  }
+
+  #ballState(): Pick<VrMenuState, 'ready' | 'voices' | 'canInvite' | 'invitation' | 'notice'> {
     const { activities, notices } = this.#options;
     const { ball } = activities;
     const round = ball?.round() ?? null;
+    const canInvite = this.#openRoom() !== null;
     const { phase, muted, deaf, said } = ball?.voices.state ?? noVoices;
     const asked = round !== null && round.ended === null && round.seat !== null && round.phase !== 'running';
     return {
       ready: asked ? round.ready : null,
       voices: { phase, muted, deaf },
+      canInvite,
+      // What is held up in the court goes when one leaves it.
+      invitation: canInvite ? this.#invitation : null,
       notice:
         (phase === 'asked' ? consentText : said) ??
         ball?.banner() ??

@@ -3,9 +3,16 @@ import type { EstimatorName } from '../../../core/estimation/pose-estimator';
 import type { Side } from '../../../core/math/side';
 import { type OwnBody, ownBodies, plainAvatar, type SkinTone, skinTones } from '../../../core/protocol/worn-avatar';
 import type { CalibrationStep } from '../../../ui/calibration-dialog';
+import type { RoomLink } from '../../../ui/invitation';
+import type { QrCode } from '../../../ui/qr-code';
 import type { VoicesState } from '../../ball/voices-state';
 import { estimatorOrder, estimatorTexts } from '../estimator-texts';
 import type { ActivityName } from '../play-bar';
+
+/** The way into a room, held up for others. */
+export interface ShownInvitation extends RoomLink {
+  readonly code: QrCode | 'loading' | 'not to be had';
+}
 
 /** What the menu in the headset shows. */
 export interface VrMenuState {
@@ -28,6 +35,10 @@ export interface VrMenuState {
   readonly ready: boolean | null;
   /** How one takes part in the voices of a room; none: it has none. */
   readonly voices: Pick<VoicesState, 'phase' | 'muted' | 'deaf'>;
+  /** Others can come into the room of the ball game. */
+  readonly canInvite: boolean;
+  /** In place of everything else; null: not now. */
+  readonly invitation: ShownInvitation | null;
   /** A sentence to be read in the headset; null: none. */
   readonly notice: string | null;
 }
@@ -49,6 +60,7 @@ export interface VrMenuActions {
   askVoices(on: boolean): void;
   joinVoices(): void;
   mute(on: boolean): void;
+  invite(on: boolean): void;
   exit(): void;
 }
 
@@ -72,6 +84,8 @@ export const noticesTop = 1012;
 const estimatorsTop = 116;
 const estimatorsHeight = 404;
 const estimatorGap = 12;
+/** Where everything else begins that can be pressed [pixels]. */
+const entriesTop = 560;
 
 const full = menuWidth - 2 * menuMargin;
 const gap = 16;
@@ -79,17 +93,16 @@ const half = (full - gap) / 2;
 
 type Entry = readonly [id: string, label: string, act: () => void];
 
-/** The one button of a calibration under way. */
-function cancelButton(step: CalibrationStep, actions: VrMenuActions): MenuButton {
-  const over = step.kind === 'done' || step.kind === 'failed';
-  return {
-    id: 'cancel',
-    label: over ? 'Close' : 'Cancel',
-    at: [menuMargin, menuHeight - menuMargin - 96, full, 96],
-    look: 'plain',
-    act: () => actions.cancelCalibration(),
-  };
-}
+/** The one button of a sheet that shows something else than the menu. */
+const onlyButton = (id: string, label: string, act: () => void): MenuButton => ({
+  id,
+  label,
+  at: [menuMargin, menuHeight - menuMargin - 96, full, 96],
+  look: 'plain',
+  act,
+});
+
+const isOver = ({ kind }: CalibrationStep): boolean => kind === 'done' || kind === 'failed';
 
 function estimatorButtons(
   { estimator, unavailable, deviceBody }: VrMenuState,
@@ -153,6 +166,7 @@ function playEntries(state: VrMenuState, actions: VrMenuActions): readonly Entry
               `Others: ${plainOthers ? 'plain' : 'as worn'}`,
               () => actions.setPlainOthers(!plainOthers),
             ] as const,
+            ...(state.canInvite ? [['invite', 'Invite', () => actions.invite(true)] as const] : []),
           ]),
       ...voiceEntries(state, actions),
     ];
@@ -161,9 +175,11 @@ function playEntries(state: VrMenuState, actions: VrMenuActions): readonly Entry
   return [studio, ['bow', `Bow: ${bowSide} hand`, () => actions.setBowSide(other)]];
 }
 
-/** What can be pressed on the menu now; targets as big as a palm. */
+/** What can be pressed on the menu now; targets as big as a palm, lower ones where there are many. */
 export function menuButtons(state: VrMenuState, actions: VrMenuActions): readonly MenuButton[] {
-  if (state.calibration) return [cancelButton(state.calibration, actions)];
+  if (state.calibration)
+    return [onlyButton('cancel', isOver(state.calibration) ? 'Close' : 'Cancel', () => actions.cancelCalibration())];
+  if (state.invitation) return [onlyButton('close', 'Close', () => actions.invite(false))];
   const entries: readonly Entry[] = [
     ['calibrate', 'Calibrate', () => actions.calibrate()],
     ['recentre', 'Recentre', () => actions.recentre()],
@@ -171,12 +187,13 @@ export function menuButtons(state: VrMenuState, actions: VrMenuActions): readonl
     ['exit', 'Exit VR', () => actions.exit()],
     ...playEntries(state, actions),
   ];
+  const each = Math.min(112, Math.floor((noticesTop - entriesTop) / Math.ceil(entries.length / 2)));
   return [
     ...estimatorButtons(state, actions),
     ...entries.map(([id, label, act], index): MenuButton => {
       const x = menuMargin + (index % 2) * (half + gap);
-      const y = 560 + Math.floor(index / 2) * 112;
-      return { id, label, at: [x, y, half, 96], look: 'plain', act };
+      const y = entriesTop + Math.floor(index / 2) * each;
+      return { id, label, at: [x, y, half, each - gap], look: 'plain', act };
     }),
   ];
 }

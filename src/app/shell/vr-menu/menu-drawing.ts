@@ -1,6 +1,15 @@
 import { type CalibrationStep, calibrationHeadline, calibrationInstruction } from '../../../ui/calibration-dialog';
+import { drawQrCode } from '../../../ui/qr-code';
 import { fillRounded, vrColors, vrFont, wrap } from '../../../ui/vr-panel';
-import { type MenuButton, menuHeight, menuMargin, menuWidth, noticesTop, type VrMenuState } from './menu-buttons';
+import {
+  type MenuButton,
+  menuHeight,
+  menuMargin,
+  menuWidth,
+  noticesTop,
+  type ShownInvitation,
+  type VrMenuState,
+} from './menu-buttons';
 
 const inner = menuWidth - 2 * menuMargin;
 
@@ -17,6 +26,32 @@ function drawCalibration(context: CanvasRenderingContext2D, step: CalibrationSte
   if (step.kind !== 'measuring') return;
   fillRounded(context, [menuMargin, 620, inner, 20], 10, vrColors.lift);
   fillRounded(context, [menuMargin, 620, inner * step.part, 20], 10, vrColors.accent);
+}
+
+/** Code and address as large as the sheet is wide: they are read from a screen that shows what the headset sees. */
+function drawInvitation(context: CanvasRenderingContext2D, { room, address, limit, code }: ShownInvitation): void {
+  if (typeof code === 'object') drawQrCode(context, code, [menuMargin, 116, inner]);
+  else {
+    context.fillStyle = vrColors.inkSoft;
+    context.font = `500 34px ${vrFont}`;
+    const text = code === 'loading' ? 'The code comes in a moment.' : 'The code could not be loaded: use the address.';
+    for (const [index, line] of wrap(context, text, inner).entries())
+      context.fillText(line, menuMargin, 300 + index * 44);
+  }
+  context.fillStyle = vrColors.ink;
+  context.font = `650 52px ${vrFont}`;
+  context.fillText(`Room ${room}`, menuMargin, 732, inner);
+  context.font = `500 34px ${vrFont}`;
+  context.fillStyle = vrColors.ink;
+  // An address has no spaces: it is broken before what it asks for.
+  const [place = address, query] = address.split(/(?=\?)/);
+  const lines = query === undefined ? [place] : [place, query];
+  for (const [index, line] of lines.entries()) context.fillText(line, menuMargin, 794 + index * 46, inner);
+  if (limit === null) return;
+  context.fillStyle = vrColors.inkSoft;
+  context.font = `400 22px ${vrFont}`;
+  for (const [index, line] of wrap(context, limit, inner).slice(0, 3).entries())
+    context.fillText(line, menuMargin, 888 + index * 28);
 }
 
 function drawButton(context: CanvasRenderingContext2D, { label, at, look }: MenuButton, hovered: boolean): void {
@@ -51,8 +86,10 @@ export function drawMenu(
   context.textAlign = 'left';
   context.fillStyle = vrColors.inkSoft;
   context.font = `600 30px ${vrFont}`;
-  context.fillText(state.calibration ? 'Calibrate' : 'Estimator', menuMargin + 4, 72);
-  if (state.calibration) drawCalibration(context, state.calibration);
+  const { calibration, invitation, notice } = state;
+  context.fillText(calibration ? 'Calibrate' : invitation ? 'Invite others' : 'Estimator', menuMargin + 4, 72);
+  if (calibration) drawCalibration(context, calibration);
+  else if (invitation) drawInvitation(context, invitation);
   for (const button of buttons) drawButton(context, button, button.id === hovered);
-  if (state.notice && !state.calibration) drawNotice(context, state.notice);
+  if (notice && !calibration && !invitation) drawNotice(context, notice);
 }

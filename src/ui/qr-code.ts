@@ -1,0 +1,58 @@
+/** White around the code, without which cameras do not find it [modules]. */
+const quiet = 4;
+
+/** A text as a QR code, with the white around it. */
+export interface QrCode {
+  readonly text: string;
+  /** Of the square, the white on both sides among it [modules]. */
+  readonly side: number;
+  /** Of a module, by column and row from the upper left. */
+  readonly isDark: (x: number, y: number) => boolean;
+}
+
+/** The QR code of a text. The encoder is loaded when the first one is made; rejects where it cannot be. */
+export async function qrCode(text: string): Promise<QrCode> {
+  const { encode } = await import('uqr');
+  const { data, size } = encode(text, { ecc: 'M', border: quiet });
+  return { text, side: size, isDark: (x, y) => data[y]?.[x] ?? false };
+}
+
+const svgNamespace = 'http://www.w3.org/2000/svg';
+
+/** For a page; the white is the ground's. */
+export function qrPicture({ side, isDark }: QrCode): SVGSVGElement {
+  const svg = document.createElementNS(svgNamespace, 'svg');
+  svg.setAttribute('viewBox', `0 0 ${side} ${side}`);
+  svg.setAttribute('role', 'img');
+  svg.setAttribute('aria-label', 'QR code of the link');
+  svg.setAttribute('shape-rendering', 'crispEdges');
+  const path = document.createElementNS(svgNamespace, 'path');
+  const modules: string[] = [];
+  for (let y = 0; y < side; y++) {
+    for (let x = 0; x < side; x++) if (isDark(x, y)) modules.push(`M${x} ${y}h1v1h-1z`);
+  }
+  path.setAttribute('d', modules.join(''));
+  svg.append(path);
+  return svg;
+}
+
+/**
+ * On a canvas, black on white, in the middle of this square [pixels]. Each module is a whole number of pixels wide: the code is as large as that
+ * lets it be.
+ */
+export function drawQrCode(
+  context: CanvasRenderingContext2D,
+  { side, isDark }: QrCode,
+  [left, top, width]: readonly [number, number, number],
+): void {
+  const module = Math.floor(width / side);
+  const free = Math.floor((width - module * side) / 2);
+  context.fillStyle = '#fff';
+  context.fillRect(left, top, width, width);
+  context.fillStyle = '#000';
+  for (let y = 0; y < side; y++) {
+    for (let x = 0; x < side; x++) {
+      if (isDark(x, y)) context.fillRect(left + free + x * module, top + free + y * module, module, module);
+    }
+  }
+}

@@ -1,0 +1,105 @@
+import { encode } from 'uqr';
+import { describe, expect, test } from 'vitest';
+import {
+  type MenuButton,
+  menuButtons,
+  menuHeight,
+  menuMargin,
+  menuWidth,
+  type ShownInvitation,
+  type VrMenuActions,
+  type VrMenuState,
+} from '../../../src/app/shell/vr-menu/menu-buttons';
+import { drawMenu } from '../../../src/app/shell/vr-menu/menu-drawing';
+import { qrCode } from '../../../src/ui/qr-code';
+
+const address = 'https://play.example.org/?play=ball&room=meadow';
+
+/** What is written and filled on a canvas, in order; letters are as wide as half their height. */
+function paper() {
+  const texts: { readonly text: string; readonly size: number; readonly y: number }[] = [];
+  const boxes: { readonly fill: string; readonly at: readonly number[] }[] = [];
+  const context = {
+    ...{ font: '', fillStyle: '', textAlign: '', textBaseline: '', globalAlpha: 1, lineWidth: 1, strokeStyle: '' },
+    ...{ beginPath: () => undefined, roundRect: () => undefined, fill: () => undefined, stroke: () => undefined },
+    measureText: (text: string) => ({ width: text.length * 0.5 * sizeOf(context.font) }),
+    fillText: (text: string, _: number, y: number) => void texts.push({ text, size: sizeOf(context.font), y }),
+    fillRect: (...at: readonly number[]) => void boxes.push({ fill: context.fillStyle, at }),
+  };
+  return { context: context as unknown as CanvasRenderingContext2D, texts, boxes };
+}
+
+const sizeOf = (font: string) => Number(/(\d+)px/.exec(font)?.[1]);
+
+const nothing = () => undefined;
+const actions: VrMenuActions = {
+  ...{ chooseEstimator: nothing, calibrate: nothing, cancelCalibration: nothing, recentre: nothing },
+  ...{ setOverlay: nothing, goTo: nothing, chooseOwnBody: nothing, chooseSkinTone: nothing, setPlainOthers: nothing },
+  ...{ setBowSide: nothing, restart: nothing, ready: nothing, askVoices: nothing, joinVoices: nothing, mute: nothing },
+  ...{ invite: nothing, exit: nothing },
+};
+
+function drawn(change: Partial<ShownInvitation>) {
+  const invitation: ShownInvitation = { room: 'meadow', address, limit: null, code: 'loading', ...change };
+  const state: VrMenuState = {
+    ...{ estimator: 'ik', unavailable: {}, calibration: null, overlay: false, deviceBody: false, activity: 'ball' },
+    ...{
+      ownBody: 'mannequin',
+      skinTone: undefined,
+      plainOthers: false,
+      bowSide: 'left',
+      roundOver: false,
+      ready: false,
+    },
+    ...{ voices: { phase: 'none', muted: true, deaf: false }, canInvite: true, invitation, notice: 'Waiting for you.' },
+  };
+  const { context, texts, boxes } = paper();
+  const buttons: readonly MenuButton[] = menuButtons(state, actions);
+  drawMenu(context, state, buttons, null);
+  return { texts, boxes, buttons };
+}
+
+describe('the invitation in the headset', () => {
+  test('is the code of the address, module for module, on white that is wide enough for cameras', async () => {
+    const { boxes } = drawn({ code: await qrCode(address) });
+    const [ground, ...modules] = boxes;
+    expect(ground).toEqual({
+      fill: '#fff',
+      at: [menuMargin, 116, menuWidth - 2 * menuMargin, menuWidth - 2 * menuMargin],
+    });
+    const { data, size } = encode(address, { ecc: 'M', border: 0 });
+    const side = modules[0]?.at[2] ?? 0;
+    const left = Math.min(...modules.map(({ at: [x = 0] }) => x));
+    const top = Math.min(...modules.map(({ at: [, y = 0] }) => y));
+    const read = data.map((row) => row.map(() => false));
+    for (const { at, fill } of modules) {
+      const [x = 0, y = 0] = at;
+      expect([fill, at[2], at[3]]).toEqual(['#000', side, side]);
+      (read[(y - top) / side] as boolean[])[(x - left) / side] = true;
+    }
+    expect(read).toEqual(data);
+    expect(left - menuMargin).toBeGreaterThanOrEqual(4 * side);
+    expect(menuWidth - menuMargin - left - size * side).toBeGreaterThanOrEqual(4 * side);
+    // Of a sheet 64 cm wide: a module of a centimetre can be told apart on a cast of the headset's picture.
+    expect(side).toBeGreaterThanOrEqual(10);
+  });
+
+  test('has the room and its address in large letters, and one button', () => {
+    const { texts, buttons } = drawn({ limit: 'This address works on this computer only.' });
+    const large = texts.filter(({ size }) => size >= 34).map(({ text }) => text);
+    expect(large).toEqual(
+      expect.arrayContaining(['Room meadow', 'https://play.example.org/', '?play=ball&room=meadow']),
+    );
+    expect(texts.map(({ text }) => text)).toContain('This address works on this computer only.');
+    expect(texts.map(({ text }) => text)).not.toContain('Waiting for you.');
+    expect(buttons.map(({ label }) => label)).toEqual(['Close']);
+    expect(Math.max(...texts.filter(({ text }) => text !== 'Close').map(({ y }) => y))).toBeLessThan(menuHeight - 140);
+  });
+
+  test('says that the code is on its way, or that it cannot be had', () => {
+    expect(drawn({ code: 'loading' }).texts.map(({ text }) => text)).toContain('The code comes in a moment.');
+    const failed = drawn({ code: 'not to be had' });
+    expect(failed.texts.map(({ text }) => text).join(' ')).toContain('The code could not be loaded: use the address.');
+    expect(failed.boxes).toEqual([]);
+  });
+});
