@@ -204,7 +204,7 @@ test('a voice comes back after the network was lost, and with the page after a r
   await heard(ann);
 });
 
-test('what keeps a person from talking is a sentence: refused, no microphone, no seat, a server without voices @full', async () => {
+test('what keeps a person from talking is a sentence: refused, no microphone, no seat, a server without voices @nightly', async () => {
   test.setTimeout(300_000);
   const origin = await serve();
   const { page: refused } = await talker(origin, 'Ann', { microphone: 'refused' });

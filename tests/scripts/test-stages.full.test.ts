@@ -48,7 +48,7 @@ describe('unit tests', () => {
   /** The files that a stage runs. */
   const files = async (stage: 'unit' | 'unit-full' | 'unit-nightly'): Promise<string[]> => {
     // A stage tells its runner by the environment what to run.
-    for (const name of ['THREEPOINT_TESTS', 'PROPERTY_RUNS']) vi.stubEnv(name, undefined);
+    for (const name of ['THREEPOINT_TESTS', 'PROPERTY_RUNS', 'STUDY_KILLS']) vi.stubEnv(name, undefined);
     onTestFinished(() => void vi.unstubAllEnvs());
     await stages[stage].commands('report.json');
     const list = listed('vitest/vitest.mjs', ['list', '--filesOnly', '--json']) as { file: string }[];
