@@ -22,7 +22,7 @@ const openRobot = async (page: Page): Promise<void> => {
   await page.getByLabel('Open VRM or GLB').and(page.locator('input')).setInputFiles(file);
 };
 
-test('a file whose bones’ names tell nothing is worn once they are told, and again without asking', async ({
+test('a file whose bones’ names tell nothing is worn once they are told, and again without asking @full', async ({
   page,
   complaints,
 }) => {

@@ -43,7 +43,7 @@ test('by hand: what no person measures is refused where it is typed', async ({ p
   expect((await probe(page)).calibration).toEqual(before);
 });
 
-test('by hand: a forearm divides the arm, outlasts a guided calibration and a reload, and is forgotten where it is emptied', async ({
+test('by hand: a forearm divides the arm, outlasts a guided calibration and a reload, and is forgotten where it is emptied @full', async ({
   page,
 }) => {
   const headset = await openWithHeadset(page, 'estimator=ik');

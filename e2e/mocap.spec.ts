@@ -102,7 +102,9 @@ test('a skeleton of unknown names asks for a map, which may come with the motion
   await expect(card(page).getByRole('heading', { name: 'folded_1' })).toBeVisible();
 });
 
-test('a large file says how far it is, and given up half-way it leaves nothing behind', async ({ page }, testInfo) => {
+test('a large file says how far it is, and given up half-way it leaves nothing behind @full', async ({
+  page,
+}, testInfo) => {
   const [head, frames] = leaping!.files['someone_walks.bvh']!.split(/Frames: \d+\n/) as [string, string];
   const [time, ...rows] = frames.trimEnd().split('\n');
   const many = Array.from({ length: 3000 }, () => rows.join('\n')).join('\n');

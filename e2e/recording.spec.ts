@@ -76,7 +76,7 @@ test('a file that is no recording is refused in a sentence', async ({ page, comp
   await expect(page.getByRole('alert')).toContainText('holiday.json');
 });
 
-test('a recording becomes files for other programs, drawn by the chosen method', async ({ page, complaints }) => {
+test('a recording becomes files for other programs, drawn by the chosen method @full', async ({ page, complaints }) => {
   complaints.allow(/could not be exported/);
   await recordTheActor(page);
   const bvh = await downloaded(page, 'BVH');
