@@ -1,9 +1,11 @@
-// node --import tsx bench/study-load.ts [PARTICIPANTS] [SECONDS]: remote participants of one study at once on one server process, each as the page behaves.
-import { type ChildProcess, fork } from 'node:child_process';
+// npm run bench:study [-- --participants 200 --seconds 60 --flush-ms 25 --json FILE]: remote participants of one study at once on one server
+// process, each as the page behaves.
+import { type ChildProcess, spawn } from 'node:child_process';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
+import { parseArgs } from 'node:util';
 import { randomSource } from '../src/core/rehearsal/random-source';
 import { parsePlan, participantsOf, type StudyPlan } from '../src/core/study/plan';
 import { begin } from '../src/core/study/progress';
@@ -22,7 +24,17 @@ const recordSeconds = 10;
 /** A round with its recording ends about so often [s]. */
 const roundSeconds = 60;
 
-const [count = 200, seconds = 60] = process.argv.slice(2).map(Number);
+const { values: options } = parseArgs({
+  options: {
+    participants: { type: 'string', default: '200' },
+    seconds: { type: 'string', default: '60' },
+    /** Flushes of the server's disk take so much longer [ms], by strace, which must be installed: those of virtual disks may cost nothing. */
+    'flush-ms': { type: 'string' },
+    json: { type: 'string' },
+  },
+});
+const count = Number(options.participants);
+const seconds = Number(options.seconds);
 
 type Times = Map<string, number[]>;
 
@@ -117,8 +129,19 @@ const inspect = async (server: ChildProcess) => {
 };
 
 const directory = mkdtempSync(join(tmpdir(), 'threepoint-load-'));
-const server = fork(fileURLToPath(new URL('../tests/server/study-process.ts', import.meta.url)), [directory], {
-  execArgv: ['--import', 'tsx'],
+/** -D: the server stays the child, which is asked and killed. */
+const slowDisk = (ms: number) =>
+  `-D -f --seccomp-bpf -qqq -o /dev/null -e trace=fsync,fdatasync -e inject=fsync,fdatasync:delay_exit=${1000 * ms}`.split(
+    ' ',
+  );
+const flushMs = Number(options['flush-ms'] ?? 0);
+const [command, ...words] = [
+  ...(flushMs > 0 ? ['strace', ...slowDisk(flushMs)] : []),
+  ...[process.execPath, '--import', 'tsx', fileURLToPath(new URL('../tests/server/study-process.ts', import.meta.url))],
+  directory,
+];
+const server = spawn(command as string, words, {
+  stdio: ['inherit', 'inherit', 'inherit', 'ipc'],
   env: { ...process.env, EXPERIMENTER_TOKEN: experimenter },
 });
 const { port } = await heardFrom<{ port: number }>(server);
@@ -161,6 +184,7 @@ const rows = [...times].map(([kind, ms]) => ({
 }));
 const figures = {
   participants: count,
+  flushMs,
   seconds: Math.round(took),
   cpuShare: (after.cpuSeconds - before.cpuSeconds) / took,
   rssMegabytes: after.rssBytes / 2 ** 20,
@@ -177,5 +201,5 @@ console.log(
 );
 console.table(rows);
 for (const one of refused.slice(0, 5)) console.log(one);
-if (process.env.STUDY_LOAD_JSON) writeFileSync(process.env.STUDY_LOAD_JSON, `${JSON.stringify(figures, null, 2)}\n`);
+if (options.json) writeFileSync(options.json, `${JSON.stringify(figures, null, 2)}\n`);
 process.exitCode = acknowledged === figures.stored && refused.length === 0 ? 0 : 1;

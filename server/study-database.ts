@@ -1,4 +1,6 @@
+import { type FileHandle, open } from 'node:fs/promises';
 import { DatabaseSync, type DatabaseSyncInstance } from '@photostructure/sqlite';
+import { SharedFlush } from './shared-flush';
 import { migrate } from './study-schema';
 
 /** Why the store will not do it; the message is for the person who asked. */
@@ -26,19 +28,30 @@ function asRefusal(error: unknown): unknown {
 type Statement = ReturnType<DatabaseSyncInstance['prepare']>;
 type Parameter = Parameters<Statement['run']>[number];
 
-/** The SQLite file of the studies: what was acknowledged survives a power cut, what was deleted is overwritten. */
+/**
+ * The SQLite file of the studies. What a transaction wrote survives the end of the process at once, and a power cut once `flushed` has
+ * resolved; what was deleted is overwritten.
+ */
 export class StudyDatabase {
   readonly #database: DatabaseSyncInstance;
+  /** SQLite's write-ahead log, opened with the first flush; one handle for good hears of every page that could not be written. */
+  #log: Promise<FileHandle> | null = null;
+  readonly #flush: SharedFlush;
   /** By their text: a statement is prepared once. */
   readonly #statements = new Map<string, Statement>();
 
   /** Opens the file, makes it where there is none, and brings it up to date; it grows to `mostBytes`. */
   constructor(file: string, mostBytes: number) {
     this.#database = new DatabaseSync(file);
-    // FULL: what was acknowledged survives a power cut too. secure_delete: what was deleted is overwritten.
+    this.#flush = new SharedFlush(async () => {
+      this.#log ??= open(`${file}-wal`, 'r+');
+      await (await this.#log).datasync();
+    });
+    // NORMAL: a transaction waits for no disk; `flushed` does, for many at once. SQLite itself flushes around its checkpoints, so that the
+    // file stays sound whatever the moment. secure_delete: what was deleted is overwritten.
     this.#database.exec(`
       PRAGMA journal_mode = WAL;
-      PRAGMA synchronous = FULL;
+      PRAGMA synchronous = NORMAL;
       PRAGMA foreign_keys = ON;
       PRAGMA secure_delete = ON;
       PRAGMA busy_timeout = 5000;
@@ -81,13 +94,20 @@ export class StudyDatabase {
     return Number(this.#statement(sql).run(...parameters).changes);
   }
 
-  /** Empties the log, which still holds deleted pages as they were. */
+  /** Resolves when everything written before this call survives a power cut; rejects when the disk failed, until the server starts anew. */
+  flushed(): Promise<void> {
+    return this.#flush.flushed();
+  }
+
+  /** Empties the log, which still holds deleted pages as they were; flushes as it does. */
   forgetDeleted(): void {
     this.#database.exec('PRAGMA wal_checkpoint(TRUNCATE)');
   }
 
+  /** Writes everything through to the disk. */
   close(): void {
     this.#database.close();
+    void this.#log?.then((log) => log.close());
   }
 
   #statement(sql: string): Statement {

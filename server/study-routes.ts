@@ -286,6 +286,16 @@ function participantTable({ store, now, guard, seats, software }: TableOptions):
   ];
 }
 
+/** The same route, whose answer waits until what it changed is on the disk. */
+const flushed = (store: StudyStore, changing: Route<StudyAccess>): Route<StudyAccess> => ({
+  ...changing,
+  async handle(call) {
+    const answer = await changing.handle(call);
+    await store.flushed();
+    return answer;
+  },
+});
+
 /** The study's part of the server: all below /api/studies. A participant's token opens nothing but that participant. */
 export function createStudyRoutes({
   now,
@@ -295,9 +305,11 @@ export function createStudyRoutes({
   ...guarded
 }: StudyRoutesOptions): Service<StudyAccess> {
   const guard = createStudyGuard(guarded);
-  const table = { store: guarded.store, now, guard, seats, software };
+  const { store } = guarded;
+  const table = { store, now, guard, seats, software };
+  const routes = [...studyTable(table), ...participantTable(table)];
   return {
-    routes: [...studyTable(table), ...participantTable(table)],
+    routes: routes.map((one) => (one.method === 'GET' ? one : flushed(store, one))),
     admit: ({ access }, { request, names }) => guard.admit(access, { request, ...namesOf({ names }) }),
     refusalOf(error) {
       if (error instanceof StoreRefusal) return refusalOf(error);

@@ -14,8 +14,8 @@ import { StudyRecords } from './study-records';
 import { type ServedSoftware, StudySoftware } from './study-software';
 
 /**
- * Studies and what was recorded in them. Everything that returns has been written through to the disk. Times are seconds
- * since 1970, given by the caller.
+ * Studies and what was recorded in them. What returns is stored and outlives the process; that it outlives a power cut too, `flushed` says,
+ * and nothing is acknowledged before. Times are seconds since 1970, given by the caller.
  */
 export interface StudyStore {
   /** Adds a study, or finds the same one there; refuses another plan under the id of a study that has begun, but as a new version. */
@@ -66,6 +66,8 @@ export interface StudyStore {
   /** Deletes what is past its retention date. */
   deleteExpired(now: number): readonly Receipt[];
   receipts(study: string): readonly Receipt[];
+  /** Resolves when everything until now is on the disk; those who ask while the disk is at work wait for one flush together. */
+  flushed(): Promise<void>;
   close(): void;
 }
 
@@ -139,6 +141,7 @@ export function openStudyStore(file: string, { mostBytes = 16 * 2 ** 30 } = {}):
     withdraw: (study, code, at) => deletion.withdraw(study, code, at),
     deleteExpired: (now) => deletion.deleteExpired(now),
     receipts: (study) => deletion.receipts(study),
+    flushed: () => database.flushed(),
     close: () => database.close(),
   };
 }

@@ -3,6 +3,7 @@ import { expect, onTestFinished } from 'vitest';
 import type { WrongGuess } from '../../server/guess-limits';
 import { createRouter, noPage } from '../../server/http/router';
 import { createRoomTokens } from '../../server/room-tokens';
+import { SharedFlush } from '../../server/shared-flush';
 import { createStudyRoutes } from '../../server/study-routes';
 import { createStudySeats } from '../../server/study-seats';
 import { openStudyStore } from '../../server/study-store';
@@ -37,9 +38,22 @@ export interface Asked {
   readonly from?: string;
 }
 
+export interface ServedOptions {
+  readonly experimenterToken?: string | null;
+  readonly mostBytes?: number;
+  /** The disk under the store: resolves when what was written is on it. */
+  readonly flush?: () => Promise<void>;
+}
+
 /** The studies' part of the server on a port of loopback, as if behind a proxy; with its store and what it logs. */
-export async function servedStudies({ experimenterToken = experimenter as string | null, mostBytes = 2 ** 30 } = {}) {
-  const store = openStudyStore(join(directoryWith(), 'studies.db'), { mostBytes });
+export async function servedStudies({
+  experimenterToken = experimenter,
+  mostBytes = 2 ** 30,
+  flush,
+}: ServedOptions = {}) {
+  const opened = openStudyStore(join(directoryWith(), 'studies.db'), { mostBytes });
+  const shared = flush && new SharedFlush(flush);
+  const store = shared ? { ...opened, flushed: () => shared.flushed() } : opened;
   const faults: unknown[] = [];
   const wrongGuesses: WrongGuess[] = [];
   const service = createStudyRoutes({
@@ -83,10 +97,7 @@ export async function servedStudies({ experimenterToken = experimenter as string
 }
 
 /** The same with the paper's study on it, changed or not. */
-export async function servedPaperStudy(
-  changes: Partial<StudyPlan> = {},
-  options: { readonly mostBytes?: number } = {},
-) {
+export async function servedPaperStudy(changes: Partial<StudyPlan> = {}, options: ServedOptions = {}) {
   const server = await servedStudies(options);
   server.store.addStudy(paperPlan(changes), { simulated: false, at: now });
   /** What a participant's link says. */

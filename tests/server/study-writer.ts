@@ -15,5 +15,6 @@ for (let number = Number(first); ; number++) {
     return { ...base, id, at: number, kind: 'event', body: { type: 'remark', text: 'x'.repeat(500) } };
   });
   const acknowledged = store.storeRecords('paper', 'P01', records, number);
+  await store.flushed();
   writeSync(1, `${acknowledged.join('\n')}\n`);
 }

@@ -1,0 +1,115 @@
+import { describe, expect, test } from 'vitest';
+import { SharedFlush } from '../../server/shared-flush';
+import { recordVersion, type StudyRecord } from '../../src/core/study/study-record';
+import { paperPlan } from '../core/study/studies';
+import { now, servedPaperStudy } from './running-studies';
+
+/** A disk whose flushes end when the test says so. */
+function heldDisk() {
+  const under: { readonly end: () => void; readonly fail: (error: Error) => void }[] = [];
+  let started = 0;
+  let told: () => void = () => undefined;
+  return {
+    /** How many flushes have begun. */
+    get started() {
+      return started;
+    },
+    flush: () =>
+      new Promise<void>((end, fail) => {
+        under.push({ end, fail });
+        started += 1;
+        told();
+      }),
+    /** Resolves when so many have begun. */
+    async begun(count: number): Promise<void> {
+      while (started < count) await new Promise<void>((resolve) => (told = resolve));
+    },
+    end: () => under.shift()?.end(),
+    fail: () => under.shift()?.fail(new Error('the disk failed')),
+  };
+}
+
+const order = (log: string[], name: string, flushed: Promise<void>) => flushed.then(() => void log.push(name));
+
+describe('flushes for many at once', () => {
+  test('who asks while one is under way waits for the next, which all of them share', async () => {
+    const disk = heldDisk();
+    const shared = new SharedFlush(disk.flush);
+    const log: string[] = [];
+    const first = order(log, 'first', shared.flushed());
+    await disk.begun(1);
+    const later = ['second', 'third', 'fourth'].map((name) => order(log, name, shared.flushed()));
+    disk.end();
+    await first;
+    await disk.begun(2);
+    expect(log).toEqual(['first']);
+    disk.end();
+    await Promise.all(later);
+    expect(log).toEqual(['first', 'second', 'third', 'fourth']);
+    expect(disk.started).toBe(2);
+  });
+
+  test('who asks when none is under way waits for one of their own', async () => {
+    const disk = heldDisk();
+    const shared = new SharedFlush(disk.flush);
+    for (let count = 1; count <= 3; count++) {
+      const flushed = shared.flushed();
+      await disk.begun(count);
+      disk.end();
+      await flushed;
+    }
+  });
+
+  test('after one has failed nothing is said to be on the disk any more', async () => {
+    const disk = heldDisk();
+    const shared = new SharedFlush(disk.flush);
+    const first = shared.flushed();
+    await disk.begun(1);
+    const second = shared.flushed();
+    disk.fail();
+    await expect(first).rejects.toThrow('the disk failed');
+    await expect(second).rejects.toThrow('the disk failed');
+    await expect(shared.flushed()).rejects.toThrow('the disk failed');
+    expect(disk.started).toBe(1);
+  });
+});
+
+describe('the server of studies', () => {
+  const own = '/api/studies/paper/participants/P01';
+
+  test('acknowledges only what is on the disk, and answers who reads meanwhile', async () => {
+    const disk = heldDisk();
+    const { ask, invited, store } = await servedPaperStudy({}, { flush: disk.flush });
+    const log: string[] = [];
+    const claimed = ask('POST', `${own}/claim`, { json: invited('P01') });
+    await disk.begun(1);
+    disk.end();
+    const { token } = (await claimed).json;
+    const consent: StudyRecord = {
+      ...{ version: recordVersion, study: 'paper', participant: 'P01', simulated: false, at: now },
+      ...{
+        kind: 'consent',
+        id: 'consent',
+        body: { version: paperPlan().consent.version, given: true, motion: false, at: now },
+      },
+    };
+    const sent = ask('POST', `${own}/records`, { token, json: { records: [consent] } }).then(({ status }) => {
+      log.push(`acknowledged ${status}`);
+    });
+    await disk.begun(2);
+    expect((await ask('GET', `${own}/records`, { token })).json.records).toHaveLength(1);
+    // Sent again, it is there already, and still not on the disk.
+    const again = ask('POST', `${own}/records`, { token, json: { records: [consent] } }).then(({ status }) => {
+      log.push(`acknowledged again ${status}`);
+    });
+    expect((await ask('GET', `${own}/commands?after=0`, { token })).status).toBe(200);
+    expect(log).toEqual([]);
+    disk.end();
+    await sent;
+    await disk.begun(3);
+    disk.end();
+    await again;
+    expect(log).toEqual(['acknowledged 200', 'acknowledged again 200']);
+    expect(store.records('paper', 'P01')).toHaveLength(1);
+  });
+});
