@@ -32,6 +32,8 @@ export function createPaper(regressor: PoseRegressor): JointSource {
 
   const network: JointNetwork = {
     inFrame: false,
+    // Its joints are drawn as they are, so each frame needs its own.
+    wantsFrame: () => true,
     ask({ completed }) {
       if (inference.running) return inference.running;
       return inference.start(paperFeatures(completed.head, completed.leftHand, completed.rightHand, input));

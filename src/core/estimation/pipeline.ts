@@ -78,7 +78,8 @@ export class Pipeline implements PoseEstimator {
   readonly #headingFromFloor = makeTransform<'heading', 'floor'>();
   /** IK's poles, floor frame. */
   readonly #poles = { left: vec3(0, 0, 0), right: vec3(0, 0, 0) };
-  readonly #estimate: { readonly pose: OwnedPose; readonly request: InferenceRequest | null };
+  readonly #estimate: { readonly pose: OwnedPose; request: InferenceRequest | null };
+  readonly #request: InferenceRequest;
   readonly #pitch: HeadsetPitch;
   #body: ReturnType<typeof measure>;
   #lastTime = Number.NaN;
@@ -88,10 +89,10 @@ export class Pipeline implements PoseEstimator {
     this.source = source;
     this.#pitch = new HeadsetPitch(calibration);
     this.#body = measure(calibration, source);
-    const { network } = source;
+    this.#request = { ask: () => source.network?.ask(this.state.solved) ?? Promise.resolve() };
     this.#estimate = {
       pose: { head: noHead, leftHand: null, rightHand: null, body: makeUpperBodyPose() },
-      request: network && !network.inFrame ? { ask: () => network.ask(this.state.solved) } : null,
+      request: null,
     };
   }
 
@@ -129,6 +130,8 @@ export class Pipeline implements PoseEstimator {
     const goals = { frame: completed, joints, torso, bones: body.arm, poles: this.#poles };
     const arms = fitArms(state.arms, goals, deltaSeconds);
 
+    const { network } = this.source;
+    this.#estimate.request = network && !network.inFrame && network.wantsFrame(frame.time) ? this.#request : null;
     const { pose } = this.#estimate;
     pose.head = head;
     pose.leftHand = frame.leftHand;

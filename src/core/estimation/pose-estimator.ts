@@ -22,7 +22,7 @@ export interface InferenceRequest {
 export interface Estimate {
   /** Floor frame. Head and hands are the frame's own, however old the network's answer is. */
   readonly pose: AvatarPose;
-  /** Null: the method has no network, or one that has answered already. */
+  /** Null: the method has no network, or one that has answered already or was asked about a frame just before. */
   readonly request: InferenceRequest | null;
 }
 

@@ -15,6 +15,13 @@ import { makeChestAxes } from './solve-ik';
 /** Half-life [s] of the correction where the contract states none. */
 const defaultHalfLife = 0.04;
 
+/**
+ * Seconds between questions, at least: the correction is damped over more than that, and asking about every frame costs twice the processor's time for 0.1 to
+ * 0.4 % less error (docs/decisions.md). No display's frames are a whole number of times apart near it: of 60 to 90 Hz every second frame is asked about, of 120 Hz
+ * every third.
+ */
+const questionSeconds = 0.02;
+
 /** Numbers of the network's input: the features at each age, and the newest frame's chest-frame features. */
 export const learnedInputCount = (windowSeconds: readonly number[]): number =>
   windowSeconds.length * featureCount + chestFeatureCount;
@@ -43,6 +50,8 @@ class Residual implements JointSource, JointNetwork {
   #body: ChestSpaceBody;
   /** Whether `newest` is an answer. */
   #known = false;
+  /** Time of the frame that was asked about last [s]. */
+  #askedAt = Number.NEGATIVE_INFINITY;
 
   constructor(calibration: Calibration, regressor: PoseRegressor) {
     const { windowSeconds, inputs } = regressor.contract;
@@ -80,10 +89,16 @@ class Residual implements JointSource, JointNetwork {
     this.#window.clear();
     this.#inference.reset();
     this.#forget();
+    this.#askedAt = Number.NEGATIVE_INFINITY;
     copyJoints(nothing, this.#damped);
   }
 
+  wantsFrame(time: number): boolean {
+    return time - this.#askedAt >= questionSeconds;
+  }
+
   ask(solved: SolvedFrame): Promise<void> {
+    this.#askedAt = solved.time;
     this.#remember(solved);
     if (this.#inference.running) return this.#inference.running;
     this.#fillInput(solved);
@@ -101,7 +116,8 @@ class Residual implements JointSource, JointNetwork {
 
   joints(solved: SolvedFrame, deltaSeconds: number, target: MutableJointPositions): void {
     const { runNow, contract } = this.#regressor;
-    if (runNow) {
+    if (runNow && this.wantsFrame(solved.time)) {
+      this.#askedAt = solved.time;
       this.#remember(solved);
       this.#fillInput(solved);
       this.#inference.answerNow(runNow, this.#input);

@@ -13,7 +13,8 @@ import { openShippedModel } from './shipped-models';
 
 const calibration = { eyeHeight: 1.65, armSpan: 1.56 };
 const at = movingPerson(7, calibration, { x: 1, z: -0.5, yaw: 2 });
-const frames = Array.from({ length: 90 }, (_, i) => at(3 + i / 60));
+/** So far apart that each is asked about, by the learned method too. */
+const frames = Array.from({ length: 90 }, (_, i) => at(3 + i / 30));
 
 const apart = (a: AvatarPose, b: AvatarPose): number => {
   const [first, second] = [a, b].map(({ body }) => forwardKinematics(skeletonFromCalibration(calibration), body!));

@@ -65,6 +65,39 @@ describe('the learned network without a runtime', () => {
     expect(drawn).not.toBe(drawnByIk);
   });
 
+  test.each([
+    ['later', false],
+    ['in the frame', true],
+  ])('that answers %s is asked about every second frame or third, and at once after a reset', async (_, inFrame) => {
+    const calibration = { eyeHeight: 1.65, armSpan: 1.56 };
+    const at = movingPerson(3, calibration, { x: 1, z: -0.5, yaw: 2 });
+    let runs = 0;
+    const counted = <Result>(run: (features: Float32Array) => Result) => {
+      return (features: Float32Array): Result => {
+        runs += 1;
+        return run(features);
+      };
+    };
+    const { runNow, ...later } = plain;
+    const estimator = createEstimator('learned', calibration, {
+      ...later,
+      run: counted(later.run),
+      ...(inFrame && { runNow: counted(runNow!) }),
+    });
+    const framesApart = { 36: 1, 60: 2, 72: 2, 80: 2, 90: 2, 120: 3 };
+    for (const [rate, apart] of Object.entries(framesApart)) {
+      estimator.reset();
+      runs = 0;
+      for (let frame = 0; frame < 30 * apart; frame++) await estimator.update(at(frame / Number(rate))).request?.ask();
+      expect(runs).toBe(30);
+    }
+    estimator.update(at(1));
+    estimator.reset();
+    runs = 0;
+    await estimator.update(at(1.001)).request?.ask();
+    expect(runs).toBe(1);
+  });
+
   test('a network that breaks in a frame leaves that frame to inverse kinematics and says so', () => {
     const calibration = { eyeHeight: 1.65, armSpan: 1.56 };
     const at = movingPerson(3, calibration, { x: 1, z: -0.5, yaw: 2 });
