@@ -197,7 +197,7 @@ describe('a body whose network is not to be had', () => {
     body.update(at(0));
     expect(body.estimator).toBe('learned');
     broken = true;
-    body.update(at(1 / 60));
+    body.update(at(1 / 30));
     expect(body.estimator).toBe('ik');
     expect(told.at(-1)).toBe('fallback learned learned: out of memory');
   });
