@@ -1,7 +1,7 @@
 /**
  * Joints of the upper body, by their VRM humanoid names, parents before children. A joint is its bone's origin:
- * `leftLowerArm` is the elbow, `leftHand` the wrist. What the paper calls the shoulder is our `UpperArm`; its "spine" is the
- * point half-way up the thorax that we call `chest`, its "pelvis" is `hips`.
+ * `leftLowerArm` is the elbow, `leftHand` the wrist. What the paper calls the shoulder is our `UpperArm`; its "spine" is where
+ * our thorax segment begins, which we call `chest`; its "pelvis" is `hips`.
  */
 export const jointNames = [
   'hips',

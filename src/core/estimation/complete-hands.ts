@@ -44,15 +44,15 @@ import {
 import { type Heading, readHeading } from '../tracking/heading';
 import type { TrackingFrame } from '../tracking/tracking-frame';
 import { type BodyHeading, followBodyHeading, makeBodyHeading } from './body-heading';
-import { alongArc, type DirectionArc, directionArc, makeDirectionArc } from './direction-arc';
+import { alongArc, type DirectionArc, directionArc, makeDirectionArc, outsideOfBody } from './direction-arc';
 import lostHand from './lost-hand.json';
 
 /** Most losses are shorter than a hand is held; of the longer ones most come back near where they were, so it goes to rest slowly. */
 const { holdSeconds, restSeconds, hanging, lowestRest } = lostHand;
-/** Confidence falls from 1 to 0, and rises again, in so long [s]: in a lost hand it is gone long before that rests, for nothing hurries after a guess. */
+/** Time [s] in which confidence falls from 1 to 0 or rises again; shorter than the way to rest, so that later stages follow a guess slowly. */
 export const confidenceSeconds = 0.3;
-/** A hand that is seen again so far [m] from where it was taken to be has jumped: no confidence is left in what follows it. */
-const jumpMetres = 0.1;
+/** A hand seen again this far [m] from its guess, or further, gets confidence 0; less far, in proportion. */
+const doubtfulReturn = 0.1;
 
 /** Where a hand is taken to be, floor frame: as it is seen, else a guess that moves slowly. */
 export interface CompletedHand extends MutablePose<'floor'> {
@@ -184,10 +184,6 @@ const resting = makeReach();
 const inBody = makePose<'body'>();
 const inverse = quat(0, 0, 0, 1);
 const turn = quat(0, 0, 0, 1);
-const outside: Readonly<Record<Side, Vec3>> = {
-  left: normalise(vec3(-1, -0.2, -1)),
-  right: normalise(vec3(1, -0.2, -1)),
-};
 
 /** A hand that the device sees. */
 function followSeen(
@@ -200,7 +196,7 @@ function followSeen(
   hand.jumped = state.known && state.lostSeconds >= 0;
   if (!state.known) hand.confidence = 1;
   else if (hand.jumped) {
-    const unmoved = Math.max(0, 1 - distance(tracked.position, hand.position) / jumpMetres);
+    const unmoved = Math.max(0, 1 - distance(tracked.position, hand.position) / doubtfulReturn);
     hand.confidence = Math.min(hand.confidence, unmoved);
   } else hand.confidence = Math.min(1, hand.confidence + deltaSeconds / confidenceSeconds);
   hand.source = 'tracked';
@@ -236,7 +232,7 @@ function followLost(
   hand.source = held ? 'held' : 'sinking';
 
   const share = trapezoidalEasing(holdSeconds, holdSeconds + restSeconds, state.lostSeconds);
-  directionArc(last.direction, resting.direction, outside[side], arc);
+  directionArc(last.direction, resting.direction, outsideOfBody[side], arc);
   rotate(alongArc(arc, share, turn), last.direction, inBody.position);
   scale(inBody.position, last.distance + (resting.distance - last.distance) * share, inBody.position);
   addScaled(inBody.position, shoulder, 1, inBody.position);

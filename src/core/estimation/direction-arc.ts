@@ -8,6 +8,7 @@ import {
   rotationBetween,
   slerp,
 } from '../math/quat';
+import type { Side } from '../math/side';
 import { addScaled, dot, lerp, type MutableVec3, normalise, reject, type Vec3, vec3 } from '../math/vec3';
 
 /** The path on a sphere from one direction to another, by way of a third where they lie far apart. */
@@ -31,6 +32,12 @@ export const makeDirectionArc = (): DirectionArc => ({
 
 /** Directions further apart than this [rad] are joined by way of `outside`: the shortest path may lead through the body. */
 const farApart = 2.1;
+
+/** Where an arm passes that swings all the way round, in the axes of the body or its chest: ahead, to its own side and a little down. */
+export const outsideOfBody: Readonly<Record<Side, Vec3>> = {
+  left: normalise(vec3(-1, -0.2, -1)),
+  right: normalise(vec3(1, -0.2, -1)),
+};
 
 const aside = vec3(0, 0, 0);
 

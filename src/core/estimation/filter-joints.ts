@@ -12,6 +12,7 @@ import {
   scale,
   setVec3,
   subtract,
+  type Vec3,
   vec3,
 } from '../math/vec3';
 import { type CompletedFrame, type CompletedHand, confidenceSeconds } from './complete-hands';
@@ -37,10 +38,10 @@ export interface FilterJointsState {
   /** The headset's filtered position [m] and velocity [m/s], floor frame. */
   readonly position: MutableVec3;
   readonly velocity: MutableVec3;
-  /** What the joints jumped by when a hand was seen again [m], floor axes: it is taken back within `settleSeconds`, of which so many are left. */
+  /** From the joints to where they were before a hand was seen again [m], floor axes: an offset that fades within `settleDuration`, of which `settleRemaining` is left [s]. */
   readonly jump: MutableJointPositions;
-  settleSeconds: number;
-  secondsLeft: number;
+  settleDuration: number;
+  settleRemaining: number;
   readonly joints: MutableJointPositions;
 }
 
@@ -50,12 +51,12 @@ export const makeFilterJointsState = (): FilterJointsState => ({
   position: vec3(0, 0, 0),
   velocity: vec3(0, 0, 0),
   jump: makeJoints(),
-  settleSeconds: 0,
-  secondsLeft: 0,
+  settleDuration: 0,
+  settleRemaining: 0,
   joints: makeJoints(),
 });
 
-const goal = vec3(0, 0, 0);
+const wanted = vec3(0, 0, 0);
 const step = vec3(0, 0, 0);
 /** How the wearer's own turn moves a joint [m], floor axes. */
 const carried = vec3(0, 0, 0);
@@ -70,41 +71,41 @@ function followHead({ position, velocity }: FilterJointsState, head: Pose<'floor
   addScaled(velocity, step, (1 - memory) ** 2 / deltaSeconds, velocity);
 }
 
-/** That a hand does not make joints jump: one that is lost goes slowly. */
-const confidenceIn = ({ source, confidence }: CompletedHand): number => (source === 'tracked' ? confidence : 1);
+/** Confidence that this hand makes no joint jump; 1 for a lost hand, since its guess moves slowly. */
+const steadiness = ({ source, confidence }: CompletedHand): number => (source === 'tracked' ? confidence : 1);
 
 /** How long [s] joints take to settle after a hand that is seen again in this frame: as long as its confidence takes to return. */
-const settlesIn = ({ source, jumped, confidence }: CompletedHand): number =>
+const settleDurationAfter = ({ source, jumped, confidence }: CompletedHand): number =>
   jumped && source === 'tracked' ? confidenceSeconds * (1 - confidence) : 0;
 
-/** Turns the jumps along with the body. When a hand is seen again, notes by how much the joints jump; its elbow, half-way to it, goes along with half of its shoulder's. */
+/** Turns the offsets along with the body. When a hand is seen again, notes by how much the joints jump; that arm's elbow gets half of its shoulder's offset. */
 function followJumps(
   state: FilterJointsState,
   joints: JointPositions,
   { head, bodyTurn, leftHand, rightHand }: CompletedFrame,
   deltaSeconds: number,
 ): void {
-  for (let index = 0; state.secondsLeft > 0 && index < estimatedJoints.length; index++) {
+  for (let index = 0; state.settleRemaining > 0 && index < estimatedJoints.length; index++) {
     const jump = state.jump[estimatedJoints[index]!];
     rotate(bodyTurn, jump, jump);
   }
-  const seconds = Math.max(settlesIn(leftHand), settlesIn(rightHand));
-  state.secondsLeft = Math.max(state.secondsLeft - deltaSeconds, 0);
+  const seconds = Math.max(settleDurationAfter(leftHand), settleDurationAfter(rightHand));
+  state.settleRemaining = Math.max(state.settleRemaining - deltaSeconds, 0);
   if (seconds === 0) return;
-  state.secondsLeft = Math.max(seconds, state.secondsLeft);
-  state.settleSeconds = state.secondsLeft;
+  state.settleRemaining = Math.max(seconds, state.settleRemaining);
+  state.settleDuration = state.settleRemaining;
   for (let index = 0; index < estimatedJoints.length; index++) {
     const joint = estimatedJoints[index]!;
-    subtract(joints[joint], head.position, goal);
-    subtract(rotate(bodyTurn, state.relative[joint], carried), goal, state.jump[joint]);
+    subtract(joints[joint], head.position, wanted);
+    subtract(rotate(bodyTurn, state.relative[joint], carried), wanted, state.jump[joint]);
   }
   if (leftHand.jumped) scale(state.jump.leftUpperArm, 0.5, state.jump.leftLowerArm);
   if (rightHand.jumped) scale(state.jump.rightUpperArm, 0.5, state.jump.rightLowerArm);
 }
 
-/** Goes to the goal by `share`, but no further than `most` [m] from where the body's turn carries the joint. */
-function followJoint(joint: MutableVec3, share: number, most: number, bodyTurn: Quat): void {
-  lerp(joint, goal, share, step);
+/** Goes to `wanted` by `share`, but no further than `most` [m] from where the body's turn carries the joint. */
+function followJoint(joint: MutableVec3, wanted: Vec3, share: number, most: number, bodyTurn: Quat): void {
+  lerp(joint, wanted, share, step);
   rotate(bodyTurn, joint, carried);
   const far = distance(step, carried);
   lerp(carried, step, far > most ? most / far : 1, joint);
@@ -113,7 +114,7 @@ function followJoint(joint: MutableVec3, share: number, most: number, bodyTurn: 
 /**
  * Stage 4: takes the trackers' noise out of joints that no device tracks; head and hands are never touched. Relative to the headset
  * each joint passes a low-pass, the trunk's with a limited rate; the headset that they hang from passes a g-h filter. The elbow of a
- * hand that has jumped jumps along: its way is the arm's transition. Floor frame.
+ * hand that has jumped jumps along: the arm transition of stage 5 bridges it. Floor frame.
  */
 export function filterJoints(
   state: FilterJointsState,
@@ -122,21 +123,21 @@ export function filterJoints(
   deltaSeconds: number,
 ): MutableJointPositions {
   const { head, heading, bodyTurn, leftHand, rightHand } = completed;
-  const confidence = Math.min(heading.confidence, confidenceIn(leftHand), confidenceIn(rightHand));
+  const confidence = Math.min(heading.confidence, steadiness(leftHand), steadiness(rightHand));
   const most = (doubtfulTrunkSpeed + (trunkSpeed - doubtfulTrunkSpeed) * confidence) * Math.max(deltaSeconds, 0);
   const share = smoothingFactor(jointHalfLife, deltaSeconds);
   if (state.known) followHead(state, head, deltaSeconds);
   else copyVec3(head.position, state.position);
   followJumps(state, joints, completed, deltaSeconds);
-  const left = state.secondsLeft > 0 ? trapezoidalEasing(0, state.settleSeconds, state.secondsLeft) : 0;
+  const left = state.settleRemaining > 0 ? trapezoidalEasing(0, state.settleDuration, state.settleRemaining) : 0;
   for (let index = 0; index < estimatedJoints.length; index++) {
     const joint = estimatedJoints[index]!;
     const relative = state.relative[joint];
     const hand = joint === 'leftLowerArm' ? leftHand : joint === 'rightLowerArm' ? rightHand : null;
-    subtract(joints[joint], head.position, goal);
-    if (left > 0) addScaled(goal, state.jump[joint], left, goal);
-    if (!state.known || hand?.jumped) copyVec3(goal, relative);
-    else followJoint(relative, share, hand ? Number.POSITIVE_INFINITY : most, bodyTurn);
+    subtract(joints[joint], head.position, wanted);
+    if (left > 0) addScaled(wanted, state.jump[joint], left, wanted);
+    if (!state.known || hand?.jumped) copyVec3(wanted, relative);
+    else followJoint(relative, wanted, share, hand ? Number.POSITIVE_INFINITY : most, bodyTurn);
     add(state.position, relative, state.joints[joint]);
   }
   state.known = true;
@@ -146,6 +147,6 @@ export function filterJoints(
 /** Forgets the past: the next frame is the first. */
 export function resetFilterJoints(state: FilterJointsState): void {
   state.known = false;
-  state.secondsLeft = 0;
+  state.settleRemaining = 0;
   setVec3(state.velocity, 0, 0, 0);
 }

@@ -39,6 +39,7 @@ import {
   startTransition,
 } from './arm-transition';
 import type { CompletedFrame, CompletedHand } from './complete-hands';
+import { outsideOfBody } from './direction-arc';
 import type { TorsoPose } from './fit-torso';
 import type { JointPositions } from './joint-positions';
 import { restSeconds } from './lost-hand.json';
@@ -108,10 +109,6 @@ const downAndBack: Readonly<Record<Side, Vec3>> = {
   left: normalise(vec3(-0.2, -1, 0.5)),
   right: normalise(vec3(0.2, -1, 0.5)),
 };
-const sideways: Readonly<Record<Side, Vec3>> = {
-  left: normalise(vec3(-1, -0.2, -1)),
-  right: normalise(vec3(1, -0.2, -1)),
-};
 
 type Mutable<T> = { -readonly [Key in keyof T]: T[Key] };
 
@@ -168,7 +165,7 @@ function fitArm(side: Side, state: ArmState, goals: ArmGoals, deltaSeconds: numb
   normalise(subtract(elbow, goal.shoulder, goal.upperArm), undefined, goal.upperArm);
   normalise(subtract(wrist, elbow, goal.forearm), undefined, goal.forearm);
   elbowHinge(pole, circle.axis, goal.hinge);
-  rotate(floorFromChest, sideways[side], goal.outside);
+  rotate(floorFromChest, outsideOfBody[side], goal.outside);
   if (jumped) startTransition(state.transition, state.drawn, goal);
   if (state.known) followTransition(state.transition, goal, state.drawn, deltaSeconds);
   else copyArmDirections(goal, state.drawn);

@@ -44,7 +44,7 @@ const { anatomicalPasses, extremePasses } = limits.reach;
 
 /** How far the clavicle swings and the neck bends from rest against the thorax [rad]. */
 type TorsoLimits = Readonly<Record<'clavicleSwing' | 'neckBend', number>>;
-/** No trunk leans further [m] after a hand that it does not reach at once: the limits of clavicle and neck are met before. */
+/** Bound [m] on a lean that is still catching up; a lean that reaches its hand ends before, at the limits of clavicle and neck. */
 const furthestLean = 0.6;
 
 /** A trunk leans after a hand that comes back, and straightens after one that is lost, at most this fast [m/s]. */
@@ -57,7 +57,7 @@ const shoulderLineHalfLife = 0.15;
 const [undefinedLine, definedLine] = [0.2, 0.7];
 /** Hips that the floor keeps from hanging turn at most this fast about the chest joint [rad/s]: 2.5 cm in a frame at 60 Hz. */
 const hipsTurnSpeed = 6;
-/** Of the turn from the pelvis to the shoulders' line, in the lower back [1]. */
+/** Share of the turn from the pelvis to the shoulders' line that the lower back has made [1]. */
 const spineToShoulders = 0.35;
 /** The height [m] of the hip joints' middle when sitting on the floor. */
 const lowestHips = 0.09;
@@ -74,12 +74,12 @@ export interface TorsoPose {
   readonly shoulders: Readonly<Record<Side, MutableVec3>>;
 }
 
-/** How a shoulder goes after a hand that the arm alone does not reach: from where it is estimated [m], floor frame. */
+/** Offset of a shoulder's target, from the estimated shoulder towards a hand that the arm alone does not reach [m], floor frame. */
 interface Lean {
-  /** As far as the hand is missed. */
+  /** What would reach the hand: in this frame, and in the one before. */
   readonly wanted: MutableVec3;
   readonly wantedBefore: MutableVec3;
-  /** As far as the trunk leans. */
+  /** What is in use: limited in speed. */
   readonly offset: MutableVec3;
 }
 
@@ -218,7 +218,7 @@ export function fitTorso(
   return pose;
 }
 
-/** Leans a shoulder further towards a hand that is out of the arm's reach; false: it is not. No trunk goes after a guess. */
+/** Leans a shoulder further towards a hand that is out of the arm's reach; false: it is not. Only hands tracked in this frame are leaned after. */
 function pull({ wanted }: Lean, shoulder: Vec3, { position, source }: CompletedHand, { reach }: TorsoBones): boolean {
   if (source !== 'tracked') return false;
   subtract(position, shoulder, a);
@@ -252,7 +252,7 @@ function followLean(
   return false;
 }
 
-/** The shoulders' line: never faster than `turnSpeed`, and slowly where the shoulders are estimated close together. */
+/** The shoulders' line: never faster than `turnSpeed`, and slowly where the shoulders are estimated close together. From `lineBefore`, however often a frame calls it. */
 function followShoulderLine(state: FitTorsoState, { shoulderWidth }: TorsoBones, deltaSeconds: number): void {
   const { shoulderLine: line, lineBefore: before, known } = state;
   subtract(targets.right, targets.left, a);

@@ -211,9 +211,10 @@ function placeArm(side: Side, wrist: Pose<'heading'>, body: ChestSpaceBody, { jo
 /** 6. Shoulder: the clavicle swings with the hand. */
 function placeShoulder(wrist: Pose<'heading'>, body: ChestSpaceBody, sigma: number, target: MutableVec3): void {
   const restShoulder = add(body.clavicleRoot, body.clavicle, b);
-  subtract(inChest(subtract(wrist.position, neck, a), sigma, a), restShoulder, a);
+  const fromNeck = inChest(subtract(wrist.position, neck, a), sigma, a);
+  const fromShoulder = subtract(fromNeck, restShoulder, a);
   reach[0] = 1;
-  writeTo(reach, 1, scale(a, 1 / body.arm, a));
+  writeTo(reach, 1, scale(fromShoulder, 1 / body.arm, a));
   scale(affine(parameters.clavicle, reach, a), body.eyeHeight, a);
   const far = length(a);
   const most = bounds.clavicleShift * body.clavicleLength;
