@@ -7,6 +7,7 @@ import { unknownFingers } from '../../src/core/body/hand-shape';
 import { type Skeleton, skeletonFromCalibration } from '../../src/core/body/skeleton';
 import { ballRules } from '../../src/core/games/ball/rules';
 import { composeTransforms, invertTransform, type TrackedPose } from '../../src/core/math/pose';
+import { packetMs } from '../../src/core/protocol/packet-time';
 import { decodePose } from '../../src/core/protocol/pose-codec';
 import { plainAvatar } from '../../src/core/protocol/worn-avatar';
 import { createRemotePlayers } from '../../src/net/remote-players';
@@ -82,7 +83,7 @@ export class Court {
     for (const { seat, bytes } of arrived) {
       const packet = decodePose(bytes, this.#skeleton);
       // A recording may begin anew; the sender's clock goes on.
-      const timeMs = Math.round(time * 1000) & 0xffff;
+      const timeMs = packetMs(time * 1000);
       if (packet) this.#players.receive({ seat, packet: { ...packet, timeMs }, arrivedAt: time });
     }
   }

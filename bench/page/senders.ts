@@ -2,6 +2,7 @@ import { defaultCalibration } from '../../src/core/body/calibration';
 import { relaxedHand } from '../../src/core/body/hand-shape';
 import { skeletonFromCalibration } from '../../src/core/body/skeleton';
 import { createEstimator } from '../../src/core/estimation/estimators';
+import { packetMs } from '../../src/core/protocol/packet-time';
 import { encodePose } from '../../src/core/protocol/pose-codec';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
 
@@ -20,7 +21,7 @@ export function createSenders(count: number) {
         const frame = actorFrame(time + shift, defaultCalibration);
         const bytes = encodePose(
           {
-            timeMs: Math.round(time * 1000) & 0xffff,
+            timeMs: packetMs(time * 1000),
             jump: false,
             pose: estimator.update(frame).pose,
             fingers: { left: relaxedHand, right: relaxedHand },

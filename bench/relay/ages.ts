@@ -8,6 +8,7 @@ import { clamp } from '../../src/core/math/damper';
 import type { TrackedPose } from '../../src/core/math/pose';
 import { normalNumbers, randomNumbers } from '../../src/core/math/random';
 import { distance, lerp, type Vec3, vec3 } from '../../src/core/math/vec3';
+import { packetMs } from '../../src/core/protocol/packet-time';
 import { decodePose, encodePose } from '../../src/core/protocol/pose-codec';
 import type { PosePacket } from '../../src/core/protocol/pose-packet';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
@@ -146,7 +147,7 @@ function sentOf(frames: readonly SentFrame[]): readonly SentFrame[] {
 
 /** As it is after the wire. */
 function packetOf({ time, pose }: SentFrame): PosePacket {
-  const timeMs = Math.round(time * 1000) & 0xffff;
+  const timeMs = packetMs(time * 1000);
   const bytes = encodePose({ timeMs, jump: false, pose, fingers: unknownFingers }, skeleton);
   const packet = bytes && decodePose(bytes, skeleton);
   if (!packet) throw new Error('bench/relay: the actor has no pose');

@@ -7,6 +7,7 @@ import { skeletonFromCalibration } from '../../src/core/body/skeleton';
 import { createIk } from '../../src/core/estimation/estimators';
 import { ballKind } from '../../src/core/protocol/ball-messages';
 import { protocolVersion } from '../../src/core/protocol/messages';
+import { packetMs } from '../../src/core/protocol/packet-time';
 import { encodePose } from '../../src/core/protocol/pose-codec';
 import { decodeFrame } from '../../src/core/protocol/pose-frame';
 import { plainAvatar } from '../../src/core/protocol/worn-avatar';
@@ -27,21 +28,23 @@ function packet(): Uint8Array {
   return bytes;
 }
 
-const timeAt = 15;
+/** Of the time in a pose packet: its first bit, and how many it has (docs/protocol.md). */
+const timeAt = 13;
+const timeBits = 14;
 
-/** Writes the packet's time (16 bits from bit 15 on) into its bytes. */
+/** Writes the packet's time into its bytes. */
 function setTime(bytes: Uint8Array, timeMs: number): void {
-  for (let bit = 0; bit < 16; bit++) {
+  for (let bit = 0; bit < timeBits; bit++) {
     const at = timeAt + bit;
     const mask = 0x80 >> (at & 7);
-    if ((timeMs >> (15 - bit)) & 1) bytes[at >> 3]! |= mask;
+    if ((timeMs >> (timeBits - 1 - bit)) & 1) bytes[at >> 3]! |= mask;
     else bytes[at >> 3]! &= ~mask;
   }
 }
 
 function timeOf(bytes: Uint8Array): number {
   let time = 0;
-  for (let at = timeAt; at < timeAt + 16; at++) time = (time << 1) | ((bytes[at >> 3]! >> (7 - (at & 7))) & 1);
+  for (let at = timeAt; at < timeAt + timeBits; at++) time = (time << 1) | ((bytes[at >> 3]! >> (7 - (at & 7))) & 1);
   return time;
 }
 
@@ -77,15 +80,11 @@ class Measurement {
     this.#bytesUp += bytes;
   }
 
-  /** A message with poses has arrived. */
-  heard(bytes: number): void {
-    if (this.#counts(performance.now())) this.#bytesDown += bytes;
-  }
-
-  /** A pose has arrived that left at `left`. */
-  arrived(left: number): void {
+  /** A pose has arrived that left at `left`, in so many bytes of what came. */
+  arrived(left: number, bytes: number): void {
     if (!this.#counts(left)) return;
     this.#delivered += 1;
+    this.#bytesDown += bytes;
     this.#parts[Math.floor((left - this.#start) / (1000 * partSeconds))]?.push(performance.now() - left);
   }
 
@@ -136,14 +135,15 @@ class Client {
   readonly #socket: WebSocket;
   readonly #bytes: Uint8Array;
   /** When each packet left, by the time it tells [ms]. */
-  readonly #sent = new Float64Array(65536);
+  readonly #sent = new Float64Array(2 ** timeBits);
   readonly #joined: Promise<void>;
   #join: () => void = () => undefined;
   #seat: number;
   /** What the relay's clock is ahead of ours [ms]. */
   #ahead = 0;
-  /** Of the plain relay: whose pose comes with the next binary message. */
+  /** Of the plain relay: whose pose comes with the next binary message, and how long the text was that said so [bytes]. */
   #from = 0;
+  #announced = 0;
 
   constructor({ relay, port }: Meeting, template: Uint8Array, { room, roomName, seat, token }: Place) {
     this.#plain = relay === 'plain';
@@ -169,7 +169,7 @@ class Client {
 
   send(): void {
     const now = performance.now();
-    const timeMs = Math.round(now + this.#ahead) & 0xffff;
+    const timeMs = packetMs(now + this.#ahead);
     setTime(this.#bytes, timeMs);
     this.#sent[timeMs] = now;
     if (this.#plain) this.#socket.send(head);
@@ -186,17 +186,21 @@ class Client {
       this.#hearText(received.toString());
       return;
     }
-    measurement?.heard(received.length);
-    if (this.#plain) this.#hearPose(this.#from, received);
-    else for (const { seat, bytes } of decodeFrame(received) ?? []) this.#hearPose(seat, bytes);
+    if (this.#plain) {
+      this.#hearPose(this.#from, received, this.#announced + received.length);
+      return;
+    }
+    const poses = decodeFrame(received) ?? [];
+    for (const { seat, bytes } of poses) this.#hearPose(seat, bytes, received.length / poses.length);
   }
 
-  #hearPose(seat: number, bytes: Uint8Array): void {
+  /** `cost`: this pose's share of what came [bytes]. */
+  #hearPose(seat: number, bytes: Uint8Array, cost: number): void {
     if (seat === this.#seat) return;
     for (const client of this.#room) {
       if (client.#seat !== seat) continue;
       const left = client.#sent[timeOf(bytes)];
-      if (left) measurement?.arrived(left);
+      if (left) measurement?.arrived(left, cost);
       return;
     }
   }
@@ -215,7 +219,7 @@ class Client {
     const pose = /^451-\["pose",(\d+),/.exec(text);
     if (pose) {
       this.#from = Number(pose[1]);
-      measurement?.heard(text.length);
+      this.#announced = text.length;
     } else if (text.startsWith('40')) this.#join();
   }
 

@@ -8,8 +8,8 @@ export interface PathSample {
   readonly packet: PosePacket;
 }
 
-/** Half-width of the bell over which samples count [s]: with packets 33 ms apart three to five of them do. */
-const width = 0.043;
+/** Half-width of the bell over which samples count [s]: with packets 33 ms apart three or four of them do. */
+const width = 0.036;
 /** No sample further away than this counts [s]. */
 const furthest = 3.4 * width;
 /** A packet counts fully so long after it came [s]: no one leaps when it comes, however late it is. */

@@ -18,7 +18,7 @@ export interface PlaybackReport {
 
 /**
  * Playback is this far behind [s], at first and at the ends of what the network's unevenness may make of it. At thirty packets a second an
- * even network makes 43 ms of it: the next packet has just come when the picture leaves the one before.
+ * even network makes 45 ms of it: the next packet has just come when the picture leaves the one before.
  */
 export const firstDelay = 0.1;
 export const shortestDelay = 0.04;
@@ -43,7 +43,7 @@ const delayHalfLife = 0.5;
 /** Transit times are judged over this long [s]: clocks drift, routes change. */
 const transitMemory = 5;
 /** Added to what the network's unevenness asks for [s]. */
-const spare = 0.01;
+const spare = 0.0115;
 /** As pages send them; and how many in a row a way holds up that is worth waiting for. */
 const posesPerSecond = 30;
 const mostMissing = 15;

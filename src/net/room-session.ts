@@ -4,6 +4,7 @@ import type { BallDeed, BallEvent } from '../core/games/ball/ball-state';
 import type { Transform } from '../core/math/pose';
 import type { BallRoomMessage } from '../core/protocol/ball-messages';
 import { type ClientMessage, type Joining, toMillimetres } from '../core/protocol/messages';
+import { packetMs } from '../core/protocol/packet-time';
 import { decodePose, encodePose } from '../core/protocol/pose-codec';
 import { decodeFrame } from '../core/protocol/pose-frame';
 import type { SignalBody, Voice } from '../core/protocol/voice-messages';
@@ -96,7 +97,7 @@ export abstract class RoomSession implements Connection {
     if (this.#replica.mySeat === null || (time < this.#nextPose && !shown.jump)) return;
     // Frames come at their own rate: on average thirty packets a second.
     this.#nextPose = Math.max(this.#nextPose + poseSeconds, time + poseSeconds / 2);
-    const timeMs = Math.round((time + this.#ahead) * 1000) & 0xffff;
+    const timeMs = packetMs((time + this.#ahead) * 1000);
     const bytes = encodePose({ ...shown, timeMs }, this.#skeleton);
     if (bytes) this.transmitPose(bytes);
   }

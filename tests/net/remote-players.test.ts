@@ -5,6 +5,7 @@ import { createIk } from '../../src/core/estimation/estimators';
 import { angleBetween, fromAxisAngle, identity } from '../../src/core/math/quat';
 import { randomNumbers } from '../../src/core/math/random';
 import { distance, up, vec3 } from '../../src/core/math/vec3';
+import { packetMs } from '../../src/core/protocol/packet-time';
 import type { PosePacket } from '../../src/core/protocol/pose-packet';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
 import { firstDelay, longestExtrapolation, type PlaybackReport } from '../../src/net/playback';
@@ -21,7 +22,7 @@ function walker(time: number, more: Partial<PosePacket> = {}, lostLeft = false):
     tracking: 'tracked' as const,
   });
   return {
-    timeMs: Math.round(time * 1000) & 0xffff,
+    timeMs: packetMs(time * 1000),
     jump: false,
     pose: {
       head: at(time, 1.6),

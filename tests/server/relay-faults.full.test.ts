@@ -6,6 +6,7 @@ import { createRoomTokens } from '../../server/room-tokens';
 import { nextRandom } from '../../src/core/math/random';
 import { ballKind } from '../../src/core/protocol/ball-messages';
 import { protocolVersion } from '../../src/core/protocol/messages';
+import { packetMs } from '../../src/core/protocol/packet-time';
 import { plainAvatar } from '../../src/core/protocol/worn-avatar';
 import { createRemotePlayers } from '../../src/net/remote-players';
 import { createSocketConnection } from '../../src/net/socket-connection';
@@ -205,7 +206,7 @@ async function mover(url: string, room: string) {
     last = now;
   });
   const timer = setInterval(() => {
-    const timeMs = Math.round(performance.now() + ahead) & 0xffff;
+    const timeMs = packetMs(performance.now() + ahead);
     sentAt.set(timeMs, performance.now());
     guest.socket.emit('pose', poseBytes(timeMs));
   }, 1000 / 30);

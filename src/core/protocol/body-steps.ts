@@ -39,7 +39,7 @@ import {
   swivelBits,
   type TrunkSteps,
 } from './pose-steps';
-import { across, toDirectionSteps, toQuatSteps, toStep } from './quantise';
+import { across, toCentredStep, toDirectionSteps, toQuatSteps, toStep } from './quantise';
 import { armAxis, armBones, chestAxis, RebuiltArm, RebuiltTrunk, spineAxis, swivelAxes } from './rebuild-body';
 
 /** A body's wrist this near to the tracked hand is drawn there [m, rad]; else it is sent on its own. */
@@ -149,12 +149,18 @@ class Rebuilding {
       steps.flexion = levels(elbowFlexion(upper, lower, far) / Math.PI, flexionBits);
       toQuatSteps(orientation, freeHandBits, steps.hand);
     }
-    const elbowError = this.writeBend(side, sent, 0, skeleton, steps);
-    if (steps.free || elbowError <= sameElbow) return;
-    const { swivel, forearmTwist } = steps;
-    const stretch = limited((far - distance(shoulder, hands[side].position)) / stretchUnit, stretchBits);
-    if (this.writeBend(side, sent, stretch, skeleton, steps) < elbowError) return;
-    steps.stretch = 0;
+    let nearest = this.writeBend(side, sent, 0, skeleton, steps);
+    if (steps.free || nearest <= sameElbow) return;
+    let { stretch, swivel, forearmTwist } = steps;
+    // An almost straight arm's elbow is as far off by a little less as it is by much more: the steps on both sides are tried.
+    const wanted = Math.floor((far - distance(shoulder, hands[side].position)) / stretchUnit);
+    for (let step = wanted; step <= wanted + 1; step++) {
+      const elbowError = this.writeBend(side, sent, limited(step, stretchBits), skeleton, steps);
+      if (elbowError >= nearest) continue;
+      nearest = elbowError;
+      ({ stretch, swivel, forearmTwist } = steps);
+    }
+    steps.stretch = stretch;
     steps.swivel = swivel;
     steps.forearmTwist = forearmTwist;
   }
@@ -169,8 +175,8 @@ class Rebuilding {
     cross(rest, towards, towards);
     scale(normalise(towards, undefined, towards), angle, towards);
     across(rest, acrossU, acrossV);
-    steps.clavicleU = toStep(dot(towards, acrossU), clavicleRange, bits);
-    steps.clavicleV = toStep(dot(towards, acrossV), clavicleRange, bits);
+    steps.clavicleU = toCentredStep(dot(towards, acrossU), clavicleRange, bits);
+    steps.clavicleV = toCentredStep(dot(towards, acrossV), clavicleRange, bits);
   }
 
   /**

@@ -9,6 +9,7 @@ import type { Side } from '../math/side';
 import { copyVec3, isFiniteVec3, type Vec3, vec3 } from '../math/vec3';
 import { writeBodySteps } from './body-steps';
 import { handShapeOf, toFingerSteps } from './finger-steps';
+import { packetMs } from './packet-time';
 import { readPacket, writePacket } from './pose-layout';
 import type { PointsPacket, PosePacket } from './pose-packet';
 import { handPose, handSteps, headPosition, headSteps, makePacketSteps, trackedBits } from './pose-steps';
@@ -43,7 +44,7 @@ const isFiniteAvatar = ({ head, leftHand, rightHand, body }: AvatarPose): boolea
 export function encodePose(packet: PosePacket, skeleton: Skeleton): Uint8Array | null {
   const { head, leftHand, rightHand, body } = packet.pose;
   if (!isFiniteAvatar(packet.pose) || !Number.isFinite(packet.timeMs)) return null;
-  steps.timeMs = Math.round(packet.timeMs) & 0xffff;
+  steps.timeMs = packetMs(packet.timeMs);
   steps.jump = packet.jump;
   steps.headTracking = head.tracking;
   headSteps(head, steps.head);

@@ -1,6 +1,7 @@
 import type { Side } from '../math/side';
 import { type BitReader, type BitWriter, createBitReader, createBitWriter } from './bits';
 import { fingerFields } from './finger-steps';
+import { readHandPlace, writeHandPlace } from './hand-place';
 import { longestPose, poseVersion } from './pose-packet';
 import {
   type BodySteps,
@@ -9,7 +10,6 @@ import {
   flexionBits,
   forearmBits,
   freeHandBits,
-  handBits,
   headBits,
   heightBits,
   makePacketSteps,
@@ -20,9 +20,24 @@ import {
   type Tracking,
   trackedBits,
 } from './pose-steps';
-import { readDirection, readQuat, readStep, readVec, writeDirection, writeQuat, writeStep, writeVec } from './quantise';
+import { readDirection, readQuat, readStep, writeDirection, writeQuat, writeStep } from './quantise';
 
-const trackings: readonly Tracking[] = ['lost', 'emulated', 'tracked'];
+/** What a hand is, by its three bits: fingers are told of no lost hand, and of none whose arm has not caught up with it. */
+interface HandState {
+  readonly tracking: Tracking;
+  readonly free: boolean;
+  readonly fingers: boolean;
+}
+const lostStates = [false, true].map((free): HandState => ({ tracking: 'lost', free, fingers: false }));
+const seenStates = (tracking: Tracking): readonly HandState[] => [
+  { tracking, free: false, fingers: false },
+  { tracking, free: true, fingers: false },
+  { tracking, free: false, fingers: true },
+];
+const handStates: readonly HandState[] = [...lostStates, ...seenStates('emulated'), ...seenStates('tracked')];
+const firstState = { lost: 0, emulated: 2, tracked: 5 } as const;
+const stateBits = 3;
+const timeBits = 14;
 
 const writer = createBitWriter();
 const reader = createBitReader(new Uint8Array(0));
@@ -38,10 +53,11 @@ export function writePacket(packet: PacketSteps): Uint8Array {
   writeFlag(packet.jump);
   writeFlag(hasBody);
   writeFlag(packet.headTracking === 'tracked');
-  for (const side of sides) writeFlag(fingers[side].known);
-  for (const side of sides) writeFlag(hasBody && body.arms[side].free);
-  for (const side of sides) writer.write(trackings.indexOf(hands[side].tracking), 2);
-  writer.write(packet.timeMs, 16);
+  for (const side of sides) {
+    const free = hasBody && body.arms[side].free;
+    writer.write(firstState[hands[side].tracking] + (free ? 1 : fingers[side].known ? 2 : 0), stateBits);
+  }
+  writer.write(packet.timeMs, timeBits);
   writeStep(writer, head.position.x, headBits);
   writeStep(writer, head.position.y, heightBits);
   writeStep(writer, head.position.z, headBits);
@@ -49,7 +65,7 @@ export function writePacket(packet: PacketSteps): Uint8Array {
   for (const side of sides) {
     const { placed, at } = hands[side];
     if (!placed) continue;
-    writeVec(writer, at.position, handBits);
+    writeHandPlace(writer, at.place);
     writeQuat(writer, at.orientation, trackedBits);
   }
   for (const side of sides) {
@@ -63,28 +79,30 @@ export function writePacket(packet: PacketSteps): Uint8Array {
 
 /** Steps of no one, to see how long a packet with such flags is. */
 const anyone = makePacketSteps();
-/** By the eleven flags of a packet [bytes]; 0: there is no such packet. */
+/** By the nine flags of a packet [bytes]; 0: there is no such packet. */
 const lengths: (number | undefined)[] = [];
 
 function lengthWith(flags: number): number {
   const flag = (bit: number): boolean => ((flags >> bit) & 1) === 1;
-  const { hands, fingers, body } = anyone;
-  const { left, right } = hands;
-  anyone.hasBody = flag(9);
-  [fingers.left.known, fingers.right.known] = [flag(7), flag(6)];
-  [body.arms.left.free, body.arms.right.free] = [flag(5), flag(4)];
-  const trackingOf = (bits: number): Tracking | undefined => trackings[bits & 3];
-  const [tracking, other] = [trackingOf(flags >> 2), trackingOf(flags)];
-  if (tracking === undefined || other === undefined) return 0;
-  left.placed = anyone.hasBody || tracking !== 'lost';
-  right.placed = anyone.hasBody || other !== 'lost';
-  body.bits = bodyBitsFor(body.arms);
+  anyone.hasBody = flag(7);
+  if (!takeState(anyone, 'left', flags >> stateBits) || !takeState(anyone, 'right', flags)) return 0;
+  anyone.body.bits = bodyBitsFor(anyone.body.arms);
   return writePacket(anyone).length;
+}
+
+/** Takes in the last three bits of `bits`; false where a body's arm is told of and there is no body. */
+function takeState({ hands, fingers, body, hasBody }: PacketSteps, side: Side, bits: number): boolean {
+  const { tracking, free, fingers: known } = handStates[bits & 7]!;
+  hands[side].tracking = tracking;
+  hands[side].placed = tracking !== 'lost' || hasBody;
+  fingers[side].known = known;
+  body.arms[side].free = free;
+  return hasBody || !free;
 }
 
 /** How long the packet that begins at this byte is, by its flags alone [bytes]; 0: no packet begins so. */
 export function packetLengthAt(bytes: Uint8Array, at: number): number {
-  const flags = (((bytes[at]! & 0x0f) << 8) | (bytes[at + 1] ?? 0)) >> 1;
+  const flags = (((bytes[at]! & 0x0f) << 8) | (bytes[at + 1] ?? 0)) >> 3;
   lengths[flags] ??= lengthWith(flags);
   return lengths[flags];
 }
@@ -116,23 +134,12 @@ export function readPacket(bytes: Uint8Array, packet: PacketSteps): boolean {
   if (bytes.length > longestPose) return false;
   reader.open(bytes);
   if (reader.read(4) !== poseVersion) return false;
-  const { hands, fingers, body } = packet;
+  const { fingers, body } = packet;
   packet.jump = readFlag();
   packet.hasBody = readFlag();
   packet.headTracking = readFlag() ? 'tracked' : 'emulated';
-  for (const side of sides) fingers[side].known = readFlag();
-  for (const side of sides) body.arms[side].free = readFlag();
-  for (const side of sides) {
-    const tracking = trackings[reader.read(2)];
-    if (tracking === undefined) return false;
-    hands[side].tracking = tracking;
-  }
-  packet.timeMs = reader.read(16);
-  for (const side of sides) {
-    const { free } = body.arms[side];
-    if (free && !packet.hasBody) return false;
-    if (fingers[side].known && (free || hands[side].tracking === 'lost')) return false;
-  }
+  for (const side of sides) if (!takeState(packet, side, reader.read(stateBits))) return false;
+  packet.timeMs = reader.read(timeBits);
   if (!readHead(packet) || !readHand(packet, 'left') || !readHand(packet, 'right')) return false;
   for (const side of sides) {
     const { known, levels } = fingers[side];
@@ -154,13 +161,10 @@ function readHead({ head: { position, orientation } }: PacketSteps): boolean {
   return true;
 }
 
-function readHand({ hands, hasBody }: PacketSteps, side: Side): boolean {
+function readHand({ hands }: PacketSteps, side: Side): boolean {
   const hand = hands[side];
-  hand.placed = hand.tracking !== 'lost' || hasBody;
   if (!hand.placed) return true;
-  const position = readVec(reader, handBits, hand.at.position);
-  const orientation = readQuat(reader, trackedBits, hand.at.orientation);
-  return position !== null && orientation !== null;
+  return readHandPlace(reader, hand.at.place) && readQuat(reader, trackedBits, hand.at.orientation) !== null;
 }
 
 function readBody(from: BitReader, body: BodySteps): boolean {

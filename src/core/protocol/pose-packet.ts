@@ -2,14 +2,14 @@ import type { AvatarPose } from '../body/avatar-pose';
 import type { Fingers } from '../body/hand-shape';
 
 /** Bumped with every change of the layout: a receiver shows nothing rather than nonsense. */
-export const poseVersion = 2;
+export const poseVersion = 3;
 
 /** No packet is longer [bytes]. */
 export const longestPose = 64;
 
 /** What one packet says. All poses in the sender's floor frame. */
 export interface PosePacket {
-  /** When the frame was, by the sender's clock [ms], modulo 65 536. */
+  /** When the frame was, by the sender's clock [ms], modulo 16 384. */
   readonly timeMs: number;
   /** true: the sender's frame of reference changed; no one may interpolate from the packet before. */
   readonly jump: boolean;

@@ -1,8 +1,9 @@
 import { clamp } from '../math/damper';
 import type { MutablePose, Pose, TrackedPose } from '../math/pose';
 import type { Side } from '../math/side';
-import { add, type MutableVec3, setVec3, type Vec3, vec3 } from '../math/vec3';
+import { type MutableVec3, setVec3, type Vec3, vec3 } from '../math/vec3';
 import { type FingerSteps, makeFingerSteps } from './finger-steps';
+import { fromHandPlace, type HandPlaceSteps, makeHandPlaceSteps, toHandPlace } from './hand-place';
 import {
   type DirectionSteps,
   fromQuatSteps,
@@ -10,6 +11,7 @@ import {
   makeQuatSteps,
   makeVecSteps,
   mostSteps,
+  placeUnit,
   type QuatSteps,
   toQuatSteps,
   type VecSteps,
@@ -17,41 +19,41 @@ import {
 
 export const sides = ['left', 'right'] as const;
 
-/** A length on the wire is a multiple of this [m]. */
-export const unit = 0.0005;
-/** The head: ±16 m from the origin of the floor frame, −1 to 3.09 m above it; beyond: at the edge. */
+/** The head: ±8.19 m from the origin of the floor frame, −1 to 3.095 m above it; beyond: at the edge. No headset plays in more than 15 m. */
 export const headBits = 16;
-export const heightBits = 13;
+export const heightBits = 14;
 export const lowestHead = -1;
-/** A hand: ±2 m from the head on each axis; beyond: at the edge. */
-export const handBits = 13;
 /** Of head and hands: 0.1° at most. */
 export const trackedBits = 11;
 export const forearmBits = 6;
-export const swivelBits = 9;
-/** A clavicle swings ±1.3 rad about each of two axes. */
+export const swivelBits = 11;
+/** A clavicle swings ±1.3 rad about each of two axes, and mostly by less than half of that. */
 export const clavicleRange = 1.3;
 /** A wrist of its own: which way from the shoulder, how far the elbow is bent, and how the hand is turned there. */
 export const directionBits = 8;
 export const flexionBits = 7;
 export const freeHandBits = 6;
 /** How far a wrist is drawn beyond the hand, or before it, along its arm: multiples of this [m]. */
-export const stretchBits = 5;
-export const stretchUnit = 0.0001;
+export const stretchBits = 4;
+export const stretchUnit = 0.0002;
 /** What is left for the trunk when one arm has a wrist of its own, when both have, and otherwise. */
 export const trunkBitsFor = (freeArms: number): number => 10 - freeArms;
 export const clavicleBitsFor = (freeArms: number): number => (freeArms === 2 ? 8 : 9);
-export const twistBitsFor = (freeArms: number): number => (freeArms === 2 ? 6 : 7);
+export const twistBitsFor = (freeArms: number): number => (freeArms > 0 ? 6 : 7);
 /** A forearm twists a quarter turn either way. */
 export const forearmRange = Math.PI / 2;
 
-/** A pose as steps. */
-export interface PoseSteps {
+/** The head as steps. */
+export interface HeadSteps {
   readonly position: VecSteps;
   readonly orientation: QuatSteps;
 }
 
-const makePoseSteps = (): PoseSteps => ({ position: makeVecSteps(), orientation: makeQuatSteps() });
+/** Where a hand is from the head, and how it is turned. */
+export interface HandPoseSteps {
+  readonly place: HandPlaceSteps;
+  readonly orientation: QuatSteps;
+}
 
 export interface ArmSteps {
   /** The clavicle's swing about the two axes at right angles to it. */
@@ -114,17 +116,21 @@ export interface HandSteps {
   tracking: Tracking;
   /** Whether it is anywhere: a lost hand is where the body's wrist is. */
   placed: boolean;
-  readonly at: PoseSteps;
+  readonly at: HandPoseSteps;
 }
 
-const makeHandSteps = (): HandSteps => ({ tracking: 'lost', placed: false, at: makePoseSteps() });
+const makeHandSteps = (): HandSteps => ({
+  tracking: 'lost',
+  placed: false,
+  at: { place: makeHandPlaceSteps(), orientation: makeQuatSteps() },
+});
 
 /** A whole packet as whole numbers: a buffer, in which what a flag denies means nothing. */
 export interface PacketSteps {
   timeMs: number;
   jump: boolean;
   headTracking: TrackedPose['tracking'];
-  readonly head: PoseSteps;
+  readonly head: HeadSteps;
   readonly hands: Readonly<Record<Side, HandSteps>>;
   readonly fingers: Readonly<Record<Side, FingerSteps>>;
   hasBody: boolean;
@@ -135,7 +141,7 @@ export const makePacketSteps = (): PacketSteps => ({
   timeMs: 0,
   jump: false,
   headTracking: 'tracked',
-  head: makePoseSteps(),
+  head: { position: makeVecSteps(), orientation: makeQuatSteps() },
   hands: { left: makeHandSteps(), right: makeHandSteps() },
   fingers: { left: makeFingerSteps(), right: makeFingerSteps() },
   hasBody: false,
@@ -146,39 +152,35 @@ export const makePacketSteps = (): PacketSteps => ({
   },
 });
 
-const heightCentre = lowestHead + mostSteps(heightBits) * unit;
+const heightCentre = lowestHead + mostSteps(heightBits) * placeUnit;
 
 export const headPosition = ({ x, y, z }: VecSteps, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 =>
-  setVec3(target, x * unit, y * unit + heightCentre, z * unit);
+  setVec3(target, x * placeUnit, y * placeUnit + heightCentre, z * placeUnit);
 
 export const limited = (steps: number, bits: number): number =>
   clamp(Math.round(steps), -mostSteps(bits), mostSteps(bits));
 
-export function headSteps({ position: { x, y, z }, orientation }: Pose<'floor'>, target: PoseSteps): PoseSteps {
+export function headSteps({ position: { x, y, z }, orientation }: Pose<'floor'>, target: HeadSteps): HeadSteps {
   const { position } = target;
-  position.x = limited(x / unit, headBits);
-  position.y = limited((y - heightCentre) / unit, heightBits);
-  position.z = limited(z / unit, headBits);
+  position.x = limited(x / placeUnit, headBits);
+  position.y = limited((y - heightCentre) / placeUnit, heightBits);
+  position.z = limited(z / placeUnit, headBits);
   toQuatSteps(orientation, trackedBits, target.orientation);
   return target;
 }
 
-export function handSteps(head: Vec3, { position: hand, orientation }: Pose<'floor'>, target: PoseSteps): PoseSteps {
-  const { position } = target;
-  position.x = limited((hand.x - head.x) / unit, handBits);
-  position.y = limited((hand.y - head.y) / unit, handBits);
-  position.z = limited((hand.z - head.z) / unit, handBits);
+export function handSteps(head: Vec3, { position, orientation }: Pose<'floor'>, target: HandPoseSteps): HandPoseSteps {
+  toHandPlace(head, position, target.place);
   toQuatSteps(orientation, trackedBits, target.orientation);
   return target;
 }
 
 export function handPose(
   head: Vec3,
-  { position: { x, y, z }, orientation }: PoseSteps,
+  { place, orientation }: HandPoseSteps,
   target: MutablePose<'floor'>,
 ): MutablePose<'floor'> {
-  const { position } = target;
-  add(head, setVec3(position, x * unit, y * unit, z * unit), position);
+  fromHandPlace(head, place, target.position);
   fromQuatSteps(orientation, trackedBits, target.orientation);
   return target;
 }

@@ -3,6 +3,9 @@ import { type MutableQuat, normaliseQuat, type Quat, quat, setQuat } from '../ma
 import { cross, type MutableVec3, normalise, setVec3, type Vec3, vec3 } from '../math/vec3';
 import type { BitReader, BitWriter } from './bits';
 
+/** A place on the wire is a multiple of this [m]. */
+export const placeUnit = 0.00025;
+
 /**
  * Numbers on the wire. A signed number of b bits is a step in [−m, m] with m = 2^(b−1) − 1, written as step + m: zero is exact,
  * and the code 2^b − 1 means nothing, so that a reader knows that the bytes are bad.
@@ -14,6 +17,20 @@ export const toStep = (value: number, range: number, bits: number): number =>
   Math.round(clamp(value / range, -1, 1) * mostSteps(bits));
 
 export const fromStep = (step: number, range: number, bits: number): number => (step / mostSteps(bits)) * range;
+
+/**
+ * The nearest step to a value of [−range, range] that is mostly about zero: there steps are half as long as even ones, at the ends of the range
+ * half as long again.
+ */
+export function toCentredStep(value: number, range: number, bits: number): number {
+  const step = toStep((Math.sqrt(1 + 8 * clamp(Math.abs(value) / range, 0, 1)) - 1) / 2, 1, bits);
+  return value < 0 ? -step : step;
+}
+
+export function fromCentredStep(step: number, range: number, bits: number): number {
+  const even = fromStep(step, 1, bits);
+  return (range * even * (1 + Math.abs(even))) / 2;
+}
 
 export const writeStep = (writer: BitWriter, step: number, bits: number): void =>
   writer.write(step + mostSteps(bits), bits);
@@ -97,23 +114,6 @@ export interface VecSteps {
 }
 
 export const makeVecSteps = (): VecSteps => ({ x: 0, y: 0, z: 0 });
-
-export function writeVec(writer: BitWriter, { x, y, z }: VecSteps, bits: number): void {
-  writeStep(writer, x, bits);
-  writeStep(writer, y, bits);
-  writeStep(writer, z, bits);
-}
-
-export function readVec(reader: BitReader, bits: number, target: VecSteps = makeVecSteps()): VecSteps | null {
-  const x = readStep(reader, bits);
-  const y = readStep(reader, bits);
-  const z = readStep(reader, bits);
-  if (x === null || y === null || z === null) return null;
-  target.x = x;
-  target.y = y;
-  target.z = z;
-  return target;
-}
 
 /** A direction as the place where it leaves a cube: through which face, and where on it. A buffer. */
 export interface DirectionSteps {

@@ -35,7 +35,7 @@ import {
   swivelBits,
   type TrunkSteps,
 } from './pose-steps';
-import { across, fromDirectionSteps, fromQuatSteps, fromStep } from './quantise';
+import { across, fromCentredStep, fromDirectionSteps, fromQuatSteps, fromStep } from './quantise';
 
 const down: Vec3 = { x: 0, y: -1, z: 0 };
 
@@ -137,8 +137,8 @@ export class RebuiltArm {
     const { position, orientation } = this.shoulder;
     const rest = clavicleRest(this.side, skeleton);
     across(normalise(rest, undefined, axis), acrossU, acrossV);
-    scale(acrossU, fromStep(clavicleU, clavicleRange, bits), turn);
-    addScaled(turn, acrossV, fromStep(clavicleV, clavicleRange, bits), turn);
+    scale(acrossU, fromCentredStep(clavicleU, clavicleRange, bits), turn);
+    addScaled(turn, acrossV, fromCentredStep(clavicleV, clavicleRange, bits), turn);
     const angle = length(turn);
     twisted(trunk.upperChest, normalise(turn, undefined, turn), angle, orientation);
     add(trunk.clavicleRoots[this.side], rotate(orientation, rest, position), position);

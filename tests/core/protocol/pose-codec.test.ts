@@ -195,23 +195,20 @@ const binary = (value: number, bits: number): string => value.toString(2).padSta
 describe('bytes', () => {
   test('are those of docs/protocol.md, bit by bit', () => {
     const expected = bytesOf([
-      '0010', // version 2
+      '0011', // version 3
       '0', // no jump
       '0', // no body
       '1', // head tracked
-      '01', // fingers of the right hand alone
-      '00', // no free arms
-      '00', // left hand lost
-      '01', // right hand emulated
-      '0001001000110100', // 0x1234 ms
-      binary(32767 + 2, 16), // head x: 2 half millimetres
-      binary(4095 + (1600 - (-1000 + 4095 / 2)) * 2, 13), // head y from the middle of its range
-      binary(32767 - 4000, 16), // head z
+      '000', // left hand lost, its arm not free
+      '100', // right hand emulated, with fingers
+      '01001000110100', // 0x1234 ms
+      binary(32767 + 4, 16), // head x: 4 quarters of a millimetre
+      binary(8191 + (1600 - (-1000 + 8191 / 4)) * 4, 14), // head y from the middle of its range
+      binary(32767 - 8000, 16), // head z
       '11', // w is largest
       ...[1023, 1023, 1023].map((zero) => binary(zero, 11)),
-      binary(4095 + 400, 13), // right hand from the head: 0.2 m
-      binary(4095 - 1000, 13), // -0.5 m
-      binary(4095 - 1000, 13), // -0.5 m
+      // Right hand from the head: 0.2 m, −0.5 m, −0.5 m, each one of 9999 steps.
+      binary(((4999 + 800) * 9999 + (4999 - 2000)) * 9999 + (4999 - 2000), 40),
       '11', // w, which is as large as y
       ...[1023, 2046, 1023].map((part) => binary(part, 11)),
       ...[binary(2, 3), binary(5, 3), binary(1, 3)], // thumb: palmward, spread, bent
@@ -220,7 +217,7 @@ describe('bytes', () => {
       binary(0, 4), // no pinch
     ]);
     expect([...encodePose(handsOnly, skeleton)!]).toEqual(expected);
-    expect(expected.length).toBe(28);
+    expect(expected.length).toBe(27);
     const back = decodePose(Uint8Array.from(expected), skeleton)!;
     expect(distance(back.pose.head.position, handsOnly.pose.head.position)).toBeLessThan(1e-9);
     expect(distance(back.pose.rightHand!.position, handsOnly.pose.rightHand!.position)).toBeLessThan(1e-9);
@@ -247,7 +244,7 @@ describe('bytes', () => {
     };
     const hex = [...encodePose(packet, skeleton)!].map((byte) => byte.toString(16).padStart(2, '0')).join('');
     expect(hex).toBe(
-      '26000000ffff43d7ef0dffbff7fea1f73a43637ffff9ffd77dce90d8dff8007ffbfeffbffbfeffbffbfeffbfefdfbfdff5a7deff7fa91f78',
+      '3600000ffff43d3ef0effdffbff2e6161299fdffffe7ff74c0e356bbbff000fff7fdff7ff7fdff7ff7fdff7fdfbf7fbfeb53f0ff7fa947e0',
     );
     const shown = forwardKinematics(skeleton, decodePose(encodePose(packet, skeleton)!, skeleton)!.pose.body!);
     const sent = forwardKinematics(skeleton, body);
@@ -271,12 +268,13 @@ describe('bytes', () => {
       expect(decodePose(bytes.slice(0, length), skeleton)).toBeNull();
     }
     expect(decodePose(Uint8Array.from([...bytes, 0]), skeleton)).toBeNull();
-    const unclean = Uint8Array.from(bytes);
-    unclean[27]! |= 1;
+    // Without fingers the last byte has a bit to fill up.
+    const unclean = encodePose({ ...handsOnly, fingers: unknownFingers }, skeleton)!;
+    unclean[22]! |= 1;
     expect(decodePose(unclean, skeleton)).toBeNull();
   });
 
-  test('that say what cannot be are no pose: a third kind of tracking, fingers of a lost hand, a free arm without a body', () => {
+  test('that say what cannot be are no pose: a free arm without a body', () => {
     const bytes = encodePose(handsOnly, skeleton)!;
     const withBits = (...bits: number[]) => {
       const changed = Uint8Array.from(bytes);
@@ -284,9 +282,10 @@ describe('bytes', () => {
       return decodePose(changed, skeleton);
     };
     expect(withBits()).not.toBeNull();
-    expect(withBits(13)).toBeNull();
-    expect(withBits(7)).toBeNull();
-    expect(withBits(10)).toBeNull();
+    expect(withBits(4)).not.toBeNull();
+    // The left arm, then the right one, is free, and there is no body.
+    expect(withBits(9)).toBeNull();
+    expect(withBits(10, 11, 12)).toBeNull();
   });
 
   test('are none at all for a person who is not a number', () => {
@@ -302,9 +301,9 @@ describe('bytes', () => {
     const { head } = handsOnly.pose;
     const far = { ...head, position: vec3(100, 9, -100) };
     const back = decodePose(encodePose({ ...handsOnly, pose: { ...handsOnly.pose, head: far } }, skeleton)!, skeleton)!;
-    expect(back.pose.head.position.x).toBeCloseTo(16.3835, 9);
-    expect(back.pose.head.position.y).toBeCloseTo(3.095, 9);
-    expect(back.pose.head.position.z).toBeCloseTo(-16.3835, 9);
+    expect(back.pose.head.position.x).toBeCloseTo(8.19175, 9);
+    expect(back.pose.head.position.y).toBeCloseTo(3.0955, 9);
+    expect(back.pose.head.position.z).toBeCloseTo(-8.19175, 9);
   });
 });
 

@@ -6,6 +6,7 @@ import type { PoseEstimator } from '../../../src/core/estimation/pose-estimator'
 import type { TrackedPose } from '../../../src/core/math/pose';
 import { fromAxisAngle, multiply } from '../../../src/core/math/quat';
 import { up, vec3 } from '../../../src/core/math/vec3';
+import { packetMs } from '../../../src/core/protocol/packet-time';
 import type { PosePacket } from '../../../src/core/protocol/pose-packet';
 import { actorFrame } from '../../../src/core/tracking/actor-motion';
 import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
@@ -94,7 +95,7 @@ export async function packetOf(
   }
   return {
     packet: {
-      timeMs: Math.round(sender.start * 1000) % 65536,
+      timeMs: packetMs(sender.start * 1000),
       jump: sender.jump,
       pose: pose!,
       fingers: sender.fingers,

@@ -5,6 +5,7 @@ import { arenaFromSeatFloor } from '../../../src/core/games/ball/stations';
 import { type BallGame, BallPolicy } from '../../../src/core/match-policies/ball-policy';
 import { type BallRoomMessage, ballRoomMessageFrom } from '../../../src/core/protocol/ball-messages';
 import type { Joining } from '../../../src/core/protocol/messages';
+import { packetMs } from '../../../src/core/protocol/packet-time';
 import { encodePose } from '../../../src/core/protocol/pose-codec';
 import { encodeFrame } from '../../../src/core/protocol/pose-frame';
 import { plainAvatar } from '../../../src/core/protocol/worn-avatar';
@@ -30,7 +31,7 @@ type Wrists = ReturnType<typeof fists>;
 /** The packet of a player on a seat with these wrists (arena frame of the ball game), taken at this time of the room clock [s]. */
 export function packetAt(match: BallState | null, seat: number, wrists: Wrists, time: number): Uint8Array {
   const shown = shownAt({ arenaFromFloor: (index) => arenaFromSeatFloor(index, match) }, seat, wrists);
-  const bytes = encodePose({ ...shown, timeMs: Math.round(time * 1000) & 0xffff }, skeleton);
+  const bytes = encodePose({ ...shown, timeMs: packetMs(time * 1000) }, skeleton);
   if (!bytes) throw new Error('the pose packet of the tests is not finite');
   return bytes;
 }

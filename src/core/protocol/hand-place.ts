@@ -1,0 +1,79 @@
+import { add, type MutableVec3, setVec3, type Vec3 } from '../math/vec3';
+import type { BitReader, BitWriter } from './bits';
+import { placeUnit } from './quantise';
+
+/**
+ * Where a hand is from the head, in 40 bits: steps of a quarter of a millimetre within ±1.25 m on each axis, where the hands of all people are,
+ * and in the codes that those leave over coarser steps within ±2.09 m, for controllers that lie about. A buffer.
+ */
+export interface HandPlaceSteps {
+  far: boolean;
+  x: number;
+  y: number;
+  z: number;
+}
+
+export const makeHandPlaceSteps = (): HandPlaceSteps => ({ far: false, x: 0, y: 0, z: 0 });
+
+interface Grid {
+  /** Of a step [m]. */
+  readonly unit: number;
+  /** Steps either way, and all of an axis. */
+  readonly most: number;
+  readonly count: number;
+}
+
+const grid = (unit: number, most: number): Grid => ({ unit, most, count: 2 * most + 1 });
+const near = grid(placeUnit, 4999);
+const wide = grid(0.0009, 2318);
+const nearCodes = near.count ** 3;
+const allCodes = nearCodes + wide.count ** 3;
+/** Nearer steps on all axes are of the finer grid. */
+const leastWide = Math.round(((near.most + 0.5) * near.unit) / wide.unit);
+/** A code is written as two numbers of so many bits. */
+const halfBits = 20;
+const half = 2 ** halfBits;
+
+const stepsOf = (along: number, { unit, most }: Grid): number =>
+  Math.max(-most, Math.min(most, Math.round(along / unit)));
+
+/** The nearest place to a hand; further than ±2.09 m from the head on an axis: at the edge. */
+export function toHandPlace(head: Vec3, hand: Vec3, target: HandPlaceSteps): void {
+  const x = hand.x - head.x;
+  const y = hand.y - head.y;
+  const z = hand.z - head.z;
+  const furthest = Math.max(Math.abs(x), Math.abs(y), Math.abs(z));
+  target.far = Math.round(furthest / near.unit) > near.most;
+  const grid = target.far ? wide : near;
+  target.x = stepsOf(x, grid);
+  target.y = stepsOf(y, grid);
+  target.z = stepsOf(z, grid);
+}
+
+/** Writes the place into `target`, in the head's frame of reference [m]. */
+export function fromHandPlace(head: Vec3, { far, x, y, z }: HandPlaceSteps, target: MutableVec3): MutableVec3 {
+  const { unit } = far ? wide : near;
+  return add(head, setVec3(target, x * unit, y * unit, z * unit), target);
+}
+
+export function writeHandPlace(writer: BitWriter, { far, x, y, z }: HandPlaceSteps): void {
+  const { most, count } = far ? wide : near;
+  const code = (far ? nearCodes : 0) + ((x + most) * count + (y + most)) * count + (z + most);
+  writer.write(Math.floor(code / half), halfBits);
+  writer.write(code % half, halfBits);
+}
+
+/** Reads the place; false for a code that means nothing: above all others, or coarse where finer steps reach. */
+export function readHandPlace(reader: BitReader, target: HandPlaceSteps): boolean {
+  const high = reader.read(halfBits);
+  const code = high * half + reader.read(halfBits);
+  if (code >= allCodes) return false;
+  target.far = code >= nearCodes;
+  const { most, count } = target.far ? wide : near;
+  const rest = target.far ? code - nearCodes : code;
+  const row = Math.floor(rest / count);
+  target.z = (rest % count) - most;
+  target.y = (row % count) - most;
+  target.x = Math.floor(row / count) - most;
+  return !target.far || Math.max(Math.abs(target.x), Math.abs(target.y), Math.abs(target.z)) >= leastWide;
+}
