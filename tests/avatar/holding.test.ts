@@ -2,7 +2,7 @@ import { expect, test } from 'vitest';
 import { Holding } from '../../src/avatar/holding';
 import { averageHand, fingerPoints, makeFingerPoints, scaledHand } from '../../src/core/body/hand-geometry';
 import { fingerNames, makeHandShape } from '../../src/core/body/hand-shape';
-import { basketInHands } from '../../src/core/games/ball/basket';
+import { basketInHands, gripRadius } from '../../src/core/games/ball/basket';
 import { basketRadius, rimTube } from '../../src/core/games/ball/flight';
 import { wristAround } from '../../src/core/games/fist';
 import { type Pose, transformPoint } from '../../src/core/math/pose';
@@ -11,8 +11,8 @@ import type { Side } from '../../src/core/math/side';
 import { distance, dot, forward, length, reject, subtract, up, vec3 } from '../../src/core/math/vec3';
 
 const wrists: Readonly<Record<Side, Pose<'floor'>>> = {
-  left: wristAround('left', vec3(-basketRadius, 1.1, -0.4), forward, up),
-  right: wristAround('right', vec3(basketRadius, 1.1, -0.4), forward, up),
+  left: wristAround('left', vec3(-gripRadius, 1.1, -0.4), forward, up),
+  right: wristAround('right', vec3(gripRadius, 1.1, -0.4), forward, up),
 };
 
 test('both hands of a holder lie round the basket’s rim: no fingertip is in the basket but the thumbs’, which go over the rim', () => {

@@ -35,6 +35,8 @@ const joints = ['knuckle', 'middle', 'end'] as const;
 const openThumb = fingerBend(-0.3, 0.75, -0.05, -0.05);
 /** A thumb that stands out of the palm, to be closed from before it round a rod that lies across it. */
 const opposedThumb = fingerBend(1.2, 0.3, -0.05, -0.05);
+/** A finger that is inside a thing when it is straight is closed from here: so far a knuckle bends back without force [rad]. */
+const bentBack = 0.4;
 
 const points = makeFingerPoints();
 const at: MutableVec3 = vec3(0, 0, 0);
@@ -43,7 +45,8 @@ const opposed = fingerBend(0, 0, 0, 0);
 
 /**
  * Closes each finger joint by joint, knuckle first, until its skin lies on the surface; what meets nothing closes to a fist. A finger that
- * is inside from the start stays open. The thumb closes from above the palm or from before it, whichever brings it further round.
+ * is inside when it is straight begins bent back, and stays straight where its outer bones are inside even so. The thumb closes from above
+ * the palm or from before it, whichever brings it further round.
  */
 export function closeRound(surface: Surface, geometry: HandGeometry, target: MutableHandShape): void {
   for (let i = 0; i < fingerNames.length; i++) {
@@ -73,6 +76,10 @@ function closeFinger(
   target: MutableFingerBend,
 ): void {
   copyBend(open, target);
+  if (name !== 'thumb' && !isClear(surface, name, finger, 0, target)) {
+    target.knuckle -= bentBack;
+    if (!isClear(surface, name, finger, 1, target)) target.knuckle += bentBack;
+  }
   for (let joint = 0; joint < 3; joint++) closeJoint(surface, name, finger, joint as 0 | 1 | 2, target);
 }
 

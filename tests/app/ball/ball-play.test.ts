@@ -88,9 +88,9 @@ describe('one person with two bots', () => {
     const holder = players?.[2];
     expect(holder?.role).toBe('holder');
     for (const side of ['left', 'right'] as const) {
-      // The rim, 0.22 m from the middle, lies in the fists; a ball would lie in the palms, 6.5 cm further in.
+      // The fists are 0.23 m from the middle, palms on the rim; a ball would lie in the palms, 6.5 cm further in.
       const palm = holder?.palms[side];
-      expect(palm && opening && distance(palm, opening.position)).toBeCloseTo(0.155, 2);
+      expect(palm && opening && distance(palm, opening.position)).toBeCloseTo(0.165, 2);
     }
     // Own floor frame: the other thrower stands 1.6 m to the right, the holder 5 m away.
     const [beside, ahead] = bodies ?? [];

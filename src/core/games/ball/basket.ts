@@ -34,6 +34,9 @@ export interface MutableOpening extends Opening {
 
 export const makeOpening = (): MutableOpening => ({ position: vec3(0, 0, 0), normal: vec3(0, 1, 0) });
 
+/** A fist whose palm lies on the rim from outside is so far from the middle of the opening [m]: the rim's tube lies before the palm's skin. */
+export const gripRadius = basketRadius + 0.01;
+
 const fist = vec3(0, 0, 0);
 const otherFist = vec3(0, 0, 0);
 const across = vec3(0, 0, 0);
@@ -45,7 +48,7 @@ function openingInHand(side: Side, hand: Pose<Frame>, { position, normal }: Muta
   // The palm, and where that looks along the thumb the knuckles.
   reject(rotate(hand.orientation, down, across), normal, across);
   normalise(across, rotate(hand.orientation, forward, thumb), across);
-  addScaled(fistOf(hand, fist), across, basketRadius, position);
+  addScaled(fistOf(hand, fist), across, gripRadius, position);
 }
 
 /**

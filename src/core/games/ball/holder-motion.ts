@@ -17,7 +17,8 @@ import {
 } from '../../math/vec3';
 import { fallsTo, velocityAt } from '../ballistics';
 import type { BallState, TimedLaunch } from './ball-state';
-import { ballInAir, basketRadius } from './flight';
+import { gripRadius } from './basket';
+import { ballInAir } from './flight';
 import {
   createPlayerPostures,
   type MutableGrasp,
@@ -164,9 +165,9 @@ class Holder implements BallBot {
 
   /** A hand at the rim, on the left (−1) or right of the opening. */
   #grip({ fist, knuckles, thumb }: MutableGrasp, sign: -1 | 1): void {
-    addScaled(this.#opening, across, sign * basketRadius, fist);
-    // Hands come from the body: knuckles ahead and a little inward, thumbs out of the opening.
-    reject(setVec3(knuckles, -0.35 * sign, -0.2, -1), this.#normal, knuckles);
+    addScaled(this.#opening, across, sign * gripRadius, fist);
+    // Hands come from the body, and lie along the rim: knuckles ahead, thumbs out of the opening.
+    reject(setVec3(knuckles, -0.1 * sign, -0.2, -1), this.#normal, knuckles);
     normalise(knuckles, undefined, knuckles);
     copyVec3(this.#normal, thumb);
   }

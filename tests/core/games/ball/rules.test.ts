@@ -1,9 +1,9 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import type { BallAction } from '../../../../src/core/games/ball/ball-state';
-import { basketInHands } from '../../../../src/core/games/ball/basket';
+import { basketInHands, gripRadius } from '../../../../src/core/games/ball/basket';
 import { armReach, fastestThrow } from '../../../../src/core/games/ball/deeds';
-import { ballRadius, basketRadius } from '../../../../src/core/games/ball/flight';
+import { ballRadius } from '../../../../src/core/games/ball/flight';
 import { ballRules } from '../../../../src/core/games/ball/rules';
 import { ballPosition, ballSecondsLeft, ballsLeft } from '../../../../src/core/games/ball/state-readings';
 import { rackPosition, stations, throwingDistance } from '../../../../src/core/games/ball/stations';
@@ -335,8 +335,8 @@ describe('the basket', () => {
         const thumb = vec3(ahead.x * Math.sin(tilt), Math.cos(tilt), ahead.z * Math.sin(tilt));
         const knuckles = vec3(ahead.x * Math.cos(tilt), -Math.sin(tilt), ahead.z * Math.cos(tilt));
         const fist = (sign: number) => add(centre, vec3(across.x * sign, 0, across.z * sign));
-        const left = wristAround('left', fist(-basketRadius), knuckles, thumb);
-        const right = wristAround('right', fist(basketRadius), knuckles, thumb);
+        const left = wristAround('left', fist(-gripRadius), knuckles, thumb);
+        const right = wristAround('right', fist(gripRadius), knuckles, thumb);
         for (const opening of [basketInHands(left, right), basketInHands(left, null), basketInHands(null, right)]) {
           expect(distance(opening!.position, centre)).toBeLessThan(1e-9);
           expect(distance(opening!.normal, thumb)).toBeLessThan(1e-9);

@@ -1,0 +1,148 @@
+import type { Vector3 } from 'three';
+import { describe, expect, test } from 'vitest';
+import type { Holding } from '../../src/avatar/holding';
+import { bodyLabels } from '../../src/avatar/own-bodies';
+import { fingerBonesOf } from '../../src/core/body/finger-bones';
+import { distanceToBall, distanceToRod } from '../../src/core/body/grasp';
+import { type FingerName, fingerNames, type MutableHandShape } from '../../src/core/body/hand-shape';
+import { createIk } from '../../src/core/estimation/estimators';
+import { bowInHand } from '../../src/core/games/archery/bow-hand';
+import { basketInHands, gripRadius } from '../../src/core/games/ball/basket';
+import { ballRadius, basketRadius, rimTube } from '../../src/core/games/ball/flight';
+import { createHolder } from '../../src/core/games/ball/holder-motion';
+import { createPlayerPostures, makePosture, type Performed } from '../../src/core/games/ball/player-postures';
+import { ballRules } from '../../src/core/games/ball/rules';
+import { stations } from '../../src/core/games/ball/stations';
+import { ballInPalm, wristAround } from '../../src/core/games/fist';
+import { makeTransform, type Pose } from '../../src/core/math/pose';
+import { rotate } from '../../src/core/math/quat';
+import type { Side } from '../../src/core/math/side';
+import { copyVec3, dot, forward, normalise, subtract, up, type Vec3, vec3 } from '../../src/core/math/vec3';
+import { poseOf } from '../core/estimation/drawn';
+import { type DrawnSkin, drawnHands, drawnSkin, ownBody, wearer } from './drawn-skin';
+
+const sides = ['left', 'right'] as const;
+
+/** A thing in one hand: how hands close round it, and how far a place is from what a finger may not go through [m]. */
+interface Thing {
+  readonly wrists: Readonly<Record<Side, Pose<'floor'>>>;
+  grasp(holding: Holding, side: Side, wrist: Pose<'floor'>, target: MutableHandShape): void;
+  distance(side: Side, at: Vec3, finger: FingerName | 'palm'): number;
+}
+
+const ahead = {
+  left: wristAround<'floor'>('left', vec3(-0.2, 1.1, -0.4), forward, up),
+  right: wristAround<'floor'>('right', vec3(0.2, 1.1, -0.4), forward, up),
+};
+
+const handle = 0.019;
+const grips = { left: bowInHand('left', ahead.left), right: bowInHand('right', ahead.right) };
+const bow: Thing = {
+  wrists: ahead,
+  grasp(holding, side, wrist, target) {
+    const { position, orientation } = grips[side];
+    holding.rod(side, wrist, { at: position, axis: rotate(orientation, up), radius: handle }, target);
+  },
+  distance: (side, at) => distanceToRod(at, grips[side].position, rotate(grips[side].orientation, up), handle),
+};
+
+const ball: Thing = {
+  wrists: ahead,
+  grasp: (holding, side, wrist, target) =>
+    holding.ball(side, wrist, { at: ballInPalm(wrist, ballRadius), radius: ballRadius }, target),
+  distance: (side, at) => distanceToBall(at, ballInPalm(ahead[side], ballRadius), ballRadius),
+};
+
+function basketIn(wrists: Thing['wrists']): Thing {
+  const { position, normal } = basketInHands(wrists.left, wrists.right)!;
+  return {
+    wrists,
+    grasp: (holding, side, wrist, target) =>
+      holding.rim(side, wrist, { at: position, normal, radius: basketRadius, tube: rimTube }, target),
+    // Fingers lie outside the wall below the rim, palm and thumb on the rim itself.
+    distance(_, at, finger) {
+      const fromWall = distanceToRod(at, position, normal, basketRadius);
+      const fromRim = Math.hypot(fromWall, dot(subtract(at, position), normal));
+      return (finger === 'thumb' || finger === 'palm' ? fromRim : fromWall) - rimTube;
+    },
+  };
+}
+
+/** A player who holds the basket before the belly, as others see one. */
+function holder(): Thing['wrists'] {
+  const station = stations[2]!;
+  const bot = createHolder({ eyeHeight: wearer.eyeHeight, arenaFromFloor: station });
+  const { leftHand, rightHand } = bot.follow(0, { state: ballRules.start(['ann', 'ben', 'cal'], 1), player: 2 }).frame;
+  return { left: leftHand!, right: rightHand! };
+}
+
+/** Hands of a person that are nearer to each other than the basket is wide, knuckles inward [m, rad]. */
+function tooNear(by: number, inward: number): Thing['wrists'] {
+  const wrist = (side: Side, sign: -1 | 1) => {
+    const knuckles = normalise(vec3(-sign * Math.tan(inward), 0, -1));
+    return wristAround<'floor'>(side, vec3(sign * (gripRadius - by), 1.1, -0.4), knuckles, up);
+  };
+  return { left: wrist('left', -1), right: wrist('right', 1) };
+}
+
+/** A thrower whose arms hang. */
+function hanging(time: number): Performed {
+  const postures = createPlayerPostures({ eyeHeight: wearer.eyeHeight, arenaFromFloor: makeTransform() });
+  const posture = makePosture();
+  copyVec3(postures.eyes, posture.eyes);
+  for (const side of sides) postures.hang(side, posture.eyes, posture[side]);
+  return postures.seen(posture, time, 1, 1);
+}
+
+/** How near the skin of some bones of one hand comes to a thing, below 0 inside [mm]. */
+function nearest(skin: DrawnSkin, bones: readonly string[], distance: (at: Vec3) => number): number {
+  const places = bones.flatMap((bone): readonly Vector3[] => skin.get(bone) ?? []);
+  return 1000 * Math.min(...places.map(distance));
+}
+
+/** Flesh gives way by so much where it is pressed [mm]. */
+const flesh = 6;
+
+describe.each(bodyLabels.map(({ name }) => name))('the hands of our %s', async (body) => {
+  const avatar = await ownBody(body);
+
+  describe.each([
+    ['a bow’s grip', bow],
+    ['a ball', ball],
+    ['the basket’s rim', basketIn(holder())],
+    ['the rim of a basket that is wider than they are apart', basketIn(tooNear(0.01, 0.15))],
+  ])('round %s', (_, { wrists, grasp, distance }) => {
+    const skin = drawnHands(avatar, wrists, grasp);
+
+    test.each(sides)('have no finger of the %s one in it, and fingertips on it', (side) => {
+      for (const finger of fingerNames) {
+        const [, middle, end] = fingerBonesOf(side, finger) as [string, string, string];
+        const gap = nearest(skin, [middle, end], (at) => distance(side, at, finger));
+        expect(gap, finger).toBeGreaterThan(-flesh);
+        if (finger !== 'thumb') expect(gap, finger).toBeLessThan(10);
+      }
+    });
+  });
+
+  test('lie on the basket’s rim with their palms, not in it', () => {
+    const { wrists, grasp, distance } = basketIn(holder());
+    const skin = drawnHands(avatar, wrists, grasp);
+    for (const side of sides) {
+      const gap = nearest(skin, [`${side}Hand`], (at) => distance(side, at, 'palm'));
+      expect(gap, side).toBeGreaterThan(-2);
+      expect(gap, side).toBeLessThan(8);
+    }
+  });
+
+  test('that hang hold a ball beside the thigh, not in it', () => {
+    const time = 1;
+    const { frame } = hanging(time);
+    const ik = createIk(wearer);
+    for (let step = 0; step <= 30; step++) avatar.apply(poseOf(ik, { ...frame, time: step / 30 }), step / 30);
+    const skin = drawnSkin(avatar, /hips|UpperLeg|LowerLeg/);
+    for (const hand of [frame.leftHand, frame.rightHand]) {
+      const at = ballInPalm(hand!, ballRadius);
+      expect(nearest(skin, [...skin.keys()], (place) => distanceToBall(place, at, ballRadius))).toBeGreaterThan(0);
+    }
+  });
+});
