@@ -5,7 +5,7 @@ import { bodyLabels } from '../../src/avatar/own-bodies';
 import { fingerBonesOf } from '../../src/core/body/finger-bones';
 import { distanceToBall, distanceToRod } from '../../src/core/body/grasp';
 import { type FingerName, fingerNames, type MutableHandShape } from '../../src/core/body/hand-shape';
-import { createIk } from '../../src/core/estimation/estimators';
+import { createIk, createWithNetwork } from '../../src/core/estimation/estimators';
 import { bowInHand } from '../../src/core/games/archery/bow-hand';
 import { basketInHands, gripRadius } from '../../src/core/games/ball/basket';
 import { ballRadius, basketRadius, rimTube } from '../../src/core/games/ball/flight';
@@ -18,7 +18,8 @@ import { makeTransform, type Pose } from '../../src/core/math/pose';
 import { rotate } from '../../src/core/math/quat';
 import type { Side } from '../../src/core/math/side';
 import { copyVec3, dot, forward, normalise, subtract, up, type Vec3, vec3 } from '../../src/core/math/vec3';
-import { poseOf } from '../core/estimation/drawn';
+import { show } from '../core/estimation/drawn';
+import { openPlainModel } from '../core/estimation/shipped-models';
 import { type DrawnSkin, drawnHands, drawnSkin, ownBody, wearer } from './drawn-skin';
 
 const sides = ['left', 'right'] as const;
@@ -134,15 +135,18 @@ describe.each(bodyLabels.map(({ name }) => name))('the hands of our %s', async (
     }
   });
 
-  test('that hang hold a ball beside the thigh, not in it', () => {
-    const time = 1;
-    const { frame } = hanging(time);
-    const ik = createIk(wearer);
-    for (let step = 0; step <= 30; step++) avatar.apply(poseOf(ik, { ...frame, time: step / 30 }), step / 30);
+  test.each(['ik', 'learned'] as const)('that hang hold a ball beside the thigh, not in it: %s', async (method) => {
+    const { frame } = hanging(1);
+    const estimator = method === 'ik' ? createIk(wearer) : createWithNetwork(method, wearer, openPlainModel());
+    for (let step = 0; step <= 30; step++) {
+      const time = step / 30;
+      avatar.apply(await show(estimator, { ...frame, time }), time);
+    }
     const skin = drawnSkin(avatar, /hips|UpperLeg|LowerLeg/);
     for (const hand of [frame.leftHand, frame.rightHand]) {
       const at = ballInPalm(hand!, ballRadius);
-      expect(nearest(skin, [...skin.keys()], (place) => distanceToBall(place, at, ballRadius))).toBeGreaterThan(0);
+      const gap = nearest(skin, [...skin.keys()], (place) => distanceToBall(place, at, ballRadius));
+      expect(gap).toBeGreaterThan(0);
     }
   });
 });

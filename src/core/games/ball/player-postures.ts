@@ -132,7 +132,7 @@ export interface PlayerPostures {
 
 const signOf = (side: Side): -1 | 1 => (side === 'left' ? -1 : 1);
 
-/** How a hand hangs. */
+/** How a hand hangs: far enough from the thigh that a ball in it is beside it. */
 const hangingKnuckles = normalise(vec3(0, -1, -0.25));
 const hangingThumb = { left: normalise(vec3(-0.2 * -1, 0, -1)), right: normalise(vec3(-0.2, 0, -1)) };
 
@@ -157,7 +157,7 @@ export function createPlayerPostures({
   const floorFromArena = invertTransform(arenaFromFloor);
   const half = (shoulderShare / armShare) * arm;
   const fromEyes = ofBothSides((sign) => vec3(sign * half, -shoulderDrop * arm, shoulderBehind * arm));
-  const hanging = ofBothSides((sign) => vec3(sign * 0.22 * arm, -1.02 * arm, -0.2 * arm));
+  const hanging = ofBothSides((sign) => vec3(sign * 0.27 * arm, -1.01 * arm, -0.2 * arm));
   const shoulder = (side: Side, eyes: Vec3, target?: MutableVec3): MutableVec3 => add(eyes, fromEyes[side], target);
 
   function wrist(side: Side, { fist, knuckles, thumb }: Grasp): TrackedPose {
