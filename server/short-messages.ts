@@ -11,7 +11,9 @@ interface Receiver {
 
 /** A WebSocket of ws. */
 export interface ReceivingWebSocket {
-  // reason: private in ws, and the one place where bytes from the wire pass that are not frames yet.
+  // reason: private in ws 8, and the one place where bytes from the wire pass that are not frames yet. Nothing public replaces it: no option names
+  // a receiver of one's own, though its class is exported; `allowSynchronousEvents` (on) only spares turns of the event loop; and a Duplex around the
+  // socket, which `handleUpgrade` takes, is one more stream for every byte and has to follow all frames by itself to know where one begins.
   readonly _receiver?: Receiver;
 }
 

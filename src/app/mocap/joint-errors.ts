@@ -3,6 +3,7 @@ import type { Calibration } from '../../core/body/calibration';
 import { forwardKinematics, makeJointPoses } from '../../core/body/forward-kinematics';
 import { estimatedJoints } from '../../core/body/joints';
 import { skeletonFromCalibration } from '../../core/body/skeleton';
+import { estimateRecording } from '../../core/estimation/estimate-recording';
 import type { PoseEstimator } from '../../core/estimation/pose-estimator';
 import { distance, type Vec3 } from '../../core/math/vec3';
 import type { TruthJoint } from '../../core/mocap/skeleton-map';
@@ -34,31 +35,22 @@ export class ErrorMeter {
 export const makeJointErrors = (): JointErrors => new Float64Array(estimatedJoints.length);
 export const meanOf = (errors: JointErrors): number => errors.reduce((sum, error) => sum + error, 0) / errors.length;
 
-const framesPerStep = 8;
-
 /**
  * Mean errors of a method over a whole clip, frame after frame, each answer of its network waited for: the evaluation's figures. Yields the share
  * [0, 1] that is done. Throws a sentence where the method draws no body or fails.
  */
 export async function* meanErrors(
-  { frames, calibration }: Replayable,
+  recording: Replayable,
   truth: Truth,
   estimator: PoseEstimator,
 ): AsyncGenerator<number, JointErrors> {
-  const meter = new ErrorMeter(calibration!);
+  const meter = new ErrorMeter(recording.calibration!);
   const sums = makeJointErrors();
   const errors = makeJointErrors();
-  let index = -1;
-  for (const frame of frames) {
-    index += 1;
-    const { pose, request } = estimator.update(frame);
-    await request?.ask();
-    const fault = estimator.fault();
-    if (fault !== null) throw new Error(`it failed in frame ${index + 1}: ${fault}`);
-    if (!pose.body) throw new Error('it draws no body');
-    meter.measure(pose.body, truth.at(frame.time), errors);
+  yield* estimateRecording(recording, estimator, ({ time }, { body }) => {
+    if (!body) throw new Error('it draws no body');
+    meter.measure(body, truth.at(time), errors);
     for (let i = 0; i < sums.length; i++) sums[i]! += errors[i]!;
-    if (index % framesPerStep === 0) yield index / frames.length;
-  }
-  return sums.map((sum) => sum / frames.length);
+  });
+  return sums.map((sum) => sum / recording.frames.length);
 }

@@ -13,6 +13,7 @@ import {
 } from '../body/hand-shape';
 import { jointNames } from '../body/joints';
 import { wristFromHandBone } from '../body/skeleton';
+import { estimateRecording } from '../estimation/estimate-recording';
 import type { PoseEstimator } from '../estimation/pose-estimator';
 import { conjugate, copyQuat, type MutableQuat, multiply, type Quat, quat } from '../math/quat';
 import type { Side } from '../math/side';
@@ -152,29 +153,16 @@ export class MotionTaker {
 
 const hipsOfBody = vec3(0, 0, 0);
 
-/** Frames between two looks at who waits. */
-const framesPerStep = 16;
-
 /**
  * The body that an estimator draws of a recording, frame by frame as it would have live; a network that answers later is waited for. Yields the
  * share [0, 1] that is done, now and then. Throws a sentence where the estimator fails or draws no body.
  */
 export async function* estimateMotion(
-  { frames, rateHz }: Replayable,
+  recording: Replayable,
   calibration: Calibration,
   estimator: PoseEstimator,
 ): AsyncGenerator<number, Motion> {
-  const taker = new MotionTaker(calibration, frames.length, rateHz);
-  estimator.reset();
-  let index = -1;
-  for (const frame of frames) {
-    index += 1;
-    const { pose, request } = estimator.update(frame);
-    await request?.ask();
-    const fault = estimator.fault();
-    if (fault !== null) throw new Error(`The method “${estimator.name}” failed in frame ${index + 1}: ${fault}`);
-    taker.add(frame, pose);
-    if (index % framesPerStep === 0) yield index / frames.length;
-  }
+  const taker = new MotionTaker(calibration, recording.frames.length, recording.rateHz);
+  yield* estimateRecording(recording, estimator, (frame, pose) => taker.add(frame, pose));
   return taker.finish();
 }

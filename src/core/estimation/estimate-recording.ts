@@ -1,0 +1,29 @@
+import type { AvatarPose } from '../body/avatar-pose';
+import type { Replayable } from '../tracking/recording';
+import type { TrackingFrame } from '../tracking/tracking-frame';
+import type { PoseEstimator } from './pose-estimator';
+
+/** Frames between two looks at who waits. */
+const framesPerStep = 8;
+
+/**
+ * Leads an estimator through a recording, frame by frame, each answer of its network waited for, and tells `drawn` what it draws. Yields the
+ * share [0, 1] that is done, now and then. Throws a sentence where the estimator fails.
+ */
+export async function* estimateRecording(
+  { frames }: Pick<Replayable, 'frames'>,
+  estimator: PoseEstimator,
+  drawn: (frame: TrackingFrame, pose: AvatarPose) => void,
+): AsyncGenerator<number, void> {
+  estimator.reset();
+  let index = -1;
+  for (const frame of frames) {
+    index += 1;
+    const { pose, request } = estimator.update(frame);
+    await request?.ask();
+    const fault = estimator.fault();
+    if (fault !== null) throw new Error(`The method “${estimator.name}” failed in frame ${index + 1}: ${fault}`);
+    drawn(frame, pose);
+    if (index % framesPerStep === 0) yield index / frames.length;
+  }
+}
