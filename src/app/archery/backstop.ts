@@ -3,9 +3,8 @@ import {
   CatmullRomCurve3,
   Color,
   CylinderGeometry,
-  DataTexture,
+  type DataTexture,
   Group,
-  LinearFilter,
   Mesh,
   MeshBasicMaterial,
   MeshLambertMaterial,
@@ -19,7 +18,8 @@ import { walls } from '../../core/games/archery/rules';
 import { bothSides } from '../../scene/both-sides';
 import { woodColor } from '../../scene/outdoors/wood';
 import { merged, painted } from '../../scene/painted-geometry';
-import { anisotropyOf, minFilterOf, type Quality } from '../../scene/renderer';
+import { createPixelTexture } from '../../scene/pixel-texture';
+import type { Quality } from '../../scene/renderer';
 import { field } from './field';
 
 /** One mesh of a net: cords along two edges of a square that repeats; far away it becomes an even veil. */
@@ -34,13 +34,8 @@ function netTexture(quality: Quality): DataTexture {
       pixels[at + 3] = fromCord < 3 ? 225 : 0;
     }
   }
-  const texture = new DataTexture(pixels, side, side);
+  const texture = createPixelTexture(pixels, side, quality);
   texture.wrapS = texture.wrapT = RepeatWrapping;
-  texture.magFilter = LinearFilter;
-  texture.minFilter = minFilterOf(quality);
-  texture.generateMipmaps = true;
-  texture.anisotropy = anisotropyOf(quality);
-  texture.needsUpdate = true;
   return texture;
 }
 

@@ -1,5 +1,6 @@
-import { Color, DataTexture, LinearFilter, SRGBColorSpace } from 'three';
-import { anisotropyOf, minFilterOf, type Quality } from '../../scene/renderer';
+import { Color, type DataTexture, SRGBColorSpace } from 'three';
+import { createPixelTexture } from '../../scene/pixel-texture';
+import type { Quality } from '../../scene/renderer';
 
 /**
  * The rings of a target from the outside in, each a share of its radius. Neighbours differ in brightness, not in hue alone, and a
@@ -59,12 +60,7 @@ export function createRingTexture(quality: Quality): DataTexture {
       pixels.set([red * scale, green * scale, blue * scale, 255], at);
     }
   }
-  const texture = new DataTexture(pixels, side, side);
+  const texture = createPixelTexture(pixels, side, quality);
   texture.colorSpace = SRGBColorSpace;
-  texture.magFilter = LinearFilter;
-  texture.minFilter = minFilterOf(quality);
-  texture.generateMipmaps = true;
-  texture.anisotropy = anisotropyOf(quality);
-  texture.needsUpdate = true;
   return texture;
 }

@@ -157,6 +157,18 @@ export function bendOfPoints(name: FingerName, points: FingerPoints, target: Mut
 
 const fingertip = 0.006;
 
+/** A hand whose fingers are made from these. */
+const handOf = <Finger>(
+  { thumb, index, middle, ring, little }: Readonly<Record<FingerName, Finger>>,
+  fingerOf: (finger: Finger) => FingerGeometry,
+): HandGeometry => ({
+  thumb: fingerOf(thumb),
+  index: fingerOf(index),
+  middle: fingerOf(middle),
+  ring: fingerOf(ring),
+  little: fingerOf(little),
+});
+
 /** The hand of an average person of this eye height [m]: the mannequin's. */
 export function averageHand(eyeHeight: number): HandGeometry {
   const size = eyeHeight / proportions.eyeHeight;
@@ -166,29 +178,16 @@ export function averageHand(eyeHeight: number): HandGeometry {
     tipRadius: 0.75 * radius * size,
     rootRadius: radius * size,
   });
-  const { thumb, index, middle, ring, little } = proportions;
-  return {
-    thumb: fingerOf(thumb),
-    index: fingerOf(index),
-    middle: fingerOf(middle),
-    ring: fingerOf(ring),
-    little: fingerOf(little),
-  };
+  return handOf(proportions, fingerOf);
 }
 
 /** The same hand so much larger. */
-export function scaledHand({ thumb, index, middle, ring, little }: HandGeometry, size: number): HandGeometry {
+export function scaledHand(hand: HandGeometry, size: number): HandGeometry {
   const fingerOf = ({ root, lengths, tipRadius, rootRadius }: FingerGeometry): FingerGeometry => ({
     root: scale(root, size),
     lengths: [lengths[0] * size, lengths[1] * size, lengths[2] * size],
     tipRadius: tipRadius * size,
     rootRadius: rootRadius * size,
   });
-  return {
-    thumb: fingerOf(thumb),
-    index: fingerOf(index),
-    middle: fingerOf(middle),
-    ring: fingerOf(ring),
-    little: fingerOf(little),
-  };
+  return handOf(hand, fingerOf);
 }

@@ -1,5 +1,6 @@
-import { DataTexture, LinearFilter, RepeatWrapping, RGBAFormat } from 'three';
-import { anisotropyOf, minFilterOf, type Quality } from '../renderer';
+import { type DataTexture, RepeatWrapping } from 'three';
+import { createPixelTexture } from '../pixel-texture';
+import type { Quality } from '../renderer';
 
 /** Four noises that repeat without a seam: r wide, g fine (both sums of octaves), b grass blades, a one fine octave. */
 const side = 256;
@@ -77,12 +78,7 @@ export function createNoiseTexture(quality: Quality): DataTexture {
       pixels[at + 3] = 255 * latticeNoise(u, v, 64, 41);
     }
   }
-  const texture = new DataTexture(pixels, side, side, RGBAFormat);
+  const texture = createPixelTexture(pixels, side, quality);
   texture.wrapS = texture.wrapT = RepeatWrapping;
-  texture.magFilter = LinearFilter;
-  texture.minFilter = minFilterOf(quality);
-  texture.generateMipmaps = true;
-  texture.anisotropy = anisotropyOf(quality);
-  texture.needsUpdate = true;
   return texture;
 }
