@@ -7,11 +7,20 @@ export type ServerState = 'unknown' | 'asked' | 'here' | 'none' | 'silent';
 /** Without an answer in this time [ms] the server counts as silent. */
 const patienceMs = 4000;
 
-/** What an answer to the question for rooms says of who gave it. */
+function parsed(json: string): unknown {
+  try {
+    return JSON.parse(json);
+  } catch {
+    // reason: hosts of files answer with pages of their own, which are no JSON; that is what tells them apart
+    return null;
+  }
+}
+
+/** What an answer to the question for rooms says of who gave it; rejects where it breaks off. */
 async function stateFrom(response: Response): Promise<ServerState> {
   // Proxies say these while the server behind them is away.
   if (response.status >= 500 || response.status === 429) return 'silent';
-  const said: unknown = await response.json().catch(() => null);
+  const said = parsed(await response.text());
   if (typeof said !== 'object' || said === null) return 'none';
   return 'error' in said || ('rooms' in said && Array.isArray(said.rooms)) ? 'here' : 'none';
 }

@@ -50,3 +50,11 @@ test('one that was away is found when it is asked again', async () => {
   expect(await presence.known(), 'what is known is not asked for').toBe('silent');
   expect(await presence.ask()).toBe('here');
 });
+
+test('one whose answer breaks off is silent: what came of it says nothing of the host', async () => {
+  const { presence } = await page((request, response) => {
+    response.writeHead(200, { 'content-type': 'application/json', 'content-length': 30 });
+    response.write('{"rooms":', () => request.socket.destroy());
+  });
+  expect(await presence.known()).toBe('silent');
+});
