@@ -58,7 +58,7 @@ export default defineConfig({
     manifest: true,
     chunkSizeWarningLimit: 1200,
     rolldownOptions: {
-      input: ['index.html', 'results.html', 'experimenter.html', 'preview.html'],
+      input: ['index.html', 'results.html', 'experimenter.html', 'preview.html', 'withdraw.html'],
       // The emulator's panel uses packages that mark themselves for servers we do not have.
       onwarn(warning, warn) {
         if (warning.code !== 'MODULE_LEVEL_DIRECTIVE') warn(warning);

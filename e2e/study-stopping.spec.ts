@@ -1,39 +1,53 @@
+import { checkedPlan } from '../src/core/study/plan';
+import type { PlacedPose } from './emulated-headset';
 import { enterVr, expect, keepPicture } from './page-fixture';
-import {
-  agreeAndTell,
-  calibrate,
-  press,
-  reaches,
-  signIn,
-  stretched,
-  study,
-  takePart,
-  tenHertz,
-  test,
-} from './study-participant';
+import { agreeAndTell, press, reaches, signIn, stretched, study, takePart, tenHertz, test } from './study-participant';
 import { experimenter, shortStudy } from './study-server';
 
-test('a participant with no one beside them is checked, stops in the middle of a round by raising both hands, and the experimenter sees it @full', async ({
+test('a participant with no one beside them is checked, asked whether to stop, and stops in the middle of a round by raising both hands, and the experimenter sees it @full', async ({
   page,
   origin,
 }) => {
   test.setTimeout(180_000);
   const remote = { contact: 'Write to lab@example.org, or call 555 0100.', freeSpace: 2 };
-  const plan = shortStudy('stopping');
-  const tasks = plan.tasks.map((task) => ({
+  const short = shortStudy('stopping');
+  const tasks = short.tasks.map((task) => ({
     ...task,
-    trialSeconds: 60,
-    tutorial: { ...task.tutorial, when: 'never' as const },
+    trialSeconds: 15,
+    calibrateBeforeBlock: false,
+    questionnaire: 'well',
+    tutorial: { ...task.tutorial, when: 'never' },
   }));
-  await experimenter(origin).begin({ ...plan, tasks, remote }, false);
+  const question = { id: 'sick', text: 'How sick do you feel?' };
+  const well = { id: 'well', title: 'Well?', answer: { kind: 'likert', from: 0, to: 4 }, questions: [question] };
+  const askToStop = [{ questionnaire: 'well', measure: 'sick', atLeast: 3 }];
+  const plan = checkedPlan({ ...short, tasks, remote, questionnaires: [well], askToStop });
+  await experimenter(origin).begin(plan, false);
   const headset = await takePart(page, origin, 'stopping', 'P01');
   await agreeAndTell(page);
   await enterVr(page, tenHertz);
-  await headset.place({ ...stretched, head: { ...stretched.head, position: [0, 0.9, 0] } });
-  await reaches(page, 'calibration');
   await headset.place(stretched);
-  await calibrate(page);
+  await reaches(page, 'calibration');
+  await press(page, 'calibrate');
+  const seated = ({ position: [x, y, z], orientation }: PlacedPose): PlacedPose => ({
+    position: [x, y - 0.8, z],
+    orientation,
+  });
+  const { head, left, right } = stretched;
+  await headset.place({ head: seated(head), left: seated(left), right: seated(right) });
+  await reaches(page, 'setup', 90_000);
+  await keepPicture(page, 'study-setup');
+  await press(page, 'calibrate', true);
+  await reaches(page, 'trial-ready', 90_000);
   await keepPicture(page, 'study-ready-to-stop');
+  await press(page, 'start');
+  await reaches(page, 'question-sick', 90_000);
+  await press(page, 'answer-4');
+  await press(page, 'submit');
+  await reaches(page, 'unwell');
+  await keepPicture(page, 'study-unwell');
+  await press(page, 'go-on');
+  await reaches(page, 'trial-ready', 60_000);
   await press(page, 'start');
   await expect.poll(async () => (await study(page)).running).toBe(true);
   const raised = (x: number) => ({ position: [x, 2, -0.1], orientation: stretched.head.orientation }) as const;

@@ -4,7 +4,7 @@ import { join, sep } from 'node:path';
 import { root } from './run-command.mjs';
 
 /** Other pages than the one that is kept; they need their server. */
-const otherPages = ['experimenter.html', 'preview.html', 'results.html'];
+const otherPages = ['experimenter.html', 'preview.html', 'results.html', 'withdraw.html'];
 
 /**
  * Files that no page which is kept asks for: a server's business, weights for pages without the runtime (the library's), and what computes

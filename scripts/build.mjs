@@ -13,6 +13,7 @@ const sources = [
   'results.html',
   'experimenter.html',
   'preview.html',
+  'withdraw.html',
   'vite.config.ts',
   'tsconfig.json',
   'package-lock.json',

@@ -82,7 +82,7 @@ export class StudyPlaces {
       if (row.token_hash) {
         throw new StoreRefusal(
           'conflict',
-          `${participant} is taken by another device: the experimenter can release it`,
+          `${participant} is taken by another device: go on there, or ask for the place to be released`,
         );
       }
       const token = newToken();

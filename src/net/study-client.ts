@@ -154,6 +154,22 @@ export function createParticipantClient(server: string): ParticipantClient {
   };
 }
 
+/** What a participant asks of the server who wants everything deleted. Every call throws ServerRefusal or ServerUnreachable. */
+export interface WithdrawalClient {
+  /** As anyone may read it. */
+  study(study: string): Promise<PublicStudy>;
+  /** Deletes everything of the participant whose code this is, however it was typed. */
+  withdraw(study: string, code: string): Promise<Receipt>;
+}
+
+export function createWithdrawalClient(server: string): WithdrawalClient {
+  const answer = answersOf(server);
+  return {
+    study: (study) => answer(of(study)),
+    withdraw: (study, code) => answer(`${of(study)}/withdraw`, { method: 'POST', body: { code } }),
+  };
+}
+
 /** Bodies of the server are 512 KiB at most. */
 const recordsAtOnce = 50;
 

@@ -14,6 +14,9 @@ export function studyLink({ study, participant, invitation }: StudyAddress): str
   return `./?${query}${invitation === null ? '' : `#${new URLSearchParams({ [name]: invitation })}`}`;
 }
 
+/** The page where a participant withdraws from a study, relative to the folder of the page. */
+export const withdrawalLink = (study: string): string => `./withdraw?${new URLSearchParams({ study })}`;
+
 /** The invitation behind "#" of an address; null: it holds none. */
 export const invitationIn = (hash: string): string | null =>
   new URLSearchParams(hash.replace(/^#/, '')).get(name) || null;

@@ -9,6 +9,7 @@ const built = {
   'results.html': '<title>results</title>',
   'experimenter.html': '<title>experimenter</title>',
   'preview.html': '<title>preview</title>',
+  'withdraw.html': '<title>withdraw</title>',
   'api/rooms': '{"rooms":null}',
   'studies/paper.json': '{}',
   '.source-hash': 'hash',
@@ -20,6 +21,7 @@ const built = {
   'assets/shared-3.js': 'of two pages',
   'assets/results-4.js': 'charts',
   'assets/preview-8.js': 'a study, screen by screen',
+  'assets/withdraw-9.js': 'a code and a receipt',
   'assets/worker-5.js': 'in no manifest',
   'assets/ort.webgpu.bundle.min-6.js': 'webgpu',
   'assets/ort-wasm-simd-threaded.asyncify-7.wasm': 'webgpu',
@@ -31,6 +33,7 @@ const manifest = {
   'results.html': { file: 'assets/results-4.js', imports: ['_shared'] },
   'experimenter.html': { file: 'assets/results-4.js' },
   'preview.html': { file: 'assets/preview-8.js', imports: ['_shared'] },
+  'withdraw.html': { file: 'assets/withdraw-9.js', imports: ['_shared'] },
 };
 
 test('what the page may ever load is kept, and nothing of a server, of other pages or of WebGPU', () => {

@@ -1,5 +1,6 @@
 import { type DemographicField, demographicFields } from '../../core/study/demographics';
 import { inLanguage } from '../../core/study/words';
+import { offerDownload } from '../../ui/downloads';
 import { button, element } from '../../ui/element';
 import type { Invited, StudyForm } from './study-form';
 
@@ -162,7 +163,7 @@ function demographicsForm({ done, stop }: FormOf<'demographics'>): readonly Node
   ];
 }
 
-function participantForm({ complaint: said, known, go }: FormOf<'participant'>): readonly Node[] {
+function participantForm({ complaint: said, known, go, decline }: FormOf<'participant'>): readonly Node[] {
   const complaint = complaintLine();
   if (said !== null) complaint.say(said);
   const field = (name: keyof Invited, label: string, placeholder: string, maxlength: number) => {
@@ -176,7 +177,7 @@ function participantForm({ complaint: said, known, go }: FormOf<'participant'>):
       node: element('label', { class: 'field' }, element('span', {}, label), input),
     };
   };
-  const participant = field('participant', 'Your code, as the experimenter gave it to you', 'P01', 4);
+  const participant = field('participant', 'Your code: a P and two or three digits', 'P01', 4);
   const invitation = field('invitation', 'Your invitation: sixteen letters and digits', 'XXXX-XXXX-XXXX-XXXX', 30);
   const submit = button(
     'Continue',
@@ -195,28 +196,46 @@ function participantForm({ complaint: said, known, go }: FormOf<'participant'>):
     participant.node,
     invitation.node,
     complaint.node,
-    element('div', { class: 'row' }, submit),
+    element('p', { class: 'soft' }, 'Nothing is recorded before you agree.'),
+    element('div', { class: 'row' }, submit, button('I do not want to take part', decline)),
   ];
 }
 
-function withdrawalForm({ code, noted }: FormOf<'code'>): readonly Node[] {
+function withdrawalForm({ code, withdrawalPage, noted, stop }: FormOf<'code'>): readonly Node[] {
+  const saved = `Withdrawal code: ${code}\nTo have everything deleted, enter it at ${withdrawalPage}\n`;
+  const save = button('Save both as a file', () => offerDownload('withdrawal-code.txt', 'text/plain', saved));
   return [
     element('p', { class: 'kicker' }, 'Your withdrawal code'),
     element('h1', {}, 'Please write this down'),
     element('p', {}, element('code', {}, code)),
-    ...paragraphs([
-      'Give this code to the experimenter, and everything that was recorded under it is deleted. It is shown only now, and cannot be looked up later.',
-    ]),
-    element('div', { class: 'row' }, button('I have noted it', noted, { class: 'primary' })),
+    element(
+      'p',
+      {},
+      'With this code you can have everything deleted that is recorded of you, at any time and without saying why: ',
+      element(
+        'a',
+        { href: withdrawalPage, target: '_blank', rel: 'noopener' },
+        withdrawalPage.replace(/^https?:\/\//, ''),
+      ),
+    ),
+    ...paragraphs(['It is shown only now and cannot be looked up later: note it, also if you stop here.']),
+    element(
+      'div',
+      { class: 'row' },
+      button('I have noted it', noted, { class: 'primary' }),
+      save,
+      button('Stop the study', stop),
+    ),
   ];
 }
 
-function lockedOutForm({ participant, unsent, anew }: FormOf<'locked-out'>): readonly Node[] {
+function lockedOutForm({ participant, unsent, contact, anew }: FormOf<'locked-out'>): readonly Node[] {
   return [
     element('p', { class: 'kicker trouble' }, 'Study'),
-    element('h1', {}, 'Please call the experimenter'),
+    element('h1', {}, contact === null ? 'Please call the experimenter' : 'It does not go on here'),
     ...paragraphs([
       `${participant} was released for another device, or what was recorded was deleted. This device sends nothing more.`,
+      ...(contact === null ? [] : [`Have you neither withdrawn nor gone on elsewhere? ${contact}`]),
     ]),
     ...(unsent > 0
       ? [
@@ -247,7 +266,12 @@ export function formNodes(form: StudyForm): readonly Node[] {
     case 'consent':
       return consentForm(form);
     case 'declined':
-      return lastWords(form.title, 'Thank you all the same', 'Nothing was recorded. You can close this page.', false);
+      return lastWords(
+        form.title,
+        'Thank you all the same',
+        'Nothing was recorded. You can close this page, or open your link again.',
+        false,
+      );
     case 'code':
       return withdrawalForm(form);
     case 'demographics':

@@ -176,7 +176,16 @@ export class RunningStudy {
     }
     this.#settle();
     if (session.withdrawalCode !== null) {
-      display.ask({ kind: 'code', code: session.withdrawalCode, noted: () => session.codeNoted() });
+      display.ask({
+        kind: 'code',
+        code: session.withdrawalCode,
+        withdrawalPage: this.#page.address.withdrawalPage(),
+        noted: () => session.codeNoted(),
+        stop: () => {
+          session.codeNoted();
+          this.#apply({ type: 'stop', by: 'participant' });
+        },
+      });
     } else if (session.step.kind === 'demographics') {
       display.ask({
         kind: 'demographics',
@@ -197,6 +206,7 @@ export class RunningStudy {
         typed: this.#answering.typed,
         triedToSubmit: this.#answering.triedToSubmit,
         calibration: this.#calibration,
+        withdrawalPage: this.#page.address.withdrawalPage(),
         setupFaults: this.#measuredFaults.length > 0 ? this.#measuredFaults : this.#setupFaults(null),
         prepared: this.#preparation.of(this.#attempt()),
         refusal: this.#refusal,
@@ -223,10 +233,12 @@ export class RunningStudy {
 
   #showLockedOut(): void {
     this.#dropTrial();
-    const { participant } = this.session.progress;
+    const { progress, plan, safekeeping } = this.session;
+    const { participant } = progress;
+    const contact = plan.remote?.contact ?? null;
     const anew = () => void this.#forget().then(() => this.#page.address.reload());
     this.#page.display.ask(
-      { kind: 'locked-out', participant, unsent: this.session.safekeeping.unsent, anew },
+      { kind: 'locked-out', participant, unsent: safekeeping.unsent, contact, anew },
       this.#host.inSession() ? lockedOutScreen(this.session) : null,
     );
   }

@@ -4,6 +4,9 @@ import type { ParticipantSession } from './participant-session';
 import type { Opened } from './study-opening';
 import type { StudyPage } from './study-page';
 
+/** What a server said, with a capital and a full stop. */
+const asSentence = (text: string) => `${text.charAt(0).toUpperCase()}${text.slice(1).replace(/\.$/, '')}.`;
+
 type NewSession = Extract<Opened, { kind: 'new' }>;
 
 export interface StudyEntranceOptions {
@@ -50,7 +53,7 @@ export class StudyEntrance {
 
   #faultText(error: unknown): string {
     return error instanceof ServerRefusal && error.status === 404 && !(error instanceof NoStudyServer)
-      ? `There is no study "${this.#study}" on this server. The experimenter's page begins one.`
+      ? `There is no study "${this.#study}" on this server. Compare the address with your link.`
       : reasonOf(error);
   }
 
@@ -64,6 +67,7 @@ export class StudyEntrance {
       complaint,
       known: { participant: this.#participant, invitation: address.invitation() },
       go: (invited) => address.goTo(invited),
+      decline: () => display.ask({ kind: 'declined', title: 'Study' }),
     });
   }
 
@@ -76,12 +80,11 @@ export class StudyEntrance {
       agree: async (choices) => {
         const taken = await agree(choices, invitation);
         if (taken === 'uninvited') {
-          this.#askWho(
-            `This is not the invitation of ${participant}. Compare it with your link, or ask the experimenter.`,
-          );
+          const help = study.contact === null ? ', or ask the experimenter.' : `. ${study.contact}`;
+          this.#askWho(`This is not the invitation of ${participant}. Compare it with your link${help}`);
           return null;
         }
-        if ('why' in taken) return taken.why;
+        if ('why' in taken) return `${asSentence(taken.why)} ${study.contact ?? 'Ask the experimenter.'}`;
         this.#options.onSession(taken);
         return null;
       },

@@ -24,6 +24,7 @@ export type StudyForm =
       readonly known: { readonly [Part in keyof Invited]: string | null };
       /** Gets both in capitals. */
       go(invited: Invited): void;
+      decline(): void;
     }
   | {
       readonly kind: 'consent';
@@ -34,8 +35,16 @@ export type StudyForm =
       decline(): void;
     }
   | { readonly kind: 'declined'; readonly title: string }
-  /** Shown once: the code with which everything can be deleted. */
-  | { readonly kind: 'code'; readonly code: string; noted(): void }
+  /** Shown until it is noted: the code with which everything can be deleted. */
+  | {
+      readonly kind: 'code';
+      readonly code: string;
+      /** Address of the page where the code is entered. */
+      readonly withdrawalPage: string;
+      noted(): void;
+      /** The participant does not want to go on. */
+      stop(): void;
+    }
   | {
       readonly kind: 'demographics';
       /** The participant does not want to go on. */
@@ -44,6 +53,13 @@ export type StudyForm =
       done(answers: Record<string, unknown>): string | null;
     }
   /** The place is no longer this device's: the next participant here may begin anew. */
-  | { readonly kind: 'locked-out'; readonly participant: string; readonly unsent: number; anew(): void }
+  | {
+      readonly kind: 'locked-out';
+      readonly participant: string;
+      readonly unsent: number;
+      /** Whom to ask with no one beside them; null: an experimenter is there. */
+      readonly contact: string | null;
+      anew(): void;
+    }
   /** The study cannot go on here. */
   | { readonly kind: 'fault'; readonly text: string };

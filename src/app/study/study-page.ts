@@ -18,6 +18,8 @@ export interface StudyAddressBar {
   /** Loads the page of this place, also where the address says it already. */
   goTo(place: Invited): void;
   reload(): void;
+  /** Where a participant withdraws from the study, whole. */
+  withdrawalPage(): string;
   /** From now on another invitation in the address loads the page anew, which a change behind "#" alone does not. */
   reloadWhenChanged(): void;
 }

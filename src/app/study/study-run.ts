@@ -4,7 +4,7 @@ import { vec3 } from '../../core/math/vec3';
 import { neverBack } from '../../core/tracking/page-clock';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 import { createParticipantClient } from '../../net/study-client';
-import { invitationIn, studyLink } from '../../net/study-link';
+import { invitationIn, studyLink, withdrawalLink } from '../../net/study-link';
 import { pageFolder } from '../../ui/page-folder';
 import type { Pointer } from '../../ui/vr-pointers';
 import { createStudyCard, type StudyCard } from './study-card';
@@ -73,6 +73,7 @@ const addressBarOf = (study: string): StudyAddressBar => ({
     else location.assign(address);
   },
   reload: () => location.reload(),
+  withdrawalPage: () => new URL(withdrawalLink(study), `${pageFolder()}/`).href,
   reloadWhenChanged() {
     window.addEventListener('hashchange', () => location.reload());
   },

@@ -16,19 +16,16 @@ const clock = (seconds: number): string => {
 
 const counted = (count: number, one: string) => `${count} ${one}${count === 1 ? '' : 's'}`;
 
-/** Where answers are, in a sentence; the second part says whether they are in danger. */
-export function safekeepingText({
-  unsent,
-  unsaved,
-  storageFault,
-  online,
-  refusal,
-}: Safekeeping): readonly [string, boolean] {
+/** Where answers are, in a sentence; the second part says whether they are in danger. `remote`: of a participant who is alone. */
+export function safekeepingText(
+  { unsent, unsaved, storageFault, online, refusal }: Safekeeping,
+  remote?: RemoteTerms,
+): readonly [string, boolean] {
   if (refusal !== null && unsent > 0) {
-    return [
-      `Call the experimenter: the server refuses ${counted(unsent, 'record')} (${refusal}). They stay here.`,
-      true,
-    ];
+    const what = `the server refuses ${counted(unsent, 'record')} (${refusal})`;
+    return remote
+      ? [`They stay on this device: ${what}. You can go on. ${remote.contact}`, true]
+      : [`Call the experimenter: ${what}. They stay here.`, true];
   }
   if (unsaved > 0) {
     const why = storageFault ?? 'not written yet';
@@ -50,11 +47,13 @@ function kickerOf(session: ShownSession, step: StudyStep): string {
 }
 
 /** In the headset, when the place is no longer this device's; the page has more to say. */
-export const lockedOutScreen = (session: ShownSession): StudyScreen => ({
+export const lockedOutScreen = ({ plan }: ShownSession): StudyScreen => ({
   id: 'locked-out',
-  kicker: session.plan.title,
-  title: 'Please call the experimenter',
-  text: ['Your place was released for another device. Take the headset off, please.'],
+  kicker: plan.title,
+  title: plan.remote ? 'It does not go on here' : 'Please call the experimenter',
+  text: plan.remote
+    ? ['Your place was released for another device, or deleted. Take the headset off, please.', plan.remote.contact]
+    : ['Your place was released for another device. Take the headset off, please.'],
   figure: null,
   part: null,
   question: null,
@@ -71,7 +70,8 @@ type ScreenBase = Pick<StudyScreen, 'kicker' | 'figure' | 'part' | 'question' | 
 export function screenOf(situation: StudySituation, actions: ScreenActions): StudyScreen | null {
   const { session, refusal } = situation;
   const { step, progress } = session;
-  const [kept, worrying] = safekeepingText(session.safekeeping);
+  const { remote } = session.plan;
+  const [kept, worrying] = safekeepingText(session.safekeeping, remote);
   const base: ScreenBase = {
     kicker: kickerOf(session, step),
     figure: null,
@@ -81,7 +81,8 @@ export function screenOf(situation: StudySituation, actions: ScreenActions): Stu
     footnote: session.simulated ? `SIMULATED · ${kept}` : kept,
     trouble: worrying,
   };
-  if (step.kind !== 'end' && (progress.unwell || situation.stopping)) return stopScreen(base, progress, actions);
+  if (step.kind !== 'end' && (progress.unwell || situation.stopping))
+    return stopScreen(base, { progress, remote }, actions);
   if (progress.paused) return pausedScreen(base, actions);
   switch (step.kind) {
     case 'calibration':
@@ -94,7 +95,7 @@ export function screenOf(situation: StudySituation, actions: ScreenActions): Stu
     case 'questionnaire':
       return questionScreen(base, situation, actions);
     case 'end':
-      return endScreen(base, session);
+      return endScreen(base, situation);
     default:
       return null;
   }
@@ -126,13 +127,18 @@ const pausedScreen = (base: ScreenBase, actions: ScreenActions): StudyScreen => 
 });
 
 /** Whether to stop: asked because of answers, or because the participant wants to. */
-const stopScreen = (base: ScreenBase, { unwell }: Progress, actions: ScreenActions): StudyScreen => ({
+const stopScreen = (
+  base: ScreenBase,
+  { progress: { unwell }, remote }: { readonly progress: Progress; readonly remote: RemoteTerms | undefined },
+  actions: ScreenActions,
+): StudyScreen => ({
   ...base,
   id: unwell ? 'unwell' : 'stopping',
   title: unwell ? 'How are you?' : 'Stop here?',
   text: [
     ...(unwell ? ['Your answers say that you may not feel well. Take the headset off if you like.'] : []),
     'If you stop, your part is over. You need not say why, and what you have done until now is kept.',
+    ...(unwell && remote ? [`If it does not pass: ${remote.contact}`] : []),
   ],
   buttons: [
     // Where the wish to stop was pressed stands the way back: pressing twice stops nothing.
@@ -331,19 +337,19 @@ function restScreen(
   };
 }
 
-function endScreen(base: ScreenBase, { plan, progress, safekeeping }: ShownSession): StudyScreen {
+function endScreen(base: ScreenBase, { session, withdrawalPage }: StudySituation): StudyScreen {
+  const { plan, progress, safekeeping } = session;
   return {
     ...base,
     id: 'end',
     kicker: plan.title,
     title: 'Thank you',
     text: [
-      progress.stopped
-        ? 'Your part is over. Take the headset off and rest. With your withdrawal code everything can be deleted.'
-        : 'You have done everything.',
+      progress.stopped ? 'Your part is over. Take the headset off and rest.' : 'You have done everything.',
       safekeeping.unsent === 0
         ? 'All your answers have arrived. You can close this page.'
         : 'Please keep this page open until your answers have arrived.',
+      `With your withdrawal code you can have everything deleted: ${withdrawalPage.replace(/^https?:\/\//, '')}`,
     ],
     buttons: [],
   };

@@ -58,22 +58,41 @@ export function paintSheet(
   }
   context.fillStyle = vrColors.inkSoft;
   context.font = `400 26px ${vrFont}`;
-  context.fillText(screen.footnote, margin, 842, inner);
+  const foot = wrap(context, screen.footnote, inner);
+  for (const [index, line] of foot.entries()) {
+    context.fillText(line, margin, foot.length === 1 ? 842 : 828 + 28 * index, inner);
+  }
+}
+
+/** Of a sheet's paragraphs [pixels]: the largest that leaves free what lies below them. */
+const textSizes = [38, 34, 30, 26] as const;
+
+/** Draws paragraphs from y = 236 on, not beyond `bottom`; returns where they end. */
+function paintParagraphs(context: CanvasRenderingContext2D, text: readonly string[], bottom: number): number {
+  for (const size of textSizes) {
+    context.font = `400 ${size}px ${vrFont}`;
+    const step = Math.round(1.37 * size);
+    const paragraphs = text.map((paragraph) => wrap(context, paragraph, inner));
+    const end = 236 + step * paragraphs.flat().length + 14 * paragraphs.length;
+    if (end > bottom && size !== textSizes.at(-1)) continue;
+    let y = 236;
+    for (const lines of paragraphs) {
+      for (const line of lines) {
+        context.fillText(line, margin, y);
+        y += step;
+      }
+      y += 14;
+    }
+    return y;
+  }
+  return bottom;
 }
 
 /** Title, paragraphs, a number to be read from afar, a bar. */
-function paintText(context: CanvasRenderingContext2D, { title, text, figure, part }: StudyScreen): void {
+function paintText(context: CanvasRenderingContext2D, { title, text, figure, part, hint }: StudyScreen): void {
   context.font = `650 60px ${vrFont}`;
   context.fillText(title, margin, 150, inner);
-  context.font = `400 38px ${vrFont}`;
-  let y = 236;
-  for (const paragraph of text) {
-    for (const line of wrap(context, paragraph, inner)) {
-      context.fillText(line, margin, y);
-      y += 52;
-    }
-    y += 14;
-  }
+  const y = paintParagraphs(context, text, figure !== null ? 410 : part !== null || hint !== null ? 630 : 690);
   if (figure !== null) {
     context.textAlign = 'center';
     context.fillStyle = vrColors.accent;

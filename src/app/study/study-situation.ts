@@ -25,6 +25,8 @@ export interface StudySituation {
   readonly calibration: CalibrationStep | null;
   /** What is wrong with device, room or height of a participant who is alone; empty: nothing is known to be. */
   readonly setupFaults: readonly string[];
+  /** Address of the page where everything can be deleted by the withdrawal code. */
+  readonly withdrawalPage: string;
   /** Of the step at hand; null: not asked for yet. */
   readonly prepared: Prepared | null;
   /** Why the last wish changed nothing; null: it did. */

@@ -76,6 +76,8 @@ export interface PublicStudy extends Pick<StudyPlan, 'id' | 'title' | 'consent'>
   /** Those that participants may choose from; the first is chosen. */
   readonly languages: readonly string[];
   readonly simulated: boolean;
+  /** Whom participants ask who have no one beside them; null: an experimenter is there. */
+  readonly contact: string | null;
 }
 
 /** A trial that a group plays together: a step of the schedule, and the how many-eth run of its block. */

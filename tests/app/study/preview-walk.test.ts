@@ -6,7 +6,12 @@ import { outlineOf } from '../../../src/core/study/plan-outline';
 import { examplePlan, latencyPlan, paperPlan } from '../../core/study/studies';
 
 const walkOf = (plan = examplePlan(), participant = 'P01') =>
-  new PreviewWalk({ plan, participant, onChange: () => undefined });
+  new PreviewWalk({
+    plan,
+    participant,
+    withdrawalPage: 'https://lab.example.org/withdraw?study=x',
+    onChange: () => undefined,
+  });
 
 function screenAt(walk: PreviewWalk) {
   const shown = walk.shown();

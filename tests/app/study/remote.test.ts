@@ -1,4 +1,5 @@
 import { describe, expect, test } from 'vitest';
+import { safekeepingText } from '../../../src/app/study/study-screens';
 import { setupFaults } from '../../../src/core/study/remote-setup';
 import { aWomanOf26 } from '../../core/study/studies';
 import { agree, canStart } from './participant-steps';
@@ -45,6 +46,39 @@ describe('a study with no one beside its participants', () => {
     expect(textOf(tab)).toContain('No headset is connected');
     expect(textOf(tab)).toContain('lab@example.org');
     expect(tab.display.screen?.buttons.map(({ id }) => id)).toEqual(['ask-to-stop']);
+  });
+
+  test('is told nowhere to call an experimenter: the contact of the plan stands there instead', async () => {
+    const server = await studyServer({ remote });
+    const device = browser(server);
+    const stranger = await device.open({ invitation: 'AAAA-BBBB-CCCC-DDDD' });
+    await stranger.display.asked('consent').agree({ motion: false, language: null });
+    const complaint = stranger.display.asked('participant').complaint;
+    expect(complaint).toContain(remote.contact);
+    const tab = await browser(server).open();
+    await agree(tab);
+    const late = await browser(server).open();
+    const taken = await late.display.asked('consent').agree({ motion: false, language: null });
+    expect(taken).toMatch(/^P01 is taken by another device: .*\. Write to lab@example\.org$/);
+    tab.wear(true);
+    await tab.exchange();
+    server.store.deleteParticipant('paper', 'P01', 'experimenter', 1e9);
+    await tab.exchange();
+    const form = tab.display.asked('locked-out');
+    expect(form.contact).toBe(remote.contact);
+    const sheet = tab.display.inHeadset;
+    expect(sheet?.text).toContain(remote.contact);
+    const said = [complaint, taken, sheet?.title, ...(sheet?.text ?? [])].join(' ');
+    expect(said).not.toMatch(/experimenter/i);
+  });
+
+  test('says what the server refuses, and that one can go on', () => {
+    const refused = { unsent: 2, unsaved: 0, storageFault: null, online: true, refusal: 'no', lockedOut: false };
+    expect(safekeepingText(refused, remote)).toEqual([
+      'They stay on this device: the server refuses 2 records (no). You can go on. Write to lab@example.org',
+      true,
+    ]);
+    expect(safekeepingText(refused)[0]).toContain('Call the experimenter');
   });
 
   test('begins in a boundary that is large enough alone', async () => {

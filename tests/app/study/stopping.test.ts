@@ -80,6 +80,16 @@ describe('a participant stops', () => {
     await expectStopped(server, { device, tab });
   });
 
+  test('at the desk, as soon as the withdrawal code is noted', async () => {
+    const server = await studyServer();
+    const device = browser(server);
+    const tab = await device.open();
+    expect(await tab.display.asked('consent').agree({ motion: false, language: null })).toBeNull();
+    tab.display.asked('code').stop();
+    await expectStopped(server, { device, tab });
+    expect(tab.display.screen?.text.join(' ')).toContain('/withdraw?study=paper');
+  });
+
   test('or thinks better of it, and goes on where it paused', async () => {
     const server = await studyServer();
     const { tab } = await beforeTheQuestions(server);

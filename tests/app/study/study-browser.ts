@@ -253,6 +253,7 @@ export function browser(server: StudyServer) {
       invitation: () => invitation,
       goTo: (place) => go(place),
       reload: () => go('reload'),
+      withdrawalPage: () => `${server.origin}/withdraw?study=${study}`,
       reloadWhenChanged: () => undefined,
     };
     const page: StudyPage = { display, address, now: clock.now, after: clock.after };

@@ -57,6 +57,7 @@ function participant(...events: readonly ProgressEvent[]) {
             refusal: null,
             stopping: false,
             setupFaults: [],
+            withdrawalPage: 'https://lab.example.org/withdraw?study=paper',
           },
           ...{ prepared: { state: 'ready', reason: '' }, playing: false, waitingFor: null, standing: false },
           ...situation,

@@ -34,20 +34,26 @@ describe('the entrance', () => {
     expect(server.store.overview('paper', 1e9)[0]?.claimed).toBe(false);
   });
 
-  test('who declines is thanked and leaves nothing, neither here nor on the server', async () => {
-    const server = await studyServer();
-    const tab = await browser(server).open();
-    tab.display.asked('consent').decline();
-    expect(tab.display.asked('declined').title).toBe(server.plan.title);
-    expect(server.store.overview('paper', 1e9)[0]?.claimed).toBe(false);
-    expect(await (await openStudyVault()).session('paper', 'P01')).toBeNull();
-  });
+  test.each(['participant', 'consent'] as const)(
+    'who leaves at the first screen, when asked for %s, is thanked, and nothing is kept here or on the server',
+    async (first) => {
+      const server = await studyServer();
+      const tab = await browser(server).open(first === 'participant' ? { invitation: null } : {});
+      tab.display.asked(first).decline();
+      expect(tab.display.shown).toBe('declined');
+      const [place] = server.store.overview('paper', 1e9);
+      expect(place).toMatchObject({ claimed: false, records: 0, session: null, invitation: server.invitation });
+      const vault = await openStudyVault();
+      expect(await vault.session('paper', 'P01')).toBeNull();
+      expect(await vault.records('paper', 'P01')).toEqual([]);
+    },
+  );
 
   test('a study that the server does not have, and a server that does not answer, are said', async () => {
     const server = await studyServer();
     const elsewhere = await browser(server).open({ study: 'another' });
     expect(elsewhere.display.asked('fault').text).toBe(
-      `There is no study "another" on this server. The experimenter's page begins one.`,
+      'There is no study "another" on this server. Compare the address with your link.',
     );
     await server.stop();
     const alone = await browser(server).open();

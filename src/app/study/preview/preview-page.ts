@@ -2,6 +2,7 @@ import { reasonOf } from '../../../core/errors/reasons';
 import { languagesOf, participantsOf, type StudyPlan } from '../../../core/study/plan';
 import { durationOf } from '../../../core/study/plan-outline';
 import { remarksOn } from '../../../core/study/plan-remarks';
+import { withdrawalLink } from '../../../net/study-link';
 import { button, element, pageElement } from '../../../ui/element';
 import { leftPlan } from '../../../ui/left-plan';
 import { pageFolder } from '../../../ui/page-folder';
@@ -69,7 +70,12 @@ class PreviewPage {
     const before = this.#walk;
     this.#participant = participant;
     this.#builtForm = '';
-    const walk = new PreviewWalk({ plan: this.#plan, participant, onChange: () => this.#render() });
+    const walk = new PreviewWalk({
+      plan: this.#plan,
+      participant,
+      withdrawalPage: new URL(withdrawalLink(this.#plan.id), `${pageFolder()}/`).href,
+      onChange: () => this.#render(),
+    });
     this.#walk = walk;
     // Another participant at the same screen, where there is one.
     if (before) walk.read(before.language);

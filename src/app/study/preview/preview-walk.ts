@@ -78,6 +78,8 @@ class PreviewSession implements ShownSession {
 export interface PreviewWalkOptions {
   readonly plan: StudyPlan;
   readonly participant: string;
+  /** Address of the page where participants withdraw. */
+  readonly withdrawalPage: string;
   /** Hears when something else is to be shown. */
   readonly onChange: () => void;
 }
@@ -90,14 +92,16 @@ export class PreviewWalk {
   readonly #onChange: () => void;
   readonly #actions: ScreenActions;
   readonly #participant: string;
+  readonly #withdrawalPage: string;
   #at = 0;
   #place: 'desk' | 'headset' = 'headset';
   #refusal: string | null = null;
   #stopping = false;
 
-  constructor({ plan, participant, onChange }: PreviewWalkOptions) {
+  constructor({ plan, participant, withdrawalPage, onChange }: PreviewWalkOptions) {
     this.stops = previewStops(plan, participant);
     this.#participant = participant;
+    this.#withdrawalPage = withdrawalPage;
     this.#session = new PreviewSession(plan, participant, languagesOf(plan)[0]);
     this.#answering = new Answering(this.#session);
     this.#onChange = onChange;
@@ -181,9 +185,10 @@ export class PreviewWalk {
     const next = () => this.next();
     switch (this.stop.kind) {
       case 'consent': {
-        const { id, title, consent } = plan;
+        const { id, title, consent, remote } = plan;
         const others = languagesOf(plan).filter((language) => language !== this.language);
-        const study = { id, title, consent, languages: [this.language, ...others], simulated: false };
+        const contact = remote?.contact ?? null;
+        const study = { id, title, consent, languages: [this.language, ...others], simulated: false, contact };
         const agree = async () => {
           next();
           return null;
@@ -191,7 +196,13 @@ export class PreviewWalk {
         return { kind: 'consent', study, participant: this.#participant, agree, decline: next };
       }
       case 'code':
-        return { kind: 'code', code: exampleCode, noted: next };
+        return {
+          kind: 'code',
+          code: exampleCode,
+          withdrawalPage: this.#withdrawalPage,
+          noted: next,
+          stop: () => this.goTo(this.stops.length),
+        };
       case 'demographics':
         return {
           kind: 'demographics',
@@ -219,6 +230,7 @@ export class PreviewWalk {
       prepared: { state: 'ready', reason: '' },
       refusal: this.#refusal,
       stopping: this.#stopping,
+      withdrawalPage: this.#withdrawalPage,
       setupFaults: [],
       playing: kind === 'waiting',
       waitingFor: kind === 'waiting' ? this.#others() : null,

@@ -1,0 +1,66 @@
+import type { Page } from '@playwright/test';
+import type { ParticipantState } from '../src/core/study/study-api';
+import { expect, keepPicture } from './page-fixture';
+import { recordsOf, test } from './study-participant';
+import { experimenter, shortStudy } from './study-server';
+
+/** How many sessions of participants the browser still holds. */
+const sessionsInBrowser = (page: Page): Promise<number> =>
+  page.evaluate(
+    () =>
+      new Promise<number>((resolve, reject) => {
+        const opening = indexedDB.open('threepoint-studies');
+        opening.onerror = () => reject(opening.error);
+        opening.onsuccess = () => {
+          const counting = opening.result.transaction('sessions').objectStore('sessions').count();
+          counting.onsuccess = () => resolve(counting.result);
+          counting.onerror = () => reject(counting.error);
+        };
+      }),
+  );
+
+test('a participant withdraws alone, by the code on the page that stands beside it, and keeps a receipt @full', async ({
+  page,
+  origin,
+  complaints,
+}) => {
+  complaints.allow(/404.*\/withdraw/, /401.*\/api\/studies/);
+  test.setTimeout(180_000);
+  const remote = { contact: 'Write to lab@example.org, or call 555 0100.', freeSpace: 2 };
+  await experimenter(origin).begin({ ...shortStudy('leaving'), remote }, false);
+  await page.goto(await experimenter(origin).link('leaving', 'P01', '&quality=low'));
+  await page.getByLabel(/I have read this/).check();
+  await page.getByRole('button', { name: 'I agree' }).click();
+  await keepPicture(page, 'study-code');
+  const code = (await page.locator('.study-card code').textContent()) ?? '';
+  await expect.poll(async () => (await recordsOf(origin, 'leaving')).length).toBe(1);
+  expect(await sessionsInBrowser(page)).toBe(1);
+  const link = page.getByRole('link', { name: '/withdraw?study=leaving' });
+  await page.goto((await link.getAttribute('href')) as string);
+
+  const go = page.getByRole('button', { name: 'Delete everything' });
+  await page.getByLabel('Your withdrawal code').fill('AAAA-BBBB-CCCC-DDDD');
+  await expect(go).toBeDisabled();
+  await page.getByLabel(/I want everything deleted/).check();
+  await go.click();
+  await expect(page.getByRole('alert')).toHaveText('Nothing was deleted: nothing is recorded under this code.');
+  await keepPicture(page, 'study-withdraw');
+  await page.getByLabel('Your withdrawal code').fill(code.toLowerCase().replaceAll('-', ' '));
+  await go.click();
+  const receipt = page.getByRole('region', { name: 'Receipt' });
+  await expect(receipt.getByText('Deleted of P01: 1 record, 0 recordings of movements')).toBeVisible();
+  await expect(receipt.getByText(remote.contact)).toBeVisible();
+  await keepPicture(page, 'study-withdrawn');
+  const [download] = await Promise.all([
+    page.waitForEvent('download'),
+    page.getByRole('button', { name: 'Save the receipt' }).click(),
+  ]);
+  expect(download.suggestedFilename()).toBe('receipt-leaving-1.txt');
+
+  expect(await recordsOf(origin, 'leaving')).toEqual([]);
+  const { participants } = (await (await experimenter(origin).ask('/leaving/participants')).json()) as {
+    participants: readonly ParticipantState[];
+  };
+  expect(participants[0]).toMatchObject({ withdrawn: true, claimed: false, invitation: null, records: 0 });
+  expect(await sessionsInBrowser(page)).toBe(0);
+});
