@@ -7,6 +7,7 @@ import { type ExperimenterClient, ServerRefusal } from '../net/study-client';
 import { offerDownload } from '../ui/downloads';
 import { element, pageElement } from '../ui/element';
 import { pageFolder } from '../ui/page-folder';
+import { sentence } from '../ui/phrases';
 import {
   type NewStudy,
   newStudyCard,
@@ -316,8 +317,6 @@ async function addOrChange(client: ExperimenterClient, plan: StudyPlan, simulate
     return client.addStudy(plan, simulated, true);
   }
 }
-
-const sentence = (text: string) => `${text.charAt(0).toUpperCase()}${text.slice(1)}.`;
 
 const anotherStudy = () =>
   element(

@@ -1,11 +1,9 @@
 import { reasonOf } from '../../core/errors/reasons';
 import { NoStudyServer, ServerRefusal } from '../../net/study-client';
+import { sentence } from '../../ui/phrases';
 import type { ParticipantSession } from './participant-session';
 import type { Opened } from './study-opening';
 import type { StudyPage } from './study-page';
-
-/** What a server said, with a capital and a full stop. */
-const asSentence = (text: string) => `${text.charAt(0).toUpperCase()}${text.slice(1).replace(/\.$/, '')}.`;
 
 type NewSession = Extract<Opened, { kind: 'new' }>;
 
@@ -84,7 +82,7 @@ export class StudyEntrance {
           this.#askWho(`This is not the invitation of ${participant}. Compare it with your link${help}`);
           return null;
         }
-        if ('why' in taken) return `${asSentence(taken.why)} ${study.contact ?? 'Ask the experimenter.'}`;
+        if ('why' in taken) return `${sentence(taken.why)} ${study.contact ?? 'Ask the experimenter.'}`;
         this.#options.onSession(taken);
         return null;
       },

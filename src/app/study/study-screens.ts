@@ -2,6 +2,7 @@ import type { Progress } from '../../core/study/progress';
 import type { RemoteTerms } from '../../core/study/remote-setup';
 import { blindLabel, type StudyStep } from '../../core/study/schedule';
 import { type CalibrationStep, calibrationHeadline, calibrationInstruction } from '../../ui/calibration-dialog';
+import { counted } from '../../ui/phrases';
 import { screenQuestions } from './answering';
 import type { Safekeeping } from './participant-session';
 import { questionPart } from './question-screen';
@@ -13,8 +14,6 @@ const clock = (seconds: number): string => {
   const whole = Math.ceil(seconds);
   return `${Math.floor(whole / 60)}:${String(whole % 60).padStart(2, '0')}`;
 };
-
-const counted = (count: number, one: string) => `${count} ${one}${count === 1 ? '' : 's'}`;
 
 /** Where answers are, in a sentence; the second part says whether they are in danger. `remote`: of a participant who is alone. */
 export function safekeepingText(

@@ -78,7 +78,7 @@ function paintParagraphs(context: CanvasRenderingContext2D, text: readonly strin
     let y = 236;
     for (const lines of paragraphs) {
       for (const line of lines) {
-        context.fillText(line, margin, y);
+        context.fillText(line, margin, y, inner);
         y += step;
       }
       y += 14;

@@ -5,6 +5,7 @@ import { createWithdrawalClient } from '../../../net/study-client';
 import { offerDownload } from '../../../ui/downloads';
 import { button, element, pageElement } from '../../../ui/element';
 import { pageFolder } from '../../../ui/page-folder';
+import { counted } from '../../../ui/phrases';
 import { openStudyVault } from '../study-vault';
 
 const client = createWithdrawalClient(pageFolder());
@@ -29,8 +30,6 @@ async function forgottenHere({ study, participant }: Receipt): Promise<string> {
     return 'Where you took part on another device, open your link there: it offers to forget what is left.';
   }
 }
-
-const counted = (count: number, one: string) => `${count} ${one}${count === 1 ? '' : 's'}`;
 
 const receiptLines = ({ number, study, participant, records, motionFiles, at }: Receipt): readonly string[] => [
   `Receipt ${number} of the study “${study}”`,
@@ -99,7 +98,7 @@ function withdrawalForm(
     paragraph(
       'Everything that was recorded of you in this study is deleted at once: answers, results, movements, where you stopped. What stays is a receipt that says when how much was deleted. You need not say why. It cannot be undone, and your place is not given to you again.',
     ),
-    element('div', { class: 'fields' }, ...(about ? [] : [study.node]), code.node),
+    element('div', { class: 'bar', style: 'margin:14px 0' }, ...(about ? [] : [study.node]), code.node),
     element(
       'label',
       { class: 'inline' },
@@ -108,9 +107,11 @@ function withdrawalForm(
     ),
     complaint,
     element('div', { class: 'bar', style: 'margin-top:12px' }, go),
-    paragraph(
-      `The code was shown to you after you agreed to take part; no one can look it up. ${about?.contact ?? ''}`.trim(),
-      { class: 'soft' },
+    element(
+      'p',
+      { class: 'soft', style: 'margin-top:14px' },
+      'The code was shown to you after you agreed to take part; no one can look it up.',
+      ...(about?.contact ? [` Does something not work? ${about.contact}`] : []),
     ),
   );
 }
