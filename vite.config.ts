@@ -22,15 +22,15 @@ const policyInPages: Plugin = {
   ],
 };
 
-/** Draco's decoder asks for modules of Node where it runs in Node; in a browser it never gets there, and the bundle need not speak of them. */
-const dracoWithoutNode: Plugin = {
-  name: 'draco-without-node',
+/** Decoders ask for modules of Node where they run in Node; in a browser they never get there, and the bundle need not speak of them. */
+const decodersWithoutNode: Plugin = {
+  name: 'decoders-without-node',
   enforce: 'pre',
   resolveId: {
     filter: { id: /^(fs|path)$/ },
-    handler: (_, importer) => (importer?.includes('/draco/') ? '\0draco-without-node' : undefined),
+    handler: (_, importer) => (/\/(draco|basis)\//.test(importer ?? '') ? '\0decoders-without-node' : undefined),
   },
-  load: { filter: { id: /^\0draco-without-node$/ }, handler: () => 'export {};' },
+  load: { filter: { id: /^\0decoders-without-node$/ }, handler: () => 'export {};' },
 };
 
 export default defineConfig({
@@ -48,7 +48,7 @@ export default defineConfig({
   server: { host: '127.0.0.1', port: 5173, proxy: { '/api': 'http://127.0.0.1:3333' } },
   preview: { host: '127.0.0.1', port: 4173 },
   // Workers are modules, so that they may load the parts they need.
-  worker: { format: 'es', plugins: () => [dracoWithoutNode] },
+  worker: { format: 'es', plugins: () => [decodersWithoutNode] },
   build: {
     target: 'es2022',
     // The policy of the server allows scripts of our own files alone: nothing may be inlined into the page as a data: URL.

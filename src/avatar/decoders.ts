@@ -1,60 +1,13 @@
 import { BufferAttribute, BufferGeometry } from 'three';
 import type { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
+import { AskedWorker } from './asked-worker';
 import type { DracoAnswer, DracoQuestion } from './draco-worker';
 import { avatarLimits } from './inspect-avatar';
 import type { Decoders } from './load-avatar';
 
-/** A decoder that is silent for longer [ms] is not worth the wait. */
-const patienceMs = 20_000;
 const mostNumbers = avatarLimits.triangles * 3;
 
-interface Waiting {
-  resolve(answer: DracoAnswer): void;
-  reject(error: Error): void;
-}
-
-/** A worker that unpacks meshes in the order in which they are asked for. It begins with the first and ends when none is left. */
-class DracoWorker {
-  readonly #waiting: Waiting[] = [];
-  #worker: Worker | null = null;
-  #patience: ReturnType<typeof setTimeout> | undefined;
-
-  ask(question: DracoQuestion): Promise<DracoAnswer> {
-    return new Promise((resolve, reject) => {
-      this.#worker ??= this.#begin();
-      this.#waiting.push({ resolve, reject });
-      this.#worker.postMessage(question);
-      if (this.#waiting.length === 1) this.#wait();
-    });
-  }
-
-  #begin(): Worker {
-    const worker = new Worker(new URL('./draco-worker.ts', import.meta.url), { type: 'module' });
-    worker.addEventListener('message', ({ data }: MessageEvent<DracoAnswer>) => {
-      this.#waiting.shift()?.resolve(data);
-      if (this.#waiting.length > 0) this.#wait();
-      else this.#end();
-    });
-    worker.addEventListener('error', ({ message }) => this.#fail(`Draco: the decoder did not start (${message})`));
-    return worker;
-  }
-
-  #wait(): void {
-    clearTimeout(this.#patience);
-    this.#patience = setTimeout(() => this.#fail('Draco: unpacking it takes too long'), patienceMs);
-  }
-
-  #fail(reason: string): void {
-    for (const { reject } of this.#waiting.splice(0)) reject(new Error(reason));
-    this.#end();
-  }
-
-  #end(): void {
-    clearTimeout(this.#patience);
-    this.#worker?.terminate();
-    this.#worker = null;
-  }
-}
+type DracoWorker = AskedWorker<DracoQuestion, DracoAnswer>;
 
 async function geometryOf(worker: DracoWorker, question: DracoQuestion): Promise<BufferGeometry> {
   const answer = await worker.ask(question);
@@ -79,7 +32,10 @@ type DracoCall = [
 
 /** What GLTFLoader asks of a Draco loader, answered by a worker of our own: three.js's own starts from a blob: address, which our policy forbids. */
 function dracoInWorker() {
-  const worker = new DracoWorker();
+  const worker: DracoWorker = new AskedWorker(
+    'Draco',
+    () => new Worker(new URL('./draco-worker.ts', import.meta.url), { type: 'module' }),
+  );
   return {
     preload: () => undefined,
     decodeDracoFile(...[packed, onLoad, ids, types, , onError]: DracoCall): void {
@@ -99,5 +55,9 @@ export const decoders: Decoders = {
   KHR_meshopt_compression: meshopt,
   async KHR_draco_mesh_compression(loader) {
     loader.setDRACOLoader(dracoInWorker() as never);
+  },
+  async KHR_texture_basisu(loader) {
+    const { unpackKtx2 } = await import('./ktx2');
+    unpackKtx2(loader);
   },
 };

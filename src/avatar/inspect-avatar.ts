@@ -1,7 +1,8 @@
 import * as v from 'valibot';
 import { reasonOf } from '../core/errors/reasons';
 import { chunksOf } from './glb-chunks';
-import { imageSize } from './image-size';
+import { imageSize, isKtx2 } from './image-size';
+import { ktx2Fault } from './ktx2-header';
 
 /** What a body from a file may cost: several times what avatars made for headsets have, far below what stalls one. */
 export const avatarLimits = {
@@ -167,8 +168,11 @@ export function inspectAvatar(
   images.forEach(({ bufferView }, i) => {
     const where = bufferView === undefined ? undefined : bufferViews[bufferView];
     const start = where?.byteOffset ?? 0;
-    const size = where && imageSize(chunks.binary.subarray(start, start + where.byteLength));
+    const picture = where && chunks.binary.subarray(start, start + where.byteLength);
+    const size = picture && imageSize(picture);
     if (!size) throw new Error(`${name}: picture ${i} is no PNG, JPEG, WebP or KTX2`);
+    const fault = isKtx2(picture) ? ktx2Fault(picture) : null;
+    if (fault) throw new Error(`${name}: picture ${i}, a KTX2, ${fault}`);
     limit(`pixels across picture ${i}`, Math.max(size.width, size.height), limits.texturePixels);
     pixels += size.width * size.height;
   });
