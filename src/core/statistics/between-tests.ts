@@ -97,8 +97,9 @@ export function rankSumCounts(first: number, second: number): readonly number[] 
 function exactP(w: number, first: number, second: number): number {
   const counts = rankSumCounts(first, second);
   const all = counts.reduce((sum, count) => sum + count, 0);
-  const below = (limit: number) => counts.slice(0, limit + 1).reduce((sum, count) => sum + count, 0) / all;
-  const tail = w > (first * second) / 2 ? 1 - below(w - 1) : below(w);
+  // Both ends are alike: the sum of the smaller one loses nothing to rounding.
+  const least = Math.min(w, first * second - w);
+  const tail = counts.slice(0, least + 1).reduce((sum, count) => sum + count, 0) / all;
   return Math.min(1, 2 * tail);
 }
 

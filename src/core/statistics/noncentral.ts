@@ -63,19 +63,27 @@ export function noncentralF(f: number, df1: number, df2: number): (noncentrality
 const mostOfT = 37;
 const mostOfF = 1400;
 
-/** The noncentralities under which a t as far out is not surprising; null: t is too far out for its interval to be computed. */
+/** Where a falling probability is `share`, between two ends; null: it is not reached there. */
+function reached(probability: (at: number) => number, share: number, low: number, high: number): number | null {
+  return probability(high) > share ? null : bisect(low, high, (at) => probability(at) < share, halvings);
+}
+
+/** Both ends; null: one of them is too far out to be computed. */
+const between = (low: number | null, high: number | null): Interval | null =>
+  low === null || high === null ? null : { low, high };
+
+/** The noncentralities under which a t as far out is not surprising; null: t, or an end, is too far out for it to be computed. */
 export function noncentralityOfT(t: number, df: number, confidence = 0.95): Interval | null {
   if (Math.abs(t) > mostOfT / 2) return null;
   const below = noncentralT(t, df);
-  const at = (share: number) => bisect(-mostOfT, mostOfT, (noncentrality) => below(noncentrality) < share, halvings);
-  return { low: at((1 + confidence) / 2), high: at((1 - confidence) / 2) };
+  const at = (share: number) => (below(-mostOfT) < share ? null : reached(below, share, -mostOfT, mostOfT));
+  return between(at((1 + confidence) / 2), at((1 - confidence) / 2));
 }
 
-/** The noncentralities λ under which an F as large is not surprising, at least 0; null: F is too large for its interval to be computed. */
+/** The noncentralities λ under which an F as large is not surprising, at least 0; null: F, or an end, is too large for it to be computed. */
 export function noncentralityOfF(f: number, df1: number, df2: number, confidence: number): Interval | null {
   if (f * df1 > mostOfF / 2) return null;
   const below = noncentralF(f, df1, df2);
-  const at = (share: number) =>
-    below(0) < share ? 0 : bisect(0, mostOfF, (noncentrality) => below(noncentrality) < share, halvings);
-  return { low: at((1 + confidence) / 2), high: at((1 - confidence) / 2) };
+  const at = (share: number) => (below(0) < share ? 0 : reached(below, share, 0, mostOfF));
+  return between(at((1 + confidence) / 2), at((1 - confidence) / 2));
 }

@@ -87,8 +87,8 @@ export function signedRankTest(first: readonly number[], second: readonly number
 }
 
 function exactP(v: number, n: number): number {
-  const tail = v > (n * (n + 1)) / 4 ? 1 - signedRankCdf(v - 1, n) : signedRankCdf(v, n);
-  return Math.min(1, 2 * tail);
+  // Both ends are alike: the smaller one loses nothing to rounding.
+  return Math.min(1, 2 * signedRankCdf(Math.min(v, (n * (n + 1)) / 2 - v), n));
 }
 
 function normalP(v: number, n: number, ties: readonly number[]): number {

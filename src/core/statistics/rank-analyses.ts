@@ -1,4 +1,4 @@
-import chiSquaredCdf from '@stdlib/stats-base-dists-chisquare-cdf';
+import gammainc from '@stdlib/math-base-special-gammainc';
 import { cubesOf, ranksOf } from './ranks';
 
 /** A test of several conditions or cohorts by ranks, by its χ² approximation. */
@@ -11,7 +11,8 @@ export interface RankAnalysis {
   readonly effect: number | null;
 }
 
-const upperTail = (chiSquared: number, df: number) => 1 - chiSquaredCdf(chiSquared, df);
+/** Of the χ² distribution: as the tail itself, since 1 less the rest would lose a small one to rounding. */
+const upperTail = (chiSquared: number, df: number) => gammainc(chiSquared / 2, df / 2, true, true);
 
 /** As R's `friedman.test`: `participants[p][k]` of participant p under condition k. Throws where there are none. */
 export function friedmanTest(participants: readonly (readonly number[])[]): RankAnalysis {

@@ -83,6 +83,22 @@ describe('two groups', () => {
     }
   });
 
+  test('all values of one beyond all of the other: one way of all to choose their ranks, to either side', () => {
+    const sides = [
+      Array.from({ length: 20 }, (_, index) => index),
+      Array.from({ length: 25 }, (_, index) => 100 + index),
+    ];
+    const [low = [], high = []] = sides;
+    // wilcox.test: 6.30940535807417e-13, which is 2 / choose(45, 20).
+    expectAsInR(rankSumTest(low, high).p, 6.30940535807417e-13);
+    expectAsInR(rankSumTest(high, low).p, 6.30940535807417e-13);
+    // And of pairs: 2 / 2 ** 30.
+    const pairs = Array.from({ length: 30 }, (_, index) => 1 + index / 7);
+    const none = pairs.map(() => 0);
+    expectAsInR(signedRankTest(pairs, none).p, 2 ** -29);
+    expectAsInR(signedRankTest(none, pairs).p, 2 ** -29);
+  });
+
   test('say nothing where nothing spreads, and need values', () => {
     expect(welchTest([3, 3], [4, 4])).toMatchObject({ meanDifference: -1, t: null, p: null, ds: null });
     expect(rankSumTest([3, 3], [3, 3])).toMatchObject({ p: null, effect: 0 });
@@ -95,6 +111,18 @@ test("the effect of a paired test and its interval, by R's pt: sleep", () => {
   expect(dz).toBeCloseTo(-1.284558, 6);
   expectAsInR(dzInterval?.low, -2.11801651397707);
   expectAsInR(dzInterval?.high, -0.414627756380144);
+});
+
+test('an effect whose interval reaches further than can be computed has none, rather than one that is cut off', () => {
+  // Of two differences with t = 18 the noncentrality would reach beyond 40; computing ends at 37.
+  expect(pairedTTest([19, 17], [0, 0])).toMatchObject({ t: 18, dzInterval: null });
+  expect(pairedTTest([8.5, 7.5], [0, 0])).toMatchObject({ t: 16, dzInterval: { low: expect.any(Number) } });
+  // Of F(1, 2) = 512 it would reach beyond 1500; computing ends at 1400.
+  const { between } = varianceAnalysis([
+    [[0], [1]],
+    [[16], [17]],
+  ]);
+  expect(between).toMatchObject({ f: 512, interval: null });
 });
 
 describe("rank-biserial correlations, their intervals by R's tanh(atanh(r) + c(-1, 1) * qnorm(.975) * error)", () => {
@@ -199,6 +227,12 @@ describe('more than two', () => {
     const insects = kruskalWallisTest(insectSprays);
     expectAsInR(insects.chiSquared, 54.6913446223714);
     expectAsInR(insects.p, 1.51084443941851e-10);
+  });
+
+  test('by ranks, so far out that the distribution is 1 to every digit: friedman.test of ChickWeight', () => {
+    const weights = friedmanTest(chicks.flat());
+    expectAsInR(weights.chiSquared, 92);
+    expectAsInR(weights.p, 1.05306173575538e-20);
   });
 
   test('of two conditions is the paired t-test: F is t², and the correction changes nothing', () => {
