@@ -5,12 +5,11 @@ import { softwareIn } from '../../server/software';
 import { exportFiles, exportName, exportZip } from '../../server/study-export';
 import { openStudyStore } from '../../server/study-store';
 import { modelsWith, simulatedPlan, simulateStudy, statedInWords } from '../../src/core/rehearsal/simulate-study';
-import { cohortsByParticipant } from '../../src/core/study/allocation';
-import { compareAll } from '../../src/core/study/compare-all';
-import { compareAnswers, compareScores } from '../../src/core/study/compare-conditions';
+import { compareCohorts } from '../../src/core/study/compare-cohorts';
+import { compareConditions } from '../../src/core/study/compare-conditions';
+import { measuresIn, overallComparisons, type StudyMeasures } from '../../src/core/study/exported-results';
 import { checkedPlan, parsePlan, type StudyPlan } from '../../src/core/study/plan';
 import type { StudyRecord } from '../../src/core/study/study-record';
-import { answersIn, trialsIn } from '../../src/core/study/study-tables';
 import { ValidationError } from '../../src/core/study/validation';
 import { simulateOptions } from './options';
 
@@ -18,33 +17,44 @@ const root = fileURLToPath(new URL('../..', import.meta.url));
 /** When the first simulated participant begins: a fixed day, so that the same seed gives the same files. */
 const firstSession = Date.UTC(2026, 0, 5, 9) / 1000;
 
+const signedT = (t: number | null | undefined) => t?.toFixed(2).replace('-', '−');
+
+/** What is found between two cohorts by the mean of all conditions. */
+function cohortFindings(
+  { answers, points }: StudyMeasures,
+  { conditions, cohorts = [] }: StudyPlan,
+): readonly string[] {
+  const [baseline, other] = cohorts;
+  if (!baseline || !other) return [];
+  const compared = { cohorts: [other.id, baseline.id], conditions: conditions.map(({ id }) => id) } as const;
+  const lines = [...compareCohorts(answers, compared), ...compareCohorts(points, compared)].map(
+    ({ of, test, holmP }) =>
+      `  ${of}: t(${test?.df?.toFixed(1)}) = ${signedT(test?.t)}, d_s = ${test?.ds?.toFixed(2)}, Holm p = ${holmP?.toFixed(4)}`,
+  );
+  return [`${other.id} − ${baseline.id}, Welch’s t-tests between cohorts, Holm over all questions (scores):`, ...lines];
+}
+
 /** Everything that was found, line by line. */
 function findings(records: readonly StudyRecord[], plan: StudyPlan): readonly string[] {
   const [baseline, other] = plan.conditions;
-  const answers = answersIn(records, plan);
+  const measures = measuresIn(records, plan);
   const lines: string[] = [];
-  if (plan.conditions.length > 2 || plan.cohorts) {
-    const cohorts = cohortsByParticipant(plan);
-    const all = compareAll(answers, {
-      conditions: plan.conditions.map(({ id }) => id),
-      cohortOf: (participant) => cohorts.get(participant)?.id ?? '',
-    });
-    lines.push('Analyses of variance, Holm over all questions:');
-    for (const { of, variance, holmP } of all) {
-      const effect = variance?.within ?? variance?.between ?? null;
-      lines.push(`  ${of}: F(${effect?.df.join(', ')}) = ${effect?.f?.toFixed(2)}, Holm p = ${holmP?.toFixed(4)}`);
-    }
+  const all = overallComparisons(measures.answers, plan);
+  if (all.length > 0) lines.push('Analyses of variance, Holm over all questions:');
+  for (const { of, variance, holmP } of all) {
+    const effect = variance?.within ?? variance?.between ?? null;
+    lines.push(`  ${of}: F(${effect?.df.join(', ')}) = ${effect?.f?.toFixed(2)}, Holm p = ${holmP?.toFixed(4)}`);
   }
+  lines.push(...cohortFindings(measures, plan));
   if (!baseline || !other) return lines;
-  const { comparisons } = compareAnswers(answers, [other.id, baseline.id]);
+  const { comparisons } = compareConditions(measures.answers, [other.id, baseline.id]);
   lines.push(`${other.id} − ${baseline.id}, paired t-tests, Holm over all questions:`);
   for (const { of, test, holmP } of comparisons) {
     const found =
       test?.t == null ? 'all differences alike' : `t(${test.df}) = ${test.t.toFixed(2)}, Holm p = ${holmP?.toFixed(4)}`;
     lines.push(`  ${of.padEnd(4)} ${found}`);
   }
-  for (const { of, first, second, test } of compareScores(trialsIn(records), [other.id, baseline.id]).points
-    .comparisons) {
+  for (const { of, first, second, test } of compareConditions(measures.points, [other.id, baseline.id]).comparisons) {
     const p = test?.p == null ? '' : `, p = ${test.p.toFixed(3)}`;
     lines.push(`  ${of}: ${first?.mean.toFixed(2)} against ${second?.mean.toFixed(2)} points (n = ${test?.n})${p}`);
   }

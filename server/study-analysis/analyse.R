@@ -11,8 +11,11 @@ confidence <- 0.95
 constant <- 10 * .Machine$double.eps # Differences this small against the values are rounding, as t.test has it.
 constant_squares <- 1e-20 # Of values about 0: squares this small are rounding.
 eta_confidence <- 0.9 # Of a share of the variance, which has but one side.
-largest_f <- 700 # F times its degrees of freedom beyond which the export has no interval.
-exact_below <- 50 # From as many pairs on, or with ties or zeros, Wilcoxon's test is approximated.
+largest_f <- 700 # F times its degrees of freedom beyond which the export has no interval,
+largest_lambda <- 1400 # nor where an end of it lies beyond this noncentrality.
+largest_t <- 18.5 # The same of t,
+largest_delta <- 37 # and of its noncentrality.
+exact_below <- 50 # From as many pairs (values in a cohort) on, or with ties or zeros, Wilcoxon's tests are approximated.
 
 script <- sub("^--file=", "", grep("^--file=", commandArgs(FALSE), value = TRUE)[1])
 root <- dirname(dirname(normalizePath(script)))
@@ -34,13 +37,34 @@ mean_interval <- function(values, side) {
   setNames(list(mean(values), low, high), paste0(c("mean_", "low_", "high_"), side))
 }
 
+# The noncentralities of t under which one as far out is not surprising, times `unit`; NA: out of reach.
+effect_interval <- function(t, df, unit, name) {
+  ends <- c(NA, NA)
+  below <- function(delta) suppressWarnings(pt(t, df, delta))
+  tails <- c(1 + confidence, 1 - confidence) / 2
+  if (abs(t) <= largest_t && below(-largest_delta) > tails[1] && below(largest_delta) < tails[2]) {
+    at <- function(share) {
+      uniroot(function(delta) below(delta) - share, c(-1, 1) * largest_delta, tol = 1e-13, maxiter = 10000)$root
+    }
+    ends <- c(at(tails[1]), at(tails[2])) * unit
+  }
+  setNames(as.list(ends), paste0(c("low_", "high_"), name))
+}
+
+# Fisher's z with the standard error where nothing differs; none where all ranks are on one side.
+biserial <- function(r, error) {
+  ends <- if (abs(r) == 1) c(NA, NA) else tanh(atanh(r) + c(-1, 1) * qnorm((1 + confidence) / 2) * error)
+  list(rank_biserial = r, low_rank_biserial = ends[1], high_rank_biserial = ends[2])
+}
+
 paired_t <- function(first, second) {
   d <- first - second
   row <- list(difference = mean(d), df = length(d) - 1)
   if (length(d) < 2 || sd(d) / sqrt(length(d)) <= constant * abs(mean(d))) return(row)
   test <- t.test(first, second, paired = TRUE, conf.level = confidence)
-  c(row, list(low_difference = test$conf.int[1], high_difference = test$conf.int[2], t = unname(test$statistic),
-    p = test$p.value, dz = mean(d) / sd(d)))
+  t <- unname(test$statistic)
+  c(row, list(low_difference = test$conf.int[1], high_difference = test$conf.int[2], t = t, p = test$p.value,
+    dz = mean(d) / sd(d)), effect_interval(t, length(d) - 1, 1 / sqrt(length(d)), "dz"))
 }
 
 signed_rank <- function(first, second) {
@@ -50,18 +74,44 @@ signed_rank <- function(first, second) {
   exact <- length(kept) == length(d) && !any(duplicated(abs(kept))) && length(kept) < exact_below
   test <- suppressWarnings(wilcox.test(d, exact = exact, correct = TRUE))
   v <- unname(test$statistic)
-  total <- length(kept) * (length(kept) + 1) / 2
-  list(v = v, p_wilcoxon = test$p.value, method_wilcoxon = if (exact) "exact" else "normal",
-    rank_biserial = (2 * v - total) / total)
+  n <- length(kept)
+  total <- n * (n + 1) / 2
+  c(list(v = v, p_wilcoxon = test$p.value, method_wilcoxon = if (exact) "exact" else "normal"),
+    biserial((2 * v - total) / total, sqrt(n * (n + 1) * (2 * n + 1) / 6) / total))
+}
+
+welch_t <- function(first, second) {
+  n <- c(length(first), length(second))
+  row <- list(difference = mean(first) - mean(second))
+  if (any(n < 2)) return(row)
+  error <- sqrt(var(first) / n[1] + var(second) / n[2])
+  if (error <= constant * max(abs(mean(first)), abs(mean(second)))) return(row)
+  test <- t.test(first, second, conf.level = confidence)
+  df <- sum(n) - 2
+  ds <- row$difference / sqrt(((n[1] - 1) * var(first) + (n[2] - 1) * var(second)) / df)
+  unit <- sqrt(sum(1 / n))
+  c(row, list(low_difference = test$conf.int[1], high_difference = test$conf.int[2], t = unname(test$statistic),
+    df = unname(test$parameter), p = test$p.value, ds = ds), effect_interval(ds / unit, df, unit, "ds"))
+}
+
+rank_sum <- function(first, second) {
+  n <- c(length(first), length(second))
+  exact <- !any(duplicated(c(first, second))) && all(n < exact_below)
+  test <- suppressWarnings(wilcox.test(first, second, exact = exact, correct = TRUE))
+  w <- unname(test$statistic)
+  # With nothing but ties there is no p.
+  p <- if (is.nan(test$p.value)) NA else test$p.value
+  c(list(w = w, p_rank_sum = p, method_rank_sum = if (exact) "exact" else "normal"),
+    biserial(2 * w / prod(n) - 1, sqrt((sum(n) + 1) / (3 * prod(n)))))
 }
 
 # A test without a p has none, and counts in the family.
-holm <- function(p) p.adjust(p, "holm", n = length(p))
+holm <- function(p) if (length(p) == 0) p else p.adjust(p, "holm", n = length(p))
 
 number_of <- function(row, name) if (is.null(row[[name]])) NA_real_ else as.numeric(row[[name]])
 
 # What was asked with a number, in the order first met: its place, and its name (the id where that is of one place alone).
-measures <- function(rows, value) {
+places_of <- function(rows, value) {
   answered <- rows[rows[[value]] != "", ]
   places <- unique(answered[, c("task", "questionnaire", "id")])
   times <- table(places$id)
@@ -73,27 +123,62 @@ of_place <- function(rows, place) {
   rows[rows$task == place$task & rows$questionnaire == place$questionnaire & rows$id == place$id, ]
 }
 
-# The mean of what counts, of each (who) under each condition: a matrix, NA where there is none.
-means_of <- function(rows, value, everyone, conditions) {
+# Means that are equal but for rounding are equal: ranks depend on it. A single value stays as it is.
+rounded_mean <- function(values) if (length(values) > 1) signif(mean(values), 12) else values
+
+# A measure: the mean of what counts, of each (who) under each condition, a matrix with NA where there is none; who is in which cohort.
+measure <- function(rows, value, conditions, cohort_of, said) {
+  everyone <- sort(unique(rows$who))
   counted <- rows[rows$excluded == "" & rows[[value]] != "", ]
-  tapply(as.numeric(counted[[value]]), list(factor(counted$who, everyone), factor(counted$condition, conditions)), mean)
+  who <- factor(counted$who, everyone)
+  means <- tapply(as.numeric(counted[[value]]), list(who, factor(counted$condition, conditions)), rounded_mean)
+  cohort <- unname(cohort_of[rows$participant[match(everyone, rows$who)]])
+  c(said, list(means = means, cohort = cohort))
 }
 
-# One family: each of the series under two conditions, first - second.
-compared <- function(series, first, second) {
-  rows <- lapply(series, function(one) {
+# What every row of results begins with.
+begun <- function(one) {
+  list(of = one$of, about = one$about, unit = one$unit, planned = if (one$planned) "TRUE" else "FALSE")
+}
+
+# Holm's correction over rows that are tested together: of `p`, and of a second one by ranks.
+family <- function(rows, ranks) {
+  adjusted <- holm(vapply(rows, number_of, 0, "p"))
+  by_ranks <- holm(vapply(rows, number_of, 0, ranks))
+  Map(function(row, p, v) c(row, setNames(list(p, v), c("p_holm", paste0(ranks, "_holm")))), rows, adjusted, by_ranks)
+}
+
+# One family: each of the measures under two conditions, first - second.
+compared <- function(measures, first, second) {
+  rows <- lapply(measures, function(one) {
     a <- one$means[, first]
     b <- one$means[, second]
     both <- !is.na(a) & !is.na(b)
     a <- unname(a[both])
     b <- unname(b[both])
-    row <- list(of = one$of, about = one$about, unit = one$unit, first = first, second = second, n = sum(both))
+    row <- c(begun(one), list(first = first, second = second, n = sum(both)))
     if (!any(both)) return(row)
     c(row, mean_interval(a, "first"), mean_interval(b, "second"), paired_t(a, b), signed_rank(a, b))
   })
-  adjusted <- holm(vapply(rows, number_of, 0, "p"))
-  ranks_adjusted <- holm(vapply(rows, number_of, 0, "p_wilcoxon"))
-  Map(function(row, p, v) c(row, list(p_holm = p, p_wilcoxon_holm = v)), rows, adjusted, ranks_adjusted)
+  family(rows, "p_wilcoxon")
+}
+
+# One family: each of the measures in two cohorts, first - second, by the mean of what each had under all of these conditions.
+between <- function(measures, first, second, conditions) {
+  rows <- lapply(measures, function(one) {
+    # NA where a condition is missing.
+    values <- apply(one$means[, conditions, drop = FALSE], 1, rounded_mean)
+    of <- function(cohort) unname(values[!is.na(values) & one$cohort == cohort])
+    a <- of(first)
+    b <- of(second)
+    row <- c(begun(one), list(first = first, second = second, condition = if (length(conditions) == 1) conditions else "",
+      n_first = length(a), n_second = length(b)))
+    if (length(a) > 0) row <- c(row, mean_interval(a, "first"))
+    if (length(b) > 0) row <- c(row, mean_interval(b, "second"))
+    if (length(a) == 0 || length(b) == 0) return(row)
+    c(row, welch_t(a, b), rank_sum(a, b))
+  })
+  family(rows, "p_rank_sum")
 }
 
 effect <- function(squares, error, df, epsilon, scale) {
@@ -106,10 +191,11 @@ effect <- function(squares, error, df, epsilon, scale) {
     row <- c(row, list(epsilon = epsilon, p_corrected = corrected))
   }
   if (f * df[1] > largest_f) return(row)
+  if (pf(f, df[1], df[2], largest_lambda) > (1 - eta_confidence) / 2) return(row)
   share_at <- function(share) {
     if (pf(f, df[1], df[2]) <= share) return(0)
     below <- function(ncp) pf(f, df[1], df[2], ncp) - share
-    ncp <- uniroot(below, c(0, 2 * largest_f), tol = 1e-13, maxiter = 10000)$root
+    ncp <- uniroot(below, c(0, largest_lambda), tol = 1e-13, maxiter = 10000)$root
     ncp / (ncp + sum(df) + 1)
   }
   c(row, list(low_eta = share_at((1 + eta_confidence) / 2), high_eta = share_at((1 - eta_confidence) / 2)))
@@ -168,17 +254,13 @@ rank_test <- function(values, cohort) {
 }
 
 # All conditions and cohorts at once, an effect a row; one family.
-overall <- function(rows, value, conditions, cohort_of) {
-  places <- measures(rows, value)
-  found <- lapply(seq_len(nrow(places)), function(index) {
-    own <- of_place(rows, places[index, ])
-    everyone <- sort(unique(own$who))
-    means <- means_of(own, value, everyone, conditions)
-    complete <- rowSums(is.na(means)) == 0
-    cohort <- factor(cohort_of[everyone])
-    one <- list(of = places$of[index], n = sum(complete), effects = list(), ranks = list())
-    if (any(table(cohort[complete]) == 0)) return(one)
-    values <- unname(means[complete, , drop = FALSE])
+overall <- function(measures, conditions) {
+  found <- lapply(measures, function(measure) {
+    complete <- rowSums(is.na(measure$means)) == 0
+    cohort <- factor(measure$cohort)
+    one <- list(begun = begun(measure), n = sum(complete), effects = list(), ranks = list())
+    if (length(complete) == 0 || any(table(cohort[complete]) == 0)) return(one)
+    values <- unname(measure$means[complete, , drop = FALSE])
     one$effects <- variance_analysis(values, cohort[complete])
     if (length(conditions) > 1 || nlevels(cohort) > 1) one$ranks <- rank_test(values, cohort[complete])
     one
@@ -197,78 +279,100 @@ overall <- function(rows, value, conditions, cohort_of) {
       first <- if (label == names(one$effects)[1]) {
         c(one$ranks, list(p_holm = adjusted[index], p_ranks_holm = ranks_adjusted[index]))
       }
-      table <- c(table, list(c(list(of = one$of, effect = label, n = one$n), one$effects[[label]], first)))
+      table <- c(table, list(c(one$begun, list(effect = label, n = one$n), one$effects[[label]], first)))
     }
   }
   table
 }
 
-# Work of the page per frame, over all trials of a task under a condition.
-frame_times <- function(rows, trials) {
+# Work of the page per frame, over all trials of a task under a condition in a cohort.
+frame_times <- function(rows, trials, cohort_of) {
   trial_of <- function(of) paste(of$participant, of$task, of$block, of$run, of$attempt, of$repetition, of$condition)
   rows$missed <- trials$missed_frames[match(trial_of(rows), trial_of(trials))]
+  rows$cohort <- unname(cohort_of[rows$participant])
   rows <- rows[rows$excluded == "", ]
-  groups <- unique(rows[, c("task", "condition", "stage")])
+  key <- c("task", "condition", "cohort", "stage")
+  groups <- unique(rows[, key])
   groups <- groups[order(groups$stage != "frame"), ]
   lapply(seq_len(nrow(groups)), function(index) {
     group <- groups[index, ]
-    own <- rows[rows$task == group$task & rows$condition == group$condition & rows$stage == group$stage, ]
+    own <- merge(rows, group, by = key)
     counts <- as.numeric(own$count)
-    list(task = group$task, condition = group$condition, stage = group$stage, trials = nrow(own), frames = sum(counts),
-      min = min(as.numeric(own$min)), max = max(as.numeric(own$max)), mean = sum(counts * as.numeric(own$mean)) / sum(counts),
+    list(task = group$task, condition = group$condition, cohort = group$cohort, stage = group$stage, trials = nrow(own),
+      frames = sum(counts), min = min(as.numeric(own$min)), max = max(as.numeric(own$max)), mean = sum(counts * as.numeric(own$mean)) / sum(counts),
       worst_p95 = max(as.numeric(own$p95)), missed = sum(as.numeric(own$missed)))
   })
+}
+
+# What was answered, or the scales computed from it, as measures.
+answer_measures <- function(file, id, value, words, context) {
+  rows <- read(file)
+  rows$id <- rows[[id]]
+  rows$who <- rows$participant
+  places <- places_of(rows, value)
+  lapply(seq_len(nrow(places)), function(index) {
+    place <- places[index, ]
+    name <- paste(place$task, place$questionnaire, place$id, sep = "/")
+    said <- list(of = place$of, unit = "answer", about = unname(words[paste(place$questionnaire, place$id)]),
+      planned = name %in% context$planned)
+    measure(of_place(rows, place), value, context$conditions, context$cohort_of, said)
+  })
+}
+
+# The scores of every task, in points or per cent. The members of a group report one and the same score.
+score_measures <- function(trials, unit, context) {
+  # Practice has no condition.
+  trials <- trials[trials$condition != "", ]
+  trials$who <- as.numeric(trials$group)
+  again <- duplicated(trials[, c("task", "group", "condition", "repetition", "excluded")], fromLast = TRUE)
+  once <- trials[!again | trials$excluded != "", ]
+  lapply(unique(trials$task), function(task) {
+    said <- list(of = task, unit = unit, about = "", planned = unit == "points" && paste0(task, "/score") %in% context$planned)
+    value <- if (unit == "points") "score" else "percent"
+    measure(once[once$task == task, ], value, context$conditions, context$cohort_of, said)
+  })
+}
+
+# Every two, the later one of the plan first: what comes first in it is what others are compared with.
+pairs_of <- function(ids) {
+  if (length(ids) < 2) return(list())
+  lapply(combn(ids, 2, simplify = FALSE), rev)
 }
 
 all_tables <- function() {
   said <- read("conditions.csv")
   conditions <- said$id[said$compared == "condition"]
+  cohorts <- said$id[said$compared == "cohort"]
   people <- read("participants.csv")
-  cohort_of <- setNames(people$cohort, people$participant)
-  # What comes first in the plan is what others are compared with.
-  pairs <- if (length(conditions) > 1) combn(conditions, 2, simplify = FALSE) else list()
+  context <- list(conditions = conditions, planned = read("planned.csv")$measure,
+    cohort_of = setNames(people$cohort, people$participant))
   about <- read("questions.csv")
   about <- setNames(about$about, paste(about$questionnaire, about$question))
   labels <- read("scale-definitions.csv")
   labels <- setNames(labels$label, paste(labels$questionnaire, labels$scale))
-  tables <- list()
-  kinds <- list(
-    list(name = "answers", file = "answers.csv", id = "question", value = "answer", words = about),
-    list(name = "scales", file = "scales.csv", id = "scale", value = "value", words = labels)
-  )
-  for (kind in kinds) {
-    rows <- read(kind$file)
-    rows$id <- rows[[kind$id]]
-    rows$who <- rows$participant
-    places <- measures(rows, kind$value)
-    series <- lapply(seq_len(nrow(places)), function(index) {
-      place <- places[index, ]
-      own <- of_place(rows, place)
-      list(of = place$of, unit = "answer", about = unname(kind$words[paste(place$questionnaire, place$id)]),
-        means = means_of(own, kind$value, sort(unique(own$who)), conditions))
-    })
-    tables[[paste0(kind$name, "-compared")]] <- do.call(c, lapply(pairs, function(pair) compared(series, pair[2], pair[1])))
-    shown <- length(conditions) > 2 || any(said$compared == "cohort")
-    tables[[paste0(kind$name, "-overall")]] <- if (shown) overall(rows, kind$value, conditions, cohort_of) else list()
-  }
   trials <- read("trials.csv")
-  counted <- trials[trials$excluded == "", ]
-  # The members of a group report one and the same score.
-  once <- counted[!duplicated(counted[, c("task", "group", "condition", "repetition")], fromLast = TRUE), ]
-  once$who <- as.numeric(once$group)
-  scores <- list()
-  for (pair in pairs) {
-    for (unit in c("points", "percent")) {
-      series <- lapply(unique(trials$task), function(task) {
-        own <- once[once$task == task, ]
-        value <- if (unit == "points") "score" else "percent"
-        list(of = task, unit = unit, about = "", means = means_of(own, value, sort(unique(own$who)), conditions))
-      })
-      scores <- c(scores, compared(series, pair[2], pair[1]))
-    }
+  answers <- answer_measures("answers.csv", "question", "answer", about, context)
+  scales <- answer_measures("scales.csv", "scale", "value", labels, context)
+  points <- score_measures(trials, "points", context)
+  percent <- score_measures(trials, "percent", context)
+  all <- c(answers, scales, points)
+  planned <- all[vapply(all, function(one) one$planned, NA)]
+  # By the mean of all conditions, and by each of several alone.
+  views <- if (length(conditions) > 1) c(list(conditions), as.list(conditions)) else list(conditions)
+  kinds <- list(planned = list(planned), answers = list(answers), scales = list(scales), scores = list(points, percent))
+  tables <- list()
+  for (name in names(kinds)) {
+    families <- kinds[[name]]
+    tables[[paste0(name, "-compared")]] <- do.call(c, as.list(unlist(lapply(pairs_of(conditions), function(pair) {
+      lapply(families, compared, pair[1], pair[2])
+    }), recursive = FALSE)))
+    whole <- length(conditions) > 2 || length(cohorts) > 0
+    tables[[paste0(name, "-overall")]] <- if (whole) overall(families[[1]], conditions) else list()
+    tables[[paste0(name, "-cohorts")]] <- do.call(c, as.list(unlist(lapply(pairs_of(cohorts), function(pair) {
+      unlist(lapply(views, function(view) lapply(families, between, pair[1], pair[2], view)), recursive = FALSE)
+    }), recursive = FALSE)))
   }
-  tables[["scores-compared"]] <- scores
-  tables[["frame-times"]] <- frame_times(read("frame-times.csv"), trials)
+  tables[["frame-times"]] <- frame_times(read("frame-times.csv"), trials, context$cohort_of)
   tables
 }
 
@@ -291,8 +395,8 @@ out <- file.path(root, "analysis", "r")
 dir.create(out, showWarnings = FALSE)
 wrong <- 0
 tables <- all_tables()
-files <- c("answers-compared", "answers-overall", "scales-compared", "scales-overall", "scores-compared", "frame-times")
-for (name in files) {
+kinds <- c("planned", "answers", "scales", "scores")
+for (name in c(t(outer(kinds, c("-compared", "-overall", "-cohorts"), paste0)), "frame-times")) {
   table <- tables[[name]]
   theirs <- read(sprintf("results/%s.csv", name))
   columns <- setdiff(names(theirs), "simulated")

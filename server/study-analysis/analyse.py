@@ -13,6 +13,7 @@ import sys
 from collections import Counter
 from itertools import combinations
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from scipy import optimize, stats
@@ -28,9 +29,13 @@ CONSTANT = 10 * np.finfo(float).eps
 CONSTANT_SQUARES = 1e-20
 # Of a share of the variance, which has but one side.
 ETA_CONFIDENCE = 0.9
-# F times its degrees of freedom beyond which the export has no interval.
+# F times its degrees of freedom beyond which the export has no interval, nor where an end of it lies beyond this noncentrality.
 LARGEST_F = 700
-# From as many pairs on, or with ties or zeros, Wilcoxon's test is approximated.
+LARGEST_LAMBDA = 1400
+# The same of t and its noncentrality.
+LARGEST_T = 18.5
+LARGEST_DELTA = 37
+# From as many pairs (values in a cohort) on, or with ties or zeros, Wilcoxon's tests are approximated.
 EXACT_BELOW = 50
 
 
@@ -50,6 +55,43 @@ def mean_interval(values):
     return mean, mean - half, mean + half
 
 
+def noncentrality_of_t(t, df, share):
+    """Where the noncentral t is below t, at least 0, with this probability; None: out of reach."""
+
+    def above(noncentrality):
+        return stats.nct.cdf(t, df, noncentrality) - share
+
+    # SciPy has no value far out: no further than is needed.
+    least = most = t
+    while above(least) < 0:
+        least -= 1
+    while above(most) > 0:
+        if most >= LARGEST_DELTA:
+            return None
+        most = min(LARGEST_DELTA, most + 1)
+    return optimize.brentq(above, least, most, xtol=1e-13, rtol=1e-14)
+
+
+def effect_interval(t, df, unit, name):
+    """The noncentralities of t under which one as far out is not surprising, times unit; nothing where they are out of reach."""
+    if abs(t) > LARGEST_T:
+        return {}
+    ends = [noncentrality_of_t(abs(t), df, (1 + side * CONFIDENCE) / 2) for side in (1, -1)]
+    if None in ends:
+        return {}
+    low, high = ends if t >= 0 else (-ends[1], -ends[0])
+    return {f"low_{name}": low * unit, f"high_{name}": high * unit}
+
+
+def biserial(r, error):
+    """Fisher's z with the standard error where nothing differs; no interval where all ranks are on one side."""
+    if abs(r) == 1:
+        return {"rank_biserial": r}
+    half = stats.norm.ppf((1 + CONFIDENCE) / 2) * error
+    z = math.atanh(r)
+    return {"rank_biserial": r, "low_rank_biserial": math.tanh(z - half), "high_rank_biserial": math.tanh(z + half)}
+
+
 def paired_t(first, second):
     """The two-sided paired t-test of first − second; what does not vary has a difference alone."""
     differences = np.subtract(first, second)
@@ -60,7 +102,8 @@ def paired_t(first, second):
     test = stats.ttest_rel(first, second)
     _, low, high = mean_interval(differences)
     dz = differences.mean() / differences.std(ddof=1)
-    return {**result, "low_difference": low, "high_difference": high, "t": test.statistic, "p": test.pvalue, "dz": dz}
+    result |= {"low_difference": low, "high_difference": high, "t": test.statistic, "p": test.pvalue, "dz": dz}
+    return result | effect_interval(test.statistic, count - 1, 1 / math.sqrt(count), "dz")
 
 
 def signed_rank(first, second):
@@ -71,14 +114,50 @@ def signed_rank(first, second):
         return {"v": 0, "method_wilcoxon": "exact"}
     ranks = stats.rankdata(np.abs(nonzero))
     v = ranks[nonzero > 0].sum()
-    exact = len(nonzero) == len(differences) and len(set(ranks)) == len(ranks) and len(ranks) < EXACT_BELOW
-    method = "exact" if exact else "asymptotic"
-    test = stats.wilcoxon(nonzero, zero_method="wilcox", correction=True, method=method)
+    n = len(nonzero)
+    total = n * (n + 1) / 2
+    exact = n == len(differences) and len(set(ranks)) == n and n < EXACT_BELOW
+    test = stats.wilcoxon(nonzero, zero_method="wilcox", correction=True, method="exact" if exact else "asymptotic")
     return {
         "v": v,
         "p_wilcoxon": test.pvalue,
         "method_wilcoxon": "exact" if exact else "normal",
-        "rank_biserial": (2 * v - ranks.sum()) / ranks.sum(),
+        **biserial((2 * v - total) / total, math.sqrt(n * (n + 1) * (2 * n + 1) / 6) / total),
+    }
+
+
+def welch_t(first, second):
+    """Welch's two-sided t-test of first − second, of different participants; what does not vary has a difference alone."""
+    m, n = len(first), len(second)
+    difference = np.mean(first) - np.mean(second)
+    result = {"difference": difference}
+    if m < 2 or n < 2:
+        return result
+    variances = np.var(first, ddof=1), np.var(second, ddof=1)
+    error = math.sqrt(variances[0] / m + variances[1] / n)
+    if error <= CONSTANT * max(abs(np.mean(first)), abs(np.mean(second))):
+        return result
+    test = stats.ttest_ind(first, second, equal_var=False)
+    low, high = test.confidence_interval(CONFIDENCE)
+    ds = difference / math.sqrt(((m - 1) * variances[0] + (n - 1) * variances[1]) / (m + n - 2))
+    unit = math.sqrt(1 / m + 1 / n)
+    result |= {"low_difference": low, "high_difference": high}
+    result |= {"t": test.statistic, "df": test.df, "p": test.pvalue, "ds": ds}
+    return result | effect_interval(ds / unit, m + n - 2, unit, "ds")
+
+
+def rank_sum(first, second):
+    """Wilcoxon's rank-sum test (Mann and Whitney's) as R's wilcox.test; with nothing but ties there is no p."""
+    m, n = len(first), len(second)
+    values = [*first, *second]
+    exact = len(set(values)) == len(values) and m < EXACT_BELOW and n < EXACT_BELOW
+    test = stats.mannwhitneyu(first, second, use_continuity=True, method="exact" if exact else "asymptotic")
+    w = test.statistic
+    return {
+        "w": w,
+        "p_rank_sum": test.pvalue if len(set(values)) > 1 else None,
+        "method_rank_sum": "exact" if exact else "normal",
+        **biserial(2 * w / (m * n) - 1, math.sqrt((m + n + 1) / (3 * m * n))),
     }
 
 
@@ -93,42 +172,120 @@ def holm(p_values):
     return adjusted
 
 
-def measures(rows, value):
+class Measure(NamedTuple):
+    """What a study has of one question, scale or score."""
+
+    begun: dict
+    # The mean of what counts, by whom and condition.
+    means: dict
+    # Of all of whom something is recorded, counting or not.
+    cohorts: dict
+
+
+def rounded_mean(values):
+    """Means that are equal but for rounding are equal: ranks depend on it. A single value stays as it is."""
+    return float(f"{np.mean(values):.12g}") if len(values) > 1 else values[0]
+
+
+def measure(rows, value, cohort_of, begun):
+    values = {}
+    for row in rows:
+        if row["excluded"] == "" and row[value] != "":
+            values.setdefault(row["who"], {}).setdefault(row["condition"], []).append(float(row[value]))
+    means = {who: {condition: rounded_mean(own) for condition, own in by.items()} for who, by in values.items()}
+    cohorts = {}
+    for row in rows:
+        cohorts.setdefault(row["who"], cohort_of.get(row["participant"], ""))
+    return Measure(begun, means, dict(sorted(cohorts.items())))
+
+
+def places_of(rows, value):
     """What was asked with a number, in the order first met: its place, and its name (the id where that is of one place alone)."""
     places = list(dict.fromkeys((r["task"], r["questionnaire"], r["id"]) for r in rows if r[value] != ""))
     times = Counter(place[2] for place in places)
     return [(place, place[2] if times[place[2]] == 1 else "/".join(place)) for place in places]
 
 
-def of_place(rows, place):
-    return [r for r in rows if (r["task"], r["questionnaire"], r["id"]) == place]
+def as_boolean(value):
+    return "TRUE" if value else "FALSE"
 
 
-def means_of(rows, value):
-    """The mean of what counts, by whom and condition."""
-    values = {}
-    for row in rows:
-        if row["excluded"] == "" and row[value] != "":
-            values.setdefault(row["who"], {}).setdefault(row["condition"], []).append(float(row[value]))
-    return {who: {condition: np.mean(own) for condition, own in by.items()} for who, by in values.items()}
+def answer_measures(file, name, value, words, study):
+    """What was answered, or the scales computed from it, as measures."""
+    rows = [{**r, "id": r[name], "who": r["participant"]} for r in read(file)]
+    found = []
+    for place, of in places_of(rows, value):
+        planned = as_boolean("/".join(place) in study.planned)
+        begun = {"of": of, "about": words.get(place[1:], ""), "unit": "answer", "planned": planned}
+        own = [r for r in rows if (r["task"], r["questionnaire"], r["id"]) == place]
+        found.append(measure(own, value, study.cohort_of, begun))
+    return found
 
 
-def compared(series, first, second):
-    """One family: each of the series (name, unit, means) under two conditions, first − second."""
-    rows = []
-    for name, unit, about, means in series:
-        pairs = [(own[first], own[second]) for _, own in sorted(means.items()) if first in own and second in own]
-        row = {"of": name, "about": about, "unit": unit, "first": first, "second": second, "n": len(pairs)}
-        if pairs:
-            a, b = map(list, zip(*pairs))
-            for side, values in (("first", a), ("second", b)):
-                row[f"mean_{side}"], row[f"low_{side}"], row[f"high_{side}"] = mean_interval(values)
-            row |= paired_t(a, b) | signed_rank(a, b)
-        rows.append(row)
-    for adjusted, p in (("p_holm", "p"), ("p_wilcoxon_holm", "p_wilcoxon")):
+def score_measures(trials, unit, study):
+    """The scores of every task. The members of a group report one and the same score."""
+    # Practice has no condition.
+    played = [{**r, "who": int(r["group"])} for r in trials if r["condition"] != ""]
+    found = []
+    for task in dict.fromkeys(r["task"] for r in played):
+        own = [r for r in played if r["task"] == task]
+        once = {(r["who"], r["condition"], r["repetition"]): r for r in own if r["excluded"] == ""}
+        rows = [r for r in own if r["excluded"] != ""] + list(once.values())
+        planned = as_boolean(unit == "points" and f"{task}/score" in study.planned)
+        begun = {"of": task, "about": "", "unit": unit, "planned": planned}
+        found.append(measure(rows, "score" if unit == "points" else "percent", study.cohort_of, begun))
+    return found
+
+
+def family(rows, ranks):
+    """Holm's correction over rows that are tested together: of p, and of a second one by ranks."""
+    for p, adjusted in (("p", "p_holm"), (ranks, f"{ranks}_holm")):
         for row, value in zip(rows, holm([row.get(p) for row in rows])):
             row[adjusted] = value
     return rows
+
+
+def sides(**values):
+    """Mean and interval of each side that has values."""
+    row = {}
+    for side, own in values.items():
+        if own:
+            row[f"mean_{side}"], row[f"low_{side}"], row[f"high_{side}"] = mean_interval(own)
+    return row
+
+
+def compared(measures, first, second):
+    """One family: each of the measures under two conditions, first − second."""
+    rows = []
+    for begun, means, _ in measures:
+        pairs = [(own[first], own[second]) for _, own in sorted(means.items()) if first in own and second in own]
+        row = {**begun, "first": first, "second": second, "n": len(pairs)}
+        if pairs:
+            a, b = map(list, zip(*pairs))
+            row |= sides(first=a, second=b) | paired_t(a, b) | signed_rank(a, b)
+        rows.append(row)
+    return family(rows, "p_wilcoxon")
+
+
+def complete_values(found, conditions):
+    """Who has a value under each of these conditions, with their values."""
+    _, means, cohorts = found
+    return {w: [means[w][c] for c in conditions] for w in cohorts if all(c in means.get(w, {}) for c in conditions)}
+
+
+def between(measures, first, second, conditions):
+    """One family: each of the measures in two cohorts, first − second, by the mean of what each had under all these conditions."""
+    rows = []
+    for found in measures:
+        values = complete_values(found, conditions)
+        a, b = ([rounded_mean(own) for w, own in values.items() if found.cohorts[w] == cohort] for cohort in (first, second))
+        condition = conditions[0] if len(conditions) == 1 else ""
+        row = {**found.begun, "first": first, "second": second, "condition": condition, "n_first": len(a), "n_second": len(b)}
+        row |= sides(first=a, second=b)
+        if a and b:
+            row |= welch_t(a, b) | rank_sum(a, b)
+        rows.append(row)
+    return family(rows, "p_rank_sum")
 
 
 def residual_squares(y, columns):
@@ -139,7 +296,7 @@ def residual_squares(y, columns):
 
 
 def noncentrality_at(f, df, share):
-    """Where the noncentral F is below f with this probability, at least 0."""
+    """Where the noncentral F is below f with this probability, at least 0; None: out of reach."""
     if stats.f.cdf(f, *df) <= share:
         return 0.0
 
@@ -149,7 +306,9 @@ def noncentrality_at(f, df, share):
     # SciPy has no value far out: no further than is needed.
     most = f * df[0] + 1
     while above(most) > 0:
-        most *= 1.5
+        if most >= LARGEST_LAMBDA:
+            return None
+        most = min(LARGEST_LAMBDA, most * 1.5)
     return optimize.brentq(above, 1e-12, most, xtol=1e-13, rtol=1e-14)
 
 
@@ -162,10 +321,9 @@ def effect(squares, error, df, epsilon, scale):
     row |= {"f": f, "p": stats.f.sf(f, *df), "partial_eta_squared": squares / (squares + error)}
     if epsilon is not None:
         row |= {"epsilon": epsilon, "p_corrected": stats.f.sf(f, epsilon * df[0], epsilon * df[1])}
-    if f * df[0] <= LARGEST_F:
-        for end, share in (("low_eta", (1 + ETA_CONFIDENCE) / 2), ("high_eta", (1 - ETA_CONFIDENCE) / 2)):
-            noncentrality = noncentrality_at(f, df, share)
-            row[end] = noncentrality / (noncentrality + df[0] + df[1] + 1)
+    ends = [noncentrality_at(f, df, (1 + side * ETA_CONFIDENCE) / 2) for side in (1, -1)] if f * df[0] <= LARGEST_F else [None]
+    if None not in ends:
+        row["low_eta"], row["high_eta"] = (end / (end + df[0] + df[1] + 1) for end in ends)
     return row
 
 
@@ -229,21 +387,18 @@ def rank_test(cohorts):
     return {"chi_squared": chi, "df_ranks": df, "p_ranks": stats.chi2.sf(chi, df), "effect_ranks": size}
 
 
-def overall(rows, value, conditions, cohort_of):
+def overall(measures, conditions):
     """All conditions and cohorts at once, an effect a row; one family."""
     found = []
-    for place, name in measures(rows, value):
-        own = of_place(rows, place)
-        means = means_of(own, value)
-        everyone = sorted({row["who"] for row in own})
-        complete = [who for who in everyone if all(c in means.get(who, {}) for c in conditions)]
-        names = sorted({cohort_of.get(who, "") for who in everyone})
-        cohorts = [[[means[w][c] for c in conditions] for w in complete if cohort_of.get(w, "") == n] for n in names]
+    for one in measures:
+        complete = complete_values(one, conditions)
+        names = sorted(set(one.cohorts.values()))
+        cohorts = [[own for w, own in complete.items() if one.cohorts[w] == name] for name in names]
         if not cohorts or any(not members for members in cohorts):
-            found.append((name, len(complete), {}, {}))
+            found.append((one.begun, len(complete), {}, {}))
         else:
             ranks = rank_test(cohorts) if len(conditions) > 1 or len(cohorts) > 1 else {}
-            found.append((name, len(complete), variance_analysis(cohorts), ranks))
+            found.append((one.begun, len(complete), variance_analysis(cohorts), ranks))
 
     def tested(effects):
         main = effects.get("conditions") or effects.get("cohorts") or {}
@@ -252,29 +407,31 @@ def overall(rows, value, conditions, cohort_of):
     adjusted = holm([tested(effects) for _, _, effects, _ in found])
     ranks_adjusted = holm([ranks.get("p_ranks") for _, _, _, ranks in found])
     table = []
-    for (name, n, effects, ranks), p_holm, p_ranks_holm in zip(found, adjusted, ranks_adjusted):
+    for (begun, n, effects, ranks), p_holm, p_ranks_holm in zip(found, adjusted, ranks_adjusted):
         for index, (label, row) in enumerate(effects.items()):
             first = {**ranks, "p_holm": p_holm, "p_ranks_holm": p_ranks_holm} if index == 0 else {}
-            table.append({"of": name, "effect": label, "n": n, **row, **first})
+            table.append({**begun, "effect": label, "n": n, **row, **first})
     return table
 
 
-def frame_times(rows, trials):
-    """Work of the page per frame, over all trials of a task under a condition."""
+def frame_times(rows, trials, cohort_of):
+    """Work of the page per frame, over all trials of a task under a condition in a cohort."""
     key = ("participant", "task", "block", "run", "attempt", "repetition", "condition")
     missed = {tuple(r[k] for k in key): int(r["missed_frames"]) for r in trials}
     counted = [r for r in rows if r["excluded"] == ""]
     groups = {}
     for row in counted:
-        groups.setdefault((row["task"], row["condition"], row["stage"]), []).append(row)
+        cohort = cohort_of.get(row["participant"], "")
+        groups.setdefault((row["task"], row["condition"], cohort, row["stage"]), []).append(row)
     table = []
-    for (task, condition, stage), own in sorted(groups.items(), key=lambda item: item[0][2] != "frame"):
+    for (task, condition, cohort, stage), own in sorted(groups.items(), key=lambda item: item[0][3] != "frame"):
         counts = np.array([float(r["count"]) for r in own])
         column = {name: np.array([float(r[name]) for r in own]) for name in ("min", "max", "mean", "p95")}
         table.append(
             {
                 "task": task,
                 "condition": condition,
+                "cohort": cohort,
                 "stage": stage,
                 "trials": len(own),
                 "frames": counts.sum(),
@@ -288,45 +445,49 @@ def frame_times(rows, trials):
     return table
 
 
-def prepared(rows, name):
-    """Rows with one name for who and what was asked."""
-    return [{**r, "id": r[name], "who": r["participant"]} for r in rows]
+class Study(NamedTuple):
+    """What all measures of a study have in common."""
+
+    planned: set
+    cohort_of: dict
+
+
+def pairs_of(ids):
+    """Every two, the later one of the plan first: what comes first in it is what others are compared with."""
+    return [(second, first) for first, second in combinations(ids, 2)]
 
 
 def all_tables():
-    conditions = [r["id"] for r in read("conditions.csv") if r["compared"] == "condition"]
-    has_cohorts = any(r["compared"] == "cohort" for r in read("conditions.csv"))
+    said = read("conditions.csv")
+    conditions, cohorts = ([r["id"] for r in said if r["compared"] == of] for of in ("condition", "cohort"))
     cohort_of = {r["participant"]: r["cohort"] for r in read("participants.csv")}
-    # What comes first in the plan is what others are compared with.
-    pairs = [(second, first) for first, second in combinations(conditions, 2)]
+    study = Study({r["measure"] for r in read("planned.csv")}, cohort_of)
     abouts = {(r["questionnaire"], r["question"]): r["about"] for r in read("questions.csv")}
     labels = {(r["questionnaire"], r["scale"]): r["label"] for r in read("scale-definitions.csv")}
-    tables = {}
-    for kind, file, name, value, words in (
-        ("answers", "answers.csv", "question", "answer", abouts),
-        ("scales", "scales.csv", "scale", "value", labels),
-    ):
-        rows = prepared(read(file), name)
-        series = [
-            (of, "answer", words.get(place[1:], ""), means_of(of_place(rows, place), value))
-            for place, of in measures(rows, value)
-        ]
-        tables[f"{kind}-compared"] = [row for a, b in pairs for row in compared(series, a, b)]
-        shown = len(conditions) > 2 or has_cohorts
-        tables[f"{kind}-overall"] = overall(rows, value, conditions, cohort_of) if shown else []
     trials = read("trials.csv")
-    scores = []
-    for a, b in pairs:
-        for unit, value in (("points", "score"), ("percent", "percent")):
-            series = []
-            for task in dict.fromkeys(r["task"] for r in trials):
-                # The members of a group report one and the same score.
-                once = {(r["group"], r["condition"], r["repetition"]): r for r in trials if r["task"] == task and r["excluded"] == ""}
-                rows = [{**r, "who": int(r["group"])} for r in once.values()]
-                series.append((task, unit, "", means_of(rows, value)))
-            scores.append((unit, compared(series, a, b)))
-    tables["scores-compared"] = [row for _, rows in scores for row in rows]
-    tables["frame-times"] = frame_times(read("frame-times.csv"), trials)
+    answers = answer_measures("answers.csv", "question", "answer", abouts, study)
+    scales = answer_measures("scales.csv", "scale", "value", labels, study)
+    points = score_measures(trials, "points", study)
+    percent = score_measures(trials, "percent", study)
+    planned = [one for one in answers + scales + points if one.begun["planned"] == "TRUE"]
+    # By the mean of all conditions, and by each of several alone.
+    views = [conditions, *([c] for c in conditions)] if len(conditions) > 1 else [conditions]
+    kinds = {"planned": [planned], "answers": [answers], "scales": [scales], "scores": [points, percent]}
+    tables = {}
+    for name, families in kinds.items():
+        tables[f"{name}-compared"] = [
+            row for pair in pairs_of(conditions) for measures in families for row in compared(measures, *pair)
+        ]
+        whole = len(conditions) > 2 or cohorts
+        tables[f"{name}-overall"] = overall(families[0], conditions) if whole else []
+        tables[f"{name}-cohorts"] = [
+            row
+            for pair in pairs_of(cohorts)
+            for view in views
+            for measures in families
+            for row in between(measures, *pair, view)
+        ]
+    tables["frame-times"] = frame_times(read("frame-times.csv"), trials, cohort_of)
     return tables
 
 

@@ -1,17 +1,20 @@
 import * as Plot from '@observablehq/plot';
 import type { Comparison } from '../core/study/compare-conditions';
 
-/** The two conditions compared, as people read them. */
+/** The two conditions or cohorts compared, as people read them. */
 export interface ComparedLabels {
   readonly first: string;
   readonly second: string;
 }
 
-export interface ChartOptions {
+/** What has a mean on either side. */
+export type TwoSided = Pick<Comparison, 'first' | 'second'>;
+
+export interface ChartOptions<One extends TwoSided> {
   readonly title: string;
   readonly labels: ComparedLabels;
   /** What a comparison is called below the axis. */
-  readonly nameOf: (comparison: Comparison) => string;
+  readonly nameOf: (comparison: One) => string;
   readonly axis: string;
   /** Ends of the scale. */
   readonly domain: readonly [number, number];
@@ -33,7 +36,7 @@ function svgNode(tag: string, attributes: Readonly<Record<string, string | numbe
 /** Title, key and, where it applies, the mark of simulation: inside the picture, so that no copy of it loses them. */
 function headed(
   plot: SVGSVGElement | HTMLElement,
-  { title, labels, simulated }: ChartOptions,
+  { title, labels, simulated }: Omit<ChartOptions<never>, 'nameOf'>,
   note: string,
 ): SVGSVGElement {
   if (!(plot instanceof SVGSVGElement)) throw new Error('ui/charts: expected a plain SVG from the plot');
@@ -72,13 +75,13 @@ const shared = {
 } as const;
 
 /** Answers are whole; other scales choose for themselves. */
-const ticksOf = ({ domain: [low, high] }: ChartOptions) =>
+const ticksOf = ({ domain: [low, high] }: Pick<ChartOptions<never>, 'domain'>) =>
   high - low < 10 ? Array.from({ length: high - low + 1 }, (_, index) => low + index) : 5;
 
 const widthFor = (count: number) => Math.max(520, 90 + count * 100);
 
 /** Means as bars with their 95 % confidence intervals: the paper's figures 11 to 14. */
-export function barChart(comparisons: readonly Comparison[], options: ChartOptions): SVGSVGElement {
+export function barChart<One extends TwoSided>(comparisons: readonly One[], options: ChartOptions<One>): SVGSVGElement {
   const [low, high] = options.domain;
   const bars = comparisons.flatMap((comparison) =>
     sides.flatMap((side) => {
@@ -126,7 +129,7 @@ export function barChart(comparisons: readonly Comparison[], options: ChartOptio
 }
 
 /** Every participant (or group) as a line from one condition to the other; alike ones make the line thicker. */
-export function pairedChart(comparisons: readonly Comparison[], options: ChartOptions): SVGSVGElement {
+export function pairedChart(comparisons: readonly Comparison[], options: ChartOptions<Comparison>): SVGSVGElement {
   const lines = comparisons.flatMap((comparison) => {
     const alike = new Map<string, { second: number; first: number; count: number }>();
     for (const { first, second } of comparison.pairs) {

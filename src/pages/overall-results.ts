@@ -1,18 +1,15 @@
-import type { Effect } from '../core/statistics/analysis-of-variance';
-import type { AnswerRow } from '../core/study/answer-tables';
 import type { OverallComparison } from '../core/study/compare-all';
 import { comparedAsAWhole, overallComparisons } from '../core/study/exported-results';
-import { plannedAnalyses } from '../core/study/planned';
+import type { Measure } from '../core/study/measures';
 import { effectsOf, overallTable } from '../core/study/result-tables';
-import { answersIn, scalesIn } from '../core/study/study-tables';
 import { element } from '../ui/element';
-import { csvButton, fixed, none, pText } from './result-cells';
-import type { ShownStudy } from './shown-results';
-import { tableNode } from './table';
+import { bar, csvButton, fixed, meanCell, measureCell, none, plannedNote, pText } from './result-cells';
+import type { ShownResults } from './shown-results';
+import { type TableRow, tableNode } from './table';
 
 const heads = [
   { text: 'Measure' },
-  { text: 'n', title: 'Participants whose answers are complete', numeric: true },
+  { text: 'n', title: 'Participants (of scores: groups) whose values are complete', numeric: true },
   { text: 'effect' },
   { text: 'F', numeric: true },
   { text: 'df', numeric: true },
@@ -29,25 +26,21 @@ const heads = [
   { text: 'Holm p (χ²)', numeric: true },
 ] as const;
 
-function etaText({ partialEtaSquared, interval }: Effect): string {
-  const between = interval ? ` [${fixed(interval.low, 2)}, ${fixed(interval.high, 2)}]` : '';
-  return `${fixed(partialEtaSquared, 2)}${between}`;
-}
-
 /** The rows of one measure: an effect each. What is tested by ranks stands beside the first. */
-function rowsOf({ of, n, variance, ranks, holmP, ranksHolmP }: OverallComparison) {
+function rowsOf(results: ShownResults, one: OverallComparison, tagged: boolean): readonly TableRow[] {
+  const { n, variance, ranks, holmP, ranksHolmP } = one;
   return effectsOf(variance).map(([name, effect], index) => {
     const first = index === 0;
     return {
       cells: [
-        first ? of : '',
+        first ? measureCell(results, one, tagged) : '',
         first ? String(n) : '',
         name,
         fixed(effect.f, 3),
         effect.df.join(', '),
         pText(effect.correctedP ?? effect.p),
         fixed(effect.epsilon, 3),
-        etaText(effect),
+        meanCell(effect.partialEtaSquared ?? undefined, effect.interval, 2),
         first ? pText(holmP) : none,
         first ? fixed(ranks?.chiSquared, 3) : none,
         first ? pText(ranks?.p) : none,
@@ -57,43 +50,44 @@ function rowsOf({ of, n, variance, ranks, holmP, ranksHolmP }: OverallComparison
   });
 }
 
-/** Analyses of all conditions and cohorts at once; none for two conditions without cohorts, which are compared in pairs. */
-export function overallResults({ plan, simulated, records }: ShownStudy): readonly Node[] {
-  if (!comparedAsAWhole(plan)) return [];
-  const table = (name: string, file: string, rows: readonly AnswerRow[]) => {
-    const compared = overallComparisons(rows, plan);
-    const leftOut = [...new Set(compared.flatMap((one) => one.leftOut))];
-    if (compared.length === 0) return [];
-    return [
-      tableNode(`${name}: analyses of variance, and tests by ranks`, heads, compared.flatMap(rowsOf)),
-      element(
-        'div',
-        { class: 'bar' },
-        csvButton(overallTable(file, compared, simulated), `${simulated ? 'SIMULATED-' : ''}${plan.id}-${file}`),
-      ),
-      ...(leftOut.length === 0
-        ? []
-        : [element('p', { class: 'soft' }, `Left out somewhere for want of a valid answer: ${leftOut.join(', ')}.`)]),
-    ];
-  };
-  const planned = plannedAnalyses(
-    [answersIn(records, plan), scalesIn(records, plan)].flatMap((rows) => overallComparisons(rows, plan)),
-    plan,
-  );
-  const plannedPart =
-    planned.length === 0
-      ? []
-      : [
-          tableNode(
-            `Planned: analyses of variance, and tests by ranks; Holm over these ${planned.length} alone. What follows is exploratory`,
-            heads,
-            planned.flatMap(rowsOf),
-          ),
-        ];
+/** One family: a table of all conditions and cohorts at once, and who was left out of it. */
+function familyParts(
+  results: ShownResults,
+  { file, caption }: { readonly file: string; readonly caption: (count: number) => string },
+  measures: readonly Measure[],
+): readonly Node[] {
+  const { study, factsOf, fileOf } = results;
+  const compared = overallComparisons(measures, study.plan);
+  if (compared.length === 0) return [];
+  const planned = file.startsWith('planned');
+  const leftOut = [...new Set(compared.flatMap((one) => one.leftOut))];
   return [
-    element('h2', {}, plan.cohorts ? 'All conditions and cohorts together' : 'All conditions together'),
-    ...plannedPart,
-    ...table('Questions', 'answers-overall', answersIn(records, plan)),
-    ...table('Scales', 'scales-overall', scalesIn(records, plan)),
+    tableNode(
+      caption(compared.length),
+      heads,
+      compared.flatMap((one) => rowsOf(results, one, !planned)),
+    ),
+    bar(csvButton(overallTable(file, compared, factsOf(planned ? 'planned' : 'explored')), fileOf(file))),
+    ...(leftOut.length === 0
+      ? []
+      : [element('p', { class: 'soft' }, `Left out somewhere for want of a valid value: ${leftOut.join(', ')}.`)]),
+    ...(planned ? [plannedNote()] : []),
+  ];
+}
+
+const analyses = 'analyses of variance, and tests by ranks';
+
+/** Analyses of all conditions and cohorts at once; none for two conditions without cohorts, which are compared in pairs. */
+export function overallResults(results: ShownResults): readonly Node[] {
+  const { study, measures } = results;
+  if (!comparedAsAWhole(study.plan)) return [];
+  const explored = (name: string) => () => `Exploratory: ${name}: ${analyses}`;
+  const plannedCaption = (count: number) => `Planned: ${analyses}; Holm over these ${count} alone`;
+  return [
+    element('h2', {}, study.plan.cohorts ? 'All conditions and cohorts together' : 'All conditions together'),
+    ...familyParts(results, { file: 'planned-overall', caption: plannedCaption }, measures.planned),
+    ...familyParts(results, { file: 'answers-overall', caption: explored('questions') }, measures.answers),
+    ...familyParts(results, { file: 'scales-overall', caption: explored('scales') }, measures.scales),
+    ...familyParts(results, { file: 'scores-overall', caption: explored('scores in points') }, measures.points),
   ];
 }

@@ -1,39 +1,41 @@
 import type { Comparison } from '../core/study/compare-conditions';
+import type { Measured } from '../core/study/measures';
 import { languagesOf } from '../core/study/plan';
 import type { AnswerForm } from '../core/study/questionnaire-schema';
 import { scaleRange } from '../core/study/questionnaire-scores';
-import type { Questionnaire } from '../core/study/questionnaires';
 import { inLanguage } from '../core/study/words';
-import { element } from '../ui/element';
-import { barChart, pairedChart } from './charts';
+import { barChart, pairedChart, type TwoSided } from './charts';
 import { figure } from './figure';
 import type { Compared } from './shown-results';
 
+type Two = Measured & TwoSided;
+
 /** Comparisons on one scale, in one picture. */
-interface Chart {
-  readonly comparisons: readonly Comparison[];
+export interface Chart<One extends Two> {
+  readonly comparisons: readonly One[];
   readonly title: string;
   readonly file: string;
   readonly axis: string;
   readonly domain: readonly [number, number];
-  readonly nameOf: (one: Comparison) => string;
+  readonly nameOf: (one: One) => string;
   /** Behind the caption of the means. */
   readonly note: string;
 }
 
-function chartNodes({ study: { simulated }, labels, fileOf }: Compared, chart: Chart): Node {
+/** The means of a chart. */
+export function meansFigure<One extends Two>({ results, labels }: Compared<One>, chart: Chart<One>): HTMLElement {
   const { comparisons, title, file, note, ...options } = chart;
-  const both = { labels, simulated, ...options };
-  return element(
-    'div',
-    { class: 'figures' },
-    figure(barChart(comparisons, { title, ...both }), `${title}, means${note}`, fileOf(file)),
-    figure(
-      pairedChart(comparisons, { title: `${title}, pairs`, ...both }),
-      `${title}, every participant`,
-      fileOf(`${file}-pairs`),
-    ),
-  );
+  const { simulated } = results.study;
+  const bars = barChart(comparisons, { title, labels, simulated, ...options });
+  return figure(bars, `${title}, means${note}`, results.fileOf(file));
+}
+
+/** Every pair of a chart. */
+export function pairsFigure({ results, labels }: Compared<Comparison>, chart: Chart<Comparison>): HTMLElement {
+  const { comparisons, title, file, note: _, ...options } = chart;
+  const { simulated } = results.study;
+  const lines = pairedChart(comparisons, { title: `${title}, pairs`, labels, simulated, ...options });
+  return figure(lines, `${title}, every participant`, results.fileOf(`${file}-pairs`));
 }
 
 type Ranged = Extract<AnswerForm, { from: number }>;
@@ -54,12 +56,12 @@ const paperFigures: Readonly<Record<string, string>> = {
   ball: ' (the paper’s figure 13)',
 };
 
-/** Figures of the questions: those of one task and questionnaire that are answered on the same scale together. */
-export function questionFigures(asked: readonly Questionnaire[], results: Compared): readonly Node[] {
-  const { plan } = results.study;
-  const [language] = languagesOf(plan);
-  const charts = new Map<string, Chart>();
-  for (const one of results.answers.comparisons) {
+/** Charts of the questions: those of one task and questionnaire that are answered on the same scale together. */
+export function questionCharts<One extends Two>({ results, answers }: Compared<One>): readonly Chart<One>[] {
+  const { asked } = results;
+  const [language] = languagesOf(results.study.plan);
+  const charts = new Map<string, Chart<One>>();
+  for (const one of answers) {
     const questionnaire = asked.find(({ id }) => id === one.asked?.questionnaire);
     const form = questionnaire?.questions.find(({ id }) => id === one.asked?.question)?.answer;
     if (!questionnaire || !one.asked || !form || form.kind === 'choice' || form.kind === 'text') continue;
@@ -82,13 +84,14 @@ export function questionFigures(asked: readonly Questionnaire[], results: Compar
       comparisons: [...(before?.comparisons ?? []), one],
     });
   }
-  return [...charts.values()].map((chart) => chartNodes(results, chart));
+  return [...charts.values()];
 }
 
-/** A figure for each scale, all tasks side by side. */
-export function scaleFigures(asked: readonly Questionnaire[], results: Compared): readonly Node[] {
-  const charts = new Map<string, Chart>();
-  for (const one of results.scales.comparisons) {
+/** A chart for each scale, all tasks side by side. */
+export function scaleCharts<One extends Two>({ results, scales }: Compared<One>): readonly Chart<One>[] {
+  const { asked } = results;
+  const charts = new Map<string, Chart<One>>();
+  for (const one of scales) {
     const questionnaire = asked.find(({ id }) => id === one.asked?.questionnaire);
     const scale = questionnaire?.scales.find(({ id }) => id === one.asked?.question);
     if (!questionnaire || !scale) continue;
@@ -104,5 +107,5 @@ export function scaleFigures(asked: readonly Questionnaire[], results: Compared)
       comparisons: [...(charts.get(key)?.comparisons ?? []), one],
     });
   }
-  return [...charts.values()].map((chart) => chartNodes(results, chart));
+  return [...charts.values()];
 }

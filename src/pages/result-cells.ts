@@ -1,8 +1,10 @@
 import type { Interval } from '../core/statistics/summaries';
+import type { Measured } from '../core/study/measures';
 import { shippedQuestionnaires } from '../core/study/questionnaires';
 import { type Table, tidyCsv } from '../core/study/tidy-csv';
 import { offerDownload } from '../ui/downloads';
 import { button, element } from '../ui/element';
+import type { ShownResults } from './shown-results';
 
 /** Where there is no number. */
 export const none = '–';
@@ -15,6 +17,17 @@ const interval = (between: Interval | null | undefined, digits: number) =>
 export const meanCell = (mean: number | undefined, between: Interval | null | undefined, digits: number): Node =>
   element('div', {}, fixed(mean, digits), element('div', { class: 'soft interval' }, interval(between, digits)));
 
+/** The name of a measure, with a mark where the plan names it and not all that stands in the table is planned. */
+export const measureCell = ({ nameOf, factsOf }: ShownResults, measure: Measured, tagged: boolean): Node =>
+  element(
+    'span',
+    {},
+    nameOf(measure),
+    ...(tagged && factsOf('explored').isPlanned(measure)
+      ? [' ', element('span', { class: 'badge', title: 'Its planned test stands in the table above' }, 'planned')]
+      : []),
+  );
+
 /** What a question of the paper asks about; empty: it is none of them. */
 export const paperAboutOf = (id: string): string =>
   [shippedQuestionnaires.archery, shippedQuestionnaires.ball]
@@ -24,3 +37,14 @@ export const paperAboutOf = (id: string): string =>
 /** Saves a table as `file`.csv. */
 export const csvButton = (table: Table, file: string) =>
   button('CSV', () => offerDownload(`${file}.csv`, 'text/csv;charset=utf-8', tidyCsv(table)), { class: 'small' });
+
+/** Buttons in a row. */
+export const bar = (...buttons: readonly Node[]) => element('div', { class: 'bar' }, ...buttons);
+
+/** What stands below planned tests. */
+export const plannedNote = () =>
+  element(
+    'p',
+    { class: 'soft', role: 'note' },
+    'What follows is exploratory: Holm’s p there is over the table that it stands in.',
+  );

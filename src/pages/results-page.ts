@@ -1,9 +1,8 @@
 import { reasonOf } from '../core/errors/reasons';
 import '../styles/document.css';
 import { button, element, pageElement } from '../ui/element';
-import { overallResults } from './overall-results';
 import { paperCheck } from './paper-check';
-import { simulatedNotice, studyResults } from './results-view';
+import { firstSelection, type Selection, simulatedNotice, studyResults } from './results-view';
 import type { ShownStudy } from './shown-results';
 import { StudyAccess } from './study-access';
 import { openStudyFile } from './study-file';
@@ -12,15 +11,12 @@ const content = pageElement('content', HTMLElement);
 
 const access = new StudyAccess(() => render());
 let shown: (ShownStudy & { readonly source: string }) | null = null;
-let conditions: readonly [string, string] | null = null;
+let selection: Selection | null = null;
 let complaint = '';
 
 function showStudy(study: ShownStudy, source: string): void {
   shown = { ...study, source };
-  // The paper subtracts inverse kinematics: what comes first in the plan is what others are compared with.
-  const [baseline, other] = study.plan.conditions;
-  // null: conditions of one are compared between cohorts alone.
-  conditions = other && baseline ? [other.id, baseline.id] : null;
+  selection = firstSelection(study.plan);
   complaint = '';
   render();
 }
@@ -94,51 +90,18 @@ function versionBar({ plan, planVersion, versions = [] }: ShownStudy): readonly 
   ];
 }
 
-function conditionBar({ plan }: ShownStudy): readonly Node[] {
-  if (!conditions || plan.conditions.length < 3) return [];
-  const choose = (index: 0 | 1, name: string) => {
-    const select = element(
-      'select',
-      { 'aria-label': name },
-      ...plan.conditions.map(({ id, label }) =>
-        element('option', { value: id, selected: conditions?.[index] === id }, label),
-      ),
-    );
-    select.addEventListener('change', () => {
-      if (!conditions) return;
-      const [first, second] = conditions;
-      conditions = index === 0 ? [select.value, second] : [first, select.value];
-      render();
-    });
-    return element('label', {}, element('span', {}, name), select);
-  };
-  return [element('div', { class: 'bar' }, choose(0, 'Compare'), choose(1, 'with'))];
-}
-
 function results(): readonly Node[] {
-  if (!shown) return [];
+  if (!shown || !selection) return [];
   const { plan, source } = shown;
   const heading = element('h2', {}, plan.title);
   const where = element('p', { class: 'soft' }, `${plan.id}, from ${source}.`);
-  if (conditions && conditions[0] === conditions[1]) {
-    return [
-      heading,
-      ...versionBar(shown),
-      ...conditionBar(shown),
-      element('p', { class: 'complaint' }, 'Choose two different conditions.'),
-    ];
-  }
+  const choose = (chosen: Selection) => {
+    selection = chosen;
+    render();
+  };
   try {
-    const pairs = conditions ? studyResults(shown, conditions) : [];
-    return [
-      heading,
-      where,
-      ...versionBar(shown),
-      ...simulatedNotice(shown),
-      ...overallResults(shown),
-      ...conditionBar(shown),
-      ...pairs,
-    ];
+    const computed = studyResults(shown, selection, choose);
+    return [heading, where, ...versionBar(shown), ...simulatedNotice(shown), ...computed];
   } catch (error) {
     return [heading, where, element('p', { class: 'complaint', role: 'alert' }, reasonOf(error))];
   }

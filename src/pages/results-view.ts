@@ -1,65 +1,36 @@
-import { type Comparison, compareAnswers, compareScores, type Exclusion } from '../core/study/compare-conditions';
-import { aboutIn } from '../core/study/exported-results';
-import { frameTimes } from '../core/study/frame-times';
-import { questionnairesOf } from '../core/study/plan';
-import { plannedFamily } from '../core/study/planned';
-import { comparisonTable, frameTimeTable } from '../core/study/result-tables';
+import { cohortViews } from '../core/study/exported-results';
+import type { Exclusion } from '../core/study/measures';
+import type { StudyPlan } from '../core/study/plan';
 import type { StudyRecord } from '../core/study/study-record';
-import { answersIn, scalesIn, studyTables, trialsIn } from '../core/study/study-tables';
+import { studyTables } from '../core/study/study-tables';
 import { tidyCsv } from '../core/study/tidy-csv';
 import { offerDownload } from '../ui/downloads';
 import { button, element } from '../ui/element';
-import { barChart, type ChartOptions, pairedChart } from './charts';
-import { figure } from './figure';
-import { questionFigures, scaleFigures } from './questionnaire-figures';
-import { csvButton, fixed, meanCell, none, pText } from './result-cells';
-import type { Compared, ShownStudy } from './shown-results';
-import { tableNode } from './table';
+import { chooser, pairChooser } from './choosers';
+import { cohortResults } from './cohort-results';
+import { frameTimeParts } from './frame-time-results';
+import { overallResults } from './overall-results';
+import { pairResults } from './pair-results';
+import { bar } from './result-cells';
+import { type ShownResults, type ShownStudy, shownResults } from './shown-results';
 
-const significance = 0.05;
-
-function comparisonRows(comparisons: readonly Comparison[], digits: number, nameOf: (one: Comparison) => string) {
-  return comparisons.map((one) => {
-    const { test, signedRank } = one;
-    const significant = (one.holmP ?? 1) < significance;
-    return {
-      look: significant ? 'significant' : '',
-      cells: [
-        nameOf(one),
-        String(one.pairs.length),
-        meanCell(one.first?.mean, one.first?.interval, digits),
-        meanCell(one.second?.mean, one.second?.interval, digits),
-        meanCell(test?.meanDifference, test?.interval, digits),
-        fixed(test?.t, 3),
-        test ? String(test.df) : none,
-        pText(test?.p),
-        meanCell(test?.dz ?? undefined, test?.dzInterval, 2),
-        fixed(signedRank?.v, 1),
-        meanCell(signedRank?.effect ?? undefined, signedRank?.effectInterval, 2),
-        pText(signedRank?.p),
-        pText(one.signedRankHolmP),
-        `${pText(one.holmP)}${significant ? ' *' : ''}`,
-      ],
-    };
-  });
+/** What is compared on the page: first − second. */
+export interface Selection {
+  /** null: the plan has one condition. */
+  readonly conditions: readonly [string, string] | null;
+  /** null: the plan has no cohorts. */
+  readonly cohorts: readonly [string, string] | null;
+  /** Conditions under which cohorts are compared. */
+  readonly under: readonly string[];
 }
 
-const comparisonHeads = (unit: string, first: string, second: string) => [
-  { text: unit },
-  { text: 'n', title: 'Pairs', numeric: true },
-  { text: first, numeric: true },
-  { text: second, numeric: true },
-  { text: 'difference', numeric: true },
-  { text: 't', title: 'Paired t-test', numeric: true },
-  { text: 'df', numeric: true },
-  { text: 'p', title: 'Two-sided, of the t-test', numeric: true },
-  { text: 'd_z', title: "Cohen's d of the differences, with its 95 % interval", numeric: true },
-  { text: 'V', title: "Wilcoxon's signed ranks", numeric: true },
-  { text: 'r', title: 'Rank-biserial correlation, the effect size of V, with its 95 % interval', numeric: true },
-  { text: 'p (V)', title: 'Two-sided, of Wilcoxon’s test', numeric: true },
-  { text: 'Holm p (V)', title: 'Wilcoxon’s p adjusted over the family', numeric: true },
-  { text: 'Holm p', title: 'The t-test’s p adjusted over the family', numeric: true },
-];
+/** The second against the first: what comes first in the plan is what others are compared with. */
+export function firstSelection(plan: Pick<StudyPlan, 'conditions' | 'cohorts'>): Selection {
+  const pairOf = ([baseline, other]: readonly { readonly id: string }[]) =>
+    baseline && other ? ([other.id, baseline.id] as const) : null;
+  const [under = []] = cohortViews(plan);
+  return { conditions: pairOf(plan.conditions), cohorts: pairOf(plan.cohorts ?? []), under };
+}
 
 /** "P03, P07: voided: the phone rang (archery)"; alike reasons in one line. */
 function exclusionList(all: readonly Exclusion[]): readonly string[] {
@@ -92,229 +63,100 @@ function demographicsText(records: readonly StudyRecord[]): string {
   );
 }
 
-function compared(study: ShownStudy, conditions: readonly [string, string]): Compared {
-  const { plan, simulated, records, planVersion } = study;
-  const versionPart = planVersion === undefined ? '' : `-version-${planVersion}`;
-  const labelOf = (id: string) => plan.conditions.find((condition) => condition.id === id)?.label ?? id;
-  return {
-    study,
-    conditions,
-    answers: compareAnswers(answersIn(records, plan), conditions),
-    scales: compareAnswers(scalesIn(records, plan), conditions),
-    scores: compareScores(trialsIn(records), conditions),
-    labels: { first: labelOf(conditions[0]), second: labelOf(conditions[1]) },
-    labelOf,
-    titleOf: (task) => plan.tasks.find(({ id }) => id === task)?.title ?? task,
-    fileOf: (name) => `${simulated ? 'SIMULATED-' : ''}${plan.id}${versionPart}-${name}`,
-  };
-}
-
 /** What stands above all results of simulated participants. */
 export const simulatedNotice = ({ simulated }: Pick<ShownStudy, 'simulated'>): readonly Node[] => {
   const text = 'SIMULATED: a program made these data. They say nothing about people.';
   return simulated ? [element('p', { class: 'simulated', role: 'note' }, text)] : [];
 };
 
-/** Everything computed from a study: figures, tables, exclusions. `conditions`: first − second. */
-export function studyResults(study: ShownStudy, conditions: readonly [string, string]): readonly Node[] {
+/** Everything computed from a study: figures, tables, exclusions. `choose` is told what is to be compared instead. */
+export function studyResults(
+  study: ShownStudy,
+  selection: Selection,
+  choose: (selection: Selection) => void,
+): readonly Node[] {
   if (!study.records.some(({ kind }) => kind === 'answers' || kind === 'trial')) {
     return [element('p', { class: 'card' }, 'Nothing has been answered or played yet.')];
   }
-  const results = compared(study, conditions);
+  const results = shownResults(study);
+  const pairs = conditionParts(results, selection, choose);
   return [
-    summary(results),
-    ...plannedParts(results),
-    ...answerParts(results),
-    ...scaleParts(results),
-    ...scoreParts(results),
+    ...summary(results),
+    ...overallResults(results),
+    ...pairs.nodes,
+    ...cohortParts(results, selection, choose),
     ...frameTimeParts(results),
-    ...leftOutParts(results),
+    ...leftOutParts(results, pairs.excluded),
     ...exportParts(results),
   ];
 }
 
-const bar = (...buttons: readonly Node[]) => element('div', { class: 'bar' }, ...buttons);
-
-function summary({ study: { plan, records }, answers, labels }: Compared): HTMLElement {
+function summary({ study: { plan, records }, measures }: ShownResults): readonly Node[] {
   const participants = new Set(records.map(({ participant }) => participant));
-  return element(
-    'section',
-    { class: 'card' },
+  const text = `${participants.size} of ${plan.participants} participants have records. ${demographicsText(records)}`;
+  const planned =
+    measures.planned.length === 0
+      ? 'The plan names no measure as planned: everything here is exploratory.'
+      : 'What the plan names stands first, as a family of its own. All other tables are exploratory; what is planned is marked in them.';
+  return [
     element(
-      'p',
-      {},
-      `${participants.size} of ${plan.participants} participants have records. ${demographicsText(records)}`,
+      'section',
+      { class: 'card' },
+      element('p', {}, text),
+      element('p', { class: 'soft', role: 'note' }, planned),
     ),
-    element(
-      'p',
-      { class: 'soft' },
-      `Differences are ${labels.first} − ${labels.second}, paired within participants (scores of groups: within groups). Tests are two-sided; * marks Holm’s p below .05 over all ${answers.comparisons.length} questions.`,
-    ),
-  );
+  ];
 }
 
-/** What the plan named beforehand, a family of its own; below it everything is shown once more, as explored. */
-function plannedParts(results: Compared): readonly Node[] {
-  const { study, answers, scales, scores, labels, titleOf } = results;
-  const asked = questionnairesOf(study.plan);
-  const all = [...answers.comparisons, ...scales.comparisons, ...scores.points.comparisons];
-  const family = plannedFamily(all, study.plan);
-  if (family.length === 0) {
-    const text = 'The plan names no measure as planned: everything here is exploratory.';
-    return [element('p', { class: 'soft', role: 'note' }, text)];
+type Choose = (selection: Selection) => void;
+
+function conditionParts(results: ShownResults, selection: Selection, choose: Choose) {
+  const { conditions } = selection;
+  const { plan } = results.study;
+  if (!conditions) {
+    const { answers, scales, points } = results.measures;
+    return { nodes: [], excluded: [...answers, ...scales, ...points].flatMap(({ voided }) => voided) };
   }
-  const name = (one: Comparison) => (one.asked ? `${one.of} ${aboutIn(asked, one)}` : `${titleOf(one.of)}, points`);
-  return [
-    element('h2', {}, 'Planned'),
-    tableNode(
-      `Planned comparisons: means with 95 % confidence intervals, and tests; Holm over these ${family.length} alone`,
-      comparisonHeads('Measure', labels.first, labels.second),
-      comparisonRows(family, 2, name),
-    ),
-    element(
-      'p',
-      { class: 'soft', role: 'note' },
-      'Everything below is exploratory: Holm’s p there is over the table that it stands in.',
-    ),
-  ];
-}
-
-function answerParts(results: Compared): readonly Node[] {
-  const { study, conditions, answers, labels, fileOf } = results;
-  if (answers.comparisons.length === 0) return [];
-  const asked = questionnairesOf(study.plan);
-  const aboutOf = (one: Comparison) => aboutIn(asked, one);
-  const facts = { conditions, simulated: study.simulated, aboutOf };
-  return [
-    element('h2', {}, 'Questionnaires'),
-    ...questionFigures(asked, results),
-    tableNode(
-      'Paired comparisons of the answers: means with 95 % confidence intervals, and tests (the paper’s tables 9 and 10)',
-      comparisonHeads('Question', labels.first, labels.second),
-      comparisonRows(answers.comparisons, 2, (one) => `${one.of} ${aboutOf(one)}`),
-    ),
-    bar(csvButton(comparisonTable('answers-compared', answers.comparisons, facts), fileOf('answers-compared'))),
-  ];
-}
-
-function scaleParts(results: Compared): readonly Node[] {
-  const { study, conditions, scales, labels, titleOf, fileOf } = results;
-  if (scales.comparisons.length === 0) return [];
-  const asked = questionnairesOf(study.plan);
-  const aboutOf = (one: Comparison) => aboutIn(asked, one);
-  const facts = { conditions, simulated: study.simulated, aboutOf };
-  const name = (one: Comparison) => `${aboutOf(one)}, ${titleOf(one.asked?.task ?? '')}`;
-  return [
-    element('h2', {}, 'Scales'),
-    ...scaleFigures(asked, results),
-    tableNode(
-      `Paired comparisons of the scales: means with 95 % confidence intervals, and tests; Holm over all ${scales.comparisons.length} scales`,
-      comparisonHeads('Scale', labels.first, labels.second),
-      comparisonRows(scales.comparisons, 2, name),
-    ),
-    bar(csvButton(comparisonTable('scales-compared', scales.comparisons, facts), fileOf('scales-compared'))),
-  ];
-}
-
-function scoreParts(results: Compared): readonly Node[] {
-  const { study, conditions, scores, labels, titleOf, fileOf } = results;
-  const { points, percent } = scores;
-  const both = [...points.comparisons, ...percent.comparisons];
-  const table = comparisonTable('scores-compared', both, { conditions, simulated: study.simulated, aboutOf: () => '' });
-  return [
-    element('h2', {}, 'Scores'),
-    ...percent.comparisons.map((comparison) => scoreFigures(results, comparison)),
-    tableNode(
-      'Paired comparisons of the scores: means of the blocks’ trials with 95 % confidence intervals, and tests',
-      comparisonHeads('Task', labels.first, labels.second),
-      [
-        ...comparisonRows(points.comparisons, 2, ({ of }) => `${titleOf(of)}, points`),
-        ...comparisonRows(percent.comparisons, 2, ({ of }) => `${titleOf(of)}, per cent`),
-      ],
-    ),
-    bar(csvButton(table, fileOf('scores-compared'))),
-  ];
-}
-
-function scoreFigures(
-  { study: { plan, simulated }, labels, titleOf, fileOf }: Compared,
-  comparison: Comparison,
-): HTMLElement {
-  const name = titleOf(comparison.of);
-  const task = plan.tasks.find(({ id }) => id === comparison.of);
-  const alone = (task?.groupSize ?? 1) === 1;
-  const options: Omit<ChartOptions, 'title'> = {
-    labels,
-    simulated,
-    nameOf: () => name,
-    axis: 'score in per cent of the maximum',
-    domain: [0, 100],
+  const { nodes, excluded } = pairResults(results, conditions);
+  const choosing = pairChooser(plan.conditions, conditions, (pair) => choose({ ...selection, conditions: pair }));
+  const same = conditions[0] === conditions[1];
+  return {
+    nodes: [
+      element('h2', {}, plan.conditions.length > 2 || plan.cohorts ? 'Two conditions' : 'Both conditions'),
+      ...choosing,
+      ...(same ? [element('p', { class: 'complaint' }, 'Choose two different conditions.')] : nodes),
+    ],
+    excluded: same ? [] : excluded,
   };
-  return element(
-    'div',
-    { class: 'figures' },
-    figure(
-      barChart([comparison], { title: `${name}: scores`, ...options }),
-      `${name}: mean scores (the paper’s figure ${task?.game === 'ball' ? 14 : 12})`,
-      fileOf(`${comparison.of}-scores`),
-    ),
-    figure(
-      pairedChart([comparison], { title: `${name}: scores, pairs`, ...options }),
-      `${name}: every ${alone ? 'participant' : 'group'}`,
-      fileOf(`${comparison.of}-scores-pairs`),
-    ),
-  );
 }
 
-const frameTimeHeads = [
-  { text: 'Task' },
-  { text: 'Condition' },
-  { text: 'Stage' },
-  { text: 'trials', numeric: true },
-  { text: 'frames', numeric: true },
-  { text: 'min', numeric: true },
-  { text: 'max', numeric: true },
-  { text: 'mean', numeric: true },
-  { text: 'worst p95', numeric: true, title: 'Largest of the trials’ 95th percentiles' },
-  { text: 'late', numeric: true, title: 'Frames shown later than the device wanted' },
-] as const;
-
-function frameTimeParts({ study: { simulated, records }, titleOf, labelOf, fileOf }: Compared): readonly Node[] {
-  const times = frameTimes(records);
-  const lateText = (missed: number, frames: number) =>
-    `${missed} (${((100 * missed) / Math.max(1, frames)).toFixed(1)} %)`;
+function cohortParts(results: ShownResults, selection: Selection, choose: Choose): readonly Node[] {
+  const { cohorts, under } = selection;
+  const { plan } = results.study;
+  if (!cohorts) return [];
+  const views = cohortViews(plan).map((view) => ({
+    id: view.join(' '),
+    label: view.length === 1 ? results.labelOf(view[0] ?? '') : 'all conditions, the mean of each participant',
+  }));
+  const choosing = [
+    ...pairChooser(plan.cohorts ?? [], cohorts, (pair) => choose({ ...selection, cohorts: pair })),
+    ...(views.length === 1
+      ? []
+      : [bar(chooser('Under', views, under.join(' '), (id) => choose({ ...selection, under: id.split(' ') })))]),
+  ];
   return [
-    element('h2', {}, 'Frame times'),
-    tableNode(
-      'Work of the page per frame [ms] (the paper’s tables 5 and 6)',
-      frameTimeHeads,
-      times.map((row) => ({
-        cells: [
-          titleOf(row.task),
-          labelOf(row.condition),
-          row.stage,
-          String(row.trials),
-          String(row.frames),
-          fixed(row.minMs, 2),
-          fixed(row.maxMs, 2),
-          fixed(row.meanMs, 2),
-          fixed(row.worstP95Ms, 2),
-          row.stage === 'frame' ? lateText(row.missed, row.frames) : '',
-        ],
-      })),
-    ),
-    bar(csvButton(frameTimeTable(times, simulated), fileOf('frame-times'))),
+    element('h2', {}, 'Two cohorts'),
+    ...choosing,
+    ...(cohorts[0] === cohorts[1]
+      ? [element('p', { class: 'complaint' }, 'Choose two different cohorts.')]
+      : cohortResults(results, { cohorts, conditions: under })),
   ];
 }
 
 const listNode = (lines: readonly string[]) => element('ul', {}, ...lines.map((line) => element('li', {}, line)));
 
-function leftOutParts({ study: { records }, answers, scales, scores }: Compared): readonly Node[] {
-  const excluded = exclusionList([
-    ...answers.excluded,
-    ...scales.excluded,
-    ...scores.points.excluded.filter(notTutorial),
-  ]);
+function leftOutParts({ study: { records } }: ShownResults, all: readonly Exclusion[]): readonly Node[] {
+  const excluded = exclusionList(all);
   const assisted = records.flatMap((record) => {
     if (record.kind !== 'trial' || record.body.outcome.assists.length === 0) return [];
     const { place, outcome } = record.body;
@@ -322,15 +164,13 @@ function leftOutParts({ study: { records }, answers, scales, scores }: Compared)
   });
   return [
     element('h2', {}, 'Left out'),
-    excluded.length === 0
-      ? element('p', {}, 'Nothing was left out, and every participant has both conditions.')
-      : listNode(excluded),
+    excluded.length === 0 ? element('p', {}, 'Nothing was left out of what is compared above.') : listNode(excluded),
     element('p', { class: 'soft' }, 'Tutorials and attempts that were interrupted are recorded and never evaluated.'),
     ...(assisted.length === 0 ? [] : [element('h2', {}, 'Played with aids'), listNode(assisted)]),
   ];
 }
 
-const exportParts = ({ study: { plan, records }, fileOf }: Compared): readonly Node[] => [
+const exportParts = ({ study: { plan, records }, fileOf }: ShownResults): readonly Node[] => [
   element('h2', {}, 'Tables of the export'),
   bar(
     ...studyTables(records, plan).map((table) =>
@@ -342,5 +182,3 @@ const exportParts = ({ study: { plan, records }, fileOf }: Compared): readonly N
     ),
   ),
 ];
-
-const notTutorial = ({ reason }: Exclusion) => reason !== 'tutorial';

@@ -1,5 +1,10 @@
-import type { compareScores, Results } from '../core/study/compare-conditions';
-import type { StudyPlan } from '../core/study/plan';
+import type { Comparison } from '../core/study/compare-conditions';
+import { aboutIn, measuresIn, type StudyMeasures } from '../core/study/exported-results';
+import type { Measured } from '../core/study/measures';
+import { questionnairesOf, type StudyPlan } from '../core/study/plan';
+import { isPlanned } from '../core/study/planned';
+import type { Questionnaire } from '../core/study/questionnaires';
+import type { TableFacts } from '../core/study/result-tables';
 import type { PlanVersion } from '../core/study/study-api';
 import type { StudyRecord } from '../core/study/study-record';
 
@@ -13,18 +18,54 @@ export interface ShownStudy {
   readonly versions?: readonly PlanVersion[];
 }
 
-/** A study's results as they are shown: first − second condition, and what things are called. */
-export interface Compared {
+/** A study's measures, and what things are called. */
+export interface ShownResults {
   readonly study: ShownStudy;
-  readonly conditions: readonly [string, string];
-  readonly answers: Results;
-  /** Of the scales that are computed from the answers: a family of their own. */
-  readonly scales: Results;
-  readonly scores: ReturnType<typeof compareScores>;
-  /** Of the first and the second condition. */
-  readonly labels: { readonly first: string; readonly second: string };
-  labelOf(condition: string): string;
+  readonly asked: readonly Questionnaire[];
+  readonly measures: StudyMeasures;
+  /** Of a condition or a cohort. */
+  labelOf(id: string): string;
   titleOf(task: string): string;
+  nameOf(measure: Measured): string;
   /** The name of a file to save, without its ending. */
   fileOf(name: string): string;
+  factsOf(family: TableFacts['family']): TableFacts;
+}
+
+/** Two sides that are compared, as they are shown: first − second. */
+export interface Compared<One extends Measured & Pick<Comparison, 'first' | 'second'>> {
+  readonly results: ShownResults;
+  readonly labels: { readonly first: string; readonly second: string };
+  readonly answers: readonly One[];
+  /** Of the scales that are computed from the answers: a family of their own. */
+  readonly scales: readonly One[];
+  readonly points: readonly One[];
+  readonly percent: readonly One[];
+  /** What the plan names: answers, scales and points together. */
+  readonly planned: readonly One[];
+}
+
+/** Everything that a study measures. Throws where simulated records and records of people are mixed. */
+export function shownResults(study: ShownStudy): ShownResults {
+  const { plan, simulated, records, planVersion } = study;
+  const asked = questionnairesOf(plan);
+  const versionPart = planVersion === undefined ? '' : `-version-${planVersion}`;
+  const named = [...plan.conditions, ...(plan.cohorts ?? [])];
+  const titleOf = (task: string) => plan.tasks.find(({ id }) => id === task)?.title ?? task;
+  const aboutOf = (one: Measured) => aboutIn(asked, one);
+  const isScale = ({ asked: of }: Measured) =>
+    asked.some(({ id, scales }) => id === of?.questionnaire && scales.some((scale) => scale.id === of.question));
+  return {
+    study,
+    asked,
+    measures: measuresIn(records, plan),
+    labelOf: (id) => named.find((one) => one.id === id)?.label ?? id,
+    titleOf,
+    nameOf: (one) => {
+      if (!one.asked) return `${titleOf(one.of)}, ${one.unit === 'percent' ? 'per cent' : 'points'}`;
+      return isScale(one) ? `${aboutOf(one)}, ${titleOf(one.asked.task)}` : `${one.of} ${aboutOf(one)}`;
+    },
+    fileOf: (name) => `${simulated ? 'SIMULATED-' : ''}${plan.id}${versionPart}-${name}`,
+    factsOf: (family) => ({ family, simulated, aboutOf, isPlanned: (one) => isPlanned(one, plan) }),
+  };
 }

@@ -3,17 +3,19 @@ import { element } from '../ui/element';
 /** A cell: text, or a node of one's own. */
 export type TableCell = string | Node;
 
+export interface TableHead {
+  readonly text: string;
+  readonly title?: string;
+  readonly numeric?: boolean;
+}
+
 export interface TableRow {
   readonly cells: readonly TableCell[];
   readonly look?: string;
 }
 
 /** A table with a caption; columns that hold numbers stand to the right. */
-export function tableNode(
-  caption: string,
-  heads: readonly { readonly text: string; readonly title?: string; readonly numeric?: boolean }[],
-  rows: readonly TableRow[],
-): HTMLElement {
+export function tableNode(caption: string, heads: readonly TableHead[], rows: readonly TableRow[]): HTMLElement {
   return element(
     'div',
     { class: 'table' },

@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest';
-import { compareAll } from '../../src/core/study/compare-all';
+import { measuresIn, overallComparisons } from '../../src/core/study/exported-results';
 import { answersIn, trialsIn } from '../../src/core/study/study-tables';
 import { createExperimenterClient } from '../../src/net/study-client';
 import { rehearse } from '../../src/pages/rehearse';
@@ -31,10 +31,7 @@ test('a rehearsal goes through the plan to the end, into a study of its own, wit
     Array(6).fill('end'),
   );
   expect(trialsIn(records).filter(({ excluded }) => !excluded)).toHaveLength(6 * 3);
-  const compared = compareAll(answersIn(records, rehearsed), {
-    conditions: plan.conditions.map(({ id }) => id),
-    cohortOf: () => '',
-  });
+  const compared = overallComparisons(measuresIn(records, rehearsed).answers, rehearsed);
   expect(compared.filter(({ variance }) => (variance?.within?.p ?? 1) < 0.05).length).toBeGreaterThan(4);
   expect((await client.records('latency')).records).toEqual([]);
 });

@@ -44,9 +44,8 @@ test.each<[string, Uint8Array, RegExp]>([
 
 test('the table of comparisons has a row per question and full precision, and says that it is simulated', () => {
   const { comparisons } = compareAnswers(answersIn(records, plan), ['learned', 'ik']);
-  const csv = tidyCsv(
-    comparisonTable('answers', comparisons, { conditions: ['learned', 'ik'], simulated: true, aboutOf: () => '' }),
-  )
+  const facts = { family: 'explored', simulated: true, aboutOf: () => '', isPlanned: () => false } as const;
+  const csv = tidyCsv(comparisonTable('answers', [{ conditions: ['learned', 'ik'], comparisons }], facts))
     .trimEnd()
     .split('\r\n');
   expect(csv).toHaveLength(13);

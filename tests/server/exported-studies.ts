@@ -25,6 +25,7 @@ export const designs: Readonly<Record<string, StudyPlan>> = {
     participants: 18,
     orders: 'williams',
     conditions: [late(0), late(80), late(160)],
+    planned: ['archery/nasa-tlx-raw/raw', 'archery/score', 'archery/archery/Q3'],
   }),
   'two conditions in two cohorts': paperPlan({
     ...archeryAlone,
@@ -32,6 +33,7 @@ export const designs: Readonly<Record<string, StudyPlan>> = {
     participants: 14,
     cohorts: [...cohorts],
     conditions: [late(0), late(120)],
+    planned: ['archery/score', 'archery/archery/Q1', 'archery/nasa-tlx-raw/raw'],
   }),
   'one condition in two cohorts': paperPlan({
     ...archeryAlone,
@@ -39,6 +41,15 @@ export const designs: Readonly<Record<string, StudyPlan>> = {
     participants: 16,
     cohorts: [...cohorts],
     conditions: [late(0)],
+    planned: ['archery/archery/Q1', 'archery/archery/Q2'],
+  }),
+  'three conditions in three cohorts, groups of three': paperPlan({
+    id: 'three-by-three',
+    participants: 27,
+    orders: 'williams',
+    cohorts: [...cohorts, { id: 'mannequins', label: 'As a mannequin', avatar: 'mannequin' }],
+    conditions: [late(0), late(80), late(160)],
+    planned: ['ball/score', 'ball/ball/Q8'],
   }),
 };
 

@@ -59,7 +59,7 @@ describe.each(languages)('the analysis in $name of an exported study', ({ progra
     const { status, said, complaint } = analysed(program as string, script, written(files));
     expect(complaint).toBe('');
     expect(said).not.toContain('differences');
-    expect(said.match(/rows, as computed here/g)).toHaveLength(6);
+    expect(said.match(/rows, as computed here/g)).toHaveLength(13);
     expect(status).toBe(0);
   });
 

@@ -15,3 +15,18 @@ export function holm(pValues: readonly (number | null)[]): readonly (number | nu
   });
   return adjusted;
 }
+
+/** Tests made together, each with its p and that of its test by ranks adjusted over all of them. */
+export function asFamily<T>(
+  tests: readonly T[],
+  pOf: (test: T) => number | null,
+  ranksPOf: (test: T) => number | null,
+): readonly (T & { readonly holmP: number | null; readonly ranksHolmP: number | null })[] {
+  const holmP = holm(tests.map(pOf));
+  const ranksHolmP = holm(tests.map(ranksPOf));
+  return tests.map((test, index) => ({
+    ...test,
+    holmP: holmP[index] ?? null,
+    ranksHolmP: ranksHolmP[index] ?? null,
+  }));
+}

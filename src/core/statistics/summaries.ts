@@ -20,6 +20,13 @@ export interface MeanSummary {
 /** The arithmetic mean; NaN for no values. */
 export const meanOf = (values: readonly number[]) => values.reduce((sum, value) => sum + value, 0) / values.length;
 
+/**
+ * The mean, of several values to twelve digits: means that are equal but for rounding are equal then, which ranks depend on. NaN for
+ * no values.
+ */
+export const roundedMeanOf = (values: readonly number[]): number =>
+  values.length === 1 ? (values[0] as number) : Number(meanOf(values).toPrecision(12));
+
 /** Of the sample, divided by n − 1; NaN for fewer than two values. */
 export function deviationOf(values: readonly number[]): number {
   const mean = meanOf(values);

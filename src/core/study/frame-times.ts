@@ -1,10 +1,13 @@
+import type { CohortOf } from './measures';
 import type { StudyRecord, TrialRecord } from './study-record';
 import { refuseMixture, voidedBlocks } from './study-tables';
 
-/** Work per frame of one stage, over all trials of a task under a condition: as tables 5 and 6 of the paper. */
+/** Work per frame of one stage, over all trials of a task under a condition in a cohort: as tables 5 and 6 of the paper. */
 export interface FrameTimeRow {
   readonly task: string;
   readonly condition: string;
+  /** Empty: the plan has none. */
+  readonly cohort: string;
   /** "frame" is the whole of a frame's work. */
   readonly stage: string;
   readonly trials: number;
@@ -20,17 +23,19 @@ export interface FrameTimeRow {
 }
 
 /** Frame times of the trials that count, the whole frame first. Throws where simulated records and records of people are mixed. */
-export function frameTimes(records: readonly StudyRecord[]): readonly FrameTimeRow[] {
+export function frameTimes(records: readonly StudyRecord[], cohortOf: CohortOf = () => ''): readonly FrameTimeRow[] {
   refuseMixture(records);
   const excluded = voidedBlocks(records);
-  const groups = new Map<string, { task: string; condition: string; stage: string; trials: TrialRecord[] }>();
+  type Group = Pick<FrameTimeRow, 'task' | 'condition' | 'cohort' | 'stage'> & { readonly trials: TrialRecord[] };
+  const groups = new Map<string, Group>();
   for (const record of records) {
     if (record.kind !== 'trial') continue;
     const { condition, place, outcome } = record.body;
     if (condition === null || excluded(record.participant, place) !== '') continue;
+    const cohort = cohortOf(record.participant);
     for (const stage of Object.keys(outcome.frames.stages)) {
-      const key = `${place.task} ${condition} ${stage}`;
-      const group = groups.get(key) ?? { task: place.task, condition, stage, trials: [] };
+      const key = `${place.task} ${condition} ${cohort} ${stage}`;
+      const group = groups.get(key) ?? { task: place.task, condition, cohort, stage, trials: [] };
       group.trials.push(record);
       groups.set(key, group);
     }
@@ -38,12 +43,13 @@ export function frameTimes(records: readonly StudyRecord[]): readonly FrameTimeR
   const rank = ({ stage }: { readonly stage: string }) => (stage === 'frame' ? 0 : 1);
   return [...groups.values()]
     .toSorted((a, b) => rank(a) - rank(b))
-    .map(({ task, condition, stage, trials }) => {
+    .map(({ task, condition, cohort, stage, trials }) => {
       const parts = trials.flatMap(({ body }) => body.outcome.frames.stages[stage] ?? []);
       const frames = parts.reduce((sum, { count }) => sum + count, 0);
       return {
         task,
         condition,
+        cohort,
         stage,
         trials: parts.length,
         frames,

@@ -2,6 +2,7 @@ import { cohortsByParticipant } from './allocation';
 import { type AnswerRow, answerRows, type BlockExclusion, questionTable, scaleRows, scaleTable } from './answer-tables';
 import { conditionTable } from './condition-table';
 import type { StudyPlan } from './plan';
+import { plannedTable } from './planned-table';
 import {
   answerColumns,
   eventColumns,
@@ -187,6 +188,7 @@ export function studyTables(records: readonly StudyRecord[], plan: StudyPlan): r
   return [
     { name: 'participants', columns: participantColumns, rows: participantRows(records, plan) },
     conditionTable(plan),
+    plannedTable(plan),
     {
       name: 'answers',
       columns: answerColumns,

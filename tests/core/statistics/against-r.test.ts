@@ -6,6 +6,7 @@ import { noncentralF, noncentralT } from '../../../src/core/statistics/noncentra
 import { pairedTTest, signedRankTest } from '../../../src/core/statistics/paired-tests';
 import { friedmanTest, kruskalWallisTest } from '../../../src/core/statistics/rank-analyses';
 import { evenly, seed } from '../arbitraries';
+import { expectAsInR } from './as-in-r';
 import {
   chicks,
   depression,
@@ -17,12 +18,6 @@ import {
   roundingTimes,
   sleep,
 } from './data-sets';
-
-/** To a millionth of R's figure. */
-function expectAsInR(ours: number | null | undefined, r: number): void {
-  expect(ours).not.toBeNull();
-  expect(Math.abs((ours as number) - r)).toBeLessThanOrEqual(1e-6 * Math.abs(r));
-}
 
 interface InR {
   readonly f: number;

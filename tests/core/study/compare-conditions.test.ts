@@ -45,13 +45,13 @@ function simulatedAnswers(model: AnswerModel, study: number): AnswerRow[] {
 }
 
 describe('an analysis of simulated studies', () => {
-  const findings = (model: AnswerModel, study: number, p: 'holmP' | 'signedRankHolmP') =>
+  const findings = (model: AnswerModel, study: number, p: 'holmP' | 'ranksHolmP') =>
     compareAnswers(simulatedAnswers(model, study), [...conditions]).comparisons.filter(
       (comparison) => (comparison[p] ?? 1) < 0.05,
     ).length;
 
   test('finds nothing in at least 95 of 100 studies in which there is nothing', () => {
-    for (const p of ['holmP', 'signedRankHolmP'] as const) {
+    for (const p of ['holmP', 'ranksHolmP'] as const) {
       const silent = Array.from({ length: 100 }, (_, study) => findings(nullAnswerModel, study, p)).filter(
         (found) => found === 0,
       ).length;

@@ -1,36 +1,69 @@
 import { expect, test } from 'vitest';
 import { modelsWith, simulateStudy } from '../../../src/core/rehearsal/simulate-study';
 import { holm } from '../../../src/core/statistics/holm';
-import { compareAnswers } from '../../../src/core/study/compare-conditions';
-import { overallComparisons } from '../../../src/core/study/exported-results';
+import { compareConditions } from '../../../src/core/study/compare-conditions';
+import { measuresIn, overallComparisons, resultTables } from '../../../src/core/study/exported-results';
 import { checkedPlan } from '../../../src/core/study/plan';
-import { plannedAnalyses, plannedFamily } from '../../../src/core/study/planned';
-import { answersIn, scalesIn } from '../../../src/core/study/study-tables';
 import { latencyPlan } from './studies';
 
 const plan = latencyPlan({ participants: 6 });
 const effects = { answers: { 'late-200': -1 }, scores: {} };
 const records = simulateStudy(plan, modelsWith(plan, effects), 5, 1e9).flatMap((one) => one.records);
+const measures = measuresIn(records, plan);
 
 test('what a plan names is a family of its own: Holm over it alone, however much else was asked', () => {
-  const pair = ['late-200', 'late-0'] as const;
-  const all = [answersIn(records, plan), scalesIn(records, plan)].flatMap(
-    (rows) => compareAnswers(rows, [...pair]).comparisons,
-  );
-  expect(all.length).toBeGreaterThan(15);
-  const family = plannedFamily(all, plan);
+  const { answers, scales, planned } = measures;
+  expect(answers.length + scales.length).toBeGreaterThan(15);
+  const family = compareConditions(planned, ['late-200', 'late-0']).comparisons;
   expect(family.map(({ of }) => of)).toEqual(['ownership', 'agency', 'raw']);
   expect(family.map(({ holmP }) => holmP)).toEqual(holm(family.map(({ test }) => test?.p ?? null)));
-  const analyses = plannedAnalyses(overallComparisons(scalesIn(records, plan), plan), plan);
+  const analyses = overallComparisons(planned, plan);
   expect(analyses.map(({ of }) => of)).toEqual(['ownership', 'agency', 'raw']);
   expect(analyses.map(({ holmP }) => holmP)).toEqual(
     holm(analyses.map(({ variance }) => variance?.within?.correctedP ?? null)),
   );
 });
 
+test('the tables of an export hold the planned family with its own Holm p, and mark all else as explored', () => {
+  const tables = new Map(resultTables(records, plan).map((table) => [table.name, table.rows]));
+  const planned = tables.get('planned-compared') ?? [];
+  expect(planned.map(({ of, first, second }) => `${of} ${first} ${second}`)).toEqual(
+    ['late-100 late-0', 'late-200 late-0', 'late-200 late-100'].flatMap((pair) =>
+      ['ownership', 'agency', 'raw'].map((of) => `${of} ${pair}`),
+    ),
+  );
+  const explored = tables.get('scales-compared') ?? [];
+  expect(explored.filter((row) => row.planned).map(({ of }) => of)).toEqual([
+    'ownership',
+    'agency',
+    'raw',
+    'ownership',
+    'agency',
+    'raw',
+    'ownership',
+    'agency',
+    'raw',
+  ]);
+  expect(tables.get('answers-compared')?.every((row) => row.planned === false)).toBe(true);
+  expect(tables.get('scores-compared')?.every((row) => row.planned === false)).toBe(true);
+  // The same test, adjusted over three and over four.
+  const raw = (rows: typeof planned) => rows.find(({ of, first }) => of === 'raw' && first === 'late-200');
+  expect(raw(planned)?.p).toBe(raw(explored)?.p);
+  expect(raw(planned)?.low_dz).toBe(raw(explored)?.low_dz);
+  expect(raw(planned)?.p_holm).not.toBe(raw(explored)?.p_holm);
+  expect(tables.get('planned-overall')).toHaveLength(3);
+});
+
+test('a planned score is of points', () => {
+  const scored = { ...plan, planned: ['archery/score'] };
+  expect(measuresIn(records, scored).planned.map(({ of, unit }) => `${of} ${unit}`)).toEqual(['archery points']);
+  const [, overall] = resultTables(records, scored);
+  expect(overall).toMatchObject({ name: 'planned-overall', rows: [{ of: 'archery', unit: 'points', planned: true }] });
+});
+
 test('without planned measures nothing is planned', () => {
   const { planned: _, ...unplanned } = plan;
-  expect(plannedAnalyses(overallComparisons(scalesIn(records, plan), plan), unplanned)).toEqual([]);
+  expect(measuresIn(records, unplanned).planned).toEqual([]);
 });
 
 test('a measure that is nowhere is named', () => {

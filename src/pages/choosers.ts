@@ -1,0 +1,38 @@
+import { element } from '../ui/element';
+import { bar } from './result-cells';
+
+interface Choice {
+  readonly id: string;
+  readonly label: string;
+}
+
+/** A list to choose one from. */
+export function chooser(
+  name: string,
+  choices: readonly Choice[],
+  chosen: string,
+  choose: (id: string) => void,
+): HTMLElement {
+  const select = element(
+    'select',
+    { 'aria-label': name },
+    ...choices.map(({ id, label }) => element('option', { value: id, selected: id === chosen }, label)),
+  );
+  select.addEventListener('change', () => choose(select.value));
+  return element('label', {}, element('span', {}, name), select);
+}
+
+/** Which two of several are compared; nothing where there are but two. */
+export function pairChooser(
+  choices: readonly Choice[],
+  [first, second]: readonly [string, string],
+  choose: (pair: readonly [string, string]) => void,
+): readonly Node[] {
+  if (choices.length < 3) return [];
+  return [
+    bar(
+      chooser('Compare', choices, first, (id) => choose([id, second])),
+      chooser('with', choices, second, (id) => choose([first, id])),
+    ),
+  ];
+}

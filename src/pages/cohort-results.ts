@@ -1,0 +1,88 @@
+import { cohortTable } from '../core/study/cohort-table';
+import { type CohortComparison, type ComparedCohorts, compareCohorts } from '../core/study/compare-cohorts';
+import { element } from '../ui/element';
+import { cohortTesting, comparedTable } from './compared-tables';
+import { meansFigure, questionCharts, scaleCharts } from './questionnaire-figures';
+import { bar, csvButton, plannedNote } from './result-cells';
+import type { Compared, ShownResults } from './shown-results';
+
+type Cohorts = Compared<CohortComparison> & { readonly compared: ComparedCohorts };
+
+/** A table of comparisons with its button. */
+function tableOf(cohorts: Cohorts, file: string, caption: string, comparisons: readonly CohortComparison[]) {
+  const { results, compared } = cohorts;
+  const facts = results.factsOf(file.startsWith('planned') ? 'planned' : 'explored');
+  const table = cohortTable(file, [{ compared, comparisons }], facts);
+  return [comparedTable(cohorts, cohortTesting, caption, comparisons), bar(csvButton(table, results.fileOf(file)))];
+}
+
+const means = 'means with 95 % confidence intervals, and tests between participants';
+
+function plannedParts(cohorts: Cohorts): readonly Node[] {
+  const { planned } = cohorts;
+  if (planned.length === 0) return [];
+  return [
+    element('h3', {}, 'Planned, between cohorts'),
+    ...tableOf(cohorts, 'planned-cohorts', `Planned: ${means}; Holm over these ${planned.length} alone`, planned),
+    plannedNote(),
+  ];
+}
+
+function answerParts(cohorts: Cohorts): readonly Node[] {
+  const { answers } = cohorts;
+  if (answers.length === 0) return [];
+  const charts = questionCharts(cohorts).map((chart) => ({ ...chart, file: `${chart.file}-cohorts` }));
+  return [
+    element('h3', {}, 'Questionnaires, between cohorts'),
+    element('div', { class: 'figures' }, ...charts.map((chart) => meansFigure(cohorts, chart))),
+    ...tableOf(cohorts, 'answers-cohorts', `Exploratory: answers, ${means}`, answers),
+  ];
+}
+
+function scaleParts(cohorts: Cohorts): readonly Node[] {
+  const { scales } = cohorts;
+  if (scales.length === 0) return [];
+  const charts = scaleCharts(cohorts).map((chart) => ({ ...chart, file: `${chart.file}-cohorts` }));
+  return [
+    element('h3', {}, 'Scales, between cohorts'),
+    element('div', { class: 'figures' }, ...charts.map((chart) => meansFigure(cohorts, chart))),
+    ...tableOf(cohorts, 'scales-cohorts', `Exploratory: scales, ${means}`, scales),
+  ];
+}
+
+function scoreParts(cohorts: Cohorts): readonly Node[] {
+  const both = [...cohorts.points, ...cohorts.percent];
+  if (both.length === 0) return [];
+  return [
+    element('h3', {}, 'Scores, between cohorts'),
+    ...tableOf(cohorts, 'scores-cohorts', `Exploratory: scores, ${means}`, both),
+  ];
+}
+
+/** Two cohorts, first − second, by the mean of what each had under these conditions. */
+export function cohortResults(results: ShownResults, compared: ComparedCohorts): readonly Node[] {
+  const { measures, labelOf } = results;
+  const [first, second] = compared.cohorts;
+  const cohorts: Cohorts = {
+    results,
+    compared,
+    labels: { first: labelOf(first), second: labelOf(second) },
+    answers: compareCohorts(measures.answers, compared),
+    scales: compareCohorts(measures.scales, compared),
+    points: compareCohorts(measures.points, compared),
+    percent: compareCohorts(measures.percent, compared),
+    planned: compareCohorts(measures.planned, compared),
+  };
+  const under =
+    compared.conditions.length === 1
+      ? `under “${labelOf(compared.conditions[0] ?? '')}”`
+      : 'of what each had under all conditions, as a mean';
+  const said = `Differences are ${labelOf(first)} − ${labelOf(second)}, between participants (scores of groups: between groups), ${under}. Tests are two-sided; * marks Holm’s p below .05 over the table that it stands in (scores: points and per cent apart).`;
+  return [
+    element('p', { class: 'soft' }, said),
+    ...plannedParts(cohorts),
+    ...answerParts(cohorts),
+    ...scaleParts(cohorts),
+    ...scoreParts(cohorts),
+  ];
+}

@@ -1,0 +1,132 @@
+import { type Comparison, compareConditions, type Results } from '../core/study/compare-conditions';
+import { comparisonTable } from '../core/study/result-tables';
+import { element } from '../ui/element';
+import { barChart, type ChartOptions, pairedChart } from './charts';
+import { comparedTable, pairTesting } from './compared-tables';
+import { figure } from './figure';
+import { type Chart, meansFigure, pairsFigure, questionCharts, scaleCharts } from './questionnaire-figures';
+import { bar, csvButton, plannedNote } from './result-cells';
+import type { Compared, ShownResults } from './shown-results';
+
+type Pairs = Compared<Comparison> & { readonly conditions: readonly [string, string] };
+
+function saved({ results, conditions }: Pairs, file: string, comparisons: readonly Comparison[]): HTMLElement {
+  const facts = results.factsOf(file.startsWith('planned') ? 'planned' : 'explored');
+  return bar(csvButton(comparisonTable(file, [{ conditions, comparisons }], facts), results.fileOf(file)));
+}
+
+/** What the plan named beforehand, a family of its own; below it everything is shown once more, as explored. */
+function plannedParts(pairs: Pairs): readonly Node[] {
+  const { planned } = pairs;
+  if (planned.length === 0) return [];
+  const caption = `Planned comparisons: means with 95 % confidence intervals, and tests; Holm over these ${planned.length} alone`;
+  return [
+    element('h3', {}, 'Planned'),
+    comparedTable(pairs, pairTesting, caption, planned),
+    saved(pairs, 'planned-compared', planned),
+    plannedNote(),
+  ];
+}
+
+const bothFigures = (pairs: Pairs) => (chart: Chart<Comparison>) =>
+  element('div', { class: 'figures' }, meansFigure(pairs, chart), pairsFigure(pairs, chart));
+
+function answerParts(pairs: Pairs): readonly Node[] {
+  const { answers } = pairs;
+  if (answers.length === 0) return [];
+  const caption =
+    'Exploratory: paired comparisons of the answers: means with 95 % confidence intervals, and tests (the paper’s tables 9 and 10)';
+  return [
+    element('h3', {}, 'Questionnaires'),
+    ...questionCharts(pairs).map(bothFigures(pairs)),
+    comparedTable(pairs, pairTesting, caption, answers),
+    saved(pairs, 'answers-compared', answers),
+  ];
+}
+
+function scaleParts(pairs: Pairs): readonly Node[] {
+  const { scales } = pairs;
+  if (scales.length === 0) return [];
+  const caption = `Exploratory: paired comparisons of the scales: means with 95 % confidence intervals, and tests; Holm over all ${scales.length} scales`;
+  return [
+    element('h3', {}, 'Scales'),
+    ...scaleCharts(pairs).map(bothFigures(pairs)),
+    comparedTable(pairs, pairTesting, caption, scales),
+    saved(pairs, 'scales-compared', scales),
+  ];
+}
+
+function scoreParts(pairs: Pairs): readonly Node[] {
+  const { points, percent } = pairs;
+  const both = [...points, ...percent];
+  if (both.length === 0) return [];
+  const caption =
+    'Exploratory: paired comparisons of the scores: means of the blocks’ trials with 95 % confidence intervals, and tests';
+  return [
+    element('h3', {}, 'Scores'),
+    ...percent.map((comparison) => scoreFigures(pairs, comparison)),
+    comparedTable(pairs, pairTesting, caption, both),
+    saved(pairs, 'scores-compared', both),
+  ];
+}
+
+function scoreFigures({ results, labels }: Pairs, comparison: Comparison): HTMLElement {
+  const { plan, simulated } = results.study;
+  const name = results.titleOf(comparison.of);
+  const task = plan.tasks.find(({ id }) => id === comparison.of);
+  const alone = (task?.groupSize ?? 1) === 1;
+  const options: Omit<ChartOptions<Comparison>, 'title'> = {
+    labels,
+    simulated,
+    nameOf: () => name,
+    axis: 'score in per cent of the maximum',
+    domain: [0, 100],
+  };
+  return element(
+    'div',
+    { class: 'figures' },
+    figure(
+      barChart([comparison], { title: `${name}: scores`, ...options }),
+      `${name}: mean scores (the paper’s figure ${task?.game === 'ball' ? 14 : 12})`,
+      results.fileOf(`${comparison.of}-scores`),
+    ),
+    figure(
+      pairedChart([comparison], { title: `${name}: scores, pairs`, ...options }),
+      `${name}: every ${alone ? 'participant' : 'group'}`,
+      results.fileOf(`${comparison.of}-scores-pairs`),
+    ),
+  );
+}
+
+/** Two conditions, first − second: figures, tables, and who was left out of them. */
+export function pairResults(
+  results: ShownResults,
+  conditions: readonly [string, string],
+): { readonly nodes: readonly Node[]; readonly excluded: Results['excluded'] } {
+  const { measures, labelOf } = results;
+  const answers = compareConditions(measures.answers, conditions);
+  const scales = compareConditions(measures.scales, conditions);
+  const points = compareConditions(measures.points, conditions);
+  const pairs: Pairs = {
+    results,
+    conditions,
+    labels: { first: labelOf(conditions[0]), second: labelOf(conditions[1]) },
+    answers: answers.comparisons,
+    scales: scales.comparisons,
+    points: points.comparisons,
+    percent: compareConditions(measures.percent, conditions).comparisons,
+    planned: compareConditions(measures.planned, conditions).comparisons,
+  };
+  const { first, second } = pairs.labels;
+  const said = `Differences are ${first} − ${second}, paired within participants (scores of groups: within groups). Tests are two-sided; * marks Holm’s p below .05 over the table that it stands in (scores: points and per cent apart).`;
+  return {
+    nodes: [
+      element('p', { class: 'soft' }, said),
+      ...plannedParts(pairs),
+      ...answerParts(pairs),
+      ...scaleParts(pairs),
+      ...scoreParts(pairs),
+    ],
+    excluded: [...answers.excluded, ...scales.excluded, ...points.excluded],
+  };
+}
