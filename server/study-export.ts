@@ -62,7 +62,7 @@ function readme(content: ExportContent, leftOut: readonly string[], whole: boole
     'An apostrophe before text that begins like a formula was put there by us.',
     ...(whole
       ? [
-          'results/      what the page of results computes, of every two conditions',
+          'results/      what the page of results computes: planned, then explored',
           'analysis/     the same from the tidy tables: "Rscript analysis/analyse.R", or',
           '              "pip install -r analysis/requirements.txt" and "python analysis/analyse.py"',
         ]
@@ -92,11 +92,18 @@ function tablesOf({ records, plan }: ExportContent, whole: boolean): readonly Ta
 
 /** File names of an export with their text; of one participant alone where one is named, without results. */
 export function exportFiles(content: ExportContent, participant?: string): Readonly<Record<string, string>> {
-  const { plan, simulated, records, motion, at, retentionUntil, software } = content;
+  const { plan, simulated, records, motion, at, retentionUntil, software, planVersion = null } = content;
   const whole = participant === undefined;
   const tables = tablesOf(content, whole);
   const bids = bidsDataset(content);
-  const of = { study: plan.id, simulated, participant: participant ?? null, exportedAt: at, retentionUntil };
+  const of = {
+    study: plan.id,
+    planVersion,
+    simulated,
+    participant: participant ?? null,
+    exportedAt: at,
+    retentionUntil,
+  };
   const files: Record<string, string> = {
     'README.txt': readme(content, bids.leftOut, whole),
     'plan.json': json(plan),

@@ -2,7 +2,7 @@ import { cohortTable } from '../core/study/cohort-table';
 import { type CohortComparison, type ComparedCohorts, compareCohorts } from '../core/study/compare-cohorts';
 import { element } from '../ui/element';
 import { cohortTesting, comparedTable } from './compared-tables';
-import { meansFigure, questionCharts, scaleCharts } from './questionnaire-figures';
+import { type Chart, meansFigure, questionCharts, scaleCharts } from './questionnaire-figures';
 import { bar, csvButton, plannedNote } from './result-cells';
 import type { Compared, ShownResults } from './shown-results';
 
@@ -28,13 +28,20 @@ function plannedParts(cohorts: Cohorts): readonly Node[] {
   ];
 }
 
+/** Means side by side; no figure of the paper shows cohorts. */
+const figuresOf = (cohorts: Cohorts, charts: readonly Chart<CohortComparison>[]) =>
+  element(
+    'div',
+    { class: 'figures' },
+    ...charts.map((chart) => meansFigure(cohorts, { ...chart, file: `${chart.file}-cohorts`, note: '' })),
+  );
+
 function answerParts(cohorts: Cohorts): readonly Node[] {
   const { answers } = cohorts;
   if (answers.length === 0) return [];
-  const charts = questionCharts(cohorts).map((chart) => ({ ...chart, file: `${chart.file}-cohorts` }));
   return [
     element('h3', {}, 'Questionnaires, between cohorts'),
-    element('div', { class: 'figures' }, ...charts.map((chart) => meansFigure(cohorts, chart))),
+    figuresOf(cohorts, questionCharts(cohorts)),
     ...tableOf(cohorts, 'answers-cohorts', `Exploratory: answers, ${means}`, answers),
   ];
 }
@@ -42,10 +49,9 @@ function answerParts(cohorts: Cohorts): readonly Node[] {
 function scaleParts(cohorts: Cohorts): readonly Node[] {
   const { scales } = cohorts;
   if (scales.length === 0) return [];
-  const charts = scaleCharts(cohorts).map((chart) => ({ ...chart, file: `${chart.file}-cohorts` }));
   return [
     element('h3', {}, 'Scales, between cohorts'),
-    element('div', { class: 'figures' }, ...charts.map((chart) => meansFigure(cohorts, chart))),
+    figuresOf(cohorts, scaleCharts(cohorts)),
     ...tableOf(cohorts, 'scales-cohorts', `Exploratory: scales, ${means}`, scales),
   ];
 }

@@ -147,4 +147,5 @@ export const comparedTable = <One extends Two>(
     caption,
     headsOf(testing, compared),
     comparisons.map((one) => rowOf(compared.results, testing, one, comparisons !== compared.planned)),
+    'dense',
   );

@@ -66,6 +66,7 @@ function familyParts(
       caption(compared.length),
       heads,
       compared.flatMap((one) => rowsOf(results, one, !planned)),
+      'dense',
     ),
     bar(csvButton(overallTable(file, compared, factsOf(planned ? 'planned' : 'explored')), fileOf(file))),
     ...(leftOut.length === 0

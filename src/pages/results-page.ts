@@ -63,7 +63,8 @@ function sourceBar(): HTMLElement {
 
 /** Of a plan that was changed: which version is shown, and who is in the others. */
 function versionBar({ plan, planVersion, versions = [] }: ShownStudy): readonly Node[] {
-  if (planVersion === undefined) return [];
+  // An export holds one version, and nothing of the others.
+  if (planVersion === undefined || versions.length === 0) return [];
   const select = element(
     'select',
     { 'aria-label': 'Version of the plan' },
@@ -92,9 +93,13 @@ function versionBar({ plan, planVersion, versions = [] }: ShownStudy): readonly 
 
 function results(): readonly Node[] {
   if (!shown || !selection) return [];
-  const { plan, source } = shown;
+  const { plan, planVersion, source } = shown;
   const heading = element('h2', {}, plan.title);
-  const where = element('p', { class: 'soft' }, `${plan.id}, from ${source}.`);
+  const where = element(
+    'p',
+    { class: 'soft' },
+    `${plan.id}${planVersion === undefined ? '' : `, version ${planVersion} of its plan`}, from ${source}.`,
+  );
   const choose = (chosen: Selection) => {
     selection = chosen;
     render();

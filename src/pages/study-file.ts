@@ -8,6 +8,8 @@ export interface OpenedStudy {
   readonly plan: StudyPlan;
   readonly simulated: boolean;
   readonly records: readonly StudyRecord[];
+  /** Of the plan, where it has several. */
+  readonly planVersion?: number;
 }
 
 /** Exports of a whole study are a few megabytes; what unpacks to more than this is none [bytes]. */
@@ -49,5 +51,8 @@ export function openStudyFile(zip: Uint8Array): OpenedStudy {
       throw new Error(`records.json: records[${index}]: ${reasonOf(error)}`);
     }
   });
-  return { plan, records, simulated: 'simulated' in file && file.simulated === true };
+  // Exports of a plan that was never changed, and older ones, name no version.
+  const versionPart =
+    'planVersion' in file && typeof file.planVersion === 'number' ? { planVersion: file.planVersion } : {};
+  return { plan, records, simulated: 'simulated' in file && file.simulated === true, ...versionPart };
 }

@@ -14,11 +14,16 @@ export interface TableRow {
   readonly look?: string;
 }
 
-/** A table with a caption; columns that hold numbers stand to the right. */
-export function tableNode(caption: string, heads: readonly TableHead[], rows: readonly TableRow[]): HTMLElement {
+/** A table with a caption; columns that hold numbers stand to the right. `dense`: there are many of them. */
+export function tableNode(
+  caption: string,
+  heads: readonly TableHead[],
+  rows: readonly TableRow[],
+  look: 'dense' | '' = '',
+): HTMLElement {
   return element(
     'div',
-    { class: 'table' },
+    { class: `table ${look}`.trim() },
     element(
       'table',
       {},

@@ -8,6 +8,7 @@ import { compareAnswers } from '../../src/core/study/compare-conditions';
 import { comparisonTable, paperTable } from '../../src/core/study/result-tables';
 import { answersIn } from '../../src/core/study/study-tables';
 import { tidyCsv } from '../../src/core/study/tidy-csv';
+import { shownResults } from '../../src/pages/shown-results';
 import { openStudyFile } from '../../src/pages/study-file';
 import { paperPlan } from '../core/study/studies';
 import { testSoftware } from '../server/running-studies';
@@ -15,7 +16,7 @@ import { testSoftware } from '../server/running-studies';
 const plan = simulatedPlan(paperPlan());
 const models = { answers: nullAnswerModel, performance: statedPerformanceModel };
 const records = simulateStudy(plan, models, 1, 1e9).flatMap((one) => one.records);
-const exported = exportZip({
+const content = {
   plan,
   simulated: true,
   records,
@@ -23,10 +24,20 @@ const exported = exportZip({
   at: 1e9,
   retentionUntil: null,
   software: testSoftware,
-});
+};
+const exported = exportZip(content);
 
 test('an export opens again as what was exported, its mark of simulation included', () => {
   expect(openStudyFile(exported)).toEqual({ plan, simulated: true, records });
+});
+
+test('an export of a plan with versions says which, so that what is saved from two of them has two names', () => {
+  const named = openStudyFile(exportZip({ ...content, planVersion: 2 }));
+  expect(named.planVersion).toBe(2);
+  const { planVersion: _, ...unnamed } = named;
+  const fileOf = (study: typeof unnamed) => shownResults(study).fileOf('answers-overall');
+  expect(fileOf(named)).toBe('SIMULATED-paper-simulated-version-2-answers-overall');
+  expect(fileOf(unnamed)).toBe('SIMULATED-paper-simulated-answers-overall');
 });
 
 test.each<[string, Uint8Array, RegExp]>([

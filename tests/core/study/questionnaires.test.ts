@@ -1,3 +1,5 @@
+import { readFileSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
 import { describe, expect, test } from 'vitest';
 import type { QuestionnaireFile } from '../../../src/core/study/questionnaire-schema';
 import { scaleRange, scaleScore } from '../../../src/core/study/questionnaire-scores';
@@ -174,6 +176,22 @@ const file = (change: Partial<QuestionnaireFile> = {}): QuestionnaireFile => ({
 });
 
 describe('a questionnaire of one’s own', () => {
+  test('VEQ as docs/study.md tells to enter it: twelve statements, the mean of four for each factor', () => {
+    const docs = readFileSync(fileURLToPath(new URL('../../../docs/study.md', import.meta.url)), 'utf8');
+    const block = docs.split('```json\n').find((one) => one.includes('"id": "veq"')) ?? '';
+    const veq = resolvedQuestionnaire(JSON.parse(block.slice(0, block.indexOf('```'))) as QuestionnaireFile);
+    expect(veq.questions).toHaveLength(12);
+    const given = Object.fromEntries(
+      veq.questions.map(({ id, about }, index) => [id, about === 'agency' ? 7 : 1 + (index % 4)]),
+    );
+    const answers = checkedAnswers(veq, given);
+    expect(veq.scales.map((scale) => [scale.id, scaleScore(veq, scale, answers)])).toEqual([
+      ['ownership', 2.5],
+      ['agency', 7],
+      ['change', 2.5],
+    ]);
+  });
+
   test('turns reversed answers round in scales, and records them as given', () => {
     const mine = resolvedQuestionnaire(
       file({ scales: [{ id: 'm', label: 'M', method: 'mean', questions: ['a', 'b'] }] }),
