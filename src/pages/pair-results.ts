@@ -47,7 +47,8 @@ function answerParts(pairs: Pairs): readonly Node[] {
 function scaleParts(pairs: Pairs): readonly Node[] {
   const { scales } = pairs;
   if (scales.length === 0) return [];
-  const caption = `Exploratory: paired comparisons of the scales: means with 95 % confidence intervals, and tests; Holm over all ${scales.length} scales`;
+  const caption =
+    'Exploratory: paired comparisons of the scales: means with 95 % confidence intervals, and tests; Holm over the scales of this table';
   return [
     element('h3', {}, 'Scales'),
     ...scaleCharts(pairs).map(bothFigures(pairs)),
