@@ -25,7 +25,8 @@ let files: Readonly<Record<string, string>>;
 beforeAll(() => {
   content = withMotion();
   files = exportFiles(content);
-});
+  // A whole study: 2 s of a core, which others may need too.
+}, 60_000);
 
 const zipOf = (of: Readonly<Record<string, string>>): Uint8Array =>
   zipSync(Object.fromEntries(Object.entries(of).map(([path, text]) => [`folder/${path}`, strToU8(text)])), {

@@ -286,6 +286,7 @@ describe('an export', () => {
         'participants.csv',
         'pauses.csv',
         'plan.json',
+        'planned.csv',
         'questions.csv',
         'records.json',
         'scale-definitions.csv',

@@ -49,7 +49,7 @@ describe('the tables of a study', () => {
 
   test('mark simulated people in every row and never mix them with people', () => {
     for (const { name, rows } of studyTables(completed('P01', true), plan)) {
-      if (!['conditions', 'questions', 'scale-definitions'].includes(name))
+      if (!['conditions', 'planned', 'questions', 'scale-definitions'].includes(name))
         for (const row of rows) expect(row.simulated, name).toBe(true);
     }
     expect(() => studyTables([...completed('P01', true), ...completed('P02')], plan)).toThrow('must not be mixed');
