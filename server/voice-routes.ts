@@ -13,8 +13,9 @@ export interface VoiceRoutesOptions {
   readonly now: () => number;
 }
 
-/** A pass to the servers that pass voices on is good for so long [s]: a connection that is open stays open. */
+/** A pass to the servers that pass voices on is good for so long [s]: pages ask for another one before. */
 const turnSeconds = 4 * 3600;
+const noVoices = { voices: false, iceServers: [], goodFor: null };
 
 /**
  * A user and password that a TURN server believes which knows the same secret, until a time [s since 1970] ("REST API for access to TURN
@@ -40,7 +41,7 @@ export class VoiceRoutes {
   async #terms(call: Call): Promise<Answer> {
     const { voices, tokens, now } = this.#options;
     const { identity, assigned } = await guestPassOf(call, tokens);
-    if (!voices || assigned) return json({ voices: false, iceServers: [] });
+    if (!voices || assigned) return json(noVoices);
     const { stun, turn } = voices;
     return json({
       voices: true,
@@ -48,6 +49,7 @@ export class VoiceRoutes {
         ...(stun.length > 0 ? [{ urls: stun }] : []),
         ...(turn ? [{ urls: turn.urls, ...turnPass(turn.secret, identity, now() + turnSeconds) }] : []),
       ],
+      goodFor: turn ? turnSeconds : null,
     });
   }
 }

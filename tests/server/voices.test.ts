@@ -162,7 +162,7 @@ describe('a server without voices', () => {
     expect(ann.voiceOf(0)).toBeNull();
     const headers = { authorization: `Bearer ${await ann.pass.token(false)}` };
     const answer = await fetch(`${silent.url}/api/voices?room=silent`, { headers });
-    expect(await answer.json()).toEqual({ voices: false, iceServers: [] });
+    expect(await answer.json()).toEqual({ voices: false, iceServers: [], goodFor: null });
   });
 
   test('a room with more seats than a page can have connections has none either', async () => {
@@ -178,7 +178,7 @@ describe('a server without voices', () => {
     const answer = await fetch(`${server.url}/api/voices?room=${seat.room}`, {
       headers: { authorization: `Bearer ${seat.token}` },
     });
-    expect(await answer.json()).toEqual({ voices: false, iceServers: [] });
+    expect(await answer.json()).toEqual({ voices: false, iceServers: [], goodFor: null });
   });
 });
 

@@ -88,6 +88,8 @@ export class Microphone {
       stream.getAudioTracks()[0]?.addEventListener('ended', this.#lose, { once: true });
     } catch (error) {
       this.#complaint = refusalOf(error);
+      // Who refuses is not asked again every two seconds: the page's own button does that.
+      if (error instanceof DOMException && error.name === 'NotAllowedError') this.#stopAsking();
     }
     this.#changed();
   }

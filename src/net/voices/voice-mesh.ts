@@ -12,10 +12,18 @@ export interface VoiceMeshOptions {
 export class VoiceMesh {
   readonly #options: VoiceMeshOptions;
   readonly #peers = new Map<string, VoicePeer>();
+  #configuration: RTCConfiguration;
   #track: MediaStreamTrack | null = null;
 
   constructor(options: VoiceMeshOptions) {
     this.#options = options;
+    this.#configuration = options.configuration;
+  }
+
+  /** Other servers, or another pass to the same, for all connections: each is taken to them while it goes on. */
+  configure(configuration: RTCConfiguration): void {
+    this.#configuration = configuration;
+    for (const peer of this.#peers.values()) peer.configure(configuration);
   }
 
   /** Connects the page of session `own` to these others and to no one else; null: it is not among them itself. */
@@ -55,11 +63,11 @@ export class VoiceMesh {
   }
 
   #connect(own: string, session: string): VoicePeer {
-    const { configuration, signal, heard } = this.#options;
+    const { signal, heard } = this.#options;
     return new VoicePeer(
       {
         polite: own < session,
-        configuration,
+        configuration: this.#configuration,
         signal: (body) => signal(session, body),
         heard: (stream) => heard(session, stream),
       },

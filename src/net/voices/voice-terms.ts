@@ -7,6 +7,8 @@ export interface VoiceTerms {
   readonly voices: boolean;
   /** By which their pages find each other. */
   readonly iceServers: readonly RTCIceServer[];
+  /** For so long [s] from the answer on the pass to a relay among them lets a page in; null: there is none. */
+  readonly goodFor: number | null;
 }
 
 const urls = v.pipe(v.array(v.pipe(v.string(), v.regex(/^(stun|turn)s?:/))), v.minLength(1));
@@ -15,6 +17,7 @@ const terms = v.object({
   iceServers: v.array(
     v.object({ urls, username: v.exactOptional(v.string()), credential: v.exactOptional(v.string()) }),
   ),
+  goodFor: v.nullable(v.pipe(v.number(), v.minValue(1))),
 });
 
 /** Asks the relay at `base`, no slash at its end. Rejects with a sentence where the server does not say. */

@@ -1,0 +1,106 @@
+import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
+import { Microphone } from '../../src/net/voices/microphone';
+
+/** A track as a browser's: an event target that can be stopped; `end`: the device ends it, as a headset does that sleeps. */
+class Track extends EventTarget {
+  stopped = false;
+
+  stop(): void {
+    this.stopped = true;
+  }
+
+  end(): void {
+    this.dispatchEvent(new Event('ended'));
+  }
+}
+
+/** What the browser has of a microphone: gives a new track each time, or refuses by this name. */
+const device = { asked: 0, refuses: null as string | null, tracks: [] as Track[] };
+const seen = Object.assign(new EventTarget(), { visibilityState: 'visible' });
+
+const open: Microphone[] = [];
+
+function getUserMedia(): Promise<unknown> {
+  device.asked += 1;
+  if (device.refuses) return Promise.reject(new DOMException('no', device.refuses));
+  const track = new Track();
+  device.tracks.push(track);
+  return Promise.resolve({ getAudioTracks: () => [track], getTracks: () => [track] });
+}
+
+beforeEach(() => {
+  vi.useFakeTimers();
+  vi.stubGlobal('navigator', { mediaDevices: { getUserMedia } });
+  vi.stubGlobal('document', seen);
+  Object.assign(device, { asked: 0, refuses: null, tracks: [] });
+  seen.visibilityState = 'visible';
+});
+afterEach(() => {
+  for (const microphone of open.splice(0)) microphone.close();
+  vi.useRealTimers();
+  vi.unstubAllGlobals();
+});
+
+async function opened() {
+  const tracks: unknown[] = [];
+  const microphone: Microphone = new Microphone(() => tracks.push(microphone.track));
+  open.push(microphone);
+  await microphone.open();
+  return { microphone, tracks };
+}
+
+describe('a microphone that a headset ends when it sleeps', () => {
+  test('is taken again at once where the page is still seen, and said to be lost until then', async () => {
+    const { microphone, tracks } = await opened();
+    device.tracks[0]?.end();
+    expect(microphone.track).toBeNull();
+    expect(microphone.complaint).toBe('The microphone was lost: it is being looked for.');
+    await vi.advanceTimersByTimeAsync(0);
+    expect(microphone.track).toBe(device.tracks[1]);
+    expect(microphone.complaint).toBeNull();
+    expect(tracks).toEqual([device.tracks[0], null, device.tracks[1]]);
+  });
+
+  test('is asked for when the page is seen again, and every two seconds while it does not come back', async () => {
+    const { microphone } = await opened();
+    seen.visibilityState = 'hidden';
+    device.refuses = 'NotReadableError';
+    device.tracks[0]?.end();
+    await vi.advanceTimersByTimeAsync(60_000);
+    expect(device.asked).toBe(1);
+    seen.visibilityState = 'visible';
+    seen.dispatchEvent(new Event('visibilitychange'));
+    await vi.advanceTimersByTimeAsync(1);
+    expect(device.asked).toBe(2);
+    expect(microphone.complaint).toMatch(/in use by another program/);
+    device.refuses = null;
+    await vi.advanceTimersByTimeAsync(2000);
+    expect(microphone.track).toBe(device.tracks[1]);
+    await vi.advanceTimersByTimeAsync(60_000);
+    expect(device.asked).toBe(3);
+  });
+
+  test('and refused on return is a sentence; it is not asked for again and again, but when its owner wants it', async () => {
+    const { microphone } = await opened();
+    device.refuses = 'NotAllowedError';
+    device.tracks[0]?.end();
+    await vi.advanceTimersByTimeAsync(60_000);
+    expect(microphone.complaint).toMatch(/does not let this page use the microphone: allow it beside the address/);
+    expect(device.asked).toBe(2);
+    device.refuses = null;
+    await microphone.open();
+    expect(microphone.track).toBe(device.tracks[1]);
+    expect(microphone.complaint).toBeNull();
+  });
+
+  test('stays ended where its owner has left the voices meanwhile', async () => {
+    const { microphone } = await opened();
+    seen.visibilityState = 'hidden';
+    device.tracks[0]?.end();
+    microphone.close();
+    seen.visibilityState = 'visible';
+    seen.dispatchEvent(new Event('visibilitychange'));
+    await vi.advanceTimersByTimeAsync(60_000);
+    expect(device.asked).toBe(1);
+  });
+});
