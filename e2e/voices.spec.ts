@@ -1,97 +1,15 @@
-import { mkdtempSync } from 'node:fs';
-import { tmpdir } from 'node:os';
-import { join } from 'node:path';
-import { chromium, expect, type Page, test } from '@playwright/test';
-import type { VoicesProbe } from '../src/app/ball/voices';
+import { expect } from '@playwright/test';
 import { cutNetwork } from './cut-network';
 import { emulatedHeadset, type Point } from './emulated-headset';
-import { writeFakeVoice } from './fake-voice';
 import { distance, enterVr, joinedRoom, keepPicture, probe } from './page-fixture';
-import { serveStudies } from './study-server';
+import { bar, connected, heard, joinVoices, loudness, otherOf, silent, test, voicesOf } from './talkers';
 
-const voiceFile = join(mkdtempSync(join(tmpdir(), 'threepoint-voice-')), 'voice.wav');
-test.beforeAll(() => writeFakeVoice(voiceFile));
-
-/** What ends when the test does. */
-const ending: (() => Promise<unknown> | unknown)[] = [];
-test.afterEach(async () => {
-  for (const end of ending.splice(0).reverse()) await end();
-});
-
-async function serve(settings: Readonly<Record<string, string>> = {}): Promise<string> {
-  const server = await serveStudies({ THREEPOINT_JOINS_PER_MINUTE: '60', ...settings });
-  ending.push(() => server.close());
-  return server.origin;
-}
-
-interface Talker {
-  readonly page: Page;
-  /** The browser's own process. */
-  readonly pid: number;
-}
-
-/** A person in a browser of their own, in a room of this server, with a microphone that says syllables; `microphone`: refused, or none at all. */
-async function talker(
-  origin: string,
-  name: string,
-  { microphone = 'given', query = '' }: { microphone?: 'given' | 'refused' | 'none'; query?: string } = {},
-): Promise<Talker> {
-  const { launchOptions } = test.info().project.use;
-  const fake = ['--use-fake-device-for-media-stream', `--use-file-for-fake-audio-capture=${voiceFile}`];
-  const server = await chromium.launchServer({
-    ...launchOptions,
-    args: [...(launchOptions?.args ?? []), ...(microphone === 'none' ? [] : fake)],
-  });
-  ending.push(() => server.close());
-  const browser = await chromium.connect(server.wsEndpoint());
-  const context = await browser.newContext({ viewport: { width: 1100, height: 700 }, serviceWorkers: 'block' });
-  await context.grantPermissions(microphone === 'refused' ? [] : ['microphone'], { origin });
-  const page = await context.newPage();
-  await page.goto(
-    `${origin}/?play=ball&room=meadow&panel=off&quality=low&estimator=ik&overlay=off&bots=off&name=${name}&${query}`,
-  );
-  await joinedRoom(page);
-  return { page, pid: server.process().pid ?? 0 };
-}
-
-const voicesOf = async (page: Page): Promise<VoicesProbe> => {
-  const { game } = await probe(page);
-  if (game?.name !== 'ball') throw new Error('the page plays no ball game');
-  return game.voices;
-};
-
-/** How it stands with the only other person, as this page has it. */
-const otherOf = async (page: Page) => (await voicesOf(page)).people[0];
-
-const bar = (page: Page) => page.getByRole('group', { name: 'Voices', exact: true });
-
-async function joinVoices(page: Page): Promise<void> {
-  await bar(page).getByRole('button', { name: 'Talk with the others' }).click();
-  await expect(bar(page)).toContainText('people in the room could learn your network address (IP)');
-  await bar(page).getByRole('button', { name: 'Join, muted' }).click();
-  await expect(bar(page).getByRole('button', { name: 'Leave the voices' })).toBeVisible();
-}
-
-const connected = (page: Page) => expect.poll(async () => (await otherOf(page))?.link).toBe('connected');
-
-/** How loud all voices are at the ears of this page [dB of full scale]: the middle one of so many readings, each over a third of a second. */
-const loudness = (page: Page, readings = 1): Promise<number> =>
-  page.evaluate(async (count) => {
-    const levels: number[] = [];
-    while (levels.length < count) {
-      await new Promise((resolve) => setTimeout(resolve, 150));
-      const game = window.threepoint?.probe().game;
-      if (game?.name === 'ball') levels.push(game.voices.loudness);
-    }
-    return levels.sort((a, b) => a - b)[count >> 1] ?? Number.NaN;
-  }, readings);
-
-const heard = (page: Page) => expect.poll(() => loudness(page), { timeout: 60_000 }).toBeGreaterThan(-50);
-const silent = (page: Page) => expect.poll(() => loudness(page), { timeout: 60_000 }).toBeLessThan(-90);
-
-test('two people hear each other: 6 dB less with twice the distance, nothing of who is muted, hidden or gone @full', async () => {
+test('two people hear each other: 6 dB less with twice the distance, nothing of who is muted, hidden or gone @full', async ({
+  serve,
+  talker,
+}) => {
   test.setTimeout(600_000);
-  const origin = await serve();
+  const { origin } = await serve();
   const { page: ann } = await talker(origin, 'Ann', { query: 'emulate&actor=off' });
   const { page: ben } = await talker(origin, 'Ben');
   await joinVoices(ann);
@@ -172,9 +90,12 @@ test('two people hear each other: 6 dB less with twice the distance, nothing of 
   await expect.poll(async () => (await otherOf(ann))?.voice).toBe('none');
 });
 
-test('a voice comes back after the network was lost, and with the page after a reload @full', async () => {
+test('a voice comes back after the network was lost, and with the page after a reload @full', async ({
+  serve,
+  talker,
+}) => {
   test.setTimeout(300_000);
-  const origin = await serve();
+  const { origin } = await serve();
   const { page: ann } = await talker(origin, 'Ann');
   const { page: ben, pid } = await talker(origin, 'Ben');
   await joinVoices(ann);
@@ -204,9 +125,12 @@ test('a voice comes back after the network was lost, and with the page after a r
   await heard(ann);
 });
 
-test('what keeps a person from talking is a sentence: refused, no microphone, no seat, a server without voices @nightly', async () => {
+test('what keeps a person from talking is a sentence: refused, no microphone, no seat, a server without voices @nightly', async ({
+  serve,
+  talker,
+}) => {
   test.setTimeout(300_000);
-  const origin = await serve();
+  const { origin } = await serve();
   const { page: refused } = await talker(origin, 'Ann', { microphone: 'refused' });
   await joinVoices(refused);
   await expect(bar(refused)).toContainText('The browser does not let this page use the microphone');
@@ -230,7 +154,7 @@ test('what keeps a person from talking is a sentence: refused, no microphone, no
   await keepPicture(fourth, 'voices-names');
   expect((await voicesOf(fourth)).people.every(({ link }) => link === 'none')).toBe(true);
 
-  const silentOrigin = await serve({ THREEPOINT_VOICES: 'off' });
+  const { origin: silentOrigin } = await serve({ THREEPOINT_VOICES: 'off' });
   const { page: off } = await talker(silentOrigin, 'Eve');
   await expect.poll(async () => (await voicesOf(off)).phase).toBe('none');
   await expect(off.getByRole('button', { name: 'Talk with the others' })).toHaveCount(0);

@@ -1,0 +1,68 @@
+import { spawn } from 'node:child_process';
+import { once } from 'node:events';
+import { readFileSync } from 'node:fs';
+import { createServer } from 'node:net';
+import { fileURLToPath } from 'node:url';
+import { parse } from 'yaml';
+import { installed } from '../tests/server/installed';
+
+export const turnProgram = installed('turnserver');
+export const turnSecret = 'turn-kN3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
+
+/** What deploy/compose.yaml starts coturn with, as its shell would read it. */
+function composeArguments(): readonly string[] {
+  const file = fileURLToPath(new URL('../deploy/compose.yaml', import.meta.url));
+  const { services } = parse(readFileSync(file, 'utf8'), { merge: true }) as {
+    readonly services: { readonly turn: { readonly command: readonly string[] } };
+  };
+  const [command = ''] = services.turn.command;
+  const begin = command.indexOf('turnserver ');
+  if (begin < 0) throw new Error(`compose.yaml: the service turn does not start turnserver: ${command}`);
+  const words = command.slice(begin).trim().split(/\s+/).slice(1);
+  return words.map((word) => word.replace('"$$SECRET"', turnSecret));
+}
+
+async function freePort(): Promise<number> {
+  const server = createServer().listen(0, '127.0.0.1');
+  await once(server, 'listening');
+  const address = server.address();
+  server.close();
+  await once(server, 'close');
+  if (address === null || typeof address === 'string') throw new Error('no port is free');
+  return address.port;
+}
+
+/** coturn as deploy/compose.yaml starts it, on this machine's own loopback and a port of its own. */
+export async function startTurn() {
+  const port = await freePort();
+  const here = [
+    `--listening-port=${port}`,
+    '--listening-ip=127.0.0.1',
+    '--relay-ip=127.0.0.1',
+    '--no-tls',
+    '--no-dtls',
+  ];
+  // On the internet no page may be reached on the relay's own machine; here both are.
+  const child = spawn(turnProgram ?? 'turnserver', [...composeArguments(), ...here, '--allow-loopback-peers'], {
+    stdio: ['ignore', 'pipe', 'pipe'],
+  });
+  let said = '';
+  const hear = (text: string) => {
+    said += text;
+  };
+  child.stdout.setEncoding('utf8').on('data', hear);
+  child.stderr.setEncoding('utf8').on('data', hear);
+  return {
+    url: `turn:127.0.0.1:${port}?transport=udp`,
+    /** What it has written to its log. */
+    get said() {
+      return said;
+    },
+    async close() {
+      if (child.exitCode !== null) return;
+      const gone = once(child, 'exit');
+      child.kill('SIGKILL');
+      await gone;
+    },
+  };
+}
