@@ -30,7 +30,8 @@ export const linkTo = (room: string): RoomLink => ({
 
 /** The link to a room, to copy and as a QR code; `main`: the button that copies is what one came for. */
 export function createRoomLink({ main }: { readonly main: boolean }) {
-  const link = element('input', { type: 'text', readonly: true, 'aria-label': 'Link for the others' });
+  // Of two lines: a bar is too narrow for an address, whose end says which room it is.
+  const link = element('textarea', { rows: 2, readonly: true, 'aria-label': 'Link for the others' });
   const code = element('div', { class: 'qr' });
   const said = element('p', { class: 'hint', role: 'status' });
   const copies = button('Copy link', () => void copy(), main ? { class: 'primary', autofocus: true } : {});
