@@ -40,6 +40,7 @@ export class Court {
     this.#others = createRemoteAvatars({
       load: () => parseAvatar(mannequin, 'mannequin.vrm'),
       plain: () => false,
+      mouthOf: () => 0,
       onRefused: () => undefined,
     });
     studio.scene.add(this.#others.object);

@@ -43,6 +43,8 @@ export interface Avatar {
   setSkinTone(tone: SkinTone | null): void;
   /** 1: solid. Less: a ghost that things behind it shine through. */
   setOpacity(opacity: number): void;
+  /** How far the mouth is open from the next `apply` on: 0 shut to 1; a body without a shape for it keeps it shut. */
+  setMouth(open: number): void;
   /** How a hand's fingers are bent from the next `apply` on; null: they are not seen, keep their bend for a while and relax. Copied. */
   setFingers(side: Side, shape: HandShape | null): void;
   /** The hand as it is drawn [m]; null: the rig lacks a bone of a finger. The same object until the body is fitted anew. */
@@ -251,6 +253,10 @@ class VrmAvatar implements Avatar {
 
   setOpacity(opacity: number): void {
     this.meshes.setOpacity(opacity);
+  }
+
+  setMouth(open: number): void {
+    this.face.setMouth(open);
   }
 
   setFingers(side: Side, shape: HandShape | null): void {

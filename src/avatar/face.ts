@@ -1,6 +1,12 @@
-import { type VRM, VRMLookAt, VRMLookAtBoneApplier, VRMLookAtRangeMap } from '@pixiv/three-vrm';
+import {
+  type VRM,
+  type VRMExpressionPresetName,
+  VRMLookAt,
+  VRMLookAtBoneApplier,
+  VRMLookAtRangeMap,
+} from '@pixiv/three-vrm';
 import type { Mesh } from 'three';
-import { clamp } from '../core/math/damper';
+import { clamp, damp } from '../core/math/damper';
 import { conjugate, copyQuat, multiply, type Quat, quat, rotate } from '../core/math/quat';
 import { nextRandom, type RandomState } from '../core/math/random';
 import { forward, vec3 } from '../core/math/vec3';
@@ -13,26 +19,74 @@ const closing = 0.07;
 const opening = 0.14;
 /** A file without VRM's expressions may have these shapes of a face (ARKit's, Ready Player Me's). */
 const lidShapes = ['eyeBlinkLeft', 'eyeBlinkRight', 'eyesClosed', 'eyeBlink_L', 'eyeBlink_R'];
+/** The same of a mouth, the one that says "ah" first: a file that has several of them is moved by one. */
+const mouthShapes = ['viseme_aa', 'aa', 'jawOpen', 'mouthOpen', 'MouthOpen', 'A', 'あ'];
+/** Lips take half of their way in so long [s]: syllables are seen, what flickers between two readings of a level is not. */
+const mouthHalfLife = 0.03;
+/** A mouth that is less than this from where it should be is there: a face at rest costs nothing. */
+const mouthStill = 1 / 256;
 
 /** Eyes hold what they look at while the head turns, and leap to what it faces now when that is further off than this [degrees]. */
 const widestGaze = 11;
 /** Eyes of a file without VRM turn as far as they are asked to [degrees]. */
 const eyeRange = new VRMLookAtRangeMap(30, 30);
 
-/** Lids of a file without VRM: where its meshes keep how far they are closed. */
-function lidsOf(vrm: VRM): { readonly influences: number[]; readonly index: number }[] {
-  const lids: { influences: number[]; index: number }[] = [];
+/** Where a mesh keeps how far it has taken one of its shapes. */
+interface Shape {
+  readonly influences: number[];
+  readonly index: number;
+}
+
+/** The shapes of a body's meshes; `chosen`: which of those that a mesh has. */
+function shapesOf(vrm: VRM, chosen: (has: (name: string) => boolean) => readonly string[]): readonly Shape[] {
+  const shapes: Shape[] = [];
   vrm.scene.traverse((node) => {
     const { morphTargetDictionary, morphTargetInfluences } = node as Mesh;
     if (!morphTargetDictionary || !morphTargetInfluences) return;
-    const named = lidShapes.filter((name) => morphTargetDictionary[name] !== undefined);
-    // A shape for both eyes closes them twice beside one for each.
-    const separate = named.filter((name) => name !== 'eyesClosed');
-    for (const name of separate.length > 0 ? separate : named) {
-      lids.push({ influences: morphTargetInfluences, index: morphTargetDictionary[name] as number });
+    for (const name of chosen((name) => morphTargetDictionary[name] !== undefined)) {
+      shapes.push({ influences: morphTargetInfluences, index: morphTargetDictionary[name] as number });
     }
   });
-  return lids;
+  return shapes;
+}
+
+/** Lids of a file without VRM. */
+const lidsOf = (vrm: VRM): readonly Shape[] =>
+  shapesOf(vrm, (has) => {
+    const named = lidShapes.filter(has);
+    // A shape for both eyes closes them twice beside one for each.
+    const separate = named.filter((name) => name !== 'eyesClosed');
+    return separate.length > 0 ? separate : named;
+  });
+
+/** Lips, teeth and jaw of a file without VRM: each mesh by the first name that it has. */
+const mouthOf = (vrm: VRM): readonly Shape[] => shapesOf(vrm, (has) => mouthShapes.filter(has).slice(0, 1));
+
+/** A part of a face that a number between 0 and 1 moves: by VRM's expression, or by the shapes of a file without one. */
+class Mover {
+  readonly #vrm: VRM;
+  readonly #expression: VRMExpressionPresetName;
+  readonly #shapes: readonly Shape[];
+  readonly there: boolean;
+
+  constructor(vrm: VRM, expression: VRMExpressionPresetName, shapes: (vrm: VRM) => readonly Shape[]) {
+    this.#vrm = vrm;
+    this.#expression = expression;
+    const expressive = vrm.expressionManager?.getExpression(expression) != null;
+    this.#shapes = expressive ? [] : shapes(vrm);
+    this.there = expressive || this.#shapes.length > 0;
+  }
+
+  move(weight: number): void {
+    for (let i = 0; i < this.#shapes.length; i++) {
+      const { influences, index } = this.#shapes[i]!;
+      influences[index] = weight;
+    }
+    const expressions = this.#vrm.expressionManager;
+    if (this.#shapes.length > 0 || !expressions) return;
+    expressions.setValue(this.#expression, weight);
+    expressions.update();
+  }
 }
 
 /** Eyes of a body whose rig has bones for them. */
@@ -46,32 +100,38 @@ function gazeOf(vrm: VRM): VRMLookAt | null {
 const inverse = quat(0, 0, 0, 1);
 const ahead = vec3(0, 0, 0);
 
-/** The face of a body: lids that blink, eyes that look where the head faces. */
+/** The face of a body: lids that blink, eyes that look where the head faces, a mouth that opens as it is told. */
 export class Face {
-  readonly #vrm: VRM;
-  readonly #lids: ReturnType<typeof lidsOf>;
+  readonly #lids: Mover;
+  readonly #mouth: Mover;
   readonly #gaze: VRMLookAt | null;
-  readonly #blinks: boolean;
   /** How the head was turned when the eyes came to rest on what they look at. */
   readonly #held = quat(0, 0, 0, 1);
   #random: RandomState;
   /** Until the next blink, below 0: since one began [s]. */
   #until = shortestPause;
   #closed = 0;
+  /** How far the mouth is open, and how far it is to be. */
+  #open = 0;
+  #opening = 0;
 
   /** `seed`: faces of different seeds blink at different times. */
   constructor(vrm: VRM, seed: number) {
-    this.#vrm = vrm;
     this.#random = { seed };
     this.#gaze = gazeOf(vrm);
-    const expressive = vrm.expressionManager?.getExpression('blink') != null;
-    this.#lids = expressive ? [] : lidsOf(vrm);
-    this.#blinks = expressive || this.#lids.length > 0;
+    this.#lids = new Mover(vrm, 'blink', lidsOf);
+    this.#mouth = new Mover(vrm, 'aa', mouthOf);
+  }
+
+  /** How far the mouth is to be open: 0 shut to 1. */
+  setMouth(open: number): void {
+    this.#opening = clamp(open, 0, 1);
   }
 
   /** One frame; the head's orientation in the floor frame, which at identity faces −Z. */
   update(head: Quat, deltaSeconds: number): void {
-    if (this.#blinks) this.#blink(deltaSeconds);
+    if (this.#lids.there) this.#blink(deltaSeconds);
+    if (this.#mouth.there && this.#open !== this.#opening) this.#speak(deltaSeconds);
     if (this.#gaze) this.#look(this.#gaze, head, deltaSeconds);
   }
 
@@ -86,11 +146,13 @@ export class Face {
     const closed = since <= 0 ? 0 : since < closing ? since / closing : Math.max(0, 1 - (since - closing) / opening);
     if (closed === this.#closed) return;
     this.#closed = closed;
-    for (const { influences, index } of this.#lids) influences[index] = closed;
-    const expressions = this.#vrm.expressionManager;
-    if (this.#lids.length > 0 || !expressions) return;
-    expressions.setValue('blink', closed);
-    expressions.update();
+    this.#lids.move(closed);
+  }
+
+  #speak(deltaSeconds: number): void {
+    const open = damp(this.#open, this.#opening, mouthHalfLife, deltaSeconds);
+    this.#open = Math.abs(this.#opening - open) < mouthStill ? this.#opening : open;
+    this.#mouth.move(this.#open);
   }
 
   #look(gaze: VRMLookAt, head: Quat, deltaSeconds: number): void {

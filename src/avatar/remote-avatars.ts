@@ -32,6 +32,8 @@ export interface RemoteAvatarsOptions {
   load(avatar: WornAvatar): Promise<LoadedAvatar>;
   /** All are to be drawn as the plain one; asked in every frame. */
   plain(): boolean;
+  /** How far a person's mouth is open: 0 shut to 1; asked in every frame for each who is drawn. */
+  mouthOf(id: number): number;
   /** A person's avatar cannot be shown: the plain one stays. Told once for each avatar. */
   onRefused(avatar: WornAvatar, reason: unknown): void;
 }
@@ -121,6 +123,7 @@ class OthersBodies implements RemoteAvatars {
       const body = this.#bodyFor(person, plain ? plainAvatar : person.avatar, people);
       if (!body) continue;
       body.drawnAt = time;
+      body.avatar.setMouth(this.#options.mouthOf(person.id));
       draw(body, person, time);
     }
     for (let i = this.#bodies.length - 1; i >= 0; i--) {

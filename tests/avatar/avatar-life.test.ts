@@ -1,4 +1,5 @@
-import { type Object3D, Quaternion, Vector3 } from 'three';
+import { readFileSync } from 'node:fs';
+import { type Mesh, type Object3D, Quaternion, Vector3 } from 'three';
 import { describe, expect, test } from 'vitest';
 import { type Avatar, createAvatar } from '../../src/avatar/avatar';
 import { type LoadedAvatar, parseAvatar } from '../../src/avatar/load-avatar';
@@ -29,7 +30,7 @@ const living = (): ArrayBuffer =>
       ...{ type: 'bone', offsetFromHeadBone: [0, 0.06, 0], rangeMapHorizontalInner: range },
       ...{ rangeMapHorizontalOuter: range, rangeMapVerticalDown: range, rangeMapVerticalUp: range },
     };
-    vrm.expressions = { preset: { blink: { isBinary: false } } };
+    vrm.expressions = { preset: { blink: { isBinary: false }, aa: { isBinary: false } } };
     const joint = (node: number) => ({ node, hitRadius: 0.02, stiffness: 1, gravityPower: 0.6, dragForce: 0.4 });
     json.extensions.VRMC_springBone = {
       specVersion: '1.0',
@@ -138,4 +139,56 @@ describe('eyes', () => {
     expect(blinks).toBeLessThanOrEqual(seconds / 2);
     expect(shut).toBeLessThan(60 * 30 * 0.1);
   });
+});
+
+/** Stands for so long with a mouth that is to be open so far; how far it is then. */
+function speak({ loaded, avatar }: Awaited<ReturnType<typeof opened>>, open: number, from: number, seconds: number) {
+  avatar.setMouth(open);
+  stand(avatar, from, seconds);
+  return loaded.vrm.expressionManager?.getValue('aa') ?? Number.NaN;
+}
+
+describe('a mouth', () => {
+  test('opens with what is said within a syllable, is never thrown open from one frame to the next, and shuts all the way', async () => {
+    const body = await opened();
+    expect(speak(body, 0, 0, 0.5)).toBe(0);
+    const first = speak(body, 1, 0.5, 1 / 72);
+    expect(first).toBeGreaterThan(0.1);
+    expect(first).toBeLessThan(0.6);
+    expect(speak(body, 1, 0.52, 0.15)).toBeGreaterThan(0.9);
+    expect(speak(body, 0, 0.7, 0.4)).toBe(0);
+  });
+
+  test('of more than all or of less than nothing is all the way open, or shut', async () => {
+    const body = await opened();
+    expect(speak(body, 7, 0, 1)).toBe(1);
+    expect(speak(body, -7, 1, 1)).toBe(0);
+  });
+
+  test.each(['viseme_aa', 'jawOpen', 'mouthOpen'])(
+    'of a file without expressions moves by its shape %s, and by one alone',
+    async (name) => {
+      const file = readFileSync(new URL('../../public/avatars/woman.vrm', import.meta.url));
+      const bytes = changed(
+        (json) => {
+          delete (json.extensions.VRMC_vrm as unknown as Record<string, unknown>).expressions;
+          for (const { extras } of json.meshes) if (extras?.targetNames) extras.targetNames = [name, 'MouthOpen'];
+        },
+        undefined,
+        file,
+      );
+      const loaded = await parseAvatar(bytes, 'shaped.vrm');
+      const avatar = createAvatar(loaded);
+      avatar.fitTo(defaultCalibration);
+      avatar.setMouth(1);
+      stand(avatar, 0, 1);
+      const influences: number[][] = [];
+      avatar.object.traverse((node) => {
+        const { morphTargetInfluences } = node as Mesh;
+        if (morphTargetInfluences) influences.push([...morphTargetInfluences]);
+      });
+      expect(influences.length).toBeGreaterThan(0);
+      for (const each of influences) expect(each).toEqual([1, 0]);
+    },
+  );
 });

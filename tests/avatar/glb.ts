@@ -7,6 +7,7 @@ export interface GltfJson {
   [field: string]: unknown;
   nodes: { name: string; translation?: number[]; rotation?: number[]; children?: number[]; mesh?: number }[];
   meshes: {
+    extras?: { targetNames?: string[] };
     primitives: { attributes: Record<string, number>; indices?: number; targets?: Record<string, number>[] }[];
   }[];
   accessors: { count: number; type: string; bufferView?: number; componentType: number; max?: number[] }[];
@@ -58,12 +59,13 @@ export function glbOf(json: unknown, binary: Uint8Array): ArrayBuffer {
 /** Our own avatar's file. */
 export const mannequin = (): ArrayBuffer => copy(bytes);
 
-/** The mannequin's file with its JSON changed, and more put at the end of its binary part. */
+/** The mannequin's file, or this one, with its JSON changed, and more put at the end of its binary part. */
 export function changed(
   change: (json: GltfJson, binaryLength: number) => void,
   more: Uint8Array = new Uint8Array(),
+  file: Uint8Array = bytes,
 ): ArrayBuffer {
-  const { json, binary } = partsOf(bytes);
+  const { json, binary } = partsOf(file);
   change(json, binary.length);
   return glbOf(json, Buffer.concat([binary, more]));
 }

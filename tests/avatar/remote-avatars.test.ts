@@ -38,6 +38,7 @@ async function gathered(people: readonly SeenPerson[]): Promise<RemoteAvatars> {
   const others = createRemoteAvatars({
     load: (avatar) => (isOwnAvatar(avatar) ? parseAvatar(bytesOf(bodyOf(avatar)), avatar) : Promise.reject(avatar)),
     plain: () => false,
+    mouthOf: () => 0,
     onRefused: (avatar, reason) => expect([avatar, reason]).toBeNull(),
   });
   for (let i = 0; i < 5000 && !people.every(({ id, avatar }) => others.drawnAs(id) === avatar); i++) {

@@ -164,6 +164,7 @@ class CourtActivity implements BallActivity {
     this.#others = createRemoteAvatars({
       load: (avatar) => this.#seen.load(avatar),
       plain: options.plainOthers,
+      mouthOf: (seat) => this.voices.mouthOf(seat),
       onRefused: (avatar, reason) => this.#tellRefused(avatar, reason),
     });
     this.#shared = new SharedAvatar({

@@ -1,8 +1,10 @@
 import { firstLine, reasonOf } from '../../core/errors/reasons';
+import { smoothstep } from '../../core/math/damper';
 import { transformPoint } from '../../core/math/pose';
 import { vec3 } from '../../core/math/vec3';
 import type { SignalBody } from '../../core/protocol/voice-messages';
 import type { VoiceLine } from '../../net/connection';
+import { KeptTerms } from '../../net/voices/kept-terms';
 import { Microphone } from '../../net/voices/microphone';
 import { VoiceMesh } from '../../net/voices/voice-mesh';
 import { hasRelay, type VoiceTerms } from '../../net/voices/voice-terms';
@@ -35,6 +37,10 @@ export interface VoicesProbe {
 /** Connections are looked after this often [ms], seen or hidden. */
 const watchMs = 500;
 
+/** A mouth stays shut up to the first of these levels (breath, a room's noise), and is open at the second. */
+const mouthShutAt = 0.35;
+const mouthOpenAt = 0.95;
+
 const newSession = (): string => {
   const bytes = crypto.getRandomValues(new Uint8Array(8));
   return Array.from(bytes, (byte) => byte.toString(16).padStart(2, '0')).join('');
@@ -64,10 +70,12 @@ export class Voices {
   readonly #names: (string | null)[] = [];
   readonly #mouth = vec3(0, 0, 0);
   readonly #seen: BodyFrame[] = [];
+  /** How loud each seat's player speaks in this frame. */
+  readonly #levels: number[] = [];
   #line: VoiceLine | null = null;
   #mySeat: number | null = null;
-  #terms: VoiceTerms | null = null;
-  #asking = false;
+  readonly #terms: KeptTerms | null;
+  #asked = false;
   #phase: 'off' | 'asked' | 'joining' | 'in' = 'off';
   #muted = true;
   #fault: string | null = null;
@@ -75,12 +83,14 @@ export class Voices {
 
   constructor(options: VoicesOptions) {
     this.#options = options;
+    this.#terms = options.terms && new KeptTerms(options.terms);
   }
 
   get state(): VoicesState {
     const { play, relayOnly } = this.#options;
-    const there = this.#terms?.voices === true && play.room !== null && play.status.phase !== 'ended';
-    const relay = this.#terms !== null && hasRelay(this.#terms);
+    const terms = this.#terms?.newest ?? null;
+    const there = terms?.voices === true && play.room !== null && play.status.phase !== 'ended';
+    const relay = terms !== null && hasRelay(terms);
     return {
       phase: there ? this.#phase : 'none',
       muted: this.#muted,
@@ -98,7 +108,7 @@ export class Voices {
 
   /** Once a frame, when the room has been heard. */
   begin(): void {
-    const { play, terms } = this.#options;
+    const { play } = this.#options;
     if (play.voices !== this.#line) {
       this.#line = play.voices;
       this.#line?.listen({
@@ -107,9 +117,10 @@ export class Voices {
       });
       this.#follow();
     }
-    if (!this.#asking && terms && play.room) {
-      this.#asking = true;
-      void this.#learnTerms(terms);
+    if (!this.#asked && this.#terms && play.room) {
+      this.#asked = true;
+      // A server that does not say has no voices.
+      void this.#terms.renew().catch(() => undefined);
     }
     if (this.#stay && play.status.phase === 'ended') this.leave();
   }
@@ -117,6 +128,7 @@ export class Voices {
   /** Once a frame: lets voices come from where these bodies have their heads. Gives those that are to be seen, until the next call. */
   show(bodies: readonly BodyFrame[]): readonly BodyFrame[] {
     this.#seen.length = 0;
+    this.#readLevels();
     for (let i = 0; i < bodies.length; i++) {
       const body = bodies[i]!;
       const session = this.#sessions[body.id];
@@ -135,14 +147,14 @@ export class Voices {
 
   /** Takes part, muted. Within a gesture of the user; never rejects. */
   async join(): Promise<void> {
-    const { openAudio, terms } = this.#options;
+    const { openAudio } = this.#options;
+    const terms = this.#terms;
     if (!terms || this.#stay || this.#phase === 'joining') return;
     this.#phase = 'joining';
     this.#fault = null;
     this.#muted = true;
     try {
-      const [context, fresh] = await Promise.all([openAudio(), terms()]);
-      this.#terms = fresh;
+      const [context, fresh] = await Promise.all([openAudio(), terms.renew()]);
       await this.#microphone.open();
       this.#enter(context, fresh);
     } catch (error) {
@@ -209,13 +221,19 @@ export class Voices {
     return voice.muted || this.#silenced.has(seat) || this.#hidden.has(seat) ? 'muted' : 'open';
   }
 
-  /** How loud a player speaks: 0 to 1; own: the own voice, as others hear it. Once a frame. */
+  /** How loud a player speaks, as the newest frame has it: 0 to 1; own: the own voice, as others hear it. */
   levelOf(seat: number): number {
-    const { play } = this.#options;
-    if (!this.#stay) return 0;
-    if (seat === play.room?.mySeat) return this.#muted ? 0 : this.#stay.sound.ownLevel();
-    const session = this.#sessions[seat];
-    return session && this.markOf(seat) === 'open' ? this.#stay.sound.level(session) : 0;
+    return this.#levels[seat] ?? 0;
+  }
+
+  /** How far a player's mouth is open as they speak: 0 shut to 1. */
+  mouthOf(seat: number): number {
+    return smoothstep(mouthShutAt, mouthOpenAt, this.levelOf(seat));
+  }
+
+  /** The same of the player on the own seat. */
+  get ownMouth(): number {
+    return this.#mySeat === null ? 0 : this.mouthOf(this.#mySeat);
   }
 
   probe(): VoicesProbe {
@@ -226,7 +244,7 @@ export class Voices {
       muted,
       said,
       loudness: this.#stay?.sound.loudness() ?? -120,
-      ownLevel: this.#muted ? 0 : (this.#stay?.sound.ownLevel() ?? 0),
+      ownLevel: this.#mySeat === null ? 0 : this.levelOf(this.#mySeat),
       people: seats.flatMap((info, seat) =>
         info && seat !== this.#options.play.room?.mySeat
           ? [{ seat, level: this.levelOf(seat), ...this.voiceOf(seat) }]
@@ -247,16 +265,14 @@ export class Voices {
     return complaint && `${complaint} You hear the others all the same.`;
   }
 
-  /** A server that does not say has no voices. */
-  async #learnTerms(ask: () => Promise<VoiceTerms>): Promise<void> {
-    this.#terms = await ask().catch(() => null);
+  #configurationOf({ iceServers }: VoiceTerms): RTCConfiguration {
+    return { iceServers: [...iceServers], iceTransportPolicy: this.state.relayOnly ? 'relay' : 'all' };
   }
 
-  #enter(context: AudioContext, { iceServers }: VoiceTerms): void {
-    const iceTransportPolicy = this.state.relayOnly ? 'relay' : 'all';
+  #enter(context: AudioContext, terms: VoiceTerms): void {
     const sound = new VoiceSound(context);
     const mesh = new VoiceMesh({
-      configuration: { iceServers: [...iceServers], iceTransportPolicy },
+      configuration: this.#configurationOf(terms),
       signal: (to, body) => this.#line?.signal(to, body),
       heard: (session, stream) => this.#play(session, stream),
     });
@@ -337,12 +353,25 @@ export class Voices {
     if (session) this.#stay?.sound.setSilent(session, this.#silenced.has(seat) || this.#hidden.has(seat));
   }
 
+  #readLevels(): void {
+    const stay = this.#stay;
+    this.#levels.length = this.#sessions.length;
+    for (let seat = 0; seat < this.#levels.length; seat++) {
+      const session = this.#sessions[seat];
+      let level = 0;
+      if (stay && seat === this.#mySeat) level = stay.sound.ownLevel();
+      else if (stay && session && this.markOf(seat) === 'open') level = stay.sound.level(session);
+      this.#levels[seat] = level;
+    }
+  }
+
   #watch(): void {
     const { stay, play } = { stay: this.#stay, play: this.#options.play };
     if (!stay) return;
     stay.mesh.watch(performance.now() / 1000, play.status.phase === 'joined');
     // A headset's sleep stops the audio too.
     if (stay.context.state === 'suspended' && document.visibilityState === 'visible') void stay.context.resume();
+    void this.#terms?.watch().then((renewed) => renewed && this.#stay?.mesh.configure(this.#configurationOf(renewed)));
   }
 }
 

@@ -86,6 +86,7 @@ export class PageFrame implements FrameParts<XRFrame> {
     difference.observe(frame, pose, body.calibration);
     this.#bendFingers('left', frame);
     this.#bendFingers('right', frame);
+    avatar.current?.setMouth(activities.ball?.voices.ownMouth ?? 0);
     avatar.current?.apply(pose, frame.time);
     activities.ball?.send(frame, pose, this.#fingers);
     mocap.frame(frame, pose);

@@ -1,4 +1,4 @@
-import { clamp } from '../../core/math/damper';
+import { clamp, damp } from '../../core/math/damper';
 import type { Vec3 } from '../../core/math/vec3';
 
 /** At this distance [m] a voice is as loud as it was spoken; with each doubling beyond, it loses 6 dB at most. */
@@ -11,8 +11,8 @@ const loud = -15;
 const window = 1024;
 /** The same for tools: a third of a second, longer than a syllable. */
 const longWindow = 16_384;
-/** A level falls by half in so many readings, so that a mark does not flicker between syllables. */
-const fall = 0.85;
+/** A level falls by half in so long [s], so that a mark does not flicker between syllables. */
+const fallHalfLife = 0.06;
 
 /** Root mean square of what an analyser hears now [1: full scale]. */
 function rmsOf(analyser: AnalyserNode, samples: Float32Array<ArrayBuffer>): number {
@@ -24,14 +24,20 @@ function rmsOf(analyser: AnalyserNode, samples: Float32Array<ArrayBuffer>): numb
 
 const decibels = (rms: number): number => 20 * Math.log10(Math.max(rms, 1e-6));
 
+/** How loud a voice is as it is drawn, and when that was read [s of the context]. */
+interface Level {
+  readonly analyser: AnalyserNode;
+  value: number;
+  readAt: number;
+}
+
 interface Heard {
   /** A stream of another page stays silent unless an element plays it too (Chromium issue 933677). */
   readonly element: HTMLAudioElement;
   readonly source: MediaStreamAudioSourceNode;
-  readonly analyser: AnalyserNode;
+  readonly level: Level;
   readonly gain: GainNode;
   readonly panner: PannerNode;
-  level: number;
 }
 
 /** The voices of others from where their heads are, for the ears of the stage that the context belongs to; floor frame. */
@@ -41,8 +47,7 @@ export class VoiceSound {
   readonly #bus: GainNode;
   readonly #meter: AnalyserNode;
   readonly #samples = new Float32Array(window);
-  #own: { readonly source: MediaStreamAudioSourceNode; readonly analyser: AnalyserNode } | null = null;
-  #ownLevel = 0;
+  #own: { readonly source: MediaStreamAudioSourceNode; readonly level: Level } | null = null;
 
   /** Volume and mute of the game's own sounds do not touch voices. */
   constructor(context: AudioContext) {
@@ -61,15 +66,15 @@ export class VoiceSound {
     // Muted, it needs no gesture; an element that was removed before it played rejects.
     void element.play().catch(() => undefined);
     const source = context.createMediaStreamSource(stream);
-    const analyser = this.#analyser();
+    const level = this.#level();
     const gain = context.createGain();
     const panner = context.createPanner();
     panner.panningModel = 'HRTF';
     panner.distanceModel = 'inverse';
     panner.refDistance = near;
     panner.rolloffFactor = rolloff;
-    source.connect(analyser).connect(gain).connect(panner).connect(this.#bus);
-    this.#heard.set(id, { element, source, analyser, gain, panner, level: 0 });
+    source.connect(level.analyser).connect(gain).connect(panner).connect(this.#bus);
+    this.#heard.set(id, { element, source, level, gain, panner });
   }
 
   remove(id: string): void {
@@ -96,12 +101,10 @@ export class VoiceSound {
     if (heard) heard.gain.gain.value = silent ? 0 : 1;
   }
 
-  /** How loud a person speaks, however far away: 0 silent to 1. Once a frame. */
+  /** How loud a person speaks, however far away: 0 silent to 1. */
   level(id: string): number {
     const heard = this.#heard.get(id);
-    if (!heard) return 0;
-    heard.level = this.#shown(heard.analyser, heard.level);
-    return heard.level;
+    return heard ? this.#read(heard.level) : 0;
   }
 
   /** The own microphone's track, for its level alone; null: there is none. */
@@ -110,14 +113,13 @@ export class VoiceSound {
     this.#own = null;
     if (!track) return;
     const source = this.#context.createMediaStreamSource(new MediaStream([track]));
-    const analyser = this.#analyser();
-    source.connect(analyser);
-    this.#own = { source, analyser };
+    const level = this.#level();
+    source.connect(level.analyser);
+    this.#own = { source, level };
   }
 
   ownLevel(): number {
-    this.#ownLevel = this.#own ? this.#shown(this.#own.analyser, this.#ownLevel) : 0;
-    return this.#ownLevel;
+    return this.#own ? this.#read(this.#own.level) : 0;
   }
 
   /** How loud all voices together are at the ears [dB of full scale], for tools; −120: silent. */
@@ -138,9 +140,16 @@ export class VoiceSound {
     return analyser;
   }
 
+  #level(): Level {
+    return { analyser: this.#analyser(), value: 0, readAt: this.#context.currentTime };
+  }
+
   /** A level as it is drawn: up at once, down slowly. */
-  #shown(analyser: AnalyserNode, before: number): number {
-    const now = clamp((decibels(rmsOf(analyser, this.#samples)) - quiet) / (loud - quiet), 0, 1);
-    return Math.max(now, before * fall);
+  #read(level: Level): number {
+    const { currentTime } = this.#context;
+    const now = clamp((decibels(rmsOf(level.analyser, this.#samples)) - quiet) / (loud - quiet), 0, 1);
+    level.value = Math.max(now, damp(level.value, 0, fallHalfLife, currentTime - level.readAt));
+    level.readAt = currentTime;
+    return level.value;
   }
 }
