@@ -1,9 +1,9 @@
-import type { Figure } from './figure';
+import type { FaceShape, Figure } from './figure';
 import type { Point } from './signed-distance';
 import { compact, cutAlong, decimate, mesh, normalsOf, projectOnto, refine, type Surface } from './surface';
 import type { Label } from './surface-labels';
 import { skinWeights } from './weights';
-import { writeVrm } from './write-vrm';
+import { type Skinned, writeVrm } from './write-vrm';
 
 /** Finer than a finger's fillet [m]. */
 const cell = 0.0042;
@@ -32,19 +32,17 @@ const middleOf = ({ positions, indices }: Surface, t: number): Point =>
     (axis) => [0, 1, 2].reduce((sum, corner) => sum + positions[3 * indices[t + corner]! + axis]!, 0) / 3,
   ) as unknown as Point;
 
-/** How far each vertex goes when the eyes close [m]; null: nothing blinks. */
-function blinkOf({ blink, body }: Figure, surface: Surface): Float32Array | null {
-  if (!blink) return null;
-  const moves = new Float32Array(surface.positions.length);
-  for (let i = 0; i < moves.length; i += 3) {
-    const [x, y, z] = [surface.positions[i]!, surface.positions[i + 1]!, surface.positions[i + 2]!];
-    const to = blink(x, y, z);
-    if (!to) continue;
-    const { positions } = projectOnto(body, { positions: new Float32Array(to), indices: new Uint32Array() });
-    moves.set([positions[0]! - x, positions[1]! - y, positions[2]! - z], i);
-  }
-  return moves;
-}
+/** How far each vertex goes for each shape of the face [m]. */
+const movesOf = ({ shapes }: Figure, { positions }: Surface): Skinned['shapes'] =>
+  Object.entries(shapes).map(([name, displaced]) => {
+    const moves = new Float32Array(positions.length);
+    for (let i = 0; i < moves.length; i += 3) {
+      const [x, y, z] = [positions[i]!, positions[i + 1]!, positions[i + 2]!];
+      const to = displaced(x, y, z);
+      if (to) moves.set([to[0] - x, to[1] - y, to[2] - z], i);
+    }
+    return { name: name as FaceShape, moves };
+  });
 
 /** A body as a VRM 1.0 file; the same bytes every time. `coarser`: cells so many times larger, for a quick look. */
 export async function buildBody(figure: Figure, report?: (what: string) => void, coarser = 1): Promise<Uint8Array> {
@@ -72,6 +70,6 @@ export async function buildBody(figure: Figure, report?: (what: string) => void,
     skin: skinWeights(surface, figure),
     labels: kinds,
     ofHead,
-    blink: blinkOf(figure, surface),
+    shapes: movesOf(figure, surface),
   });
 }

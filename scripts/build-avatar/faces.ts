@@ -21,29 +21,34 @@ export interface FaceMeasures {
   readonly cheeks?: number;
 }
 
+/** What of a face its mouth is told by. */
+export type MouthMeasures = Pick<FaceMeasures, 'size' | 'width' | 'mouth'>;
+
 /** Where heads are made larger from: the head's joint. */
 const root: Point = [0, 1.516, -0.012];
 const eyeHeight = 1.594;
 const mouthHeight = 1.536;
-/** Below it is the neck. */
+/** Below it is the neck, which stays as it is up to so high [m]. */
 const chin = 1.49;
+const neckFront = 1.462;
 
 /** The same region on a head of these measures. */
 export const inHead = (region: Region, { size, width }: FaceMeasures): Region =>
   movedRegion(region, { about: root, factor: [size * width, size, size] });
 
 /** A place on a head of these measures as it lies on the average one, x ≥ 0. */
-export const onAverageHead = ({ size, width }: FaceMeasures, x: number, y: number, z: number): Point => [
-  foldedX(x) / (size * width),
-  root[1] + (y - root[1]) / size,
-  root[2] + (z - root[2]) / size,
-];
+export const onAverageHead = (
+  { size, width }: Pick<FaceMeasures, 'size' | 'width'>,
+  x: number,
+  y: number,
+  z: number,
+): Point => [foldedX(x) / (size * width), root[1] + (y - root[1]) / size, root[2] + (z - root[2]) / size];
 
-const fromAverageHead = ({ size, width }: FaceMeasures, [x, y, z]: Point, left: boolean): Point => [
-  (left ? 1 : -1) * x * size * width,
-  root[1] + (y - root[1]) * size,
-  root[2] + (z - root[2]) * size,
-];
+const fromAverageHead = (
+  { size, width }: Pick<FaceMeasures, 'size' | 'width'>,
+  [x, y, z]: Point,
+  left: boolean,
+): Point => [(left ? 1 : -1) * x * size * width, root[1] + (y - root[1]) * size, root[2] + (z - root[2]) * size];
 
 /** Skull, jaw and chin. */
 export function skullOf({ jaw = 1 }: FaceMeasures): Region {
@@ -94,21 +99,42 @@ function eyeRadius({ eye }: FaceMeasures, x: number, y: number, larger = 1): num
 const circle = (x: number, y: number, cx: number, cy: number, radius: number): number =>
   Math.hypot(x - cx, y - cy) - radius;
 
+/** Where the lips of the average head meet, half so thick [m]. */
+const lipsMeetAt = (x: number): number => mouthHeight + 6 * x * x;
+const lineThickness = 0.0013;
+
+/** The line between the lips on the average head: 0 on its edge, negative inside. */
+const mouthLine = ({ mouth: [wide] }: Pick<FaceMeasures, 'mouth'>, x: number, y: number): number =>
+  Math.max(Math.abs(y - lipsMeetAt(x)) - lineThickness * (1 - (x / wide) ** 2), x - 0.94 * wide);
+
+/** A line on the front of a head, drawn on the average one. */
+const onFront = (
+  head: Pick<FaceMeasures, 'size' | 'width'>,
+  value: (x: number, y: number) => number,
+): ((x: number, y: number, z: number) => number) => {
+  return (worldX, worldY, worldZ) => {
+    const [x, y, z] = onAverageHead(head, worldX, worldY, worldZ);
+    return Math.max(value(x, y), 0.03 - z);
+  };
+};
+
+/** A slit between the lips of a head, as thick to its ends: 0 on its edge, negative inside. */
+export const mouthSlit = (face: MouthMeasures, worldX: number, worldY: number, worldZ: number): number =>
+  onFront(face, (x, y) => Math.hypot(Math.max(x - 0.85 * face.mouth[0], 0), y - lipsMeetAt(x)) - lineThickness)(
+    worldX,
+    worldY,
+    worldZ,
+  );
+
 /** Seams of eyes, brows and mouth; each is 0 on its line and negative inside. */
 export function faceSeams(face: FaceMeasures): readonly Seam[] {
   const { eye, brow, mouth } = face;
   const [a, b] = eye.radii;
-  const inFace = (value: (x: number, y: number) => number): Seam['value'] => {
-    return (worldX, worldY, worldZ) => {
-      const [x, y, z] = onAverageHead(face, worldX, worldY, worldZ);
-      return Math.max(value(x, y), 0.03 - z);
-    };
-  };
+  const inFace = (value: (x: number, y: number) => number) => onFront(face, value);
   const eyeEdge = (x: number, y: number) => b * (eyeRadius(face, x, y) - 1);
   // The upper lid lies over a part of the iris: one that shows whole stares.
   const irisRadius = 1.04 * b;
   const irisHeight = eyeHeight + 0.2 * b;
-  const line = (x: number) => mouthHeight + 6 * x * x;
   return [
     { label: 'Shine', value: inFace((x, y) => circle(x, y, eye.out + 0.0022, irisHeight + 0.3 * b, 0.0015)) },
     {
@@ -132,15 +158,10 @@ export function faceSeams(face: FaceMeasures): readonly Seam[] {
         return Math.hypot(Math.max(Math.abs(dx) - 0.0145, 0), y - middle) - taper;
       }),
     },
-    {
-      label: 'MouthLine',
-      value: inFace((x, y) =>
-        Math.max(Math.abs(y - line(x)) - 0.0013 * (1 - (x / mouth[0]) ** 2), x - 0.94 * mouth[0]),
-      ),
-    },
+    { label: 'MouthLine', value: inFace((x, y) => mouthLine(face, x, y)) },
     {
       label: 'Lips',
-      value: inFace((x, y) => mouth[1] * (Math.hypot(x / mouth[0], (y - line(x) + 0.0008) / mouth[1]) - 1)),
+      value: inFace((x, y) => mouth[1] * (Math.hypot(x / mouth[0], (y - lipsMeetAt(x) + 0.0008) / mouth[1]) - 1)),
     },
   ];
 }
@@ -155,10 +176,15 @@ export function faceFineness(face: FaceMeasures, worldX: number, worldY: number,
   const [x, y, z] = onAverageHead(face, worldX, worldY, worldZ);
   if (z < 0.03 || y < chin) return 1;
   if (eyeRadius(face, x, y) < 1.25) return 0.0031 * face.size;
-  const atMouth = Math.hypot(x / face.mouth[0], (y - mouthHeight) / (1.4 * face.mouth[1])) < 1.1;
   const atBrow = Math.abs(y - eyeHeight - face.brow.above) < 0.006 && Math.abs(x - face.eye.out) < 0.02;
-  if (atMouth) return 0.0034 * face.size;
-  return (atBrow ? 0.0044 : 0.012) * face.size;
+  return Math.min(mouthFineness(face, worldX, worldY, worldZ), (atBrow ? 0.0044 : 0.012) * face.size);
+}
+
+/** The same at a mouth alone. */
+export function mouthFineness(face: MouthMeasures, worldX: number, worldY: number, worldZ: number): number {
+  const [x, y, z] = onAverageHead(face, worldX, worldY, worldZ);
+  const [wide, high] = face.mouth;
+  return z > 0.03 && Math.hypot(x / wide, (y - mouthHeight) / (1.4 * high)) < 1.1 ? 0.0034 * face.size : 1;
 }
 
 /** How far around an eye the skin goes along with its lids [eyes]. */
@@ -177,4 +203,28 @@ export function closedEyes(face: FaceMeasures, worldX: number, worldY: number, w
   const closed = -0.45 * b * Math.sqrt(Math.max(0, 1 - (dx / a) ** 2)) + 0.03 * dy;
   const moved = (closed - dy) * (1 - smoothstep(1, lidReach, radius));
   return fromAverageHead(face, [x, y + moved, z], worldX >= 0);
+}
+
+/** Jaws turn about this line, before the ears [m], so far when the mouth is open [rad]; the upper lip is raised a little [m]. */
+const jawHinge = [1.572, -0.004] as const;
+const jawTurn = 0.16;
+const lipRaise = 0.0018;
+/** Less than this is not seen [m]. */
+const unseen = 2e-4;
+
+/** Where a place of the face goes when the mouth opens: the jaw turns down and back, and takes lips and chin along; null: it stays. */
+export function openMouth(face: MouthMeasures, worldX: number, worldY: number, worldZ: number): Point | null {
+  const [x, y, z] = onAverageHead(face, worldX, worldY, worldZ);
+  const [wide] = face.mouth;
+  if (z < 0 || y < neckFront || y > eyeHeight) return null;
+  // Between the lips all of it happens across the line; beyond the corners cheeks stretch over so much more.
+  const stretch = lineThickness + 0.02 * smoothstep(0.75 * wide, 2 * wide, x);
+  const below = lipsMeetAt(Math.min(x, wide)) - y;
+  const share =
+    smoothstep(-stretch, stretch, below) * smoothstep(0, 0.05, z) * smoothstep(neckFront, neckFront + 0.035, y);
+  const [sine, cosine] = [Math.sin(share * jawTurn), Math.cos(share * jawTurn)];
+  const [up, ahead] = [y - jawHinge[0], z - jawHinge[1]];
+  const raised = lipRaise * smoothstep(0.012, 0, Math.abs(below)) * (1 - smoothstep(0.4 * wide, wide, x)) * (1 - share);
+  const to: Point = [x, jawHinge[0] + cosine * up - sine * ahead + raised, jawHinge[1] + cosine * ahead + sine * up];
+  return Math.hypot(to[1] - y, to[2] - z) < unseen ? null : fromAverageHead(face, to, worldX >= 0);
 }

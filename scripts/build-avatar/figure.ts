@@ -14,9 +14,13 @@ export interface MeshPlan {
   readonly materials: readonly MaterialName[];
   /** Only seen by others: the own head would be seen from inside. */
   readonly ofHead: boolean;
-  /** Whether it has the shape of closed eyes. */
-  readonly blinks?: boolean;
 }
+
+/** Shapes that a face can take, by the names that VRM has for them: closed eyes, and a mouth that says "ah". */
+export type FaceShape = 'blink' | 'aa';
+
+/** Where a place of the skin goes for a shape; null: it stays. */
+export type Displacement = (x: number, y: number, z: number) => Point | null;
 
 /** A body to be built and written. */
 export interface Figure extends Anatomy {
@@ -38,6 +42,5 @@ export interface Figure extends Anatomy {
   readonly shadedOver?: number;
   /** How long edges may be at a place [m]; absent: as they come. */
   readonly finer?: (x: number, y: number, z: number) => number;
-  /** Where a place of the skin goes when the eyes are closed; null: it stays. Absent: nothing blinks. */
-  readonly blink?: (x: number, y: number, z: number) => Point | null;
+  readonly shapes: Readonly<Partial<Record<FaceShape, Displacement>>>;
 }

@@ -1,4 +1,5 @@
 import { mannequinAnatomy } from './anatomy';
+import { type MouthMeasures, mouthFineness, mouthSlit, openMouth } from './faces';
 import type { Figure } from './figure';
 import { hipLine, makeRig } from './rig';
 import type { Seam } from './surface-labels';
@@ -15,7 +16,12 @@ function yoke(x: number, y: number, z: number): number {
   return Math.max(hem - y, y - collar(x, z), side - 0.15);
 }
 
+/** A mouth as wide as lips of the average head are. */
+const mouth: MouthMeasures = { size: 1, width: 1, mouth: [0.0205, 0.007] };
+
 const seams: readonly Seam[] = [
+  // A slit between the lips, dark as the visor: what is behind it when the mouth opens.
+  { label: 'Visor', value: (x, y, z) => mouthSlit(mouth, x, y, z) },
   // The face behind a visor that wraps from temple to temple.
   {
     label: 'Visor',
@@ -41,6 +47,8 @@ export const mannequin: Figure = {
     [0.92, 1.74, 0.24],
   ],
   triangles: 11_500,
+  finer: (x, y, z) => mouthFineness(mouth, x, y, z),
+  shapes: { aa: (x, y, z) => openMouth(mouth, x, y, z) },
   colors: {
     Suit: { color: [0.62, 0.66, 0.72], roughness: 0.62 },
     Accent: { color: [0.075, 0.24, 0.5], roughness: 0.5, metallic: 0.05 },

@@ -26,12 +26,15 @@ import {
   faceSeams,
   featuresOf,
   inHead,
+  openMouth,
   skullOf,
 } from './faces';
+import type { Displacement, Figure } from './figure';
 import { type GarmentStyle, type Garments, garmentsOf } from './garments';
 import { type HairStyle, hairOf } from './hair';
 import { makeRig, type RigMeasures } from './rig';
-import { ellipsoid, type Point, smoothUnion, taperedCapsule } from './signed-distance';
+import { type DistanceField, ellipsoid, type Point, smoothUnion, taperedCapsule } from './signed-distance';
+import { projectOnto } from './surface';
 import type { Seam } from './surface-labels';
 
 /** Half width and half depth [m]. */
@@ -62,8 +65,7 @@ export interface Person extends Anatomy {
   readonly seams: readonly Seam[];
   /** No edge of a triangle may be longer there [m]: on the face and where a top ends. */
   readonly finer: (x: number, y: number, z: number) => number;
-  /** Where a place of the skin goes when the eyes are closed; null: it stays. */
-  readonly blink: (x: number, y: number, z: number) => Point | null;
+  readonly shapes: Figure['shapes'];
   /** Whether a place belongs to what the own eyes do not see: head, neck and hair. */
   readonly ofHead: (x: number, y: number, z: number) => boolean;
 }
@@ -91,6 +93,19 @@ function torsoOf({ rig, chest, waist, hips, breast, belly, seat, trapezius }: Pe
 
 /** So near to the edge of a top, at neck, cuffs and hem, triangles are small [m]; less than any cloth lies off what it covers. */
 const atEdge = 0.0025;
+
+/** The same displacement along the surface: lids slide over the eyes. */
+const onSurface =
+  (body: DistanceField, displaced: Displacement): Displacement =>
+  (x, y, z) => {
+    const to = displaced(x, y, z);
+    return (
+      to &&
+      (Array.from(
+        projectOnto(body, { positions: Float32Array.from(to), indices: new Uint32Array() }).positions,
+      ) as unknown as Point)
+    );
+  };
 
 export function personOf(measures: PersonMeasures): Person {
   const rig = makeRig(measures.rig);
@@ -145,7 +160,10 @@ export function personOf(measures: PersonMeasures): Person {
       { label: 'Skin', value: (_: number, y: number, z: number) => collar(z) - y },
     ],
     finer: (x, y, z) => (Math.abs(top.value(x, y, z)) < atEdge ? 0.011 : faceFineness(face, x, y, z)),
-    blink: (x, y, z) => closedEyes(face, x, y, z),
+    shapes: {
+      blink: onSurface(body, (x, y, z) => closedEyes(face, x, y, z)),
+      aa: (x, y, z) => openMouth(face, x, y, z),
+    },
     ofHead: (_, y, z) => y > collar(z),
   };
 }

@@ -1,5 +1,5 @@
 import { type Accessor, Document, type Material, NodeIO } from '@gltf-transform/core';
-import type { Figure, MeshPlan } from './figure';
+import type { FaceShape, Figure, MeshPlan } from './figure';
 import type { Surface } from './surface';
 import { type Label, labels, type MaterialName, tintOf } from './surface-labels';
 import type { SkinWeights } from './weights';
@@ -12,8 +12,8 @@ export interface Skinned {
   /** Of each triangle: what it is, and whether it belongs to the head. */
   readonly labels: readonly Label[];
   readonly ofHead: readonly boolean[];
-  /** How far each vertex goes when the eyes close [m]; null: nothing blinks. */
-  readonly blink: Float32Array | null;
+  /** How far each vertex goes for each shape of the face [m]. */
+  readonly shapes: readonly { readonly name: FaceShape; readonly moves: Float32Array }[];
 }
 
 /** A body as VRM 1.0 wants it: fingers, toes and all. */
@@ -40,11 +40,14 @@ export async function writeVrm(figure: Figure, skinned: Skinned): Promise<Uint8A
     .setSkeleton(nodes.get('hips')!)
     .setInverseBindMatrices(document.createAccessor().setType('MAT4').setArray(inverseBinds).setBuffer(buffer));
   for (const { name } of bones) skeleton.addJoint(nodes.get(name)!);
+  const shaped = new Map<string, readonly FaceShape[]>();
   for (const plan of figure.meshes) {
     const mesh = document.createMesh(plan.name);
-    for (const name of plan.materials) {
-      const own = ownVertices(skinned, name, plan);
-      if (own.indices.length === 0) continue;
+    const parts = plan.materials
+      .map((name) => ({ name, own: ownVertices(skinned, name, plan) }))
+      .filter(({ own }) => own.indices.length > 0);
+    const shapes = skinned.shapes.filter(({ moves }) => parts.some(({ own }) => movesAny(own.vertices, moves)));
+    for (const { name, own } of parts) {
       const primitive = document.createPrimitive().setMaterial(material(document, figure, name));
       const accessor = (type: 'VEC3' | 'VEC4' | 'SCALAR', array: Float32Array | Uint8Array | Uint16Array): Accessor =>
         document.createAccessor().setType(type).setArray(array).setBuffer(buffer);
@@ -62,17 +65,23 @@ export async function writeVrm(figure: Figure, skinned: Skinned): Promise<Uint8A
       if (own.tints) {
         primitive.setAttribute('COLOR_0', accessor('VEC4', Uint8Array.from(own.tints)).setNormalized(true));
       }
-      if (plan.blinks && skinned.blink) {
-        const moves = accessor('VEC3', new Float32Array(pick(3, skinned.blink))).setSparse(true);
-        primitive.addTarget(document.createPrimitiveTarget('blink').setAttribute('POSITION', moves));
+      for (const { name: shape, moves } of shapes) {
+        const moved = accessor('VEC3', new Float32Array(pick(3, moves))).setSparse(true);
+        primitive.addTarget(document.createPrimitiveTarget(shape).setAttribute('POSITION', moved));
       }
       mesh.addPrimitive(primitive);
     }
-    if (plan.blinks) mesh.setWeights([0]).setExtras({ targetNames: ['blink'] });
+    const targetNames = shapes.map(({ name }) => name);
+    if (targetNames.length > 0) mesh.setWeights(targetNames.map(() => 0)).setExtras({ targetNames });
+    shaped.set(plan.name, targetNames);
     scene.addChild(document.createNode(plan.name).setMesh(mesh).setSkin(skeleton));
   }
-  return withVrm(await new NodeIO().writeBinary(document), figure);
+  return withVrm(await new NodeIO().writeBinary(document), figure, shaped);
 }
+
+/** Whether a shape moves one of these vertices. */
+const movesAny = (vertices: readonly number[], moves: Float32Array): boolean =>
+  vertices.some((vertex) => moves[3 * vertex] || moves[3 * vertex + 1] || moves[3 * vertex + 2]);
 
 /** A vertex is there once for each label it has triangles of, where labels of one material differ in tint. */
 interface OwnVertices {
@@ -147,13 +156,24 @@ interface GltfJson {
   asset: { generator?: string };
 }
 
-/** Puts the VRM 1.0 extension into a GLB: which node is which bone, what is hidden in first person, the licence. */
-function withVrm(glb: Uint8Array, { title, rig, meshes }: Figure): Uint8Array {
+/**
+ * Puts the VRM 1.0 extension into a GLB: which node is which bone, what is hidden in first person, the shapes of the face, the licence. `shaped`: by mesh,
+ * the shapes that it has, in their order.
+ */
+function withVrm(
+  glb: Uint8Array,
+  { title, rig, meshes, shapes }: Figure,
+  shaped: ReadonlyMap<string, readonly FaceShape[]>,
+): Uint8Array {
   const view = new DataView(glb.buffer, glb.byteOffset, glb.byteLength);
   const jsonLength = view.getUint32(12, true);
   const json = JSON.parse(new TextDecoder().decode(glb.subarray(20, 20 + jsonLength))) as GltfJson;
   const node = (name: string): number => json.nodes.findIndex((candidate) => candidate.name === name);
-  const blinking = meshes.filter(({ blinks }) => blinks);
+  const binds = (shape: FaceShape) =>
+    [...shaped].flatMap(([name, targets]) =>
+      targets.includes(shape) ? [{ node: node(name), index: targets.indexOf(shape), weight: 1 }] : [],
+    );
+  const preset = Object.keys(shapes).map((shape) => [shape, { morphTargetBinds: binds(shape as FaceShape) }]);
   json.asset.generator = 'threepoint build-avatar';
   json.extensionsUsed = [...(json.extensionsUsed ?? []), 'VRMC_vrm'];
   json.extensions = {
@@ -182,13 +202,7 @@ function withVrm(glb: Uint8Array, { title, rig, meshes }: Figure): Uint8Array {
           type: ofHead ? 'thirdPersonOnly' : 'both',
         })),
       },
-      ...(blinking.length > 0 && {
-        expressions: {
-          preset: {
-            blink: { morphTargetBinds: blinking.map(({ name }) => ({ node: node(name), index: 0, weight: 1 })) },
-          },
-        },
-      }),
+      ...(preset.length > 0 && { expressions: { preset: Object.fromEntries(preset) } }),
     },
   };
   const text = new TextEncoder().encode(JSON.stringify(json));

@@ -8,8 +8,8 @@ import { isNightly } from '../nightly';
 
 interface Vertex {
   readonly position: readonly number[];
-  /** How far it goes when the eyes close. */
-  readonly closing: readonly number[];
+  /** How far it goes for each shape that its mesh has, by the shape's name. */
+  readonly moves: Readonly<Record<string, readonly number[]>>;
   readonly weights: readonly number[];
 }
 
@@ -22,24 +22,29 @@ describe.each(figures.map((figure) => [figure.name, figure] as const))('the %s',
 
   beforeAll(async () => {
     const document = await new NodeIO().readBinary(file);
-    const primitives: Primitive[] = document
+    const primitives = document
       .getRoot()
       .listMeshes()
-      .flatMap((mesh) => mesh.listPrimitives());
+      .flatMap((mesh) => {
+        const names = (mesh.getExtras().targetNames ?? []) as string[];
+        return mesh.listPrimitives().map((primitive): [Primitive, string[]] => [primitive, names]);
+      });
     corners = [];
     vertices = [];
-    for (const primitive of primitives) {
+    for (const [primitive, names] of primitives) {
       const positions = primitive.getAttribute('POSITION');
       const weights = primitive.getAttribute('WEIGHTS_0');
       const indices = primitive.getIndices();
-      const target = primitive.listTargets()[0]?.getAttribute('POSITION');
+      const targets = primitive
+        .listTargets()
+        .map((target, i) => [names[i] ?? '', target.getAttribute('POSITION')] as const);
       if (!positions || !weights || !indices) throw new Error('a primitive without positions, weights or indices');
       const own: Vertex[] = [];
       for (let i = 0; i < positions.getCount(); i++) {
         own.push({
           position: positions.getElement(i, []),
           weights: weights.getElement(i, []),
-          closing: target?.getElement(i, []) ?? [0, 0, 0],
+          moves: Object.fromEntries(targets.map(([name, moved]) => [name, moved?.getElement(i, []) ?? []])),
         });
       }
       vertices.push(...own);
@@ -110,26 +115,51 @@ describe.each(figures.map((figure) => [figure.name, figure] as const))('the %s',
     expect(bones).toHaveLength(6 + 2 * (4 + 15 + 4));
   });
 
-  test.runIf(figure.blink)('blinks: its eyes have a shape of closed lids, which moves nothing else', () => {
+  /** Meshes that an expression moves, and how many vertices of theirs it moves and leaves; `where`: looks at each that moves. */
+  function shapeOf(name: string, where: (vertex: Vertex, far: number) => void) {
     const json = JSON.parse(new TextDecoder().decode(file.subarray(20, 20 + file.readUInt32LE(12))));
-    const [bind] = json.extensions.VRMC_vrm.expressions.preset.blink.morphTargetBinds;
-    expect(json.nodes[bind.node].name).toBe('faceSkin');
-    let moved = 0;
-    let still = 0;
-    for (const { position, closing } of vertices) {
-      const [x = 0, y = 0, z = 0] = position;
-      const far = Math.hypot(...closing);
-      if (far === 0) still += 1;
-      else {
-        moved += 1;
-        expect(far).toBeLessThan(0.03);
-        expect(Math.abs(x)).toBeLessThan(0.09);
-        expect(y).toBeGreaterThan(1.55);
-        expect(z).toBeGreaterThan(0);
-      }
-    }
+    const binds: { node: number; index: number }[] = json.extensions.VRMC_vrm.expressions.preset[name].morphTargetBinds;
+    for (const { node, index } of binds)
+      expect(json.meshes[json.nodes[node].mesh].extras.targetNames[index], 'the shape that is bound').toBe(name);
+    const moving = vertices.filter(({ moves }) => Math.hypot(...(moves[name] ?? [])) > 0);
+    for (const vertex of moving) where(vertex, Math.hypot(...(vertex.moves[name] ?? [])));
+    return {
+      meshes: binds.map(({ node }) => json.nodes[node].name),
+      moved: moving.length,
+      still: vertices.length - moving.length,
+    };
+  }
+
+  test.runIf(figure.shapes.blink)('blinks: its eyes have a shape of closed lids, which moves nothing else', () => {
+    const { meshes, moved, still } = shapeOf('blink', ({ position: [x = 0, y = 0, z = 0] }, far) => {
+      expect(far).toBeLessThan(0.03);
+      expect(Math.abs(x)).toBeLessThan(0.09);
+      expect(y).toBeGreaterThan(1.55);
+      expect(z).toBeGreaterThan(0);
+    });
+    expect(meshes[0]).toBe('faceSkin');
+    // Hair that ends beside a lid goes along with it; nothing else does.
+    expect(meshes.slice(1).filter((mesh) => mesh !== 'hairSkin')).toEqual([]);
     expect(moved).toBeGreaterThan(100);
     expect(still).toBeGreaterThan(4000);
+  });
+
+  test('says "ah": chin and lower lip go down, the upper lip hardly moves, eyes and neck stay', () => {
+    let [chin, lowest] = [0, Number.POSITIVE_INFINITY];
+    const { moved } = shapeOf('aa', ({ position: [x = 0, y = 0, z = 0], moves }, far) => {
+      const [, down = 0] = moves.aa ?? [];
+      expect(far).toBeLessThan(0.035);
+      // Nothing but the upper lip rises, and that by two millimetres.
+      expect(down).toBeLessThan(0.0025);
+      expect(y).toBeGreaterThan(1.44);
+      expect(y).toBeLessThan(1.6);
+      expect(z).toBeGreaterThan(-0.02);
+      if (Math.abs(x) < 0.01 && z > 0.04 && y < lowest) [chin, lowest] = [down, y];
+    });
+    expect(moved).toBeGreaterThan(150);
+    const lip = vertices.filter(({ position: [x = 0], moves }) => Math.abs(x) < 0.01 && (moves.aa?.[1] ?? 0) < -0.008);
+    expect(lip.length, 'lower lip and chin go down by a centimetre').toBeGreaterThan(10);
+    expect(chin, 'what lies under the chin goes along').toBeLessThan(0);
   });
 
   // A minute of a core, and nothing that changes by the day.

@@ -305,11 +305,11 @@ export function createBallBar(actions: BallBarActions, setSound: (on: boolean) =
     score.node,
     where,
     waiting,
+    deeds.node,
+    deeds.hint,
     company.node,
     seats.places,
     seats.cameras,
-    deeds.node,
-    deeds.hint,
     voices.node,
     players.node,
   );
