@@ -80,7 +80,8 @@ const attempts: readonly (readonly [string, () => ArrayBuffer, RegExp])[] = [
     'morph targets without end',
     () =>
       changed((json) => {
-        first(first(json.meshes).primitives).targets = Array.from({ length: 4001 }, () => ({ POSITION: 0 }));
+        // The head of the mannequin has one in each of its two primitives.
+        first(first(json.meshes).primitives).targets = Array.from({ length: 3999 }, () => ({ POSITION: 0 }));
       }),
     /4001 morph targets; an avatar may have 4000 at most/,
   ],
