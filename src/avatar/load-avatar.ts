@@ -53,7 +53,7 @@ export async function parseChecked(
   const chunks = chunksOf(new Uint8Array(bytes))!;
   loader.register(viewsOfFile(chunks.binary, file));
   const gltf = await loader.parseAsync(chunks.json, '').catch((error: unknown) => {
-    throw new Error(`${name}: no VRM or GLB file (${reasonOf(error)})`);
+    throw new Error(`${name}: cannot be read as glTF (${reasonOf(error)})`);
   });
   await betweenFrames(makeGeometryPlain(gltf.scene));
   const own = bones ? undefined : (gltf.userData.vrm as VRM | undefined);
