@@ -26,6 +26,15 @@ def test_each_person_has_a_row_and_the_mean_counts_them_alike():
     assert of_ik[-1] == pytest.approx(sum(of_ik[:-1]) / len(people), abs=0.01)
 
 
+def test_a_contract_gets_what_was_found_of_people_in_turn():
+    recipe = train_learned.TrainLearnedConfig(width=8, batch=32, steps=2)
+    rows = leave_one_out.main(CORPUS, recipe, QUICK)
+    (measured,) = (row for row in rows.hands if row[0] == leave_one_out.MEASURED)
+    stated = {row: f"{errors.mean():.2f}" for row, errors in rows.errors.items()}
+    assert stated["IK, 3 people in turn, hands measured"] == measured[1]
+    assert stated["learned, 3 people in turn, hands measured"] == measured[2]
+
+
 @pytest.mark.parametrize(("count", "groups"), [(None, [("1",), ("2",), ("3",)]), (2, [("1", "3"), ("2",)]), (9, [("1",), ("2",), ("3",)])])
 def test_people_are_held_out_alone_or_in_groups(count, groups):
     assert leave_one_out.groups_of(("1", "2", "3"), count) == groups

@@ -10,6 +10,7 @@ import torch
 
 from . import fit_networks, fitted_kinematics, skeleton, solve_ik, train_learned, train_paper
 from .fit_networks import Destination, TrainingRun
+from .leave_one_out import IN_TURN
 from .motion import MocapError
 from .splits import FOLDS, measured_only, training_people
 
@@ -41,9 +42,7 @@ def main(run: TrainingRun, folds: list[str]) -> None:
         run.report.found("learned, frame-random 80/20", fit_networks.learned_frame_random_errors_cm(run))
     for name, network in networks.items():
         errors = {row: values for row, values in run.report.rows.items() if row.startswith((name, "IK"))}
-        if not run.config.frame_random:
-            earlier, _ = earlier_errors(run, name)
-            errors |= {row: values for row, values in earlier.items() if "frame-random" in row}
+        errors |= _found_by_other_runs(run, name)
         training = training_people(shipped, tuple(run.corpus.people))
         provenance = fit_networks.provenance(run, training, errors, curve if name == "paper" else None)
         fit_networks.write(run, name, network, provenance, Destination(run.config.cross_validation, run.config.fp32_out))
@@ -103,12 +102,36 @@ def compact_json(content: Any) -> str:
     return re.sub(r"\[\s+([^\[\]{}]*?)\s+\]", on_one_line, json.dumps(content, indent=2)) + "\n"
 
 
+def _found_by_other_runs(run: TrainingRun, name: str) -> dict[str, dict[str, float]]:
+    """What folds do not find anew: errors of people held out in turn and, where this run leaves it out, of the paper's protocol."""
+    kept = (IN_TURN,) if run.config.frame_random else (IN_TURN, "frame-random")
+    contract = _contract(run, name)
+    if contract is None or contract["trainedOn"]["corpusHash"] != run.corpus.corpus_hash:
+        return {}
+    return {row: values for row, values in contract["errors"].items() if any(mark in row for mark in kept)}
+
+
+def keep_in_contract(run: TrainingRun, name: str, found: dict[str, dict[str, float]]) -> None:
+    """Adds errors to the contract of the first fold's network, from which the page's takes them; there may be none yet."""
+    contract = _contract(run, name)
+    if contract is None or contract["trainedOn"]["corpusHash"] != run.corpus.corpus_hash:
+        run.report.console.print(f"No contract states these errors: {run.config.cross_validation} has no {name} network of this motion")
+        return
+    contract["errors"] |= {row: {joint: round(value, 2) for joint, value in values.items()} for row, values in found.items()}
+    (run.config.cross_validation / f"{name}.json").write_text(json.dumps(contract, indent=2, ensure_ascii=False) + "\n")
+
+
+def _contract(run: TrainingRun, name: str) -> dict[str, Any] | None:
+    """Of the first fold's network, as an earlier run left it."""
+    file = run.config.cross_validation / f"{name}.json"
+    return json.loads(file.read_text()) if file.exists() else None
+
+
 def earlier_errors(run: TrainingRun, name: str) -> tuple[dict[str, dict[str, float]], dict[str, list[float]] | None]:
     """Errors and learning curve of the cross-validation's networks, from their contract; none, where there was no fold."""
-    file = run.config.cross_validation / f"{name}.json"
-    if not file.exists():
+    file, contract = run.config.cross_validation / f"{name}.json", _contract(run, name)
+    if contract is None:
         return {}, None
-    contract = json.loads(file.read_text())
     if contract["trainedOn"]["corpusHash"] != run.corpus.corpus_hash:
         raise MocapError(f"{file} was made from other motion: run both stages, or give another --cross-validation")
     curve = contract.get("learningCurve")

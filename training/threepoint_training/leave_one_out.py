@@ -26,11 +26,14 @@ COLUMNS = ("IK", "ours", "ours / IK", "elbows, ours / IK", "minutes")
 IK_FRAMES = 400
 POSTURE_COLUMNS = ("of all frames", "IK", "ours", "ours / IK", "elbows, ours / IK")
 HAND_COLUMNS = ("IK", "ours", "ours / IK", "elbows: IK", "ours", "ours / IK")
+# What marks errors of people who were held out in turn, among those that a contract states.
+IN_TURN = "in turn"
+MEASURED, AS_RECORDED = "measured by the other clips, error 5° (as above)", "as recorded, nothing measured"
 # What the guided calibration knows of the hands: rows of a table.
 HANDS = {
-    "measured by the other clips, error 5° (as above)": Condition(),
+    MEASURED: Condition(),
     "and the forearm typed, error 1 cm": Condition(forearm_typed=True),
-    "as recorded, nothing measured": Condition(hands_measured=False),
+    AS_RECORDED: Condition(hands_measured=False),
     "nothing measured, the forearm typed": Condition(hands_measured=False, forearm_typed=True),
     "measured with wrists bent by 10°": Condition(bent_wrists=np.radians(10.0)),
     "by 20°": Condition(bent_wrists=np.radians(20.0)),
@@ -56,11 +59,13 @@ class HeldOutPerson:
 
 @dataclass(frozen=True)
 class Tables:
-    """Rows by person, by posture, and by what is known of the hands."""
+    """Rows by person, by posture, and by what is known of the hands; and the errors that the page's contract states."""
 
     people: list[list[str]]
     postures: list[list[str]]
     hands: list[list[str]]
+    # By what was judged and how: of each person the mean errors by joint in cm [P, 6].
+    errors: dict[str, NDArray[np.float64]]
 
 
 def groups_of(people: tuple[str, ...], count: int | None) -> list[tuple[str, ...]]:
@@ -128,7 +133,18 @@ def tables(corpus: PreparedCorpus, found: dict[str, HeldOutPerson]) -> Tables:
             means = (np.stack([getattr(found[name], method).mean(axis=0) for name in names]) for method in ("of_ik", "ours"))
             rows.append([mean, *_cells(*means), ""])
     judged = [found[name] for name in trainable]
-    return Tables(rows, _posture_rows(judged), _hand_rows(judged))
+    return Tables(rows, _posture_rows(judged), _hand_rows(judged), _errors(judged))
+
+
+def _errors(people: list[HeldOutPerson]) -> dict[str, NDArray[np.float64]]:
+    """Of IK and of ours, by what the guided calibration knows of the hands."""
+    who = f"{len(people)} people {IN_TURN}"
+    return {
+        f"{method}, {who}, {told}": np.stack([person.hands[condition][place] for person in people])
+        for told, condition in (("hands measured", MEASURED), ("hands as recorded", AS_RECORDED))
+        for place, method in enumerate(("IK", "learned"))
+        if all(condition in person.hands for person in people)
+    }
 
 
 def _hand_rows(people: list[HeldOutPerson]) -> list[list[str]]:

@@ -93,6 +93,9 @@ def _leave_one_out(run: TrainingRun) -> None:
         rows = leave_one_out.main(run.corpus, run.config.learned, run.config.ik, report, groups)
     for row in [*rows.people, *rows.postures, *rows.hands]:
         run.report.console.print("  ".join(row))
+    for row, errors in rows.errors.items():
+        run.report.found(row, errors)
+    cross_validate.keep_in_contract(run, "learned", {row: run.report.rows[row] for row in rows.errors})
     leave_one_out.write(rows)
 
 
