@@ -202,8 +202,6 @@ def model_vectors(models: Path) -> dict[str, Any]:
             inputs = paper_features(positions, rotations)
         else:
             inputs = network_input(vector, np.arange(len(vector)) / 60, tuple(contract["windowSeconds"]), body)
-            # A network that was made before hands were measured takes all but the last two.
-            inputs = inputs[:, : contract["inputs"][0]["shape"][1]]
         inputs = inputs[::12].astype(np.float32)
         name = contract["inputs"][0]["name"]
         outputs = [session.run(None, {name: row[None]})[0][0] for row in inputs]

@@ -31,7 +31,7 @@ class TrainLearnedConfig:
     width: int = 192
     dropout: float = 0.2
     hidden_layers: int = 2
-    steps: int = 3000
+    steps: int = 1800
     batch: int = 1024
     learning_rate: float = 5e-3
     weight_decay: float = 1e-2
