@@ -16,8 +16,7 @@ from .prepared_corpus import PreparedCorpus
 from .simulate_trackers import TrackerConfig
 from .train_learned import Condition, TrainLearnedConfig
 from .train_paper import predict
-
-PAGE = Path(__file__).parents[2] / "docs/training.md"
+from .training_page import PAGE
 
 # Two groups of training people, held out in turn.
 FOLDS = (("014", "127", "002"), ("003", "009", "016"))

@@ -18,8 +18,7 @@ from .model import CorrectionNetwork
 from .prepared_corpus import PreparedCorpus
 from .train_learned import Condition, HeldOut, TrainLearnedConfig
 from .train_paper import predict
-
-PAGE = Path(__file__).parents[2] / "docs/training.md"
+from .training_page import PAGE
 
 COLUMNS = ("IK", "ours", "ours / IK", "elbows, ours / IK", "minutes")
 # Of each person, for a fit of IK: with as many people as there are fits, more takes hours.

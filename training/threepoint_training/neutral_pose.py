@@ -17,10 +17,9 @@ from .prepared_corpus import JOINTS, MIRRORED_JOINTS, PreparedCorpus
 from .residual import OUTPUTS
 from .train_learned import HeldOut, TrainLearnedConfig
 from .train_paper import predict as predict_joints
+from .training_page import PAGE
 
 Array = NDArray[np.float64]
-
-PAGE = Path(__file__).parents[2] / "docs/training.md"
 
 COLUMNS = ("mean", "elbows", "shoulders", "spine", "pelvis")
 

@@ -6,7 +6,7 @@ A run is seeded: the same data and options write the same weights on the same ma
 import torch
 from rich.console import Console
 
-from . import ablation, cross_validate, fit_networks, golden, leave_one_out, neutral_pose, noticed_wear, prepare, train_learned, train_paper
+from . import ablation, cross_validate, fit_networks, golden, leave_one_out, neutral_pose, noticed_wear, prepare, train_learned, train_paper, training_page
 from .fit_networks import Destination, TrainingRun
 from .generated_motion import generate_corpus
 from .model import CorrectionNetwork
@@ -39,6 +39,7 @@ def main(config: TrainConfig, console: Console | None = None) -> dict[str, dict[
             _train_on_all_subjects(run)
     if "all-subjects" in config.stages and config.out.resolve() == (REPOSITORY / "public/models").resolve():
         golden.main(golden.GoldenConfig(config.out))
+        training_page.write(config.out)
     report.table(TITLE, ("mean", *LABELS), report.rows)
     return report.rows
 
