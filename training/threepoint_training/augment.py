@@ -18,6 +18,7 @@ from .prepared_corpus import JOINTS, MIRRORED_JOINTS, PreparedCorpus
 from .residual import residual
 from .simulate_trackers import FOREARM_ERROR, TrackerConfig, measured_tilts
 from .skeleton import body_from_calibration
+from .splits import VARIED
 
 Array = NDArray[np.float64]
 
@@ -110,9 +111,11 @@ class BodyParts:
             [np.linalg.norm(arm[:, 2] - arm[:, 1], axis=-1) / length for arm, length in zip(self.arms, self.arm_length, strict=True)], axis=1
         )
         trunks = weights(self.person, self._trunk_postures(), balance.trunk_clusters, (balance.people, balance.trunks), balance.seed)
+        favour = np.where(np.isin(self.people, VARIED), balance.varied, 1.0)
         owners, postures = np.tile(self.person, 2), np.concatenate([self._arm_postures(side) for side in (0, 1)])
         arms = weights(owners, postures, balance.arm_clusters, (balance.people, balance.arms), balance.seed)
-        self._cumulative_trunks, self._cumulative_arms = (np.cumsum(each) / each.sum() for each in (trunks, arms))
+        counts = (trunks * favour[self.person], arms * favour[owners])
+        self._cumulative_trunks, self._cumulative_arms = (np.cumsum(each) / each.sum() for each in counts)
 
     def draw_trunks(self, random: np.random.Generator, count: int) -> NDArray[np.int64]:
         """Frames, people and how their trunks are held balanced."""

@@ -14,12 +14,14 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class BalanceConfig:
-    """A frame of a person counts (frames of that person)^-people · (frames of that posture)^-trunks, its arms likewise by `arms`.
+    """A frame of a person counts (frames of that person)^-people · (frames of that posture)^-trunks, its arms likewise by `arms`; and those of
+    people who were asked for many things (`splits.VARIED`) `varied` times as much.
 
     Postures are alike that k-means puts into one of so many clusters.
     """
 
     people: float = 0.5
+    varied: float = 2.0
     trunks: float = 0.0
     arms: float = 0.0
     trunk_clusters: int = 100

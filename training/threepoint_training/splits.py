@@ -7,6 +7,9 @@ MEASURED_ONLY = ("901", "902", "903", "bd", "bk", "dg", "mm", "tr")
 # Fold A is the shipped models' own hold-out; fold B exists because one fold is noisy.
 FOLDS: dict[str, tuple[str, ...]] = {"A": ("005", "135"), "B": ("014", "127", "002")}
 
+# People who were asked for many things; the others mostly walk and run.
+VARIED = ("001", "002", "003", "005", "009", "014", "016", "017", "049", "127", "135")
+
 
 def trainable(subjects: tuple[str, ...] | list[str]) -> tuple[str, ...]:
     """The subjects of the corpus that may be trained on."""
