@@ -1,7 +1,7 @@
 import * as v from 'valibot';
 import { reasonOf } from '../core/errors/reasons';
 import type { ModelContract } from '../core/estimation/pose-regressor';
-import { inputCountWithoutHandTilts, learnedInputCount } from '../core/estimation/residual';
+import { learnedInputCount } from '../core/estimation/residual';
 import type { ModelTensors } from './session';
 
 const statedFile = {
@@ -59,12 +59,11 @@ export function parseContract(file: string, text: string): ModelContract {
   // What is absent stays absent: exact optional properties know no undefined.
   const { correctionHalfLife, weights, ...contract } = result.output;
   const { name, windowSeconds } = contract;
-  const expected =
-    name === 'paper' ? [18] : [learnedInputCount, inputCountWithoutHandTilts].map((f) => f(windowSeconds));
+  const expected = name === 'paper' ? 18 : learnedInputCount(windowSeconds);
   const count = (shape: readonly number[]) => shape.reduce((product, size) => product * size, 1);
   const [input, output] = [contract.inputs[0], contract.outputs[0]];
-  if (input === undefined || !expected.includes(count(input.shape))) {
-    throw new Error(`${file}: expected ${input ? count(input.shape) : 0} features, the page makes ${expected[0]}`);
+  if (input === undefined || count(input.shape) !== expected) {
+    throw new Error(`${file}: expected ${input ? count(input.shape) : 0} features, the page makes ${expected}`);
   }
   if (output === undefined || count(output.shape) !== outputNumbers) {
     throw new Error(`${file}: ${output ? count(output.shape) : 0} numbers come out, six joints are ${outputNumbers}`);

@@ -56,6 +56,16 @@ def test_without_any_variation_a_window_is_the_corpus_s_own_or_its_mirror_image(
     assert 15 < found < 45
 
 
+def test_people_who_were_asked_for_many_things_are_drawn_twice_as_often():
+    """Of three people with as many frames each; 004 is none of them."""
+    people = {"001": CORPUS.people["001"], "002": CORPUS.people["002"], "004": replace(CORPUS.people["003"], name="004")}
+    parts = BodyParts(replace(CORPUS, people=people, clip_people=tuple(name.replace("003", "004") for name in CORPUS.clip_people)), tuple(people))
+    trunks = parts.person[parts.draw_trunks(np.random.default_rng(3), 6000)]
+    arms = parts.person[parts.draw_arms(np.random.default_rng(4), 6000)[0]]
+    for drawn in (trunks, arms):
+        np.testing.assert_allclose(np.bincount(drawn) / 6000, [0.4, 0.4, 0.2], atol=0.03)
+
+
 def test_arms_of_others_move_the_hands_but_not_the_torso():
     plain = draw_batch(PARTS, 200, PLAIN, np.random.default_rng(2))
     mixed = draw_batch(PARTS, 200, replace(PLAIN, recombined=1.0), np.random.default_rng(2))

@@ -5,8 +5,6 @@ import type { ChestAxes, IkSolution, ThreePoints } from './solve-ik';
 
 /** Numbers of one frame in the chest frame; their order is in docs/estimation.md. */
 export const chestFeatureCount = 40;
-/** The last of them: which hands were measured. A network made before hands were measured takes the others. */
-export const measuredHandCount = 2;
 
 /** A vector of the heading frame along the chest's axes. */
 function inChest({ x, y, z }: ChestAxes, v: Vec3, target: MutableVec3): MutableVec3 {
@@ -45,7 +43,8 @@ export function chestFeatures(
   start: number,
 ): void {
   let next = start;
-  const reaches = start + chestFeatureCount - measuredHandCount - 2;
+  // At the end: the lengths of both reaches, and which hands were measured.
+  const reaches = start + chestFeatureCount - 4;
   for (let arm = 0; arm < 2; arm++) {
     const hand = arm === 0 ? leftHand : rightHand;
     const shoulder = arm === 0 ? joints.leftUpperArm : joints.rightUpperArm;
@@ -65,7 +64,6 @@ export function chestFeatures(
   target[next] = chest.x.y;
   target[next + 1] = chest.y.y;
   target[next + 2] = chest.z.y;
-  // Beyond the end of a shorter input these are no writes.
   target[reaches + 2] = body.handTurns.left ? 1 : 0;
   target[reaches + 3] = body.handTurns.right ? 1 : 0;
 }

@@ -38,7 +38,6 @@ export function createDeviceSource(otherwise: JointSource): JointSource {
   }
 
   return {
-    takesHandTilts: otherwise.takesHandTilts,
     network: otherwise.network,
     calibrate: (body) => otherwise.calibrate(body),
     reset() {

@@ -21,7 +21,6 @@ export const networkOf = (name: EstimatorName): NetworkName | null =>
 
 /** Inverse kinematics alone: the competitor that the networks are measured against, with the same calibration. */
 const ikAlone: JointSource = {
-  takesHandTilts: true,
   network: null,
   calibrate: () => undefined,
   reset: () => undefined,

@@ -22,8 +22,6 @@ export interface SolvedFrame {
 
 /** Stage 3: where a method's six joints come from; every other stage is the same for all methods. One per wearer. */
 export interface JointSource {
-  /** Whether it counts on hands that are turned as they were measured; false: it takes them as the device gives them. */
-  readonly takesHandTilts: boolean;
   calibrate(body: ChestSpaceBody): void;
   reset(): void;
   /** Writes the six joints [m], floor frame, finite; deltaSeconds since the last call, 0 at first. */

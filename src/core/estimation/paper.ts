@@ -49,7 +49,6 @@ export function createPaper(regressor: PoseRegressor): JointSource {
   };
 
   return {
-    takesHandTilts: true,
     network,
     calibrate: () => undefined,
     reset() {

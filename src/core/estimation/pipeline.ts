@@ -22,8 +22,7 @@ import { makeIkSolution, makeThreePoints, solveIk, turnHands } from './solve-ik'
 const longestGapSeconds = 0.5;
 
 /** The wearer's body, measured in the ways that the stages need. */
-function measure({ handTilts, ...sizes }: Calibration, { takesHandTilts }: JointSource) {
-  const calibration = takesHandTilts ? { ...sizes, handTilts } : sizes;
+function measure(calibration: Calibration) {
   const skeleton = skeletonFromCalibration(calibration);
   return {
     chestSpace: chestSpaceBody(calibration),
@@ -88,7 +87,7 @@ export class Pipeline implements PoseEstimator {
     this.name = name;
     this.source = source;
     this.#pitch = new HeadsetPitch(calibration);
-    this.#body = measure(calibration, source);
+    this.#body = measure(calibration);
     this.#request = { ask: () => source.network?.ask(this.state.solved) ?? Promise.resolve() };
     this.#estimate = {
       pose: { head: noHead, leftHand: null, rightHand: null, body: makeUpperBodyPose() },
@@ -98,7 +97,7 @@ export class Pipeline implements PoseEstimator {
 
   calibrate(calibration: Calibration): void {
     this.#pitch.calibrate(calibration);
-    this.#body = measure(calibration, this.source);
+    this.#body = measure(calibration);
     this.source.calibrate(this.#body.chestSpace);
   }
 

@@ -4,7 +4,7 @@ import { type ChestSpaceBody, chestSpaceBody } from '../body/skeleton';
 import { smoothingFactor } from '../math/damper';
 import { transformPoint } from '../math/pose';
 import { add, copyVec3, lerp, scale, setVec3 } from '../math/vec3';
-import { chestFeatureCount, chestFeatures, headingFromChest, measuredHandCount } from './chest-features';
+import { chestFeatureCount, chestFeatures, headingFromChest } from './chest-features';
 import { FeatureWindow, featureCount, frameFeatures } from './features';
 import { copyJoints, type MutableJointPositions, makeJoints } from './joint-positions';
 import type { JointNetwork, JointSource, SolvedFrame } from './joint-source';
@@ -26,16 +26,11 @@ const questionSeconds = 0.02;
 export const learnedInputCount = (windowSeconds: readonly number[]): number =>
   windowSeconds.length * featureCount + chestFeatureCount;
 
-/** The same for a network that was made before hands were measured. */
-export const inputCountWithoutHandTilts = (windowSeconds: readonly number[]): number =>
-  learnedInputCount(windowSeconds) - measuredHandCount;
-
 /**
  * Our network: the residual of the IK solution, seen from the chest of the frame it was asked about. It is damped in the heading frame
  * and added to the IK of the current frame, so that neither the filter nor a late answer delays what follows head and hands.
  */
 class Residual implements JointSource, JointNetwork {
-  readonly takesHandTilts: boolean;
   readonly #regressor: PoseRegressor;
   readonly #window: FeatureWindow;
   readonly #input: Float32Array;
@@ -54,13 +49,11 @@ class Residual implements JointSource, JointNetwork {
   #askedAt = Number.NEGATIVE_INFINITY;
 
   constructor(calibration: Calibration, regressor: PoseRegressor) {
-    const { windowSeconds, inputs } = regressor.contract;
-    const count = inputs[0]?.shape.at(-1) ?? 0;
-    this.takesHandTilts = count === learnedInputCount(windowSeconds);
+    const { windowSeconds } = regressor.contract;
     this.#regressor = regressor;
     this.#body = chestSpaceBody(calibration);
     this.#window = new FeatureWindow(Math.max(...windowSeconds));
-    this.#input = new Float32Array(count);
+    this.#input = new Float32Array(learnedInputCount(windowSeconds));
     this.#inference = new LatestResult(
       regressor,
       (output) => this.#learn(output),

@@ -9,6 +9,7 @@ import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
 import { number, seed } from '../arbitraries';
 import { poseOf } from './drawn';
 import { movingPerson } from './moving-person';
+import { openPlainModel } from './shipped-models';
 
 const body: Calibration = { eyeHeight: 1.58, armSpan: 1.5 };
 const tilt = fc.record({ pitch: number(-0.5, 0.5), yaw: number(-0.5, 0.5) });
@@ -45,26 +46,43 @@ describe('hands that stand at a tilt to their forearms', () => {
     expect(isBelievableTilt({ pitch: Number.NaN, yaw: 0 })).toBe(false);
   });
 
-  test('have the elbows of hands that stand straight, once calibration knows', () => {
+  test.each([
+    ['ik', null, 1e-9],
+    // Its features and answers are 32-bit numbers.
+    ['learned', openPlainModel(), 1e-7],
+  ] as const)('have the elbows of hands that stand straight, once calibration knows: %s', (name, network, apart) => {
     fc.assert(
       fc.property(tilt, tilt, fc.integer({ min: 0, max: 1000 }), (left, right, who) => {
         const person = movingPerson(who, body, { x: 0, z: 0, yaw: 0.4 });
-        const level = createEstimator('ik', { ...body, handTilts: { left: straight, right: straight } });
-        const tilted = createEstimator('ik', { ...body, handTilts: { left, right } });
+        const level = createEstimator(name, { ...body, handTilts: { left: straight, right: straight } }, network);
+        const tilted = createEstimator(name, { ...body, handTilts: { left, right } }, network);
         for (let i = 0; i < 30; i++) {
           const frame = person(i / 60);
           const wanted = poseOf(level, frame);
           const drawn = poseOf(tilted, worn(frame, left, right));
-          if (!drawn.body || !wanted.body) throw new Error('inverse kinematics draws a body');
-          expect(distance(drawn.body.hipsPosition, wanted.body.hipsPosition)).toBeLessThan(1e-6);
+          if (!drawn.body || !wanted.body) throw new Error(`${name} draws a body`);
+          expect(distance(drawn.body.hipsPosition, wanted.body.hipsPosition)).toBeLessThan(1e-5);
           for (const upperArm of ['leftUpperArm', 'rightUpperArm'] as const) {
             const [a, b] = [drawn.body.localRotations[upperArm], wanted.body.localRotations[upperArm]];
-            expect(Math.abs(a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w)).toBeGreaterThan(1 - 1e-9);
+            expect(Math.abs(a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w)).toBeGreaterThan(1 - apart);
           }
         }
       }),
       { seed, numRuns: 20 },
     );
+  });
+
+  test('are told to the learned network: a hand that was found straight is not one of which nothing is known', () => {
+    const frame = movingPerson(6, body, { x: 0, z: 0, yaw: 0 })(1);
+    const network = openPlainModel();
+    const hipsOf = (handTilts: Calibration['handTilts']) => {
+      const estimator = createEstimator('learned', { ...body, handTilts }, network);
+      poseOf(estimator, { ...frame, time: frame.time - 1 / 60 });
+      const { body: drawn } = poseOf(estimator, frame);
+      if (!drawn) throw new Error('the learned network draws a body');
+      return drawn.hipsPosition;
+    };
+    expect(distance(hipsOf({ left: straight, right: straight }), hipsOf(undefined))).toBeGreaterThan(1e-4);
   });
 
   test('are drawn where and as they are tracked', () => {
