@@ -14,7 +14,7 @@ JOINTS = {
     "pelvis": "pelvis",
 }
 # Relative to IK, by what marks a protocol among those that a contract states.
-AIMS_OF_PROTOCOLS = {"fold B": 0.85, "in turn": 0.82}
+AIMS_OF_PROTOCOLS = {"fold B (": 0.85, "in turn": 0.82}
 Json = dict[str, Any]
 
 

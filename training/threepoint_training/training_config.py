@@ -41,7 +41,7 @@ class TrainConfig:
     learned_frame_random: train_learned.TrainFrameRandomConfig = train_learned.TrainFrameRandomConfig()
     ik: fit_ik.FitIkConfig = fit_ik.FitIkConfig()
     # Half-life [s] of the page's filter of the correction; chosen by `npm run evaluate`: jerk against error.
-    correction_half_life: float = 0.04
+    correction_half_life: float = 0.06
 
 
 def quick(config: TrainConfig) -> TrainConfig:
