@@ -48,7 +48,7 @@ export class StudyDatabase {
       await (await this.#log).datasync();
     });
     // NORMAL: a transaction waits for no disk; `flushed` does, for many at once. SQLite itself flushes around its checkpoints, so that the
-    // file stays sound whatever the moment. secure_delete: what was deleted is overwritten.
+    // file stays sound at any moment. secure_delete: what was deleted is overwritten.
     this.#database.exec(`
       PRAGMA journal_mode = WAL;
       PRAGMA synchronous = NORMAL;

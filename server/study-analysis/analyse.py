@@ -4,7 +4,8 @@
     python analysis/analyse.py
 
 Nothing of the program that made the export is used: the tests are SciPy's, sums of squares are those of linear models. The tables
-computed are written to analysis/python/. Change what you like: this file is a beginning for an analysis of your own.
+computed are written to analysis/python/. Change what you like: this file is a beginning for an analysis of your own, and
+stands alone for that, however long it is.
 """
 
 import csv
