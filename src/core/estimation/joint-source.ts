@@ -32,11 +32,9 @@ export interface JointSource {
 
 /** The network behind a joint source. */
 export interface JointNetwork {
-  /** It answers within `joints`, in the frame that asks; false: it is asked after a frame and answers before a later one. */
-  readonly inFrame: boolean;
-  /** Not where it answers in the frame: whether a question about a frame of this time [s] would tell it anything new. */
+  /** Whether `ask` is to be called about a frame of this time [s]: not where it answers within `joints`, nor where it was asked about a frame just before. */
   wantsFrame(time: number): boolean;
-  /** Not where it answers in the frame: asks about this frame, unless a question is open; resolves when that is answered, however it ends. Never rejects. */
+  /** Asks about this frame, unless a question is open; resolves when that is answered, however it ends. Never rejects. */
   ask(solved: SolvedFrame): Promise<void>;
   /** The newest answer as joints [m], floor frame, moved along with this frame, before any filter; null before the first answer and after a fault. */
   answer(solved: SolvedFrame): MutableJointPositions | null;

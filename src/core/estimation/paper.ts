@@ -31,7 +31,6 @@ export function createPaper(regressor: PoseRegressor): JointSource {
   }
 
   const network: JointNetwork = {
-    inFrame: false,
     // Its joints are drawn as they are, so each frame needs its own.
     wantsFrame: () => true,
     ask({ completed }) {

@@ -129,8 +129,7 @@ export class Pipeline implements PoseEstimator {
     const goals = { frame: completed, joints, torso, bones: body.arm, poles: this.#poles };
     const arms = fitArms(state.arms, goals, deltaSeconds);
 
-    const { network } = this.source;
-    this.#estimate.request = network && !network.inFrame && network.wantsFrame(frame.time) ? this.#request : null;
+    this.#estimate.request = this.source.network?.wantsFrame(frame.time) ? this.#request : null;
     const { pose } = this.#estimate;
     pose.head = head;
     pose.leftHand = frame.leftHand;

@@ -17,7 +17,7 @@ const defaultHalfLife = 0.04;
 
 /**
  * Seconds between questions, at least: the correction is damped over more than that, and asking about every frame costs twice the processor's time for 0.1 to
- * 0.4 % less error (docs/decisions.md). No display's frames are a whole number of times apart near it: of 60 to 90 Hz every second frame is asked about, of 120 Hz
+ * 0.4 % less error (docs/decisions.md). No headset's display (60 to 120 Hz) has a multiple of its frame time near it: of 60 to 90 Hz every second frame is asked about, of 120 Hz
  * every third.
  */
 const questionSeconds = 0.02;
@@ -65,10 +65,6 @@ class Residual implements JointSource, JointNetwork {
     return this;
   }
 
-  get inFrame(): boolean {
-    return this.#regressor.runNow !== undefined;
-  }
-
   get fault(): string | null {
     return this.#inference.fault;
   }
@@ -87,11 +83,10 @@ class Residual implements JointSource, JointNetwork {
   }
 
   wantsFrame(time: number): boolean {
-    return time - this.#askedAt >= questionSeconds;
+    return this.#regressor.runNow === undefined && this.#isDue(time);
   }
 
   ask(solved: SolvedFrame): Promise<void> {
-    this.#askedAt = solved.time;
     this.#remember(solved);
     if (this.#inference.running) return this.#inference.running;
     this.#fillInput(solved);
@@ -109,8 +104,7 @@ class Residual implements JointSource, JointNetwork {
 
   joints(solved: SolvedFrame, deltaSeconds: number, target: MutableJointPositions): void {
     const { runNow, contract } = this.#regressor;
-    if (runNow && this.wantsFrame(solved.time)) {
-      this.#askedAt = solved.time;
+    if (runNow && this.#isDue(solved.time)) {
       this.#remember(solved);
       this.#fillInput(solved);
       this.#inference.answerNow(runNow, this.#input);
@@ -125,8 +119,13 @@ class Residual implements JointSource, JointNetwork {
     }
   }
 
-  /** Takes the frame into the window. */
+  #isDue(time: number): boolean {
+    return time - this.#askedAt >= questionSeconds;
+  }
+
+  /** Takes a frame that is asked about into the window. */
   #remember({ time, completed, points, ik }: SolvedFrame): void {
+    this.#askedAt = time;
     const seen = this.#seen;
     seen.left = completed.leftHand.source === 'tracked';
     seen.right = completed.rightHand.source === 'tracked';
