@@ -5,7 +5,7 @@ import {
   VRMLookAtBoneApplier,
   VRMLookAtRangeMap,
 } from '@pixiv/three-vrm';
-import type { Mesh } from 'three';
+import type { BufferGeometry, Mesh } from 'three';
 import { clamp, damp } from '../core/math/damper';
 import { conjugate, copyQuat, multiply, type Quat, quat, rotate } from '../core/math/quat';
 import { nextRandom, type RandomState } from '../core/math/random';
@@ -89,6 +89,33 @@ class Mover {
   }
 }
 
+/**
+ * Meshes that have the shape of a mouth and no other one. They have it while the mouth is open: three.js draws a mesh with shapes by a program
+ * of its own, to which it sends all lights in every frame, and keeps a texture of shapes for each body. They have it until the first frame, too:
+ * what is compiled for them beforehand is compiled for both. A mesh with lids keeps its shapes: they blink too often for that.
+ */
+class MouthMeshes {
+  readonly #geometries: { readonly geometry: BufferGeometry; readonly shapes: BufferGeometry['morphAttributes'] }[] =
+    [];
+  readonly #without: BufferGeometry['morphAttributes'] = {};
+  #shaped = true;
+
+  constructor(vrm: VRM) {
+    vrm.scene.traverse((node) => {
+      const { geometry, morphTargetDictionary } = node as Mesh;
+      const names = Object.keys(morphTargetDictionary ?? {});
+      if (names.length !== 1 || !mouthShapes.includes(names[0]!)) return;
+      this.#geometries.push({ geometry, shapes: geometry.morphAttributes });
+    });
+  }
+
+  setShaped(shaped: boolean): void {
+    if (shaped === this.#shaped) return;
+    this.#shaped = shaped;
+    for (const { geometry, shapes } of this.#geometries) geometry.morphAttributes = shaped ? shapes : this.#without;
+  }
+}
+
 /** Eyes of a body whose rig has bones for them. */
 function gazeOf(vrm: VRM): VRMLookAt | null {
   if (vrm.lookAt) return vrm.lookAt;
@@ -104,6 +131,7 @@ const ahead = vec3(0, 0, 0);
 export class Face {
   readonly #lids: Mover;
   readonly #mouth: Mover;
+  readonly #mouthMeshes: MouthMeshes;
   readonly #gaze: VRMLookAt | null;
   /** How the head was turned when the eyes came to rest on what they look at. */
   readonly #held = quat(0, 0, 0, 1);
@@ -121,6 +149,7 @@ export class Face {
     this.#gaze = gazeOf(vrm);
     this.#lids = new Mover(vrm, 'blink', lidsOf);
     this.#mouth = new Mover(vrm, 'aa', mouthOf);
+    this.#mouthMeshes = new MouthMeshes(vrm);
   }
 
   /** How far the mouth is to be open: 0 shut to 1. */
@@ -131,7 +160,7 @@ export class Face {
   /** One frame; the head's orientation in the floor frame, which at identity faces −Z. */
   update(head: Quat, deltaSeconds: number): void {
     if (this.#lids.there) this.#blink(deltaSeconds);
-    if (this.#mouth.there && this.#open !== this.#opening) this.#speak(deltaSeconds);
+    if (this.#mouth.there) this.#speak(deltaSeconds);
     if (this.#gaze) this.#look(this.#gaze, head, deltaSeconds);
   }
 
@@ -150,9 +179,12 @@ export class Face {
   }
 
   #speak(deltaSeconds: number): void {
-    const open = damp(this.#open, this.#opening, mouthHalfLife, deltaSeconds);
-    this.#open = Math.abs(this.#opening - open) < mouthStill ? this.#opening : open;
-    this.#mouth.move(this.#open);
+    if (this.#open !== this.#opening) {
+      const open = damp(this.#open, this.#opening, mouthHalfLife, deltaSeconds);
+      this.#open = Math.abs(this.#opening - open) < mouthStill ? this.#opening : open;
+      this.#mouth.move(this.#open);
+    }
+    this.#mouthMeshes.setShaped(this.#open > 0);
   }
 
   #look(gaze: VRMLookAt, head: Quat, deltaSeconds: number): void {

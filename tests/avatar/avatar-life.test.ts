@@ -165,6 +165,28 @@ describe('a mouth', () => {
     expect(speak(body, -7, 1, 1)).toBe(0);
   });
 
+  test('of a head without lids has its shape before the first frame, for which programs are made, and then while it is open', async () => {
+    const avatar = createAvatar(await parseAvatar(changed(() => undefined), 'mannequin.vrm'));
+    avatar.fitTo(defaultCalibration);
+    const shaped = (): number => {
+      let meshes = 0;
+      avatar.object.traverse((node) => {
+        if ((node as Mesh).geometry?.morphAttributes.position) meshes += 1;
+      });
+      return meshes;
+    };
+    const all = shaped();
+    expect(all).toBeGreaterThan(0);
+    stand(avatar, 0, 1 / 72);
+    expect(shaped()).toBe(0);
+    avatar.setMouth(0.5);
+    stand(avatar, 1, 0.2);
+    expect(shaped()).toBe(all);
+    avatar.setMouth(0);
+    stand(avatar, 2, 1);
+    expect(shaped()).toBe(0);
+  });
+
   test.each(['viseme_aa', 'jawOpen', 'mouthOpen'])(
     'of a file without expressions moves by its shape %s, and by one alone',
     async (name) => {

@@ -70,10 +70,10 @@ export class Lights {
   }
 
   #aimKey({ key, shadow }: Lighting): void {
-    const [right, up, back] = key.from;
+    const { from } = key;
     const { x, z } = shadow.centre ?? this.#stand;
     this.#key.target.position.set(x, aimHeight, z);
-    this.#key.position.set(x + right, up, z + back);
+    this.#key.position.set(x + from[0], from[1], z + from[2]);
   }
 
   #setShadow({ key, shadow: { halfSize, resolution, softness } }: Lighting): void {
