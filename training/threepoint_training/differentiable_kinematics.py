@@ -50,7 +50,7 @@ def as_the_page_fits(eye_height: float) -> FittingConfig:
 
 
 @dataclass(frozen=True)
-class _Goal:
+class _FittingInput:
     """What fitting starts from [N, …]: estimated joints, wrists [N, 2, 3], the head joint, the heading's right axis, the arm's length and its upper arms'."""
 
     estimated: Tensor
@@ -82,7 +82,7 @@ class DifferentiableKinematics:
         """As a call; and which elbows the swivel limiter keeps out of the trunk [N, 2]."""
         axes, ik_joints = _in_chest_frame(inputs)
         chest_features, arm = inputs[:, -CHEST_FEATURES:], inputs[:, ARM_LENGTH, None, None]
-        goal = _Goal(
+        given = _FittingInput(
             estimated=ik_joints + corrections,
             wrists=ik_joints[:, 2:4] + chest_features[:, ARMS].view(-1, 2, ARM_COLUMNS)[:, :, :3] * arm,
             head_joint=self._head_joint(chest_features),
@@ -91,8 +91,8 @@ class DifferentiableKinematics:
             # IK's arms have the calibrated bones.
             upper_arm=(ik_joints[:, :2] - ik_joints[:, 2:4]).norm(dim=-1, keepdim=True),
         )
-        trunk, shoulders = self.fit_torso(goal, config)
-        elbows, limited = self.fit_arms(goal, trunk, shoulders, config)
+        trunk, shoulders = self.fit_torso(given, config)
+        elbows, limited = self.fit_arms(given, trunk, shoulders, config)
         joints = torch.cat([elbows, shoulders, trunk.chest.unsqueeze(1), trunk.hips.unsqueeze(1)], dim=1)
         return joints - ik_joints, limited
 
@@ -101,24 +101,24 @@ class DifferentiableKinematics:
         head = torch.stack([x, y, torch.cross(x, y, dim=-1)], dim=-1)
         return -head @ self.rest["eyesInHead"]
 
-    def fit_torso(self, goal: _Goal, config: FittingConfig) -> tuple[Trunk, Tensor]:
+    def fit_torso(self, given: _FittingInput, config: FittingConfig) -> tuple[Trunk, Tensor]:
         """The trunk and the shoulders [N, 2, 3], leaning after hands that the arms alone do not reach."""
-        targets = goal.estimated[:, 2:4]
-        trunk, shoulders = self._place_trunk(goal, targets, TORSO)
+        targets = given.estimated[:, 2:4]
+        trunk, shoulders = self._place_trunk(given, targets, TORSO)
         for number in range(config.reach_passes):
-            to_wrist = goal.wrists - shoulders
-            direction, missing = _unit(to_wrist), (_length(to_wrist) - config.reach * goal.arm).clamp_min(0.0)
+            to_wrist = given.wrists - shoulders
+            direction, missing = _unit(to_wrist), (_length(to_wrist) - config.reach * given.arm).clamp_min(0.0)
             targets = targets + direction * torch.where(missing > config.least_missing, missing, 0.0) * TORSO["reachOvershoot"]
             limits = TORSO if number < REACH["anatomicalPasses"] else TORSO_EXTREME
-            placed = self._place_trunk(goal, targets, limits)
+            placed = self._place_trunk(given, targets, limits)
             if config.reach_passes > 1:
                 placed = _chosen((missing > config.least_missing).any(dim=1), placed, (trunk, shoulders))
             trunk, shoulders = placed
         return trunk, shoulders
 
-    def _place_trunk(self, goal: _Goal, targets: Tensor, limits: dict[str, float]) -> tuple[Trunk, Tensor]:
+    def _place_trunk(self, given: _FittingInput, targets: Tensor, limits: dict[str, float]) -> tuple[Trunk, Tensor]:
         """Chest joint, hips and shoulders on their bones below the head, as nearly as limits allow where shoulders are wanted [N, 2, 3]."""
-        estimated, head_joint = goal.estimated, goal.head_joint
+        estimated, head_joint = given.estimated, given.head_joint
         middle = targets.mean(1)
         line = _unit(targets[:, 1] - targets[:, 0])
         rough = self._aligned(self.thorax, middle - estimated[:, 4], line)
@@ -131,7 +131,7 @@ class DifferentiableKinematics:
         up = _unit(neck - estimated[:, 4] - moved)
         chest = neck - up * self.thorax.norm()
         hips = chest + _unit(estimated[:, 5] + moved - chest) * self.lower_back_length
-        pelvis_line = _unit(torch.lerp(line, goal.heading_right, TORSO["pelvisToHead"]))
+        pelvis_line = _unit(torch.lerp(line, given.heading_right, TORSO["pelvisToHead"]))
         lower, upper = (self._aligned(self.thorax, up, side) for side in (torch.lerp(pelvis_line, line, TORSO["chestToShoulders"]), line))
         shoulders = []
         for number, side in enumerate(("left", "right")):
@@ -139,12 +139,12 @@ class DifferentiableKinematics:
             shoulders.append(root + _swung(upper @ self.rest[f"{side}UpperArm"], targets[:, number] - root, limits["clavicleSwing"]))
         return Trunk(hips, chest, neck, upper), torch.stack(shoulders, dim=1)
 
-    def fit_arms(self, goal: _Goal, trunk: Trunk, shoulders: Tensor, config: FittingConfig) -> tuple[Tensor, Tensor]:
+    def fit_arms(self, given: _FittingInput, trunk: Trunk, shoulders: Tensor, config: FittingConfig) -> tuple[Tensor, Tensor]:
         """Elbows [N, 2, 3] where upper arm and forearm let them be, on the side where they are estimated, from the estimated shoulders.
 
         Also which of them the swivel limiter moved [N, 2].
         """
-        estimated, wrists, arm, upper = goal.estimated, goal.wrists, goal.arm, goal.upper_arm
+        estimated, wrists, arm, upper = given.estimated, given.wrists, given.arm, given.upper_arm
         fore = arm - upper
         own, axis = _unit(wrists - estimated[:, 2:4]), _unit(wrists - shoulders)
         pole = _carried(_across(estimated[:, :2] - estimated[:, 2:4], own), own, axis)

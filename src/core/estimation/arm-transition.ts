@@ -36,7 +36,7 @@ export function copyArmDirections(from: ArmDirections, target: ArmDirections): v
 }
 
 /** Where an arm belongs in this frame, floor frame. */
-export interface ArmGoal extends ArmDirections {
+export interface WantedArm extends ArmDirections {
   readonly shoulder: Vec3;
   /** Where the hand is seen or will rest; the arm itself may end short of it. */
   readonly hand: Vec3;
@@ -48,7 +48,7 @@ export interface ArmGoal extends ArmDirections {
 }
 
 /**
- * An arm that is not yet where it belongs, because its goal has jumped: from frame to frame each bone turns on an arc from where it
+ * An arm that is not yet where it belongs, because its hand's goal has jumped: from frame to frame each bone turns on an arc from where it
  * was drawn to where it belongs now, both with the same share of its arc, and neither elbow nor wrist goes further than the speed
  * and what the hand itself moves allow. Bones turn in the room's axes: a body that turns about flings no arm.
  */
@@ -87,23 +87,23 @@ const elbowBefore = vec3(0, 0, 0);
 const wristBefore = vec3(0, 0, 0);
 
 /** Places `elbow` and `wrist` of an arm whose bones point in these directions. */
-function placeJoints(upperArm: Vec3, forearm: Vec3, { shoulder, bones }: ArmGoal): void {
+function placeJoints(upperArm: Vec3, forearm: Vec3, { shoulder, bones }: WantedArm): void {
   addScaled(shoulder, upperArm, bones.upper, elbow);
   addScaled(elbow, forearm, bones.lower, wrist);
 }
 
 /** Places `elbow` and `wrist` at a share of the arcs. */
-function placeAt({ upperArm, forearm }: ArmTransition, drawn: ArmDirections, goal: ArmGoal, share: number): void {
+function placeAt({ upperArm, forearm }: ArmTransition, drawn: ArmDirections, wanted: WantedArm, share: number): void {
   rotate(alongArc(upperArm, share, turn), drawn.upperArm, bone);
   rotate(alongArc(forearm, share, turn), drawn.forearm, unbent);
-  placeJoints(bone, unbent, goal);
+  placeJoints(bone, unbent, wanted);
 }
 
 /** How far [m] elbow or wrist travel on the arcs, whichever goes further. */
-function pathLength(transition: ArmTransition, drawn: ArmDirections, goal: ArmGoal): number {
+function pathLength(transition: ArmTransition, drawn: ArmDirections, wanted: WantedArm): number {
   let metres = 0;
   for (let step = 0; step <= pathSteps; step++) {
-    placeAt(transition, drawn, goal, step / pathSteps);
+    placeAt(transition, drawn, wanted, step / pathSteps);
     if (step > 0) metres += Math.max(distance(elbow, elbowBefore), distance(wrist, wristBefore));
     copyVec3(elbow, elbowBefore);
     copyVec3(wrist, wristBefore);
@@ -112,8 +112,8 @@ function pathLength(transition: ArmTransition, drawn: ArmDirections, goal: ArmGo
 }
 
 /** How far [m] elbow or wrist at a share of the arcs are from where they were drawn, whichever is further. */
-function distanceAt(transition: ArmTransition, drawn: ArmDirections, goal: ArmGoal, share: number): number {
-  placeAt(transition, drawn, goal, share);
+function distanceAt(transition: ArmTransition, drawn: ArmDirections, wanted: WantedArm, share: number): number {
+  placeAt(transition, drawn, wanted, share);
   return Math.max(distance(elbow, transition.elbow), distance(wrist, transition.wrist));
 }
 
@@ -121,78 +121,79 @@ function distanceAt(transition: ArmTransition, drawn: ArmDirections, goal: ArmGo
  * The share of the arcs up to which neither elbow nor wrist is further than this [m] from where it was drawn; where the shoulder has
  * carried them further off than that at any share, the one at which they are nearest.
  */
-function shareWithin(transition: ArmTransition, drawn: ArmDirections, goal: ArmGoal, metres: number): number {
-  let [nearest, least] = [0, distanceAt(transition, drawn, goal, 0)];
+function shareWithin(transition: ArmTransition, drawn: ArmDirections, wanted: WantedArm, metres: number): number {
+  let [nearest, least] = [0, distanceAt(transition, drawn, wanted, 0)];
   for (let step = 1; step <= pathSteps && (least > metres || nearest === step - 1); step++) {
-    const off = distanceAt(transition, drawn, goal, step / pathSteps);
+    const off = distanceAt(transition, drawn, wanted, step / pathSteps);
     if (off <= metres || off < least) [nearest, least] = [step, off];
   }
   if (least > metres || nearest === pathSteps) return nearest / pathSteps;
-  const tooFar = (share: number): boolean => distanceAt(transition, drawn, goal, share) > metres;
+  const tooFar = (share: number): boolean => distanceAt(transition, drawn, wanted, share) > metres;
   return bisect(nearest / pathSteps, (nearest + 1) / pathSteps, tooFar, 6);
 }
 
 /** Begins a transition from the arm that was drawn to the one that belongs there. */
-export function startTransition(transition: ArmTransition, drawn: ArmDirections, goal: ArmGoal): void {
-  directionArc(drawn.upperArm, goal.upperArm, goal.outside, transition.upperArm);
-  directionArc(drawn.forearm, goal.forearm, goal.outside, transition.forearm);
+export function startTransition(transition: ArmTransition, drawn: ArmDirections, wanted: WantedArm): void {
+  directionArc(drawn.upperArm, wanted.upperArm, wanted.outside, transition.upperArm);
+  directionArc(drawn.forearm, wanted.forearm, wanted.outside, transition.forearm);
   transition.age = 0;
   transition.speed = 0;
   transition.metres = 0;
-  remember(transition, drawn, goal);
+  remember(transition, drawn, wanted);
 }
 
 /** Notes where the hand belongs in this frame and where elbow and wrist are drawn. */
-function remember(transition: ArmTransition, drawn: ArmDirections, goal: ArmGoal): void {
-  copyVec3(goal.hand, transition.hand);
-  placeJoints(drawn.upperArm, drawn.forearm, goal);
+function remember(transition: ArmTransition, drawn: ArmDirections, wanted: WantedArm): void {
+  copyVec3(wanted.hand, transition.hand);
+  placeJoints(drawn.upperArm, drawn.forearm, wanted);
   copyVec3(elbow, transition.elbow);
   copyVec3(wrist, transition.wrist);
 }
 
-/** How far [m] elbow and wrist may go in this frame: up to the speed evenly, evenly down to a stand, and along with the goal. */
-function stepOf(transition: ArmTransition, toGo: number, goal: ArmGoal, deltaSeconds: number): number {
+/** How far [m] elbow and wrist may go in this frame: up to the speed evenly, evenly down to a stand, and along with the hand. */
+function stepOf(transition: ArmTransition, toGo: number, wanted: WantedArm, deltaSeconds: number): number {
   const { hand } = transition;
-  const seconds = Math.max(shortestSeconds, goal.seconds);
+  const seconds = Math.max(shortestSeconds, wanted.seconds);
   transition.metres = Math.max(transition.metres, toGo);
   const topSpeed = Math.min(fastest, transition.metres / (seconds * (1 - ramp)));
   const acceleration = topSpeed / (seconds * ramp);
   const slowing = Math.sqrt(2 * acceleration * toGo);
   transition.speed = Math.min(transition.speed + acceleration * deltaSeconds, topSpeed, slowing);
-  return distance(goal.hand, hand) + transition.speed * deltaSeconds;
+  return distance(wanted.hand, hand) + transition.speed * deltaSeconds;
 }
 
 /** Writes the arm of this frame into `drawn`, which holds that of the frame before. */
 export function followTransition(
   transition: ArmTransition,
-  goal: ArmGoal,
+  wanted: WantedArm,
   drawn: ArmDirections,
   deltaSeconds: number,
 ): void {
   const { upperArm, forearm } = transition;
   if (Number.isNaN(transition.age)) {
-    copyArmDirections(goal, drawn);
+    copyArmDirections(wanted, drawn);
     return;
   }
   const passed = Math.max(deltaSeconds, 0);
   transition.age += passed;
-  aimArc(upperArm, drawn.upperArm, goal.upperArm);
-  aimArc(forearm, drawn.forearm, goal.forearm);
-  const toGo = pathLength(transition, drawn, goal);
-  const step = stepOf(transition, toGo, goal, passed);
+  aimArc(upperArm, drawn.upperArm, wanted.upperArm);
+  aimArc(forearm, drawn.forearm, wanted.forearm);
+  const toGo = pathLength(transition, drawn, wanted);
+  const step = stepOf(transition, toGo, wanted, passed);
   // The arm goes on while the shoulder moves; one whose goal runs away is drawn to it in the end.
   const least = Math.min(1, (transition.speed * passed) / Math.max(3 * toGo, 1e-9));
-  const hurry = goal.seconds === 0 ? clamp((transition.age - hurrySeconds) / (longestSeconds - hurrySeconds), 0, 1) : 0;
-  const share = Math.max(hurry, least, shareWithin(transition, drawn, goal, step));
+  const hurry =
+    wanted.seconds === 0 ? clamp((transition.age - hurrySeconds) / (longestSeconds - hurrySeconds), 0, 1) : 0;
+  const share = Math.max(hurry, least, shareWithin(transition, drawn, wanted, step));
   if (share === 1 && transition.age >= shortestSeconds) transition.age = Number.NaN;
-  goAlong(transition, goal, drawn, share);
-  remember(transition, drawn, goal);
+  goAlong(transition, wanted, drawn, share);
+  remember(transition, drawn, wanted);
 }
 
 /** Turns the drawn bones by a share of the arcs, and the hinge with them. */
-function goAlong({ upperArm, forearm }: ArmTransition, goal: ArmGoal, drawn: ArmDirections, share: number): void {
+function goAlong({ upperArm, forearm }: ArmTransition, wanted: WantedArm, drawn: ArmDirections, share: number): void {
   if (share === 1) {
-    copyArmDirections(goal, drawn);
+    copyArmDirections(wanted, drawn);
     return;
   }
   copyVec3(drawn.upperArm, bone);
@@ -200,9 +201,9 @@ function goAlong({ upperArm, forearm }: ArmTransition, goal: ArmGoal, drawn: Arm
   rotate(alongArc(forearm, share, turn), drawn.forearm, drawn.forearm);
   passArc(upperArm, share);
   passArc(forearm, share);
-  // The hinge is the bones' normal; of a straight arm it turns from the drawn one's to the goal's.
+  // The hinge is the bones' normal; of a straight arm it turns from the drawn one's to the wanted one's.
   rotate(rotationBetween(bone, drawn.upperArm, turn), drawn.hinge, unbent);
-  lerp(unbent, goal.hinge, share, unbent);
+  lerp(unbent, wanted.hinge, share, unbent);
   cross(drawn.upperArm, drawn.forearm, drawn.hinge);
-  normalise(addScaled(drawn.hinge, unbent, 0.1, drawn.hinge), goal.hinge, drawn.hinge);
+  normalise(addScaled(drawn.hinge, unbent, 0.1, drawn.hinge), wanted.hinge, drawn.hinge);
 }

@@ -1,6 +1,6 @@
 import { alongArm, armBoneRotation, elbowHinge, handBoneRotation, unwrapTwist } from '../body/arm-rotations';
 import type { Skeleton } from '../body/skeleton';
-import { elbowCircle, elbowOnCircle, type LimbBones, makeElbowCircle } from '../body/two-bone-ik';
+import { type ElbowCircle, elbowCircle, elbowOnCircle, type LimbBones, makeElbowCircle } from '../body/two-bone-ik';
 import { clamp } from '../math/damper';
 import {
   conjugate,
@@ -27,16 +27,17 @@ import {
   subtract,
   type Vec3,
   vec3,
+  zero,
 } from '../math/vec3';
 import {
   type ArmDirections,
-  type ArmGoal,
   type ArmTransition,
   copyArmDirections,
   followTransition,
   makeArmDirections,
   makeArmTransition,
   startTransition,
+  type WantedArm,
 } from './arm-transition';
 import type { CompletedFrame, CompletedHand } from './complete-hands';
 import { outsideOfBody } from './direction-arc';
@@ -96,7 +97,7 @@ export const armBones = ({ restOffsets }: Skeleton): LimbBones => ({
 });
 
 /** What both arms of one frame are fitted to; floor frame. */
-export interface ArmGoals {
+export interface ArmsInput {
   readonly frame: CompletedFrame;
   readonly joints: JointPositions;
   readonly torso: TorsoPose;
@@ -112,15 +113,20 @@ const downAndBack: Readonly<Record<Side, Vec3>> = {
 
 type Mutable<T> = { -readonly [Key in keyof T]: T[Key] };
 
-const wrist = vec3(0, 0, 0);
-const elbow = vec3(0, 0, 0);
-const pole = vec3(0, 0, 0);
-const circle = makeElbowCircle();
+/** An arm that reaches its wrist, floor frame: the circle that its elbow may lie on, where it lies, and where it points from the circle's axis, unit. */
+interface BentArm {
+  readonly wrist: MutableVec3;
+  readonly circle: ElbowCircle;
+  readonly elbow: MutableVec3;
+  readonly pole: MutableVec3;
+}
+
+const bent: BentArm = { wrist: vec3(0, 0, 0), circle: makeElbowCircle(), elbow: vec3(0, 0, 0), pole: vec3(0, 0, 0) };
 const wantedPole: EstimatedPole = { direction: vec3(0, 0, 0), confidence: Number.NaN };
 const fallbackPoles: readonly [MutableVec3, MutableVec3] = [vec3(0, 0, 0), vec3(0, 0, 0)];
 /** IK's pole, then the first of those. */
 const ikPoles: [Vec3, Vec3] = [fallbackPoles[0], fallbackPoles[0]];
-const estimated = { shoulder: wrist as Vec3, elbow: elbow as Vec3, wrist: wrist as Vec3 };
+const estimated: Record<'shoulder' | 'elbow' | 'wrist', Vec3> = { shoulder: zero, elbow: zero, wrist: zero };
 /** Of the arm at hand. */
 const limits: Mutable<Omit<SwivelLimits, 'torso'>> & { torso: TorsoPose | null } = {
   side: 'left',
@@ -129,10 +135,10 @@ const limits: Mutable<Omit<SwivelLimits, 'torso'>> & { torso: TorsoPose | null }
   confidence: Number.NaN,
   deltaSeconds: Number.NaN,
 };
-const goal: Mutable<ArmGoal> & { readonly outside: MutableVec3 } = {
+const wanted: Mutable<WantedArm> & { readonly outside: MutableVec3 } = {
   ...makeArmDirections(),
-  shoulder: wrist,
-  hand: wrist,
+  shoulder: zero,
+  hand: zero,
   seconds: Number.NaN,
   bones: { upper: Number.NaN, lower: Number.NaN },
   outside: vec3(0, 0, 0),
@@ -144,31 +150,33 @@ const inForearm = quat(0, 0, 0, 1);
 const twist = quat(0, 0, 0, 1);
 
 /** Stage 5, the arms: they hang from the trunk's shoulders, reach the hands and bend where their elbows are estimated. */
-export function fitArms(state: FitArmsState, goals: ArmGoals, deltaSeconds: number): FitArmsState {
-  fitArm('left', state.left, goals, deltaSeconds);
-  fitArm('right', state.right, goals, deltaSeconds);
+export function fitArms(state: FitArmsState, input: ArmsInput, deltaSeconds: number): FitArmsState {
+  fitArm('left', state.left, input, deltaSeconds);
+  fitArm('right', state.right, input, deltaSeconds);
   return state;
 }
 
 /** One arm: to its wrist, or on its way there; the hand as tracked, the forearm turned half as far. */
-function fitArm(side: Side, state: ArmState, goals: ArmGoals, deltaSeconds: number): void {
-  const { torso, bones } = goals;
-  const completed = side === 'left' ? goals.frame.leftHand : goals.frame.rightHand;
+function fitArm(side: Side, state: ArmState, input: ArmsInput, deltaSeconds: number): void {
+  const { torso, bones } = input;
+  const completed = side === 'left' ? input.frame.leftHand : input.frame.rightHand;
   const floorFromChest = torso.rotations.upperChest;
   const jumped = state.known && completed.jumped;
-  placeElbow(side, jumped ? null : state, goals, completed, deltaSeconds);
+  // After a jump the elbow need not be near where it was: the way there is the transition's.
+  bendArm(side, state.known && !jumped ? state : null, input, deltaSeconds, bent);
 
-  goal.shoulder = torso.shoulders[side];
-  goal.hand = completed.goal.position;
-  goal.seconds = completed.source === 'sinking' ? restSeconds : 0;
-  goal.bones = bones;
-  normalise(subtract(elbow, goal.shoulder, goal.upperArm), undefined, goal.upperArm);
-  normalise(subtract(wrist, elbow, goal.forearm), undefined, goal.forearm);
-  elbowHinge(pole, circle.axis, goal.hinge);
-  rotate(floorFromChest, outsideOfBody[side], goal.outside);
-  if (jumped) startTransition(state.transition, state.drawn, goal);
-  if (state.known) followTransition(state.transition, goal, state.drawn, deltaSeconds);
-  else copyArmDirections(goal, state.drawn);
+  const { wrist, elbow, pole, circle } = bent;
+  wanted.shoulder = torso.shoulders[side];
+  wanted.hand = completed.goal.position;
+  wanted.seconds = completed.source === 'sinking' ? restSeconds : 0;
+  wanted.bones = bones;
+  normalise(subtract(elbow, wanted.shoulder, wanted.upperArm), undefined, wanted.upperArm);
+  normalise(subtract(wrist, elbow, wanted.forearm), undefined, wanted.forearm);
+  elbowHinge(pole, circle.axis, wanted.hinge);
+  rotate(floorFromChest, outsideOfBody[side], wanted.outside);
+  if (jumped) startTransition(state.transition, state.drawn, wanted);
+  if (state.known) followTransition(state.transition, wanted, state.drawn, deltaSeconds);
+  else copyArmDirections(wanted, state.drawn);
 
   handBoneRotation(side, completed.orientation, hand);
   turnBones(side, state, deltaSeconds);
@@ -177,21 +185,19 @@ function fitArm(side: Side, state: ArmState, goals: ArmGoals, deltaSeconds: numb
   state.known = true;
 }
 
-/**
- * Finds `wrist`, `circle`, `pole` and `elbow` of the arm that reaches its hand. before: null after a jump, since its elbow need not be
- * near where it was: the way there is the transition's.
- */
-function placeElbow(
+/** Bends an arm that reaches its hand. before: how the elbow pointed in the frame before; null: that binds it to nothing. */
+function bendArm(
   side: Side,
-  before: ArmState | null,
-  { joints, torso, bones, poles }: ArmGoals,
-  completed: CompletedHand,
+  before: SwivelState | null,
+  { frame, joints, torso, bones, poles }: ArmsInput,
   deltaSeconds: number,
+  { wrist, circle, elbow, pole }: BentArm,
 ): void {
+  const completed = side === 'left' ? frame.leftHand : frame.rightHand;
   const shoulder = torso.shoulders[side];
   const floorFromChest = torso.rotations.upperChest;
   const armLength = bones.upper + bones.lower;
-  softened(completed, shoulder, armLength);
+  softened(completed, shoulder, armLength, wrist);
   rotate(floorFromChest, downAndBack[side], fallbackPoles[0]);
   rotate(floorFromChest, backward, fallbackPoles[1]);
   elbowCircle(shoulder, wrist, bones, fallbackPoles[0], circle);
@@ -205,19 +211,24 @@ function placeElbow(
   limits.armLength = armLength;
   limits.confidence = completed.confidence;
   limits.deltaSeconds = deltaSeconds;
-  limitSwivel(before?.known ? before : null, wantedPole, circle, limits as SwivelLimits, pole);
+  limitSwivel(before, wantedPole, circle, limits as SwivelLimits, pole);
   elbowOnCircle(circle, pole, elbow);
 }
 
-/** Writes where the wrist is to be: nearer than a place to rest as that comes near the arm's reach, so that no arm snaps straight. */
-function softened({ goal: { position }, source }: CompletedHand, shoulder: Vec3, armLength: number): void {
-  copyVec3(position, wrist);
+/** Where the wrist is to be: nearer than a place to rest as that comes near the arm's reach, so that no arm snaps straight. */
+function softened(
+  { goal: { position }, source }: CompletedHand,
+  shoulder: Vec3,
+  armLength: number,
+  target: MutableVec3,
+): void {
+  copyVec3(position, target);
   const soft = source === 'sinking' ? softReach : 0;
   const far = distance(shoulder, position);
   const near = armLength * (1 - soft);
   if (soft <= 0 || far <= near) return;
   const reach = armLength - soft * armLength * Math.exp((near - far) / (soft * armLength));
-  addScaled(shoulder, subtract(position, shoulder, wrist), reach / far, wrist);
+  addScaled(shoulder, subtract(position, shoulder, target), reach / far, target);
 }
 
 /** The bones' rotations from their directions and the hand's: the forearm takes half of the hand's turn about it, so that no wrist is wrung. */

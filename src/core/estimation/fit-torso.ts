@@ -160,19 +160,25 @@ export function torsoBones(skeleton: Skeleton): TorsoBones {
 }
 
 /** What the torso of one frame is fitted to; floor frame. */
-interface TorsoGoal {
+interface TorsoInput {
   readonly joints: JointPositions;
   readonly frame: CompletedFrame;
   readonly bones: TorsoBones;
   readonly deltaSeconds: number;
 }
 
+/** A thorax as it was placed, for the spine below it; floor frame. */
+interface PlacedThorax {
+  /** From the chest joint to the neck, unit. */
+  readonly up: MutableVec3;
+  /** By how much the neck was moved onto its length from the head, the part of it that chest joint and hips follow. */
+  readonly moved: MutableVec3;
+}
+
+const thorax: PlacedThorax = { up: vec3(0, 0, 0), moved: vec3(0, 0, 0) };
 /** Where the shoulders are to be, floor frame. */
-const targets: Readonly<Record<Side, MutableVec3>> = { left: vec3(0, 0, 0), right: vec3(0, 0, 0) };
-/** By how much the neck was moved onto its length from the head, the part of it that chest joint and hips follow. */
-const moved = vec3(0, 0, 0);
+const shoulderTargets: Readonly<Record<Side, MutableVec3>> = { left: vec3(0, 0, 0), right: vec3(0, 0, 0) };
 const headingRight = vec3(0, 0, 0);
-const thoraxUp = vec3(0, 0, 0);
 const roughUp = vec3(0, 0, 0);
 const a = vec3(0, 0, 0);
 const b = vec3(0, 0, 0);
@@ -192,15 +198,15 @@ export function fitTorso(
   deltaSeconds: number,
 ): TorsoPose {
   const { pose, lean } = state;
-  const goal: TorsoGoal = { joints, frame, bones, deltaSeconds };
+  const input: TorsoInput = { joints, frame, bones, deltaSeconds };
   setVec3(headingRight, Math.cos(frame.heading.yaw), 0, -Math.sin(frame.heading.yaw));
   setVec3(lean.left.wanted, 0, 0, 0);
   setVec3(lean.right.wanted, 0, 0, 0);
   for (let pass = 0; pass <= anatomicalPasses + extremePasses; pass++) {
     const within = pass > anatomicalPasses ? extreme : limits.torso;
-    add(joints.leftUpperArm, lean.left.wanted, targets.left);
-    add(joints.rightUpperArm, lean.right.wanted, targets.right);
-    placeThorax(state, goal, within);
+    add(joints.leftUpperArm, lean.left.wanted, shoulderTargets.left);
+    add(joints.rightUpperArm, lean.right.wanted, shoulderTargets.right);
+    placeThorax(state, input, shoulderTargets, within, thorax);
     const pulledLeft = pull(lean.left, pose.shoulders.left, frame.leftHand, bones);
     const pulledRight = pull(lean.right, pose.shoulders.right, frame.rightHand, bones);
     if (!pulledLeft && !pulledRight) break;
@@ -208,11 +214,11 @@ export function fitTorso(
   const leansLeft = followLean(lean.left, frame.leftHand, state.known, deltaSeconds);
   const leansRight = followLean(lean.right, frame.rightHand, state.known, deltaSeconds);
   if (!leansLeft || !leansRight) {
-    add(joints.leftUpperArm, lean.left.offset, targets.left);
-    add(joints.rightUpperArm, lean.right.offset, targets.right);
-    placeThorax(state, goal, limits.torso);
+    add(joints.leftUpperArm, lean.left.offset, shoulderTargets.left);
+    add(joints.rightUpperArm, lean.right.offset, shoulderTargets.right);
+    placeThorax(state, input, shoulderTargets, limits.torso, thorax);
   }
-  placeSpine(state, goal);
+  placeSpine(state, input, thorax);
   copyVec3(state.shoulderLine, state.lineBefore);
   state.known = true;
   return pose;
@@ -253,7 +259,12 @@ function followLean(
 }
 
 /** The shoulders' line: never faster than `turnSpeed`, and slowly where the shoulders are estimated close together. From `lineBefore`, however often a frame calls it. */
-function followShoulderLine(state: FitTorsoState, { shoulderWidth }: TorsoBones, deltaSeconds: number): void {
+function followShoulderLine(
+  state: FitTorsoState,
+  targets: Readonly<Record<Side, Vec3>>,
+  { shoulderWidth }: TorsoBones,
+  deltaSeconds: number,
+): void {
   const { shoulderLine: line, lineBefore: before, known } = state;
   subtract(targets.right, targets.left, a);
   const apart = length(a);
@@ -281,12 +292,14 @@ function turnTowards(wanted: MutableVec3, before: Vec3, share: number, most: num
 /** Neck, chest joint, the upper chest's rotation and the shoulders, from where the shoulders are to be. */
 function placeThorax(
   state: FitTorsoState,
-  { joints, frame, bones, deltaSeconds }: TorsoGoal,
+  { joints, frame, bones, deltaSeconds }: TorsoInput,
+  targets: Readonly<Record<Side, Vec3>>,
   within: TorsoLimits,
+  { up: thoraxUp, moved }: PlacedThorax,
 ): void {
   const { pose, shoulderLine } = state;
   const { upperChest } = pose.rotations;
-  followShoulderLine(state, bones, deltaSeconds);
+  followShoulderLine(state, targets, bones, deltaSeconds);
   const middle = lerp(targets.left, targets.right, 0.5, a);
 
   // The neck's base that these shoulders hang from, then brought onto the neck's length from the head.
@@ -305,8 +318,8 @@ function placeThorax(
   normalise(thoraxUp, roughUp, thoraxUp);
   addScaled(pose.neck, thoraxUp, -bones.thoraxLength, pose.chest);
   alignDirections(bones.thorax, thoraxUp, shoulderLine, upperChest);
-  placeShoulder('left', pose, bones, within);
-  placeShoulder('right', pose, bones, within);
+  placeShoulder('left', pose, bones, targets.left, within);
+  placeShoulder('right', pose, bones, targets.right, within);
 }
 
 /** A shoulder on its clavicle, which swings towards its target. */
@@ -314,17 +327,22 @@ function placeShoulder(
   side: Side,
   { neck, rotations, clavicles, shoulders }: TorsoPose,
   { skeleton }: TorsoBones,
+  target: Vec3,
   within: TorsoLimits,
 ): void {
   const root = clavicleRoot(side, neck, rotations.upperChest, skeleton, a);
   const rest = rotate(rotations.upperChest, clavicleRest(side, skeleton), b);
-  limitAngle(rotationBetween(rest, subtract(targets[side], root, c), swing), within.clavicleSwing, swing);
+  limitAngle(rotationBetween(rest, subtract(target, root, c), swing), within.clavicleSwing, swing);
   add(root, rotate(swing, rest, b), shoulders[side]);
   multiply(swing, rotations.upperChest, clavicles[side]);
 }
 
 /** Hips, and how each vertebra turns: the pelvis faces between head and shoulders; each joint above turns a part of the rest. */
-function placeSpine(state: FitTorsoState, { joints, frame, bones, deltaSeconds }: TorsoGoal): void {
+function placeSpine(
+  state: FitTorsoState,
+  { joints, frame, bones, deltaSeconds }: TorsoInput,
+  { up: thoraxUp, moved }: PlacedThorax,
+): void {
   const { pose, shoulderLine } = state;
   const { head, headJoint } = frame;
   const { hips, chest, neck, rotations } = pose;
@@ -341,14 +359,14 @@ function placeSpine(state: FitTorsoState, { joints, frame, bones, deltaSeconds }
 }
 
 /**
- * The hips at `lowerBack` [m] from the chest joint towards their target, but never below the floor. Under a chest that is too low for
- * them to hang they lie aside, and a target almost below the chest hardly says on which side: they turn there with a limited speed,
+ * The hips at `lowerBack` [m] from the chest joint towards where they are estimated, but never below the floor. Under a chest that is too low for
+ * them to hang they lie aside, and an estimate almost below the chest hardly says on which side: they turn there with a limited speed,
  * and go on with it when they hang again until they have caught up.
  */
-function hangHips(state: FitTorsoState, goal: Vec3, lowerBack: number, deltaSeconds: number): void {
+function hangHips(state: FitTorsoState, estimate: Vec3, lowerBack: number, deltaSeconds: number): void {
   const { pose, towardsHips: towards } = state;
   const { chest, hips } = pose;
-  subtract(goal, chest, hips);
+  subtract(estimate, chest, hips);
   addScaled(chest, normalise(hips, down, hips), lowerBack, hips);
   const lowest = Math.min(lowestHips, chest.y + lowerBack);
   const lie = hips.y < lowest;

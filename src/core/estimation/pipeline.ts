@@ -126,8 +126,8 @@ export class Pipeline implements PoseEstimator {
     this.source.joints(solved, deltaSeconds, state.joints);
     const joints = filterJoints(state.filter, state.joints, completed, deltaSeconds);
     const torso = fitTorso(state.torso, joints, completed, body.torso, deltaSeconds);
-    const goals = { frame: completed, joints, torso, bones: body.arm, poles: this.#poles };
-    const arms = fitArms(state.arms, goals, deltaSeconds);
+    const armsInput = { frame: completed, joints, torso, bones: body.arm, poles: this.#poles };
+    const arms = fitArms(state.arms, armsInput, deltaSeconds);
 
     this.#estimate.request = this.source.network?.wantsFrame(frame.time) ? this.#request : null;
     const { pose } = this.#estimate;

@@ -3,12 +3,12 @@ import { describe, expect, test } from 'vitest';
 import type { LimbBones } from '../../../src/core/body/two-bone-ik';
 import {
   type ArmDirections,
-  type ArmGoal,
   copyArmDirections,
   followTransition,
   makeArmDirections,
   makeArmTransition,
   startTransition,
+  type WantedArm,
 } from '../../../src/core/estimation/arm-transition';
 import { fromAxisAngle, rotate } from '../../../src/core/math/quat';
 import {
@@ -28,7 +28,7 @@ import { evenly, seed } from '../arbitraries';
 const bones: LimbBones = { upper: 0.28, lower: 0.26 };
 /** Where an arm passes that swings all the way round: to the right and ahead. */
 const outside = normalise(vec3(1, -0.2, -1));
-/** Speed of elbow and wrist at most [m/s], as if the goal stood still. */
+/** Speed of elbow and wrist at most [m/s], as if the hand stood still. */
 const fastest = 2.25;
 
 const direction = fc
@@ -42,8 +42,8 @@ const arm = fc.record({ upperArm: direction, forearm: direction }).map(({ upperA
 
 const elbowOf = ({ upperArm }: ArmDirections): Vec3 => scale(upperArm, bones.upper);
 const wristOf = (directions: ArmDirections): Vec3 => addScaled(elbowOf(directions), directions.forearm, bones.lower);
-/** The goal of a hand that is seen, of an arm whose shoulder stands still at the origin. */
-const goalOf = (directions: ArmDirections): ArmGoal => ({
+/** What is wanted of an arm whose hand is seen, and whose shoulder stands still at the origin. */
+const wantedOf = (directions: ArmDirections): WantedArm => ({
   ...directions,
   shoulder: vec3(0, 0, 0),
   hand: wristOf(directions),
@@ -61,11 +61,11 @@ const copied = (directions: ArmDirections): ArmDirections => {
 function drawn(from: ArmDirections, goalAt: (time: number) => ArmDirections, rateHz: number, seconds: number) {
   const transition = makeArmTransition();
   const now = copied(from);
-  startTransition(transition, now, goalOf(goalAt(0)));
+  startTransition(transition, now, wantedOf(goalAt(0)));
   const arms = [copied(now)];
   let duration = Number.NaN;
   for (let i = 1; i <= Math.ceil(seconds * rateHz - 1e-9); i++) {
-    followTransition(transition, goalOf(goalAt(i / rateHz)), now, 1 / rateHz);
+    followTransition(transition, wantedOf(goalAt(i / rateHz)), now, 1 / rateHz);
     arms.push(copied(now));
     if (Number.isNaN(duration) && Number.isNaN(transition.age)) duration = i / rateHz;
   }
@@ -79,17 +79,17 @@ const turned = (by: number, { upperArm, forearm, hinge }: ArmDirections): ArmDir
 };
 
 describe('an arm whose hand has jumped', () => {
-  test('sets out from where it was drawn, and is at its goal exactly when the transition ends', () => {
+  test('sets out from where it was drawn, and is where it is wanted exactly when the transition ends', () => {
     fc.assert(
-      fc.property(arm, arm, (from, goal) => {
+      fc.property(arm, arm, (from, wanted) => {
         const transition = makeArmTransition();
         const now = copied(from);
-        startTransition(transition, now, goalOf(goal));
-        followTransition(transition, goalOf(goal), now, 0);
+        startTransition(transition, now, wantedOf(wanted));
+        followTransition(transition, wantedOf(wanted), now, 0);
         expect(distance(wristOf(now), wristOf(from))).toBeLessThan(1e-6);
         expect(distance(elbowOf(now), elbowOf(from))).toBeLessThan(1e-6);
-        for (let i = 0; i < 54; i++) followTransition(transition, goalOf(goal), now, 1 / 60);
-        expect(now).toEqual(copied(goal));
+        for (let i = 0; i < 54; i++) followTransition(transition, wantedOf(wanted), now, 1 / 60);
+        expect(now).toEqual(copied(wanted));
         expect(transition.age).toBeNaN();
       }),
       { seed },
@@ -98,30 +98,30 @@ describe('an arm whose hand has jumped', () => {
 
   test('takes a fifth of a second at least, and elbow and wrist stay below 2.25 m/s', () => {
     fc.assert(
-      fc.property(arm, arm, (from, goal) => {
+      fc.property(arm, arm, (from, wanted) => {
         const rateHz = 240;
-        const { arms, duration } = drawn(from, () => goal, rateHz, 2.5);
+        const { arms, duration } = drawn(from, () => wanted, rateHz, 2.5);
         expect(duration).toBeGreaterThanOrEqual(0.2 - 1e-9);
         expect(duration).toBeLessThanOrEqual(0.9 + 1e-9);
         for (let i = 1; i < arms.length; i++) {
           expect(distance(wristOf(arms[i]!), wristOf(arms[i - 1]!)) * rateHz).toBeLessThan(fastest + 1e-6);
           expect(distance(elbowOf(arms[i]!), elbowOf(arms[i - 1]!)) * rateHz).toBeLessThan(fastest + 1e-6);
         }
-        expect(arms.at(-1)).toEqual(copied(goal));
+        expect(arms.at(-1)).toEqual(copied(wanted));
       }),
       { seed },
     );
   });
 
-  test('turns each bone on, never back: towards a goal that lies near', () => {
+  test('turns each bone on, never back: to a direction that lies near', () => {
     fc.assert(
-      fc.property(arm, arm, (from, goal) => {
-        fc.pre(Math.max(angle(from.upperArm, goal.upperArm), angle(from.forearm, goal.forearm)) < 2);
-        const { arms } = drawn(from, () => goal, 60, 1.5);
+      fc.property(arm, arm, (from, wanted) => {
+        fc.pre(Math.max(angle(from.upperArm, wanted.upperArm), angle(from.forearm, wanted.forearm)) < 2);
+        const { arms } = drawn(from, () => wanted, 60, 1.5);
         for (let i = 1; i < arms.length; i++) {
           for (const bone of ['upperArm', 'forearm'] as const) {
             const [now, before] = [arms[i]![bone], arms[i - 1]![bone]];
-            expect(angle(now, goal[bone])).toBeLessThan(angle(before, goal[bone]) + 1e-6);
+            expect(angle(now, wanted[bone])).toBeLessThan(angle(before, wanted[bone]) + 1e-6);
           }
         }
       }),
@@ -131,11 +131,11 @@ describe('an arm whose hand has jumped', () => {
 
   test('is in the same place at 60, 72, 90 and 120 Hz, to what it goes in a frame', () => {
     fc.assert(
-      fc.property(arm, arm, (from, goal) => {
+      fc.property(arm, arm, (from, wanted) => {
         // Until it is there a frame's length of its way, at its speed, is between one rate and another.
-        const at60 = drawn(from, () => goal, 60, 1 / 6).arms.at(-1)!;
+        const at60 = drawn(from, () => wanted, 60, 1 / 6).arms.at(-1)!;
         for (const rateHz of [72, 90, 120]) {
-          const wrist = wristOf(drawn(from, () => goal, rateHz, 1 / 6).arms.at(-1)!);
+          const wrist = wristOf(drawn(from, () => wanted, rateHz, 1 / 6).arms.at(-1)!);
           expect(distance(wrist, wristOf(at60))).toBeLessThan(fastest / 60);
         }
       }),
@@ -143,10 +143,10 @@ describe('an arm whose hand has jumped', () => {
     );
   });
 
-  test('ends on a goal that moves meanwhile, without a step', () => {
+  test('ends where it is wanted though that moves meanwhile, without a step', () => {
     fc.assert(
-      fc.property(arm, arm, evenly(-2, 2), (from, goal, turning) => {
-        const goalAt = (time: number) => turned(turning * time, goal);
+      fc.property(arm, arm, evenly(-2, 2), (from, wanted, turning) => {
+        const goalAt = (time: number) => turned(turning * time, wanted);
         const { arms, duration } = drawn(from, goalAt, 60, 2.5);
         expect(distance(wristOf(arms.at(-1)!), wristOf(goalAt((arms.length - 1) / 60)))).toBeLessThan(1e-9);
         expect(duration).toBeLessThanOrEqual(0.9 + 1e-9);
@@ -162,8 +162,8 @@ describe('an arm whose hand has jumped', () => {
 
   test('keeps bones and hinge unit vectors, and the hinge across the upper arm', () => {
     fc.assert(
-      fc.property(arm, arm, (from, goal) => {
-        for (const { upperArm, forearm, hinge } of drawn(from, () => goal, 60, 1).arms) {
+      fc.property(arm, arm, (from, wanted) => {
+        for (const { upperArm, forearm, hinge } of drawn(from, () => wanted, 60, 1).arms) {
           for (const each of [upperArm, forearm, hinge]) expect(length(each)).toBeCloseTo(1, 6);
           const normal = cross(upperArm, forearm);
           if (length(normal) > 0.3) expect(length(add(normalise(normal), hinge))).toBeGreaterThan(1);
@@ -173,10 +173,10 @@ describe('an arm whose hand has jumped', () => {
     );
   });
 
-  test('without a jump an arm is its goal', () => {
+  test('without a jump an arm is as it is wanted', () => {
     const [transition, now] = [makeArmTransition(), makeArmDirections()];
-    const goal = { upperArm: vec3(0, -1, 0), forearm: vec3(0, 0, -1), hinge: vec3(1, 0, 0) };
-    followTransition(transition, goalOf(goal), now, 1 / 60);
-    expect(now).toEqual(copied(goal));
+    const wanted = { upperArm: vec3(0, -1, 0), forearm: vec3(0, 0, -1), hinge: vec3(1, 0, 0) };
+    followTransition(transition, wantedOf(wanted), now, 1 / 60);
+    expect(now).toEqual(copied(wanted));
   });
 });
