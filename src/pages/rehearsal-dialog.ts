@@ -1,6 +1,12 @@
 import type { StudyPlan } from '../core/study/plan';
 import { button, element } from '../ui/element';
+import { askInDialog } from './ask-in-dialog';
 import type { Rehearsal } from './rehearse';
+
+function numberField(label: string, attributes: Record<string, string | number>) {
+  const input = element('input', { type: 'number', ...attributes });
+  return { input, node: element('label', {}, element('span', {}, label), input) };
+}
 
 /** Asks what a rehearsal shall put in; null: cancelled. */
 export function askForRehearsal({
@@ -9,54 +15,28 @@ export function askForRehearsal({
   cohorts = [],
   participants,
 }: StudyPlan): Promise<Rehearsal | null> {
-  return new Promise((resolve) => {
-    const title = 'Rehearse with simulated participants';
-    const numberField = (label: string, attributes: Record<string, string | number>) => {
-      const input = element('input', { type: 'number', ...attributes });
-      return { input, node: element('label', {}, element('span', {}, label), input) };
-    };
-    const seedField = numberField('Seed', { min: 0, max: 999_999_999, step: 1, value: seed % 1_000_000_000 });
-    const effects = [...conditions, ...cohorts].map(({ id, label }) => ({
-      id,
-      ...numberField(`${label} (${id})`, { min: -4, max: 4, step: 0.1, value: 0 }),
-    }));
-    const dialog = element('dialog', { 'aria-label': title });
-    const close = (value: Rehearsal | null) => {
-      dialog.close();
-      dialog.remove();
-      resolve(value);
-    };
-    const stated = (): Rehearsal => ({
-      seed: Math.max(0, Math.floor(seedField.input.valueAsNumber || 0)),
-      effects: {
-        answers: Object.fromEntries(
-          effects.flatMap(({ id, input }) => (input.valueAsNumber ? [[id, input.valueAsNumber] as const] : [])),
-        ),
-        scores: {},
-      },
-    });
-    dialog.addEventListener('cancel', () => close(null));
-    dialog.append(
-      element(
-        'form',
-        { method: 'dialog' },
-        element('h2', { style: 'margin:0' }, title),
-        element(
-          'p',
-          { class: 'soft' },
-          `${participants} of them walk the plan to its end, into a study of their own that is marked SIMULATED and can be deleted at once. ` +
-            'State by how many points of a scale from 1 to 5 answers shall differ; 0 everywhere: the results should find nothing.',
-        ),
-        element('div', { class: 'numbers' }, seedField.node, ...effects.map(({ node }) => node)),
-        element(
-          'div',
-          { class: 'bar' },
-          button('Rehearse', () => close(stated()), { class: 'primary' }),
-          button('Cancel', () => close(null)),
-        ),
+  const seedField = numberField('Seed', { min: 0, max: 999_999_999, step: 1, value: seed % 1_000_000_000 });
+  const effects = [...conditions, ...cohorts].map(({ id, label }) => ({
+    id,
+    ...numberField(`${label} (${id})`, { min: -4, max: 4, step: 0.1, value: 0 }),
+  }));
+  const stated = (): Rehearsal => ({
+    seed: Math.max(0, Math.floor(seedField.input.valueAsNumber || 0)),
+    effects: {
+      answers: Object.fromEntries(
+        effects.flatMap(({ id, input }) => (input.valueAsNumber ? [[id, input.valueAsNumber] as const] : [])),
       ),
-    );
-    document.body.append(dialog);
-    dialog.showModal();
+      scores: {},
+    },
   });
+  const text =
+    `${participants} of them walk the plan to its end, into a study of their own that is marked SIMULATED and can be deleted at once. ` +
+    'State by how many points of a scale from 1 to 5 answers shall differ; 0 everywhere: the results should find nothing.';
+  return askInDialog<Rehearsal>('Rehearse with simulated participants', (answer) => ({
+    content: [
+      element('p', { class: 'soft' }, text),
+      element('div', { class: 'numbers' }, seedField.node, ...effects.map(({ node }) => node)),
+    ],
+    confirm: button('Rehearse', () => answer(stated()), { class: 'primary' }),
+  }));
 }
