@@ -60,9 +60,13 @@ export const press = (page: Page, id: string, leave = false): Promise<void> =>
       const { right, left } = window.emulatedDevice.controllers;
       window.emulatedDevice.controlMode = 'programmatic';
       window.emulatedDevice.position.set(0, 1.7, 0);
-      const [x, y, z] = await until(() => study()?.targets.find((target) => target.id === id)?.at);
+      const aimed = () => {
+        const at = study()?.targets.find((target) => target.id === id)?.at;
+        if (at) right.position.set(at[0], at[1], at[2] + 0.35);
+        return at !== undefined;
+      };
+      await until(aimed);
       left.position.set(-0.19, 1.4, -0.6);
-      right.position.set(x, y, z + 0.35);
       for (const hand of [left, right]) {
         hand.quaternion.set(...upright);
         // The built-in archer may hold a bow drawn when its round ends: a trigger that is held cannot be pulled.
@@ -70,7 +74,8 @@ export const press = (page: Page, id: string, leave = false): Promise<void> =>
       }
       // The ray may lie on the target already: a frame must see the trigger let go.
       await frame();
-      await until(() => study()?.pointedAt === id);
+      // The sheet comes up with a wearer who has just risen.
+      await until(() => aimed() && study()?.pointedAt === id);
       const before = JSON.stringify(study()?.screen);
       right.updateButtonValue('trigger', 1);
       for (let i = 0; i < 3; i++) await frame();

@@ -36,6 +36,8 @@ test('a participant with no one beside them is checked, asked whether to stop, a
   const { head, left, right } = stretched;
   await headset.place({ head: seated(head), left: seated(left), right: seated(right) });
   await reaches(page, 'setup', 90_000);
+  // The sheet has come down to the eyes of a seated wearer, at 0.9 m.
+  await expect.poll(async () => (await study(page)).targets.map(({ at: [, y] }) => y < 0.9)).toEqual([true, true]);
   await keepPicture(page, 'study-setup');
   await press(page, 'calibrate', true);
   await reaches(page, 'trial-ready', 90_000);

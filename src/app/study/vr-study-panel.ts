@@ -27,9 +27,10 @@ export interface VrStudyPanel {
 /** How far before the eyes the sheet stands, how far below them its middle lies [m]. */
 const reach = 1.25;
 const below = 0.12;
-/** The sheet is placed anew before a person who turns [rad] or steps [m] further away than this. */
+/** The sheet is placed anew before a person who turns [rad], steps [m], sits down or rises [m] further than this. */
 const mostTurn = 0.7;
 const mostStep = 0.8;
+const mostRise = 0.3;
 
 export const createVrStudyPanel = (): VrStudyPanel => new StudySheet();
 
@@ -103,14 +104,19 @@ class StudySheet implements VrStudyPanel {
     });
   }
 
-  /** Whether a person at this place [m, floor frame] who looks this way [rad] has the sheet no longer before their eyes. */
-  #isLeft({ x, z }: { readonly x: number; readonly z: number }, yaw: number): boolean {
+  /** Whether a person with the eyes at this place [m, floor frame] who looks this way [rad] has the sheet no longer before them. */
+  #isLeft({ x, y, z }: { readonly x: number; readonly y: number; readonly z: number }, yaw: number): boolean {
     const { position, rotation } = this.object;
     const turn = yaw - rotation.y;
     // Where the person stood when the sheet was placed.
     const fromX = position.x + reach * Math.sin(rotation.y);
     const fromZ = position.z + reach * Math.cos(rotation.y);
-    return Math.abs(wrapAngle(turn)) >= mostTurn || Math.hypot(fromX - x, fromZ - z) >= mostStep;
+    const rise = y - below - position.y;
+    return (
+      Math.abs(wrapAngle(turn)) >= mostTurn ||
+      Math.hypot(fromX - x, fromZ - z) >= mostStep ||
+      Math.abs(rise) >= mostRise
+    );
   }
 
   #redraw(): void {
