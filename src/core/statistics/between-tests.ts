@@ -94,13 +94,17 @@ export function rankSumCounts(first: number, second: number): readonly number[] 
   return ways[first] as number[];
 }
 
-function exactP(w: number, first: number, second: number): number {
+/** The exact two-sided p of every W of so many values, which are counted once for all. */
+function exactPs(first: number, second: number): (w: number) => number {
   const counts = rankSumCounts(first, second);
   const all = counts.reduce((sum, count) => sum + count, 0);
+  let sum = 0;
+  const upTo = counts.map((count) => {
+    sum += count;
+    return sum;
+  });
   // Both ends are alike: the sum of the smaller one loses nothing to rounding.
-  const least = Math.min(w, first * second - w);
-  const tail = counts.slice(0, least + 1).reduce((sum, count) => sum + count, 0) / all;
-  return Math.min(1, 2 * tail);
+  return (w) => Math.min(1, 2 * ((upTo[Math.min(w, first * second - w)] as number) / all));
 }
 
 /**
@@ -115,7 +119,7 @@ export function rankSumTest(first: readonly number[], second: readonly number[])
   const effect = (2 * w) / (m * n) - 1;
   const exact = ties.length === 0 && m < exactBelow && n < exactBelow;
   const effectInterval = rankBiserialInterval(effect, Math.sqrt((m + n + 1) / (3 * m * n)));
-  const p = exact ? exactP(w, m, n) : normalP(w, m, n, ties);
+  const p = exact ? exactPs(m, n)(w) : normalP(w, m, n, ties);
   return { w, method: exact ? 'exact' : 'normal', p, effect, effectInterval };
 }
 
@@ -129,6 +133,6 @@ function normalP(w: number, m: number, n: number, ties: readonly number[]): numb
   return Math.min(1, 2 * normalCdf(-Math.abs(z), 0, 1));
 }
 
-/** The two-sided p of a W of m and n values that are all different. */
-export const rankSumP = (w: number, m: number, n: number): number =>
-  m < exactBelow && n < exactBelow ? exactP(w, m, n) : (normalP(w, m, n, []) as number);
+/** The two-sided p of each W of m and n values that are all different. */
+export const rankSumPs = (m: number, n: number): ((w: number) => number) =>
+  m < exactBelow && n < exactBelow ? exactPs(m, n) : (w) => normalP(w, m, n, []) as number;

@@ -1,5 +1,5 @@
 import { normalNumbers } from '../math/random';
-import { rankSumP, standardError } from './between-tests';
+import { rankSumPs, standardError } from './between-tests';
 import { signedRankP } from './paired-tests';
 import { ranksOf } from './ranks';
 import { criticalT, deviationOf, meanOf, twoSidedP } from './summaries';
@@ -56,7 +56,7 @@ function pairedStudy({ effect, alpha }: PlannedTest, n: number, normal: () => nu
 }
 
 function betweenStudy({ effect, alpha }: PlannedTest, n: number, normal: () => number): () => Finding {
-  const pOf = remembered((w) => rankSumP(w, n, n));
+  const pOf = remembered(rankSumPs(n, n));
   return () => {
     const first = Array.from({ length: n }, () => effect + normal());
     const second = Array.from({ length: n }, normal);
