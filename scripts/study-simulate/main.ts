@@ -17,7 +17,7 @@ const root = fileURLToPath(new URL('../..', import.meta.url));
 /** When the first simulated participant begins: a fixed day, so that the same seed gives the same files. */
 const firstSession = Date.UTC(2026, 0, 5, 9) / 1000;
 
-const signedT = (t: number | null | undefined) => t?.toFixed(2).replace('-', '−');
+const signed = (value: number | null | undefined) => value?.toFixed(2).replace('-', '−') ?? 'none';
 
 /** What is found between two cohorts by the mean of all conditions. */
 function cohortFindings(
@@ -29,7 +29,7 @@ function cohortFindings(
   const compared = { cohorts: [other.id, baseline.id], conditions: conditions.map(({ id }) => id) } as const;
   const lines = [...compareCohorts(answers, compared), ...compareCohorts(points, compared)].map(
     ({ of, test, holmP }) =>
-      `  ${of}: t(${test?.df?.toFixed(1)}) = ${signedT(test?.t)}, d_s = ${test?.ds?.toFixed(2)}, Holm p = ${holmP?.toFixed(4)}`,
+      `  ${of}: t(${test?.df?.toFixed(1)}) = ${signed(test?.t)}, d_s = ${signed(test?.ds)}, Holm p = ${holmP?.toFixed(4)}`,
   );
   return [`${other.id} − ${baseline.id}, Welch’s t-tests between cohorts, Holm over all questions (scores):`, ...lines];
 }
