@@ -1,4 +1,5 @@
 import { readFileSync } from 'node:fs';
+import type { Locator, Page } from '@playwright/test';
 import { expect, keepPicture } from './page-fixture';
 import { test } from './study-participant';
 import { experimenter } from './study-server';
@@ -83,8 +84,47 @@ test('mistakes of a plan are named as study:check names them @full', async ({ pa
   await expect(page.getByRole('alert')).toContainText('none.json');
 });
 
+test('the line of a slider without an answer is the same on either side of its middle', async ({ page, origin }) => {
+  await page.goto(`${origin}/preview?plan=/studies/example.json`);
+  await page
+    .getByRole('button', { name: /^delay: / })
+    .first()
+    .click();
+  await page.getByRole('button', { name: 'At the desk' }).click();
+  const line = page.getByRole('slider');
+  await expect(line).toHaveClass('open');
+  expect(await unevenPixels(line)).toBe(0);
+  await keepPicture(page, 'study-preview-slider-open');
+  await line.press('Home');
+  for (let steps = 0; steps < 30; steps++) await line.press('ArrowRight');
+  expect(await unevenPixels(line)).toBeGreaterThan(100);
+  await keepPicture(page, 'study-preview-slider');
+});
+
+/** How many pixels of the left half of an element's picture are not as those of its mirrored right half. */
+async function unevenPixels(element: Locator): Promise<number> {
+  const picture = (await element.screenshot()).toJSON().data;
+  return element.page().evaluate(async (bytes) => {
+    const image = await createImageBitmap(new Blob([new Uint8Array(bytes)]));
+    const { width, height } = image;
+    const context = new OffscreenCanvas(width, height).getContext('2d') as OffscreenCanvasRenderingContext2D;
+    context.drawImage(image, 0, 0);
+    const { data } = context.getImageData(0, 0, width, height);
+    const pixel = (x: number, y: number) => data.subarray(4 * (y * width + x), 4 * (y * width + x) + 3);
+    let uneven = 0;
+    for (let y = 0; y < height; y++) {
+      for (let x = 0; x < width / 2; x++) {
+        const mirrored = pixel(width - 1 - x, y);
+        // The rounding of an edge may fall otherwise on one side.
+        if (pixel(x, y).some((value, index) => Math.abs(value - (mirrored[index] as number)) > 40)) uneven += 1;
+      }
+    }
+    return uneven;
+  }, picture);
+}
+
 /** Where a pixel of the sheet is on the drawn one, as Playwright wants it. */
-async function onSheet(page: import('@playwright/test').Page, x: number, y: number) {
+async function onSheet(page: Page, x: number, y: number) {
   const { width, height } = (await page.locator('canvas').boundingBox()) as { width: number; height: number };
   return { x: (x / 1200) * width, y: (y / 880) * height };
 }
