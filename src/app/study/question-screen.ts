@@ -93,7 +93,7 @@ export function questionPart(
         : triedToSubmit && open.includes(shown.id)
           ? '* This question still needs an answer.'
           : open.length > 0
-            ? `* ${open.length} of ${required} still need an answer.`
+            ? `* ${open.length} of ${required} still ${open.length === 1 ? 'needs' : 'need'} an answer.`
             : null),
   };
 }

@@ -71,6 +71,13 @@ describe('a question on the sheet in the headset', () => {
     expect(questions.map(({ id }) => one.answerTo(id))).toEqual([6, undefined, 37, 'arms', 3, 'bow ok']);
   });
 
+  test('says how many still need an answer, and of the last one that it needs it', () => {
+    const one = reader(questions.filter(({ id }) => id === 'mine' || id === 'delay'));
+    expect(one.part().hint).toBe('* 2 of 2 still need an answer.');
+    expect(one.goTo('mine').press('answer-6').part().hint).toBe('* 1 of 2 still needs an answer.');
+    expect(one.goTo('delay').press('answer-37').part().hint).toBeNull();
+  });
+
   test('a place on the line is corrected by one step, and has none before it is given', () => {
     const one = reader(questions).goTo('delay');
     expect(one.press('more').answerTo('delay')).toBeUndefined();
