@@ -17,6 +17,10 @@ const root = fileURLToPath(new URL('../..', import.meta.url));
 /** When the first simulated participant begins: a fixed day, so that the same seed gives the same files. */
 const firstSession = Date.UTC(2026, 0, 5, 9) / 1000;
 
+/** "p = 0.0123"; a p is never 0. */
+const pText = (p: number | null | undefined) =>
+  p != null && p < 0.00005 ? 'p < 0.0001' : `p = ${p?.toFixed(4) ?? 'none'}`;
+
 const signed = (value: number | null | undefined) => value?.toFixed(2).replace('-', '−') ?? 'none';
 
 /** What is found between two cohorts by the mean of all conditions. */
@@ -29,7 +33,7 @@ function cohortFindings(
   const compared = { cohorts: [other.id, baseline.id], conditions: conditions.map(({ id }) => id) } as const;
   const lines = [...compareCohorts(answers, compared), ...compareCohorts(points, compared)].map(
     ({ of, test, holmP }) =>
-      `  ${of}: t(${test?.df?.toFixed(1)}) = ${signed(test?.t)}, d_s = ${signed(test?.ds)}, Holm p = ${holmP?.toFixed(4)}`,
+      `  ${of}: t(${test?.df?.toFixed(1)}) = ${signed(test?.t)}, d_s = ${signed(test?.ds)}, Holm ${pText(holmP)}`,
   );
   return [`${other.id} − ${baseline.id}, Welch’s t-tests between cohorts, Holm over all questions (scores):`, ...lines];
 }
@@ -43,19 +47,18 @@ function findings(records: readonly StudyRecord[], plan: StudyPlan): readonly st
   if (all.length > 0) lines.push('Analyses of variance, Holm over all questions:');
   for (const { of, variance, holmP } of all) {
     const effect = variance?.within ?? variance?.between ?? null;
-    lines.push(`  ${of}: F(${effect?.df.join(', ')}) = ${effect?.f?.toFixed(2)}, Holm p = ${holmP?.toFixed(4)}`);
+    lines.push(`  ${of}: F(${effect?.df.join(', ')}) = ${effect?.f?.toFixed(2)}, Holm ${pText(holmP)}`);
   }
   lines.push(...cohortFindings(measures, plan));
   if (!baseline || !other) return lines;
   const { comparisons } = compareConditions(measures.answers, [other.id, baseline.id]);
   lines.push(`${other.id} − ${baseline.id}, paired t-tests, Holm over all questions:`);
   for (const { of, test, holmP } of comparisons) {
-    const found =
-      test?.t == null ? 'all differences alike' : `t(${test.df}) = ${test.t.toFixed(2)}, Holm p = ${holmP?.toFixed(4)}`;
+    const found = test?.t == null ? 'all differences alike' : `t(${test.df}) = ${signed(test.t)}, Holm ${pText(holmP)}`;
     lines.push(`  ${of.padEnd(4)} ${found}`);
   }
   for (const { of, first, second, test } of compareConditions(measures.points, [other.id, baseline.id]).comparisons) {
-    const p = test?.p == null ? '' : `, p = ${test.p.toFixed(3)}`;
+    const p = test?.p == null ? '' : `, ${pText(test.p)}`;
     lines.push(`  ${of}: ${first?.mean.toFixed(2)} against ${second?.mean.toFixed(2)} points (n = ${test?.n})${p}`);
   }
   return lines;

@@ -146,7 +146,7 @@ describe('npm run study:simulate', () => {
     expect(stdout).toContain(
       'answers −1.5 points under "late-200"; answers +1 points under "small"; chances to hit −0.2 under "late-200".',
     );
-    expect(stdout).toMatch(/own-body: F\(2, 44\) = \d+\.\d+, Holm p = 0\.0000/);
+    expect(stdout).toMatch(/own-body: F\(2, 44\) = \d+\.\d+, Holm p < 0\.0001/);
     const { seed, effects: stated } = JSON.parse(readFileSync(join(out, 'SIMULATED-models.json'), 'utf8'));
     expect({ seed, stated }).toEqual({
       seed: 4,
