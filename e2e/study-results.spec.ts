@@ -3,18 +3,22 @@ import { strFromU8, unzipSync } from 'fflate';
 import { answerModelWith } from '../src/core/rehearsal/answer-model';
 import { statedPerformanceModel } from '../src/core/rehearsal/performance-model';
 import { simulatedPlan, simulateStudy } from '../src/core/rehearsal/simulate-study';
-import { parsePlan, type StudyPlan } from '../src/core/study/plan';
-import { expect } from './page-fixture';
+import { cohortsByParticipant } from '../src/core/study/allocation';
+import { checkedPlan } from '../src/core/study/plan';
+import { expect, keepPicture } from './page-fixture';
 import { openResults, test } from './study-participant';
 import { experimenter } from './study-server';
 
-/** A whole simulated study on the server, as `npm run study:simulate` makes it. */
-async function simulateOn(origin: string): Promise<StudyPlan> {
-  const plan = simulatedPlan(parsePlan(readFileSync('public/studies/paper.json', 'utf8'), 'paper.json'));
+const shipped = (file: string) => JSON.parse(readFileSync(`public/studies/${file}`, 'utf8')) as Record<string, unknown>;
+
+/** A whole simulated study on the server, as `npm run study:simulate` makes it, with these effects on answers [points of 1 to 5]. */
+async function simulateOn(origin: string, file: unknown, effects: Readonly<Record<string, number>>) {
+  const plan = simulatedPlan(checkedPlan(file));
   const experimenting = experimenter(origin);
   await experimenting.begin(plan, true);
-  const models = { answers: answerModelWith({ learned: 0.8 }), performance: statedPerformanceModel };
-  for (const { participant, records } of simulateStudy(plan, models, 3, 1_767_600_000)) {
+  const models = { answers: answerModelWith(effects), performance: statedPerformanceModel };
+  const participants = simulateStudy(plan, models, 3, 1_767_600_000);
+  for (const { participant, records } of participants) {
     const path = `/${plan.id}/participants/${participant}`;
     await experimenting.ask(`${path}/claim`, 'POST', {});
     for (let at = 0; at < records.length; at += 100) {
@@ -22,14 +26,14 @@ async function simulateOn(origin: string): Promise<StudyPlan> {
       if (!sent.ok) throw new Error(await sent.text());
     }
   }
-  return plan;
+  return { plan, participants };
 }
 
 test('results of fifteen simulated participants; export, delete, export', async ({ page, origin }) => {
-  const plan = await simulateOn(origin);
+  const { plan } = await simulateOn(origin, shipped('paper.json'), { learned: 0.8 });
   await openResults(page, plan.id);
   await expect(page.getByText('SIMULATED: a program made these data')).toBeVisible();
-  for (const name of [/Archery: questionnaire, means/, /Ball game: questionnaire, means/, /Archery: mean scores/]) {
+  for (const name of [/Archery: questionnaire, means/, /Ball game: questionnaire, means/, /Archery: scores, means/]) {
     const figure = page.getByRole('img', { name });
     await expect(figure).toBeVisible();
     await expect(figure.getByText('SIMULATED')).toBeVisible();
@@ -69,4 +73,62 @@ test('results of fifteen simulated participants; export, delete, export', async 
   await expect(row.getByRole('button', { name: 'Export' })).toBeDisabled();
   const after = await experimenter(origin).ask(`/${plan.id}/participants/P02/export`);
   expect(recordsIn(Buffer.from(await after.arrayBuffer()))).toBe(0);
+});
+
+/** Three avatars between participants, each with three latencies within; the work load is what the avatars differ in. */
+function mixedStudy() {
+  const file = shipped('latency.json');
+  const avatars = ['woman', 'stout', 'child'] as const;
+  return {
+    ...{ ...file, id: 'latency-avatars', participants: 18 },
+    cohorts: avatars.map((avatar) => ({ id: avatar, label: `As ${avatar}`, avatar })),
+  };
+}
+
+test('cohorts of a mixed study are chosen on the results page, each participant a dot @full', async ({
+  page,
+  origin,
+}) => {
+  // Everything is computed and drawn anew at each choice.
+  test.setTimeout(180_000);
+  const effects = { 'late-100': -0.4, 'late-200': -0.9, child: 0.6 };
+  const { plan, participants } = await simulateOn(origin, mixedStudy(), effects);
+  const cohortOf = cohortsByParticipant(plan);
+  /** Of the first question in a cohort under these conditions, added up by hand. */
+  const meanOf = (cohort: string, conditions: readonly string[]) => {
+    const given = participants
+      .filter(({ participant }) => cohortOf.get(participant)?.id === cohort)
+      .flatMap(({ records }) => records)
+      .flatMap((record) => (record.kind === 'answers' ? [record.body] : []))
+      .filter(({ questionnaire, condition }) => questionnaire === 'embodiment' && conditions.includes(condition))
+      .map(({ answers }) => Number(answers['own-body']));
+    expect(given).toHaveLength(6 * conditions.length);
+    return (given.reduce((sum, value) => sum + value, 0) / given.length).toFixed(2);
+  };
+  await openResults(page, plan.id);
+  const table = page.getByRole('table', { name: /^Exploratory: answers, .* between participants/ });
+  const expectShown = (first: string, second: string, conditions: readonly string[]) =>
+    expect(table.getByRole('row', { name: /^own-body / })).toHaveAccessibleName(
+      new RegExp(`^own-body ownership 6, 6 ${meanOf(first, conditions)} .* ${meanOf(second, conditions)} `),
+    );
+  const all = plan.conditions.map(({ id }) => id);
+  await expectShown('stout', 'woman', all);
+  await page.getByLabel('Compare cohort').selectOption('child');
+  await expectShown('child', 'woman', all);
+  await page.getByLabel('with cohort').selectOption('stout');
+  await expectShown('child', 'stout', all);
+  await page.getByLabel('Under').selectOption('late-200');
+  await expectShown('child', 'stout', ['late-200']);
+  await expect(page.getByText(/^Differences are As child − As stout, .* under “200 ms”\./)).toBeVisible();
+  // Pairs of conditions are chosen for themselves.
+  await page.getByLabel('Compare condition').selectOption('late-200');
+  await expect(page.getByText(/^Differences are 200 ms − 0 ms, paired/)).toBeVisible();
+  await expectShown('child', 'stout', ['late-200']);
+
+  const dots = page.getByRole('img', { name: 'Ownership, every participant' }).last();
+  await expect(dots.locator('circle[r="3.5"]')).toHaveCount(12);
+  await dots.scrollIntoViewIfNeeded();
+  await keepPicture(page, 'study-cohorts');
+  await page.getByLabel('Compare cohort').selectOption('stout');
+  await expect(page.getByText('Choose two different cohorts.')).toBeVisible();
 });

@@ -141,7 +141,7 @@ test('a participant from consent to the end, with a reload in a questionnaire wh
   await openResults(page, 'short');
   await expect(page.getByText('SIMULATED: a program made these data')).toBeVisible();
   await expect(page.getByRole('row', { name: /^Q1 presence 1 / })).toBeVisible();
-  await expect(page.getByRole('img', { name: /Archery: mean scores/ })).toBeVisible();
+  await expect(page.getByRole('img', { name: /Archery: scores, means/ })).toBeVisible();
 });
 
 test('a link without its invitation asks for it, a wrong one is said, and the link of the experimenter’s page opens the place @full', async ({

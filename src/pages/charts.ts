@@ -1,5 +1,7 @@
 import * as Plot from '@observablehq/plot';
+import type { CohortComparison } from '../core/study/compare-cohorts';
 import type { Comparison } from '../core/study/compare-conditions';
+import { swarm } from './swarm';
 
 /** The two conditions or cohorts compared, as people read them. */
 export interface ComparedLabels {
@@ -78,35 +80,36 @@ const shared = {
 const ticksOf = ({ domain: [low, high] }: Pick<ChartOptions<never>, 'domain'>) =>
   high - low < 10 ? Array.from({ length: high - low + 1 }, (_, index) => low + index) : 5;
 
-const widthFor = (count: number) => Math.max(520, 90 + count * 100);
+/** "3", never "3.0": ends of scales are whole. */
+const tickText = (value: number): string => String(Number(value.toFixed(6)));
+
+const widthFor = (count: number, each = 100) => Math.max(520, 90 + count * each);
+const height = 360;
+
+/** The mean of each side and its 95 % confidence interval; whiskers end where the scale does. */
+const meansOf = <One extends TwoSided>(comparisons: readonly One[], { nameOf, domain }: ChartOptions<One>) =>
+  comparisons.flatMap((comparison) =>
+    sides.flatMap((side) => {
+      const summary = comparison[side];
+      if (!summary) return [];
+      const { mean, interval } = summary;
+      const from = Math.max(domain[0], interval?.low ?? mean);
+      const to = Math.min(domain[1], interval?.high ?? mean);
+      return [{ of: nameOf(comparison), side, mean, from, to }];
+    }),
+  );
 
 /** Means as bars with their 95 % confidence intervals: the paper's figures 11 to 14. */
 export function barChart<One extends TwoSided>(comparisons: readonly One[], options: ChartOptions<One>): SVGSVGElement {
   const [low, high] = options.domain;
-  const bars = comparisons.flatMap((comparison) =>
-    sides.flatMap((side) => {
-      const summary = comparison[side];
-      return summary
-        ? [
-            {
-              of: options.nameOf(comparison),
-              side,
-              mean: summary.mean,
-              // Whiskers end where the scale does.
-              from: Math.max(low, summary.interval?.low ?? summary.mean),
-              to: Math.min(high, summary.interval?.high ?? summary.mean),
-            },
-          ]
-        : [];
-    }),
-  );
+  const bars = meansOf(comparisons, options);
   const plot = Plot.plot({
     ...shared,
     width: widthFor(comparisons.length),
-    height: 360,
+    height,
     x: { axis: null, domain: [...sides], padding: 0.12 },
     fx: { label: null, domain: comparisons.map(options.nameOf), padding: 0.25 },
-    y: { label: null, domain: [low, high], grid: true, ticks: ticksOf(options) },
+    y: { label: null, domain: [low, high], grid: true, ticks: ticksOf(options), tickFormat: tickText },
     color: { domain: [...sides], range: [colours.first, colours.second] },
     marks: [
       Plot.barY(bars, { fx: 'of', x: 'side', y1: low, y2: 'mean', fill: 'side' }),
@@ -161,10 +164,10 @@ export function pairedChart(comparisons: readonly Comparison[], options: ChartOp
   const plot = Plot.plot({
     ...shared,
     width: widthFor(comparisons.length),
-    height: 360,
+    height,
     x: { axis: null, domain: ['second', 'first'], padding: 0.5 },
     fx: { label: null, domain: comparisons.map(options.nameOf), padding: 0.2 },
-    y: { label: null, domain: [...options.domain], grid: true, ticks: ticksOf(options) },
+    y: { label: null, domain: [...options.domain], grid: true, ticks: ticksOf(options), tickFormat: tickText },
     color: {
       domain: ['up', 'same', 'down', 'first', 'second'],
       range: [colours.first, '#8a95a3', colours.second, colours.first, colours.second],
@@ -188,6 +191,56 @@ export function pairedChart(comparisons: readonly Comparison[], options: ChartOp
     options,
     `${options.axis}; left ${options.labels.second}, right ${options.labels.first}`,
   );
+}
+
+/** Of a dot [pixels]. */
+const dotDiameter = 7;
+/** Across a comparison, from −0.5 to 0.5: the means in the middle, the dots of each side beyond its mean. */
+const strip = { mean: 0.07, dots: 0.29, width: 0.34 } as const;
+
+/** Every participant (or group) of two cohorts as a dot, alike ones side by side, next to means and 95 % confidence intervals. */
+export function stripChart(
+  comparisons: readonly CohortComparison[],
+  options: ChartOptions<CohortComparison> & { readonly each: string },
+): SVGSVGElement {
+  const [low, high] = options.domain;
+  const width = widthFor(comparisons.length, 130);
+  const padding = 0.1;
+  const comparisonWidth = ((width - shared.marginLeft - 20) * (1 - padding)) / (comparisons.length + padding);
+  const diameter = ((high - low) * dotDiameter) / (height - shared.marginTop - shared.marginBottom);
+  const outwards = { first: -1, second: 1 } as const;
+  const dots = comparisons.flatMap((comparison) =>
+    sides.flatMap((side) => {
+      const values = comparison.values[side];
+      const beside = swarm(
+        values.map((value) => value / diameter),
+        (strip.width * comparisonWidth) / dotDiameter,
+      );
+      return values.map((value, index) => ({
+        of: options.nameOf(comparison),
+        side,
+        value,
+        x: outwards[side] * strip.dots + ((beside[index] as number) * dotDiameter) / comparisonWidth,
+      }));
+    }),
+  );
+  const means = meansOf(comparisons, options).map((one) => ({ ...one, x: outwards[one.side] * strip.mean }));
+  const plot = Plot.plot({
+    ...shared,
+    width,
+    height,
+    x: { axis: null, domain: [-0.5, 0.5] },
+    fx: { label: null, domain: comparisons.map(options.nameOf), padding },
+    y: { label: null, domain: [low, high], grid: true, ticks: ticksOf(options), tickFormat: tickText },
+    color: { domain: [...sides], range: [colours.first, colours.second] },
+    marks: [
+      Plot.dot(dots, { fx: 'of', x: 'x', y: 'value', fill: 'side', fillOpacity: 0.65, r: dotDiameter / 2 }),
+      Plot.ruleX(means, { fx: 'of', x: 'x', y1: 'from', y2: 'to', stroke: 'side', strokeWidth: 2.5 }),
+      Plot.dot(means, { fx: 'of', x: 'x', y: 'mean', fill: 'side', r: 5, stroke: 'white', strokeWidth: 1.5 }),
+    ],
+  });
+  const said = `each dot a ${options.each}, mean and 95 % confidence interval`;
+  return headed(plot as SVGSVGElement, options, `${options.axis}; ${said}`);
 }
 
 /** The picture as a file of its own. */

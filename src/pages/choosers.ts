@@ -22,8 +22,9 @@ export function chooser(
   return element('label', {}, element('span', {}, name), select);
 }
 
-/** Which two of several are compared; nothing where there are but two. */
+/** Which two of several are compared, `what` they are; nothing where there are but two. */
 export function pairChooser(
+  what: 'condition' | 'cohort',
   choices: readonly Choice[],
   [first, second]: readonly [string, string],
   choose: (pair: readonly [string, string]) => void,
@@ -31,8 +32,8 @@ export function pairChooser(
   if (choices.length < 3) return [];
   return [
     bar(
-      chooser('Compare', choices, first, (id) => choose([id, second])),
-      chooser('with', choices, second, (id) => choose([first, id])),
+      chooser(`Compare ${what}`, choices, first, (id) => choose([id, second])),
+      chooser(`with ${what}`, choices, second, (id) => choose([first, id])),
     ),
   ];
 }

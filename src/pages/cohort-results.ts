@@ -2,7 +2,7 @@ import { cohortTable } from '../core/study/cohort-table';
 import { type CohortComparison, type ComparedCohorts, compareCohorts } from '../core/study/compare-cohorts';
 import { element } from '../ui/element';
 import { cohortTesting, comparedTable } from './compared-tables';
-import { type Chart, meansFigure, questionCharts, scaleCharts } from './questionnaire-figures';
+import { type Chart, meansFigure, questionCharts, scaleCharts, scoreCharts, stripFigure } from './comparison-figures';
 import { bar, csvButton, plannedNote } from './result-cells';
 import type { Compared, ShownResults } from './shown-results';
 
@@ -28,20 +28,19 @@ function plannedParts(cohorts: Cohorts): readonly Node[] {
   ];
 }
 
-/** Means side by side; no figure of the paper shows cohorts. */
+/** Means, and every participant, side by side; no figure of the paper shows cohorts. */
 const figuresOf = (cohorts: Cohorts, charts: readonly Chart<CohortComparison>[]) =>
-  element(
-    'div',
-    { class: 'figures' },
-    ...charts.map((chart) => meansFigure(cohorts, { ...chart, file: `${chart.file}-cohorts`, note: '' })),
-  );
+  charts.map((chart) => {
+    const own = { ...chart, file: `${chart.file}-cohorts`, note: '' };
+    return element('div', { class: 'figures' }, meansFigure(cohorts, own), stripFigure(cohorts, own));
+  });
 
 function answerParts(cohorts: Cohorts): readonly Node[] {
   const { answers } = cohorts;
   if (answers.length === 0) return [];
   return [
     element('h3', {}, 'Questionnaires, between cohorts'),
-    figuresOf(cohorts, questionCharts(cohorts)),
+    ...figuresOf(cohorts, questionCharts(cohorts)),
     ...tableOf(cohorts, 'answers-cohorts', `Exploratory: answers, ${means}`, answers),
   ];
 }
@@ -51,7 +50,7 @@ function scaleParts(cohorts: Cohorts): readonly Node[] {
   if (scales.length === 0) return [];
   return [
     element('h3', {}, 'Scales, between cohorts'),
-    figuresOf(cohorts, scaleCharts(cohorts)),
+    ...figuresOf(cohorts, scaleCharts(cohorts)),
     ...tableOf(cohorts, 'scales-cohorts', `Exploratory: scales, ${means}`, scales),
   ];
 }
@@ -61,6 +60,7 @@ function scoreParts(cohorts: Cohorts): readonly Node[] {
   if (both.length === 0) return [];
   return [
     element('h3', {}, 'Scores, between cohorts'),
+    ...figuresOf(cohorts, scoreCharts(cohorts)),
     ...tableOf(cohorts, 'scores-cohorts', `Exploratory: scores, ${means}`, both),
   ];
 }

@@ -1,10 +1,8 @@
 import { type Comparison, compareConditions, type Results } from '../core/study/compare-conditions';
 import { comparisonTable } from '../core/study/result-tables';
 import { element } from '../ui/element';
-import { barChart, type ChartOptions, pairedChart } from './charts';
 import { comparedTable, pairTesting } from './compared-tables';
-import { figure } from './figure';
-import { type Chart, meansFigure, pairsFigure, questionCharts, scaleCharts } from './questionnaire-figures';
+import { type Chart, meansFigure, pairsFigure, questionCharts, scaleCharts, scoreCharts } from './comparison-figures';
 import { bar, csvButton, plannedNote } from './result-cells';
 import type { Compared, ShownResults } from './shown-results';
 
@@ -58,45 +56,16 @@ function scaleParts(pairs: Pairs): readonly Node[] {
 }
 
 function scoreParts(pairs: Pairs): readonly Node[] {
-  const { points, percent } = pairs;
-  const both = [...points, ...percent];
+  const both = [...pairs.points, ...pairs.percent];
   if (both.length === 0) return [];
   const caption =
     'Exploratory: paired comparisons of the scores: means of the blocks’ trials with 95 % confidence intervals, and tests';
   return [
     element('h3', {}, 'Scores'),
-    ...percent.map((comparison) => scoreFigures(pairs, comparison)),
+    ...scoreCharts(pairs).map(bothFigures(pairs)),
     comparedTable(pairs, pairTesting, caption, both),
     saved(pairs, 'scores-compared', both),
   ];
-}
-
-function scoreFigures({ results, labels }: Pairs, comparison: Comparison): HTMLElement {
-  const { plan, simulated } = results.study;
-  const name = results.titleOf(comparison.of);
-  const task = plan.tasks.find(({ id }) => id === comparison.of);
-  const alone = (task?.groupSize ?? 1) === 1;
-  const options: Omit<ChartOptions<Comparison>, 'title'> = {
-    labels,
-    simulated,
-    nameOf: () => name,
-    axis: 'score in per cent of the maximum',
-    domain: [0, 100],
-  };
-  return element(
-    'div',
-    { class: 'figures' },
-    figure(
-      barChart([comparison], { title: `${name}: scores`, ...options }),
-      `${name}: mean scores (the paper’s figure ${task?.game === 'ball' ? 14 : 12})`,
-      results.fileOf(`${comparison.of}-scores`),
-    ),
-    figure(
-      pairedChart([comparison], { title: `${name}: scores, pairs`, ...options }),
-      `${name}: every ${alone ? 'participant' : 'group'}`,
-      results.fileOf(`${comparison.of}-scores-pairs`),
-    ),
-  );
 }
 
 /** Two conditions, first − second: figures, tables, and who was left out of them. */

@@ -118,7 +118,9 @@ function conditionParts(results: ShownResults, selection: Selection, choose: Cho
     return { nodes: [], excluded: [...answers, ...scales, ...points].flatMap(({ voided }) => voided) };
   }
   const { nodes, excluded } = pairResults(results, conditions);
-  const choosing = pairChooser(plan.conditions, conditions, (pair) => choose({ ...selection, conditions: pair }));
+  const choosing = pairChooser('condition', plan.conditions, conditions, (pair) =>
+    choose({ ...selection, conditions: pair }),
+  );
   const same = conditions[0] === conditions[1];
   return {
     nodes: [
@@ -139,7 +141,7 @@ function cohortParts(results: ShownResults, selection: Selection, choose: Choose
     label: view.length === 1 ? results.labelOf(view[0] ?? '') : 'all conditions, the mean of each participant',
   }));
   const choosing = [
-    ...pairChooser(plan.cohorts ?? [], cohorts, (pair) => choose({ ...selection, cohorts: pair })),
+    ...pairChooser('cohort', plan.cohorts ?? [], cohorts, (pair) => choose({ ...selection, cohorts: pair })),
     ...(views.length === 1
       ? []
       : [bar(chooser('Under', views, under.join(' '), (id) => choose({ ...selection, under: id.split(' ') })))]),

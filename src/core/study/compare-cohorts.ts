@@ -6,6 +6,8 @@ import type { Measure, Measured } from './measures';
 
 /** One measure in two cohorts. */
 export interface CohortComparison extends Measured {
+  /** What each participant (or group) has, in the order of the participants: for strip charts. */
+  readonly values: { readonly first: readonly number[]; readonly second: readonly number[] };
   /** null: no one of the cohort has a value. */
   readonly first: MeanSummary | null;
   readonly second: MeanSummary | null;
@@ -39,7 +41,7 @@ export function compareCohorts(
     const second = valuesIn(cohorts[1]);
     const both = first.length > 0 && second.length > 0;
     return {
-      ...{ of, asked, unit, first: summaryOf(first), second: summaryOf(second) },
+      ...{ of, asked, unit, values: { first, second }, first: summaryOf(first), second: summaryOf(second) },
       test: both ? welchTest(first, second) : null,
       rankSum: both ? rankSumTest(first, second) : null,
     };

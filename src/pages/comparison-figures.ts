@@ -1,10 +1,11 @@
+import type { CohortComparison } from '../core/study/compare-cohorts';
 import type { Comparison } from '../core/study/compare-conditions';
 import type { Measured } from '../core/study/measures';
 import { languagesOf } from '../core/study/plan';
 import type { AnswerForm } from '../core/study/questionnaire-schema';
 import { scaleRange } from '../core/study/questionnaire-scores';
 import { inLanguage } from '../core/study/words';
-import { barChart, pairedChart, type TwoSided } from './charts';
+import { barChart, pairedChart, stripChart, type TwoSided } from './charts';
 import { figure } from './figure';
 import type { Compared } from './shown-results';
 
@@ -20,11 +21,13 @@ export interface Chart<One extends Two> {
   readonly nameOf: (one: One) => string;
   /** Behind the caption of the means. */
   readonly note: string;
+  /** Who has a value of their own. */
+  readonly each: 'participant' | 'group';
 }
 
 /** The means of a chart. */
 export function meansFigure<One extends Two>({ results, labels }: Compared<One>, chart: Chart<One>): HTMLElement {
-  const { comparisons, title, file, note, ...options } = chart;
+  const { comparisons, title, file, note, each: _, ...options } = chart;
   const { simulated } = results.study;
   const bars = barChart(comparisons, { title, labels, simulated, ...options });
   return figure(bars, `${title}, means${note}`, results.fileOf(file));
@@ -32,10 +35,21 @@ export function meansFigure<One extends Two>({ results, labels }: Compared<One>,
 
 /** Every pair of a chart. */
 export function pairsFigure({ results, labels }: Compared<Comparison>, chart: Chart<Comparison>): HTMLElement {
-  const { comparisons, title, file, note: _, ...options } = chart;
+  const { comparisons, title, file, note: _, each, ...options } = chart;
   const { simulated } = results.study;
   const lines = pairedChart(comparisons, { title: `${title}, pairs`, labels, simulated, ...options });
-  return figure(lines, `${title}, every participant`, results.fileOf(`${file}-pairs`));
+  return figure(lines, `${title}, every ${each}`, results.fileOf(`${file}-pairs`));
+}
+
+/** Every participant of two cohorts. */
+export function stripFigure(
+  { results, labels }: Compared<CohortComparison>,
+  chart: Chart<CohortComparison>,
+): HTMLElement {
+  const { comparisons, title, file, note: _, each, ...options } = chart;
+  const { simulated } = results.study;
+  const dots = stripChart(comparisons, { title, labels, simulated, each, ...options });
+  return figure(dots, `${title}, every ${each}`, results.fileOf(`${file}-strip`));
 }
 
 type Ranged = Extract<AnswerForm, { from: number }>;
@@ -80,6 +94,7 @@ export function questionCharts<One extends Two>({ results, answers }: Compared<O
       domain: [form.from, form.to],
       nameOf: ({ asked: of }) => of?.question ?? '',
       note: paperFigures[questionnaire.id] ?? '',
+      each: 'participant',
       ...before,
       comparisons: [...(before?.comparisons ?? []), one],
     });
@@ -104,8 +119,26 @@ export function scaleCharts<One extends Two>({ results, scales }: Compared<One>)
       domain,
       nameOf: ({ asked: of }) => results.titleOf(of?.task ?? ''),
       note: '',
+      each: 'participant',
       comparisons: [...(charts.get(key)?.comparisons ?? []), one],
     });
   }
   return [...charts.values()];
 }
+
+/** A chart for each task that was played for points. */
+export const scoreCharts = <One extends Two>({ results, percent }: Compared<One>): readonly Chart<One>[] =>
+  percent.map((comparison) => {
+    const name = results.titleOf(comparison.of);
+    const task = results.study.plan.tasks.find(({ id }) => id === comparison.of);
+    return {
+      comparisons: [comparison],
+      title: `${name}: scores`,
+      file: `${comparison.of}-scores`,
+      axis: 'score in per cent of the maximum',
+      domain: [0, 100],
+      nameOf: () => name,
+      note: ` (the paper’s figure ${task?.game === 'ball' ? 14 : 12})`,
+      each: (task?.groupSize ?? 1) === 1 ? 'participant' : 'group',
+    };
+  });
