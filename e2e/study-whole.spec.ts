@@ -203,7 +203,7 @@ test('a study of added latency from its file to a verified zip: one participant 
 
   await page.goto(`${origin}/results?study=${plan.id}`);
   // By hand: ownership is the mean of 2, 5 and 8 − 1 under 100 ms, of 1, 4 and 8 − 7 under none; the work load that of 5 to 80, and of 0 to 75.
-  for (const row of [/^ownership Ownership 2 4\.67 .* 2\.00 /, /^raw Workload, raw 2 42\.50 .* 37\.50 /]) {
+  for (const row of [/^Ownership, Archery 2 4\.67 .* 2\.00 /, /^Workload, raw, Archery 2 42\.50 .* 37\.50 /]) {
     await expect(page.getByRole('row', { name: row }).first()).toBeVisible();
   }
   await page.screenshot({ path: 'artifacts/screenshots/study-whole-results.png', fullPage: true });
