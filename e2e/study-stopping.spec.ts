@@ -8,7 +8,7 @@ test('a participant with no one beside them is checked, asked whether to stop, a
   page,
   origin,
 }) => {
-  test.setTimeout(180_000);
+  test.setTimeout(480_000);
   const remote = { contact: 'Write to lab@example.org, or call 555 0100.', freeSpace: 2 };
   const short = shortStudy('stopping');
   const tasks = short.tasks.map((task) => ({
