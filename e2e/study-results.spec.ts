@@ -131,4 +131,9 @@ test('cohorts of a mixed study are chosen on the results page, each participant 
   await keepPicture(page, 'study-cohorts');
   await page.getByLabel('Compare cohort').selectOption('stout');
   await expect(page.getByText('Choose two different cohorts.')).toBeVisible();
+
+  await page.goto(`/experimenter?study=${plan.id}`);
+  const row = page.getByRole('row', { name: /^P01 / });
+  await expect(row.getByText(`cohort: ${cohortOf.get('P01')?.id}`)).toBeVisible();
+  await expect(row.getByText(/^archery: late.* → late.* → late/)).toBeVisible();
 });

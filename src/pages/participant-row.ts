@@ -87,17 +87,20 @@ function placeText(schedule: Schedule, id: string): string {
   return `${step.task}, block ${step.block}${of}: ${step.kind}`;
 }
 
+/** The cohort, where the plan has some, and the order of conditions in each task. */
 function orderTexts(schedule: Schedule, of: StudyPlan): readonly string[] {
-  return of.tasks.map(({ id, groupSize }) => {
+  // A name of a condition or cohort is not divided between two lines.
+  const whole = (id: string) => id.replaceAll('-', '\u2011');
+  const orders = of.tasks.map(({ id, groupSize }) => {
     const blocks = schedule.steps.flatMap((step) =>
       step.kind === 'trial' && step.task === id && step.repetition === 1 ? [step.condition] : [],
     );
     const group = schedule.groups[id];
     const together =
       groupSize > 1 && group ? ` with ${group.members.filter((name) => name !== schedule.participant).join(', ')}` : '';
-    // A name of a condition is not divided between two lines.
-    return `${id}: ${blocks.map((condition) => condition.replaceAll('-', '\u2011')).join(' → ')}${together}`;
+    return `${id}: ${blocks.map(whole).join(' → ')}${together}`;
   });
+  return schedule.cohort === null ? orders : [`cohort: ${whole(schedule.cohort)}`, ...orders];
 }
 
 function stateBadge({ session, claimed, withdrawn }: ParticipantState, silence: number): HTMLElement {

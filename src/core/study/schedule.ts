@@ -41,6 +41,8 @@ export type StudyStep =
 export interface Schedule {
   readonly study: string;
   readonly participant: string;
+  /** null: the plan has none. */
+  readonly cohort: string | null;
   readonly consentVersion: string;
   /** From which answers on a participant is asked whether to stop. */
   readonly askToStop: readonly StopLimit[];
@@ -65,7 +67,7 @@ export function scheduleFor(plan: StudyPlan, participant: string): Schedule {
     { kind: 'consent', id: 'consent' },
     { kind: 'demographics', id: 'demographics' },
   ];
-  const cohort = cohortsByParticipant(plan).get(participant) ?? {};
+  const cohort = cohortsByParticipant(plan).get(participant);
   for (const task of plan.tasks) {
     const all = groupsOf(plan, task.groupSize);
     const index = all.findIndex((members) => members.includes(participant));
@@ -73,13 +75,16 @@ export function scheduleFor(plan: StudyPlan, participant: string): Schedule {
     const order = ordersByGroup(plan, task)[index] as readonly StudyCondition[];
     const asked = questionnairesAfter(task).map((id) => questionnaireNamed(plan, id) as Questionnaire);
     steps.push(
-      ...order.flatMap((condition, place) => blockSteps({ task, condition, cohort, block: place + 1, asked })),
+      ...order.flatMap((condition, place) =>
+        blockSteps({ task, condition, cohort: cohort ?? {}, block: place + 1, asked }),
+      ),
     );
   }
   steps.push({ kind: 'end', id: 'end' });
   return {
     study: plan.id,
     participant,
+    cohort: cohort?.id ?? null,
     consentVersion: plan.consent.version,
     askToStop: plan.askToStop ?? [],
     groups,

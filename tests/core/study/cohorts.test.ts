@@ -17,6 +17,15 @@ const bodies = (count: number): StudyCohort[] =>
 const [archery] = paperPlan().tasks as [StudyTask];
 
 describe('cohorts', () => {
+  test('stand in the schedules of those who are in them, and in none where the plan has none', () => {
+    const plan = checkedPlan(paperPlan({ cohorts: bodies(2), participants: 6, tasks: [archery] }));
+    const drawn = cohortsByParticipant(plan);
+    expect(participantsOf(plan).map((one) => scheduleFor(plan, one).cohort)).toEqual(
+      participantsOf(plan).map((one) => drawn.get(one)?.id),
+    );
+    expect(scheduleFor(paperPlan(), 'P01').cohort).toBeNull();
+  });
+
   test('are as large as each other, those who play together are in one, and every order comes in each', () => {
     fc.assert(
       fc.property(
