@@ -35,6 +35,10 @@ function svgNode(tag: string, attributes: Readonly<Record<string, string | numbe
   return node;
 }
 
+/** A note whose words would run out of the picture [pixels] is divided behind what the axis is; letters are about so wide. */
+const noteLines = (note: string, width: number, letter = 6.3): readonly string[] =>
+  note.length * letter <= width ? [note] : note.split(/(?<=;) /);
+
 /** Title, key and, where it applies, the mark of simulation: inside the picture, so that no copy of it loses them. */
 function headed(
   plot: SVGSVGElement | HTMLElement,
@@ -53,7 +57,9 @@ function headed(
     plot.append(svgNode('text', { ...text, x: x + 18, y: 48.5, 'font-size': 13 }, labels[side]));
     x += 38 + labels[side].length * 7.4;
   }
-  plot.append(svgNode('text', { ...text, x: 12, y: 66, 'font-size': 12, fill: '#5b6776' }, note));
+  for (const [index, line] of noteLines(note, width - 24).entries()) {
+    plot.append(svgNode('text', { ...text, x: 12, y: 66 + 15 * index, 'font-size': 12, fill: '#5b6776' }, line));
+  }
   if (simulated) {
     const mark = {
       ...text,
