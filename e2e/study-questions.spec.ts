@@ -60,8 +60,8 @@ test('questions of every kind are answered alike in the headset and at the desk,
   await reaches(page, 'trial-ready');
   await press(page, 'start');
   await reaches(page, 'question-mine', 60_000);
-  await keepPicture(page, 'study-question-likert');
   await press(page, 'answer-6');
+  await keepPicture(page, 'study-question-likert');
   await press(page, 'next');
   await press(page, 'answer-2');
   await press(page, 'next');
@@ -79,8 +79,8 @@ test('questions of every kind are answered alike in the headset and at the desk,
   await keepPicture(page, 'study-question-text');
   await press(page, 'submit');
   await reaches(page, 'question-mental');
-  await keepPicture(page, 'study-question-tlx');
   await press(page, 'answer-35');
+  await keepPicture(page, 'study-question-tlx');
   await press(page, 'next');
   // What was begun in the headset goes on at the desk.
   await headset.endSession();
@@ -117,6 +117,7 @@ test('questions of every kind are answered alike in the headset and at the desk,
   await field.fill('3');
   await next.click();
   await field.pressSequentially('ok');
+  await keepPicture(page, 'study-question-text-desktop');
   await page.getByRole('button', { name: 'Hand in' }).click();
   await reaches(page, 'question-mental');
   await keepPicture(page, 'study-question-tlx-desktop');
