@@ -1,6 +1,6 @@
 import { readdirSync, readFileSync } from 'node:fs';
 import { changed, type GltfJson } from '../tests/avatar/glb';
-import { ktx2Picture } from '../tests/avatar/ktx2-picture';
+import { etc1sPicture, ktx2Picture, zstdPicture } from '../tests/avatar/ktx2-picture';
 import { expect, joint, keepPicture, open, openWithHeadset, probe, settledJoint, test } from './page-fixture';
 
 const avatarFile = readdirSync('public/avatars').find((name) => name.endsWith('.vrm'));
@@ -115,6 +115,16 @@ test('pictures packed as KTX2 are unpacked under the page’s policy; one that c
   await expect.poll(async () => (await probe(page)).avatar.name).toMatch(/packed/);
   await expect.poll(() => magenta(page)).toBeGreaterThan(200);
   await keepPicture(page, 'avatar-in-ktx2');
+  for (const [name, picture] of [
+    ['etc1s', etc1sPicture],
+    ['zstandard', zstdPicture],
+  ] as const) {
+    await page.getByRole('button', { name: 'Back to ours' }).click();
+    await expect.poll(() => magenta(page)).toBe(0);
+    await give(`${name}.vrm`, picture);
+    await expect.poll(async () => (await probe(page)).avatar.name).toMatch(name);
+    await expect.poll(() => magenta(page)).toBeGreaterThan(200);
+  }
   await give('broken.vrm', broken);
   await expect(page.getByRole('alert')).toContainText('broken.vrm');
 });

@@ -36,3 +36,36 @@ export function ktx2Picture(rows: readonly (readonly Colour[])[]): Uint8Array<Ar
   ];
   return new Uint8Array(write(container));
 }
+
+const magenta: Colour = [255, 0, 255, 255];
+const blue: Colour = [0, 0, 255, 255];
+
+/** What the packed pictures below show, in squares of four pixels. */
+export const packedColours: readonly (readonly Colour[])[] = [
+  [magenta, blue, magenta],
+  [
+    [0, 200, 0, 255],
+    [128, 128, 128, 255],
+    [255, 255, 0, 255],
+  ],
+  [magenta, blue, magenta],
+];
+
+const ofText = (lines: readonly string[]) => new Uint8Array(Buffer.from(lines.join(''), 'base64'));
+
+/** These colours as Basis Universal's encoder packs them, which code of ours cannot: ETC1S, whose blocks share codebooks (BasisLZ). */
+export const etc1sPicture = ofText([
+  'q0tUWCAyMLsNChoKAAAAAAEAAAAMAAAADAAAAAAAAAAAAAAAAQAAAAEAAAABAAAAaAAAACwAAACUAAAAJAAAALgAAAAAAAAAkQAAAAAAAABJAQ',
+  'AAAAAAAAMAAAAAAAAAAAAAAAAAAAAsAAAAAAAAAAIAKACjAQIAAwMAAAgAAAAAAAAAAAA/AAAAAAAAAAAA/////x8AAABLVFh3cml0ZXIAQmFz',
+  'aXMgVW5pdmVyc2FsIDIuNTAAAAUAAgAxAAAACQAAAC8AAAAAAAAAAAAAAAAAAAADAAAAAAAAAAAAAAAgQJQAAAAAAIgHskQCmBAAAAAAAIEmyA',
+  'UwIQAAAAAAAukEBGAKAAAAAAAEygKZEu4MrKqqqlJVVVUFAMFEAAAAAAAA8l+tAJgAIAAAAACBWoaACQECAAAAIIiuNEUBYAIAAAAAAAABCAA4',
+  'ZDE=',
+]);
+
+/** The same as UASTC in a frame of Zstandard. */
+export const zstdPicture = ofText([
+  'q0tUWCAyMLsNChoKAAAAAAEAAAAMAAAADAAAAAAAAAAAAAAAAQAAAAEAAAACAAAAaAAAACwAAACUAAAAJAAAAAAAAAAAAAAAAAAAAAAAAAC4AA',
+  'AAAAAAAEAAAAAAAAAAkAAAAAAAAAAsAAAAAAAAAAIAKACmAQIAAwMAABAAAAAAAAAAAAB/AAAAAAAAAAAA/////x8AAABLVFh3cml0ZXIAQmFz',
+  'aXMgVW5pdmVyc2FsIDIuNTAAACi1L/0gkL0BADQC9x/g/x984AEAFwDg/x8CGeD/Ax4AFxAQ8B9ACPf/H+AffA8HAI0hAlAMKAYQNZQHM3fJwB',
+  'E=',
+]);

@@ -5,7 +5,7 @@ import { describe, expect, test } from 'vitest';
 import { functionOfText } from '../../src/avatar/basis-functions';
 import { inspectAvatar } from '../../src/avatar/inspect-avatar';
 import { changed } from './glb';
-import { type Colour, ktx2Picture } from './ktx2-picture';
+import { type Colour, etc1sPicture, ktx2Picture, packedColours, zstdPicture } from './ktx2-picture';
 
 const colours: readonly (readonly Colour[])[] = [
   [
@@ -19,31 +19,53 @@ const colours: readonly (readonly Colour[])[] = [
 ];
 
 /** What the transcoder makes of the picture in a Node that compiles no text. */
-async function transcoded(...more: string[]) {
+async function transcoded(picture: Uint8Array, ...more: string[]) {
   const script = fileURLToPath(new URL('transcode-without-text.ts', import.meta.url));
   const flags = ['--disallow-code-generation-from-strings', '--import', 'tsx'];
-  const { stdout } = await promisify(execFile)(process.execPath, [...flags, script, JSON.stringify(colours), ...more]);
+  const { stdout } = await promisify(execFile)(process.execPath, [
+    ...flags,
+    script,
+    Buffer.from(picture).toString('base64'),
+    ...more,
+  ]);
   return JSON.parse(stdout);
 }
 
 describe('the Basis transcoder where no text may be compiled', () => {
-  test('unpacks a KTX2 picture to its pixels, by functions made of values', async () => {
-    const { compiles, size, pixels, complaints } = await transcoded();
-    expect(compiles).toBe(false);
-    expect(size).toEqual([8, 8]);
-    const at = (x: number, y: number) => pixels.slice(4 * (8 * y + x), 4 * (8 * y + x) + 4);
-    for (const [row, squares] of colours.entries()) {
-      for (const [column, colour] of squares.entries()) {
-        expect(at(4 * column, 4 * row)).toEqual(colour);
-        expect(at(4 * column + 3, 4 * row + 3)).toEqual(colour);
+  test.each([
+    { packed: 'UASTC', picture: ktx2Picture(colours), shown: colours, within: 0 },
+    // Five bits a channel and one brightness for a block.
+    { packed: 'ETC1S', picture: etc1sPicture, shown: packedColours, within: 12 },
+    { packed: 'UASTC in Zstandard', picture: zstdPicture, shown: packedColours, within: 2 },
+  ])(
+    'unpacks a KTX2 picture ($packed) to its pixels, by functions made of values',
+    async (packed) => {
+      const { compiles, size, pixels, complaints } = await transcoded(packed.picture);
+      const side = 4 * packed.shown.length;
+      expect(compiles).toBe(false);
+      expect(size).toEqual([side, side]);
+      for (const [row, squares] of packed.shown.entries()) {
+        for (const [column, colour] of squares.entries()) {
+          for (const [x, y] of [
+            [4 * column, 4 * row],
+            [4 * column + 3, 4 * row + 3],
+          ] as const) {
+            const pixel: number[] = pixels.slice(4 * (side * y + x), 4 * (side * y + x) + 4);
+            for (const [channel, value] of pixel.entries())
+              expect(Math.abs(value - colour[channel]!), `${pixel} for ${colour}`).toBeLessThanOrEqual(packed.within);
+          }
+        }
       }
-    }
-    expect(complaints[0]).toContain('deleted object');
-    expect(complaints[1]).toContain('invalid number of parameters');
-  }, 60_000);
+      expect(complaints[0]).toContain('deleted object');
+      expect(complaints[1]).toContain('invalid number of parameters');
+    },
+    60_000,
+  );
 
   test('does nothing as it is', async () => {
-    expect(await transcoded('--as-it-is')).toMatchObject({ error: expect.stringContaining('EvalError') });
+    expect(await transcoded(ktx2Picture(colours), '--as-it-is')).toMatchObject({
+      error: expect.stringContaining('EvalError'),
+    });
   }, 60_000);
 
   test('asks for no other text than is known', () => {
@@ -71,8 +93,12 @@ function told(at: number, value: number): Uint8Array {
 const look = (picture: Uint8Array) => inspectAvatar(new Uint8Array(withKtx2(picture)), 'person.vrm');
 
 describe('a KTX2 picture in an avatar', () => {
-  test('passes as others do', () => {
-    expect(() => look(ktx2Picture(colours))).not.toThrow();
+  test.each([
+    ['UASTC', ktx2Picture(colours)],
+    ['ETC1S', etc1sPicture],
+    ['UASTC in Zstandard', zstdPicture],
+  ])('passes as others do: %s', (_, picture) => {
+    expect(() => look(picture)).not.toThrow();
   });
 
   test.each([

@@ -3,7 +3,6 @@ import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { runInThisContext } from 'node:vm';
 import { functionOfText } from '../../src/avatar/basis-functions';
-import { ktx2Picture } from './ktx2-picture';
 
 const folder = new URL('../../node_modules/three/examples/jsm/libs/basis/', import.meta.url);
 const script = readFileSync(new URL('basis_transcoder.js', folder), 'utf8').replace(/if \(typeof exports[\s\S]*$/, '');
@@ -23,8 +22,7 @@ async function transcode() {
   const wasmBinary = readFileSync(new URL('basis_transcoder.wasm', folder));
   const basis = await makeBasis(require, '.')({ wasmBinary });
   basis.initializeBasis();
-  const colours = JSON.parse(process.argv[2]!);
-  const file = new basis.KTX2File(ktx2Picture(colours));
+  const file = new basis.KTX2File(new Uint8Array(Buffer.from(process.argv[2]!, 'base64')));
   file.startTranscoding();
   const pixels = new Uint8Array(file.getImageTranscodedSizeInBytes(0, 0, 0, rgba32));
   file.transcodeImage(pixels, 0, 0, 0, rgba32, 0, -1, -1);
