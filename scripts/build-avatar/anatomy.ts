@@ -43,6 +43,23 @@ const each = (region: Region, change: (part: Part) => Part): Region => ({ ...reg
 export const movedRegion = (region: Region, move: Parameters<typeof moved>[1]): Region =>
   each(region, (one) => ({ ...one, solid: moved(one.solid, move) }));
 
+/**
+ * What lies on the clavicle of shoulder joints so far out of the middle [m]: the trapezius, which slopes by some 20° from the neck down to the
+ * acromion, and the muscles before it; so thick against the mannequin's. The acromion's skin is 4 cm above the joint: a hanging arm then lies under it.
+ */
+export const shoulderGirdle = (shoulder: number, thick: number): Part[] => [
+  part(
+    'trunk',
+    0.02,
+    taperedCapsule([0.02, 1.446, -0.03], [shoulder - 0.034, 1.383, -0.018], 0.047 * thick, 0.031 * thick),
+  ),
+  part(
+    'trunk',
+    0.02,
+    taperedCapsule([0.03, 1.375, 0.02], [shoulder - 0.051, 1.374, 0.006], 0.045 * thick, 0.037 * thick),
+  ),
+];
+
 export const mannequinTorso: Region = {
   inner: 0.055,
   joint: 0.05,
@@ -53,8 +70,7 @@ export const mannequinTorso: Region = {
     part('trunk', 0.02, ellipsoid([0, 0.975, -0.004], [0.143, 0.105, 0.094])),
     part('trunk', 0.02, ellipsoid([0.07, 1.305, 0.043], [0.085, 0.066, 0.038], 0.2)),
     part('trunk', 0.02, ellipsoid([0.1, 1.24, -0.048], [0.058, 0.13, 0.048])),
-    part('trunk', 0.02, taperedCapsule([0.02, 1.445, -0.03], [0.145, 1.396, -0.016], 0.046, 0.04)),
-    part('trunk', 0.02, taperedCapsule([0.03, 1.375, 0.02], [0.13, 1.385, 0.008], 0.045, 0.042)),
+    ...shoulderGirdle(0.181, 1),
     part('trunk', 0.02, ellipsoid([0.072, 0.93, -0.046], [0.074, 0.085, 0.062])),
   ],
 };
@@ -115,19 +131,27 @@ const onArm = (region: Region, { armDepth }: BodyRig): Region => movedRegion(reg
 export function armOf(rig: BodyRig, { shoulder: d, upperArm: u, forearm: f }: Girths): Region {
   const { armHeight: y } = rig;
   const { shoulder, elbow, wrist } = rig.armJoints;
+  // What is more of a thick arm lies under it.
+  const sag = 0.03 * Math.max(0, u - 1);
   return onArm(
     {
       inner: 0.028,
       joint: 0.06,
       parts: [
-        part('leftUpperArm', 0.018, ellipsoid([shoulder + 0.012, y - 0.004, 0.004], [0.066 * d, 0.058 * d, 0.054 * d])),
+        part('leftUpperArm', 0.018, ellipsoid([shoulder + 0.012, y - 0.014, 0.004], [0.064 * d, 0.048 * d, 0.054 * d])),
         part(
           'leftUpperArm',
           0.016,
-          taperedCapsule([shoulder + 0.02, y, 0], [elbow - 0.02, y, 0], 0.043 * u, 0.034 * u),
+          taperedCapsule([shoulder + 0.02, y - 0.008 - sag, 0], [elbow - 0.02, y, 0], 0.042 * u, 0.034 * u),
         ),
-        part('leftUpperArm', 0.016, ellipsoid([shoulder + 0.14, y, 0.016], [0.085, 0.035 * u, 0.034 * u])),
-        part('leftUpperArm', 0.016, ellipsoid([shoulder + 0.14, y + 0.002, -0.018], [0.095, 0.036 * u, 0.032 * u])),
+        part('leftUpperArm', 0.016, ellipsoid([shoulder + 0.14, y - sag, 0.016], [0.085, 0.035 * u, 0.034 * u])),
+        part(
+          'leftUpperArm',
+          0.016,
+          ellipsoid([shoulder + 0.14, y + 0.002 - sag, -0.018], [0.095, 0.036 * u, 0.032 * u]),
+        ),
+        // The olecranon: what an elbow that is bent is pointed by.
+        part('leftLowerArm', 0.016, ellipsoid([elbow + 0.004, y, -0.024 * f], [0.022, 0.017 * f, 0.0175 * f])),
         part('leftLowerArm', 0.016, taperedCapsule([elbow, y, 0], [wrist - 0.01, y, -0.002], 0.0365 * f, 0.0225 * f)),
         part('leftLowerArm', 0.016, ellipsoid([elbow + 0.075, y + 0.003, 0.008], [0.085, 0.034 * f, 0.036 * f])),
         part('leftLowerArm', 0.016, ellipsoid([elbow + 0.08, y - 0.002, -0.018], [0.09, 0.034 * f, 0.03 * f])),

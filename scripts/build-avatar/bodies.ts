@@ -117,6 +117,7 @@ const man = person(
     },
   },
   { skin: '#7a4e35', hair: '#15100e', top: '#d9d4c7', bottom: '#33475f' },
+  5_150,
 );
 
 const stout = person(
@@ -130,7 +131,7 @@ const stout = person(
     belly: { at: [0, 1.075, 0.045], radii: [0.145, 0.125, 0.125] },
     seat: 1.15,
     neck: 1.14,
-    trapezius: 1.12,
+    trapezius: 1.02,
     limbs: { shoulder: 0.88, upperArm: 1.22, forearm: 1.16, thigh: 1.15, calf: 1.12 },
     feet: 1.05,
     head: {
@@ -143,13 +144,13 @@ const stout = person(
     },
     hair: 'curls',
     wears: {
-      top: { off: 0.014, sleeve: 0.665, hem: 0.95, neck: 0.01, ribbed: true },
+      top: { off: 0.011, sleeve: 0.665, hem: 0.95, neck: 0.01, ribbed: true },
       bottom: { off: 0.004, cuffOff: 0.018, cuff: 0.075 },
       shoes: 0.085,
     },
   },
   { skin: '#e0ac86', hair: '#7a4324', top: '#b5523b', bottom: '#3c3f45' },
-  4_400,
+  4_300,
 );
 
 const child = person(
@@ -168,9 +169,10 @@ const child = person(
     head: {
       size: 1.3,
       width: 1.0,
-      eye: { radii: [0.0168, 0.0122], out: 0.0318, slant: 0.0004 },
-      brow: { thickness: 0.002, above: 0.022 },
-      cheeks: 0.005,
+      eye: { radii: [0.0158, 0.0108], out: 0.0316, slant: 0.0004 },
+      brow: { thickness: 0.002, above: 0.0205 },
+      jaw: 0.9,
+      cheeks: 0.007,
       mouth: [0.0185, 0.0064],
       nose: 0.72,
     },

@@ -27,6 +27,23 @@ function importance({ positions }: Surface, { rig, careful }: Figure): Float32Ar
   });
 }
 
+/** No edge is longer than this where an elbow bends and where a shoulder turns [m]: bent, they would be seen as corners. */
+const bending = { elbow: { within: 0.045, longest: 0.025 }, shoulder: { within: 0.06, longest: 0.034 } };
+
+/** How long edges may be at a place [m]. */
+function finenessOf({ rig, finer }: Figure): (x: number, y: number, z: number) => number {
+  const { elbow, shoulder } = rig.armJoints;
+  const { elbow: atElbow, shoulder: atShoulder } = bending;
+  return (x, y, z) => {
+    const own = finer?.(x, y, z) ?? 1;
+    const aside = Math.abs(x);
+    if (Math.abs(aside - elbow) < atElbow.within && y > rig.armHeight - 0.1) return Math.min(own, atElbow.longest);
+    if (Math.hypot(aside - shoulder - 0.01, y - rig.armHeight) < atShoulder.within)
+      return Math.min(own, atShoulder.longest);
+    return own;
+  };
+}
+
 const middleOf = ({ positions, indices }: Surface, t: number): Point =>
   [0, 1, 2].map(
     (axis) => [0, 1, 2].reduce((sum, corner) => sum + positions[3 * indices[t + corner]! + axis]!, 0) / 3,
@@ -52,8 +69,10 @@ export async function buildBody(figure: Figure, report?: (what: string) => void,
   const weighed = importance(fine, figure);
   const coarse = await decimate(fine, normalsOf(body, fine.positions, shadedOver), weighed, figure.triangles);
   let surface = projectOnto(body, coarse);
-  if (figure.finer) surface = projectOnto(body, refine(surface, figure.finer));
-  for (const { value } of seams) surface = cutAlong(surface, value);
+  surface = projectOnto(body, refine(surface, finenessOf(figure)));
+  const settled = new Set<number>();
+  // What lies over others comes last: a thin line through a surface that is cut along its middle already keeps both edges.
+  for (const { value } of seams.toReversed()) surface = cutAlong(surface, value, settled);
   surface = compact(surface);
   report?.(`${surface.indices.length / 3} triangles`);
   const kinds: Label[] = [];

@@ -44,11 +44,18 @@ export const onAverageHead = (
   z: number,
 ): Point => [foldedX(x) / (size * width), root[1] + (y - root[1]) / size, root[2] + (z - root[2]) / size];
 
-const fromAverageHead = (
-  { size, width }: Pick<FaceMeasures, 'size' | 'width'>,
-  [x, y, z]: Point,
-  left: boolean,
-): Point => [(left ? 1 : -1) * x * size * width, root[1] + (y - root[1]) * size, root[2] + (z - root[2]) * size];
+/** A place on a head of these measures after what lies there on the average one has gone from one place to another; x ≥ 0 there, on both sides here. */
+const movedOnHead = (
+  { size }: Pick<FaceMeasures, 'size'>,
+  [worldX, worldY, worldZ]: Point,
+  from: Point,
+  to: Point,
+): Point => [
+  // In the middle, where both halves are rounded into one, nothing goes aside.
+  worldX * (to[0] / from[0]),
+  worldY + (to[1] - from[1]) * size,
+  worldZ + (to[2] - from[2]) * size,
+];
 
 /** Skull, jaw and chin. */
 export function skullOf({ jaw = 1 }: FaceMeasures): Region {
@@ -81,7 +88,11 @@ export const cheeksOf = (fullness: number): Region => ({
   inner: 0.02,
   joint: 0.03,
   parts: [
-    part('head', 0.02, ellipsoid([0.036, 1.552, 0.044], [0.022 + fullness, 0.024 + fullness, 0.022 + fullness])),
+    part(
+      'head',
+      0.02,
+      ellipsoid([0.036 + 0.6 * fullness, 1.554, 0.044], [0.022 + fullness, 0.024 + fullness, 0.022 + fullness]),
+    ),
     part('head', 0.02, ellipsoid([0.012, 1.514, 0.044], [0.024 + fullness, 0.016 + fullness, 0.02 + fullness])),
   ],
 });
@@ -99,13 +110,29 @@ function eyeRadius({ eye }: FaceMeasures, x: number, y: number, larger = 1): num
 const circle = (x: number, y: number, cx: number, cy: number, radius: number): number =>
   Math.hypot(x - cx, y - cy) - radius;
 
-/** Where the lips of the average head meet, half so thick [m]. */
+/** Where the lips of the average head meet [m]. */
 const lipsMeetAt = (x: number): number => mouthHeight + 6 * x * x;
-const lineThickness = 0.0013;
+/** Half of the dark line between lips [m]; its round ends lie before their corners. */
+const lineThickness = 0.0011;
+const lineEnd = 0.94;
+
+type MouthWidth = Pick<FaceMeasures, 'mouth'>;
+
+/** How far beyond the straight part of the line a place is [m]. */
+const beyondLine = ({ mouth: [wide] }: MouthWidth, x: number): number =>
+  Math.max(0, x - lineEnd * wide + lineThickness);
+
+/** Half of the line's thickness so far out of the middle [m]. */
+const halfLine = (face: MouthWidth, x: number): number =>
+  Math.sqrt(Math.max(0, lineThickness ** 2 - beyondLine(face, x) ** 2));
 
 /** The line between the lips on the average head: 0 on its edge, negative inside. */
-const mouthLine = ({ mouth: [wide] }: Pick<FaceMeasures, 'mouth'>, x: number, y: number): number =>
-  Math.max(Math.abs(y - lipsMeetAt(x)) - lineThickness * (1 - (x / wide) ** 2), x - 0.94 * wide);
+const mouthLine = (face: MouthWidth, x: number, y: number): number =>
+  Math.hypot(beyondLine(face, x), y - lipsMeetAt(x)) - lineThickness;
+
+/** Both lips, likewise. */
+const bothLips = ({ mouth: [wide, high] }: MouthWidth, x: number, y: number): number =>
+  high * (Math.hypot(x / wide, (y - lipsMeetAt(x) + 0.0008) / high) - 1);
 
 /** A line on the front of a head, drawn on the average one. */
 const onFront = (
@@ -118,17 +145,16 @@ const onFront = (
   };
 };
 
-/** A slit between the lips of a head, as thick to its ends: 0 on its edge, negative inside. */
-export const mouthSlit = (face: MouthMeasures, worldX: number, worldY: number, worldZ: number): number =>
-  onFront(face, (x, y) => Math.hypot(Math.max(x - 0.85 * face.mouth[0], 0), y - lipsMeetAt(x)) - lineThickness)(
-    worldX,
-    worldY,
-    worldZ,
-  );
+/** The line between the lips of a head and the lips: the upper one is cut by itself, so that vertices lie along the line's middle, too. */
+export const mouthSeams = (face: MouthMeasures, line: Seam['label'], lips: Seam['label']): readonly Seam[] => [
+  { label: line, value: onFront(face, (x, y) => mouthLine(face, x, y)) },
+  { label: lips, value: onFront(face, (x, y) => Math.max(bothLips(face, x, y), lipsMeetAt(x) - y)) },
+  { label: lips, value: onFront(face, (x, y) => bothLips(face, x, y)) },
+];
 
 /** Seams of eyes, brows and mouth; each is 0 on its line and negative inside. */
 export function faceSeams(face: FaceMeasures): readonly Seam[] {
-  const { eye, brow, mouth } = face;
+  const { eye, brow } = face;
   const [a, b] = eye.radii;
   const inFace = (value: (x: number, y: number) => number) => onFront(face, value);
   const eyeEdge = (x: number, y: number) => b * (eyeRadius(face, x, y) - 1);
@@ -146,7 +172,12 @@ export function faceSeams(face: FaceMeasures): readonly Seam[] {
     {
       label: 'Lash',
       value: inFace((x, y) =>
-        Math.max(b * (eyeRadius(face, x, y - 0.0006, 1.16) - 1), eyeHeight + 0.18 * b - y + eye.slant * 0.5),
+        // Not round the eye's outer corner, where the face turns aside.
+        Math.max(
+          b * (eyeRadius(face, x, y - 0.0006, 1.16) - 1),
+          eyeHeight + 0.18 * b - y + eye.slant * 0.5,
+          x - eye.out - 1.02 * a,
+        ),
       ),
     },
     {
@@ -158,11 +189,7 @@ export function faceSeams(face: FaceMeasures): readonly Seam[] {
         return Math.hypot(Math.max(Math.abs(dx) - 0.0145, 0), y - middle) - taper;
       }),
     },
-    { label: 'MouthLine', value: inFace((x, y) => mouthLine(face, x, y)) },
-    {
-      label: 'Lips',
-      value: inFace((x, y) => mouth[1] * (Math.hypot(x / mouth[0], (y - lipsMeetAt(x) + 0.0008) / mouth[1]) - 1)),
-    },
+    ...mouthSeams(face, 'MouthLine', 'Lips'),
   ];
 }
 
@@ -175,16 +202,16 @@ const smoothstep = (start: number, end: number, value: number): number => {
 export function faceFineness(face: FaceMeasures, worldX: number, worldY: number, worldZ: number): number {
   const [x, y, z] = onAverageHead(face, worldX, worldY, worldZ);
   if (z < 0.03 || y < chin) return 1;
-  if (eyeRadius(face, x, y) < 1.25) return 0.0031 * face.size;
+  if (eyeRadius(face, x, y) < 1.25) return 0.0036 * face.size;
   const atBrow = Math.abs(y - eyeHeight - face.brow.above) < 0.006 && Math.abs(x - face.eye.out) < 0.02;
-  return Math.min(mouthFineness(face, worldX, worldY, worldZ), (atBrow ? 0.0044 : 0.012) * face.size);
+  return Math.min(mouthFineness(face, worldX, worldY, worldZ), (atBrow ? 0.005 : 0.012) * face.size);
 }
 
 /** The same at a mouth alone. */
 export function mouthFineness(face: MouthMeasures, worldX: number, worldY: number, worldZ: number): number {
   const [x, y, z] = onAverageHead(face, worldX, worldY, worldZ);
   const [wide, high] = face.mouth;
-  return z > 0.03 && Math.hypot(x / wide, (y - mouthHeight) / (1.4 * high)) < 1.1 ? 0.0034 * face.size : 1;
+  return z > 0.03 && Math.hypot(x / wide, (y - mouthHeight) / (1.4 * high)) < 1.1 ? 0.0029 * face.size : 1;
 }
 
 /** How far around an eye the skin goes along with its lids [eyes]. */
@@ -202,29 +229,55 @@ export function closedEyes(face: FaceMeasures, worldX: number, worldY: number, w
   const dy = (y - eyeHeight - (face.eye.slant * (x - face.eye.out)) / a) / share;
   const closed = -0.45 * b * Math.sqrt(Math.max(0, 1 - (dx / a) ** 2)) + 0.03 * dy;
   const moved = (closed - dy) * (1 - smoothstep(1, lidReach, radius));
-  return fromAverageHead(face, [x, y + moved, z], worldX >= 0);
+  return movedOnHead(face, [worldX, worldY, worldZ], [x, y, z], [x, y + moved, z]);
 }
 
 /** Jaws turn about this line, before the ears [m], so far when the mouth is open [rad]; the upper lip is raised a little [m]. */
 const jawHinge = [1.572, -0.004] as const;
 const jawTurn = 0.16;
 const lipRaise = 0.0018;
+/** What of the jaw's turn the corners of a mouth take part in, and how much narrower an open one is [share]. */
+const cornerShare = 0.42;
+const narrowing = 0.1;
+/** So far from where the lips meet the skin stretches, above and below [m]; what is between them lies so deep when they are apart [m]. */
+const stretch = { above: 0.014, below: 0.022 };
+const depth = 0.012;
 /** Less than this is not seen [m]. */
 const unseen = 2e-4;
+
+/**
+ * What share of the jaw's turn a place takes part in, so far out of the middle and below where the lips meet [m]. Lips part in an
+ * oval: the lower goes with the jaw in the middle, both meet at the corners.
+ */
+function jawShare({ mouth: [wide] }: MouthWidth, x: number, below: number, isLower: boolean): number {
+  const parted = Math.sqrt(Math.max(0, 1 - (x / (lineEnd * wide - lineThickness)) ** 2));
+  if (!isLower) return cornerShare * (1 - parted) * smoothstep(-stretch.above, 0, below);
+  const lip = cornerShare + (1 - cornerShare) * parted;
+  return lip + (1 - lip) * smoothstep(0, stretch.below, below);
+}
 
 /** Where a place of the face goes when the mouth opens: the jaw turns down and back, and takes lips and chin along; null: it stays. */
 export function openMouth(face: MouthMeasures, worldX: number, worldY: number, worldZ: number): Point | null {
   const [x, y, z] = onAverageHead(face, worldX, worldY, worldZ);
   const [wide] = face.mouth;
   if (z < 0 || y < neckFront || y > eyeHeight) return null;
-  // Between the lips all of it happens across the line; beyond the corners cheeks stretch over so much more.
-  const stretch = lineThickness + 0.02 * smoothstep(0.75 * wide, 2 * wide, x);
   const below = lipsMeetAt(Math.min(x, wide)) - y;
+  // Between the lips: 0 on the line's upper edge, 1 on its lower one. Vertices of the edges lie on them but for rounding.
+  const half = 0.9 * halfLine(face, x);
+  const between = half > 0 ? Math.max(0, Math.min(1, (below / half + 1) / 2)) : Number(below > 0);
+  const upper = jawShare(face, x, Math.min(below, 0), false);
+  const lower = jawShare(face, x, Math.max(below, 0), true);
   const share =
-    smoothstep(-stretch, stretch, below) * smoothstep(0, 0.05, z) * smoothstep(neckFront, neckFront + 0.035, y);
+    (upper + (lower - upper) * between) * smoothstep(0, 0.05, z) * smoothstep(neckFront, neckFront + 0.035, y);
+  const nearLips = smoothstep(0.016, 0, Math.abs(below)) * (1 - smoothstep(wide, 2 * wide, x));
+  const raised = lipRaise * nearLips * (1 - smoothstep(0.3 * wide, wide, x)) * (1 - between);
   const [sine, cosine] = [Math.sin(share * jawTurn), Math.cos(share * jawTurn)];
   const [up, ahead] = [y - jawHinge[0], z - jawHinge[1]];
-  const raised = lipRaise * smoothstep(0.012, 0, Math.abs(below)) * (1 - smoothstep(0.4 * wide, wide, x)) * (1 - share);
-  const to: Point = [x, jawHinge[0] + cosine * up - sine * ahead + raised, jawHinge[1] + cosine * ahead + sine * up];
-  return Math.hypot(to[1] - y, to[2] - z) < unseen ? null : fromAverageHead(face, to, worldX >= 0);
+  const to: Point = [
+    x * (1 - narrowing * nearLips),
+    jawHinge[0] + cosine * up - sine * ahead + raised,
+    jawHinge[1] + cosine * ahead + sine * up - depth * 4 * between * (1 - between),
+  ];
+  if (Math.hypot(to[0] - x, to[1] - y, to[2] - z) < unseen) return null;
+  return movedOnHead(face, [worldX, worldY, worldZ], [x, y, z], to);
 }

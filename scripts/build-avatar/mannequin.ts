@@ -1,7 +1,8 @@
 import { mannequinAnatomy } from './anatomy';
-import { type MouthMeasures, mouthFineness, mouthSlit, openMouth } from './faces';
+import { type MouthMeasures, mouthFineness, mouthSeams, openMouth } from './faces';
 import type { Figure } from './figure';
 import { hipLine, makeRig } from './rig';
+import { smoothBoth } from './signed-distance';
 import type { Seam } from './surface-labels';
 
 const rig = makeRig();
@@ -13,20 +14,28 @@ const collar = (x: number, z: number): number => 1.452 - 0.12 * z + 0.4 * Math.m
 function yoke(x: number, y: number, z: number): number {
   const side = Math.abs(x);
   const hem = z > 0 ? 1.345 + 0.28 * side : 1.33 + 0.25 * side;
-  return Math.max(hem - y, y - collar(x, z), side - 0.15);
+  return smoothBoth(Math.max(hem - y, y - collar(x, z)), side - 0.15, 0.03);
 }
 
 /** A mouth as wide as lips of the average head are. */
 const mouth: MouthMeasures = { size: 1, width: 1, mouth: [0.0205, 0.007] };
 
+/** The face behind a visor that wraps from temple to temple and ends round there. */
+const visor = (x: number, y: number, z: number): number =>
+  smoothBoth(Math.abs(y - 1.592 + 0.1 * Math.abs(x)) - 0.026, 0.032 - z, 0.02) + 0.06 * x * x;
+
+/** How long edges may be at mouth, temples and the yoke's ends on the shoulders [m]. */
+function finer(x: number, y: number, z: number): number {
+  const side = Math.abs(x);
+  if (side > 0.04 && y > 1.5 && z < 0.05 && Math.abs(visor(x, y, z)) < 0.006) return 0.009;
+  if (side > 0.1 && y > 1.3 && y < 1.5 && Math.abs(yoke(x, y, z)) < 0.006) return 0.013;
+  return mouthFineness(mouth, x, y, z);
+}
+
 const seams: readonly Seam[] = [
-  // A slit between the lips, dark as the visor: what is behind it when the mouth opens.
-  { label: 'Visor', value: (x, y, z) => mouthSlit(mouth, x, y, z) },
-  // The face behind a visor that wraps from temple to temple.
-  {
-    label: 'Visor',
-    value: (x, y, z) => Math.max(Math.abs(y - 1.592 + 0.1 * Math.abs(x)) - 0.026, 0.032 - z + 0.0 * x) + 0.06 * x * x,
-  },
+  // The line between the lips, dark as the visor: what is behind it when the mouth opens.
+  ...mouthSeams(mouth, 'Visor', 'Head'),
+  { label: 'Visor', value: visor },
   // Gloves with a slanted cuff, boots, and a collar that runs into a yoke over the shoulders.
   { label: 'Accent', value: (x) => rig.armJoints.wrist - 0.045 - Math.abs(x) },
   { label: 'Accent', value: (_, y, z) => y - 0.13 - 0.12 * z },
@@ -47,7 +56,7 @@ export const mannequin: Figure = {
     [0.92, 1.74, 0.24],
   ],
   triangles: 11_500,
-  finer: (x, y, z) => mouthFineness(mouth, x, y, z),
+  finer,
   shapes: { aa: (x, y, z) => openMouth(mouth, x, y, z) },
   colors: {
     Suit: { color: [0.62, 0.66, 0.72], roughness: 0.62 },

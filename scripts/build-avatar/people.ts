@@ -16,6 +16,7 @@ import {
   palmOf,
   part,
   type Region,
+  shoulderGirdle,
 } from './anatomy';
 import {
   cheeksOf,
@@ -33,7 +34,7 @@ import type { Displacement, Figure } from './figure';
 import { type GarmentStyle, type Garments, garmentsOf } from './garments';
 import { type HairStyle, hairOf } from './hair';
 import { makeRig, type RigMeasures } from './rig';
-import { type DistanceField, ellipsoid, type Point, smoothUnion, taperedCapsule } from './signed-distance';
+import { type DistanceField, ellipsoid, type Point, smoothUnion } from './signed-distance';
 import { projectOnto } from './surface';
 import type { Seam } from './surface-labels';
 
@@ -72,7 +73,6 @@ export interface Person extends Anatomy {
 
 function torsoOf({ rig, chest, waist, hips, breast, belly, seat, trapezius }: PersonMeasures): Region {
   const shoulder = rig.shoulder ?? 0.181;
-  const t = trapezius;
   const trunk = (solid: Part['solid']) => part('trunk', 0.02, solid);
   return {
     inner: 0.055,
@@ -83,8 +83,7 @@ function torsoOf({ rig, chest, waist, hips, breast, belly, seat, trapezius }: Pe
       trunk(ellipsoid([0, 0.975, -0.004], [hips[0], 0.105, hips[1]])),
       trunk(ellipsoid(breast.at, breast.radii, 0.2)),
       trunk(ellipsoid([0.7 * chest[0], 1.24, -0.048], [0.42 * chest[0], 0.13, 0.46 * chest[1]])),
-      trunk(taperedCapsule([0.02, 1.445, -0.03], [shoulder - 0.036, 1.396, -0.016], 0.046 * t, 0.04 * t)),
-      trunk(taperedCapsule([0.03, 1.375, 0.02], [shoulder - 0.051, 1.385, 0.008], 0.045 * t, 0.042 * t)),
+      ...shoulderGirdle(shoulder, trapezius),
       trunk(ellipsoid([0.072, 0.93, -0.046], [0.074 * seat, 0.085, 0.062 * seat])),
       ...(belly ? [trunk(ellipsoid(belly.at, belly.radii))] : []),
     ],

@@ -14,7 +14,7 @@ export const labels = {
   Visor: { material: 'Visor' },
   Skin: { material: 'Skin' },
   Lips: { material: 'Skin', tint: [0.86, 0.5, 0.47] },
-  MouthLine: { material: 'Skin', tint: [0.36, 0.16, 0.15] },
+  MouthLine: { material: 'Skin', tint: [0.1, 0.035, 0.035] },
   Hair: { material: 'Hair' },
   Brow: { material: 'Details', tint: [0.035, 0.022, 0.016] },
   Top: { material: 'Top' },

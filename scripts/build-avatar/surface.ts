@@ -164,29 +164,73 @@ export function compact({ positions, indices }: Surface): Surface {
   return { positions: new Float32Array(kept), indices: compacted };
 }
 
+/** Vertices so near to a seam are put onto it [m]: no slivers. */
+const onSeam = 4e-4;
+
+type PlaceValue = (x: number, y: number, z: number) => number;
+
+/** Where on the way from one vertex to another a value is zero, 0 to 1: halved, as values of seams are not linear. */
+function zeroBetween(positions: readonly number[], a: number, b: number, value: PlaceValue): number {
+  const at = (t: number): number => {
+    const on = (axis: number) => positions[3 * a + axis]! * (1 - t) + positions[3 * b + axis]! * t;
+    return value(on(0), on(1), on(2));
+  };
+  const inside = at(0) < 0;
+  let [from, to] = [0, 1];
+  for (let step = 0; step < 16; step++) {
+    const middle = (from + to) / 2;
+    if (at(middle) < 0 === inside) from = middle;
+    else to = middle;
+  }
+  return (from + to) / 2;
+}
+
+/** Puts a vertex that is near to a seam onto it, along the value's gradient. */
+function putOnSeam(positions: number[], v: number, value: PlaceValue): void {
+  const step = 1e-4;
+  const [x, y, z] = [positions[3 * v]!, positions[3 * v + 1]!, positions[3 * v + 2]!];
+  const slope = [
+    (value(x + step, y, z) - value(x - step, y, z)) / (2 * step),
+    (value(x, y + step, z) - value(x, y - step, z)) / (2 * step),
+    (value(x, y, z + step) - value(x, y, z - step)) / (2 * step),
+  ] as const;
+  const far = value(x, y, z) / (slope[0] ** 2 + slope[1] ** 2 + slope[2] ** 2);
+  if (!(Math.abs(far) < 2 * onSeam)) return;
+  for (let axis = 0; axis < 3; axis++) positions[3 * v + axis]! -= far * slope[axis]!;
+}
+
 /**
- * Cuts triangles along the zero line of a value per vertex, so that the border between two materials is a smooth seam. New
- * vertices lie on the line; `source` tells which two old ones each came from and how far between them.
+ * Cuts triangles along the zero line of a value, so that the border between two materials is a smooth seam, on which vertices lie.
+ * `settled`: vertices of seams that were cut before, which stay where they are; those of this one are added.
  */
-export function cutAlong(surface: Surface, value: (x: number, y: number, z: number) => number): Surface {
+export function cutAlong(surface: Surface, value: PlaceValue, settled: Set<number>): Surface {
   const positions = Array.from(surface.positions);
-  const values: number[] = [];
-  const valueAt = (v: number): number =>
-    (values[v] ??= value(positions[3 * v]!, positions[3 * v + 1]!, positions[3 * v + 2]!));
-  // Vertices nearly on the line are taken to lie on it: no slivers.
-  const on = 4e-4;
-  const side = (v: number): number => (Math.abs(valueAt(v)) < on ? 0 : Math.sign(valueAt(v)));
+  const sides: number[] = [];
+  const sideOf = (v: number): number => {
+    const own = value(positions[3 * v]!, positions[3 * v + 1]!, positions[3 * v + 2]!);
+    if (Math.abs(own) >= onSeam) return Math.sign(own);
+    if (!settled.has(v)) putOnSeam(positions, v, value);
+    settled.add(v);
+    return 0;
+  };
+  const side = (v: number): number => {
+    const known = sides[v] ?? sideOf(v);
+    sides[v] = known;
+    return known;
+  };
   const between = new Map<string, number>();
   const crossing = (a: number, b: number): number => {
-    const key = a < b ? `${a},${b}` : `${b},${a}`;
+    const [first, second] = a < b ? [a, b] : [b, a];
+    const key = `${first},${second}`;
     let vertex = between.get(key);
     if (vertex === undefined) {
-      const t = valueAt(a) / (valueAt(a) - valueAt(b));
+      const t = zeroBetween(positions, first, second, value);
       vertex = positions.length / 3;
       for (let axis = 0; axis < 3; axis++) {
-        positions.push(positions[3 * a + axis]! * (1 - t) + positions[3 * b + axis]! * t);
+        positions.push(positions[3 * first + axis]! * (1 - t) + positions[3 * second + axis]! * t);
       }
-      values[vertex] = 0;
+      sides[vertex] = 0;
+      settled.add(vertex);
       between.set(key, vertex);
     }
     return vertex;
@@ -194,30 +238,35 @@ export function cutAlong(surface: Surface, value: (x: number, y: number, z: numb
   const indices: number[] = [];
   for (let t = 0; t < surface.indices.length; t += 3) {
     const triangle = [surface.indices[t]!, surface.indices[t + 1]!, surface.indices[t + 2]!] as const;
-    const polygons: Record<'1' | '-1', number[]> = { '1': [], '-1': [] };
-    const sides = triangle.map(side);
-    if (!sides.includes(1) || !sides.includes(-1)) {
-      indices.push(...triangle);
-      continue;
-    }
-    for (let e = 0; e < 3; e++) {
-      const a = triangle[e]!;
-      const b = triangle[(e + 1) % 3]!;
-      const sa = sides[e]!;
-      const sb = sides[(e + 1) % 3]!;
-      if (sa >= 0) polygons['1'].push(a);
-      if (sa <= 0) polygons['-1'].push(a);
-      if (sa * sb < 0) {
-        const c = crossing(a, b);
-        polygons['1'].push(c);
-        polygons['-1'].push(c);
-      }
-    }
-    for (const polygon of Object.values(polygons)) {
-      for (let i = 2; i < polygon.length; i++) indices.push(polygon[0]!, polygon[i - 1]!, polygon[i]!);
-    }
+    indices.push(...cutTriangle(triangle, triangle.map(side), crossing));
   }
   return { positions: new Float32Array(positions), indices: new Uint32Array(indices) };
+}
+
+/** A triangle, or what is of it on either side; `sides` of its corners: −1, 0 or 1. */
+function cutTriangle(
+  triangle: readonly [number, number, number],
+  sides: readonly number[],
+  crossing: (a: number, b: number) => number,
+): number[] {
+  if (!sides.includes(1) || !sides.includes(-1)) return [...triangle];
+  const polygons: Record<'1' | '-1', number[]> = { '1': [], '-1': [] };
+  for (let e = 0; e < 3; e++) {
+    const a = triangle[e]!;
+    const b = triangle[(e + 1) % 3]!;
+    const sa = sides[e]!;
+    const sb = sides[(e + 1) % 3]!;
+    if (sa >= 0) polygons['1'].push(a);
+    if (sa <= 0) polygons['-1'].push(a);
+    if (sa * sb < 0) {
+      const c = crossing(a, b);
+      polygons['1'].push(c);
+      polygons['-1'].push(c);
+    }
+  }
+  return Object.values(polygons).flatMap((polygon) =>
+    polygon.slice(2).flatMap((_, i) => [polygon[0]!, polygon[i + 1]!, polygon[i + 2]!]),
+  );
 }
 
 /** Halves edges until none is longer than `longest` allows at its middle [m]; triangles stay joined. */

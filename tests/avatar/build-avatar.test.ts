@@ -162,6 +162,45 @@ describe.each(figures.map((figure) => [figure.name, figure] as const))('the %s',
     expect(chin, 'what lies under the chin goes along').toBeLessThan(0);
   });
 
+  test('opens its mouth to both sides alike: what lies in the middle of the face stays there', () => {
+    const middle = vertices.filter(({ position: [x = 0], moves }) => moves.aa && Math.abs(x) < 0.006);
+    expect(middle.length).toBeGreaterThan(20);
+    for (const { moves } of middle) expect(Math.abs(moves.aa?.[0] ?? 0)).toBeLessThan(1e-3);
+  });
+
+  test('has shoulders that slope from the neck to the acromion, which lies 4 to 5.5 cm above the joint; the deltoid lies no higher', () => {
+    const { shoulder } = figure.rig.armJoints;
+    /** The highest skin so far out from the shoulder joint [m]. */
+    const top = (from: number, to: number) =>
+      Math.max(
+        ...vertices.flatMap(({ position: [x = 0, y = 0] }) => (x > shoulder + from && x < shoulder + to ? [y] : [])),
+      ) - figure.rig.armHeight;
+    const acromion = top(-0.02, 0.015);
+    expect(acromion).toBeGreaterThan(0.035);
+    expect(acromion).toBeLessThan(0.055);
+    expect(top(0.015, 0.09)).toBeLessThan(acromion + 1e-3);
+    expect(top(-0.08, -0.06)).toBeGreaterThan(acromion + 0.008);
+  });
+
+  test('has skin at its elbows that is fine enough to bend: no edge of 3 cm', () => {
+    const { elbow } = figure.rig.armJoints;
+    const places = corners.map((corner) => corner.split(',').map(Number));
+    let found = 0;
+    for (let t = 0; t < places.length; t += 3) {
+      const [a = [], b = [], c = []] = places.slice(t, t + 3);
+      for (const [[ax = 0, ay = 0, az = 0], [bx = 0, by = 0, bz = 0]] of [
+        [a, b],
+        [b, c],
+        [c, a],
+      ] as [number[], number[]][]) {
+        if (Math.abs(Math.abs(ax + bx) / 2 - elbow) > 0.035 || ay < figure.rig.armHeight - 0.1) continue;
+        found += 1;
+        expect(Math.hypot(bx - ax, by - ay, bz - az)).toBeLessThan(0.03);
+      }
+    }
+    expect(found).toBeGreaterThan(200);
+  });
+
   // A minute of a core, and nothing that changes by the day.
   if (isNightly) {
     test('comes out of its script byte by byte', { timeout: 240_000 }, async () => {
