@@ -86,8 +86,8 @@ test('three participants play the ball game together, each in a headset of their
   for (const { body } of trials) {
     expect(body.outcome.maximum).toBe(20);
     expect(body.outcome.ended).toBe('time');
-    // The match of the plan, 20 s, and no second of the pause.
-    expect(body.outcome.seconds).toBeGreaterThan(19);
+    // The match of the plan, 20 s, and no second of the pause; three pages on two cores draw its first and last frame up to a second late.
+    expect(body.outcome.seconds).toBeGreaterThan(18);
     expect(body.outcome.seconds).toBeLessThan(26);
   }
   await all((page) => page.context().close());
