@@ -1,11 +1,11 @@
 import { spawn } from 'node:child_process';
-import { createServer } from 'node:net';
 import { fileURLToPath } from 'node:url';
 import type { Browser } from '@playwright/test';
 import type { CourtProbe } from '../src/app/ball/ball-activity';
 import type { BallProbe } from '../src/app/ball/ball-frame';
 import { driveTime, goOn, holdAt } from './driven-time';
 import { emulatedHeadset } from './emulated-headset';
+import { freePort } from './free-port';
 import { enterVr, expect, joinedRoom, keepPicture, open, probe, test } from './page-fixture';
 
 // What is played does not depend on how many pixels show it.
@@ -90,16 +90,6 @@ test('a spectator sees three bots and follows one of them @full', async ({ page 
   await page.getByRole('group', { name: 'Camera' }).getByRole('button', { name: 'Kim' }).click();
   await expect(page.getByRole('button', { name: 'Kim', pressed: true })).toBeVisible();
 });
-
-/** A port of this machine on which nothing listens. */
-async function freePort(): Promise<number> {
-  const probing = createServer();
-  await new Promise<void>((resolve) => probing.listen(0, '127.0.0.1', resolve));
-  const address = probing.address();
-  await new Promise((resolve) => probing.close(resolve));
-  if (address === null || typeof address === 'string') throw new Error('no port was given');
-  return address.port;
-}
 
 /** The server as `npm start` runs it, page and relay on one port; it can be killed and started again. */
 async function startServer(seconds: number, port: number): Promise<{ kill(): Promise<void> }> {

@@ -1,5 +1,6 @@
 import type { CDPSession } from '@playwright/test';
 import { measured } from '../tests/reliability/measured';
+import { countsOf, megabytes } from './kept-memory';
 import { expect, open, probe, freshTest as test } from './page-fixture';
 
 type Page = Parameters<typeof open>[0];
@@ -19,8 +20,6 @@ interface Holdings {
   /** All of the heap after a collection [MB]: what the engine has compiled by now is part of it. */
   readonly heap: number;
 }
-
-const megabytes = (bytes: number) => bytes / 2 ** 20;
 
 /** What a page keeps [MB], after a collection, told apart by a heap snapshot: objects, and code that the engine compiles as it goes. */
 async function kept(cdp: CDPSession): Promise<{ readonly objects: number; readonly code: number }> {
@@ -42,10 +41,7 @@ async function kept(cdp: CDPSession): Promise<{ readonly objects: number; readon
 }
 
 async function holdings(page: Page, cdp: CDPSession): Promise<Holdings> {
-  await cdp.send('HeapProfiler.collectGarbage');
-  await cdp.send('HeapProfiler.collectGarbage');
-  const { metrics } = await cdp.send('Performance.getMetrics');
-  const metric = (name: string) => metrics.find((one) => one.name === name)?.value ?? Number.NaN;
+  const metric = await countsOf(cdp);
   const { geometries, textures, programs } = (await probe(page)).drawing;
   return {
     geometries,

@@ -62,7 +62,10 @@ interface Stay {
 /** The voices of a room of the ball game: who talks, from where, and what the user wants of it. */
 export class Voices {
   readonly #options: VoicesOptions;
-  readonly #microphone = new Microphone(() => this.#sendTrack());
+  readonly #microphone = new Microphone(() => {
+    this.#sendTrack();
+    if (this.#silent !== this.#toldSilent) this.#say();
+  });
   readonly #silenced = new Set<number>();
   readonly #hidden = new Set<number>();
   /** By seat: the session of a page that takes part; null: none does. */
@@ -78,6 +81,8 @@ export class Voices {
   #asked = false;
   #phase: 'off' | 'asked' | 'joining' | 'in' = 'off';
   #muted = true;
+  /** What the others know of `#silent`. */
+  #toldSilent = true;
   #fault: string | null = null;
   #stay: Stay | null = null;
 
@@ -93,7 +98,7 @@ export class Voices {
     const relay = terms !== null && hasRelay(terms);
     return {
       phase: there ? this.#phase : 'none',
-      muted: this.#muted,
+      muted: this.#silent,
       relay,
       relayOnly: relay && relayOnly(),
       said: this.#said,
@@ -187,7 +192,7 @@ export class Voices {
   }
 
   toggleMuted(): void {
-    void this.setMuted(!this.#muted);
+    void this.setMuted(!this.#silent);
   }
 
   /** Does not hear the player on this seat any more, or does again. */
@@ -258,6 +263,11 @@ export class Voices {
     this.leave();
   }
 
+  /** Nothing of the own voice is sent: by the user's wish, or for want of a microphone. */
+  get #silent(): boolean {
+    return this.#muted || this.#microphone.track === null;
+  }
+
   get #said(): string | null {
     if (this.#phase !== 'in') return this.#fault;
     if (this.#options.play.room?.mySeat === null) return 'You are watching: voices are for the players on the seats.';
@@ -286,7 +296,8 @@ export class Voices {
   }
 
   #say(): void {
-    if (this.#stay) this.#line?.say({ session: this.#stay.session, muted: this.#muted });
+    this.#toldSilent = this.#silent;
+    if (this.#stay) this.#line?.say({ session: this.#stay.session, muted: this.#toldSilent });
   }
 
   /** A muted microphone stays open, so that no question comes up in a headset; nothing of it is sent. */
@@ -371,6 +382,7 @@ export class Voices {
     stay.mesh.watch(performance.now() / 1000, play.status.phase === 'joined');
     // A headset's sleep stops the audio too.
     if (stay.context.state === 'suspended' && document.visibilityState === 'visible') void stay.context.resume();
+    stay.sound.mend();
     void this.#terms?.watch().then((renewed) => renewed && this.#stay?.mesh.configure(this.#configurationOf(renewed)));
   }
 }

@@ -32,12 +32,19 @@ interface Level {
 }
 
 interface Heard {
+  readonly stream: MediaStream;
   /** A stream of another page stays silent unless an element plays it too (Chromium issue 933677). */
   readonly element: HTMLAudioElement;
   readonly source: MediaStreamAudioSourceNode;
   readonly level: Level;
   readonly gain: GainNode;
   readonly panner: PannerNode;
+}
+
+function pull(element: HTMLAudioElement, stream: MediaStream): void {
+  element.srcObject = stream;
+  // Muted, it needs no gesture; an element that was removed before it played rejects.
+  void element.play().catch(() => undefined);
 }
 
 /** The voices of others from where their heads are, for the ears of the stage that the context belongs to; floor frame. */
@@ -47,7 +54,12 @@ export class VoiceSound {
   readonly #bus: GainNode;
   readonly #meter: AnalyserNode;
   readonly #samples = new Float32Array(window);
-  #own: { readonly source: MediaStreamAudioSourceNode; readonly level: Level } | null = null;
+  #own: {
+    readonly track: MediaStreamTrack;
+    readonly source: MediaStreamAudioSourceNode;
+    readonly level: Level;
+  } | null = null;
+  #ownOn = false;
 
   /** Volume and mute of the game's own sounds do not touch voices. */
   constructor(context: AudioContext) {
@@ -62,9 +74,7 @@ export class VoiceSound {
     const context = this.#context;
     const element = new Audio();
     element.muted = true;
-    element.srcObject = stream;
-    // Muted, it needs no gesture; an element that was removed before it played rejects.
-    void element.play().catch(() => undefined);
+    pull(element, stream);
     const source = context.createMediaStreamSource(stream);
     const level = this.#level();
     const gain = context.createGain();
@@ -74,7 +84,7 @@ export class VoiceSound {
     panner.refDistance = near;
     panner.rolloffFactor = rolloff;
     source.connect(level.analyser).connect(gain).connect(panner).connect(this.#bus);
-    this.#heard.set(id, { element, source, level, gain, panner });
+    this.#heard.set(id, { stream, element, source, level, gain, panner });
   }
 
   remove(id: string): void {
@@ -84,6 +94,11 @@ export class VoiceSound {
     heard.source.disconnect();
     heard.panner.disconnect();
     heard.element.srcObject = null;
+  }
+
+  /** To be called often: elements fail where the device's audio ends and begins anew, and their voices would stay silent from then on. */
+  mend(): void {
+    for (const { element, stream } of this.#heard.values()) if (element.error) pull(element, stream);
   }
 
   /** Where a voice comes from, floor frame. */
@@ -107,19 +122,22 @@ export class VoiceSound {
     return heard ? this.#read(heard.level) : 0;
   }
 
-  /** The own microphone's track, for its level alone; null: there is none. */
+  /**
+   * The own microphone's track, for its level alone; null: nothing of it is sent. A track's source is kept for when it is sent again: Chromium
+   * lets go of none before its context is closed, however often it was disconnected (tried with Chromium 156).
+   */
   setOwn(track: MediaStreamTrack | null): void {
+    this.#ownOn = track !== null;
+    if (!track || track === this.#own?.track) return;
     this.#own?.source.disconnect();
-    this.#own = null;
-    if (!track) return;
     const source = this.#context.createMediaStreamSource(new MediaStream([track]));
     const level = this.#level();
     source.connect(level.analyser);
-    this.#own = { source, level };
+    this.#own = { track, source, level };
   }
 
   ownLevel(): number {
-    return this.#own ? this.#read(this.#own.level) : 0;
+    return this.#own && this.#ownOn ? this.#read(this.#own.level) : 0;
   }
 
   /** How loud all voices together are at the ears [dB of full scale], for tools; −120: silent. */
@@ -129,7 +147,8 @@ export class VoiceSound {
 
   dispose(): void {
     for (const id of [...this.#heard.keys()]) this.remove(id);
-    this.setOwn(null);
+    this.#own?.source.disconnect();
+    this.#own = null;
     this.#bus.disconnect();
     this.#meter.disconnect();
   }
