@@ -20,7 +20,54 @@ export interface TalkerOptions {
   readonly query?: string;
   /** Runs in the page before anything of it. */
   readonly inPage?: () => void;
+  /** What is seen of the page [CSS pixels]. */
+  readonly viewport?: { readonly width: number; readonly height: number };
+  /** Environment of a browser that uses the sound of the machine, instead of a microphone that says syllables. */
+  readonly device?: Readonly<Record<string, string>>;
+  /** Of its frames four a second are computed and next to none is drawn: for a person who is only heard. */
+  readonly seldomDrawn?: boolean;
 }
+
+/**
+ * In the page: four frames a second, each computed whole; one a minute is drawn too. Several people on a machine that draws in software leave
+ * each other no time, and what is said and kept does not depend on what is drawn.
+ */
+function drawSeldom(): void {
+  const waiting = new Map<number, FrameRequestCallback>();
+  let last = 0;
+  window.requestAnimationFrame = (callback) => {
+    last += 1;
+    waiting.set(last, callback);
+    return last;
+  };
+  window.cancelAnimationFrame = (handle) => void waiting.delete(handle);
+  let frames = 0;
+  setInterval(() => {
+    frames += 1;
+    const now = [...waiting.values()];
+    waiting.clear();
+    for (const callback of now) callback(performance.now());
+  }, 250);
+  const { prototype } = WebGL2RenderingContext;
+  for (const name of [
+    'clear',
+    'drawArrays',
+    'drawElements',
+    'drawArraysInstanced',
+    'drawElementsInstanced',
+    'blitFramebuffer',
+  ] as const) {
+    const draw = prototype[name] as (...given: unknown[]) => void;
+    Object.assign(prototype, {
+      [name](this: WebGL2RenderingContext, ...given: unknown[]) {
+        if (frames % 240 === 0) draw.apply(this, given);
+      },
+    });
+  }
+}
+
+/** Drawn by a graphics device in software, what is written on the game's boards costs more than all the rest. */
+const withoutGraphics = ['--disable-accelerated-2d-canvas', '--disable-gpu-compositing', '--disable-gpu-rasterization'];
 
 type Server = Awaited<ReturnType<typeof serveStudies>>;
 
@@ -59,20 +106,25 @@ export const test = base.extend<VoicesFixtures, { voiceFile: string }>({
   // After `serve`: browsers are closed before the servers that their pages are from.
   talker: async ({ serve: _, voiceFile, launchOptions }, use) => {
     const browsers: { close(): Promise<void> }[] = [];
-    await use(async (origin, name, { microphone = 'given', query = '', inPage } = {}) => {
+    const usual = { width: 1100, height: 700 };
+    await use(async (origin, name, options = {}) => {
+      const { microphone = 'given', query = '', inPage, viewport = usual, seldomDrawn = false, device } = options;
       const fake = ['--use-fake-device-for-media-stream', `--use-file-for-fake-audio-capture=${voiceFile}`];
       const server = await chromium.launchServer({
         ...launchOptions,
-        args: [...(launchOptions.args ?? []), ...(microphone === 'none' ? [] : fake)],
+        ...(device && { env: device, ignoreDefaultArgs: ['--mute-audio'] }),
+        args: [
+          ...(launchOptions.args ?? []),
+          ...(microphone === 'none' || device ? [] : fake),
+          ...(seldomDrawn ? withoutGraphics : []),
+        ],
       });
       browsers.push(server);
       const browser = await chromium.connect(server.wsEndpoint());
-      const context = await browser.newContext({
-        viewport: { width: 1100, height: 700 },
-        serviceWorkers: 'block',
-      });
+      const context = await browser.newContext({ viewport, serviceWorkers: 'block' });
       await context.grantPermissions(microphone === 'refused' ? [] : ['microphone'], { origin });
       const page = await context.newPage();
+      if (seldomDrawn) await page.addInitScript(drawSeldom);
       if (inPage) await page.addInitScript(inPage);
       const address = new URLSearchParams({
         ...{ play: 'ball', room: 'meadow', panel: 'off', quality: 'low', estimator: 'ik', overlay: 'off', bots: 'off' },

@@ -1,10 +1,10 @@
 import { spawn } from 'node:child_process';
 import { once } from 'node:events';
 import { readFileSync } from 'node:fs';
-import { createServer } from 'node:net';
 import { fileURLToPath } from 'node:url';
 import { parse } from 'yaml';
 import { installed } from '../tests/server/installed';
+import { freePort } from './free-port';
 
 export const turnProgram = installed('turnserver');
 export const turnSecret = 'turn-kN3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
@@ -22,18 +22,8 @@ function composeArguments(): readonly string[] {
   return words.map((word) => word.replace('"$$SECRET"', turnSecret));
 }
 
-async function freePort(): Promise<number> {
-  const server = createServer().listen(0, '127.0.0.1');
-  await once(server, 'listening');
-  const address = server.address();
-  server.close();
-  await once(server, 'close');
-  if (address === null || typeof address === 'string') throw new Error('no port is free');
-  return address.port;
-}
-
-/** coturn as deploy/compose.yaml starts it, on this machine's own loopback and a port of its own. */
-export async function startTurn() {
+/** coturn as deploy/compose.yaml starts it, on this machine's own loopback and a port of its own; `more`: arguments beside those. */
+export async function startTurn(...more: readonly string[]) {
   const port = await freePort();
   const here = [
     `--listening-port=${port}`,
@@ -43,9 +33,13 @@ export async function startTurn() {
     '--no-dtls',
   ];
   // On the internet no page may be reached on the relay's own machine; here both are.
-  const child = spawn(turnProgram ?? 'turnserver', [...composeArguments(), ...here, '--allow-loopback-peers'], {
-    stdio: ['ignore', 'pipe', 'pipe'],
-  });
+  const child = spawn(
+    turnProgram ?? 'turnserver',
+    [...composeArguments(), ...here, '--allow-loopback-peers', ...more],
+    {
+      stdio: ['ignore', 'pipe', 'pipe'],
+    },
+  );
   let said = '';
   const hear = (text: string) => {
     said += text;

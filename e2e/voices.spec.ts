@@ -1,4 +1,5 @@
 import { expect } from '@playwright/test';
+import { serviceOf } from './browser-processes';
 import { cutNetwork } from './cut-network';
 import { emulatedHeadset, type Point } from './emulated-headset';
 import { distance, enterVr, joinedRoom, keepPicture, probe } from './page-fixture';
@@ -125,13 +126,63 @@ test('a voice comes back after the network was lost, and with the page after a r
   await heard(ann);
 });
 
-test('what keeps a person from talking is a sentence: refused, no microphone, no seat, a server without voices @nightly', async ({
+/** In the page: a test can ask the microphones that it was given. */
+function keepMicrophones(): void {
+  const kept: MediaStreamTrack[] = [];
+  window.microphonesOfPage = kept;
+  const { mediaDevices } = navigator;
+  const given = mediaDevices.getUserMedia.bind(mediaDevices);
+  mediaDevices.getUserMedia = async (constraints) => {
+    const stream = await given(constraints);
+    kept.push(...stream.getAudioTracks());
+    return stream;
+  };
+}
+
+test('a microphone that its device ends is taken again; refused then, a sentence says so and the others see it @full', async ({
   serve,
   talker,
 }) => {
   test.setTimeout(300_000);
   const { origin } = await serve();
-  const { page: refused } = await talker(origin, 'Ann', { microphone: 'refused' });
+  const { page: ann } = await talker(origin, 'Ann', { seldomDrawn: true });
+  const { page: ben, pid } = await talker(origin, 'Ben', { seldomDrawn: true, inPage: keepMicrophones });
+  const microphones = () => ben.evaluate(() => window.microphonesOfPage?.map(({ readyState }) => readyState));
+  for (const page of [ann, ben]) {
+    await joinVoices(page);
+    await bar(page).getByRole('button', { name: 'Unmute me' }).click();
+  }
+  await heard(ann);
+  await heard(ben);
+
+  // All audio of this browser ends and begins anew, as in a headset that slept: tracks end by themselves, contexts are suspended.
+  process.kill(serviceOf(pid, 'AudioService'), 'SIGKILL');
+  await expect.poll(microphones).toEqual(['ended', 'live']);
+  await heard(ann);
+  await heard(ben);
+  await expect(bar(ben).getByRole('button', { name: 'Mute me (T)', exact: true })).toBeVisible();
+
+  // Taking the permission back ends the microphone too.
+  await ben.context().clearPermissions();
+  await expect(bar(ben)).toContainText('The browser does not let this page use the microphone');
+  await expect(bar(ben)).toContainText('You hear the others all the same.');
+  await silent(ann);
+  await expect.poll(async () => (await otherOf(ann))?.voice).toBe('muted');
+  await heard(ben);
+
+  await ben.context().grantPermissions(['microphone'], { origin });
+  await bar(ben).getByRole('button', { name: 'Look for a microphone' }).click();
+  await heard(ann);
+  expect(await microphones()).toEqual(['ended', 'ended', 'live']);
+});
+
+test('what keeps a person from talking is a sentence: refused, no microphone, no seat, a server without voices @nightly', async ({
+  serve,
+  talker,
+}) => {
+  test.setTimeout(600_000);
+  const { origin } = await serve();
+  const { page: refused } = await talker(origin, 'Ann', { microphone: 'refused', seldomDrawn: true });
   await joinVoices(refused);
   await expect(bar(refused)).toContainText('The browser does not let this page use the microphone');
   await expect(bar(refused)).toContainText('You hear the others all the same.');
@@ -142,7 +193,7 @@ test('what keeps a person from talking is a sentence: refused, no microphone, no
   await expect(bar(without).getByRole('button', { name: 'Look for a microphone' })).toBeVisible();
   await keepPicture(without, 'voices-no-microphone');
 
-  const { page: third } = await talker(origin, 'Cal');
+  const { page: third } = await talker(origin, 'Cal', { seldomDrawn: true });
   await joinVoices(third);
   await bar(third).getByRole('button', { name: 'Unmute me' }).click();
   await heard(refused);
@@ -155,7 +206,7 @@ test('what keeps a person from talking is a sentence: refused, no microphone, no
   expect((await voicesOf(fourth)).people.every(({ link }) => link === 'none')).toBe(true);
 
   const { origin: silentOrigin } = await serve({ THREEPOINT_VOICES: 'off' });
-  const { page: off } = await talker(silentOrigin, 'Eve');
+  const { page: off } = await talker(silentOrigin, 'Eve', { seldomDrawn: true });
   await expect.poll(async () => (await voicesOf(off)).phase).toBe('none');
   await expect(off.getByRole('button', { name: 'Talk with the others' })).toHaveCount(0);
   const allowed = () => document.featurePolicy?.allowsFeature('microphone') ?? null;
@@ -163,6 +214,10 @@ test('what keeps a person from talking is a sentence: refused, no microphone, no
 });
 
 declare global {
+  interface Window {
+    /** Put there by `keepMicrophones`: all tracks of microphones that the page was given. */
+    microphonesOfPage?: MediaStreamTrack[];
+  }
   interface Document {
     /** Chromium's own. */
     readonly featurePolicy?: { allowsFeature(feature: string): boolean };

@@ -1,0 +1,222 @@
+import { appendFileSync, mkdirSync, writeFileSync } from 'node:fs';
+import { dirname } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { type CDPSession, expect, type Page } from '@playwright/test';
+import { tell } from '../tests/tell';
+import { memoryOf } from './browser-processes';
+import { freePort } from './free-port';
+import { countsOf, type InspectedNode, inspectNode, megabytes } from './kept-memory';
+import { probe } from './page-fixture';
+import { bar, heard, loudness, type Talker, test, voicesOf } from './talkers';
+
+/** Of talk and play; THREEPOINT_SOAK_MINUTES for more, at least four. The nightly tests take the ten. */
+const minutes = Number(process.env.THREEPOINT_SOAK_MINUTES ?? 10);
+/** One person mutes and unmutes so often, */
+const mutesAMinute = 5;
+/** and the other leaves the voices and joins them again this often [minutes]. */
+const rejoinEvery = 5;
+
+/** A line for each minute, so that a run that breaks has told what it saw. */
+const file = fileURLToPath(new URL('../artifacts/soak.jsonl', import.meta.url));
+
+// A trace would keep each of the test's questions for hours, and film nothing that is looked at.
+test.use({ trace: 'off' });
+
+/** What a page holds after a collection. */
+interface PageHolds {
+  /** Objects and compiled code [MB]. */
+  readonly heap: number;
+  /** All processes of its browser [MB]: graphics, audio and network have theirs there. */
+  readonly browser: number;
+  readonly nodes: number;
+  readonly listeners: number;
+  /** Connections to others. */
+  readonly connections: number;
+  /** Nodes of all audio contexts. */
+  readonly audioNodes: number;
+  readonly geometries: number;
+  readonly textures: number;
+}
+
+/** What was seen at the end of a minute. */
+interface Minute {
+  readonly minute: number;
+  readonly ann: PageHolds;
+  readonly ben: PageHolds;
+  readonly server: { readonly heap: number; readonly all: number };
+  /** Matches begun since the start, and the voices at the ears of both [dB of full scale]. */
+  readonly matches: number;
+  readonly loudness: readonly [ann: number, ben: number];
+  /** Frames of Ann's page since it opened. */
+  readonly frames: number;
+}
+
+async function holdsOf({ page, pid }: Talker, cdp: CDPSession): Promise<PageHolds> {
+  const count = await countsOf(cdp);
+  const { geometries, textures } = (await probe(page)).drawing;
+  return {
+    heap: megabytes(count('JSHeapUsedSize')),
+    browser: memoryOf(pid),
+    nodes: count('Nodes'),
+    listeners: count('JSEventListeners'),
+    connections: count('RTCPeerConnections'),
+    audioNodes: count('AudioHandlers'),
+    geometries,
+    textures,
+  };
+}
+
+/** Reads what both pages and the server hold, now. */
+async function reader(people: readonly [Talker, Talker], server: InspectedNode, begun: number) {
+  const sessions: CDPSession[] = [];
+  for (const { page } of people) {
+    const cdp = await page.context().newCDPSession(page);
+    await cdp.send('Performance.enable');
+    sessions.push(cdp);
+  }
+  const [ann, ben] = people;
+  const [annCdp, benCdp] = sessions as [CDPSession, CDPSession];
+  return async (): Promise<Minute> => ({
+    minute: (Date.now() - begun) / 60_000,
+    ann: await holdsOf(ann, annCdp),
+    ben: await holdsOf(ben, benCdp),
+    server: await server.memory(),
+    matches: await ann.page.evaluate(() => window.soakMatches ?? 0),
+    loudness: [await loudness(ann.page, 3), await loudness(ben.page, 3)],
+    frames: (await probe(ann.page)).frame.count,
+  });
+}
+
+/** Counts the matches that begin in a page, in the page: it sees each of its own frames. */
+const countMatches = (page: Page) =>
+  page.evaluate(() => {
+    let was = '';
+    window.soakMatches = 0;
+    setInterval(() => {
+      const game = window.threepoint?.probe().game;
+      const phase = game?.name === 'ball' ? game.phase : was;
+      if (phase === 'running' && was !== phase) window.soakMatches = (window.soakMatches ?? 0) + 1;
+      was = phase;
+    }, 1000);
+  });
+
+const median = (values: readonly number[]): number =>
+  [...values].sort((a, b) => a - b)[values.length >> 1] ?? Number.NaN;
+
+/** How a figure stood in the second quarter of a run, and in the last: what was warming up is over, and one odd minute does not count. */
+function quarters(run: readonly Minute[], of: (minute: Minute) => number): readonly [second: number, last: number] {
+  const quarter = Math.ceil(run.length / 4);
+  return [median(run.slice(quarter, 2 * quarter).map(of)), median(run.slice(-quarter).map(of))];
+}
+
+/** Joins the voices and unmutes, by keys: there is little to be seen of the page. */
+async function join(page: Page): Promise<void> {
+  for (const name of ['Talk with the others', 'Join, muted', 'Unmute me (T)'])
+    await bar(page).getByRole('button', { name, exact: true }).press('Enter');
+}
+
+/** How a page stands with the other person. */
+async function voices(page: Page): Promise<readonly unknown[]> {
+  const other = (await voicesOf(page)).people.find(({ voice }) => voice !== 'none');
+  return [other?.link, other?.voice];
+}
+
+/** Both talk for a minute. What they press is what people press, more often. */
+async function talkForAMinute(minute: number, until: number, [ann, ben]: readonly [Page, Page]): Promise<void> {
+  for (let i = 0; i < mutesAMinute; i++) {
+    await bar(ann).getByRole('button', { name: 'Mute me (T)', exact: true }).press('Enter');
+    await expect.poll(async () => (await voices(ben))[1], { timeout: 60_000 }).toBe('muted');
+    await bar(ann).getByRole('button', { name: 'Unmute me (T)', exact: true }).press('Enter');
+  }
+  if (minute % rejoinEvery === 0) {
+    await bar(ben).getByRole('button', { name: 'Leave the voices' }).press('Enter');
+    await expect.poll(async () => (await voices(ann))[1], { timeout: 60_000 }).toBeUndefined();
+    await join(ben);
+  }
+  await ann.waitForFunction((end) => Date.now() > end, until, { polling: 1000, timeout: 120_000 });
+  for (const page of [ann, ben]) {
+    await expect.poll(async () => voices(page), { timeout: 60_000 }).toEqual(['connected', 'open']);
+    await heard(page);
+  }
+}
+
+/** How much more may be there in the last quarter of a run than in the second, where so much was, and one person has joined so often since. */
+const allowed: Readonly<Record<keyof PageHolds, (was: number, joins: number) => number>> = {
+  // What is compiled as it goes is part of it; a kilobyte a frame would be a megabyte in four minutes.
+  heap: (was) => 0.05 * was,
+  // Half-used pages, pictures on their way, audio in buffers: 5 % either way from one minute to the next.
+  browser: (was) => 0.1 * was,
+  // Sentences in the bar and captions.
+  nodes: (was) => 0.02 * was,
+  // Some wait for one event.
+  listeners: () => 5,
+  connections: () => 0,
+  // Sounds of the game that are in the air; and Chromium keeps the source of a stream until its context is closed: the own voice's, and the other's.
+  audioNodes: (_, joins) => 12 + 2 * joins,
+  geometries: () => 0,
+  textures: () => 0,
+};
+
+/** Whether anything has grown from the second quarter of the run to its last. */
+function judge(run: readonly Minute[]): void {
+  const figures: Record<string, string> = { matches: String(run.at(-1)?.matches) };
+  const joins = Math.ceil((0.75 * run.length) / rejoinEvery);
+  const compare = (
+    name: string,
+    of: (minute: Minute) => number,
+    more: (was: number, joins: number) => number,
+  ): void => {
+    const [second, last] = quarters(run, of);
+    figures[name] = `${second.toFixed(1)} → ${last.toFixed(1)}`;
+    const all = run.map((minute) => of(minute).toFixed(1)).join(', ');
+    expect.soft(last - second, `growth of ${name}: ${all}`).toBeLessThanOrEqual(more(second, joins));
+  };
+  for (const who of ['ann', 'ben'] as const)
+    for (const [name, more] of Object.entries(allowed) as [keyof PageHolds, (typeof allowed)['heap']][])
+      compare(`${who}, ${name}`, (minute) => minute[who][name], more);
+  compare('server, heap', ({ server }) => server.heap, allowed.heap);
+  compare('server, all', ({ server }) => server.all, allowed.heap);
+  tell(`soak of ${minutes} minutes`, figures);
+}
+
+declare global {
+  interface Window {
+    /** Put there by `countMatches` in e2e/soak.spec.ts. */
+    soakMatches?: number;
+  }
+}
+
+test('two people talk and play with a bot, match after match: what pages and server keep does not grow @nightly', async ({
+  serve,
+  talker,
+}) => {
+  test.setTimeout((minutes + 15) * 60_000);
+  const port = await freePort();
+  const { origin } = await serve({ NODE_OPTIONS: `--inspect=127.0.0.1:${port}` });
+  const light = { seldomDrawn: true, viewport: { width: 160, height: 120 } };
+  const ann = await talker(origin, 'Ann', { query: 'bots=on', ...light });
+  const ben = await talker(origin, 'Ben', light);
+  for (const { page } of [ann, ben]) await join(page);
+  await countMatches(ann.page);
+  const bots = async () => (await probe(ann.page)).players.map(({ bot }) => bot).sort();
+  await expect.poll(bots, { timeout: 60_000 }).toEqual([false, true]);
+  for (const { page } of [ann, ben]) await heard(page);
+  const begun = Date.now();
+  const server = await inspectNode(port);
+  try {
+    const read = await reader([ann, ben], server, begun);
+    mkdirSync(dirname(file), { recursive: true });
+    writeFileSync(file, '');
+    const run: Minute[] = [];
+    for (let minute = 1; minute <= minutes; minute++) {
+      await talkForAMinute(minute, begun + minute * 60_000, [ann.page, ben.page]);
+      const seen = await read();
+      appendFileSync(file, `${JSON.stringify(seen)}\n`);
+      run.push(seen);
+    }
+    judge(run);
+  } finally {
+    // A server that is inspected waits for the inspector before it ends.
+    server.close();
+  }
+});
