@@ -54,7 +54,8 @@ describe.each(['ci.yml', 'nightly.yml'])('%s', (file) => {
     for (const { env, steps, needs } of jobs(file)) {
       if (needs) continue;
       expect(env?.THREEPOINT_PROGRAMS).toBe('required');
-      expect(steps.some(({ run }) => run?.includes('haproxy redis-server'))).toBe(true);
+      for (const programs of ['haproxy redis-server', 'coturn pulseaudio pulseaudio-utils'])
+        expect(steps.some(({ run }) => run?.includes(programs))).toBe(true);
     }
   });
 
