@@ -1,0 +1,38 @@
+import type { ArcheryProbe } from '../src/app/archery/archery-play';
+import { driveTime, holdAt, pass } from './driven-time';
+import { expect, joint, keepPicture, open, test } from './page-fixture';
+
+// The pictures of README.md as the page shows them now: what is kept in artifacts/screenshots goes to docs/images as JPEG when it was
+// looked at. That of the ball game is taken from `npm start`: tests are served by a host without rooms, and the page says so.
+test.use({ viewport: { width: 1280, height: 720 } });
+
+const patience = { timeout: 240_000, intervals: [0] };
+
+test.beforeEach(() => test.setTimeout(600_000));
+
+test('the page: an avatar that waves before the mirror @nightly', async ({ page }) => {
+  await open(page, 'quality=high');
+  await driveTime(page);
+  // One hand above the shoulder, the other beside the hip: in a wave alone.
+  await expect
+    .poll(async () => {
+      await pass(page, 4);
+      return (await joint(page, 'rightHand'))[1] > 1.45 && (await joint(page, 'leftHand'))[1] < 1;
+    }, patience)
+    .toBe(true);
+  await pass(page, 12);
+  await keepPicture(page, 'readme-page');
+});
+
+test('archery: an archer at full draw, one target hit @nightly', async ({ page }) => {
+  await open(page, 'play=archery&seed=7&quality=high&panel=off');
+  await driveTime(page);
+  await holdAt<ArcheryProbe>(page, { score: 5 });
+  await expect
+    .poll(async () => {
+      await pass(page, 2);
+      return page.getByText('Fully drawn').isVisible();
+    }, patience)
+    .toBe(true);
+  await keepPicture(page, 'readme-archery');
+});
