@@ -166,7 +166,12 @@ describe('a mouth', () => {
   });
 
   test('of a head without lids has its shape before the first frame, for which programs are made, and then while it is open', async () => {
-    const avatar = createAvatar(await parseAvatar(changed(() => undefined), 'mannequin.vrm'));
+    const avatar = createAvatar(
+      await parseAvatar(
+        changed(() => undefined),
+        'mannequin.vrm',
+      ),
+    );
     avatar.fitTo(defaultCalibration);
     const shaped = (): number => {
       let meshes = 0;
