@@ -22,8 +22,8 @@ function composeArguments(): readonly string[] {
   return words.map((word) => word.replace('"$$SECRET"', turnSecret));
 }
 
-/** coturn as deploy/compose.yaml starts it, on this machine's own loopback and a port of its own; `more`: arguments beside those. */
-export async function startTurn(...more: readonly string[]) {
+/** coturn as deploy/compose.yaml starts it, on this machine's own loopback and a port of its own. */
+export async function startTurn() {
   const port = await freePort();
   const here = [
     `--listening-port=${port}`,
@@ -33,13 +33,9 @@ export async function startTurn(...more: readonly string[]) {
     '--no-dtls',
   ];
   // On the internet no page may be reached on the relay's own machine; here both are.
-  const child = spawn(
-    turnProgram ?? 'turnserver',
-    [...composeArguments(), ...here, '--allow-loopback-peers', ...more],
-    {
-      stdio: ['ignore', 'pipe', 'pipe'],
-    },
-  );
+  const child = spawn(turnProgram ?? 'turnserver', [...composeArguments(), ...here, '--allow-loopback-peers'], {
+    stdio: ['ignore', 'pipe', 'pipe'],
+  });
   let said = '';
   const hear = (text: string) => {
     said += text;
