@@ -34,6 +34,12 @@ test('one person with two bots plays a short match to its end, and again', async
   const { players } = await probe(page);
   expect(players.map(({ bot }) => bot)).toEqual([true, true]);
   await keepPicture(page, 'ball-running');
+  // A player's buttons stand beside the name.
+  const hide = await page.getByRole('button', { name: 'Hide Kim' }).boundingBox();
+  const name = await page.getByRole('list', { name: 'Other players' }).getByText('Kim', { exact: true }).boundingBox();
+  if (!hide || !name) throw new Error('the list of the other players is not to be seen');
+  expect(hide.x).toBeGreaterThanOrEqual(name.x + name.width);
+  expect(Math.abs(hide.y + hide.height / 2 - name.y - name.height / 2)).toBeLessThan(4);
   await driveTime(page);
   const over = await until(page, ({ phase }) => phase === 'over');
   expect(over.end).toBe('balls');
