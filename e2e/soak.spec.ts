@@ -9,7 +9,7 @@ import { countsOf, type InspectedNode, inspectNode, megabytes } from './kept-mem
 import { probe } from './page-fixture';
 import { bar, heard, loudness, type Talker, test, voicesOf } from './talkers';
 
-/** Of talk and play; THREEPOINT_SOAK_MINUTES for more, at least four. The nightly tests take the ten. */
+/** Of talk and play; THREEPOINT_SOAK_MINUTES for more. Not for fewer: what is compiled in the first four minutes is 1 MB of a page's heap. */
 const minutes = Number(process.env.THREEPOINT_SOAK_MINUTES ?? 10);
 /** One person mutes and unmutes so often, */
 const mutesAMinute = 5;
