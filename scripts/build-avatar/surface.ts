@@ -1,4 +1,5 @@
 import { MeshoptSimplifier } from 'meshoptimizer';
+import { bisect } from '../../src/core/math/bisection';
 import { type DistanceField, gradient, type Point } from './signed-distance';
 
 /** Triangles over points: positions are xyz triples [m]. */
@@ -176,13 +177,9 @@ function zeroBetween(positions: readonly number[], a: number, b: number, value: 
     return value(on(0), on(1), on(2));
   };
   const inside = at(0) < 0;
-  let [from, to] = [0, 1];
-  for (let step = 0; step < 16; step++) {
-    const middle = (from + to) / 2;
-    if (at(middle) < 0 === inside) from = middle;
-    else to = middle;
-  }
-  return (from + to) / 2;
+  const halvings = 16;
+  // The middle of what is left of the way.
+  return bisect(0, 1, (t) => at(t) < 0 !== inside, halvings) + 2 ** -(halvings + 1);
 }
 
 /** Puts a vertex that is near to a seam onto it, along the value's gradient. */
