@@ -154,6 +154,8 @@ test('nothing is kept of a server, and a study is served by it as ever @full', a
     expect(await from(address), address).toBe(false);
   }
   const asksFor = async (address: string) => {
+    // The page before may still ask for its network: those questions are its own.
+    await page.waitForLoadState('networkidle');
     served.asked.length = 0;
     await page.goto(address);
     await page.waitForFunction(() => window.threepoint?.probe().ready, undefined, { timeout: 60_000 });
