@@ -33,7 +33,7 @@ const decodersWithoutNode: Plugin = {
   load: { filter: { id: /^\0decoders-without-node$/ }, handler: () => 'export {};' },
 };
 
-/** three.js's loader of KTX2 knows where its transcoder's script lies, for a worker of its own; ours has it in itself (src/avatar/ktx2-worker.ts). */
+/** three.js's loader of KTX2 knows where its transcoder's script lies, for a worker of its own; ours has it in itself (src/avatar/decoders/ktx2-worker.ts). */
 const ktx2WithoutScript: Plugin = {
   name: 'ktx2-without-script',
   transform: {

@@ -1,4 +1,4 @@
-import type { LegPose, LegPosture, LegProportions } from '../../src/avatar/leg-posture';
+import type { LegPose, LegPosture, LegProportions } from '../../src/avatar/legs/leg-posture';
 import type { GaitPoints } from '../../src/core/estimation/gait-features';
 import { rotate } from '../../src/core/math/quat';
 import type { Side } from '../../src/core/math/side';

@@ -1,8 +1,8 @@
 import { readFileSync } from 'node:fs';
-import type { LegProportions } from '../../src/avatar/leg-posture';
-import { legProportionsOf } from '../../src/avatar/legs';
+import type { LegProportions } from '../../src/avatar/legs/leg-posture';
+import { legProportionsOf } from '../../src/avatar/legs/legs';
 import { parseAvatar } from '../../src/avatar/load-avatar';
-import { Rig } from '../../src/avatar/rig';
+import { Rig } from '../../src/avatar/rig/rig';
 import type { Calibration } from '../../src/core/body/calibration';
 import { forwardKinematics } from '../../src/core/body/forward-kinematics';
 import { jointNames } from '../../src/core/body/joints';

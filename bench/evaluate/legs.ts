@@ -1,7 +1,7 @@
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { parseArgs } from 'node:util';
-import { LegPosture } from '../../src/avatar/leg-posture';
+import { LegPosture } from '../../src/avatar/legs/leg-posture';
 import { reasonOf } from '../../src/core/errors/reasons';
 import { Gait, type GaitNetwork, shippedGait } from '../../src/core/estimation/gait';
 import { bodyOf, driveLegs, type LegDriver, legDrivers } from './leg-drivers';

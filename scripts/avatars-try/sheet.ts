@@ -1,10 +1,10 @@
 // The page of `npm run avatars:try`: one file in, a sheet of pictures out.
 import { AmbientLight, Color, DirectionalLight, GridHelper, PerspectiveCamera, Scene, WebGLRenderer } from 'three';
 import { type Avatar, createAvatar } from '../../src/avatar/avatar';
-import { thirdPersonOnlyLayer } from '../../src/avatar/body-meshes';
-import { checkInWorker } from '../../src/avatar/check-in-worker';
-import { decoders } from '../../src/avatar/decoders';
+import { decoders } from '../../src/avatar/decoders/decoders';
+import { checkInWorker } from '../../src/avatar/file/check-in-worker';
 import { parseChecked } from '../../src/avatar/load-avatar';
+import { thirdPersonOnlyLayer } from '../../src/avatar/rig/body-meshes';
 import { defaultCalibration } from '../../src/core/body/calibration';
 import { reasonOf } from '../../src/core/errors/reasons';
 import { createIk } from '../../src/core/estimation/estimators';

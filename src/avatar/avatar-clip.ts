@@ -3,11 +3,12 @@ import { type Object3D, Quaternion, Vector3 } from 'three';
 import { addClip, type GltfDescription, type NodeTrack, packGlb } from '../core/motion/gltf';
 import { type Motion, makePosedBones, type PosedBones, poseBones } from '../core/motion/motion';
 import { clipOf } from '../core/motion/write-vrma';
-import type { BoneName } from './bone-names';
-import { chunksOf } from './glb-chunks';
-import { boneNode } from './humanoid';
-import { inspectAvatar } from './inspect-avatar';
-import { type Decoders, type LoadedAvatar, type ParseOptions, parseAvatar } from './load-avatar';
+import type { Decoders } from './decoders/decoders';
+import { chunksOf } from './file/glb-chunks';
+import { inspectAvatar } from './file/inspect-avatar';
+import type { BoneName } from './humanoid/bone-names';
+import { boneNode } from './humanoid/humanoid';
+import { type LoadedAvatar, type ParseOptions, parseAvatar } from './load-avatar';
 
 interface FileNode {
   matrix?: number[];

@@ -14,16 +14,16 @@ import { identity, type Quat, quat, rotate } from '../core/math/quat';
 import type { Side } from '../core/math/side';
 import { addScaled, setVec3, subtract, type Vec3, vec3 } from '../core/math/vec3';
 import type { SkinTone } from '../core/protocol/worn-avatar';
-import { ArmHelperJoints } from './arm-helpers';
-import { type AvatarMesh, BodyMeshes, readMeshes } from './body-meshes';
 import { Face } from './face';
-import { Fingers } from './fingers';
+import { Fingers } from './hands/fingers';
 import { atOnce, betweenFrames, type Steps } from './in-steps';
-import { Legs } from './legs';
+import { Legs } from './legs/legs';
 import type { LoadedAvatar } from './load-avatar';
-import { OwnTrunk } from './own-trunk';
-import { type AvatarJoint, Rig } from './rig';
-import { Springs } from './springs';
+import { ArmHelperJoints } from './rig/arm-helpers';
+import { type AvatarMesh, BodyMeshes, readMeshes } from './rig/body-meshes';
+import { OwnTrunk } from './rig/own-trunk';
+import { type AvatarJoint, Rig } from './rig/rig';
+import { Springs } from './rig/springs';
 
 /** A body on the screen. Poses are in the floor frame; so is `object`, which stays where it is put: at the floor's origin. */
 export interface Avatar {

@@ -10,7 +10,7 @@ import { clamp, damp } from '../core/math/damper';
 import { conjugate, copyQuat, multiply, type Quat, quat, rotate } from '../core/math/quat';
 import { nextRandom, type RandomState } from '../core/math/random';
 import { forward, vec3 } from '../core/math/vec3';
-import { boneNode } from './humanoid';
+import { boneNode } from './humanoid/humanoid';
 
 /** People blink every two to six seconds, and each blink takes a fifth of one. */
 const shortestPause = 2;

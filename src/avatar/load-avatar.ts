@@ -2,16 +2,17 @@ import { type VRM, VRMLoaderPlugin, VRMUtils } from '@pixiv/three-vrm';
 import type { Object3D } from 'three';
 import { type GLTF, GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
 import { reasonOf } from '../core/errors/reasons';
-import { restoreBindPose } from './bind-pose';
-import type { BoneMap } from './bone-names';
-import type { CheckedAvatar } from './check-avatar';
-import { chunksOf } from './glb-chunks';
-import { boneNode, demandBones, humanoidOf } from './humanoid';
+import type { Decoders } from './decoders/decoders';
+import type { CheckedAvatar } from './file/check-avatar';
+import { chunksOf } from './file/glb-chunks';
+import { inspectAvatar } from './file/inspect-avatar';
+import { makeGeometryPlain } from './file/plain-geometry';
+import { viewsOfFile } from './file/views-of-file';
+import { restoreBindPose } from './humanoid/bind-pose';
+import type { BoneMap } from './humanoid/bone-names';
+import { boneNode, demandBones, humanoidOf } from './humanoid/humanoid';
+import { settleRest } from './humanoid/rest-pose';
 import { betweenFrames } from './in-steps';
-import { inspectAvatar } from './inspect-avatar';
-import { makeGeometryPlain } from './plain-geometry';
-import { settleRest } from './rest-pose';
-import { viewsOfFile } from './views-of-file';
 
 /** A body (VRM 0.x or 1.0, or a humanoid of another kind) ready to be fitted, and what to call it. */
 export interface LoadedAvatar {
@@ -20,9 +21,6 @@ export interface LoadedAvatar {
   /** Which node of the file an object is. */
   readonly nodeIndices: ReadonlyMap<Object3D, number>;
 }
-
-/** Means to unpack what is compressed, by the name of the extension. */
-export type Decoders = Readonly<Record<string, (loader: GLTFLoader) => Promise<void>>>;
 
 export interface ParseOptions {
   /** Of a humanoid that is no VRM and whose names tell nothing. */

@@ -13,7 +13,7 @@ import {
 import { Reflector } from 'three/examples/jsm/objects/Reflector.js';
 import { mergeGeometries } from 'three/examples/jsm/utils/BufferGeometryUtils.js';
 import { eyeLayers } from '../scene/eye-layers';
-import { thirdPersonOnlyLayer } from './body-meshes';
+import { thirdPersonOnlyLayer } from './rig/body-meshes';
 import { seesRectangle } from './sees-rectangle';
 
 export interface MirrorOptions {

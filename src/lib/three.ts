@@ -1,7 +1,7 @@
 // "threepoint/three": the body on an avatar of three.js, driven by a WebXR session.
 import { EventDispatcher, type Object3D, type WebGLRenderer } from 'three';
 import { type Avatar, createAvatar } from '../avatar/avatar';
-import type { BoneMap } from '../avatar/bone-names';
+import type { BoneMap } from '../avatar/humanoid/bone-names';
 import { parseAvatar } from '../avatar/load-avatar';
 import type { AvatarPose } from '../core/body/avatar-pose';
 import type { Calibration } from '../core/body/calibration';
@@ -16,7 +16,7 @@ import { Body, type BodyOptions } from './body';
 import { loadLearned } from './load-learned';
 
 export type { Avatar } from '../avatar/avatar';
-export type { BoneMap } from '../avatar/bone-names';
+export type { BoneMap } from '../avatar/humanoid/bone-names';
 
 export interface LoadAvatarOptions {
   /** For a humanoid without VRM: the name of the file's node for each bone, in VRM's names. At rest it stands in a T-pose and faces +Z. */

@@ -1,7 +1,7 @@
 import { Matrix4, type SkinnedMesh, Vector3 } from 'three';
 import { describe, expect, test } from 'vitest';
+import { gltfFaults } from '../../src/avatar/file/validate-gltf';
 import { parseAvatar } from '../../src/avatar/load-avatar';
-import { gltfFaults } from '../../src/avatar/validate-gltf';
 import { distance, type Vec3 } from '../../src/core/math/vec3';
 import { builtRig, type RigOptions } from './built-rig';
 import { mixamo, namings, vroid } from './rig-namings';

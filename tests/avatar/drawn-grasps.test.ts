@@ -1,6 +1,6 @@
 import type { Vector3 } from 'three';
 import { describe, expect, test } from 'vitest';
-import type { Holding } from '../../src/avatar/holding';
+import type { Holding } from '../../src/avatar/hands/holding';
 import { bodyLabels } from '../../src/avatar/own-bodies';
 import { fingerBonesOf } from '../../src/core/body/finger-bones';
 import { distanceToBall, distanceToRod } from '../../src/core/body/grasp';

@@ -1,7 +1,7 @@
 import { readFileSync } from 'node:fs';
 import { SkinnedMesh, Vector3 } from 'three';
 import { type Avatar, createAvatar } from '../../src/avatar/avatar';
-import { Holding } from '../../src/avatar/holding';
+import { Holding } from '../../src/avatar/hands/holding';
 import { parseAvatar } from '../../src/avatar/load-avatar';
 import { type MutableHandShape, makeHandShape } from '../../src/core/body/hand-shape';
 import { makePose, type Pose } from '../../src/core/math/pose';

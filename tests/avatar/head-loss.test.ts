@@ -1,5 +1,5 @@
 import { describe, expect, test } from 'vitest';
-import { createHeadLoss } from '../../src/avatar/head-loss';
+import { createHeadLoss } from '../../src/avatar/rig/head-loss';
 import { measured } from '../reliability/measured';
 
 describe('a body whose head is lost', () => {

@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest';
-import { Holding } from '../../src/avatar/holding';
+import { Holding } from '../../src/avatar/hands/holding';
 import { averageHand, fingerPoints, makeFingerPoints, scaledHand } from '../../src/core/body/hand-geometry';
 import { fingerNames, makeHandShape } from '../../src/core/body/hand-shape';
 import { basketInHands, gripRadius } from '../../src/core/games/ball/basket';

@@ -1,9 +1,9 @@
 import { afterAll, describe, expect, test } from 'vitest';
-import { checkAvatar } from '../../src/avatar/check-avatar';
-import { imageSize } from '../../src/avatar/image-size';
-import { avatarLimits, inspectAvatar } from '../../src/avatar/inspect-avatar';
+import { checkAvatar } from '../../src/avatar/file/check-avatar';
+import { imageSize } from '../../src/avatar/file/image-size';
+import { avatarLimits, inspectAvatar } from '../../src/avatar/file/inspect-avatar';
+import { gltfFaults } from '../../src/avatar/file/validate-gltf';
 import { parseAvatar, parseChecked } from '../../src/avatar/load-avatar';
-import { gltfFaults } from '../../src/avatar/validate-gltf';
 import { measured } from '../reliability/measured';
 import { changed, type GltfJson, mannequin } from './glb';
 

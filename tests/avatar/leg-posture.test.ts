@@ -1,5 +1,5 @@
 import { describe, expect, test } from 'vitest';
-import { LegPosture } from '../../src/avatar/leg-posture';
+import { LegPosture } from '../../src/avatar/legs/leg-posture';
 import type { GaitPoints } from '../../src/core/estimation/gait-features';
 import { fromAxisAngle, multiply, rotate } from '../../src/core/math/quat';
 import { add, distance, up, type Vec3, vec3 } from '../../src/core/math/vec3';

@@ -1,6 +1,6 @@
 import { MeshoptEncoder } from 'meshoptimizer';
 import { describe, expect, test } from 'vitest';
-import { decoders } from '../../src/avatar/decoders';
+import { decoders } from '../../src/avatar/decoders/decoders';
 import { parseAvatar } from '../../src/avatar/load-avatar';
 import { builtRig } from './built-rig';
 import { glbOf, padded, partsOf } from './glb';

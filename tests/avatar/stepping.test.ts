@@ -1,5 +1,5 @@
 import { describe, expect, test } from 'vitest';
-import { createStepping, type Feet, type FootGoal, type Stance } from '../../src/avatar/stepping';
+import { createStepping, type Feet, type FootGoal, type Stance } from '../../src/avatar/legs/stepping';
 import type { Side } from '../../src/core/math/side';
 import { distance, type Vec3 } from '../../src/core/math/vec3';
 

@@ -1,4 +1,4 @@
-import type { LegProportions } from '../../src/avatar/leg-posture';
+import type { LegProportions } from '../../src/avatar/legs/leg-posture';
 import type { GaitPoints } from '../../src/core/estimation/gait-features';
 import { fromAxisAngle, identity } from '../../src/core/math/quat';
 import { up, vec3 } from '../../src/core/math/vec3';

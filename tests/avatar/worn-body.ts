@@ -1,7 +1,7 @@
 import { type SkinnedMesh, Vector3 } from 'three';
 import { expect } from 'vitest';
 import { type Avatar, createAvatar } from '../../src/avatar/avatar';
-import type { BoneName } from '../../src/avatar/bone-names';
+import type { BoneName } from '../../src/avatar/humanoid/bone-names';
 import { type LoadedAvatar, parseAvatar } from '../../src/avatar/load-avatar';
 import { handBoneRotation } from '../../src/core/body/arm-rotations';
 import { defaultCalibration } from '../../src/core/body/calibration';

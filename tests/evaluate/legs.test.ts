@@ -2,7 +2,7 @@ import { expect, test } from 'vitest';
 import { addLegs, emptyLegMeasures, legReport } from '../../bench/evaluate/leg-measures';
 import { mannequinLegs } from '../../bench/evaluate/leg-proportions';
 import { contactsOf, footHeights, type TrueLeg, type TrueLegs } from '../../bench/evaluate/leg-truth';
-import { type LegPose, LegPosture } from '../../src/avatar/leg-posture';
+import { type LegPose, LegPosture } from '../../src/avatar/legs/leg-posture';
 import type { GaitPoints } from '../../src/core/estimation/gait-features';
 import { rotate } from '../../src/core/math/quat';
 import { add, vec3 } from '../../src/core/math/vec3';

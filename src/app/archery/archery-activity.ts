@@ -1,4 +1,4 @@
-import type { Holding } from '../../avatar/holding';
+import type { Holding } from '../../avatar/hands/holding';
 import type { Calibration } from '../../core/body/calibration';
 import type { MutableHandShape } from '../../core/body/hand-shape';
 import type { HapticPulse } from '../../core/games/archery/gestures';

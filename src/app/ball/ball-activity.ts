@@ -1,4 +1,4 @@
-import type { Holding } from '../../avatar/holding';
+import type { Holding } from '../../avatar/hands/holding';
 import { createRemoteAvatars, type RemoteAvatars } from '../../avatar/remote-avatars';
 import type { AvatarPose } from '../../core/body/avatar-pose';
 import type { Fingers, MutableHandShape } from '../../core/body/hand-shape';

@@ -1,4 +1,4 @@
-import { fingersOfButtons } from '../../avatar/pressed-fingers';
+import { fingersOfButtons } from '../../avatar/hands/pressed-fingers';
 import type { Calibration } from '../../core/body/calibration';
 import { chestSpaceBody } from '../../core/body/skeleton';
 import { createEstimator } from '../../core/estimation/estimators';

@@ -1,6 +1,6 @@
-import { checkInWorker } from '../../avatar/check-in-worker';
-import { decoders } from '../../avatar/decoders';
-import { seenAvatarLimits } from '../../avatar/inspect-avatar';
+import { decoders } from '../../avatar/decoders/decoders';
+import { checkInWorker } from '../../avatar/file/check-in-worker';
+import { seenAvatarLimits } from '../../avatar/file/inspect-avatar';
 import { type LoadedAvatar, parseAvatar, parseChecked } from '../../avatar/load-avatar';
 import { reasonOf } from '../../core/errors/reasons';
 import {

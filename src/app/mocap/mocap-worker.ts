@@ -1,4 +1,4 @@
-import { chunksOf } from '../../avatar/glb-chunks';
+import { chunksOf } from '../../avatar/file/glb-chunks';
 import { firstLine, reasonOf } from '../../core/errors/reasons';
 import { type MocapSource, type PreparedMocap, prepareMocap } from '../../core/mocap/prepare-mocap';
 import { type FileKind, nameOf, readLimited } from '../../ui/limited-files';

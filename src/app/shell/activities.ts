@@ -1,4 +1,4 @@
-import { Holding } from '../../avatar/holding';
+import { Holding } from '../../avatar/hands/holding';
 import type { HandGeometry } from '../../core/body/hand-geometry';
 import type { MutableHandShape } from '../../core/body/hand-shape';
 import { firstLine, reasonOf } from '../../core/errors/reasons';

@@ -1,4 +1,4 @@
-import type { BoneMap } from '../../avatar/bone-names';
+import type { BoneMap } from '../../avatar/humanoid/bone-names';
 import type { PreferenceStore } from './preferences';
 
 /** The maps of so many files are remembered, the newest ones. */

@@ -1,4 +1,4 @@
-import { shapeOfButtons } from '../../avatar/pressed-fingers';
+import { shapeOfButtons } from '../../avatar/hands/pressed-fingers';
 import type { AvatarPose } from '../../core/body/avatar-pose';
 import { type HandShape, makeHandShape } from '../../core/body/hand-shape';
 import { firstLine, reasonOf } from '../../core/errors/reasons';

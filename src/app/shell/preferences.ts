@@ -1,5 +1,5 @@
 import * as v from 'valibot';
-import { type BoneName, boneNames } from '../../avatar/bone-names';
+import { type BoneName, boneNames } from '../../avatar/humanoid/bone-names';
 import { calibrationComplaint } from '../../core/body/calibration';
 import { estimatorNames } from '../../core/estimation/pose-estimator';
 import { avatarHash, ownBodies, skinTones } from '../../core/protocol/worn-avatar';

@@ -1,7 +1,7 @@
 import type { Avatar } from '../../avatar/avatar';
 import { createDebugSkeleton } from '../../avatar/debug-skeleton';
-import { createHeadLoss } from '../../avatar/head-loss';
 import { createMirror } from '../../avatar/mirror';
+import { createHeadLoss } from '../../avatar/rig/head-loss';
 import type { Pose } from '../../core/math/pose';
 import type { Side } from '../../core/math/side';
 import type { Vec3 } from '../../core/math/vec3';

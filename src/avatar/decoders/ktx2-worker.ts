@@ -1,6 +1,6 @@
 import makeBasis from 'three/examples/jsm/libs/basis/basis_transcoder.js';
 import { KTX2Loader } from 'three/examples/jsm/loaders/KTX2Loader.js';
-import { reasonOf } from '../core/errors/reasons';
+import { reasonOf } from '../../core/errors/reasons';
 import { functionOfText } from './basis-functions';
 
 // three.js's own worker, which it otherwise writes as text into a blob: what the text would declare stands in the worker's scope instead, and

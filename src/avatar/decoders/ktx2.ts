@@ -2,7 +2,7 @@ import type { WebGLRenderer } from 'three';
 import basisAddress from 'three/examples/jsm/libs/basis/basis_transcoder.wasm?url';
 import type { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
 import { KTX2Loader } from 'three/examples/jsm/loaders/KTX2Loader.js';
-import { reasonOf } from '../core/errors/reasons';
+import { reasonOf } from '../../core/errors/reasons';
 import { AskedWorker } from './asked-worker';
 
 /** What three.js's worker answers; without `data`: why not. */

@@ -1,4 +1,4 @@
-import { reasonOf } from '../core/errors/reasons';
+import { reasonOf } from '../../core/errors/reasons';
 import { hashOf } from './file-hash';
 import { type AvatarLimits, avatarLimits, inspectAvatar } from './inspect-avatar';
 import { gltfFaults } from './validate-gltf';

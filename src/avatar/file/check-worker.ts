@@ -1,4 +1,4 @@
-import { reasonOf } from '../core/errors/reasons';
+import { reasonOf } from '../../core/errors/reasons';
 import { type AvatarQuestion, type CheckedAvatar, checkAvatar } from './check-avatar';
 
 export interface WorkerQuestion extends AvatarQuestion {

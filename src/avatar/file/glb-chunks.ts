@@ -1,4 +1,4 @@
-import { binaryChunk, glbMagic, jsonChunk } from '../core/motion/gltf';
+import { binaryChunk, glbMagic, jsonChunk } from '../../core/motion/gltf';
 
 /** The two chunks of a GLB file; null: it is none, or cut short. */
 export function chunksOf(bytes: Uint8Array): { readonly json: string; readonly binary: Uint8Array } | null {

@@ -1,5 +1,5 @@
 import * as v from 'valibot';
-import { reasonOf } from '../core/errors/reasons';
+import { reasonOf } from '../../core/errors/reasons';
 import { chunksOf } from './glb-chunks';
 import { imageSize, isKtx2 } from './image-size';
 import { ktx2Fault } from './ktx2-header';

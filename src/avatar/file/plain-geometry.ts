@@ -6,7 +6,7 @@ import {
   type Object3D,
   type TypedArray,
 } from 'three';
-import type { Steps } from './in-steps';
+import type { Steps } from '../in-steps';
 
 type Attribute = BufferAttribute | InterleavedBufferAttribute;
 

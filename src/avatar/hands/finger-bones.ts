@@ -1,6 +1,6 @@
 import type { VRM } from '@pixiv/three-vrm';
 import { type Bone, type Object3D, Quaternion, SkinnedMesh, Vector3 } from 'three';
-import { fingerBonesOf } from '../core/body/finger-bones';
+import { fingerBonesOf } from '../../core/body/finger-bones';
 import {
   bendOfPoints,
   type FingerGeometry,
@@ -10,10 +10,10 @@ import {
   makeFingerFrames,
   makeFingerPoints,
   mirrorRotation,
-} from '../core/body/hand-geometry';
-import { type FingerName, fingerNames, makeHandShape } from '../core/body/hand-shape';
-import { conjugate, copyQuat, fromAxes, type MutableQuat, multiply, type Quat, quat } from '../core/math/quat';
-import type { Side } from '../core/math/side';
+} from '../../core/body/hand-geometry';
+import { type FingerName, fingerNames, makeHandShape } from '../../core/body/hand-shape';
+import { conjugate, copyQuat, fromAxes, type MutableQuat, multiply, type Quat, quat } from '../../core/math/quat';
+import type { Side } from '../../core/math/side';
 import {
   add,
   backward,
@@ -27,9 +27,9 @@ import {
   subtract,
   up,
   vec3,
-} from '../core/math/vec3';
-import type { BoneName } from './bone-names';
-import { boneNode } from './humanoid';
+} from '../../core/math/vec3';
+import type { BoneName } from '../humanoid/bone-names';
+import { boneNode } from '../humanoid/humanoid';
 
 export type BoneIndex = 0 | 1 | 2;
 

@@ -1,11 +1,11 @@
 import type { VRM } from '@pixiv/three-vrm';
-import { closePinch } from '../core/body/close-pinch';
-import { FingerMemory } from '../core/body/finger-memory';
-import { fingerFrames, type HandGeometry, makeFingerFrames } from '../core/body/hand-geometry';
-import { copyHandShape, type FingerName, type HandShape, makeHandShape } from '../core/body/hand-shape';
-import { conjugate, multiply, quat } from '../core/math/quat';
-import type { Side } from '../core/math/side';
-import type { Vec3 } from '../core/math/vec3';
+import { closePinch } from '../../core/body/close-pinch';
+import { FingerMemory } from '../../core/body/finger-memory';
+import { fingerFrames, type HandGeometry, makeFingerFrames } from '../../core/body/hand-geometry';
+import { copyHandShape, type FingerName, type HandShape, makeHandShape } from '../../core/body/hand-shape';
+import { conjugate, multiply, quat } from '../../core/math/quat';
+import type { Side } from '../../core/math/side';
+import type { Vec3 } from '../../core/math/vec3';
 import { ofSide, type RigFinger, type RigHand, readHand } from './finger-bones';
 
 const sides = ['left', 'right'] as const;

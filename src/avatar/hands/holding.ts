@@ -1,10 +1,10 @@
-import { closeRound, distanceToBall, distanceToRod, type Surface } from '../core/body/grasp';
-import { averageHand, type HandGeometry, mirrorPoint } from '../core/body/hand-geometry';
-import { copyHandShape, type MutableHandShape, makeHandShape } from '../core/body/hand-shape';
-import type { Pose } from '../core/math/pose';
-import { rotateInverse } from '../core/math/quat';
-import type { Side } from '../core/math/side';
-import { copyVec3, distance, dot, type MutableVec3, subtract, type Vec3, vec3 } from '../core/math/vec3';
+import { closeRound, distanceToBall, distanceToRod, type Surface } from '../../core/body/grasp';
+import { averageHand, type HandGeometry, mirrorPoint } from '../../core/body/hand-geometry';
+import { copyHandShape, type MutableHandShape, makeHandShape } from '../../core/body/hand-shape';
+import type { Pose } from '../../core/math/pose';
+import { rotateInverse } from '../../core/math/quat';
+import type { Side } from '../../core/math/side';
+import { copyVec3, distance, dot, type MutableVec3, subtract, type Vec3, vec3 } from '../../core/math/vec3';
 
 type Kind = 'nothing' | 'rod' | 'ball' | 'rim';
 

@@ -1,5 +1,5 @@
-import { fingerBones } from '../core/body/finger-bones';
-import type { Side } from '../core/math/side';
+import { fingerBones } from '../../core/body/finger-bones';
+import type { Side } from '../../core/math/side';
 
 type SideNames = 'Shoulder' | 'UpperArm' | 'LowerArm' | 'Hand' | 'UpperLeg' | 'LowerLeg' | 'Foot' | 'Toes' | 'Eye';
 type CentreBone = 'hips' | 'spine' | 'chest' | 'upperChest' | 'neck' | 'head' | 'jaw';

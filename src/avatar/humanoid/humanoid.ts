@@ -1,6 +1,6 @@
 import { VRM, VRMFirstPerson, type VRMHumanBones, VRMHumanoid } from '@pixiv/three-vrm';
 import type { Group, Object3D, SkinnedMesh } from 'three';
-import { reasonOf } from '../core/errors/reasons';
+import { reasonOf } from '../../core/errors/reasons';
 import { type BoneMap, bonesByName, knownNamings } from './bone-names';
 import { UnknownBones } from './unknown-bones';
 

@@ -1,6 +1,6 @@
-import { packGlb } from '../core/motion/gltf';
+import { packGlb } from '../../core/motion/gltf';
+import { chunksOf } from '../file/glb-chunks';
 import { type BoneMap, boneNames } from './bone-names';
-import { chunksOf } from './glb-chunks';
 
 interface NamedNodes {
   [field: string]: unknown;

@@ -1,6 +1,6 @@
 import type { VRM } from '@pixiv/three-vrm';
 import { Matrix4, type Object3D, Quaternion, Vector3 } from 'three';
-import type { Side } from '../core/math/side';
+import type { Side } from '../../core/math/side';
 import { type BoneName, handFingerBones } from './bone-names';
 import { boneNode, neededBones } from './humanoid';
 

@@ -1,9 +1,9 @@
-import { sideSign } from '../core/body/skeleton';
-import { elbowCircle, elbowOnCircle, makeElbowCircle, poleAcross } from '../core/body/two-bone-ik';
-import { Gait } from '../core/estimation/gait';
-import { type GaitPoints, yawOfHips } from '../core/estimation/gait-features';
-import { fromAxes, fromAxisAngle, type MutableQuat, multiply, type Quat, quat, rotate } from '../core/math/quat';
-import type { Side } from '../core/math/side';
+import { sideSign } from '../../core/body/skeleton';
+import { elbowCircle, elbowOnCircle, makeElbowCircle, poleAcross } from '../../core/body/two-bone-ik';
+import { Gait } from '../../core/estimation/gait';
+import { type GaitPoints, yawOfHips } from '../../core/estimation/gait-features';
+import { fromAxes, fromAxisAngle, type MutableQuat, multiply, type Quat, quat, rotate } from '../../core/math/quat';
+import type { Side } from '../../core/math/side';
 import {
   add,
   addScaled,
@@ -20,7 +20,7 @@ import {
   up,
   type Vec3,
   vec3,
-} from '../core/math/vec3';
+} from '../../core/math/vec3';
 import { createStepping, type Foot, type Stepping } from './stepping';
 
 /** What legs need of a body that stands, facing −Z [m]. */

@@ -1,8 +1,8 @@
-import type { GaitPoints } from '../core/estimation/gait-features';
-import type { Side } from '../core/math/side';
-import { vec3 } from '../core/math/vec3';
+import type { GaitPoints } from '../../core/estimation/gait-features';
+import type { Side } from '../../core/math/side';
+import { vec3 } from '../../core/math/vec3';
+import type { AvatarJoint, Rig } from '../rig/rig';
 import { LegPosture, type LegProportions } from './leg-posture';
-import type { AvatarJoint, Rig } from './rig';
 
 const bonesOf = {
   left: { thigh: 'leftUpperLeg', shank: 'leftLowerLeg', foot: 'leftFoot' },

@@ -1,7 +1,7 @@
-import { wrapAngle } from '../core/math/angle';
-import { clamp, damp, smoothingFactor } from '../core/math/damper';
-import type { Side } from '../core/math/side';
-import { type MutableVec3, setVec3, type Vec3, vec3 } from '../core/math/vec3';
+import { wrapAngle } from '../../core/math/angle';
+import { clamp, damp, smoothingFactor } from '../../core/math/damper';
+import type { Side } from '../../core/math/side';
+import { type MutableVec3, setVec3, type Vec3, vec3 } from '../../core/math/vec3';
 
 /** A foot as drawn. All in the floor frame. */
 export interface Foot {

@@ -1,6 +1,6 @@
 import type { Object3D } from 'three';
-import { alongArm, unwrapTwist } from '../core/body/arm-rotations';
-import type { MutableJointPoses } from '../core/body/forward-kinematics';
+import { alongArm, unwrapTwist } from '../../core/body/arm-rotations';
+import type { MutableJointPoses } from '../../core/body/forward-kinematics';
 import {
   conjugate,
   copyQuat,
@@ -11,9 +11,9 @@ import {
   slerp,
   twistAngle,
   twistOf,
-} from '../core/math/quat';
-import type { Side } from '../core/math/side';
-import type { Steps } from './in-steps';
+} from '../../core/math/quat';
+import type { Side } from '../../core/math/side';
+import type { Steps } from '../in-steps';
 import type { HelperJoint, Rig } from './rig';
 import { type SpreadArm, spreadArms } from './spread-weights';
 

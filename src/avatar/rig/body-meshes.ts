@@ -9,9 +9,9 @@ import {
   SkinnedMesh,
   Vector3,
 } from 'three';
-import type { SkinTone } from '../core/protocol/worn-avatar';
-import type { Steps } from './in-steps';
-import { palettes, skinColors } from './palettes';
+import type { SkinTone } from '../../core/protocol/worn-avatar';
+import type { Steps } from '../in-steps';
+import { palettes, skinColors } from '../palettes';
 import type { Rig } from './rig';
 import { type SkinPart, sortByPart } from './skin-parts';
 

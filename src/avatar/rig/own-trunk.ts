@@ -1,9 +1,9 @@
 import type { Vector3 } from 'three';
-import type { JointPoses, MutableJointPoses } from '../core/body/forward-kinematics';
-import type { JointName } from '../core/body/joints';
-import { clamp } from '../core/math/damper';
-import { multiply, quat, rotate, rotationBetween } from '../core/math/quat';
-import type { Side } from '../core/math/side';
+import type { JointPoses, MutableJointPoses } from '../../core/body/forward-kinematics';
+import type { JointName } from '../../core/body/joints';
+import { clamp } from '../../core/math/damper';
+import { multiply, quat, rotate, rotationBetween } from '../../core/math/quat';
+import type { Side } from '../../core/math/side';
 import {
   add,
   addScaled,
@@ -16,7 +16,7 @@ import {
   subtract,
   type Vec3,
   vec3,
-} from '../core/math/vec3';
+} from '../../core/math/vec3';
 import type { Rig } from './rig';
 
 /** An upper arm gets no longer or shorter than this [share of its length] before the shoulder gives. */

@@ -1,8 +1,8 @@
 import type { VRM, VRMHumanBoneName } from '@pixiv/three-vrm';
 import { Bone, Matrix4, type Object3D, Quaternion, Vector3 } from 'three';
-import { type JointName, jointNames } from '../core/body/joints';
-import { fromAxisAngle, multiply, type Quat, quat } from '../core/math/quat';
-import { copyVec3, distance, type MutableVec3, up, type Vec3, vec3 } from '../core/math/vec3';
+import { type JointName, jointNames } from '../../core/body/joints';
+import { fromAxisAngle, multiply, type Quat, quat } from '../../core/math/quat';
+import { copyVec3, distance, type MutableVec3, up, type Vec3, vec3 } from '../../core/math/vec3';
 
 export const legJoints = [
   'leftUpperLeg',

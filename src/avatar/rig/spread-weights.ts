@@ -8,8 +8,8 @@ import {
   SkinnedMesh,
   Vector3,
 } from 'three';
+import type { Steps } from '../in-steps';
 import { isBelow } from './body-meshes';
-import type { Steps } from './in-steps';
 
 /** The bones of an arm and the joints between them among which its skin is to be shared. */
 export interface SpreadArm {

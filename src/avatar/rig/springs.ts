@@ -1,7 +1,7 @@
 import type { VRM } from '@pixiv/three-vrm';
 import type { Object3D } from 'three';
-import { angleBetween, copyQuat, type Quat, quat } from '../core/math/quat';
-import { copyVec3, distance, type Vec3, vec3 } from '../core/math/vec3';
+import { angleBetween, copyQuat, type Quat, quat } from '../../core/math/quat';
+import { copyVec3, distance, type Vec3, vec3 } from '../../core/math/vec3';
 
 /** Hair and skirts are moved so often [s]: what they hang on moves in every frame, and they with it. */
 const stepSeconds = 1 / 30;

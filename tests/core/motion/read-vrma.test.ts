@@ -1,5 +1,5 @@
 import { describe, expect, test } from 'vitest';
-import { chunksOf } from '../../../src/avatar/glb-chunks';
+import { chunksOf } from '../../../src/avatar/file/glb-chunks';
 import { distance } from '../../../src/core/math/vec3';
 import { makeJointPoses } from '../../../src/core/motion/file-motion';
 import { resampleMotion } from '../../../src/core/motion/motion';

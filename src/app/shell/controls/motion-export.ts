@@ -1,4 +1,4 @@
-import { decoders } from '../../../avatar/decoders';
+import { decoders } from '../../../avatar/decoders/decoders';
 import { firstLine, reasonOf } from '../../../core/errors/reasons';
 import type { BareBody, BareBodyOptions } from '../../../lib/bare-body';
 import type { MotionWriter } from '../../../lib/bare-export';

@@ -1,4 +1,4 @@
-import type { BoneMap } from '../../../avatar/bone-names';
+import type { BoneMap } from '../../../avatar/humanoid/bone-names';
 import { firstLine, reasonOf } from '../../../core/errors/reasons';
 import { isSkeletonMap } from '../../../core/mocap/is-skeleton-map';
 import type { BareBody } from '../../../lib/bare-body';

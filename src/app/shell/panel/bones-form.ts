@@ -1,6 +1,6 @@
 import * as v from 'valibot';
-import type { BoneMap, BoneName } from '../../../avatar/bone-names';
-import { neededBones } from '../../../avatar/humanoid';
+import type { BoneMap, BoneName } from '../../../avatar/humanoid/bone-names';
+import { neededBones } from '../../../avatar/humanoid/humanoid';
 import { button, element } from '../../../ui/element';
 import { boneMap } from '../preferences';
 import type { WaitingForBones } from '../shown-avatar';

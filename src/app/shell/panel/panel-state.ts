@@ -1,4 +1,4 @@
-import type { BoneMap } from '../../../avatar/bone-names';
+import type { BoneMap } from '../../../avatar/humanoid/bone-names';
 import type { EstimatorName } from '../../../core/estimation/pose-estimator';
 import type { OwnBody, SkinTone } from '../../../core/protocol/worn-avatar';
 import type { ViewName } from '../../../scene/desktop-view';
