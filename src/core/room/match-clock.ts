@@ -91,8 +91,8 @@ export class MatchClock<Game extends HostedGame> {
     if (stopping) due.push({ type: 'pause' });
     const tick = this.state.tick;
     this.#listener.happened(this.#match.advance(this.#runningTime(time), due));
-    // Between two ticks of the match nothing is stepped: then it stops with the next one.
-    if (stopping && this.state.tick !== tick) {
+    // Between two ticks of the match nothing is stepped: then it stops with the next one. A match that these ticks ended stands by itself.
+    if (stopping && this.state.tick !== tick && this.state.phase === 'running') {
       this.#stoppedAt = time;
       this.#listener.paused();
       return;

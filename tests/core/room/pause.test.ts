@@ -130,6 +130,22 @@ describe('a pause', () => {
     expect(ballSecondsLeft(told.room.match)).toBeGreaterThan(89.9);
   });
 
+  test('that is asked for in the very tick of the bell stops nothing: the match is over for all', () => {
+    const told = toldRoom({ pausable: true, ball: { seconds: 5 } });
+    told.begin();
+    told.pass(4.5, told.stand);
+    while (ballSecondsLeft(told.room.match) > 1.5 / 60) told.tick();
+    told.room.onMessage('ann', { type: 'pause', pause: true }, told.time);
+    told.tick(2 / 60);
+    expect(told.happened('ended')).toHaveLength(1);
+    expect(told.room.paused).toBe(false);
+    expect(told.said.filter(({ message }) => message.type === 'paused')).toEqual([]);
+    told.room.onMessage('ann', { type: 'pause', pause: false }, told.time);
+    for (const client of ['ann', 'ben', 'cal']) told.room.onMessage(client, { type: 'ready', ready: true }, told.time);
+    told.pass(0.1);
+    expect(told.room.match.phase).toBe('running');
+  });
+
   test('is refused where the terms of the room do not allow it, and to who only watches', () => {
     const told = toldRoom();
     told.begin();
