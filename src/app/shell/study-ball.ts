@@ -26,6 +26,8 @@ const bellDelay = 4;
 export function createBallRunner(host: BallHost): BallRunner {
   let place: TaskPlace | null = null;
   let wanted: { readonly seconds: number } | null = null;
+  /** The match ran before this participant's trial was started: they were in it before, and it is the rest of it that counts. */
+  let joinsLate = false;
   /** Second of the match at which this participant's trial began; null: not yet. */
   let from: number | null = null;
   let end: TaskEnd | null = null;
@@ -45,7 +47,11 @@ export function createBallRunner(host: BallHost): BallRunner {
       wanted = { seconds };
       missing = place?.members ?? [];
       standing = false;
-      host.ball()?.ready(true);
+      const ball = host.ball();
+      joinsLate = ball?.room?.match?.phase === 'running';
+      // The seat still wants what this page wanted before it was loaded again, which may have been a pause.
+      ball?.pause(false);
+      ball?.ready(true);
     },
     played({ state, me, players, events, time, paused }) {
       if (!wanted || end) return;
@@ -56,7 +62,8 @@ export function createBallRunner(host: BallHost): BallRunner {
         // The room may have forgotten: a server that was restarted, a seat that was only now given.
         if (me !== null && state.phase !== 'running' && !state.players[me]?.ready) host.ball()?.ready(true);
         if (state.phase !== 'running') return;
-        from = time;
+        // However late this page draws its first frame of the match.
+        from = joinsLate ? time : (state.startedAt ?? time);
       }
       const at = Math.max(0, time - from);
       for (const event of events) {
@@ -86,7 +93,7 @@ export function createBallRunner(host: BallHost): BallRunner {
       return missing.length > 0 ? listed(missing) : 'the others';
     },
     get standing() {
-      return standing;
+      return standing && end === null;
     },
     pause: (on) => host.ball()?.pause(on),
     abort() {

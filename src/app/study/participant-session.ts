@@ -60,6 +60,8 @@ export interface ParticipantSessionOptions {
   /** Seconds since 1970. */
   readonly now: () => number;
   readonly onChange: () => void;
+  /** Before a command of the experimenter is followed: what has happened by then is to be told. */
+  readonly onCommand?: () => void;
 }
 
 /** The first session of a participant on this device. */
@@ -107,6 +109,7 @@ class DeviceSession implements ParticipantSession {
   readonly #store: SessionStore;
   readonly #now: () => number;
   readonly #onChange: () => void;
+  readonly #onCommand: () => void;
   #online = true;
   #refusal: string | null = null;
   #lockedOut = false;
@@ -114,12 +117,14 @@ class DeviceSession implements ParticipantSession {
   #reported: Progress | null = null;
   #exchanging: Promise<void> | null = null;
 
-  constructor(kept: KeptSession, unsent: Unsent, { client, vault, now, onChange }: ParticipantSessionOptions) {
+  constructor(kept: KeptSession, unsent: Unsent, options: ParticipantSessionOptions) {
+    const { client, vault, now, onChange, onCommand = () => undefined } = options;
     this.schedule = scheduleFor(kept.plan, kept.participant);
     this.#client = client;
     this.#store = new SessionStore(kept, unsent, { vault, onChange });
     this.#now = now;
     this.#onChange = onChange;
+    this.#onCommand = onCommand;
   }
 
   get #session(): KeptSession {
@@ -258,6 +263,7 @@ class DeviceSession implements ParticipantSession {
   /** Each command is followed once, even across a reload. */
   #follow({ number, command }: NumberedCommand): void {
     if (number <= this.#session.commandsSeen) return;
+    this.#onCommand();
     const { step, running, motion } = this.progress;
     const refusal = this.#applyAfter(command, number);
     // The experimenter learns from the records why a command changed nothing.

@@ -1,5 +1,5 @@
 import { reasonOf } from '../../core/errors/reasons';
-import type { Side } from '../../core/math/side';
+import { otherSide } from '../../core/math/side';
 import type { ProgressEvent } from '../../core/study/advance';
 import { placeOf } from '../../core/study/progress';
 import { setupFaults } from '../../core/study/remote-setup';
@@ -28,9 +28,6 @@ import { TrialPreparation } from './trial-preparation';
 
 /** How often what is shown follows the clock [ms]. */
 const tickEveryMs = 250;
-
-/** The bow goes into the other hand. */
-const bowSideOf = (preferred: Side): Side => (preferred === 'left' ? 'right' : 'left');
 
 export interface RunningStudyOptions {
   readonly host: StudyHost;
@@ -96,10 +93,16 @@ export class RunningStudy {
     });
     this.#actions = {
       apply: (event) => this.#apply(event),
-      goTo: (index) => this.#goTo(index),
+      goTo: (index) => {
+        this.#answering.goTo(index);
+        this.#said(null);
+      },
       choose: (question, value) => this.#said(this.#answering.choose(question, value)),
       type: (question, typed) => this.#said(this.#answering.type(question, typed)),
-      submit: () => this.#submit(),
+      submit: () => {
+        if (this.#answering.readyToSubmit()) this.#apply({ type: 'submit' });
+        else this.#said(null);
+      },
       calibrate: () => {
         this.#measuredFaults = [];
         this.#guide.start();
@@ -130,7 +133,8 @@ export class RunningStudy {
   begin(): void {
     const { calibration, preferredHand } = this.session;
     this.#host.setCalibration(calibration);
-    if (preferredHand) this.#host.setBowSide(bowSideOf(preferredHand));
+    // The bow goes into the hand that does not draw it.
+    if (preferredHand) this.#host.setBowSide(otherSide(preferredHand));
     this.show();
     this.#tickLater();
     void this.exchange();
@@ -153,12 +157,19 @@ export class RunningStudy {
     if (finished) this.#finishTrial(finished);
   }
 
+  /** Records a round that is over, though its end is still being looked at: what comes now would make it void. */
+  conclude(): void {
+    const finished = this.#trial?.conclude();
+    if (finished) this.#finishTrial(finished);
+  }
+
   /** The headset was put on or taken off. */
   sessionChanged(): void {
-    const { progress } = this.session;
     const worn = this.#host.inSession();
+    if (!worn) this.conclude();
+    const { running, paused } = this.session.progress;
     // A round is void when the headset comes off in the middle of it.
-    if (!worn && progress.running && !progress.paused && this.#trial) {
+    if (!worn && running && !paused && this.#trial) {
       this.session.apply({ type: 'reload' });
       void this.exchange();
     }
@@ -234,11 +245,10 @@ export class RunningStudy {
   #showLockedOut(): void {
     this.#dropTrial();
     const { progress, plan, safekeeping } = this.session;
-    const { participant } = progress;
     const contact = plan.remote?.contact ?? null;
     const anew = () => void this.#forget().then(() => this.#page.address.reload());
     this.#page.display.ask(
-      { kind: 'locked-out', participant, unsent: safekeeping.unsent, contact, anew },
+      { kind: 'locked-out', participant: progress.participant, unsent: safekeeping.unsent, contact, anew },
       this.#host.inSession() ? lockedOutScreen(this.session) : null,
     );
   }
@@ -338,9 +348,8 @@ export class RunningStudy {
     if (!runner) return;
     const { plan, progress } = this.session;
     const motion = progress.motion === true && plan.consent.motion !== null && step.kind === 'trial';
-    const { now } = this.#page;
-    const seed = this.#seedOf(step);
-    this.#trial = playTrial(step, runner, this.#host, { key: this.#attempt(), motion, seed, now });
+    const options = { key: this.#attempt(), motion, seed: this.#seedOf(step), now: this.#page.now };
+    this.#trial = playTrial(step, runner, this.#host, options);
     this.show();
   }
 
@@ -365,19 +374,10 @@ export class RunningStudy {
   }
 
   #apply(event: ProgressEvent): void {
+    this.conclude();
     this.#refusal = this.session.apply(event);
     void this.exchange();
     this.show();
-  }
-
-  #goTo(index: number): void {
-    this.#answering.goTo(index);
-    this.#said(null);
-  }
-
-  #submit(): void {
-    if (this.#answering.readyToSubmit()) this.#apply({ type: 'submit' });
-    else this.#said(null);
   }
 
   /** Shows what came of a wish; null: all went well. */
@@ -392,7 +392,7 @@ export class RunningStudy {
     if (complaint === null) {
       void this.exchange();
       const { preferredHand } = this.session;
-      if (preferredHand) this.#host.setBowSide(bowSideOf(preferredHand));
+      if (preferredHand) this.#host.setBowSide(otherSide(preferredHand));
     }
     this.show();
     return complaint;

@@ -3,7 +3,13 @@ import type { Progress } from '../../core/study/progress';
 import { scheduleFor } from '../../core/study/schedule';
 import type { PublicStudy } from '../../core/study/study-api';
 import { type ParticipantClient, ServerRefusal, ServerUnreachable } from '../../net/study-client';
-import { createParticipantSession, isLater, type ParticipantSession, startSession } from './participant-session';
+import {
+  createParticipantSession,
+  isLater,
+  type ParticipantSession,
+  type ParticipantSessionOptions,
+  startSession,
+} from './participant-session';
 import type { ConsentChoices } from './study-form';
 import { type KeptSession, openStudyVault, type StudyVault } from './study-vault';
 
@@ -26,12 +32,7 @@ export type Opened =
       ): Promise<ParticipantSession | 'uninvited' | { readonly why: string }>;
     };
 
-export interface OpeningOptions {
-  readonly client: ParticipantClient;
-  /** Seconds since 1970. */
-  readonly now: () => number;
-  readonly onChange: () => void;
-}
+export type OpeningOptions = Omit<ParticipantSessionOptions, 'vault'>;
 
 async function openVault(): Promise<StudyVault | null> {
   try {
@@ -71,12 +72,13 @@ async function reportedProgress(
  * Opens a participant's session on this device: from its storage, whether the server answers or not; where it holds none, with the
  * server. Rejects with a sentence, or with what the server refused.
  */
-export async function openSession(place: Place, { client, now, onChange }: OpeningOptions): Promise<Opened> {
+export async function openSession(place: Place, opening: OpeningOptions): Promise<Opened> {
   const { study: id, participant } = place;
+  const { client } = opening;
   if (!(await alone(place)))
     throw new Error(`${participant} is open in another tab of this browser. Go on there, or close it.`);
   const vault = await openVault();
-  const options = { client, vault, now, onChange };
+  const options = { ...opening, vault };
   const kept = (await vault?.session(id, participant)) ?? null;
   if (kept && vault) {
     const [records, motion] = await Promise.all([vault.records(id, participant), vault.motion(id, participant)]);

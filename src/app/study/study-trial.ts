@@ -48,6 +48,8 @@ export interface PlayedTrial {
   pause(on: boolean): void;
   /** Every frame drawn; `frame` null: the head was not seen. Answers once, when the end has been seen for a moment; until then null. */
   follow(time: number, frame: TrackingFrame | null): FinishedTrial | null;
+  /** Puts away a game whose end has been seen, be it shorter than a moment; null: it goes on. */
+  conclude(): FinishedTrial | null;
   /** Puts the game away: the trial counts for nothing. */
   abort(): void;
 }
@@ -138,6 +140,11 @@ class LoggedTrial implements PlayedTrial {
     this.#note(time, frame);
     if (end) this.#endedAt = time;
     return null;
+  }
+
+  conclude(): FinishedTrial | null {
+    const { end } = this.#runner;
+    return end && this.#endedAt !== null ? this.#finish(end) : null;
   }
 
   abort(): void {

@@ -31,7 +31,12 @@ export class StudyVisit {
 
   constructor(asked: AskedStudy, client: ParticipantClient, host: StudyHost, page: StudyPage) {
     this.#page = page;
-    const options = { client, now: page.now, onChange: () => this.#running?.show() };
+    const options = {
+      client,
+      now: page.now,
+      onChange: () => this.#running?.show(),
+      onCommand: () => this.#running?.conclude(),
+    };
     this.#entrance = new StudyEntrance(asked, {
       page,
       open: (participant) => openSession({ study: asked.study, participant }, options),

@@ -28,8 +28,11 @@ const step = {
   seconds,
 } as PlayedStep;
 
-/** Three participants of one group in one room, each page with its own trial, frame by frame. */
-async function group() {
+/**
+ * Three participants of one group in one room, each page with its own trial, frame by frame. `stopped`: the seat of the second wants
+ * the clock to stand, as that page left it before it was loaded again.
+ */
+async function group({ stopped = false } = {}) {
   const room = createLoopbackHost({ seed: 3, ball: { seconds } });
   let time = 10;
   const pages = await Promise.all(
@@ -86,13 +89,15 @@ async function group() {
       };
     }),
   );
-  const pass = (duration: number) => {
+  /** `except`: the page that draws nothing meanwhile. */
+  const pass = (duration: number, except?: number) => {
     for (let i = 0; i < duration * rateHz; i++) {
       time += 1 / rateHz;
-      for (const page of pages) page.frame();
+      for (const [index, page] of pages.entries()) if (index !== except) page.frame();
     }
   };
   pass(1);
+  pages[1]?.play.pause(stopped);
   return { pages, pass, trials: pages.map((page) => page.start()) };
 }
 
@@ -121,4 +126,20 @@ test('who pauses in a shared match stops it for the whole group, and the pause c
     expect(outcome?.motionFrames).toBeLessThan(rateHz * (seconds + 4));
   }
   expect(new Set(outcomes.map((outcome) => outcome?.score)).size).toBe(1);
+});
+
+test('a participant who paused, loaded the page again and starts lets the clock of the group go on', async () => {
+  const { pages, pass, trials } = await group({ stopped: true });
+  pass(3);
+  expect(trials.map(({ standing }) => standing)).toEqual([false, false, false]);
+  expect(pages.map((page) => page.left() < seconds)).toEqual([true, true, true]);
+});
+
+test('a match that takes a slow page by surprise lasted as long for its participant as for the others', async () => {
+  const { pages, pass } = await group();
+  pass(1, 0);
+  pass(seconds + 8);
+  const [slow, ...others] = pages.map(({ finished }) => finished?.outcome);
+  expect(slow?.seconds).toBeGreaterThanOrEqual(seconds);
+  for (const other of others) expect(other?.seconds).toBeCloseTo(slow?.seconds ?? Number.NaN, 1);
 });

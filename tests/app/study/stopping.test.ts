@@ -139,6 +139,53 @@ describe('the experimenter stops a participant', () => {
   });
 });
 
+describe('a round whose end is still being looked at counts as played', () => {
+  const playedIn = ({ store }: StudyServer) =>
+    store.records('paper').flatMap((record) => (record.kind === 'trial' ? [record.body.outcome.score] : []));
+
+  /** The shot has hit, which ended the round, and the sheet has not come yet. */
+  async function justOver(server: StudyServer) {
+    const visit = await beforeTheRound(server);
+    const { tab } = visit;
+    tab.display.press('start');
+    tab.draw(1);
+    tab.host.games.archery.hit(40);
+    tab.draw(0.5);
+    expect(tab.display.shown).toBe('playing');
+    return visit;
+  }
+
+  test('when the headset comes off', async () => {
+    const server = await studyServer();
+    const { tab } = await justOver(server);
+    tab.wear(false);
+    expect(tab.display.shown).toBe('rest');
+    await tab.exchange();
+    expect(playedIn(server)).toEqual([10, 40]);
+  });
+
+  test('when the participant pauses, who may then load the page again', async () => {
+    const server = await studyServer();
+    const { device, tab } = await justOver(server);
+    tab.draw(1.7, true);
+    expect(tab.display.shown).toBe('paused');
+    await tab.exchange();
+    tab.close();
+    const again = await device.open();
+    expect(again.visit.state().step).toBe('archery/1/rest');
+    expect(playedIn(server)).toEqual([10, 40]);
+  });
+
+  test('when the experimenter stops the participant', async () => {
+    const server = await studyServer();
+    const visit = await justOver(server);
+    server.store.addCommand('paper', 'P01', { type: 'stop', by: 'experimenter', reason: 'fire alarm' }, 1e9);
+    await visit.tab.exchange();
+    await expectStopped(server, visit);
+    expect(playedIn(server)).toEqual([10, 40]);
+  });
+});
+
 describe('answers over a value of the plan', () => {
   const unwellFrom = (atLeast: number) => ({ askToStop: [{ questionnaire: 'archery', measure: 'Q2', atLeast }] });
 
