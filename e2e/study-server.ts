@@ -58,8 +58,8 @@ export function shortStudy(id: string): StudyPlan {
   };
 }
 
-/** The ball game alone, for one group of three, cut short, without practice and questionnaire time. */
-export function shortBallStudy(id: string): StudyPlan {
+/** The ball game alone, for one group of three, with matches of so many seconds, without practice and questionnaire time. */
+export function shortBallStudy(id: string, trialSeconds: number): StudyPlan {
   const paper = parsePlan(readFileSync(atRoot('public/studies/paper.json'), 'utf8'), 'paper.json');
   return {
     ...paper,
@@ -69,8 +69,7 @@ export function shortBallStudy(id: string): StudyPlan {
       .filter(({ game }) => game === 'ball')
       .map((task) => ({
         ...task,
-        // Long enough for a command of the experimenter to arrive within it.
-        trialSeconds: 20,
+        trialSeconds,
         tutorial: { ...task.tutorial, when: 'never' },
         restSeconds: 1,
       })),
