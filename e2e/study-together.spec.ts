@@ -16,15 +16,17 @@ import { experimenter, shortBallStudy } from './study-server';
 
 /** The match stands longer than any page takes to draw what has happened [s]. */
 const standsSeconds = 15;
-/** Long enough for a command of the experimenter to arrive within it where three pages and the server have half a processor each [s]. */
-const matchSeconds = 60;
+/** For what takes each page some of its pictures. */
+const patience = { timeout: 180_000 };
+/** As long as the paper's: a command of the experimenter arrives within it on a machine that has much else to do [s]. */
+const matchSeconds = 90;
 
 // Three headsets in software rendering take minutes.
 test('three participants play the ball game together, each in a headset of their own @nightly', async ({
   browser,
   origin,
 }) => {
-  test.setTimeout(480_000);
+  test.setTimeout(900_000);
   await experimenter(origin).begin(shortBallStudy('trio', matchSeconds), true);
   const people = ['P01', 'P02', 'P03'];
   const pages = await Promise.all(
@@ -57,15 +59,14 @@ test('three participants play the ball game together, each in a headset of their
     await rest(page, true);
   }
   const [first, second, third] = pages as [Page, Page, Page];
-  await all((page) => rest(page, false));
-  await press(first, 'start');
-  await reaches(first, 'waiting', 60_000);
-  await press(second, 'start');
-  await press(third, 'start');
-  await expect.poll(async () => (await all(study)).every(({ running }) => running), { timeout: 60_000 }).toBe(true);
-  // Twice a second is enough to see that the match stands; the page that is to hear of it has the processor.
-  await rest(first, true);
-  await rest(third, true);
+  for (const page of [first, second, third]) {
+    await rest(page, false);
+    await press(page, 'start');
+    if (page !== third) await reaches(page, 'waiting', 60_000);
+    await rest(page, true);
+  }
+  // Two pictures a second are enough to see how a match goes on: all three rest until it is over.
+  await expect.poll(async () => (await all(study)).map(({ running }) => running), patience).toEqual([true, true, true]);
 
   // The experimenter pauses one of them: the match stands for all three.
   const match = (page: Page) => page.evaluate(() => window.threepoint?.probe().game);
@@ -73,30 +74,29 @@ test('three participants play the ball game together, each in a headset of their
   const command = (type: 'pause' | 'resume') =>
     experimenter(origin).ask('/trio/participants/P02/commands', 'POST', { type });
   await command('pause');
-  await expect.poll(() => all(screen), { timeout: 30_000 }).toEqual(['standing', 'paused', 'standing']);
+  await expect.poll(() => all(screen), patience).toEqual(['standing', 'paused', 'standing']);
   await keepPicture(first, 'study-standing');
   await keepPicture(second, 'study-paused');
   const stand = await clocks();
   await Promise.all([...pages.map((page) => frames(page, 20)), third.waitForTimeout(standsSeconds * 1000)]);
   expect(await clocks()).toEqual(stand);
   expect(Math.max(...stand)).toBeGreaterThan(0);
-  await all((page) => rest(page, false));
   await command('resume');
-  await expect.poll(() => all(screen), { timeout: 30_000 }).toEqual(['playing', 'playing', 'playing']);
+  await expect.poll(() => all(screen), patience).toEqual(['playing', 'playing', 'playing']);
 
-  await all((page) => expect.poll(() => screen(page), { timeout: 180_000 }).toMatch(/^(rest|question-Q8)$/));
+  await all((page) => expect.poll(() => screen(page), { timeout: 240_000 }).toMatch(/^(rest|question-Q8)$/));
   await all((page) => expect.poll(async () => (await study(page)).unsent).toBe(0));
 
   const trials = (await recordsOf(origin, 'trio')).filter((record) => record.kind === 'trial');
-  expect(trials.map(({ participant }) => participant)).toEqual(people);
+  expect(trials.map(({ participant }) => participant).toSorted()).toEqual(people);
   // One group, one condition.
   expect(new Set(trials.map(({ body }) => body.condition)).size).toBe(1);
   expect(new Set(trials.map(({ body }) => body.group))).toEqual(new Set([1]));
   for (const { body } of trials) {
     expect(body.outcome.maximum).toBe(20);
     expect(body.outcome.ended).toBe('time');
-    // All of the match and no second of the pause: had it counted, the outcome would be as much longer, however late a page draws the end.
-    expect(body.outcome.seconds).toBeGreaterThanOrEqual(matchSeconds);
+    // All of the match, to what a page knows of the room's clock, and no second of the pause: had it counted, the outcome would be as much longer, however late a page draws the end.
+    expect(body.outcome.seconds).toBeGreaterThan(matchSeconds - 1);
     expect(body.outcome.clock?.pauses).toHaveLength(1);
     expect(body.outcome.clock?.pauses[0]?.seconds).toBeGreaterThan(standsSeconds);
     expect(body.outcome.seconds).toBeLessThan(matchSeconds + standsSeconds);

@@ -67,7 +67,7 @@ function roomMaker({ configuration, kinds, log, metrics, broadcast }: HostedRoom
   const epoch = randomBytes(6).toString('base64url');
   let made = 0;
   return ({ room: id, kind, terms, assigned }: RoomPass): HostedRoom | null => {
-    const policy = kinds.get(kind)?.(terms);
+    const policy = kinds.get(kind)?.(terms, assigned !== null);
     if (!policy) return null;
     made += 1;
     const joined = new Map<string, Guest>();

@@ -15,7 +15,8 @@ const experimenterToken = 'tests-Zk3vQ9xT1mB7rW5cY2nL8dF4hJ6pS0gA';
 const trial = { step: 'ball/1/trial-1', run: 1 };
 const clock = { now: () => performance.now() / 1000, leftOut: 0 };
 
-test('participants who were invited meet in the room of their trial, each on their own seat, through the server as it is started', async () => {
+/** The server as it is started, and what brings each of the first group to the court. */
+async function invited() {
   const server = await startServer({
     pageDirectory: directoryWith({ 'index.html': 'the page' }),
     studyDirectory: directoryWith(),
@@ -38,17 +39,20 @@ test('participants who were invited meet in the room of their trial, each on the
     states.find(({ participant }: ParticipantState) => participant === name)?.invitation as string;
   const group = scheduleFor(paperPlan(), 'P01').groups.ball?.members as readonly string[];
   const client = createParticipantClient(origin);
-  const connections = await Promise.all(
-    group.map(async (participant) => {
-      const { token } = await client.claim('paper', participant, invitationOf(participant));
-      const { connect, avatars } = await assignedSeat(() => client.seat('paper', participant, token, trial), clock);
-      expect(avatars).toBeNull();
-      return connect(visitor('what the page says', { avatar: 'a'.repeat(43) }), clock.now());
-    }),
-  );
-  onTestFinished(() => {
-    for (const connection of connections) connection.leave();
-  });
+  const come = async (participant: string) => {
+    const { token } = await client.claim('paper', participant, invitationOf(participant));
+    const { connect, avatars } = await assignedSeat(() => client.seat('paper', participant, token, trial), clock);
+    expect(avatars).toBeNull();
+    const connection = connect(visitor('what the page says', { avatar: 'a'.repeat(43) }), clock.now());
+    onTestFinished(() => connection.leave());
+    return connection;
+  };
+  return { origin, group, come };
+}
+
+test('participants who were invited meet in the room of their trial, each on their own seat, through the server as it is started', async () => {
+  const { origin, group, come } = await invited();
+  const connections = await Promise.all(group.map(come));
   await until('all three seated', () =>
     connections.every(({ room }) => room?.seats.filter((seat) => seat !== null).length === group.length),
   );
@@ -58,4 +62,23 @@ test('participants who were invited meet in the room of their trial, each on the
   for (const { room } of connections)
     expect(room?.seats.map((seat) => seat?.avatar)).toEqual(group.map(() => plainAvatar));
   expect(await (await fetch(`${origin}/api/rooms`)).json()).toMatchObject({ rooms: [] });
+});
+
+test('a match of a group waits for all of it: one whose connection is lost is not played without', async () => {
+  const { group, come } = await invited();
+  const [thrower, late, holder] = group as [string, string, string];
+  const there = [await come(thrower), await come(holder)];
+  const matches = () =>
+    there.map((connection) => {
+      connection.update(clock.now());
+      return connection.room?.match;
+    });
+  await until('two seated', () => there.every(({ room }) => room !== null));
+  for (const connection of there) connection.ready(true);
+  await until('two ready', () => matches().every((match) => match?.players.filter(({ ready }) => ready).length === 2));
+  expect(matches().map((match) => match?.phase)).toEqual(['ready', 'ready']);
+  const third = await come(late);
+  await until('the third seated', () => third.room !== null);
+  third.ready(true);
+  await until('begun', () => matches().every((match) => match?.phase === 'running'));
 });

@@ -12,6 +12,8 @@ export interface BallOptions {
   readonly seconds: number;
   /** Roles move on by this many seats: 0: the first two throw, the third holds the basket. */
   readonly rotation: number;
+  /** No round begins before every seat has a player who is ready; otherwise a thrower and the holder are enough. Only the authority knows. */
+  readonly everySeat: boolean;
 }
 
 export type BallRole = 'thrower' | 'holder';

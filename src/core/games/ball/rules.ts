@@ -10,7 +10,7 @@ import { ballMatchTime, ballSecondsLeft, ballsLeft, tickSeconds } from './state-
 import { holderStation, isInZone, stations } from './stations';
 
 /** The paper's game: 20 balls, 90 s. */
-export const defaultBallOptions: BallOptions = { balls: 20, seconds: 90, rotation: 0 };
+export const defaultBallOptions: BallOptions = { balls: 20, seconds: 90, rotation: 0, everySeat: false };
 
 /** The holder's hands are waited for this long [s]; then the basket stands where it was. */
 export const basketPatience = 0.25;
@@ -18,13 +18,13 @@ export const basketPatience = 0.25;
 const fastestBasket = 12;
 
 function checkedOptions(options: Partial<BallOptions>): BallOptions {
-  const { balls, seconds, rotation } = { ...defaultBallOptions, ...options };
+  const { balls, seconds, rotation, everySeat } = { ...defaultBallOptions, ...options };
   if (!(Number.isInteger(balls) && balls >= 1 && balls <= 20)) {
     throw new Error(`ball game: balls must be 1 to 20, is ${balls}`);
   }
   if (!(seconds > 0 && seconds <= 3600)) throw new Error(`ball game: seconds must be above 0, is ${seconds}`);
   if (!Number.isInteger(rotation)) throw new Error(`ball game: rotation must be a whole number, is ${rotation}`);
-  return { balls, seconds, rotation };
+  return { balls, seconds, rotation, everySeat };
 }
 
 /** A basket before it is held. */
@@ -78,12 +78,13 @@ function setReady(state: BallState, index: number, ready: boolean): Step {
   return { state: withPlayer(state, index, { ready }), events: [{ type: 'ready', player: index, ready }] };
 }
 
-/** All players who are there are ready, a thrower and the holder among them. */
-function canStart({ players, phase }: BallState): boolean {
+/** All players who are there are ready, a thrower and the holder among them; all are there, where the round is for every seat. */
+function canStart({ players, phase, options }: BallState): boolean {
   if (phase !== 'ready') return false;
   let throwers = 0;
   let holders = 0;
   for (const { present, ready, role } of players) {
+    if (!present && options.everySeat) return false;
     if (!present) continue;
     if (!ready) return false;
     if (role === 'thrower') throwers += 1;
