@@ -36,7 +36,10 @@ test('one person with two bots plays a short match to its end, and again', async
   await keepPicture(page, 'ball-running');
   // A player's buttons stand beside the name.
   const hide = await page.getByRole('button', { name: 'Hide Kim' }).boundingBox();
-  const name = await page.getByRole('list', { name: 'Other players' }).getByText('Kim', { exact: true }).boundingBox();
+  const name = await page
+    .getByRole('list', { name: 'Other players' })
+    .getByText('Kim (bot)', { exact: true })
+    .boundingBox();
   if (!hide || !name) throw new Error('the list of the other players is not to be seen');
   expect(hide.x).toBeGreaterThanOrEqual(name.x + name.width);
   expect(Math.abs(hide.y + hide.height / 2 - name.y - name.height / 2)).toBeLessThan(4);

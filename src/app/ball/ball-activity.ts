@@ -28,7 +28,7 @@ import type { BallRound } from './ball-bar';
 import type { BallFrame, BallProbe } from './ball-frame';
 import { type BallPlay, createBallPlay } from './ball-play';
 import { type BallView, createBallView } from './ball-view';
-import { type LobbyButton, ownName, seatOfButton, waitingFor } from './board-drawing';
+import { type LobbyButton, nameOf, ownName, seatOfButton, waitingFor } from './board-drawing';
 import { roleTexts, seatLooks } from './court-plan';
 import { eventHaptics } from './haptics';
 import { createMatchClock } from './match-clock';
@@ -122,7 +122,7 @@ const roleOf = (state: BallState, player: number): string => roleTexts[state.pla
 const placesOf = (state: BallState, players: Players, voices: Voices): BallRound['people'] =>
   players.map((player, seat) => ({
     seat,
-    name: player?.name ?? 'free',
+    name: player && (player.me ? player.name : nameOf(player)),
     role: roleOf(state, seat),
     free: player === null || (player.bot && !player.me),
     ...voices.voiceOf(seat),

@@ -3,8 +3,9 @@ import { button, element } from '../../ui/element';
 import { createRoomLink } from '../../ui/invitation';
 import { ballRulesText, rulesList } from '../../ui/rules';
 import { toggle } from '../../ui/toggle';
+import { otherPlayers, type Seated } from './other-players';
 import { createVoicesBar, type VoicesBarActions } from './voices-bar';
-import type { PersonVoice, VoicesState } from './voices-state';
+import type { VoicesState } from './voices-state';
 
 /** A match as the bar shows it. */
 export interface BallRound {
@@ -31,12 +32,8 @@ export interface BallRound {
   readonly ready: boolean;
   readonly rotate: boolean;
   readonly spectators: number;
-  readonly people: readonly ({
-    readonly seat: number;
-    readonly name: string;
-    readonly role: string;
-    readonly free: boolean;
-  } & PersonVoice)[];
+  /** All seats; `free`: can be taken by a person. */
+  readonly people: readonly (Seated & { readonly free: boolean })[];
   readonly voices: VoicesState;
 }
 
@@ -234,7 +231,7 @@ function createSeats(actions: BallBarActions) {
     show({ round, following }: BallBarState): void {
       const free = round && round.phase !== 'running' ? round.people.filter((person) => person.free) : [];
       places.show(free.map(sit), isOut(round));
-      const followed = round?.seat === null ? round.people.filter(({ name }) => name !== 'free') : null;
+      const followed = round?.seat === null ? otherPlayers(round, false) : null;
       cameras.show(
         followed
           ? [camera('Free', null, following), ...followed.map(({ seat, name }) => camera(name, seat, following))]

@@ -1,12 +1,13 @@
 import { button, element } from '../../ui/element';
 import { toggle } from '../../ui/toggle';
-import { consentText, type PersonVoice, type VoicesState } from './voices-state';
+import { hideLabel, muteLabel, type OtherPlayer, otherPlayers, type Seated } from './other-players';
+import { consentText, type VoicesState } from './voices-state';
 
 /** Who is in the room, as far as this part of the bar needs it. */
 export interface ListedPeople {
   /** The own one; null: a spectator. */
   readonly seat: number | null;
-  readonly people: readonly (PersonVoice & { readonly seat: number; readonly name: string })[];
+  readonly people: readonly Seated[];
 }
 
 export interface VoicesBarActions {
@@ -22,50 +23,32 @@ export interface VoicesBarActions {
   hide(seat: number, on: boolean): void;
 }
 
-const linkTexts = { none: '', connecting: 'connecting …', connected: '', lost: 'connection lost' } as const;
-
-/** How it stands with a player's voice, in words. */
-function voiceText({ voice, link, silenced, hidden }: ListedPeople['people'][number]): string {
-  if (hidden) return 'hidden';
-  if (voice === 'none') return '';
-  if (silenced) return 'muted by you';
-  return linkTexts[link] || (voice === 'muted' ? 'muted' : 'can be heard');
-}
-
 /** The other players, each with what this page is to show of them. */
 function createPeople(actions: VoicesBarActions) {
   const node = element('ul', { class: 'people', 'aria-label': 'Other players' });
   let shown = '';
+  const row = (player: OtherPlayer) => {
+    const { seat, name, said, silenced, hidden, muting } = player;
+    const mute = button(muteLabel(player), () => actions.silence(seat, !silenced), {
+      'aria-label': `${muteLabel(player)} ${name}`,
+      disabled: muting === 'off',
+    });
+    mute.hidden = muting === 'none';
+    const hide = button(hideLabel(player), () => actions.hide(seat, !hidden), {
+      'aria-label': `${hideLabel(player)} ${name}`,
+    });
+    const [named, hint] = [element('span', { class: 'name' }, name), element('span', { class: 'hint' }, said)];
+    return element('li', {}, named, hint, mute, hide);
+  };
   return {
     node,
-    show(round: ListedPeople | null, withVoices: boolean): void {
-      const others = (round?.people ?? []).filter(({ seat, name }) => seat !== round?.seat && name !== 'free');
-      const key = JSON.stringify([others, withVoices]);
+    show(round: ListedPeople | null, inVoices: boolean): void {
+      const others = round ? otherPlayers(round, inVoices) : [];
+      const key = JSON.stringify(others);
       node.hidden = others.length === 0;
       if (key === shown) return;
       shown = key;
-      node.replaceChildren(
-        ...others.map((person) => {
-          const { seat, name, voice, silenced, hidden } = person;
-          const state = withVoices ? voiceText(person) : hidden ? 'hidden' : '';
-          const mute = button(silenced ? 'Unmute' : 'Mute', () => actions.silence(seat, !silenced), {
-            'aria-label': `${silenced ? 'Unmute' : 'Mute'} ${name}`,
-            disabled: hidden,
-          });
-          mute.hidden = !withVoices || voice === 'none';
-          const hide = button(hidden ? 'Show' : 'Hide', () => actions.hide(seat, !hidden), {
-            'aria-label': `${hidden ? 'Show' : 'Hide'} ${name}`,
-          });
-          return element(
-            'li',
-            {},
-            element('span', { class: 'name' }, name),
-            element('span', { class: 'hint' }, state),
-            mute,
-            hide,
-          );
-        }),
-      );
+      node.replaceChildren(...others.map(row));
     },
   };
 }
