@@ -11,6 +11,7 @@ import { hasRelay, type VoiceTerms } from '../../net/voices/voice-terms';
 import { VoiceSound } from '../../scene/sound/voice-sound';
 import type { BodyFrame } from './ball-frame';
 import type { BallPlay } from './ball-play';
+import { PersonMarks } from './person-marks';
 import type { PersonVoice, VoicesState } from './voices-state';
 
 export interface VoicesOptions {
@@ -66,11 +67,9 @@ export class Voices {
     this.#sendTrack();
     if (this.#silent !== this.#toldSilent) this.#say();
   });
-  readonly #silenced = new Set<number>();
-  readonly #hidden = new Set<number>();
+  readonly #marks = new PersonMarks();
   /** By seat: the session of a page that takes part; null: none does. */
   readonly #sessions: (string | null)[] = [];
-  readonly #names: (string | null)[] = [];
   readonly #mouth = vec3(0, 0, 0);
   readonly #seen: BodyFrame[] = [];
   /** How loud each seat's player speaks in this frame. */
@@ -108,7 +107,7 @@ export class Voices {
 
   /** Seats whose players are not to be seen here. */
   get hidden(): ReadonlySet<number> {
-    return this.#hidden;
+    return this.#marks.hidden;
   }
 
   /** Once a frame, when the room has been heard. */
@@ -139,7 +138,7 @@ export class Voices {
       const session = this.#sessions[body.id];
       if (session && this.#stay)
         this.#stay.sound.place(session, transformPoint(body.placement, body.pose.head.position, this.#mouth));
-      if (!this.#hidden.has(body.id)) this.#seen.push(body);
+      if (!this.hidden.has(body.id)) this.#seen.push(body);
     }
     return this.#seen;
   }
@@ -197,13 +196,13 @@ export class Voices {
 
   /** Does not hear the player on this seat any more, or does again. */
   silence(seat: number, on: boolean): void {
-    mark(this.#silenced, seat, on);
+    this.#marks.set('silenced', seat, on);
     this.#applySilence(seat);
   }
 
   /** Neither sees nor hears the player on this seat any more, or does again. */
   hide(seat: number, on: boolean): void {
-    mark(this.#hidden, seat, on);
+    this.#marks.set('hidden', seat, on);
     this.#applySilence(seat);
   }
 
@@ -214,8 +213,8 @@ export class Voices {
     return {
       voice: voice === null ? 'none' : voice.muted ? 'muted' : 'open',
       link: state === null ? 'none' : linkOf(state),
-      silenced: this.#silenced.has(seat),
-      hidden: this.#hidden.has(seat),
+      silenced: this.#marks.has('silenced', seat),
+      hidden: this.#marks.has('hidden', seat),
     };
   }
 
@@ -223,7 +222,7 @@ export class Voices {
   markOf(seat: number): 'none' | 'muted' | 'open' {
     const voice = this.#options.play.room?.seats[seat]?.voice;
     if (!voice) return 'none';
-    return voice.muted || this.#silenced.has(seat) || this.#hidden.has(seat) ? 'muted' : 'open';
+    return voice.muted || this.#marks.mutes(seat) ? 'muted' : 'open';
   }
 
   /** How loud a player speaks, as the newest frame has it: 0 to 1; own: the own voice, as others hear it. */
@@ -313,19 +312,15 @@ export class Voices {
     this.#stay?.mesh.take(from, body);
   }
 
-  /** Connects to those who take part now. Another person on a seat begins unmarked. */
+  /** Connects to those who take part now. */
   #follow(): void {
     const room = this.#options.play.room;
     const seats = room?.seats ?? [];
     const mine = room?.mySeat ?? null;
+    this.#marks.follow(seats);
     for (let seat = 0; seat < seats.length; seat++) {
-      const info = seats[seat] ?? null;
-      if (this.#names[seat] !== undefined && this.#names[seat] !== (info?.name ?? null)) {
-        this.#silenced.delete(seat);
-        this.#hidden.delete(seat);
-      }
-      this.#names[seat] = info?.name ?? null;
-      this.#sessions[seat] = seat === mine ? null : (info?.voice?.session ?? null);
+      this.#sessions[seat] = seat === mine ? null : (seats[seat]?.voice?.session ?? null);
+      this.#applySilence(seat);
     }
     const moved = mine !== this.#mySeat;
     this.#mySeat = mine;
@@ -361,7 +356,7 @@ export class Voices {
 
   #applySilence(seat: number): void {
     const session = this.#sessions[seat];
-    if (session) this.#stay?.sound.setSilent(session, this.#silenced.has(seat) || this.#hidden.has(seat));
+    if (session) this.#stay?.sound.setSilent(session, this.#marks.mutes(seat));
   }
 
   #readLevels(): void {
@@ -385,11 +380,6 @@ export class Voices {
     stay.sound.mend();
     void this.#terms?.watch().then((renewed) => renewed && this.#stay?.mesh.configure(this.#configurationOf(renewed)));
   }
-}
-
-function mark(set: Set<number>, seat: number, on: boolean): void {
-  if (on) set.add(seat);
-  else set.delete(seat);
 }
 
 function linkOf(state: RTCPeerConnectionState): PersonVoice['link'] {
