@@ -1,5 +1,6 @@
 import { Group, Vector3 } from 'three';
 import { afterAll, describe, expect, test, vi } from 'vitest';
+import type { OtherPlayer } from '../../../src/app/ball/other-players';
 import { HeadsetControls } from '../../../src/app/shell/controls/headset-controls';
 import { PageStudy } from '../../../src/app/shell/page-study';
 import { createSettings, SettingsWriter } from '../../../src/app/shell/settings';
@@ -168,10 +169,16 @@ describe('the buttons of the menu', () => {
       roundOver: false,
       ready: null,
       voices: { phase: 'none', muted: true, deaf: false },
+      others: [],
+      listed: false,
       canInvite: false,
       invitation: null,
       notice: null,
     },
+  };
+  const ben: OtherPlayer = {
+    ...{ seat: 1, name: 'Ben', role: 'Right thrower', said: 'muted' },
+    ...{ silenced: false, hidden: false, muting: 'offered' },
   };
   const done: string[] = [];
   const actions: VrMenuActions = {
@@ -190,6 +197,9 @@ describe('the buttons of the menu', () => {
     askVoices: (on) => void done.push(`ask ${on}`),
     joinVoices: () => void done.push('join voices'),
     mute: (on) => void done.push(`mute ${on}`),
+    listOthers: (on) => void done.push(`list others ${on}`),
+    silence: () => undefined,
+    hide: () => undefined,
     invite: (on) => void done.push(`invite ${on}`),
     exit: () => undefined,
   };
@@ -209,6 +219,7 @@ describe('the buttons of the menu', () => {
         ready: true,
         voices,
         deviceBody,
+        others: [ben],
         canInvite: true,
       };
       const buttons = menuButtons({ ...shown, ownBody: 'woman' }, actions);
@@ -237,6 +248,8 @@ describe('the buttons of the menu', () => {
     expect(labels({ activity: 'ball' })).not.toContain('Ready');
     expect(labels({ activity: 'ball', canInvite: true })).toContain('Invite');
     expect(labels({ activity: 'ball', canInvite: false })).not.toContain('Invite');
+    expect(labels({ activity: 'ball', others: [ben] })).toContain('Players');
+    expect(labels({ activity: 'ball', others: [] })).not.toContain('Players');
     const talking = (phase: VrMenuState['voices']['phase'], muted = true, deaf = false) =>
       labels({ activity: 'ball', voices: { phase, muted, deaf } });
     expect(talking('none').join()).not.toMatch(/Talk|ute me/);

@@ -36,7 +36,7 @@ const actions: VrMenuActions = {
   ...{ chooseEstimator: nothing, calibrate: nothing, cancelCalibration: nothing, recentre: nothing },
   ...{ setOverlay: nothing, goTo: nothing, chooseOwnBody: nothing, chooseSkinTone: nothing, setPlainOthers: nothing },
   ...{ setBowSide: nothing, restart: nothing, ready: nothing, askVoices: nothing, joinVoices: nothing, mute: nothing },
-  ...{ invite: nothing, exit: nothing },
+  ...{ listOthers: nothing, silence: nothing, hide: nothing, invite: nothing, exit: nothing },
 };
 
 function drawn(change: Partial<ShownInvitation>) {
@@ -51,6 +51,7 @@ function drawn(change: Partial<ShownInvitation>) {
       roundOver: false,
       ready: false,
     },
+    ...{ others: [], listed: false },
     ...{ voices: { phase: 'none', muted: true, deaf: false }, canInvite: true, invitation, notice: 'Waiting for you.' },
   };
   const { context, texts, boxes } = paper();

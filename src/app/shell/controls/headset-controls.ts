@@ -3,6 +3,7 @@ import { linkTo } from '../../../ui/invitation';
 import type { FrameReport } from '../../../ui/overlay';
 import { qrCode } from '../../../ui/qr-code';
 import type { VrPointers } from '../../../ui/vr-pointers';
+import { otherPlayers } from '../../ball/other-players';
 import { consentText, type VoicesState } from '../../ball/voices-state';
 import type { Activities } from '../activities';
 import type { PanelActions } from '../panel/panel';
@@ -34,6 +35,8 @@ export class HeadsetControls {
   readonly #menu: VrMenu;
   /** What others need to come, while it is held up for them. */
   #invitation: ShownInvitation | null = null;
+  /** Who else is here is held up. */
+  #listed = false;
 
   constructor(options: HeadsetControlsOptions) {
     this.#options = options;
@@ -50,6 +53,7 @@ export class HeadsetControls {
   setWorn(worn: boolean): void {
     const { study, pointers } = this.#options;
     this.#invitation = null;
+    this.#listed = false;
     this.#menu.setVisible(worn && study.run === null);
     pointers.objects.visible = worn;
   }
@@ -99,6 +103,12 @@ export class HeadsetControls {
       askVoices: (on) => activities.ball?.voices.ask(on),
       joinVoices: () => void activities.ball?.voices.join(),
       mute: (on) => void activities.ball?.voices.setMuted(on),
+      listOthers: (on) =>
+        this.#pressed(() => {
+          this.#listed = on;
+        }),
+      silence: (seat, on) => this.#pressed(() => activities.ball?.voices.silence(seat, on)),
+      hide: (seat, on) => this.#pressed(() => activities.ball?.voices.hide(seat, on)),
       invite: (on) => this.#invite(on),
       exit: () => actions.exitVr(),
     };
@@ -128,6 +138,12 @@ export class HeadsetControls {
     return activities.ball && server.state !== 'none' ? switches.room : null;
   }
 
+  /** What a press has changed is seen at once, not with the next look at the round. */
+  #pressed(act: () => void): void {
+    act();
+    this.show();
+  }
+
   #invite(on: boolean): void {
     const room = on ? this.#openRoom() : null;
     if (room === null) this.#holdUp(null);
@@ -146,7 +162,7 @@ export class HeadsetControls {
     this.show();
   }
 
-  #ballState(): Pick<VrMenuState, 'ready' | 'voices' | 'canInvite' | 'invitation' | 'notice'> {
+  #ballState(): Pick<VrMenuState, 'ready' | 'voices' | 'others' | 'listed' | 'canInvite' | 'invitation' | 'notice'> {
     const { activities, notices } = this.#options;
     const { ball } = activities;
     const round = ball?.round() ?? null;
@@ -156,6 +172,8 @@ export class HeadsetControls {
     return {
       ready: asked ? round.ready : null,
       voices: { phase, muted, deaf },
+      others: round ? otherPlayers(round, phase === 'in') : [],
+      listed: round !== null && this.#listed,
       canInvite,
       // What is held up in the court goes when one leaves it.
       invitation: canInvite ? this.#invitation : null,

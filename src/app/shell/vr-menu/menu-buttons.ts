@@ -5,6 +5,7 @@ import { type OwnBody, ownBodies, plainAvatar, type SkinTone, skinTones } from '
 import type { CalibrationStep } from '../../../ui/calibration-dialog';
 import type { RoomLink } from '../../../ui/invitation';
 import type { QrCode } from '../../../ui/qr-code';
+import { hideLabel, muteLabel, type OtherPlayer } from '../../ball/other-players';
 import type { VoicesState } from '../../ball/voices-state';
 import { estimatorOrder, estimatorTexts } from '../estimator-texts';
 import type { ActivityName } from '../play-bar';
@@ -35,6 +36,9 @@ export interface VrMenuState {
   readonly ready: boolean | null;
   /** How one takes part in the voices of a room; none: it has none. */
   readonly voices: Pick<VoicesState, 'phase' | 'muted' | 'deaf'>;
+  /** Who else is in the room of the ball game, and whether their list is held up in place of everything else. */
+  readonly others: readonly OtherPlayer[];
+  readonly listed: boolean;
   /** Others can come into the room of the ball game. */
   readonly canInvite: boolean;
   /** In place of everything else; null: not now. */
@@ -60,6 +64,12 @@ export interface VrMenuActions {
   askVoices(on: boolean): void;
   joinVoices(): void;
   mute(on: boolean): void;
+  /** Who else is here is to be seen, or no longer. */
+  listOthers(on: boolean): void;
+  /** Does not hear a player any more, or does again. */
+  silence(seat: number, on: boolean): void;
+  /** Neither sees nor hears a player any more, or does again. */
+  hide(seat: number, on: boolean): void;
   invite(on: boolean): void;
   exit(): void;
 }
@@ -87,6 +97,12 @@ const estimatorGap = 12;
 /** Where everything else begins that can be pressed [pixels]. */
 const entriesTop = 560;
 
+/** Where the first of the other players stands, and how high one is: name, role and voice, two buttons [pixels]. */
+export const othersTop = 124;
+export const otherHeight = 252;
+const otherButtonsTop = 104;
+const otherButtonsHeight = 88;
+
 const full = menuWidth - 2 * menuMargin;
 const gap = 16;
 const half = (full - gap) / 2;
@@ -101,6 +117,30 @@ const onlyButton = (id: string, label: string, act: () => void): MenuButton => (
   look: 'plain',
   act,
 });
+
+/** What can be done about each of the other players: one row for each, the same at the same place in all. */
+function otherButtons({ others }: VrMenuState, actions: VrMenuActions): readonly MenuButton[] {
+  return others.flatMap((player, row): MenuButton[] => {
+    const { seat, silenced, hidden, muting } = player;
+    const top = othersTop + row * otherHeight + otherButtonsTop;
+    const hide: MenuButton = {
+      id: `hide-${seat}`,
+      label: hideLabel(player),
+      at: [menuMargin + half + gap, top, half, otherButtonsHeight],
+      look: hidden ? 'chosen' : 'plain',
+      act: () => actions.hide(seat, !hidden),
+    };
+    if (muting === 'none') return [hide];
+    const mute: MenuButton = {
+      id: `mute-${seat}`,
+      label: muteLabel(player),
+      at: [menuMargin, top, half, otherButtonsHeight],
+      look: muting === 'off' ? 'off' : silenced ? 'chosen' : 'plain',
+      act: () => actions.silence(seat, !silenced),
+    };
+    return [mute, hide];
+  });
+}
 
 const isOver = ({ kind }: CalibrationStep): boolean => kind === 'done' || kind === 'failed';
 
@@ -166,6 +206,7 @@ function playEntries(state: VrMenuState, actions: VrMenuActions): readonly Entry
               `Others: ${plainOthers ? 'plain' : 'as worn'}`,
               () => actions.setPlainOthers(!plainOthers),
             ] as const,
+            ...(state.others.length > 0 ? [['players', 'Players', () => actions.listOthers(true)] as const] : []),
             ...(state.canInvite ? [['invite', 'Invite', () => actions.invite(true)] as const] : []),
           ]),
       ...voiceEntries(state, actions),
@@ -180,6 +221,8 @@ export function menuButtons(state: VrMenuState, actions: VrMenuActions): readonl
   if (state.calibration)
     return [onlyButton('cancel', isOver(state.calibration) ? 'Close' : 'Cancel', () => actions.cancelCalibration())];
   if (state.invitation) return [onlyButton('close', 'Close', () => actions.invite(false))];
+  if (state.listed)
+    return [...otherButtons(state, actions), onlyButton('close', 'Close', () => actions.listOthers(false))];
   const entries: readonly Entry[] = [
     ['calibrate', 'Calibrate', () => actions.calibrate()],
     ['recentre', 'Recentre', () => actions.recentre()],

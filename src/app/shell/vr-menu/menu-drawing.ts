@@ -7,6 +7,8 @@ import {
   menuMargin,
   menuWidth,
   noticesTop,
+  otherHeight,
+  othersTop,
   type ShownInvitation,
   type VrMenuState,
 } from './menu-buttons';
@@ -54,6 +56,24 @@ function drawInvitation(context: CanvasRenderingContext2D, { room, address, limi
     context.fillText(line, menuMargin, 888 + index * 28);
 }
 
+/** Who else is here; what can be done about them stands below each. */
+function drawOthers(context: CanvasRenderingContext2D, { others }: VrMenuState): void {
+  context.textAlign = 'left';
+  for (const [row, { name, role, said }] of others.entries()) {
+    const top = othersTop + row * otherHeight;
+    context.fillStyle = vrColors.ink;
+    context.font = `650 40px ${vrFont}`;
+    context.fillText(name, menuMargin + 4, top + 24, inner - 8);
+    context.fillStyle = vrColors.inkSoft;
+    context.font = `500 28px ${vrFont}`;
+    context.fillText([role, said].filter(Boolean).join(' · '), menuMargin + 4, top + 70, inner - 8);
+  }
+  if (others.length > 0) return;
+  context.fillStyle = vrColors.inkSoft;
+  context.font = `500 34px ${vrFont}`;
+  context.fillText('No one else is here now.', menuMargin + 4, othersTop + 24, inner);
+}
+
 function drawButton(context: CanvasRenderingContext2D, { label, at, look }: MenuButton, hovered: boolean): void {
   const [x, y, w, h] = at;
   const plain = hovered && look !== 'off' ? vrColors.liftMore : vrColors.lift;
@@ -86,10 +106,12 @@ export function drawMenu(
   context.textAlign = 'left';
   context.fillStyle = vrColors.inkSoft;
   context.font = `600 30px ${vrFont}`;
-  const { calibration, invitation, notice } = state;
-  context.fillText(calibration ? 'Calibrate' : invitation ? 'Invite others' : 'Estimator', menuMargin + 4, 72);
+  const { calibration, invitation, listed, notice } = state;
+  const heading = calibration ? 'Calibrate' : invitation ? 'Invite others' : listed ? 'Other players' : 'Estimator';
+  context.fillText(heading, menuMargin + 4, 72);
   if (calibration) drawCalibration(context, calibration);
   else if (invitation) drawInvitation(context, invitation);
+  else if (listed) drawOthers(context, state);
   for (const button of buttons) drawButton(context, button, button.id === hovered);
-  if (notice && !calibration && !invitation) drawNotice(context, notice);
+  if (notice && !calibration && !invitation && !listed) drawNotice(context, notice);
 }
