@@ -1,22 +1,11 @@
 import { rmSync, writeFileSync } from 'node:fs';
-import type { Page } from '@playwright/test';
 import { goldenMocap } from '../tests/core/mocap/golden-mocap';
+import { card, choose, errors } from './mocap-card';
 import { expect, keepPicture, open, probe, test } from './page-fixture';
 
 const [acclaim, , leaping, folded] = goldenMocap;
-const card = (page: Page) => page.getByRole('region', { name: 'Motion capture' });
 const filesOf = ({ files }: { readonly files: Readonly<Record<string, string>> }) =>
   Object.entries(files).map(([name, text]) => ({ name, mimeType: 'text/plain', buffer: Buffer.from(text) }));
-
-/** Opens these files as a person does who chooses them in the panel. */
-async function choose(page: Page, files: Parameters<ReturnType<Page['locator']>['setInputFiles']>[0]): Promise<void> {
-  await page.getByRole('tab', { name: 'Recording' }).click();
-  await page.getByLabel('Open motion capture').and(page.locator('input')).setInputFiles(files);
-}
-
-/** The numbers of a row of the card [cm]: of the picture and of the clip, for each method. */
-const errors = async (page: Page, joint: string): Promise<number[]> =>
-  (await card(page).getByRole('row', { name: joint }).getByRole('cell').allTextContents()).map(Number);
 
 test('motion capture is shown with its truth, and methods are compared on the same second', async ({ page }) => {
   await open(page, 'emulate&quality=low&estimator=ik&actor=off');

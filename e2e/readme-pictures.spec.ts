@@ -1,6 +1,8 @@
 import type { ArcheryProbe } from '../src/app/archery/archery-play';
 import { driveTime, holdAt, pass } from './driven-time';
+import { card, choose, errors } from './mocap-card';
 import { expect, joint, keepPicture, open, test } from './page-fixture';
+import { downloaded, recordTheActor } from './recorded-actor';
 
 // The pictures of README.md as the page shows them now: what is kept in artifacts/screenshots goes to docs/images as JPEG when it was
 // looked at. That of the ball game is taken from `npm start`: tests are served by a host without rooms, and the page says so.
@@ -35,4 +37,25 @@ test('archery: an archer at full draw, one target hit @nightly', async ({ page }
     }, patience)
     .toBe(true);
   await keepPicture(page, 'readme-archery');
+});
+
+test('motion in: our own actor as a file, a moment of it by two methods with the truth in each @nightly', async ({
+  page,
+}) => {
+  await recordTheActor(page, 4);
+  const { bytes } = await downloaded(page, 'BVH');
+  await open(page, 'emulate&quality=high&estimator=learned&actor=off');
+  await choose(page, [{ name: 'actor.bvh', mimeType: 'text/plain', buffer: bytes }]);
+  await card(page).getByRole('button', { name: 'Pause' }).click(patience);
+  await card(page).getByLabel('Time of the clip').fill('1.5');
+  await card(page).getByLabel('On its right').selectOption('paper');
+  // Until its network has answered for this moment, a method draws inverse kinematics.
+  await expect
+    .poll(async () => {
+      const [learned, , paper] = await errors(page, 'Left elbow');
+      return learned !== paper;
+    }, patience)
+    .toBe(true);
+  await page.getByRole('button', { name: 'Controls' }).click();
+  await keepPicture(page, 'readme-motion-in');
 });

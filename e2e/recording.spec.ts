@@ -1,26 +1,8 @@
-import { readFileSync } from 'node:fs';
-import type { Page } from '@playwright/test';
 import { validateBytes } from 'gltf-validator';
 import { readBvh } from '../src/core/motion/read-bvh';
 import { finishWork } from '../src/core/motion/work';
 import { expect, joint, open, probe, test } from './page-fixture';
-
-/** A second and a half of the actor, recorded by the page. */
-async function recordTheActor(page: Page): Promise<void> {
-  await open(page, 'emulate&quality=low&estimator=ik');
-  await page.getByRole('tab', { name: 'Recording' }).click();
-  await page.getByRole('button', { name: 'Record', exact: true }).click();
-  await expect.poll(async () => (await probe(page)).recorder.seconds).toBeGreaterThan(1.5);
-  await page.getByRole('button', { name: 'Stop' }).click();
-}
-
-/** What the page offers for download when this button is pressed. */
-async function downloaded(page: Page, button: string): Promise<{ readonly name: string; readonly bytes: Buffer }> {
-  const download = page.waitForEvent('download');
-  await page.getByRole('button', { name: button, exact: true }).click();
-  const file = await download;
-  return { name: file.suggestedFilename(), bytes: readFileSync(await file.path()) };
-}
+import { downloaded, recordTheActor } from './recorded-actor';
 
 // In full one that asks a network and one that asks none, the others by night.
 const replays = {
