@@ -1,70 +1,12 @@
-import { menuHeight, menuWidth } from '../src/app/shell/vr-menu/menu-buttons';
 import { emulatedHeadset, frames } from './emulated-headset';
+import { keepWritten, lookingAtMenu, pressBelow, pressInMenu, writtenAs } from './hands-on-menu';
 import { enterVr, expect, freshTest, joinedRoom, keepPicture, open, probe, test } from './page-fixture';
 import { serveStudies } from './study-server';
 
 type Page = Parameters<typeof open>[0];
 
-/** What is written on the sheets of the headset, and where on its canvas [pixels]. */
-interface Written {
-  readonly text: string;
-  readonly x: number;
-  readonly y: number;
-}
-declare global {
-  interface Window {
-    /** Put there by `readCanvases` in this file. */
-    writtenOnCanvases?: Written[];
-  }
-}
-
-/** Canvases tell a test what is written on them from now on. */
-const readCanvases = (page: Page) =>
-  page.addInitScript(() => {
-    const { fillText } = CanvasRenderingContext2D.prototype;
-    const written: Written[] = [];
-    window.writtenOnCanvases = written;
-    CanvasRenderingContext2D.prototype.fillText = function (text, x, y, ...rest) {
-      written.push({ text, x, y });
-      fillText.call(this, text, x, y, ...rest);
-    };
-  });
-
-const writtenAs = (page: Page, text: string) =>
-  page.waitForFunction((wanted) => window.writtenOnCanvases?.findLast(({ text }) => text === wanted), text);
-
-/** Pulls the right trigger at this word of the menu in the headset: 40 cm before it, straight at it. */
-async function pressInMenu(page: Page, label: string): Promise<void> {
-  const headset = await emulatedHeadset(page);
-  const { x, y } = (await (await writtenAs(page, label)).jsonValue()) as Written;
-  const { sine, cosine } = { sine: Math.sin(menuYaw), cosine: Math.cos(menuYaw) };
-  const right = (x - menuWidth / 2) / 1000;
-  await headset.place({
-    right: {
-      position: [
-        menuAt[0] + right * cosine + 0.4 * sine,
-        menuAt[1] + (menuHeight / 2 - y) / 1000,
-        menuAt[2] - right * sine + 0.4 * cosine,
-      ],
-      orientation: [0, Math.sin(menuYaw / 2), 0, Math.cos(menuYaw / 2)],
-    },
-  });
-  await frames(page, 3);
-  await headset.pull('right', 1);
-  await frames(page, 3);
-  await headset.pull('right', 0);
-}
-
 test.use({ viewport: { width: 900, height: 560 } });
 freshTest.use({ viewport: { width: 900, height: 560 } });
-
-/** The menu's middle [m] and its yaw, floor frame (app/shell/vr-menu/vr-menu.ts); eyes that look at it from a metre away. */
-const menuAt = [1.1, 1.3, -1.15] as const;
-const menuYaw = -0.74;
-const lookingAtMenu = {
-  position: [menuAt[0] + Math.sin(menuYaw), 1.3, menuAt[2] + Math.cos(menuYaw)],
-  orientation: [0, Math.sin(menuYaw / 2), 0, Math.cos(menuYaw / 2)],
-} as const;
 
 const bar = (page: Page) => page.getByRole('region', { name: 'Play' });
 
@@ -136,7 +78,7 @@ freshTest(
       await other.bringToFront();
       await expect(bar(other).getByRole('button', { name: 'Take over again' })).toBeVisible();
 
-      await readCanvases(other);
+      await other.addInitScript(keepWritten);
       await other.goto(`${link}&panel=off&quality=low&estimator=ik&emulate&actor=off`);
       await joinedRoom(other);
       await (await emulatedHeadset(other)).place({ head: lookingAtMenu });
@@ -150,6 +92,27 @@ freshTest(
     }
   },
 );
+
+freshTest('in the headset another player is hidden by the menu, and shown again', async ({ page }) => {
+  test.setTimeout(240_000);
+  await page.addInitScript(keepWritten);
+  await open(page, 'play=ball&panel=off&quality=low&estimator=ik&seed=5&emulate&actor=off');
+  const drawn = async () =>
+    (await probe(page)).players.map(({ name, drawnAs }) => `${name}: ${drawnAs === null ? 'hidden' : 'drawn'}`).sort();
+  await expect.poll(drawn).toEqual(['Kim: drawn', 'Max: drawn']);
+  const headset = await emulatedHeadset(page);
+  await headset.place({ head: lookingAtMenu });
+  await enterVr(page, { stepMs: null });
+  await pressInMenu(page, 'Players');
+  await pressBelow(page, 'Kim (bot)', 'Hide');
+  await expect.poll(drawn).toEqual(['Kim: hidden', 'Max: drawn']);
+  await keepPicture(page, 'ball-players-vr');
+  await headset.place({ head: { position: [0, 1.6, 0], orientation: [0, 0, 0, 1] } });
+  await frames(page, 3);
+  await keepPicture(page, 'ball-hidden-vr');
+  await pressBelow(page, 'Kim (bot)', 'Show');
+  await expect.poll(drawn).toEqual(['Kim: drawn', 'Max: drawn']);
+});
 
 test('at 900 × 560 nothing lies over the name, the line below it, the choice of places or Recentre', async ({
   page,
