@@ -115,29 +115,38 @@ async function join(page: Page): Promise<void> {
     await bar(page).getByRole('button', { name, exact: true }).press('Enter');
 }
 
-/** How a page stands with the other person. */
-async function voices(page: Page): Promise<readonly unknown[]> {
-  const other = (await voicesOf(page)).people.find(({ voice }) => voice !== 'none');
-  return [other?.link, other?.voice];
+/** How a page takes part itself, and how it stands with its room and with the other person. */
+async function voices(page: Page) {
+  const { phase, muted, said, people } = await voicesOf(page);
+  const other = people.find(({ voice }) => voice !== 'none');
+  const { game, frame } = await probe(page);
+  const room = game?.name === 'ball' ? game.connection : undefined;
+  return { phase, muted, said, room, frames: frame.count, link: other?.link, other: other?.voice };
 }
+
+/** Waits until these pages see this of the voices; what they saw instead is told of all. */
+const seen = (pages: readonly Page[], expected: Partial<Awaited<ReturnType<typeof voices>>>[]) =>
+  expect.poll(() => Promise.all(pages.map(voices)), { timeout: 60_000 }).toMatchObject(expected);
 
 /** Both talk for a minute. What they press is what people press, more often. */
 async function talkForAMinute(minute: number, until: number, [ann, ben]: readonly [Page, Page]): Promise<void> {
+  const both = [ann, ben];
   for (let i = 0; i < mutesAMinute; i++) {
     await bar(ann).getByRole('button', { name: 'Mute me (T)', exact: true }).press('Enter');
-    await expect.poll(async () => (await voices(ben))[1], { timeout: 60_000 }).toBe('muted');
+    await seen(both, [{ muted: true }, { other: 'muted' }]);
     await bar(ann).getByRole('button', { name: 'Unmute me (T)', exact: true }).press('Enter');
   }
   if (minute % rejoinEvery === 0) {
     await bar(ben).getByRole('button', { name: 'Leave the voices' }).press('Enter');
-    await expect.poll(async () => (await voices(ann))[1], { timeout: 60_000 }).toBeUndefined();
+    await seen(both, [{ other: undefined }, { phase: 'off' }]);
     await join(ben);
   }
   await ann.waitForFunction((end) => Date.now() > end, until, { polling: 1000, timeout: 120_000 });
-  for (const page of [ann, ben]) {
-    await expect.poll(async () => voices(page), { timeout: 60_000 }).toEqual(['connected', 'open']);
-    await heard(page);
-  }
+  await seen(both, [
+    { link: 'connected', other: 'open' },
+    { link: 'connected', other: 'open' },
+  ]);
+  for (const page of both) await heard(page);
 }
 
 /** How much more may be there in the last quarter of a run than in the second, where so much was, and one person has joined so often since. */
