@@ -1,7 +1,7 @@
 import type { FaceShape, Figure } from './figure';
 import type { Point } from './signed-distance';
 import { compact, cutAlong, decimate, mesh, normalsOf, projectOnto, refine, type Surface } from './surface';
-import type { Label } from './surface-labels';
+import type { Label, Seam } from './surface-labels';
 import { skinWeights } from './weights';
 import { type Skinned, writeVrm } from './write-vrm';
 
@@ -27,6 +27,40 @@ function importance({ positions }: Surface, { rig, careful }: Figure): Float32Ar
   });
 }
 
+/** So far from its line [of its radius] skin belongs to a finger. */
+const fingerReach = 1.8;
+
+/**
+ * Of each vertex, 0 to 1: from joint to joint of a finger it goes up and down in turn. Fingers are straight at rest, where an edge from
+ * knuckle to tip costs no shape; along such an edge this changes, and corners of it are at the joints, where fingers bend.
+ */
+function alongFingers({ positions }: Surface, { rig }: Figure): Float32Array {
+  return Float32Array.from({ length: positions.length / 3 }, (_, v) => {
+    const at: Point = [Math.abs(positions[3 * v]!), positions[3 * v + 1]!, positions[3 * v + 2]!];
+    let [value, nearest] = [0, Number.POSITIVE_INFINITY];
+    if (at[0] < rig.armJoints.wrist) return value;
+    for (const finger of rig.fingers) {
+      const joints = [0, 1, 2, 3].map((index) => rig.fingerPoint(finger, index));
+      for (let bone = 0; bone < 3; bone++) {
+        const { share, distance } = onLine(at, joints[bone]!, joints[bone + 1]!);
+        if (distance > fingerReach * finger.radius || distance >= nearest) continue;
+        nearest = distance;
+        value = bone === 1 ? 1 - share : share;
+      }
+    }
+    return value;
+  });
+}
+
+/** Where on the way between two points another is nearest, 0 to 1, and how far from there [m]. */
+function onLine(at: Point, from: Point, to: Point): { readonly share: number; readonly distance: number } {
+  const way = to.map((value, axis) => value - from[axis]!);
+  const past = at.map((value, axis) => value - from[axis]!);
+  const dot = (a: readonly number[], b: readonly number[]) => a.reduce((sum, value, axis) => sum + value * b[axis]!, 0);
+  const share = Math.max(0, Math.min(1, dot(past, way) / dot(way, way)));
+  return { share, distance: Math.hypot(...past.map((value, axis) => value - share * way[axis]!)) };
+}
+
 /** No edge is longer than this where an elbow bends and where a shoulder turns [m]: bent, they would be seen as corners. */
 const bending = { elbow: { within: 0.045, longest: 0.025 }, shoulder: { within: 0.06, longest: 0.034 } };
 
@@ -49,6 +83,17 @@ const middleOf = ({ positions, indices }: Surface, t: number): Point =>
     (axis) => [0, 1, 2].reduce((sum, corner) => sum + positions[3 * indices[t + corner]! + axis]!, 0) / 3,
   ) as unknown as Point;
 
+/** A corner of a triangle inside a seam lies at most so far out of it: vertices are put onto the seams that are cut later [m]. */
+const outsideAtMost = 8e-4;
+
+/** Whether a triangle, once cut, is inside a seam. One that reaches over a line's end with its middle inside is not: it would stand out as a tick. */
+const isInside = ({ value }: Seam, { positions, indices }: Surface, t: number, middle: Point): boolean =>
+  value(...middle) < 0 &&
+  [0, 1, 2].every((corner) => {
+    const v = 3 * indices[t + corner]!;
+    return value(positions[v]!, positions[v + 1]!, positions[v + 2]!) < outsideAtMost;
+  });
+
 /** How far each vertex goes for each shape of the face [m]. */
 const movesOf = ({ shapes }: Figure, { positions }: Surface): Skinned['shapes'] =>
   Object.entries(shapes).map(([name, displaced]) => {
@@ -67,7 +112,11 @@ export async function buildBody(figure: Figure, report?: (what: string) => void,
   const fine = projectOnto(body, mesh(body, ...box, coarser * cell), 2);
   report?.(`${fine.indices.length / 3} triangles of ${coarser * cell * 1000} mm`);
   const weighed = importance(fine, figure);
-  const coarse = await decimate(fine, normalsOf(body, fine.positions, shadedOver), weighed, figure.triangles);
+  const coarse = await decimate(
+    fine,
+    { normals: normalsOf(body, fine.positions, shadedOver), importance: weighed, bends: alongFingers(fine, figure) },
+    figure.triangles,
+  );
   let surface = projectOnto(body, coarse);
   surface = projectOnto(body, refine(surface, finenessOf(figure)));
   const settled = new Set<number>();
@@ -79,7 +128,7 @@ export async function buildBody(figure: Figure, report?: (what: string) => void,
   const ofHead: boolean[] = [];
   for (let t = 0; t < surface.indices.length; t += 3) {
     const middle = middleOf(surface, t);
-    const label = seams.find(({ value }) => value(...middle) < 0)?.label ?? rest;
+    const label = seams.find((seam) => isInside(seam, surface, t, middle))?.label ?? rest;
     kinds.push(label);
     ofHead.push(figure.ofHead(label, middle));
   }

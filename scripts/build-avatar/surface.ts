@@ -114,13 +114,22 @@ export function normalsOf(field: DistanceField, positions: Float32Array, over = 
   return normals;
 }
 
-/**
- * Fewer triangles, more of them where `importance` (per vertex, about 0 to 1) is high. The topology stays: still one closed surface.
- */
+/** What fewer triangles are to keep of a surface besides its shape, per vertex. */
+export interface KeptQualities {
+  readonly normals: Float32Array;
+  /** About 0 to 1: more triangles where it is high. */
+  readonly importance: Float32Array;
+  /** 0 to 1, with corners where the surface will bend: edges stay there though it is straight. */
+  readonly bends: Float32Array;
+}
+
+/** What an error of `bends` by 1 weighs [of the largest extent of the body]. */
+const bendWeight = 0.1;
+
+/** Fewer triangles. The topology stays: still one closed surface. */
 export async function decimate(
   surface: Surface,
-  normals: Float32Array,
-  importance: Float32Array,
+  { normals, importance, bends }: KeptQualities,
   triangles: number,
 ): Promise<Surface> {
   await MeshoptSimplifier.ready;
@@ -128,7 +137,7 @@ export async function decimate(
   const attributes = new Float32Array(vertices * 4);
   for (let v = 0; v < vertices; v++) {
     attributes.set(normals.subarray(3 * v, 3 * v + 3), 4 * v);
-    attributes[4 * v + 3] = importance[v]!;
+    attributes[4 * v + 3] = bends[v]!;
   }
   // Normals weigh more where importance is high, by scaling them: the simplifier knows one weight per attribute only.
   for (let v = 0; v < vertices; v++) {
@@ -140,7 +149,7 @@ export async function decimate(
     3,
     attributes,
     4,
-    [0.03, 0.03, 0.03, 0.0],
+    [0.03, 0.03, 0.03, bendWeight],
     null,
     triangles * 3,
     1,
