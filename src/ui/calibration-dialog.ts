@@ -1,3 +1,4 @@
+import type { CalibrationFault } from '../core/tracking/calibration-faults';
 import { button, element } from './element';
 
 /** The guided calibration as people see it: an instruction, a countdown, then a bar that fills. */
@@ -7,11 +8,12 @@ export interface CalibrationDialog {
   hide(): void;
 }
 
-/** countdown: seconds left until measuring. measuring: part of it done, 0 to 1. done/failed: a closing sentence. */
+/** countdown: seconds left until measuring. measuring: part of it done, 0 to 1. done, failed: a closing sentence, in English. */
 export type CalibrationStep =
   | { readonly kind: 'countdown'; readonly secondsLeft: number }
   | { readonly kind: 'measuring'; readonly part: number }
-  | { readonly kind: 'done' | 'failed'; readonly text: string };
+  | { readonly kind: 'done'; readonly text: string }
+  | { readonly kind: 'failed'; readonly fault: CalibrationFault; readonly text: string };
 
 export const calibrationInstruction = 'Stand straight, look ahead, stretch both arms forward, wrists straight.';
 

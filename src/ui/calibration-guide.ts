@@ -72,7 +72,7 @@ export function createCalibrationGuide(options: CalibrationGuideOptions): Calibr
       }
       endTime = frame.time;
       if (measuring.kind === 'failed') {
-        options.onStep({ kind: 'failed', text: measuring.reason });
+        options.onStep({ kind: 'failed', fault: measuring.fault, text: measuring.reason });
         return;
       }
       const { calibration } = measuring;

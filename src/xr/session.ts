@@ -1,24 +1,34 @@
 import { reasonOf } from '../core/errors/reasons';
 import { bodyFeature } from './device-body-reader';
 
-/** What the browser offers; `sentence` tells the user why not, or null. */
-export interface XrSupport {
-  readonly kind: 'device' | 'none';
-  readonly sentence: string | null;
-}
+/** Why no headset can be worn; `reason`: as the browser says it. */
+export type XrFault =
+  | { readonly kind: 'insecure' | 'no-webxr' | 'no-headset' }
+  | { readonly kind: 'refused'; readonly reason: string };
+
+/** What the browser offers; `sentence` tells the user why not. */
+export type XrSupport =
+  | { readonly kind: 'device'; readonly sentence: null }
+  | { readonly kind: 'none'; readonly sentence: string; readonly fault: XrFault };
 
 /** Asks the browser once; never rejects. */
 export async function describeXrSupport(): Promise<XrSupport> {
-  const no = (sentence: string): XrSupport => ({ kind: 'none', sentence });
+  const no = (fault: XrFault, sentence: string): XrSupport => ({ kind: 'none', sentence, fault });
   if (!window.isSecureContext) {
-    return no('VR needs a secure page: open it by https:// or on localhost (docs/running-on-a-headset.md).');
+    return no(
+      { kind: 'insecure' },
+      'VR needs a secure page: open it by https:// or on localhost (docs/running-on-a-headset.md).',
+    );
   }
-  if (!navigator.xr) return no('This browser has no WebXR.');
+  if (!navigator.xr) return no({ kind: 'no-webxr' }, 'This browser has no WebXR.');
   try {
     const supported = await navigator.xr.isSessionSupported('immersive-vr');
-    return supported ? { kind: 'device', sentence: null } : no('No headset is connected to this browser.');
+    return supported
+      ? { kind: 'device', sentence: null }
+      : no({ kind: 'no-headset' }, 'No headset is connected to this browser.');
   } catch (error) {
-    return no(`WebXR is not allowed here (${reasonOf(error)}).`);
+    const reason = reasonOf(error);
+    return no({ kind: 'refused', reason }, `WebXR is not allowed here (${reason}).`);
   }
 }
 

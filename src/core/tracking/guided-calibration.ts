@@ -6,6 +6,7 @@ import { makePose, type Pose, type TrackedPose, transformPose } from '../math/po
 import { rotate, rotateInverse } from '../math/quat';
 import type { Side } from '../math/side';
 import { add, addScaled, distance, forward, length, normalise, scale, subtract, type Vec3, vec3 } from '../math/vec3';
+import { type CalibrationFault, calibrationFaults } from './calibration-faults';
 import { headingFromFloor } from './heading';
 import type { TrackingFrame } from './tracking-frame';
 
@@ -33,7 +34,12 @@ export type GuidedCalibration =
       readonly samples: readonly Sample[];
     }
   | { readonly kind: 'done'; readonly calibration: Calibration }
-  | { readonly kind: 'failed'; readonly reason: string };
+  | {
+      readonly kind: 'failed';
+      readonly fault: CalibrationFault;
+      /** In English, for whom the fault has no words of its own. */
+      readonly reason: string;
+    };
 
 export const startGuidedCalibration: GuidedCalibration = { kind: 'measuring', part: 0, startTime: null, samples: [] };
 
@@ -96,32 +102,36 @@ interface MeasuredWrist {
   readonly seen: readonly Pose<'heading'>[];
 }
 
-const failed = (reason: string): GuidedCalibration => ({ kind: 'failed', reason });
+const failed = (fault: CalibrationFault): GuidedCalibration => ({
+  kind: 'failed',
+  fault,
+  reason: calibrationFaults[fault],
+});
 
 function measure(samples: readonly Sample[]): GuidedCalibration {
-  if (samples.length < FEWEST_SAMPLES) return failed('Tracking was lost. Try again where the headset sees the room.');
+  if (samples.length < FEWEST_SAMPLES) return failed('lost');
   const heads = samples.map(({ head }) => head);
   const head = middleOf(heads);
   if (heads.some((position) => distance(position, head) > HEAD_SWAY)) {
-    return failed('Your head moved. Stand still for two seconds.');
+    return failed('headMoved');
   }
   const gaze = robustMean(samples.map((sample) => sample.gaze));
   if (Math.abs(gaze) > STEEPEST_GAZE) {
-    return failed('You looked up or down. Look straight ahead.');
+    return failed('gaze');
   }
   const wrists: MeasuredWrist[] = [];
   for (const side of ['left', 'right'] as const) {
     const seen = samples.map((sample) => sample[side]).filter((wrist) => wrist !== null);
     const part = seen.length / samples.length;
     if (part === 0) continue;
-    if (part < SEEN) return failed(`Your ${side} hand was not seen all the time. Hold it where you can see it.`);
+    if (part < SEEN) return failed(side === 'left' ? 'leftUnseen' : 'rightUnseen');
     const position = middleOf(seen.map((wrist) => wrist.position));
     const sway = seen.reduce((sum, wrist) => sum + distance(wrist.position, position), 0) / seen.length;
-    if (sway > HAND_SWAY) return failed('Your hands moved. Hold them still for two seconds.');
+    if (sway > HAND_SWAY) return failed('handsMoved');
     wrists.push({ side, position, seen });
   }
   // One hand that is never seen may be missing: the other one's arm then stands for both.
-  if (wrists.length === 0) return failed('Your hands were not seen. Hold them where you can see them.');
+  if (wrists.length === 0) return failed('handsUnseen');
 
   let eyeHeight = head.y;
   const reaches = () => wrists.map(({ side, position }) => reachOf(side, position, head.y, eyeHeight));
@@ -135,22 +145,18 @@ function measure(samples: readonly Sample[]): GuidedCalibration {
     }
   }
   if (arms.some((arm) => arm === null)) {
-    return failed('Your arms pointed somewhere else. Stretch them straight forward, at the height of your shoulders.');
+    return failed('elsewhere');
   }
   const lengths = arms.filter((arm) => arm !== null);
   const shortest = Math.min(...lengths);
   if (shortest < SHORTEST_ARM * eyeHeight) {
-    return failed(
-      'Your arms were not stretched. Stretch them straight forward; if they were, the floor is too low: type your height instead.',
-    );
+    return failed('bent');
   }
   if (Math.max(...lengths) > LONGEST_ARM * eyeHeight) {
-    return failed(
-      'Your arms are too long for the height of your head. Stand up straight, and check the floor’s height.',
-    );
+    return failed('tooLong');
   }
   if (Math.max(...lengths) - shortest > UNEVEN_ARMS) {
-    return failed('One arm was stretched further than the other. Stretch both straight forward.');
+    return failed('uneven');
   }
   const arm = lengths.reduce((sum, l) => sum + l, 0) / lengths.length;
   const shoulder = restShoulder('right', eyeHeight);
@@ -164,7 +170,7 @@ function measure(samples: readonly Sample[]): GuidedCalibration {
   const complaint = calibrationComplaint(calibration);
   return complaint === null
     ? { kind: 'done', calibration }
-    : failed(`${complaint} The headset’s floor may be at the wrong height: type your height instead.`);
+    : { kind: 'failed', fault: 'unlikely', reason: `${complaint} ${calibrationFaults.unlikely}` };
 }
 
 /**
