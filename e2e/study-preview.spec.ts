@@ -1,5 +1,6 @@
 import { readFileSync } from 'node:fs';
 import type { Locator, Page } from '@playwright/test';
+import { english } from '../src/core/study/phrases/english';
 import { expect, keepPicture } from './page-fixture';
 import { test } from './study-participant';
 import { experimenter } from './study-server';
@@ -61,6 +62,82 @@ test('every screen of a plan, in the headset and at the desk, in both languages,
   expect(sent).toEqual([]);
   expect(await studies()).toEqual(before);
 });
+
+test('a participant who reads German meets no English of the page, and nothing that is cut', async ({
+  page,
+  origin,
+}) => {
+  await readCanvases(page);
+  await page.goto(`${origin}/preview?plan=/studies/example.json`);
+  await page.getByRole('combobox', { name: 'Language' }).first().selectOption('de');
+  await expect(page.getByRole('heading', { name: 'Teilnahme' })).toBeVisible();
+  const next = page.getByRole('button', { name: 'Next', exact: true }).first();
+  const stops = await page.locator('#stops button').count();
+  const said = new Set<string>();
+  for (let index = 0; index < stops; index++) {
+    await readScreen(page, said);
+    for (const place of ['In the headset', 'At the desk']) {
+      const shown = page.getByRole('button', { name: place });
+      if (!(await shown.isEnabled())) continue;
+      await shown.click();
+      await readScreen(page, said);
+    }
+    if (index < stops - 1) await next.click();
+  }
+  const text = [...said].join('\n');
+  expect(text).toContain('Setzen Sie das Headset auf');
+  expect(text).toContain('Weiter');
+  expect(text).toContain('Entspannen Sie Ihre Arme.');
+  expect(ofEnglish.filter((phrase) => text.includes(phrase))).toEqual([]);
+});
+
+/** What the page says in English in more than one word, each up to the first gap. */
+const ofEnglish = Object.values(english)
+  .flatMap((phrase) => (typeof phrase === 'string' ? [phrase] : Object.values(phrase)))
+  .flatMap((phrase) => phrase.split(/\{\w+\}/))
+  .map((part) => part.trim())
+  .filter((part) => /\w{2,} \w{2,}/.test(part));
+
+declare global {
+  interface Window {
+    /** What was drawn on canvases since it was last read. */
+    drawn: string[];
+  }
+}
+
+/** Keeps what is written on canvases: the sheet of the headset is a picture. */
+async function readCanvases(page: Page): Promise<void> {
+  await page.addInitScript(() => {
+    window.drawn = [];
+    const { fillText } = CanvasRenderingContext2D.prototype;
+    CanvasRenderingContext2D.prototype.fillText = function (text, x, y, most) {
+      window.drawn.push(text);
+      if (most === undefined) fillText.call(this, text, x, y);
+      else fillText.call(this, text, x, y, most);
+    };
+  });
+}
+
+/** Adds what stands on the screen at hand: words, what screen readers say, and what is drawn, in one line and line by line. */
+async function readScreen(page: Page, said: Set<string>): Promise<void> {
+  const view = page.locator('#view');
+  await expect(view.locator('.study-card:visible, canvas:visible, .playing:visible')).toHaveCount(1);
+  const card = view.locator('.study-card:visible');
+  if ((await card.count()) > 0) await expect(card).toHaveAttribute('lang', 'de');
+  const found = await view.evaluate((node) => {
+    const shown = [...node.querySelectorAll('*')].filter((one) => one.checkVisibility() && !one.closest('.playing'));
+    const names = shown.flatMap((one) => [one.getAttribute('aria-label') ?? '', one.getAttribute('title') ?? '']);
+    const drawn = window.drawn;
+    window.drawn = [];
+    const visible = shown.filter((one) => one.matches('.study-card')).map((one) => one.textContent ?? '');
+    const cut = shown
+      .filter((one) => one.matches('.study-card button') && one.scrollWidth > one.clientWidth + 1)
+      .map((one) => one.textContent);
+    return { said: [...names, ...visible, ...drawn, drawn.join(' ')], cut };
+  });
+  expect(found.cut).toEqual([]);
+  for (const one of found.said) said.add(one);
+}
 
 test('mistakes of a plan are named as study:check names them @full', async ({ page, origin, complaints }) => {
   const plan = JSON.parse(readFileSync('public/studies/latency.json', 'utf8')) as {

@@ -3,7 +3,6 @@ import type { Page } from '@playwright/test';
 import { parsePlan } from '../src/core/study/plan';
 import { enterVr, expect, keepPicture } from './page-fixture';
 import {
-  agreeAndTell,
   calibrate,
   openResults,
   press,
@@ -32,12 +31,30 @@ function shortExample(id: string) {
   };
 }
 
+/** Consents, notes the code and tells of oneself as a person who reads German. */
+async function agreeAndTellInGerman(page: Page): Promise<void> {
+  await expect(page.locator('.study-card')).toHaveAttribute('lang', 'de');
+  await page.getByLabel(/Ich habe dies gelesen/).check();
+  await page.getByRole('button', { name: 'Ich willige ein' }).click();
+  await page.getByRole('button', { name: 'Ich habe ihn notiert' }).click();
+  await page.getByLabel('Keine Angabe').check();
+  await page.getByLabel(/Alter/).fill('12');
+  await page.getByLabel(/Studienfach/).fill('Informatik');
+  await page.getByLabel('Ein- oder zweimal').check();
+  await page.getByLabel('Die rechte', { exact: true }).check();
+  await page.getByLabel('Gut ohne Sehhilfe').check();
+  await page.getByRole('button', { name: 'Weiter' }).click();
+  await expect(page.getByRole('alert')).toHaveText('Bitte geben Sie Ihr Alter als ganze Zahl von 16 bis 120 an.');
+  await page.getByLabel(/Alter/).fill('26');
+  await page.getByRole('button', { name: 'Weiter' }).click();
+}
+
 /** Gives each of these ratings of NASA-TLX 35 and hands in after the last. */
 async function rateAtDesk(page: Page, ratings: readonly string[]): Promise<void> {
   for (const [index, id] of ratings.entries()) {
     await reaches(page, `question-${id}`);
     await page.getByRole('radio', { name: '35' }).check();
-    await page.getByRole('button', { name: index === ratings.length - 1 ? 'Hand in' : 'Next' }).click();
+    await page.getByRole('button', { name: index === ratings.length - 1 ? 'Abgeben' : 'Weiter' }).click();
   }
 }
 
@@ -52,7 +69,7 @@ test('questions of every kind are answered alike in the headset and at the desk,
   await page.getByLabel('Language').selectOption('de');
   await expect(page.getByRole('heading', { name: 'Teilnahme' })).toBeVisible();
   await keepPicture(page, 'study-consent-language');
-  await agreeAndTell(page);
+  await agreeAndTellInGerman(page);
 
   await enterVr(page, tenHertz);
   await headset.place(stretched);
@@ -96,7 +113,7 @@ test('questions of every kind are answered alike in the headset and at the desk,
   await expect(page.getByText('Der virtuelle Körper fühlte sich wie mein eigener an.')).toBeVisible();
   await page.getByRole('radio', { name: '6' }).check();
   await keepPicture(page, 'study-question-likert-desktop');
-  const next = page.getByRole('button', { name: 'Next' });
+  const next = page.getByRole('button', { name: 'Weiter' });
   await next.click();
   await page.getByRole('radio', { name: '2' }).check();
   await next.click();
@@ -110,15 +127,15 @@ test('questions of every kind are answered alike in the headset and at the desk,
   await page.getByRole('radio', { name: 'Meine Arme' }).check();
   await keepPicture(page, 'study-question-choice-desktop');
   await next.click();
-  const field = page.getByRole('textbox', { name: 'Answer' });
+  const field = page.getByRole('textbox', { name: 'Antwort' });
   await field.fill('9');
-  await expect(page.getByText('Expected a whole number from 0 to 4.')).toBeVisible();
+  await expect(page.getByText('Bitte geben Sie eine ganze Zahl von 0 bis 4 ein.')).toBeVisible();
   await keepPicture(page, 'study-question-number-desktop');
   await field.fill('3');
   await next.click();
   await field.pressSequentially('ok');
   await keepPicture(page, 'study-question-text-desktop');
-  await page.getByRole('button', { name: 'Hand in' }).click();
+  await page.getByRole('button', { name: 'Abgeben' }).click();
   await reaches(page, 'question-mental');
   await keepPicture(page, 'study-question-tlx-desktop');
   await rateAtDesk(page, ['mental', 'physical', 'temporal', 'performance', 'effort', 'frustration']);
@@ -134,6 +151,12 @@ test('questions of every kind are answered alike in the headset and at the desk,
     ['body', 'de'],
     ['nasa-tlx-raw', 'de'],
   ]);
+  // What was told is recorded as values, the same in every language.
+  const told = (await recordsOf(origin, 'every-kind')).find(({ kind }) => kind === 'demographics');
+  expect(told?.body).toEqual({
+    ...{ gender: 'not-said', age: 26, major: 'Informatik', vrExperience: 'once-or-twice', vrSystems: '' },
+    ...{ handedness: 'right', vision: 'normal' },
+  });
   const [inHeadset, begunInHeadset, atDesk, ratedAtDesk] = answers;
   expect(ratedAtDesk?.answers).toEqual(begunInHeadset?.answers);
   expect(inHeadset?.answers).toEqual({

@@ -1,7 +1,15 @@
-// npm run build:study-schema: public/studies/plan.schema.json from the schema by which the program itself reads plans.
+// npm run build:study-schema: public/studies/plan.schema.json from the schema by which the program itself reads plans, and
+// public/studies/phrases.json, what the page says to participants, to be translated in a plan.
 import { writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
+import { shippedPhrases } from '../src/core/study/phrases/phrases';
 import { planJsonSchema } from './study-check/plan-json-schema';
 
-const file = fileURLToPath(new URL('../public/studies/plan.schema.json', import.meta.url));
-writeFileSync(file, `${JSON.stringify(planJsonSchema(), null, 2)}\n`);
+const write = (name: string, value: object) =>
+  writeFileSync(
+    fileURLToPath(new URL(`../public/studies/${name}`, import.meta.url)),
+    `${JSON.stringify(value, null, 2)}\n`,
+  );
+
+write('plan.schema.json', planJsonSchema());
+write('phrases.json', shippedPhrases);

@@ -97,8 +97,8 @@ const motionSchema = v.object({
 
 /** What a participant may know of a plan: the order and names of conditions come only with their own schedule. */
 const publicPlan = (plan: StudyPlan, simulated: boolean) => {
-  const { id, title, consent, remote } = plan;
-  return { id, title, consent, languages: languagesOf(plan), simulated, contact: remote?.contact ?? null };
+  const { id, title, consent, remote, phrases = {} } = plan;
+  return { id, title, consent, languages: languagesOf(plan), phrases, simulated, contact: remote?.contact ?? null };
 };
 
 const statusOfRefusal = { unknown: 404, conflict: 409, begun: 409, forbidden: 403, full: 507 } as const;

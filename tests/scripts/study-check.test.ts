@@ -4,6 +4,7 @@ import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { describe, expect, test } from 'vitest';
 import { planJsonSchema } from '../../scripts/study-check/plan-json-schema';
+import { shippedPhrases } from '../../src/core/study/phrases/phrases';
 import { checkedPlan, planComplaints, type StudyTask } from '../../src/core/study/plan';
 import { durationOf, outlineOf } from '../../src/core/study/plan-outline';
 import { orderCounts } from '../../src/core/study/plan-remarks';
@@ -16,6 +17,10 @@ const read = (path: string) => readFileSync(join(root, path), 'utf8');
 describe('the schema for editors', () => {
   test('is made from the schema by which the program reads plans (npm run build:study-schema)', () => {
     expect(JSON.parse(read('public/studies/plan.schema.json'))).toEqual(JSON.parse(JSON.stringify(planJsonSchema())));
+  });
+
+  test('stands beside what the page says to participants, to be translated', () => {
+    expect(JSON.parse(read('public/studies/phrases.json'))).toEqual(JSON.parse(JSON.stringify(shippedPhrases)));
   });
 
   test('knows every field of the shipped plans, and that there are no others', () => {

@@ -98,7 +98,15 @@ describe('a participant', () => {
   test('learns nothing of the conditions before the place is theirs', async () => {
     const { ask } = await servedPaperStudy();
     const { json } = await ask('GET', '/api/studies/paper');
-    expect(Object.keys(json).toSorted()).toEqual(['consent', 'contact', 'id', 'languages', 'simulated', 'title']);
+    expect(Object.keys(json).toSorted()).toEqual([
+      'consent',
+      'contact',
+      'id',
+      'languages',
+      'phrases',
+      'simulated',
+      'title',
+    ]);
   });
 
   test('withdraws with the code alone, and gets a receipt', async () => {

@@ -1,4 +1,5 @@
 import type { Embodiment } from '../../core/study/embodiment';
+import { PhrasedError } from '../../core/study/phrases/phrases';
 import type { ImpairedTracking } from '../../core/tracking/impaired-tracking';
 import type { BareBody } from '../../lib/bare-body';
 import type { SettingsWriter } from './settings';
@@ -11,9 +12,6 @@ export interface EmbodyingParts {
   readonly body: Pick<BareBody, 'choose' | 'estimator'>;
   readonly impaired: Pick<ImpairedTracking, 'impair'>;
 }
-
-/** What goes wrong with a body, for a participant to read. */
-const notLoaded = 'The body of this round could not be loaded.';
 
 /**
  * Gives the participant the body of a round for this visit; resolves when it is drawn. Rejects with a sentence where it cannot be. What the
@@ -30,5 +28,5 @@ export async function embody(parts: EmbodyingParts, embodiment: Embodiment, seed
   impaired.impair(impairments, seed);
   const wears = ownBody === undefined || ownBody === avatar.ownBody || avatar.openOwn();
   const [worn] = await Promise.all([wears, body.choose(estimator)]);
-  if (!worn || body.estimator !== estimator) throw new Error(notLoaded);
+  if (!worn || body.estimator !== estimator) throw new PhrasedError('round.body');
 }

@@ -7,7 +7,7 @@ import { DeviceBodyReader } from '../../xr/device-body-reader';
 import { type Emulator, installEmulator } from '../../xr/emulator';
 import { giveFramesToEvents } from '../../xr/frameless-events';
 import { buzz, type Pulse } from '../../xr/haptics';
-import { describeXrSupport, type PlayRoom, requestVrSession, roomOf } from '../../xr/session';
+import { describeXrSupport, type PlayRoom, requestVrSession, roomOf, type XrFault } from '../../xr/session';
 import { createTracker, type Tracker } from '../../xr/tracker';
 import type { Settings } from './settings';
 import type { Stage } from './stage';
@@ -64,7 +64,7 @@ export class Headset {
   #emulator: Emulator | null = null;
   #session: Session | null = null;
   /** Why no real headset can be worn here; null: one can, or the emulated one was asked for. */
-  #fault: string | null = null;
+  #fault: XrFault | null = null;
   /** There is a device: the emulator is not needed. */
   #real = false;
 
@@ -81,7 +81,7 @@ export class Headset {
   }
 
   /** Why no real headset can be worn here; null: one can, or the emulated one was asked for. */
-  get fault(): string | null {
+  get fault(): XrFault | null {
     return this.#fault;
   }
 
@@ -128,9 +128,9 @@ export class Headset {
     const { switches, settings } = this.#options;
     const support = await describeXrSupport();
     this.#real = support.kind === 'device' && !switches.emulate;
-    this.#fault = this.#real || switches.emulate ? null : support.sentence;
+    this.#fault = support.kind === 'device' || switches.emulate ? null : support.fault;
     if (switches.emulate || !settings.actor) await this.ensureEmulator();
-    return { real: this.#real, sentence: this.#fault };
+    return { real: this.#real, sentence: this.#fault ? support.sentence : null };
   }
 
   /** The emulator where there is no headset, loaded when it is first needed; null and a notice where it fails. */

@@ -1,3 +1,4 @@
+import { PhrasedError } from '../../core/study/phrases/phrases';
 import type { BareBody } from '../../lib/bare-body';
 import type { Activities } from './activities';
 import { type EmbodyingParts, embody } from './embody';
@@ -33,7 +34,7 @@ export async function joinStudy(options: JoinStudyOptions): Promise<JoinedStudy>
     async goToArchery(seconds) {
       writer.change({ seconds });
       await activities.goTo('archery');
-      if (!activities.archery) throw new Error('The archery range could not be opened.');
+      if (!activities.archery) throw new PhrasedError('round.archery');
       activities.resetRound();
     },
     startRound: (seed, seconds) => activities.startRound(seed, seconds),
@@ -43,7 +44,7 @@ export async function joinStudy(options: JoinStudyOptions): Promise<JoinedStudy>
   const ball = createBallRunner({
     async goToBall(place) {
       await activities.goToMatch(place);
-      if (!activities.ball) throw new Error('The ball court could not be opened.');
+      if (!activities.ball) throw new PhrasedError('round.ball');
     },
     ball: () => activities.ball?.play ?? null,
     leaveBall: () => void activities.goTo('studio'),

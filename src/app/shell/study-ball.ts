@@ -16,10 +16,6 @@ export interface BallRunner extends TaskRunner {
   played(frame: BallFrame): void;
 }
 
-/** "P02 and P03". */
-const listed = (names: readonly string[]): string =>
-  names.length < 2 ? (names[0] ?? '') : `${names.slice(0, -1).join(', ')} and ${names.at(-1)}`;
-
 /** How much later than here the room's bell may be heard [s]: the room counts from the moment it started the match. */
 const bellDelay = 4;
 
@@ -89,8 +85,7 @@ export function createBallRunner(host: BallHost): BallRunner {
       return end;
     },
     get waitingFor() {
-      if (!wanted || from !== null) return null;
-      return missing.length > 0 ? listed(missing) : 'the others';
+      return !wanted || from !== null ? null : missing;
     },
     get standing() {
       return standing && end === null;

@@ -1,6 +1,8 @@
 import type { Calibration } from '../../core/body/calibration';
 import type { Side } from '../../core/math/side';
 import { advance, type ProgressEvent } from '../../core/study/advance';
+import { type Phrases, phrasesOf } from '../../core/study/phrases/phrases';
+import { languagesOf } from '../../core/study/plan';
 import { begin, currentStep, type Progress, remainingSeconds } from '../../core/study/progress';
 import { type Schedule, type StudyStep, scheduleFor } from '../../core/study/schedule';
 import type { Claim, NumberedCommand, PlayedTogether, SignedSeat } from '../../core/study/study-api';
@@ -31,6 +33,8 @@ export interface ParticipantSession {
   readonly progress: Progress;
   readonly step: StudyStep;
   readonly plan: KeptSession['plan'];
+  /** What the page says, in the participant's language. */
+  readonly phrases: Phrases;
   readonly simulated: boolean;
   /** null once it has been noted. */
   readonly withdrawalCode: string | null;
@@ -116,6 +120,7 @@ class DeviceSession implements ParticipantSession {
   /** The progress that the server was told last; null: none. */
   #reported: Progress | null = null;
   #exchanging: Promise<void> | null = null;
+  #phrases: Phrases | null = null;
 
   constructor(kept: KeptSession, unsent: Unsent, options: ParticipantSessionOptions) {
     const { client, vault, now, onChange, onCommand = () => undefined } = options;
@@ -133,6 +138,12 @@ class DeviceSession implements ParticipantSession {
 
   get plan() {
     return this.#session.plan;
+  }
+
+  get phrases(): Phrases {
+    const language = this.progress.language ?? languagesOf(this.plan)[0];
+    if (this.#phrases?.language !== language) this.#phrases = phrasesOf(this.plan, language);
+    return this.#phrases;
   }
 
   get simulated() {

@@ -1,13 +1,14 @@
+import type { Phrases } from '../../core/study/phrases/phrases';
 import { button, element } from '../../ui/element';
 import type { ScreenEnds, ScreenField, ScreenPoint, ScreenQuestion } from './study-screen';
 
 type FieldOf<Kind extends ScreenField['kind']> = Extract<ScreenField, { kind: Kind }>;
 
-const stateInWords = {
-  answered: 'answered',
-  open: 'needs an answer',
-  missing: 'needs an answer',
-  optional: 'may stay open',
+const phraseOfState = {
+  answered: 'question.answered',
+  open: 'question.open',
+  missing: 'question.open',
+  optional: 'question.optional',
 } as const;
 
 /** A button for each question, in order. */
@@ -16,7 +17,7 @@ export const dotNodes = (question: ScreenQuestion): readonly Node[] =>
     button(String(index + 1), () => question.goTo(index), {
       'data-id': `go-${id}`,
       class: `dot ${state}`,
-      'aria-label': `Question ${index + 1}, ${stateInWords[state]}`,
+      'aria-label': question.phrases.say(phraseOfState[state], { number: index + 1 }),
       ...(index + 1 === question.number && { 'aria-current': 'step' }),
     }),
   );
@@ -73,7 +74,11 @@ function likertNodes(id: string, { points, ends, answer, choose }: FieldOf<'like
   return [grid, ...(ends ? [endNodes(ends)] : [])];
 }
 
-function sliderNodes(name: string, { values, ends, answer, choose }: FieldOf<'slider'>): readonly Node[] {
+function sliderNodes(
+  name: string,
+  { values, ends, answer, choose }: FieldOf<'slider'>,
+  { say }: Phrases,
+): readonly Node[] {
   const middle = Math.floor(values.length / 2);
   const range = element('input', {
     type: 'range',
@@ -83,7 +88,7 @@ function sliderNodes(name: string, { values, ends, answer, choose }: FieldOf<'sl
     step: 1,
     value: answer === null ? middle : values.indexOf(answer),
     'data-id': 'answer',
-    'aria-label': `From ${ends.low} to ${ends.high}`,
+    'aria-label': say('question.range', ends),
     // Without an answer the line is empty: a mark in the middle would suggest one.
     class: answer === null ? 'open' : undefined,
   });
@@ -100,8 +105,15 @@ function sliderNodes(name: string, { values, ends, answer, choose }: FieldOf<'sl
   return [range, endNodes(ends)];
 }
 
-function typedNodes(name: string, { kind, typed, unit, maxLength, type }: FieldOf<'number' | 'text'>): readonly Node[] {
-  const attributes = { name, maxlength: maxLength, 'data-id': 'answer', 'aria-label': 'Answer', autocomplete: 'off' };
+function typedNodes(
+  name: string,
+  { kind, typed, unit, maxLength, type }: FieldOf<'number' | 'text'>,
+  { say }: Phrases,
+): readonly Node[] {
+  const attributes = {
+    ...{ name, maxlength: maxLength, autocomplete: 'off' },
+    ...{ 'data-id': 'answer', 'aria-label': say('question.field') },
+  };
   const input =
     kind === 'text'
       ? element('textarea', { ...attributes, rows: 4 })
@@ -111,12 +123,12 @@ function typedNodes(name: string, { kind, typed, unit, maxLength, type }: FieldO
   return [element('div', { class: 'typed' }, input, ...(unit ? [element('span', {}, unit)] : []))];
 }
 
-function fieldNodes(id: string, field: ScreenField): readonly Node[] {
+function fieldNodes(id: string, field: ScreenField, phrases: Phrases): readonly Node[] {
   switch (field.kind) {
     case 'likert':
       return likertNodes(id, field);
     case 'slider':
-      return sliderNodes(id, field);
+      return sliderNodes(id, field, phrases);
     case 'choice': {
       const { points, answer, choose } = field;
       const inside = ({ label }: ScreenPoint<string>) => ({ nodes: [element('span', {}, label)] });
@@ -124,12 +136,12 @@ function fieldNodes(id: string, field: ScreenField): readonly Node[] {
     }
     case 'number':
     case 'text':
-      return typedNodes(id, field);
+      return typedNodes(id, field, phrases);
   }
 }
 
 /** The words of a question and its field; the dots are apart. */
-export const questionNodes = ({ id, text, language, optional, field }: ScreenQuestion): readonly Node[] => [
+export const questionNodes = ({ id, text, language, optional, field, phrases }: ScreenQuestion): readonly Node[] => [
   element(
     'fieldset',
     { class: 'scale', lang: language },
@@ -138,9 +150,9 @@ export const questionNodes = ({ id, text, language, optional, field }: ScreenQue
       {},
       text,
       optional
-        ? element('span', { class: 'soft', lang: 'en' }, ' (may stay open)')
-        : element('span', { class: 'must', title: 'An answer is needed' }, ' *'),
+        ? element('span', { class: 'soft', lang: phrases.spoken }, ` ${phrases.say('question.mayStayOpen')}`)
+        : element('span', { class: 'must', lang: phrases.spoken, title: phrases.say('question.needed') }, ' *'),
     ),
-    ...fieldNodes(id, field),
+    ...fieldNodes(id, field, phrases),
   ),
 ];

@@ -1,6 +1,6 @@
-import { languagesOf } from '../../core/study/plan';
-import type { Question } from '../../core/study/questionnaire-schema';
-import { type Answers, expectedAnswer, pointsOf, typedAnswer, unanswered } from '../../core/study/questionnaires';
+import type { Phrases } from '../../core/study/phrases/phrases';
+import type { AnswerForm, Question } from '../../core/study/questionnaire-schema';
+import { type Answers, pointsOf, typedAnswer, unanswered } from '../../core/study/questionnaires';
 import { inLanguage, type Words } from '../../core/study/words';
 import type { ScreenEnds, ScreenField, ScreenQuestion } from './study-screen';
 import type { ScreenActions, StudySituation } from './study-situation';
@@ -12,11 +12,12 @@ const longestNumber = 12;
 
 function fieldOf(
   question: Question,
-  said: (text: Words) => string,
+  { language, say }: Phrases,
   { draft, typed }: { readonly draft: Answers; readonly typed: string | null },
   actions: Asked,
 ): ScreenField {
   const { id, answer: form } = question;
+  const said = (text: Words) => inLanguage(text, language);
   const given = draft[id];
   const endsOf = ({ low, high }: { readonly low: Words; readonly high: Words }): ScreenEnds => ({
     low: said(low),
@@ -52,9 +53,18 @@ function fieldOf(
         typed: typed ?? (given === undefined ? '' : String(given)),
         unit: form.kind === 'number' && form.unit !== undefined ? said(form.unit) : '',
         maxLength: form.kind === 'text' ? form.maxLength : longestNumber,
+        keys: { rows: say('keys.rows').split(' '), space: say('keys.space'), delete: say('keys.delete') },
         type: (text) => actions.type(question, text),
       };
   }
+}
+
+/** What is wrong with what was typed. */
+function misreadHint(form: AnswerForm, { say }: Phrases): string | null {
+  if (form.kind === 'text') return say('question.text', { count: form.maxLength });
+  if (form.kind !== 'number') return null;
+  const { from, to } = form;
+  return form.whole ? say('question.wholeNumber', { from, to }) : say('question.number', { from, to });
 }
 
 /** The question shown, and the sentence above the buttons; `at`: its index among the questions of the questionnaire. */
@@ -66,7 +76,8 @@ export function questionPart(
 ): { readonly question: ScreenQuestion; readonly hint: string | null } {
   const shown = questions[at] as Question;
   const { draft } = session.progress;
-  const language = session.progress.language ?? languagesOf(session.plan)[0];
+  const { phrases } = session;
+  const { language, say } = phrases;
   const open = unanswered({ questions }, draft);
   const stateOf = ({ id, optional }: Question) => {
     if (draft[id] !== undefined) return 'answered' as const;
@@ -81,19 +92,21 @@ export function questionPart(
       text: inLanguage(shown.text, language),
       language,
       number: at + 1,
+      place: say('question.of', { number: at + 1, total: questions.length }),
+      phrases,
       optional: shown.optional ?? false,
-      field: fieldOf(shown, (text) => inLanguage(text, language), { draft, typed }, actions),
+      field: fieldOf(shown, phrases, { draft, typed }, actions),
       all: questions.map((question) => ({ id: question.id, state: stateOf(question) })),
       goTo: actions.goTo,
     },
     hint:
       refusal ??
       (misread
-        ? `* ${expectedAnswer(shown.answer).replace(/^e/, 'E')}.`
+        ? misreadHint(shown.answer, phrases)
         : triedToSubmit && open.includes(shown.id)
-          ? '* This question still needs an answer.'
+          ? say('question.thisOpen')
           : open.length > 0
-            ? `* ${open.length} of ${required} still ${open.length === 1 ? 'needs' : 'need'} an answer.`
+            ? say('question.someOpen', { count: open.length, total: required })
             : null),
   };
 }

@@ -163,18 +163,22 @@ function paintTyped(context: CanvasRenderingContext2D, { kind, typed, unit }: Fi
 /** The question's words and what of its field is not a target; `hovered`: id of the target that a hand points at. */
 export function paintQuestion(
   context: CanvasRenderingContext2D,
-  { text, field, all, number, optional }: ScreenQuestion,
+  { text, field, all, place, optional, phrases }: ScreenQuestion,
   hovered: string | null,
 ): void {
   context.fillStyle = vrColors.ink;
   const typing = field.kind === 'text' || field.kind === 'number';
   const tall = field.kind === 'choice' && field.points.length > 6;
-  paintWords(context, optional ? `${text} (may stay open)` : text, typing ? 250 : tall ? 310 : 390);
+  paintWords(
+    context,
+    optional ? `${text} ${phrases.say('question.mayStayOpen')}` : text,
+    typing ? 250 : tall ? 310 : 390,
+  );
   if (all.length > mostDots) {
     context.textAlign = 'right';
     context.fillStyle = vrColors.inkSoft;
     context.font = `600 32px ${vrFont}`;
-    context.fillText(`${number} of ${all.length}`, width - margin, 64);
+    context.fillText(place, width - margin, 64);
     context.textAlign = 'left';
   }
   if (field.kind === 'likert' && field.ends) paintEnds(context, field.ends.low, field.ends.high, 594);

@@ -1,8 +1,7 @@
-import { reasonOf } from '../../core/errors/reasons';
 import { otherSide } from '../../core/math/side';
 import type { ProgressEvent } from '../../core/study/advance';
+import { PhrasedError } from '../../core/study/phrases/phrases';
 import { placeOf } from '../../core/study/progress';
-import { setupFaults } from '../../core/study/remote-setup';
 import { randomFor } from '../../core/study/shuffle';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 import type { CalibrationStep } from '../../ui/calibration-dialog';
@@ -11,6 +10,8 @@ import { Answering } from './answering';
 import { ExchangeTimer } from './exchange-timer';
 import type { ParticipantSession } from './participant-session';
 import { RaisedHands } from './raised-hands';
+import { reasonFor, refusalFor } from './reasons';
+import { remoteFaults } from './remote-faults';
 import type { StudyHost } from './study-host';
 import type { StudyPage } from './study-page';
 import { lockedOutScreen, screenOf } from './study-screens';
@@ -81,7 +82,7 @@ export class RunningStudy {
       },
       onMeasured: (calibration) => {
         // Calibration makes a standing person of one who sits: how high the eyes are now is what tells.
-        const faults = this.#setupFaults(this.#eyes);
+        const faults = remoteFaults(session, host, this.#eyes);
         this.#guide.cancel();
         this.#measuredFaults = faults;
         if (faults.length > 0) return;
@@ -180,6 +181,7 @@ export class RunningStudy {
   /** Shows what the session is at now, however it came there. */
   show(): void {
     const { session } = this;
+    const { phrases } = session;
     const { display } = this.#page;
     if (session.safekeeping.lockedOut) {
       this.#showLockedOut();
@@ -189,6 +191,7 @@ export class RunningStudy {
     if (session.withdrawalCode !== null) {
       display.ask({
         kind: 'code',
+        phrases,
         code: session.withdrawalCode,
         withdrawalPage: this.#page.address.withdrawalPage(),
         noted: () => session.codeNoted(),
@@ -200,6 +203,7 @@ export class RunningStudy {
     } else if (session.step.kind === 'demographics') {
       display.ask({
         kind: 'demographics',
+        phrases,
         stop: () => this.#apply({ type: 'stop', by: 'participant' }),
         done: (answers) => this.#takeDemographics(answers),
       });
@@ -218,7 +222,8 @@ export class RunningStudy {
         triedToSubmit: this.#answering.triedToSubmit,
         calibration: this.#calibration,
         withdrawalPage: this.#page.address.withdrawalPage(),
-        setupFaults: this.#measuredFaults.length > 0 ? this.#measuredFaults : this.#setupFaults(null),
+        setupFaults:
+          this.#measuredFaults.length > 0 ? this.#measuredFaults : remoteFaults(this.session, this.#host, null),
         prepared: this.#preparation.of(this.#attempt()),
         refusal: this.#refusal,
         stopping: this.#stopping,
@@ -230,25 +235,14 @@ export class RunningStudy {
     );
   }
 
-  /** Of a participant with no one beside them; `eyeHeight` null: not measured yet. */
-  #setupFaults(eyeHeight: number | null): readonly string[] {
-    const { remote } = this.session.plan;
-    if (!remote) return [];
-    const worn = this.#host.inSession();
-    return setupFaults(remote, {
-      deviceFault: worn ? null : this.#host.deviceFault(),
-      room: this.#host.room(),
-      eyeHeight,
-    });
-  }
-
   #showLockedOut(): void {
     this.#dropTrial();
-    const { progress, plan, safekeeping } = this.session;
+    const { progress, plan, phrases, safekeeping } = this.session;
+    const { participant } = progress;
     const contact = plan.remote?.contact ?? null;
     const anew = () => void this.#forget().then(() => this.#page.address.reload());
     this.#page.display.ask(
-      { kind: 'locked-out', participant: progress.participant, unsent: safekeeping.unsent, contact, anew },
+      { kind: 'locked-out', phrases, participant, unsent: safekeeping.unsent, contact, anew },
       this.#host.inSession() ? lockedOutScreen(this.session) : null,
     );
   }
@@ -293,7 +287,7 @@ export class RunningStudy {
       await this.#embody(played);
     } catch (error) {
       if (this.session.step !== step) return;
-      this.#refusal = reasonOf(error);
+      this.#refusal = reasonFor(error, this.session.phrases);
       this.show();
     }
   }
@@ -312,11 +306,15 @@ export class RunningStudy {
     if (running && !paused && !this.#trial && ready && this.#host.inSession()) this.#startTrial(step);
   }
 
-  /** Loads the game and the body of a step, before it can be started. */
+  /** Loads the game and the body of a step, before it can be started; rejects with a sentence for the participant. */
   async #load(step: PlayedStep): Promise<void> {
-    const runner = this.#runnerOf(step);
-    if (!runner) throw new Error('This page cannot play the game of this task.');
-    await Promise.all([runner.prepare(this.#placeFor(step)), this.#embody(step)]);
+    try {
+      const runner = this.#runnerOf(step);
+      if (!runner) throw new PhrasedError('round.game');
+      await Promise.all([runner.prepare(this.#placeFor(step)), this.#embody(step)]);
+    } catch (error) {
+      throw new Error(reasonFor(error, this.session.phrases));
+    }
   }
 
   #runnerOf(step: PlayedStep): TaskRunner | null {
@@ -368,21 +366,22 @@ export class RunningStudy {
     const { session } = this;
     const attempt = this.#attempt();
     this.#trial = null;
-    this.#refusal = session.apply({ type: 'trial-finished', outcome });
-    if (recording !== null && this.#refusal === null) session.keepMotion(`${attempt}:trial`, recording);
+    const refusal = session.apply({ type: 'trial-finished', outcome });
+    this.#refusal = refusalFor(refusal, session.phrases);
+    if (recording !== null && refusal === null) session.keepMotion(`${attempt}:trial`, recording);
     void this.exchange();
   }
 
   #apply(event: ProgressEvent): void {
     this.conclude();
-    this.#refusal = this.session.apply(event);
+    this.#refusal = refusalFor(this.session.apply(event), this.session.phrases);
     void this.exchange();
     this.show();
   }
 
   /** Shows what came of a wish; null: all went well. */
   #said(refusal: string | null): void {
-    this.#refusal = refusal;
+    this.#refusal = refusalFor(refusal, this.session.phrases);
     this.show();
   }
 
@@ -395,6 +394,6 @@ export class RunningStudy {
       if (preferredHand) this.#host.setBowSide(otherSide(preferredHand));
     }
     this.show();
-    return complaint;
+    return refusalFor(complaint, this.session.phrases);
   }
 }

@@ -12,6 +12,9 @@ export interface Unsent {
 const longestBatch = 300_000;
 const largestBatch = 100;
 
+/** Why a browser without IndexedDB stores nothing. */
+export const noStorage = 'this browser offers no storage';
+
 /** A session and what it recorded, on this device until the server has it: in memory at once, in the vault as soon as that can be. */
 export class SessionStore {
   readonly #vault: StudyVault | null;
@@ -39,7 +42,7 @@ export class SessionStore {
     this.#records = new Map(records.map((record) => [record.id, record]));
     this.#motion = new Map(motion.map((one) => [one.trial, one]));
     this.#vault = vault;
-    this.#fault = vault ? null : 'this browser offers no storage';
+    this.#fault = vault ? null : noStorage;
     this.#onChange = onChange;
   }
 

@@ -4,7 +4,6 @@ import type { ScreenField } from './study-screen';
 type TypedField = Extract<ScreenField, { kind: 'number' | 'text' }>;
 
 const numberRows = ['789', '456', '123', '-0.'] as const;
-const textRows = ['1234567890', 'qwertyuiop', "asdfghjkl'", 'zxcvbnm,.-'] as const;
 const gap = 8;
 
 interface Keyboard {
@@ -14,14 +13,16 @@ interface Keyboard {
   readonly top: number;
 }
 
-const keyboards: Readonly<Record<TypedField['kind'], Keyboard>> = {
-  number: { rows: numberRows, wide: 128, high: 58, top: 366 },
-  text: { rows: textRows, wide: (inner - 9 * gap) / 10, high: 52, top: 330 },
-};
+function keyboardOf({ kind, keys }: TypedField): Keyboard {
+  if (kind === 'number') return { rows: numberRows, wide: 128, high: 58, top: 366 };
+  const most = Math.max(...keys.rows.map((row) => [...row].length));
+  return { rows: keys.rows, wide: (inner - (most - 1) * gap) / most, high: 52, top: 330 };
+}
 
 /** The keys of a keyboard or number pad on the sheet; each writes at the end of what is typed. */
-export function keyTargets({ kind, typed, maxLength, type }: TypedField): readonly Target[] {
-  const { rows, wide, high, top } = keyboards[kind];
+export function keyTargets(field: TypedField): readonly Target[] {
+  const { kind, typed, maxLength, keys: labels, type } = field;
+  const { rows, wide, high, top } = keyboardOf(field);
   const key = (id: string, label: string, at: Target['at'], text: string): Target => ({
     kind: 'key',
     id: `key-${id}`,
@@ -37,12 +38,12 @@ export function keyTargets({ kind, typed, maxLength, type }: TypedField): readon
   );
   const erased = typed.slice(0, -1);
   if (kind === 'number') {
-    return [...keys, key('delete', 'Delete', [margin + 3 * (wide + gap), top, 200, high], erased)];
+    return [...keys, key('delete', labels.delete, [margin + 3 * (wide + gap), top, 200, high], erased)];
   }
   const y = top + rows.length * (high + gap);
   return [
     ...keys,
-    key('space', 'Space', [margin, y, inner - 3 * (wide + gap), high], `${typed} `),
-    key('delete', 'Delete', [width - margin - 3 * wide - 2 * gap, y, 3 * wide + 2 * gap, high], erased),
+    key('space', labels.space, [margin, y, inner - 3 * (wide + gap), high], `${typed} `),
+    key('delete', labels.delete, [width - margin - 3 * wide - 2 * gap, y, 3 * wide + 2 * gap, high], erased),
   ];
 }

@@ -1,5 +1,7 @@
+import type { Phrases } from '../../core/study/phrases/phrases';
 import { button, element } from '../../ui/element';
-import { formNodes, formNote, paragraphs } from './form-nodes';
+import { formNodes, formNote } from './form-nodes';
+import { paragraphs } from './form-parts';
 import { dotNodes, questionNodes } from './question-card';
 import type { StudyForm } from './study-form';
 import type { StudyScreen } from './study-screen';
@@ -17,21 +19,28 @@ export function createStudyCard(parent: HTMLElement = document.body): StudyCard 
   const kicker = element('p', { class: 'kicker' });
   const content = element('div', { class: 'content' });
   const figure = element('p', { class: 'figure', role: 'timer', 'aria-live': 'off' });
-  const bar = element('progress', { max: 1, value: 0, 'aria-label': 'Progress' });
+  const bar = element('progress', { max: 1, value: 0 });
   const hint = element('p', { class: 'hint', role: 'status' });
   const row = element('div', { class: 'row' });
   const footnote = element('p', { class: 'footnote' });
-  const card = element('section', { class: 'study-card', 'aria-label': 'Study' });
+  const card = element('section', { class: 'study-card' });
   const layer = element('div', { class: 'study-layer' }, card);
   layer.hidden = true;
   parent.append(layer);
-  const dots = element('nav', { 'aria-label': 'Questions', class: 'dots' });
+  const dots = element('nav', { class: 'dots' });
   let shownKey = '';
   let shownDots = '';
 
   const put = (node: HTMLElement, text: string | null) => {
     node.hidden = text === null;
     if (text !== null && node.textContent !== text) node.textContent = text;
+  };
+
+  const speak = ({ say, spoken }: Phrases) => {
+    card.lang = spoken;
+    card.ariaLabel = say('study');
+    bar.ariaLabel = say('progress');
+    dots.ariaLabel = say('question.all');
   };
 
   return {
@@ -43,6 +52,7 @@ export function createStudyCard(parent: HTMLElement = document.body): StudyCard 
         return;
       }
       const { question, text, title, buttons } = screen;
+      speak(screen.phrases);
       // The fields themselves show what is answered: a card built anew at every key would lose the place of the cursor.
       const key = JSON.stringify([screen.id, title, text, buttons.map(({ id, label, look }) => [id, label, look])]);
       if (key !== shownKey) {
@@ -83,11 +93,12 @@ export function createStudyCard(parent: HTMLElement = document.body): StudyCard 
     },
     ask(form) {
       layer.hidden = false;
+      speak(form.phrases);
       put(footnote, formNote(form));
       if (shownKey === `form ${form.kind}`) return;
       shownKey = `form ${form.kind}`;
       card.dataset.screen = form.kind;
-      card.replaceChildren(...formNodes(form), footnote);
+      card.replaceChildren(...formNodes(form, speak), footnote);
       card.scrollTop = 0;
     },
   };

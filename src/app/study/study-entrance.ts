@@ -1,14 +1,16 @@
-import { reasonOf } from '../../core/errors/reasons';
+import { type Phrases, phrasesOf, preferredLanguage, shippedLanguages } from '../../core/study/phrases/phrases';
+import type { PublicStudy } from '../../core/study/study-api';
 import { NoStudyServer, ServerRefusal } from '../../net/study-client';
 import { sentence } from '../../ui/phrases';
 import type { ParticipantSession } from './participant-session';
+import { reasonFor } from './reasons';
 import type { Opened } from './study-opening';
 import type { StudyPage } from './study-page';
 
 type NewSession = Extract<Opened, { kind: 'new' }>;
 
 export interface StudyEntranceOptions {
-  readonly page: Pick<StudyPage, 'display' | 'address'>;
+  readonly page: Pick<StudyPage, 'display' | 'address' | 'languages'>;
   /** Opens the session of this participant, as study-opening says. */
   readonly open: (participant: string) => Promise<Opened>;
   /** The session that the study goes on with. */
@@ -35,37 +37,49 @@ export class StudyEntrance {
   async enter(): Promise<void> {
     const participant = this.#participant;
     if (participant === null) {
-      this.#askWho();
+      this.#askWho(null);
       return;
     }
     try {
       const opened = await this.#options.open(participant);
       const invitation = this.#options.page.address.invitation();
       if (opened.kind === 'resumed') this.#options.onSession(opened.session);
-      else if (invitation === null) this.#askWho();
+      else if (invitation === null) this.#askWho(opened.study);
       else this.#askForConsent(opened, participant, invitation);
     } catch (error) {
-      this.#options.page.display.ask({ kind: 'fault', text: this.#faultText(error) });
+      this.#options.page.display.ask({ kind: 'fault', ...this.#fault(error) });
     }
   }
 
-  #faultText(error: unknown): string {
-    return error instanceof ServerRefusal && error.status === 404 && !(error instanceof NoStudyServer)
-      ? `There is no study "${this.#study}" on this server. Compare the address with your link.`
-      : reasonOf(error);
+  /** The study's language that the browser's user reads; where there is no study yet, one of the page's own. */
+  #languageOf(study: PublicStudy | null): string {
+    const [first = 'en', ...others] = shippedLanguages;
+    return preferredLanguage(study?.languages ?? [first, ...others], this.#options.page.languages);
   }
 
-  /** Participant and invitation, as far as the address does not say them; `complaint`: what was wrong with what it says. */
-  #askWho(complaint: string | null = null): void {
+  #phrasesOf(study: PublicStudy | null): Phrases {
+    return phrasesOf(study ?? {}, this.#languageOf(study));
+  }
+
+  #fault(error: unknown): { readonly phrases: Phrases; readonly text: string } {
+    const phrases = this.#phrasesOf(null);
+    const unknown = error instanceof ServerRefusal && error.status === 404 && !(error instanceof NoStudyServer);
+    const text = unknown ? phrases.say('entrance.noStudy', { study: this.#study }) : reasonFor(error, phrases);
+    return { phrases, text };
+  }
+
+  /** Participant and invitation, as far as the address does not say them; `complaint`: what was wrong with what it says, `phrases` its language. */
+  #askWho(study: PublicStudy | null, phrases = this.#phrasesOf(study), complaint: string | null = null): void {
     const { display, address } = this.#options.page;
     // A whole link put into the address of this tab may differ behind "#" alone.
     address.reloadWhenChanged();
     display.ask({
       kind: 'participant',
+      phrases,
       complaint,
       known: { participant: this.#participant, invitation: address.invitation() },
       go: (invited) => address.goTo(invited),
-      decline: () => display.ask({ kind: 'declined', title: 'Study' }),
+      decline: () => display.ask({ kind: 'declined', phrases, title: phrases.say('study') }),
     });
   }
 
@@ -73,20 +87,29 @@ export class StudyEntrance {
     const { display } = this.#options.page;
     display.ask({
       kind: 'consent',
+      phrases: this.#phrasesOf(study),
+      language: this.#languageOf(study),
       study,
       participant,
       agree: async (choices) => {
+        const { contact } = study;
+        const phrases = phrasesOf(study, choices.language ?? study.languages[0]);
         const taken = await agree(choices, invitation);
         if (taken === 'uninvited') {
-          const help = study.contact === null ? ', or ask the experimenter.' : `. ${study.contact}`;
-          this.#askWho(`This is not the invitation of ${participant}. Compare it with your link${help}`);
+          const complaint =
+            contact === null
+              ? phrases.say('entrance.wrongInvitation', { participant })
+              : phrases.say('entrance.wrongInvitationRemote', { participant, contact });
+          this.#askWho(study, phrases, complaint);
           return null;
         }
-        if ('why' in taken) return `${sentence(taken.why)} ${study.contact ?? 'Ask the experimenter.'}`;
+        if ('why' in taken) {
+          return `${sentence(reasonFor(taken.why, phrases))} ${contact ?? phrases.say('askExperimenter')}`;
+        }
         this.#options.onSession(taken);
         return null;
       },
-      decline: () => display.ask({ kind: 'declined', title: study.title }),
+      decline: (phrases) => display.ask({ kind: 'declined', phrases, title: study.title }),
     });
   }
 }

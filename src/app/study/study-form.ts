@@ -1,3 +1,4 @@
+import type { Phrases } from '../../core/study/phrases/phrases';
 import type { PublicStudy } from '../../core/study/study-api';
 
 /** Who takes part, and what shows that they were invited. */
@@ -14,8 +15,10 @@ export interface ConsentChoices {
   readonly language: string | null;
 }
 
-/** What is filled in or read at the desk alone, never in the headset; `kind` names it for tools. */
-export type StudyForm =
+/** What is filled in or read at the desk alone, never in the headset; `kind` names it for tools, `phrases` say what the page says. */
+export type StudyForm = { readonly phrases: Phrases } & FormContent;
+
+type FormContent =
   | {
       /** Asks for a participant's code and invitation, filled in as far as they are known. */
       readonly kind: 'participant';
@@ -29,10 +32,13 @@ export type StudyForm =
   | {
       readonly kind: 'consent';
       readonly study: PublicStudy;
+      /** Of the study's languages the one to read first. */
+      readonly language: string;
       readonly participant: string;
-      /** Answers with a complaint; null: all went well. */
+      /** Answers with a complaint in the language chosen; null: all went well. */
       agree(choices: ConsentChoices): Promise<string | null>;
-      decline(): void;
+      /** Gets what the page says in the language chosen. */
+      decline(phrases: Phrases): void;
     }
   | { readonly kind: 'declined'; readonly title: string }
   /** Shown until it is noted: the code with which everything can be deleted. */

@@ -1,6 +1,7 @@
 import type { Calibration } from '../../core/body/calibration';
 import type { Side } from '../../core/math/side';
 import type { Embodiment } from '../../core/study/embodiment';
+import type { DeviceFault } from '../../core/study/remote-setup';
 import type { TrialHost } from './study-trial';
 import type { TaskRunner } from './task-runner';
 
@@ -10,7 +11,7 @@ export interface StudyHost extends TrialHost {
   readonly runners: Readonly<Partial<Record<string, TaskRunner>>>;
   enterVr(): Promise<void>;
   /** Why no headset can be worn on this device; null: one can. */
-  deviceFault(): string | null;
+  deviceFault(): DeviceFault | null;
   /** The room that the headset's boundary leaves [m]; null: it does not tell, or is not worn. */
   room(): { readonly width: number; readonly depth: number } | null;
   inSession(): boolean;

@@ -1,4 +1,4 @@
-import { reasonOf } from '../../core/errors/reasons';
+import { PhrasedError } from '../../core/study/phrases/phrases';
 import type { Progress } from '../../core/study/progress';
 import { scheduleFor } from '../../core/study/schedule';
 import type { PublicStudy } from '../../core/study/study-api';
@@ -25,11 +25,11 @@ export type Opened =
   | {
       readonly kind: 'new';
       readonly study: PublicStudy;
-      /** Takes the place by its invitation and begins; `uninvited`: it was another invitation. A sentence: why not. */
+      /** Takes the place by its invitation and begins; `uninvited`: it was another invitation; `why`: what was thrown instead. */
       agree(
         choices: ConsentChoices,
         invitation: string,
-      ): Promise<ParticipantSession | 'uninvited' | { readonly why: string }>;
+      ): Promise<ParticipantSession | 'uninvited' | { readonly why: unknown }>;
     };
 
 export type OpeningOptions = Omit<ParticipantSessionOptions, 'vault'>;
@@ -75,8 +75,7 @@ async function reportedProgress(
 export async function openSession(place: Place, opening: OpeningOptions): Promise<Opened> {
   const { study: id, participant } = place;
   const { client } = opening;
-  if (!(await alone(place)))
-    throw new Error(`${participant} is open in another tab of this browser. Go on there, or close it.`);
+  if (!(await alone(place))) throw new PhrasedError('entrance.otherTab', { participant });
   const vault = await openVault();
   const options = { ...opening, vault };
   const kept = (await vault?.session(id, participant)) ?? null;
@@ -103,12 +102,14 @@ export async function openSession(place: Place, opening: OpeningOptions): Promis
         if (session.step.kind === 'consent') {
           const { version } = study.consent;
           const said = session.apply({ type: 'consent', motion, version, ...(language !== null && { language }) });
-          if (said !== null) return { why: said };
+          if (said !== null) return { why: new Error(said) };
         } else session.apply({ type: 'reload' });
         return session;
       } catch (error) {
         if (error instanceof ServerRefusal && error.field === 'invitation') return 'uninvited';
-        return { why: reasonOf(error) };
+        if (error instanceof ServerRefusal && error.status === 409)
+          return { why: new PhrasedError('entrance.taken', { participant }) };
+        return { why: error };
       }
     },
   };

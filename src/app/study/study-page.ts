@@ -29,6 +29,8 @@ export type After = (delayMs: number, act: () => void) => () => void;
 
 /** What the study needs of the browser. */
 export interface StudyPage {
+  /** Those that its user reads, the most wanted first. */
+  readonly languages: readonly string[];
   readonly display: StudyDisplay;
   readonly address: StudyAddressBar;
   /** Seconds since 1970, never back. */

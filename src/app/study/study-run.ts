@@ -86,6 +86,7 @@ export function createStudyRun(asked: AskedStudy, host: StudyHost): StudyRun {
   const visit = new StudyVisit(asked, createParticipantClient(pageFolder()), host, {
     display: createDisplay(createStudyCard(), sheet),
     address: addressBarOf(asked.study),
+    languages: navigator.languages,
     now: nowSeconds,
     after,
   });

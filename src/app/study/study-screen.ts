@@ -1,3 +1,13 @@
+import type { Phrases } from '../../core/study/phrases/phrases';
+
+/** Letters and words on the keys of the sheet. */
+export interface KeyLabels {
+  /** Letters, row by row. */
+  readonly rows: readonly string[];
+  readonly space: string;
+  readonly delete: string;
+}
+
 /** Something that a participant can press. */
 export interface ScreenButton {
   readonly id: string;
@@ -50,6 +60,8 @@ export type ScreenField =
       /** Behind the number; empty: none. */
       readonly unit: string;
       readonly maxLength: number;
+      /** Of the keyboard in the headset. */
+      readonly keys: KeyLabels;
       type(typed: string): void;
     };
 
@@ -60,7 +72,11 @@ export interface ScreenQuestion {
   readonly language: string;
   /** From 1. */
   readonly number: number;
+  /** "3 of 12", for where there is no room for a dot each. */
+  readonly place: string;
   readonly optional: boolean;
+  /** What the page says around the question. */
+  readonly phrases: Phrases;
   readonly field: ScreenField;
   /** Of all questions in order. missing: handing in failed for want of it. optional: open, and may stay so. */
   readonly all: readonly {
@@ -74,6 +90,8 @@ export interface ScreenQuestion {
 export interface StudyScreen {
   /** Names the screen for tools: "calibration", "question-Q3". */
   readonly id: string;
+  /** What the page says around what the plan says. */
+  readonly phrases: Phrases;
   /** Above the title: "Round 1". */
   readonly kicker: string;
   readonly title: string;

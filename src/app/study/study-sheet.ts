@@ -133,7 +133,12 @@ function paintTarget(context: CanvasRenderingContext2D, target: Target, hovered:
   if (label) {
     // Narrow points have small words, in as many lines as they need.
     context.font = kind === 'scale' && w < 180 ? `500 26px ${vrFont}` : fontOf(target);
-    const lines = kind === 'scale' || kind === 'option' ? wrap(context, label, w - 16) : [label];
+    let lines = kind === 'scale' || kind === 'option' || kind === 'button' ? wrap(context, label, w - 16) : [label];
+    if (kind === 'button' && lines.length > 1) {
+      // Languages have words of their own length: two smaller lines are read more easily than one that is squeezed.
+      context.font = `600 34px ${vrFont}`;
+      lines = wrap(context, label, w - 16);
+    }
     const middle = figure ? y + 148 : y + h / 2 + 2;
     const step = 30;
     for (const [index, line] of lines.entries()) {

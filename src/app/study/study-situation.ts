@@ -8,7 +8,7 @@ import type { Prepared } from './trial-preparation';
 /** What screens show of a session. */
 export type ShownSession = Pick<
   ParticipantSession,
-  'plan' | 'step' | 'progress' | 'simulated' | 'safekeeping' | 'remaining'
+  'plan' | 'phrases' | 'step' | 'progress' | 'simulated' | 'safekeeping' | 'remaining'
 >;
 
 /** Everything that decides what a participant sees. */
@@ -32,8 +32,8 @@ export interface StudySituation {
   /** Why the last wish changed nothing; null: it did. */
   readonly refusal: string | null;
   readonly playing: boolean;
-  /** Others without whom a trial that was started cannot begin; null: it waits for no one. */
-  readonly waitingFor: string | null;
+  /** Others without whom a trial that was started cannot begin, empty: not known who; null: it waits for no one. */
+  readonly waitingFor: readonly string[] | null;
   /** The participant wants to stop and has not confirmed it yet. */
   readonly stopping: boolean;
   /** The game stands because another of the group pauses. */

@@ -40,8 +40,8 @@ export interface FinishedTrial {
 export interface PlayedTrial {
   /** Step, run and attempt: when it changes under the trial, the trial is void. */
   readonly key: string;
-  /** Others without whom it cannot begin; null: it waits for no one. */
-  readonly waitingFor: string | null;
+  /** Others without whom it cannot begin, empty: not known who; null: it waits for no one. */
+  readonly waitingFor: readonly string[] | null;
   /** The game's clock stands because another of the group pauses. */
   readonly standing: boolean;
   /** Stops game and clock, or lets them go on; nothing is counted in between. */
@@ -109,7 +109,7 @@ class LoggedTrial implements PlayedTrial {
     runner.start({ seed, seconds: step.seconds });
   }
 
-  get waitingFor(): string | null {
+  get waitingFor(): readonly string[] | null {
     return this.#runner.waitingFor;
   }
 

@@ -31,8 +31,8 @@ export interface TaskRunner {
   start(trial: { readonly seed: number; readonly seconds: number }): void;
   /** What happened since it was last asked. */
   take(): readonly TaskEvent[];
-  /** Whom a trial that was started still waits for; null: no one, or no trial. */
-  readonly waitingFor: string | null;
+  /** Whom a trial that was started still waits for, by code, empty: not known who; null: no one, or no trial. */
+  readonly waitingFor: readonly string[] | null;
   /** Whether the game's clock stands because one of the group pauses. */
   readonly standing: boolean;
   /** null: no trial, or one that goes on. */

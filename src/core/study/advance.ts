@@ -59,15 +59,21 @@ const takenInPause: readonly ProgressEvent['type'][] = [
   'go-on',
 ];
 
+/** Why events are refused that participants may press at the wrong moment. */
+export const refusals = {
+  paused: 'the session is paused',
+  asked: 'the participant is asked whether to stop',
+} as const;
+
 /** What waits until a participant who may be unwell has decided. */
 const notWhileAsked: readonly ProgressEvent['type'][] = ['start', 'calibrated', 'answer', 'submit'];
 
 /** What an event makes of a session at `now` [s since 1970]. Events out of place change nothing and say why. */
 export function advance(schedule: Schedule, progress: Progress, event: ProgressEvent, now: number): Advance {
   const at = new Moment(schedule, progress, now);
-  if (progress.paused && !takenInPause.includes(event.type)) return at.refused('the session is paused');
+  if (progress.paused && !takenInPause.includes(event.type)) return at.refused(refusals.paused);
   if (progress.unwell && notWhileAsked.includes(event.type)) {
-    return at.refused('the participant is asked whether to stop');
+    return at.refused(refusals.asked);
   }
   try {
     return follow(at, event) ?? at.refused(`"${event.type}" has no place in the step "${at.step.id}"`);

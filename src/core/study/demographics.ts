@@ -1,21 +1,16 @@
 import * as v from 'valibot';
+import type { PlainKey } from './phrases/phrases';
 import { checked, integerBetween, text } from './validation';
 
-export type DemographicField =
+/** A question about participants; the page's phrases have its words. */
+export type DemographicField = { readonly id: keyof Demographics; readonly phrase: PlainKey } & (
   | {
-      readonly id: keyof Demographics;
-      readonly label: string;
       readonly kind: 'choice';
-      readonly options: readonly { readonly value: string; readonly label: string }[];
+      readonly options: readonly { readonly value: string; readonly phrase: PlainKey }[];
     }
-  | {
-      readonly id: keyof Demographics;
-      readonly label: string;
-      readonly kind: 'age';
-      readonly min: number;
-      readonly max: number;
-    }
-  | { readonly id: keyof Demographics; readonly label: string; readonly kind: 'text'; readonly maxLength: number };
+  | { readonly kind: 'age'; readonly min: number; readonly max: number }
+  | { readonly kind: 'text'; readonly maxLength: number }
+);
 
 const genders = ['woman', 'man', 'non-binary', 'other', 'not-said'] as const;
 const experiences = ['none', 'once-or-twice', 'several-times', 'monthly', 'weekly'] as const;
@@ -47,53 +42,24 @@ export type Demographics = v.InferOutput<typeof demographicsSchema>;
 /** Throws a ValidationError that names the field. */
 export const checkedDemographics = (value: unknown): Demographics => checked(demographicsSchema, value);
 
+/** A choice, with the phrase of every value. */
+const choiceOf = <Id extends 'gender' | 'vrExperience' | 'handedness' | 'vision'>(
+  id: Id,
+  values: readonly Demographics[Id][],
+): DemographicField => ({
+  id,
+  phrase: `about.${id}`,
+  kind: 'choice',
+  options: values.map((value) => ({ value, phrase: `about.${id}.${value}` as PlainKey })),
+});
+
 /** The form, in the order asked. Everything but the systems used must be answered; gender need not be told. */
 export const demographicFields: readonly DemographicField[] = [
-  {
-    id: 'gender',
-    label: 'Gender',
-    kind: 'choice',
-    options: [
-      { value: 'woman', label: 'Woman' },
-      { value: 'man', label: 'Man' },
-      { value: 'non-binary', label: 'Non-binary' },
-      { value: 'other', label: 'Another' },
-      { value: 'not-said', label: 'I prefer not to say' },
-    ],
-  },
-  { id: 'age', label: 'Age [years]', kind: 'age', ...ages },
-  { id: 'major', label: 'Field of study or work', kind: 'text', maxLength: longest.major },
-  {
-    id: 'vrExperience',
-    label: 'How often have you used virtual reality?',
-    kind: 'choice',
-    options: [
-      { value: 'none', label: 'Never' },
-      { value: 'once-or-twice', label: 'Once or twice' },
-      { value: 'several-times', label: 'Several times' },
-      { value: 'monthly', label: 'Every month' },
-      { value: 'weekly', label: 'Every week' },
-    ],
-  },
-  { id: 'vrSystems', label: 'Which systems? (may stay empty)', kind: 'text', maxLength: longest.systems },
-  {
-    id: 'handedness',
-    label: 'Which hand do you prefer?',
-    kind: 'choice',
-    options: [
-      { value: 'right', label: 'Right' },
-      { value: 'left', label: 'Left' },
-      { value: 'both', label: 'Both alike' },
-    ],
-  },
-  {
-    id: 'vision',
-    label: 'How do you see?',
-    kind: 'choice',
-    options: [
-      { value: 'normal', label: 'Well without correction' },
-      { value: 'corrected', label: 'Well with glasses or lenses' },
-      { value: 'impaired', label: 'Impaired, also in the headset' },
-    ],
-  },
+  choiceOf('gender', genders),
+  { id: 'age', phrase: 'about.age', kind: 'age', ...ages },
+  { id: 'major', phrase: 'about.major', kind: 'text', maxLength: longest.major },
+  choiceOf('vrExperience', experiences),
+  { id: 'vrSystems', phrase: 'about.vrSystems', kind: 'text', maxLength: longest.systems },
+  choiceOf('handedness', hands),
+  choiceOf('vision', visions),
 ];

@@ -1,6 +1,7 @@
 import { cohortsByParticipant, groupsOf, ordersByGroup, ordersOf } from './allocation';
 import { embodimentFieldsOf, embodimentInWords, type PartialEmbodiment } from './embodiment';
-import type { StudyCohort, StudyPlan, StudyTask } from './plan';
+import { missingKeys, phraseKeys } from './phrases/phrases';
+import { languagesOf, type StudyCohort, type StudyPlan, type StudyTask } from './plan';
 
 /** How many participants each cohort has, by its id. */
 export function cohortCounts(plan: StudyPlan): ReadonlyMap<string, number> {
@@ -78,6 +79,17 @@ function alikeRemarks(
   });
 }
 
+/** Of the languages in which the page itself says some things in English. */
+const unspokenRemarks = (plan: StudyPlan): readonly string[] =>
+  languagesOf(plan).flatMap((language) => {
+    const missing = missingKeys(language, plan.phrases?.[language]);
+    if (missing.length === 0) return [];
+    const named = missing.length > 5 ? `${missing.slice(0, 5).join(', ')} …` : missing.join(', ');
+    return [
+      `Language ${language} lacks ${missing.length} of ${phraseKeys.length} phrases of the page (${named}): they are said in English.`,
+    ];
+  });
+
 /** What experimenters should know before the first participant comes, in sentences; empty: nothing. */
 export function remarksOn(plan: StudyPlan): readonly string[] {
   const { conditions, cohorts = [], tasks } = plan;
@@ -87,6 +99,7 @@ export function remarksOn(plan: StudyPlan): readonly string[] {
     ...unevenness(plan),
     ...alikeRemarks('Conditions', conditions),
     ...alikeRemarks('Cohorts', cohorts),
+    ...unspokenRemarks(plan),
     ...unmirrored.map(({ title }) => `${title}: the ball game has no mirror.`),
   ];
 }

@@ -1,5 +1,6 @@
 import * as v from 'valibot';
 import { embodimentFields, estimatorSchema } from './embodiment';
+import { phrasesSchema } from './phrases/phrase-schema';
 import { questionnaireSchema } from './questionnaire-schema';
 import { remoteSchema } from './remote-setup';
 import { askToStopSchema } from './unwell';
@@ -87,6 +88,8 @@ export const planSchema = v.strictObject({
   languages: v.exactOptional(
     v.pipe(v.array(languageTag, 'expected a list of languages'), v.minLength(1, 'expected at least one language')),
   ),
+  /** What the page itself says, in languages that it does not have, or in the study's own words; English where a key is not given. */
+  phrases: v.exactOptional(phrasesSchema),
   questionnaires: v.exactOptional(
     v.pipe(v.array(questionnaireSchema, 'expected a list'), v.maxLength(20, 'expected at most twenty')),
   ),

@@ -1,5 +1,6 @@
 import type * as v from 'valibot';
 import { embodimentFieldsOf } from './embodiment';
+import { refusePhrases } from './phrases/phrase-schema';
 import { planSchema } from './plan-schema';
 import {
   type Questionnaire,
@@ -187,6 +188,7 @@ export function checkedPlan(value: unknown): StudyPlan {
   refuseQuestionnaires(plan);
   refuseUnaskedLimits(plan.askToStop ?? [], questionnairesOf(plan));
   refuseUntranslatedConsent(plan);
+  refusePhrases(plan.phrases ?? {}, languagesOf(plan));
   refuseUnknownMeasures(plan);
   plan.tasks.forEach(({ groupSize }, index) => {
     if (plan.participants % groupSize !== 0) {

@@ -1,4 +1,5 @@
 import * as v from 'valibot';
+import type { Phrases } from './phrases/phrases';
 import { numberBetween, text } from './validation';
 
 /** How a participant takes part with no one beside them. */
@@ -11,10 +12,15 @@ export const remoteSchema = v.strictObject({
 
 export type RemoteTerms = v.InferOutput<typeof remoteSchema>;
 
+/** Why nothing can be played on a device; `reason`: as the browser says it. */
+export type DeviceFault =
+  | { readonly kind: 'insecure' | 'no-webxr' | 'no-headset' }
+  | { readonly kind: 'refused'; readonly reason: string };
+
 /** What the device knows of a participant who is about to begin. */
 export interface RemoteSetup {
-  /** Why nothing can be played on this device; null: it can. */
-  readonly deviceFault: string | null;
+  /** null: it can be played on. */
+  readonly deviceFault: DeviceFault | null;
   /** The room that the headset's boundary leaves [m]; null: the headset does not tell. */
   readonly room: { readonly width: number; readonly depth: number } | null;
   /** Above the floor as just seen [m]; null: not yet. */
@@ -24,29 +30,37 @@ export interface RemoteSetup {
 /** Eyes of people who stand are within these heights [m]: below, the floor is wrong or they sit; above, the floor is wrong. */
 const standing = { least: 1.1, most: 2.05 };
 
-const metres = (length: number) => `${length.toFixed(1)} m`;
-
-/** What is wrong before the start and what to do about it, a sentence each; empty: nothing. */
+/** What is wrong before the start and what to do about it, a sentence each in the participant's language; empty: nothing. */
 export function setupFaults(
   { freeSpace }: RemoteTerms,
   { deviceFault, room, eyeHeight }: RemoteSetup,
+  phrases: Phrases,
 ): readonly string[] {
-  if (deviceFault !== null) return [`${deviceFault} Open this link in the browser of your headset.`];
+  const { say } = phrases;
+  if (deviceFault !== null) return [say('setup.openThere', { fault: deviceFaultText(deviceFault, phrases) })];
   const faults: string[] = [];
   if (room && Math.min(room.width, room.depth) < freeSpace) {
-    faults.push(
-      `Your boundary leaves ${metres(room.width)} by ${metres(room.depth)}, the games need ${metres(freeSpace)} on either side. Clear more room and draw the boundary anew.`,
-    );
+    const [width, depth] = [phrases.metres(room.width), phrases.metres(room.depth)];
+    faults.push(say('setup.room', { width, depth, needed: phrases.metres(freeSpace) }));
   }
   if (eyeHeight !== null && eyeHeight < standing.least) {
-    faults.push(
-      `Your eyes were measured ${metres(eyeHeight)} above the floor. Stand up; if you do, the headset has the floor too high: set it anew in its settings.`,
-    );
+    faults.push(say('setup.low', { height: phrases.metres(eyeHeight) }));
   }
   if (eyeHeight !== null && eyeHeight > standing.most) {
-    faults.push(
-      `Your eyes were measured ${metres(eyeHeight)} above the floor: the headset has the floor too low. Set it anew in its settings.`,
-    );
+    faults.push(say('setup.high', { height: phrases.metres(eyeHeight) }));
   }
   return faults;
+}
+
+function deviceFaultText(fault: DeviceFault, { say }: Phrases): string {
+  switch (fault.kind) {
+    case 'insecure':
+      return say('setup.insecure');
+    case 'no-webxr':
+      return say('setup.noWebxr');
+    case 'no-headset':
+      return say('setup.noHeadset');
+    case 'refused':
+      return say('setup.refused', { reason: fault.reason });
+  }
 }

@@ -51,7 +51,7 @@ export interface Schedule {
   readonly steps: readonly StudyStep[];
 }
 
-/** What a participant may read instead of a condition's name. */
+/** What stands for a condition's name in lists for researchers, as participants read it (English). */
 export const blindLabel = (step: { readonly block: number }): string => `Round ${step.block}`;
 
 /** The steps of one participant; throws where the plan has no such participant. */

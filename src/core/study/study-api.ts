@@ -73,8 +73,10 @@ export interface StudyInfo {
 
 /** What is public of a study. */
 export interface PublicStudy extends Pick<StudyPlan, 'id' | 'title' | 'consent'> {
-  /** Those that participants may choose from; the first is chosen. */
-  readonly languages: readonly string[];
+  /** Those that participants may choose from. */
+  readonly languages: readonly [string, ...string[]];
+  /** What the page says in them, where the plan gives it. */
+  readonly phrases: NonNullable<StudyPlan['phrases']>;
   readonly simulated: boolean;
   /** Whom participants ask who have no one beside them; null: an experimenter is there. */
   readonly contact: string | null;

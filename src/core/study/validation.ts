@@ -13,10 +13,11 @@ export class ValidationError extends Error {
   }
 }
 
-/** The way to a value as one writes it in code: tasks[1].seconds. */
+/** The way to a value as one writes it in code: tasks[1].seconds, phrases.fr["rest.title"]. */
 function fieldOf(issue: v.BaseIssue<unknown>): string {
   return (issue.path ?? []).reduce((way, { key }) => {
     if (typeof key === 'number') return `${way}[${key}]`;
+    if (!/^[\w$-]*$/.test(String(key))) return `${way}["${String(key)}"]`;
     return way ? `${way}.${String(key)}` : String(key);
   }, '');
 }

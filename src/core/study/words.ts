@@ -4,10 +4,23 @@ import { text } from './validation';
 /** Text for participants: alike in all languages, or one for each. */
 export type Words = string | Readonly<Record<string, string>>;
 
+const aLanguage = 'expected a language, as "en", "de" or "pt-BR"';
+
+/** Whether plural rules, lists and names of languages can be had for it. */
+function isLocale(tag: string): boolean {
+  try {
+    return Intl.getCanonicalLocales(tag).length === 1;
+  } catch {
+    // reason: this is how Intl says no
+    return false;
+  }
+}
+
 /** A language as BCP 47 names it: en, de, pt-BR. */
 export const languageTag = v.pipe(
   v.string('expected a language, as "en"'),
-  v.regex(/^[a-z]{2,3}(-[A-Za-z0-9]{2,8})*$/, 'expected a language, as "en", "de" or "pt-BR"'),
+  v.regex(/^[a-z]{2,3}(-[A-Za-z0-9]{2,8})*$/, aLanguage),
+  v.check(isLocale, aLanguage),
 );
 
 /** The schema of text for participants of at most so many characters in each language. */

@@ -3,6 +3,7 @@ import type { ParticipantSession } from '../../../src/app/study/participant-sess
 import { questionPart } from '../../../src/app/study/question-screen';
 import { questionTargets } from '../../../src/app/study/question-sheet';
 import { height, width } from '../../../src/app/study/sheet-target';
+import { phrasesOf } from '../../../src/core/study/phrases/phrases';
 import { begin } from '../../../src/core/study/progress';
 import type { Question } from '../../../src/core/study/questionnaire-schema';
 import { type Answer, type Answers, shippedQuestionnaires, typedAnswer } from '../../../src/core/study/questionnaires';
@@ -24,7 +25,7 @@ function reader(asked: readonly Question[], language = 'en') {
   };
   const part = () => {
     const progress = { ...begin(schedule), draft: draft as Answers, language };
-    const session = { plan, progress } as unknown as ParticipantSession;
+    const session = { plan, progress, phrases: phrasesOf(plan, language) } as unknown as ParticipantSession;
     return questionPart(
       asked,
       at,

@@ -1,11 +1,13 @@
 import { describe, expect, test } from 'vitest';
 import { safekeepingText } from '../../../src/app/study/study-screens';
+import { Phrases } from '../../../src/core/study/phrases/phrases';
 import { setupFaults } from '../../../src/core/study/remote-setup';
 import { aWomanOf26 } from '../../core/study/studies';
 import { agree, canStart } from './participant-steps';
 import { browser, type Tab } from './study-browser';
 import { studyServer } from './study-server';
 
+const english = new Phrases('en');
 const remote = { contact: 'Write to lab@example.org', freeSpace: 2 };
 const sound = { deviceFault: null, room: { width: 2.4, depth: 2.1 }, eyeHeight: 1.6 };
 
@@ -20,17 +22,17 @@ const textOf = ({ display }: Tab) => display.screen?.text.join(' ') ?? '';
 
 describe('what a participant has who is alone', () => {
   test('is right with a headset, room and eyes of a person who stands', () => {
-    expect(setupFaults(remote, sound)).toEqual([]);
-    expect(setupFaults(remote, { ...sound, room: null, eyeHeight: null })).toEqual([]);
+    expect(setupFaults(remote, sound, english)).toEqual([]);
+    expect(setupFaults(remote, { ...sound, room: null, eyeHeight: null }, english)).toEqual([]);
   });
 
   test.each([
-    [{ deviceFault: 'This browser has no WebXR.' }, /no WebXR\. Open this link in the browser of your headset/],
+    [{ deviceFault: { kind: 'no-webxr' } as const }, /no WebXR\. Open this link in the browser of your headset/],
     [{ room: { width: 3, depth: 1.2 } }, /leaves 3\.0 m by 1\.2 m, the games need 2\.0 m/],
     [{ eyeHeight: 0.8 }, /0\.8 m above the floor\. Stand up/],
     [{ eyeHeight: 2.3 }, /2\.3 m above the floor: the headset has the floor too low/],
   ])('is told in words: %j', (change, words) => {
-    const faults = setupFaults(remote, { ...sound, ...change });
+    const faults = setupFaults(remote, { ...sound, ...change }, english);
     expect(faults).toHaveLength(1);
     expect(faults[0]).toMatch(words);
   });
@@ -40,7 +42,7 @@ describe('a study with no one beside its participants', () => {
   test('says on a device without a headset that it cannot be used, and whom to ask', async () => {
     const tab = await alone();
     expect(tab.display.shown).toBe('calibration-enter');
-    tab.host.fault = 'No headset is connected to this browser.';
+    tab.host.fault = { kind: 'no-headset' };
     tab.pass(1);
     expect(tab.display.shown).toBe('setup');
     expect(textOf(tab)).toContain('No headset is connected');
@@ -74,11 +76,11 @@ describe('a study with no one beside its participants', () => {
 
   test('says what the server refuses, and that one can go on', () => {
     const refused = { unsent: 2, unsaved: 0, storageFault: null, online: true, refusal: 'no', lockedOut: false };
-    expect(safekeepingText(refused, remote)).toEqual([
+    expect(safekeepingText(refused, english, remote)).toEqual([
       'They stay on this device: the server refuses 2 records (no). You can go on. Write to lab@example.org',
       true,
     ]);
-    expect(safekeepingText(refused)[0]).toContain('Call the experimenter');
+    expect(safekeepingText(refused, english)[0]).toContain('Call the experimenter');
   });
 
   test('begins in a boundary that is large enough alone', async () => {

@@ -11,6 +11,7 @@ import { type Calibration, defaultCalibration } from '../../../src/core/body/cal
 import type { EstimatorName } from '../../../src/core/estimation/pose-estimator';
 import type { Side } from '../../../src/core/math/side';
 import type { Embodiment } from '../../../src/core/study/embodiment';
+import type { DeviceFault } from '../../../src/core/study/remote-setup';
 import type { FrameListener } from '../../../src/core/study/trial-log';
 import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
 import { createParticipantClient } from '../../../src/net/study-client';
@@ -174,9 +175,9 @@ class TestHost implements StudyHost {
   inSession = (): boolean => this.worn;
   /** How high the eyes are seen [m]. */
   eyes = 1.6;
-  fault: string | null = null;
+  fault: DeviceFault | null = null;
   free: { readonly width: number; readonly depth: number } | null = null;
-  deviceFault = (): string | null => this.fault;
+  deviceFault = (): DeviceFault | null => this.fault;
   room = () => this.free;
   calibration = (): Calibration => this.measures ?? defaultCalibration;
   setCalibration(calibration: Calibration | null): void {
@@ -256,7 +257,7 @@ export function browser(server: StudyServer) {
       withdrawalPage: () => `${server.origin}/withdraw?study=${study}`,
       reloadWhenChanged: () => undefined,
     };
-    const page: StudyPage = { display, address, now: clock.now, after: clock.after };
+    const page: StudyPage = { display, address, languages: ['en-GB'], now: clock.now, after: clock.after };
     const visit = new StudyVisit({ study, participant }, createParticipantClient(server.origin), host, page);
     await visit.enter();
     let frameTime = 100;

@@ -4,6 +4,7 @@ import type { StudyScreen } from '../../../src/app/study/study-screen';
 import { safekeepingText, screenOf } from '../../../src/app/study/study-screens';
 import type { ScreenActions, StudySituation } from '../../../src/app/study/study-situation';
 import type { ProgressEvent } from '../../../src/core/study/advance';
+import { Phrases } from '../../../src/core/study/phrases/phrases';
 import { typedAnswer } from '../../../src/core/study/questionnaires';
 import { createParticipantClient } from '../../../src/net/study-client';
 import { aWomanOf26, outcomeOf, paperPlan } from '../../core/study/studies';
@@ -104,9 +105,13 @@ describe('a participant who is to be measured', () => {
   });
 
   test('is told why it did not succeed, and may try again', () => {
-    const text = 'Your hands were not seen.';
-    const failed = participant(consent, demographics).screen({ calibration: { kind: 'failed', text } });
-    expect(failed).toMatchObject({ id: 'calibration-failed', text: [text] });
+    const failed = participant(consent, demographics).screen({
+      calibration: { kind: 'failed', fault: 'handsUnseen', text: '' },
+    });
+    expect(failed).toMatchObject({
+      id: 'calibration-failed',
+      text: ['Your hands were not seen. Hold them where you can see them.'],
+    });
     expect(failed?.buttons.map(({ id }) => id)).toEqual(['calibrate']);
   });
 });
@@ -151,11 +156,11 @@ describe('a participant who plays', () => {
 
   test('is told for whom the game waits, and when it stands for another', () => {
     const one = playing();
-    expect(one.screen({ playing: true, waitingFor: 'P02 and P03' })).toMatchObject({
+    expect(one.screen({ playing: true, waitingFor: ['P02', 'P03'] })).toMatchObject({
       id: 'waiting',
       text: ['It begins as soon as P02 and P03 are ready too.'],
     });
-    expect(one.screen({ playing: true, waitingFor: 'P02' })?.text[0]).toContain('P02 is ready');
+    expect(one.screen({ playing: true, waitingFor: ['P02'] })?.text[0]).toContain('P02 is ready');
     expect(one.screen({ playing: true, standing: true })?.id).toBe('standing');
   });
 
@@ -171,7 +176,7 @@ describe('a participant with a pause', () => {
       .screen()
       ?.buttons.find(({ id }) => id === 'pause')
       ?.act();
-    const paused = one.screen({ calibration: { kind: 'failed', text: '' } });
+    const paused = one.screen({ calibration: { kind: 'failed', fault: 'gaze', text: '' } });
     expect(paused?.id).toBe('paused');
     paused?.buttons.find(({ id }) => id === 'resume')?.act();
     expect(one.screen()?.id).toBe('calibration');
@@ -234,6 +239,6 @@ describe('where answers are', () => {
       true,
     ],
   ])('%j is said, and whether to worry', (change, text, worrying) => {
-    expect(safekeepingText({ ...safe, ...change })).toEqual([text, worrying]);
+    expect(safekeepingText({ ...safe, ...change }, new Phrases('en'))).toEqual([text, worrying]);
   });
 });

@@ -39,7 +39,8 @@ describe('the entrance', () => {
     async (first) => {
       const server = await studyServer();
       const tab = await browser(server).open(first === 'participant' ? { invitation: null } : {});
-      tab.display.asked(first).decline();
+      const form = tab.display.asked(first);
+      form.decline(form.phrases);
       expect(tab.display.shown).toBe('declined');
       const [place] = server.store.overview('paper', 1e9);
       expect(place).toMatchObject({ claimed: false, records: 0, session: null, invitation: server.invitation });

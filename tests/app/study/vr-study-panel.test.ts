@@ -1,13 +1,14 @@
 import { expect, test } from 'vitest';
 import type { StudyScreen } from '../../../src/app/study/study-screen';
 import { createVrStudyPanel } from '../../../src/app/study/vr-study-panel';
+import { Phrases } from '../../../src/core/study/phrases/phrases';
 import { drawNowhere } from '../shell/drawing-in-node';
 
 drawNowhere();
 
 const screen: StudyScreen = {
   ...{ id: 'setup', kicker: 'Archery', title: 'Not quite ready', text: ['Stand up.'], footnote: '', trouble: true },
-  ...{ hint: null, figure: null, part: null, question: null },
+  ...{ phrases: new Phrases('en'), hint: null, figure: null, part: null, question: null },
   buttons: [{ id: 'calibrate', label: 'Measure again', look: 'primary', act: () => undefined }],
 };
 

@@ -48,6 +48,7 @@ export function createDrawnSheet(): DrawnSheet {
       screen = shown;
       node.hidden = shown === null;
       targets = shown ? targetsOf(shown) : [];
+      if (shown) node.lang = shown.phrases.spoken;
       if (shown) node.ariaLabel = `In the headset: ${[shown.kicker, shown.title, ...shown.text].join('. ')}`;
       paint();
     },

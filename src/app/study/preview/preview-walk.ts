@@ -1,11 +1,13 @@
 import { advance, type ProgressEvent } from '../../../core/study/advance';
 import { embodimentInWords } from '../../../core/study/embodiment';
+import { type Phrases, phrasesOf } from '../../../core/study/phrases/phrases';
 import { languagesOf, type StudyPlan } from '../../../core/study/plan';
 import { begin, currentStep, type Progress } from '../../../core/study/progress';
 import { type Schedule, type StudyStep, scheduleFor } from '../../../core/study/schedule';
 import type { CalibrationStep } from '../../../ui/calibration-dialog';
 import { Answering } from '../answering';
 import type { Safekeeping } from '../participant-session';
+import { refusalFor } from '../reasons';
 import type { StudyForm } from '../study-form';
 import type { StudyScreen } from '../study-screen';
 import { screenOf } from '../study-screens';
@@ -47,6 +49,10 @@ class PreviewSession implements ShownSession {
 
   get progress(): Progress {
     return this.#progress;
+  }
+
+  get phrases(): Phrases {
+    return phrasesOf(this.plan, this.#progress.language ?? languagesOf(this.plan)[0]);
   }
 
   get step(): StudyStep {
@@ -181,23 +187,24 @@ export class PreviewWalk {
   }
 
   #form(): StudyForm | null {
-    const { plan } = this.#session;
+    const { plan, phrases } = this.#session;
     const next = () => this.next();
     switch (this.stop.kind) {
       case 'consent': {
-        const { id, title, consent, remote } = plan;
-        const others = languagesOf(plan).filter((language) => language !== this.language);
+        const { id, title, consent, remote, phrases: given = {} } = plan;
         const contact = remote?.contact ?? null;
-        const study = { id, title, consent, languages: [this.language, ...others], simulated: false, contact };
+        const study = { id, title, consent, languages: languagesOf(plan), phrases: given, simulated: false, contact };
         const agree = async () => {
           next();
           return null;
         };
-        return { kind: 'consent', study, participant: this.#participant, agree, decline: next };
+        const { language } = this;
+        return { kind: 'consent', phrases, language, study, participant: this.#participant, agree, decline: next };
       }
       case 'code':
         return {
           kind: 'code',
+          phrases,
           code: exampleCode,
           withdrawalPage: this.#withdrawalPage,
           noted: next,
@@ -206,6 +213,7 @@ export class PreviewWalk {
       case 'demographics':
         return {
           kind: 'demographics',
+          phrases,
           stop: () => this.goTo(this.stops.length),
           done() {
             next();
@@ -238,11 +246,10 @@ export class PreviewWalk {
     };
   }
 
-  #others(): string {
+  #others(): readonly string[] {
     const { step, plan } = this.#session;
     const members = 'task' in step ? (scheduleFor(plan, this.#participant).groups[step.task]?.members ?? []) : [];
-    const others = members.filter((member) => member !== this.#participant);
-    return others.length < 2 ? others.join('') : `${others.slice(0, -1).join(', ')} and ${others.at(-1)}`;
+    return members.filter((member) => member !== this.#participant);
   }
 
   #playedText(): string {
@@ -259,7 +266,7 @@ export class PreviewWalk {
       return;
     }
     const { id } = this.#session.step;
-    const refusal = this.#session.apply(event);
+    const refusal = refusalFor(this.#session.apply(event), this.#session.phrases);
     const { step } = this.#session;
     if (step.id === id) this.#said(refusal);
     else this.goTo(this.stops.findIndex((stop) => stop.step === step.id));

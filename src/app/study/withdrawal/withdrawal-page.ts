@@ -1,11 +1,13 @@
 import '../../../styles/document.css';
 import { reasonOf } from '../../../core/errors/reasons';
+import { type Phrases, phrasesOf, preferredLanguage, shippedLanguages } from '../../../core/study/phrases/phrases';
 import type { PublicStudy, Receipt } from '../../../core/study/study-api';
-import { createWithdrawalClient } from '../../../net/study-client';
+import { createWithdrawalClient, ServerRefusal } from '../../../net/study-client';
 import { offerDownload } from '../../../ui/downloads';
 import { button, element, pageElement } from '../../../ui/element';
 import { pageFolder } from '../../../ui/page-folder';
-import { counted } from '../../../ui/phrases';
+import { languageChoice } from '../language-choice';
+import { reasonFor } from '../reasons';
 import { openStudyVault } from '../study-vault';
 
 const client = createWithdrawalClient(pageFolder());
@@ -18,51 +20,74 @@ function field(label: string, attributes: Readonly<Record<string, string | numbe
   return { input, node: element('label', {}, element('span', {}, label), input) };
 }
 
-/** What this browser still holds of the participant goes too; a sentence where it could not. */
-async function forgottenHere({ study, participant }: Receipt): Promise<string> {
+/** What this browser still holds of the participant goes too; a sentence says whether it did. */
+async function forgottenHere({ study, participant }: Receipt, { say }: Phrases): Promise<string> {
   try {
     const vault = await openStudyVault();
     await vault.forget(study, participant);
     vault.close();
-    return 'So is what this browser still held. On another device that you used, open your link: it offers to forget what is left there.';
+    return say('receipt.hereToo');
   } catch {
     // reason: a browser without storage holds nothing, and the sentence says what else there is to do
-    return 'Where you took part on another device, open your link there: it offers to forget what is left.';
+    return say('receipt.elsewhere');
   }
 }
 
-const receiptLines = ({ number, study, participant, records, motionFiles, at }: Receipt): readonly string[] => [
-  `Receipt ${number} of the study “${study}”`,
-  `Deleted of ${participant}: ${counted(records, 'record')}, ${counted(motionFiles, 'recording')} of movements`,
-  `${new Date(1000 * at).toLocaleString()}, by the withdrawal code, at ${pageFolder()}`,
-];
+function receiptLines(
+  { number, study, participant, records, motionFiles, at }: Receipt,
+  { say, spoken }: Phrases,
+): readonly string[] {
+  return [
+    say('receipt.number', { number, study }),
+    say('receipt.deleted', {
+      participant,
+      records: say('receipt.records', { count: records }),
+      recordings: say('receipt.recordings', { count: motionFiles }),
+    }),
+    say('receipt.when', { time: new Date(1000 * at).toLocaleString(spoken), address: pageFolder() }),
+  ];
+}
 
 /** What is left when everything is deleted. */
-function receiptCard(receipt: Receipt, about: PublicStudy | null, here: string): HTMLElement {
-  const lines = receiptLines(receipt);
+function receiptCard(receipt: Receipt, about: PublicStudy | null, phrases: Phrases, here: string): HTMLElement {
+  const { say } = phrases;
+  const lines = receiptLines(receipt, phrases);
   const save = () =>
     offerDownload(`receipt-${receipt.study}-${receipt.number}.txt`, 'text/plain', `${lines.join('\n')}\n`);
-  const others =
-    'Copies that were handed on before are no longer on this server: with the number of this receipt you can have them deleted too.';
   return element(
     'section',
-    { class: 'card', 'aria-label': 'Receipt' },
-    element('h2', { style: 'margin-top:0' }, 'Everything is deleted'),
+    { class: 'card', 'aria-label': say('receipt.name') },
+    element('h2', { style: 'margin-top:0' }, say('receipt.title')),
     ...lines.map((line) => paragraph(line)),
     paragraph(here),
-    paragraph(about?.contact ? `${others} ${about.contact}` : `${others} Ask the experimenter.`),
-    element('div', { class: 'bar', style: 'margin-top:12px' }, button('Save the receipt', save, { class: 'primary' })),
+    paragraph(`${say('receipt.copies')} ${about?.contact ?? say('askExperimenter')}`),
+    element('div', { class: 'bar', style: 'margin-top:12px' }, button(say('receipt.save'), save, { class: 'primary' })),
   );
 }
 
-/** Asks for the code, and deletes once it is confirmed. `asked`: the study that the address names, null: none. */
-function withdrawalForm(
-  asked: string | null,
-  about: PublicStudy | null,
-  done: (card: HTMLElement) => void,
-): HTMLElement {
-  const study = field('The study, as it stands in your link', { name: 'study', value: asked ?? '', size: 30 });
-  const code = field('Your withdrawal code', {
+interface Asking {
+  /** The study that the address names; null: none. */
+  readonly asked: string | null;
+  /** null: the server has no such study. */
+  readonly about: PublicStudy | null;
+  readonly phrases: Phrases;
+  readonly done: (card: HTMLElement) => void;
+}
+
+/** What the server says of a code that is no one's. */
+const unknownCode = 'nothing is recorded under this code';
+
+/** Why nothing was deleted. */
+const failure = (error: unknown, phrases: Phrases): string =>
+  error instanceof ServerRefusal && error.message === unknownCode
+    ? phrases.say('withdrawal.unknownCode')
+    : phrases.say('withdrawal.failed', { reason: reasonOf(error) });
+
+/** Asks for the code, and deletes once it is confirmed. */
+function withdrawalForm({ asked, about, phrases, done }: Asking): HTMLElement {
+  const { say } = phrases;
+  const study = field(say('withdrawal.study'), { name: 'study', value: asked ?? '', size: 30 });
+  const code = field(say('withdrawal.code'), {
     name: 'code',
     placeholder: 'XXXX-XXXX-XXXX-XXXX',
     maxlength: 60,
@@ -71,7 +96,7 @@ function withdrawalForm(
   const sure = element('input', { type: 'checkbox' });
   const complaint = paragraph('', { class: 'complaint', role: 'alert' });
   complaint.hidden = true;
-  const go = button('Delete everything', () => void withdraw(), { class: 'danger' });
+  const go = button(say('withdrawal.delete'), () => void withdraw(), { class: 'danger' });
   const changed = () => {
     go.disabled = !sure.checked || code.input.value.trim() === '' || study.input.value.trim() === '';
   };
@@ -83,9 +108,9 @@ function withdrawalForm(
     complaint.hidden = true;
     try {
       const receipt = await client.withdraw(study.input.value.trim(), code.input.value.trim());
-      done(receiptCard(receipt, about, await forgottenHere(receipt)));
+      done(receiptCard(receipt, about, phrases, await forgottenHere(receipt, phrases)));
     } catch (error) {
-      complaint.textContent = `Nothing was deleted: ${reasonOf(error)}.`;
+      complaint.textContent = failure(error, phrases);
       complaint.hidden = false;
       changed();
     }
@@ -95,23 +120,16 @@ function withdrawalForm(
     'section',
     { class: 'card' },
     ...(about ? [element('h2', { style: 'margin-top:0' }, about.title)] : []),
-    paragraph(
-      'Everything that was recorded of you in this study is deleted at once: answers, results, movements, where you stopped. What stays is a receipt that says when how much was deleted. You need not say why. It cannot be undone, and your place is not given to you again.',
-    ),
+    paragraph(say('withdrawal.explained')),
     element('div', { class: 'bar', style: 'margin:14px 0' }, ...(about ? [] : [study.node]), code.node),
-    element(
-      'label',
-      { class: 'inline' },
-      sure,
-      element('span', {}, 'I want everything deleted that is recorded of me.'),
-    ),
+    element('label', { class: 'inline' }, sure, element('span', {}, say('withdrawal.sure'))),
     complaint,
     element('div', { class: 'bar', style: 'margin-top:12px' }, go),
     element(
       'p',
       { class: 'soft', style: 'margin-top:14px' },
-      'The code was shown to you after you agreed to take part; no one can look it up.',
-      ...(about?.contact ? [` Does something not work? ${about.contact}`] : []),
+      say('withdrawal.lookUp'),
+      ...(about?.contact ? [` ${say('withdrawal.contact', { contact: about.contact })}`] : []),
     ),
   );
 }
@@ -119,18 +137,42 @@ function withdrawalForm(
 const content = pageElement('content', HTMLElement);
 const asked = new URLSearchParams(location.search).get('study');
 
-async function show(): Promise<void> {
-  let about: PublicStudy | null = null;
-  let complaint = '';
+interface Found {
+  readonly about: PublicStudy | null;
+  /** Why the study that the address names was not found; null: it was, or it names none. */
+  readonly fault: unknown;
+}
+
+async function findStudy(): Promise<Found> {
   try {
-    if (asked !== null) about = await client.study(asked);
-  } catch (error) {
-    complaint = `“${asked}”: ${reasonOf(error)}.`;
+    return { about: asked === null ? null : await client.study(asked), fault: null };
+  } catch (fault) {
+    return { about: null, fault };
   }
+}
+
+/** The page in a language; another can be chosen until everything is deleted. */
+function show({ about, fault }: Found, languages: readonly [string, ...string[]], language: string): void {
+  const phrases = phrasesOf(about ?? {}, language);
+  const { say, spoken } = phrases;
+  document.documentElement.lang = spoken;
+  document.title = `${say('withdrawal.title')} · threepoint`;
+  pageElement('title', HTMLElement).textContent = say('withdrawal.title');
+  const choice = languageChoice(languages, language, (chosen) => show({ about, fault }, languages, chosen));
+  choice.label(say('language'));
+  const complaint = fault === null ? null : `“${asked}”: ${reasonFor(fault, phrases)}.`;
   content.replaceChildren(
-    ...(complaint ? [paragraph(complaint, { class: 'complaint', role: 'alert' })] : []),
-    withdrawalForm(asked, about, (card) => content.replaceChildren(card)),
+    ...(languages.length > 1 ? [element('div', { class: 'bar', style: 'margin-bottom:14px' }, choice.node)] : []),
+    ...(complaint === null ? [] : [paragraph(complaint, { class: 'complaint', role: 'alert' })]),
+    withdrawalForm({ asked, about, phrases, done: (card) => content.replaceChildren(card) }),
   );
 }
 
-void show();
+async function begin(): Promise<void> {
+  const found = await findStudy();
+  const [first = 'en', ...others] = shippedLanguages;
+  const languages = found.about?.languages ?? ([first, ...others] as const);
+  show(found, languages, preferredLanguage(languages, navigator.languages));
+}
+
+void begin();

@@ -1,0 +1,29 @@
+import { element } from '../../ui/element';
+
+/** A choice of languages, each in its own words; `onChoice` hears of the one chosen. */
+export interface LanguageChoice {
+  readonly node: HTMLElement;
+  /** What stands over it: the word for "language". */
+  label(text: string): void;
+}
+
+export function languageChoice(
+  languages: readonly string[],
+  chosen: string,
+  onChoice: (language: string) => void,
+): LanguageChoice {
+  const nameOf = (language: string) => new Intl.DisplayNames([language], { type: 'language' }).of(language) ?? language;
+  const select = element(
+    'select',
+    { name: 'language' },
+    ...languages.map((one) => element('option', { value: one, lang: one, selected: one === chosen }, nameOf(one))),
+  );
+  select.addEventListener('change', () => onChoice(select.value));
+  const label = element('span', {});
+  return {
+    node: element('label', { class: 'field' }, label, select),
+    label(text) {
+      label.textContent = text;
+    },
+  };
+}

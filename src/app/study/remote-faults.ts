@@ -1,0 +1,14 @@
+import { setupFaults } from '../../core/study/remote-setup';
+import type { ParticipantSession } from './participant-session';
+import type { StudyHost } from './study-host';
+
+/** What keeps a participant with no one beside them from beginning on this device; `eyeHeight` [m], null: not measured yet. */
+export function remoteFaults(
+  { plan: { remote }, phrases }: Pick<ParticipantSession, 'plan' | 'phrases'>,
+  host: Pick<StudyHost, 'inSession' | 'deviceFault' | 'room'>,
+  eyeHeight: number | null,
+): readonly string[] {
+  if (!remote) return [];
+  const deviceFault = host.inSession() ? null : host.deviceFault();
+  return setupFaults(remote, { deviceFault, room: host.room(), eyeHeight }, phrases);
+}

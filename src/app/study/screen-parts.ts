@@ -1,0 +1,48 @@
+import type { PhraseKey, Phrases } from '../../core/study/phrases/phrases';
+import type { ScreenButton, StudyScreen } from './study-screen';
+import type { ScreenActions } from './study-situation';
+
+/** What the screens of a step have in common, unless they say otherwise. */
+export type ScreenBase = Pick<
+  StudyScreen,
+  'kicker' | 'phrases' | 'figure' | 'part' | 'question' | 'hint' | 'footnote' | 'trouble'
+>;
+
+/** What every screen is made from. */
+export interface ScreenParts {
+  readonly base: ScreenBase;
+  readonly phrases: Phrases;
+  readonly actions: ScreenActions;
+}
+
+/** Minutes and seconds: "7:00". */
+export const clock = (seconds: number): string => {
+  const whole = Math.ceil(seconds);
+  return `${Math.floor(whole / 60)}:${String(whole % 60).padStart(2, '0')}`;
+};
+
+export const pauseButton = ({ phrases, actions }: ScreenParts): ScreenButton => ({
+  id: 'pause',
+  label: phrases.say('pause'),
+  look: 'plain',
+  act: () => actions.apply({ type: 'pause' }),
+});
+
+export const enterButton = ({ phrases, actions }: ScreenParts): ScreenButton => ({
+  id: 'enter',
+  label: phrases.say('enterVr'),
+  look: 'primary',
+  act: actions.enterVr,
+});
+
+export const calibrateButton = (
+  { phrases, actions }: ScreenParts,
+  label: Extract<PhraseKey, 'measureAgain' | 'measures.begin'>,
+): ScreenButton => ({ id: 'calibrate', label: phrases.say(label), look: 'primary', act: actions.calibrate });
+
+export const askToStopButton = ({ phrases, actions }: ScreenParts): ScreenButton => ({
+  id: 'ask-to-stop',
+  label: phrases.say('stopStudy'),
+  look: 'plain',
+  act: () => actions.askToStop(true),
+});

@@ -1,0 +1,81 @@
+import * as v from 'valibot';
+import { text, ValidationError } from '../validation';
+import { languageTag } from '../words';
+import { english } from './english';
+import { type GivenPhrases, gapsIn, type Phrase, type PhraseKey, phraseKeys } from './phrases';
+
+const longest = 600;
+const form = v.exactOptional(text(longest));
+
+/** Other for every language; the others where the language has them. A language that knows no plurals gives a text alone. */
+const pluralForms = v.union(
+  [text(longest), v.strictObject({ zero: form, one: form, two: form, few: form, many: form, other: text(longest) })],
+  'expected text, or its plural forms as {"one": "{count} record", "other": "{count} records"}',
+);
+
+const inEnglish = (phrase: Phrase): string => (typeof phrase === 'string' ? phrase : phrase.other);
+
+/** A phrase may be left out; editors show the English. */
+const schemaOf = (key: PhraseKey) => {
+  const phrase: Phrase = english[key];
+  const said = inEnglish(phrase);
+  const plain: v.GenericSchema<Phrase> = v.pipe(text(longest), v.description(said));
+  return v.exactOptional(typeof phrase === 'string' ? plain : v.pipe(pluralForms, v.description(said)));
+};
+
+/** The schema of the page's phrases in other languages, or in other words: {"fr": {"next": "Suivant"}}. */
+export const phrasesSchema = v.record(
+  languageTag,
+  v.strictObject(Object.fromEntries(phraseKeys.map((key) => [key, schemaOf(key)]))),
+);
+
+const fieldOf = (language: string, key: string, form: string | null): string =>
+  `phrases.${language}["${key}"]${form === null ? '' : `.${form}`}`;
+
+const braced = (names: Iterable<string>) => [...names].map((name) => `{${name}}`).join(', ');
+
+/** Letters that stand for rows of keys: at most so many rows, and keys in each, fit on the sheet. */
+const mostKeys = { rows: 4, inRow: 12 };
+
+function refuseRows(rows: string, field: string): void {
+  const found = rows.split(' ');
+  if (found.length <= mostKeys.rows && found.every((row) => [...row].length <= mostKeys.inRow)) return;
+  throw new ValidationError(field, `expected at most ${mostKeys.rows} rows of at most ${mostKeys.inRow} letters`);
+}
+
+/** Of a form the number may be left out, as in "one record"; in what is said otherwise all that is filled in must stand. */
+function refuseGaps(key: PhraseKey, said: string, field: string, mayLeaveOut: ReadonlySet<string>): void {
+  const wanted = gapsIn(inEnglish(english[key]));
+  const found = gapsIn(said);
+  const missing = [...wanted].filter((name) => !found.has(name) && !mayLeaveOut.has(name));
+  if (missing.length > 0) throw new ValidationError(field, `lacks ${braced(missing)}`);
+  const unknown = [...found].filter((name) => !wanted.has(name));
+  if (unknown.length > 0) {
+    const known = wanted.size > 0 ? `only ${braced(wanted)}` : 'nothing';
+    throw new ValidationError(field, `${braced(unknown)} stays empty: ${known} is filled in here`);
+  }
+}
+
+/** Throws a ValidationError for phrases of a language that the study is not in, and for those that lack what is filled in. */
+export function refusePhrases(phrases: Readonly<Record<string, GivenPhrases>>, languages: readonly string[]): void {
+  const whole = new Set<string>();
+  const number = new Set(['count']);
+  for (const [language, given] of Object.entries(phrases)) {
+    if (!languages.includes(language)) {
+      throw new ValidationError(
+        `phrases.${language}`,
+        `the study is not in this language: expected one of ${languages.join(', ')}`,
+      );
+    }
+    for (const [key, phrase] of Object.entries(given) as [PhraseKey, Phrase][]) {
+      if (typeof phrase === 'string') {
+        refuseGaps(key, phrase, fieldOf(language, key, null), whole);
+        if (key === 'keys.rows') refuseRows(phrase, fieldOf(language, key, null));
+        continue;
+      }
+      for (const [name, said] of Object.entries(phrase) as [string, string][]) {
+        refuseGaps(key, said, fieldOf(language, key, name), name === 'other' ? whole : number);
+      }
+    }
+  }
+}

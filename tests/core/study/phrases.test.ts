@@ -1,0 +1,137 @@
+import { describe, expect, test } from 'vitest';
+import { english } from '../../../src/core/study/phrases/english';
+import { german } from '../../../src/core/study/phrases/german';
+import {
+  gapsIn,
+  missingKeys,
+  type Phrase,
+  PhrasedError,
+  Phrases,
+  phraseKeys,
+  phrasesOf,
+  preferredLanguage,
+} from '../../../src/core/study/phrases/phrases';
+import { checkedPlan, planComplaints } from '../../../src/core/study/plan';
+import { remarksOn } from '../../../src/core/study/plan-remarks';
+import { examplePlan } from './studies';
+
+const formsOf = (phrase: Phrase): readonly string[] => (typeof phrase === 'string' ? [phrase] : Object.values(phrase));
+
+/** The example in French too: what the plan says itself is alike in all its languages. */
+function frenchPlan(phrases: object) {
+  const plan = examplePlan();
+  return {
+    ...plan,
+    languages: ['fr'],
+    questionnaires: undefined,
+    tasks: plan.tasks.map((task) => ({ ...task, questionnaire: 'nasa-tlx-raw' })),
+    consent: { version: '1', title: 'Participation', paragraphs: ['Vous participez.'], motion: null },
+    phrases,
+  };
+}
+const complaintsOf = (phrases: object) => planComplaints(JSON.stringify(frenchPlan(phrases)), 'mine.json');
+const planOf = (phrases: object) => checkedPlan(JSON.parse(JSON.stringify(frenchPlan(phrases))));
+
+describe('what the page says in German', () => {
+  test('is every phrase, none of them empty or left in English', () => {
+    expect(Object.keys(german).toSorted()).toEqual(Object.keys(english).toSorted());
+    for (const key of phraseKeys) for (const text of formsOf(german[key])) expect(text.trim()).not.toBe('');
+    const alike = phraseKeys.filter((key) => JSON.stringify(german[key]) === JSON.stringify(english[key]));
+    expect(alike).toEqual(['pause', 'start', 'metres']);
+  });
+
+  test.each(phraseKeys)('%s has the gaps that the English has', (key) => {
+    const wanted = gapsIn(formsOf(english[key]).at(-1) as string);
+    for (const form of [...formsOf(english[key]), ...formsOf(german[key])]) expect(gapsIn(form)).toEqual(wanted);
+  });
+
+  test('has the forms that the plural rules of the language ask for', () => {
+    for (const [language, catalogue] of Object.entries({ en: english, de: german })) {
+      const asked = new Intl.PluralRules(language).resolvedOptions().pluralCategories.toSorted();
+      for (const phrase of Object.values(catalogue)) {
+        if (typeof phrase !== 'string') expect(Object.keys(phrase).toSorted()).toEqual(asked);
+      }
+    }
+  });
+
+  test('counts, measures and lists as German does', () => {
+    const phrases = new Phrases('de-AT');
+    const { say } = phrases;
+    expect(say('receipt.records', { count: 1 })).toBe('1 Eintrag');
+    expect(say('receipt.records', { count: 0 })).toBe('0 Einträge');
+    expect(phrases.metres(1.2)).toBe('1,2 m');
+    expect(phrases.list(['P02', 'P03'])).toBe('P02 und P03');
+    expect(new PhrasedError('round.archery').in(phrases)).toBe(german['round.archery']);
+    expect(new PhrasedError('round.archery').message).toBe(english['round.archery']);
+  });
+});
+
+describe('a plan with phrases of its own', () => {
+  test('has its own first, and English where it has none', () => {
+    const plan = planOf({
+      fr: { next: 'Suivant', 'receipt.records': { one: '{count} réponse', other: '{count} réponses' } },
+    });
+    const { say, spoken } = phrasesOf(plan, 'fr');
+    expect(spoken).toBe('fr');
+    expect(say('next')).toBe('Suivant');
+    expect(say('back')).toBe('Back');
+    // French counts none as one, English as many: each phrase is counted by its own language.
+    expect(say('receipt.records', { count: 0 })).toBe('0 réponse');
+    expect(say('receipt.recordings', { count: 0 })).toBe('0 recordings of movements');
+    expect(missingKeys('fr', plan.phrases?.fr)).toHaveLength(phraseKeys.length - 2);
+    expect(remarksOn(plan).join(' ')).toContain(`lacks ${phraseKeys.length - 2} of ${phraseKeys.length} phrases`);
+  });
+
+  test('may say in German or English what suits the laboratory better', () => {
+    const plan = { ...examplePlan(), phrases: { de: { next: 'Nächste Frage' } } };
+    expect(phrasesOf(checkedPlan(plan), 'de').say('next')).toBe('Nächste Frage');
+    expect(phrasesOf(checkedPlan(plan), 'de').say('back')).toBe('Zurück');
+    expect(remarksOn(checkedPlan(plan)).join(' ')).not.toContain('phrases');
+  });
+
+  test('without a word in a language speaks English, and says so to screen readers', () => {
+    expect(phrasesOf(planOf({}), 'fr')).toMatchObject({ language: 'fr', spoken: 'en' });
+    const all = Object.fromEntries(phraseKeys.map((key) => [key, english[key]]));
+    expect(remarksOn(planOf({ fr: all })).join(' ')).not.toContain('phrases');
+  });
+
+  test.each<[object, string]>([
+    [{ fr: { nxt: 'Suivant' } }, 'phrases.fr.nxt: is not known here'],
+    [{ fr: { 'rest.titel': 'Pause' } }, 'phrases.fr["rest.titel"]: is not known here'],
+    [{ fr: { round: 'Manche' } }, 'phrases.fr["round"]: lacks {number}'],
+    [
+      { fr: { round: 'Manche {number} de {total}' } },
+      'phrases.fr["round"]: {total} stays empty: only {number} is filled in here',
+    ],
+    [{ fr: { next: '{suivant}' } }, 'phrases.fr["next"]: {suivant} stays empty: nothing is filled in here'],
+    [
+      { fr: { 'receipt.records': { one: 'une réponse', other: 'des réponses' } } },
+      'phrases.fr["receipt.records"].other: lacks {count}',
+    ],
+    [
+      { fr: { 'receipt.records': { one: '{count} réponse' } } },
+      'phrases.fr["receipt.records"]: expected text, or its plural forms',
+    ],
+    [{ fr: { next: { other: 'Suivant' } } }, 'phrases.fr.next: expected text'],
+    [{ fr: { next: '' } }, 'phrases.fr.next: expected text, found none'],
+    [{ it: { next: 'Avanti' } }, 'phrases.it: the study is not in this language: expected one of fr'],
+    [{ French: { next: 'Suivant' } }, 'expected a language'],
+    [
+      { fr: { 'keys.rows': 'azertyuiopqsdf ghjklm' } },
+      'phrases.fr["keys.rows"]: expected at most 4 rows of at most 12 letters',
+    ],
+  ])('%j is refused with file, path and reason', (phrases, complaint) => {
+    const [first, ...others] = complaintsOf(phrases);
+    expect(first).toMatch(/^mine\.json: /);
+    expect(first).toContain(complaint);
+    expect(others).toEqual([]);
+  });
+});
+
+test('a browser is read for the language that it wants most among those offered', () => {
+  expect(preferredLanguage(['en', 'de'], ['de-AT', 'en'])).toBe('de');
+  expect(preferredLanguage(['en', 'pt-BR'], ['PT', 'en'])).toBe('pt-BR');
+  expect(preferredLanguage(['de', 'en'], ['fr', 'en-GB'])).toBe('en');
+  expect(preferredLanguage(['de', 'en'], ['fr'])).toBe('de');
+  expect(preferredLanguage(['de', 'en'], [])).toBe('de');
+});
