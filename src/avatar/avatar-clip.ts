@@ -3,7 +3,7 @@ import { type Object3D, Quaternion, Vector3 } from 'three';
 import { addClip, type GltfDescription, type NodeTrack, packGlb } from '../core/motion/gltf';
 import { type Motion, makePosedBones, type PosedBones, poseBones } from '../core/motion/motion';
 import { clipOf } from '../core/motion/write-vrma';
-import type { Decoders } from './decoders/decoders';
+import type { Decoders } from './decoders/decoder-set';
 import { chunksOf } from './file/glb-chunks';
 import { inspectAvatar } from './file/inspect-avatar';
 import type { BoneName } from './humanoid/bone-names';

@@ -2,7 +2,7 @@ import { type VRM, VRMLoaderPlugin, VRMUtils } from '@pixiv/three-vrm';
 import type { Object3D } from 'three';
 import { type GLTF, GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
 import { reasonOf } from '../core/errors/reasons';
-import type { Decoders } from './decoders/decoders';
+import type { Decoders } from './decoders/decoder-set';
 import type { CheckedAvatar } from './file/check-avatar';
 import { chunksOf } from './file/glb-chunks';
 import { inspectAvatar } from './file/inspect-avatar';

@@ -2,10 +2,8 @@ import { BufferAttribute, BufferGeometry } from 'three';
 import type { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
 import { avatarLimits } from '../file/inspect-avatar';
 import { AskedWorker } from './asked-worker';
+import type { Decoders } from './decoder-set';
 import type { DracoAnswer, DracoQuestion } from './draco-worker';
-
-/** Means to unpack what is compressed, by the name of the extension. */
-export type Decoders = Readonly<Record<string, (loader: GLTFLoader) => Promise<void>>>;
 
 const mostNumbers = avatarLimits.triangles * 3;
 
