@@ -47,18 +47,26 @@ test('a tracked hand pinches: the tips of the avatar’s thumb and index finger 
   await headset.useInput('controller');
 });
 
+/** How far a finger reaches from its wrist [cm]: wherever the hand is just going. */
+async function reach(page: Page, side: 'left' | 'right', finger: Finger): Promise<number> {
+  const { joints, fingertips } = (await probe(page)).avatar;
+  const [wrist, end] = [joints[`${side}Hand`], fingertips[side][finger]];
+  if (!wrist || !end) throw new Error(`the avatar has no ${side} ${finger}`);
+  return 100 * distance(end, wrist);
+}
+
 test('a controller’s trigger bends the index finger of its hand, and no other finger', async ({ page }) => {
   const headset = await worn(page);
   const open = {
-    index: await tip(page, 'right', 'index'),
-    middle: await tip(page, 'right', 'middle'),
-    left: await tip(page, 'left', 'index'),
+    index: await reach(page, 'right', 'index'),
+    middle: await reach(page, 'right', 'middle'),
+    left: await reach(page, 'left', 'index'),
   };
   await headset.pull('right', 1);
-  const moved = async () => 100 * distance(await tip(page, 'right', 'index'), open.index);
-  await expect.poll(moved, { message: 'right index [cm]' }).toBeGreaterThan(2);
-  expect(100 * distance(await tip(page, 'right', 'middle'), open.middle)).toBeLessThan(0.2);
-  expect(100 * distance(await tip(page, 'left', 'index'), open.left)).toBeLessThan(0.2);
+  const bent = async () => open.index - (await reach(page, 'right', 'index'));
+  await expect.poll(bent, { message: 'right index [cm]' }).toBeGreaterThan(1);
+  expect(Math.abs((await reach(page, 'right', 'middle')) - open.middle)).toBeLessThan(0.1);
+  expect(Math.abs((await reach(page, 'left', 'index')) - open.left)).toBeLessThan(0.1);
   await headset.pull('right', 0);
-  await expect.poll(moved, { message: 'right index let go [cm]' }).toBeLessThan(0.2);
+  await expect.poll(async () => Math.abs(await bent()), { message: 'right index let go [cm]' }).toBeLessThan(0.1);
 });
