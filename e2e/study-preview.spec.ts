@@ -63,10 +63,12 @@ test('every screen of a plan, in the headset and at the desk, in both languages,
   expect(await studies()).toEqual(before);
 });
 
-test('a participant who reads German meets no English of the page, and nothing that is cut', async ({
+test('a participant who reads German meets no English of the page, and nothing that is cut @full', async ({
   page,
   origin,
 }) => {
+  // Every screen of the plan is drawn for both places: a busy machine takes minutes for them.
+  test.setTimeout(300_000);
   await readCanvases(page);
   await page.goto(`${origin}/preview?plan=/studies/example.json`);
   await page.getByRole('combobox', { name: 'Language' }).first().selectOption('de');
