@@ -193,7 +193,8 @@ export async function openWithHeadset(page: Page, query = ''): Promise<EmulatedH
  * null: it goes on as it does, for what is about time itself or about what is drawn meanwhile.
  */
 export async function enterVr(page: Page, { stepMs }: { readonly stepMs?: number | null } = {}): Promise<void> {
-  await page.getByRole('button', { name: 'Enter VR' }).click();
+  // In a study the button speaks the participant's language.
+  await page.getByRole('button', { name: /Enter VR|VR starten/ }).click();
   await page.waitForFunction(() => Boolean(window.emulatedDevice?.activeSession));
   if (stepMs !== null) await driveTime(page, stepMs);
   await frames(page, 5);
