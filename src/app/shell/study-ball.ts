@@ -19,6 +19,15 @@ export interface BallRunner extends TaskRunner {
 /** How much later than here the room's bell may be heard [s]: the room counts from the moment it started the match. */
 const bellDelay = 4;
 
+/** What an event of the match is for the participant on this seat, at this second of their trial. */
+function taskEvents(event: BallFrame['events'][number], me: number | null, at: number): TaskEvent[] {
+  if (event.type === 'thrown' && event.player === me) return [{ type: 'shot' }];
+  if (event.type === 'missed' && event.player === me) return [{ type: 'miss', time: at, points: 0 }];
+  // A point is the group's: it is a hit of the thrower, and a catch for the others.
+  if (event.type === 'caught') return [{ type: event.player === me ? 'hit' : 'catch', time: at, points: 1 }];
+  return [];
+}
+
 export function createBallRunner(host: BallHost): BallRunner {
   let place: TaskPlace | null = null;
   let wanted: { readonly seconds: number } | null = null;
@@ -62,13 +71,7 @@ export function createBallRunner(host: BallHost): BallRunner {
         from = joinsLate ? time : (state.startedAt ?? time);
       }
       const at = Math.max(0, time - from);
-      for (const event of events) {
-        if (event.type === 'thrown' && event.player === me) happened.push({ type: 'shot' });
-        if (event.type === 'missed' && event.player === me) happened.push({ type: 'miss', time: at, points: 0 });
-        // A point is the group's: it is a hit of the thrower, and a catch for the others.
-        if (event.type === 'caught')
-          happened.push({ type: event.player === me ? 'hit' : 'catch', time: at, points: 1 });
-      }
+      happened.push(...events.flatMap((event) => taskEvents(event, me, at)));
       const over = state.phase === 'over';
       // Where the room's own bell rings no later, its word is the last one: a ball may still be in the air.
       const limit = state.options.seconds <= wanted.seconds ? wanted.seconds + bellDelay : wanted.seconds;

@@ -14,6 +14,13 @@ export interface StudyCard {
   ask(form: StudyForm): void;
 }
 
+const buttonNode = ({ id, label, look, act }: StudyScreen['buttons'][number]): HTMLButtonElement =>
+  button(label, act, {
+    'data-id': id,
+    class: look === 'primary' ? 'primary' : undefined,
+    disabled: look === 'off',
+  });
+
 /** `parent`: what the card lies over. */
 export function createStudyCard(parent: HTMLElement = document.body): StudyCard {
   const kicker = element('p', { class: 'kicker' });
@@ -63,15 +70,7 @@ export function createStudyCard(parent: HTMLElement = document.body): StudyCard 
         content.replaceChildren(
           ...(question ? [dots, ...questionNodes(question)] : [element('h1', {}, title), ...paragraphs(text)]),
         );
-        row.replaceChildren(
-          ...buttons.map(({ id, label, look, act }) =>
-            button(label, act, {
-              'data-id': id,
-              class: look === 'primary' ? 'primary' : undefined,
-              disabled: look === 'off',
-            }),
-          ),
-        );
+        row.replaceChildren(...buttons.map(buttonNode));
         card.replaceChildren(kicker, content, figure, bar, hint, row, footnote);
         // A card built anew keeps the focus of the keyboard where it was.
         const again = focused && card.querySelector<HTMLElement>(`[data-id="${focused}"]`);
