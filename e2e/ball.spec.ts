@@ -173,11 +173,11 @@ async function resultOn(page: Page, timeout: number): Promise<Pick<BallProbe, 's
 
 const leave = (page: Page): Promise<void> | undefined => page.context().browser()?.close();
 
-/**
- * Three people in a browser each play a whole match over the server; a spectator comes when it is under way, and with `watched`
- * another one has been watching from the start.
- */
-async function playTogether(browser: Browser, seconds: number, watched: boolean): Promise<void> {
+test('three browsers play a whole match over the relay and agree, one watches, one comes late @nightly', async ({
+  browser,
+}) => {
+  test.setTimeout(600_000);
+  const seconds = 90;
   const port = await freePort();
   const server = await startServer(seconds, port);
   const all: Page[] = [];
@@ -191,7 +191,7 @@ async function playTogether(browser: Browser, seconds: number, watched: boolean)
     const people: Page[] = [];
     for (const name of names) people.push(await come(`name=${name}`));
     const [ann, ben, cal] = people as [Page, Page, Page];
-    if (watched) await come('spectate&name=dora');
+    await come('spectate&name=dora');
     // The sender solves, so an elbow moves on the receiver's picture as it does on the sender's own.
     await Promise.all([elbowTravels(cal, 0), elbowTravels(ann, 1), elbowTravels(ben, 2, 0.05)]);
     // Where pictures come once a second nothing may be caught in the first match: then it is another one.
@@ -213,18 +213,6 @@ async function playTogether(browser: Browser, seconds: number, watched: boolean)
     await Promise.all(all.map(leave));
     await server.kill();
   }
-}
-
-test('three browsers play over the relay and agree, and one that comes late sees everything @full', async ({
-  browser,
-}) => {
-  test.setTimeout(600_000);
-  await playTogether(browser, 60, false);
-});
-
-test('three browsers play the whole 90 s over the relay, one watches, one comes late @nightly', async ({ browser }) => {
-  test.setTimeout(600_000);
-  await playTogether(browser, 90, true);
 });
 
 test('the relay is killed and started again in the middle of a match: a banner, all are back, the round is void @full', async ({

@@ -91,7 +91,7 @@ export const stages = {
   },
   e2e: { suite: 'day', runner: 'playwright', commands: playwright('day') },
   'unit-full': { suite: 'full', runner: 'vitest', commands: (report) => vitest('full', report) },
-  'e2e-full': { suite: 'full', runner: 'playwright', limitSeconds: 1200, commands: playwright('full') },
+  'e2e-full': { suite: 'full', runner: 'playwright', limitSeconds: 1400, commands: playwright('full') },
   training: {
     suite: 'training',
     runner: 'pytest',

@@ -16,8 +16,10 @@ import { type FileKind, readLimited } from '../../ui/limited-files';
 
 /** The file of another person. */
 const seenFile: FileKind = { what: 'an avatar that others see', megabytes: seenAvatarLimits.megabytes };
-/** A file that is on its way for longer [ms] is given up: others wait for theirs. */
-const patienceMs = 60_000;
+interface SeenAvatarsOptions {
+  /** A file that is on its way for longer [ms] is given up: others wait for theirs. */
+  readonly patienceMs?: number;
+}
 
 /**
  * Loads what other people have on. A file comes from the store of the room or from the server that it names, and from nowhere else; is refused where it is not
@@ -28,6 +30,7 @@ export class SeenAvatars {
   readonly #own = new Map<OwnBody, Promise<ArrayBuffer>>();
   readonly #fetchOwn: (name: OwnBody) => Promise<ArrayBuffer>;
   readonly #exchange: AvatarExchange | null;
+  readonly #patienceMs: number;
   readonly #leaving = new AbortController();
 
   /** `mannequin`: the plain one's file; `fetchOwn` brings that of another of ours. `exchange`: null where there is no server, or its rooms are a study's. */
@@ -35,10 +38,12 @@ export class SeenAvatars {
     mannequin: ArrayBuffer,
     fetchOwn: (name: OwnBody) => Promise<ArrayBuffer>,
     exchange: AvatarExchange | null,
+    { patienceMs = 60_000 }: SeenAvatarsOptions = {},
   ) {
     this.#own.set(plainAvatar, Promise.resolve(mannequin));
     this.#fetchOwn = fetchOwn;
     this.#exchange = exchange;
+    this.#patienceMs = patienceMs;
   }
 
   async load(avatar: WornAvatar): Promise<LoadedAvatar> {
@@ -66,7 +71,7 @@ export class SeenAvatars {
 
   async #fetch(hash: AvatarHash): Promise<ArrayBuffer> {
     if (!this.#exchange) throw new Error('there is no server that has it');
-    const signal = AbortSignal.any([this.#leaving.signal, AbortSignal.timeout(patienceMs)]);
+    const signal = AbortSignal.any([this.#leaving.signal, AbortSignal.timeout(this.#patienceMs)]);
     let reason = '';
     for (const { url, headers } of await this.#exchange.addressesOf(hash)) {
       try {
