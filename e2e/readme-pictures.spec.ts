@@ -5,7 +5,8 @@ import { expect, joint, keepPicture, open, test } from './page-fixture';
 import { downloaded, recordTheActor } from './recorded-actor';
 
 // The pictures of README.md as the page shows them now: what is kept in artifacts/screenshots goes to docs/images as JPEG when it was
-// looked at. That of the ball game is taken from `npm start`: tests are served by a host without rooms, and the page says so.
+// looked at. That of the ball game is taken from `npm start`: tests are served by a host without rooms, and the page says so. That of our
+// bodies is all.png of `npm run avatars:try -- public/avatars`.
 test.use({ viewport: { width: 1280, height: 720 } });
 
 const patience = { timeout: 240_000, intervals: [0] };

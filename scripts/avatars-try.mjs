@@ -1,5 +1,6 @@
 // npm run avatars:try -- DIR [--out OUT]: opens each avatar of a folder as the page does and writes a sheet of pictures beside its name: T-pose,
-// reach up, bow drawn, crouch, wave, and what the wearer sees. What is refused is told with its reason. OUT is DIR/sheets unless told.
+// reach up, bow drawn, crouch, wave, and what the wearer sees; all.png has them side by side, each waving. What is refused is told with its
+// reason. OUT is DIR/sheets unless told.
 import { mkdirSync, readdirSync, statSync, writeFileSync } from 'node:fs';
 import { basename, extname, join, resolve } from 'node:path';
 import { parseArgs } from 'node:util';
@@ -50,18 +51,25 @@ await main(async () => {
   });
   try {
     const page = await browser.newPage();
+    // The page's sources are translated as they are asked for: on a busy machine that takes a minute.
+    page.setDefaultTimeout(300_000);
     page.on('pageerror', (error) => console.log(`  ${error.message}`));
     await page.goto(`${server.resolvedUrls.local[0]}scripts/avatars-try/sheet.html`);
     await page.waitForFunction(() => 'makeSheet' in window);
+    const write = (name, picture) =>
+      writeFileSync(join(out, `${name}.png`), Buffer.from(picture.split(',')[1], 'base64'));
+    const all = [];
     for (const file of files.sort()) {
       const address = `/@fs/${join(folder, file).replace(/^\//, '')}`;
-      const { picture, refused, loadMs } = await page.evaluate(
+      const { picture, waving, refused, loadMs } = await page.evaluate(
         ([address, name]) => window.makeSheet(address, name),
         [address, file],
       );
-      writeFileSync(join(out, `${basename(file, extname(file))}.png`), Buffer.from(picture.split(',')[1], 'base64'));
+      write(basename(file, extname(file)), picture);
+      if (waving) all.push(waving);
       console.log(refused ? `- ${refused}` : `+ ${file} in ${Math.round(loadMs)} ms`);
     }
+    if (all.length > 0) write('all', await page.evaluate((waving) => window.makeRow(waving), all));
   } finally {
     await browser.close();
     await server.close();

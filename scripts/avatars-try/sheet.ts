@@ -15,13 +15,17 @@ import { postures } from './postures';
 const width = 330;
 const height = 430;
 const headline = 34;
+/** A body's picture [pixels] in the row of all bodies of a folder. */
+const bodyWidth = 300;
+const bodyHeight = 520;
 /** So long [s] a posture is held before its picture, and how often [Hz] it is drawn until then. */
 const heldSeconds = 2;
 const rateHz = 30;
 
 export interface Sheet {
-  /** A data: address of a PNG. */
+  /** data: addresses of PNGs: the sheet, and the body alone that waves, where there is one. */
   readonly picture: string;
+  readonly waving: string | null;
   /** null: the file was opened. */
   readonly refused: string | null;
   /** From bytes to a body [ms]; 0: there is none. */
@@ -31,6 +35,8 @@ export interface Sheet {
 declare global {
   interface Window {
     makeSheet(address: string, name: string): Promise<Sheet>;
+    /** The pictures of bodies side by side; a data: address of a PNG. */
+    makeRow(waving: readonly string[]): Promise<string>;
   }
 }
 
@@ -56,8 +62,8 @@ function hold(avatar: Avatar, frame: TrackingFrame, from: number): void {
 }
 
 /** From so far to the right [m] and ahead [m]; hands spread or raised are in the picture. */
-function fromOutside(x: number, z: number): PerspectiveCamera {
-  const camera = new PerspectiveCamera(38, width / height, 0.05, 20);
+function fromOutside(x: number, z: number, aspect = width / height): PerspectiveCamera {
+  const camera = new PerspectiveCamera(38, aspect, 0.05, 20);
   camera.position.set(x, 1.3, z);
   camera.lookAt(0, 1.08, 0);
   camera.layers.enable(thirdPersonOnlyLayer);
@@ -87,7 +93,16 @@ function shoot(
   sheet.fillText(text, column * width + 8, top + 20);
 }
 
-async function draw(sheet: CanvasRenderingContext2D, address: string, name: string): Promise<number> {
+/** The body as it stands now, alone on a picture. */
+function shootAlone(scene: Scene): string {
+  renderer.setSize(bodyWidth, bodyHeight, false);
+  renderer.render(scene, fromOutside(-0.9, -3.4, bodyWidth / bodyHeight));
+  const picture = renderer.domElement.toDataURL('image/png');
+  renderer.setSize(width, height, false);
+  return picture;
+}
+
+async function draw(sheet: CanvasRenderingContext2D, address: string, name: string) {
   const bytes = await (await fetch(address)).arrayBuffer();
   const began = performance.now();
   const checked = await checkInWorker(bytes, { name, unpacked: Object.keys(decoders) });
@@ -98,10 +113,12 @@ async function draw(sheet: CanvasRenderingContext2D, address: string, name: stri
   avatar.fitTo(defaultCalibration);
   const outside = [fromOutside(-0.9, -3.8), fromOutside(2.4, 3.1)];
   let seenFromInside = 0;
+  let waving: string | null = null;
   for (const [column, { name: posture, frame }] of postures.entries()) {
     avatar.setFirstPerson(false);
     hold(avatar, frame, column * 10);
     for (const [row, camera] of outside.entries()) shoot(sheet, scene, camera, { column, row, text: posture });
+    if (posture === 'wave') waving = shootAlone(scene);
     const down = ownEyes[posture];
     if (down === undefined) continue;
     avatar.setFirstPerson(true);
@@ -110,7 +127,7 @@ async function draw(sheet: CanvasRenderingContext2D, address: string, name: stri
     shoot(sheet, scene, fromInside(frame.head, down), { column: postures.length, row, text });
   }
   avatar.dispose();
-  return loadMs;
+  return { loadMs, waving };
 }
 
 window.makeSheet = async (address, name) => {
@@ -124,12 +141,27 @@ window.makeSheet = async (address, name) => {
   sheet.fillStyle = '#20242a';
   sheet.font = '15px sans-serif';
   let refused: string | null = null;
-  let loadMs = 0;
+  let drawn: Awaited<ReturnType<typeof draw>> = { loadMs: 0, waving: null };
   try {
-    loadMs = await draw(sheet, address, name);
+    drawn = await draw(sheet, address, name);
   } catch (error) {
     refused = reasonOf(error);
   }
   sheet.fillText(refused ?? name, 8, 23, canvas.width - 16);
-  return { picture: canvas.toDataURL('image/png'), refused, loadMs };
+  return { picture: canvas.toDataURL('image/png'), refused, ...drawn };
+};
+
+window.makeRow = async (waving) => {
+  const canvas = document.createElement('canvas');
+  canvas.width = bodyWidth * waving.length;
+  canvas.height = bodyHeight;
+  const row = canvas.getContext('2d');
+  if (!row) throw new Error('no 2D canvas');
+  for (const [column, address] of waving.entries()) {
+    const picture = new Image();
+    picture.src = address;
+    await picture.decode();
+    row.drawImage(picture, column * bodyWidth, 0);
+  }
+  return canvas.toDataURL('image/png');
 };
