@@ -7,7 +7,7 @@ import {
   bidsTable,
   bidsVersion,
 } from '../src/core/motion/write-bids';
-import type { StudyPlan } from '../src/core/study/plan';
+import { type StudyPlan, studyTitle } from '../src/core/study/plan';
 import type { DemographicsRecord, StudyRecord, TrialRecord } from '../src/core/study/study-record';
 import { voidedBlocks } from '../src/core/study/study-tables';
 import { recordingTime } from '../src/core/study/trial-clock';
@@ -200,7 +200,7 @@ function writeRuns({ records, motion }: BidsContent) {
 const readme = ({ plan, simulated }: BidsContent): string =>
   [
     ...(simulated ? ['SIMULATED: a program made this. It says nothing about people.', ''] : []),
-    `Motion of head and wrists in the study "${plan.title}" (${plan.id}), as BIDS ${bidsVersion} motion data.`,
+    `Motion of head and wrists in the study "${studyTitle(plan)}" (${plan.id}), as BIDS ${bidsVersion} motion data.`,
     '',
     'Only of participants who agreed to have their motion kept. A run is a trial; *_scans.tsv says its condition, and whether it counts.',
     'Frame: the floor where the headset has it, +X right, +Y up, +Z backward, right-handed, in metres (channels.json).',
@@ -222,7 +222,7 @@ export function bidsDataset(content: BidsContent): BidsDataset {
   const excluded = voidedBlocks(records);
   const files: Record<string, string> = {
     'dataset_description.json': json({
-      Name: simulated ? `SIMULATED ${plan.title}` : plan.title,
+      Name: simulated ? `SIMULATED ${studyTitle(plan)}` : studyTitle(plan),
       BIDSVersion: bidsVersion,
       DatasetType: 'raw',
       GeneratedBy: [{ Name: 'threepoint' }],

@@ -2,7 +2,7 @@ import { createHash } from 'node:crypto';
 import { readFileSync } from 'node:fs';
 import { strToU8, type Zippable, zipSync } from 'fflate';
 import { resultTables } from '../src/core/study/exported-results';
-import type { StudyPlan } from '../src/core/study/plan';
+import { type StudyPlan, studyTitle } from '../src/core/study/plan';
 import type { StudyRecord } from '../src/core/study/study-record';
 import { studyTables } from '../src/core/study/study-tables';
 import { codebookOf, type Table, tidyCsv } from '../src/core/study/tidy-csv';
@@ -48,7 +48,7 @@ function readme(content: ExportContent, leftOut: readonly string[], whole: boole
   const participants = new Set(records.map(({ participant }) => participant));
   return [
     ...(simulated ? [simulatedNotice, ''] : []),
-    `Study "${plan.title}" (${plan.id}), exported ${day(at)}.`,
+    `Study "${studyTitle(plan)}" (${plan.id}), exported ${day(at)}.`,
     `${participants.size} participants, ${records.length} records.`,
     ...(retentionUntil === null
       ? []

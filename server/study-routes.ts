@@ -1,5 +1,5 @@
 import * as v from 'valibot';
-import { checkedPlan, languagesOf, type StudyPlan } from '../src/core/study/plan';
+import { checkedPlan, languagesOf, type StudyPlan, studyTitle } from '../src/core/study/plan';
 import type { PlanVersion, StudyInfo } from '../src/core/study/study-api';
 import { checkedRecord } from '../src/core/study/study-record';
 import {
@@ -162,9 +162,10 @@ function studyTable({ store, now, guard, software }: TableOptions): Route<StudyA
   return [
     route('GET', '', 'experimenter', 0, () =>
       json({
-        studies: store
-          .studies()
-          .map(({ plan: { id, title, participants }, versions: _, ...rest }) => ({ id, title, participants, ...rest })),
+        studies: store.studies().map(({ plan, versions: _, ...rest }) => {
+          const { id, participants } = plan;
+          return { id, title: studyTitle(plan), participants, ...rest };
+        }),
       }),
     ),
     route('POST', '', 'experimenter', bodyLimits.json, (call) => {

@@ -1,6 +1,14 @@
 import { existsSync, readFileSync } from 'node:fs';
 import { embodimentInWords } from '../../src/core/study/embodiment';
-import { languagesOf, parsePlan, participantsOf, planComplaints, type StudyPlan } from '../../src/core/study/plan';
+import {
+  languagesOf,
+  parsePlan,
+  participantsOf,
+  planComplaints,
+  type StudyPlan,
+  studyTitle,
+  taskTitle,
+} from '../../src/core/study/plan';
 import { durationOf, outlineOf } from '../../src/core/study/plan-outline';
 import { cohortCounts, orderCounts, remarksOn } from '../../src/core/study/plan-remarks';
 import { ValidationError } from '../../src/core/study/validation';
@@ -15,7 +23,7 @@ const clock = (seconds: number) => {
 function summary(plan: StudyPlan): readonly string[] {
   const { played, rests, questionnaires } = durationOf(plan);
   const lines = [
-    `"${plan.title}" (${plan.id}): ${plan.participants} participants, in ${languagesOf(plan).join(', ')}, seed ${plan.seed}.`,
+    `"${studyTitle(plan)}" (${plan.id}): ${plan.participants} participants, in ${languagesOf(plan).join(', ')}, seed ${plan.seed}.`,
     `A participant takes at most ${clock(played + rests + questionnaires)} min: ${clock(played)} of play, ${clock(rests)} of rest, ` +
       `${clock(questionnaires)} of questionnaires; consent, measures and the questions about them come on top.`,
   ];
@@ -29,7 +37,7 @@ function summary(plan: StudyPlan): readonly string[] {
   for (const task of plan.tasks) {
     for (const cohort of plan.cohorts ?? [null]) {
       const counts = [...orderCounts(plan, task, cohort)].map(([order, count]) => `${order} ${count} times`);
-      lines.push(`${task.title}${cohort ? `, cohort ${cohort.id}` : ''}: ${counts.join('; ')}.`);
+      lines.push(`${taskTitle(plan, task.id)}${cohort ? `, cohort ${cohort.id}` : ''}: ${counts.join('; ')}.`);
     }
   }
   const { remote, askToStop = [] } = plan;

@@ -1,7 +1,7 @@
 import '../styles/document.css';
 import { reasonOf } from '../core/errors/reasons';
 import { statedInWords } from '../core/rehearsal/simulate-study';
-import { checkedPlan, type StudyPlan } from '../core/study/plan';
+import { checkedPlan, type StudyPlan, studyTitle } from '../core/study/plan';
 import type { StudyCommand, StudyInfo } from '../core/study/study-api';
 import { type ExperimenterClient, ServerRefusal } from '../net/study-client';
 import { offerDownload } from '../ui/downloads';
@@ -109,7 +109,7 @@ class ExperimenterPage {
     return this.#attempt(async (client) => {
       const checked = checkedPlan(JSON.parse(await json()));
       const added = simulated
-        ? { ...checked, id: `${checked.id}-simulated`, title: `SIMULATED: ${checked.title}` }
+        ? { ...checked, id: `${checked.id}-simulated`, title: `SIMULATED: ${studyTitle(checked)}` }
         : checked;
       const info = await addOrChange(client, added, simulated);
       if (!info) return `Nothing was changed: the study “${added.id}” keeps its plan.`;

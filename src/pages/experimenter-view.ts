@@ -1,4 +1,4 @@
-import type { StudyPlan } from '../core/study/plan';
+import { type StudyPlan, studyTitle } from '../core/study/plan';
 import { remarksOn } from '../core/study/plan-remarks';
 import type { ParticipantState, Receipt, StudyInfo } from '../core/study/study-api';
 import { button, element } from '../ui/element';
@@ -59,7 +59,7 @@ function studyHead(study: OpenStudy, actions: StudyActions): readonly Node[] {
   const notice = 'SIMULATED: in this study a program takes part. Its data say nothing about people.';
   return [
     ...(simulated ? [element('p', { class: 'simulated' }, notice)] : []),
-    element('h2', {}, plan.title),
+    element('h2', {}, studyTitle(plan)),
     element(
       'p',
       { class: 'soft' },

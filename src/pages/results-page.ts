@@ -1,4 +1,5 @@
 import { reasonOf } from '../core/errors/reasons';
+import { studyTitle } from '../core/study/plan';
 import '../styles/document.css';
 import { button, element, pageElement } from '../ui/element';
 import { paperCheck } from './paper-check';
@@ -94,7 +95,7 @@ function versionBar({ plan, planVersion, versions = [] }: ShownStudy): readonly 
 function results(): readonly Node[] {
   if (!shown || !selection) return [];
   const { plan, planVersion, source } = shown;
-  const heading = element('h2', {}, plan.title);
+  const heading = element('h2', {}, studyTitle(plan));
   const where = element(
     'p',
     { class: 'soft' },

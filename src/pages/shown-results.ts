@@ -1,7 +1,7 @@
 import type { Comparison } from '../core/study/compare-conditions';
 import { aboutIn, measuresIn, type StudyMeasures } from '../core/study/exported-results';
 import type { Measured } from '../core/study/measures';
-import { questionnairesOf, type StudyPlan } from '../core/study/plan';
+import { questionnairesOf, type StudyPlan, taskTitle } from '../core/study/plan';
 import { isPlanned } from '../core/study/planned';
 import type { Questionnaire } from '../core/study/questionnaires';
 import type { TableFacts } from '../core/study/result-tables';
@@ -51,7 +51,6 @@ export function shownResults(study: ShownStudy): ShownResults {
   const asked = questionnairesOf(plan);
   const versionPart = planVersion === undefined ? '' : `-version-${planVersion}`;
   const named = [...plan.conditions, ...(plan.cohorts ?? [])];
-  const titleOf = (task: string) => plan.tasks.find(({ id }) => id === task)?.title ?? task;
   const aboutOf = (one: Measured) => aboutIn(asked, one);
   const isScale = ({ asked: of }: Measured) =>
     asked.some(({ id, scales }) => id === of?.questionnaire && scales.some((scale) => scale.id === of.question));
@@ -60,10 +59,10 @@ export function shownResults(study: ShownStudy): ShownResults {
     asked,
     measures: measuresIn(records, plan),
     labelOf: (id) => named.find((one) => one.id === id)?.label ?? id,
-    titleOf,
+    titleOf: (task) => taskTitle(plan, task),
     nameOf: (one) => {
-      if (!one.asked) return `${titleOf(one.of)}, ${one.unit === 'percent' ? 'per cent' : 'points'}`;
-      return isScale(one) ? `${aboutOf(one)}, ${titleOf(one.asked.task)}` : `${one.of} ${aboutOf(one)}`;
+      if (!one.asked) return `${taskTitle(plan, one.of)}, ${one.unit === 'percent' ? 'per cent' : 'points'}`;
+      return isScale(one) ? `${aboutOf(one)}, ${taskTitle(plan, one.asked.task)}` : `${one.of} ${aboutOf(one)}`;
     },
     fileOf: (name) => `${simulated ? 'SIMULATED-' : ''}${plan.id}${versionPart}-${name}`,
     factsOf: (family) => ({ family, simulated, aboutOf, isPlanned: (one) => isPlanned(one, plan) }),

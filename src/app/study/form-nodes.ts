@@ -1,4 +1,5 @@
 import type { Phrases } from '../../core/study/phrases/phrases';
+import { inLanguage } from '../../core/study/words';
 import { offerDownload } from '../../ui/downloads';
 import { button, element } from '../../ui/element';
 import { consentForm } from './consent-form';
@@ -128,4 +129,4 @@ export function formNodes(form: StudyForm, onLanguage: (phrases: Phrases) => voi
 
 /** Small, at the foot of a form. */
 export const formNote = (form: StudyForm): string =>
-  form.kind === 'consent' ? `${form.study.title} · ${form.participant}` : '';
+  form.kind === 'consent' ? `${inLanguage(form.study.title, form.phrases.language)} · ${form.participant}` : '';

@@ -1,5 +1,6 @@
 import { type Phrases, phrasesOf, preferredLanguage, shippedLanguages } from '../../core/study/phrases/phrases';
 import type { PublicStudy } from '../../core/study/study-api';
+import { inLanguage } from '../../core/study/words';
 import { NoStudyServer, ServerRefusal } from '../../net/study-client';
 import { sentence } from '../../ui/phrases';
 import type { ParticipantSession } from './participant-session';
@@ -109,7 +110,8 @@ export class StudyEntrance {
         this.#options.onSession(taken);
         return null;
       },
-      decline: (phrases) => display.ask({ kind: 'declined', phrases, title: study.title }),
+      decline: (phrases) =>
+        display.ask({ kind: 'declined', phrases, title: inLanguage(study.title, phrases.language) }),
     });
   }
 }

@@ -1,7 +1,9 @@
 import type { Phrases } from '../../core/study/phrases/phrases';
+import { taskTitle } from '../../core/study/plan';
 import type { Progress } from '../../core/study/progress';
 import type { RemoteTerms } from '../../core/study/remote-setup';
 import type { StudyStep } from '../../core/study/schedule';
+import { inLanguage } from '../../core/study/words';
 import { screenQuestions } from './answering';
 import { calibrationScreen } from './calibration-screens';
 import type { Safekeeping } from './participant-session';
@@ -33,8 +35,8 @@ export function safekeepingText(
 
 /** Participants know rounds by number, never by condition. */
 function kickerOf({ plan, phrases }: ShownSession, step: StudyStep): string {
-  if (!('task' in step)) return plan.title;
-  const { title } = plan.tasks.find(({ id }) => id === step.task) ?? { title: step.task };
+  if (!('task' in step)) return inLanguage(plan.title, phrases.language);
+  const title = taskTitle(plan, step.task, phrases.language);
   const practice = step.kind === 'tutorial' || (step.kind === 'rest' && step.id.endsWith('after-tutorial'));
   return `${title} · ${practice ? phrases.say('practice') : phrases.say('round', { number: step.block })}`;
 }
@@ -43,7 +45,7 @@ function kickerOf({ plan, phrases }: ShownSession, step: StudyStep): string {
 export const lockedOutScreen = ({ plan, phrases }: ShownSession): StudyScreen => ({
   id: 'locked-out',
   phrases,
-  kicker: plan.title,
+  kicker: inLanguage(plan.title, phrases.language),
   title: phrases.say(plan.remote ? 'lockedOut.title' : 'callExperimenter'),
   text: plan.remote ? [phrases.say('lockedOut.deleted'), plan.remote.contact] : [phrases.say('lockedOut.released')],
   figure: null,
@@ -157,12 +159,13 @@ function restScreen(
   };
 }
 
-function endScreen({ base, phrases: { say } }: ScreenParts, { session, withdrawalPage }: StudySituation): StudyScreen {
+function endScreen({ base, phrases }: ScreenParts, { session, withdrawalPage }: StudySituation): StudyScreen {
   const { plan, progress, safekeeping } = session;
+  const { say } = phrases;
   return {
     ...base,
     id: 'end',
-    kicker: plan.title,
+    kicker: inLanguage(plan.title, phrases.language),
     title: say('end.title'),
     text: [
       progress.stopped ? say('end.stopped') : say('end.done'),

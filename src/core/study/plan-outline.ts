@@ -1,4 +1,4 @@
-import { languagesOf, type StudyPlan } from './plan';
+import { languagesOf, type StudyPlan, taskTitle } from './plan';
 import type { Question } from './questionnaire-schema';
 import { blindLabel, type StudyStep, scheduleFor } from './schedule';
 import { inLanguage } from './words';
@@ -26,7 +26,7 @@ function screensOf(plan: StudyPlan, step: StudyStep): readonly OutlinedScreen[] 
     at: where,
     seconds,
   });
-  const title = 'task' in step ? (plan.tasks.find(({ id }) => id === step.task)?.title ?? step.task) : '';
+  const title = 'task' in step ? taskTitle(plan, step.task) : '';
   switch (step.kind) {
     case 'consent':
       return [

@@ -1,7 +1,7 @@
 import { cohortsByParticipant, groupsOf, ordersByGroup, ordersOf } from './allocation';
 import { embodimentFieldsOf, embodimentInWords, type PartialEmbodiment } from './embodiment';
 import { missingKeys, phraseKeys } from './phrases/phrases';
-import { languagesOf, type StudyCohort, type StudyPlan, type StudyTask } from './plan';
+import { languagesOf, type StudyCohort, type StudyPlan, type StudyTask, taskTitle } from './plan';
 
 /** How many participants each cohort has, by its id. */
 export function cohortCounts(plan: StudyPlan): ReadonlyMap<string, number> {
@@ -57,7 +57,7 @@ function unevenness(plan: StudyPlan): readonly string[] {
       if (even(counts)) continue;
       const [least, most] = [Math.min(...counts.values()), Math.max(...counts.values())];
       remarks.push(
-        `${task.title}${cohort ? `, cohort ${cohort.id}` : ''}: the ${counts.size} orders do not come out even, some come ${timesText(most)}, ` +
+        `${taskTitle(plan, task.id)}${cohort ? `, cohort ${cohort.id}` : ''}: the ${counts.size} orders do not come out even, some come ${timesText(most)}, ` +
           `others ${timesText(least)}; a multiple of ${evenParticipants(plan, task)} participants would make them even.`,
       );
     }
@@ -100,6 +100,6 @@ export function remarksOn(plan: StudyPlan): readonly string[] {
     ...alikeRemarks('Conditions', conditions),
     ...alikeRemarks('Cohorts', cohorts),
     ...unspokenRemarks(plan),
-    ...unmirrored.map(({ title }) => `${title}: the ball game has no mirror.`),
+    ...unmirrored.map(({ id }) => `${taskTitle(plan, id)}: the ball game has no mirror.`),
   ];
 }

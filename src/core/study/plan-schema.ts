@@ -21,7 +21,8 @@ const conditionSchema = v.strictObject({
 
 const taskSchema = v.strictObject({
   id: identifier,
-  title: text(60),
+  /** As participants read it above each sheet. */
+  title: words(60),
   game: v.picklist(['archery', 'ball'], 'expected archery or ball'),
   /** How many play together; they share the order of conditions. */
   groupSize: integerBetween(1, 6),
@@ -58,7 +59,7 @@ export const planSchema = v.strictObject({
   format: v.literal(planFormat, `expected "${planFormat}": this is no study file`),
   version: v.literal(planVersion, `expected ${planVersion}, the version that this program reads`),
   id: identifier,
-  title: text(120),
+  title: words(120),
   /** Decides groups, cohorts, orders and layouts: the same seed gives the same study. */
   seed: integerBetween(0, 2 ** 31 - 1),
   participants: integerBetween(1, 999),

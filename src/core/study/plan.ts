@@ -11,7 +11,7 @@ import {
 } from './questionnaires';
 import { refuseUnaskedLimits } from './unwell';
 import { checked, complaintsAbout, ValidationError } from './validation';
-import { missingLanguage, type Words } from './words';
+import { inLanguage, missingLanguage, type Words } from './words';
 
 /** A study as its file says it. */
 export type StudyPlan = v.InferOutput<typeof planSchema>;
@@ -39,6 +39,16 @@ export const languagesOf = ({ languages }: Pick<StudyPlan, 'languages'>): readon
   const [first = 'en', ...others] = languages ?? [];
   return [first, ...others];
 };
+
+/** What a study is called by those who run it: its title in its first language. */
+export const studyTitle = (plan: Pick<StudyPlan, 'title' | 'languages'>): string =>
+  inLanguage(plan.title, languagesOf(plan)[0]);
+
+/** A task's title in a language, the study's first unless told; what the plan does not have goes by its id. */
+export function taskTitle(plan: StudyPlan, id: string, language: string = languagesOf(plan)[0]): string {
+  const task = plan.tasks.find((one) => one.id === id);
+  return task ? inLanguage(task.title, language) : id;
+}
 
 /** The ids of the questionnaires after each block of a task, in the order asked. */
 export const questionnairesAfter = ({ questionnaire }: Pick<StudyTask, 'questionnaire'>): readonly string[] =>
@@ -128,17 +138,19 @@ function refuseUnfilledCohorts(plan: StudyPlan): void {
   }
 }
 
-function refuseUntranslatedConsent(plan: StudyPlan): void {
+function refuseUntranslated(plan: StudyPlan): void {
   const { title, paragraphs, motion } = plan.consent;
   const texts: (readonly [string, Words])[] = [
-    ['title', title],
-    ...paragraphs.map((one, index) => [`paragraphs[${index}]`, one] as const),
+    ['title', plan.title],
+    ...plan.tasks.map((task, index) => [`tasks[${index}].title`, task.title] as const),
+    ['consent.title', title],
+    ...paragraphs.map((one, index) => [`consent.paragraphs[${index}]`, one] as const),
   ];
-  if (motion !== null) texts.push(['motion', motion]);
+  if (motion !== null) texts.push(['consent.motion', motion]);
   for (const [field, text] of texts) {
     const missing = missingLanguage(text, languagesOf(plan));
     if (missing !== null) {
-      throw new ValidationError(`consent.${field}.${missing}`, 'is missing, and the study is in this language too');
+      throw new ValidationError(`${field}.${missing}`, 'is missing, and the study is in this language too');
     }
   }
 }
@@ -187,7 +199,7 @@ export function checkedPlan(value: unknown): StudyPlan {
   refuseUnclearBodies(plan);
   refuseQuestionnaires(plan);
   refuseUnaskedLimits(plan.askToStop ?? [], questionnairesOf(plan));
-  refuseUntranslatedConsent(plan);
+  refuseUntranslated(plan);
   refusePhrases(plan.phrases ?? {}, languagesOf(plan));
   refuseUnknownMeasures(plan);
   plan.tasks.forEach(({ groupSize }, index) => {

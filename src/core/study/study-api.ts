@@ -106,7 +106,9 @@ export interface Claim {
 }
 
 /** A line of the list of studies. */
-export interface StudyListing extends Pick<StudyPlan, 'id' | 'title' | 'participants'> {
+export interface StudyListing extends Pick<StudyPlan, 'id' | 'participants'> {
+  /** In the study's first language. */
+  readonly title: string;
   readonly simulated: boolean;
   readonly createdAt: number;
   readonly retentionUntil: number;

@@ -65,10 +65,13 @@ test('a pause can be seen and left; a language holds for all that follows', () =
   walk.goTo(walk.stops.findIndex(({ id }) => id.endsWith('/mine')));
   expect(screenAt(walk).title).toEqual(expect.anything());
   expect(screenAt(walk).question?.text).toContain('Der virtuelle Körper');
+  expect(screenAt(walk).kicker).toBe('Bogenschießen · Runde 1');
   press(walk, 'pause');
   expect(screenAt(walk).id).toBe('paused');
   press(walk, 'resume');
   expect(screenAt(walk).id).toBe('question-mine');
+  walk.goTo(walk.stops.length - 1);
+  expect(screenAt(walk).kicker).toBe('Zwei Avatare beim Bogenschießen, mit Fragen jeder Art');
 });
 
 test('what is met at one place alone is shown there; the rest where one wants it', () => {

@@ -187,6 +187,13 @@ describe('a plan with a mistake in its questionnaires', () => {
       'consent.paragraphs[0].de: is missing',
     ],
     [
+      'a title that one language lacks',
+      (wrong) => {
+        delete wrong.tasks[0].title.de;
+      },
+      'tasks[0].title.de: is missing, and the study is in this language too',
+    ],
+    [
       'an unknown kind of answer',
       (wrong) => {
         wrong.questionnaires[0].answer.kind = 'stars';

@@ -23,8 +23,9 @@ function frenchPlan(phrases: object) {
   return {
     ...plan,
     languages: ['fr'],
+    title: 'Deux avatars',
     questionnaires: undefined,
-    tasks: plan.tasks.map((task) => ({ ...task, questionnaire: 'nasa-tlx-raw' })),
+    tasks: plan.tasks.map((task) => ({ ...task, title: 'Tir à l’arc', questionnaire: 'nasa-tlx-raw' })),
     consent: { version: '1', title: 'Participation', paragraphs: ['Vous participez.'], motion: null },
     phrases,
   };

@@ -1,5 +1,5 @@
 import { reasonOf } from '../../../core/errors/reasons';
-import { languagesOf, participantsOf, type StudyPlan } from '../../../core/study/plan';
+import { languagesOf, participantsOf, type StudyPlan, studyTitle } from '../../../core/study/plan';
 import { durationOf } from '../../../core/study/plan-outline';
 import { remarksOn } from '../../../core/study/plan-remarks';
 import { withdrawalLink } from '../../../net/study-link';
@@ -188,11 +188,11 @@ class PreviewPage {
         element('p', {}, 'Choose or drop a study file: every screen of it is shown here. Nothing is recorded or sent.'),
       ];
     }
-    const { title, id } = this.#plan;
+    const { id } = this.#plan;
     const { played, rests, questionnaires } = durationOf(this.#plan);
     const minutes = Math.round((played + rests + questionnaires) / 60);
     return [
-      element('h2', {}, title),
+      element('h2', {}, studyTitle(this.#plan)),
       element(
         'p',
         {},

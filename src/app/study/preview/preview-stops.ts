@@ -1,5 +1,5 @@
 import { embodimentInWords } from '../../../core/study/embodiment';
-import { languagesOf, type StudyPlan } from '../../../core/study/plan';
+import { languagesOf, type StudyPlan, taskTitle } from '../../../core/study/plan';
 import { blindLabel, type StudyStep, scheduleFor } from '../../../core/study/schedule';
 import { inLanguage } from '../../../core/study/words';
 
@@ -43,7 +43,7 @@ function stopsOf(plan: StudyPlan, step: StudyStep, together: number): readonly P
     label,
     question,
   });
-  const title = 'task' in step ? (plan.tasks.find(({ id }) => id === step.task)?.title ?? step.task) : '';
+  const title = 'task' in step ? taskTitle(plan, step.task) : '';
   switch (step.kind) {
     case 'consent':
       return [stop('consent', 'desk', 'Consent'), stop('code', 'desk', 'Withdrawal code')];

@@ -1,7 +1,7 @@
 import { advance, type ProgressEvent } from '../../../core/study/advance';
 import { embodimentInWords } from '../../../core/study/embodiment';
 import { type Phrases, phrasesOf } from '../../../core/study/phrases/phrases';
-import { languagesOf, type StudyPlan } from '../../../core/study/plan';
+import { languagesOf, type StudyPlan, taskTitle } from '../../../core/study/plan';
 import { begin, currentStep, type Progress } from '../../../core/study/progress';
 import { type Schedule, type StudyStep, scheduleFor } from '../../../core/study/schedule';
 import type { CalibrationStep } from '../../../ui/calibration-dialog';
@@ -255,9 +255,8 @@ export class PreviewWalk {
   #playedText(): string {
     const { step, plan } = this.#session;
     if (step.kind !== 'trial' && step.kind !== 'tutorial') return '';
-    const task = plan.tasks.find(({ id }) => id === step.task);
     const what = step.kind === 'trial' ? `Condition “${step.condition}”` : 'Practice';
-    return `${task?.title}: the participant plays, ${Math.round(step.seconds)} s at most. ${what}: ${embodimentInWords(step.embodiment)}.`;
+    return `${taskTitle(plan, step.task)}: the participant plays, ${Math.round(step.seconds)} s at most. ${what}: ${embodimentInWords(step.embodiment)}.`;
   }
 
   #apply(event: ProgressEvent): void {

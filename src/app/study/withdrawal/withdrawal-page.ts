@@ -2,6 +2,7 @@ import '../../../styles/document.css';
 import { reasonOf } from '../../../core/errors/reasons';
 import { type Phrases, phrasesOf, preferredLanguage, shippedLanguages } from '../../../core/study/phrases/phrases';
 import type { PublicStudy, Receipt } from '../../../core/study/study-api';
+import { inLanguage } from '../../../core/study/words';
 import { createWithdrawalClient, ServerRefusal } from '../../../net/study-client';
 import { offerDownload } from '../../../ui/downloads';
 import { button, element, pageElement } from '../../../ui/element';
@@ -119,7 +120,7 @@ function withdrawalForm({ asked, about, phrases, done }: Asking): HTMLElement {
   return element(
     'section',
     { class: 'card' },
-    ...(about ? [element('h2', { style: 'margin-top:0' }, about.title)] : []),
+    ...(about ? [element('h2', { style: 'margin-top:0' }, inLanguage(about.title, phrases.language))] : []),
     paragraph(say('withdrawal.explained')),
     element('div', { class: 'bar', style: 'margin:14px 0' }, ...(about ? [] : [study.node]), code.node),
     element('label', { class: 'inline' }, sure, element('span', {}, say('withdrawal.sure'))),
