@@ -1,9 +1,13 @@
 """Facts about what minutes of wearing tell of a calibration that is wrong."""
 
+import json
+import shutil
+
 import numpy as np
 import pytest
 from threepoint_training.generated_motion import generate_corpus
-from threepoint_training.noticed_wear import Fault, NoticedWearConfig, Reader, signs
+from threepoint_training.motion import MocapError
+from threepoint_training.noticed_wear import ROOT, Fault, NoticedWearConfig, Reader, main, signs
 from threepoint_training.simulate_trackers import TrackerConfig, draw_wearer, simulate
 from threepoint_training.skeleton import body_from_calibration
 
@@ -39,3 +43,17 @@ def test_faults_that_signs_follow_from_are_read_and_what_was_not_seen_says_nothi
     np.testing.assert_allclose([read.up, read.back, read.eye_height], faults[7], atol=1e-4)
     nothing = reader(np.full(3, np.nan))
     np.testing.assert_allclose([nothing.up, nothing.back, nothing.eye_height], faults.mean(axis=0), atol=1e-9)
+
+
+def test_without_a_network_of_people_held_out_a_sentence_says_how_one_is_made(tmp_path):
+    with pytest.raises(MocapError, match="learned.json: there is no network of people held out; npm run train"):
+        main(CORPUS, NoticedWearConfig(models=tmp_path))
+
+
+def test_a_network_that_has_seen_everybody_judges_nobody(tmp_path):
+    contract = json.loads((ROOT / "public/models/learned.json").read_text())
+    shutil.copy(ROOT / "public/models" / contract["file"], tmp_path)
+    contract["trainedOn"]["people"] = list(CORPUS.people)
+    (tmp_path / "learned.json").write_text(json.dumps(contract))
+    with pytest.raises(MocapError, match="has seen everybody"):
+        main(CORPUS, NoticedWearConfig(models=tmp_path, fewest_minutes=0.1))

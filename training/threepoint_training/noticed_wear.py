@@ -1,6 +1,7 @@
 """Whose headset sits elsewhere, or whose height is wrong: what minutes of wearing tell of it, and what a body that believes them gains.
 
-`npm run train -- --mocap DIR --noticed` calls this and renews the table of docs/accuracy.md. A person is read by what was fitted on the others.
+`npm run train -- --mocap DIR --noticed` calls this and renews the table of docs/accuracy.md. A person is read by what was fitted on the others, and
+judged by the network that an earlier cross-validation made without them: the page's own has seen everybody.
 """
 
 import json
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 from . import quaternion, solve_ik, splits, train_learned
 from .accuracy_tables import renew, table
 from .features import frame_features
+from .motion import MocapError
 from .prepared_corpus import PreparedCorpus
 from .residual import network_input, residual
 from .simulate_trackers import TrackerConfig, Wearer, draw_wearer, simulate
@@ -26,7 +28,6 @@ Array = NDArray[np.float64]
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs/accuracy.md"
-NETWORK = ROOT / "public/models/learned.json"
 
 
 @dataclass(frozen=True)
@@ -58,6 +59,8 @@ COLUMNS = ("IK", "corrected", "ours", "corrected", "ours, another laboratory", "
 class NoticedWearConfig:
     """Who is worn long enough, when figures are taken, and on what wearers they are learned to be read."""
 
+    # The networks of a cross-validation: whom its first fold held out is judged.
+    models: Path = ROOT / ".cache/cross-validation"
     fewest_minutes: float = 1.3
     # Of the recordings at 60 Hz, for the signs, and of judged frames.
     stride: int = 6
@@ -112,14 +115,17 @@ class Reader:
         return np.nan_to_num((seen - self._mean) / self._deviation)
 
 
-class _PageNetwork:
-    """The network that ships: [N, T·46 + 40] inputs to [N, 18] corrections."""
+class _Network:
+    """Ours, as exported: [N, T·46 + 40] inputs to [N, 18] corrections. Raises MocapError where there is none."""
 
-    def __init__(self) -> None:
-        contract = json.loads(NETWORK.read_text())
+    def __init__(self, models: Path) -> None:
+        file = models / "learned.json"
+        if not file.exists():
+            raise MocapError(f"{file}: there is no network of people held out; npm run train -- --stage cross-validation makes it")
+        contract = json.loads(file.read_text())
         self.people: list[str] = contract["trainedOn"]["people"]
         self.window_seconds = tuple(contract["windowSeconds"])
-        self._session = onnxruntime.InferenceSession(NETWORK.parent / contract["file"])
+        self._session = onnxruntime.InferenceSession(models / contract["file"])
         self._given = self._session.get_inputs()[0]
 
     def __call__(self, inputs: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -129,12 +135,17 @@ class _PageNetwork:
 
 
 def main(corpus: PreparedCorpus, config: NoticedWearConfig = NoticedWearConfig(), report: Callable[[str], None] = lambda _: None) -> list[list[str]]:
-    """Rows of the table: errors in cm of people whom the page's network has not seen, as worn and with what was noticed corrected; people alike."""
-    network = _PageNetwork()
+    """Rows of the table: errors in cm of people whom the network has not seen, as worn and with what was noticed corrected; people alike.
+
+    Raises MocapError where there is no such network, or where it has seen everybody of the corpus's own laboratory.
+    """
+    network = _Network(config.models)
     people = [name for name in corpus.people if _frames(corpus, name) / corpus.rate_hz >= 60 * config.fewest_minutes]
     learned_from = splits.trainable(people)
     worn = {name: _wearers(corpus, name, config) for name in learned_from}
     judged = [name for name in people if name not in network.people]
+    if not splits.trainable(judged):
+        raise MocapError(f"{config.models}: the network there has seen everybody who is worn long enough: {', '.join(learned_from)}")
     errors: dict[str, list[Array]] = {fault: [] for fault in FAULTS}
     for name in judged:
         report(name)
@@ -182,7 +193,7 @@ def _wearers(corpus: PreparedCorpus, name: str, config: NoticedWearConfig) -> tu
 
 
 def _errors(
-    corpus: PreparedCorpus, name: str, wearer: Wearer, fault: Fault, noticed: Fault, network: _PageNetwork, config: NoticedWearConfig
+    corpus: PreparedCorpus, name: str, wearer: Wearer, fault: Fault, noticed: Fault, network: _Network, config: NoticedWearConfig
 ) -> Array:
     """Mean errors of IK and of the network [2], where so much was noticed and is taken back."""
     person = corpus.people[name]
