@@ -49,6 +49,8 @@ interface Minute {
   readonly loudness: readonly [ann: number, ben: number];
   /** Frames of Ann's page since it opened. */
   readonly frames: number;
+  /** How often the room has taken each in: more than once where a connection was lost. */
+  readonly welcomes: readonly [ann: number | undefined, ben: number | undefined];
 }
 
 async function holdsOf({ page, pid }: Talker, cdp: CDPSession): Promise<PageHolds> {
@@ -84,6 +86,7 @@ async function reader(people: readonly [Talker, Talker], server: InspectedNode, 
     matches: await ann.page.evaluate(() => window.soakMatches ?? 0),
     loudness: [await loudness(ann.page, 3), await loudness(ben.page, 3)],
     frames: (await probe(ann.page)).frame.count,
+    welcomes: [(await voices(ann.page)).welcomes, (await voices(ben.page)).welcomes],
   });
 }
 
@@ -120,13 +123,25 @@ async function voices(page: Page) {
   const { phase, muted, said, people } = await voicesOf(page);
   const other = people.find(({ voice }) => voice !== 'none');
   const { game, frame } = await probe(page);
-  const room = game?.name === 'ball' ? game.connection : undefined;
-  return { phase, muted, said, room, frames: frame.count, link: other?.link, other: other?.voice };
+  const { connection, welcomes } = game?.name === 'ball' ? game : {};
+  return { phase, muted, said, connection, welcomes, frames: frame.count, link: other?.link, other: other?.voice };
 }
 
-/** Waits until these pages see this of the voices; what they saw instead is told of all. */
-const seen = (pages: readonly Page[], expected: Partial<Awaited<ReturnType<typeof voices>>>[]) =>
-  expect.poll(() => Promise.all(pages.map(voices)), { timeout: 60_000 }).toMatchObject(expected);
+type SeenVoices = Awaited<ReturnType<typeof voices>>;
+
+/** Waits until these pages see this of the voices; rejects with all that they saw instead. */
+async function seen(pages: readonly Page[], expected: Partial<SeenVoices>[]): Promise<void> {
+  let now: SeenVoices[] = [];
+  const look = async () => {
+    now = await Promise.all(pages.map(voices));
+    return now;
+  };
+  try {
+    await expect.poll(look, { timeout: 60_000 }).toMatchObject(expected);
+  } catch (error) {
+    throw new Error(`not seen: ${JSON.stringify(expected)}, but ${JSON.stringify(now)}`, { cause: error });
+  }
+}
 
 /** Both talk for a minute. What they press is what people press, more often. */
 async function talkForAMinute(minute: number, until: number, [ann, ben]: readonly [Page, Page]): Promise<void> {

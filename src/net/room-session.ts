@@ -48,6 +48,8 @@ export abstract class RoomSession implements Connection {
   #voiceListener: VoiceListener | null = null;
   #skeleton: Skeleton;
   #wishes: { spectate: boolean; seat: number | null };
+  /** What the room was told first on this connection. */
+  #said: Joining | null = null;
   /** Whether the clock is to stand; null: never asked for. */
   #pauseWish: boolean | null = null;
   #welcomes = 0;
@@ -148,7 +150,16 @@ export abstract class RoomSession implements Connection {
   /** What to say first on every new connection. */
   protected joining(): Joining {
     const { name, bot = false } = this.#visitor;
-    return { name, calibration: this.#calibration, bot, avatar: this.#avatar, voice: this.#voice, ...this.#wishes };
+    const own = { calibration: this.#calibration, avatar: this.#avatar, voice: this.#voice };
+    this.#said = { name, bot, ...own, ...this.#wishes };
+    return this.#said;
+  }
+
+  /** What was changed while the welcome was on its way has not been sent. */
+  #sayChanges({ calibration, avatar, voice }: Joining): void {
+    if (calibration !== this.#calibration) this.transmit({ type: 'calibration', calibration: this.#calibration });
+    if (avatar !== this.#avatar) this.transmit({ type: 'wear', avatar: this.#avatar });
+    if (voice !== this.#voice) this.transmit({ type: 'voice', voice: this.#voice });
   }
 
   /** Takes a message of the Room in, heard at this time of the page's clock [s]. */
@@ -168,6 +179,7 @@ export abstract class RoomSession implements Connection {
         this.#welcomes += 1;
         // A player who returns to a server that has forgotten them asks for the same seat.
         if (message.seat !== null) this.#wishes = { spectate: false, seat: message.seat };
+        if (this.#said) this.#sayChanges(this.#said);
         // The room may have forgotten the wish, or have been told otherwise before the connection was lost.
         if (this.#pauseWish !== null && message.seat !== null) this.transmit({ type: 'pause', pause: this.#pauseWish });
         this.#voiceListener?.seatsChanged();

@@ -100,6 +100,8 @@ export interface BallProbe {
   readonly connection: ConnectionStatus['phase'];
   /** Rounds cut short because the room had forgotten them. */
   readonly voided: number;
+  /** How often the room has taken this page in: once, and again after each connection that was lost. */
+  readonly welcomes: number;
   /** How many balls are in each kind of place. */
   readonly balls: Readonly<Record<'rack' | 'hand' | 'air' | 'floor' | 'basket', number>>;
   /** The middle of the opening, arena frame [m]. */
@@ -131,6 +133,7 @@ export function probeOf(
     aim: aim && length(aim.velocity),
     connection: connection.status.phase,
     voided: connection.room?.voided ?? 0,
+    welcomes: connection.room?.welcomes ?? 0,
     balls: {
       rack: count('rack'),
       hand: count('hand'),

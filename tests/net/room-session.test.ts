@@ -1,0 +1,114 @@
+import { expect, test } from 'vitest';
+import { defaultCalibration } from '../../src/core/body/calibration';
+import { type BallGame, BallPolicy } from '../../src/core/match-policies/ball-policy';
+import type { BallRoomMessage } from '../../src/core/protocol/ball-messages';
+import type { ClientMessage } from '../../src/core/protocol/messages';
+import { Room } from '../../src/core/room/room';
+import type { ConnectionStatus, ConnectionUpdate } from '../../src/net/connection';
+import { RoomSession } from '../../src/net/room-session';
+import { visitor } from './people';
+
+/** A client whose wire takes as long as the test wants: what the Room says waits until it is delivered. */
+class SlowClient extends RoomSession {
+  readonly #room: Room<BallGame>;
+  readonly #waiting: BallRoomMessage[] = [];
+  #joins = 0;
+  #isJoined = false;
+
+  constructor() {
+    super(visitor('Ann'), false);
+    this.#room = new Room<BallGame>(
+      new BallPolicy({ seed: 0 }),
+      { id: 'here', epoch: 'here', voices: true },
+      {
+        send: (_to, message) => this.#waiting.push(message),
+        broadcast: (message) => this.#waiting.push(message),
+        ...{ poses: () => undefined, drop: () => undefined, refused: () => undefined },
+      },
+    );
+  }
+
+  /** What the Room knows of the person on the first seat. */
+  get known() {
+    const { voice, avatar, calibration } = this.room?.seats[0] ?? {};
+    return { voice, avatar, height: calibration?.eyeHeight };
+  }
+
+  /** The connection is there: the first message is on its way. */
+  connect(): void {
+    this.#joins += 1;
+    this.#room.join(`connection ${this.#joins}`, 'ann', this.joining(), this.#joins);
+  }
+
+  lose(): void {
+    this.#isJoined = false;
+    this.#room.disconnect(`connection ${this.#joins}`, this.#joins);
+  }
+
+  /** What the Room has said until now arrives, and what is answered to it. */
+  deliver(): void {
+    for (let message = this.#waiting.shift(); message; message = this.#waiting.shift()) {
+      if (message.type === 'welcome') this.#isJoined = true;
+      this.onMessage(message, this.#joins);
+    }
+  }
+
+  override get status(): ConnectionStatus {
+    return { phase: this.#isJoined ? 'joined' : 'connecting', attempt: 0, retryIn: null, reason: null };
+  }
+
+  override update(time: number): ConnectionUpdate {
+    return this.takeUpdate(time, this.#isJoined);
+  }
+
+  override leave(): void {
+    this.lose();
+  }
+
+  protected override transmit(message: ClientMessage): void {
+    if (this.#isJoined && message.type !== 'join') {
+      this.#room.onMessage(`connection ${this.#joins}`, message, this.#joins);
+    }
+  }
+
+  protected override transmitPose(): void {
+    throw new Error('no pose is sent in these tests');
+  }
+}
+
+const taller = { ...defaultCalibration, eyeHeight: 1.75 };
+
+function change(client: SlowClient): void {
+  client.voices.say({ session: 'annas-page', muted: true });
+  client.calibrate(taller);
+  client.wear('man-dark');
+}
+
+const changed = { voice: { session: 'annas-page', muted: true }, avatar: 'man-dark', height: 1.75 };
+
+test('what is changed while the welcome is on its way reaches the room, on joining and on returning', () => {
+  const client = new SlowClient();
+  client.connect();
+  change(client);
+  client.deliver();
+  expect(client.known).toEqual(changed);
+
+  client.voices.say({ session: 'annas-page', muted: false });
+  client.deliver();
+  client.lose();
+  client.connect();
+  client.voices.say({ session: 'annas-page', muted: true });
+  client.deliver();
+  expect(client.known).toEqual(changed);
+});
+
+test('what is changed without a connection is part of what is said first on the next one', () => {
+  const client = new SlowClient();
+  client.connect();
+  client.deliver();
+  client.lose();
+  change(client);
+  client.connect();
+  client.deliver();
+  expect(client.known).toEqual(changed);
+});
