@@ -28,7 +28,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--no-frame-random", action="store_true", help="leave the paper's own protocol out; what an earlier run found stays")
     parser.add_argument("--refit-kinematics", action="store_true", help="also fit the page's body proportions and IK anew")
     parser.add_argument("--ablate", action="store_true", help="instead of all that: the recipe without each of its parts, for docs/training.md")
-    parser.add_argument("--noticed", action="store_true", help="instead of all that: what minutes of wearing tell of a wrong calibration, for docs/accuracy.md; judged by the networks of an earlier cross-validation")
+    parser.add_argument("--noticed", action="store_true", help="instead of all that: what minutes of wearing tell of a wrong calibration, of people held out in four groups, for docs/accuracy.md")
     parser.add_argument("--leave-one-out", action="store_true", help="instead of all that: each subject held out in turn, for docs/training.md")
     parser.add_argument("--groups", type=int, help="with --leave-one-out: so many groups in turn instead of one subject at a time")
     parser.add_argument("--steps", type=int, default=TrainConfig.learned.steps, help="of our network's training (default: %(default)s)")

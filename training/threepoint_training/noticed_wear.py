@@ -1,28 +1,28 @@
 """Whose headset sits elsewhere, or whose height is wrong: what minutes of wearing tell of it, and what a body that believes them gains.
 
-`npm run train -- --mocap DIR --noticed` calls this and renews the table of docs/accuracy.md. A person is read by what was fitted on the others, and
-judged by the network that an earlier cross-validation made without them: the page's own has seen everybody.
+`npm run train -- --mocap DIR --noticed` calls this and renews the table of docs/accuracy.md. Each group of people is held out in turn: what reads
+them, their IK and their network are made of the others.
 """
 
-import json
 import zlib
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-import onnxruntime
 from numpy.typing import NDArray
 
-from . import quaternion, solve_ik, splits, train_learned
+from . import fitted_kinematics, leave_one_out, quaternion, solve_ik, splits, train_learned
 from .accuracy_tables import renew, table
 from .features import frame_features
-from .motion import MocapError
+from .fit_ik import FitIkConfig
+from .model import CorrectionNetwork
 from .prepared_corpus import PreparedCorpus
 from .residual import network_input, residual
 from .simulate_trackers import TrackerConfig, Wearer, draw_wearer, simulate
 from .skeleton import Body, body_from_calibration
-from .train_learned import HeldOut
+from .train_learned import HeldOut, TrainLearnedConfig
+from .train_paper import predict
 
 Array = NDArray[np.float64]
 
@@ -59,8 +59,8 @@ COLUMNS = ("IK", "corrected", "ours", "corrected", "ours, another laboratory", "
 class NoticedWearConfig:
     """Who is worn long enough, when figures are taken, and on what wearers they are learned to be read."""
 
-    # The networks of a cross-validation: whom its first fold held out is judged.
-    models: Path = ROOT / ".cache/cross-validation"
+    # So many groups are held out in turn.
+    groups: int = 4
     fewest_minutes: float = 1.3
     # Of the recordings at 60 Hz, for the signs, and of judged frames.
     stride: int = 6
@@ -115,53 +115,66 @@ class Reader:
         return np.nan_to_num((seen - self._mean) / self._deviation)
 
 
-class _Network:
-    """Ours, as exported: [N, T·46 + 40] inputs to [N, 18] corrections. Raises MocapError where there is none."""
+def main(
+    corpus: PreparedCorpus,
+    recipe: TrainLearnedConfig,
+    ik: FitIkConfig,
+    config: NoticedWearConfig = NoticedWearConfig(),
+    report: Callable[[str], None] = lambda _: None,
+) -> list[list[str]]:
+    """Rows of the table: errors in cm of people held out, as worn and with what was noticed corrected; people alike.
 
-    def __init__(self, models: Path) -> None:
-        file = models / "learned.json"
-        if not file.exists():
-            raise MocapError(f"{file}: there is no network of people held out; npm run train -- --stage cross-validation makes it")
-        contract = json.loads(file.read_text())
-        self.people: list[str] = contract["trainedOn"]["people"]
-        self.window_seconds = tuple(contract["windowSeconds"])
-        self._session = onnxruntime.InferenceSession(models / contract["file"])
-        self._given = self._session.get_inputs()[0]
-
-    def __call__(self, inputs: NDArray[np.float32]) -> NDArray[np.float32]:
-        # A network that was made before hands were measured takes all but the last two.
-        rows = inputs[:, : self._given.shape[1]]
-        return np.concatenate([self._session.run(None, {self._given.name: row[None]})[0] for row in rows])
-
-
-def main(corpus: PreparedCorpus, config: NoticedWearConfig = NoticedWearConfig(), report: Callable[[str], None] = lambda _: None) -> list[list[str]]:
-    """Rows of the table: errors in cm of people whom the network has not seen, as worn and with what was noticed corrected; people alike.
-
-    Raises MocapError where there is no such network, or where it has seen everybody of the corpus's own laboratory.
+    People who only measure have columns of their own, by what is made of all the others.
     """
-    network = _Network(config.models)
-    people = [name for name in corpus.people if _frames(corpus, name) / corpus.rate_hz >= 60 * config.fewest_minutes]
-    learned_from = splits.trainable(people)
-    worn = {name: _wearers(corpus, name, config) for name in learned_from}
-    judged = [name for name in people if name not in network.people]
-    if not splits.trainable(judged):
-        raise MocapError(f"{config.models}: the network there has seen everybody who is worn long enough: {', '.join(learned_from)}")
-    errors: dict[str, list[Array]] = {fault: [] for fault in FAULTS}
-    for name in judged:
-        report(name)
-        others = [worn[other] for other in learned_from if other != name]
-        reader = Reader(*(np.concatenate(column) for column in zip(*others, strict=True)), config.ridge)
-        for label, fault in FAULTS.items():
-            wearer = fault.worn(draw_wearer(TrackerConfig(), np.random.default_rng([config.seed, 1, _key(name)])))
-            noticed = reader(_signs_of(corpus, name, wearer, fault.eye_height, config))
-            errors[label].append(np.stack([_errors(corpus, name, wearer, fault, each, network, config) for each in (Fault(), noticed)], axis=1))
-    home = np.array([name in splits.trainable(judged) for name in judged])
+    trainable, elsewhere = splits.trainable(tuple(corpus.people)), splits.measured_only(tuple(corpus.people))
+
+    def judged(group: tuple[str, ...]) -> Array:
+        report(", ".join(group))
+        return _judged(corpus, group, recipe, ik, config)
+
+    home = [judged(group) for group in leave_one_out.groups_of(trainable, config.groups)]
+    away = judged(elsewhere) if elsewhere else np.full((1, len(FAULTS), 2, 2), np.nan)
     rows = []
-    for label, found in errors.items():
-        (ik, ours), elsewhere = np.mean(np.array(found)[home], axis=0), np.array(found)[~home]
-        away = elsewhere.mean(axis=0)[1] if len(elsewhere) else np.full(2, np.nan)
-        rows.append([label, *(f"{value:.2f}" for value in (*ik, *ours, *away))])
+    for label, at_home, another in zip(FAULTS, np.concatenate(home).mean(axis=0), away.mean(axis=0), strict=True):
+        rows.append([label, *(f"{value:.2f}" for value in (*at_home[0], *at_home[1], *another[1]))])
     return rows
+
+
+@dataclass(frozen=True)
+class _Worn:
+    """By whom, with what wrong, and what of it is taken back."""
+
+    wearer: Wearer
+    fault: Fault
+    noticed: Fault
+
+
+@dataclass(frozen=True)
+class _Network:
+    """Ours, and how far back it looks [s]."""
+
+    network: CorrectionNetwork
+    window_seconds: tuple[float, ...]
+
+
+def _judged(corpus: PreparedCorpus, group: tuple[str, ...], recipe: TrainLearnedConfig, ik: FitIkConfig, config: NoticedWearConfig) -> Array:
+    """By what is made of the others, of each of a group who is worn long enough: errors [P, faults, 2, 2] of IK and ours, as worn and corrected, in cm."""
+    others = tuple(name for name in splits.trainable(tuple(corpus.people)) if name not in group)
+    with fitted_kinematics.used(fitted_kinematics.fit(corpus, others, ik)):
+        made = _Network(train_learned.train(corpus, others, recipe), recipe.window_seconds)
+        worn = [_wearers(corpus, name, config) for name in others if _is_worn_long(corpus, name, config)]
+        reader = Reader(*(np.concatenate(column) for column in zip(*worn, strict=True)), config.ridge)
+        found = []
+        for name in group:
+            if not _is_worn_long(corpus, name, config):
+                continue
+            found.append(np.zeros((len(FAULTS), 2, 2)))
+            for row, fault in zip(found[-1], FAULTS.values(), strict=True):
+                wearer = fault.worn(draw_wearer(TrackerConfig(), np.random.default_rng([config.seed, 1, _key(name)])))
+                noticed = reader(_signs_of(corpus, name, wearer, fault.eye_height, config))
+                for column, believed in enumerate((Fault(), noticed)):
+                    row[:, column] = _errors(corpus, name, _Worn(wearer, fault, believed), made, config)
+    return np.array(found).reshape(-1, len(FAULTS), 2, 2)
 
 
 def _key(name: str) -> int:
@@ -169,8 +182,9 @@ def _key(name: str) -> int:
     return zlib.crc32(name.encode())
 
 
-def _frames(corpus: PreparedCorpus, name: str) -> int:
-    return sum(each.stop - each.start for each in map(corpus.clip_slice, corpus.clips_of({name})))
+def _is_worn_long(corpus: PreparedCorpus, name: str, config: NoticedWearConfig) -> bool:
+    frames = sum(each.stop - each.start for each in map(corpus.clip_slice, corpus.clips_of({name})))
+    return frames / corpus.rate_hz >= 60 * config.fewest_minutes
 
 
 def _signs_of(corpus: PreparedCorpus, name: str, wearer: Wearer, height_error: float, config: NoticedWearConfig) -> Array:
@@ -192,31 +206,29 @@ def _wearers(corpus: PreparedCorpus, name: str, config: NoticedWearConfig) -> tu
     return np.array(seen), np.array(faults)
 
 
-def _errors(
-    corpus: PreparedCorpus, name: str, wearer: Wearer, fault: Fault, noticed: Fault, network: _Network, config: NoticedWearConfig
-) -> Array:
+def _errors(corpus: PreparedCorpus, name: str, worn: _Worn, made: _Network, config: NoticedWearConfig) -> Array:
     """Mean errors of IK and of the network [2], where so much was noticed and is taken back."""
-    person = corpus.people[name]
-    eye_height = person.eye_height * (1 + fault.eye_height) / (1 + noticed.eye_height)
+    person, noticed = corpus.people[name], worn.noticed
+    eye_height = person.eye_height * (1 + worn.fault.eye_height) / (1 + noticed.eye_height)
     body = body_from_calibration(np.array(eye_height), np.array(person.arm_span))
     found = []
     for clip in corpus.clips_of({name}):
         whole = corpus.clip_slice(clip)
         frames = slice(whole.start, min(whole.stop, whole.start + round(config.longest_clip * corpus.rate_hz)))
         positions, rotations = simulate(
-            corpus.positions[frames], corpus.rotations[frames], wearer, TrackerConfig(), np.random.default_rng([config.seed, clip])
+            corpus.positions[frames], corpus.rotations[frames], worn.wearer, TrackerConfig(), np.random.default_rng([config.seed, clip])
         )
         believed = np.broadcast_to([0.0, noticed.up, noticed.back], (len(positions), 3))
         positions[:, 0] -= quaternion.rotate(rotations[:, 0], believed)
         vector, _ = frame_features(positions, rotations, body)
         chosen = slice(None, None, config.judged_stride)
-        inputs = network_input(vector, np.arange(len(vector)) / corpus.rate_hz, network.window_seconds, body)[chosen]
+        inputs = network_input(vector, np.arange(len(vector)) / corpus.rate_hz, made.window_seconds, body)[chosen]
         truth = residual(corpus.truth(frames).astype(np.float64), positions, rotations, body, vector)[chosen]
         count = len(truth)
         seen = HeldOut(
             inputs.astype(np.float32), truth.astype(np.float32), np.full(count, eye_height), np.full(count, name), np.full(count, clip)
         )
-        found.append(np.stack([train_learned.ik_errors_cm(seen), train_learned.fitted_errors_cm(network(seen.inputs), seen)], axis=1))
+        found.append(np.stack([train_learned.ik_errors_cm(seen), train_learned.fitted_errors_cm(predict(made.network, seen.inputs), seen)], axis=1))
     return np.concatenate(found).mean(axis=(0, 2))
 
 

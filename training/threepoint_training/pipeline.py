@@ -27,8 +27,7 @@ def main(config: TrainConfig, console: Console | None = None) -> dict[str, dict[
         if config.ablate:
             return _ablate(run)
         if config.noticed:
-            noticed = noticed_wear.NoticedWearConfig(models=config.cross_validation)
-            noticed_wear.write(noticed_wear.main(run.corpus, noticed, report.console.print))
+            noticed_wear.write(noticed_wear.main(run.corpus, config.learned, config.ik, report=report.console.print))
             return {}
         if config.leave_one_out:
             _leave_one_out(run)
