@@ -2,6 +2,7 @@ import { expect } from '@playwright/test';
 import { serviceOf } from './browser-processes';
 import { cutNetwork } from './cut-network';
 import { emulatedHeadset, type Point } from './emulated-headset';
+import { keepWritten, lookingAtMenu, pressBelow, pressInMenu } from './hands-on-menu';
 import { distance, enterVr, joinedRoom, keepPicture, probe } from './page-fixture';
 import { bar, connected, heard, joinVoices, loudness, otherOf, silent, test, voicesOf } from './talkers';
 
@@ -89,6 +90,63 @@ test('two people hear each other: 6 dB less with twice the distance, nothing of 
   await bar(ben).getByRole('button', { name: 'Leave the voices' }).click();
   await silent(ann);
   await expect.poll(async () => (await otherOf(ann))?.voice).toBe('none');
+});
+
+test('in the headset one of two is muted, then hidden, by the menu; the list at the desk knows @nightly', async ({
+  serve,
+  talker,
+}) => {
+  test.setTimeout(600_000);
+  const { origin } = await serve();
+  const { page: ann } = await talker(origin, 'Ann', {
+    query: 'emulate&actor=off',
+    inPage: keepWritten,
+    viewport: { width: 800, height: 500 },
+  });
+  // As long as names may be.
+  const long = 'Wilhelmina Montgomer';
+  const { page: ben } = await talker(origin, 'Ben', { seldomDrawn: true });
+  const { page: mina } = await talker(origin, long, { seldomDrawn: true });
+  for (const page of [ann, ben, mina]) await joinVoices(page);
+  for (const page of [ben, mina]) await bar(page).getByRole('button', { name: 'Unmute me' }).click();
+  const person = async (seat: number) => (await voicesOf(ann)).people.find((each) => each.seat === seat);
+  const drawnAs = async (seat: number) => (await probe(ann)).players.find((each) => each.seat === seat)?.drawnAs;
+  await expect.poll(async () => (await person(1))?.link).toBe('connected');
+  await expect.poll(async () => (await person(2))?.link).toBe('connected');
+
+  await heard(ann);
+
+  const headset = await emulatedHeadset(ann);
+  await headset.place({ head: lookingAtMenu });
+  await enterVr(ann, { stepMs: null });
+  await pressInMenu(ann, 'Players');
+  await pressBelow(ann, 'Ben', 'Mute');
+  await expect.poll(() => person(1)).toMatchObject({ silenced: true, hidden: false, level: 0 });
+  // The one who is left.
+  await heard(ann);
+  await keepPicture(ann, 'voices-players-vr');
+  await pressBelow(ann, long, 'Mute');
+  await silent(ann);
+  await pressBelow(ann, 'Ben', 'Unmute');
+  await heard(ann);
+
+  await pressBelow(ann, 'Ben', 'Hide');
+  await silent(ann);
+  await expect.poll(() => drawnAs(1)).toBeNull();
+  expect(await drawnAs(2)).toBe('mannequin');
+  await keepPicture(ann, 'voices-players-hidden-vr');
+  await headset.place({ head: { position: [0, 1.6, 0.6], orientation: [0, 0, 0, 1] } });
+  await keepPicture(ann, 'voices-marked-vr');
+  await headset.endSession();
+  await expect(bar(ann).getByRole('button', { name: 'Show Ben' })).toBeVisible();
+  await expect(bar(ann).getByRole('button', { name: 'Mute Ben' })).toBeDisabled();
+  await keepPicture(ann, 'voices-marked-desk');
+  await bar(ann)
+    .getByRole('button', { name: `Unmute ${long}` })
+    .click();
+  await heard(ann);
+  await bar(ann).getByRole('button', { name: 'Show Ben' }).click();
+  await expect.poll(() => drawnAs(1)).toBe('mannequin');
 });
 
 test('a voice comes back after the network was lost, and with the page after a reload @full', async ({
