@@ -1,10 +1,10 @@
 import { describe, expect, test } from 'vitest';
+import type { Phrase } from '../../../src/core/study/phrases/catalogue';
 import { english } from '../../../src/core/study/phrases/english';
 import { german } from '../../../src/core/study/phrases/german';
 import {
   gapsIn,
   missingKeys,
-  type Phrase,
   PhrasedError,
   Phrases,
   phraseKeys,

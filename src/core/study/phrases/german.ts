@@ -1,4 +1,4 @@
-import type { Catalogue } from './phrases';
+import type { Catalogue } from './catalogue';
 
 /** The page's phrases in German, in the words of a laboratory to its participants. */
 export const german = {

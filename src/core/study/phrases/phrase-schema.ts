@@ -1,8 +1,9 @@
 import * as v from 'valibot';
 import { text, ValidationError } from '../validation';
 import { languageTag } from '../words';
+import type { GivenPhrases, Phrase, PhraseKey } from './catalogue';
 import { english } from './english';
-import { type GivenPhrases, gapsIn, type Phrase, type PhraseKey, phraseKeys } from './phrases';
+import { gapsIn, phraseKeys } from './phrases';
 
 const longest = 600;
 const form = v.exactOptional(text(longest));
