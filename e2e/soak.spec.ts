@@ -178,7 +178,8 @@ const allowed: Readonly<Record<keyof PageHolds, (was: number, joins: number) => 
   // Sounds of the game that are in the air; and Chromium keeps the source of a stream until its context is closed: the own voice's, and the other's.
   audioNodes: (_, joins) => 12 + 2 * joins,
   geometries: () => 0,
-  textures: () => 0,
+  // Made when what has them is drawn for the first time: of one frame a minute that may be late.
+  textures: () => 2,
 };
 
 /** Whether anything has grown from the second quarter of the run to its last. */
