@@ -113,7 +113,6 @@ test('in the headset one of two is muted, then hidden, by the menu; the list at 
   const drawnAs = async (seat: number) => (await probe(ann)).players.find((each) => each.seat === seat)?.drawnAs;
   await expect.poll(async () => (await person(1))?.link).toBe('connected');
   await expect.poll(async () => (await person(2))?.link).toBe('connected');
-
   await heard(ann);
 
   const headset = await emulatedHeadset(ann);
