@@ -37,8 +37,8 @@ function createPeople(actions: VoicesBarActions) {
     const hide = button(hideLabel(player), () => actions.hide(seat, !hidden), {
       'aria-label': `${hideLabel(player)} ${name}`,
     });
-    const [named, hint] = [element('span', { class: 'name' }, name), element('span', { class: 'hint' }, said)];
-    return element('li', {}, named, hint, mute, hide);
+    const who = element('p', { class: 'who' }, element('span', {}, name), element('span', { class: 'hint' }, said));
+    return element('li', {}, who, element('div', { class: 'buttons' }, mute, hide));
   };
   return {
     node,
