@@ -1,18 +1,15 @@
-import { setFlagsFromString } from 'node:v8';
-import { runInNewContext } from 'node:vm';
 import { expect, test } from 'vitest';
 import { createArcheryPlay } from '../../src/app/archery/archery-play';
 import { defaultCalibration } from '../../src/core/body/calibration';
 import { createEstimator } from '../../src/core/estimation/estimators';
+import { collectGarbage } from '../collect-garbage';
 import { poseOf } from '../core/estimation/drawn';
 import { isNightly } from '../nightly';
 import { measured } from './measured';
 
-setFlagsFromString('--expose-gc');
-const collect = runInNewContext('gc') as () => void;
 const heap = (): number => {
-  collect();
-  collect();
+  collectGarbage();
+  collectGarbage();
   return process.memoryUsage().heapUsed / 2 ** 20;
 };
 

@@ -1,5 +1,3 @@
-import { setFlagsFromString } from 'node:v8';
-import { runInNewContext } from 'node:vm';
 import { afterEach, describe, expect, test } from 'vitest';
 import { WebSocket } from 'ws';
 import { createRoomTokens } from '../../server/room-tokens';
@@ -10,6 +8,7 @@ import { packetMs } from '../../src/core/protocol/packet-time';
 import { plainAvatar } from '../../src/core/protocol/worn-avatar';
 import { createRemotePlayers } from '../../src/net/remote-players';
 import { createSocketConnection } from '../../src/net/socket-connection';
+import { collectGarbage } from '../collect-garbage';
 import { fists, holding, opening, releaseOf, visitor } from '../net/people';
 import { isNightly } from '../nightly';
 import { percentile, tell } from '../tell';
@@ -356,8 +355,6 @@ describe('abuse', () => {
 test('twenty rooms that fill and empty again leave no timer, socket or listener behind', async () => {
   const server = await relayHere({ THREEPOINT_EVENTS_PER_SECOND: '100' });
   const rounds = isNightly ? 60 : 3;
-  setFlagsFromString('--expose-gc');
-  const collect = runInNewContext('gc') as () => void;
   const heaps: number[] = [];
   const counts: number[] = [];
   const handles = () => process.getActiveResourcesInfo().length;
@@ -376,7 +373,7 @@ test('twenty rooms that fill and empty again leave no timer, socket or listener 
     await until('every connection closed', () => guests.every(({ closedAt }) => closedAt !== null));
     await until('timers and sockets let go', () => handles() <= before + 3, 5);
     counts.push(handles());
-    collect();
+    collectGarbage();
     heaps.push(process.memoryUsage().heapUsed / 2 ** 20);
   }
   await until('every room closed', () => server.relay.host.census.rooms === 0, 20);

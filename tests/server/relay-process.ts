@@ -1,11 +1,8 @@
 // A relay in a process of its own, so that it can be killed and its memory and its event loop measured.
 import { monitorEventLoopDelay } from 'node:perf_hooks';
-import { setFlagsFromString } from 'node:v8';
-import { runInNewContext } from 'node:vm';
+import { collectGarbage } from '../collect-garbage';
 import { startRelay } from './running-relay';
 
-setFlagsFromString('--expose-gc');
-const collect = runInNewContext('gc') as () => void;
 const lag = monitorEventLoopDelay({ resolution: 5 });
 lag.enable();
 const environment = Object.fromEntries(
@@ -14,7 +11,7 @@ const environment = Object.fromEntries(
 const { port } = await startRelay(environment, Number(process.argv[2] ?? 0));
 process.on('message', (question) => {
   if (question === 'measure') {
-    collect();
+    collectGarbage();
     const { heapUsed, external } = process.memoryUsage();
     process.send?.({
       heldBytes: heapUsed + external,
