@@ -50,6 +50,8 @@ export abstract class RoomSession implements Connection {
   #wishes: { spectate: boolean; seat: number | null };
   /** What the room was told first on this connection. */
   #said: Joining | null = null;
+  /** By its type, what was last asked for without a connection, or with its welcome on the way. */
+  readonly #unsaid = new Map<ClientMessage['type'], ClientMessage>();
   /** Whether the clock is to stand; null: never asked for. */
   #pauseWish: boolean | null = null;
   #welcomes = 0;
@@ -111,11 +113,11 @@ export abstract class RoomSession implements Connection {
   }
 
   ready(ready: boolean): void {
-    this.transmit({ type: 'ready', ready });
+    this.#ask({ type: 'ready', ready });
   }
 
   rotate(rotate: boolean): void {
-    this.transmit({ type: 'rotate', rotate });
+    this.#ask({ type: 'rotate', rotate });
   }
 
   pause(pause: boolean): void {
@@ -124,11 +126,11 @@ export abstract class RoomSession implements Connection {
   }
 
   away(away: boolean): void {
-    this.transmit({ type: 'away', away });
+    this.#ask({ type: 'away', away });
   }
 
   sit(seat: number | null): void {
-    this.transmit({ type: 'sit', seat });
+    this.#ask({ type: 'sit', seat });
   }
 
   calibrate(calibration: Calibration): void {
@@ -153,6 +155,16 @@ export abstract class RoomSession implements Connection {
     const own = { calibration: this.#calibration, avatar: this.#avatar, voice: this.#voice };
     this.#said = { name, bot, ...own, ...this.#wishes };
     return this.#said;
+  }
+
+  #ask(message: ClientMessage): void {
+    if (this.status.phase === 'joined') this.transmit(message);
+    else this.#unsaid.set(message.type, message);
+  }
+
+  #sayWhatWaited(): void {
+    for (const message of this.#unsaid.values()) this.transmit(message);
+    this.#unsaid.clear();
   }
 
   /** What was changed while the welcome was on its way has not been sent. */
@@ -180,6 +192,7 @@ export abstract class RoomSession implements Connection {
         // A player who returns to a server that has forgotten them asks for the same seat.
         if (message.seat !== null) this.#wishes = { spectate: false, seat: message.seat };
         if (this.#said) this.#sayChanges(this.#said);
+        this.#sayWhatWaited();
         // The room may have forgotten the wish, or have been told otherwise before the connection was lost.
         if (this.#pauseWish !== null && message.seat !== null) this.transmit({ type: 'pause', pause: this.#pauseWish });
         this.#voiceListener?.seatsChanged();

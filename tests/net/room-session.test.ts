@@ -13,6 +13,7 @@ class SlowClient extends RoomSession {
   readonly #room: Room<BallGame>;
   readonly #waiting: BallRoomMessage[] = [];
   #joins = 0;
+  #time = 0;
   #isJoined = false;
 
   constructor() {
@@ -37,19 +38,26 @@ class SlowClient extends RoomSession {
   /** The connection is there: the first message is on its way. */
   connect(): void {
     this.#joins += 1;
-    this.#room.join(`connection ${this.#joins}`, 'ann', this.joining(), this.#joins);
+    this.#room.join(`connection ${this.#joins}`, 'ann', this.joining(), this.#time);
   }
 
   lose(): void {
     this.#isJoined = false;
-    this.#room.disconnect(`connection ${this.#joins}`, this.#joins);
+    this.#room.disconnect(`connection ${this.#joins}`, this.#time);
   }
 
-  /** What the Room has said until now arrives, and what is answered to it. */
+  /** What the Room has said until now arrives, and what it says to the answers. */
   deliver(): void {
+    this.#hear();
+    this.#time += 0.1;
+    this.#room.tick(this.#time);
+    this.#hear();
+  }
+
+  #hear(): void {
     for (let message = this.#waiting.shift(); message; message = this.#waiting.shift()) {
       if (message.type === 'welcome') this.#isJoined = true;
-      this.onMessage(message, this.#joins);
+      this.onMessage(message, this.#time);
     }
   }
 
@@ -67,7 +75,7 @@ class SlowClient extends RoomSession {
 
   protected override transmit(message: ClientMessage): void {
     if (this.#isJoined && message.type !== 'join') {
-      this.#room.onMessage(`connection ${this.#joins}`, message, this.#joins);
+      this.#room.onMessage(`connection ${this.#joins}`, message, this.#time);
     }
   }
 
@@ -111,4 +119,49 @@ test('what is changed without a connection is part of what is said first on the 
   client.connect();
   client.deliver();
   expect(client.known).toEqual(changed);
+});
+
+/** What the Room knows of what the person wants. */
+function wanted(client: SlowClient) {
+  const { seats = [], mySeat, match, rotate } = client.room ?? {};
+  const [seat] = seats;
+  return { seat: mySeat, isReady: match?.players[0]?.ready, presence: seat?.presence, rotate };
+}
+
+test('what is pressed while there is no connection, or its welcome is on its way, reaches the room', () => {
+  const client = new SlowClient();
+  client.connect();
+  client.ready(true);
+  client.away(true);
+  client.rotate(true);
+  client.deliver();
+  expect(wanted(client)).toEqual({ seat: 0, isReady: true, presence: 'away', rotate: true });
+
+  client.lose();
+  client.ready(true);
+  client.ready(false);
+  client.away(false);
+  client.connect();
+  client.rotate(false);
+  client.deliver();
+  expect(wanted(client)).toEqual({ seat: 0, isReady: false, presence: 'here', rotate: false });
+
+  client.lose();
+  client.sit(null);
+  client.connect();
+  client.deliver();
+  expect(wanted(client).seat).toBeNull();
+});
+
+test('what was pressed on one connection is not said again on the next', () => {
+  const client = new SlowClient();
+  client.connect();
+  client.ready(true);
+  client.deliver();
+  client.ready(false);
+  client.deliver();
+  client.lose();
+  client.connect();
+  client.deliver();
+  expect(wanted(client).isReady).toBe(false);
 });
