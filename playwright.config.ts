@@ -2,14 +2,15 @@ import { defineConfig } from '@playwright/test';
 import { findChromium } from './scripts/chromium.mjs';
 
 /**
- * Which tests run: those of `npm test` carry no mark, those of `npm run test:full` @full, those of `npm run nightly` @nightly. Asked for
- * without a word, a file runs all but the nightly ones.
+ * Which tests run: those of `npm test` carry no mark, those of `npm run test:full` @full or @realtime, those of `npm run nightly` @nightly.
+ * Asked for without a word, a file runs all but the nightly ones.
  */
 function chosenBy(word = 'day and full') {
   const choices: Readonly<Record<string, { readonly grep?: RegExp; readonly grepInvert?: RegExp }>> = {
     'day and full': { grepInvert: /@nightly/ },
-    day: { grepInvert: /@(full|nightly)/ },
+    day: { grepInvert: /@(full|realtime|nightly)/ },
     full: { grep: /@full/ },
+    realtime: { grep: /@realtime/ },
     nightly: { grep: /@nightly/ },
     all: {},
   };
@@ -23,9 +24,9 @@ const executablePath = (await findChromium()) ?? undefined;
 export default defineConfig({
   testDir: 'e2e',
   outputDir: process.env.E2E_OUTPUT ?? 'artifacts/e2e',
-  // By day nearly every page's clock is driven, and two files run side by side. What is left over for the other suites plays in real time:
-  // software rendering needs both cores for a steady frame rate there, so one headset at a time.
-  workers: process.env.THREEPOINT_TESTS === 'day' ? 2 : 1,
+  // By day and in full a page's clock is driven or does not matter, and two files run side by side. @realtime and @nightly play in real time,
+  // often with several pages: software rendering needs both cores for a steady frame rate there.
+  workers: process.env.THREEPOINT_TESTS === 'day' || process.env.THREEPOINT_TESTS === 'full' ? 2 : 1,
   fullyParallel: false,
   forbidOnly: Boolean(process.env.CI),
   ...chosenBy(process.env.THREEPOINT_TESTS),

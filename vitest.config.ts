@@ -1,21 +1,12 @@
 import { defineConfig, type TestProjectConfiguration } from 'vitest/config';
 
-/** Which tests run: 'day' leaves out what takes its time, 'full' runs that alone; asked for without a word, a file runs whole. */
-const tests = process.env.THREEPOINT_TESTS ?? 'all';
-const inFull = 'tests/**/*.full.test.ts';
-
 /** Pages whose parts load when they are asked for: a file may end while one is still on its way, which would fail the next file. */
 const loading = 'tests/app/shell/**/*.test.ts';
 
-const leftOut = tests === 'day' ? [inFull] : [];
 const projects: TestProjectConfiguration[] = [
-  {
-    extends: true,
-    test: { name: 'shared', include: ['tests/**/*.test.ts'], exclude: [loading, ...leftOut], isolate: false },
-  },
-  { extends: true, test: { name: 'apart', include: [loading], exclude: leftOut } },
+  { extends: true, test: { name: 'shared', include: ['tests/**/*.test.ts'], exclude: [loading], isolate: false } },
+  { extends: true, test: { name: 'apart', include: [loading] } },
 ];
-const full: TestProjectConfiguration[] = [{ extends: true, test: { name: 'full', include: [inFull], isolate: false } }];
 
 export default defineConfig({
   test: {
@@ -31,6 +22,7 @@ export default defineConfig({
     // One for each core: much of the time is spent waiting for servers and sockets.
     maxWorkers: '100%',
     slowTestThreshold: 5_000,
-    projects: tests === 'full' ? full : projects,
+    tags: [{ name: 'full', description: 'What takes its time, or needs another program: npm run test:full' }],
+    projects,
   },
 });

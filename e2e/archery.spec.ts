@@ -139,7 +139,9 @@ test.describe('one arrow', () => {
   // No picture of it is kept, and frames are quicker so.
   test.use({ viewport: { width: 480, height: 300 } });
 
-  test('a controller lost with the string drawn never shoots; the arrow goes back to the quiver', async ({ page }) => {
+  test('a controller lost with the string drawn never shoots; the arrow goes back to the quiver @full', async ({
+    page,
+  }) => {
     const headset = await enterTheRange(page, '&actor=off');
     await nockAndDraw(page, headset, (value) => press(page, 'right', value));
     await headset.setConnected('right', false);

@@ -65,7 +65,7 @@ test('an avatar of the address that does not arrive leaves our own body standing
   measured('avatar-missing', { 'our own body stands there': `${stood} of ${Object.keys(answers).length}` });
 });
 
-test('an avatar on its way can be given up, and ours stays', async ({ page }) => {
+test('an avatar on its way can be given up, and ours stays @full', async ({ page }) => {
   const letThrough = new EventEmitter();
   const held = once(letThrough, 'now');
   await page.route(
@@ -89,7 +89,7 @@ test('an avatar on its way can be given up, and ours stays', async ({ page }) =>
   expect((await probe(page)).notices.filter(({ level }) => level === 'error')).toEqual([]);
 });
 
-test('our own body stands there until the avatar of the address has arrived; the one asked for last is shown', async ({
+test('our own body stands there until the avatar of the address has arrived; the one asked for last is shown @full', async ({
   page,
 }) => {
   const letThrough = new EventEmitter();

@@ -63,7 +63,7 @@ test('in the emulated headset the built-in player throws with its tracked hands 
   expect(over.balls.hand).toBe(0);
 });
 
-test('a person who plays by hand is asked before a match begins, and can wait', async ({ page }) => {
+test('a person who plays by hand is asked before a match begins, and can wait @full', async ({ page }) => {
   await open(page, 'play=ball&panel=off&quality=low&estimator=ik&actor=off&emulate');
   await page.getByRole('button', { name: 'Ready', exact: true }).click();
   await driveTime(page);
@@ -215,7 +215,7 @@ test('three browsers play a whole match over the relay and agree, one watches, o
   }
 });
 
-test('the relay is killed and started again in the middle of a match: a banner, all are back, the round is void @full', async ({
+test('the relay is killed and started again in the middle of a match: a banner, all are back, the round is void @realtime', async ({
   browser,
 }) => {
   test.setTimeout(300_000);

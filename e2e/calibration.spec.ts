@@ -119,7 +119,7 @@ test('a taller calibration makes a longer body under the same head @full', async
 
 // The emulator's panel begins a session with the head where it was when the panel came: in pages of their own, where the test puts it.
 freshTest(
-  'worn: a person who never calibrated and then stands up straight grows, and the page says why',
+  'worn: a person who never calibrated and then stands up straight grows, and the page says why @full',
   async ({ page }) => {
     const headset = await openWithHeadset(page, 'estimator=ik');
     const stand = (height: number) =>

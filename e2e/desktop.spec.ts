@@ -42,7 +42,7 @@ test('the estimators are switched live, on the same motion, without moving the h
   await expect.poll(async () => (await probe(page)).estimator).toBe('ik');
 });
 
-test('third person, front and first person are a button away', async ({ page }) => {
+test('third person, front and first person are a button away @full', async ({ page }) => {
   await open(page, 'quality=low');
   await page.getByRole('tab', { name: 'View' }).click();
   for (const [label, view] of [
@@ -58,7 +58,7 @@ test('third person, front and first person are a button away', async ({ page }) 
   }
 });
 
-test('the overlay names the stages of a frame, the estimator and where it runs', async ({ page }) => {
+test('the overlay names the stages of a frame, the estimator and where it runs @full', async ({ page }) => {
   await openWithHeadset(page, 'estimator=learned');
   await page.getByRole('tab', { name: 'View' }).click();
   await page.getByRole('switch', { name: 'Frame times' }).check();

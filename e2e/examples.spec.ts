@@ -42,7 +42,7 @@ const wristOf = (page: Page, side: 'left' | 'right'): Promise<Point> =>
     return [at.x, at.y, at.z] as const;
   }, wristName[side]);
 
-test.describe('examples of the package @full', () => {
+test.describe('examples of the package @realtime', () => {
   let folder = '';
   test.beforeAll(async () => {
     test.setTimeout(120_000);
@@ -52,7 +52,7 @@ test.describe('examples of the package @full', () => {
     if (folder) rmSync(folder, { recursive: true });
   });
 
-  test('are short @full', () => {
+  test('are short @realtime', () => {
     for (const name of exampleNames) {
       const main = readFileSync(
         new URL(`../examples/${name}/main.${name === 'react-three-fiber' ? 'jsx' : 'js'}`, import.meta.url),
@@ -63,7 +63,7 @@ test.describe('examples of the package @full', () => {
   });
 
   for (const name of exampleNames) {
-    test(`${name}: the body is there, its hands on the controllers @full`, async ({ page }) => {
+    test(`${name}: the body is there, its hands on the controllers @realtime`, async ({ page }) => {
       test.setTimeout(300_000);
       const server = await servePlainly(await buildExample(name, folder));
       const faults: string[] = [];

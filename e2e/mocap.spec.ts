@@ -7,7 +7,7 @@ const [acclaim, , leaping, folded] = goldenMocap;
 const filesOf = ({ files }: { readonly files: Readonly<Record<string, string>> }) =>
   Object.entries(files).map(([name, text]) => ({ name, mimeType: 'text/plain', buffer: Buffer.from(text) }));
 
-test('motion capture is shown with its truth, and methods are compared on the same second', async ({ page }) => {
+test('motion capture is shown with its truth, and methods are compared on the same second @full', async ({ page }) => {
   await open(page, 'emulate&quality=low&estimator=ik&actor=off');
   await choose(page, filesOf(acclaim!));
   await expect(card(page).getByRole('heading', { name: '11_07' })).toBeVisible();
@@ -75,7 +75,7 @@ test('a damaged file is refused with line and column, and what is shown stays', 
   await expect(heading).toBeVisible();
 });
 
-test('a skeleton of unknown names asks for a map, which may come with the motion or after it', async ({
+test('a skeleton of unknown names asks for a map, which may come with the motion or after it @full', async ({
   page,
   complaints,
 }) => {

@@ -61,7 +61,10 @@ test('without the worker that runs networks IK takes over and the page says so @
   await expect(page.getByRole('alert').filter({ hasText: /IK|inverse kinematics/i })).toBeVisible();
 });
 
-test('a worker that dies while the network runs: IK takes over and the page says so', async ({ page, complaints }) => {
+test('a worker that dies while the network runs: IK takes over and the page says so @full', async ({
+  page,
+  complaints,
+}) => {
   complaints.allow(/worker/i, /learned/);
   await openWithHeadset(page, 'estimator=learned&actor=on');
   await expect.poll(async () => (await probe(page)).estimator).toBe('learned');

@@ -17,7 +17,9 @@ async function overlap(page: Page, one: string, other: string): Promise<boolean>
   return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
 }
 
-test('a newcomer alone reads rules, what is waited for and a clock that stands after the match', async ({ page }) => {
+test('a newcomer alone reads rules, what is waited for and a clock that stands after the match @full', async ({
+  page,
+}) => {
   test.setTimeout(180_000);
   await open(page, 'play=ball&panel=off&quality=low&estimator=ik&seed=5&actor=off&emulate&seconds=2');
   await expect(page.getByRole('region', { name: 'Frame time' })).toBeHidden();
@@ -33,7 +35,7 @@ test('a newcomer alone reads rules, what is waited for and a clock that stands a
 
 // A page of its own: it goes on asking this server when the server is gone.
 freshTest(
-  'a room has a link and a QR code to send; a page whose seat was taken over says so and takes it back @full',
+  'a room has a link and a QR code to send; a page whose seat was taken over says so and takes it back @realtime',
   async ({ page, complaints }) => {
     test.setTimeout(240_000);
     const server = await serveStudies();
@@ -93,7 +95,7 @@ freshTest(
   },
 );
 
-freshTest('in the headset another player is hidden by the menu, and shown again', async ({ page }) => {
+freshTest('in the headset another player is hidden by the menu, and shown again @full', async ({ page }) => {
   test.setTimeout(240_000);
   await page.addInitScript(keepWritten);
   await open(page, 'play=ball&panel=off&quality=low&estimator=ik&seed=5&emulate&actor=off');

@@ -1,6 +1,6 @@
 import { expect, open, probe, test } from './page-fixture';
 
-test('a body of our own is chosen in the panel, worn, and remembered', async ({ page }) => {
+test('a body of our own is chosen in the panel, worn, and remembered @full', async ({ page }) => {
   await open(page, 'quality=low&estimator=ik');
   await page.getByRole('tab', { name: 'Avatar' }).click();
   const choose = (name: string) => page.getByRole('button', { name, exact: true }).click();

@@ -133,7 +133,7 @@ const shows = (page: Page, name: string, avatar: string) =>
   expect.poll(() => drawnAs(page, name), { timeout: 60_000, message: `${name} is drawn as ${avatar}` }).toBe(avatar);
 
 freshTest(
-  'what a player has on is what the others see, until they leave or would rather see mannequins @full',
+  'what a player has on is what the others see, until they leave or would rather see mannequins @realtime',
   async ({ page, complaints, browser }) => {
     test.setTimeout(240_000);
     const server = await serveStudies();
@@ -229,7 +229,7 @@ async function serveElsewhere(file: ArrayBuffer) {
 }
 
 freshTest(
-  'an avatar of a server that ours names is seen by the others, and stored nowhere else @full',
+  'an avatar of a server that ours names is seen by the others, and stored nowhere else @realtime',
   async ({ browser }) => {
     test.setTimeout(240_000);
     const file = blue();
@@ -258,7 +258,7 @@ freshTest(
 );
 
 freshTest(
-  'a malicious avatar changes nothing for the others but that its owner is a mannequin @full',
+  'a malicious avatar changes nothing for the others but that its owner is a mannequin @realtime',
   async ({ page, complaints }) => {
     test.setTimeout(300_000);
     const server = await serveStudies();

@@ -16,7 +16,10 @@ const choose = (page: Page, study: object) =>
 
 test.use({ viewport: { width: 1280, height: 860 } });
 
-test('a plan is remarked upon, rehearsed to its results, and the rehearsal deleted @full', async ({ page, origin }) => {
+test('a plan is remarked upon, rehearsed to its results, and the rehearsal deleted @realtime', async ({
+  page,
+  origin,
+}) => {
   test.setTimeout(180_000);
   await page.goto(`${origin}/experimenter`);
   await signIn(page);
@@ -51,7 +54,7 @@ test('a plan is remarked upon, rehearsed to its results, and the rehearsal delet
   expect(names).not.toContain('latency-rehearsal');
 });
 
-test('a plan with participants changes as a new version, which the experimenter is told and results keep apart @full', async ({
+test('a plan with participants changes as a new version, which the experimenter is told and results keep apart @realtime', async ({
   page,
   origin,
   complaints,

@@ -7,7 +7,7 @@ import { experimenter } from './study-server';
 
 test.use({ viewport: { width: 1280, height: 800 } });
 
-test('every screen of a plan, in the headset and at the desk, in both languages, and nothing is recorded @full', async ({
+test('every screen of a plan, in the headset and at the desk, in both languages, and nothing is recorded @realtime', async ({
   page,
   origin,
 }) => {
@@ -63,7 +63,7 @@ test('every screen of a plan, in the headset and at the desk, in both languages,
   expect(await studies()).toEqual(before);
 });
 
-test('a participant who reads German meets no English of the page, and nothing that is cut @full', async ({
+test('a participant who reads German meets no English of the page, and nothing that is cut @realtime', async ({
   page,
   origin,
 }) => {
@@ -163,7 +163,10 @@ test('mistakes of a plan are named as study:check names them @full', async ({ pa
   await expect(page.getByRole('alert')).toContainText('none.json');
 });
 
-test('the line of a slider without an answer is the same on either side of its middle', async ({ page, origin }) => {
+test('the line of a slider without an answer is the same on either side of its middle @full', async ({
+  page,
+  origin,
+}) => {
   await page.goto(`${origin}/preview?plan=/studies/example.json`);
   await page
     .getByRole('button', { name: /^delay: / })

@@ -4,7 +4,7 @@ import { enterVr, expect, keepPicture } from './page-fixture';
 import { agreeAndTell, press, reaches, signIn, stretched, study, takePart, tenHertz, test } from './study-participant';
 import { experimenter, shortStudy } from './study-server';
 
-test('a participant with no one beside them is checked, asked whether to stop, and stops in the middle of a round by raising both hands, and the experimenter sees it @full', async ({
+test('a participant with no one beside them is checked, asked whether to stop, and stops in the middle of a round by raising both hands, and the experimenter sees it @realtime', async ({
   page,
   origin,
 }) => {

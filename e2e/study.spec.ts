@@ -16,7 +16,7 @@ import {
 } from './study-participant';
 import { experimenter, shortStudy } from './study-server';
 
-test('a participant from consent to the end, with a reload in a questionnaire while the server of the study is away @full', async ({
+test('a participant from consent to the end, with a reload in a questionnaire while the server of the study is away @realtime', async ({
   page,
   origin,
   complaints,
@@ -144,7 +144,7 @@ test('a participant from consent to the end, with a reload in a questionnaire wh
   await expect(page.getByRole('img', { name: /Archery: scores, means/ })).toBeVisible();
 });
 
-test('a link without its invitation asks for it, a wrong one is said, and the link of the experimenter’s page opens the place @full', async ({
+test('a link without its invitation asks for it, a wrong one is said, and the link of the experimenter’s page opens the place @realtime', async ({
   page,
   origin,
   complaints,

@@ -6,7 +6,7 @@ import { keepWritten, lookingAtMenu, pressBelow, pressInMenu } from './hands-on-
 import { distance, enterVr, joinedRoom, keepPicture, probe } from './page-fixture';
 import { bar, connected, heard, joinVoices, loudness, otherOf, silent, test, voicesOf } from './talkers';
 
-test('two people hear each other: 6 dB less with twice the distance, nothing of who is muted, hidden or gone @full', async ({
+test('two people hear each other: 6 dB less with twice the distance, nothing of who is muted, hidden or gone @realtime', async ({
   serve,
   talker,
 }) => {
@@ -151,7 +151,7 @@ test('in the headset one of two is muted, then hidden, by the menu; the list at 
   await expect.poll(() => drawnAs(1)).toBe('mannequin');
 });
 
-test('a voice comes back after the network was lost, and with the page after a reload @full', async ({
+test('a voice comes back after the network was lost, and with the page after a reload @realtime', async ({
   serve,
   talker,
 }) => {
@@ -199,7 +199,7 @@ function keepMicrophones(): void {
   };
 }
 
-test('a microphone that its device ends is taken again; refused then, a sentence says so and the others see it @full', async ({
+test('a microphone that its device ends is taken again; refused then, a sentence says so and the others see it @realtime', async ({
   serve,
   talker,
 }) => {

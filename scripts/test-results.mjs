@@ -1,15 +1,17 @@
 import { existsSync, readFileSync } from 'node:fs';
 
-/** Tests by outcome, as one runner's report file states them; null where it wrote none. */
 const readers = {
-  vitest(text) {
+  /** `chosen`: whether tests of these tags were asked for; the runner counts all others as skipped. */
+  vitest(text, chosen = () => true) {
     const report = JSON.parse(text);
+    const tests = report.testResults.flatMap((file) => file.assertionResults).filter(({ tags = [] }) => chosen(tags));
+    const count = (...kinds) => tests.filter(({ status }) => kinds.includes(status)).length;
     // A file that does not even load has no tests of its own to fail.
     const broken = report.testResults.filter((file) => file.status === 'failed' && file.assertionResults.length === 0);
     return {
-      passed: report.numPassedTests,
-      failed: report.numFailedTests + broken.length,
-      skipped: report.numPendingTests + report.numTodoTests,
+      passed: count('passed'),
+      failed: count('failed') + broken.length,
+      skipped: count('skipped', 'pending', 'todo'),
     };
   },
   pytest(text) {
@@ -28,8 +30,9 @@ const readers = {
   },
 };
 
-export function readResults(runner, file) {
-  return existsSync(file) ? readers[runner](readFileSync(file, 'utf8')) : null;
+/** Tests by outcome, as a runner's report file states them; null where it wrote none. */
+export function readResults(runner, file, chosen) {
+  return existsSync(file) ? readers[runner](readFileSync(file, 'utf8'), chosen) : null;
 }
 
 /** The line that ends a run: '12 passed, 0 failed', with the skipped where there are any. */

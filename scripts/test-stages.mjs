@@ -10,15 +10,11 @@ const pytest = async ({ extras, marker, report }) => {
   return [[python, '-m', 'pytest', 'training', '-m', marker, '-p', 'no:cacheprovider', `--junitxml=${report}`]];
 };
 
-/** Unit tests: 'day' all but those in *.full.test.ts, 'full' those alone, 'all' (vitest.config.ts). */
-const vitest = (tests, report, ...args) => {
-  process.env.THREEPOINT_TESTS = tests;
-  return [
-    node('vitest/vitest.mjs', 'run', ...args, '--reporter=default', '--reporter=json', `--outputFile.json=${report}`),
-  ];
-};
+const vitest = (report, ...args) => [
+  node('vitest/vitest.mjs', 'run', ...args, '--reporter=default', '--reporter=json', `--outputFile.json=${report}`),
+];
 
-/** Browser tests: 'day' those without a mark, 'full' those marked @full, 'nightly' those marked @nightly (playwright.config.ts). */
+/** Browser tests: 'day' those without a mark, 'full', 'realtime' and 'nightly' those marked so (playwright.config.ts). */
 const playwright = (tests) => async (report) => {
   process.env.CHROMIUM_PATH = await ensureChromium();
   process.env.PLAYWRIGHT_JSON_OUTPUT_NAME = report;
@@ -30,7 +26,7 @@ const playwright = (tests) => async (report) => {
 /**
  * Each stage: the commands it consists of (report: where its runner leaves the outcome), its runner, how long it may take, and the suite it
  * belongs to: 'day' (npm test), 'full' (npm run test:full), 'training', 'nightly'. `singleCore`: it keeps one core busy, so that another of
- * its kind can run beside it.
+ * its kind can run beside it. `chosen`: which unit tests it runs, by their tags.
  */
 export const stages = {
   // The longest first: of those of one core two run side by side.
@@ -87,11 +83,19 @@ export const stages = {
   unit: {
     suite: 'day',
     runner: 'vitest',
-    commands: (report) => vitest('day', report),
+    chosen: (tags) => !tags.includes('full'),
+    commands: (report) => vitest(report, '--tags-filter=!full'),
   },
   e2e: { suite: 'day', runner: 'playwright', commands: playwright('day') },
-  'unit-full': { suite: 'full', runner: 'vitest', commands: (report) => vitest('full', report) },
-  'e2e-full': { suite: 'full', runner: 'playwright', limitSeconds: 1400, commands: playwright('full') },
+  'unit-full': {
+    suite: 'full',
+    runner: 'vitest',
+    chosen: (tags) => tags.includes('full'),
+    // Most files have nothing of that tag: they are read, not loaded.
+    commands: (report) => vitest(report, '--tags-filter=full', '--experimental.preParse'),
+  },
+  'e2e-full': { suite: 'full', runner: 'playwright', commands: playwright('full') },
+  'e2e-realtime': { suite: 'full', runner: 'playwright', limitSeconds: 1200, commands: playwright('realtime') },
   training: {
     suite: 'training',
     runner: 'pytest',
@@ -106,7 +110,7 @@ export const stages = {
     commands: (report) => {
       process.env.PROPERTY_RUNS ??= '5000';
       process.env.STUDY_KILLS ??= '1000';
-      return vitest('all', report, '--testTimeout=600000');
+      return vitest(report, '--testTimeout=600000');
     },
   },
   'e2e-nightly': { suite: 'nightly', runner: 'playwright', limitSeconds: 5400, commands: playwright('nightly') },

@@ -16,7 +16,7 @@ const heading = (name) => `\n── ${name} ${'─'.repeat(Math.max(3, 70 - name
 
 /** Runs one stage. `quiet`: its output is kept and printed whole at its end, for stages that run side by side. */
 async function runStage(name, { quiet = false } = {}) {
-  const { commands, runner, limitSeconds = 600 } = stages[name];
+  const { commands, runner, chosen, limitSeconds = 600 } = stages[name];
   const report = join(reports, `${name}.${runner === 'pytest' ? 'xml' : 'json'}`);
   const problems = [];
   const start = performance.now();
@@ -35,7 +35,7 @@ async function runStage(name, { quiet = false } = {}) {
     problems.push(error.message.split('\n')[0]);
   }
   if (quiet) console.log(kept.join('\n').trimEnd());
-  const results = (runner && readResults(runner, report)) ?? { passed: 0, failed: 0, skipped: 0 };
+  const results = (runner && readResults(runner, report, chosen)) ?? { passed: 0, failed: 0, skipped: 0 };
   if (results.failed === 0 && runner && results.passed === 0) problems.push('no test ran');
   // A stage that failed without a failing test (types, lint, a crash) counts as one, so that the last line cannot hide it.
   if (results.failed === 0 && problems.length > 0) results.failed = 1;

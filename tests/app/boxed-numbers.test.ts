@@ -5,7 +5,9 @@ import { expect, test } from 'vitest';
 
 const script = fileURLToPath(new URL('./count-boxed-numbers.ts', import.meta.url));
 
-test('vectors, quaternions and impaired frames that are written over and over leave next to nothing to the collector', async () => {
+test('vectors, quaternions and impaired frames that are written over and over leave next to nothing to the collector', {
+  tags: ['full'],
+}, async () => {
   // The compiler works in the program's own thread: how soon it is done does not depend on how busy the machine is.
   const options = ['--no-concurrent-recompilation', '--import', 'tsx'];
   const { stdout } = await promisify(execFile)(process.execPath, [...options, script]);

@@ -48,7 +48,7 @@ describe('a situation of the goldens', () => {
     expect(distance(tilted[300]!.joints.hips!, before[300]!.joints.hips!)).toBeLessThan(1e-6);
   });
 
-  test('figures have no holes in any situation', async () => {
+  test('figures have no holes in any situation', { tags: ['full'] }, async () => {
     const short = { ...piece, frames: piece.frames.slice(0, 270) };
     const before = await driveIk(undisturbed(short, rateHz, 0));
     for (const [situation, stage] of Object.entries(situations)) {

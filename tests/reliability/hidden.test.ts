@@ -32,7 +32,9 @@ function person(host: ReturnType<typeof createLoopbackHost>, name: string, seat:
   };
 }
 
-test('a headset taken off for 20 s: others see “away” at once when told, within 3 s when not; back, play resumes', () => {
+test('a headset taken off for 20 s: others see “away” at once when told, within 3 s when not; back, play resumes', {
+  tags: ['full'],
+}, () => {
   const rows: Record<string, string> = {};
   for (const told of [true, false]) {
     const host = createLoopbackHost({ seed: 5 });

@@ -33,7 +33,9 @@ function spoiled(
   };
 }
 
-test('a wrist goes to rest and comes back without a jump, whichever hand, however lost, by each method that draws a body', async () => {
+test('a wrist goes to rest and comes back without a jump, whichever hand, however lost, by each method that draws a body', {
+  tags: ['full'],
+}, async () => {
   let worst = 0;
   let cases = 0;
   for (const name of ['ik', 'learned', 'paper'] as const) {

@@ -22,7 +22,9 @@ const faults: Readonly<Record<string, (output: Float32Array) => Promise<Float32A
   rejects: () => Promise.reject(new Error('out of memory')),
 };
 
-test('a network that breaks while it runs: no bone is ever NaN, the fault is known in the frame that asks it', async () => {
+test('a network that breaks while it runs: no bone is ever NaN, the fault is known in the frame that asks it', {
+  tags: ['full'],
+}, async () => {
   let bones = 0;
   let broken = 0;
   let latest = 0;

@@ -6,7 +6,9 @@ const root = fileURLToPath(new URL('../..', import.meta.url));
 const power = (...args: readonly string[]) =>
   spawnSync(process.execPath, ['scripts/study-power.mjs', ...args], { cwd: root, encoding: 'utf8' });
 
-test('npm run study:power says how many participants a study needs, or what is wrong with the question', () => {
+test('npm run study:power says how many participants a study needs, or what is wrong with the question', {
+  tags: ['full'],
+}, () => {
   const { stdout, status } = power('--effect', '1', '--studies', '2000');
   expect(stdout).toContain('Paired, d_z = 1, two-sided α = 0.05: 2000 simulated studies a row, normal values, seed 1.');
   expect(stdout).toMatch(/For a power of 0.8: (10|11) participants by the t-test/);

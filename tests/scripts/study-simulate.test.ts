@@ -99,7 +99,7 @@ describe('npm run study:simulate', () => {
   const simulateInto = (out: string, ...args: string[]) =>
     spawnSync(process.execPath, ['scripts/study-simulate.mjs', '--out', out, ...args], { cwd: root, encoding: 'utf8' });
 
-  test('writes exports that say SIMULATED, and reads back as one study', { timeout: 60_000 }, () => {
+  test('writes exports that say SIMULATED, and reads back as one study', () => {
     const out = join(directoryWith(), 'new');
     const { status, stdout, stderr } = simulateInto(out, '--participants', '6');
     expect(stderr).toBe('');
@@ -121,7 +121,7 @@ describe('npm run study:simulate', () => {
   });
 
   test('rehearses any plan with the effects that are stated: between cohorts, three conditions, several questionnaires', {
-    timeout: 60_000,
+    tags: ['full'],
   }, () => {
     const mixed = latencyPlan({
       cohorts: [
@@ -161,7 +161,7 @@ describe('npm run study:simulate', () => {
     [['--participants', 'many'], '--participants: expected a whole number'],
     [['--plan', 'none.json'], 'there is no file'],
     [['--speed', '9'], '--speed'],
-  ])('with %j says what is wrong', (args, message) => {
+  ])('with %j says what is wrong', { tags: ['full'] }, (args, message) => {
     const { status, stderr } = simulateInto(join(directoryWith(), 'new'), ...args);
     expect(status).toBe(1);
     expect(stderr).toContain(message);

@@ -1,5 +1,5 @@
 import { join } from 'node:path';
-import { expect, test } from 'vitest';
+import { describe, expect, test } from 'vitest';
 import { countLine, readResults } from '../../scripts/test-results.mjs';
 import { directoryWith } from '../temporary-directory';
 
@@ -15,19 +15,31 @@ test('pytest: errors while setting up count as failures', () => {
   expect(readResults('pytest', file)).toEqual({ passed: 4, failed: 3, skipped: 3 });
 });
 
-test('vitest: a file that does not load counts as a failure', () => {
-  const file = report({
-    numPassedTests: 7,
-    numFailedTests: 1,
-    numPendingTests: 1,
-    numTodoTests: 0,
-    testResults: [
-      { status: 'failed', assertionResults: [] },
-      { status: 'failed', assertionResults: [{}] },
-      { status: 'passed', assertionResults: [{}] },
-    ],
+describe('vitest', () => {
+  const outcomes = (...statuses: string[]) => statuses.map((status) => ({ status, tags: [] }));
+
+  test('a file that does not load counts as a failure', () => {
+    const file = report({
+      testResults: [
+        { status: 'failed', assertionResults: [] },
+        { status: 'failed', assertionResults: outcomes('passed', 'failed') },
+        { status: 'passed', assertionResults: outcomes('passed', 'skipped', 'todo') },
+      ],
+    });
+    expect(readResults('vitest', file)).toEqual({ passed: 2, failed: 2, skipped: 2 });
   });
-  expect(readResults('vitest', file)).toEqual({ passed: 7, failed: 2, skipped: 1 });
+
+  test('what was not asked for is not skipped', () => {
+    const full = { status: 'skipped', tags: ['full'] };
+    const file = report({
+      testResults: [{ status: 'passed', assertionResults: [...outcomes('passed', 'skipped'), full] }],
+    });
+    expect(readResults('vitest', file, (tags: string[]) => !tags.includes('full'))).toEqual({
+      passed: 1,
+      failed: 0,
+      skipped: 1,
+    });
+  });
 });
 
 test('Playwright: a server that does not start counts as a failure, a test that needed a second try does not', () => {

@@ -1,7 +1,10 @@
+import { spawnSync } from 'node:child_process';
 import { readdirSync, readFileSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
 import { describe, expect, onTestFinished, test, vi } from 'vitest';
 import { stages, stagesOf } from '../../scripts/test-stages.mjs';
 
+const root = fileURLToPath(new URL('../..', import.meta.url));
 const text = (path: string) => readFileSync(new URL(`../../${path}`, import.meta.url), 'utf8');
 
 describe('the suites', () => {
@@ -35,6 +38,20 @@ describe('the suites', () => {
 });
 
 describe('unit tests', () => {
+  test('run by day or in full, as their tags say, and all of them by night', async () => {
+    for (const tags of [[], ['full']]) {
+      expect((['unit', 'unit-full'] as const).filter((name) => stages[name].chosen(tags))).toHaveLength(1);
+    }
+    const filters = async (name: 'unit' | 'unit-full' | 'unit-nightly') => {
+      const [command = []] = await stages[name].commands('report.json');
+      return command.filter((argument: string) => argument.startsWith('--tags-filter'));
+    };
+    for (const name of ['PROPERTY_RUNS', 'STUDY_KILLS']) vi.stubEnv(name, undefined);
+    expect(await filters('unit')).toEqual(['--tags-filter=!full']);
+    expect(await filters('unit-full')).toEqual(['--tags-filter=full']);
+    expect(await filters('unit-nightly')).toEqual([]);
+  });
+
   test('look further by night: what asks for the night is told of it', async () => {
     for (const name of ['THREEPOINT_TESTS', 'PROPERTY_RUNS', 'THREEPOINT_NIGHTLY']) vi.stubEnv(name, undefined);
     // The next file of this process is to load its modules by day.
@@ -45,5 +62,37 @@ describe('unit tests', () => {
     vi.resetModules();
     await stages['unit-nightly'].commands('report.json');
     expect((await import('../nightly')).isNightly).toBe(true);
+  });
+});
+
+describe('browser tests', () => {
+  interface Suite {
+    readonly suites?: readonly Suite[];
+    readonly specs?: readonly { readonly id: string; readonly title: string }[];
+  }
+  const specsOf = ({ suites = [], specs = [] }: Suite): { readonly id: string; readonly title: string }[] => [
+    ...specs,
+    ...suites.flatMap(specsOf),
+  ];
+  /** What the runner lists when it is asked for these. */
+  const chosen = (tests: string) => {
+    const { status, stdout, stderr } = spawnSync(
+      process.execPath,
+      ['node_modules/@playwright/test/cli.js', 'test', '--list', '--reporter=json'],
+      { cwd: root, encoding: 'utf8', env: { ...process.env, THREEPOINT_TESTS: tests }, maxBuffer: 2 ** 26 },
+    );
+    expect(status, stderr).toBe(0);
+    return specsOf(JSON.parse(stdout) as Suite);
+  };
+
+  test('run by day, in full, in real time or by night, each in one of them, and those marked nightly by night', {
+    tags: ['full'],
+  }, () => {
+    const [all, nightly] = [chosen('all'), chosen('nightly')];
+    const suites = [chosen('day'), chosen('full'), chosen('realtime'), nightly];
+    const ids = (specs: typeof all) => specs.map(({ id }) => id).toSorted();
+    expect(ids(suites.flat())).toEqual(ids(all));
+    expect(ids(nightly)).toEqual(ids(all.filter(({ title }) => title.includes('@nightly'))));
+    for (const suite of suites) expect(suite.length).toBeGreaterThan(0);
   });
 });

@@ -33,7 +33,10 @@ async function answerTo(port: number, bytes: Buffer): Promise<string> {
 /** Empty lines alone are no request: nothing need be answered. */
 const asks = (bytes: Buffer): boolean => /[^\r\n]/.test(bytes.toString('latin1'));
 
-test('every request line, method, header and body gets an answer from the server, and it lives on', async () => {
+test('every request line, method, header and body gets an answer from the server, and it lives on', {
+  tags: ['full'],
+  timeout: 1_800_000,
+}, async () => {
   const server = await forkServer();
   const health = probeHealth(server.url);
   const { p95Ms: idleP95Ms } = await health(100);
@@ -86,4 +89,4 @@ test('every request line, method, header and body gets an answer from the server
     'health meanwhile, p50 [ms]': p50Ms,
     'p95 [ms]': p95Ms,
   });
-}, 1_800_000);
+});

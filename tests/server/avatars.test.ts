@@ -76,7 +76,7 @@ describe('an avatar in the store', () => {
     expect((await fetch(`${relay.url}/api/avatars/${hash}?room=birch`)).status).toBe(401);
   });
 
-  test('goes with its owner’s seat, and with the room', async () => {
+  test('goes with its owner’s seat, and with the room', { tags: ['full'] }, async () => {
     const [ann, ben] = [await seated('fir'), await seated('fir')];
     const bytes = file();
     const hash = hashOf(bytes);

@@ -92,7 +92,9 @@ describe('a body that is not wanted', () => {
 });
 
 describe('connections', () => {
-  test('a flood of silent ones from one address is counted, bounded and over after the handshake’s deadline; others do not notice', async () => {
+  test('a flood of silent ones from one address is counted, bounded and over after the handshake’s deadline; others do not notice', {
+    tags: ['full'],
+  }, async () => {
     const flood = isNightly ? 1500 : 200;
     const limit = isNightly ? 1000 : 100;
     const server = await forkServer({ THREEPOINT_CONNECTIONS_PER_ADDRESS: String(limit) });
@@ -139,7 +141,7 @@ describe('connections', () => {
       'health for others, p95 before [ms]': before,
       'during [ms]': during,
     });
-  }, 120_000);
+  });
 
   test('behind a proxy that is believed, WebSockets are counted by the address it tells; otherwise what it says is nothing', async () => {
     const limit = 8;
@@ -174,7 +176,9 @@ describe('connections', () => {
   });
 });
 
-test('a connection that does not say what it wants is ended at the deadline: told so before its request, and as a WebSocket that joins nothing', async () => {
+test('a connection that does not say what it wants is ended at the deadline: told so before its request, and as a WebSocket that joins nothing', {
+  tags: ['full'],
+}, async () => {
   const relay = await relayWith({});
   const credentials = await certificateFor([], directoryWith(), new Date());
   const secure = await serve(noPage, { host: '127.0.0.1', port: 0, credentials });
@@ -193,7 +197,7 @@ test('a connection that does not say what it wants is ended at the deadline: tol
   expect(relay.relay.census).toMatchObject({ sockets: 0, connections: 0 });
 });
 
-test('an answer that is not read is not kept for ever', async () => {
+test('an answer that is not read is not kept for ever', { tags: ['full'] }, async () => {
   const door = createDoor({ perAddress: 8, behindProxy: false });
   const page = createPageHandler(directoryWith({ 'index.html': Buffer.alloc(32e6) }));
   const server = await serve(page, { host: '127.0.0.1', port: 0, door, silenceMs: 500 });

@@ -20,7 +20,9 @@ const filesIn = (directory: string): Buffer[] =>
 /** Fields that only a tracked pose or a body has. */
 const motionFields = /"(leftHand|rightHand|localRotations|hipsPosition|orientation|frames)"\s*:\s*[[{]/;
 
-test('a match over sockets and a study without consent to motion leave no motion on the disk', async () => {
+test('a match over sockets and a study without consent to motion leave no motion on the disk', {
+  tags: ['full'],
+}, async () => {
   const directory = directoryWith();
   const file = join(directory, 'studies.db');
   const store = openStudyStore(file);

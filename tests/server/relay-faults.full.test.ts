@@ -1,3 +1,4 @@
+// @module-tag full
 import { afterEach, describe, expect, test } from 'vitest';
 import { WebSocket } from 'ws';
 import { createRoomTokens } from '../../server/room-tokens';

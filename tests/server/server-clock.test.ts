@@ -9,7 +9,9 @@ import { createSlowWay } from './slow-way';
 
 const hour = 3600;
 
-test('a match goes on when the server’s clock goes an hour ahead and an hour back, and who lost the connection comes back to their seat', async () => {
+test('a match goes on when the server’s clock goes an hour ahead and an hour back, and who lost the connection comes back to their seat', {
+  tags: ['full'],
+}, async () => {
   const server = await forkServer();
   const way = await createSlowWay(server.port);
   onTestFinished(() => way.close());
@@ -46,9 +48,11 @@ test('a match goes on when the server’s clock goes an hour ahead and an hour b
     'players gone': people.length - joined(),
     'rounds void': ann.connection.room?.voided ?? 1,
   });
-}, 120_000);
+});
 
-test('a study goes on when the server’s clock goes an hour ahead and an hour back: nothing is refused, the order stays', async () => {
+test('a study goes on when the server’s clock goes an hour ahead and an hour back: nothing is refused, the order stays', {
+  tags: ['full'],
+}, async () => {
   const server = await forkServer();
   const ask = async (method: string, path: string, token: string | null, json?: unknown) => {
     const response = await fetch(`${server.url}/api/studies${path}`, {

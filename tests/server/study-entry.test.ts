@@ -144,7 +144,7 @@ describe('3000 guesses from one address', () => {
   }
 
   test('of the experimenter’s token are hardly looked at, and the experimenter goes on working', {
-    timeout: 60_000,
+    tags: ['full'],
   }, async () => {
     const server = await servedPaperStudy();
     const list = (token: string) => server.ask('GET', '/api/studies', { token, from });
@@ -159,7 +159,7 @@ describe('3000 guesses from one address', () => {
     expect(status).toBe(200);
   });
 
-  test('of a withdrawal code are hardly looked at, and what is recorded stays', { timeout: 60_000 }, async () => {
+  test('of a withdrawal code are hardly looked at, and what is recorded stays', { tags: ['full'] }, async () => {
     const server = await servedPaperStudy();
     const { json } = await server.ask('POST', claimPath('P01'), { json: server.invited('P01') });
     const path = '/api/studies/paper/withdraw';
@@ -168,7 +168,7 @@ describe('3000 guesses from one address', () => {
     expect(withdrawn.json).toMatchObject({ participant: 'P01', reason: 'withdrawn' });
   });
 
-  test('of an invitation, all in one packet, are hardly looked at', async () => {
+  test('of an invitation, all in one packet, are hardly looked at', { tags: ['full'] }, async () => {
     const server = await servedPaperStudy();
     const { port } = new URL(server.origin);
     const requests = guesses

@@ -1,3 +1,4 @@
+// @module-tag full
 import { expect, test } from 'vitest';
 import { tell } from '../tell';
 import { killedStudy } from './killed-study';

@@ -359,7 +359,7 @@ describe('a server killed while it writes (kill -9)', () => {
       });
     });
 
-  test('loses nothing that was acknowledged, and no half of a batch remains', { timeout: 120_000 }, async () => {
+  test('loses nothing that was acknowledged, and no half of a batch remains', { tags: ['full'] }, async () => {
     const { store, file } = withPaperStudy();
     store.storeRecords('paper', 'P01', completed().slice(0, 1), now);
     store.close();

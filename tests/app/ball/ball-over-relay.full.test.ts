@@ -1,3 +1,4 @@
+// @module-tag full
 import { afterAll, expect, test } from 'vitest';
 import { type BallPlay, createBallPlay } from '../../../src/app/ball/ball-play';
 import { defaultCalibration } from '../../../src/core/body/calibration';

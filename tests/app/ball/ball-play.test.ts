@@ -106,7 +106,7 @@ describe('one person with two bots', () => {
     waiting.until(() => waiting.player.probe()?.phase === 'running', 3);
   });
 
-  it('plays again when all are ready, with roles moved on if asked', () => {
+  it('plays again when all are ready, with roles moved on if asked', { tags: ['full'] }, () => {
     const { player, until } = page({ seat: 0, ball: { balls: 2, seconds: 20 } });
     until(() => player.probe()?.phase === 'over', 40);
     expect(player.probe()?.role).toBe('thrower');
@@ -127,7 +127,7 @@ describe('one person with two bots', () => {
     expect(player.newest?.bodies).toHaveLength(3);
   });
 
-  it('built-in players throw as well where pictures come four times a second', () => {
+  it('built-in players throw as well where pictures come four times a second', { tags: ['full'] }, () => {
     const { player, until, events } = page({ seat: 0, rateHz: 4 });
     until(() => player.probe()?.phase === 'over', 110);
     expect(player.probe()?.end).toBe('balls');

@@ -101,7 +101,9 @@ async function group({ stopped = false } = {}) {
   return { pages, pass, trials: pages.map((page) => page.start()) };
 }
 
-test('who pauses in a shared match stops it for the whole group, and the pause counts for nothing', async () => {
+test('who pauses in a shared match stops it for the whole group, and the pause counts for nothing', {
+  tags: ['full'],
+}, async () => {
   const { pages, pass, trials } = await group();
   pass(6);
   expect(trials.map(({ waitingFor }) => waitingFor)).toEqual([null, null, null]);
@@ -135,7 +137,9 @@ test('a participant who paused, loaded the page again and starts lets the clock 
   expect(pages.map((page) => page.left() < seconds)).toEqual([true, true, true]);
 });
 
-test('a match that takes a slow page by surprise lasted as long for its participant as for the others', async () => {
+test('a match that takes a slow page by surprise lasted as long for its participant as for the others', {
+  tags: ['full'],
+}, async () => {
   const { pages, pass } = await group();
   pass(1, 0);
   pass(seconds + 8);

@@ -96,7 +96,7 @@ describe('an arm whose hand has jumped', () => {
     );
   });
 
-  test('takes a fifth of a second at least, and elbow and wrist stay below 2.25 m/s', () => {
+  test('takes a fifth of a second at least, and elbow and wrist stay below 2.25 m/s', { tags: ['full'] }, () => {
     fc.assert(
       fc.property(arm, arm, (from, wanted) => {
         const rateHz = 240;

@@ -335,7 +335,9 @@ describe('a hand that comes back far from where it rests', () => {
     );
   });
 
-  test('is drawn without a step of its own over 5 cm, wherever in reach it comes back, turning up to 86° a second', () => {
+  test('is drawn without a step of its own over 5 cm, wherever in reach it comes back, turning up to 86° a second', {
+    tags: ['full'],
+  }, () => {
     fc.assert(
       fc.property(inReach, inReach, number(-Math.PI, Math.PI), number(-1.5, 1.5), (from, back, yaw, turning) => {
         const at = turningPerson(yaw, turning);

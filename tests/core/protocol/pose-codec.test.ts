@@ -307,7 +307,9 @@ describe('bytes', () => {
   });
 });
 
-test('100,000 bad packets (a million at night) decode to null or to a finite pose, and throw nothing', async () => {
+test('100,000 bad packets (a million at night) decode to null or to a finite pose, and throw nothing', {
+  tags: ['full'],
+}, async () => {
   const cases = isNightly ? 1_000_000 : 100_000;
   let random = { seed };
   const chance = (): number => {

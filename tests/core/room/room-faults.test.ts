@@ -20,7 +20,7 @@ const allFinite = (value: unknown): boolean => {
   return typeof value !== 'object' || value === null || Object.values(value).every(allFinite);
 };
 
-test('fuzzed packets of every kind throw nothing and leave no NaN in any state', () => {
+test('fuzzed packets of every kind throw nothing and leave no NaN in any state', { tags: ['full'] }, () => {
   const packets = isNightly ? 1_000_000 : 100_000;
   const chance = randomNumbers(20261121);
   const pick = (count: number) => Math.floor(chance() * count);
@@ -105,7 +105,7 @@ test('fuzzed packets of every kind throw nothing and leave no NaN in any state',
   expect(understood).toBeGreaterThan(packets / 50);
 });
 
-test('deeds told twice, out of order and again later score once', () => {
+test('deeds told twice, out of order and again later score once', { tags: ['full'] }, () => {
   const deeds = 100_000;
   const chance = randomNumbers(5);
   const balls = 20;
@@ -212,7 +212,7 @@ describe('latency', () => {
         : 'missed';
   }
 
-  test('a throw is judged as it would be without any', () => {
+  test('a throw is judged as it would be without any', { tags: ['full'] }, () => {
     const throws = isNightly ? 1000 : 200;
     let same = 0;
     const counts = { caught: 0, rim: 0, missed: 0 };
@@ -349,7 +349,7 @@ test('5 s and 29 s of silence cost nothing: same seat, same score, one snapshot'
   tell('silence', figures);
 });
 
-test('rooms that live for hours keep nothing: the same answer, no growth', () => {
+test('rooms that live for hours keep nothing: the same answer, no growth', { tags: ['full'] }, () => {
   const hours = isNightly ? 4 : 0.1;
   const told = toldRoom({ ball: { seconds: 5, balls: 2 } });
   told.begin();

@@ -1,3 +1,4 @@
+// @module-tag full
 import { spawnSync } from 'node:child_process';
 import { expect, test } from 'vitest';
 import { normalNumbers } from '../../../src/core/math/random';

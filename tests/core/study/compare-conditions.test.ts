@@ -50,7 +50,7 @@ describe('an analysis of simulated studies', () => {
       (comparison) => (comparison[p] ?? 1) < 0.05,
     ).length;
 
-  test('finds nothing in at least 95 of 100 studies in which there is nothing', () => {
+  test('finds nothing in at least 95 of 100 studies in which there is nothing', { tags: ['full'] }, () => {
     for (const p of ['holmP', 'ranksHolmP'] as const) {
       const silent = Array.from({ length: 100 }, (_, study) => findings(nullAnswerModel, study, p)).filter(
         (found) => found === 0,

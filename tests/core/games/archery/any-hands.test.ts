@@ -63,7 +63,9 @@ describe('any hands at all', () => {
       return parts.flatMap((whole, i) => [whole, ...chance.flatMap(([after, what]) => (after === i ? [what] : []))]);
     });
 
-  test('make finite views and actions, and shots only of nocked arrows by hands that are seen', () => {
+  test('make finite views and actions, and shots only of nocked arrows by hands that are seen', {
+    tags: ['full'],
+  }, () => {
     let shots = 0;
     let cancelled = 0;
     fc.assert(

@@ -30,7 +30,7 @@ describe('the built-in archer', () => {
     },
   );
 
-  test('wins at any height, seed, hand, button and frame rate, standing or seated', () => {
+  test('wins at any height, seed, hand, button and frame rate, standing or seated', { tags: ['full'] }, () => {
     fc.assert(
       fc.property(
         fc.record({
@@ -71,7 +71,7 @@ describe('the built-in archer', () => {
     }
   });
 
-  test('shoots at no target twice, however long the frame after a release takes', () => {
+  test('shoots at no target twice, however long the frame after a release takes', { tags: ['full'] }, () => {
     const archer: ArcherBody = { bowSide: 'left', eyeHeight: 1.6 };
     const opened = playRound({ archer, times: steady(90) }).gestures.findIndex(({ actions }) =>
       actions.some(({ type }) => type === 'release'),

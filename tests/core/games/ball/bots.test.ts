@@ -75,7 +75,7 @@ describe('bots', () => {
     expect(other.events).not.toEqual(first.events);
   });
 
-  it('are tall or small, stand or sit, press a trigger or pinch, at any frame rate', () => {
+  it('are tall or small, stand or sit, press a trigger or pinch, at any frame rate', { tags: ['full'] }, () => {
     fc.assert(
       fc.property(
         fc.record({

@@ -9,7 +9,7 @@ import { add, type Vec3, vec3 } from '../../../../src/core/math/vec3';
 import { evenly, seed } from '../../arbitraries';
 import { headOf, hold, inFront, leftThrower, stand, tickSeconds, told, velocityTo } from './playing';
 
-test('1,000 throws end the same at round trips of 0 to 200 ms as at none', () => {
+test('1,000 throws end the same at round trips of 0 to 200 ms as at none', { tags: ['full'] }, () => {
   let random = { seed };
   const chance = (): number => {
     const next = nextRandom(random);

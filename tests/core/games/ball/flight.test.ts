@@ -135,7 +135,7 @@ describe('a basket that moves', () => {
     expect(caught).toBeGreaterThan(2000);
   });
 
-  test('agrees with looking every 20 microseconds', () => {
+  test('agrees with looking every 20 microseconds', { tags: ['full'] }, () => {
     const scene = fc.record({
       start: vector(0.6).map((v) => add(v, vec3(0, 1.9, 0))),
       noise: vector(3),
