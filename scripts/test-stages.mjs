@@ -30,7 +30,7 @@ const playwright = (tests) => async (report) => {
  */
 export const stages = {
   // The longest first: of those of one core two run side by side.
-  // The package, built as it is published: its parts, its types for every resolution of modules it is made for, what each entry weighs.
+  // The package, built as it is published: its parts, where its types are found, what each entry weighs.
   library: {
     suite: 'day',
     singleCore: true,
@@ -38,7 +38,6 @@ export const stages = {
       [process.execPath, 'scripts/build-library.mjs'],
       node('publint/src/cli.js', 'dist-library', '--strict'),
       node('@arethetypeswrong/cli/dist/index.js', '--pack', 'dist-library', '--profile', 'esm-only', '--quiet'),
-      [process.execPath, 'scripts/check-library-types.mjs'],
     ],
   },
   types: {
@@ -87,6 +86,15 @@ export const stages = {
     commands: (report) => vitest(report, '--tags-filter=!full'),
   },
   e2e: { suite: 'day', runner: 'playwright', commands: playwright('day') },
+  // A page of the package's users, compiled against it by every resolution of modules it is made for.
+  'library-types': {
+    suite: 'full',
+    singleCore: true,
+    commands: () => [
+      [process.execPath, 'scripts/build-library.mjs'],
+      [process.execPath, 'scripts/check-library-types.mjs'],
+    ],
+  },
   'unit-full': {
     suite: 'full',
     runner: 'vitest',
