@@ -18,7 +18,17 @@ CORPUS = generate_corpus(people=3, clips=2, frames=80, seed=6)
 PARTS = BodyParts(CORPUS, tuple(CORPUS.people))
 EXACT = TrackerConfig(*[0.0] * 7)
 PLAIN = AugmentConfig(
-    recombined=0, lost_hand=0, late=0, seated=0, arm_scale=0, eye_height_error=0, arm_span_error=0, unmeasured_hands=1, typed_forearms=0, trackers=EXACT
+    recombined=0,
+    lost_hand=0,
+    late=0,
+    seated=0,
+    arm_scale=0,
+    eye_height_error=0,
+    arm_span_error=0,
+    unmeasured_hands=1,
+    mismeasured_hands=0,
+    typed_forearms=0,
+    trackers=EXACT,
 )
 STILL = np.array([0.0, 0.0, 0.0, 1.0])
 
@@ -158,6 +168,19 @@ def test_measured_hands_continue_their_forearms_on_average():
     measured, unmeasured = bends(0), bends(1)
     # Wrists of generated people wave by some 20°; those of this corpus are worn 0.5 rad off besides.
     assert np.median(measured) < 0.75 * np.median(unmeasured)
+
+
+def test_a_hand_held_otherwise_than_measured_is_turned_and_stays_where_it_is():
+    config = replace(PLAIN, unmeasured_hands=0, mismeasured_turn=0.3)
+    right, wrong = (
+        draw_batch(PARTS, 1000, replace(config, mismeasured_hands=part), np.random.default_rng(11)) for part in (0.0, 0.2)
+    )
+    np.testing.assert_allclose(hand_positions(wrong.inputs), hand_positions(right.inputs), atol=1e-6)
+    np.testing.assert_allclose(joints_of(wrong), joints_of(right), atol=1e-5)
+    turned = [np.abs(wrong.inputs[:, hand][:, 3:] - right.inputs[:, hand][:, 3:]).max(axis=1) > 1e-4 for hand in HANDS]
+    assert np.mean(turned, axis=1) == pytest.approx([0.2, 0.2], abs=0.04)
+    # Each hand by itself.
+    assert np.mean(turned[0] & turned[1]) == pytest.approx(0.04, abs=0.02)
 
 
 def hand_turned_corpus():

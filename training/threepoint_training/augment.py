@@ -49,6 +49,9 @@ class AugmentConfig:
     arm_span_error: float = 0.02
     # Wearers who were not measured with their arms ahead: their hands are as they come.
     unmeasured_hands: float = 0.3
+    # Hands held otherwise than they were measured, each by itself: a wrist that was bent meanwhile, a controller gripped anew.
+    mismeasured_hands: float = 0.1
+    mismeasured_turn: float = np.radians(40.0)
     # Wearers who typed how long their forearm is, and by how much they err [m].
     typed_forearms: float = 0.5
     forearm_error: float = FOREARM_ERROR
@@ -270,6 +273,8 @@ def draw_batch(parts: BodyParts, count: int, config: AugmentConfig, random: np.r
     tilts = bodies.tilts()
     tilts = np.where(mirrored[:, None, None], tilts[:, ::-1] * hand_tilt.MIRRORED_TILT, tilts)
     tilts = measured_tilts(tilts, worn[:, 1:], config.trackers, random)
+    otherwise = random.normal(size=tilts.shape) * config.mismeasured_turn / np.sqrt(2)
+    tilts = tilts + otherwise * (random.uniform(size=(count, 2, 1)) < config.mismeasured_hands)
     measured = random.uniform(size=(count, 1)) >= config.unmeasured_hands
     calibrated = calibrated.with_hands(tilts, measured & hand_tilt.believed(tilts))
     forearms = bodies.forearms()
