@@ -105,17 +105,24 @@ def compact_json(content: Any) -> str:
 def _found_by_other_runs(run: TrainingRun, name: str) -> dict[str, dict[str, float]]:
     """What folds do not find anew: errors of people held out in turn and, where this run leaves it out, of the paper's protocol."""
     kept = (IN_TURN,) if run.config.frame_random else (IN_TURN, "frame-random")
-    contract = _contract(run, name)
-    if contract is None or contract["trainedOn"]["corpusHash"] != run.corpus.corpus_hash:
+    contract = _contract_of_this_motion(run, name)
+    if contract is None:
         return {}
     return {row: values for row, values in contract["errors"].items() if any(mark in row for mark in kept)}
 
 
+def warn_without_contract(run: TrainingRun, name: str) -> None:
+    """Says that what a run is about to find will stand in no contract; before it trains, for that may take half an hour."""
+    if _contract_of_this_motion(run, name) is None:
+        run.report.console.print(
+            f"No contract will state these errors: {run.config.cross_validation} has no {name} network of this motion (--cross-validation DIR names another)"
+        )
+
+
 def keep_in_contract(run: TrainingRun, name: str, found: dict[str, dict[str, float]]) -> None:
-    """Adds errors to the contract of the first fold's network, from which the page's takes them; there may be none yet."""
-    contract = _contract(run, name)
-    if contract is None or contract["trainedOn"]["corpusHash"] != run.corpus.corpus_hash:
-        run.report.console.print(f"No contract states these errors: {run.config.cross_validation} has no {name} network of this motion")
+    """Adds errors to the contract of the first fold's network, from which the page's takes them, where there is one."""
+    contract = _contract_of_this_motion(run, name)
+    if contract is None:
         return
     contract["errors"] |= {row: {joint: round(value, 2) for joint, value in values.items()} for row, values in found.items()}
     (run.config.cross_validation / f"{name}.json").write_text(json.dumps(contract, indent=2, ensure_ascii=False) + "\n")
@@ -125,6 +132,11 @@ def _contract(run: TrainingRun, name: str) -> dict[str, Any] | None:
     """Of the first fold's network, as an earlier run left it."""
     file = run.config.cross_validation / f"{name}.json"
     return json.loads(file.read_text()) if file.exists() else None
+
+
+def _contract_of_this_motion(run: TrainingRun, name: str) -> dict[str, Any] | None:
+    contract = _contract(run, name)
+    return contract if contract is not None and contract["trainedOn"]["corpusHash"] == run.corpus.corpus_hash else None
 
 
 def earlier_errors(run: TrainingRun, name: str) -> tuple[dict[str, dict[str, float]], dict[str, list[float]] | None]:

@@ -83,6 +83,7 @@ def _ablate(run: TrainingRun) -> dict[str, dict[str, float]]:
 
 
 def _leave_one_out(run: TrainingRun) -> None:
+    cross_validate.warn_without_contract(run, "learned")
     done, groups = 0, run.config.groups
     with run.report.task("leave one out", None) as advance:
 
