@@ -1,4 +1,4 @@
-import { type AvatarHash, isAvatarHash, mostAvatarBytes, type WornAvatar } from '../src/core/protocol/worn-avatar';
+import { type AvatarHash, mostAvatarBytes, type WornAvatar } from '../src/core/protocol/worn-avatar';
 
 export interface AvatarStoreOptions {
   /** All files together, those on their way included [bytes]; 0: none is taken. */
@@ -29,6 +29,8 @@ interface StoredAvatar extends AvatarOwner {
   readonly hash: AvatarHash;
   readonly bytes: Uint8Array;
   readonly storedAt: number;
+  /** Its owner was seen with it on. */
+  wasWorn: boolean;
 }
 
 /** A file may lie here for so long [s] before its owner has said that they have it on. */
@@ -87,7 +89,7 @@ export class AvatarStore {
     return {
       keep: (hash, bytes) => {
         this.#coming.delete(owner);
-        this.#files.set(owner, { room, identity, address, hash, bytes, storedAt: this.#options.now() });
+        this.#files.set(owner, { room, identity, address, hash, bytes, storedAt: this.#options.now(), wasWorn: false });
       },
       cancel: () => this.#coming.delete(owner),
     };
@@ -107,10 +109,12 @@ export class AvatarStore {
   /** Forgets what no one has on any more; asked again and again. */
   sweep(): void {
     const now = this.#options.now();
-    for (const [owner, { room, identity, hash, storedAt }] of this.#files) {
-      const worn = this.#options.wornBy(room, identity);
-      const waiting = worn !== null && !isAvatarHash(worn) && now - storedAt < graceSeconds;
-      if (worn !== hash && !waiting) this.#files.delete(owner);
+    for (const [owner, file] of this.#files) {
+      const worn = this.#options.wornBy(file.room, file.identity);
+      if (worn === file.hash) file.wasWorn = true;
+      // Word of a file comes after it: until then its owner has on what they had before, another file perhaps.
+      const waiting = worn !== null && !file.wasWorn && now - file.storedAt < graceSeconds;
+      if (worn !== file.hash && !waiting) this.#files.delete(owner);
     }
   }
 

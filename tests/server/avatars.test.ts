@@ -96,15 +96,25 @@ describe('an avatar in the store', () => {
   });
 
   test('goes when its owner has another one on, and the next takes its place', async () => {
-    const ann = await seated('elm');
+    const [ann, ben] = [await seated('elm'), await seated('elm')];
+    const wears = async (avatar: string) => {
+      const before = ben.heard.length;
+      ann.say({ type: 'wear', avatar });
+      await until('the room to know', () =>
+        ben.heard.slice(before).some((m) => m.type === 'seat' && m.info?.[6] === avatar),
+      );
+    };
     const [first, second] = [file(), file()];
     await ann.store(first);
-    ann.say({ type: 'wear', avatar: hashOf(first) });
+    await wears(hashOf(first));
     await ann.store(second);
     expect(relay.relay.avatars.get('elm', hashOf(first))).toBeNull();
-    ann.say({ type: 'wear', avatar: hashOf(second) });
+    // The store is swept at any moment: between a file and word of it, too.
+    relay.relay.avatars.sweep();
+    await wears(hashOf(second));
+    relay.relay.avatars.sweep();
     expect((await ann.ask('GET', hashOf(second))).status).toBe(200);
-    ann.say({ type: 'wear', avatar: hashOf(first) });
+    await wears(hashOf(first));
     await until('the other file gone', () => relay.relay.avatars.get('elm', hashOf(second)) === null);
   });
 });
