@@ -2,7 +2,7 @@ import type { XRDevice, XRDeviceConfig } from 'iwer';
 import { allReleased, type Buttons } from '../core/games/button-presses';
 import { composeTransforms, invertTransform, type Pose, type TrackedPose } from '../core/math/pose';
 import { fromAxes } from '../core/math/quat';
-import type { Side } from '../core/math/side';
+import { type Side, sides } from '../core/math/side';
 import { vec3 } from '../core/math/vec3';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import { gripFromWrist, type HandleFit, handleFit, wristFromGrip } from './grip-offsets';
@@ -19,8 +19,6 @@ export interface Emulator {
   /** Shows or hides the developer's panel; it is loaded when first shown. */
   setPanelVisible(visible: boolean): Promise<void>;
 }
-
-const sides = ['left', 'right'] as const;
 
 /** Where a person of 1.70 m holds head and hands before anything moves them. */
 const rest = { head: vec3(0, 1.59, 0), left: vec3(-0.22, 1.1, -0.32), right: vec3(0.22, 1.1, -0.32) };

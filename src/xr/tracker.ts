@@ -2,7 +2,7 @@ import type { HandShape } from '../core/body/hand-shape';
 import { allReleased, type HandButtons } from '../core/games/button-presses';
 import type { Pose, TrackedPose } from '../core/math/pose';
 import { conjugate, fromAxisAngle, multiply, rotate } from '../core/math/quat';
-import type { Side } from '../core/math/side';
+import { type Side, sides } from '../core/math/side';
 import { scale, subtract, up } from '../core/math/vec3';
 import { headingOf } from '../core/tracking/heading';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
@@ -24,8 +24,6 @@ const more = (a: HandButtons, b: HandButtons): HandButtons => ({
   grip: Math.max(a.grip, b.grip),
   pinch: Math.max(a.pinch, b.pinch),
 });
-
-const sides = ['left', 'right'] as const;
 
 /** How a side is tracked at the moment. */
 export type InputKind = 'controller' | 'hand' | 'none';

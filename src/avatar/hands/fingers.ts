@@ -4,11 +4,9 @@ import { FingerMemory } from '../../core/body/finger-memory';
 import { fingerFrames, type HandGeometry, makeFingerFrames } from '../../core/body/hand-geometry';
 import { copyHandShape, type FingerName, type HandShape, makeHandShape } from '../../core/body/hand-shape';
 import { conjugate, multiply, quat } from '../../core/math/quat';
-import type { Side } from '../../core/math/side';
+import { type Side, sides } from '../../core/math/side';
 import type { Vec3 } from '../../core/math/vec3';
 import { ofSide, type RigFinger, type RigHand, readHand } from './finger-bones';
-
-const sides = ['left', 'right'] as const;
 
 const frames = makeFingerFrames();
 /** How each bone of a finger has turned since the rest pose. */

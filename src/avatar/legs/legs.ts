@@ -1,5 +1,5 @@
 import type { GaitPoints } from '../../core/estimation/gait-features';
-import type { Side } from '../../core/math/side';
+import { type Side, sides } from '../../core/math/side';
 import { vec3 } from '../../core/math/vec3';
 import type { AvatarJoint, Rig } from '../rig/rig';
 import { LegPosture, type LegProportions } from './leg-posture';
@@ -8,7 +8,6 @@ const bonesOf = {
   left: { thigh: 'leftUpperLeg', shank: 'leftLowerLeg', foot: 'leftFoot' },
   right: { thigh: 'rightUpperLeg', shank: 'rightLowerLeg', foot: 'rightFoot' },
 } as const satisfies Record<Side, Record<string, AvatarJoint>>;
-const sides = ['left', 'right'] as const;
 
 /** Of a rig that has no legs of its own. */
 const averageLegs: LegProportions = {

@@ -12,12 +12,10 @@ import {
   twistAngle,
   twistOf,
 } from '../../core/math/quat';
-import type { Side } from '../../core/math/side';
+import { type Side, sides } from '../../core/math/side';
 import type { Steps } from '../in-steps';
 import type { HelperJoint, Rig } from './rig';
 import { type SpreadArm, spreadArms } from './spread-weights';
-
-const sides = ['left', 'right'] as const;
 
 /** One arm's joints that its file lacks. */
 interface ArmHelpers {

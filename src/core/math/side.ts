@@ -1,4 +1,6 @@
 /** Of the body, as the person says it: the wearer's left is `left`. */
 export type Side = 'left' | 'right';
 
+export const sides = ['left', 'right'] as const satisfies readonly Side[];
+
 export const otherSide = (side: Side): Side => (side === 'left' ? 'right' : 'left');

@@ -1,4 +1,4 @@
-import type { Side } from '../math/side';
+import { type Side, sides } from '../math/side';
 import { type BitReader, type BitWriter, createBitReader, createBitWriter } from './bits';
 import { fingerFields } from './finger-steps';
 import { readHandPlace, writeHandPlace } from './hand-place';
@@ -14,7 +14,6 @@ import {
   heightBits,
   makePacketSteps,
   type PacketSteps,
-  sides,
   stretchBits,
   swivelBits,
   type Tracking,

@@ -17,8 +17,6 @@ import {
   type VecSteps,
 } from './quantise';
 
-export const sides = ['left', 'right'] as const;
-
 /** The head: ±8.19 m from the origin of the floor frame, −1 to 3.095 m above it; beyond: at the edge. No headset plays in more than 15 m. */
 export const headBits = 16;
 export const heightBits = 14;
