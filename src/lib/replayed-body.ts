@@ -16,9 +16,9 @@ export interface MovingReplay {
 }
 
 /** A body lives through so many seconds before a moment to stand in it as one that came there moving. */
-const leadSeconds = 1;
+const leadSeconds = 5;
 /** Frames per second of the lead at most, however many a file has. */
-const mostHz = 120;
+const mostHz = 60;
 
 /** Frames of a recording up to this second of it, which is dated `time` [s]. */
 export function* leadUpTo(recording: Replayable, seconds: number, time: number): Generator<TrackingFrame> {
@@ -32,7 +32,7 @@ export function* leadUpTo(recording: Replayable, seconds: number, time: number):
 
 /**
  * A body that a replay may move. While the replay stands still, so does the body's time: nothing that it knows of the motion fades. Where the
- * replay stands at another second, or another method draws, the body lives through the second before.
+ * replay stands at another second, or another method draws, the body lives through the seconds before.
  */
 export class ReplayedBody {
   readonly #body: Pick<BareBody, 'update' | 'relive' | 'pose' | 'estimator'>;

@@ -94,8 +94,8 @@ describe('a body in a session of three.js', () => {
   test.each([true, false])('draws the body that the device tracks where it is asked to (%s)', async (deviceBody) => {
     const { headset, tracker, run } = await begin({ calibration: defaultCalibration, estimator: 'device', deviceBody });
     headset.putOn();
-    // What is drawn has settled: the correction comes with a half-life of 60 ms.
-    run(72);
+    // What is drawn has settled: the correction within a tenth of a second, what is noticed of the hands within ten.
+    run(720);
     const body = structuredClone(tracker.pose!.body);
     const joints = toXRBody(body!, defaultCalibration);
     // A device that sees the wearer's elbows 4 cm further out than they would be guessed.

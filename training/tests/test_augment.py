@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from threepoint_training import quaternion
+from threepoint_training import fit_ik, hand_tilt, quaternion
 from threepoint_training.augment import AugmentConfig, BodyParts, draw_batch
 from threepoint_training.chest_features import CHEST_FEATURES, chest_axes
 from threepoint_training.features import ARM_LENGTH, FEATURES, HANDS, IK_JOINTS, SEEN, frame_features, hand_positions
@@ -25,26 +25,30 @@ PLAIN = AugmentConfig(
     arm_scale=0,
     eye_height_error=0,
     arm_span_error=0,
-    unmeasured_hands=1,
-    mismeasured_hands=0,
+    mistaken_hands=0,
     typed_forearms=0,
     trackers=EXACT,
 )
 STILL = np.array([0.0, 0.0, 0.0, 1.0])
 
 
-def corpus_rows():
-    """Inputs and targets of every frame of the corpus with exact trackers, as it is and mirrored."""
+def corpus_rows(corpus=CORPUS, tilts_of=None):
+    """Inputs and targets of every frame of the corpus with exact trackers, as it is and mirrored; hands turned by these tilts, else the own."""
+    tilts_of = tilts_of or hand_tilt.ForearmMeans(corpus, tuple(corpus.people)).of
     wearer = Wearer(EYES_FROM_HEAD_JOINT, STILL, np.zeros((2, 3)), np.stack([STILL, STILL]))
-    inputs, targets = [], []
-    for clip, person in enumerate(CORPUS.clip_people):
-        frames = CORPUS.clip_slice(clip)
-        positions, rotations = simulate(CORPUS.positions[frames], CORPUS.rotations[frames], wearer, EXACT, np.random.default_rng(0))
-        body = body_from_calibration(np.array(CORPUS.people[person].eye_height), np.array(CORPUS.people[person].arm_span))
-        vector, _ = frame_features(positions, rotations, body)
-        inputs.append(network_input(vector, np.arange(len(vector)) / 60, (0, 0.1, 0.25), body))
-        targets.append(residual(CORPUS.truth(frames).astype(np.float64), positions, rotations, body, vector))
-    return np.concatenate(inputs), np.concatenate(targets)
+    rows = []
+    for clip, person in enumerate(corpus.clip_people):
+        frames = corpus.clip_slice(clip)
+        tracked = simulate(corpus.positions[frames], corpus.rotations[frames], wearer, EXACT, np.random.default_rng(0))
+        body = body_from_calibration(np.array(corpus.people[person].eye_height), np.array(corpus.people[person].arm_span))
+        truth, tilts = corpus.truth(frames).astype(np.float64), tilts_of(person)
+        as_it_is, image = (*tracked, truth, tilts), (*fit_ik.mirror(*tracked, truth), tilts[::-1] * hand_tilt.MIRRORED_TILT)
+        for positions, rotations, joints, hands in (as_it_is, image):
+            turned = body.with_hands(hands)
+            vector, _ = frame_features(positions, rotations, turned)
+            given = network_input(vector, np.arange(len(vector)) / 60, (0, 0.1, 0.25))
+            rows.append((given, residual(joints, positions, rotations, turned, vector)))
+    return tuple(np.concatenate(column) for column in zip(*rows, strict=True))
 
 
 def joints_of(batch):
@@ -53,17 +57,25 @@ def joints_of(batch):
     return newest[:, IK_JOINTS].reshape(-1, 6, 3) + batch.targets.reshape(-1, 6, 3) @ chest_axes(newest)
 
 
+def assert_rows_of(batch, rows):
+    """Every window of the batch is one of these, about half of them mirrored."""
+    inputs, targets = rows
+    nearest = [int(np.argmin(np.abs(inputs - given).max(axis=1))) for given in batch.inputs]
+    np.testing.assert_allclose(batch.inputs, inputs[nearest], atol=1e-4)
+    np.testing.assert_allclose(batch.targets, targets[nearest], atol=1e-5)
+    mirrored = np.array(nearest) // 80 % 2
+    assert 0.25 < mirrored.mean() < 0.75
+
+
 def test_without_any_variation_a_window_is_the_corpus_s_own_or_its_mirror_image():
-    inputs, targets = corpus_rows()
-    batch = draw_batch(PARTS, 60, PLAIN, np.random.default_rng(1))
-    found = 0
-    for given, target in zip(batch.inputs, batch.targets, strict=True):
-        distance = np.abs(inputs - given).max(axis=1)
-        nearest = int(np.argmin(distance))
-        if distance[nearest] < 1e-4:
-            found += 1
-            np.testing.assert_allclose(target, targets[nearest], atol=1e-5)
-    assert 15 < found < 45
+    assert_rows_of(draw_batch(PARTS, 60, PLAIN, np.random.default_rng(1)), corpus_rows())
+
+
+def test_hands_of_tilts_that_no_hand_has_are_turned_by_the_usual_one():
+    turned = hand_turned_corpus(1.3)
+    parts = BodyParts(turned, tuple(turned.people))
+    assert not hand_tilt.believed(parts.tilts).any()
+    assert_rows_of(draw_batch(parts, 60, PLAIN, np.random.default_rng(1)), corpus_rows(turned, lambda _: hand_tilt.usual()))
 
 
 def test_people_who_were_asked_for_many_things_are_drawn_twice_as_often():
@@ -150,14 +162,11 @@ def test_seated_people_are_lower_and_shaped_the_same():
     np.testing.assert_allclose(joints_of(seated), joints_of(standing), atol=1e-5)
 
 
-def test_measured_hands_continue_their_forearms_on_average():
+def test_hands_continue_their_forearms_on_average():
     """Whose arm it is, on which side and in a mirror or not: the hand's −Z then lies along the forearm, but for how far this wrist is bent."""
 
-    def bends(unmeasured):
-        turned = hand_turned_corpus()
-        parts = BodyParts(turned, tuple(turned.people))
-        batch = draw_batch(parts, 400, replace(PLAIN, recombined=1.0, unmeasured_hands=unmeasured), np.random.default_rng(6))
-        assert (batch.inputs[:, -2:] == 1 - unmeasured).all()
+    def bends(corpus):
+        batch = draw_batch(BodyParts(corpus, tuple(corpus.people)), 400, replace(PLAIN, recombined=1.0), np.random.default_rng(6))
         hands = hand_positions(batch.inputs) * batch.inputs[:, ARM_LENGTH, None, None]
         forearms = hands - joints_of(batch)[:, :2]
         forearms /= np.linalg.norm(forearms, axis=-1, keepdims=True)
@@ -165,15 +174,15 @@ def test_measured_hands_continue_their_forearms_on_average():
         along = -np.cross(axes[:, :, 0], axes[:, :, 1])
         return np.degrees(np.arccos(np.clip(np.sum(along * forearms, axis=-1), -1, 1)))
 
-    measured, unmeasured = bends(0), bends(1)
-    # Wrists of generated people wave by some 20°; those of this corpus are worn 0.5 rad off besides.
-    assert np.median(measured) < 0.75 * np.median(unmeasured)
+    # Wrists of generated people wave by some 20°, however they are worn.
+    as_they_are, worn_off = bends(CORPUS), bends(hand_turned_corpus(0.5))
+    assert 10 < np.median(as_they_are) < 25
+    np.testing.assert_allclose(worn_off, as_they_are, atol=0.1)
 
 
-def test_a_hand_held_otherwise_than_measured_is_turned_and_stays_where_it_is():
-    config = replace(PLAIN, unmeasured_hands=0, mismeasured_turn=0.3)
+def test_a_hand_that_stands_otherwise_than_noticed_is_turned_and_stays_where_it_is():
     right, wrong = (
-        draw_batch(PARTS, 1000, replace(config, mismeasured_hands=part), np.random.default_rng(11)) for part in (0.0, 0.2)
+        draw_batch(PARTS, 1000, replace(PLAIN, mistaken_hands=part, mistaken_turn=0.3), np.random.default_rng(11)) for part in (0.0, 0.2)
     )
     np.testing.assert_allclose(hand_positions(wrong.inputs), hand_positions(right.inputs), atol=1e-6)
     np.testing.assert_allclose(joints_of(wrong), joints_of(right), atol=1e-5)
@@ -183,9 +192,9 @@ def test_a_hand_held_otherwise_than_measured_is_turned_and_stays_where_it_is():
     assert np.mean(turned[0] & turned[1]) == pytest.approx(0.04, abs=0.02)
 
 
-def hand_turned_corpus():
-    """The corpus with hands that are 0.5 rad off their forearms, each side another way."""
-    turns = quaternion.from_rotation_vector(np.array([[0.0, 0.0, 0.0], [0.5, 0.0, 0.0], [0.0, 0.5, 0.0]]))
+def hand_turned_corpus(angle):
+    """The corpus with hands that are so far off their forearms [rad], each side another way."""
+    turns = quaternion.from_rotation_vector(np.array([[0.0, 0.0, 0.0], [angle, 0.0, 0.0], [0.0, angle, 0.0]]))
     return replace(CORPUS, rotations=quaternion.multiply(CORPUS.rotations.astype(np.float64), turns).astype(np.float32))
 
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from threepoint_training import fit_ik, hand_tilt, quaternion, solve_ik
+from threepoint_training import fit_ik, fit_proportions, hand_tilt, quaternion, solve_ik
 from threepoint_training.features import frame_features
 from threepoint_training.generated_motion import generate_corpus
 from threepoint_training.simulate_trackers import TrackerConfig, measured_tilts
@@ -24,7 +24,9 @@ def worn_off(corpus, left, right):
 
 def test_a_tilt_is_where_its_turn_takes_minus_z():
     along = np.broadcast_to([0.0, 0.0, -1.0], (50, 3))
-    np.testing.assert_allclose(hand_tilt.tilt_of(quaternion.rotate(hand_tilt.turn_of(TILTS), along)), TILTS, atol=1e-12)
+    directions = quaternion.rotate(hand_tilt.turn_of(TILTS), along)
+    np.testing.assert_allclose(hand_tilt.direction_of(TILTS), directions, atol=1e-12)
+    np.testing.assert_allclose(hand_tilt.tilt_of(directions), TILTS, atol=1e-12)
     up, left = quaternion.rotate(hand_tilt.turn_of(np.array([[0.3, 0.0], [0.0, 0.3]])), along[:2])
     assert up[1] > 0.2
     assert left[0] < -0.2
@@ -57,9 +59,8 @@ def test_with_exact_tilts_it_does_not_matter_how_hands_are_worn():
     worn = quaternion.conjugate(hand_tilt.turn_of(tilts))
     turned = rotations.copy()
     turned[:, 1:] = quaternion.multiply(rotations[:, 1:], np.broadcast_to(worn, (90, 2, 4)))
-    known = np.array([True, True])
-    as_they_are, _ = frame_features(positions, rotations, BODY.with_hands(np.zeros((2, 2)), known))
-    put_right, _ = frame_features(positions, turned, BODY.with_hands(tilts, known))
+    as_they_are, _ = frame_features(positions, rotations, BODY.with_hands(np.zeros((2, 2))))
+    put_right, _ = frame_features(positions, turned, BODY.with_hands(tilts))
     np.testing.assert_allclose(put_right, as_they_are, atol=1e-9)
 
 
@@ -68,27 +69,37 @@ def test_the_calibration_errs_by_its_standard_deviation():
     assert np.sqrt((errors**2).sum(axis=1).mean()) == pytest.approx(TrackerConfig().hand_tilt_error, rel=0.05)
 
 
-def test_ik_of_measured_hands_is_fitted_beside_that_of_hands_as_they_come():
-    """Towards bodies that IK itself posed, every other frame with measured hands: each pole is found by its own frames."""
-    positions, rotations, _, _ = solve_ik.to_heading(CORPUS.positions[:, [4, 7, 10]].astype(np.float64), CORPUS.rotations.astype(np.float64))
-    measured = np.broadcast_to(np.arange(len(positions))[:, None] % 2 == 1, (len(positions), 2))
-    body = replace(BODY, hands_measured=measured)
+def test_ik_of_turned_hands_is_fitted_beside_that_of_hands_as_they_come():
+    """Towards bodies that IK itself posed, every other frame with turned hands: each pole is found by its own frames."""
+    tracked = CORPUS.positions[::3, [4, 7, 10]].astype(np.float64), CORPUS.rotations[::3].astype(np.float64)
+    positions, rotations, _, _ = solve_ik.to_heading(*tracked)
+    are_turned = np.broadcast_to(np.arange(len(positions))[:, None] % 2 == 1, (len(positions), 2))
+    body = replace(BODY, hands_turned=are_turned)
     truth = solve_ik.solve(positions, rotations, body)
     frames = fit_ik.Sample(positions, rotations, truth, body, np.full(len(truth), "test"))
     fitted = fit_ik.fit(frames, fit_ik.FitIkConfig(iterations=8, ridge=1e-7))
     elbows = fit_ik.errors_cm(frames, fitted)[:, :2].mean()
-    mistaken = replace(frames, body=replace(BODY, hands_measured=~measured))
+    mistaken = replace(frames, body=replace(BODY, hands_turned=~are_turned))
     assert elbows < 0.5 * fit_ik.errors_cm(mistaken, fitted)[:, :2].mean()
     assert fit_ik.unflatten(fit_ik.flatten(fitted)) == fitted
 
 
 def test_a_fit_sees_hands_of_both_kinds():
-    """Proportions are the page's; half of the frames have hands that were measured, and turned by it."""
+    """Proportions are the page's; half of the frames have hands that are turned by their tilts."""
     frames = fit_ik.sample(worn_off(CORPUS, [0.5, 0.0, 0.0], [0.5, 0.0, 0.0]), ("001",), load_proportions(), None, 1, mirrored=False)
-    measured = frames.body.hands_measured.all(axis=1)
-    assert measured.mean() == pytest.approx(0.5, abs=0.01)
+    turned = frames.body.hands_turned.all(axis=1)
+    np.testing.assert_array_equal(turned, frames.body.hands_turned.any(axis=1))
+    assert turned.mean() == pytest.approx(0.5, abs=0.01)
     forearms = frames.positions[:, 1] - frames.truth[:, 0]
     forearms /= np.linalg.norm(forearms, axis=-1, keepdims=True)
     along = quaternion.rotate(frames.rotations[:, 1], np.broadcast_to([0.0, 0.0, -1.0], forearms.shape))
     bend = np.degrees(np.arccos(np.clip(np.sum(along * forearms, axis=-1), -1, 1)))
-    assert np.median(bend[measured]) < 0.8 * np.median(bend[~measured])
+    assert np.median(bend[turned]) < 0.8 * np.median(bend[~turned])
+
+
+def test_the_usual_tilt_is_that_of_people_s_right_hands_and_of_their_left_ones_in_a_mirror():
+    """Worn off by a tilt, hands are found to have it besides the little that generated ones have."""
+    tilt = np.array([0.3, -0.2])
+    off = [np.append(-each, 0.0) for each in (tilt * hand_tilt.MIRRORED_TILT, tilt)]
+    before, after = (fit_proportions.fit(corpus, tuple(CORPUS.people))["handTilt"] for corpus in (CORPUS, worn_off(CORPUS, *off)))
+    np.testing.assert_allclose(np.subtract(after, before), tilt, atol=0.01)

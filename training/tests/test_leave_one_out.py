@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from threepoint_training import fitted_kinematics, leave_one_out, postures, skeleton, solve_ik, train_learned
+from threepoint_training.chest_features import CHEST_FEATURES, REACH_LENGTHS
 from threepoint_training.fit_ik import FitIkConfig
 from threepoint_training.generated_motion import generate_corpus
 
@@ -56,8 +57,13 @@ def test_people_who_only_measure_have_rows_of_their_own_and_are_trained_on_by_no
         return train(given, people, config)
 
     monkeypatch.setattr(train_learned, "train", watched)
-    rows = leave_one_out.main(corpus, train_learned.TrainLearnedConfig(width=8, batch=32, steps=2), QUICK).people
-    assert [row[0] for row in rows] == ["001", "002", "all alike", "901", "another laboratory, all alike"]
+    rows = leave_one_out.main(corpus, train_learned.TrainLearnedConfig(width=8, batch=32, steps=2), QUICK)
+    assert [row[0] for row in rows.people] == ["001", "002", "all alike", "901", "another laboratory, all alike"]
+    by_hands = {name: cells for name, *cells in rows.hands}
+    elsewhere = {name: cells for name, *cells in rows.people}["901"]
+    assert list(by_hands) == [f"{whose}{told}" for whose in ("", "another laboratory: ") for told in leave_one_out.HANDS]
+    assert float(by_hands[f"another laboratory: {leave_one_out.MEASURED}"][0]) == pytest.approx(float(elsewhere[0]), rel=0.1)
+    assert any(name.startswith("another laboratory: ") for name, *_ in rows.postures)
     assert trained_on == [("002",), ("001",), ("001", "002")]
 
 
@@ -85,7 +91,7 @@ def test_frames_are_told_apart_by_what_their_features_say():
     crouching[:, 17] = -0.5, 0.4, -0.5
     crouching[:, 8] = -0.5
     crouching[:, 5] = 1.0, 1.0, 0.2
-    crouching[:, -2:] = 0.9
+    crouching[:, -CHEST_FEATURES:][:, REACH_LENGTHS] = 0.9
     of = {name: frames.tolist() for name, frames in postures.of_frames(crouching).items()}
     assert of["head under 0.9 of the eye height"] == [True, False, False]
     assert of["a hand above the headset"] == [False, True, False]

@@ -12,8 +12,6 @@ from threepoint_training.train_learned import held_out
 pytestmark = pytest.mark.training
 
 WINDOW = (0.0, 0.1, 0.25)
-# As `held_out` measures them.
-MEASURED_HANDS = np.array([True, True])
 CORPUS = generate_corpus(people=2, clips=1, frames=200, seed=4)
 PEOPLE = held_out(CORPUS, tuple(CORPUS.people), WINDOW)
 SWAPPED = [1, 0, 3, 2, 4, 5]
@@ -35,7 +33,7 @@ def corrections(network: CorrectionNetwork, inputs: np.ndarray) -> np.ndarray:
 
 
 def with_chest_features(windows: np.ndarray) -> np.ndarray:
-    return np.concatenate([windows, chest_features(windows[:, :FEATURES], MEASURED_HANDS)], axis=1).astype(np.float32)
+    return np.concatenate([windows, chest_features(windows[:, :FEATURES])], axis=1).astype(np.float32)
 
 
 def mirrored(inputs: np.ndarray) -> np.ndarray:

@@ -60,7 +60,7 @@ def variants(config: TrainLearnedConfig) -> dict[str, TrainLearnedConfig]:
         "without tracker offsets": exact(headset_offset=0.0, wrist_offset=0.0, headset_pitch=0.0, hand_turn=0.0),
         "without noise": exact(position_noise=0.0, rotation_noise=0.0),
         "without errors of the calibration": without(eye_height_error=0.0, arm_span_error=0.0),
-        "hands held as they were measured": without(mismeasured_hands=0.0),
+        "hands that stand as they were noticed": without(mistaken_hands=0.0),
         "without lost hands": without(lost_hand=0.0),
         "lost hands held for a moment only": without(lost_frames=12),
         "without late trackers": without(late=0.0),

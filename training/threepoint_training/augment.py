@@ -47,11 +47,9 @@ class AugmentConfig:
     arm_scale: float = 0.03
     eye_height_error: float = 0.025
     arm_span_error: float = 0.02
-    # Wearers who were not measured with their arms ahead: their hands are as they come.
-    unmeasured_hands: float = 0.3
-    # Hands held otherwise than they were measured, each by itself: a wrist that was bent meanwhile, a controller gripped anew.
-    mismeasured_hands: float = 0.1
-    mismeasured_turn: float = np.radians(40.0)
+    # Hands that stand otherwise to their forearms than was noticed, each by itself: a wearer who has only begun, a controller gripped anew.
+    mistaken_hands: float = 0.1
+    mistaken_turn: float = np.radians(40.0)
     # Wearers who typed how long their forearm is, and by how much they err [m].
     typed_forearms: float = 0.5
     forearm_error: float = FOREARM_ERROR
@@ -61,7 +59,7 @@ class AugmentConfig:
 
 @dataclass(frozen=True)
 class Batch:
-    """inputs [N, T·46 + 40], targets [N, 18]; float32. people [N, 3]: whose torso, left and right arm, as numbers of `BodyParts.people`."""
+    """inputs [N, T·46 + 38], targets [N, 18]; float32. people [N, 3]: whose torso, left and right arm, as numbers of `BodyParts.people`."""
 
     inputs: NDArray[np.float32]
     targets: NDArray[np.float32]
@@ -273,10 +271,9 @@ def draw_batch(parts: BodyParts, count: int, config: AugmentConfig, random: np.r
     tilts = bodies.tilts()
     tilts = np.where(mirrored[:, None, None], tilts[:, ::-1] * hand_tilt.MIRRORED_TILT, tilts)
     tilts = measured_tilts(tilts, worn[:, 1:], config.trackers, random)
-    otherwise = random.normal(size=tilts.shape) * config.mismeasured_turn / np.sqrt(2)
-    tilts = tilts + otherwise * (random.uniform(size=(count, 2, 1)) < config.mismeasured_hands)
-    measured = random.uniform(size=(count, 1)) >= config.unmeasured_hands
-    calibrated = calibrated.with_hands(tilts, measured & hand_tilt.believed(tilts))
+    otherwise = random.normal(size=tilts.shape) * config.mistaken_turn / np.sqrt(2)
+    tilts = tilts + otherwise * (random.uniform(size=(count, 2, 1)) < config.mistaken_hands)
+    calibrated = calibrated.with_hands(np.where(hand_tilt.believed(tilts)[..., None], tilts, hand_tilt.usual()))
     forearms = bodies.forearms()
     forearms = np.where(mirrored[:, None], forearms[:, ::-1], forearms) + random.normal(size=(count, 1)) * config.forearm_error
     calibrated = calibrated.with_forearms(forearms, random.uniform(size=(count, 1)) < config.typed_forearms)
@@ -300,7 +297,7 @@ def draw_batch(parts: BodyParts, count: int, config: AugmentConfig, random: np.r
         columns.append(vector)
         if age == 0:
             targets = residual(truth, positions, rotations, calibrated, vector)
-            in_chest_frame = chest_features(vector, calibrated.hands_measured)
+            in_chest_frame = chest_features(vector)
     arms_of = np.stack([parts.person[frames] for frames in bodies.arm_frames], axis=1)
     whose = np.column_stack([parts.person[bodies.newest], np.where(mirrored[:, None], arms_of[:, ::-1], arms_of)])
     return Batch(np.concatenate([*columns, in_chest_frame], axis=1).astype(np.float32), targets.astype(np.float32), whose)

@@ -18,8 +18,7 @@ CHEST_HEAD_AXES = slice(24, 30)
 CHEST_JOINT = slice(30, 33)
 UP = slice(33, 36)
 REACH_LENGTHS = slice(36, 38)
-MEASURED = slice(38, 40)
-CHEST_FEATURES = 40
+CHEST_FEATURES = 38
 
 
 def chest_axes(vector: Array) -> Array:
@@ -31,12 +30,11 @@ def chest_axes(vector: Array) -> Array:
     return np.stack([x, up, np.cross(x, up)], axis=1)
 
 
-def chest_features(vector: Array, measured: NDArray[np.bool_] | None = None) -> Array:
-    """The chest-frame features [F, 40] of a frame, from its features [F, 46] and whether the hands' tilts are measured [..., 2] (None: no hand's).
+def chest_features(vector: Array) -> Array:
+    """The chest-frame features [F, 38] of a frame, from its features [F, 46].
 
     Left, then right arm: reach from IK's shoulder to the wrist in arm lengths, x and y axes of the hand, IK's elbow from its shoulder; x and y
-    axes of the head, the chest joint from the headset; the room's up; the lengths of both reaches; 1 for hands that are measured. Joints in
-    eye heights.
+    axes of the head, the chest joint from the headset; the room's up; the lengths of both reaches. Joints in eye heights.
     """
     axes, arm = chest_axes(vector), vector[:, ARM_LENGTH, None]
     joints = _ik_joints(vector)
@@ -46,8 +44,7 @@ def chest_features(vector: Array, measured: NDArray[np.bool_] | None = None) -> 
         arms += [position - shoulder / arm, x_axis, y_axis, elbow - shoulder]
     vectors = np.stack([*arms, *np.split(vector[:, HEAD_AXES], 2, axis=1), joints[4]], axis=1) @ np.swapaxes(axes, 1, 2)
     reaches = np.linalg.norm(vectors[:, [0, 4]], axis=-1)
-    known = np.zeros(2) if measured is None else measured.astype(np.float64)
-    return np.concatenate([vectors.reshape(len(vector), -1), axes[:, :, 1], reaches, np.broadcast_to(known, (len(vector), 2))], axis=-1)
+    return np.concatenate([vectors.reshape(len(vector), -1), axes[:, :, 1], reaches], axis=-1)
 
 
 def _ik_joints(vector: Array) -> list[Array]:

@@ -75,7 +75,7 @@ class DifferentiableKinematics:
         self.shoulders_from_neck = (left + right) / 2 - self.rest["neck"]
 
     def __call__(self, corrections: Tensor, inputs: Tensor, config: FittingConfig = LOSS) -> Tensor:
-        """What corrections of IK's joints [N, 6, 3] come to on the skeleton [N, 6, 3]; inputs [N, T·46 + 40] of the network."""
+        """What corrections of IK's joints [N, 6, 3] come to on the skeleton [N, 6, 3]; inputs [N, T·46 + 38] of the network."""
         return self.fit(corrections, inputs, config)[0]
 
     def fit(self, corrections: Tensor, inputs: Tensor, config: FittingConfig) -> tuple[Tensor, Tensor]:

@@ -22,12 +22,12 @@ PRIOR: dict[str, Any] = {
     "lower": {"forward": [-0.05, 0.15, 0.8, 0.05, 0, 0], "sideways": [0.1, 0.05, 0]},
     "neck": 0.5,
     "clavicle": [[0, 0, 0, 0], [0, 0, 0.03, 0], [0, 0, 0, 0.03]],
+    "untoldPole": [[0.4] + [0] * 9, [-1.0] + [0] * 9, [0.6] + [0] * 9],
     "pole": [[0.4] + [0] * 9, [-1.0] + [0] * 9, [0.6] + [0] * 9],
-    "measuredPole": [[0.4] + [0] * 9, [-1.0] + [0] * 9, [0.6] + [0] * 9],
 }
 
 
-_MATRICES = ("clavicle", "pole", "measuredPole")
+_MATRICES = ("clavicle", "untoldPole", "pole")
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ def sample(
 ) -> Sample:
     """Frames of these people as trackers would see them, the same number of each (None: all), mirrored ones beside them.
 
-    In every other frame the tilts of the hands are measured, so that both of IK's poles are fitted.
+    In every other frame hands are turned by their tilts, so that both of IK's poles are fitted.
     """
     random = np.random.default_rng(seed)
     trackers = TrackerConfig()
@@ -102,19 +102,19 @@ def sample(
         true_positions = corpus.positions[frames].astype(np.float64)
         wearer = draw_wearer(trackers, random)
         positions, rotations = simulate(true_positions, corpus.rotations[frames], wearer, trackers, random)
-        measured = np.broadcast_to((np.arange(len(frames)) % 2 == 1)[:, None], (len(frames), 2))
+        turned = np.broadcast_to((np.arange(len(frames)) % 2 == 1)[:, None], (len(frames), 2))
         tilts = measured_tilts(np.broadcast_to(forearms.of(name), (len(frames), 2, 2)), wearer.hand_turns, trackers, random)
-        rotations = hand_tilt.normalised(rotations, np.where(measured[..., None], tilts, 0.0))
+        rotations = hand_tilt.normalised(rotations, np.where(turned[..., None], tilts, 0.0))
         local, turns, yaw, origin = solve_ik.to_heading(positions, rotations)
         truth = true_positions[:, columns] - origin[:, None]
         truth = quaternion.rotate(np.broadcast_to(quaternion.conjugate(yaw)[:, None], (*truth.shape[:-1], 4)), truth)
         sizes = np.tile([person.eye_height, person.arm_span], (len(frames), 1))
-        parts.append((local, turns, truth, sizes, measured, np.full(len(frames), name)))
+        parts.append((local, turns, truth, sizes, turned, np.full(len(frames), name)))
         if mirrored:
-            parts.append((*mirror(local, turns, truth), sizes, measured, np.full(len(frames), name)))
-    local, turns, truth, sizes, measured, names = (np.concatenate(columns) for columns in zip(*parts, strict=True))
+            parts.append((*mirror(local, turns, truth), sizes, turned, np.full(len(frames), name)))
+    local, turns, truth, sizes, turned, names = (np.concatenate(columns) for columns in zip(*parts, strict=True))
     body = body_from_calibration(sizes[:, 0], sizes[:, 1], proportions)
-    return Sample(local, turns, truth, replace(body, hands_measured=measured), names)
+    return Sample(local, turns, truth, replace(body, hands_turned=turned), names)
 
 
 def mirror(positions: Array, rotations: Array, truth: Array) -> tuple[Array, Array, Array]:

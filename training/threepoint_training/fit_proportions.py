@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from . import quaternion
+from . import hand_tilt, quaternion
 from .prepare import EYES_FROM_HEAD_JOINT
 from .prepared_corpus import JOINTS, PreparedCorpus
 
@@ -48,7 +48,11 @@ def fit(corpus: PreparedCorpus, people: tuple[str, ...]) -> dict[str, Any]:
                  neck_to_head[1], -neck_to_head[2], shoulder[0], shoulder[1], -shoulder[2]]
             ) / person.eye_height
         )  # fmt: skip
-        rows[-1] = np.concatenate([rows[-1], [upper / (upper + fore), EYES_FROM_HEAD_JOINT[1] / person.eye_height, -EYES_FROM_HEAD_JOINT[2] / person.eye_height, *tilts]])
+        left_hand, right_hand = hand_tilt.ForearmMeans(corpus, (name,)).of(name)
+        hand = (left_hand * hand_tilt.MIRRORED_TILT + right_hand) / 2
+        rows[-1] = np.concatenate(
+            [rows[-1], [upper / (upper + fore), EYES_FROM_HEAD_JOINT[1] / person.eye_height, -EYES_FROM_HEAD_JOINT[2] / person.eye_height, *tilts, *hand]]
+        )
     mean = [round(float(value), 5) for value in np.mean(rows, axis=0)]
     root = 0.012  # The clavicle starts two centimetres beside the breastbone's middle.
     return {
@@ -63,6 +67,7 @@ def fit(corpus: PreparedCorpus, people: tuple[str, ...]) -> dict[str, Any]:
         "eyesInHead": [mean[10], mean[11]],
         "thoraxTilt": mean[12],
         "lowerBackTilt": mean[13],
+        "handTilt": mean[14:16],
     }
 
 

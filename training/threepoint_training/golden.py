@@ -10,12 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from . import hand_tilt, quaternion, solve_ik
+from . import hand_tilt, notice_hand_tilts, quaternion, solve_ik
 from .chest_features import chest_axes
 from .features import frame_features
 from .generated_motion import generate_clip
 from .golden_bvh import bvh_vectors
 from .golden_mocap import mocap_vectors
+from .notice_hand_tilts import ToldTilts
 from .paper_features import paper_features
 from .prepared_corpus import Person
 from .residual import network_input
@@ -36,13 +37,13 @@ class GoldenBody:
     forearm: float | None = None
     tilts: dict[str, tuple[float, float]] = field(default_factory=dict)
 
-    def body(self) -> Body:
-        """With the tilts of its hands."""
-        hands = np.array([self.tilts.get(side, (0.0, 0.0)) for side in ("left", "right")])
-        return self.body_without_tilts().with_hands(hands, np.array([side in self.tilts for side in ("left", "right")]))
+    def told(self) -> ToldTilts:
+        """What its calibration tells of its hands."""
+        sides = ("left", "right")
+        return ToldTilts(np.array([self.tilts.get(side, (0.0, 0.0)) for side in sides]), np.array([side in self.tilts for side in sides]))
 
-    def body_without_tilts(self) -> Body:
-        """As hands come."""
+    def body(self) -> Body:
+        """Hands as they come."""
         body = body_from_calibration(np.array(self.eye_height), np.array(self.arm_span))
         return body if self.forearm is None else body.with_forearms(np.full(2, self.forearm))
 
@@ -89,7 +90,8 @@ def feature_vectors() -> list[dict[str, Any]]:
         positions, rotations = _tracked(person.eye_height, person.arm_span, random)
         seen = random.uniform(size=(FRAMES, 2)) > 0.15
         times = np.arange(FRAMES) * STRIDE / 60 + random.uniform(0, 0.01, FRAMES)
-        body = person.body()
+        seconds = np.diff(times, prepend=times[0])
+        body = notice_hand_tilts.with_noticed_hands(person.body(), positions, rotations, seconds, person.told(), seen)
         vector, ik_joints = frame_features(positions, rotations, body, seen)
         floor_joints = _in_floor_frame(ik_joints, positions, rotations)
         cases.append(
@@ -103,13 +105,14 @@ def feature_vectors() -> list[dict[str, Any]]:
                         "positions": positions[i],
                         "rotations": rotations[i],
                         "seen": seen[i],
+                        "handTilts": body.hand_tilts[i],
                         "ikJoints": floor_joints[i],
                         "features": vector[i],
                         "paperInput": paper_features(positions[i : i + 1], rotations[i : i + 1])[0].ravel(),
                     }
                     for i in range(FRAMES)
                 ],
-                "inputs": network_input(vector, times, WINDOW, body),
+                "inputs": network_input(vector, times, WINDOW),
             }
         )
     return cases
@@ -153,7 +156,7 @@ def fitted_vectors() -> list[dict[str, Any]]:
     fitting = DifferentiableKinematics(torch.float64)
     cases = []
     for number, person in enumerate(BODIES):
-        body = person.body_without_tilts()
+        body = person.body()
         frames = []
         for kind, (situation, (move, elbows, others)) in enumerate(SITUATIONS.items()):
             random = np.random.default_rng([13, number, kind])
@@ -161,7 +164,7 @@ def fitted_vectors() -> list[dict[str, Any]]:
             local, turns, _, _ = solve_ik.to_heading(positions, rotations)
             positions = _in_floor_frame(move(local, solve_ik.solve(local, turns, body), body, random), positions, rotations)
             vector, ik_joints = frame_features(positions, rotations, body)
-            inputs = torch.from_numpy(network_input(vector, np.arange(FRAMES) / 60, WINDOW, body))
+            inputs = torch.from_numpy(network_input(vector, np.arange(FRAMES) / 60, WINDOW))
             corrections = random.normal(size=ik_joints.shape) * np.array([elbows] * 2 + [others] * 4)[:, None]
             fitted, limited = fitting.fit(torch.from_numpy(corrections), inputs, as_the_page_fits(person.eye_height))
             axes = chest_axes(vector)
@@ -193,7 +196,7 @@ def model_vectors(models: Path) -> dict[str, Any]:
     joints, turns = generate_clip(random, 240, person)
     trackers = TrackerConfig()
     positions, rotations = simulate(joints, turns, draw_wearer(trackers, random), trackers, random)
-    body = body_from_calibration(np.array(person.eye_height), np.array(person.arm_span))
+    body = body_from_calibration(np.array(person.eye_height), np.array(person.arm_span)).with_hands(hand_tilt.usual())
     vector, _ = frame_features(positions, rotations, body)
     for contract_file in sorted(models.glob("*.json")):
         contract = json.loads(contract_file.read_text())
@@ -201,7 +204,7 @@ def model_vectors(models: Path) -> dict[str, Any]:
         if contract["name"] == "paper":
             inputs = paper_features(positions, rotations)
         else:
-            inputs = network_input(vector, np.arange(len(vector)) / 60, tuple(contract["windowSeconds"]), body)
+            inputs = network_input(vector, np.arange(len(vector)) / 60, tuple(contract["windowSeconds"]))
         inputs = inputs[::12].astype(np.float32)
         name = contract["inputs"][0]["name"]
         outputs = [session.run(None, {name: row[None]})[0][0] for row in inputs]

@@ -8,7 +8,7 @@ src/core/body/hand-tilt.ts.
 import numpy as np
 from numpy.typing import NDArray
 
-from . import quaternion
+from . import quaternion, skeleton
 from .kinematic_limits import LIMB
 from .prepared_corpus import JOINTS, PreparedCorpus
 
@@ -25,6 +25,17 @@ def turn_of(tilts: Array) -> Array:
     return quaternion.from_rotation_vector(np.concatenate([tilts, np.zeros_like(tilts[..., :1])], axis=-1))
 
 
+def direction_of(tilts: Array) -> Array:
+    """The directions [..., 3] of forearms of these tilts [..., 2], in the frames of their hands."""
+    return quaternion.rotate(turn_of(tilts), np.broadcast_to(_ALONG_HAND, (*tilts.shape[:-1], 3)))
+
+
+def usual() -> Array:
+    """The tilts [2, 2] of an average left and right hand, by the proportions in use."""
+    right = np.array(skeleton.load_proportions()["handTilt"])
+    return np.stack([right * MIRRORED_TILT, right])
+
+
 def tilt_of(forearms: Array) -> Array:
     """The tilts [..., 2] of forearms in these directions [..., 3], in the frames of their hands."""
     x, y, z = np.moveaxis(forearms, -1, 0)
@@ -34,8 +45,7 @@ def tilt_of(forearms: Array) -> Array:
 
 def turned(tilts: Array, worn: Array) -> Array:
     """The tilts [..., 2] as trackers see them that are turned by `worn` [..., 4] against their hands."""
-    forearms = quaternion.rotate(turn_of(tilts), np.broadcast_to(_ALONG_HAND, (*tilts.shape[:-1], 3)))
-    return tilt_of(quaternion.rotate(quaternion.conjugate(worn), forearms))
+    return tilt_of(quaternion.rotate(quaternion.conjugate(worn), direction_of(tilts)))
 
 
 def normalised(rotations: Array, tilts: Array | None) -> Array:

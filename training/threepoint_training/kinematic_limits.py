@@ -14,4 +14,5 @@ REACH: dict[str, Any] = _LIMITS["reach"]
 LIMB: dict[str, Any] = json.loads((_CORE / "body/limb-limits.json").read_text())
 TRAPEZOIDAL_RAMP: float = json.loads((_CORE / "math/easing.json").read_text())["trapezoidalRamp"]
 TRUNK_CAPSULE: dict[str, float] = _LIMITS["trunkCapsule"]
+HAND_TILTS: dict[str, Any] = json.loads((_CORE / "estimation/hand-tilts.json").read_text())
 LOST_HAND: dict[str, Any] = json.loads((_CORE / "estimation/lost-hand.json").read_text())

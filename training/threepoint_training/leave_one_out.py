@@ -27,16 +27,19 @@ POSTURE_COLUMNS = ("of all frames", "IK", "ours", "ours / IK", "elbows, ours / I
 HAND_COLUMNS = ("IK", "ours", "ours / IK", "elbows: IK", "ours", "ours / IK")
 # What marks errors of people who were held out in turn, among those that a contract states.
 IN_TURN = "in turn"
-MEASURED, AS_RECORDED = "measured by the other clips, error 5° (as above)", "as recorded, nothing measured"
-# What the guided calibration knows of the hands: rows of a table.
+MEASURED, NOT_MEASURED = "measured by the other clips, error 5° (as above)", "nothing measured"
+# What is known of the hands, by the guided calibration and by what the page notices: rows of a table.
 HANDS = {
     MEASURED: Condition(),
     "and the forearm typed, error 1 cm": Condition(forearm_typed=True),
-    AS_RECORDED: Condition(hands_measured=False),
+    NOT_MEASURED: Condition(hands_measured=False),
     "nothing measured, the forearm typed": Condition(hands_measured=False, forearm_typed=True),
-    "measured with wrists bent by 10°": Condition(bent_wrists=np.radians(10.0)),
-    "by 20°": Condition(bent_wrists=np.radians(20.0)),
+    "measured with wrists bent by 20°": Condition(bent_wrists=np.radians(20.0)),
     "by 30°": Condition(bent_wrists=np.radians(30.0)),
+    "measured, nothing noticed": Condition(hands_noticed=False),
+    "nothing measured, nothing noticed": Condition(hands_measured=False, hands_noticed=False),
+    "wrists bent by 20°, nothing noticed": Condition(bent_wrists=np.radians(20.0), hands_noticed=False),
+    "by 30°, nothing noticed": Condition(bent_wrists=np.radians(30.0), hands_noticed=False),
 }
 # Of the frames, for that table.
 HAND_STRIDE = 3
@@ -131,8 +134,11 @@ def tables(corpus: PreparedCorpus, found: dict[str, HeldOutPerson]) -> Tables:
             rows += [[name, *_cells(found[name].of_ik, found[name].ours), _minutes(corpus, name)] for name in names]
             means = (np.stack([getattr(found[name], method).mean(axis=0) for name in names]) for method in ("of_ik", "ours"))
             rows.append([mean, *_cells(*means), ""])
-    judged = [found[name] for name in trainable]
-    return Tables(rows, _posture_rows(judged), _hand_rows(judged), _errors(judged))
+    judged, elsewhere = ([found[name] for name in names] for names in (trainable, splits.measured_only(tuple(found))))
+    by_posture, by_hands = (
+        [*rows_of(judged), *([f"another laboratory: {name}", *cells] for name, *cells in rows_of(elsewhere))] for rows_of in (_posture_rows, _hand_rows)
+    )
+    return Tables(rows, by_posture, by_hands, _errors(judged))
 
 
 def _errors(people: list[HeldOutPerson]) -> dict[str, NDArray[np.float64]]:
@@ -140,16 +146,16 @@ def _errors(people: list[HeldOutPerson]) -> dict[str, NDArray[np.float64]]:
     who = f"{len(people)} people {IN_TURN}"
     return {
         f"{method}, {who}, {told}": np.stack([person.hands[condition][place] for person in people])
-        for told, condition in (("hands measured", MEASURED), ("hands as recorded", AS_RECORDED))
+        for told, condition in (("hands measured", MEASURED), ("hands not measured", NOT_MEASURED))
         for place, method in enumerate(("IK", "learned"))
         if all(condition in person.hands for person in people)
     }
 
 
 def _hand_rows(people: list[HeldOutPerson]) -> list[list[str]]:
-    """All people counted alike."""
+    """All people counted alike; none, no rows."""
     rows = []
-    for told in people[0].hands:
+    for told in people[0].hands if people else ():
         of_ik, ours = np.mean([person.hands[told] for person in people], axis=0)
         cells = [f"{value:.2f}" for joints in (slice(None), slice(0, 2)) for value in (of_ik[joints].mean(), ours[joints].mean())]
         ratios = [f"{ours[joints].mean() / of_ik[joints].mean():.3f}" for joints in (slice(None), slice(0, 2))]
@@ -158,7 +164,9 @@ def _hand_rows(people: list[HeldOutPerson]) -> list[list[str]]:
 
 
 def _posture_rows(people: list[HeldOutPerson]) -> list[list[str]]:
-    """Frames of each posture, then by their distance from what was trained on; all people counted alike."""
+    """Frames of each posture, then by their distance from what was trained on; all people counted alike; none, no rows."""
+    if not people:
+        return []
     of_ik, ours, distance = (np.concatenate([getattr(person, key) for person in people]) for key in ("of_ik", "ours", "distance"))
     weight = np.concatenate([np.full(len(person.ours), 1 / len(person.ours) / len(people)) for person in people])
     order = np.argsort(distance)

@@ -5,7 +5,7 @@ import torch
 from torch import Tensor, nn
 from torch.nn import functional
 
-from .chest_features import ARM_COLUMNS, ARMS, CHEST_FEATURES, CHEST_HEAD_AXES, CHEST_JOINT, MEASURED, REACH_LENGTHS, UP
+from .chest_features import ARM_COLUMNS, ARMS, CHEST_FEATURES, CHEST_HEAD_AXES, CHEST_JOINT, REACH_LENGTHS, UP
 from .features import ARM_LENGTH, FEATURES, HANDS, HEAD_AXES, IK_JOINTS, SEEN
 from .prepared_corpus import MIRRORED_JOINTS
 from .residual import OUTPUTS
@@ -54,7 +54,7 @@ class PaperNetwork(nn.Module):
 
 
 class CorrectionNetwork(nn.Module):
-    """[N, T·46 + 40] features -> [N, 18]: the residual to add to IK's six joints, chest frame, in eye heights.
+    """[N, T·46 + 38] features -> [N, 18]: the residual to add to IK's six joints, chest frame, in eye heights.
 
     In the chest frame an arm looks the same however its body turns and leans. A trunk network corrects shoulders, chest joint and
     hips; an arm network, the same for both sides, then corrects an elbow, given nothing but its own hand and shoulder. A body and its mirror
@@ -116,12 +116,12 @@ class CorrectionNetwork(nn.Module):
         return functional.linear(x, last.weight * output_scale[:, None], last.bias * output_scale + output_mean)
 
     def _with_mirror_images(self, inputs: Tensor) -> Tensor:
-        """Each body, then its mirror image [2 N, T·46 + 40]."""
+        """Each body, then its mirror image [2 N, T·46 + 38]."""
         return (inputs[:, self.mirror_column] * self.mirror_sign).view(-1, self.inputs)
 
     def _right_arm(self, bodies: Tensor, shift: Tensor) -> Tensor:
         """The inputs of the arm network [N, ARM_FEATURES] for the right arm, whose shoulder was corrected by `shift` [N, 3]."""
-        reach, others, arm = bodies[:, self.arm_columns].split([3, 14, 1], dim=1)
+        reach, others, arm = bodies[:, self.arm_columns].split([3, 13, 1], dim=1)
         # Inputs of zeros, with which a page tries the network out, must not divide by zero.
         reach = reach - shift / arm.clamp_min(1e-3)
         return torch.cat([reach, reach.norm(dim=-1, keepdim=True), others], dim=1)
@@ -148,8 +148,8 @@ class ByteDropout(nn.Module):
         return x * (mask * (256 / self.kept))
 
 
-# Reach, its length, axes of the hand, IK's elbow, the room's up, whether the hand is seen and whether its tilt is measured.
-ARM_FEATURES = 18
+# Reach, its length, axes of the hand, IK's elbow, the room's up, whether the hand is seen.
+ARM_FEATURES = 17
 
 FLIP = torch.tensor([-1.0, 1.0, 1.0])
 # Mirrors the chest-frame features of an arm (reach, two axes of the hand, IK's elbow); a mirrored rotation's x axis changes its sign too.
@@ -177,14 +177,14 @@ def _from_arms() -> Tensor:
 
 
 def _arm_columns(taps: int) -> Tensor:
-    """Columns of a body's inputs: reach, hand and elbow of the right arm, up, whether the right hand is seen and measured, the arm's length."""
+    """Columns of a body's inputs: reach, hand and elbow of the right arm, up, whether the right hand is seen, the arm's length."""
     chest = taps * FEATURES
     right_arm = range(chest + ARMS.start + ARM_COLUMNS, chest + ARMS.stop)
-    return torch.tensor([*right_arm, *range(chest + UP.start, chest + UP.stop), SEEN.stop - 1, chest + MEASURED.stop - 1, ARM_LENGTH])
+    return torch.tensor([*right_arm, *range(chest + UP.start, chest + UP.stop), SEEN.stop - 1, ARM_LENGTH])
 
 
 def _mirror_image(taps: int) -> tuple[Tensor, Tensor]:
-    """Column and sign of each feature of a body [2 · (T·46 + 40)] and of its mirror image, over all frames of the window."""
+    """Column and sign of each feature of a body [2 · (T·46 + 38)] and of its mirror image, over all frames of the window."""
     frame, frame_sign = torch.arange(FEATURES), torch.ones(FEATURES)
     left, right = HANDS
     frame[left], frame[right] = frame[right].clone(), frame[left].clone()
@@ -197,8 +197,7 @@ def _mirror_image(taps: int) -> tuple[Tensor, Tensor]:
     frame_sign[IK_JOINTS] = FLIP.repeat(6)
     chest, chest_sign = torch.arange(CHEST_FEATURES), torch.ones(CHEST_FEATURES)
     chest[ARMS] = chest[ARMS].view(2, ARM_COLUMNS).flip(0).flatten()
-    for pair in (REACH_LENGTHS, MEASURED):
-        chest[pair] = chest[pair].flip(0)
+    chest[REACH_LENGTHS] = chest[REACH_LENGTHS].flip(0)
     chest_sign[ARMS] = ARM_FLIP.repeat(2)
     chest_sign[CHEST_HEAD_AXES] = torch.cat([-FLIP, FLIP])
     chest_sign[CHEST_JOINT], chest_sign[UP] = FLIP, FLIP

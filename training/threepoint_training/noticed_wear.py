@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from . import fitted_kinematics, leave_one_out, quaternion, solve_ik, splits, train_learned
+from . import fitted_kinematics, leave_one_out, notice_hand_tilts, quaternion, solve_ik, splits, train_learned
 from .accuracy_tables import renew, table
 from .features import frame_features
 from .fit_ik import FitIkConfig
@@ -220,10 +220,12 @@ def _errors(corpus: PreparedCorpus, name: str, worn: _Worn, made: _Network, conf
         )
         believed = np.broadcast_to([0.0, noticed.up, noticed.back], (len(positions), 3))
         positions[:, 0] -= quaternion.rotate(rotations[:, 0], believed)
-        vector, _ = frame_features(positions, rotations, body)
+        times = np.arange(len(positions)) / corpus.rate_hz
+        worn_by = notice_hand_tilts.with_noticed_hands(body, positions, rotations, np.diff(times, prepend=0.0))
+        vector, _ = frame_features(positions, rotations, worn_by)
         chosen = slice(None, None, config.judged_stride)
-        inputs = network_input(vector, np.arange(len(vector)) / corpus.rate_hz, made.window_seconds, body)[chosen]
-        truth = residual(corpus.truth(frames).astype(np.float64), positions, rotations, body, vector)[chosen]
+        inputs = network_input(vector, times, made.window_seconds)[chosen]
+        truth = residual(corpus.truth(frames).astype(np.float64), positions, rotations, worn_by, vector)[chosen]
         count = len(truth)
         seen = HeldOut(
             inputs.astype(np.float32), truth.astype(np.float32), np.full(count, eye_height), np.full(count, name), np.full(count, clip)

@@ -11,7 +11,7 @@ UPRIGHT = "head up, hands below it, an arm stretched"
 
 
 def of_frames(inputs: NDArray[np.float32]) -> dict[str, NDArray[np.bool_]]:
-    """Which frames [F] are of each posture, from the network's inputs [F, T·46 + 40]; a frame may be of several, and is of one at least."""
+    """Which frames [F] are of each posture, from the network's inputs [F, T·46 + 38]; a frame may be of several, and is of one at least."""
     hand_heights = inputs[:, [hand.start + 1 for hand in HANDS]]
     reaches = inputs[:, -CHEST_FEATURES:][:, REACH_LENGTHS]
     special = {

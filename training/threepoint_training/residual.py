@@ -14,9 +14,9 @@ Array = NDArray[np.float64]
 OUTPUTS = 18
 
 
-def network_input(vector: Array, times: Array, window: tuple[float, ...], body: Body) -> Array:
-    """The network's input [F, T·46 + 40]: the window of features, and the chest-frame features of the newest frame."""
-    return np.concatenate([windowed(vector, times, window), chest_features(vector, body.hands_measured)], axis=-1)
+def network_input(vector: Array, times: Array, window: tuple[float, ...]) -> Array:
+    """The network's input [F, T·46 + 38]: the window of features, and the chest-frame features of the newest frame."""
+    return np.concatenate([windowed(vector, times, window), chest_features(vector)], axis=-1)
 
 
 def residual(truth: Array, positions: Array, rotations: Array, body: Body, vector: Array) -> Array:

@@ -34,9 +34,9 @@ class Body:
     lower_back: Array  # hips to chest
     clavicle_root: Array  # from the neck's base
     shoulder: Array  # from the neck's base
-    # Of the left and the right hand (hand_tilt): tilts [..., 2, 2], zero where they are not measured, and whether they are [..., 2]. None: no hand is.
+    # Of the left and the right hand (hand_tilt): tilts [..., 2, 2] that they are turned by, and whether they are [..., 2]. None: no hand is.
     hand_tilts: Array | None = None
-    hands_measured: NDArray[np.bool_] | None = None
+    hands_turned: NDArray[np.bool_] | None = None
 
     def with_forearms(self, lengths: Array, known: NDArray[np.bool_] | bool = True) -> "Body":
         """The same body, its left and right forearm told to be this long [..., 2] [m], where they are known; believed as far as the page does."""
@@ -44,9 +44,9 @@ class Body:
         forearm = np.where(known, self.forearm + LIMB["forearmTrust"] * (told - self.forearm), self.forearm)
         return replace(self, upper_arm=self.arm - forearm, forearm=forearm)
 
-    def with_hands(self, tilts: Array, measured: NDArray[np.bool_]) -> "Body":
-        """The same body with these tilts [..., 2, 2] of its hands, where they are measured [..., 2]."""
-        return replace(self, hand_tilts=np.where(measured[..., None], tilts, 0.0), hands_measured=measured)
+    def with_hands(self, tilts: Array) -> "Body":
+        """The same body with these tilts [..., 2, 2] of its hands."""
+        return replace(self, hand_tilts=tilts, hands_turned=np.ones(2, bool))
 
 
 def body_from_calibration(eye_height: Array, arm_span: Array, proportions: dict[str, Any] | None = None) -> Body:

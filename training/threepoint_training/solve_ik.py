@@ -93,8 +93,8 @@ def solve(positions: Array, rotations: Array, body: Body, parameters: dict[str, 
 
     rest = body.shoulder - body.clavicle_root
     clavicle_length = np.linalg.norm(rest, axis=-1, keepdims=True)
-    clavicle, pole, measured_pole = (np.array(k[name]) for name in ("clavicle", "pole", "measuredPole"))
-    measured = np.zeros(2, bool) if body.hands_measured is None else body.hands_measured
+    clavicle, untold_pole, pole = (np.array(k[name]) for name in ("clavicle", "untoldPole", "pole"))
+    turned = np.zeros(2, bool) if body.hands_turned is None else body.hands_turned
     one = np.ones_like(neck[:, :1])
     elbows, shoulders = [], []
     for side, sign in ((0, -1.0), (1, 1.0)):
@@ -114,7 +114,7 @@ def solve(positions: Array, rotations: Array, body: Body, parameters: dict[str, 
         hand = quaternion.to_matrix(rotations[:, 1 + side])
         q = in_chest(wrist - shoulder) / a
         columns = np.concatenate([one, q, in_chest(hand[..., :, 1]), in_chest(hand[..., :, 2])], -1)
-        direction = np.where(measured[..., side, None], columns @ measured_pole.T, columns @ pole.T)
+        direction = np.where(turned[..., side, None], columns @ pole.T, columns @ untold_pole.T)
         direction = _apply(chest, direction * mirror)
         bones = body.upper_arm[..., side, None], body.forearm[..., side, None]
         elbows.append(two_bone_elbow(shoulder, wrist, *bones, direction, chest=chest))

@@ -20,7 +20,7 @@ class SubjectEffects(nn.Module):
     its arm, and constant ones of the own arms' shoulders."""
 
     def __init__(self, subjects: int, inputs: Tensor) -> None:
-        """inputs [N, T·46 + 40]: some of the training's, for mean and deviation of the chest-frame features."""
+        """inputs [N, T·46 + 38]: some of the training's, for mean and deviation of the chest-frame features."""
         super().__init__()
         self.trunk = nn.Parameter(torch.zeros(subjects, CHEST_FEATURES + 1, 12))
         # Of a right arm; the elbow from its shoulder.
@@ -32,7 +32,7 @@ class SubjectEffects(nn.Module):
             self.register_buffer(f"{name}_scale", values.std(0).clamp_min(2e-2))
 
     def forward(self, inputs: Tensor, subjects: Tensor) -> Tensor:
-        """What to add to the corrections [N, 6, 3] of windows [N, T·46 + 40], whose torsos, left and right arms are these subjects' [N, 3]."""
+        """What to add to the corrections [N, 6, 3] of windows [N, T·46 + 38], whose torsos, left and right arms are these subjects' [N, 3]."""
         features = inputs[:, -CHEST_FEATURES:]
         torso, arms = subjects[:, 0], subjects[:, 1:]
         trunk = torch.einsum("nf,nfo->no", self._standardised("trunk", features), _centred(self.trunk)[torso]).view(-1, 4, 3)
@@ -57,7 +57,7 @@ _MIRRORED = torch.cat([ARM_FLIP, FLIP, torch.ones(1)])
 
 
 def _as_right_arms(features: Tensor) -> Tensor:
-    """Both arms [N, 2, 16] of chest-frame features [N, 40], the left one as its mirror image."""
+    """Both arms [N, 2, 16] of chest-frame features [N, 38], the left one as its mirror image."""
     up = features[:, None, UP].expand(-1, 2, -1)
     arms = torch.cat([features[:, ARMS].view(-1, 2, ARM_COLUMNS), up, features[:, REACH_LENGTHS, None]], dim=2)
     return arms * torch.stack([_MIRRORED, torch.ones(_ARM_FEATURES)])

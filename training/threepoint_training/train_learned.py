@@ -8,13 +8,14 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from . import hand_tilt, quaternion
+from . import hand_tilt, notice_hand_tilts, quaternion
 from .augment import AugmentConfig, BodyParts, draw_batch
 from .chest_features import CHEST_FEATURES
 from .complete_hands import carry_with_head, complete_hands
 from .differentiable_kinematics import DifferentiableKinematics
 from .features import FEATURES, frame_features
 from .model import CorrectionNetwork
+from .notice_hand_tilts import NOTHING_TOLD, ToldTilts
 from .prepared_corpus import PreparedCorpus
 from .residual import OUTPUTS, network_input, residual
 from .simulate_trackers import FOREARM_ERROR, TrackerConfig, Wearer, draw_wearer, measured_tilts, simulate
@@ -31,7 +32,7 @@ class TrainLearnedConfig:
     width: int = 192
     dropout: float = 0.2
     hidden_layers: int = 2
-    steps: int = 1800
+    steps: int = 3000
     batch: int = 1024
     learning_rate: float = 5e-3
     weight_decay: float = 1e-2
@@ -88,6 +89,8 @@ class Condition:
     # The guided calibration has measured the hands' tilts; and its wearer bent the wrists inwards by so much meanwhile [rad].
     hands_measured: bool = True
     bent_wrists: float = 0.0
+    # The page notices how hands stand to their forearms while they move; False: they stay turned as they were told or usually are.
+    hands_noticed: bool = True
     # The wearer has typed how long the forearm is.
     forearm_typed: bool = False
 
@@ -124,7 +127,7 @@ def held_out(
         for clip in corpus.clips_of({name}):
             frames = corpus.clip_slice(clip)
             random = np.random.default_rng([seed, 1, clip])
-            body = _with_measured_hands(body, forearms.elsewhere(clip), wearer, trackers, condition, np.random.default_rng([seed, 2, key]))
+            told = _told_tilts(forearms.elsewhere(clip), wearer, trackers, condition, np.random.default_rng([seed, 2, key]))
             positions, rotations = simulate(corpus.positions[frames], corpus.rotations[frames], wearer, trackers, random)
             truth = corpus.truth(frames).astype(np.float64)
             count = len(truth)
@@ -134,11 +137,14 @@ def held_out(
             lost = np.zeros((count, 2), bool)
             if condition.lost_hand:
                 positions, rotations, lost = _lose_hand(positions, rotations, clip % 2, corpus.rate_hz, body)
-            vector, _ = frame_features(positions, rotations, body, ~lost)
+            times = np.arange(count) / corpus.rate_hz
+            seconds = np.diff(times, prepend=0.0) * condition.hands_noticed
+            worn_by = notice_hand_tilts.with_noticed_hands(body, positions, rotations, seconds, told, ~lost)
+            vector, _ = frame_features(positions, rotations, worn_by, ~lost)
             rows.append(
                 (
-                    network_input(vector, np.arange(count) / corpus.rate_hz, window_seconds, body).astype(np.float32),
-                    residual(truth, positions, rotations, body, vector).astype(np.float32),
+                    network_input(vector, times, window_seconds).astype(np.float32),
+                    residual(truth, positions, rotations, worn_by, vector).astype(np.float32),
                     np.full(count, eye_height),
                     np.full(count, name),
                     np.full(count, clip),
@@ -147,14 +153,12 @@ def held_out(
     return HeldOut(*(np.concatenate(column) for column in zip(*rows, strict=True)))
 
 
-def _with_measured_hands(
-    body: Body, tilts: Array, wearer: Wearer, trackers: TrackerConfig, condition: Condition, random: np.random.Generator
-) -> Body:
-    """The body with what the guided calibration measures of hands with these tilts [2, 2], as far as it is believed."""
+def _told_tilts(tilts: Array, wearer: Wearer, trackers: TrackerConfig, condition: Condition, random: np.random.Generator) -> ToldTilts:
+    """What the guided calibration measures of hands with these tilts [2, 2], as far as it is believed."""
     if not condition.hands_measured:
-        return body
+        return NOTHING_TOLD
     measured = measured_tilts(tilts, wearer.hand_turns, trackers, random) + np.array([condition.bent_wrists, 0.0])
-    return body.with_hands(measured, hand_tilt.believed(measured))
+    return ToldTilts(measured, hand_tilt.believed(measured))
 
 
 def _lose_hand(positions: Array, rotations: Array, hand: int, rate_hz: int, body: Body) -> tuple[Array, Array, NDArray[np.bool_]]:

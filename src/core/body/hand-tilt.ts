@@ -1,6 +1,7 @@
-import { fromAxisAngle, type MutableQuat, quat } from '../math/quat';
+import { fromAxisAngle, limitAngle, type MutableQuat, quat, rotationBetween } from '../math/quat';
 import type { Side } from '../math/side';
-import { type Vec3, vec3 } from '../math/vec3';
+import { forward, type Vec3, vec3 } from '../math/vec3';
+import { handTilt as averageTilt } from './body-proportions.json';
 import { steepestHandTilt } from './limb-limits.json';
 
 /**
@@ -14,6 +15,13 @@ export interface HandTilt {
 
 /** Of each hand that was measured. */
 export type HandTilts = { readonly [Hand in Side]?: HandTilt | undefined };
+
+/** That of the average person's hand, of whom nothing is known. */
+export function usualHandTilt(side: Side): HandTilt {
+  const [pitch, yaw] = averageTilt as [number, number];
+  // A left hand is a right one's mirror image.
+  return { pitch, yaw: side === 'left' ? -yaw : yaw };
+}
 
 /** The tilt of a hand in whose frame the forearm points along this vector. */
 export function handTiltOf({ x, y, z }: Vec3): HandTilt {
@@ -30,3 +38,7 @@ export function turnOfTilt({ pitch, yaw }: HandTilt): MutableQuat {
   const angle = Math.hypot(pitch, yaw);
   return angle < 1e-12 ? quat(0, 0, 0, 1) : fromAxisAngle(vec3(pitch / angle, yaw / angle, 0), angle);
 }
+
+/** The same of a forearm in this direction [unit, hand frame], held to the steepest tilt that a hand has. */
+export const turnToForearm = (direction: Vec3, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat =>
+  limitAngle(rotationBetween(forward, direction, target), steepestHandTilt, target);

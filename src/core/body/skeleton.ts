@@ -4,7 +4,6 @@ import type { Side } from '../math/side';
 import { add, length, up, type Vec3, vec3 } from '../math/vec3';
 import proportions from './body-proportions.json';
 import type { Calibration } from './calibration';
-import { turnOfTilt } from './hand-tilt';
 import type { JointName } from './joints';
 import { forearmShare, forearmTrust, shortestArm } from './limb-limits.json';
 import type { LimbBones } from './two-bone-ik';
@@ -96,13 +95,6 @@ export interface ChestSpaceBody {
   readonly clavicleRoot: Vec3;
   readonly clavicle: Vec3;
   readonly clavicleLength: number;
-  /** What each hand is turned by in its own frame so that its −Z continues the forearm; null: not measured. */
-  readonly handTurns: Readonly<Record<Side, Quat | null>>;
-}
-
-function handTurn(side: Side, { handTilts }: Calibration): Quat | null {
-  const tilt = handTilts?.[side];
-  return tilt ? turnOfTilt(tilt) : null;
 }
 
 /** The same body as `skeletonFromCalibration`, before the standing spine's curve. */
@@ -121,6 +113,5 @@ export function chestSpaceBody(calibration: Calibration): ChestSpaceBody {
     clavicleRoot: vec3(p.clavicleRoot * e, 0, 0),
     clavicle,
     clavicleLength: length(clavicle),
-    handTurns: { left: handTurn('left', calibration), right: handTurn('right', calibration) },
   };
 }

@@ -4,7 +4,7 @@ import { dot, length, type MutableVec3, right, scale, setVec3, subtract, up, typ
 import type { ChestAxes, IkSolution, ThreePoints } from './solve-ik';
 
 /** Numbers of one frame in the chest frame; their order is in docs/estimation.md. */
-export const chestFeatureCount = 40;
+export const chestFeatureCount = 38;
 
 /** A vector of the heading frame along the chest's axes. */
 function inChest({ x, y, z }: ChestAxes, v: Vec3, target: MutableVec3): MutableVec3 {
@@ -43,8 +43,8 @@ export function chestFeatures(
   start: number,
 ): void {
   let next = start;
-  // At the end: the lengths of both reaches, and which hands were measured.
-  const reaches = start + chestFeatureCount - 4;
+  // At the end: the lengths of both reaches.
+  const reaches = start + chestFeatureCount - 2;
   for (let arm = 0; arm < 2; arm++) {
     const hand = arm === 0 ? leftHand : rightHand;
     const shoulder = arm === 0 ? joints.leftUpperArm : joints.rightUpperArm;
@@ -64,6 +64,4 @@ export function chestFeatures(
   target[next] = chest.x.y;
   target[next + 1] = chest.y.y;
   target[next + 2] = chest.z.y;
-  target[reaches + 2] = body.handTurns.left ? 1 : 0;
-  target[reaches + 3] = body.handTurns.right ? 1 : 0;
 }

@@ -16,8 +16,8 @@ const shortestArm = 1e-3;
 export class LearnedNetwork {
   readonly #features: number;
   /**
-   * Reach, its length, axes of the hand, IK's elbow, the room's up, whether the hand is seen and whether measured. The
-   * same number as `armColumns`: the reach's length is computed, and the last column, the arm's length, is used only as divisor.
+   * Reach, its length, axes of the hand, IK's elbow, the room's up, whether the hand is seen. The same number as `armColumns`: the reach's
+   * length is computed, and the last column, the arm's length, is used only as divisor.
    */
   readonly #armInputs: number;
   readonly #trunk: Perceptron;

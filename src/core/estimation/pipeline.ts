@@ -15,6 +15,7 @@ import { fitTorso, makeFitTorsoState, resetFitTorso, torsoBones } from './fit-to
 import { HeadsetPitch } from './headset-pitch';
 import { makeJoints } from './joint-positions';
 import type { JointSource, SolvedFrame } from './joint-source';
+import { makeHandTiltsState, noticeHandTilts, resetHandTilts, tellHandTilts } from './notice-hand-tilts';
 import type { Estimate, EstimatorName, InferenceRequest, PoseEstimator } from './pose-estimator';
 import { makeIkSolution, makeThreePoints, solveIk, turnHands } from './solve-ik';
 
@@ -32,10 +33,11 @@ function measure(calibration: Calibration) {
 }
 
 /** Everything that is remembered of one wearer, stage by stage; a stage writes its own part alone. */
-function makeEstimatorState() {
+function makeEstimatorState({ handTilts }: Calibration) {
   const hands = makeCompleteHandsState();
   return {
     hands,
+    tilts: makeHandTiltsState(handTilts),
     solved: {
       time: Number.NaN,
       completed: hands.frame,
@@ -73,7 +75,7 @@ export class Pipeline implements PoseEstimator {
   readonly name: EstimatorName;
   readonly source: JointSource;
   /** Of the newest frame; for benches that look at single stages. */
-  readonly state: EstimatorState = makeEstimatorState();
+  readonly state: EstimatorState;
   readonly #headingFromFloor = makeTransform<'heading', 'floor'>();
   /** IK's poles, floor frame. */
   readonly #poles = { left: vec3(0, 0, 0), right: vec3(0, 0, 0) };
@@ -86,6 +88,7 @@ export class Pipeline implements PoseEstimator {
   constructor(name: EstimatorName, calibration: Calibration, source: JointSource) {
     this.name = name;
     this.source = source;
+    this.state = makeEstimatorState(calibration);
     this.#pitch = new HeadsetPitch(calibration);
     this.#body = measure(calibration);
     this.#request = { ask: () => source.network?.ask(this.state.solved) ?? Promise.resolve() };
@@ -98,12 +101,14 @@ export class Pipeline implements PoseEstimator {
   calibrate(calibration: Calibration): void {
     this.#pitch.calibrate(calibration);
     this.#body = measure(calibration);
+    tellHandTilts(this.state.tilts, calibration.handTilts);
     this.source.calibrate(this.#body.chestSpace);
   }
 
   reset(): void {
-    const { hands, filter, torso, arms } = this.state;
+    const { hands, tilts, filter, torso, arms } = this.state;
     resetCompleteHands(hands);
+    resetHandTilts(tilts);
     this.source.reset();
     resetFilterJoints(filter);
     resetFitTorso(torso);
@@ -123,6 +128,7 @@ export class Pipeline implements PoseEstimator {
 
     const completed = completeHands(state.hands, head, frame, body.chestSpace, deltaSeconds);
     const solved = this.#solve(frame);
+    noticeHandTilts(state.tilts, solved.ik, completed, deltaSeconds);
     this.source.joints(solved, deltaSeconds, state.joints);
     const joints = filterJoints(state.filter, state.joints, completed, deltaSeconds);
     const torso = fitTorso(state.torso, joints, completed, body.torso, deltaSeconds);
@@ -149,7 +155,7 @@ export class Pipeline implements PoseEstimator {
 
   /** Stage 2 in the heading frame. */
   #solve({ time, deviceBody }: TrackingFrame): SolvedFrame {
-    const { solved, hands } = this.state;
+    const { solved, hands, tilts } = this.state;
     const { head, leftHand, rightHand } = hands.frame;
     solved.time = time;
     solved.deviceBody = deviceBody ?? null;
@@ -158,8 +164,8 @@ export class Pipeline implements PoseEstimator {
     transformPose(this.#headingFromFloor, head, solved.points.head);
     transformPose(this.#headingFromFloor, leftHand, solved.points.leftHand);
     transformPose(this.#headingFromFloor, rightHand, solved.points.rightHand);
-    turnHands(solved.points, this.#body.chestSpace);
-    solveIk(solved.points, this.#body.chestSpace, solved.ik);
+    turnHands(solved.points, tilts.turns);
+    solveIk(solved.points, tilts.turns, this.#body.chestSpace, solved.ik);
     rotate(solved.floorFromHeading.orientation, solved.ik.poles.left, this.#poles.left);
     rotate(solved.floorFromHeading.orientation, solved.ik.poles.right, this.#poles.right);
     return solved;

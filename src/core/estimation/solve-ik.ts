@@ -3,7 +3,7 @@ import { type ChestSpaceBody, sideSign } from '../body/skeleton';
 import { elbowCircle, elbowOnCircle, makeElbowCircle, poleAcross } from '../body/two-bone-ik';
 import { clamp } from '../math/damper';
 import { type MutablePose, makePose, type Pose } from '../math/pose';
-import { fromAxes, fromAxisAngle, multiply, quat, rotate, rotateInverse } from '../math/quat';
+import { fromAxes, fromAxisAngle, multiply, type Quat, quat, rotate, rotateInverse } from '../math/quat';
 import type { Side } from '../math/side';
 import {
   add,
@@ -41,11 +41,13 @@ export const makeThreePoints = (): { readonly [point in keyof ThreePoints]: Muta
   rightHand: makePose(),
 });
 
-/** Turns both hands as they were measured, so that their −Z continues the forearm; a hand that was not measured stays as it is. */
-export function turnHands(points: ReturnType<typeof makeThreePoints>, { handTurns }: ChestSpaceBody): void {
-  const { leftHand, rightHand } = points;
-  if (handTurns.left) multiply(leftHand.orientation, handTurns.left, leftHand.orientation);
-  if (handTurns.right) multiply(rightHand.orientation, handTurns.right, rightHand.orientation);
+/** What each hand is turned by in its own frame so that its −Z continues the forearm. */
+export type HandTurns = Readonly<Record<Side, Quat>>;
+
+/** Turns both hands so that their −Z continues the forearm. */
+export function turnHands({ leftHand, rightHand }: ReturnType<typeof makeThreePoints>, turns: HandTurns): void {
+  multiply(leftHand.orientation, turns.left, leftHand.orientation);
+  multiply(rightHand.orientation, turns.right, rightHand.orientation);
 }
 
 /** The axes of the chest, unit: from the left to the right shoulder, up the spine, backward. */
@@ -65,12 +67,15 @@ export interface IkSolution {
   readonly chest: ChestAxes;
   /** Where each elbow points from the line between shoulder and wrist, unit. */
   readonly poles: Readonly<Record<Side, MutableVec3>>;
+  /** Where each forearm would point, elbow to wrist, if nothing were known of how its hand stands to it; unit, frame of the hand as it is tracked. */
+  readonly untoldForearms: Readonly<Record<Side, MutableVec3>>;
 }
 
 export const makeIkSolution = (): IkSolution => ({
   joints: makeJoints(),
   chest: makeChestAxes(),
   poles: { left: vec3(0, 0, 0), right: vec3(0, 0, 0) },
+  untoldForearms: { left: vec3(0, 0, 0), right: vec3(0, 0, 0) },
 });
 
 const { ik: bounds } = limits;
@@ -112,13 +117,20 @@ const handFeatures = new Float64Array(10);
 const a = vec3(0, 0, 0);
 const b = vec3(0, 0, 0);
 const circle = makeElbowCircle();
+const untoldPole = vec3(0, 0, 0);
+const untoldElbow = vec3(0, 0, 0);
 const fallbackPoles: readonly [MutableVec3, MutableVec3] = [vec3(0, 0, 0), vec3(0, 0, 0)];
 
 /**
  * Stage 2: the six joints from head and wrists: spine bend, pelvis under the head, clavicles and two-bone arms with an
- * anatomical swivel, from hands that are turned as they were measured (`turnHands`). The numbered steps are those of docs/estimation.md.
+ * anatomical swivel, from hands that were turned so (`turnHands`). The numbered steps are those of docs/estimation.md.
  */
-export function solveIk(points: ThreePoints, body: ChestSpaceBody, target: IkSolution = makeIkSolution()): IkSolution {
+export function solveIk(
+  points: ThreePoints,
+  turns: HandTurns,
+  body: ChestSpaceBody,
+  target: IkSolution = makeIkSolution(),
+): IkSolution {
   headJointOf(points.head, body.eyesInHead, headJoint);
   scale(subtract(points.leftHand.position, headJoint, left), 1 / body.arm, left);
   scale(subtract(points.rightHand.position, headJoint, rightHand), 1 / body.arm, rightHand);
@@ -127,8 +139,8 @@ export function solveIk(points: ThreePoints, body: ChestSpaceBody, target: IkSol
   turnChest();
   leanTrunk(points.head, body);
   placeTrunk(points.head, body, target.joints);
-  placeArm('left', points.leftHand, body, target);
-  placeArm('right', points.rightHand, body, target);
+  placeArm('left', points.leftHand, turns.left, body, target);
+  placeArm('right', points.rightHand, turns.right, body, target);
   chestAxesOf(target.joints, target.chest);
   return target;
 }
@@ -187,10 +199,19 @@ function placeTrunk(head: Pose<'heading'>, body: ChestSpaceBody, joints: Mutable
 const inChest = (v: Vec3, sigma: number, target: MutableVec3): MutableVec3 =>
   mirror(rotateInverse(chest, v, target), sigma);
 
-function placeArm(side: Side, wrist: Pose<'heading'>, body: ChestSpaceBody, { joints, poles }: IkSolution): void {
+function placeArm(
+  side: Side,
+  wrist: Pose<'heading'>,
+  turn: Quat,
+  body: ChestSpaceBody,
+  { joints, poles, untoldForearms }: IkSolution,
+): void {
   const sigma = sideSign(side);
   const shoulder = side === 'left' ? joints.leftUpperArm : joints.rightUpperArm;
   placeShoulder(wrist, body, sigma, shoulder);
+  scale(thoraxUp, -1, fallbackPoles[0]);
+  rotate(chest, backward, fallbackPoles[1]);
+  elbowCircle(shoulder, wrist.position, body.armBones, fallbackPoles[0], circle);
 
   // 7. Elbow: the swivel follows where the hand is and how it is turned.
   handFeatures[0] = 1;
@@ -198,14 +219,21 @@ function placeArm(side: Side, wrist: Pose<'heading'>, body: ChestSpaceBody, { jo
   writeTo(handFeatures, 1, scale(a, 1 / body.arm, a));
   writeTo(handFeatures, 4, inChest(rotate(wrist.orientation, up, a), sigma, a));
   writeTo(handFeatures, 7, inChest(rotate(wrist.orientation, backward, a), sigma, a));
-  const pole = side === 'left' ? poles.left : poles.right;
-  const rows = body.handTurns[side] ? parameters.measuredPole : parameters.pole;
+  placeElbow(parameters.pole, sigma, poles[side], side === 'left' ? joints.leftLowerArm : joints.rightLowerArm);
+
+  // The same from the hand as it is tracked: its axes are those of the turned hand, turned back.
+  writeTo(handFeatures, 4, inChest(rotate(wrist.orientation, rotateInverse(turn, up, a), a), sigma, a));
+  writeTo(handFeatures, 7, inChest(rotate(wrist.orientation, rotateInverse(turn, backward, a), a), sigma, a));
+  placeElbow(parameters.untoldPole, sigma, untoldPole, untoldElbow);
+  normalise(subtract(wrist.position, untoldElbow, a), circle.axis, a);
+  rotate(turn, rotateInverse(wrist.orientation, a, a), untoldForearms[side]);
+}
+
+/** The elbow on its circle, and its pole, by these weights of the hand's features. */
+function placeElbow(rows: readonly (readonly number[])[], sigma: number, pole: MutableVec3, elbow: MutableVec3): void {
   rotate(chest, mirror(affine(rows, handFeatures, pole), sigma), pole);
-  scale(thoraxUp, -1, fallbackPoles[0]);
-  rotate(chest, backward, fallbackPoles[1]);
-  elbowCircle(shoulder, wrist.position, body.armBones, fallbackPoles[0], circle);
   poleAcross(circle.axis, pole, fallbackPoles, pole);
-  elbowOnCircle(circle, pole, side === 'left' ? joints.leftLowerArm : joints.rightLowerArm);
+  elbowOnCircle(circle, pole, elbow);
 }
 
 /** 6. Shoulder: the clavicle swings with the hand. */

@@ -1,8 +1,7 @@
 import { readFileSync } from 'node:fs';
 import type { Calibration } from '../../../src/core/body/calibration';
-import type { ChestSpaceBody } from '../../../src/core/body/skeleton';
 import type { SeenHands } from '../../../src/core/estimation/features';
-import { makeThreePoints, type ThreePoints, turnHands } from '../../../src/core/estimation/solve-ik';
+import { type HandTurns, makeThreePoints, type ThreePoints, turnHands } from '../../../src/core/estimation/solve-ik';
 import { type Pose, transformPose } from '../../../src/core/math/pose';
 import type { Quat } from '../../../src/core/math/quat';
 import type { Vec3 } from '../../../src/core/math/vec3';
@@ -20,6 +19,8 @@ export interface GoldenCase {
     readonly positions: readonly Numbers[];
     readonly rotations: readonly Numbers[];
     readonly seen: readonly boolean[];
+    /** Pitch and yaw that the left and the right hand are turned by, as noticed in the frames before. */
+    readonly handTilts: readonly Numbers[];
     readonly ikJoints: readonly Numbers[];
     readonly features: Numbers;
     readonly paperInput: Numbers;
@@ -82,13 +83,13 @@ export function goldenPoints({ positions, rotations, seen }: GoldenCase['frames'
   };
 }
 
-/** The same as IK sees them on this body. */
-export function pointsInHeading({ head, leftHand, rightHand }: GoldenPoints, body: ChestSpaceBody): ThreePoints {
+/** The same as IK sees them, hands turned so. */
+export function pointsInHeading({ head, leftHand, rightHand }: GoldenPoints, turns: HandTurns): ThreePoints {
   const points = makeThreePoints();
   const transform = headingFromFloor(head);
   transformPose(transform, head, points.head);
   transformPose(transform, leftHand, points.leftHand);
   transformPose(transform, rightHand, points.rightHand);
-  turnHands(points, body);
+  turnHands(points, turns);
   return points;
 }

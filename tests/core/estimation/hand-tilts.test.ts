@@ -2,8 +2,9 @@ import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import type { Calibration } from '../../../src/core/body/calibration';
 import { handTiltOf, isBelievableTilt, turnOfTilt } from '../../../src/core/body/hand-tilt';
-import { createEstimator } from '../../../src/core/estimation/estimators';
-import { conjugate, multiply, rotate } from '../../../src/core/math/quat';
+import { createEstimator, createIk } from '../../../src/core/estimation/estimators';
+import { angleBetween, conjugate, multiply, type Quat, rotate } from '../../../src/core/math/quat';
+import { sides } from '../../../src/core/math/side';
 import { distance, forward, scale } from '../../../src/core/math/vec3';
 import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
 import { number, seed } from '../arbitraries';
@@ -14,6 +15,8 @@ import { openPlainModel } from './shipped-models';
 const body: Calibration = { eyeHeight: 1.58, armSpan: 1.5 };
 const tilt = fc.record({ pitch: number(-0.5, 0.5), yaw: number(-0.5, 0.5) });
 const straight = { pitch: 0, yaw: 0 };
+/** Until the second frame nothing has been noticed. */
+const framesAsTold = 2;
 
 /** The frame as devices tell it whose hands stand at these tilts to the forearms. */
 const worn = (frame: TrackingFrame, left: typeof straight, right: typeof straight): TrackingFrame => {
@@ -56,7 +59,7 @@ describe('hands that stand at a tilt to their forearms', () => {
         const person = movingPerson(who, body, { x: 0, z: 0, yaw: 0.4 });
         const level = createEstimator(name, { ...body, handTilts: { left: straight, right: straight } }, network);
         const tilted = createEstimator(name, { ...body, handTilts: { left, right } }, network);
-        for (let i = 0; i < 30; i++) {
+        for (let i = 0; i < framesAsTold; i++) {
           const frame = person(i / 60);
           const wanted = poseOf(level, frame);
           const drawn = poseOf(tilted, worn(frame, left, right));
@@ -72,19 +75,6 @@ describe('hands that stand at a tilt to their forearms', () => {
     );
   });
 
-  test('are told to the learned network: a hand that was found straight is not one of which nothing is known', () => {
-    const frame = movingPerson(6, body, { x: 0, z: 0, yaw: 0 })(1);
-    const network = openPlainModel();
-    const hipsOf = (handTilts: Calibration['handTilts']) => {
-      const estimator = createEstimator('learned', { ...body, handTilts }, network);
-      poseOf(estimator, { ...frame, time: frame.time - 1 / 60 });
-      const { body: drawn } = poseOf(estimator, frame);
-      if (!drawn) throw new Error('the learned network draws a body');
-      return drawn.hipsPosition;
-    };
-    expect(distance(hipsOf({ left: straight, right: straight }), hipsOf(undefined))).toBeGreaterThan(1e-4);
-  });
-
   test('are drawn where and as they are tracked', () => {
     const estimator = createEstimator('ik', { ...body, handTilts: { left: { pitch: 0.4, yaw: -0.2 } } });
     const frame = movingPerson(4, body, { x: 0, z: 0, yaw: 0 })(1);
@@ -92,12 +82,79 @@ describe('hands that stand at a tilt to their forearms', () => {
     expect(drawn.leftHand).toEqual(frame.leftHand);
   });
 
-  test('one hand may be measured and the other not', () => {
+  test('one hand may be told and the other not', () => {
     const frame = movingPerson(5, body, { x: 0, z: 0, yaw: 0 })(1);
     const rotationsOf = (handTilts: Calibration['handTilts']) =>
       poseOf(createEstimator('ik', { ...body, handTilts }), frame).body?.localRotations;
     const [none, left] = [rotationsOf(undefined), rotationsOf({ left: { pitch: 0.4, yaw: 0 } })];
     expect(left?.leftUpperArm).not.toEqual(none?.leftUpperArm);
     expect(left?.rightUpperArm).toEqual(none?.rightUpperArm);
+  });
+});
+
+describe('tilts that are noticed while hands move', () => {
+  /** How hands are turned after so many seconds of a person who wears them so. */
+  const noticed = (seconds: number, told: Calibration['handTilts'], left = straight, right = straight) => {
+    const estimator = createIk({ ...body, handTilts: told });
+    const person = movingPerson(7, body, { x: 0, z: 0, yaw: 0.3 });
+    for (let i = 0; i <= seconds * 60; i++) estimator.update(worn(person(i / 60), left, right));
+    return estimator.state.tilts.turns;
+  };
+  const degreesFrom = (found: Quat, { pitch, yaw }: typeof straight) =>
+    (angleBetween(found, turnOfTilt({ pitch, yaw })) * 180) / Math.PI;
+
+  test('are at first what calibration tells, else the usual ones, a left hand’s the mirror image', () => {
+    const told = { pitch: 0.3, yaw: -0.2 };
+    const { left, right } = noticed(0, { left: told });
+    expect(left).toBeSameRotationAs(turnOfTilt(told), 1e-6);
+    const { pitch, yaw } = handTiltOf(rotate(right, forward));
+    expect(handTiltOf(rotate(noticed(0, undefined).left, forward))).toEqual({
+      pitch: expect.closeTo(pitch, 9),
+      yaw: expect.closeTo(-yaw, 9),
+    });
+  });
+
+  test('come within 15° of how hands are worn, wherever they begin', () => {
+    const [left, right] = [
+      { pitch: 0.3, yaw: 0.4 },
+      { pitch: 0.3, yaw: -0.4 },
+    ];
+    const usual = noticed(0, undefined, left, right);
+    expect(degreesFrom(usual.left, left)).toBeGreaterThan(40);
+    expect(degreesFrom(usual.right, right)).toBeGreaterThan(40);
+    for (const told of [undefined, { left: { pitch: -0.4, yaw: -0.4 }, right: { pitch: 0.6, yaw: 0.4 } }]) {
+      const found = noticed(120, told, left, right);
+      expect(degreesFrom(found.left, left)).toBeLessThan(15);
+      expect(degreesFrom(found.right, right)).toBeLessThan(15);
+    }
+  });
+
+  test('do not feed themselves: after minutes it makes little difference what was told', () => {
+    const [usual, told] = [undefined, { left: { pitch: 0.5, yaw: 0.5 }, right: { pitch: 0.5, yaw: 0.5 } }].map((told) =>
+      noticed(180, told),
+    );
+    for (const side of sides) expect(told![side]).toBeSameRotationAs(usual![side], 6);
+  });
+
+  test('stay while a hand is not seen', () => {
+    const estimator = createIk(body);
+    const person = movingPerson(8, body, { x: 0, z: 0, yaw: 0 });
+    const at = (i: number, leftHand?: null) => ({ ...person(i / 60), ...(leftHand === null && { leftHand }) });
+    for (let i = 0; i < 60; i++) estimator.update(at(i));
+    const before = structuredClone(estimator.state.tilts.turns);
+    for (let i = 60; i < 180; i++) estimator.update(at(i, null));
+    expect(estimator.state.tilts.turns.left).toEqual(before.left);
+    expect(estimator.state.tilts.turns.right).not.toEqual(before.right);
+  });
+
+  test('are the same at any frame rate', () => {
+    const at = (rate: number) => {
+      const estimator = createIk(body);
+      const person = movingPerson(9, body, { x: 0, z: 0, yaw: 0 });
+      for (let i = 0; i <= 5 * rate; i++) estimator.update(person(i / rate));
+      return estimator.state.tilts.turns;
+    };
+    const [slow, fast] = [at(60), at(120)];
+    for (const side of sides) expect(fast[side]).toBeSameRotationAs(slow[side], 0.5);
   });
 });

@@ -1,11 +1,16 @@
 import { describe, expect, test } from 'vitest';
+import { turnOfTilt } from '../../../src/core/body/hand-tilt';
 import { estimatedJoints, type JointName } from '../../../src/core/body/joints';
 import { chestSpaceBody, skeletonFromCalibration } from '../../../src/core/body/skeleton';
 import { chestFeatureCount, chestFeatures } from '../../../src/core/estimation/chest-features';
+import type { CompletedHand } from '../../../src/core/estimation/complete-hands';
 import { FeatureWindow, featureCount, frameFeatures } from '../../../src/core/estimation/features';
 import { transformJoints } from '../../../src/core/estimation/joint-positions';
+import { makeHandTiltsState, noticeHandTilts } from '../../../src/core/estimation/notice-hand-tilts';
 import { paperFeatures } from '../../../src/core/estimation/paper-features';
 import { solveIk } from '../../../src/core/estimation/solve-ik';
+import { makePose } from '../../../src/core/math/pose';
+import { sides } from '../../../src/core/math/side';
 import { floorFromHeading } from '../../../src/core/tracking/heading';
 import { type GoldenCase, goldenPoints, pointsInHeading, readGolden } from './golden';
 
@@ -17,6 +22,12 @@ const expectNear = (actual: ArrayLike<number>, expected: readonly number[], what
   for (let i = 0; i < expected.length; i++) {
     expect(Math.abs(actual[i]! - expected[i]!), `${what}[${i}]`).toBeLessThan(tolerance);
   }
+};
+
+/** How hands are turned in a frame. */
+const turnsOf = ({ handTilts: [left = [], right = []] }: GoldenCase['frames'][number]) => {
+  const turn = ([pitch = Number.NaN, yaw = Number.NaN]: readonly number[]) => turnOfTilt({ pitch, yaw });
+  return { left: turn(left), right: turn(right) };
 };
 
 describe.each(cases)('TypeScript agrees with Python for eyes at $calibration.eyeHeight m', (golden) => {
@@ -33,7 +44,8 @@ describe.each(cases)('TypeScript agrees with Python for eyes at $calibration.eye
   test('the IK solution in the floor frame', () => {
     for (const frame of golden.frames) {
       const points = goldenPoints(frame);
-      const { joints } = solveIk(pointsInHeading(points, body), body);
+      const turns = turnsOf(frame);
+      const { joints } = solveIk(pointsInHeading(points, turns), turns, body);
       transformJoints(floorFromHeading(points.head), joints, joints);
       estimatedJoints.forEach((joint, index) => {
         const { x, y, z } = joints[joint];
@@ -42,13 +54,35 @@ describe.each(cases)('TypeScript agrees with Python for eyes at $calibration.eye
     }
   });
 
+  test('how hands stand to their forearms, noticed frame by frame', () => {
+    const state = makeHandTiltsState(golden.calibration.handTilts);
+    const hand = (seen: boolean): CompletedHand => ({
+      ...makePose<'floor'>(),
+      source: seen ? 'tracked' : 'held',
+      confidence: 1,
+      goal: makePose(),
+      jumped: false,
+    });
+    let before = golden.frames[0]?.time ?? Number.NaN;
+    for (const frame of golden.frames) {
+      const points = goldenPoints(frame);
+      const turns = turnsOf(frame);
+      for (const side of sides) expect(state.turns[side]).toBeSameRotationAs(turns[side], 1e-4);
+      const solution = solveIk(pointsInHeading(points, state.turns), state.turns, body);
+      const hands = { leftHand: hand(points.seen.left), rightHand: hand(points.seen.right) };
+      noticeHandTilts(state, solution, hands, frame.time - before);
+      before = frame.time;
+    }
+  });
+
   test('features, windowed in time and seen from the chest, and the paper’s input', () => {
     const window = new FeatureWindow(Math.max(...golden.window));
     const input = new Float32Array(golden.window.length * featureCount + chestFeatureCount);
     golden.frames.forEach((frame, index) => {
       const seen = goldenPoints(frame);
-      const points = pointsInHeading(seen, body);
-      const solution = solveIk(points, body);
+      const turns = turnsOf(frame);
+      const points = pointsInHeading(seen, turns);
+      const solution = solveIk(points, turns, body);
       const features = frameFeatures(points, seen.seen, solution.joints, body, window.push(frame.time));
       expect(features.length).toBe(featureCount);
       expectNear(features, frame.features, `frame ${index}`);

@@ -1,0 +1,174 @@
+"""Facts about how hands stand to their forearms, as it is noticed while they move."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from threepoint_training import fit_ik, hand_tilt, quaternion
+from threepoint_training.features import frame_features
+from threepoint_training.generated_motion import generate_corpus
+from threepoint_training.kinematic_limits import HAND_TILTS, LIMB
+from threepoint_training.notice_hand_tilts import NOTHING_TOLD, ToldTilts, noticed, untold_forearms, with_noticed_hands
+from threepoint_training.prepare import EYES_FROM_HEAD_JOINT
+from threepoint_training.simulate_trackers import TrackerConfig, Wearer, simulate
+from threepoint_training.skeleton import body_from_calibration
+
+# One minute of one person.
+CORPUS = generate_corpus(people=1, clips=1, frames=3600, seed=3)
+(PERSON,) = CORPUS.people.values()
+BODY = body_from_calibration(np.array(PERSON.eye_height), np.array(PERSON.arm_span))
+SECONDS = np.diff(np.arange(3600) / CORPUS.rate_hz, prepend=0.0)
+STILL = np.array([0.0, 0.0, 0.0, 1.0])
+BOTH = np.array([True, True])
+TOLD = np.array([[0.3, -0.2], [-0.1, 0.4]])
+
+
+def tracked(corpus):
+    """Its positions and rotations as exact trackers see them."""
+    wearer = Wearer(EYES_FROM_HEAD_JOINT, STILL, np.zeros((2, 3)), np.stack([STILL, STILL]))
+    return simulate(corpus.positions, corpus.rotations, wearer, TrackerConfig(*[0.0] * 7), np.random.default_rng(0))
+
+
+def worn_off(corpus, right):
+    """The same person with the right hand turned so against its forearm, and the left one as its mirror image."""
+    turns = quaternion.from_rotation_vector(np.array([np.zeros(3), right * np.array([1.0, -1.0, -1.0]), right]))
+    return replace(corpus, rotations=quaternion.multiply(corpus.rotations.astype(np.float64), turns).astype(np.float32))
+
+
+POSITIONS, ROTATIONS = tracked(CORPUS)
+FOREARMS = untold_forearms(POSITIONS, ROTATIONS, BODY)
+
+
+def angles(tilts, others):
+    """Between forearms of these tilts [rad]."""
+    one, other = hand_tilt.direction_of(tilts), hand_tilt.direction_of(others)
+    return np.arctan2(np.linalg.norm(np.cross(one, other), axis=-1), np.sum(one * other, axis=-1))
+
+
+@pytest.mark.parametrize("known", [[True, True], [True, False], [False, True], [False, False]])
+def test_at_first_a_tilt_is_what_is_told_else_the_usual_one(known):
+    known = np.array(known)
+    (first,) = noticed(FOREARMS[:1], SECONDS[:1], ToldTilts(TOLD, known))
+    np.testing.assert_allclose(first[known], TOLD[known], atol=1e-12)
+    np.testing.assert_allclose(first[~known], hand_tilt.usual()[~known], atol=1e-12)
+
+
+def test_the_usual_tilt_of_a_left_hand_is_that_of_the_right_one_in_a_mirror():
+    (left_pitch, left_yaw), (right_pitch, right_yaw) = noticed(FOREARMS[:1], SECONDS[:1])[0]
+    assert left_pitch == pytest.approx(right_pitch) != 0
+    assert left_yaw == pytest.approx(-right_yaw) != 0
+
+
+def test_nothing_is_noticed_while_no_time_passes():
+    tilts = noticed(FOREARMS[:100], np.zeros(100), ToldTilts(TOLD, BOTH))
+    np.testing.assert_allclose(tilts, np.broadcast_to(TOLD, tilts.shape), atol=1e-12)
+
+
+def test_where_forearms_point_is_noticed_without_what_is_known_of_the_hands():
+    """So no error can feed itself: forearms are the same whatever tilts the body has, though they change where IK has its elbows."""
+    turned = BODY.with_hands(TOLD)
+    np.testing.assert_array_equal(untold_forearms(POSITIONS, ROTATIONS, turned), FOREARMS)
+    elbows = [frame_features(POSITIONS, ROTATIONS, body)[1][:, :2] for body in (turned, BODY)]
+    assert np.abs(elbows[1] - elbows[0]).max() > 0.05
+    tilts = [with_noticed_hands(body, POSITIONS, ROTATIONS, SECONDS).hand_tilts for body in (turned, BODY)]
+    np.testing.assert_array_equal(tilts[0], tilts[1])
+
+
+def test_what_was_told_is_outweighed_by_a_minute_of_motion():
+    """By a memory that is full: it then counts toldSeconds beside memorySeconds."""
+    others = TOLD + np.array([[-0.4, 0.2], [0.3, -0.4]])
+    apart = angles(noticed(FOREARMS, SECONDS, ToldTilts(TOLD, BOTH)), noticed(FOREARMS, SECONDS, ToldTilts(others, BOTH)))
+    at_first, *later = apart[[0, 600, 1800, 3599]]
+    assert (at_first > 0.4).all()
+    assert (np.diff([at_first, *later], axis=0) < 0).all()
+    assert (later[-1] < 1.5 * HAND_TILTS["toldSeconds"] / HAND_TILTS["memorySeconds"] * at_first).all()
+
+
+def test_what_was_told_is_kept_longer_than_the_usual_tilt():
+    moved = [
+        angles(tilts[60], tilts[0])
+        for tilts in (noticed(FOREARMS[:61], SECONDS[:61], ToldTilts(hand_tilt.usual(), np.array([known] * 2))) for known in (True, False))
+    ]
+    assert (moved[0] < 0.5 * moved[1]).all()
+
+
+def test_what_was_noticed_is_forgotten_by_and_by_and_what_was_told_is_not():
+    """A controller that is gripped anew after minutes; ten frames a second."""
+    before, after = hand_tilt.direction_of(TOLD + [0.0, 0.3]), hand_tilt.direction_of(TOLD - [0.3, 0.0])
+    minutes = np.broadcast_to(before, (3000, 2, 3))
+    memory = np.broadcast_to(after, (round(10 * HAND_TILTS["memorySeconds"]), 2, 3))
+    tilts = noticed(np.concatenate([minutes, memory]), np.full(3000 + len(memory), 0.1), ToldTilts(TOLD, BOTH))
+    balance = hand_tilt.tilt_of(HAND_TILTS["toldSeconds"] * hand_tilt.direction_of(TOLD) + HAND_TILTS["memorySeconds"] * before)
+    np.testing.assert_allclose(tilts[2999], balance, atol=1e-3)
+    assert (angles(tilts[-1], hand_tilt.tilt_of(after)) < angles(tilts[-1], hand_tilt.tilt_of(before))).all()
+
+
+@pytest.mark.parametrize("right", [[-0.5, 0.0, 0.0], [0.0, 0.5, 0.0], [0.0, -0.5, 0.0]])
+def test_hands_that_are_worn_off_their_forearms_are_found(right):
+    """Other ways than the usual tilt goes. Generated wrists wave about straight ones."""
+    corpus = worn_off(CORPUS, right)
+    true = hand_tilt.ForearmMeans(corpus, (PERSON.name,)).of(PERSON.name)
+    usual = angles(hand_tilt.usual(), true)
+    assert (usual > 0.4).all()
+    found = with_noticed_hands(BODY, *tracked(corpus), SECONDS).hand_tilts[-1]
+    assert (angles(found, true) < 0.4 * usual).all()
+
+
+def test_a_hand_that_is_not_seen_is_not_noticed():
+    """For two seconds; the other one is, all the while."""
+    seen = np.ones((600, 2), bool)
+    seen[300:420, 0] = False
+    tilts = noticed(FOREARMS[:600], SECONDS[:600], NOTHING_TOLD, seen)
+    unseen = tilts[300:421, 0]
+    # Nothing but the last digits of doubles may differ.
+    np.testing.assert_allclose(unseen, np.broadcast_to(unseen[0], unseen.shape), rtol=0, atol=1e-14)
+    always = noticed(FOREARMS[:600], SECONDS[:600])
+    np.testing.assert_array_equal(tilts[:, 1], always[:, 1])
+    assert (np.abs(np.diff(always[300:421], axis=0)).max(axis=-1) > 0).all()
+    assert np.abs(tilts[421] - unseen[-1])[0].max() > 1e-5
+
+
+def test_a_frame_s_tilts_come_of_the_frames_before_it():
+    """Those that follow, and the frame itself, change nothing of it."""
+    frame = 200
+    positions, rotations = (part[:300].copy() for part in (POSITIONS, ROTATIONS))
+    positions[frame:, 1:] += [0.0, 0.2, -0.1]
+    rotations[frame:, 1:] = quaternion.multiply(rotations[frame:, 1:], quaternion.from_rotation_vector(np.array([0.4, 0.3, 0.0])))
+    before = with_noticed_hands(BODY, POSITIONS[:300], ROTATIONS[:300], SECONDS[:300]).hand_tilts
+    after = with_noticed_hands(BODY, positions, rotations, SECONDS[:300]).hand_tilts
+    np.testing.assert_array_equal(after[: frame + 1], before[: frame + 1])
+    assert (np.abs(after[frame + 1] - before[frame + 1]).max(axis=-1) > 1e-4).all()
+
+
+def test_hands_are_turned_no_further_than_the_steepest_tilt():
+    """Towards where the sum points, and by all of it once it is no longer steep."""
+    steepest = LIMB["steepestHandTilt"]
+    steep = np.array([[0.9, -1.6], [-1.8, 0.3]])
+    ahead = hand_tilt.direction_of(np.array([[0.2, 0.0], [0.0, -0.1]]))
+    forearms = np.concatenate([np.broadcast_to(hand_tilt.direction_of(steep), (1200, 2, 3)), np.broadcast_to(ahead, (2400, 2, 3))])
+    tilts = noticed(forearms, SECONDS)
+    size = np.linalg.norm(tilts, axis=-1)
+    assert size.max() <= steepest + 1e-12
+    np.testing.assert_allclose(size[1200], steepest)
+    far = noticed(forearms, SECONDS, ToldTilts(steep, BOTH))
+    np.testing.assert_allclose(far[0], steep * steepest / np.linalg.norm(steep, axis=-1, keepdims=True))
+    assert (size[-1] < 0.9 * steepest).all()
+
+
+def test_twice_the_frame_rate_gives_nearly_the_same_tilts():
+    """At first a frame more or less is a part of the half second that the usual tilt counts for."""
+    fast, slow = noticed(FOREARMS, SECONDS)[::2], noticed(FOREARMS[::2], np.diff(np.arange(1800) / 30, prepend=0.0))
+    apart = angles(fast, slow).max(axis=-1)
+    assert apart.max() < 0.03
+    # After five seconds.
+    assert apart[150:].max() < 0.002
+    assert (angles(fast[-1], fast[0]) > 0.2).all()
+
+
+def test_the_mirror_image_has_the_mirrored_tilts():
+    positions, rotations, _ = fit_ik.mirror(POSITIONS, ROTATIONS, np.zeros((len(POSITIONS), 6, 3)))
+    seen = np.random.default_rng(2).uniform(size=(len(POSITIONS), 2)) > 0.3
+    tilts = with_noticed_hands(BODY, POSITIONS, ROTATIONS, SECONDS, ToldTilts(TOLD, np.array([True, False])), seen).hand_tilts
+    told = ToldTilts(TOLD[::-1] * hand_tilt.MIRRORED_TILT, np.array([False, True]))
+    mirrored = with_noticed_hands(BODY, positions, rotations, SECONDS, told, seen[:, ::-1]).hand_tilts
+    np.testing.assert_allclose(mirrored, tilts[:, ::-1] * hand_tilt.MIRRORED_TILT, atol=1e-9)

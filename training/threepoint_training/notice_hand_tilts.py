@@ -1,0 +1,60 @@
+"""How hands stand to their forearms, noticed while they move; the twin of src/core/estimation/notice-hand-tilts.ts.
+
+Inverse kinematics that is told nothing of it says where forearms point; in the frames of their hands those directions have a mean, which is the
+tilt: errors of a posture go as the posture changes.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import hand_tilt, quaternion, solve_ik
+from .kinematic_limits import HAND_TILTS, LIMB
+from .skeleton import Body
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ToldTilts:
+    """What a calibration measured: tilts [2, 2] of the left and the right hand, and of which hands [2] it is known."""
+
+    tilts: Array
+    known: NDArray[np.bool_]
+
+
+NOTHING_TOLD = ToldTilts(np.zeros((2, 2)), np.zeros(2, bool))
+
+
+def untold_forearms(positions: Array, rotations: Array, body: Body) -> Array:
+    """Where IK's forearms point [F, 2, 3], elbow to wrist, in the frames of their hands, by tracked points in the floor frame."""
+    local, turns, _, _ = solve_ik.to_heading(positions, rotations)
+    joints = solve_ik.solve(local, turns, replace(body, hand_tilts=None, hands_turned=None))
+    forearms = solve_ik.normalise(local[:, 1:] - joints[:, :2])
+    return quaternion.rotate(quaternion.conjugate(turns[:, 1:]), forearms)
+
+
+def noticed(forearms: Array, seconds: Array, told: ToldTilts = NOTHING_TOLD, seen: NDArray[np.bool_] | None = None) -> Array:
+    """The tilts [F, 2, 2] by which hands are turned in each frame, by what was noticed before it.
+
+    forearms [F, 2, 3] in the frames of the hands; seconds [F] since the frame before, 0 for the first; seen [F, 2]: which hands are, all when None.
+    """
+    counted = np.where(told.known, HAND_TILTS["toldSeconds"], HAND_TILTS["usualSeconds"])[:, None]
+    prior = counted * hand_tilt.direction_of(np.where(told.known[:, None], told.tilts, hand_tilt.usual()))
+    total = prior.copy()
+    sums = np.empty_like(forearms)
+    weight = seconds[:, None, None] * (1.0 if seen is None else seen[:, :, None])
+    kept = np.exp(-weight / HAND_TILTS["memorySeconds"])
+    for frame, forearm in enumerate(forearms):
+        sums[frame] = total
+        total = prior + (total - prior) * kept[frame] + forearm * weight[frame]
+    tilts = hand_tilt.tilt_of(sums)
+    return tilts * np.minimum(1.0, LIMB["steepestHandTilt"] / np.maximum(np.linalg.norm(tilts, axis=-1, keepdims=True), 1e-12))
+
+
+def with_noticed_hands(
+    body: Body, positions: Array, rotations: Array, seconds: Array, told: ToldTilts = NOTHING_TOLD, seen: NDArray[np.bool_] | None = None
+) -> Body:
+    """The body with the hands of each frame turned as the page turns them, for one clip from its beginning."""
+    return body.with_hands(noticed(untold_forearms(positions, rotations, body), seconds, told, seen))
