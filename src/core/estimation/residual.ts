@@ -37,8 +37,9 @@ class Residual implements JointSource, JointNetwork {
   readonly #seen = { left: false, right: false };
   /** The chest that the open question was asked from. */
   readonly #askedFrom = makeChestAxes();
-  /** The newest residual and its damped course [m], heading frame. */
+  /** The newest residual, and its course after one low-pass and after both [m], heading frame. */
   readonly #newest = makeJoints();
+  readonly #approached = makeJoints();
   readonly #damped = makeJoints();
   readonly #answered = makeJoints();
   readonly #inference: LatestResult;
@@ -79,6 +80,7 @@ class Residual implements JointSource, JointNetwork {
     this.#inference.reset();
     this.#forget();
     this.#askedAt = Number.NEGATIVE_INFINITY;
+    copyJoints(nothing, this.#approached);
     copyJoints(nothing, this.#damped);
   }
 
@@ -110,11 +112,13 @@ class Residual implements JointSource, JointNetwork {
       this.#inference.answerNow(runNow, this.#input);
     }
     const { ik, floorFromHeading } = solved;
-    // Without an answer IK stands alone, and what was there fades.
-    const share = smoothingFactor(contract.correctionHalfLife ?? defaultHalfLife, deltaSeconds);
+    // Without an answer IK stands alone, and what was there fades. Two low-passes of half the half-life are as late as one, and make no corner
+    // in a joint's course where an answer comes.
+    const share = smoothingFactor((contract.correctionHalfLife ?? defaultHalfLife) / 2, deltaSeconds);
     for (let index = 0; index < estimatedJoints.length; index++) {
       const joint = estimatedJoints[index]!;
-      const residual = lerp(this.#damped[joint], this.#newest[joint], share, this.#damped[joint]);
+      const approached = lerp(this.#approached[joint], this.#newest[joint], share, this.#approached[joint]);
+      const residual = lerp(this.#damped[joint], approached, share, this.#damped[joint]);
       transformPoint(floorFromHeading, add(ik.joints[joint], residual, target[joint]), target[joint]);
     }
   }
