@@ -1,36 +1,36 @@
-// npm run report -- --mocap DIR [--skeleton MAP.json] [--models DIR] [--fp32 DIR]: measures the shipping path with the networks that
-// npm run train left without their fold's people, and renews the tables and figures of docs/accuracy.md. npm run report -- --redraw: the
-// same from what was measured last. npm run report -- --legs --mocap DIR: the tables of legs alone, with the page's network for the body
-// and those that npm run train:gait left for the gait of people they have not seen.
-import { existsSync, mkdirSync } from 'node:fs';
+// npm run report -- --mocap DIR [--people 005,135] [--skeleton MAP.json] [--models DIR] [--fp32 DIR]: measures the shipping path with the
+// networks that npm run train left without their fold's people, and renews the tables and figures of docs/accuracy.md. npm run report --
+// --redraw: the same from what was measured last. npm run report -- --legs --mocap DIR: the tables of legs alone, with the page's network for
+// the body and those that npm run train:gait left for the gait of people they have not seen.
+import { existsSync, mkdirSync, rmSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { pythonEnvironment } from './python-environment.mjs';
 import { main, root, run, SetupError } from './run-command.mjs';
 
 const usage =
-  'npm run report -- --mocap DIR [--skeleton MAP.json] [--models DIR] [--fp32 DIR]\n' +
+  'npm run report -- --mocap DIR [--people 005,135] [--skeleton MAP.json] [--models DIR] [--fp32 DIR]\n' +
   'npm run report -- --redraw [--models DIR]\n' +
-  'npm run report -- --legs --mocap DIR [--skeleton MAP.json] [--models DIR]\n' +
-  'DIR holds .asf and .amc or .bvh files; models the networks of a cross-validation (.cache/cross-validation, where npm run train leaves ' +
-  'them); fp32 what npm run train -- --fp32 wrote. docs/accuracy.md is renewed.';
+  'npm run report -- --legs --mocap DIR [--people 005,135] [--skeleton MAP.json] [--models DIR]\n' +
+  'DIR holds .asf and .amc or .bvh files; people whom the tables are of (the first eleven, 001 to 135, where DIR has them all, else all; of ' +
+  'legs: all), beside whom 005, 135 and another laboratory (901, 902, 903) are measured with and without their hands where DIR has them; ' +
+  'models the networks of a cross-validation (.cache/cross-validation, where npm run train leaves them); fp32 what npm run train -- --fp32 ' +
+  'wrote. docs/accuracy.md is renewed.';
 const sixHours = 6 * 3600;
+// Poses are motion data: they stay in the cache, only pictures of them go into docs.
+const measured = join(root, '.cache/report');
+const env = { PYTHONPATH: `${root}/training` };
 
 function options() {
   const text = { type: 'string' };
+  const flag = { type: 'boolean' };
   try {
     const { values } = parseArgs({
-      options: {
-        mocap: text,
-        skeleton: text,
-        models: text,
-        fp32: text,
-        redraw: { type: 'boolean' },
-        legs: { type: 'boolean' },
-      },
+      options: { mocap: text, people: text, skeleton: text, models: text, fp32: text, redraw: flag, legs: flag },
     });
     if (values.legs && (values.fp32 || values.redraw)) throw new Error('--legs is measured by itself');
     if (!values.mocap === !values.redraw) throw new Error('either --mocap or --redraw is needed');
+    if (values.redraw && values.people) throw new Error('--people are measured: with --mocap');
     return values;
   } catch (error) {
     throw new SetupError(`report: ${error.message}\n${usage}`);
@@ -39,41 +39,80 @@ function options() {
 
 const path = (name) => resolve(process.env.INIT_CWD ?? process.cwd(), name);
 
+/** Runs npm run evaluate on the motion that was given, with these options beside; resolves to its exit code. */
+async function evaluate({ mocap, skeleton }, ...beside) {
+  const command = [join(root, 'scripts/evaluate.mjs'), '--mocap', path(mocap), ...beside];
+  if (skeleton) command.push('--skeleton', path(skeleton));
+  return (await run(process.execPath, command, { cwd: root, limitSeconds: sixHours })).code;
+}
+
 /** Measures legs and renews their tables. */
-async function reportLegs({ mocap, skeleton, models }) {
-  const measured = join(root, '.cache/report');
+async function reportLegs(given) {
   mkdirSync(measured, { recursive: true });
   const json = join(measured, 'legs.json');
-  const evaluate = [join(root, 'scripts/evaluate.mjs'), '--legs', '--mocap', path(mocap), '--json', json];
-  if (skeleton) evaluate.push('--skeleton', path(skeleton));
-  if (models) evaluate.push('--models', path(models));
   // People are measured with networks that have not seen them.
   const gaits = join(root, '.cache/gait');
   if (!existsSync(gaits))
     throw new SetupError(`report: there are no networks in ${gaits}; npm run train:gait makes them\n${usage}`);
-  evaluate.push('--gaits', gaits);
-  const { code } = await run(process.execPath, evaluate, { cwd: root, limitSeconds: sixHours });
+  const beside = ['--legs', '--json', json, '--gaits', gaits];
+  if (given.models) beside.push('--models', path(given.models));
+  if (given.people) beside.push('--people', given.people);
+  const code = await evaluate(given, ...beside);
   if (code !== 0) return code;
   const renew = ['-m', 'threepoint_training.legs_page', '--legs', json];
-  const env = { PYTHONPATH: `${root}/training` };
   return (await run(await pythonEnvironment(), renew, { cwd: root, env, limitSeconds: 600 })).code;
+}
+
+/** Where the table of both laboratories is measured: people held out and those of another one, hands as recorded and as measured. */
+const laboratories = Object.fromEntries(
+  ['home', 'elsewhere'].map((group) => [
+    group,
+    ['as-recorded', 'hands-measured'].map((hands) => join(measured, `${group}-${hands}.json`)),
+  ]),
+);
+
+/** Whom the tables are of, and who of both laboratories is there: Python knows the people, and whose each file is. */
+async function peopleIn(mocap) {
+  const list = ['-m', 'threepoint_training.report_people', '--mocap', mocap];
+  const python = await pythonEnvironment();
+  const { code, output } = await run(python, list, { cwd: root, env, capture: true, limitSeconds: 600 });
+  if (code !== 0) throw new SetupError(`report: ${output.trim()}\n${usage}`);
+  return JSON.parse(output);
+}
+
+/** Measures what all tables and figures but those of legs are made of; resolves to an exit code. */
+async function measure(given, models, { evaluation, figures }) {
+  const there = await peopleIn(path(given.mocap));
+  mkdirSync(measured, { recursive: true });
+  // Of other networks or people than those measured now: better no table than a mixed one.
+  for (const file of Object.values(laboratories).flat()) rmSync(file, { force: true });
+  const tables = ['--models', models, '--robustness', '--json', evaluation, '--figures', figures];
+  const people = given.people ?? there.tables?.join(',');
+  if (people) tables.push('--people', people);
+  if (given.fp32) tables.push('--fp32', path(given.fp32));
+  const code = await evaluate(given, ...tables);
+  if (code !== 0) return code;
+  for (const [group, [asRecorded, handsMeasured]] of Object.entries(laboratories)) {
+    if (there[group].length === 0) continue;
+    const beside = ['--people', there[group].join(','), '--models', models, '--json'];
+    for (const hands of [[asRecorded], [handsMeasured, '--hands-measured']]) {
+      console.log(`\n${there[group].join(', ')}, hands ${hands.length > 1 ? 'measured' : 'as recorded'}`);
+      const code = await evaluate(given, ...beside, ...hands);
+      if (code !== 0) return code;
+    }
+  }
+  return 0;
 }
 
 await main(async () => {
   const given = options();
   if (given.legs) return reportLegs(given);
-  // Poses are motion data: they stay in the cache, only pictures of them go into docs.
-  const measured = join(root, '.cache/report');
   const [evaluation, figures] = ['evaluation.json', 'figures.json'].map((name) => join(measured, name));
   const models = given.models ? path(given.models) : join(root, '.cache/cross-validation');
   if (!existsSync(join(models, 'learned.json')))
     throw new SetupError(`report: there are no networks in ${models}; npm run train makes them\n${usage}`);
   if (given.mocap) {
-    mkdirSync(measured, { recursive: true });
-    const evaluate = [join(root, 'scripts/evaluate.mjs'), '--mocap', path(given.mocap), '--models', models];
-    evaluate.push('--robustness', '--json', evaluation, '--figures', figures);
-    for (const name of ['skeleton', 'fp32']) if (given[name]) evaluate.push(`--${name}`, path(given[name]));
-    const { code } = await run(process.execPath, evaluate, { cwd: root, limitSeconds: sixHours });
+    const code = await measure(given, models, { evaluation, figures });
     if (code !== 0) return code;
   }
   for (const file of [evaluation, figures]) {
@@ -81,16 +120,8 @@ await main(async () => {
       throw new SetupError(`report: ${file} is missing; measure first, with --mocap DIR\n${usage}`);
   }
   const python = await pythonEnvironment({ extras: ['report'] });
-  const draw = [
-    '-m',
-    'threepoint_training.accuracy_page',
-    '--evaluation',
-    evaluation,
-    '--figures',
-    figures,
-    '--models',
-    models,
-  ];
-  const { code } = await run(python, draw, { cwd: root, env: { PYTHONPATH: `${root}/training` }, limitSeconds: 600 });
-  return code;
+  const draw = ['-m', 'threepoint_training.accuracy_page', '--evaluation', evaluation, '--figures', figures];
+  draw.push('--models', models);
+  for (const [group, files] of Object.entries(laboratories)) draw.push(`--${group}`, ...files);
+  return (await run(python, draw, { cwd: root, env, limitSeconds: 600 })).code;
 });

@@ -1,5 +1,6 @@
 """What docs/accuracy.md says: verdicts by the figures, tables that keep their place."""
 
+import json
 from pathlib import Path
 
 import pytest
@@ -64,6 +65,16 @@ def evaluation():
     }
 
 
+def held_out_people(names, learned):
+    """An evaluation of people whom no network has seen, and of no one else."""
+    methods = {"ik": report(1.0), "paper": report(1.2), "learned": report(learned)}
+    return {"estimators": methods, "people": {name: {"seen": False} | methods for name in names}}
+
+
+LABORATORIES = tuple(
+    tuple(held_out_people(names, learned) for learned in both) for names, both in ((("135", "005"), (0.9, 0.8)), (("901", "902"), (0.7, 0.6)))
+)
+
 CONTRACTS = {
     "paper": {"errors": {}, "bytes": 1},
     "learned": {
@@ -84,7 +95,7 @@ def verdict(text, start):
 
 
 def test_every_table_has_as_many_cells_in_each_row_as_in_its_head():
-    for name, content in accuracy_page.sections(evaluation(), CONTRACTS).items():
+    for name, content in accuracy_page.sections(evaluation(), CONTRACTS, LABORATORIES).items():
         rows = [line for line in content.splitlines() if line.startswith("|")]
         assert len({row.count("|") for row in rows}) <= 1, name
 
@@ -103,6 +114,35 @@ def test_aims_are_met_or_missed_by_the_figures():
     assert verdict(text, "size") == ["≤ 300 kB", "43 kB", "met"]
 
 
+def test_laboratories_stand_beside_each_other_with_hands_as_recorded_and_measured():
+    home, elsewhere = LABORATORIES
+    # Elbows of their own, so that they are told from the mean of all joints.
+    home[0]["estimators"]["learned"]["joints"] |= {"leftElbow": {"mean": 3.0}, "rightElbow": {"mean": 2.0}}
+    text = accuracy_tables.laboratories(home, elsewhere)
+    assert text.splitlines()[0] == "| cm | IK | learned | learned / IK | elbows | jerk: IK | learned |"
+    assert verdict(text, "005, 135, as recorded") == ["5.00", "4.50", "0.90", "0.50", "1.05", "1.05"]
+    assert verdict(text, "005, 135, measured")[:4] == ["5.00", "4.00", "0.80", "0.80"]
+    assert verdict(text, "another laboratory (901, 902), as recorded")[:3] == ["5.00", "3.50", "0.70"]
+    assert verdict(text, "another laboratory, measured")[:3] == ["5.00", "3.00", "0.60"]
+
+
+def test_laboratories_that_were_not_measured_leave_their_table_as_it_was(tmp_path, capsys):
+    files = [tmp_path / f"{name}.json" for name in ("home", "home-measured", "elsewhere", "elsewhere-measured")]
+    config = accuracy_page.AccuracyPageConfig(tmp_path, tmp_path, tmp_path, tuple(files[:2]), tuple(files[2:]))
+    page = "<!-- laboratories -->\nas before\n<!-- /laboratories -->\n"
+
+    def renewed():
+        section = accuracy_page.sections(evaluation(), CONTRACTS, accuracy_page.laboratories(config))["laboratories"]
+        return accuracy_tables.renew(page, {"laboratories": section})
+
+    for file, measured in zip(files, [each for both in LABORATORIES for each in both], strict=True):
+        assert renewed() == page
+        assert f"{file}" in capsys.readouterr().out
+        file.write_text(json.dumps(measured))
+    assert "| another laboratory, measured | 5.00 |" in renewed()
+    assert capsys.readouterr().out == ""
+
+
 def test_people_held_out_come_first():
     assert accuracy_tables.people(evaluation()).splitlines()[2].startswith("| 005 |")
 
@@ -117,8 +157,8 @@ def test_without_fp32_its_table_stays_as_it_was():
 
 def test_a_page_renewed_twice_is_the_page_renewed_once():
     page = (Path(accuracy_page.REPOSITORY) / "docs/accuracy.md").read_text()
-    once = accuracy_tables.renew(page, accuracy_page.sections(evaluation(), CONTRACTS))
-    assert accuracy_tables.renew(once, accuracy_page.sections(evaluation(), CONTRACTS)) == once
+    once = accuracy_tables.renew(page, accuracy_page.sections(evaluation(), CONTRACTS, LABORATORIES))
+    assert accuracy_tables.renew(once, accuracy_page.sections(evaluation(), CONTRACTS, LABORATORIES)) == once
 
 
 def test_a_page_without_the_place_of_a_table_is_refused():

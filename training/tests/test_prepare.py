@@ -94,6 +94,17 @@ def test_a_teleport_cuts_the_clip_and_is_told(tmp_path: Path) -> None:
     assert corpus.problems == ("p1_jump: teleports at frame 61; cut there",)
 
 
+def test_what_is_too_short_to_be_motion_is_left_out_and_told(tmp_path: Path) -> None:
+    jump = [(0.0, 92.0, 0.0, 0.0)] * 20 + [(300.0, 92.0, 0.0, 0.0)] * 60
+    corpus = corpus_of(tmp_path, p1_jump=person_bvh(jump), p1_short=person_bvh(STANDING[:20]))
+    assert corpus.clips == ("p1_jump",)
+    assert corpus.problems == (
+        "p1_jump: teleports at frame 21; cut there",
+        "p1_jump: 1 of 2 pieces shorter than 0.5 s; left out",
+        "p1_short: shorter than 0.5 s; left out",
+    )
+
+
 def test_a_broken_file_is_told_and_the_rest_goes_on(tmp_path: Path) -> None:
     good = person_bvh(STANDING)
     corpus = corpus_of(tmp_path, p1_walk=good, p2_walk=good.replace("MOTION", "MOTTION"))

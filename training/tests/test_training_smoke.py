@@ -1,12 +1,14 @@
 """The whole pipeline on generated motion: npm run test:training. Needs PyTorch, so the module imports it only within tests."""
 
 import hashlib
+import io
 import json
 from dataclasses import replace
 
 import numpy as np
 import onnxruntime
 import pytest
+from rich.console import Console
 
 pytestmark = pytest.mark.training
 
@@ -41,11 +43,17 @@ def corpus():
 
 
 @pytest.fixture(scope="module")
-def run(config):
+def printed():
+    """What the run of the module says."""
+    return io.StringIO()
+
+
+@pytest.fixture(scope="module")
+def run(config, printed):
     """The pipeline's table, after it wrote its models."""
     from threepoint_training import pipeline
 
-    return pipeline.main(config)
+    return pipeline.main(config, Console(file=printed, width=200))
 
 
 def contract(folder, name):
@@ -120,6 +128,24 @@ def test_the_page_s_networks_know_all_subjects_and_carry_the_errors_on_people_he
     assert {"005"} == subjects - set(held_out["trainedOn"]["people"])
     assert held_out["errors"].items() < shipped["errors"].items()
     assert shipped["sha256"] != held_out["sha256"]
+
+
+def test_the_paper_s_network_is_made_of_the_varied_people_alone_and_says_so(config, run, printed):
+    """004 and 006 of the generated people are none of the first eleven."""
+    people = {
+        (folder, name): contract(folder, name)["trainedOn"]["people"] for folder in (config.out, config.cross_validation) for name in ("paper", "learned")
+    }
+    assert people[config.out, "paper"] == ["001", "002", "003", "005"]
+    assert people[config.out, "learned"] == ["001", "002", "003", "004", "005", "006"]
+    assert people[config.cross_validation, "paper"] == ["001", "002", "003"]
+    assert people[config.cross_validation, "learned"] == ["001", "002", "003", "004", "006"]
+    lines = printed.getvalue().splitlines()
+    assert "generated motion: 24 clips of 6 people, 4 minutes at 60 Hz" in lines
+    assert "paper, fold A: trained on 3 of 6 people: 001, 002, 003" in lines
+    assert "paper, frame-random: trained on 4 of 6 people: 001, 002, 003, 005" in lines
+    assert "learned, frame-random: trained on all 6 people" in lines
+    assert "paper, all subjects: trained on 4 of 6 people: 001, 002, 003, 005" in lines
+    assert "learned, all subjects: trained on all 6 people" in lines
 
 
 def test_errors_from_other_motion_are_refused(config, run, tmp_path):

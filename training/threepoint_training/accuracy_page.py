@@ -13,17 +13,24 @@ REPOSITORY = Path(__file__).parents[2]
 
 @dataclass(frozen=True)
 class AccuracyPageConfig:
-    """What was measured, the models it was measured with, and the page."""
+    """What was measured, the models it was measured with, and the page.
+
+    home, elsewhere: evaluations of people held out and of another laboratory's, with hands as recorded and as measured.
+    """
 
     evaluation: Path
     figures: Path
     models: Path
+    home: tuple[Path, Path]
+    elsewhere: tuple[Path, Path]
     page: Path = REPOSITORY / "docs/accuracy.md"
     images: Path = REPOSITORY / "docs/images/accuracy"
 
 
-def sections(evaluation: dict[str, Any], contracts: dict[str, Any]) -> dict[str, str | None]:
-    """The page's tables by their marks."""
+def sections(
+    evaluation: dict[str, Any], contracts: dict[str, Any], measured: tuple[tables.ByHands, tables.ByHands] | None
+) -> dict[str, str | None]:
+    """The page's tables by their marks; measured: what `laboratories` gives, None: that table stays as it is."""
     corpus, robustness = evaluation["corpus"], evaluation["robustness"]
     motions = f"{corpus['clips']} clips of {corpus['people']} people, {corpus['seconds'] / 60:.0f} minutes"
     disturbed = f"{', '.join(robustness['people'])}: {robustness['clips']} clips, {robustness['frames'] / 3600:.1f} minutes."
@@ -41,7 +48,21 @@ def sections(evaluation: dict[str, Any], contracts: dict[str, Any]) -> dict[str,
         "measures": tables.measures(evaluation),
         "rates": tables.rates(evaluation),
         "precision": tables.precision(evaluation),
+        "laboratories": tables.laboratories(*measured) if measured else None,
     }
+
+
+def laboratories(config: AccuracyPageConfig) -> tuple[tables.ByHands, tables.ByHands] | None:
+    """What was measured of them; None, said in a sentence, where that is not all of it."""
+    missing = [path for path in (*config.home, *config.elsewhere) if not path.exists()]
+    if missing:
+        print(f"{', '.join(map(str, missing))}: not measured, so the table of both laboratories stays as it is")
+        return None
+
+    def read(files: tuple[Path, Path]) -> tables.ByHands:
+        return json.loads(files[0].read_text()), json.loads(files[1].read_text())
+
+    return read(config.home), read(config.elsewhere)
 
 
 def main(config: AccuracyPageConfig) -> None:
@@ -51,7 +72,7 @@ def main(config: AccuracyPageConfig) -> None:
 
     evaluation, figures = json.loads(config.evaluation.read_text()), json.loads(config.figures.read_text())
     contracts = {name: json.loads((config.models / f"{name}.json").read_text()) for name in ("paper", "learned")}
-    config.page.write_text(tables.renew(config.page.read_text(), sections(evaluation, contracts)))
+    config.page.write_text(tables.renew(config.page.read_text(), sections(evaluation, contracts, laboratories(config))))
     config.images.mkdir(parents=True, exist_ok=True)
     with plots.plt.rc_context(plots.STYLE):
         if not plots.learning_curve(contracts["paper"], config.images):
@@ -73,5 +94,7 @@ if __name__ == "__main__":
     parser.add_argument("--evaluation", type=Path, required=True)
     parser.add_argument("--figures", type=Path, required=True)
     parser.add_argument("--models", type=Path, required=True)
+    for people in ("--home", "--elsewhere"):
+        parser.add_argument(people, type=Path, nargs=2, metavar=("RECORDED", "MEASURED"), required=True)
     given = parser.parse_args()
-    main(AccuracyPageConfig(given.evaluation, given.figures, given.models))
+    main(AccuracyPageConfig(given.evaluation, given.figures, given.models, tuple(given.home), tuple(given.elsewhere)))

@@ -16,6 +16,8 @@ JOINTS = {
 # Relative to IK, by what marks a protocol among those that a contract states.
 AIMS_OF_PROTOCOLS = {"fold B (": 0.85, "in turn": 0.82}
 Json = dict[str, Any]
+# Evaluations of the same people with hands as recorded and as the guided calibration measures them.
+ByHands = tuple[Json, Json]
 
 
 def held_out(evaluation: Json) -> Json:
@@ -196,16 +198,36 @@ def precision(evaluation: Json) -> str | None:
     return table(["", "MPJPE int8 [cm]", "MPJPE fp32 [cm]", "jerk int8", "jerk fp32"], rows)
 
 
+def laboratories(home: ByHands, elsewhere: ByHands) -> str:
+    """People held out beside another laboratory's, by what is known of their hands."""
+    names, others = (", ".join(people_held_out(measured[0])) for measured in (home, elsewhere))
+    labelled = {
+        f"{names}, as recorded": home[0],
+        f"{names}, measured": home[1],
+        f"another laboratory ({others}), as recorded": elsewhere[0],
+        "another laboratory, measured": elsewhere[1],
+    }
+    rows = []
+    for label, evaluation in labelled.items():
+        ik, ours = (held_out(evaluation)[method] for method in ("ik", "learned"))
+        errors = [figures["mpjpeCm"]["mean"] for figures in (ik, ours)]
+        cells = (*errors, errors[1] / errors[0], _elbows_cm(ours) / _elbows_cm(ik), ik["jerkRatio"], ours["jerkRatio"])
+        rows.append([label, *(f"{value:.2f}" for value in cells)])
+    return table(["cm", "IK", "learned", "learned / IK", "elbows", "jerk: IK", "learned"], rows)
+
+
+def _elbows_cm(figures: Json) -> float:
+    """The mean error of both."""
+    return (figures["joints"]["leftElbow"]["mean"] + figures["joints"]["rightElbow"]["mean"]) / 2
+
+
 def aims(evaluation: Json, contracts: dict[str, Json]) -> str:
     """What was aimed at, what was measured, and whether that is enough."""
     figures, robust = held_out(evaluation), evaluation["robustness"]["estimators"]["learned"]
     ours, ik = figures["learned"], figures["ik"]
 
-    def elbows(of: Json) -> float:
-        return (of["joints"]["leftElbow"]["mean"] + of["joints"]["rightElbow"]["mean"]) / 2
-
     ratio = round(ours["mpjpeCm"]["mean"] / ik["mpjpeCm"]["mean"], 3)
-    elbow = round(elbows(ours) / elbows(ik), 3)
+    elbow = round(_elbows_cm(ours) / _elbows_cm(ik), 3)
     offset = round(max(o["mpjpeCm"] for o in robust["offsets"]) - robust["mpjpeCm"], 2)
     height = round(max(h["mpjpeCm"] for h in robust["heights"]) - robust["mpjpeCm"], 2)
     long = robust["losses"][-1]["during"]

@@ -44,7 +44,7 @@ def main(run: TrainingRun, folds: list[str]) -> None:
         errors = {row: values for row, values in run.report.rows.items() if row.startswith((name, "IK"))}
         errors |= _found_by_other_runs(run, name)
         training = training_people(shipped, tuple(run.corpus.people))
-        provenance = fit_networks.provenance(run, training, errors, curve if name == "paper" else None)
+        provenance = fit_networks.provenance(run, name, training, errors, curve if name == "paper" else None)
         fit_networks.write(run, name, network, provenance, Destination(run.config.cross_validation, run.config.fp32_out))
 
 

@@ -11,7 +11,7 @@ from . import export, train_learned, train_paper
 from .model import PaperNetwork
 from .paper_features import paper_features
 from .prepared_corpus import TRACKED_COLUMNS, PreparedCorpus
-from .splits import trainable
+from .splits import counted, trainable, trained_on
 from .training_config import TrainConfig
 from .training_report import TrainingReport
 
@@ -46,20 +46,33 @@ def paper(
         return train_paper.train(frames, chosen, config, report, watch)
 
 
+def _people_of(run: TrainingRun, name: str, training: tuple[str, ...], label: str) -> tuple[str, ...]:
+    """Those of these people whom this network is made of; the run says who they are."""
+    people = trained_on(name, training)
+    run.report.console.print(f"{name}, {label}: trained on {counted(people, tuple(run.corpus.people))}", markup=False)
+    return people
+
+
+def paper_frames(run: TrainingRun, training: tuple[str, ...], label: str) -> train_paper.PaperFrames:
+    """All frames of those of these people whom the paper's network is made of."""
+    return train_paper.frames_of(run.corpus, _people_of(run, "paper", training, label), run.config.seed)
+
+
 def followed_paper(
     run: TrainingRun, training: tuple[str, ...], test: train_paper.PaperFrames, label: str
 ) -> tuple[torch.nn.Module, train_paper.LearningCurve]:
-    """The paper's network trained on these people, and its learning curve on them and on the test's."""
-    frames = train_paper.frames_of(run.corpus, training, run.config.seed)
+    """The paper's network trained on those of these people whom it is made of, and its learning curve on them and on the test's."""
+    frames = paper_frames(run, training, label)
     curve, watch = train_paper.follow_learning(frames, test)
     return paper(run, frames, label, watch=watch), curve
 
 
 def learned(run: TrainingRun, training: tuple[str, ...], label: str) -> torch.nn.Module:
     """Our network trained on these people."""
+    people = _people_of(run, "learned", training, label)
     with run.report.task(f"learned {label}", run.config.learned.steps) as advance:
         return train_learned.train(
-            run.corpus, training, run.config.learned, lambda step, loss, _: advance(step + 1, f"learned {label} {loss:.3f}")
+            run.corpus, people, run.config.learned, lambda step, loss, _: advance(step + 1, f"learned {label} {loss:.3f}")
         )
 
 
@@ -71,7 +84,7 @@ def _frame_random_split(run: TrainingRun, count: int) -> tuple[np.ndarray, np.nd
 
 def paper_frame_random_errors_cm(run: TrainingRun) -> np.ndarray:
     """Of the paper's network under the paper's protocol [F, 6]."""
-    frames = train_paper.frames_of(run.corpus, trainable(tuple(run.corpus.people)), run.config.seed)
+    frames = paper_frames(run, trainable(tuple(run.corpus.people)), "frame-random")
     chosen, test = _frame_random_split(run, len(frames.inputs))
     network = paper(run, frames, "frame-random", chosen)
     return train_paper.joint_errors_cm(train_paper.predict(network, frames.inputs[test]), frames.targets[test])
@@ -79,7 +92,8 @@ def paper_frame_random_errors_cm(run: TrainingRun) -> np.ndarray:
 
 def learned_frame_random_errors_cm(run: TrainingRun) -> np.ndarray:
     """Of our network under the paper's protocol, raw joints [F, 6]."""
-    frames = train_learned.held_out(run.corpus, trainable(tuple(run.corpus.people)), run.config.learned.window_seconds)
+    people = _people_of(run, "learned", trainable(tuple(run.corpus.people)), "frame-random")
+    frames = train_learned.held_out(run.corpus, people, run.config.learned.window_seconds)
     chosen, test = _frame_random_split(run, len(frames.inputs))
     config = run.config.learned_frame_random
     with run.report.task("learned frame-random", config.steps) as advance:
@@ -122,14 +136,18 @@ def write(
 
 
 def provenance(
-    run: TrainingRun, training: tuple[str, ...], errors: dict[str, dict[str, float]], curve: train_paper.LearningCurve | dict[str, list[float]] | None
+    run: TrainingRun,
+    name: str,
+    training: tuple[str, ...],
+    errors: dict[str, dict[str, float]],
+    curve: train_paper.LearningCurve | dict[str, list[float]] | None,
 ) -> export.Provenance:
-    """Where a network of this run comes from."""
+    """Where a network of this run comes from, with those of the people at hand whom it is made of."""
     source = "generated motion" if run.config.mocap is None else "CMU Graphics Lab Motion Capture Database and like files"
     return export.Provenance(
         corpus=source,
         corpus_hash=run.corpus.corpus_hash,
-        people=training,
+        people=trained_on(name, training),
         seed=run.config.seed,
         errors=errors,
         learning_curve=asdict(curve) if isinstance(curve, train_paper.LearningCurve) else curve,

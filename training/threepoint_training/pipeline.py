@@ -3,6 +3,8 @@
 A run is seeded: the same data and options write the same weights on the same machine.
 """
 
+from pathlib import Path
+
 import torch
 from rich.console import Console
 
@@ -11,7 +13,7 @@ from .fit_networks import Destination, TrainingRun
 from .generated_motion import generate_corpus
 from .model import CorrectionNetwork
 from .prepared_corpus import PreparedCorpus
-from .splits import trainable
+from .splits import measured_only, trainable
 from .training_config import REPOSITORY, TrainConfig
 from .training_report import LABELS, TrainingReport
 
@@ -27,7 +29,8 @@ def main(config: TrainConfig, console: Console | None = None) -> dict[str, dict[
         if config.ablate:
             return _ablate(run)
         if config.noticed:
-            noticed_wear.write(noticed_wear.main(run.corpus, config.learned, config.ik, report=report.console.print))
+            rows = noticed_wear.main(run.corpus, config.learned, config.ik, report=lambda people: report.console.print(f"held out: {people}"))
+            noticed_wear.write(rows)
             return {}
         if config.leave_one_out:
             _leave_one_out(run)
@@ -45,20 +48,23 @@ def main(config: TrainConfig, console: Console | None = None) -> dict[str, dict[
 
 
 def _train_on_all_subjects(run: TrainingRun) -> None:
-    """The page's networks. Their contracts state the errors on people held out, of networks trained the same way without them."""
+    """The page's networks, each of those at hand whom it is made of (`splits.trained_on`).
+
+    Their contracts state the errors on people held out, of networks trained the same way without them.
+    """
     subjects = trainable(tuple(run.corpus.people))
     for name in run.config.networks:
         errors, curve = cross_validate.earlier_errors(run, name)
         row = f"{name}, all subjects, trained on"
         if name == "paper":
-            frames = train_paper.frames_of(run.corpus, subjects, run.config.seed)
+            frames = fit_networks.paper_frames(run, subjects, "all subjects")
             network = fit_networks.paper(run, frames, "all subjects")
             run.report.found(row, train_paper.joint_errors_cm(train_paper.predict(network, frames.inputs), frames.targets))
         else:
             network = fit_networks.learned(run, subjects, "all subjects")
             test = train_learned.held_out(run.corpus, subjects, run.config.learned.window_seconds)
             run.report.found(row, train_learned.fitted_errors_cm(train_paper.predict(network, test.inputs), test))
-        provenance = fit_networks.provenance(run, subjects, errors | {row: run.report.rows[row]}, curve)
+        provenance = fit_networks.provenance(run, name, subjects, errors | {row: run.report.rows[row]}, curve)
         fit_networks.write(run, name, network, provenance, Destination(run.config.out))
 
 
@@ -91,6 +97,7 @@ def _leave_one_out(run: TrainingRun) -> None:
             nonlocal done
             done += 1
             advance(done, f"without {people}")
+            run.report.console.print(f"held out: {people}")
 
         rows = leave_one_out.main(run.corpus, run.config.learned, run.config.ik, report, groups)
     for row in [*rows.people, *rows.postures, *rows.hands]:
@@ -102,8 +109,18 @@ def _leave_one_out(run: TrainingRun) -> None:
 
 
 def _corpus(config: TrainConfig, report: TrainingReport) -> PreparedCorpus:
-    if config.mocap is None:
-        return generate_corpus(people=6, clips=4, frames=600, seed=config.seed)
+    """The motion to train with; the run says where it is from, what was put right or left out, and how much of it there is."""
+    corpus = generate_corpus(people=6, clips=4, frames=600, seed=config.seed) if config.mocap is None else _prepared(config, config.mocap, report)
+    for problem in corpus.problems:
+        report.console.print(f"  {problem}", markup=False)
+    minutes, people = len(corpus.positions) / corpus.rate_hz / 60, tuple(corpus.people)
+    amount = f"{len(corpus.clips)} clips of {len(people)} people, {minutes:.0f} minutes at {corpus.rate_hz} Hz"
+    measured = f"; {', '.join(measured_only(people))} only measure" if measured_only(people) else ""
+    report.console.print(f"{config.mocap or 'generated motion'}: {amount}{measured}", markup=False)
+    return corpus
+
+
+def _prepared(config: TrainConfig, mocap: Path, report: TrainingReport) -> PreparedCorpus:
     done = 0
     with report.task("prepare", None) as advance:
 
@@ -112,9 +129,4 @@ def _corpus(config: TrainConfig, report: TrainingReport) -> PreparedCorpus:
             done += 1
             advance(done, f"prepare {name}")
 
-        corpus = prepare.main(prepare.PrepareConfig(config.mocap, config.skeleton_map, cache=config.cache), file)
-    for problem in corpus.problems:
-        report.console.print(f"  {problem}")
-    minutes = len(corpus.positions) / corpus.rate_hz / 60
-    report.console.print(f"{len(corpus.clips)} clips of {len(corpus.people)} people, {minutes:.0f} minutes at {corpus.rate_hz} Hz")
-    return corpus
+        return prepare.main(prepare.PrepareConfig(mocap, config.skeleton_map, cache=config.cache), file)

@@ -110,7 +110,7 @@ def _to_our_joints(motion: Motion, skeleton: SkeletonMap, rate: float, file_name
 
 
 def _segments(clip: _Clip, name: str, report: Callable[[str], None]) -> Iterable[tuple[str, _Clip]]:
-    """The clip cut where it teleports; pieces too short to be motion are dropped."""
+    """The clip cut where it teleports; pieces too short to be motion are left out. Both are reported."""
     speed = np.linalg.norm(np.diff(clip.positions, axis=0), axis=-1).max(axis=1) * clip.rate
     cuts = np.flatnonzero(speed > TELEPORT_SPEED) + 1
     bounds = [0, *cuts.tolist(), len(clip.positions)]
@@ -118,6 +118,9 @@ def _segments(clip: _Clip, name: str, report: Callable[[str], None]) -> Iterable
     pieces = [(start, end) for start, end in zip(bounds[:-1], bounds[1:], strict=True) if end - start >= shortest]
     if len(cuts):
         report(f"{name}: teleports at frame {', '.join(str(cut + 1) for cut in cuts[:5])}; cut there")
+    if left_out := len(bounds) - 1 - len(pieces):
+        which = f"{left_out} of {len(bounds) - 1} pieces " if len(cuts) else ""
+        report(f"{name}: {which}shorter than {SHORTEST_SEGMENT_SECONDS} s; left out")
     for number, (start, end) in enumerate(pieces):
         piece = replace(
             clip,

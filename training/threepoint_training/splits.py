@@ -7,7 +7,7 @@ MEASURED_ONLY = ("901", "902", "903", "bd", "bk", "dg", "mm", "tr")
 # Fold A is the shipped models' own hold-out; fold B exists because one fold is noisy.
 FOLDS: dict[str, tuple[str, ...]] = {"A": ("005", "135"), "B": ("014", "127", "002")}
 
-# People who were asked for many things; the others mostly walk and run.
+# The first eleven: people who were asked for many things; the others mostly walk and run.
 VARIED = ("001", "002", "003", "005", "009", "014", "016", "017", "049", "127", "135")
 
 
@@ -24,3 +24,20 @@ def measured_only(subjects: tuple[str, ...] | list[str]) -> tuple[str, ...]:
 def training_people(fold: str, subjects: tuple[str, ...] | list[str]) -> tuple[str, ...]:
     """The subjects of the corpus but the fold's held-out people and those that only measure. A corpus without them trains on all it has."""
     return tuple(sorted(set(trainable(subjects)) - set(FOLDS[fold])))
+
+
+def trained_on(network: str, people: tuple[str, ...]) -> tuple[str, ...]:
+    """Whom a network is made of where these people are at hand: ours of all, the paper's of the varied ones alone, of whom it is better.
+
+    Where none of them is at hand, as in other people's corpora, the paper's is made of all too.
+    """
+    varied = tuple(person for person in people if person in VARIED)
+    return varied if network == "paper" and varied else people
+
+
+def counted(people: tuple[str, ...], subjects: tuple[str, ...]) -> str:
+    """How many these are of the subjects that may be trained on; who they are, where not all."""
+    everyone = trainable(subjects)
+    if set(people) == set(everyone):
+        return f"all {len(everyone)} people"
+    return f"{len(people)} of {len(everyone)} people: {', '.join(people)}"

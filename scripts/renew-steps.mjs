@@ -1,0 +1,104 @@
+import { join } from 'node:path';
+import { root, SetupError } from './run-command.mjs';
+
+// The first fold's networks with 32-bit weights: cross-validation leaves them there for the report to compare with.
+const fp32 = join(root, '.cache/fp32');
+
+/**
+ * What renews every table and figure of docs/training.md and docs/accuracy.md, in the order in which one needs the other: a name, the npm
+ * script and its options beside --mocap, what is renewed, and about how long it takes on twenty-nine people and one core.
+ */
+export const steps = [
+  {
+    name: 'cross-validation',
+    script: 'train',
+    options: ['--stage', 'cross-validation', '--fp32', fp32],
+    renews: 'networks without the people of each fold, in .cache/cross-validation, and their errors',
+    takes: 'an hour',
+  },
+  // Adds its errors to the contract of the cross-validation, from which the page's networks take them.
+  {
+    name: 'in-turn',
+    script: 'train',
+    options: ['--leave-one-out', '--groups', '4'],
+    renews: 'errors by person, by posture and by what is known of hands, in docs/training.md',
+    takes: 'three quarters of an hour',
+  },
+  {
+    name: 'all-subjects',
+    script: 'train',
+    options: ['--stage', 'all-subjects'],
+    renews: "the page's networks in public/models, golden vectors, and the results in docs/training.md",
+    takes: 'a quarter of an hour',
+  },
+  {
+    name: 'ablation',
+    script: 'train',
+    options: ['--ablate'],
+    renews: 'the recipe without each of its parts and the neutral pose, in docs/training.md',
+    takes: 'an hour',
+  },
+  {
+    name: 'noticed',
+    script: 'train',
+    options: ['--noticed'],
+    renews: 'what wearing tells of a wrong calibration, in docs/accuracy.md',
+    takes: 'an hour',
+  },
+  // Its bodies are those of the page's networks.
+  {
+    name: 'gait',
+    script: 'train:gait',
+    options: [],
+    renews: 'the network that tells where feet are expected, and those without a quarter of the people, in .cache/gait',
+    takes: 'a quarter of an hour',
+  },
+  {
+    name: 'report',
+    script: 'report',
+    options: ['--fp32', fp32],
+    renews: 'tables and figures of docs/accuracy.md but for legs and what wearing tells',
+    takes: 'three quarters of an hour',
+  },
+  {
+    name: 'legs',
+    script: 'report',
+    options: ['--legs'],
+    renews: 'tables of legs in docs/accuracy.md',
+    takes: 'a quarter of an hour',
+  },
+  {
+    name: 'goldens',
+    script: 'goldens',
+    options: ['--write'],
+    renews: 'tests/golden/estimates.json, what the estimators say of these recordings',
+    takes: 'five minutes',
+  },
+];
+
+/** The steps that were asked for: all, those from one on, or one. */
+export function chosenSteps({ from, only } = {}) {
+  if (from !== undefined && only !== undefined) throw new SetupError('renew: either --from or --only');
+  const name = from ?? only;
+  if (name === undefined) return steps;
+  const first = steps.findIndex((step) => step.name === name);
+  if (first < 0) {
+    throw new SetupError(`renew: there is no step “${name}”; there are ${steps.map((step) => step.name).join(', ')}`);
+  }
+  return steps.slice(first, only === undefined ? steps.length : first + 1);
+}
+
+/** What Node runs for a step. */
+export const commandOf = ({ script, options }, mocap) => [
+  join(root, 'scripts', `${script.replace(':', '-')}.mjs`),
+  '--mocap',
+  mocap,
+  ...options,
+];
+
+/** As a person types it. */
+export const commandLine = (script, ...options) =>
+  ['npm', 'run', script, '--', ...options].map((word) => (/[^\w./:-]/.test(word) ? `"${word}"` : word)).join(' ');
+
+/** A step as a person types it. */
+export const commandLineOf = ({ script, options }, mocap) => commandLine(script, '--mocap', mocap, ...options);

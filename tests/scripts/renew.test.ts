@@ -1,0 +1,90 @@
+import { spawnSync } from 'node:child_process';
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { describe, expect, test } from 'vitest';
+import { chosenSteps, commandLineOf, commandOf, steps } from '../../scripts/renew-steps.mjs';
+import { root } from '../../scripts/run-command.mjs';
+import { directoryWith } from '../temporary-directory';
+
+const names = steps.map(({ name }) => name);
+const text = (path: string) => readFileSync(join(root, path), 'utf8');
+const node = (args: readonly string[], cwd = root) => {
+  const env = { ...process.env, INIT_CWD: undefined };
+  return spawnSync(process.execPath, args, { cwd, encoding: 'utf8', env });
+};
+const renew = (...args: readonly string[]) => node([join(root, 'scripts/renew.mjs'), ...args]);
+
+describe('the steps', () => {
+  test('are listed each once, with what they renew and the command', () => {
+    const { stdout, status } = renew('--list');
+    expect(status).toBe(0);
+    const [titles, commands] = [/^\S/, /^ {2}npm run /].map((line) =>
+      stdout.split('\n').filter((one) => line.test(one)),
+    );
+    expect(titles?.map((line) => line.split(':')[0])).toEqual(names);
+    expect(new Set(names).size).toBe(names.length);
+    expect(commands?.map((line) => line.trim())).toEqual(steps.map((step) => commandLineOf(step, 'DIR')));
+  });
+
+  test('begin where they are asked to, or are one alone', () => {
+    expect(chosenSteps().map(({ name }) => name)).toEqual(names);
+    expect(chosenSteps({ from: 'report' }).map(({ name }) => name)).toEqual(names.slice(names.indexOf('report')));
+    expect(chosenSteps({ only: 'gait' }).map(({ name }) => name)).toEqual(['gait']);
+    expect(renew('--list', '--from', 'goldens').stdout).toMatch(/^goldens: .+\n {2}npm run goldens .+\n$/);
+  });
+
+  test.each([['--from'], ['--only']])('that do not exist are refused (%s)', (option) => {
+    const { stdout, stderr, status } = renew('--mocap', 'motion', option, 'gate');
+    expect(stderr.trim()).toBe(`renew: there is no step “gate”; there are ${names.join(', ')}`);
+    expect({ stdout, status }).toEqual({ stdout: '', status: 1 });
+  });
+
+  test('need motion, and one of two ways to choose among them', () => {
+    expect(renew()).toMatchObject({ stderr: expect.stringContaining('renew: --mocap is needed'), status: 1 });
+    const both = renew('--list', '--from', 'gait', '--only', 'gait');
+    expect(both).toMatchObject({ stderr: expect.stringContaining('renew: either --from or --only'), status: 1 });
+  });
+});
+
+describe('the command line of each step', () => {
+  const { scripts } = JSON.parse(text('package.json')) as { scripts: Record<string, string> };
+
+  test.each(steps.map((step) => [step.name, step] as const))('%s is of a script that npm knows', (_, step) => {
+    const [file] = commandOf(step, 'DIR');
+    expect(join(root, scripts[step.script]?.split(' ').at(-1) ?? '')).toBe(file);
+  });
+
+  // Options are read in their order, and the first unknown one ends the script before it begins: that is the one put last.
+  test.each(steps.filter(({ script }) => script !== 'train').map((step) => [step.name, step] as const))(
+    '%s has options that its script accepts',
+    (_, step) => {
+      const { stderr, status } = node([...commandOf(step, 'DIR'), '--no-such-option']);
+      expect(stderr).toContain(`${step.script}: Unknown option '--no-such-option'`);
+      expect(status).toBe(1);
+    },
+  );
+
+  test('has options that the training accepts', () => {
+    const parser = text('training/threepoint_training/__main__.py');
+    const known = [...parser.matchAll(/add_argument\("(--[a-z0-9-]+)"/g)].map(([, option]) => option);
+    const asked = steps.filter(({ script }) => script === 'train').flatMap((step) => commandOf(step, 'DIR').slice(1));
+    expect(known).toEqual(expect.arrayContaining(asked.filter((word) => word.startsWith('--'))));
+    const stages = text('training/threepoint_training/training_config.py').match(/stages: .+ = \((.+)\)/)?.[1];
+    for (const [at, word] of asked.entries()) if (word === '--stage') expect(stages).toContain(`"${asked[at + 1]}"`);
+  });
+});
+
+describe('a run', () => {
+  test('ends with the step that fails, in the folder that was meant, and says how to go on', () => {
+    const folder = directoryWith();
+    const { stdout, stderr, status } = node(
+      [join(root, 'scripts/renew.mjs'), '--mocap', 'none', '--from', 'goldens'],
+      folder,
+    );
+    expect(stdout).toContain('renew 1 of 1, goldens: ');
+    expect(stderr).toContain(`goldens: ${join(folder, 'none')}: no such folder`);
+    expect(stderr).toMatch(/renew: the step goldens ended with exit code 1 after 0:00:\d\d; its messages are above/);
+    expect(stderr).toContain('npm run renew -- --mocap none --from goldens\n');
+    expect(status).toBe(1);
+  });
+});

@@ -1,0 +1,37 @@
+"""Facts about whom the report measures, of the people in a folder."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+from threepoint_training import report_people
+from threepoint_training.splits import VARIED
+
+
+def folder_of(folder: Path, *people: str) -> Path:
+    for person in people:
+        (folder / person).mkdir()
+        (folder / person / f"{person}_01.bvh").write_text("")
+    return folder
+
+
+def test_tables_are_of_the_first_eleven_where_they_are_all_there(tmp_path: Path) -> None:
+    there = report_people.main(folder_of(tmp_path, *VARIED, "132", "901", "903"))
+    assert there == {"tables": list(VARIED), "home": ["005", "135"], "elsewhere": ["901", "903"]}
+
+
+def test_tables_are_of_everyone_where_one_of_them_is_missing(tmp_path: Path) -> None:
+    there = report_people.main(folder_of(tmp_path, *VARIED[1:], "anna"))
+    assert there == {"tables": None, "home": ["005", "135"], "elsewhere": []}
+
+
+def test_the_program_answers_in_json_or_says_what_is_wrong(tmp_path: Path) -> None:
+    def ask(mocap: Path) -> subprocess.CompletedProcess[str]:
+        training = Path(report_people.__file__).parents[1]
+        command = [sys.executable, "-m", "threepoint_training.report_people", "--mocap", str(mocap)]
+        return subprocess.run(command, cwd=training, capture_output=True, text=True, check=False)
+
+    assert json.loads(ask(folder_of(tmp_path, "135")).stdout)["home"] == ["135"]
+    refused = ask(tmp_path / "nowhere")
+    assert (refused.returncode, refused.stderr) == (1, f"{tmp_path / 'nowhere'}: no such folder\n")
