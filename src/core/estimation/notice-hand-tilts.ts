@@ -34,21 +34,17 @@ export function makeHandTiltsState(told: HandTilts | undefined): HandTiltsState 
   return state;
 }
 
-/** Takes what another calibration tells, and begins anew from it. */
+/**
+ * Takes what another calibration tells, and begins anew from it. Nothing else makes hands forgotten: after a recentre or a pause they are held
+ * as before.
+ */
 export function tellHandTilts(state: HandTiltsState, told: HandTilts | undefined): void {
   for (const side of sides) {
-    const { prior } = state[side];
+    const { prior, sum } = state[side];
     const tilt = told?.[side];
     rotate(turnOfTilt(tilt ?? usualHandTilt(side)), forward, prior);
     scale(prior, tilt ? toldSeconds : usualSeconds, prior);
-  }
-  resetHandTilts(state);
-}
-
-/** Forgets what was noticed: hands stand as they are told to, or as they usually do. */
-export function resetHandTilts(state: HandTiltsState): void {
-  for (const side of sides) {
-    copyVec3(state[side].prior, state[side].sum);
+    copyVec3(prior, sum);
     turnAfter(state, side);
   }
 }

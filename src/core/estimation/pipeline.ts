@@ -15,7 +15,7 @@ import { fitTorso, makeFitTorsoState, resetFitTorso, torsoBones } from './fit-to
 import { HeadsetPitch } from './headset-pitch';
 import { makeJoints } from './joint-positions';
 import type { JointSource, SolvedFrame } from './joint-source';
-import { makeHandTiltsState, noticeHandTilts, resetHandTilts, tellHandTilts } from './notice-hand-tilts';
+import { makeHandTiltsState, noticeHandTilts, tellHandTilts } from './notice-hand-tilts';
 import type { Estimate, EstimatorName, InferenceRequest, PoseEstimator } from './pose-estimator';
 import { makeIkSolution, makeThreePoints, solveIk, turnHands } from './solve-ik';
 
@@ -106,9 +106,8 @@ export class Pipeline implements PoseEstimator {
   }
 
   reset(): void {
-    const { hands, tilts, filter, torso, arms } = this.state;
+    const { hands, filter, torso, arms } = this.state;
     resetCompleteHands(hands);
-    resetHandTilts(tilts);
     this.source.reset();
     resetFilterJoints(filter);
     resetFitTorso(torso);

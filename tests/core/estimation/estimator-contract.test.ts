@@ -284,12 +284,13 @@ describe.each(subjects)('$label', ({ name, plain }) => {
     },
   );
 
-  test('reset forgets: the next frame is drawn as by a new estimator', async () => {
+  test('reset forgets the motion, a calibration the wearer: the next frame is drawn as by a new estimator', async () => {
     await fc.assert(
       fc.asyncProperty(person, person, async (first, second) => {
         const used = create(second.calibration);
         await showAll(used, times(first.start, 5).map(first.at));
         used.reset();
+        used.calibrate(second.calibration);
         const fresh = create(second.calibration);
         for (const time of times(first.start + 5 * rate, 3)) {
           const frame = second.at(time);

@@ -147,6 +147,22 @@ describe('tilts that are noticed while hands move', () => {
     expect(estimator.state.tilts.turns.right).not.toEqual(before.right);
   });
 
+  test('stay over a recentre and a pause, and begin anew with a calibration', () => {
+    const estimator = createIk(body);
+    const person = movingPerson(8, body, { x: 0, z: 0, yaw: 0 });
+    const { turns } = estimator.state.tilts;
+    const usual = structuredClone(turns);
+    for (let i = 0; i < 60; i++) estimator.update(person(i / 60));
+    const noticed = structuredClone(turns);
+    expect(noticed).not.toEqual(usual);
+    estimator.reset();
+    estimator.update(person(1));
+    estimator.update(person(20));
+    expect(turns).toEqual(noticed);
+    estimator.calibrate(body);
+    expect(turns).toEqual(usual);
+  });
+
   test('are the same at any frame rate', () => {
     const at = (rate: number) => {
       const estimator = createIk(body);
