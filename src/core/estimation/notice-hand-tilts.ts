@@ -8,7 +8,7 @@ import type { IkSolution } from './solve-ik';
 
 /** What is known of how one hand stands to its forearm; directions from elbow to wrist in the frame of the hand as it is tracked. */
 interface HandTiltState {
-  /** What calibration tells, or the usual direction, unit; times the seconds of motion that it counts for. */
+  /** The direction that calibration tells, or the usual one; as long as the motion that it counts for [s]. */
   readonly prior: MutableVec3;
   /** The prior and every direction noticed since, each as long as it was seen [s] and forgotten by and by. */
   readonly sum: MutableVec3;
@@ -57,7 +57,7 @@ function turnAfter(state: HandTiltsState, side: Side): void {
 
 /**
  * Notices where the forearms of hands that are seen point in the frames of those hands, for the frames to come. Inverse kinematics tells it from
- * where hands and head are and, little, from how the hands are turned; its errors are the posture's and go in minutes, the tilt stays.
+ * where hands and head are and, little, from how the hands are turned; its errors go as the posture changes, the tilt stays.
  * It is told nothing of the tilts themselves, so that no error can feed itself.
  */
 export function noticeHandTilts(
