@@ -23,7 +23,7 @@ from .swivel_limiter import ElbowCircles, Trunk, limit_swivel
 class FittingConfig:
     """How closely fitting follows the page. The defaults are the loss's: as little as gradients need, and far from where they grow."""
 
-    # The trunk leans after hands that are out of reach so many times; beyond anatomical_passes its joints go to their extremes.
+    # The trunk leans after hands so many times; beyond anatomicalPasses only after those out of reach, its joints going to their extremes.
     reach_passes: int = 1
     # Hands further away than this are out of reach [arm lengths]; nearer to it than that they count as reached [eye heights].
     reach: float = 1.0
@@ -102,12 +102,15 @@ class DifferentiableKinematics:
         return -head @ self.rest["eyesInHead"]
 
     def fit_torso(self, given: _FittingInput, config: FittingConfig) -> tuple[Trunk, Tensor]:
-        """The trunk and the shoulders [N, 2, 3], leaning after hands that the arms alone do not reach."""
+        """The trunk and the shoulders [N, 2, 3], leaning after hands that the arms alone do not reach, or would have to be straight to."""
         targets = given.estimated[:, 2:4]
         trunk, shoulders = self._place_trunk(given, targets, TORSO)
+        reach = config.reach * given.arm
+        soft = _softened(_length(given.wrists - shoulders), reach)
         for number in range(config.reach_passes):
             to_wrist = given.wrists - shoulders
-            direction, missing = _unit(to_wrist), (_length(to_wrist) - config.reach * given.arm).clamp_min(0.0)
+            wanted = soft if number < REACH["anatomicalPasses"] else reach
+            direction, missing = _unit(to_wrist), (_length(to_wrist) - wanted).clamp_min(0.0)
             targets = targets + direction * torch.where(missing > config.least_missing, missing, 0.0) * TORSO["reachOvershoot"]
             limits = TORSO if number < REACH["anatomicalPasses"] else TORSO_EXTREME
             placed = self._place_trunk(given, targets, limits)
@@ -180,6 +183,14 @@ def _in_chest_frame(inputs: Tensor) -> tuple[Tensor, Tensor]:
     up = _unit(_across((left + right) / 2 - chest, x))
     axes = torch.stack([x, up, torch.cross(x, up, dim=-1)], dim=1)
     return axes, joints @ axes.transpose(1, 2)
+
+
+def _softened(far: Tensor, reach: Tensor) -> Tensor:
+    """How far arms that reach `reach` stretch after hands `far` away, in one unit; the twin of softenedReach in src/core/body/two-bone-ik.ts."""
+    near = LIMB["softReach"] * reach
+    # Clamped, for what is not chosen has a gradient as well.
+    straightening = reach - (reach - near) * torch.exp((near - far).clamp_max(0.0) / (reach - near))
+    return torch.where(far > near, straightening, far)
 
 
 def _length(vectors: Tensor) -> Tensor:

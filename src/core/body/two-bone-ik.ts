@@ -64,6 +64,15 @@ export function elbowCircle(
   return target;
 }
 
+/**
+ * How far an arm that reaches `reach` stretches after a hand `far` away, in one unit: as far as that until it is nearly straight, then ever less,
+ * never quite to its reach. Of an arm that snaps straight the elbow leaps ("soft IK", Andy Nicholas, 2009).
+ */
+export function softenedReach(far: number, reach: number): number {
+  const near = reach * limits.softReach;
+  return far <= near ? far : reach - (reach - near) * Math.exp((near - far) / (reach - near));
+}
+
 /** The unit vector at right angles to `axis` nearest to `pole`; where that lies along the axis, to the first fallback that does not. */
 export function poleAcross(
   axis: Vec3,

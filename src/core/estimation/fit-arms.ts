@@ -1,6 +1,13 @@
 import { alongArm, armBoneRotation, elbowHinge, handBoneRotation, unwrapTwist } from '../body/arm-rotations';
 import type { Skeleton } from '../body/skeleton';
-import { type ElbowCircle, elbowCircle, elbowOnCircle, type LimbBones, makeElbowCircle } from '../body/two-bone-ik';
+import {
+  type ElbowCircle,
+  elbowCircle,
+  elbowOnCircle,
+  type LimbBones,
+  makeElbowCircle,
+  softenedReach,
+} from '../body/two-bone-ik';
 import { clamp } from '../math/damper';
 import {
   conjugate,
@@ -50,8 +57,6 @@ import { type EstimatedPole, estimatedPole, limitSwivel, type SwivelLimits, type
 const wristLimit = Math.PI / 2;
 /** A forearm turns at most this fast [rad/s] about itself; a quick pronation does 15. */
 const forearmSpeed = 20;
-/** So near to its reach [arm lengths] an arm at rest begins to stay bent, so that no elbow snaps straight. */
-const softReach = 0.06;
 
 /** The rotations of an arm's bones, floor frame. */
 export interface ArmRotations {
@@ -197,7 +202,7 @@ function bendArm(
   const shoulder = torso.shoulders[side];
   const floorFromChest = torso.rotations.upperChest;
   const armLength = bones.upper + bones.lower;
-  softened(completed, shoulder, armLength, wrist);
+  restingWrist(completed, shoulder, armLength, wrist);
   rotate(floorFromChest, downAndBack[side], fallbackPoles[0]);
   rotate(floorFromChest, backward, fallbackPoles[1]);
   elbowCircle(shoulder, wrist, bones, fallbackPoles[0], circle);
@@ -215,20 +220,18 @@ function bendArm(
   elbowOnCircle(circle, pole, elbow);
 }
 
-/** Where the wrist is to be: nearer than a place to rest as that comes near the arm's reach, so that no arm snaps straight. */
-function softened(
+/** Where the wrist is to be: as tracked, or nearer than a place to rest as that comes near the arm's reach. */
+function restingWrist(
   { goal: { position }, source }: CompletedHand,
   shoulder: Vec3,
   armLength: number,
   target: MutableVec3,
 ): void {
   copyVec3(position, target);
-  const soft = source === 'sinking' ? softReach : 0;
+  if (source !== 'sinking') return;
   const far = distance(shoulder, position);
-  const near = armLength * (1 - soft);
-  if (soft <= 0 || far <= near) return;
-  const reach = armLength - soft * armLength * Math.exp((near - far) / (soft * armLength));
-  addScaled(shoulder, subtract(position, shoulder, target), reach / far, target);
+  const reached = softenedReach(far, armLength);
+  if (reached < far) addScaled(shoulder, subtract(position, shoulder, target), reached / far, target);
 }
 
 /** The bones' rotations from their directions and the hand's: the forearm takes half of the hand's turn about it, so that no wrist is wrung. */

@@ -1,6 +1,7 @@
 import { clavicleRest, clavicleRoot } from '../body/arm-rotations';
 import limbLimits from '../body/limb-limits.json';
 import type { Skeleton } from '../body/skeleton';
+import { softenedReach } from '../body/two-bone-ik';
 import { clamp, smoothingFactor, smoothstep } from '../math/damper';
 import {
   alignDirections,
@@ -74,16 +75,23 @@ export interface TorsoPose {
   readonly shoulders: Readonly<Record<Side, MutableVec3>>;
 }
 
-/** Offset of a shoulder's target, from the estimated shoulder towards a hand that the arm alone does not reach [m], floor frame. */
+/** Offset of a shoulder's target, from the estimated shoulder towards a hand that the arm alone reaches not at all or nearly straight [m], floor frame. */
 interface Lean {
   /** What would reach the hand: in this frame, and in the one before. */
   readonly wanted: MutableVec3;
   readonly wantedBefore: MutableVec3;
   /** What is in use: limited in speed. */
   readonly offset: MutableVec3;
+  /** How near to the hand the shoulder is to come, within what anatomy allows [m]. */
+  softReach: number;
 }
 
-const makeLean = (): Lean => ({ wanted: vec3(0, 0, 0), wantedBefore: vec3(0, 0, 0), offset: vec3(0, 0, 0) });
+const makeLean = (): Lean => ({
+  wanted: vec3(0, 0, 0),
+  wantedBefore: vec3(0, 0, 0),
+  offset: vec3(0, 0, 0),
+  softReach: Number.NaN,
+});
 
 export interface FitTorsoState {
   /** False before the first frame. */
@@ -188,7 +196,7 @@ const swing = quat(0, 0, 0, 1);
 
 /**
  * Stage 5, the trunk: neck, chest joint, hips and clavicles on their bones' lengths under the head, as nearly where they are
- * estimated as that lets them, leaning and turning after hands that the arms alone cannot reach.
+ * estimated as that lets them, leaning and turning after hands that the arms alone cannot reach, or would have to be straight to.
  */
 export function fitTorso(
   state: FitTorsoState,
@@ -207,8 +215,8 @@ export function fitTorso(
     add(joints.leftUpperArm, lean.left.wanted, shoulderTargets.left);
     add(joints.rightUpperArm, lean.right.wanted, shoulderTargets.right);
     placeThorax(state, input, shoulderTargets, within, thorax);
-    const pulledLeft = pull(lean.left, pose.shoulders.left, frame.leftHand, bones);
-    const pulledRight = pull(lean.right, pose.shoulders.right, frame.rightHand, bones);
+    const pulledLeft = pull(lean.left, pose.shoulders.left, frame.leftHand, bones, pass);
+    const pulledRight = pull(lean.right, pose.shoulders.right, frame.rightHand, bones, pass);
     if (!pulledLeft && !pulledRight) break;
   }
   const leansLeft = followLean(lean.left, frame.leftHand, state.known, deltaSeconds);
@@ -224,13 +232,23 @@ export function fitTorso(
   return pose;
 }
 
-/** Leans a shoulder further towards a hand that is out of the arm's reach; false: it is not. Only hands tracked in this frame are leaned after. */
-function pull({ wanted }: Lean, shoulder: Vec3, { position, source }: CompletedHand, { reach }: TorsoBones): boolean {
+/**
+ * Leans a shoulder further towards a hand: until the arm reaches it softly, or, beyond what anatomy allows for that, at all. False: it does. Only
+ * hands tracked in this frame are leaned after.
+ */
+function pull(
+  lean: Lean,
+  shoulder: Vec3,
+  { position, source }: CompletedHand,
+  { reach }: TorsoBones,
+  pass: number,
+): boolean {
   if (source !== 'tracked') return false;
-  subtract(position, shoulder, a);
-  const missing = length(a) - reach;
+  const far = length(subtract(position, shoulder, a));
+  if (pass === 0) lean.softReach = softenedReach(far, reach);
+  const missing = far - (pass < anatomicalPasses ? lean.softReach : reach);
   if (missing <= 1e-5) return false;
-  addScaled(wanted, normalise(a, undefined, a), missing * shares.reachOvershoot, wanted);
+  addScaled(lean.wanted, normalise(a, undefined, a), missing * shares.reachOvershoot, lean.wanted);
   return true;
 }
 

@@ -4,8 +4,9 @@ import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
 import { estimatedJoints } from '../../../src/core/body/joints';
 import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
 import { createEstimator } from '../../../src/core/estimation/estimators';
+import { armBones } from '../../../src/core/estimation/fit-arms';
 import { fromAxisAngle } from '../../../src/core/math/quat';
-import { add, addScaled, copyVec3, distance, up, type Vec3, vec3 } from '../../../src/core/math/vec3';
+import { add, addScaled, copyVec3, distance, normalise, up, type Vec3, vec3 } from '../../../src/core/math/vec3';
 import { evenly, seed } from '../arbitraries';
 import { completedFrame, fitted, poseOf } from './drawn';
 import { standing, transformFrame } from './moving-person';
@@ -49,5 +50,38 @@ describe('hips under a chest that is too low for them to hang', () => {
       }),
       { seed, numRuns: 40 },
     );
+  });
+});
+
+describe('an arm that is stretched out', () => {
+  const frame = standing(calibration, hip.left, hip.right);
+  const body = forwardKinematics(skeleton, poseOf(createEstimator('ik', calibration), frame).body!);
+  const joints = Object.fromEntries(estimatedJoints.map((joint) => [joint, body[joint].position])) as Record<
+    (typeof estimatedJoints)[number],
+    Vec3
+  >;
+  const shoulder = joints.rightUpperArm;
+  const { upper, lower } = armBones(skeleton);
+  const twoHands = { head: frame.head, leftHand: frame.leftHand!, rightHand: frame.rightHand! };
+  const ahead = normalise(vec3(0.3, -0.2, -1));
+
+  test('straightens softly: its elbow never leaps, and its hand is on the controller', () => {
+    const fitBody = fitted(calibration);
+    let before: { hand: Vec3; elbow: Vec3 } | null = null;
+    let shoulderCame = 0;
+    for (let reach = 0.9; reach < 1.08; reach += 0.003) {
+      const hand = addScaled(shoulder, ahead, reach * (upper + lower));
+      const tracked = completedFrame(
+        { ...twoHands, rightHand: { ...twoHands.rightHand, position: hand } },
+        calibration,
+      );
+      const { rightHand, rightLowerArm, rightUpperArm } = fitBody(tracked, joints, before ? 1 / 60 : 0);
+      const elbow = copyVec3(rightLowerArm.position);
+      expect(distance(rightHand.position, hand)).toBeLessThan(1e-6);
+      if (before) expect(distance(elbow, before.elbow)).toBeLessThan(2.2 * distance(hand, before.hand));
+      shoulderCame = distance(rightUpperArm.position, shoulder);
+      before = { hand, elbow };
+    }
+    expect(shoulderCame).toBeGreaterThan(0.03);
   });
 });
