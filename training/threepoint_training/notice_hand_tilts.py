@@ -40,17 +40,23 @@ def noticed(forearms: Array, seconds: Array, told: ToldTilts = NOTHING_TOLD, see
 
     forearms [F, 2, 3] in the frames of the hands; seconds [F] since the frame before, 0 for the first; seen [F, 2]: which hands are, all when None.
     """
-    counted = np.where(told.known, HAND_TILTS["toldSeconds"], HAND_TILTS["usualSeconds"])[:, None]
-    prior = counted * hand_tilt.direction_of(np.where(told.known[:, None], told.tilts, hand_tilt.usual()))
-    total = prior.copy()
+    prior = hand_tilt.direction_of(np.where(told.known[:, None], told.tilts, hand_tilt.usual()))
+    total = np.zeros_like(prior)
     sums = np.empty_like(forearms)
     weight = seconds[:, None, None] * (1.0 if seen is None else seen[:, :, None])
     kept = np.exp(-weight / HAND_TILTS["memorySeconds"])
     for frame, forearm in enumerate(forearms):
-        sums[frame] = total
-        total = prior + (total - prior) * kept[frame] + forearm * weight[frame]
+        sums[frame] = _prior_seconds(prior, told.known, total)[:, None] * prior + total
+        total = total * kept[frame] + forearm * weight[frame]
     tilts = hand_tilt.tilt_of(sums)
     return tilts * np.minimum(1.0, LIMB["steepestHandTilt"] / np.maximum(np.linalg.norm(tilts, axis=-1, keepdims=True), 1e-12))
+
+
+def _prior_seconds(prior: Array, told: NDArray[np.bool_], total: Array) -> Array:
+    """As how much motion [s] each hand's prior [2, 3] counts beside the sum of what was noticed [2, 3]."""
+    angle = np.arctan2(np.linalg.norm(np.cross(prior, total), axis=-1), np.sum(prior * total, axis=-1))
+    doubted = np.minimum(1.0, (HAND_TILTS["doubtAngle"] / np.maximum(angle, 1e-9)) ** 2)
+    return np.where(told, HAND_TILTS["toldSeconds"] * doubted, HAND_TILTS["usualSeconds"])
 
 
 def with_noticed_hands(

@@ -1,17 +1,29 @@
 import { type HandTilts, turnOfTilt, turnToForearm, usualHandTilt } from '../body/hand-tilt';
 import { type MutableQuat, quat, rotate } from '../math/quat';
 import { type Side, sides } from '../math/side';
-import { addScaled, copyVec3, forward, lerp, type MutableVec3, normalise, scale, vec3 } from '../math/vec3';
+import {
+  addScaled,
+  cross,
+  dot,
+  forward,
+  length,
+  type MutableVec3,
+  normalise,
+  scale,
+  setVec3,
+  vec3,
+} from '../math/vec3';
 import type { CompletedFrame } from './complete-hands';
-import { memorySeconds, toldSeconds, usualSeconds } from './hand-tilts.json';
+import { doubtAngle, memorySeconds, toldSeconds, usualSeconds } from './hand-tilts.json';
 import type { IkSolution } from './solve-ik';
 
 /** What is known of how one hand stands to its forearm; directions from elbow to wrist in the frame of the hand as it is tracked. */
 interface HandTiltState {
-  /** The direction that calibration tells, or the usual one; as long as the motion that it counts for [s]. */
+  /** The direction that a calibration tells, or the usual one, unit. */
   readonly prior: MutableVec3;
-  /** The prior and every direction noticed since, each as long as it was seen [s] and forgotten by and by. */
-  readonly sum: MutableVec3;
+  told: boolean;
+  /** The sum of every direction noticed, each as long as it was seen [s] and forgotten by and by. */
+  readonly noticed: MutableVec3;
 }
 
 export interface HandTiltsState {
@@ -21,7 +33,7 @@ export interface HandTiltsState {
   readonly turns: Readonly<Record<Side, MutableQuat>>;
 }
 
-const makeHandTiltState = (): HandTiltState => ({ prior: vec3(0, 0, 0), sum: vec3(0, 0, 0) });
+const makeHandTiltState = (): HandTiltState => ({ prior: vec3(0, 0, 0), told: false, noticed: vec3(0, 0, 0) });
 
 /** Of a wearer of whom this is told. */
 export function makeHandTiltsState(told: HandTilts | undefined): HandTiltsState {
@@ -40,19 +52,28 @@ export function makeHandTiltsState(told: HandTilts | undefined): HandTiltsState 
  */
 export function tellHandTilts(state: HandTiltsState, told: HandTilts | undefined): void {
   for (const side of sides) {
-    const { prior, sum } = state[side];
+    const hand = state[side];
     const tilt = told?.[side];
-    rotate(turnOfTilt(tilt ?? usualHandTilt(side)), forward, prior);
-    scale(prior, tilt ? toldSeconds : usualSeconds, prior);
-    copyVec3(prior, sum);
+    rotate(turnOfTilt(tilt ?? usualHandTilt(side)), forward, hand.prior);
+    hand.told = tilt !== undefined;
+    setVec3(hand.noticed, 0, 0, 0);
     turnAfter(state, side);
   }
 }
 
 const direction = vec3(0, 0, 0);
 
+/** As how much motion [s] the prior counts beside what was noticed. */
+function priorSeconds({ prior, told, noticed }: HandTiltState): number {
+  if (!told) return usualSeconds;
+  const angle = Math.atan2(length(cross(prior, noticed, direction)), dot(prior, noticed));
+  return angle > doubtAngle ? toldSeconds * (doubtAngle / angle) ** 2 : toldSeconds;
+}
+
 function turnAfter(state: HandTiltsState, side: Side): void {
-  turnToForearm(normalise(state[side].sum, forward, direction), state.turns[side]);
+  const hand = state[side];
+  addScaled(hand.noticed, hand.prior, priorSeconds(hand), direction);
+  turnToForearm(normalise(direction, forward, direction), state.turns[side]);
 }
 
 /**
@@ -71,9 +92,8 @@ export function noticeHandTilts(
   for (const side of sides) {
     const hand = side === 'left' ? leftHand : rightHand;
     if (hand.source !== 'tracked') continue;
-    const { prior, sum } = state[side];
-    lerp(prior, sum, kept, sum);
-    addScaled(sum, untoldForearms[side], deltaSeconds, sum);
+    const { noticed } = state[side];
+    addScaled(scale(noticed, kept, noticed), untoldForearms[side], deltaSeconds, noticed);
     turnAfter(state, side);
   }
 }
