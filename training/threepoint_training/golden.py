@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from . import hand_tilt, notice_hand_tilts, quaternion, solve_ik
+from . import hand_tilt, notice_hand_tilts, notice_headset_rise, quaternion, solve_ik
 from .chest_features import chest_axes
 from .features import frame_features
 from .generated_motion import generate_clip
@@ -116,6 +116,19 @@ def feature_vectors() -> list[dict[str, Any]]:
             }
         )
     return cases
+
+
+def headset_rise_vectors() -> dict[str, Any]:
+    """Arms that hang, swing and are not seen now and then, and what is noticed of the headset by them."""
+    random = np.random.default_rng(31)
+    arm, count = 0.61, 60
+    reach = np.array([0.0, -1.0, 0.0]) * random.normal(1.02, 0.03, size=(count, 2, 1)) + random.normal(scale=0.15, size=(count, 2, 3)) * [1, 0, 1]
+    seconds, seen = random.uniform(0.5, 1.5, count), random.uniform(size=(count, 2)) > 0.15
+    followed = notice_headset_rise.hanging_reach(reach, seconds, seen=seen)
+    rises = notice_headset_rise.rise(followed, np.array(arm))
+    names = ("seconds", "reach", "seen", "hangingReach", "rise")
+    frames = [dict(zip(names, each, strict=True)) for each in zip(seconds, reach, seen, followed, rises, strict=True)]
+    return {"arm": arm, "frames": frames}
 
 
 def _hands_before_the_trunk(positions: Array, ik_joints: Array, body: Body, random: np.random.Generator) -> Array:
@@ -237,10 +250,11 @@ class GoldenConfig:
 
 
 def main(config: GoldenConfig) -> None:
-    """Writes tests/golden/features.json, fitted-joints.json, bvh.json and mocap.json, and models.json where there are models."""
+    """Writes features.json, fitted-joints.json, headset-rise.json, bvh.json and mocap.json in tests/golden, and models.json where there are models."""
     GOLDEN.mkdir(parents=True, exist_ok=True)
     (GOLDEN / "features.json").write_text(json.dumps(plain(feature_vectors())) + "\n")
     (GOLDEN / "fitted-joints.json").write_text(json.dumps(plain(fitted_vectors())) + "\n")
+    (GOLDEN / "headset-rise.json").write_text(json.dumps(plain(headset_rise_vectors())) + "\n")
     (GOLDEN / "bvh.json").write_text(json.dumps(plain(bvh_vectors())) + "\n")
     (GOLDEN / "mocap.json").write_text(json.dumps(plain(mocap_vectors())) + "\n")
     if list(config.models.glob("*.json")):

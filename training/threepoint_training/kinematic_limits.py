@@ -15,4 +15,5 @@ LIMB: dict[str, Any] = json.loads((_CORE / "body/limb-limits.json").read_text())
 TRAPEZOIDAL_RAMP: float = json.loads((_CORE / "math/easing.json").read_text())["trapezoidalRamp"]
 TRUNK_CAPSULE: dict[str, float] = _LIMITS["trunkCapsule"]
 HAND_TILTS: dict[str, Any] = json.loads((_CORE / "estimation/hand-tilts.json").read_text())
+HEADSET_RISE: dict[str, Any] = json.loads((_CORE / "estimation/headset-rise.json").read_text())
 LOST_HAND: dict[str, Any] = json.loads((_CORE / "estimation/lost-hand.json").read_text())

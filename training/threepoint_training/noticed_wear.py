@@ -1,4 +1,4 @@
-"""Whose headset sits elsewhere, or whose height is wrong: what minutes of wearing tell of it, and what a body that believes them gains.
+"""Whose headset sits elsewhere, or whose height is wrong: what the page notices of it over minutes, and what its bodies gain by that.
 
 `npm run train -- --mocap DIR --noticed` calls this and renews the table of docs/accuracy.md. Each group of people is held out in turn: what reads
 them, their IK and their network are made of the others.
@@ -12,10 +12,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from . import fitted_kinematics, leave_one_out, notice_hand_tilts, quaternion, solve_ik, splits, train_learned
+from . import fitted_kinematics, leave_one_out, notice_hand_tilts, notice_headset_rise, quaternion, splits, train_learned
 from .accuracy_tables import renew, table
 from .features import frame_features
 from .fit_ik import FitIkConfig
+from .kinematic_limits import HEADSET_RISE
 from .model import CorrectionNetwork
 from .prepared_corpus import PreparedCorpus
 from .residual import network_input, residual
@@ -57,62 +58,27 @@ COLUMNS = ("IK", "corrected", "ours", "corrected", "ours, another laboratory", "
 
 @dataclass(frozen=True)
 class NoticedWearConfig:
-    """Who is worn long enough, when figures are taken, and on what wearers they are learned to be read."""
+    """Who is worn long enough, when reaches are taken, and of how many wearers."""
 
     # So many groups are held out in turn.
     groups: int = 4
     fewest_minutes: float = 1.3
-    # Of the recordings at 60 Hz, for the signs, and of judged frames.
+    # Of the recordings at 60 Hz, for reaches, and of judged frames.
     stride: int = 6
     judged_stride: int = 24
-    # A gaze is level within this sine, an arm hangs with this much of its length downward.
-    level: float = 0.2
-    hanging: float = 0.8
-    # Of each person; faults have these standard deviations [m], and the eye height's as a part of itself.
-    wearers: int = 12
-    offset: float = 0.03
-    height: float = 0.05
-    # Weighs as much as so many wearers without any fault.
-    ridge: float = 10.0
+    # Of each person, for the usual reach.
+    wearers: int = 3
     # Of each clip, as in all figures of the page [s].
     longest_clip: float = 15.0
     seed: int = 77
 
 
-def signs(positions: Array, rotations: Array, body: Body, config: NoticedWearConfig) -> Array:
-    """Three figures [3] of what trackers saw of a person for minutes.
-
-    The median height of the headset while its wearer looks ahead [eye heights]; how far hands get from IK's shoulders (95th percentile), and how far
-    those get that hang (90th), both [arm lengths], mean of both sides.
-    """
-    local, turns, _, _ = solve_ik.to_heading(positions, rotations)
-    joints = solve_ik.solve(local, turns, body)
-    ahead = np.abs(quaternion.to_matrix(turns[:, 0])[:, 1, 2]) < config.level
-    reach = (local[:, 1:] - joints[:, 2:4]) / body.arm
-    distance = np.linalg.norm(reach, axis=-1)
-    hanging = reach[..., 1] < -config.hanging * distance
-    height = np.median((local[:, 0, 1] / body.eye_height)[ahead if ahead.any() else slice(None)])
-    farthest = [np.quantile(distance[:, side], 0.95) for side in (0, 1)]
-    hung = [np.quantile(distance[hanging[:, side], side], 0.9) for side in (0, 1) if hanging[:, side].any()]
-    return np.array([height, np.mean(farthest), np.mean(hung) if hung else np.nan])
-
-
-class Reader:
-    """From signs to faults: ridge regression."""
-
-    def __init__(self, seen: Array, faults: Array, ridge: float) -> None:
-        self._mean, self._deviation = np.nanmean(seen, axis=0), np.nanstd(seen, axis=0)
-        standardised = self._standardised(seen)
-        self._usual = faults.mean(axis=0)
-        normal = standardised.T @ standardised + ridge * np.eye(seen.shape[1])
-        self._weights = np.linalg.solve(normal, standardised.T @ (faults - self._usual))
-
-    def __call__(self, seen: Array) -> Fault:
-        return Fault(*(self._standardised(seen) @ self._weights + self._usual).tolist())
-
-    def _standardised(self, seen: Array) -> Array:
-        """A sign that was not seen says nothing."""
-        return np.nan_to_num((seen - self._mean) / self._deviation)
+def usual_reach(corpus: PreparedCorpus, people: tuple[str, ...], config: NoticedWearConfig = NoticedWearConfig()) -> float:
+    """How far wrists get from IK's shoulders while arms hang [arm lengths]: the mean of those of these people who are worn long enough."""
+    known = [name for name in people if _is_worn_long(corpus, name, config)]
+    worn = [_draw_worn(name, Fault(), number, config) for name in known for number in range(1, 1 + config.wearers)]
+    reaches = [_hanging_reach(corpus, each, HEADSET_RISE["usualReach"], config).mean() for each in worn]
+    return float(np.mean(reaches)) if reaches else HEADSET_RISE["usualReach"]
 
 
 def main(
@@ -129,9 +95,11 @@ def main(
     trainable, elsewhere = splits.trainable(tuple(corpus.people)), splits.measured_only(tuple(corpus.people))
 
     def judged(group: tuple[str, ...]) -> Array:
-        report(", ".join(group))
+        report(f"held out: {', '.join(group)}")
         return _judged(corpus, group, recipe, ik, config)
 
+    shipped = splits.training_people("A", tuple(name for name in corpus.people if name in splits.VARIED))
+    report(f"usual reach of those whom the page's IK is fitted on: {usual_reach(corpus, shipped, config):.3f} (headset-rise.json: {HEADSET_RISE['usualReach']})")
     home = [judged(group) for group in leave_one_out.groups_of(trainable, config.groups)]
     away = judged(elsewhere) if elsewhere else np.full((1, len(FAULTS), 2, 2), np.nan)
     rows = []
@@ -142,11 +110,12 @@ def main(
 
 @dataclass(frozen=True)
 class _Worn:
-    """By whom, with what wrong, and what of it is taken back."""
+    """On whom, how, with what wrong, and how far above its usual place the headset is taken to sit [m]."""
 
+    name: str
     wearer: Wearer
     fault: Fault
-    noticed: Fault
+    rise: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -162,18 +131,18 @@ def _judged(corpus: PreparedCorpus, group: tuple[str, ...], recipe: TrainLearned
     others = tuple(name for name in splits.trainable(tuple(corpus.people)) if name not in group)
     with fitted_kinematics.used(fitted_kinematics.fit(corpus, others, ik)):
         made = _Network(train_learned.train(corpus, others, recipe), recipe.window_seconds)
-        worn = [_wearers(corpus, name, config) for name in others if _is_worn_long(corpus, name, config)]
-        reader = Reader(*(np.concatenate(column) for column in zip(*worn, strict=True)), config.ridge)
+        usual = usual_reach(corpus, others, config)
         found = []
         for name in group:
             if not _is_worn_long(corpus, name, config):
                 continue
             found.append(np.zeros((len(FAULTS), 2, 2)))
             for row, fault in zip(found[-1], FAULTS.values(), strict=True):
-                wearer = fault.worn(draw_wearer(TrackerConfig(), np.random.default_rng([config.seed, 1, _key(name)])))
-                noticed = reader(_signs_of(corpus, name, wearer, fault.eye_height, config))
-                for column, believed in enumerate((Fault(), noticed)):
-                    row[:, column] = _errors(corpus, name, _Worn(wearer, fault, believed), made, config)
+                worn = _draw_worn(name, fault, 0, config)
+                reach = _hanging_reach(corpus, worn, usual, config)
+                rise = notice_headset_rise.rise(reach, _body(corpus, name, fault).arm, usual)
+                for column, each in enumerate((worn, replace(worn, rise=rise.item()))):
+                    row[:, column] = _errors(corpus, each, made, config)
     return np.array(found).reshape(-1, len(FAULTS), 2, 2)
 
 
@@ -187,30 +156,28 @@ def _is_worn_long(corpus: PreparedCorpus, name: str, config: NoticedWearConfig) 
     return frames / corpus.rate_hz >= 60 * config.fewest_minutes
 
 
-def _signs_of(corpus: PreparedCorpus, name: str, wearer: Wearer, height_error: float, config: NoticedWearConfig) -> Array:
-    frames = np.concatenate([np.arange(each.start, each.stop, config.stride) for each in map(corpus.clip_slice, corpus.clips_of({name}))])
-    tracked = simulate(corpus.positions[frames], corpus.rotations[frames], wearer, TrackerConfig(), np.random.default_rng(config.seed))
+def _draw_worn(name: str, fault: Fault, number: int, config: NoticedWearConfig) -> _Worn:
+    """A wearer of this number with that fault."""
+    return _Worn(name, fault.worn(draw_wearer(TrackerConfig(), np.random.default_rng([config.seed, _key(name), number]))), fault)
+
+
+def _hanging_reach(corpus: PreparedCorpus, worn: _Worn, usual: float, config: NoticedWearConfig) -> Array:
+    """What is noticed of the reach of both hanging arms [2] over all clips of a person, in arm lengths."""
+    frames = np.concatenate([np.arange(each.start, each.stop, config.stride) for each in map(corpus.clip_slice, corpus.clips_of({worn.name}))])
+    tracked = simulate(corpus.positions[frames], corpus.rotations[frames], worn.wearer, TrackerConfig(), np.random.default_rng(config.seed))
+    reaches = notice_headset_rise.reaches(*tracked, _body(corpus, worn.name, worn.fault))
+    return notice_headset_rise.hanging_reach(reaches, np.full(len(frames), config.stride / corpus.rate_hz), usual)[-1]
+
+
+def _body(corpus: PreparedCorpus, name: str, fault: Fault) -> Body:
     person = corpus.people[name]
-    return signs(*tracked, body_from_calibration(np.array(person.eye_height * (1 + height_error)), np.array(person.arm_span)), config)
+    return body_from_calibration(np.array(person.eye_height * (1 + fault.eye_height)), np.array(person.arm_span))
 
 
-def _wearers(corpus: PreparedCorpus, name: str, config: NoticedWearConfig) -> tuple[Array, Array]:
-    """Signs [W, 3] and faults [W, 3] of one person with headsets and heights as they come: a third each with both, one, or the other wrong."""
-    seen, faults = [], []
-    for number in range(config.wearers):
-        random = np.random.default_rng([config.seed, _key(name), number])
-        up, back, height = random.normal(size=3) * [config.offset, config.offset, config.height] * [[1, 1, 1], [0, 0, 1], [1, 1, 0]][number % 3]
-        wearer = Fault(up, back).worn(draw_wearer(TrackerConfig(), random))
-        seen.append(_signs_of(corpus, name, wearer, height, config))
-        faults.append([up, back, height])
-    return np.array(seen), np.array(faults)
-
-
-def _errors(corpus: PreparedCorpus, name: str, worn: _Worn, made: _Network, config: NoticedWearConfig) -> Array:
-    """Mean errors of IK and of the network [2], where so much was noticed and is taken back."""
-    person, noticed = corpus.people[name], worn.noticed
-    eye_height = person.eye_height * (1 + worn.fault.eye_height) / (1 + noticed.eye_height)
-    body = body_from_calibration(np.array(eye_height), np.array(person.arm_span))
+def _errors(corpus: PreparedCorpus, worn: _Worn, made: _Network, config: NoticedWearConfig) -> Array:
+    """Mean errors of IK and of the network [2]."""
+    name, body = worn.name, _body(corpus, worn.name, worn.fault)
+    eye_height = body.eye_height.item()
     found = []
     for clip in corpus.clips_of({name}):
         whole = corpus.clip_slice(clip)
@@ -218,8 +185,7 @@ def _errors(corpus: PreparedCorpus, name: str, worn: _Worn, made: _Network, conf
         positions, rotations = simulate(
             corpus.positions[frames], corpus.rotations[frames], worn.wearer, TrackerConfig(), np.random.default_rng([config.seed, clip])
         )
-        believed = np.broadcast_to([0.0, noticed.up, noticed.back], (len(positions), 3))
-        positions[:, 0] -= quaternion.rotate(rotations[:, 0], believed)
+        positions[:, 0] -= quaternion.rotate(rotations[:, 0], np.broadcast_to([0.0, worn.rise, 0.0], (len(positions), 3)))
         times = np.arange(len(positions)) / corpus.rate_hz
         worn_by = notice_hand_tilts.with_noticed_hands(body, positions, rotations, np.diff(times, prepend=0.0))
         vector, _ = frame_features(positions, rotations, worn_by)

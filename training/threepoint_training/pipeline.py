@@ -29,7 +29,7 @@ def main(config: TrainConfig, console: Console | None = None) -> dict[str, dict[
         if config.ablate:
             return _ablate(run)
         if config.noticed:
-            rows = noticed_wear.main(run.corpus, config.learned, config.ik, report=lambda people: report.console.print(f"held out: {people}"))
+            rows = noticed_wear.main(run.corpus, config.learned, config.ik, report=report.console.print)
             noticed_wear.write(rows)
             return {}
         if config.leave_one_out:

@@ -12,12 +12,13 @@ import { composeBody } from './compose-body';
 import { filterJoints, makeFilterJointsState, resetFilterJoints } from './filter-joints';
 import { armBones, fitArms, makeFitArmsState, resetFitArms } from './fit-arms';
 import { fitTorso, makeFitTorsoState, resetFitTorso, torsoBones } from './fit-torso';
-import { HeadsetPitch } from './headset-pitch';
 import { makeJoints } from './joint-positions';
 import type { JointSource, SolvedFrame } from './joint-source';
 import { makeHandTiltsState, noticeHandTilts, tellHandTilts } from './notice-hand-tilts';
+import { forgetHeadsetRise, makeHeadsetRiseState, noticeHeadsetRise } from './notice-headset-rise';
 import type { Estimate, EstimatorName, InferenceRequest, PoseEstimator } from './pose-estimator';
 import { makeIkSolution, makeThreePoints, solveIk, turnHands } from './solve-ik';
+import { WornHeadset } from './worn-headset';
 
 /** A gap longer than this [s] is no motion: filters and memories begin anew. */
 const longestGapSeconds = 0.5;
@@ -38,6 +39,7 @@ function makeEstimatorState({ handTilts }: Calibration) {
   return {
     hands,
     tilts: makeHandTiltsState(handTilts),
+    headset: makeHeadsetRiseState(),
     solved: {
       time: Number.NaN,
       completed: hands.frame,
@@ -81,7 +83,7 @@ export class Pipeline implements PoseEstimator {
   readonly #poles = { left: vec3(0, 0, 0), right: vec3(0, 0, 0) };
   readonly #estimate: { readonly pose: OwnedPose; request: InferenceRequest | null };
   readonly #request: InferenceRequest;
-  readonly #pitch: HeadsetPitch;
+  readonly #headset: WornHeadset;
   #body: ReturnType<typeof measure>;
   #lastTime = Number.NaN;
 
@@ -89,7 +91,7 @@ export class Pipeline implements PoseEstimator {
     this.name = name;
     this.source = source;
     this.state = makeEstimatorState(calibration);
-    this.#pitch = new HeadsetPitch(calibration);
+    this.#headset = new WornHeadset(calibration);
     this.#body = measure(calibration);
     this.#request = { ask: () => source.network?.ask(this.state.solved) ?? Promise.resolve() };
     this.#estimate = {
@@ -99,9 +101,10 @@ export class Pipeline implements PoseEstimator {
   }
 
   calibrate(calibration: Calibration): void {
-    this.#pitch.calibrate(calibration);
+    this.#headset.calibrate(calibration);
     this.#body = measure(calibration);
     tellHandTilts(this.state.tilts, calibration.handTilts);
+    forgetHeadsetRise(this.state.headset);
     this.source.calibrate(this.#body.chestSpace);
   }
 
@@ -123,11 +126,13 @@ export class Pipeline implements PoseEstimator {
     const { state } = this;
     const body = this.#body;
     const deltaSeconds = this.#elapsed(frame.time);
-    const head = this.#pitch.level(frame.head);
+    const { rise } = state.headset;
+    const head = this.#headset.head(frame.head, rise);
 
     const completed = completeHands(state.hands, head, frame, body.chestSpace, deltaSeconds);
     const solved = this.#solve(frame);
     noticeHandTilts(state.tilts, solved.ik, completed, deltaSeconds);
+    noticeHeadsetRise(state.headset, solved, body.chestSpace.arm, rise, deltaSeconds);
     this.source.joints(solved, deltaSeconds, state.joints);
     const joints = filterJoints(state.filter, state.joints, completed, deltaSeconds);
     const torso = fitTorso(state.torso, joints, completed, body.torso, deltaSeconds);

@@ -44,6 +44,21 @@ export interface GoldenFit {
   }[];
 }
 
+/** Arms that hang, and how far above its place the headset is noticed to sit by them, frame by frame. */
+export interface GoldenHeadsetRise {
+  /** [m] */
+  readonly arm: number;
+  readonly frames: readonly {
+    readonly seconds: number;
+    /** From the shoulders to the wrists [arm lengths]. */
+    readonly reach: readonly Numbers[];
+    readonly seen: readonly boolean[];
+    readonly hangingReach: Numbers;
+    /** [m] */
+    readonly rise: number;
+  }[];
+}
+
 export interface GoldenModel {
   readonly sha256: string;
   readonly tolerance: number;

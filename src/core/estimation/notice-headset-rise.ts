@@ -1,0 +1,62 @@
+import { clamp } from '../math/damper';
+import { type Side, sides } from '../math/side';
+import { length, subtract, vec3 } from '../math/vec3';
+import type { CompletedFrame } from './complete-hands';
+import { furthest, hanging, share, speed, unremarkable, usualReach } from './headset-rise.json';
+import type { SolvedFrame } from './joint-source';
+
+/** How far above its usual place on the head a headset sits. */
+export interface HeadsetRiseState {
+  /** How far each wrist gets from its shoulder while the arm hangs [arm lengths]: a quantile, followed. */
+  readonly reach: Record<Side, number>;
+  /** [m] */
+  rise: number;
+}
+
+export const makeHeadsetRiseState = (): HeadsetRiseState => ({
+  reach: { left: usualReach, right: usualReach },
+  rise: 0,
+});
+
+/** Another calibration: what was noticed of the last one's wearer holds no more. */
+export function forgetHeadsetRise(state: HeadsetRiseState): void {
+  state.reach.left = usualReach;
+  state.reach.right = usualReach;
+  state.rise = 0;
+}
+
+interface NoticedFrame extends Pick<SolvedFrame, 'points' | 'ik'> {
+  readonly completed: Pick<CompletedFrame, 'leftHand' | 'rightHand'>;
+}
+
+const fromShoulder = vec3(0, 0, 0);
+
+/**
+ * Notices by arms that hang how much higher the headset sits than is believed: it carries IK's shoulders up with it, and an arm that hangs straight
+ * then seems longer than it is. Follows a quantile of that reach by stochastic approximation (Robbins and Monro, Annals of Mathematical
+ * Statistics 22(3), 1951), slowly; people's own shoulders differ as well, so that what is unremarkable counts for nothing.
+ *
+ * arm: its length [m]; lowered: by how much the head of this frame was lowered for what had been noticed before [m].
+ */
+export function noticeHeadsetRise(
+  state: HeadsetRiseState,
+  { completed, points, ik: { joints } }: NoticedFrame,
+  arm: number,
+  lowered: number,
+  deltaSeconds: number,
+): void {
+  for (const side of sides) {
+    const left = side === 'left';
+    if ((left ? completed.leftHand : completed.rightHand).source !== 'tracked') continue;
+    const wrist = (left ? points.leftHand : points.rightHand).position;
+    subtract(wrist, left ? joints.leftUpperArm : joints.rightUpperArm, fromShoulder);
+    fromShoulder.y -= lowered;
+    const far = length(fromShoulder);
+    if (-fromShoulder.y <= hanging * far) continue;
+    const { reach } = state;
+    reach[side] += speed * deltaSeconds * (far > reach[side] * arm ? share : share - 1);
+  }
+  const further = (state.reach.left + state.reach.right) / 2 - usualReach;
+  const beyond = further - clamp(further, -unremarkable, unremarkable);
+  state.rise = clamp(arm * beyond, -furthest, furthest);
+}
