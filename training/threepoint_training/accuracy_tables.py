@@ -16,7 +16,7 @@ JOINTS = {
 # Relative to IK, by what marks a protocol among those that a contract states.
 AIMS_OF_PROTOCOLS = {"fold B (": 0.85, "in turn": 0.82}
 Json = dict[str, Any]
-# Evaluations of the same people with hands as recorded and as the guided calibration measures them.
+# Evaluations of the same people with nothing told of their hands, and with hands as the guided calibration measures them.
 ByHands = tuple[Json, Json]
 
 
@@ -202,10 +202,10 @@ def laboratories(home: ByHands, elsewhere: ByHands) -> str:
     """People held out beside another laboratory's, by what is known of their hands."""
     names, others = (", ".join(people_held_out(measured[0])) for measured in (home, elsewhere))
     labelled = {
-        f"{names}, as recorded": home[0],
-        f"{names}, measured": home[1],
-        f"another laboratory ({others}), as recorded": elsewhere[0],
-        "another laboratory, measured": elsewhere[1],
+        f"{names}, nothing told of the hands": home[0],
+        f"{names}, hands measured": home[1],
+        f"another laboratory ({others}), nothing told of the hands": elsewhere[0],
+        "another laboratory, hands measured": elsewhere[1],
     }
     rows = []
     for label, evaluation in labelled.items():
