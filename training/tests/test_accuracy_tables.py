@@ -139,7 +139,7 @@ def test_laboratories_that_were_not_measured_leave_their_table_as_it_was(tmp_pat
         assert renewed() == page
         assert f"{file}" in capsys.readouterr().out
         file.write_text(json.dumps(measured))
-    assert "| another laboratory, measured | 5.00 |" in renewed()
+    assert "| another laboratory, hands measured | 5.00 |" in renewed()
     assert capsys.readouterr().out == ""
 
 
