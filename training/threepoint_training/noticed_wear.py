@@ -33,11 +33,12 @@ PAGE = ROOT / "docs/accuracy.md"
 
 @dataclass(frozen=True)
 class Fault:
-    """A headset that sits so far up and back of where it is believed to [m], and by how much of itself the calibrated eye height is wrong."""
+    """A headset that sits so far up and back of where it is believed to [m], and by how much of themselves calibrated eye height and span are wrong."""
 
     up: float = 0.0
     back: float = 0.0
     eye_height: float = 0.0
+    arm_span: float = 0.0
 
     def worn(self, wearer: Wearer) -> Wearer:
         """By this wearer."""
@@ -52,6 +53,8 @@ FAULTS = {
     "headset 3 cm forward": Fault(back=-0.03),
     "eye height −5 %": Fault(eye_height=-0.05),
     "eye height +5 %": Fault(eye_height=0.05),
+    "arm span −5 %": Fault(arm_span=-0.05),
+    "arm span +5 %": Fault(arm_span=0.05),
 }
 COLUMNS = ("IK", "corrected", "ours", "corrected", "ours, another laboratory", "corrected")
 
@@ -171,7 +174,7 @@ def _hanging_reach(corpus: PreparedCorpus, worn: _Worn, usual: float, config: No
 
 def _body(corpus: PreparedCorpus, name: str, fault: Fault) -> Body:
     person = corpus.people[name]
-    return body_from_calibration(np.array(person.eye_height * (1 + fault.eye_height)), np.array(person.arm_span))
+    return body_from_calibration(np.array(person.eye_height * (1 + fault.eye_height)), np.array(person.arm_span * (1 + fault.arm_span)))
 
 
 def _errors(corpus: PreparedCorpus, worn: _Worn, made: _Network, config: NoticedWearConfig) -> Array:

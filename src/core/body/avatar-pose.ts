@@ -24,7 +24,8 @@ export const makeUpperBodyPose = (): MutableUpperBodyPose => ({
 });
 
 /**
- * What one frame shows: head and hands exactly as tracked in this frame, and the body between them.
+ * What one frame shows: hands exactly as tracked in this frame, the head as its wearer holds it (as tracked, but for how the headset sits on it), and
+ * the body between them.
  * `body` is null for estimators that show no body (hands-only).
  */
 export interface AvatarPose {

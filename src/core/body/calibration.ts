@@ -112,9 +112,13 @@ export function provisionalCalibration(headHeight: number): Calibration {
   return { eyeHeight: headHeight, armSpan: headHeight * ARM_SPAN_PER_EYE_HEIGHT };
 }
 
+/** Whether somebody measured the span, or it is what goes with the eye height. */
+export const isSpanMeasured = ({ eyeHeight, armSpan }: Calibration): boolean =>
+  Math.abs(armSpan / eyeHeight - ARM_SPAN_PER_EYE_HEIGHT) >= 1e-9;
+
 /** The same person with other eyes' height [m]: a span that was only derived from the height follows, a measured one stays. */
-export function withEyeHeight(calibration: Calibration, eyeHeight: number): Calibration {
-  const spanPerHeight = calibration.armSpan / calibration.eyeHeight;
-  const derived = Math.abs(spanPerHeight - ARM_SPAN_PER_EYE_HEIGHT) < 1e-9;
-  return { ...calibration, eyeHeight, ...(derived && { armSpan: eyeHeight * ARM_SPAN_PER_EYE_HEIGHT }) };
-}
+export const withEyeHeight = (calibration: Calibration, eyeHeight: number): Calibration => ({
+  ...calibration,
+  eyeHeight,
+  ...(!isSpanMeasured(calibration) && { armSpan: eyeHeight * ARM_SPAN_PER_EYE_HEIGHT }),
+});

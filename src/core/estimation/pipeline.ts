@@ -1,5 +1,5 @@
 import { type MutableUpperBodyPose, makeUpperBodyPose } from '../body/avatar-pose';
-import type { Calibration } from '../body/calibration';
+import { type Calibration, isSpanMeasured } from '../body/calibration';
 import { chestSpaceBody, skeletonFromCalibration } from '../body/skeleton';
 import { invertTransform, makePose, makeTransform, type TrackedPose, transformPose } from '../math/pose';
 import { rotate } from '../math/quat';
@@ -30,6 +30,7 @@ function measure(calibration: Calibration) {
     chestSpace: chestSpaceBody(calibration),
     torso: torsoBones(skeleton),
     arm: armBones(skeleton),
+    spanMeasured: isSpanMeasured(calibration),
   };
 }
 
@@ -132,7 +133,8 @@ export class Pipeline implements PoseEstimator {
     const completed = completeHands(state.hands, head, frame, body.chestSpace, deltaSeconds);
     const solved = this.#solve(frame);
     noticeHandTilts(state.tilts, solved.ik, completed, deltaSeconds);
-    noticeHeadsetRise(state.headset, solved, body.chestSpace.arm, rise, deltaSeconds);
+    // An arm that is longer than is believed seems as far from its shoulder as one under a headset that sits too high.
+    if (body.spanMeasured) noticeHeadsetRise(state.headset, solved, body.chestSpace.arm, rise, deltaSeconds);
     this.source.joints(solved, deltaSeconds, state.joints);
     const joints = filterJoints(state.filter, state.joints, completed, deltaSeconds);
     const torso = fitTorso(state.torso, joints, completed, body.torso, deltaSeconds);

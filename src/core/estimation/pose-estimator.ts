@@ -20,7 +20,7 @@ export interface InferenceRequest {
 
 /** What one frame shows, and what it wants to know. The estimator owns both and overwrites them with the next frame. */
 export interface Estimate {
-  /** Floor frame. Head and hands are the frame's own, however old the network's answer is. */
+  /** Floor frame. Head and hands are of this very frame, however old the network's answer is. */
   readonly pose: AvatarPose;
   /** Null: the method has no network, or one that has answered already or was asked about a frame just before. */
   readonly request: InferenceRequest | null;

@@ -1,5 +1,5 @@
 import { describe, expect, test } from 'vitest';
-import type { Calibration } from '../../../src/core/body/calibration';
+import { type Calibration, provisionalCalibration } from '../../../src/core/body/calibration';
 import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
 import { chestSpaceBody, skeletonFromCalibration } from '../../../src/core/body/skeleton';
 import type { CompletedHand } from '../../../src/core/estimation/complete-hands';
@@ -68,6 +68,12 @@ describe('a headset that sits above or below its usual place', () => {
     expect(noticedAfter(4, hanging(0.03)).state.headset.rise).toBe(0);
     const raised = standing(body, vec3(-0.3, 1.2, -0.4), vec3(0.3, 1.2, -0.4));
     expect(noticedAfter(60, raised).state.headset).toEqual(createIk(body).state.headset);
+  });
+
+  test('nothing is noticed of people whose span nobody measured: their arms may be longer', () => {
+    const derived = { ...body, armSpan: provisionalCalibration(body.eyeHeight).armSpan };
+    expect(noticedAfter(60, hanging(0.03), createIk(derived)).state.headset.rise).toBe(0);
+    expect(noticedAfter(60, hanging(0.03)).state.headset.rise).toBeGreaterThan(0);
   });
 
   test('no faster than a body is seen to move by it', () => {
