@@ -233,8 +233,8 @@ export function fitTorso(
 }
 
 /**
- * Leans a shoulder further towards a hand: until the arm reaches it softly, or, beyond what anatomy allows for that, at all. False: it does. Only
- * hands tracked in this frame are leaned after.
+ * Leans a shoulder further towards a hand: until the arm reaches it softly, or, beyond what anatomy allows for that, at all. False: it does. No
+ * hand on its way to rest is leaned after.
  */
 function pull(
   lean: Lean,
@@ -243,7 +243,7 @@ function pull(
   { reach }: TorsoBones,
   pass: number,
 ): boolean {
-  if (source !== 'tracked') return false;
+  if (source === 'sinking') return false;
   const far = length(subtract(position, shoulder, a));
   if (pass === 0) lean.softReach = softenedReach(far, reach);
   const missing = far - (pass < anatomicalPasses ? lean.softReach : reach);

@@ -84,4 +84,18 @@ describe('an arm that is stretched out', () => {
     }
     expect(shoulderCame).toBeGreaterThan(0.03);
   });
+
+  test('stays as it is while a hand that is lost is held', () => {
+    const fitBody = fitted(calibration);
+    const hand = addScaled(shoulder, ahead, 1.02 * (upper + lower));
+    const seen = completedFrame({ ...twoHands, rightHand: { ...twoHands.rightHand, position: hand } }, calibration);
+    const elbows: Vec3[] = [];
+    for (let i = 0; i < 24; i++) {
+      const source = i < 18 ? ('tracked' as const) : ('held' as const);
+      const confidence = i < 18 ? 1 : 1 - (i - 17) / 18;
+      const drawn = fitBody({ ...seen, rightHand: { ...seen.rightHand, source, confidence } }, joints, i ? 1 / 60 : 0);
+      elbows.push(copyVec3(drawn.rightLowerArm.position));
+    }
+    expect(distance(elbows[17]!, elbows[23]!)).toBeLessThan(0.001);
+  });
 });
