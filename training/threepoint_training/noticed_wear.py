@@ -1,7 +1,7 @@
 """Whose headset sits elsewhere, or whose height is wrong: what the page notices of it over minutes, and what its bodies gain by that.
 
-`npm run train -- --mocap DIR --noticed` calls this and renews the table of docs/accuracy.md. Each group of people is held out in turn: what reads
-them, their IK and their network are made of the others.
+`npm run train -- --mocap DIR --noticed` calls this and renews the table of docs/accuracy.md. Each group of people is held out in turn: usual
+reach, IK and network are made of the others.
 """
 
 import zlib

@@ -112,7 +112,7 @@ export function provisionalCalibration(headHeight: number): Calibration {
   return { eyeHeight: headHeight, armSpan: headHeight * ARM_SPAN_PER_EYE_HEIGHT };
 }
 
-/** Whether somebody measured the span, or it is what goes with the eye height. */
+/** Whether the span was measured, or only derived from the eye height. */
 export const isSpanMeasured = ({ eyeHeight, armSpan }: Calibration): boolean =>
   Math.abs(armSpan / eyeHeight - ARM_SPAN_PER_EYE_HEIGHT) >= 1e-9;
 

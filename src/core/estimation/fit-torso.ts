@@ -1,7 +1,6 @@
 import { clavicleRest, clavicleRoot } from '../body/arm-rotations';
 import limbLimits from '../body/limb-limits.json';
 import type { Skeleton } from '../body/skeleton';
-import { softenedReach } from '../body/two-bone-ik';
 import { clamp, smoothingFactor, smoothstep } from '../math/damper';
 import {
   alignDirections,
@@ -21,7 +20,6 @@ import {
   backward,
   copyVec3,
   cross,
-  distance,
   dot,
   down,
   length,
@@ -36,20 +34,17 @@ import {
   type Vec3,
   vec3,
 } from '../math/vec3';
-import type { CompletedFrame, CompletedHand } from './complete-hands';
+import type { CompletedFrame } from './complete-hands';
 import type { JointPositions } from './joint-positions';
 import limits from './kinematic-limits.json';
+import { followLean, type Lean, leanFurther, makeLean } from './lean-after-hand';
 
 const { torso: shares, torsoExtreme: extreme } = limits;
 const { anatomicalPasses, extremePasses } = limits.reach;
 
 /** How far the clavicle swings and the neck bends from rest against the thorax [rad]. */
 type TorsoLimits = Readonly<Record<'clavicleSwing' | 'neckBend', number>>;
-/** Bound [m] on a lean that is still catching up; a lean that reaches its hand ends before, at the limits of clavicle and neck. */
-const furthestLean = 0.6;
 
-/** A trunk leans after a hand that comes back, and straightens after one that is lost, at most this fast [m/s]. */
-const leanSpeed = 0.6;
 /** Shoulders turn at most this fast [rad/s]; a pirouette's do 12. */
 const turnSpeed = 12;
 /** Longest half-life [s] of the shoulders' line, where they are estimated so close together that it says little. */
@@ -74,24 +69,6 @@ export interface TorsoPose {
   readonly clavicles: Readonly<Record<Side, MutableQuat>>;
   readonly shoulders: Readonly<Record<Side, MutableVec3>>;
 }
-
-/** Offset of a shoulder's target, from the estimated shoulder towards a hand that the arm alone reaches not at all or nearly straight [m], floor frame. */
-interface Lean {
-  /** What would reach the hand: in this frame, and in the one before. */
-  readonly wanted: MutableVec3;
-  readonly wantedBefore: MutableVec3;
-  /** What is in use: limited in speed. */
-  readonly offset: MutableVec3;
-  /** How near to the hand the shoulder is to come, within what anatomy allows [m]. */
-  softReach: number;
-}
-
-const makeLean = (): Lean => ({
-  wanted: vec3(0, 0, 0),
-  wantedBefore: vec3(0, 0, 0),
-  offset: vec3(0, 0, 0),
-  softReach: Number.NaN,
-});
 
 export interface FitTorsoState {
   /** False before the first frame. */
@@ -215,8 +192,8 @@ export function fitTorso(
     add(joints.leftUpperArm, lean.left.wanted, shoulderTargets.left);
     add(joints.rightUpperArm, lean.right.wanted, shoulderTargets.right);
     placeThorax(state, input, shoulderTargets, within, thorax);
-    const pulledLeft = pull(lean.left, pose.shoulders.left, frame.leftHand, bones, pass);
-    const pulledRight = pull(lean.right, pose.shoulders.right, frame.rightHand, bones, pass);
+    const pulledLeft = leanFurther(lean.left, pose.shoulders.left, frame.leftHand, bones.reach, pass);
+    const pulledRight = leanFurther(lean.right, pose.shoulders.right, frame.rightHand, bones.reach, pass);
     if (!pulledLeft && !pulledRight) break;
   }
   const leansLeft = followLean(lean.left, frame.leftHand, state.known, deltaSeconds);
@@ -230,50 +207,6 @@ export function fitTorso(
   copyVec3(state.shoulderLine, state.lineBefore);
   state.known = true;
   return pose;
-}
-
-/**
- * Leans a shoulder further towards a hand: until the arm reaches it softly, or, beyond what anatomy allows for that, at all. False: it does. No
- * hand on its way to rest is leaned after.
- */
-function pull(
-  lean: Lean,
-  shoulder: Vec3,
-  { position, source }: CompletedHand,
-  { reach }: TorsoBones,
-  pass: number,
-): boolean {
-  if (source === 'sinking') return false;
-  const far = length(subtract(position, shoulder, a));
-  if (pass === 0) lean.softReach = softenedReach(far, reach);
-  const missing = far - (pass < anatomicalPasses ? lean.softReach : reach);
-  if (missing <= 1e-5) return false;
-  addScaled(lean.wanted, normalise(a, undefined, a), missing * shares.reachOvershoot, lean.wanted);
-  return true;
-}
-
-/**
- * Leans as far as is wanted, but after a hand that was lost or has come back no faster than people do; then only what is wanted
- * anew is had at once. False: the lean is not yet what is wanted.
- */
-function followLean(
-  { wanted, wantedBefore, offset }: Lean,
-  hand: CompletedHand,
-  known: boolean,
-  deltaSeconds: number,
-): boolean {
-  const anew = hand.source === 'tracked' && hand.confidence === 1 ? distance(wanted, wantedBefore) : 0;
-  const most = known ? leanSpeed * Math.max(deltaSeconds, 0) + anew : Number.POSITIVE_INFINITY;
-  copyVec3(wanted, wantedBefore);
-  if (distance(wanted, offset) <= most) {
-    copyVec3(wanted, offset);
-    return true;
-  }
-  const leant = length(offset);
-  if (leant > furthestLean) scale(offset, furthestLean / leant, offset);
-  const far = distance(wanted, offset);
-  lerp(offset, wanted, Math.min(1, most / far), offset);
-  return false;
 }
 
 /** The shoulders' line: never faster than `turnSpeed`, and slowly where the shoulders are estimated close together. From `lineBefore`, however often a frame calls it. */

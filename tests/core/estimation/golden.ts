@@ -1,8 +1,9 @@
 import { readFileSync } from 'node:fs';
 import type { Calibration } from '../../../src/core/body/calibration';
+import type { CompletedHand } from '../../../src/core/estimation/complete-hands';
 import type { SeenHands } from '../../../src/core/estimation/features';
 import { type HandTurns, makeThreePoints, type ThreePoints, turnHands } from '../../../src/core/estimation/solve-ik';
-import { type Pose, transformPose } from '../../../src/core/math/pose';
+import { makePose, type Pose, transformPose } from '../../../src/core/math/pose';
 import type { Quat } from '../../../src/core/math/quat';
 import type { Vec3 } from '../../../src/core/math/vec3';
 import { headingFromFloor } from '../../../src/core/tracking/heading';
@@ -68,6 +69,15 @@ export interface GoldenModel {
 export function readGolden<Content>(name: string): Content {
   return JSON.parse(readFileSync(new URL(`../../golden/${name}`, import.meta.url), 'utf8')) as Content;
 }
+
+/** A hand that is seen, or not; where it is said to be does not matter. */
+export const goldenHand = (seen: boolean): CompletedHand => ({
+  ...makePose<'floor'>(),
+  source: seen ? 'tracked' : 'held',
+  confidence: 1,
+  goal: makePose(),
+  jumped: false,
+});
 
 export const vec = ([x = Number.NaN, y = Number.NaN, z = Number.NaN]: Numbers): Vec3 => ({ x, y, z });
 export const quat = ([x = Number.NaN, y = Number.NaN, z = Number.NaN, w = Number.NaN]: Numbers): Quat => ({

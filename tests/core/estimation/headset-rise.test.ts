@@ -2,18 +2,17 @@ import { describe, expect, test } from 'vitest';
 import { type Calibration, provisionalCalibration } from '../../../src/core/body/calibration';
 import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
 import { chestSpaceBody, skeletonFromCalibration } from '../../../src/core/body/skeleton';
-import type { CompletedHand } from '../../../src/core/estimation/complete-hands';
 import { createIk } from '../../../src/core/estimation/estimators';
 import { unremarkable, usualReach } from '../../../src/core/estimation/headset-rise.json';
 import { makeHeadsetRiseState, noticeHeadsetRise } from '../../../src/core/estimation/notice-headset-rise';
 import { makeIkSolution, makeThreePoints } from '../../../src/core/estimation/solve-ik';
-import { makePose, transformPoint } from '../../../src/core/math/pose';
+import { transformPoint } from '../../../src/core/math/pose';
 import { fromAxisAngle } from '../../../src/core/math/quat';
 import { sides } from '../../../src/core/math/side';
 import { addScaled, distance, down, length, right, setVec3, subtract, up, vec3 } from '../../../src/core/math/vec3';
 import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
 import { poseOf } from './drawn';
-import { type GoldenHeadsetRise, readGolden, vec } from './golden';
+import { type GoldenHeadsetRise, goldenHand, readGolden, vec } from './golden';
 import { movingPerson, standing } from './moving-person';
 
 const body: Calibration = { eyeHeight: 1.64, armSpan: 1.6 };
@@ -40,7 +39,7 @@ function hanging(rise: number, further = 0): TrackingFrame {
   return { ...frame, head: { ...frame.head, position: addScaled(frame.head.position, up, rise) } };
 }
 
-/** What is noticed by somebody who stands so for some seconds at 20 frames a second. */
+/** An estimator after so many seconds of this frame, at 20 frames a second. */
 function noticedAfter(seconds: number, frame: TrackingFrame, estimator = createIk(body)) {
   for (let i = 0; i < seconds * 20; i++) estimator.update({ ...frame, time: i / 20 });
   return estimator;
@@ -70,7 +69,7 @@ describe('a headset that sits above or below its usual place', () => {
     expect(noticedAfter(60, raised).state.headset).toEqual(createIk(body).state.headset);
   });
 
-  test('nothing is noticed of people whose span nobody measured: their arms may be longer', () => {
+  test('nothing is noticed where the span was not measured: the arms may be longer', () => {
     const derived = { ...body, armSpan: provisionalCalibration(body.eyeHeight).armSpan };
     expect(noticedAfter(60, hanging(0.03), createIk(derived)).state.headset.rise).toBe(0);
     expect(noticedAfter(60, hanging(0.03)).state.headset.rise).toBeGreaterThan(0);
@@ -120,14 +119,6 @@ describe('a headset that sits above or below its usual place', () => {
 
 describe('TypeScript agrees with Python', () => {
   const { arm, frames } = readGolden<GoldenHeadsetRise>('headset-rise.json');
-  const hand = (seen: boolean | undefined): CompletedHand => ({
-    ...makePose<'floor'>(),
-    source: seen ? 'tracked' : 'held',
-    confidence: 1,
-    goal: makePose(),
-    jumped: false,
-  });
-
   test.each([0, 0.02])('frame by frame, under a head lowered by %f m', (lowered) => {
     const state = makeHeadsetRiseState();
     const points = makeThreePoints();
@@ -138,7 +129,7 @@ describe('TypeScript agrees with Python', () => {
         setVec3(ik.joints[side === 'left' ? 'leftUpperArm' : 'rightUpperArm'], 0.2, 1.4 - lowered, 0);
       addScaled(vec3(0.2, 1.4, 0), left!, arm, points.leftHand.position);
       addScaled(vec3(0.2, 1.4, 0), right!, arm, points.rightHand.position);
-      const completed = { leftHand: hand(seen[0]), rightHand: hand(seen[1]) };
+      const completed = { leftHand: goldenHand(seen[0] === true), rightHand: goldenHand(seen[1] === true) };
       noticeHeadsetRise(state, { completed, points, ik }, arm, lowered, seconds);
       expect(state.reach.left).toBeCloseTo(hangingReach[0]!, 9);
       expect(state.reach.right).toBeCloseTo(hangingReach[1]!, 9);

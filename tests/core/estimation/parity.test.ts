@@ -3,16 +3,14 @@ import { turnOfTilt } from '../../../src/core/body/hand-tilt';
 import { estimatedJoints, type JointName } from '../../../src/core/body/joints';
 import { chestSpaceBody, skeletonFromCalibration } from '../../../src/core/body/skeleton';
 import { chestFeatureCount, chestFeatures } from '../../../src/core/estimation/chest-features';
-import type { CompletedHand } from '../../../src/core/estimation/complete-hands';
 import { FeatureWindow, featureCount, frameFeatures } from '../../../src/core/estimation/features';
 import { transformJoints } from '../../../src/core/estimation/joint-positions';
 import { makeHandTiltsState, noticeHandTilts } from '../../../src/core/estimation/notice-hand-tilts';
 import { paperFeatures } from '../../../src/core/estimation/paper-features';
 import { solveIk } from '../../../src/core/estimation/solve-ik';
-import { makePose } from '../../../src/core/math/pose';
 import { sides } from '../../../src/core/math/side';
 import { floorFromHeading } from '../../../src/core/tracking/heading';
-import { type GoldenCase, goldenPoints, pointsInHeading, readGolden } from './golden';
+import { type GoldenCase, goldenHand, goldenPoints, pointsInHeading, readGolden } from './golden';
 
 const tolerance = 1e-5;
 const cases = readGolden<GoldenCase[]>('features.json');
@@ -56,20 +54,13 @@ describe.each(cases)('TypeScript agrees with Python for eyes at $calibration.eye
 
   test('how hands stand to their forearms, noticed frame by frame', () => {
     const state = makeHandTiltsState(golden.calibration.handTilts);
-    const hand = (seen: boolean): CompletedHand => ({
-      ...makePose<'floor'>(),
-      source: seen ? 'tracked' : 'held',
-      confidence: 1,
-      goal: makePose(),
-      jumped: false,
-    });
     let before = golden.frames[0]?.time ?? Number.NaN;
     for (const frame of golden.frames) {
       const points = goldenPoints(frame);
       const turns = turnsOf(frame);
       for (const side of sides) expect(state.turns[side]).toBeSameRotationAs(turns[side], 1e-4);
       const solution = solveIk(pointsInHeading(points, state.turns), state.turns, body);
-      const hands = { leftHand: hand(points.seen.left), rightHand: hand(points.seen.right) };
+      const hands = { leftHand: goldenHand(points.seen.left), rightHand: goldenHand(points.seen.right) };
       noticeHandTilts(state, solution, hands, frame.time - before);
       before = frame.time;
     }

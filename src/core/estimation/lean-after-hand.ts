@@ -1,0 +1,89 @@
+import { softenedReach } from '../body/two-bone-ik';
+import {
+  addScaled,
+  copyVec3,
+  distance,
+  length,
+  lerp,
+  type MutableVec3,
+  normalise,
+  scale,
+  subtract,
+  type Vec3,
+  vec3,
+} from '../math/vec3';
+import type { CompletedHand } from './complete-hands';
+import limits from './kinematic-limits.json';
+
+const { anatomicalPasses } = limits.reach;
+
+/** Bound [m] on a lean that is still catching up; a lean that reaches its hand ends before, at the limits of clavicle and neck. */
+const furthestLean = 0.6;
+/** A trunk leans after a hand that comes back, and straightens after one that is lost, at most this fast [m/s]. */
+const leanSpeed = 0.6;
+
+/** Offset of a shoulder's target, from the estimated shoulder towards a hand that the arm alone reaches not at all or nearly straight [m], floor frame. */
+export interface Lean {
+  /** What would reach the hand: in this frame, and in the one before. */
+  readonly wanted: MutableVec3;
+  readonly wantedBefore: MutableVec3;
+  /** What is in use: limited in speed. */
+  readonly offset: MutableVec3;
+  /** How near to the hand the shoulder is to come, within what anatomy allows [m]. */
+  softReach: number;
+}
+
+export const makeLean = (): Lean => ({
+  wanted: vec3(0, 0, 0),
+  wantedBefore: vec3(0, 0, 0),
+  offset: vec3(0, 0, 0),
+  softReach: Number.NaN,
+});
+
+const towards = vec3(0, 0, 0);
+
+/**
+ * Leans a shoulder further towards a hand: until the arm reaches it softly, or, beyond what anatomy allows for that, at all. False: it does. No
+ * hand on its way to rest is leaned after.
+ *
+ * reach: the arm's [m]; pass: how often this frame has leaned already.
+ */
+export function leanFurther(
+  lean: Lean,
+  shoulder: Vec3,
+  { position, source }: CompletedHand,
+  reach: number,
+  pass: number,
+): boolean {
+  if (source === 'sinking') return false;
+  const far = length(subtract(position, shoulder, towards));
+  if (pass === 0) lean.softReach = softenedReach(far, reach);
+  const missing = far - (pass < anatomicalPasses ? lean.softReach : reach);
+  if (missing <= 1e-5) return false;
+  addScaled(lean.wanted, normalise(towards, undefined, towards), missing * limits.torso.reachOvershoot, lean.wanted);
+  return true;
+}
+
+/**
+ * Leans as far as is wanted, but after a hand that was lost or has come back no faster than people do; then only what is wanted
+ * anew is had at once. False: the lean is not yet what is wanted.
+ */
+export function followLean(
+  { wanted, wantedBefore, offset }: Lean,
+  hand: CompletedHand,
+  known: boolean,
+  deltaSeconds: number,
+): boolean {
+  const anew = hand.source === 'tracked' && hand.confidence === 1 ? distance(wanted, wantedBefore) : 0;
+  const most = known ? leanSpeed * Math.max(deltaSeconds, 0) + anew : Number.POSITIVE_INFINITY;
+  copyVec3(wanted, wantedBefore);
+  if (distance(wanted, offset) <= most) {
+    copyVec3(wanted, offset);
+    return true;
+  }
+  const leant = length(offset);
+  if (leant > furthestLean) scale(offset, furthestLean / leant, offset);
+  const far = distance(wanted, offset);
+  lerp(offset, wanted, Math.min(1, most / far), offset);
+  return false;
+}
