@@ -152,7 +152,7 @@ test.describe('one arrow', () => {
     expect((await round(page)).arrowsLeft).toBe(5);
   });
 
-  test('bare hands: a pinch at the string nocks, opening it at full draw shoots', async ({ page }) => {
+  test('bare hands: a pinch at the string nocks, opening it at full draw shoots @full', async ({ page }) => {
     const headset = await enterTheRange(page, '&actor=off');
     await headset.useInput('hand');
     await nockAndDraw(page, headset, (value) => pinch(page, value), turned);
