@@ -36,7 +36,7 @@ export const steps = [
     script: 'train',
     options: ['--ablate'],
     renews: 'the recipe without each of its parts and the neutral pose, in docs/training.md',
-    takes: 'an hour',
+    takes: 'three quarters of an hour',
   },
   {
     name: 'noticed',
@@ -51,7 +51,7 @@ export const steps = [
     script: 'train:gait',
     options: [],
     renews: 'the network that tells where feet are expected, and those without a quarter of the people, in .cache/gait',
-    takes: 'a quarter of an hour',
+    takes: 'five minutes',
   },
   {
     name: 'report',
@@ -65,7 +65,7 @@ export const steps = [
     script: 'report',
     options: ['--legs'],
     renews: 'tables of legs in docs/accuracy.md',
-    takes: 'a quarter of an hour',
+    takes: 'five minutes',
   },
   {
     name: 'goldens',
