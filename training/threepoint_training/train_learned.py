@@ -251,7 +251,7 @@ class TrainFrameRandomConfig:
 
     width: int = 512
     hidden_layers: int = 3
-    steps: int = 7_000
+    steps: int = 12_000
     batch: int = 1024
     learning_rate: float = 2e-3
     weight_decay: float = 1e-4
