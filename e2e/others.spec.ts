@@ -116,6 +116,31 @@ freshTest('in the headset another player is hidden by the menu, and shown again 
   await expect.poll(drawn).toEqual(['Kim: drawn', 'Max: drawn']);
 });
 
+test('between a room and the open controls the button that enters VR is read whole', async ({ page }) => {
+  await open(page, 'play=ball&quality=low&estimator=ik&seed=5&actor=off');
+  await page.setViewportSize({ width: 1280, height: 720 });
+  const controls = page.getByRole('button', { name: 'Controls' });
+  if ((await controls.getAttribute('aria-expanded')) === 'false') await controls.click();
+  for (const [width, height] of [
+    [1280, 720],
+    [960, 600],
+    [901, 700],
+  ]) {
+    await page.setViewportSize({ width: width!, height: height! });
+    for (const part of ['button.enter', '#enter .sentence']) {
+      for (const beside of ['#play .round:not([hidden])', '.panel']) {
+        expect(await overlap(page, part, beside), `${width} × ${height}: ${part}, ${beside}`).toBe(false);
+      }
+    }
+  }
+  // Where both leave it no room it waits for the controls to be closed, as below a sheet of controls.
+  await page.setViewportSize({ width: 780, height: 600 });
+  await expect(page.locator('button.enter')).toBeHidden();
+  await controls.click();
+  await expect(page.locator('button.enter')).toBeVisible();
+  expect(await overlap(page, 'button.enter', '#play .round:not([hidden])')).toBe(false);
+});
+
 test('at 900 × 560 nothing lies over the name, the line below it, the choice of places or Recentre', async ({
   page,
 }) => {
