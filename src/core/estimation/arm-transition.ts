@@ -2,7 +2,19 @@ import type { LimbBones } from '../body/two-bone-ik';
 import { bisect } from '../math/bisection';
 import { clamp } from '../math/damper';
 import { quat, rotate, rotationBetween } from '../math/quat';
-import { addScaled, copyVec3, cross, distance, lerp, type MutableVec3, normalise, type Vec3, vec3 } from '../math/vec3';
+import {
+  addScaled,
+  copyVec3,
+  cross,
+  distance,
+  dot,
+  length,
+  lerp,
+  type MutableVec3,
+  normalise,
+  type Vec3,
+  vec3,
+} from '../math/vec3';
 import { aimArc, alongArc, type DirectionArc, directionArc, makeDirectionArc, passArc } from './direction-arc';
 
 /** A transition takes so long [s] at least. */
@@ -13,6 +25,8 @@ const fastest = 2.25;
 const ramp = 0.2;
 /** From the first [s] on an arm whose goal runs away is drawn to it, at the second it is there: no measured transition took longer than 0.7 s. */
 const [hurrySeconds, longestSeconds] = [0.7, 0.9];
+/** An arm that bends less than this [sine of the angle] has no plane of its own to bend in. */
+const allButStraight = 0.1;
 /** A path is measured in so many steps. */
 const pathSteps = 8;
 
@@ -201,9 +215,11 @@ function goAlong({ upperArm, forearm }: ArmTransition, wanted: WantedArm, drawn:
   rotate(alongArc(forearm, share, turn), drawn.forearm, drawn.forearm);
   passArc(upperArm, share);
   passArc(forearm, share);
-  // The hinge is the bones' normal; of a straight arm it turns from the drawn one's to the wanted one's.
+  // The hinge is the bones' normal; of an all but straight arm it turns from the drawn one's to the wanted one's.
   rotate(rotationBetween(bone, drawn.upperArm, turn), drawn.hinge, unbent);
   lerp(unbent, wanted.hinge, share, unbent);
   cross(drawn.upperArm, drawn.forearm, drawn.hinge);
-  normalise(addScaled(drawn.hinge, unbent, 0.1, drawn.hinge), wanted.hinge, drawn.hinge);
+  const isBent = dot(drawn.upperArm, drawn.forearm) < 0;
+  const straightness = isBent ? 0 : Math.max(0, allButStraight - length(drawn.hinge));
+  normalise(addScaled(drawn.hinge, unbent, straightness, drawn.hinge), wanted.hinge, drawn.hinge);
 }

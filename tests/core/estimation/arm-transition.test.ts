@@ -16,6 +16,7 @@ import {
   addScaled,
   cross,
   distance,
+  dot,
   length,
   normalise,
   scale,
@@ -167,6 +168,19 @@ describe('an arm whose hand has jumped', () => {
           for (const each of [upperArm, forearm, hinge]) expect(length(each)).toBeCloseTo(1, 6);
           const normal = cross(upperArm, forearm);
           if (length(normal) > 0.3) expect(length(add(normalise(normal), hinge))).toBeGreaterThan(1);
+        }
+      }),
+      { seed },
+    );
+  });
+
+  test('bends about the normal of its bones, but where it is all but straight', () => {
+    fc.assert(
+      fc.property(arm, arm, (from, wanted) => {
+        for (const { upperArm, forearm, hinge } of drawn(from, () => wanted, 60, 1).arms) {
+          const normal = cross(upperArm, forearm);
+          const isBent = length(normal) > 0.11 || dot(upperArm, forearm) < 0;
+          if (isBent && length(normal) > 1e-6) expect(angle(hinge, normalise(normal))).toBeLessThan(1e-6);
         }
       }),
       { seed },

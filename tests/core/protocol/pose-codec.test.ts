@@ -13,7 +13,7 @@ import { distance, vec3 } from '../../../src/core/math/vec3';
 import { fingerFields } from '../../../src/core/protocol/finger-steps';
 import { decodePoints, decodePose, encodePose } from '../../../src/core/protocol/pose-codec';
 import { longestPose, type PosePacket, poseVersion } from '../../../src/core/protocol/pose-packet';
-import { isNightly } from '../../nightly';
+import { cases, isNightly } from '../../nightly';
 import { seed } from '../arbitraries';
 import { openShippedModel } from '../estimation/shipped-models';
 import { numbersIn } from '../numbers-in';
@@ -89,8 +89,8 @@ describe('a body on the wire', () => {
   afterAll(() => learned.regressor?.dispose());
 
   test.each([
-    ['ik', undefined, isNightly ? 20_000 : 1500],
-    ['learned', 'learned', isNightly ? 3000 : 150],
+    ['ik', undefined, cases(500)],
+    ['learned', 'learned', cases(100)],
   ] as const)('of %s: 1 mm and 0.5° at head and hands, 1 cm at any joint, 64 bytes', async (_, name, runs) => {
     const worst = worstOf();
     const create =
@@ -310,7 +310,7 @@ describe('bytes', () => {
 test('100,000 bad packets (a million at night) decode to null or to a finite pose, and throw nothing', {
   tags: ['full'],
 }, async () => {
-  const cases = isNightly ? 1_000_000 : 100_000;
+  const packets = isNightly ? 1_000_000 : 100_000;
   let random = { seed };
   const chance = (): number => {
     const next = nextRandom(random);
@@ -340,7 +340,7 @@ test('100,000 bad packets (a million at night) decode to null or to a finite pos
     return bytes;
   };
   let accepted = 0;
-  for (let i = 0; i < cases; i++) {
+  for (let i = 0; i < packets; i++) {
     const bytes = bad();
     const pose = decodePose(bytes, skeleton);
     const points = decodePoints(bytes);
@@ -354,7 +354,7 @@ test('100,000 bad packets (a million at night) decode to null or to a finite pos
     const unit = turns.every(({ x, y, z, w }) => Math.abs(Math.hypot(x, y, z, w) - 1) < 1e-6);
     if (!finite || !unit) throw new Error(`an impossible pose from ${bytes}`);
   }
-  console.log(`pose codec: ${cases} fuzzed packets, ${accepted} decoded to a pose, 0 thrown`);
-  expect(accepted).toBeGreaterThan(cases / 20);
-  expect(accepted).toBeLessThan(cases);
+  console.log(`pose codec: ${packets} fuzzed packets, ${accepted} decoded to a pose, 0 thrown`);
+  expect(accepted).toBeGreaterThan(packets / 20);
+  expect(accepted).toBeLessThan(packets);
 });
