@@ -116,7 +116,7 @@ freshTest('in the headset another player is hidden by the menu, and shown again 
   await expect.poll(drawn).toEqual(['Kim: drawn', 'Max: drawn']);
 });
 
-test('between a room and the open controls the button that enters VR is read whole', async ({ page }) => {
+test('between a room and the open controls the button that enters VR is read whole @full', async ({ page }) => {
   await open(page, 'play=ball&quality=low&estimator=ik&seed=5&actor=off');
   await page.setViewportSize({ width: 1280, height: 720 });
   const controls = page.getByRole('button', { name: 'Controls' });

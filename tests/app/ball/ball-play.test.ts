@@ -68,7 +68,7 @@ function page(options: {
 
 describe('one person with two bots', () => {
   for (const seat of [0, 1, 2]) {
-    it(`plays a whole match from seat ${seat}, all through the same Room`, () => {
+    it(`plays a whole match from seat ${seat}, all through the same Room`, { tags: seat === 0 ? [] : ['full'] }, () => {
       const { player, until, events } = page({ seat });
       until(() => player.probe()?.phase === 'over', 110);
       const { score, end, ballsLeft, people } = player.probe() ?? {};

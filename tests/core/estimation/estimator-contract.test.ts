@@ -32,6 +32,7 @@ import {
   vec3,
 } from '../../../src/core/math/vec3';
 import { headingOf } from '../../../src/core/tracking/heading';
+import { cases } from '../../nightly';
 import { evenly, rotation, seed, standpoint, vector } from '../arbitraries';
 import { numbersIn } from '../numbers-in';
 import { apart, calibrationOf, factIf, jointsOf, person, rate, showSecond, subjects, times } from './contract-subjects';
@@ -52,7 +53,7 @@ describe.each(subjects)('$label', ({ name, plain }) => {
   // Inference costs: fewer cases where every frame runs a network, and none to shrink the one that fails.
   const runs = (most: number) => ({
     seed,
-    ...(wantsModel ? { numRuns: Math.ceil(most / 5), endOnFailure: true } : { numRuns: most }),
+    ...(wantsModel ? { numRuns: cases(Math.ceil(most / 5)), endOnFailure: true } : { numRuns: cases(most) }),
   });
 
   test('head and hands are those of this very frame', async () => {
@@ -67,7 +68,7 @@ describe.each(subjects)('$label', ({ name, plain }) => {
           expect(pose.rightHand).toEqual(frame.rightHand);
         }
       }),
-      runs(50),
+      runs(25),
     );
   });
 
@@ -80,7 +81,7 @@ describe.each(subjects)('$label', ({ name, plain }) => {
         expect(distance(eyes, frame.head.position)).toBeLessThan(1e-9);
         expect(head.orientation).toBeSameRotationAs(frame.head.orientation);
       }),
-      runs(100),
+      runs(50),
     );
   });
 
@@ -103,7 +104,7 @@ describe.each(subjects)('$label', ({ name, plain }) => {
             }
           }
         }),
-        runs(200),
+        runs(100),
       );
     },
   );
@@ -116,7 +117,7 @@ describe.each(subjects)('$label', ({ name, plain }) => {
         expect(distance(joints.leftHand.position, frame.leftHand!.position)).toBeLessThan(1e-3);
         expect(distance(joints.rightHand.position, frame.rightHand!.position)).toBeLessThan(1e-3);
       }),
-      runs(200),
+      runs(100),
     );
   });
 
@@ -136,7 +137,7 @@ describe.each(subjects)('$label', ({ name, plain }) => {
           expect(Math.abs(bone / length(restOffsets[joint]) - 1)).toBeLessThan(1e-9);
         }
       }),
-      runs(100),
+      runs(50),
     );
   });
 
@@ -170,7 +171,7 @@ describe.each(subjects)('$label', ({ name, plain }) => {
           if (shown.body) expect(numbersIn(jointsOf(shown, calibration)).every(Number.isFinite)).toBe(true);
         }
       }),
-      runs(200),
+      runs(100),
     );
   });
 
@@ -196,7 +197,7 @@ describe.each(subjects)('$label', ({ name, plain }) => {
             expect(distance(there[joint].position, expected)).toBeLessThan(name === 'learned' ? 1e-3 : 1e-6);
           }
         }),
-        runs(50),
+        runs(25),
       );
     },
   );
@@ -214,7 +215,7 @@ describe.each(subjects)('$label', ({ name, plain }) => {
           expect(distance(mirrored[mirroredName(joint)].position, expected)).toBeLessThan(1e-6);
         }
       }),
-      runs(50),
+      runs(25),
     );
   });
 
@@ -233,7 +234,7 @@ describe.each(subjects)('$label', ({ name, plain }) => {
           expect(Math.abs(twistAngle(swingTwist(wrist, along).twist, along))).toBeLessThan(Math.PI / 2 + 1e-6);
         }
       }),
-      runs(100),
+      runs(50),
     );
   });
 
@@ -278,7 +279,7 @@ describe.each(subjects)('$label', ({ name, plain }) => {
             }
           },
         ),
-        runs(60),
+        runs(30),
       );
       expect(bentSteps).toBeGreaterThan(50);
     },
@@ -297,7 +298,7 @@ describe.each(subjects)('$label', ({ name, plain }) => {
           expect(await show(used, frame)).toEqual(await show(fresh, frame));
         }
       }),
-      runs(30),
+      runs(15),
     );
   });
 
@@ -310,7 +311,7 @@ describe.each(subjects)('$label', ({ name, plain }) => {
         for (const time of times(start, 3))
           expect(await show(recalibrated, at(time))).toEqual(await show(fresh, at(time)));
       }),
-      runs(20),
+      runs(10),
     );
   });
 
@@ -321,7 +322,7 @@ describe.each(subjects)('$label', ({ name, plain }) => {
         const fast = await showAll(create(calibration), times(start, 61, rate / 2).map(at));
         expect(apart(jointsOf(slow, calibration), jointsOf(fast, calibration))).toBeLessThan(0.02);
       }),
-      runs(20),
+      runs(10),
     );
   });
 
@@ -358,7 +359,7 @@ describe.each(subjects)('$label', ({ name, plain }) => {
         }
         expect(distance(before![`${side}Hand`].position, back.position)).toBeLessThan(1e-3);
       }),
-      runs(40),
+      runs(20),
     );
   });
 
@@ -376,7 +377,7 @@ describe.each(subjects)('$label', ({ name, plain }) => {
           expect(below(position)).toBeLessThan(0.4 * calibration.eyeHeight);
         }
       }),
-      runs(30),
+      runs(15),
     );
   });
 });

@@ -136,7 +136,7 @@ describe('a hand that is lost', () => {
           expect(distance(at(joints, 'rightHand'), hand)).toBeLessThan(1e-4);
         }
       }),
-      { seed, numRuns: 60 },
+      { seed, numRuns: cases(30) },
     );
   });
 
@@ -171,7 +171,7 @@ describe('a hand that is lost', () => {
           expect(distance(at(drawn, 'rightHand'), hand as Vec3)).toBeLessThan(1e-4);
         }
       }),
-      { seed, numRuns: 100 },
+      { seed, numRuns: cases(50) },
     );
   });
 
