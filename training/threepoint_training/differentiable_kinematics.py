@@ -5,7 +5,6 @@ heights, from the headset. What is left out moves no estimated joint of a person
 of vertebrae, forearms and hands.
 """
 
-import math
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -104,30 +103,37 @@ class DifferentiableKinematics:
     def fit_torso(self, given: _FittingInput, config: FittingConfig) -> tuple[Trunk, Tensor]:
         """The trunk and the shoulders [N, 2, 3], leaning after hands that the arms alone do not reach, or would have to be straight to."""
         targets = given.estimated[:, 2:4]
-        trunk, shoulders = self._place_trunk(given, targets, TORSO)
+        # How far clavicles and neck go beyond anatomy [share of the way to their extremes].
+        extremity = torch.zeros_like(targets[..., :1])
+        trunk, shoulders = self._place_trunk(given, targets, extremity)
         reach = config.reach * given.arm
         soft = _softened(_length(given.wrists - shoulders), reach)
         for number in range(config.reach_passes):
             to_wrist = given.wrists - shoulders
             wanted = soft if number < REACH["anatomicalPasses"] else reach
-            direction, missing = _unit(to_wrist), (_length(to_wrist) - wanted).clamp_min(0.0)
-            targets = targets + direction * torch.where(missing > config.least_missing, missing, 0.0) * TORSO["reachOvershoot"]
-            limits = TORSO if number < REACH["anatomicalPasses"] else TORSO_EXTREME
-            placed = self._place_trunk(given, targets, limits)
+            missing = (_length(to_wrist) - wanted).clamp_min(0.0)
+            missing = torch.where(missing > config.least_missing, missing, 0.0)
+            targets = targets + _unit(to_wrist) * missing * TORSO["reachOvershoot"]
+            if number >= REACH["anatomicalPasses"]:
+                extremity = (extremity + missing / (REACH["extremeReach"] * reach)).clamp_max(1.0)
+            placed = self._place_trunk(given, targets, extremity)
             if config.reach_passes > 1:
-                placed = _chosen((missing > config.least_missing).any(dim=1), placed, (trunk, shoulders))
+                placed = _chosen((missing > 0.0).any(dim=1), placed, (trunk, shoulders))
             trunk, shoulders = placed
         return trunk, shoulders
 
-    def _place_trunk(self, given: _FittingInput, targets: Tensor, limits: dict[str, float]) -> tuple[Trunk, Tensor]:
-        """Chest joint, hips and shoulders on their bones below the head, as nearly as limits allow where shoulders are wanted [N, 2, 3]."""
+    def _place_trunk(self, given: _FittingInput, targets: Tensor, extremity: Tensor) -> tuple[Trunk, Tensor]:
+        """Chest joint, hips and shoulders on their bones below the head, as nearly as limits allow where shoulders are wanted [N, 2, 3].
+
+        extremity: of each side, how far on the way from anatomical limits to extreme ones [N, 2, 1].
+        """
         estimated, head_joint = given.estimated, given.head_joint
         middle = targets.mean(1)
         line = _unit(targets[:, 1] - targets[:, 0])
         rough = self._aligned(self.thorax, middle - estimated[:, 4], line)
         implied_neck = middle - rough @ self.shoulders_from_neck
         neck_bone = self.rest["head"]
-        neck = head_joint - _swung(rough @ neck_bone, head_joint - implied_neck, limits["neckBend"])
+        neck = head_joint - _swung(rough @ neck_bone, head_joint - implied_neck, _limit("neckBend", extremity.amax(dim=1)))
         # Chest joint and hips follow a share of what the neck was moved by.
         shift = neck - implied_neck
         moved = shift * TORSO["neckShiftShare"] * (neck_bone.norm() / _length(shift)).clamp_max(1.0)
@@ -138,8 +144,9 @@ class DifferentiableKinematics:
         lower, upper = (self._aligned(self.thorax, up, side) for side in (torch.lerp(pelvis_line, line, TORSO["chestToShoulders"]), line))
         shoulders = []
         for number, side in enumerate(("left", "right")):
+            swing = _limit("clavicleSwing", extremity[:, number])
             root = chest + lower @ self.rest["upperChest"] + upper @ self.rest[f"{side}Shoulder"]
-            shoulders.append(root + _swung(upper @ self.rest[f"{side}UpperArm"], targets[:, number] - root, limits["clavicleSwing"]))
+            shoulders.append(root + _swung(upper @ self.rest[f"{side}UpperArm"], targets[:, number] - root, swing))
         return Trunk(hips, chest, neck, upper), torch.stack(shoulders, dim=1)
 
     def fit_arms(self, given: _FittingInput, trunk: Trunk, shoulders: Tensor, config: FittingConfig) -> tuple[Tensor, Tensor]:
@@ -185,6 +192,11 @@ def _in_chest_frame(inputs: Tensor) -> tuple[Tensor, Tensor]:
     return axes, joints @ axes.transpose(1, 2)
 
 
+def _limit(joint: str, extremity: Tensor) -> Tensor:
+    """How far this joint swings from rest against the thorax [rad], so far on the way from anatomy to the extreme [0 to 1]."""
+    return TORSO[joint] + extremity * (TORSO_EXTREME[joint] - TORSO[joint])
+
+
 def _softened(far: Tensor, reach: Tensor) -> Tensor:
     """How far arms that reach `reach` stretch after hands `far` away, in one unit; the twin of softenedReach in src/core/body/two-bone-ik.ts."""
     near = LIMB["softReach"] * reach
@@ -216,11 +228,11 @@ def _frame(main: Tensor, side: Tensor) -> Tensor:
     return torch.stack([first, torch.cross(normal, first, dim=-1), normal], dim=-1)
 
 
-def _swung(rest: Tensor, towards: Tensor, limit: float) -> Tensor:
-    """Bones as long as `rest` [N, 3] in these directions [N, 3], but no further than `limit` [rad] from it."""
+def _swung(rest: Tensor, towards: Tensor, limit: Tensor) -> Tensor:
+    """Bones as long as `rest` [N, 3] in these directions [N, 3], but no further than `limit` [N, 1] [rad] from it."""
     start, end = _unit(rest), _unit(towards)
     aside = _across(end, start)
-    furthest = start * math.cos(limit) + _unit(aside) * math.sin(limit)
+    furthest = start * torch.cos(limit) + _unit(aside) * torch.sin(limit)
     within = torch.atan2(_length(aside), _dot(start, end)) <= limit
     return _length(rest) * torch.where(within, end, furthest)
 

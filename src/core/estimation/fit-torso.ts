@@ -37,13 +37,10 @@ import {
 import type { CompletedFrame } from './complete-hands';
 import type { JointPositions } from './joint-positions';
 import limits from './kinematic-limits.json';
-import { followLean, type Lean, leanFurther, makeLean } from './lean-after-hand';
+import { beginLean, followLean, type Lean, leanFurther, makeLean } from './lean-after-hand';
 
 const { torso: shares, torsoExtreme: extreme } = limits;
 const { anatomicalPasses, extremePasses } = limits.reach;
-
-/** How far the clavicle swings and the neck bends from rest against the thorax [rad]. */
-type TorsoLimits = Readonly<Record<'clavicleSwing' | 'neckBend', number>>;
 
 /** Shoulders turn at most this fast [rad/s]; a pirouette's do 12. */
 const turnSpeed = 12;
@@ -185,13 +182,12 @@ export function fitTorso(
   const { pose, lean } = state;
   const input: TorsoInput = { joints, frame, bones, deltaSeconds };
   setVec3(headingRight, Math.cos(frame.heading.yaw), 0, -Math.sin(frame.heading.yaw));
-  setVec3(lean.left.wanted, 0, 0, 0);
-  setVec3(lean.right.wanted, 0, 0, 0);
+  beginLean(lean.left);
+  beginLean(lean.right);
   for (let pass = 0; pass <= anatomicalPasses + extremePasses; pass++) {
-    const within = pass > anatomicalPasses ? extreme : limits.torso;
     add(joints.leftUpperArm, lean.left.wanted, shoulderTargets.left);
     add(joints.rightUpperArm, lean.right.wanted, shoulderTargets.right);
-    placeThorax(state, input, shoulderTargets, within, thorax);
+    placeThorax(state, input, shoulderTargets, thorax);
     const pulledLeft = leanFurther(lean.left, pose.shoulders.left, frame.leftHand, bones.reach, pass);
     const pulledRight = leanFurther(lean.right, pose.shoulders.right, frame.rightHand, bones.reach, pass);
     if (!pulledLeft && !pulledRight) break;
@@ -201,7 +197,7 @@ export function fitTorso(
   if (!leansLeft || !leansRight) {
     add(joints.leftUpperArm, lean.left.offset, shoulderTargets.left);
     add(joints.rightUpperArm, lean.right.offset, shoulderTargets.right);
-    placeThorax(state, input, shoulderTargets, limits.torso, thorax);
+    placeThorax(state, input, shoulderTargets, thorax);
   }
   placeSpine(state, input, thorax);
   copyVec3(state.shoulderLine, state.lineBefore);
@@ -240,15 +236,19 @@ function turnTowards(wanted: MutableVec3, before: Vec3, share: number, most: num
   return false;
 }
 
+/** How far the clavicle swings or the neck bends from rest against the thorax [rad], so far on the way from anatomy to the extreme [0 to 1]. */
+const limitOf = (joint: 'clavicleSwing' | 'neckBend', extremity: number): number =>
+  shares[joint] + extremity * (extreme[joint] - shares[joint]);
+
 /** Neck, chest joint, the upper chest's rotation and the shoulders, from where the shoulders are to be. */
 function placeThorax(
   state: FitTorsoState,
   { joints, frame, bones, deltaSeconds }: TorsoInput,
   targets: Readonly<Record<Side, Vec3>>,
-  within: TorsoLimits,
   { up: thoraxUp, moved }: PlacedThorax,
 ): void {
-  const { pose, shoulderLine } = state;
+  const { pose, shoulderLine, lean } = state;
+  const neckBend = limitOf('neckBend', Math.max(lean.left.extremity, lean.right.extremity));
   const { upperChest } = pose.rotations;
   followShoulderLine(state, targets, bones, deltaSeconds);
   const middle = lerp(targets.left, targets.right, 0.5, a);
@@ -258,7 +258,7 @@ function placeThorax(
   const roughChest = alignDirections(bones.thorax, roughUp, shoulderLine, rotation);
   const impliedNeck = subtract(middle, rotate(roughChest, bones.shouldersFromNeck, b), a);
   const neckRest = rotate(roughChest, bones.neck.main, b);
-  limitAngle(rotationBetween(neckRest, subtract(frame.headJoint, impliedNeck, c), swing), within.neckBend, swing);
+  limitAngle(rotationBetween(neckRest, subtract(frame.headJoint, impliedNeck, c), swing), neckBend, swing);
   subtract(frame.headJoint, rotate(swing, neckRest, c), pose.neck);
 
   // Chest joint and hips follow a share of what the neck was moved by; a hand far out of reach does not throw them about.
@@ -269,8 +269,8 @@ function placeThorax(
   normalise(thoraxUp, roughUp, thoraxUp);
   addScaled(pose.neck, thoraxUp, -bones.thoraxLength, pose.chest);
   alignDirections(bones.thorax, thoraxUp, shoulderLine, upperChest);
-  placeShoulder('left', pose, bones, targets.left, within);
-  placeShoulder('right', pose, bones, targets.right, within);
+  placeShoulder('left', pose, bones, targets.left, limitOf('clavicleSwing', lean.left.extremity));
+  placeShoulder('right', pose, bones, targets.right, limitOf('clavicleSwing', lean.right.extremity));
 }
 
 /** A shoulder on its clavicle, which swings towards its target. */
@@ -279,11 +279,11 @@ function placeShoulder(
   { neck, rotations, clavicles, shoulders }: TorsoPose,
   { skeleton }: TorsoBones,
   target: Vec3,
-  within: TorsoLimits,
+  furthestSwing: number,
 ): void {
   const root = clavicleRoot(side, neck, rotations.upperChest, skeleton, a);
   const rest = rotate(rotations.upperChest, clavicleRest(side, skeleton), b);
-  limitAngle(rotationBetween(rest, subtract(target, root, c), swing), within.clavicleSwing, swing);
+  limitAngle(rotationBetween(rest, subtract(target, root, c), swing), furthestSwing, swing);
   add(root, rotate(swing, rest, b), shoulders[side]);
   multiply(swing, rotations.upperChest, clavicles[side]);
 }

@@ -8,6 +8,7 @@ import {
   type MutableVec3,
   normalise,
   scale,
+  setVec3,
   subtract,
   type Vec3,
   vec3,
@@ -15,7 +16,7 @@ import {
 import type { CompletedHand } from './complete-hands';
 import limits from './kinematic-limits.json';
 
-const { anatomicalPasses } = limits.reach;
+const { anatomicalPasses, extremeReach } = limits.reach;
 
 /** Bound [m] on a lean that is still catching up; a lean that reaches its hand ends before, at the limits of clavicle and neck. */
 const furthestLean = 0.6;
@@ -31,6 +32,8 @@ export interface Lean {
   readonly offset: MutableVec3;
   /** How near to the hand the shoulder is to come, within what anatomy allows [m]. */
   softReach: number;
+  /** How far clavicle and neck go beyond anatomy for it [share of the way to their extremes, 0 to 1]. */
+  extremity: number;
 }
 
 export const makeLean = (): Lean => ({
@@ -38,9 +41,16 @@ export const makeLean = (): Lean => ({
   wantedBefore: vec3(0, 0, 0),
   offset: vec3(0, 0, 0),
   softReach: Number.NaN,
+  extremity: 0,
 });
 
 const towards = vec3(0, 0, 0);
+
+/** Nothing is wanted yet in this frame. */
+export function beginLean(lean: Lean): void {
+  setVec3(lean.wanted, 0, 0, 0);
+  lean.extremity = 0;
+}
 
 /**
  * Leans a shoulder further towards a hand: until the arm reaches it softly, or, beyond what anatomy allows for that, at all. False: it does. No
@@ -60,6 +70,7 @@ export function leanFurther(
   if (pass === 0) lean.softReach = softenedReach(far, reach);
   const missing = far - (pass < anatomicalPasses ? lean.softReach : reach);
   if (missing <= 1e-5) return false;
+  if (pass >= anatomicalPasses) lean.extremity = Math.min(1, lean.extremity + missing / (extremeReach * reach));
   addScaled(lean.wanted, normalise(towards, undefined, towards), missing * limits.torso.reachOvershoot, lean.wanted);
   return true;
 }

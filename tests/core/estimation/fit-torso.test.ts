@@ -85,6 +85,32 @@ describe('an arm that is stretched out', () => {
     expect(shoulderCame).toBeGreaterThan(0.03);
   });
 
+  test('goes on after its hand beyond anatomy without a snap of the other shoulder', () => {
+    const upwards = fc.record({ x: evenly(-1, 1), y: evenly(0.5, 1), z: evenly(-1, 1) });
+    const outwards = fc.record({ x: evenly(0.6, 1), y: evenly(0, 0.6), z: evenly(-0.8, 0) });
+    fc.assert(
+      fc.property(outwards, upwards, (direction, offset) => {
+        const fitBody = fitted(calibration);
+        // The other shoulder is estimated where its clavicle does not reach.
+        const leftUpperArm = addScaled(joints.leftUpperArm, normalise(offset), 0.15);
+        const step = 0.001;
+        let before: Vec3 | null = null;
+        for (let far = 0.98 * (upper + lower); far < 1.15 * (upper + lower); far += step) {
+          const hand = addScaled(shoulder, normalise(direction), far);
+          const tracked = completedFrame(
+            { ...twoHands, rightHand: { ...twoHands.rightHand, position: hand } },
+            calibration,
+          );
+          const drawn = fitBody(tracked, { ...joints, leftUpperArm }, before ? 1 / 60 : 0);
+          const other = copyVec3(drawn.leftUpperArm.position);
+          if (before) expect(distance(other, before)).toBeLessThan(20 * step);
+          before = other;
+        }
+      }),
+      { seed, numRuns: 30 },
+    );
+  });
+
   test('stays as it is while a hand that is lost is held', () => {
     const fitBody = fitted(calibration);
     const hand = addScaled(shoulder, ahead, 1.02 * (upper + lower));
