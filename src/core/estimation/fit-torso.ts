@@ -7,6 +7,7 @@ import {
   limitAngle,
   type MutableQuat,
   multiply,
+  type Quat,
   quat,
   type RestDirections,
   restDirections,
@@ -48,7 +49,7 @@ const turnSpeed = 12;
 const shoulderLineHalfLife = 0.15;
 /** Shoulders nearer to each other than the first say nothing of their line, further apart than the second all [share of their distance at rest]. */
 const [undefinedLine, definedLine] = [0.2, 0.7];
-/** Hips that the floor keeps from hanging turn at most this fast about the chest joint [rad/s]: 2.5 cm in a frame at 60 Hz. */
+/** Hips turn at most this fast about the chest joint [rad/s]: 4 cm in a frame at 60 Hz. */
 const hipsTurnSpeed = 6;
 /** Share of the turn from the pelvis to the shoulders' line that the lower back has made [1]. */
 const spineToShoulders = 0.35;
@@ -74,10 +75,8 @@ export interface FitTorsoState {
   /** From the left to the right shoulder, unit, floor frame: of this frame, and of the one before. */
   readonly shoulderLine: MutableVec3;
   readonly lineBefore: MutableVec3;
-  /** From the chest joint to the hips, horizontal, unit, floor frame. */
+  /** From the chest joint to the hips, unit, floor frame. */
   readonly towardsHips: MutableVec3;
-  /** The hips are not yet where they lie or hang: they turn there. */
-  hipsTurn: boolean;
   readonly lean: Readonly<Record<Side, Lean>>;
 }
 
@@ -99,8 +98,7 @@ export const makeFitTorsoState = (): FitTorsoState => ({
   },
   shoulderLine: vec3(1, 0, 0),
   lineBefore: vec3(1, 0, 0),
-  towardsHips: vec3(0, 0, 1),
-  hipsTurn: false,
+  towardsHips: vec3(0, -1, 0),
   lean: { left: makeLean(), right: makeLean() },
 });
 
@@ -222,18 +220,14 @@ function followShoulderLine(
   turnTowards(line, before, share, turnSpeed * Math.max(deltaSeconds, 0));
 }
 
-/**
- * Replaces a unit vector by the one that `before` comes to when it turns towards it by a share of the angle between them, but by `most` [rad] at
- * most. Whether it gets there.
- */
-function turnTowards(wanted: MutableVec3, before: Vec3, share: number, most: number): boolean {
+/** Replaces a unit vector by the one that `before` comes to when it turns towards it by a share of the angle between them, but by `most` [rad] at most. */
+function turnTowards(wanted: MutableVec3, before: Vec3, share: number, most: number): void {
   const angle = Math.atan2(length(cross(before, wanted, b)), dot(before, wanted));
   const turn = Math.min(angle * share, most);
-  if (angle - turn < 1e-9) return true;
+  if (angle - turn < 1e-9) return;
   normalise(cross(b, before, b), headingRight, b);
   scale(before, Math.cos(turn), wanted);
   normalise(addScaled(wanted, b, Math.sin(turn), wanted), before, wanted);
-  return false;
 }
 
 /** How far the clavicle swings or the neck bends from rest against the thorax [rad], so far on the way from anatomy to the extreme [0 to 1]. */
@@ -297,7 +291,7 @@ function placeSpine(
   const { pose, shoulderLine } = state;
   const { head, headJoint } = frame;
   const { hips, chest, neck, rotations } = pose;
-  hangHips(state, add(joints.hips, moved, a), bones.lowerBackLength, deltaSeconds);
+  hangHips(state, add(joints.hips, moved, a), frame.bodyTurn, bones.lowerBackLength, deltaSeconds);
   const lowerBackUp = normalise(subtract(chest, hips, a), up, a);
   const pelvisLine = normalise(lerp(shoulderLine, headingRight, shares.pelvisToHead, b), shoulderLine, b);
   alignDirections(bones.lowerBack, lowerBackUp, pelvisLine, rotations.hips);
@@ -310,28 +304,37 @@ function placeSpine(
 }
 
 /**
- * The hips at `lowerBack` [m] from the chest joint towards where they are estimated, but never below the floor. Under a chest that is too low for
- * them to hang they lie aside, and an estimate almost below the chest hardly says on which side: they turn there with a limited speed,
- * and go on with it when they hang again until they have caught up.
+ * The hips at `lowerBack` [m] from the chest joint towards where they are estimated, but never below the floor. An estimate that is almost at the chest
+ * hardly says where they are, and one almost below a chest that is too low for them to hang not on which side they lie: beside the body's
+ * own turn they turn with a limited speed.
  */
-function hangHips(state: FitTorsoState, estimate: Vec3, lowerBack: number, deltaSeconds: number): void {
-  const { pose, towardsHips: towards } = state;
+function hangHips(
+  { known, pose, towardsHips: towards }: FitTorsoState,
+  estimate: Vec3,
+  bodyTurn: Quat,
+  lowerBack: number,
+  deltaSeconds: number,
+): void {
   const { chest, hips } = pose;
-  subtract(estimate, chest, hips);
-  addScaled(chest, normalise(hips, down, hips), lowerBack, hips);
+  const most = known ? hipsTurnSpeed * Math.max(deltaSeconds, 0) : Number.POSITIVE_INFINITY;
+  const before = rotate(bodyTurn, towards, c);
+  normalise(subtract(estimate, chest, hips), down, hips);
+  setVec3(towards, hips.x, 0, hips.z);
+  turnTowards(hips, before, 1, most);
+  addScaled(chest, hips, lowerBack, hips);
   const lowest = Math.min(lowestHips, chest.y + lowerBack);
-  const lie = hips.y < lowest;
-  const before = copyVec3(state.known ? towards : backward, c);
-  normalise(setVec3(towards, hips.x - chest.x, 0, hips.z - chest.z), before, towards);
-  if (!lie && !state.hipsTurn) return;
-  state.hipsTurn = state.known && !turnTowards(towards, before, 1, hipsTurnSpeed * Math.max(deltaSeconds, 0));
-  const drop = lie ? clamp(chest.y - lowest, -lowerBack, lowerBack) : chest.y - hips.y;
-  const aside = Math.sqrt(lowerBack * lowerBack - drop * drop);
-  setVec3(hips, chest.x + towards.x * aside, chest.y - drop, chest.z + towards.z * aside);
+  if (hips.y < lowest) {
+    const drop = clamp(chest.y - lowest, -lowerBack, lowerBack);
+    const aside = Math.sqrt(lowerBack * lowerBack - drop * drop);
+    setVec3(before, before.x, 0, before.z);
+    normalise(before, backward, before);
+    turnTowards(normalise(towards, before, towards), before, 1, most);
+    setVec3(hips, chest.x + towards.x * aside, chest.y - drop, chest.z + towards.z * aside);
+  }
+  normalise(subtract(hips, chest, towards), down, towards);
 }
 
 /** Forgets the past: the next frame is the first. */
 export function resetFitTorso(state: FitTorsoState): void {
   state.known = false;
-  state.hipsTurn = false;
 }

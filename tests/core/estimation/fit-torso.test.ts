@@ -53,6 +53,40 @@ describe('hips under a chest that is too low for them to hang', () => {
   });
 });
 
+describe('hips that are estimated almost at the chest joint', () => {
+  test('swing to its other side when they are estimated there, and do not leap', () => {
+    const near = fc.record({ angle: evenly(-3, 3), metres: evenly(0.03, 0.06), yaw: evenly(-3, 3) });
+    fc.assert(
+      fc.property(near, ({ angle, metres, yaw }) => {
+        const elsewhere = { position: vec3(-1, 0, 2), orientation: fromAxisAngle(up, yaw) };
+        const frame = transformFrame(elsewhere, standing(calibration, hip.left, hip.right));
+        const body = forwardKinematics(skeleton, poseOf(createEstimator('ik', calibration), frame).body!);
+        const estimated = Object.fromEntries(
+          estimatedJoints.map((joint) => [joint, copyVec3(body[joint].position)]),
+        ) as Record<(typeof estimatedJoints)[number], Vec3>;
+        const seen = completedFrame(
+          { head: frame.head, leftHand: frame.leftHand!, rightHand: frame.rightHand! },
+          calibration,
+        );
+        const aside = vec3(Math.sin(angle), 0, Math.cos(angle));
+        const fitBody = fitted(calibration);
+        const hips: Vec3[] = [];
+        for (let i = 0; i < 90; i++) {
+          const drawn = fitBody(
+            seen,
+            { ...estimated, hips: addScaled(estimated.chest, aside, i < 30 ? metres : -metres) },
+            i ? 1 / 60 : 0,
+          );
+          hips.push(copyVec3(drawn.hips.position));
+        }
+        expect(distance(hips[29]!, hips[89]!)).toBeGreaterThan(0.3);
+        expect(Math.max(...hips.slice(1).map((place, i) => distance(place, hips[i]!)))).toBeLessThan(0.05);
+      }),
+      { seed, numRuns: 40 },
+    );
+  });
+});
+
 describe('an arm that is stretched out', () => {
   const frame = standing(calibration, hip.left, hip.right);
   const body = forwardKinematics(skeleton, poseOf(createEstimator('ik', calibration), frame).body!);
