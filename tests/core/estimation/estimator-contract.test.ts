@@ -4,6 +4,7 @@ import type { Calibration } from '../../../src/core/body/calibration';
 import { type JointName, jointNames, parentOf } from '../../../src/core/body/joints';
 import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
 import { createEstimator, needsRegressor } from '../../../src/core/estimation/estimators';
+import { armBones } from '../../../src/core/estimation/fit-arms';
 import type { PoseEstimator } from '../../../src/core/estimation/pose-estimator';
 import type { PoseRegressor } from '../../../src/core/estimation/pose-regressor';
 import { type TrackedPose, transformPoint } from '../../../src/core/math/pose';
@@ -39,6 +40,12 @@ import { apart, calibrationOf, factIf, jointsOf, person, rate, showSecond, subje
 import { type Joints, show, showAll } from './drawn';
 import { mirrorFrame, mirrorPoint, transformFrame, withHand } from './moving-person';
 import { openPlainModel, openShippedModel } from './shipped-models';
+
+/** How long the arms of this calibration are [m]. */
+function reachOf(calibration: Calibration): number {
+  const { upper, lower } = armBones(skeletonFromCalibration(calibration));
+  return upper + lower;
+}
 
 describe.each(subjects)('$label', ({ name, plain }) => {
   const wantsModel = needsRegressor(name);
@@ -91,8 +98,7 @@ describe.each(subjects)('$label', ({ name, plain }) => {
       await fc.assert(
         fc.asyncProperty(person, async ({ at, calibration, start }) => {
           const estimator = create(calibration);
-          const { restOffsets } = skeletonFromCalibration(calibration);
-          const reach = length(restOffsets.leftLowerArm) + length(restOffsets.leftHand);
+          const reach = reachOf(calibration);
           for (const time of times(start, 3)) {
             const frame = at(time);
             const joints = jointsOf(await show(estimator, frame), calibration);
@@ -358,9 +364,8 @@ describe.each(subjects)('$label', ({ name, plain }) => {
           before = joints;
         }
         // Where it was found may be further away than the arm is long.
-        const { restOffsets } = skeletonFromCalibration(calibration);
-        const reach = length(restOffsets[`${side}LowerArm`]) + length(restOffsets[`${side}Hand`]);
-        const tooFar = Math.max(0, distance(before![`${side}UpperArm`].position, back.position) - reach);
+        const far = distance(before![`${side}UpperArm`].position, back.position);
+        const tooFar = Math.max(0, far - reachOf(calibration));
         expect(distance(before![`${side}Hand`].position, back.position)).toBeLessThan(tooFar + 1e-3);
       }),
       runs(20),
