@@ -15,7 +15,7 @@ export interface LearnedOptions {
 const ownWeights = () => new URL('../../public/models/learned.bin', import.meta.url);
 
 /**
- * The learned network without a runtime: 92 kB, answered within the frame. Rejects with a sentence that says what is wrong with which file.
+ * The learned network without a runtime: 91 kB, answered within the frame. Rejects with a sentence that says what is wrong with which file.
  */
 export async function loadLearned({ modelUrl, onProgress }: LearnedOptions = {}): Promise<PoseRegressor> {
   const progress = onProgress ? { onProgress } : {};
