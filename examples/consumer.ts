@@ -1,4 +1,4 @@
-// Every entry of the package in TypeScript: compiled against the packed package by `npm test`, run by no page.
+// Every entry of the package in TypeScript: compiled against the packed package by `npm run test:full`, run by no page.
 import type { Scene, WebGLRenderer } from 'three';
 import {
   type AvatarPose,

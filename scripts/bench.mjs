@@ -1,4 +1,4 @@
-// npm run bench [-- --json FILE] [visit frames archery ball crowd allocations networks] [--rounds N]: what a frame costs, by estimator and by stage, in
+// npm run bench [-- --json FILE] [visit frames archery ball crowd allocations networks avatar] [--rounds N]: what a frame costs, by estimator and by stage, in
 // headless Chromium. Named parts only are measured; all of them take an hour on two cores without a graphics device, "frames --rounds 3" minutes.
 // npm run bench networks -- --device: WebGPU on the machine's graphics device instead of in software.
 // Each part prints how long it took and is written to FILE when it is through; ratios of frames have intervals of 95 % confidence.
