@@ -1,5 +1,6 @@
 import type { Calibration } from '../body/calibration';
 import { createDeviceSource } from './device';
+import { usualSmoothing } from './filter-joints';
 import { createHandsOnly } from './hands-only';
 import { transformJoints } from './joint-positions';
 import type { JointSource } from './joint-source';
@@ -22,6 +23,7 @@ export const networkOf = (name: EstimatorName): NetworkName | null =>
 /** Inverse kinematics alone: the competitor that the networks are measured against, with the same calibration. */
 const ikAlone: JointSource = {
   network: null,
+  smoothing: usualSmoothing,
   calibrate: () => undefined,
   reset: () => undefined,
   joints({ ik, floorFromHeading }, _, target) {

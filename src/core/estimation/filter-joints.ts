@@ -18,10 +18,17 @@ import {
 import { type CompletedFrame, type CompletedHand, confidenceSeconds } from './complete-hands';
 import { type JointPositions, type MutableJointPositions, makeJoints } from './joint-positions';
 
-/** Half-life [s] of the joints about the head: a tenth of a degree of noise in the headset moves hips by a millimetre. */
-const jointHalfLife = 0.02;
-/** Half-life [s] of the head's position below which noise is not followed; constant velocities are, without lag. */
-const headHalfLife = 0.035;
+/** How long joints are averaged: a tenth of a degree of noise in the headset moves hips by a millimetre. */
+export interface JointSmoothing {
+  /** Half-life [s] of the low-pass on elbows and shoulders, about the head. */
+  readonly arms: number;
+  /** Half-life [s] of the low-pass on the chest joint and hips, about the head. */
+  readonly trunk: number;
+  /** Half-life [s] of the g-h filter on the head's position that joints hang from; constant velocities are followed without lag. */
+  readonly head: number;
+}
+
+export const usualSmoothing: JointSmoothing = { arms: 0.02, trunk: 0.02, head: 0.035 };
 /** The trunk's joints move about the head at most this fast [m/s]; 999 of 1000 frames of the motion trained on are slower. */
 const trunkSpeed = 2.5;
 /**
@@ -62,9 +69,14 @@ const step = vec3(0, 0, 0);
 const carried = vec3(0, 0, 0);
 
 /** A critically damped g-h filter (Brookner, Tracking and Kalman Filtering Made Easy, 1998), which keeps pace with a person who walks. */
-function followHead({ position, velocity }: FilterJointsState, head: Pose<'floor'>, deltaSeconds: number): void {
+function followHead(
+  { position, velocity }: FilterJointsState,
+  head: Pose<'floor'>,
+  halfLife: number,
+  deltaSeconds: number,
+): void {
   if (deltaSeconds <= 0) return;
-  const memory = 2 ** (-deltaSeconds / headHalfLife);
+  const memory = 2 ** (-deltaSeconds / halfLife);
   addScaled(position, velocity, deltaSeconds, position);
   subtract(head.position, position, step);
   addScaled(position, step, 1 - memory * memory, position);
@@ -120,19 +132,22 @@ export function filterJoints(
   state: FilterJointsState,
   joints: JointPositions,
   completed: CompletedFrame,
+  smoothing: JointSmoothing,
   deltaSeconds: number,
 ): MutableJointPositions {
   const { head, heading, bodyTurn, leftHand, rightHand } = completed;
   const confidence = Math.min(heading.confidence, steadiness(leftHand), steadiness(rightHand));
   const most = (doubtfulTrunkSpeed + (trunkSpeed - doubtfulTrunkSpeed) * confidence) * Math.max(deltaSeconds, 0);
-  const share = smoothingFactor(jointHalfLife, deltaSeconds);
-  if (state.known) followHead(state, head, deltaSeconds);
+  const armShare = smoothingFactor(smoothing.arms, deltaSeconds);
+  const trunkShare = smoothingFactor(smoothing.trunk, deltaSeconds);
+  if (state.known) followHead(state, head, smoothing.head, deltaSeconds);
   else copyVec3(head.position, state.position);
   followJumps(state, joints, completed, deltaSeconds);
   const left = state.settleRemaining > 0 ? trapezoidalEasing(0, state.settleDuration, state.settleRemaining) : 0;
   for (let index = 0; index < estimatedJoints.length; index++) {
     const joint = estimatedJoints[index]!;
     const relative = state.relative[joint];
+    const share = joint === 'chest' || joint === 'hips' ? trunkShare : armShare;
     const hand = joint === 'leftLowerArm' ? leftHand : joint === 'rightLowerArm' ? rightHand : null;
     subtract(joints[joint], head.position, wanted);
     if (left > 0) addScaled(wanted, state.jump[joint], left, wanted);

@@ -2,6 +2,7 @@ import type { ChestSpaceBody } from '../body/skeleton';
 import type { Transform } from '../math/pose';
 import type { DeviceBody } from '../tracking/device-body';
 import type { CompletedFrame } from './complete-hands';
+import type { JointSmoothing } from './filter-joints';
 import type { MutableJointPositions } from './joint-positions';
 import type { IkSolution, ThreePoints } from './solve-ik';
 
@@ -26,6 +27,8 @@ export interface JointSource {
   reset(): void;
   /** Writes the six joints [m], floor frame, finite; deltaSeconds since the last call, 0 at first. */
   joints(solved: SolvedFrame, deltaSeconds: number, target: MutableJointPositions): void;
+  /** What stage 4 does with the joints of the newest frame. */
+  readonly smoothing: JointSmoothing;
   /** The network behind it; null: there is none. */
   readonly network: JointNetwork | null;
 }

@@ -1,5 +1,6 @@
 import { estimatedJoints } from '../body/joints';
 import { setVec3 } from '../math/vec3';
+import { usualSmoothing } from './filter-joints';
 import { type MutableJointPositions, makeJoints, transformJoints } from './joint-positions';
 import type { JointNetwork, JointSource, SolvedFrame } from './joint-source';
 import { LatestResult } from './latest-result';
@@ -49,6 +50,7 @@ export function createPaper(regressor: PoseRegressor): JointSource {
 
   return {
     network,
+    smoothing: usualSmoothing,
     calibrate: () => undefined,
     reset() {
       inference.reset();

@@ -136,7 +136,7 @@ export class Pipeline implements PoseEstimator {
     // An arm that is longer than is believed seems as far from its shoulder as one under a headset that sits too high.
     if (body.spanMeasured) noticeHeadsetRise(state.headset, solved, body.chestSpace.arm, rise, deltaSeconds);
     this.source.joints(solved, deltaSeconds, state.joints);
-    const joints = filterJoints(state.filter, state.joints, completed, deltaSeconds);
+    const joints = filterJoints(state.filter, state.joints, completed, this.source.smoothing, deltaSeconds);
     const torso = fitTorso(state.torso, joints, completed, body.torso, deltaSeconds);
     const armsInput = { frame: completed, joints, torso, bones: body.arm, poles: this.#poles };
     const arms = fitArms(state.arms, armsInput, deltaSeconds);

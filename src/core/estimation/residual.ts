@@ -6,6 +6,7 @@ import { transformPoint } from '../math/pose';
 import { add, copyVec3, lerp, scale, setVec3 } from '../math/vec3';
 import { chestFeatureCount, chestFeatures, headingFromChest } from './chest-features';
 import { FeatureWindow, featureCount, frameFeatures } from './features';
+import { type JointSmoothing, usualSmoothing } from './filter-joints';
 import { copyJoints, type MutableJointPositions, makeJoints } from './joint-positions';
 import type { JointNetwork, JointSource, SolvedFrame } from './joint-source';
 import { LatestResult } from './latest-result';
@@ -25,6 +26,12 @@ const questionSeconds = 0.02;
 /** Numbers of the network's input: the features at each age, and the newest frame's chest-frame features. */
 export const learnedInputCount = (windowSeconds: readonly number[]): number =>
   windowSeconds.length * featureCount + chestFeatureCount;
+
+/**
+ * The corrected trunk moves more than IK's, where people crouch and lie most of all: a little more smoothing, and its jerk is no more than that of IK,
+ * at 0.3 to 0.7 % more error (docs/decisions.md).
+ */
+const residualSmoothing: JointSmoothing = { arms: 0.02, trunk: 0.03, head: 0.04 };
 
 /**
  * Our network: the residual of the IK solution, seen from the chest of the frame it was asked about. It is damped in the heading frame
@@ -60,6 +67,11 @@ class Residual implements JointSource, JointNetwork {
       (output) => this.#learn(output),
       () => this.#forget(),
     );
+  }
+
+  /** IK's own while it stands alone. */
+  get smoothing(): JointSmoothing {
+    return this.#known ? residualSmoothing : usualSmoothing;
   }
 
   get network(): JointNetwork {

@@ -1,8 +1,14 @@
 import { expect, test } from 'vitest';
-import { filterJoints, makeFilterJointsState, resetFilterJoints } from '../../../src/core/estimation/filter-joints';
+import {
+  filterJoints,
+  type JointSmoothing,
+  makeFilterJointsState,
+  resetFilterJoints,
+  usualSmoothing,
+} from '../../../src/core/estimation/filter-joints';
 import { copyJoints, type JointPositions, mapJoints } from '../../../src/core/estimation/joint-positions';
 import { fromAxisAngle, identity, type Quat, rotate } from '../../../src/core/math/quat';
-import { nextRandom } from '../../../src/core/math/random';
+import { nextRandom, randomNumbers } from '../../../src/core/math/random';
 import { add, distance, subtract, up, type Vec3, vec3 } from '../../../src/core/math/vec3';
 import { fromEulerYxz } from '../euler-angles';
 import { completedFrame } from './drawn';
@@ -12,7 +18,7 @@ const calibration = { eyeHeight: 1.6, armSpan: 1.5 };
 const around = (head: Vec3): JointPositions => mapJoints((_, index) => add(head, vec3(0.1 * index, -0.1 * index, 0)));
 
 /** The filter, whose answers are to be kept. */
-function filter(): {
+function filter(smoothing: JointSmoothing = usualSmoothing): {
   follow(joints: JointPositions, head: Vec3, deltaSeconds: number, orientation?: Quat): JointPositions;
   /** A frame in which a wearer turns by so much about +Y [rad], and no hand is believed. */
   spin(joints: JointPositions, head: Vec3, deltaSeconds: number, turn: number): JointPositions;
@@ -23,14 +29,16 @@ function filter(): {
     follow: (joints, position, deltaSeconds, orientation = identity) => {
       const head = { position, orientation };
       const completed = completedFrame({ head, leftHand: head, rightHand: head }, calibration);
-      return copyJoints(filterJoints(state, joints, completed, deltaSeconds));
+      return copyJoints(filterJoints(state, joints, completed, smoothing, deltaSeconds));
     },
     spin: (joints, position, deltaSeconds, turn) => {
       const head = { position, orientation: identity };
       const completed = completedFrame({ head, leftHand: head, rightHand: head }, calibration);
       const hand = { ...completed.leftHand, confidence: 0 };
       const bodyTurn = fromAxisAngle(up, turn);
-      return copyJoints(filterJoints(state, joints, { ...completed, bodyTurn, leftHand: hand }, deltaSeconds));
+      return copyJoints(
+        filterJoints(state, joints, { ...completed, bodyTurn, leftHand: hand }, smoothing, deltaSeconds),
+      );
     },
     reset: () => resetFilterJoints(state),
   };
@@ -103,6 +111,24 @@ function longestHipStep(roll: number): number {
   );
   return Math.max(...hips.slice(1).map((place, i) => distance(place, hips[i]!)));
 }
+
+test('a trunk that is averaged for longer trembles less with its estimate, and its arms as before', () => {
+  const head = vec3(0, 1.62, 0);
+  const [usual, longer] = [filter(), filter({ ...usualSmoothing, trunk: 0.05 })];
+  const random = randomNumbers(11);
+  const noise = () => 0.01 * (random() - 0.5);
+  const trembling = { usual: 0, longer: 0 };
+  for (let i = 0; i < 300; i++) {
+    const estimate = mapJoints((joint) => add(around(head)[joint], vec3(noise(), noise(), noise())));
+    const shown = [usual, longer].map((each) => each.follow(estimate, head, i === 0 ? 0 : 1 / 60));
+    expect(shown[1]?.leftLowerArm).toEqual(shown[0]?.leftLowerArm);
+    expect(shown[1]?.rightUpperArm).toEqual(shown[0]?.rightUpperArm);
+    if (i < 30) continue;
+    trembling.usual += distance(shown[0]!.hips, around(head).hips);
+    trembling.longer += distance(shown[1]!.hips, around(head).hips);
+  }
+  expect(trembling.longer).toBeLessThan(0.8 * trembling.usual);
+});
 
 test('an estimate that turns about at once moves no trunk about at once, least of all under a head on its side', () => {
   expect(longestHipStep(0)).toBeLessThan(0.05);

@@ -2,7 +2,7 @@ import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import { estimatedJoints, type JointName } from '../../../src/core/body/joints';
 import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
-import { filterJoints, makeFilterJointsState } from '../../../src/core/estimation/filter-joints';
+import { filterJoints, makeFilterJointsState, usualSmoothing } from '../../../src/core/estimation/filter-joints';
 import type { JointPositions } from '../../../src/core/estimation/joint-positions';
 import type { TrackedPose } from '../../../src/core/math/pose';
 import { angleBetween, identity, rotate } from '../../../src/core/math/quat';
@@ -107,7 +107,9 @@ describe('the trunk', () => {
       const fitBody = fitted(calibration);
       const hips = [bowed, bowed, bent, bent, bent].map((estimated, i) => {
         const seconds = i ? 1 / 60 : 0;
-        return copyVec3(at(fitBody(completed, filterJoints(filter, estimated, completed, seconds), seconds), 'hips'));
+        return copyVec3(
+          at(fitBody(completed, filterJoints(filter, estimated, completed, usualSmoothing, seconds), seconds), 'hips'),
+        );
       });
       return Math.max(...hips.slice(1).map((place, i) => distance(place, hips[i]!)));
     };
