@@ -9,7 +9,7 @@ import {
   slerp,
 } from '../math/quat';
 import type { Side } from '../math/side';
-import { addScaled, dot, lerp, type MutableVec3, normalise, reject, type Vec3, vec3 } from '../math/vec3';
+import { addScaled, dot, lerp, type MutableVec3, normalise, reject, subtract, type Vec3, vec3 } from '../math/vec3';
 
 /** The path on a sphere from one direction to another, by way of a third where they lie far apart. */
 export interface DirectionArc {
@@ -39,9 +39,13 @@ export const outsideOfBody: Readonly<Record<Side, Vec3>> = {
   right: normalise(vec3(1, -0.2, -1)),
 };
 
+const across = vec3(0, 0, 0);
 const aside = vec3(0, 0, 0);
 
-/** From the unit direction `from` to `to`; `outside` is where an arm passes that swings all the way round. */
+/**
+ * From the unit direction `from` to `to`; `outside` is where an arm passes that swings all the way round. The direction by way of which it
+ * does is as far from either end, so that no path begins by going back.
+ */
 export function directionArc(
   from: Vec3,
   to: Vec3,
@@ -50,7 +54,8 @@ export function directionArc(
 ): DirectionArc {
   const { via } = target;
   target.roundabout = Math.acos(Math.max(-1, Math.min(1, dot(from, to)))) > farApart;
-  addScaled(lerp(from, to, 0.5, via), normalise(reject(outside, from, aside), outside, aside), 0.5, via);
+  normalise(subtract(to, from, across), from, across);
+  addScaled(lerp(from, to, 0.5, via), normalise(reject(outside, across, aside), outside, aside), 0.5, via);
   normalise(via, outside, via);
   return aimArc(target, from, to);
 }

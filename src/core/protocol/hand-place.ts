@@ -34,8 +34,9 @@ const leastWide = Math.round(((near.most + 0.5) * near.unit) / wide.unit);
 const halfBits = 20;
 const half = 2 ** halfBits;
 
+/** Never −0, which a code does not keep. */
 const stepsOf = (along: number, { unit, most }: Grid): number =>
-  Math.max(-most, Math.min(most, Math.round(along / unit)));
+  Math.max(-most, Math.min(most, Math.round(along / unit))) + 0;
 
 /** The nearest place to a hand; further than ±2.09 m from the head on an axis: at the edge. */
 export function toHandPlace(head: Vec3, hand: Vec3, target: HandPlaceSteps): void {
