@@ -1,5 +1,5 @@
 import { readFileSync } from 'node:fs';
-import { type Mesh, type Object3D, Quaternion, Vector3 } from 'three';
+import { Group, type Mesh, type Object3D, Quaternion, Vector3 } from 'three';
 import { describe, expect, test } from 'vitest';
 import { type Avatar, createAvatar } from '../../src/avatar/avatar';
 import { type LoadedAvatar, parseAvatar } from '../../src/avatar/load-avatar';
@@ -100,6 +100,19 @@ describe('hair', () => {
     const apart = tip.getWorldPosition(new Vector3()).distanceTo(carried.getWorldPosition(new Vector3()));
     expect(apart).toBeLessThan(0.4);
     // At rest at once: nothing of five metres is in it.
+    expect(strandOf(avatar).angleTo(new Quaternion())).toBeLessThan(1e-6);
+  });
+
+  test.each([
+    ['itself', (avatar: Avatar) => avatar.object],
+    ['with a group that it is in', (avatar: Avatar) => new Group().add(avatar.object)],
+  ])('is at rest at once when the body is teleported %s, head and hands as they were', async (_, carrier) => {
+    const { avatar } = await opened();
+    const carried = carrier(avatar);
+    const time = stand(avatar, 0, 3);
+    expect(strandOf(avatar).angleTo(new Quaternion())).toBeGreaterThan(0.1);
+    carried.position.set(5, -3, 0);
+    stand(avatar, time, 1 / 72);
     expect(strandOf(avatar).angleTo(new Quaternion())).toBeLessThan(1e-6);
   });
 });

@@ -1,13 +1,13 @@
 import type { VRM } from '@pixiv/three-vrm';
-import type { Object3D } from 'three';
-import { angleBetween, copyQuat, type Quat, quat } from '../../core/math/quat';
-import { copyVec3, distance, type Vec3, vec3 } from '../../core/math/vec3';
+import { type Object3D, Quaternion, Vector3 } from 'three';
+import type { Quat } from '../../core/math/quat';
+import type { Vec3 } from '../../core/math/vec3';
 
 /** Hair and skirts are moved so often [s]: what they hang on moves in every frame, and they with it. */
 const stepSeconds = 1 / 30;
 /** VRM's drag is a share of each step, and files are made for 60 steps a second. */
 const authoredSteps = 60;
-/** A head that is this far from where it was a frame ago [m, rad] has been carried, not moved: recentred, teleported. */
+/** A head that is this far from where it was in the world a frame ago [m, rad] has been carried, not moved: recentred, teleported. */
 const carried = 0.35;
 const turned = 0.9;
 
@@ -52,8 +52,9 @@ export class Springs {
   #due = 0;
   /** The next frame begins from rest: another size, or none before. */
   #rest = true;
-  readonly #position = vec3(0, 0, 0);
-  readonly #orientation = quat(0, 0, 0, 1);
+  /** The head in the world, a frame ago. */
+  readonly #position = new Vector3();
+  readonly #orientation = new Quaternion();
 
   constructor(vrm: VRM) {
     this.#vrm = vrm;
@@ -66,17 +67,15 @@ export class Springs {
     this.#rest = true;
   }
 
-  /** One frame after the bones were placed: the head's pose, floor frame, tells a body that is carried from one that moves. */
+  /** One frame after the bones were placed: where the head, floor frame, is in the world tells a body that is carried from one that moves. */
   update(root: Object3D, position: Vec3, orientation: Quat, deltaSeconds: number): void {
     const springs = this.#vrm.springBoneManager;
     if (!springs || this.#measures.length === 0) return;
-    const moved = distance(position, this.#position) > carried || angleBetween(orientation, this.#orientation) > turned;
-    copyVec3(position, this.#position);
-    copyQuat(orientation, this.#orientation);
+    const moved = this.#wasCarried(root, position, orientation);
     if (moved || this.#rest) {
       this.#rest = false;
       this.#due = 0;
-      root.updateWorldMatrix(true, true);
+      root.updateWorldMatrix(false, true);
       springs.reset();
       return;
     }
@@ -86,4 +85,22 @@ export class Springs {
     this.#due = Math.min(this.#due - stepSeconds, stepSeconds);
     springs.update(stepSeconds);
   }
+
+  /** Whether the head went further since the last frame than heads go. */
+  #wasCarried(root: Object3D, position: Vec3, orientation: Quat): boolean {
+    root.updateWorldMatrix(true, false);
+    root.matrixWorld.decompose(place, facing, scaling);
+    head.copy(position).applyMatrix4(root.matrixWorld);
+    facing.multiply(headFacing.copy(orientation));
+    const moved = head.distanceTo(this.#position) > carried || facing.angleTo(this.#orientation) > turned;
+    this.#position.copy(head);
+    this.#orientation.copy(facing);
+    return moved;
+  }
 }
+
+const head = new Vector3();
+const headFacing = new Quaternion();
+const place = new Vector3();
+const facing = new Quaternion();
+const scaling = new Vector3();
