@@ -1,5 +1,5 @@
 // "threepoint/three": the body on an avatar of three.js, driven by a WebXR session.
-import { EventDispatcher, type Object3D, type WebGLRenderer } from 'three';
+import { EventDispatcher, Group, type Object3D, type WebGLRenderer } from 'three';
 import { type Avatar, createAvatar } from '../avatar/avatar';
 import type { BoneMap } from '../avatar/humanoid/bone-names';
 import { parseAvatar } from '../avatar/load-avatar';
@@ -9,7 +9,7 @@ import { reasonOf } from '../core/errors/reasons';
 import type { EstimatorName } from '../core/estimation/pose-estimator';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 import { DeviceBodyReader } from '../xr/device-body-reader';
-import { createTracker, type Tracker } from '../xr/tracker';
+import { SessionReading } from '../xr/session-reading';
 import type { CalibrationSource, TrackedPoint } from './bare-body';
 import type { MotionWriter } from './bare-export';
 import { Body, type BodyOptions } from './body';
@@ -83,15 +83,6 @@ export interface BodyTrackerEvents {
   readonly found: { readonly point: TrackedPoint };
 }
 
-/** What a session brings: how it is read, and the space it is read in. */
-interface Reading {
-  readonly session: XRSession;
-  readonly tracker: Tracker;
-  /** The space that `tracker` made last; where the renderer has another one, the page moved its wearer. */
-  space: XRReferenceSpace;
-  readonly base: XRReferenceSpace;
-}
-
 /**
  * The wearer's own body in a page of three.js: reads head and hands of the renderer's session, estimates the body, bends the avatar.
  * Call `update` in each animation frame before drawing.
@@ -102,7 +93,10 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   readonly body: Body;
   readonly #renderer: WebGLRenderer;
   readonly #deviceBody: boolean;
-  #reading: Reading | null = null;
+  readonly #object = new Group();
+  #session: XRSession | null = null;
+  /** How that session is read; null before its first frame. */
+  #reading: SessionReading | null = null;
   readonly #jumped = () => this.body.jumped();
 
   /** Throws a RangeError where the calibration is no person's. */
@@ -132,15 +126,23 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
       },
     });
     avatar.fitTo(this.body.calibration);
-    avatar.object.visible = false;
+    this.#object.name = 'body';
+    this.#object.add(avatar.object);
+    this.#object.visible = false;
   }
 
-  /** To be put into the scene; shown while there is a pose. */
+  /**
+   * To be put into the scene, with its origin where the renderer's reference space has its own; shown while there is a pose. In it `avatar.object`
+   * lies where the floor is, wherever the page has moved its wearer.
+   */
   get object(): Object3D {
-    return this.avatar.object;
+    return this.#object;
   }
 
-  /** Of the newest frame, floor frame [m]; overwritten by the next. null before the first tracked frame. */
+  /**
+   * Of the newest frame, floor frame [m]: the floor's space that the renderer asked the session for, or where `recentre` laid it. Overwritten by the
+   * next; null before the first tracked frame.
+   */
   get pose(): AvatarPose | null {
     return this.body.pose;
   }
@@ -170,9 +172,13 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
    */
   update(timeMs: number, frame: XRFrame | null | undefined): void {
     const time = this.body.frame(timeMs);
-    const reading = this.#follow();
+    const reading = this.#follow(frame ?? null);
     if (!reading || !frame) return;
-    this.#apply(reading.tracker.read(frame, time), null);
+    const tracked = reading.read(frame, time);
+    const { position, orientation } = reading.floorPose;
+    this.avatar.object.position.copy(position);
+    this.avatar.object.quaternion.copy(orientation);
+    this.#apply(tracked, null);
   }
 
   /**
@@ -185,13 +191,14 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
 
   /** The wearer stands at the floor's origin from now on and looks along −Z; the renderer's reference space moves along. */
   recentre(): void {
-    this.#reading?.tracker.recentre();
+    this.#reading?.recentre();
     this.body.jumped();
   }
 
   /** Ends what it listens to and takes the avatar apart; resolves when every network is let go that was loaded for it. */
   dispose(): Promise<void> {
     this.#leave();
+    this.#object.removeFromParent();
     this.avatar.dispose();
     return this.body.dispose();
   }
@@ -202,52 +209,38 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
     this.avatar.setFingers('left', tracked.fingers?.left ?? null);
     this.avatar.setFingers('right', tracked.fingers?.right ?? null);
     this.avatar.apply(pose, tracked.time);
-    this.avatar.object.visible = true;
+    this.#object.visible = true;
   }
 
-  /** How the renderer's session is read now; null: there is none. */
-  #follow(): Reading | null {
+  /** How the renderer's session is read in this frame; null: there is none. */
+  #follow(frame: XRFrame | null): SessionReading | null {
     const { xr } = this.#renderer;
     const session = xr.getSession();
-    const space = xr.getReferenceSpace();
-    if (this.#reading && this.#reading.session !== session) this.#leave();
-    if (!session || !space) return null;
-    if (!this.#reading) this.#enter(session, space);
-    else if (this.#reading.space !== space) {
-      // The page moved its wearer: a teleport or a turn of its own.
-      this.#leave(false);
-      this.#enter(session, space, false);
-    }
+    if (session !== this.#session) this.#leave();
+    // Before the first frame of a session the renderer may still have the space of the one before.
+    if (session && frame && !this.#reading) this.#enter(session);
     return this.#reading;
   }
 
-  #enter(session: XRSession, space: XRReferenceSpace, begins = true): void {
-    const moveTo = (moved: XRReferenceSpace) => {
-      reading.space = moved;
-      this.#renderer.xr.setReferenceSpace(moved);
-    };
+  #enter(session: XRSession): void {
     const bodyReader = this.#deviceBody ? new DeviceBodyReader() : null;
-    const reading: Reading = {
-      session,
-      base: space,
-      space,
-      tracker: createTracker(session, space, moveTo, bodyReader),
-    };
-    space.addEventListener('reset', this.#jumped);
-    this.#reading = reading;
-    if (begins) this.body.begin();
-    else this.body.jumped();
+    this.#reading = SessionReading.of(session, this.#renderer.xr, bodyReader, this.#jumped);
+    if (!this.#reading) return;
+    this.#session = session;
+    this.body.begin();
     this.avatar.setFirstPerson(true);
   }
 
-  #leave(ends = true): void {
-    this.#reading?.base.removeEventListener('reset', this.#jumped);
-    this.#reading?.tracker.dispose();
+  #leave(): void {
+    if (!this.#reading) return;
+    this.#reading.dispose();
     this.#reading = null;
-    if (!ends) return;
+    this.#session = null;
     this.body.forgetPoints();
     this.avatar.setFirstPerson(false);
-    this.avatar.object.visible = false;
+    this.avatar.object.position.set(0, 0, 0);
+    this.avatar.object.quaternion.identity();
+    this.#object.visible = false;
   }
 }
 

@@ -12,6 +12,9 @@ class Space extends EventTarget {
   constructor(public roomFromSpace: Place) {
     super();
   }
+  get at(): Seen {
+    return this.roomFromSpace;
+  }
   getOffsetReferenceSpace(origin: { readonly place: Place }): Space {
     return new Space(composeTransforms<'floor', 'floor', 'floor'>(this.roomFromSpace, origin.place));
   }
@@ -20,7 +23,7 @@ class Space extends EventTarget {
 class RigidTransform {
   readonly place: Place;
   constructor(
-    { x, y, z }: { x: number; y: number; z: number },
+    { x = 0, y = 0, z = 0 }: { x?: number; y?: number; z?: number },
     { x: a, y: b, z: c, w }: { x: number; y: number; z: number; w: number },
   ) {
     this.place = { position: { x, y, z }, orientation: { x: a, y: b, z: c, w } };
@@ -35,11 +38,17 @@ export interface Input {
   readonly gamepad: { readonly buttons: { value: number; touched?: boolean }[]; readonly axes: number[] };
 }
 
+/** What of a session is read. */
+class Session extends EventTarget {
+  inputSources: Input[] = [];
+  visibilityState: XRVisibilityState = 'visible';
+}
+
 /** A headset as WebXR shows it, for tests: every pose is told, and may be null, emulated or no number. */
 export function fakeHeadset() {
   vi.stubGlobal('XRRigidTransform', RigidTransform);
   const floor = new Space({ position: zero, orientation: identity });
-  const session = { inputSources: [] as Input[], visibilityState: 'visible' as XRVisibilityState };
+  const session = new Session();
   let head: Seen = { position: { x: 0, y: 1.6, z: 0 }, orientation: identity };
   const poseIn = (space: Space, at: Seen) => {
     if (!at) return null;
