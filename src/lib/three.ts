@@ -94,10 +94,15 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
   readonly #renderer: WebGLRenderer;
   readonly #deviceBody: boolean;
   readonly #object = new Group();
+  /** The renderer's, whose end is awaited. */
   #session: XRSession | null = null;
   /** How that session is read; null before its first frame. */
   #reading: SessionReading | null = null;
+  /** Whether the wearer's eyes are in the head that is drawn. */
+  #firstPerson = false;
+  #disposed = false;
   readonly #jumped = () => this.body.jumped();
+  readonly #left = () => this.#leave();
 
   /** Throws a RangeError where the calibration is no person's. */
   constructor(renderer: WebGLRenderer, { avatar, modelUrl, deviceBody = false, ...options }: BodyTrackerOptions) {
@@ -171,9 +176,13 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
    * before any await of the frame. Throws an InvalidStateError where the frame is over.
    */
   update(timeMs: number, frame: XRFrame | null | undefined): void {
+    if (this.#disposed) return;
     const time = this.body.frame(timeMs);
-    const reading = this.#follow(frame ?? null);
-    if (!reading || !frame) return;
+    const session = this.#attend();
+    // Before the first frame of a session the renderer may still have the space of the one before.
+    if (!session || !frame) return;
+    const reading = this.#reading ?? this.#enter(session);
+    if (!reading) return;
     const tracked = reading.read(frame, time);
     const { position, orientation } = reading.floorPose;
     this.avatar.object.position.copy(position);
@@ -186,17 +195,21 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
    * measures (an actor, a recording).
    */
   follow(frame: TrackingFrame | null, standIn: Calibration | null = null): void {
+    if (this.#disposed) return;
+    this.#attend();
     this.#apply(frame, standIn);
   }
 
   /** The wearer stands at the floor's origin from now on and looks along −Z; the renderer's reference space moves along. */
   recentre(): void {
+    if (this.#disposed) return;
     this.#reading?.recentre();
     this.body.jumped();
   }
 
-  /** Ends what it listens to and takes the avatar apart; resolves when every network is let go that was loaded for it. */
+  /** Ends what it listens to and takes the avatar apart; no frame changes anything from then on. Resolves when every network is let go that was loaded for it. */
   dispose(): Promise<void> {
+    this.#disposed = true;
     this.#leave();
     this.#object.removeFromParent();
     this.avatar.dispose();
@@ -205,6 +218,7 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
 
   #apply(tracked: TrackingFrame | null, standIn: Calibration | null): void {
     const pose = this.body.update(tracked, standIn);
+    this.#setFirstPerson(this.#session !== null && standIn === null);
     if (!tracked || !pose) return;
     this.avatar.setFingers('left', tracked.fingers?.left ?? null);
     this.avatar.setFingers('right', tracked.fingers?.right ?? null);
@@ -212,35 +226,41 @@ export class BodyTracker extends EventDispatcher<BodyTrackerEvents> {
     this.#object.visible = true;
   }
 
-  /** How the renderer's session is read in this frame; null: there is none. */
-  #follow(frame: XRFrame | null): SessionReading | null {
-    const { xr } = this.#renderer;
-    const session = xr.getSession();
-    if (session !== this.#session) this.#leave();
-    // Before the first frame of a session the renderer may still have the space of the one before.
-    if (session && frame && !this.#reading) this.#enter(session);
+  /** The renderer's session; what was of another is over. */
+  #attend(): XRSession | null {
+    const session = this.#renderer.xr.getSession();
+    if (session === this.#session) return session;
+    this.#leave();
+    this.#session = session;
+    session?.addEventListener('end', this.#left);
+    return session;
+  }
+
+  #enter(session: XRSession): SessionReading | null {
+    const bodyReader = this.#deviceBody ? new DeviceBodyReader() : null;
+    this.#reading = SessionReading.of(session, this.#renderer.xr, bodyReader, this.#jumped);
+    if (this.#reading) this.body.begin();
     return this.#reading;
   }
 
-  #enter(session: XRSession): void {
-    const bodyReader = this.#deviceBody ? new DeviceBodyReader() : null;
-    this.#reading = SessionReading.of(session, this.#renderer.xr, bodyReader, this.#jumped);
-    if (!this.#reading) return;
-    this.#session = session;
-    this.body.begin();
-    this.avatar.setFirstPerson(true);
-  }
-
   #leave(): void {
-    if (!this.#reading) return;
-    this.#reading.dispose();
-    this.#reading = null;
+    if (!this.#session) return;
+    this.#session.removeEventListener('end', this.#left);
     this.#session = null;
+    this.#reading?.dispose();
+    this.#reading = null;
     this.body.forgetPoints();
-    this.avatar.setFirstPerson(false);
+    this.#setFirstPerson(false);
     this.avatar.object.position.set(0, 0, 0);
     this.avatar.object.quaternion.identity();
     this.#object.visible = false;
+  }
+
+  /** Told where it changes: a page may have its own way. */
+  #setFirstPerson(on: boolean): void {
+    if (on === this.#firstPerson) return;
+    this.#firstPerson = on;
+    this.avatar.setFirstPerson(on);
   }
 }
 

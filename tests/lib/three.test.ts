@@ -1,4 +1,4 @@
-import { Vector3, type WebGLRenderer } from 'three';
+import { Group, type Mesh, Vector3, type WebGLRenderer } from 'three';
 import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
 import { defaultCalibration } from '../../src/core/body/calibration';
 import { forwardKinematics } from '../../src/core/body/forward-kinematics';
@@ -9,6 +9,7 @@ import { fromAxisAngle, identity } from '../../src/core/math/quat';
 import { distance, up, type Vec3 } from '../../src/core/math/vec3';
 import { toXRBody } from '../../src/core/motion/xr-body';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
+import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
 import { BodyTracker, type BodyTrackerOptions, loadAvatar } from '../../src/lib/three';
 import { changed, mannequin } from '../avatar/glb';
 import { poseOf } from '../core/estimation/drawn';
@@ -87,6 +88,22 @@ async function begin(options: Partial<BodyTrackerOptions> = {}) {
   return { headset, tracker, told, run, drawn };
 }
 
+/** Whether the head is drawn for the eyes that are in it. */
+function ownHeadSeen(tracker: BodyTracker): boolean {
+  let seen = false;
+  tracker.object.traverse((node) => {
+    if (/head/i.test(node.name) && (node as Mesh).isMesh) seen ||= node.layers.isEnabled(0);
+  });
+  return seen;
+}
+
+const standing: TrackingFrame = {
+  time: 1,
+  head: { position: { x: 0, y: 1.6, z: 0 }, orientation: identity, tracking: 'tracked' },
+  leftHand: null,
+  rightHand: null,
+};
+
 afterEach(() => {
   vi.unstubAllGlobals();
 });
@@ -106,7 +123,11 @@ describe('a body in a session of three.js', () => {
     expect(distance(rightHand!, tracker.pose!.rightHand!.position)).toBeLessThan(0.001);
     // The wrist lies a hand's length behind the grip.
     expect(distance(leftHand!, left.position)).toBeLessThan(0.12);
+    expect(ownHeadSeen(tracker)).toBe(false);
+    // At once: there are pages that draw within a session alone.
     headset.takeOff();
+    expect(tracker.object.visible).toBe(false);
+    expect(ownHeadSeen(tracker)).toBe(true);
     run(1);
     expect(tracker.object.visible).toBe(false);
     expect(told).toEqual(['found head', 'found left', 'found right']);
@@ -320,15 +341,42 @@ describe('a body in a session of three.js', () => {
 
   test('a frame of the page’s own moves it without a session', async () => {
     const { tracker } = await begin({ calibration: defaultCalibration });
-    tracker.follow({
-      time: 1,
-      head: { position: { x: 0, y: 1.6, z: 0 }, orientation: identity, tracking: 'tracked' },
-      leftHand: null,
-      rightHand: null,
-    });
+    tracker.follow(standing);
     expect(tracker.object.visible).toBe(true);
-    tracker.dispose();
-    expect(tracker.object.parent).toBeNull();
+    expect(ownHeadSeen(tracker)).toBe(true);
+  });
+
+  test('of a page’s own frames hides its head from the wearer of a session, but shows them the head of a stand-in', async () => {
+    const { headset, tracker } = await begin({ calibration: defaultCalibration });
+    headset.putOn();
+    tracker.follow(standing);
+    expect(ownHeadSeen(tracker)).toBe(false);
+    tracker.follow({ ...standing, time: 1.1 }, defaultCalibration);
+    expect(ownHeadSeen(tracker)).toBe(true);
+    tracker.follow({ ...standing, time: 1.2 });
+    headset.takeOff();
+    expect(ownHeadSeen(tracker)).toBe(true);
+  });
+
+  test('that is disposed of stays so: no frame shows it again, and nothing is listened to', async () => {
+    const { headset, tracker, run, told } = await begin({ calibration: defaultCalibration });
+    const scene = new Group().add(tracker.object);
+    headset.putOn();
+    run(2);
+    const space = headset.xr.getReferenceSpace();
+    const pose = structuredClone(tracker.pose);
+    told.length = 0;
+    await tracker.dispose();
+    headset.setHead({ position: { x: 1, y: 1.6, z: 0 }, orientation: identity });
+    run(2);
+    tracker.follow(standing);
+    tracker.recentre();
+    expect(scene.children).toEqual([]);
+    expect(tracker.object.visible).toBe(false);
+    expect(tracker.pose).toEqual(pose);
+    expect(headset.xr.getReferenceSpace()).toBe(space);
+    expect(told).toEqual([]);
+    await tracker.dispose();
   });
 });
 
