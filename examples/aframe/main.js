@@ -8,6 +8,8 @@ AFRAME.registerComponent('self-avatar', {
   async init() {
     const { sceneEl, object3D } = this.el;
     const avatar = await loadAvatar(this.data.src);
+    // The component was removed while it waited.
+    if (this.gone) return avatar.dispose();
     this.body = new BodyTracker(sceneEl.renderer, { avatar });
     this.body.addEventListener('fallback', ({ reason }) => console.warn(reason));
     object3D.add(this.body.object);
@@ -19,6 +21,7 @@ AFRAME.registerComponent('self-avatar', {
   },
 
   remove() {
+    this.gone = true;
     this.body?.dispose();
   },
 });

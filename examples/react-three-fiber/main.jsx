@@ -9,15 +9,19 @@ function SelfAvatar({ src = mannequin }) {
   const renderer = useThree(({ gl }) => gl);
   const [body, setBody] = useState(null);
   useEffect(() => {
+    let gone = false;
     const arrives = loadAvatar(src).then((avatar) => new BodyTracker(renderer, { avatar }));
     arrives.then((tracker) => {
       tracker.addEventListener('fallback', ({ reason }) => console.warn(reason));
-      window.selfAvatar = tracker;
-      setBody(tracker);
+      if (!gone) setBody(tracker);
     });
-    return () => arrives.then((tracker) => tracker.dispose());
+    return () => {
+      gone = true;
+      arrives.then((tracker) => tracker.dispose());
+    };
   }, [renderer, src]);
   useFrame((_state, _delta, frame) => body?.update(performance.now(), frame));
+  window.selfAvatar = body;
   return body && <primitive object={body.object} />;
 }
 
