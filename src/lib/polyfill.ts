@@ -1,7 +1,7 @@
 // "threepoint/polyfill": the body of WebXR Body Tracking, estimated from head and hands, where a device has none.
 
 import { reasonOf } from '../core/errors/reasons';
-import { invertTransform, type Pose, type Transform, transformPose } from '../core/math/pose';
+import { copyPose, invertTransform, makePose, type Pose, type Transform, transformPose } from '../core/math/pose';
 import { type XRBodyJoints, XRBodyPoser } from '../core/motion/xr-body';
 import { createTracker, type Tracker } from '../xr/tracker';
 import { Body, type BodyOptions } from './body';
@@ -28,10 +28,27 @@ type Place = Pose<'floor'>;
 /** Coordinates in the floor frame from those in any space: which one is not told by its type. */
 type FloorFrom = Transform<'floor', 'floor'>;
 
-const placeOf = ({ transform: { position, orientation } }: XRPose): Place => ({
-  position: { x: position.x, y: position.y, z: position.z },
-  orientation: { x: orientation.x, y: orientation.y, z: orientation.z, w: orientation.w },
-});
+const matrixSize = 16;
+
+/** Column by column, as WebXR has it. */
+function writeMatrix({ position, orientation: { x, y, z, w } }: Place, target: Float32Array, at: number): void {
+  target[at] = 1 - 2 * (y * y + z * z);
+  target[at + 1] = 2 * (x * y + z * w);
+  target[at + 2] = 2 * (x * z - y * w);
+  target[at + 3] = 0;
+  target[at + 4] = 2 * (x * y - z * w);
+  target[at + 5] = 1 - 2 * (x * x + z * z);
+  target[at + 6] = 2 * (y * z + x * w);
+  target[at + 7] = 0;
+  target[at + 8] = 2 * (x * z + y * w);
+  target[at + 9] = 2 * (y * z - x * w);
+  target[at + 10] = 1 - 2 * (x * x + y * y);
+  target[at + 11] = 0;
+  target[at + 12] = position.x;
+  target[at + 13] = position.y;
+  target[at + 14] = position.z;
+  target[at + 15] = 1;
+}
 
 type FillPoses = (spaces: Iterable<XRSpace>, base: XRSpace, transforms: Float32Array) => boolean;
 
@@ -76,7 +93,18 @@ class SessionBody {
   #frameMs = Number.NaN;
   #estimatedMs = Number.NaN;
   #lastTime = Number.POSITIVE_INFINITY;
+  /** null before the session's first frame that saw the head. */
   #joints: XRBodyJoints | null = null;
+  /** Where the floor lies in the base that was asked for last, and in which frame; null: not known. */
+  readonly #baseFromFloor = makePose<'floor'>();
+  #known: FloorFrom | null = null;
+  #knownIn: { frame: XRFrame | null; frameMs: number; base: XRSpace | null } = {
+    frame: null,
+    frameMs: Number.NaN,
+    base: null,
+  };
+  readonly #inFloor = makePose<'floor'>();
+  readonly #inBase = makePose<'floor'>();
 
   constructor(session: XRSession, body: Body, originals: Originals, jointNames: readonly string[]) {
     this.#session = session;
@@ -108,25 +136,53 @@ class SessionBody {
     return 'jointName' in space && this.spaces.get(space.jointName as string) === space;
   }
 
-  /** The pose of one space in another, of which one or both are joints; null: not known. */
+  /** The pose of one space in another, of which one or both are joints, overwritten by the next; null: not known. */
   pose(frame: XRFrame, space: XRSpace, base: XRSpace): Place | null {
-    const inFloor = this.#inFloor(frame, space);
-    if (!inFloor || !this.#floor) return null;
-    if (this.has(base)) {
-      const joint = this.#inFloor(frame, base);
-      return joint && transformPose<'floor', 'floor'>(invertTransform<'floor', 'floor'>(joint as FloorFrom), inFloor);
+    const inFloor = this.#locate(frame, space);
+    const baseFromFloor = inFloor && this.#findBase(frame, base);
+    return baseFromFloor && transformPose<'floor', 'floor'>(baseFromFloor, inFloor, this.#inBase);
+  }
+
+  /** The matrices of all spaces; false, and no number, where one is not known. */
+  fill(frame: XRFrame, spaces: readonly XRSpace[], base: XRSpace, transforms: Float32Array): boolean {
+    let all = true;
+    for (let i = 0; i < spaces.length; i++) {
+      const place = this.pose(frame, spaces[i]!, base);
+      if (place) writeMatrix(place, transforms, matrixSize * i);
+      else transforms.fill(Number.NaN, matrixSize * i, matrixSize * (i + 1));
+      all &&= place !== null;
     }
-    const floorInBase = this.#originals.getPose.call(frame, this.#floor, base);
-    return floorInBase ? transformPose<'floor', 'floor'>(placeOf(floorInBase) as FloorFrom, inFloor) : null;
+    return all;
   }
 
   readonly #jumped = () => this.#body.jumped();
 
-  #inFloor(frame: XRFrame, space: XRSpace): Place | null {
+  /** Floor frame. */
+  #locate(frame: XRFrame, space: XRSpace): Place | null {
     if (!this.#floor) return null;
     if (this.has(space)) return this.#estimate(frame)?.get(space.jointName) ?? null;
     const pose = this.#originals.getPose.call(frame, space, this.#floor);
-    return pose ? placeOf(pose) : null;
+    return pose ? copyPose(pose.transform, this.#inFloor) : null;
+  }
+
+  /** Pages ask for joint after joint in one base. */
+  #findBase(frame: XRFrame, base: XRSpace): FloorFrom | null {
+    const asked = this.#knownIn;
+    if (asked.frame === frame && asked.frameMs === this.#frameMs && asked.base === base) return this.#known;
+    asked.frame = frame;
+    asked.frameMs = this.#frameMs;
+    asked.base = base;
+    this.#known = this.#locateFloor(frame, base);
+    return this.#known;
+  }
+
+  #locateFloor(frame: XRFrame, base: XRSpace): FloorFrom | null {
+    if (this.has(base)) {
+      const joint = this.#locate(frame, base);
+      return joint && invertTransform(joint, this.#baseFromFloor);
+    }
+    const pose = this.#floor && this.#originals.getPose.call(frame, this.#floor, base);
+    return pose ? copyPose(pose.transform, this.#baseFromFloor) : null;
   }
 
   #estimate(frame: XRFrame): XRBodyJoints | null {
@@ -135,6 +191,8 @@ class SessionBody {
     const time = this.#body.frame(this.#frameMs);
     const tracked = this.#tracker.read(frame, time);
     const pose = this.#body.update(tracked);
+    // One body serves all sessions: until this one sees the head, its pose is of the session before.
+    if (!tracked) return this.#joints;
     const { calibration } = this.#body;
     if (this.#poserOf !== calibration) {
       this.#poser = new XRBodyPoser(calibration);
@@ -142,7 +200,7 @@ class SessionBody {
     }
     const seconds = Math.max(time - this.#lastTime, 0);
     this.#lastTime = time;
-    this.#joints = pose?.body && this.#poser ? this.#poser.pose(pose.body, tracked?.fingers, seconds) : null;
+    this.#joints = pose?.body && this.#poser ? this.#poser.pose(pose.body, tracked.fingers, seconds) : null;
     return this.#joints;
   }
 }
@@ -196,10 +254,11 @@ function patchFrames(bodies: WeakMap<XRSession, SessionBody>, { getPose, fillPos
       value(this: XRFrame, spaces: Iterable<XRSpace>, base: XRSpace, transforms: Float32Array): boolean {
         const all = [...spaces];
         const body = bodies.get(this.session);
-        if (fillPoses && !(body && (body.has(base) || all.some((space) => body.has(space)))))
-          return fillPoses.call(this, all, base, transforms);
-        const poses = all.map((space) => this.getPose(space, base));
-        for (const [i, pose] of poses.entries()) if (pose) transforms.set(pose.transform.matrix, 16 * i);
+        if (body && (body.has(base) || all.some((space) => body.has(space))))
+          return body.fill(this, all, base, transforms);
+        if (fillPoses) return fillPoses.call(this, all, base, transforms);
+        const poses = all.map((space) => getPose.call(this, space, base));
+        for (const [i, pose] of poses.entries()) if (pose) transforms.set(pose.transform.matrix, matrixSize * i);
         return poses.every(Boolean);
       },
     }),

@@ -1,6 +1,6 @@
 import { vi } from 'vitest';
 import { composeTransforms, invertTransform, type Pose, transformPose } from '../../src/core/math/pose';
-import { identity, rotate } from '../../src/core/math/quat';
+import { identity, type Quat, rotate } from '../../src/core/math/quat';
 import type { Side } from '../../src/core/math/side';
 import { type Vec3, vec3, zero } from '../../src/core/math/vec3';
 
@@ -27,6 +27,15 @@ class RigidTransform {
     { x: a, y: b, z: c, w }: { x: number; y: number; z: number; w: number },
   ) {
     this.place = { position: { x, y, z }, orientation: { x: a, y: b, z: c, w } };
+  }
+  get position(): Vec3 {
+    return this.place.position;
+  }
+  get orientation(): Quat {
+    return this.place.orientation;
+  }
+  get matrix(): Float32Array {
+    return Float32Array.from(matrixOf(this.place));
   }
 }
 
