@@ -86,13 +86,13 @@ export const stages = {
     commands: (report) => vitest(report, '--tags-filter=!full'),
   },
   e2e: { suite: 'day', runner: 'playwright', commands: playwright('day') },
-  // A page of the package's users, compiled against it by every resolution of modules it is made for.
-  'library-types': {
+  // A page of the package's users, compiled against it by every resolution of modules it is made for, and a program of Node.
+  'library-use': {
     suite: 'full',
     singleCore: true,
     commands: () => [
       [process.execPath, 'scripts/build-library.mjs'],
-      [process.execPath, 'scripts/check-library-types.mjs'],
+      [process.execPath, 'scripts/check-library-use.mjs'],
     ],
   },
   'unit-full': {

@@ -5,7 +5,7 @@ import type { ModelContract, PoseRegressor } from '../core/estimation/pose-regre
 import { fetchFile } from '../inference/model-files';
 
 export interface LearnedOptions {
-  /** Where another contract (.json) lies, its weights beside it. Default: the weights that the package brings, whose contract is built in. */
+  /** Where another contract (.json) lies, its weights beside it; in Node on the disk as well (`file:`). Default: the weights that the package brings, whose contract is built in. */
   readonly modelUrl?: string | URL;
   /** Share [0, 1] of the weights that has arrived. */
   readonly onProgress?: (share: number) => void;

@@ -1,4 +1,5 @@
-// Compiles examples/consumer.ts against the packed package, as bundlers and as Node resolve modules, strictly, declarations included.
+// Uses the packed package as its users do: compiles examples/consumer.ts against it, as bundlers and as Node resolve modules, strictly,
+// declarations included, and runs examples/in-node.mjs.
 import { copyFileSync, mkdirSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { main, root, run, runQuietly, SetupError } from './run-command.mjs';
@@ -31,7 +32,7 @@ async function unpack() {
 }
 
 /** Faults in declarations of three-vrm are its own: they name files without extensions, which Node's resolution wants. */
-const foreign = /^node_modules[\\/]@pixiv[\\/]/;
+const foreign = /^[^(]*\bnode_modules[\\/]@pixiv[\\/]/;
 
 /** What the compiler finds wrong of ours and of the page's. */
 async function compile(config) {
@@ -43,10 +44,8 @@ async function compile(config) {
   return faults;
 }
 
-await main(async () => {
-  await unpack();
+async function compileConsumer() {
   copyFileSync(join(root, 'examples/consumer.ts'), join(folder, 'consumer.ts'));
-  writeFileSync(join(folder, 'package.json'), '{ "type": "module" }');
   for (const resolution of resolutions) {
     const config = join(folder, `tsconfig.${resolution.moduleResolution}.json`);
     const compilerOptions = {
@@ -62,4 +61,18 @@ await main(async () => {
       );
     }
   }
+}
+
+async function runExample() {
+  const program = join(folder, 'in-node.mjs');
+  copyFileSync(join(root, 'examples/in-node.mjs'), program);
+  const { code, output } = await run(process.execPath, [program], { capture: true, limitSeconds: 60 });
+  if (code !== 0) throw new SetupError(`A program of Node that uses the package ends with code ${code}:\n${output}`);
+}
+
+await main(async () => {
+  await unpack();
+  writeFileSync(join(folder, 'package.json'), '{ "type": "module" }');
+  await compileConsumer();
+  await runExample();
 });

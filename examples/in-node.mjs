@@ -1,0 +1,23 @@
+// A program of Node that draws a body and makes a file of its motion, by the network whose weights the package brings.
+import { Body, forwardKinematics, skeletonFromCalibration } from 'threepoint';
+import { exportMotion } from 'threepoint/motion';
+
+const calibration = { eyeHeight: 1.6, armSpan: 1.51 };
+const at = (x, y, z) => ({ position: { x, y, z }, orientation: { x: 0, y: 0, z: 0, w: 1 }, tracking: 'tracked' });
+/** A second of a person who lifts the right hand, 60 frames of it: floor frame [m, s]. */
+const frames = Array.from({ length: 60 }, (_, i) => ({
+  time: i / 60,
+  head: at(0, 1.6, 0),
+  leftHand: at(-0.25, 0.8, -0.1),
+  rightHand: at(0.25, 0.8 + 0.01 * i, -0.25),
+}));
+
+const body = new Body({ calibration });
+await body.choose('learned');
+if (body.estimator !== 'learned') throw new Error(body.unavailable.learned);
+for (const frame of frames) body.update(frame);
+const joints = forwardKinematics(skeletonFromCalibration(calibration), body.pose.body);
+console.log(`The elbow is ${joints.rightLowerArm.position.y.toFixed(2)} m above the floor.`);
+
+const { parts } = await exportMotion({ device: 'none', rateHz: 60, calibration, frames }, { to: 'bvh' });
+console.log(`Its motion as BVH is ${parts.join('').length} characters long.`);
