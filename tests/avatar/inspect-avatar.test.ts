@@ -32,6 +32,16 @@ const withPictures = (count: number, picture: Uint8Array): ArrayBuffer =>
 
 const first = <Item>(items: readonly Item[]): Item => items[0] as Item;
 
+/** What of a GLB file lies before its binary part. */
+const descriptionOf = (file: ArrayBuffer) => file.slice(0, 20 + new DataView(file).getUint32(12, true));
+
+/** The mannequin's file, whose binary part is said to be so many bytes long. */
+function withBinaryLength(length: number): ArrayBuffer {
+  const file = mannequin();
+  new DataView(file).setUint32(descriptionOf(file).byteLength, length, true);
+  return file;
+}
+
 /** What a user may try, and the sentence for it. */
 const attempts: readonly (readonly [string, () => ArrayBuffer, RegExp])[] = [
   ['more bytes than a headset takes', () => new ArrayBuffer(61 * 2 ** 20), /61 MB; an avatar may have 60 at most/],
@@ -130,6 +140,10 @@ const attempts: readonly (readonly [string, () => ArrayBuffer, RegExp])[] = [
     /outside the file \(file:\/\/\/etc\/passwd\)/,
   ],
   ['a file that is cut short', () => mannequin().slice(0, 3000), /cut short/],
+  ['a file without its last word', () => mannequin().slice(0, -4), /cut short/],
+  ['a file that is cut off within a mesh', () => mannequin().slice(0, -20_000), /cut short/],
+  ['a file of which only the description has arrived', () => descriptionOf(mannequin()), /cut short/],
+  ['a binary part that is said to be longer than the file', () => withBinaryLength(2 ** 31), /cut short/],
   [
     'JSON that is none',
     () =>

@@ -10,7 +10,7 @@ import { distance, up, type Vec3 } from '../../src/core/math/vec3';
 import { toXRBody } from '../../src/core/motion/xr-body';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
 import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
-import { BodyTracker, type BodyTrackerOptions, loadAvatar } from '../../src/lib/three';
+import { avatarMotion, BodyTracker, type BodyTrackerOptions, loadAvatar } from '../../src/lib/three';
 import { changed, mannequin } from '../avatar/glb';
 import { poseOf } from '../core/estimation/drawn';
 import { movingPerson } from '../core/estimation/moving-person';
@@ -417,4 +417,11 @@ describe('an avatar', () => {
     expect(leftHand).toBeDefined();
     await expect(loadAvatar(foreign, { bones: handless })).rejects.toThrow('its humanoid has no leftHand');
   });
+
+  test.each(Object.entries({ loadAvatar, avatarMotion }))(
+    'that has not arrived whole is refused by %s',
+    async (_, take) => {
+      await expect(take(mannequin().slice(0, -4))).rejects.toThrow(/^the avatar: no VRM or GLB file \(.*cut short\)$/);
+    },
+  );
 });
