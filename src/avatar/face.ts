@@ -152,9 +152,9 @@ export class Face {
     this.#mouthMeshes = new MouthMeshes(vrm);
   }
 
-  /** How far the mouth is to be open: 0 shut to 1. */
+  /** How far the mouth is to be open: 0 shut to 1; no number: shut. */
   setMouth(open: number): void {
-    this.#opening = clamp(open, 0, 1);
+    this.#opening = open > 0 ? Math.min(open, 1) : 0;
   }
 
   /** One frame; the head's orientation in the floor frame, which at identity faces −Z. */

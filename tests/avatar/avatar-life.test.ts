@@ -178,6 +178,13 @@ describe('a mouth', () => {
     expect(speak(body, -7, 1, 1)).toBe(0);
   });
 
+  test('of no number is shut, and opens again with the next one', async () => {
+    const body = await opened();
+    expect(speak(body, 1, 0, 1)).toBe(1);
+    expect(speak(body, Number.NaN, 1, 1)).toBe(0);
+    expect(speak(body, Number.POSITIVE_INFINITY, 2, 1)).toBe(1);
+  });
+
   test('of a head without lids has its shape before the first frame, for which programs are made, and then while it is open', async () => {
     const avatar = createAvatar(
       await parseAvatar(
