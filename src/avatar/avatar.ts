@@ -268,7 +268,7 @@ class VrmAvatar implements Avatar {
   }
 
   fingertips(side: Side): Readonly<Partial<Record<FingerName, Vec3>>> {
-    return this.fingers.tips(side);
+    return this.fingers.tips(side, this.object);
   }
 
   jointPositions(): Readonly<Partial<Record<AvatarJoint, Vec3>>> {

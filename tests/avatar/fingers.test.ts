@@ -1,4 +1,4 @@
-import { type Object3D, SkinnedMesh, Vector3 } from 'three';
+import { Group, type Object3D, SkinnedMesh, Vector3 } from 'three';
 import { afterEach, describe, expect, test, vi } from 'vitest';
 import { type Avatar, createAvatar } from '../../src/avatar/avatar';
 import { parseAvatar } from '../../src/avatar/load-avatar';
@@ -142,6 +142,21 @@ describe('recorded hands on a rig of the wearer’s size', () => {
       expect(distance(end(side, 'little'), wrists[side].position)).toBeLessThan(0.09);
     }
   });
+});
+
+test('fingertips are told where joints are, on the floor that the page moves its wearer on', async () => {
+  const { avatar, show } = await wearer();
+  show({ left: flatHand, right: closedHand }, 0.1);
+  const there = avatar.fingertips('left').index!;
+  expect(distance(there, avatar.jointPositions().leftHand!)).toBeLessThan(0.2);
+  const floor = new Group();
+  floor.position.set(10, 0, -3);
+  floor.rotation.y = 2;
+  floor.scale.setScalar(1.5);
+  floor.add(avatar.object);
+  expect(distance(avatar.fingertips('left').index!, there)).toBeLessThan(1e-6);
+  floor.updateMatrixWorld(true);
+  expect(distance(avatar.fingertips('left').index!, there)).toBeLessThan(1e-6);
 });
 
 describe('a rig', () => {

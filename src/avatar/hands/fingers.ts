@@ -1,4 +1,5 @@
 import type { VRM } from '@pixiv/three-vrm';
+import type { Object3D } from 'three';
 import { closePinch } from '../../core/body/close-pinch';
 import { FingerMemory } from '../../core/body/finger-memory';
 import { fingerFrames, type HandGeometry, makeFingerFrames } from '../../core/body/hand-geometry';
@@ -39,12 +40,16 @@ class HandFingers {
     return this.#rig.geometry;
   }
 
-  tips(): Partial<Record<FingerName, Vec3>> {
+  tips(frame: Object3D): Partial<Record<FingerName, Vec3>> {
     const found: Partial<Record<FingerName, Vec3>> = {};
     for (const { name, bones, tip } of this.#rig.fingers) {
-      const last = bones.at(-1)?.node;
-      last?.updateWorldMatrix(true, false);
-      if (last) found[name] = last.localToWorld(tip.clone());
+      const at = tip.clone();
+      // Node by node: matrices of the world may be a picture old, and bones do not hear of it when what carries the rig has moved.
+      for (let node: Object3D | null = bones.at(-1)?.node ?? null; node && node !== frame; node = node.parent) {
+        if (node.matrixAutoUpdate) node.updateMatrix();
+        at.applyMatrix4(node.matrix);
+      }
+      if (bones.length > 0) found[name] = at;
     }
     return found;
   }
@@ -100,9 +105,9 @@ export class Fingers {
     for (const side of sides) this.#hands[side].update(deltaSeconds);
   }
 
-  /** Where the fingers end that the rig has, as drawn, world frame [m]: for tools and tests, new objects. */
-  tips(side: Side): Readonly<Partial<Record<FingerName, Vec3>>> {
-    return this.#hands[side].tips();
+  /** Where the fingers end that the rig has, as drawn, in the frame of an object that carries the rig [m]: for tools and tests, new objects. */
+  tips(side: Side, frame: Object3D): Readonly<Partial<Record<FingerName, Vec3>>> {
+    return this.#hands[side].tips(frame);
   }
 
   /** Of the rig, in its own metres; null: it lacks a bone of a finger. */
