@@ -2,7 +2,14 @@ import { reasonOf } from '../core/errors/reasons';
 import type { ModelContract, PoseRegressor } from '../core/estimation/pose-regressor';
 import { outputNumbers, tensorsOf } from './model-contract';
 import { fetchContract, fetchStated, named } from './model-files';
-import { createSession, type ExecutionProvider, type InferenceSession, type WasmPaths } from './session';
+import {
+  createSession,
+  type ExecutionProvider,
+  type InferenceSession,
+  type ModelTensors,
+  type WasmPaths,
+} from './session';
+import { SessionRegressor } from './session-regressor';
 import { createWorkerSession } from './worker-session';
 
 export interface LoadOptions {
@@ -14,7 +21,7 @@ export interface LoadOptions {
   readonly wasmPaths?: WasmPaths;
   /** Share [0, 1] of the model file that has arrived. */
   readonly onProgress?: (share: number) => void;
-  /** Why WebGPU was left for WASM, at load or when the device is lost later. */
+  /** Why WebGPU was left for WASM, at load or when the device fails later. */
   readonly onProviderFallback?: (reason: string) => void;
 }
 
@@ -33,69 +40,50 @@ export async function startRegressor(
   model: Uint8Array,
   { provider = 'wasm', createWorker, wasmPaths, onProviderFallback }: LoadOptions = {},
 ): Promise<PoseRegressor> {
-  let session: InferenceSession | null = null;
-  let fallback: Promise<InferenceSession> | null = null;
   const tensors = tensorsOf(contract);
-  const { input, inputShape, output } = tensors;
 
   async function open(where: ExecutionProvider, bundle = where): Promise<InferenceSession> {
     const inWorker = where === 'wasm' && bundle === 'wasm' ? createWorker : undefined;
     const opened = await (inWorker
       ? createWorkerSession(model, tensors, inWorker, wasmPaths)
       : createSession(model, tensors, where, { bundle, wasmPaths }));
-    if (!opened.inputNames.includes(input) || !opened.outputNames.includes(output)) {
-      await opened.release();
-      const has = `${opened.inputNames.join(', ')} → ${opened.outputNames.join(', ')}`;
-      throw new Error(`${contract.file}: has the tensors ${has}, its contract says ${input} → ${output}`);
-    }
-    // The first run compiles and allocates: it must not happen in a frame of the wearer's.
-    const numbers = await opened.run(new Float32Array(inputShape.reduce((a, b) => a * b, 1)));
-    if (numbers.length !== outputNumbers || !numbers.every(Number.isFinite)) {
-      await opened.release();
-      throw new Error(`${contract.file}: the first run gave ${numbers.length} numbers, or some that are not finite`);
-    }
-    return opened;
-  }
-  try {
-    session = await open(provider);
-  } catch (error) {
-    if (provider === 'wasm') throw named(contract.file, error);
-    onProviderFallback?.(`WebGPU does not run ${contract.file} (${reasonOf(error)}): WebAssembly takes over.`);
-    session = await open('wasm').catch((second) => {
-      throw named(contract.file, second);
-    });
-  }
-
-  /** On a graphics device, or where that is lost in WebAssembly. */
-  async function runOnDevice(device: InferenceSession, features: Float32Array): Promise<Float32Array> {
     try {
-      return await device.run(features);
+      await tryOut(opened, contract.file, tensors);
+      return opened;
     } catch (error) {
-      // A lost device takes its session along; WASM needs nothing of it, and the loaded bundle has it.
-      fallback ??= open('wasm', 'webgpu')
-        .catch(() => open('wasm'))
-        .then((opened) => {
-          session = opened;
-          onProviderFallback?.(`The graphics device was lost (${reasonOf(error)}): WebAssembly takes over.`);
-          return opened;
-        });
-      return (await fallback).run(features);
+      await opened.release();
+      throw error;
     }
   }
 
-  return {
-    contract,
-    get provider() {
-      return session?.provider ?? 'none';
-    },
-    run(features) {
-      if (session === null) return Promise.reject(new Error(`${contract.file}: already disposed of`));
-      return session.provider === 'webgpu' ? runOnDevice(session, features) : session.run(features);
-    },
-    async dispose() {
-      const closing = session;
-      session = null;
-      await closing?.release();
-    },
-  };
+  async function openFirst(): Promise<InferenceSession> {
+    try {
+      return await open(provider);
+    } catch (error) {
+      if (provider === 'wasm') throw named(contract.file, error);
+      onProviderFallback?.(`WebGPU does not run ${contract.file} (${reasonOf(error)}): WebAssembly takes over.`);
+      return open('wasm').catch((second) => {
+        throw named(contract.file, second);
+      });
+    }
+  }
+
+  return new SessionRegressor(contract, await openFirst(), {
+    // WebAssembly needs nothing of a lost device, and the loaded bundle has it.
+    open: () => open('wasm', 'webgpu').catch(() => open('wasm')),
+    ...(onProviderFallback && { onTakeover: onProviderFallback }),
+  });
+}
+
+/** Throws a sentence where an open session is not what the contract says of its file. */
+async function tryOut(session: InferenceSession, file: string, { input, inputShape, output }: ModelTensors) {
+  if (!session.inputNames.includes(input) || !session.outputNames.includes(output)) {
+    const has = `${session.inputNames.join(', ')} → ${session.outputNames.join(', ')}`;
+    throw new Error(`${file}: has the tensors ${has}, its contract says ${input} → ${output}`);
+  }
+  // The first run compiles and allocates: it must not happen in a frame of the wearer's.
+  const numbers = await session.run(new Float32Array(inputShape.reduce((a, b) => a * b, 1)));
+  if (numbers.length !== outputNumbers || !numbers.every(Number.isFinite)) {
+    throw new Error(`${file}: the first run gave ${numbers.length} numbers, or some that are not finite`);
+  }
 }

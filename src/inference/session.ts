@@ -28,6 +28,8 @@ export interface InferenceSession {
   readonly provider: ExecutionProvider;
   readonly inputNames: readonly string[];
   readonly outputNames: readonly string[];
+  /** Why its graphics device is gone; null, or absent: it is there as far as is known, or has none. */
+  readonly loss?: string | null;
   /** features: the input tensor's numbers; resolves to the output tensor's, in an array of their own. */
   run(features: Float32Array): Promise<Float32Array>;
   release(): Promise<void>;
@@ -57,12 +59,21 @@ export async function createSession(
     extra: { session: { disable_quant_qdq: '1' } },
   };
   const session = await ort.InferenceSession.create(model, options);
-  const lost = provider === 'webgpu' ? lossOf((await ort.env.webgpu.device) as GraphicsDevice) : null;
+  let loss: string | null = null;
+  const lost =
+    provider === 'webgpu'
+      ? lossOf((await ort.env.webgpu.device) as GraphicsDevice, (reason) => {
+          loss = reason;
+        })
+      : null;
   let last: Promise<unknown> = Promise.resolve();
   return {
     provider,
     inputNames: session.inputNames,
     outputNames: session.outputNames,
+    get loss() {
+      return loss;
+    },
     run(features) {
       const start = async (): Promise<Float32Array> => {
         const results = await session.run({ [input]: new ort.Tensor('float32', features, inputShape) });
@@ -82,10 +93,12 @@ export async function createSession(
   };
 }
 
-/** Rejects when the graphics device is lost; a page that asks for nothing by then hears nothing of it. */
-function lossOf(device: GraphicsDevice): Promise<never> {
+/** Rejects when the graphics device is lost, of which `onLoss` hears first; a page that asks for nothing by then hears nothing of it. */
+function lossOf(device: GraphicsDevice, onLoss: (reason: string) => void): Promise<never> {
   const loss = device.lost.then(({ message, reason }) => {
-    throw new Error(message || reason || 'the device is gone');
+    const told = message || reason || 'the device is gone';
+    onLoss(told);
+    throw new Error(told);
   });
   loss.catch(() => undefined);
   return loss;

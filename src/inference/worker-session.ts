@@ -7,12 +7,19 @@ interface Waiting {
   readonly reject: (error: Error) => void;
 }
 
+/** What is wrong with an answer to another question. */
+const astray = 'the worker for inference answers what no one asked';
 /** A worker that is silent for so long [ms], or twice as long, has died. */
 const patienceMs = 2500;
 
 function numbersOf(answer: Answer): Float32Array {
-  if (!('numbers' in answer)) throw new Error('the worker for inference answers what no one asked');
+  if (!('numbers' in answer)) throw new Error(astray);
   return answer.numbers;
+}
+
+function namesOf(answer: Answer): Pick<InferenceSession, 'inputNames' | 'outputNames'> {
+  if (!('inputNames' in answer)) throw new Error(astray);
+  return answer;
 }
 
 /**
@@ -63,16 +70,16 @@ export async function createWorkerSession(
   worker.addEventListener('error', ({ message }) => breakDown(message || 'the worker for inference did not start'));
   worker.addEventListener('messageerror', () => breakDown('the worker for inference cannot be understood'));
 
-  const names = await ask({ id: asked++, model, tensors, wasmPaths }).catch((error: unknown) => {
+  const opening = ask({ id: asked++, model, tensors, wasmPaths }).then(namesOf);
+  const { inputNames, outputNames } = await opening.catch((error: unknown) => {
     breakDown(reasonOf(error));
     throw error;
   });
-  if (!('inputNames' in names)) throw new Error('the worker for inference answers what no one asked');
   opened = true;
   return {
     provider: 'wasm',
-    inputNames: names.inputNames,
-    outputNames: names.outputNames,
+    inputNames,
+    outputNames,
     run: (features) => ask({ id: asked++, features }).then(numbersOf),
     async release() {
       breakDown('already released');

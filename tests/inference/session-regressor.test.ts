@@ -1,0 +1,94 @@
+import { describe, expect, test } from 'vitest';
+import type { InferenceSession } from '../../src/inference/session';
+import { SessionRegressor } from '../../src/inference/session-regressor';
+import { readShipped } from '../core/estimation/shipped-models';
+
+const { contract } = readShipped('learned');
+const features = new Float32Array(4);
+
+/** A session of the runtime that answers with one number, or fails; how often it was let go. */
+function session(provider: InferenceSession['provider'], answer: number | Error) {
+  let released = 0;
+  const opened: InferenceSession & { loss: string | null } = {
+    ...{ provider, inputNames: [], outputNames: [], loss: null },
+    run: () => (typeof answer === 'number' ? Promise.resolve(Float32Array.of(answer)) : Promise.reject(answer)),
+    async release() {
+      released += 1;
+    },
+  };
+  return { opened, released: () => released };
+}
+
+/** A network on a graphics device that fails, and a session on WebAssembly that opens when it is told to. */
+function failing(message = 'no memory is left') {
+  const device = session('webgpu', new Error(message));
+  const wasm = session('wasm', 7);
+  let arrive!: () => void;
+  let fail!: (error: Error) => void;
+  const arrives = new Promise<InferenceSession>((resolve, reject) => {
+    arrive = () => resolve(wasm.opened);
+    fail = reject;
+  });
+  const told: string[] = [];
+  let asked = 0;
+  const regressor = new SessionRegressor(contract, device.opened, {
+    open() {
+      asked += 1;
+      return arrives;
+    },
+    onTakeover: (reason) => told.push(reason),
+  });
+  return { device, wasm, regressor, told, asked: () => asked, arrive, fail };
+}
+
+describe('a network on a graphics device that fails', () => {
+  test('runs on in WebAssembly, which is opened once, and says what is known', async () => {
+    const { regressor, told, asked, arrive } = failing();
+    const runs = [regressor.run(features), regressor.run(features)];
+    arrive();
+    expect((await Promise.all(runs)).map(([number]) => number)).toEqual([7, 7]);
+    expect(regressor.provider).toBe('wasm');
+    expect(asked()).toBe(1);
+    expect(told).toEqual(['WebGPU failed at learned.onnx (no memory is left): WebAssembly takes over.']);
+  });
+
+  test('says that the device was lost where it was, also where that is known only after the run has failed', async () => {
+    const { regressor, device, told, arrive } = failing();
+    const run = regressor.run(features);
+    device.opened.loss = 'the driver was reset';
+    arrive();
+    await run;
+    expect(told).toEqual(['The graphics device was lost (the driver was reset): WebAssembly takes over.']);
+  });
+
+  test('rejects every run in a sentence where WebAssembly does not open either', async () => {
+    const { regressor, told, asked, fail } = failing();
+    const run = regressor.run(features);
+    fail(new Error('no room for it'));
+    await expect(run).rejects.toThrow('learned.onnx: no room for it');
+    await expect(regressor.run(features)).rejects.toThrow('learned.onnx: no room for it');
+    expect([asked(), told]).toEqual([1, []]);
+  });
+});
+
+describe('a network that is let go while WebAssembly still opens', () => {
+  test('lets that go as well when it has opened, and says nothing', async () => {
+    const { regressor, device, wasm, told, asked, arrive } = failing();
+    const run = regressor.run(features);
+    await expect.poll(asked).toBe(1);
+    const gone = regressor.dispose();
+    arrive();
+    await expect(run).rejects.toThrow('learned.onnx: already disposed of');
+    await gone;
+    expect([device.released(), wasm.released(), told]).toEqual([1, 1, []]);
+    expect(regressor.provider).toBe('none');
+  });
+
+  test('opens nothing for a run that fails because it was let go', async () => {
+    const { regressor, asked } = failing();
+    const run = regressor.run(features);
+    await regressor.dispose();
+    await expect(run).rejects.toThrow('learned.onnx: already disposed of');
+    expect(asked()).toBe(0);
+  });
+});

@@ -1,0 +1,70 @@
+import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
+import { startRegressor } from '../../src/inference/load-regressor';
+import type { Answer, Question } from '../../src/inference/worker-messages';
+import { readShipped } from '../core/estimation/shipped-models';
+
+beforeEach(() => {
+  vi.useFakeTimers();
+});
+afterEach(() => {
+  vi.useRealTimers();
+});
+
+/** A browser's worker that answers as it is told; whether it still lives. */
+class ToldWorker extends EventTarget {
+  readonly #answer: (question: Question) => object;
+  lives = true;
+
+  constructor(answer: (question: Question) => object) {
+    super();
+    this.#answer = answer;
+  }
+
+  postMessage(question: Question): void {
+    const data = { id: question.id, ...this.#answer(question) } as Answer;
+    queueMicrotask(() => this.dispatchEvent(new MessageEvent('message', { data })));
+  }
+
+  terminate(): void {
+    this.lives = false;
+  }
+}
+
+const { contract } = readShipped('learned');
+const names = { inputNames: [contract.inputs[0]!.name], outputNames: [contract.outputs[0]!.name] };
+const noNumbers = new Float32Array(18).fill(Number.NaN);
+
+describe('a worker for inference is not left running', () => {
+  test.each([
+    ['does not take the model', () => ({ broken: 'no such operator' }), 'learned.onnx: no such operator'],
+    ['answers its opening with numbers', () => ({ numbers: new Float32Array(18) }), /answers what no one asked/],
+    ['has other tensors', () => ({ ...names, inputNames: ['other'] }), /^learned\.onnx: has the tensors other/],
+    [
+      'fails at the run that warms it up',
+      (question: Question) => ('model' in question ? names : { broken: 'out of memory' }),
+      'learned.onnx: out of memory',
+    ],
+    [
+      'answers the run that warms it up with no numbers',
+      (question: Question) => ('model' in question ? names : { numbers: noNumbers }),
+      /^learned\.onnx: the first run gave/,
+    ],
+  ])('where it %s', async (_, answer, sentence) => {
+    const worker = new ToldWorker(answer);
+    const createWorker = () => worker as unknown as Worker;
+    await expect(startRegressor(contract, new Uint8Array(4), { createWorker })).rejects.toThrow(sentence);
+    expect(worker.lives).toBe(false);
+    expect(vi.getTimerCount()).toBe(0);
+  });
+
+  test('where its network is let go', async () => {
+    const numbers = new Float32Array(18);
+    const worker = new ToldWorker((question) => ('model' in question ? names : { numbers }));
+    const createWorker = () => worker as unknown as Worker;
+    const regressor = await startRegressor(contract, new Uint8Array(4), { createWorker });
+    expect(worker.lives).toBe(true);
+    await regressor.dispose();
+    expect(worker.lives).toBe(false);
+    expect(vi.getTimerCount()).toBe(0);
+  });
+});
