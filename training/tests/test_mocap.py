@@ -114,6 +114,39 @@ def test_bad_motion_names_file_and_line(tmp_path: Path, frame: str, sentence: st
     assert str(error.value) == sentence
 
 
+@pytest.mark.parametrize(
+    ("unit", "header", "angle"),
+    [
+        ("deg", ":DEGREES", 90.0),
+        ("rad", ":RADIANS", np.pi / 2),
+        ("deg", ":RADIANS", np.pi / 2),
+        ("rad", ":degrees", 90.0),
+        ("rad", "", np.pi / 2),
+        ("Degrees", "", 90.0),
+    ],
+)
+def test_angles_are_in_the_unit_that_the_motion_says_else_in_the_skeletons(tmp_path: Path, unit: str, header: str, angle: float) -> None:
+    tilt = np.pi / 6 if unit == "rad" else 30
+    skeleton = parse_asf(write(tmp_path, "01.asf", ASF.replace("angle deg", f"angle {unit}").replace("axis 0 0 30", f"axis 0 0 {tilt}")))
+    frame = f"root 0 0 0 0 0 0\nupper {angle} 0\nlower 0"
+    motion = parse_amc(write(tmp_path, "01_01.amc", amc(frame).replace(":DEGREES", header)), skeleton)
+    expected = [np.sqrt(3) / 2, 0.5, np.sqrt(3)]
+    np.testing.assert_allclose(motion.positions[0, motion.index("upper:end")], expected, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("unit", "sentence"),
+    [
+        ("angle grad", "01.asf, line 4: angles are in deg or rad, not in “grad”"),
+        ("angle", "01.asf, line 4: angle should have a unit, deg or rad"),
+    ],
+)
+def test_angles_of_another_unit_are_refused(tmp_path: Path, unit: str, sentence: str) -> None:
+    with pytest.raises(MocapError) as error:
+        parse_asf(write(tmp_path, "01.asf", ASF.replace("angle deg", unit)))
+    assert str(error.value) == sentence
+
+
 def test_a_skeleton_without_bones_is_refused(tmp_path: Path) -> None:
     with pytest.raises(MocapError, match="no :bonedata with bones"):
         parse_asf(write(tmp_path, "empty.asf", ":version 1.10\n"))

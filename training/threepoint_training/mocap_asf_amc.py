@@ -13,6 +13,9 @@ from numpy.typing import NDArray
 from . import quaternion
 from .motion import MocapError, Motion
 
+# What the head of an .amc file says of its angles, in radians; without it they are in the skeleton's unit.
+_RADIANS_PER_UNIT = {":DEGREES": np.pi / 180, ":RADIANS": 1.0}
+
 
 @dataclass(frozen=True)
 class Bone:
@@ -28,7 +31,7 @@ class Bone:
 
 @dataclass(frozen=True)
 class AsfSkeleton:
-    """Bones in parent-before-child order, the root's channel order and the factor from degrees or radians to radians."""
+    """Bones in parent-before-child order, the root's channel order, the factor to radians of its angles and of a motion's that names no unit."""
 
     path: Path
     bones: tuple[Bone, ...]
@@ -97,7 +100,7 @@ def _read_sections(path: Path) -> _Sections:
         if words[0].startswith(":"):
             section = words[0]
         elif section == ":units" and words[0] == "angle":
-            result.radians_per_unit = np.pi / 180 if words[1:2] == ["deg"] else 1.0
+            result.radians_per_unit = _radians_per_angle(words, f"{path.name}, line {number}")
         elif section == ":root":
             result.root[words[0]] = words[1:]
         elif section == ":bonedata" and words[0] == "begin":
@@ -113,6 +116,18 @@ def _read_sections(path: Path) -> _Sections:
     if not result.bones:
         raise MocapError(f"{path.name}: no :bonedata with bones, so this is no ASF skeleton")
     return result
+
+
+def _radians_per_angle(words: list[str], where: str) -> float:
+    """From the unit that a skeleton gives its angles in; `where` it does begins every complaint."""
+    if len(words) < 2:
+        raise MocapError(f"{where}: angle should have a unit, deg or rad")
+    unit = words[1].lower()
+    if unit.startswith("deg"):
+        return np.pi / 180
+    if unit.startswith("rad"):
+        return 1.0
+    raise MocapError(f"{where}: angles are in deg or rad, not in “{words[1]}”")
 
 
 def _raw_bone(block: dict[str, list[str]] | None, where: str) -> _RawBone:
@@ -164,8 +179,8 @@ def _ordered_bones(path: Path, sections: _Sections) -> tuple[Bone, ...]:
     return tuple(bones)
 
 
-def _read_channels(path: Path, skeleton: AsfSkeleton) -> NDArray[np.float64]:
-    """All channels of a motion, [frames, channels], in the order root, then bones with degrees of freedom."""
+def _read_channels(path: Path, skeleton: AsfSkeleton) -> tuple[NDArray[np.float64], float]:
+    """All channels of a motion, [frames, channels], in the order root, then bones with freedom; and its angles' factor to radians."""
     expected = {"root": len(skeleton.root_order)} | {bone.name: len(bone.dof) for bone in skeleton.bones if bone.dof}
     offsets: dict[str, int] = {}
     total = 0
@@ -176,6 +191,7 @@ def _read_channels(path: Path, skeleton: AsfSkeleton) -> NDArray[np.float64]:
     row: list[float] = []
     seen: set[str] = set()
     started = 0
+    radians_per_unit = skeleton.radians_per_unit
 
     def close(line_number: int) -> None:
         if started and len(seen) < len(expected):
@@ -186,7 +202,10 @@ def _read_channels(path: Path, skeleton: AsfSkeleton) -> NDArray[np.float64]:
         line_number = 0
         for line_number, line in enumerate(lines, start=1):
             words = line.split()
-            if not words or words[0][0] in "#:":
+            if not words or words[0][0] == "#":
+                continue
+            if words[0][0] == ":":
+                radians_per_unit = _RADIANS_PER_UNIT.get(words[0].upper(), radians_per_unit)
                 continue
             if len(words) == 1 and words[0].isdigit():
                 close(line_number)
@@ -214,7 +233,7 @@ def _read_channels(path: Path, skeleton: AsfSkeleton) -> NDArray[np.float64]:
     bad = np.flatnonzero(~np.all(np.isfinite(channels), axis=1))
     if len(bad):
         raise MocapError(f"{path.name}: frame {bad[0] + 1} has a number that is not finite")
-    return channels
+    return channels, radians_per_unit
 
 
 def _joint_names(skeleton: AsfSkeleton) -> tuple[str, ...]:
@@ -223,7 +242,7 @@ def _joint_names(skeleton: AsfSkeleton) -> tuple[str, ...]:
 
 def parse_amc(path: Path, skeleton: AsfSkeleton, frame_rate: float | None = None) -> Motion:
     """Reads a motion of that skeleton; AMC carries no frame rate, so the caller gives it."""
-    channels = _read_channels(path, skeleton)
+    channels, radians_per_unit = _read_channels(path, skeleton)
     count = len(channels)
     names = _joint_names(skeleton)
 
@@ -241,7 +260,7 @@ def parse_amc(path: Path, skeleton: AsfSkeleton, frame_rate: float | None = None
             return values
 
         def turn(values: dict[str, NDArray[np.float64]], axis: NDArray[np.float64]) -> NDArray[np.float64]:
-            angles = np.stack([values.get(name, np.zeros(frames)) for name in ("rx", "ry", "rz")], -1) * skeleton.radians_per_unit
+            angles = np.stack([values.get(name, np.zeros(frames)) for name in ("rx", "ry", "rz")], -1) * radians_per_unit
             order = "".join(name[1] for name in values if name in ("rx", "ry", "rz"))
             motion = euler_quaternion(angles, order or "xyz")
             return quaternion.multiply(axis, quaternion.multiply(motion, quaternion.conjugate(axis)))

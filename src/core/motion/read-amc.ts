@@ -5,6 +5,8 @@ import { Lines, Rows, shown } from './lines';
 import { type AsfSkeleton, fromEuler } from './read-asf';
 
 const framesPerStep = 16;
+/** What the head of a file says of its angles, in radians; without it they are in the skeleton's unit. */
+const radiansPerUnit: Readonly<Record<string, number>> = { ':DEGREES': Math.PI / 180, ':RADIANS': 1 };
 
 /** Where the numbers of a bone begin in a row, and how many they are. */
 interface Columns {
@@ -37,6 +39,7 @@ export function* readAmc(text: string, skeleton: AsfSkeleton, skeletonName: stri
   const rows = new Rows(width);
   const seen = new Set<string>();
   let at = -1;
+  let radians = skeleton.radiansPerUnit;
   const close = (): void => {
     if (at < 0 || seen.size === columns.size) return;
     const missing = [...columns.keys()].find((name) => !seen.has(name))!;
@@ -45,8 +48,12 @@ export function* readAmc(text: string, skeleton: AsfSkeleton, skeletonName: stri
   while (lines.next()) {
     const { line } = lines;
     const begin = line.search(/\S/);
-    if (line[begin] === '#' || line[begin] === ':') continue;
+    if (line[begin] === '#') continue;
     const found = /\S+/.exec(line)![0];
+    if (found.startsWith(':')) {
+      radians = radiansPerUnit[found.toUpperCase()] ?? radians;
+      continue;
+    }
     if (/^\s*\d+\s*$/.test(line)) {
       close();
       at = rows.add();
@@ -62,12 +69,11 @@ export function* readAmc(text: string, skeleton: AsfSkeleton, skeletonName: stri
   }
   close();
   if (rows.count === 0) lines.fail(1, 'no frames');
-  return motionOf(skeleton, rows);
+  return motionOf(new Player(skeleton, radians), skeleton, rows);
 }
 
-function motionOf(skeleton: AsfSkeleton, { count, width, values }: Rows): FileMotion {
+function motionOf(player: Player, skeleton: AsfSkeleton, { count, width, values }: Rows): FileMotion {
   const { bones } = skeleton;
-  const player = new Player(skeleton);
   const names = ['root', ...bones.map(({ name }) => name), ...bones.map(({ name }) => `${name}:end`)];
   const rest = player
     .pose(new Float64Array(width), 0, makeJointPoses(names.length))
@@ -81,12 +87,14 @@ function motionOf(skeleton: AsfSkeleton, { count, width, values }: Rows): FileMo
 /** Forward kinematics: a bone's rotation in its parent is C·M·C⁻¹ with the bone's axes C and the motion's angles M. */
 class Player {
   readonly #skeleton: AsfSkeleton;
+  readonly #radiansPerUnit: number;
   readonly #angles = vec3(0, 0, 0);
   readonly #turn = quat(0, 0, 0, 1);
   readonly #back = quat(0, 0, 0, 1);
 
-  constructor(skeleton: AsfSkeleton) {
+  constructor(skeleton: AsfSkeleton, radiansPerUnit: number) {
     this.#skeleton = skeleton;
+    this.#radiansPerUnit = radiansPerUnit;
   }
 
   /** From the numbers that begin at `column`: the root, where bones start, where they end. */
@@ -119,7 +127,7 @@ class Player {
       const freedom = freedoms[i]!;
       if (freedom !== 'rx' && freedom !== 'ry' && freedom !== 'rz') continue;
       const about = freedom[1] as 'x' | 'y' | 'z';
-      angles[about] = values[column + i]! * this.#skeleton.radiansPerUnit;
+      angles[about] = values[column + i]! * this.#radiansPerUnit;
       order += about;
     }
     if (order === '') setQuat(target, 0, 0, 0, 1);

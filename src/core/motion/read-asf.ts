@@ -23,6 +23,7 @@ export interface AsfSkeleton {
   readonly rootFreedoms: readonly string[];
   readonly rootAxis: Quat;
   readonly rootPosition: Vec3;
+  /** Of its own angles, and of those of an AMC file that says nothing of its own. */
   readonly radiansPerUnit: number;
 }
 
@@ -77,7 +78,7 @@ class Sections {
   }
 
   #take(section: string, first: string, words: readonly Word[]): void {
-    if (section === ':units' && first === 'angle') this.radiansPerUnit = words[1]?.word === 'deg' ? Math.PI / 180 : 1;
+    if (section === ':units' && first === 'angle') this.radiansPerUnit = radiansPerAngle(this.#lines, words);
     else if (section === ':root') this.root.set(first, words);
     else if (section === ':bonedata') this.#takeBone(first, words);
     else if (section === ':hierarchy' && first !== 'begin' && first !== 'end')
@@ -96,6 +97,14 @@ class Sections {
       numbersOf(this.#lines, words, first === 'length' ? 1 : 3);
     } else this.#block?.set(first, words);
   }
+}
+
+/** From the unit that a skeleton gives its angles in. */
+function radiansPerAngle(lines: Lines, [keyword, unit]: readonly Word[]): number {
+  if (!unit) return lines.fail(keyword!.column, 'angle should have a unit, deg or rad');
+  if (/^deg/i.test(unit.word)) return Math.PI / 180;
+  if (/^rad/i.test(unit.word)) return 1;
+  return lines.fail(unit.column, `angles are in deg or rad, not in ${shown(unit.word)}`);
 }
 
 /** The first numbers after a keyword. */
