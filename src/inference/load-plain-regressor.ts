@@ -1,4 +1,4 @@
-import { createPlainRegressor } from '../core/estimation/learned-network';
+import { createPlainRegressor, weightsOf } from '../core/estimation/learned-network';
 import type { PoseRegressor } from '../core/estimation/pose-regressor';
 import { fetchContract, fetchStated, named } from './model-files';
 
@@ -16,12 +16,11 @@ export async function loadPlainRegressor(
   { onProgress }: PlainLoadOptions = {},
 ): Promise<PoseRegressor> {
   const contract = await fetchContract(contractUrl);
-  if (!contract.weights) throw new Error(`${contract.name}.json: names no weights for a run without a runtime`);
-  const { file } = contract.weights;
-  const bytes = await fetchStated(contractUrl, contract.weights, onProgress);
+  const weights = weightsOf(contract);
+  const bytes = await fetchStated(contractUrl, weights, onProgress);
   try {
     return createPlainRegressor(contract, bytes);
   } catch (error) {
-    throw named(file, error);
+    throw named(weights.file, error);
   }
 }

@@ -1,6 +1,6 @@
 import contract from '../../public/models/learned.json';
 import type { NetworkName } from '../core/estimation/estimators';
-import { createPlainRegressor } from '../core/estimation/learned-network';
+import { createPlainRegressor, weightsOf } from '../core/estimation/learned-network';
 import type { ModelContract, PoseRegressor } from '../core/estimation/pose-regressor';
 import { fetchFile } from '../inference/model-files';
 
@@ -24,8 +24,7 @@ export async function loadLearned({ modelUrl, onProgress }: LearnedOptions = {})
     return loadPlainRegressor(String(modelUrl), progress);
   }
   const own = contract as unknown as ModelContract;
-  if (!own.weights) throw new Error('learned.json: names no weights');
-  return createPlainRegressor(own, await fetchFile(ownWeights().href, own.weights, onProgress));
+  return createPlainRegressor(own, await fetchFile(ownWeights().href, weightsOf(own), onProgress));
 }
 
 /** The networks of who has no runtime. */

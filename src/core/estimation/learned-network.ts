@@ -1,13 +1,19 @@
 import { estimatedJoints } from '../body/joints';
 import { readWeights, tensorOf } from './model-weights';
 import { Perceptron } from './perceptron';
-import type { ModelContract, PoseRegressor } from './pose-regressor';
+import type { FlatWeights, ModelContract, PoseRegressor } from './pose-regressor';
 
 /** Joints that the trunk network corrects, in its order: left and right shoulder, chest joint, hips; three numbers each. */
 const trunkOutputs = 12;
 const outputs = 3 * estimatedJoints.length;
 /** Inputs of zeros, with which a network is tried out, must not divide by zero. */
 const shortestArm = 1e-3;
+
+/** What a contract says of the file for a run without a runtime; throws a sentence where it names none. */
+export function weightsOf({ name, weights }: ModelContract): FlatWeights {
+  if (!weights) throw new Error(`${name}.json: names no weights for a run without a runtime`);
+  return weights;
+}
 
 /**
  * The learned network without a runtime (training/threepoint_training/model.py, CorrectionNetwork): features in, corrections of six joints out.
@@ -32,8 +38,8 @@ export class LearnedNetwork {
 
   /** Throws a sentence where contract and file do not go together. */
   constructor(contract: ModelContract, bytes: Uint8Array) {
-    if (!contract.weights) throw new Error(`${contract.name}.json: names no weights for a run without a runtime`);
-    const weights = readWeights(contract.weights, bytes);
+    const stated = weightsOf(contract);
+    const weights = readWeights(stated, bytes);
     const features = contract.inputs[0]?.shape.at(-1) ?? 0;
     this.#features = features;
     this.#trunk = new Perceptron(weights, 'trunk', features, trunkOutputs);
@@ -44,7 +50,7 @@ export class LearnedNetwork {
     this.#armColumns = Int32Array.from(tensorOf(weights, 'armColumns', this.#armInputs));
     const outside = (column: number) => column < 0 || column >= features;
     if (this.#columns.some(outside) || this.#armColumns.some(outside)) {
-      throw new Error(`${contract.weights.file}: names columns beyond the ${features} features`);
+      throw new Error(`${stated.file}: names columns beyond the ${features} features`);
     }
     this.#bodies = new Float64Array(2 * features);
   }
