@@ -1,10 +1,11 @@
 // Builds the package “threepoint” into dist-library/: ESM with source maps, types, the learned network's weights, the models for the runtime,
-// the mannequin; and prints what each entry weighs. `npm pack ./dist-library` makes the tarball.
+// the mannequin; prints what each entry weighs, and fails where the documents say otherwise. `npm pack ./dist-library` makes the tarball.
 import { copyFileSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { brotliCompressSync } from 'node:zlib';
 import { rolldown } from 'rolldown';
+import { staleSizes } from './library-sizes.mjs';
 import { main, root, run, SetupError } from './run-command.mjs';
 
 const out = join(root, 'dist-library');
@@ -72,13 +73,16 @@ const weightsBeside = {
   },
 };
 
-async function bundle(names) {
+const sourceOf = (name) => join(root, `src/lib/${name}.ts`);
+
+/** input: where each entry begins, by its name. */
+async function bundle(input, plugins) {
   return rolldown({
-    input: Object.fromEntries(names.map((name) => [name, join(root, `src/lib/${name}.ts`)])),
+    input,
     cwd: root,
     platform: 'browser',
     external,
-    plugins: [weightsBeside],
+    plugins,
     tsconfig: join(root, 'tsconfig.json'),
   });
 }
@@ -87,7 +91,7 @@ async function bundle(names) {
 const output = { format: 'esm', chunkFileNames: 'shared-[hash].js' };
 
 async function writeCode() {
-  const build = await bundle(entries);
+  const build = await bundle(Object.fromEntries(entries.map((name) => [name, sourceOf(name)])), [weightsBeside]);
   await build.write({ ...output, dir: out, sourcemap: true });
   await build.close();
 }
@@ -114,9 +118,19 @@ function writeFiles() {
   writeFileSync(join(out, 'package.json'), `${JSON.stringify(manifest, null, 2)}\n`);
 }
 
-/** Bytes of an entry with all that it loads at once, minified, and the same as brotli; what it loads later or as a peer is not in it. */
-async function weigh(name) {
-  const build = await bundle([name]);
+/** A page that draws with avatars of its own making, as a bundler sees it. */
+const trackerAlone = {
+  name: 'tracker-alone',
+  resolveId: { filter: { id: /^tracker-alone$/ }, handler: (id) => id },
+  load: {
+    filter: { id: /^tracker-alone$/ },
+    handler: () => `export { BodyTracker } from ${JSON.stringify(join(out, 'three.js'))};`,
+  },
+};
+
+/** Bytes of code with all that it loads at once, minified, and the same as brotli; what it loads later or as a peer is not in it. */
+async function weigh(input, plugins = [weightsBeside]) {
+  const build = await bundle({ entry: input }, plugins);
   const { output: files } = await build.generate({ ...output, minify: true });
   await build.close();
   const needed = new Set();
@@ -125,7 +139,7 @@ async function weigh(name) {
     needed.add(file);
     for (const imported of files.find(({ fileName }) => fileName === file)?.imports ?? []) add(imported);
   };
-  add(`${name}.js`);
+  add('entry.js');
   const code = files.filter(({ fileName }) => needed.has(fileName)).map((file) => Buffer.from(file.code));
   const size = (buffers) => buffers.reduce((sum, { length }) => sum + length, 0);
   return { min: size(code), brotli: size(code.map((buffer) => brotliCompressSync(buffer))) };
@@ -138,23 +152,49 @@ export async function buildLibrary() {
   writeFiles();
 }
 
-async function tellSizes() {
-  const kilobytes = (bytes) => `${(bytes / 1000).toFixed(1)} kB`.padStart(10);
-  console.log(`${''.padEnd(24)}${'min'.padStart(10)}${'brotli'.padStart(10)}`);
+/** What is measured, by the name that docs/library.md gives it in its table. */
+async function measureSizes() {
+  const sizes = {};
   for (const name of entries) {
-    const { min, brotli } = await weigh(name);
     const called = name === 'index' ? own.name : `${own.name}/${name}`;
-    console.log(`${called.padEnd(24)}${kilobytes(min)}${kilobytes(brotli)}`);
+    sizes[`\`${called}\``] = await weigh(sourceOf(name));
   }
   const weights = readFileSync(join(out, 'models/learned.bin'));
-  console.log(
-    `${'models/learned.bin'.padEnd(24)}${kilobytes(weights.length)}${kilobytes(brotliCompressSync(weights).length)}`,
+  sizes["the learned network's weights"] = { min: weights.length, brotli: brotliCompressSync(weights).length };
+  return sizes;
+}
+
+/** Throws where docs/library.md or README.md says another size than was measured. */
+async function checkDocuments(sizes) {
+  const rows = Object.entries(sizes).map(([what, { min, brotli }]) => ({
+    what,
+    says: new RegExp(`^\\| ${what} \\| ([\\d.]+) kB \\| ([\\d.]+) kB \\|$`, 'm'),
+    bytes: [min, brotli],
+  }));
+  const alone = await weigh('tracker-alone', [trackerAlone]);
+  const sentence = {
+    what: 'threepoint/three, with and without loadAvatar',
+    says: /(\d+) kB of code as it travels \((\d+) kB without `loadAvatar`\)/,
+    bytes: [sizes['`threepoint/three`'].brotli, alone.brotli],
+  };
+  const stale = Object.entries({ 'docs/library.md': rows, 'README.md': [sentence] }).flatMap(([file, claims]) =>
+    staleSizes(file, readFileSync(join(root, file), 'utf8'), claims),
   );
+  if (stale.length > 0) throw new SetupError(`${stale.join('.\n')}.`);
+}
+
+function tellSizes(sizes) {
+  const kilobytes = (bytes) => `${(bytes / 1000).toFixed(1)} kB`.padStart(10);
+  console.log(`${''.padEnd(32)}${'min'.padStart(10)}${'brotli'.padStart(10)}`);
+  for (const [what, { min, brotli }] of Object.entries(sizes))
+    console.log(`${what.padEnd(32)}${kilobytes(min)}${kilobytes(brotli)}`);
 }
 
 if (import.meta.url === pathToFileURL(process.argv[1]).href) {
   await main(async () => {
     await buildLibrary();
-    await tellSizes();
+    const sizes = await measureSizes();
+    tellSizes(sizes);
+    await checkDocuments(sizes);
   });
 }
