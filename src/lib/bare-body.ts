@@ -9,6 +9,7 @@ import { createAfterFrame } from './after-frame';
 import { type AskTiming, withTiming } from './ask-timing';
 import { EstimatorChoice } from './estimator-choice';
 import { HeightPolicy } from './height-policy';
+import { SeenFrames, seenOf } from './seen-frames';
 
 /** A point that a headset tracks. */
 export type TrackedPoint = 'head' | 'left' | 'right';
@@ -71,6 +72,7 @@ export class BareBody {
   #events: BodyEvents;
   readonly #clock: Pick<PageClock, 'frame' | 'paused'>;
   readonly #timing: AskTiming | null;
+  readonly #frames = new SeenFrames();
   readonly #seen: Record<TrackedPoint, boolean> = { head: false, left: false, right: false };
   #afterFrame: ((task: () => void) => void) | null = null;
   /** In force: the wearer's, or those of a stand-in. */
@@ -190,14 +192,16 @@ export class BareBody {
   }
 
   /**
-   * One frame of tracking [m, s], floor frame; null: the head is not seen, and the pose stays. `standIn`: the measures of another who moves the
-   * body in this frame, as an actor or a recording does; theirs are in force then, and nothing is learnt of the wearer. Returns the body's pose,
-   * null before the first frame. Never waits, never returns NaN; throws only what an event's listener throws.
+   * One frame of tracking [m, s], floor frame; null: the head is not seen, and the pose stays. A point with a number that is not finite counts as
+   * not seen, a time that is none as no time since the frame before. `standIn`: the measures of another who moves the body in this frame, as an
+   * actor or a recording does; theirs are in force then, and nothing is learnt of the wearer. Returns the body's pose, null before the first
+   * frame. Never waits, never returns NaN; throws only what an event's listener throws.
    */
-  update(frame: TrackingFrame | null, standIn: Calibration | null = null): AvatarPose | null {
+  update(tracked: TrackingFrame | null, standIn: Calibration | null = null): AvatarPose | null {
+    const frame = this.#frames.next(tracked);
     this.#notice('head', frame !== null);
-    this.#notice('left', frame?.leftHand != null);
-    this.#notice('right', frame?.rightHand != null);
+    this.#notice('left', frame !== null && frame.leftHand !== null);
+    this.#notice('right', frame !== null && frame.rightHand !== null);
     if (frame === null) return this.#pose;
     if (standIn !== this.#standIn) this.#handOver(standIn);
     if (standIn === null) this.#height.observe(frame);
@@ -214,7 +218,7 @@ export class BareBody {
    * where the body jumps meanwhile, or another method is chosen.
    */
   relive(frames: Iterable<TrackingFrame>): Promise<void> {
-    return this.#choice.relive(frames, (pose) => {
+    return this.#choice.relive(seenOf(frames), (pose) => {
       this.#pose = pose;
     });
   }

@@ -1,4 +1,5 @@
 import { reasonOf } from '../errors/reasons';
+import { allFinite } from '../math/all-finite';
 import type { PoseRegressor } from './pose-regressor';
 
 /** Latest-result inference: runs a regressor one at a time and hands over what it finished; nothing it does wrong gets out as an exception. */
@@ -78,11 +79,4 @@ export class LatestResult {
     this.#failed();
     this.#fault = `${this.#regressor.contract.name}: ${reasonOf(error)}`;
   }
-}
-
-/** Whether all are finite. A function that is called for each of them would be handed each in a box. */
-function allFinite(values: Float32Array): boolean {
-  let sum = 0;
-  for (let i = 0; i < values.length; i++) sum += Math.abs(values[i]!);
-  return Number.isFinite(sum);
 }

@@ -150,11 +150,11 @@ export class Pipeline implements PoseEstimator {
     return this.#estimate;
   }
 
-  /** Seconds since the last frame; 0 for the first, which a pause or a time that runs backwards makes it again. */
+  /** Seconds since the last frame; 0 for the first, which a pause, or a time that runs backwards or is no number, makes it again. */
   #elapsed(time: number): number {
     const elapsed = time - this.#lastTime;
-    if (elapsed < 0 || elapsed > longestGapSeconds) this.reset();
-    const continues = !Number.isNaN(this.#lastTime);
+    const continues = elapsed >= 0 && elapsed <= longestGapSeconds;
+    if (!continues) this.reset();
     this.#lastTime = time;
     return continues ? elapsed : 0;
   }

@@ -33,7 +33,7 @@ export interface PoseEstimator {
   calibrate(calibration: Calibration): void;
   /** Forgets the past: after a recentre, a teleport or a loss of tracking. */
   reset(): void;
-  /** One frame. Synchronous; never throws, never returns NaN; waits for no network. */
+  /** One frame, of finite poses. Synchronous; never throws, never returns NaN; waits for no network. */
   update(frame: TrackingFrame): Estimate;
   /** Why the newest frame is IK although a network should have drawn it; null: nothing is wrong. */
   fault(): string | null;

@@ -47,6 +47,12 @@ export const makePose = <F extends Frame>(): MutablePose<F> => ({
   orientation: quat(0, 0, 0, 1),
 });
 
+/** Whether this is a place and a rotation: numbers that are finite, squared too, and no quaternion of length 0. */
+export function isFinitePose({ position: p, orientation: o }: Pose<Frame>): boolean {
+  const turned = o.x * o.x + o.y * o.y + o.z * o.z + o.w * o.w;
+  return turned > 0 && Number.isFinite(turned + p.x * p.x + p.y * p.y + p.z * p.z);
+}
+
 export function copyPose<F extends Frame>(pose: Pose<F>, target: MutablePose<F> = makePose()): MutablePose<F> {
   copyVec3(pose.position, target.position);
   copyQuat(pose.orientation, target.orientation);

@@ -1,4 +1,5 @@
 import type { JointName } from '../body/joints';
+import { allFinite } from '../math/all-finite';
 import { type MutableVec3, setVec3 } from '../math/vec3';
 
 const sides = ['left', 'right'] as const;
@@ -22,6 +23,9 @@ export type DeviceBody = Float32Array;
 
 /** Numbers of a DeviceBody. */
 export const deviceBodySize = 3 * deviceJointNames.length;
+
+/** Whether every joint of it has a place. */
+export const isFiniteDeviceBody = (body: DeviceBody): boolean => body.length === deviceBodySize && allFinite(body);
 
 const named = (joint: string): number => 3 * deviceJointNames.indexOf(joint);
 
