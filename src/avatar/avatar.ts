@@ -164,7 +164,9 @@ class VrmAvatar implements Avatar {
   }
 
   apply(pose: AvatarPose, time: number): void {
-    const deltaSeconds = this.lastTime === null ? 0 : Math.min(longestStep, Math.max(0, time - this.lastTime));
+    const elapsed = this.lastTime === null ? 0 : time - this.lastTime;
+    // Written so that a time that is no number is no step.
+    const deltaSeconds = elapsed > 0 ? Math.min(longestStep, elapsed) : 0;
     this.lastTime = time;
     const shown = pose.body ? 'body' : 'hands';
     if (this.meshes.show(shown)) this.rig.forgetJoints();

@@ -156,6 +156,15 @@ describe('a body in a session of three.js', () => {
     else expect(moved).toBeLessThan(0.001);
   });
 
+  test('goes on after a frame of the page’s own with a time that is no number', async () => {
+    const { tracker } = await begin({ calibration: defaultCalibration });
+    const wearer = (time: number) => actorFrame(time, defaultCalibration);
+    for (let i = 0; i < 72; i++) tracker.follow({ ...wearer(i / 72), ...(i === 20 && { time: Number.NaN }) });
+    const turned: number[] = [];
+    tracker.object.traverse(({ quaternion }) => turned.push(...quaternion));
+    expect(turned.every(Number.isFinite)).toBe(true);
+  });
+
   test('takes its height from the headset', async () => {
     const { headset, tracker, run, told } = await begin();
     headset.setHead({ position: { x: 0, y: 1.5, z: 0 }, orientation: identity });
