@@ -4,6 +4,7 @@ import { forwardKinematics } from '../../src/core/body/forward-kinematics';
 import { skeletonFromCalibration } from '../../src/core/body/skeleton';
 import type { PoseRegressor } from '../../src/core/estimation/pose-regressor';
 import { distance } from '../../src/core/math/vec3';
+import { createPageClock } from '../../src/core/tracking/page-clock';
 import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
 import { Body, type BodyOptions } from '../../src/lib/body';
 import { movingPerson } from '../core/estimation/moving-person';
@@ -176,6 +177,19 @@ test('time is its own: after a pause a body begins anew, half a second on', () =
   expect(body.frame(65_020) - first).toBeCloseTo(0.52);
   expect(jumps).toBe(1);
   expect(body.frame(10) - first).toBeGreaterThan(0.52);
+});
+
+test('bodies that share a clock are at one time, and each begins anew after a pause', () => {
+  const clock = createPageClock(() => 0);
+  const jumped: string[] = [];
+  const [first, second] = ['first', 'second'].map(
+    (name) => new Body({ estimator: 'ik', clock, events: { jumped: () => jumped.push(name) } }),
+  );
+  for (const timestampMs of [5000, 5020, 65_020]) {
+    const time = first!.frame(timestampMs);
+    expect(second!.frame(timestampMs)).toBe(time);
+  }
+  expect(jumped).toEqual(['first', 'second']);
 });
 
 describe('a body whose network is not to be had', () => {

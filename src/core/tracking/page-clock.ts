@@ -12,7 +12,8 @@ const shortestStep = 1 / 1000;
 export interface PageClock {
   /**
    * The time of a frame that the device dates `timestampMs`. A time stamp that goes back is taken as another clock's: this one goes on by
-   * the length of the last frame. One that is more than `longestStep` ahead follows a pause: this clock goes on by `longestStep`.
+   * the length of the last frame. One that is more than `longestStep` ahead follows a pause: this clock goes on by `longestStep`. The same
+   * one again within half a frame is the same frame's, asked by another part of the page: its time stays, and `paused`.
    */
   frame(timestampMs: number): number;
   /** Whether the newest frame follows a pause. */
@@ -36,6 +37,8 @@ export function createPageClock(read: () => number): PageClock {
 
   return {
     frame(timestampMs) {
+      // Devices that round their time stamps date frames alike too, but a whole frame apart.
+      if (timestampMs === stamp && Math.abs(read() - readAt) < 500 * step) return time;
       if (stamp === null) time = timestampMs / 1000;
       else {
         const passed = (timestampMs - stamp) / 1000;

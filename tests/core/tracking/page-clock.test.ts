@@ -4,12 +4,15 @@ import { createPageClock, longestStep, neverBack } from '../../../src/core/track
 
 const frameMs = 1000 / 72;
 
-/** The times of these time stamps [ms]; `read` goes with them. */
-function timesOf(stamps: readonly number[]): readonly number[] {
-  let read = stamps[0] ?? 0;
+/** The times of these time stamps [ms], each told when `read` says `readOf` of it. */
+function timesOf(
+  stamps: readonly number[],
+  readOf: (stamp: number, index: number) => number = (stamp) => stamp,
+): readonly number[] {
+  let read = readOf(stamps[0] ?? 0, 0);
   const clock = createPageClock(() => read);
-  return stamps.map((stamp) => {
-    read = stamp;
+  return stamps.map((stamp, index) => {
+    read = readOf(stamp, index);
     return clock.frame(stamp);
   });
 }
@@ -25,7 +28,8 @@ describe('the page’s clock', () => {
       fc.property(fc.double({ min: 0, max: 1e9, noNaN: true }), fc.array(steps, { maxLength: 60 }), (start, by) => {
         const stamps = [start];
         for (const step of by) stamps.push((stamps.at(-1) ?? 0) + step);
-        const times = timesOf(stamps);
+        // Whatever the device says, a frame later is half a second later at most.
+        const times = timesOf(stamps, (_, index) => 1000 * longestStep * index);
         for (const [i, time] of times.entries()) {
           const passed = time - (times[i - 1] ?? time - 0.01);
           expect(passed).toBeGreaterThan(0);
@@ -39,6 +43,39 @@ describe('the page’s clock', () => {
   test('with ordinary frames it is the device’s own, slow ones included', () => {
     const stamps = [1000, 1014, 1028, 1300, 1800, 1814];
     expect(timesOf(stamps)).toEqual(stamps.map((stamp) => expect.closeTo(stamp / 1000, 9)));
+  });
+
+  test('one for two bodies is at one time in a frame, however late in it the second asks', () => {
+    let read = 0;
+    const clock = createPageClock(() => read);
+    const stamps = Array.from({ length: 91 }, (_, frame) => 1000 + frame * frameMs);
+    const times = stamps.map((stamp) => {
+      read = stamp;
+      const first = clock.frame(stamp);
+      read = stamp + 0.4 * frameMs;
+      expect(clock.now()).toBeGreaterThan(first);
+      expect(clock.frame(stamp)).toBe(first);
+      return first;
+    });
+    expect(times.at(-1)! - times[0]!).toBeCloseTo((90 * frameMs) / 1000, 6);
+  });
+
+  test('a pause is one for all who ask in its frame', () => {
+    let read = 1000;
+    const clock = createPageClock(() => read);
+    clock.frame(1000);
+    read = 9000;
+    const heard = [0, 1, 2].map((later) => {
+      read = 9000 + later;
+      return [clock.frame(9000), clock.paused];
+    });
+    expect(heard).toEqual([0, 1, 2].map(() => [expect.closeTo(1.5, 9), true]));
+    expect(clock.leftOut).toBeCloseTo(7.5, 9);
+  });
+
+  test('a device that dates several frames alike has them as long as the last', () => {
+    const times = timesOf([0, 16, 16, 16, 48], (_, index) => 16 * index);
+    expect(times).toEqual([0, 0.016, 0.032, 0.048, 0.08].map((time) => expect.closeTo(time, 9)));
   });
 
   test('a step back and the correction are a frame and a pause', () => {
