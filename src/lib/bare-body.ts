@@ -1,5 +1,5 @@
 import type { AvatarPose } from '../core/body/avatar-pose';
-import { type Calibration, calibrationComplaint, defaultCalibration } from '../core/body/calibration';
+import { type Calibration, calibrationComplaint, defaultCalibration, sameCalibration } from '../core/body/calibration';
 import { createEstimator, type NetworkName } from '../core/estimation/estimators';
 import type { EstimatorName, InferenceRequest } from '../core/estimation/pose-estimator';
 import type { PoseRegressor } from '../core/estimation/pose-regressor';
@@ -79,8 +79,8 @@ export class BareBody {
   #calibration: Calibration;
   #wearer: Calibration;
   #given: boolean;
-  /** Who moved the body in the newest frame; null: the wearer. */
-  #standIn: Calibration | null = null;
+  /** Whether another than the wearer moved the body in the newest frame. */
+  #standsIn = false;
   #pose: AvatarPose | null = null;
   /** The newest frame's question to a network that answers later. */
   #request: InferenceRequest | null = null;
@@ -195,7 +195,8 @@ export class BareBody {
    * One frame of tracking [m, s], floor frame; null: the head is not seen, and the pose stays. A point with a number that is not finite counts as
    * not seen, a time that is none as no time since the frame before. `standIn`: the measures of another who moves the body in this frame, as an
    * actor or a recording does; theirs are in force then, and nothing is learnt of the wearer. Returns the body's pose, null before the first
-   * frame. Never waits, never returns NaN; throws only what an event's listener throws.
+   * frame. Never waits, never returns NaN; throws a RangeError where a stand-in's measures are no person's, else only what an event's listener
+   * throws.
    */
   update(tracked: TrackingFrame | null, standIn: Calibration | null = null): AvatarPose | null {
     const frame = this.#frames.next(tracked);
@@ -203,7 +204,7 @@ export class BareBody {
     this.#notice('left', frame !== null && frame.leftHand !== null);
     this.#notice('right', frame !== null && frame.rightHand !== null);
     if (frame === null) return this.#pose;
-    if (standIn !== this.#standIn) this.#handOver(standIn);
+    if (!this.#isMovedBy(standIn)) this.#handOver(standIn && checked(standIn));
     if (standIn === null) this.#height.observe(frame);
     const { pose, request } = this.#choice.current.update(frame);
     this.#pose = pose;
@@ -235,9 +236,15 @@ export class BareBody {
     for (const point of trackedPoints) this.#seen[point] = false;
   }
 
+  /** Whether they moved it in the frame before; a page may write the measures of a stand-in out in every frame. */
+  #isMovedBy(standIn: Calibration | null): boolean {
+    if (standIn === null) return !this.#standsIn;
+    return this.#standsIn && sameCalibration(standIn, this.#calibration);
+  }
+
   /** Another moves the body from this frame on: with their measures, and without a way from the one to the other. */
   #handOver(standIn: Calibration | null): void {
-    this.#standIn = standIn;
+    this.#standsIn = standIn !== null;
     this.jumped();
     this.#fit(standIn ?? this.#wearer, 'stand-in');
   }

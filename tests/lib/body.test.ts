@@ -168,6 +168,44 @@ describe('a body that another moves', () => {
   });
 });
 
+describe('measures of a stand-in', () => {
+  test('are the same in every frame, also where a page writes them out in each', () => {
+    const told: string[] = [];
+    const body = new Body({
+      estimator: 'ik',
+      events: { jumped: () => told.push('jumped'), calibrated: (_, source) => told.push(`calibrated ${source}`) },
+    });
+    const handTilts = { left: { pitch: 0.1, yaw: 0.2 } };
+    for (let frame = 0; frame < 90; frame++)
+      body.update(at(frame / 90), { eyeHeight: 1.65, armSpan: 1.56, handTilts: structuredClone(handTilts) });
+    expect(told).toEqual(['jumped', 'calibrated stand-in']);
+    body.update(at(1), { eyeHeight: 1.65, armSpan: 1.56 });
+    expect(told).toHaveLength(4);
+  });
+
+  test('that are the wearer’s own go on while the wearer is given others', () => {
+    const body = new Body({ estimator: 'ik', calibration });
+    body.update(at(0), body.wearerCalibration);
+    const person = { ...calibration };
+    body.update(at(1 / 60), person);
+    body.calibrate({ eyeHeight: 1.7, armSpan: 1.6 });
+    body.update(at(2 / 60), person);
+    expect(body.calibration).toEqual(calibration);
+  });
+
+  test.each([
+    ['of centimetres', { eyeHeight: 165, armSpan: 156 }],
+    ['that are no numbers', { eyeHeight: Number.NaN, armSpan: 1.5 }],
+    ['with a headset tilted by degrees', { ...calibration, gazePitch: 10 }],
+  ])('%s are refused as the wearer’s are, and change nothing', (_, measures) => {
+    const body = new Body({ estimator: 'ik', calibration });
+    body.update(at(0));
+    expect(() => body.update(at(1 / 60), measures)).toThrow(RangeError);
+    expect(body.calibration).toBe(calibration);
+    expect(() => body.update(at(2 / 60))).not.toThrow();
+  });
+});
+
 test('time is its own: after a pause a body begins anew, half a second on', () => {
   let jumps = 0;
   const body = new Body({ estimator: 'ik', events: { jumped: () => (jumps += 1) } });

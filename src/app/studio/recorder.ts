@@ -1,4 +1,4 @@
-import type { Calibration } from '../../core/body/calibration';
+import { type Calibration, calibrationComplaint } from '../../core/body/calibration';
 import { copyFingers } from '../../core/body/hand-shape';
 import {
   parseRecording,
@@ -155,9 +155,11 @@ export class Recorder {
     if (this.#mode === 'replaying') this.#seconds = Math.max(0, Math.min(this.duration, seconds));
   }
 
-  /** Takes a recording from the text of a file; throws a sentence when it is none. */
+  /** Takes a recording from the text of a file; throws a sentence when it is none, or one of no person. */
   open(name: string, text: string): Replayable {
     const recording = parseRecording(text);
+    const complaint = recording.calibration && calibrationComplaint(recording.calibration);
+    if (complaint) throw new Error(complaint);
     this.take(name, recording);
     return recording;
   }

@@ -1,4 +1,6 @@
-import type { HandTilts } from './hand-tilt';
+import { sides } from '../math/side';
+import { type HandTilts, isBelievableTilt, sameTilts } from './hand-tilt';
+import { steepestHandTilt } from './limb-limits.json';
 
 /** What the user tells us, or two seconds of standing still reveal, about their body. */
 export interface Calibration {
@@ -72,9 +74,16 @@ export const defaultCalibration: Calibration = {
 export const sameMeasures = (a: Calibration, b: Calibration): boolean =>
   a.eyeHeight === b.eyeHeight && a.armSpan === b.armSpan && a.forearm === b.forearm;
 
-/** Why these numbers are no person's body, in a sentence; null where they can be. */
-export function calibrationComplaint(calibration: Calibration): string | null {
-  const { eyeHeight, armSpan, forearm } = calibration;
+/** Whether all that two calibrations say is the same, also of how headset and hands are worn. */
+export const sameCalibration = (a: Calibration, b: Calibration): boolean =>
+  sameMeasures(a, b) && a.gazePitch === b.gazePitch && sameTilts(a.handTilts, b.handTilts);
+
+/** Why these numbers are no person's, in a sentence; null where they can be. */
+export const calibrationComplaint = (calibration: Calibration): string | null =>
+  bodyComplaint(calibration) ?? wornComplaint(calibration);
+
+/** Of the body's measures. */
+function bodyComplaint({ eyeHeight, armSpan, forearm }: Calibration): string | null {
   const told = (value: number) => `${value.toFixed(2)} m`;
   // Written so that NaN is refused too.
   if (!(eyeHeight >= eyeHeightRange.min && eyeHeight <= eyeHeightRange.max)) {
@@ -92,6 +101,21 @@ export function calibrationComplaint(calibration: Calibration): string | null {
   return forearms > 0.65 * ORDINARY_FOREARM && forearms < 1.35 * ORDINARY_FOREARM
     ? null
     : `A forearm of ${told(forearm!)} does not go with an arm span of ${told(armSpan)} from wrist to wrist.`;
+}
+
+/** Of how headset and hands are worn. */
+function wornComplaint({ gazePitch = 0, handTilts }: Calibration): string | null {
+  const told = (value: number) => `${value.toFixed(2)} rad`;
+  if (!(Math.abs(gazePitch) <= steepestGazePitch)) {
+    return `A headset’s tilt of ${told(gazePitch)} is beyond ${told(steepestGazePitch)}.`;
+  }
+  for (const side of sides) {
+    const tilt = handTilts?.[side];
+    if (tilt && !isBelievableTilt(tilt)) {
+      return `A ${side} hand’s tilt of ${told(Math.hypot(tilt.pitch, tilt.yaw))} is beyond ${told(steepestHandTilt)}.`;
+    }
+  }
+  return null;
 }
 
 /** These measures and this forearm [m], where such an arm can have it. */

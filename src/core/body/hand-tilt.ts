@@ -16,6 +16,13 @@ export interface HandTilt {
 /** Of each hand that was measured. */
 export type HandTilts = { readonly [Hand in Side]?: HandTilt | undefined };
 
+const sameTilt = (a: HandTilt | undefined, b: HandTilt | undefined): boolean =>
+  a?.pitch === b?.pitch && a?.yaw === b?.yaw;
+
+/** Whether both say the same of both hands. */
+export const sameTilts = (a: HandTilts | undefined, b: HandTilts | undefined): boolean =>
+  sameTilt(a?.left, b?.left) && sameTilt(a?.right, b?.right);
+
 /** That of the average person's hand, of whom nothing is known. */
 export function usualHandTilt(side: Side): HandTilt {
   const [pitch, yaw] = averageTilt as [number, number];

@@ -1,4 +1,4 @@
-import type { Calibration } from '../body/calibration';
+import { type Calibration, calibrationComplaint } from '../body/calibration';
 import type { FileMotion } from '../motion/file-motion';
 import { readAmc } from '../motion/read-amc';
 import { readAsf } from '../motion/read-asf';
@@ -121,6 +121,8 @@ function* clipsOf(name: string, motion: OurMotion, notes: readonly string[]): Ge
   const { cuts, pieces } = cutAtLeaps(motion);
   if (pieces.length === 0) throw new Error('nothing in it moves as a person for half a second');
   const calibration = measuresOf(motion, pieces);
+  const complaint = calibrationComplaint(calibration);
+  if (complaint) throw new Error(complaint);
   const neutral = neutralHead(motion, pieces);
   const floor = floorHeight(motion, pieces);
   const clips: MocapClip[] = [];

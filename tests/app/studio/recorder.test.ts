@@ -89,4 +89,9 @@ describe('the recorder', () => {
     expect(() => recorder.open('photos.json', '{"photos": []}')).toThrow(/no recording/);
     expect(recorder.name).toBe('recording-1.json');
   });
+
+  test('a file with measures of no person is refused: nothing could replay it', () => {
+    const text = recorded(0, 1).file()!.text.replace('"eyeHeight":1.6', '"eyeHeight":160');
+    expect(() => new Recorder().open('cm.json', text)).toThrow(/height of 170\.94 m is outside/);
+  });
 });

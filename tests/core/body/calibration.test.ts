@@ -2,13 +2,16 @@ import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import {
   armSpanFromFingertipSpan,
+  type Calibration,
   calibrationComplaint,
   defaultCalibration,
   eyeHeightFromStature,
   eyeHeightRange,
   fingertipSpanFromArmSpan,
   provisionalCalibration,
+  sameCalibration,
   statureFromEyeHeight,
+  steepestGazePitch,
   withForearm,
 } from '../../../src/core/body/calibration';
 import { number, seed } from '../arbitraries';
@@ -54,9 +57,49 @@ describe('what is a person’s body', () => {
     ['a forearm as long as an arm', { ...defaultCalibration, forearm: 0.5 }, /forearm of 0\.50 m/],
     ['a forearm of inches', { ...defaultCalibration, forearm: 0.11 }, /does not go with an arm span of/],
     ['no number for a forearm', { ...defaultCalibration, forearm: Number.NaN }, /forearm/],
+    ['a headset’s tilt in degrees', { ...defaultCalibration, gazePitch: 12 }, /headset’s tilt of 12\.00 rad/],
+    ['no number for it', { ...defaultCalibration, gazePitch: Number.NaN }, /headset’s tilt/],
+    [
+      'a bent wrist',
+      { ...defaultCalibration, handTilts: { left: { pitch: 0.9, yaw: 0.9 } } },
+      /left hand’s tilt of 1\.27 rad/,
+    ],
+    [
+      'no number for a hand',
+      { ...defaultCalibration, handTilts: { right: { pitch: 0, yaw: Number.NaN } } },
+      /right hand’s tilt/,
+    ],
   ])('%s is not, and the sentence says why', (_, calibration, sentence) => {
     expect(calibrationComplaint(calibration)).toMatch(sentence);
   });
+});
+
+test('whatever the guided calibration measures of a headset and of hands is a person’s', () => {
+  const tilt = { pitch: 0.6, yaw: -0.7 };
+  for (const gazePitch of [-steepestGazePitch, 0, steepestGazePitch]) {
+    expect(calibrationComplaint({ ...defaultCalibration, gazePitch, handTilts: { left: tilt } })).toBeNull();
+  }
+});
+
+test('two calibrations are the same where all they say is', () => {
+  const told: Calibration = {
+    ...defaultCalibration,
+    forearm: 0.26,
+    gazePitch: 0.1,
+    handTilts: { left: { pitch: 0.2, yaw: 0.3 }, right: { pitch: 0.4, yaw: 0.5 } },
+  };
+  expect(sameCalibration(told, structuredClone(told))).toBe(true);
+  expect(sameCalibration(defaultCalibration, { ...defaultCalibration, handTilts: {} })).toBe(true);
+  const { forearm, gazePitch, handTilts } = told;
+  const others: readonly Partial<Calibration>[] = [
+    ...[{ eyeHeight: 1.6 }, { armSpan: 1.5 }, { forearm: forearm! + 0.01 }, { gazePitch: undefined }],
+    ...[{ gazePitch: gazePitch! + 0.01 }, { handTilts: undefined }, { handTilts: { left: handTilts!.left } }],
+    { handTilts: { ...handTilts, right: { pitch: 0.4, yaw: 0.6 } } },
+  ];
+  for (const other of others) {
+    expect(sameCalibration(told, { ...told, ...other })).toBe(false);
+    expect(sameCalibration({ ...told, ...other }, told)).toBe(false);
+  }
 });
 
 test('a forearm that was typed stays with other measures, unless no such arm has it', () => {

@@ -118,6 +118,15 @@ describe('a skeleton that is no person’s, or not known, is refused in a senten
       /an arm of .* units fits no known unit/,
     ],
     [
+      'legs of three metres',
+      (all) =>
+        all.replaceAll(
+          /(JOINT (?:Left|Right)(?:Leg|Foot)\s*\{\s*OFFSET \S+) (\S+)/g,
+          (_, joint, down) => `${joint} ${4 * Number(down)}`,
+        ),
+      /^someone_walks\.bvh: A height of .* m is outside 1\.00 m to 2\.30 m/,
+    ],
+    [
       'a trunk of no length',
       (all) => all.replace(/(JOINT Neck\s*\{\s*OFFSET) .*/, '$1 0 0 0'),
       /Neck \(neck\) lies on Spine1 \(chest\)/,
