@@ -21,13 +21,13 @@ const trackedPoints = ['head', 'left', 'right'] as const;
  */
 export type CalibrationSource = 'given' | 'headset' | 'stood-taller' | 'stand-in' | 'default';
 
-/** What a page may want to know of a body; each is called within one of the body's methods, or when a network has loaded. */
+/** What a page may want to know of a body; each is called within one of the body's methods, never its constructor, or when a network has loaded. */
 export interface BodyEvents {
   /** Other measures of who moves the body, from the next frame on. */
   calibrated?(calibration: Calibration, source: CalibrationSource): void;
   /** The wearer stands this much taller [m] than the measures that were given, which stay. Once for each calibration. */
   outgrown?(difference: number): void;
-  /** This estimator is not to be had, and why: inverse kinematics draws instead. */
+  /** This estimator's network is not to be had, and why: inverse kinematics draws instead; with 'device' where the device reports no body. */
   fallback?(estimator: EstimatorName, reason: string): void;
   /** `estimator`, `provider` or `unavailable` is another. */
   changed?(): void;
@@ -103,6 +103,7 @@ export class BareBody {
     this.#wearer = calibration === 'auto' ? defaultCalibration : checked(calibration);
     this.#calibration = this.#wearer;
     this.#choice = new EstimatorChoice({
+      estimator,
       calibration: this.#calibration,
       create: createEstimator,
       load: timing ? async (name) => withTiming(await networks(name), timing) : networks,
@@ -116,7 +117,6 @@ export class BareBody {
       onMeasured: (measured, source) => this.#measure(measured, source),
       onTooSmall: (difference) => this.#events.outgrown?.(difference),
     });
-    void this.#choice.choose(estimator);
   }
 
   /** Of the newest frame, floor frame [m]; overwritten by the next: `copyAvatarPose` keeps one. null before the first. */
@@ -154,7 +154,7 @@ export class BareBody {
     return this.#choice.regressor?.provider ?? null;
   }
 
-  /** Resolves when this estimator draws, or when `fallback` told why it cannot. */
+  /** Resolves when this estimator draws, or when `fallback` told why it cannot; rejects only with what an event's listener throws. */
   choose(estimator: EstimatorName): Promise<void> {
     return this.#choice.choose(estimator);
   }

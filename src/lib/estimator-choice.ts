@@ -7,14 +7,16 @@ import type { PoseRegressor } from '../core/estimation/pose-regressor';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 
 export interface EstimatorChoiceOptions {
+  /** What is wanted first; nothing is told of it before this has been made. */
+  readonly estimator: EstimatorName;
   readonly calibration: Calibration;
   create(name: EstimatorName, calibration: Calibration, regressor?: PoseRegressor): PoseEstimator;
   /** Rejects with a sentence that names the file and what is wrong with it. */
   load(name: NetworkName): Promise<PoseRegressor>;
   /** Another estimator draws from now on, or one has become unavailable. */
   onChange(): void;
-  /** What was chosen is not to be had: inverse kinematics draws instead. */
-  onFault(name: EstimatorName, reason: string): void;
+  /** This network is not to be had: inverse kinematics draws instead. */
+  onFault(name: NetworkName, reason: string): void;
 }
 
 /** Which estimator draws. There is always one: until a network is loaded, or when it fails, it is inverse kinematics. */
@@ -23,7 +25,7 @@ export class EstimatorChoice {
   readonly #loading = new Map<NetworkName, Promise<PoseRegressor>>();
   readonly #unavailable: Partial<Record<EstimatorName, string>> = {};
   #calibration: Calibration;
-  #wanted: EstimatorName = 'ik';
+  #wanted: EstimatorName;
   #current: PoseEstimator;
   #regressor: PoseRegressor | null = null;
   #disposed = false;
@@ -33,7 +35,10 @@ export class EstimatorChoice {
   constructor(options: EstimatorChoiceOptions) {
     this.#options = options;
     this.#calibration = options.calibration;
-    this.#current = this.#make('ik', null);
+    this.#wanted = options.estimator;
+    const loads = networkOf(this.#wanted) !== null;
+    this.#current = this.#make(loads ? 'ik' : this.#wanted, null);
+    if (loads) void this.choose(this.#wanted);
   }
 
   get current(): PoseEstimator {
@@ -54,23 +59,23 @@ export class EstimatorChoice {
     return this.#unavailable;
   }
 
-  /** Resolves when this estimator draws, or when it turned out that it cannot. Never rejects. */
+  /** Resolves when this estimator draws, or when it turned out that it cannot. Rejects only with what a listener throws. */
   async choose(name: EstimatorName): Promise<void> {
     if (this.#disposed || this.#unavailable[name] !== undefined) return;
     this.#wanted = name;
     const needed = networkOf(name);
-    if (needed === null) {
-      this.#drawWith(name, null);
-      return;
+    let network: PoseRegressor | null = null;
+    if (needed && this.#unavailable[needed] === undefined) {
+      try {
+        network = await this.#network(needed);
+      } catch (error) {
+        this.#giveUp(needed, error);
+      }
     }
-    try {
-      const loaded = await this.#network(needed);
-      // While it loaded, the user may have thought of something else, or it may have failed at its first run.
-      if (this.#isWanted(name) && this.#unavailable[name] === undefined) this.#drawWith(name, loaded);
-    } catch (error) {
-      if (needsRegressor(name)) this.#giveUp(name, error);
-      else if (this.#isWanted(name)) this.#drawWith(name, null);
-    }
+    // While it loaded, the user may have thought of something else, or it may have failed at its first run.
+    if (this.#disposed || this.#wanted !== name) return;
+    this.#drawWith(name, needed && this.#unavailable[needed] === undefined ? network : null);
+    this.#options.onChange();
   }
 
   /** For every estimator from the next frame on. */
@@ -106,10 +111,11 @@ export class EstimatorChoice {
     then(lived);
   }
 
-  /** Gives up on an estimator whose network has failed while running; call it now and then. */
+  /** Gives up on a network that has failed while running; call it now and then. */
   check(): void {
     const fault = this.#current.fault();
-    if (fault !== null) this.#giveUp(this.#current.name, fault);
+    const network = networkOf(this.#current.name);
+    if (fault !== null && network !== null) this.#giveUp(network, fault);
   }
 
   /** Lets every network go that was loaded, and those that still arrive. Nothing is told from then on. */
@@ -123,10 +129,6 @@ export class EstimatorChoice {
     }
   }
 
-  #isWanted(name: EstimatorName): boolean {
-    return !this.#disposed && this.#wanted === name;
-  }
-
   #make(name: EstimatorName, network: PoseRegressor | null): PoseEstimator {
     const { create } = this.#options;
     return network ? create(name, this.#calibration, network) : create(name, this.#calibration);
@@ -136,23 +138,34 @@ export class EstimatorChoice {
     this.#current = this.#make(name, network);
     this.#changes += 1;
     this.#regressor = network;
-    this.#options.onChange();
   }
 
-  #giveUp(name: EstimatorName, error: unknown): void {
-    if (this.#disposed || this.#unavailable[name] !== undefined) return;
-    this.#unavailable[name] = reasonOf(error);
-    if (this.#wanted === name) this.#wanted = 'ik';
-    if (this.#current.name === name) this.#drawWith('ik', null);
-    this.#options.onFault(name, reasonOf(error));
+  /** What draws with this network goes on without where it can, else inverse kinematics does. */
+  #giveUp(network: NetworkName, error: unknown): void {
+    if (this.#disposed || this.#unavailable[network] !== undefined) return;
+    const reason = reasonOf(error);
+    this.#unavailable[network] = reason;
+    if (this.#wanted === network) this.#wanted = 'ik';
+    const { name } = this.#current;
+    if (this.#regressor && networkOf(name) === network) this.#drawWith(needsRegressor(name) ? 'ik' : name, null);
+    this.#options.onFault(network, reason);
     this.#options.onChange();
   }
 
   #network(name: NetworkName): Promise<PoseRegressor> {
     const known = this.#loading.get(name);
     if (known) return known;
-    const started = this.#options.load(name);
+    const started = this.#load(name);
     this.#loading.set(name, started);
     return started;
+  }
+
+  /** Rejects also with what is thrown at once. */
+  #load(name: NetworkName): Promise<PoseRegressor> {
+    try {
+      return this.#options.load(name);
+    } catch (error) {
+      return Promise.reject(error);
+    }
   }
 }

@@ -120,6 +120,21 @@ describe('a body', () => {
     ]);
   });
 
+  test.each(['ik', 'learned', 'device'] as const)('by %s says nothing before a page has it', async (estimator) => {
+    const told: string[] = [];
+    const body = new Body({
+      estimator,
+      networks() {
+        throw new Error('no networks here');
+      },
+      events: { changed: () => told.push('changed'), fallback: (name, reason) => told.push(`${name}: ${reason}`) },
+    });
+    expect(told).toEqual([]);
+    await body.choose(estimator);
+    expect(body.estimator).toBe(estimator === 'learned' ? 'ik' : estimator);
+    expect(told.includes('learned: no networks here')).toBe(estimator !== 'ik');
+  });
+
   test('refuses measures of no person', async () => {
     expect(() => new Body({ calibration: { eyeHeight: 165, armSpan: 156 } })).toThrow(RangeError);
     const { body } = await observed({ estimator: 'ik' });

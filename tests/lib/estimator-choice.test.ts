@@ -30,16 +30,21 @@ function networkOn(provider: string): PoseRegressor {
   };
 }
 
-function choiceThat(load: (name: 'paper' | 'learned') => Promise<PoseRegressor>) {
+function choiceThat(load: (name: 'paper' | 'learned') => Promise<PoseRegressor>, onChange = () => undefined) {
   const faults: string[] = [];
+  const changes: string[] = [];
   const choice = new EstimatorChoice({
+    estimator: 'ik',
     calibration: { eyeHeight: 1.6, armSpan: 1.4 },
     create: estimatorOf,
     load,
-    onChange: () => undefined,
+    onChange() {
+      changes.push(`${choice.current.name} ${choice.regressor?.provider ?? 'alone'}`);
+      onChange();
+    },
     onFault: (name, reason) => faults.push(`${name}: ${reason}`),
   });
-  return { choice, faults };
+  return { choice, faults, changes };
 }
 
 describe('which estimator draws', () => {
@@ -65,7 +70,7 @@ describe('which estimator draws', () => {
   });
 
   test('a network that fails while it runs gives way to inverse kinematics, once', async () => {
-    const { choice, faults } = choiceThat(async () => networkOn('broken'));
+    const { choice, faults, changes } = choiceThat(async () => networkOn('broken'));
     await choice.choose('learned');
     expect(choice.current.name).toBe('learned');
     choice.check();
@@ -73,6 +78,43 @@ describe('which estimator draws', () => {
     await choice.choose('learned');
     expect(choice.current.name).toBe('ik');
     expect(faults).toEqual(['learned: out of memory']);
+    expect(changes, 'each told once').toEqual(['learned broken', 'ik alone']);
+  });
+
+  test.each([
+    ['fails while it runs', async () => networkOn('broken'), 'out of memory'],
+    [
+      'cannot be loaded',
+      async () => {
+        throw new Error('404');
+      },
+      '404',
+    ],
+  ])('the device’s body is drawn without its network where that %s', async (_, load, reason) => {
+    const { choice, faults } = choiceThat(load);
+    await choice.choose('device');
+    choice.check();
+    choice.check();
+    expect([choice.wanted, choice.current.name, choice.regressor]).toEqual(['device', 'device', null]);
+    expect(choice.unavailable).toEqual({ learned: reason });
+    expect(faults).toEqual([`learned: ${reason}`]);
+    await choice.choose('ik');
+    await choice.choose('device');
+    choice.check();
+    expect([choice.current.name, choice.regressor], 'and chosen again').toEqual(['device', null]);
+    expect(faults).toHaveLength(1);
+  });
+
+  test('what a listener throws is no fault of the network', async () => {
+    const { choice, faults } = choiceThat(
+      async () => networkOn('wasm'),
+      () => {
+        throw new Error('a bug of the page');
+      },
+    );
+    await expect(choice.choose('learned')).rejects.toThrow('a bug of the page');
+    expect([choice.wanted, choice.current.name, choice.regressor?.provider]).toEqual(['learned', 'learned', 'wasm']);
+    expect([choice.unavailable, faults]).toEqual([{}, []]);
   });
 
   test('a person who changes their mind while a network loads keeps the later choice', async () => {
