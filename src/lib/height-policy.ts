@@ -2,7 +2,7 @@ import { type Calibration, provisionalCalibration } from '../core/body/calibrati
 import { createHeightWatch } from '../core/tracking/height-watch';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
 
-/** Seconds of tracked frames after which the headset's height says something about its wearer. */
+/** Seconds after the first tracked frame, or the first after a guessed one, from which a headset's height says something about its wearer. */
 const settleSeconds = 0.7;
 
 export interface HeightPolicyOptions {
@@ -19,13 +19,13 @@ export interface HeightPolicyOptions {
 }
 
 /**
- * How tall the wearer of a headset is taken to be. Without a calibration they are as tall as the headset hangs high once it hangs there
- * calmly, and grow when they stand up straight; with one they are told where it is too small.
+ * How tall the wearer of a headset is taken to be. Without a calibration they are as tall as the headset hangs high in the first frame after
+ * `settleSeconds` of tracking, calm or not, and grow when they stand up straight; with one they are told where it is too small.
  */
 export class HeightPolicy {
   readonly #options: HeightPolicyOptions;
   readonly #watch = createHeightWatch();
-  /** When the session's first frame was tracked [s]; 'done' once the height of the headset was taken. */
+  /** Since when the head is tracked [s]; null: it was not yet, or is guessed; 'done' once the height of the headset was taken. */
   #settledSince: number | 'done' | null = null;
   /** The calibration that its wearer has been told is too small. */
   #toldTooSmall: Calibration | null = null;
@@ -44,7 +44,7 @@ export class HeightPolicy {
     this.#watch.reset();
   }
 
-  /** Every tracked frame of the wearer's. */
+  /** Every frame in which the wearer's head is seen. */
   observe(frame: TrackingFrame): void {
     if (!this.#options.calibrated()) this.#settle(frame);
     if (this.#options.grows) this.#grow(frame);
@@ -52,6 +52,10 @@ export class HeightPolicy {
 
   #settle({ time, head }: TrackingFrame): void {
     if (this.#settledSince === 'done') return;
+    if (head.tracking !== 'tracked') {
+      this.#settledSince = null;
+      return;
+    }
     this.#settledSince ??= time;
     if (time - this.#settledSince < settleSeconds) return;
     this.#settledSince = 'done';

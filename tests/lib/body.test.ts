@@ -80,6 +80,21 @@ describe('a body', () => {
     expect(body.calibration.eyeHeight).toBeCloseTo(1.7, 2);
   });
 
+  test('takes no height from a headset that is not tracked yet, nor from the moments around', async () => {
+    const { body, told } = await observed({ estimator: 'ik', grows: false });
+    const guessed = (time: number): TrackingFrame => {
+      const frame = standing(time, 1.9);
+      return { ...frame, head: { ...frame.head, tracking: 'emulated' } };
+    };
+    for (let frame = 0; frame < 120; frame++) body.update(guessed(frame / 60));
+    for (let frame = 120; frame < 150; frame++) body.update(standing(frame / 60, 1.4));
+    body.update(guessed(150 / 60));
+    for (let frame = 151; frame < 190; frame++) body.update(standing(frame / 60, 1.6));
+    expect(told).toEqual(['found head']);
+    for (let frame = 190; frame < 200; frame++) body.update(standing(frame / 60, 1.62));
+    expect(told).toEqual(['found head', 'calibrated 1.62 headset']);
+  });
+
   test('keeps measures that it was given, however tall its wearer stands', async () => {
     const { body, told } = await observed({ estimator: 'ik', calibration });
     for (let frame = 0; frame < 240; frame++) body.update(standing(frame / 60, 1.72));
