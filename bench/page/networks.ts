@@ -33,7 +33,7 @@ async function measure(way: NetworkWay): Promise<NetworkCost> {
   const opened = performance.now();
   const regressor = await load(way);
   const estimator = createWithNetwork('learned', defaultCalibration, regressor);
-  const afterwards = createAfterFrame();
+  const { afterwards, close } = createAfterFrame();
   const inFrame: number[] = [];
   const onThread: number[] = [];
   let firstBodyMs = Number.NaN;
@@ -61,6 +61,7 @@ async function measure(way: NetworkWay): Promise<NetworkCost> {
     inFrame.push(spent);
     onThread.push(spent + later);
   }
+  close();
   const told = (values: readonly number[]) => ({ p50: quantile(values, 0.5), p95: quantile(values, 0.95) });
   const device = regressor.provider === 'webgpu' ? ` (${await graphicsDevice()})` : '';
   return {

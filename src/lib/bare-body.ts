@@ -5,7 +5,7 @@ import type { EstimatorName, InferenceRequest } from '../core/estimation/pose-es
 import type { PoseRegressor } from '../core/estimation/pose-regressor';
 import { createPageClock, type PageClock } from '../core/tracking/page-clock';
 import type { TrackingFrame } from '../core/tracking/tracking-frame';
-import { createAfterFrame } from './after-frame';
+import { type AfterFrame, createAfterFrame } from './after-frame';
 import { type AskTiming, withTiming } from './ask-timing';
 import { EstimatorChoice } from './estimator-choice';
 import { HeightPolicy } from './height-policy';
@@ -74,7 +74,7 @@ export class BareBody {
   readonly #timing: AskTiming | null;
   readonly #frames = new SeenFrames();
   readonly #seen: Record<TrackedPoint, boolean> = { head: false, left: false, right: false };
-  #afterFrame: ((task: () => void) => void) | null = null;
+  #afterFrame: AfterFrame | null = null;
   /** In force: the wearer's, or those of a stand-in. */
   #calibration: Calibration;
   #wearer: Calibration;
@@ -228,6 +228,7 @@ export class BareBody {
   dispose(): Promise<void> {
     this.#events = {};
     this.#request = null;
+    this.#afterFrame?.close();
     return this.#choice.dispose();
   }
 
@@ -276,6 +277,6 @@ export class BareBody {
     this.#request = request;
     if (waits) return;
     this.#afterFrame ??= createAfterFrame();
-    this.#afterFrame(this.#askNow);
+    this.#afterFrame.afterwards(this.#askNow);
   }
 }

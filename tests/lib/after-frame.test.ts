@@ -1,9 +1,10 @@
 import { expect, test } from 'vitest';
 import { createAfterFrame } from '../../src/lib/after-frame';
+import { openPorts } from './open-ports';
 
 test('what a frame leaves for later is done after it, in order', async () => {
   const done: string[] = [];
-  const afterwards = createAfterFrame();
+  const { afterwards, close } = createAfterFrame();
   const tasks = new Promise<void>((resolve) => {
     afterwards(() => done.push('first'));
     afterwards(() => {
@@ -16,10 +17,11 @@ test('what a frame leaves for later is done after it, in order', async () => {
   expect(done, 'nothing within the frame, nor in its microtasks').toEqual(['frame']);
   await tasks;
   expect(done).toEqual(['frame', 'first', 'second']);
+  close();
 });
 
 test('a task may leave another for after the next frame', async () => {
-  const afterwards = createAfterFrame();
+  const { afterwards, close } = createAfterFrame();
   const done: number[] = [];
   await new Promise<void>((resolve) =>
     afterwards(() => {
@@ -31,4 +33,19 @@ test('a task may leave another for after the next frame', async () => {
     }),
   );
   expect(done).toEqual([1, 2]);
+  close();
+});
+
+test('closed it does nothing that still waits, and keeps no process running', async () => {
+  const open = openPorts();
+  const done: string[] = [];
+  const { afterwards, close } = createAfterFrame();
+  const other = createAfterFrame();
+  afterwards(() => done.push('late'));
+  expect(openPorts()).toBeGreaterThan(open);
+  close();
+  await new Promise<void>((resolve) => other.afterwards(resolve));
+  other.close();
+  await expect.poll(openPorts).toBe(open);
+  expect(done).toEqual([]);
 });

@@ -9,6 +9,7 @@ import type { TrackingFrame } from '../../src/core/tracking/tracking-frame';
 import { Body, type BodyOptions } from '../../src/lib/body';
 import { movingPerson } from '../core/estimation/moving-person';
 import { openPlainModel } from '../core/estimation/shipped-models';
+import { openPorts } from './open-ports';
 
 const calibration: Calibration = { eyeHeight: 1.65, armSpan: 1.56 };
 const at = movingPerson(3, calibration, { x: 1, z: -0.5, yaw: 2 });
@@ -334,6 +335,17 @@ describe('a network that answers later', () => {
     body.update(at(0));
     expect(marks, 'nothing of it lies in the frame').toEqual([]);
     await expect.poll(() => marks).toEqual(['resume', 'features', 'runs', 'inference', 'features']);
+  });
+
+  test('leaves nothing that keeps a process running once its body is disposed of', async () => {
+    const open = openPorts();
+    const { network } = answeringLater();
+    const { body } = await observed({ calibration, networks: async (name) => network(name) });
+    body.update(at(0));
+    expect(openPorts()).toBeGreaterThan(open);
+    await body.dispose();
+    body.update(at(1 / 60));
+    await expect.poll(openPorts).toBe(open);
   });
 
   test('is let go with the body, as is one that was chosen before and one that still arrives', async () => {
