@@ -52,6 +52,13 @@ export function deviceJoint(body: DeviceBody, joint: SharedJoint, target: Mutabl
   return setVec3(target, body[at]!, body[at + 1]!, body[at + 2]!);
 }
 
-/** Between two of them, joint by joint; share 0: the first. In memory of its own. */
-export const mixDeviceBodies = (a: DeviceBody, b: DeviceBody, share: number): DeviceBody =>
-  a.map((value, index) => value + (b[index]! - value) * share);
+/** Between two of them, joint by joint; share 0: the first. */
+export function mixDeviceBodies(
+  a: DeviceBody,
+  b: DeviceBody,
+  share: number,
+  target: DeviceBody = new Float32Array(deviceBodySize),
+): DeviceBody {
+  for (let i = 0; i < deviceBodySize; i++) target[i] = a[i]! + (b[i]! - a[i]!) * share;
+  return target;
+}

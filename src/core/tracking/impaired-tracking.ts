@@ -4,6 +4,7 @@ import { fromAxisAngle, multiply, quat, slerp } from '../math/quat';
 import { seedAfter, uniformOf } from '../math/random';
 import type { Side } from '../math/side';
 import { add, length, lerp, scale, setVec3, vec3 } from '../math/vec3';
+import { deviceBodySize, mixDeviceBodies } from './device-body';
 import type { TrackingFrame } from './tracking-frame';
 
 /** What a body is to suffer on purpose, so that its effect on people can be studied. */
@@ -51,10 +52,14 @@ class KeptFrame {
   readonly head = makeTrackedPose();
   readonly hands = { left: new KeptHand(), right: new KeptHand() };
   hasFingers = false;
+  readonly deviceBody = new Float32Array(deviceBodySize);
+  hasDeviceBody = false;
 
-  keep({ time, head, leftHand, rightHand, fingers }: TrackingFrame): void {
+  keep({ time, head, leftHand, rightHand, fingers, deviceBody }: TrackingFrame): void {
     this.time = time;
     keepPose(head, this.head);
+    this.hasDeviceBody = deviceBody !== undefined;
+    if (deviceBody) this.deviceBody.set(deviceBody);
     this.hasFingers = fingers !== undefined;
     this.hands.left.keep(leftHand, fingers?.left ?? null);
     this.hands.right.keep(rightHand, fingers?.right ?? null);
@@ -68,7 +73,7 @@ interface Loss {
 }
 
 type Writable<T> = { -readonly [Key in keyof T]: T[Key] };
-type WrittenFrame = Writable<Pick<TrackingFrame, 'time' | 'head' | 'leftHand' | 'rightHand'>>;
+type WrittenFrame = Writable<Required<Omit<TrackingFrame, 'suspended'>>>;
 
 const offset = vec3(0, 0, 0);
 const axis = vec3(0, 0, 0);
@@ -80,7 +85,10 @@ function mixPose(a: TrackedPose, b: TrackedPose, t: number, target: MutableTrack
   target.tracking = a.tracking;
 }
 
-/** Head and hands as a worse tracker would have them: later, noisy, with hands that are lost. Leaves no garbage. */
+/**
+ * Head and hands as a worse tracker would have them: later, noisy, with hands that are lost. What the device itself says of the body is as late,
+ * else as it was: it does not come from these trackers. Leaves no garbage.
+ */
 export class ImpairedTracking {
   #impairments: Impairments | null = null;
   /** A ring; `#newest` is the index of the newest frame, `#count` how many there are. */
@@ -97,8 +105,11 @@ export class ImpairedTracking {
   readonly #hands = { left: makeTrackedPose(), right: makeTrackedPose() };
   readonly #shapes = { left: makeHandShape(), right: makeHandShape() };
   readonly #fingers: Record<Side, MutableHandShape | null> = { left: null, right: null };
-  readonly #bare: WrittenFrame = { time: 0, head: this.#head, leftHand: null, rightHand: null };
-  readonly #fingered = { time: 0, head: this.#head, leftHand: null, rightHand: null, fingers: this.#fingers };
+  readonly #deviceBody = new Float32Array(deviceBodySize);
+  readonly #written: WrittenFrame = {
+    ...{ time: 0, head: this.#head, leftHand: null, rightHand: null },
+    ...{ fingers: undefined, deviceBody: undefined },
+  };
 
   /** From the next frame on; null: nothing. What is random follows from the seed and the frames' times. */
   impair(impairments: Impairments | null, seed = 0): void {
@@ -149,7 +160,11 @@ export class ImpairedTracking {
     const span = newer.time - older.time;
     const share = span > 0 ? Math.min(1, Math.max(0, (time - older.time) / span)) : 0;
     mixPose(older.head, newer.head, share, this.#head);
-    const written = older.hasFingers ? this.#fingered : this.#bare;
+    const written = this.#written;
+    written.fingers = older.hasFingers ? this.#fingers : undefined;
+    written.deviceBody = older.hasDeviceBody ? this.#deviceBody : undefined;
+    const after = newer.hasDeviceBody ? newer : older;
+    if (older.hasDeviceBody) mixDeviceBodies(older.deviceBody, after.deviceBody, share, this.#deviceBody);
     for (let i = 0; i < sides.length; i++) this.#delayHand(sides[i]!, older, newer, share, written);
     return written;
   }

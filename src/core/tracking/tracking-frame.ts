@@ -14,9 +14,9 @@ export interface TrackingFrame {
   readonly leftHand: TrackedPose | null;
   readonly rightHand: TrackedPose | null;
   /** Absent: of neither hand known. In memory of the tracker's own, which the next frame overwrites: copy what must stay. */
-  readonly fingers?: Fingers;
+  readonly fingers?: Fingers | undefined;
   /** Absent: the device reports no body in this frame. In memory of the tracker's own, too. */
-  readonly deviceBody?: DeviceBody;
+  readonly deviceBody?: DeviceBody | undefined;
   /** The device shows something of its own before the page: no hand is for the page, and a player who holds something goes on holding it. */
   readonly suspended?: true;
 }

@@ -4,6 +4,7 @@ import { closedHand, mixHandShape, relaxedHand } from '../../../src/core/body/ha
 import type { TrackedPose } from '../../../src/core/math/pose';
 import { angleBetween, fromAxisAngle, multiply } from '../../../src/core/math/quat';
 import { distance, vec3 } from '../../../src/core/math/vec3';
+import { deviceBodySize } from '../../../src/core/tracking/device-body';
 import { ImpairedTracking, type Impairments } from '../../../src/core/tracking/impaired-tracking';
 import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
 import { evenly, seed } from '../arbitraries';
@@ -88,6 +89,37 @@ describe('an added latency', () => {
     // A device without fingers says nothing of them, then as now.
     expect(tracking.follow(frameAt(3.25)).fingers).toBeDefined();
     expect(tracking.follow(frameAt(3.3)).fingers).toBeUndefined();
+  });
+});
+
+describe('a body of the device’s own', () => {
+  /** Every joint so many metres along each axis as it is late. */
+  const bodyAt = (time: number) => new Float32Array(deviceBodySize).fill(time);
+  const followBodies = (impairments: Impairments, times: readonly number[]) => {
+    const tracking = new ImpairedTracking();
+    tracking.impair(impairments);
+    // In memory that the device overwrites.
+    const deviceBody = new Float32Array(deviceBodySize);
+    return times.map((time) => {
+      deviceBody.set(bodyAt(time));
+      return structuredClone(tracking.follow({ ...frameAt(time), ...(time < 4 && { deviceBody }) }));
+    });
+  };
+
+  test('is as late as head and hands, and gone as late', () => {
+    const times = [3.8, 3.85, 3.9, 3.95, 4, 4.05, 4.1, 4.15];
+    const heard = followBodies({ latencyMs: 75 }, times).map(({ deviceBody }) => deviceBody?.[7] ?? null);
+    const late = [3.8, 3.8, 3.825, 3.875, 3.925, 3.95, null, null];
+    expect(heard).toEqual(late.map((time) => time && expect.closeTo(time, 5)));
+  });
+
+  test('is left as it is by noise and dropouts, which are of head and hands', () => {
+    const impairments = {
+      trackerNoise: { positionMm: 20, rotationDegrees: 5 },
+      dropouts: { perMinute: 60, seconds: 1 },
+    };
+    const times = [3, 3.1, 3.2];
+    expect(followBodies(impairments, times).map(({ deviceBody }) => deviceBody)).toEqual(times.map(bodyAt));
   });
 });
 
