@@ -24,8 +24,8 @@ export class SeenFrames {
     const rightHand = seenHand(frame.rightHand);
     const told = frame.deviceBody === undefined || isFiniteDeviceBody(frame.deviceBody);
     if (dated && told && leftHand === frame.leftHand && rightHand === frame.rightHand) return frame;
-    const { deviceBody, ...rest } = frame;
-    return { ...rest, ...(told && deviceBody && { deviceBody }), time: this.#time, leftHand, rightHand };
+    const { head, fingers, deviceBody } = frame;
+    return { time: this.#time, head, leftHand, rightHand, fingers, deviceBody: told ? deviceBody : undefined };
   }
 }
 

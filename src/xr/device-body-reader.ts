@@ -1,5 +1,5 @@
 import { reasonOf } from '../core/errors/reasons';
-import { type DeviceBody, deviceBodySize, deviceJointNames } from '../core/tracking/device-body';
+import { type DeviceBody, deviceBodySize, deviceJointNames, isFiniteDeviceBody } from '../core/tracking/device-body';
 
 /** The feature of a session by which a device reports its wearer's body (WebXR Body Tracking). */
 export const bodyFeature = 'body-tracking';
@@ -53,8 +53,7 @@ export class DeviceBodyReader {
     if (body !== this.#body) this.#learn(body);
     if (!this.#spaces) return false;
     if (!(frame.fillPoses ? this.#fillAtOnce(frame, space) : this.#fillOneByOne(frame, space))) return false;
-    for (let index = 0; index < deviceBodySize; index++) if (!Number.isFinite(this.#joints[index])) return false;
-    return true;
+    return isFiniteDeviceBody(this.#joints);
   }
 
   #learn(body: DeviceXRBody | null): void {
