@@ -1,6 +1,6 @@
 import * as v from 'valibot';
 import { checkedPlan, languagesOf, type StudyPlan, studyTitle } from '../src/core/study/plan';
-import type { PlanVersion, StudyInfo } from '../src/core/study/study-api';
+import { mostMotionBytes, type PlanVersion, type StudyInfo } from '../src/core/study/study-api';
 import { checkedRecord } from '../src/core/study/study-record';
 import {
   checked,
@@ -32,7 +32,7 @@ export interface StudyRoutesOptions extends StudyGuardOptions {
 }
 
 /** Longest bodies [bytes]. */
-export const bodyLimits = { json: 512 * 1024, motion: 16 * 2 ** 20 } as const;
+export const bodyLimits = { json: 512 * 1024, motion: mostMotionBytes } as const;
 export const mostRecordsAtOnce = 200;
 
 const prefix = '/api/studies';

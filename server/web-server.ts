@@ -40,7 +40,7 @@ const tlsHandshake = 0x16;
 /** A connection that has not said within this time [ms] what it wants is ended: TLS handshake and the head of a request alike. */
 export const handshakeMs = 5000;
 /** So long a request may take to arrive whole [ms]: 16 MB of motion at 1.1 Mbit/s. */
-const requestMs = 120_000;
+export const requestMs = 120_000;
 /** How often connections are looked at for that [ms]. */
 const checkMs = 1000;
 

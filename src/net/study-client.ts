@@ -48,13 +48,15 @@ interface Asked {
   readonly body?: unknown;
   /** Sent as it is instead of `body`. */
   readonly text?: string;
-  /** Milliseconds after which an answer no longer comes. */
-  readonly patienceMs?: number;
+  /** Milliseconds after which an answer no longer comes; null: it may take its time. */
+  readonly patienceMs?: number | null;
 }
 
 const usualPatienceMs = 15_000;
 /** While a person waits before an empty page. */
 const shortPatienceMs = 4000;
+/** While a recording is on its way: as long as the server gives a request to arrive. */
+export const motionPatienceMs = 120_000;
 
 /** `server`: the folder of its page, no slash at its end. */
 async function ask(
@@ -73,7 +75,7 @@ async function ask(
       },
       ...(content !== undefined && { body: content }),
       cache: 'no-store',
-      signal: AbortSignal.timeout(patienceMs),
+      ...(patienceMs !== null && { signal: AbortSignal.timeout(patienceMs) }),
     });
   } catch (error) {
     throw new ServerUnreachable(`the server does not answer (${reasonOf(error)})`);
@@ -148,6 +150,7 @@ export function createParticipantClient(server: string): ParticipantClient {
         method: 'PUT',
         token,
         text: recording,
+        patienceMs: motionPatienceMs,
       }),
     seat: (study, participant, token, trial) =>
       answer(`${of(study, participant)}/seat`, { method: 'POST', token, body: trial }),

@@ -1,5 +1,12 @@
 import { expect, test } from 'vitest';
-import { createParticipantClient, NoStudyServer, ServerRefusal, ServerUnreachable } from '../../src/net/study-client';
+import { requestMs } from '../../server/web-server';
+import {
+  createParticipantClient,
+  motionPatienceMs,
+  NoStudyServer,
+  ServerRefusal,
+  ServerUnreachable,
+} from '../../src/net/study-client';
 import { answeringHost, says } from './answering-host';
 
 const clientOf = async (status: number, body: string) =>
@@ -18,4 +25,8 @@ test('a server that is away for now is unreachable, with a proxy’s page as wit
   for (const body of ['<h1>Bad gateway</h1>', '{"error":"starting"}']) {
     await expect((await clientOf(502, body)).study('paper', 'P01')).rejects.toThrow(ServerUnreachable);
   }
+});
+
+test('a recording may be on its way for as long as the server lets a request arrive', () => {
+  expect(motionPatienceMs).toBe(requestMs);
 });

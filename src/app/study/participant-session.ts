@@ -7,6 +7,7 @@ import { begin, currentStep, type Progress, remainingSeconds } from '../../core/
 import { type Schedule, type StudyStep, scheduleFor } from '../../core/study/schedule';
 import type { Claim, NumberedCommand, PlayedTogether, SignedSeat } from '../../core/study/study-api';
 import { type ParticipantClient, ServerRefusal, ServerUnreachable } from '../../net/study-client';
+import { MotionSender } from './motion-sender';
 import { sendRecords } from './send-records';
 import { SessionStore, type Unsent } from './session-store';
 import type { KeptSession, StudyVault } from './study-vault';
@@ -51,8 +52,13 @@ export interface ParticipantSession {
   seat(trial: PlayedTogether): Promise<SignedSeat>;
   /** Tracked frames of a trial, kept until the server has them. */
   keepMotion(trial: string, recording: string): void;
-  /** Sends what is unsent, reports the progress and follows the experimenter's commands. Never rejects. */
+  /**
+   * Sends the records that are unsent, reports the progress and follows the experimenter's commands; then begins to send the recordings,
+   * for which no exchange waits. Never rejects.
+   */
   exchange(): Promise<void>;
+  /** Resolves when no recording is on its way to the server: it has them, or they are tried again with a later exchange. */
+  motionSent(): Promise<void>;
   /** Resolves when the device has stored everything so far, or has said that it cannot. */
   settled(): Promise<void>;
 }
@@ -111,6 +117,7 @@ class DeviceSession implements ParticipantSession {
   readonly schedule: Schedule;
   readonly #client: ParticipantClient;
   readonly #store: SessionStore;
+  readonly #motion: MotionSender;
   readonly #now: () => number;
   readonly #onChange: () => void;
   readonly #onCommand: () => void;
@@ -127,6 +134,12 @@ class DeviceSession implements ParticipantSession {
     this.schedule = scheduleFor(kept.plan, kept.participant);
     this.#client = client;
     this.#store = new SessionStore(kept, unsent, { vault, onChange });
+    const { study, participant, token } = kept;
+    this.#motion = new MotionSender(this.#store, {
+      send: (trial, recording) => client.sendMotion(study, participant, token, trial, recording),
+      onFault: (error) => this.#noteFault(error),
+      onChange,
+    });
     this.#now = now;
     this.#onChange = onChange;
     this.#onCommand = onCommand;
@@ -177,7 +190,7 @@ class DeviceSession implements ParticipantSession {
       unsaved,
       storageFault: fault,
       online: this.#online,
-      refusal: this.#refusal,
+      refusal: this.#refusal ?? this.#motion.refusal,
       lockedOut: this.#lockedOut,
     };
   }
@@ -208,6 +221,10 @@ class DeviceSession implements ParticipantSession {
       this.#exchanging = null;
     });
     return this.#exchanging;
+  }
+
+  motionSent(): Promise<void> {
+    return this.#motion.sent();
   }
 
   settled(): Promise<void> {
@@ -243,20 +260,17 @@ class DeviceSession implements ParticipantSession {
       // What a command changed is reported at once: the experimenter waits for it.
       if (this.progress !== this.#reported) await this.#tellServer();
       this.#online = true;
+      this.#motion.send();
     } catch (error) {
       this.#noteFault(error);
     }
     this.#onChange();
   }
 
-  /** Sends what is unsent, then where the participant is; before consent not even that. */
+  /** Sends the records that are unsent, then where the participant is; before consent not even that. */
   async #tellServer(): Promise<void> {
     const { study, participant, token } = this.#session;
     this.#refusal = await sendRecords(this.#store, (records) => this.#client.send(study, participant, token, records));
-    for (const { trial, recording } of this.#store.motion) {
-      await this.#client.sendMotion(study, participant, token, trial, recording);
-      await this.#store.acknowledgeMotion(trial);
-    }
     const { progress } = this;
     if (progress.motion === null) return;
     await this.#client.saveProgress(study, participant, token, progress);

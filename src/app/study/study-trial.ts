@@ -1,9 +1,10 @@
 import type { Calibration } from '../../core/body/calibration';
 import type { EstimatorName } from '../../core/estimation/pose-estimator';
 import type { Schedule, StudyStep } from '../../core/study/schedule';
+import { mostMotionBytes } from '../../core/study/study-api';
 import { TrialSeconds } from '../../core/study/trial-clock';
 import { createTrialLog, type FrameListener, type TrialLog, type TrialOutcome } from '../../core/study/trial-log';
-import { writeRecording } from '../../core/tracking/recording';
+import { cutRecording } from '../../core/tracking/recording';
 import type { TrackingFrame } from '../../core/tracking/tracking-frame';
 import type { TaskEnd, TaskRunner } from './task-runner';
 
@@ -59,7 +60,7 @@ const afterglow = 2.5;
 /** What participants agree to have kept is the motion of head and wrists. */
 const headAndWrists = ({ fingers: _, deviceBody: __, ...frame }: TrackingFrame): TrackingFrame => frame;
 
-/** Tracked frames kept per trial: some 14 MB, below what the server takes at once. */
+/** Tracked frames kept per trial while it is played: what memory may take. What is sent is bounded by its bytes. */
 const mostMotionFrames = 40_000;
 /** Eyes this far below where calibration found them are those of a person who sat down [m]. */
 const seatedDrop = 0.25;
@@ -83,6 +84,9 @@ class LoggedTrial implements PlayedTrial {
   readonly #step: PlayedStep;
   readonly #runner: TaskRunner;
   readonly #host: TrialHost;
+  /** As they are at the start signal. */
+  readonly #device: TrialOutcome['device'];
+  readonly #calibration: Calibration;
   readonly #log: TrialLog;
   /** null: none are kept. */
   readonly #frames: TrackingFrame[] | null;
@@ -99,7 +103,9 @@ class LoggedTrial implements PlayedTrial {
     this.#step = step;
     this.#runner = runner;
     this.#host = host;
-    this.#log = createTrialLog(host.device(), host.calibration());
+    this.#device = host.device();
+    this.#calibration = host.calibration();
+    this.#log = createTrialLog(this.#device, this.#calibration);
     this.#frames = motion ? [] : null;
     this.#seconds = new TrialSeconds(now);
     for (const name of runner.assists()) this.#log.assist(name);
@@ -182,10 +188,20 @@ class LoggedTrial implements PlayedTrial {
 
   #finish(end: TaskEnd): FinishedTrial {
     this.abort();
+    const recorded = this.#record();
+    const motionFrames = recorded?.frames ?? 0;
+    const outcome = this.#log.finish({ ...end, motionFrames, clock: this.#seconds.clock });
+    return { outcome, recording: recorded?.text ?? null };
+  }
+
+  /** What was tracked, as far as the server takes it at once; null: nothing. */
+  #record() {
     const frames = this.#frames ?? [];
-    const outcome = this.#log.finish({ ...end, motionFrames: frames.length, clock: this.#seconds.clock });
-    const { device, calibration } = outcome;
-    const recorded = { device: device.name, rateHz: device.refreshRateHz ?? 60, calibration, frames };
-    return { outcome, recording: frames.length > 0 ? writeRecording(recorded) : null };
+    if (frames.length === 0) return null;
+    const { name: device, refreshRateHz } = this.#device;
+    return cutRecording(
+      { device, rateHz: refreshRateHz ?? 60, calibration: this.#calibration, frames },
+      mostMotionBytes,
+    );
   }
 }

@@ -10,6 +10,9 @@ export type StudyCommand =
   | { readonly type: 'stop'; readonly by: 'experimenter'; readonly reason: string }
   | { readonly type: 'void-block'; readonly reason: string; readonly repeat: boolean };
 
+/** A recording of tracked frames that the server takes at once [bytes]. */
+export const mostMotionBytes = 16 * 2 ** 20;
+
 /** Proof that something was deleted; it holds nothing of what was. */
 export interface Receipt {
   readonly number: number;

@@ -58,7 +58,13 @@ const bends = (shape: HandShape | null): readonly number[] | null =>
 const bodyNumbers = (body: DeviceBody): readonly number[] => Array.from(body, (value) => Math.round(1e4 * value) / 1e4);
 
 /** The text of a recording file: JSON with one frame per line. */
-export function writeRecording({ device, rateHz, calibration, frames }: Replayable): string {
+export const writeRecording = (recording: Replayable): string => cutRecording(recording, Number.POSITIVE_INFINITY).text;
+
+/** The same with as many frames from the first on as fit into so many bytes of UTF-8, and how many they are; at least one. */
+export function cutRecording(
+  { device, rateHz, calibration, frames }: Replayable,
+  mostBytes: number,
+): { readonly text: string; readonly frames: number } {
   let hasBody = false;
   const pose = (tracked: TrackedPose | null) =>
     tracked && [
@@ -66,15 +72,28 @@ export function writeRecording({ device, rateHz, calibration, frames }: Replayab
       ...[tracked.orientation.x, tracked.orientation.y, tracked.orientation.z, tracked.orientation.w],
       tracked.tracking,
     ];
-  const lines = Array.from(frames, ({ time, head, leftHand, rightHand, fingers, deviceBody }) => {
-    hasBody ||= deviceBody !== undefined;
+  const line = ({ time, head, leftHand, rightHand, fingers, deviceBody }: TrackingFrame) => {
     const poses = [time, pose(head), pose(leftHand), pose(rightHand)];
     const bent = fingers || deviceBody ? [bends(fingers?.left ?? null), bends(fingers?.right ?? null)] : [];
     return JSON.stringify([...poses, ...bent, ...(deviceBody ? [bodyNumbers(deviceBody)] : [])]);
-  });
-  const bodyJoints = hasBody ? { bodyJoints: deviceJointNames } : {};
-  const header = JSON.stringify({ format, version, device, rateHz, calibration, ...bodyJoints });
-  return `${header.slice(0, -1)},"columns":"${columns}","frames":[\n${lines.join(',\n')}\n]}\n`;
+  };
+  const top = (joints: object) => {
+    const header = JSON.stringify({ format, version, device, rateHz, calibration, ...joints });
+    return `${header.slice(0, -1)},"columns":"${columns}","frames":[\n`;
+  };
+  const bodyJoints = { bodyJoints: deviceJointNames };
+  const end = '\n]}\n';
+  const lines: string[] = [];
+  // Of what stands here the device's name alone is more than ASCII: three bytes for each of its characters at most.
+  let bytes = top(bodyJoints).length + 2 * device.length + end.length;
+  for (const frame of frames) {
+    const written = line(frame);
+    bytes += written.length + ',\n'.length;
+    if (lines.length > 0 && bytes > mostBytes) break;
+    hasBody ||= frame.deviceBody !== undefined;
+    lines.push(written);
+  }
+  return { text: `${top(hasBody ? bodyJoints : {})}${lines.join(',\n')}${end}`, frames: lines.length };
 }
 
 /** The recording in the text of a file; throws a sentence that says which line or frame is wrong, and why. */

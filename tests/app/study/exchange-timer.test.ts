@@ -6,11 +6,13 @@ function timed() {
   const server = { online: true };
   const set: { readonly delayMs: number; readonly act: () => void; off: boolean }[] = [];
   const asked = { count: 0 };
+  const motion = { sent: Promise.resolve() };
   const timer = new ExchangeTimer(
     {
       async exchange() {
         asked.count += 1;
       },
+      motionSent: () => motion.sent,
       get safekeeping() {
         const { online } = server;
         return { unsent: 0, unsaved: 0, storageFault: null, online, refusal: null, lockedOut: false };
@@ -24,7 +26,14 @@ function timed() {
       };
     },
   );
-  return { timer, server, asked, set, standing: () => set.filter(({ off }) => !off).map(({ delayMs }) => delayMs) };
+  return {
+    timer,
+    server,
+    asked,
+    motion,
+    set,
+    standing: () => set.filter(({ off }) => !off).map(({ delayMs }) => delayMs),
+  };
 }
 
 test('a server that answers is asked every two seconds', async () => {
@@ -54,4 +63,19 @@ test('exchanges that overlap leave one time set, and its end exchanges again', a
   expect(standing()).toHaveLength(1);
   set.find(({ off }) => !off)?.act();
   expect(asked.count).toBe(4);
+});
+
+test('the next exchange does not wait for a recording that is on its way', async () => {
+  const { timer, motion, asked, set } = timed();
+  let sent: () => void = () => undefined;
+  motion.sent = new Promise((resolve) => {
+    sent = resolve;
+  });
+  const first = timer.exchange();
+  await Promise.resolve();
+  expect(asked.count).toBe(1);
+  set.find(({ off }) => !off)?.act();
+  expect(asked.count).toBe(2);
+  sent();
+  await first;
 });

@@ -1,7 +1,11 @@
 import { describe, expect, test } from 'vitest';
+import { playTrial } from '../../../src/app/study/study-trial';
+import { defaultCalibration } from '../../../src/core/body/calibration';
+import { mostMotionBytes } from '../../../src/core/study/study-api';
 import { recordingTime } from '../../../src/core/study/trial-clock';
 import { parseRecording } from '../../../src/core/tracking/recording';
 import { epoch, frameSeconds, playedRound } from './played-round';
+import { OneShotGame } from './study-browser';
 
 describe('what scores in a round', () => {
   test.each([
@@ -41,4 +45,35 @@ test('second 0 of a round is told by the clock of the device, and every pause wi
   const [pause] = outcome.clock?.pauses ?? [];
   expect(pause?.time).toBeCloseTo(9, 1);
   expect(pause?.seconds).toBeCloseTo(20, 1);
+});
+
+test('of a round that is longer than the server takes at once, the first frames are kept, and the outcome says how many', async () => {
+  const game = new OneShotGame();
+  await game.prepare({ seat: () => Promise.reject(), participant: 'P01', members: [], seconds: 600 });
+  const step = { kind: 'trial', id: 'archery/1/trial-1', embodiment: { estimator: 'ik' }, seconds: 600 };
+  const host = {
+    calibration: () => defaultCalibration,
+    device: () => ({ name: 'Test headset', refreshRateHz: 72, input: 'controllers' as const }),
+    estimator: () => 'ik' as const,
+    listenToFrames: () => undefined,
+  };
+  const options = { key: 'archery/1/trial-1@1.1', motion: true, seed: 3, now: () => epoch };
+  const trial = playTrial(step as Parameters<typeof playTrial>[0], game, host, options);
+  // As long as numbers of a headset are: single precision, written in double.
+  const a = Math.fround(-0.123_456_7);
+  const pose = { position: { x: a, y: a, z: a }, orientation: { x: a, y: a, z: a, w: Math.sqrt(1 - 3 * a * a) } };
+  const hand = { ...pose, tracking: 'tracked' as const };
+  const played = 39_000;
+  for (let index = 0; index < played; index++) {
+    const time = 345.6 + index * frameSeconds;
+    expect(trial.follow(time, { time, head: hand, leftHand: hand, rightHand: hand })).toBeNull();
+  }
+  game.hit(10);
+  const { outcome, recording } = (trial.follow(1000, null) ?? trial.conclude()) as NonNullable<
+    ReturnType<typeof trial.conclude>
+  >;
+  expect(outcome.motionFrames).toBeLessThan(played);
+  expect(outcome.motionFrames).toBeGreaterThan(30_000);
+  expect(Buffer.byteLength(recording as string)).toBeLessThanOrEqual(mostMotionBytes);
+  expect(parseRecording(recording as string).frames).toHaveLength(outcome.motionFrames);
 });

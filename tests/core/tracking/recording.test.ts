@@ -6,6 +6,7 @@ import { slerp } from '../../../src/core/math/quat';
 import { distance, lerp, vec3 } from '../../../src/core/math/vec3';
 import { deviceBodySize } from '../../../src/core/tracking/device-body';
 import {
+  cutRecording,
   parseRecording,
   type Recording,
   recordingDuration,
@@ -128,6 +129,17 @@ describe('a recording', () => {
     const text = writeRecording(some);
     expect(JSON.parse(text)).toMatchObject({ format: 'threepoint-recording', version: 3, rateHz: 72 });
     expect(text.trimEnd().split('\n').length).toBe(some.frames.length + 2);
+  });
+
+  test('that is cut begins as the whole does, in no more bytes than are allowed but for its first frame', () => {
+    fc.assert(
+      fc.property(recording, fc.integer({ min: 0, max: 8000 }), (whole, mostBytes) => {
+        const { text, frames } = cutRecording(whole, mostBytes);
+        expect(parseRecording(text).frames).toEqual(parseRecording(writeRecording(whole)).frames.slice(0, frames));
+        if (frames > 1) expect(new TextEncoder().encode(text).length).toBeLessThanOrEqual(mostBytes);
+      }),
+      { seed },
+    );
   });
 
   test('of version 1, which knew no fingers, and of version 2, which knew no bodies, still open', () => {
