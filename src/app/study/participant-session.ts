@@ -85,7 +85,6 @@ export function startSession(claim: Claim, study: string, participant: string): 
     plan: claim.plan,
     simulated: claim.simulated,
     progress: claim.progress ?? begin(schedule, claim.simulated),
-    commandsSeen: 0,
     preferredHand: null,
     calibration: null,
   };
@@ -200,7 +199,7 @@ class DeviceSession implements ParticipantSession {
   }
 
   apply(event: ProgressEvent): string | null {
-    return this.#applyAfter(event, this.#session.commandsSeen);
+    return this.#take(event);
   }
 
   codeNoted(): void {
@@ -231,18 +230,16 @@ class DeviceSession implements ParticipantSession {
     return this.#store.settled();
   }
 
-  /** `commandsSeen`: number of the newest of the experimenter's commands, which may be this event. */
-  #applyAfter(event: ProgressEvent, commandsSeen: number): string | null {
+  /** `command`: number of the experimenter's command that this event is; it has been followed then, even where it changes nothing else. */
+  #take(event: ProgressEvent, command?: number): string | null {
     const session = this.#session;
-    const commanded = commandsSeen !== session.commandsSeen;
-    const { progress, records, refusal } = advance(this.schedule, session.progress, event, this.#now());
-    if (refusal !== null && !commanded) return refusal;
-    if (progress === session.progress && records.length === 0 && !commanded) return null;
+    const before = command === undefined ? session.progress : { ...session.progress, commandsSeen: command };
+    const { progress, records, refusal } = advance(this.schedule, before, event, this.#now());
+    if (progress === session.progress && records.length === 0) return refusal;
     const hand = records.find((record) => record.kind === 'demographics')?.body.handedness;
     const next = {
       ...session,
       progress,
-      commandsSeen,
       ...(hand && { preferredHand: hand === 'left' ? ('left' as const) : ('right' as const) }),
       ...(event.type === 'calibrated' && { calibration: event.calibration }),
     };
@@ -255,7 +252,8 @@ class DeviceSession implements ParticipantSession {
     await this.#store.save();
     try {
       await this.#tellServer();
-      const { study, participant, token, commandsSeen } = this.#session;
+      const { study, participant, token } = this.#session;
+      const { commandsSeen = 0 } = this.progress;
       for (const command of await this.#client.commands(study, participant, token, commandsSeen)) this.#follow(command);
       // What a command changed is reported at once: the experimenter waits for it.
       if (this.progress !== this.#reported) await this.#tellServer();
@@ -285,12 +283,12 @@ class DeviceSession implements ParticipantSession {
     } else this.#store.noteFault(error);
   }
 
-  /** Each command is followed once, even across a reload. */
+  /** Each command is followed once, even across a reload or on another device. */
   #follow({ number, command }: NumberedCommand): void {
-    if (number <= this.#session.commandsSeen) return;
+    if (number <= (this.progress.commandsSeen ?? 0)) return;
     this.#onCommand();
     const { step, running, motion } = this.progress;
-    const refusal = this.#applyAfter(command, number);
+    const refusal = this.#take(command, number);
     // The experimenter learns from the records why a command changed nothing.
     if (refusal === null || motion === null) return;
     const where = `${step}${running ? ', running' : ''}`;

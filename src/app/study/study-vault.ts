@@ -15,8 +15,6 @@ export interface KeptSession {
   readonly plan: StudyPlan;
   readonly simulated: boolean;
   readonly progress: Progress;
-  /** Number of the experimenter's newest command that was followed. */
-  readonly commandsSeen: number;
   /** The hand they prefer, once told: the bow goes into the other one. */
   readonly preferredHand: Side | null;
   /** The newest measures of the body; null: not measured yet. */
@@ -54,6 +52,14 @@ export interface StudyVault {
   close(): void;
 }
 
+/** What earlier pages kept: the number of the newest command that was followed stood beside the progress. */
+type EarlierSession = KeptSession & { readonly commandsSeen?: number };
+
+function broughtUpToDate({ commandsSeen, ...session }: EarlierSession): KeptSession {
+  if (commandsSeen === undefined) return session;
+  return { ...session, progress: { commandsSeen, ...session.progress } };
+}
+
 const everyOf = (study: string, participant: string) =>
   IDBKeyRange.bound([study, participant, ''], [study, participant, '\uffff']);
 
@@ -67,7 +73,10 @@ export async function openStudyVault(name = 'threepoint-studies'): Promise<Study
     },
   });
   return {
-    session: async (study, participant) => (await database.get('sessions', [study, participant])) ?? null,
+    async session(study, participant) {
+      const kept = await database.get('sessions', [study, participant]);
+      return kept ? broughtUpToDate(kept) : null;
+    },
     async save(session, records) {
       // strict: resolved means written to the disk, not to its cache.
       const transaction = database.transaction(['sessions', 'records'], 'readwrite', { durability: 'strict' });

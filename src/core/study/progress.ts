@@ -37,6 +37,8 @@ const progressSchema = v.object({
   unwell: v.exactOptional(v.boolean()),
   /** The participant stopped, or was stopped, before the end; absent: not. */
   stopped: v.exactOptional(v.boolean()),
+  /** Number of the newest of the experimenter's commands that was followed; absent: none, or told by a program that did not say. */
+  commandsSeen: v.exactOptional(integerBetween(0, Number.MAX_SAFE_INTEGER)),
   /** Attempts at the present step, from 1. */
   attempt: integerBetween(1, 1000),
   /** Events recorded so far: their ids count on after a reload. */

@@ -23,10 +23,13 @@ afterEach(() => vi.restoreAllMocks());
 let vaults = 0;
 
 /** A device with a vault of its own and a clock that rises with every look. */
-async function device({ origin, invitation }: { readonly origin: string; readonly invitation: string }) {
+async function device(
+  { origin, invitation }: { readonly origin: string; readonly invitation: string },
+  { clock = 1e9 }: { readonly clock?: number } = {},
+) {
   vaults += 1;
   const name = `vault ${vaults}`;
-  let now = 1e9;
+  let now = clock;
   const client = createParticipantClient(origin);
   const options = (vault: StudyVault | null) => ({
     client,
@@ -225,6 +228,49 @@ const frame: TrackingFrame = {
   rightHand: null,
 };
 const recording = writeRecording({ device: 'Test headset', rateHz: 72, calibration, frames: [frame] });
+
+test('a device that takes over follows no command that another one has followed', async () => {
+  const server = await studyServer();
+  const { store, experimenter } = server;
+  const { first } = await device(server);
+  toTheFirstQuestion(first);
+  await experimenter.command('paper', 'P01', { type: 'void-block', reason: 'the phone rang', repeat: true });
+  await first.exchange();
+  expect(first.step.id).toBe('archery/1/calibration');
+  expect(first.apply({ type: 'calibrated', calibration })).toBeNull();
+  await first.exchange();
+  await experimenter.release('paper', 'P01');
+  const { first: second } = await device(server);
+  second.apply({ type: 'reload' });
+  expect(second.step.id).toBe('archery/1/tutorial');
+  await second.exchange();
+  expect(second.step.id).toBe('archery/1/tutorial');
+  const voided = store
+    .records('paper')
+    .filter((record) => record.kind === 'event' && record.body.type === 'void-block');
+  expect(voided).toHaveLength(1);
+  await experimenter.command('paper', 'P01', { type: 'pause' });
+  await second.exchange();
+  expect(second.progress.paused).toBe(true);
+});
+
+test('a session that an older page kept follows no command again', async () => {
+  const server = await studyServer();
+  const { first, vault, reload } = await device(server);
+  toTheFirstQuestion(first);
+  await server.experimenter.command('paper', 'P01', { type: 'pause' });
+  await first.exchange();
+  first.apply({ type: 'resume' });
+  await first.settled();
+  const kept = await vault.session('paper', 'P01');
+  const { commandsSeen, ...progress } = first.progress;
+  expect(commandsSeen).toBeGreaterThan(0);
+  // Where it stood before progress told it.
+  await vault.save({ ...kept, progress, commandsSeen } as never, []);
+  const second = await reload();
+  await second.exchange();
+  expect(second.progress.paused).toBe(false);
+});
 
 test('tracked frames reach the server with consent to them, and leave the device then', async () => {
   const server = await studyServer();

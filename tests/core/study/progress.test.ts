@@ -259,6 +259,12 @@ describe('a stored session', () => {
     );
   });
 
+  test('keeps the number of the newest command that was followed; an older program told none', () => {
+    const told = { ...begin(schedule), commandsSeen: 7 };
+    expect(resumed(schedule, JSON.stringify(told))).toEqual(told);
+    expect(resumed(schedule, JSON.stringify(begin(schedule))).commandsSeen).toBeUndefined();
+  });
+
   test.each<[string, object, string]>([
     ['of another participant', { participant: 'P03' }, 'participant: the stored session is of P03, not of P02'],
     ['of another study', { study: 'other' }, 'study: the stored session is of other, not of paper'],
