@@ -1,5 +1,5 @@
 import { createHash, randomBytes, timingSafeEqual } from 'node:crypto';
-import { type Progress, resumed } from '../src/core/study/progress';
+import { type Progress, resumed, sinceReport } from '../src/core/study/progress';
 import { scheduleFor } from '../src/core/study/schedule';
 import { StoreRefusal, type StudyDatabase } from './study-database';
 import type { StudyPlans } from './study-plans';
@@ -148,11 +148,12 @@ export class StudyPlaces {
     });
   }
 
-  progress(study: string, participant: string): Progress | null {
-    const { progress } = this.get(study, participant);
-    return progress === null
-      ? null
-      : resumed(scheduleFor(this.#plans.planFor(study, participant), participant), progress);
+  /** As it was reported; `now`: with what its clock ran since. */
+  progress(study: string, participant: string, now?: number): Progress | null {
+    const { progress, progress_at } = this.get(study, participant);
+    if (progress === null) return null;
+    const report = resumed(scheduleFor(this.#plans.planFor(study, participant), participant), progress);
+    return now === undefined ? report : sinceReport(report, now - (progress_at as number));
   }
 
   /** Forgets all that a place holds, inside a transaction. `withdrawn`: the participant stays out. */

@@ -216,7 +216,7 @@ function participantTable({ store, now, guard, seats, software }: TableOptions):
       const { simulated } = store.study(study);
       const plan = store.planFor(study, participant);
       // A session that another device began goes on where that one was.
-      const progress = store.progress(study, participant);
+      const progress = store.progress(study, participant, now());
       return json({ token, withdrawalCode, plan, simulated, progress }, 201);
     }),
     route('POST', `${own}/invitation`, 'experimenter', 0, ({ study, participant }) => {
@@ -248,7 +248,7 @@ function participantTable({ store, now, guard, seats, software }: TableOptions):
       return done;
     }),
     route('GET', `${own}/progress`, 'participant', 0, ({ study, participant }) =>
-      json({ progress: store.progress(study, participant) }),
+      json({ progress: store.progress(study, participant, now()) }),
     ),
     route('GET', `${own}/commands`, 'participant', 0, ({ study, participant, query }) => {
       const { after } = checked(sinceSchema, { after: Number(query.get('after') ?? 0) });

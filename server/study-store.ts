@@ -1,5 +1,5 @@
 import type { StudyPlan } from '../src/core/study/plan';
-import { currentStep, type Progress, remainingSeconds, resumed } from '../src/core/study/progress';
+import { currentStep, type Progress, remainingSeconds, resumed, sinceReport } from '../src/core/study/progress';
 import { scheduleFor } from '../src/core/study/schedule';
 import type { ParticipantState, PlanVersion, Receipt, StudyCommand, StudyInfo } from '../src/core/study/study-api';
 import type { StudyRecord } from '../src/core/study/study-record';
@@ -45,7 +45,8 @@ export interface StudyStore {
   /** A remark of the experimenter, as a record of the participant. */
   addRemark(study: string, participant: string, text: string, at: number): string;
   saveProgress(study: string, participant: string, progress: unknown, at: number): void;
-  progress(study: string, participant: string): Progress | null;
+  /** As it was reported; `now`: with what its clock ran since. */
+  progress(study: string, participant: string, now?: number): Progress | null;
   /** Returns the command's number. */
   addCommand(study: string, participant: string, command: StudyCommand, at: number): number;
   /** Commands after this number, oldest first. */
@@ -74,7 +75,8 @@ export interface StudyStore {
 /** A place as the experimenter sees it, at this time [s]. */
 function stateOf(row: PlaceRow, { plan, version }: PlanVersion, records: number, now: number): ParticipantState {
   const schedule = scheduleFor(plan, row.participant);
-  const progress = row.progress === null ? null : resumed(schedule, row.progress);
+  const reportedAt = row.progress_at ?? now;
+  const progress = row.progress === null ? null : sinceReport(resumed(schedule, row.progress), now - reportedAt);
   return {
     participant: row.participant,
     version,
@@ -90,7 +92,7 @@ function stateOf(row: PlaceRow, { plan, version }: PlanVersion, records: number,
       unwell: progress.unwell ?? false,
       stopped: progress.stopped ?? false,
       remainingSeconds: remainingSeconds(schedule, progress, now),
-      reportedAt: row.progress_at as number,
+      reportedAt,
     },
   };
 }
@@ -122,7 +124,7 @@ export function openStudyStore(file: string, { mostBytes = 16 * 2 ** 30 } = {}):
     records: (study, participant) => records.all(study, participant),
     addRemark: (study, participant, text, at) => records.addRemark(study, participant, text, at),
     saveProgress: (study, participant, progress, at) => places.saveProgress(study, participant, progress, at),
-    progress: (study, participant) => places.progress(study, participant),
+    progress: (study, participant, now) => places.progress(study, participant, now),
     addCommand: (study, participant, command, at) => commands.add(study, participant, command, at),
     commands: (study, participant, after) => commands.after(study, participant, after),
     storeMotion: (study, participant, trial, text, at) => motion.store(study, participant, trial, text, at),

@@ -8,7 +8,7 @@ import { describe, expect, onTestFinished, test } from 'vitest';
 import { exportZip } from '../../server/study-export';
 import { normalisedCode } from '../../server/study-schema';
 import { openStudyStore, type StudyStore } from '../../server/study-store';
-import { begin } from '../../src/core/study/progress';
+import { begin, reported } from '../../src/core/study/progress';
 import { scheduleFor } from '../../src/core/study/schedule';
 import type { StudyRecord } from '../../src/core/study/study-record';
 import { paperPlan, session } from '../core/study/studies';
@@ -129,6 +129,29 @@ describe('the store', () => {
     expect(first).toMatchObject({ participant: 'P01', claimed: false, session: null });
     expect(second).toMatchObject({ participant: 'P02', claimed: true, session: { step: 'consent', reportedAt: now } });
     expect(store.progress('paper', 'P02')?.step).toBe('consent');
+  });
+
+  test('counts the time of a step on by its own clock, whatever that of the device says', () => {
+    const { store } = withPaperStudy();
+    store.claim('paper', 'P01', now);
+    const one = session(scheduleFor(paperPlan(), 'P01'));
+    one.doUntil(({ kind }) => kind === 'rest');
+    one.wait(20);
+    // The device's clock is an hour ahead of the server's.
+    store.saveProgress('paper', 'P01', reported(one.progress, one.now), one.now - 3600);
+    const [state] = store.overview('paper', one.now - 3600 + 15);
+    expect(state?.session?.remainingSeconds).toBeCloseTo(25, 6);
+    expect(store.progress('paper', 'P01', one.now - 3600 + 15)?.elapsed).toBeCloseTo(35, 6);
+    expect(store.progress('paper', 'P01')?.elapsed).toBeCloseTo(20, 6);
+  });
+
+  test('still opens progress that tells since when the clock of the device runs, as older pages did', () => {
+    const { store } = withPaperStudy();
+    const one = session(scheduleFor(paperPlan(), 'P01'));
+    one.doUntil(({ kind }) => kind === 'rest');
+    store.saveProgress('paper', 'P01', one.progress, one.now);
+    expect(store.overview('paper', one.now + 15)[0]?.session?.remainingSeconds).toBeCloseTo(45, 6);
+    expect(store.progress('paper', 'P01', one.now + 15)).toEqual(one.progress);
   });
 
   test('hands on commands in order, each once', () => {

@@ -3,7 +3,7 @@ import type { Side } from '../../core/math/side';
 import { advance, type ProgressEvent } from '../../core/study/advance';
 import { type Phrases, phrasesOf } from '../../core/study/phrases/phrases';
 import { languagesOf } from '../../core/study/plan';
-import { begin, currentStep, type Progress, remainingSeconds } from '../../core/study/progress';
+import { begin, currentStep, type Progress, remainingSeconds, reported } from '../../core/study/progress';
 import { type Schedule, type StudyStep, scheduleFor } from '../../core/study/schedule';
 import type { Claim, NumberedCommand, PlayedTogether, SignedSeat } from '../../core/study/study-api';
 import { type ParticipantClient, ServerRefusal, ServerUnreachable } from '../../net/study-client';
@@ -271,7 +271,7 @@ class DeviceSession implements ParticipantSession {
     this.#refusal = await sendRecords(this.#store, (records) => this.#client.send(study, participant, token, records));
     const { progress } = this;
     if (progress.motion === null) return;
-    await this.#client.saveProgress(study, participant, token, progress);
+    await this.#client.saveProgress(study, participant, token, reported(progress, this.#now()));
     this.#reported = progress;
   }
 

@@ -1,7 +1,7 @@
 import type { Calibration } from '../body/calibration';
 import { checkedConsent } from './consent';
 import { checkedDemographics } from './demographics';
-import { currentStep, elapsedSeconds, type Progress, placeOf } from './progress';
+import { currentStep, elapsedSeconds, type Progress, placeOf, runningOn } from './progress';
 import { type Answer, checkedAnswers, checkedDraft } from './questionnaires';
 import type { Schedule, StudyStep } from './schedule';
 import { type Place, recordVersion, type StudyEvent, type StudyRecord } from './study-record';
@@ -33,7 +33,7 @@ export type ProgressEvent =
   /** The present block counts for nothing; repeat: it starts again, otherwise the next one follows. */
   | { readonly type: 'void-block'; readonly reason: string; readonly repeat: boolean }
   | { readonly type: 'remark'; readonly text: string }
-  /** The page was loaded again: a trial that ran is lost and is tried again; everything else goes on. */
+  /** The page was loaded again, here or on another device: a trial that ran is lost and is tried again; everything else goes on. */
   | { readonly type: 'reload' };
 
 /** What follows from an event. */
@@ -269,7 +269,7 @@ function submit(at: Moment): Advance | null {
 function tick(at: Moment): Advance {
   const { step, progress } = at;
   const over = step.kind === 'rest' && !progress.paused && elapsedSeconds(progress, at.now) >= step.seconds;
-  return over ? at.moveOn(progress) : at.taken(progress);
+  return over ? at.moveOn(progress) : at.taken(runningOn(progress, at.now));
 }
 
 function pause(at: Moment): Advance | null {
@@ -328,7 +328,9 @@ function remark(at: Moment, event: EventOf<'remark'>): Advance {
 
 function reload(at: Moment): Advance {
   const { step, place, progress } = at;
-  if (!isPlayed(step) || !progress.running || !place) return at.withEvent(progress, { type: 'reload' });
+  if (!isPlayed(step) || !progress.running || !place) {
+    return at.withEvent(runningOn(progress, at.now), { type: 'reload' });
+  }
   const again = { ...progress, running: false, since: null, elapsed: 0, attempt: progress.attempt + 1 };
   return at.withEvent(again, { type: 'interrupted', place, step: step.id });
 }

@@ -21,7 +21,7 @@ const progressSchema = v.object({
   /** Whether the step's clock has been started. */
   running: v.boolean(),
   paused: v.boolean(),
-  /** Since when the clock runs [s since 1970]; null: it stands. */
+  /** Since when the clock runs, by the clock of this device [s since 1970]; null: it stands, or this is a report. */
   since: v.nullable(moment),
   /** Seconds that it ran before. */
   elapsed: numberBetween(0, longestStep),
@@ -99,6 +99,25 @@ export function resumed(schedule: Schedule, json: string): Progress {
 /** Seconds on the clock of this step, pauses left out; a clock that was set back counts as standing. */
 export const elapsedSeconds = (progress: Progress, now: number): number =>
   Math.min(longestStep, progress.elapsed + (progress.since === null ? 0 : Math.max(0, now - progress.since)));
+
+/**
+ * What the server is told at `now` [s since 1970]: seconds that ran until now, and no moment, for clocks of devices and servers differ by
+ * minutes.
+ */
+export const reported = (progress: Progress, now: number): Progress =>
+  progress.since === null ? progress : { ...progress, elapsed: elapsedSeconds(progress, now), since: null };
+
+const runs = ({ running, paused }: Progress): boolean => running && !paused;
+
+/** A report so many seconds later: the clock ran on. */
+export const sinceReport = (report: Progress, seconds: number): Progress =>
+  runs(report) && report.since === null
+    ? { ...report, elapsed: Math.min(longestStep, report.elapsed + Math.max(0, seconds)) }
+    : report;
+
+/** The clock runs on by that of this device, which says `now` [s since 1970]: after a report, or where it was set back behind `since`. */
+export const runningOn = (progress: Progress, now: number): Progress =>
+  runs(progress) && (progress.since === null || progress.since > now) ? { ...progress, since: now } : progress;
 
 /** Seconds left of this step, at least 0; null: it has no time limit. */
 export function remainingSeconds(schedule: Schedule, progress: Progress, now: number): number | null {

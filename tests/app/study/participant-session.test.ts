@@ -65,7 +65,7 @@ async function device(
   };
 }
 
-function toTheFirstQuestion(session: ParticipantSession, motion = false): void {
+function toTheFirstRest(session: ParticipantSession, motion = false): void {
   const said = [
     session.apply({ type: 'consent', motion, version: plan.consent.version }),
     session.apply({ type: 'demographics', demographics: aWomanOf26 }),
@@ -76,6 +76,11 @@ function toTheFirstQuestion(session: ParticipantSession, motion = false): void {
     session.apply({ type: 'trial-finished', outcome: outcomeOf(40) }),
   ];
   expect(said).toEqual(said.map(() => null));
+  expect(session.step.kind).toBe('rest');
+}
+
+function toTheFirstQuestion(session: ParticipantSession, motion = false): void {
+  toTheFirstRest(session, motion);
   // A rest is over when enough ticks of this clock have passed.
   for (let i = 0; i < 200 && session.step.kind === 'rest'; i++) session.apply({ type: 'tick' });
   expect(session.step.kind).toBe('questionnaire');
@@ -252,6 +257,19 @@ test('a device that takes over follows no command that another one has followed'
   await experimenter.command('paper', 'P01', { type: 'pause' });
   await second.exchange();
   expect(second.progress.paused).toBe(true);
+});
+
+test.each([-600, 600])('a rest lasts as long on a second device whose clock is %d s ahead', async (ahead) => {
+  const server = await studyServer();
+  const { first } = await device(server);
+  toTheFirstRest(first);
+  await first.exchange();
+  await server.experimenter.release('paper', 'P01');
+  const { first: second } = await device(server, { clock: 1e9 + ahead });
+  second.apply({ type: 'reload' });
+  expect(second.step.kind).toBe('rest');
+  expect(second.remaining()).toBeGreaterThan(50);
+  expect(second.remaining()).toBeLessThan(60);
 });
 
 test('a session that an older page kept follows no command again', async () => {

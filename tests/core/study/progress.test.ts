@@ -1,7 +1,14 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import type { ProgressEvent } from '../../../src/core/study/advance';
-import { begin, elapsedSeconds, remainingSeconds, resumed } from '../../../src/core/study/progress';
+import {
+  begin,
+  elapsedSeconds,
+  remainingSeconds,
+  reported,
+  resumed,
+  sinceReport,
+} from '../../../src/core/study/progress';
 import { scheduleFor } from '../../../src/core/study/schedule';
 import { checkedRecord } from '../../../src/core/study/study-record';
 import { seed } from '../arbitraries';
@@ -114,6 +121,57 @@ describe('a rest', () => {
     one.wait(-7200);
     expect(elapsedSeconds(one.progress, one.now)).toBe(0);
     expect(remainingSeconds(schedule, one.progress, one.now)).toBe(60);
+  });
+
+  test.each(['tick', 'reload'] as const)('goes on from the next %s after the clock was set back', (type) => {
+    const one = resting();
+    one.wait(-7200);
+    one.tell({ type });
+    one.wait(59);
+    one.tell({ type: 'tick' });
+    expect(one.step.kind).toBe('rest');
+    one.wait(1);
+    one.tell({ type: 'tick' });
+    expect(one.step.kind).toBe('questionnaire');
+  });
+});
+
+describe('a rest that another device goes on with', () => {
+  const reportedAfter = (seconds: number) => {
+    const one = session(schedule);
+    one.doUntil(({ kind }) => kind === 'rest');
+    one.wait(seconds);
+    return { one, told: resumed(schedule, JSON.stringify(reported(one.progress, one.now))) };
+  };
+
+  test.each([-600, 0, 600])('takes what is left of its sixty seconds where that clock is %d s ahead', (ahead) => {
+    const { one, told } = reportedAfter(20);
+    one.progress = told;
+    one.wait(ahead);
+    one.tell({ type: 'reload' });
+    expect(one.step.kind).toBe('rest');
+    expect(remainingSeconds(schedule, one.progress, one.now)).toBeCloseTo(40, 6);
+    one.wait(40);
+    one.tell({ type: 'tick' });
+    expect(one.step.kind).toBe('questionnaire');
+  });
+
+  test('went on meanwhile', () => {
+    const { one, told } = reportedAfter(20);
+    one.progress = sinceReport(told, 15);
+    one.tell({ type: 'reload' });
+    expect(remainingSeconds(schedule, one.progress, one.now)).toBeCloseTo(25, 6);
+  });
+
+  test('but not in a pause', () => {
+    const { one } = reportedAfter(20);
+    one.tell({ type: 'pause' });
+    one.progress = sinceReport(reported(one.progress, one.now), 15);
+    one.tell({ type: 'reload' });
+    one.wait(300);
+    expect(remainingSeconds(schedule, one.progress, one.now)).toBeCloseTo(40, 6);
+    one.tell({ type: 'resume' });
+    expect(remainingSeconds(schedule, one.progress, one.now)).toBeCloseTo(40, 6);
   });
 });
 
