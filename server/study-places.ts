@@ -97,10 +97,13 @@ export class StudyPlaces {
     });
   }
 
+  /** Where nothing is recorded yet, the withdrawal code is void too: its owner may never have received it. */
   release(study: string, participant: string): void {
     this.get(study, participant);
     this.#database.run(
-      'UPDATE participants SET token_hash = NULL WHERE study = ? AND participant = ?',
+      `UPDATE participants SET token_hash = NULL,
+       withdrawal_hash = CASE WHEN progress IS NULL AND motion_consent IS NULL THEN NULL ELSE withdrawal_hash END
+       WHERE study = ? AND participant = ?`,
       ...[study, participant],
     );
   }

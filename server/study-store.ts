@@ -29,13 +29,13 @@ export interface StudyStore {
   invites(study: string, participant: string, code: string): boolean;
   /** Another invitation to the place, in an open study to all of them; the old one opens nothing any more. */
   reinvite(study: string, participant: string): void;
-  /** Gives a place that is free away. The withdrawal code comes with the first claim alone; null later. */
+  /** Gives a place that is free away. The withdrawal code comes with the first claim under which something is recorded; null later. */
   claim(
     study: string,
     participant: string,
     at: number,
   ): { readonly token: string; readonly withdrawalCode: string | null };
-  /** Another device may claim the place; the old token is void, what was recorded stays. */
+  /** Another device may claim the place; the old token is void, and so is the withdrawal code where nothing is recorded; what is stays. */
   release(study: string, participant: string): void;
   /** Whether this is the participant's token. */
   holds(study: string, participant: string, token: string): boolean;

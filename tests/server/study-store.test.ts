@@ -186,6 +186,18 @@ describe('a place in the study', () => {
     expect(store.withdraw('paper', first.withdrawalCode as string, now)?.participant).toBe('P01');
   });
 
+  test('of which nothing is recorded yet gives a withdrawal code again: the answer to the first claim may have been lost', () => {
+    const { store } = withPaperStudy();
+    const lost = store.claim('paper', 'P01', now).withdrawalCode as string;
+    store.release('paper', 'P01');
+    const { withdrawalCode } = store.claim('paper', 'P01', now);
+    expect(withdrawalCode).toMatch(/^(\w{4}-){3}\w{4}$/);
+    expect(withdrawalCode).not.toBe(lost);
+    store.storeRecords('paper', 'P01', completed(), now);
+    expect(store.withdraw('paper', lost, now)).toBeNull();
+    expect(store.withdraw('paper', withdrawalCode as string, now)?.participant).toBe('P01');
+  });
+
   test('keeps neither token nor code, only what proves them', () => {
     const { store, file } = withPaperStudy();
     const { token, withdrawalCode } = store.claim('paper', 'P01', now);

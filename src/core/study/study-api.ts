@@ -100,7 +100,7 @@ export interface SignedSeat {
 /** What a device is given that takes a participant's place. */
 export interface Claim {
   readonly token: string;
-  /** With the first claim alone; null later. */
+  /** With the first claim, and again while nothing was recorded; null later. */
   readonly withdrawalCode: string | null;
   readonly plan: StudyPlan;
   readonly simulated: boolean;
