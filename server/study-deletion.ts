@@ -30,6 +30,9 @@ export interface StudyDeletionParts {
   readonly commands: StudyCommands;
 }
 
+/** Told of whom something could not be deleted, and of what was thrown. */
+export type DeletionFault = (place: { readonly study: string; readonly participant: string }, error: unknown) => void;
+
 /** Deletes all that is stored of a participant, and keeps a receipt of it. */
 export class StudyDeletion {
   readonly #parts: StudyDeletionParts;
@@ -77,11 +80,16 @@ export class StudyDeletion {
     return participant === null ? null : this.delete(study, participant, 'withdrawn', at);
   }
 
-  /** Deletes what is past its retention date. */
-  deleteExpired(now: number): readonly Receipt[] {
-    return this.#parts.places
-      .expired(now)
-      .map(({ study, participant }) => this.delete(study, participant, 'retention', now));
+  /** Deletes what is past its retention date, of each participant by itself; tells `onFault` of whom that failed. */
+  deleteExpired(now: number, onFault: DeletionFault): readonly Receipt[] {
+    return this.#parts.places.expired(now).flatMap((place) => {
+      try {
+        return [this.delete(place.study, place.participant, 'retention', now)];
+      } catch (error) {
+        onFault(place, error);
+        return [];
+      }
+    });
   }
 
   receipts(study: string): readonly Receipt[] {

@@ -1,6 +1,7 @@
 import { randomBytes } from 'node:crypto';
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
+import { reasonOf } from '../src/core/errors/reasons';
 import { ConfigurationError } from './configuration';
 import type { WrongGuess } from './guess-limits';
 import type { Service } from './http/router';
@@ -70,9 +71,19 @@ export function openStudyService(options: StudyServiceOptions): StudyService {
     onFault: (error) =>
       log(`study, a fault: ${error instanceof Error ? (error.stack ?? error.message) : String(error)}`),
   });
+  const again = 'which is tried again within the hour';
+  // A full disk or a locked database must not end a server that others use.
   const expire = () => {
-    for (const { study, participant, records } of store.deleteExpired(now())) {
-      log(`study "${study}": ${participant} is past the retention date, ${records} records deleted`);
+    try {
+      const receipts = store.deleteExpired(now(), ({ study, participant }, error) => {
+        const failed = 'is past the retention date and could not be deleted';
+        log(`study "${study}": ${participant} ${failed}, ${again}: ${reasonOf(error)}`);
+      });
+      for (const { study, participant, records } of receipts) {
+        log(`study "${study}": ${participant} is past the retention date, ${records} records deleted`);
+      }
+    } catch (error) {
+      log(`study: who is past a retention date could not be read, ${again}: ${reasonOf(error)}`);
     }
   };
   expire();

@@ -6,7 +6,7 @@ import type { StudyRecord } from '../src/core/study/study-record';
 import type { Software } from './software';
 import { type NumberedCommand, StudyCommands } from './study-commands';
 import { StudyDatabase } from './study-database';
-import { StudyDeletion } from './study-deletion';
+import { type DeletionFault, StudyDeletion } from './study-deletion';
 import { type MotionFile, StudyMotion } from './study-motion';
 import { type PlaceRow, StudyPlaces } from './study-places';
 import { type AddOptions, StudyPlans } from './study-plans';
@@ -64,8 +64,8 @@ export interface StudyStore {
   deleteSimulated(study: string): void;
   /** Deletes everything of the participant who has this code; null: none has. */
   withdraw(study: string, code: string, at: number): Receipt | null;
-  /** Deletes what is past its retention date. */
-  deleteExpired(now: number): readonly Receipt[];
+  /** Deletes what is past its retention date; one participant of whom that fails (`onFault`) keeps no other one here. */
+  deleteExpired(now: number, onFault: DeletionFault): readonly Receipt[];
   receipts(study: string): readonly Receipt[];
   /** Resolves when everything until now is on the disk; those who ask while the disk is at work wait for one flush together. */
   flushed(): Promise<void>;
@@ -141,7 +141,7 @@ export function openStudyStore(file: string, { mostBytes = 16 * 2 ** 30 } = {}):
     deleteParticipant: (study, participant, reason, at) => deletion.delete(study, participant, reason, at),
     deleteSimulated: (study) => deletion.deleteSimulated(study),
     withdraw: (study, code, at) => deletion.withdraw(study, code, at),
-    deleteExpired: (now) => deletion.deleteExpired(now),
+    deleteExpired: (now, onFault) => deletion.deleteExpired(now, onFault),
     receipts: (study) => deletion.receipts(study),
     flushed: () => database.flushed(),
     close: () => database.close(),

@@ -1,8 +1,10 @@
 import { readFileSync, statSync } from 'node:fs';
 import { join } from 'node:path';
-import { expect, onTestFinished, test } from 'vitest';
+import { DatabaseSync } from '@photostructure/sqlite';
+import { expect, onTestFinished, test, vi } from 'vitest';
 import { createRouter, noPage } from '../../server/http/router';
 import { openStudyService } from '../../server/study-service';
+import { openStudyStore } from '../../server/study-store';
 import { serve } from '../../server/web-server';
 import { paperPlan } from '../core/study/studies';
 import { directoryWith } from '../temporary-directory';
@@ -65,4 +67,45 @@ test('what is past its retention date is deleted when the server starts, and the
   );
   onTestFinished(later.close);
   expect(lines).toEqual(['study "paper": P01 is past the retention date, 0 records deleted']);
+});
+
+/** A study that P01 and P02 have begun, in a directory of its own; the same database opened once more, to lock it. */
+function begunStudy() {
+  const directory = directoryWith();
+  const file = join(directory, 'studies.db');
+  const store = openStudyStore(file);
+  store.addStudy(paperPlan(), { simulated: false, at: 1e9 });
+  for (const participant of ['P01', 'P02']) store.claim('paper', participant, 1e9);
+  store.noteSoftware(testSoftware.exportedBy, 1e9);
+  store.close();
+  return { directory, file };
+}
+
+test('a database that refuses to delete what is past its retention date ends no server: it starts, says so, and deletes an hour later', async () => {
+  vi.useFakeTimers({ toFake: ['setInterval', 'clearInterval'] });
+  onTestFinished(() => {
+    vi.useRealTimers();
+  });
+  const { directory, file } = begunStudy();
+  const database = new DatabaseSync(file);
+  // What a full disk refuses of P01 alone.
+  database.exec(`CREATE TRIGGER full BEFORE UPDATE ON participants WHEN old.participant = 'P01'
+    BEGIN SELECT raise(ABORT, 'database or disk is full'); END`);
+  const lines: string[] = [];
+  const late = await served(
+    directory,
+    () => 1e9 + 366 * day,
+    (line) => lines.push(line),
+  );
+  onTestFinished(late.close);
+  const refused =
+    'study "paper": P01 is past the retention date and could not be deleted, which is tried again within the hour: database or disk is full';
+  expect(lines).toEqual([refused, 'study "paper": P02 is past the retention date, 0 records deleted']);
+  vi.advanceTimersByTime(3_600_000);
+  expect(lines.slice(2)).toEqual([refused]);
+  database.exec('DROP TRIGGER full');
+  database.close();
+  vi.advanceTimersByTime(3_600_000);
+  expect(lines.slice(3)).toEqual(['study "paper": P01 is past the retention date, 0 records deleted']);
+  expect((await fetch(`${late.origin}/api/studies/paper`)).status).toBe(200);
 });

@@ -269,10 +269,11 @@ describe('deleting', () => {
     const { store } = withPaperStudy();
     store.claim('paper', 'P01', now);
     store.storeRecords('paper', 'P01', completed(), now);
-    expect(store.deleteExpired(now + 365 * day)).toEqual([]);
-    expect(store.deleteExpired(now + 365 * day + 1)).toMatchObject([{ participant: 'P01', reason: 'retention' }]);
+    const expired = (at: number) => store.deleteExpired(at, (_, error) => expect(error).toBeNull());
+    expect(expired(now + 365 * day)).toEqual([]);
+    expect(expired(now + 365 * day + 1)).toMatchObject([{ participant: 'P01', reason: 'retention' }]);
     expect(store.records('paper')).toEqual([]);
-    expect(store.deleteExpired(now + 366 * day)).toEqual([]);
+    expect(expired(now + 366 * day)).toEqual([]);
   });
 });
 
