@@ -10,14 +10,21 @@ export interface MotionFile {
   readonly text: string;
 }
 
-/** Compressed bytes of tracked frames. */
-export const mostMotionPerParticipant = 256 * 2 ** 20;
-
-interface MotionRow {
+/** The same as it is stored. */
+export interface PackedMotion {
   readonly participant: string;
   readonly trial: string;
   readonly gzipped: Uint8Array;
 }
+
+export const unpacked = ({ participant, trial, gzipped }: PackedMotion): MotionFile => ({
+  participant,
+  trial,
+  text: gunzipSync(gzipped).toString(),
+});
+
+/** Compressed bytes of tracked frames. */
+export const mostMotionPerParticipant = 256 * 2 ** 20;
 
 /** The tracked frames of trials, of participants who consented to their being kept. */
 export class StudyMotion {
@@ -35,7 +42,7 @@ export class StudyMotion {
       if (this.#places.getPresent(study, participant).motion_consent !== 1) {
         throw new StoreRefusal('forbidden', `${participant} has not consented to motion recording`);
       }
-      const stored = this.#database.get<MotionRow>(
+      const stored = this.#database.get<PackedMotion>(
         'SELECT gzipped FROM motion WHERE study = ? AND participant = ? AND trial = ?',
         ...[study, participant, trial],
       );
@@ -58,19 +65,11 @@ export class StudyMotion {
   }
 
   /** Of one participant, or of all. */
-  all(study: string, participant?: string): readonly MotionFile[] {
-    const rows =
-      participant === undefined
-        ? this.#database.all<MotionRow>('SELECT * FROM motion WHERE study = ? ORDER BY participant, trial', study)
-        : this.#database.all<MotionRow>(
-            'SELECT * FROM motion WHERE study = ? AND participant = ? ORDER BY trial',
-            ...[study, participant],
-          );
-    return rows.map((row) => ({
-      participant: row.participant,
-      trial: row.trial,
-      text: gunzipSync(row.gzipped).toString(),
-    }));
+  all(study: string, participant?: string): readonly PackedMotion[] {
+    const packed = 'SELECT participant, trial, gzipped FROM motion WHERE study = ?';
+    return participant === undefined
+      ? this.#database.all(`${packed} ORDER BY participant, trial`, study)
+      : this.#database.all(`${packed} AND participant = ? ORDER BY trial`, study, participant);
   }
 
   /** Inside a transaction; returns how many files there were. */

@@ -1,3 +1,4 @@
+import type { IncomingMessage } from 'node:http';
 import * as v from 'valibot';
 import { checkedPlan, languagesOf, type StudyPlan, studyTitle } from '../src/core/study/plan';
 import { mostMotionBytes, type PlanVersion, type StudyInfo } from '../src/core/study/study-api';
@@ -15,7 +16,8 @@ import { type Answer, done, HttpError, json } from './http/answer';
 import { type Call, jsonOf, type Route, type Service } from './http/router';
 import type { Software } from './software';
 import { StoreRefusal } from './study-database';
-import { exportName, exportZip } from './study-export';
+import { exportName } from './study-export';
+import { createExporter } from './study-export-thread';
 import { createStudyGuard, type StudyAccess, type StudyGuard, type StudyGuardOptions } from './study-guard';
 import type { StudySeats } from './study-seats';
 import type { StudyStore } from './study-store';
@@ -109,9 +111,10 @@ interface TableOptions {
   readonly guard: StudyGuard;
   readonly seats: StudySeats;
   readonly software: Software;
+  readonly makeZip: ReturnType<typeof createExporter>;
 }
 
-type Exporting = Pick<TableOptions, 'store' | 'now' | 'software'>;
+type Exporting = Pick<TableOptions, 'store' | 'now' | 'software' | 'makeZip'>;
 
 /** The version of the plan that is asked for; undefined: the newest. */
 function versionIn(query: URLSearchParams): number | undefined {
@@ -135,30 +138,46 @@ interface ExportAsked {
   readonly version?: number | undefined;
 }
 
-function exportOf({ store, now, software: exportedBy }: Exporting, asked: ExportAsked): Answer {
-  const { study, participant } = asked;
-  const info = store.study(study, asked.version);
+/** Resolves with what the other side waits for. Nothing moves on its connection meanwhile, which would be ended as a silent one. */
+async function awaited<T>({ socket }: IncomingMessage, answer: Promise<T>): Promise<T> {
+  const silenceMs = socket.timeout ?? 0;
+  socket.setTimeout(0);
+  try {
+    return await answer;
+  } finally {
+    socket.setTimeout(silenceMs);
+  }
+}
+
+async function exportOf(
+  { store, now, software: exportedBy, makeZip }: Exporting,
+  { request }: StudyCall,
+  { study, participant, version: asked }: ExportAsked,
+): Promise<Answer> {
+  const info = store.study(study, asked);
   const plan = participant === undefined ? info.plan : store.planFor(study, participant);
   const { simulated, createdAt, retentionUntil, versions, version } = info;
   const software = { exportedBy, served: store.softwareSince(createdAt) };
-  const records = store.records(study, participant);
-  const motion = store.motion(study, participant);
-  const content = {
+  const about = {
     ...{ plan, simulated, at: now(), retentionUntil, software },
-    records: participant === undefined ? ofVersion(records, info) : records,
-    motion: participant === undefined ? ofVersion(motion, info) : motion,
     ...(participant === undefined && versions.length > 1 && { planVersion: version }),
   };
-  const name = exportName(content, participant);
+  const zip = makeZip(() => {
+    const records = store.records(study, participant);
+    const motion = store.motion(study, participant);
+    if (participant !== undefined) return { content: { ...about, records, motion }, participant };
+    return { content: { ...about, records: ofVersion(records, info), motion: ofVersion(motion, info) } };
+  });
+  const name = exportName(about, participant);
   return {
     status: 200,
     headers: { 'content-type': 'application/zip', 'content-disposition': `attachment; filename="${name}.zip"` },
-    body: exportZip(content, participant),
+    body: await awaited(request, zip),
   };
 }
 
 /** What is of one study, and of the server as a whole. */
-function studyTable({ store, now, guard, software }: TableOptions): Route<StudyAccess>[] {
+function studyTable({ store, now, guard, software, makeZip }: TableOptions): Route<StudyAccess>[] {
   return [
     route('GET', '', 'experimenter', 0, () =>
       json({
@@ -191,8 +210,8 @@ function studyTable({ store, now, guard, software }: TableOptions): Route<StudyA
       store.study(study);
       return json({ receipts: store.receipts(study) });
     }),
-    route('GET', '/:study/export', 'experimenter', 0, ({ study, query }) =>
-      exportOf({ store, now, software }, { study, version: versionIn(query) }),
+    route('GET', '/:study/export', 'experimenter', 0, (call) =>
+      exportOf({ store, now, software, makeZip }, call, { study: call.study, version: versionIn(call.query) }),
     ),
     route('GET', '/:study/participants', 'experimenter', 0, ({ study }) =>
       json({ participants: store.overview(study, now()) }),
@@ -205,7 +224,7 @@ function studyTable({ store, now, guard, software }: TableOptions): Route<StudyA
 }
 
 /** What is of one participant. */
-function participantTable({ store, now, guard, seats, software }: TableOptions): Route<StudyAccess>[] {
+function participantTable({ store, now, guard, seats, software, makeZip }: TableOptions): Route<StudyAccess>[] {
   const own = '/:study/participants/:participant';
   return [
     route('POST', `${own}/claim`, 'invited', bodyLimits.json, async (call) => {
@@ -278,8 +297,8 @@ function participantTable({ store, now, guard, seats, software }: TableOptions):
       // Let in without being this participant: an experimenter, who watches.
       return json(await seats.sign(plan, call.participant, trial, !guard.isParticipant(call)));
     }),
-    route('GET', `${own}/export`, 'participant', 0, ({ study, participant }) =>
-      exportOf({ store, now, software }, { study, participant }),
+    route('GET', `${own}/export`, 'participant', 0, (call) =>
+      exportOf({ store, now, software, makeZip }, call, { study: call.study, participant: call.participant }),
     ),
     route('DELETE', own, 'experimenter', 0, ({ study, participant }) =>
       json(store.deleteParticipant(study, participant, 'experimenter', now())),
@@ -307,7 +326,7 @@ export function createStudyRoutes({
 }: StudyRoutesOptions): Service<StudyAccess> {
   const guard = createStudyGuard(guarded);
   const { store } = guarded;
-  const table = { store, now, guard, seats, software };
+  const table = { store, now, guard, seats, software, makeZip: createExporter() };
   const routes = [...studyTable(table), ...participantTable(table)];
   return {
     routes: routes.map((one) => (one.method === 'GET' ? one : flushed(store, one))),

@@ -7,7 +7,7 @@ import type { Software } from './software';
 import { type NumberedCommand, StudyCommands } from './study-commands';
 import { StudyDatabase } from './study-database';
 import { type DeletionFault, StudyDeletion } from './study-deletion';
-import { type MotionFile, StudyMotion } from './study-motion';
+import { type PackedMotion, StudyMotion } from './study-motion';
 import { type PlaceRow, StudyPlaces } from './study-places';
 import { type AddOptions, StudyPlans } from './study-plans';
 import { StudyRecords } from './study-records';
@@ -53,7 +53,8 @@ export interface StudyStore {
   commands(study: string, participant: string, after: number): readonly NumberedCommand[];
   /** Keeps the tracked frames of a trial; refuses without consent to that. */
   storeMotion(study: string, participant: string, trial: string, text: string, at: number): void;
-  motion(study: string, participant?: string): readonly MotionFile[];
+  /** Recordings as they are stored. */
+  motion(study: string, participant?: string): readonly PackedMotion[];
   /** This software serves the studies from now on. */
   noteSoftware(software: Software, at: number): void;
   /** What has served the studies since this moment, the oldest first. */

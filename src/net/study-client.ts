@@ -91,15 +91,20 @@ async function ask(
   throw new ServerRefusal(response.status, sentence, typeof field === 'string' ? field : null);
 }
 
+/** The body of an answer; throws where it breaks off. */
+async function whole<T>(body: Promise<T>): Promise<T> {
+  try {
+    return await body;
+  } catch (error) {
+    throw new ServerUnreachable(`the answer broke off (${reasonOf(error)})`);
+  }
+}
+
 /** Asks a server for JSON. */
 const answersOf = (server: string) =>
   async function answer<T>(path: string, asked: Asked = {}): Promise<T> {
     const response = await ask(server, path, asked);
-    try {
-      return (response.status === 204 ? null : await response.json()) as T;
-    } catch (error) {
-      throw new ServerUnreachable(`the answer broke off (${reasonOf(error)})`);
-    }
+    return (response.status === 204 ? null : await whole(response.json())) as T;
   };
 
 const of = (study: string, participant?: string) =>
@@ -221,9 +226,11 @@ export function createExperimenterClient(token: string, server: string): Experim
     release: (study, participant) => answer(`${of(study, participant)}/release`, { method: 'POST', token }),
     reinvite: (study, participant) => answer(`${of(study, participant)}/invitation`, { method: 'POST', token }),
     async export(study, { participant, version } = {}) {
-      const response = await ask(server, `${of(study, participant)}/export${versionPart(version)}`, { token });
+      // Many recordings take minutes to be zipped, and to arrive.
+      const asked = { token, patienceMs: null };
+      const response = await ask(server, `${of(study, participant)}/export${versionPart(version)}`, asked);
       const name = /filename="([^"]+)"/.exec(response.headers.get('content-disposition') ?? '')?.[1];
-      return { name: name ?? `${study}.zip`, zip: await response.blob() };
+      return { name: name ?? `${study}.zip`, zip: await whole(response.blob()) };
     },
     delete: (study, participant) => answer(of(study, participant), { method: 'DELETE', token }),
     async addSimulated(study, { participant, records, progress }) {

@@ -43,6 +43,8 @@ export interface ServedOptions {
   readonly mostBytes?: number;
   /** The disk under the store: resolves when what was written is on it. */
   readonly flush?: () => Promise<void>;
+  /** How long nothing may move on a connection [ms]. */
+  readonly silenceMs?: number;
 }
 
 /** The studies' part of the server on a port of loopback, as if behind a proxy; with its store and what it logs. */
@@ -50,6 +52,7 @@ export async function servedStudies({
   experimenterToken = experimenter,
   mostBytes = 2 ** 30,
   flush,
+  silenceMs = 30_000,
 }: ServedOptions = {}) {
   const opened = openStudyStore(join(directoryWith(), 'studies.db'), { mostBytes });
   const shared = flush && new SharedFlush(flush);
@@ -66,7 +69,7 @@ export async function servedStudies({
     onWrongGuess: (guess) => wrongGuesses.push(guess),
     onFault: (error) => faults.push(error),
   });
-  const server = await serve(createRouter([service], noPage), { host: '127.0.0.1', port: 0 });
+  const server = await serve(createRouter([service], noPage), { host: '127.0.0.1', port: 0, silenceMs });
   onTestFinished(async () => {
     await server.close();
     store.close();

@@ -1,5 +1,6 @@
 import { strFromU8, unzipSync } from 'fflate';
 import { describe, expect, test } from 'vitest';
+import { unpacked } from '../../server/study-motion';
 import { bodyLimits } from '../../server/study-routes';
 import { begin } from '../../src/core/study/progress';
 import { scheduleFor } from '../../src/core/study/schedule';
@@ -140,7 +141,7 @@ describe('a participant', () => {
       ask('PUT', own('P01', '/motion?trial=archery/1/trial-1@1.1:trial'), { raw: { headers, body } });
     expect((await put('{}')).status).toBe(400);
     expect((await put(recording)).status).toBe(204);
-    expect(store.motion('paper', 'P01')).toEqual([
+    expect(store.motion('paper', 'P01').map(unpacked)).toEqual([
       { participant: 'P01', trial: 'archery/1/trial-1@1.1:trial', text: recording },
     ]);
   });
@@ -193,6 +194,37 @@ describe('the experimenter', () => {
     expect(json).toMatchObject({ number: 1, participant: 'P01', records: completed('P01').length });
     expect(await rows()).toBe(24);
     expect((await ask('GET', '/api/studies/paper/receipts', { token: experimenter })).json.receipts).toEqual([json]);
+  });
+
+  test('exports while others are served', async () => {
+    const { ask, store } = await servedPaperStudy();
+    for (const participant of ['P01', 'P02', 'P03']) {
+      store.storeRecords('paper', participant, completed(participant), now);
+    }
+    let ended = false;
+    const exported = ask('GET', '/api/studies/paper/export', { token: experimenter }).then((answer) => {
+      ended = true;
+      return answer;
+    });
+    for (let requests = 0; requests < 5; requests++) {
+      expect((await ask('GET', '/api/studies/paper')).status).toBe(200);
+      expect(ended).toBe(false);
+    }
+    const { status, body } = await exported;
+    expect(status).toBe(200);
+    expect(Object.keys(unzipSync(body))).toContain('paper/results/scores-compared.csv');
+  });
+
+  test('exports for longer than a connection may be silent, several at once', async () => {
+    const { ask, store } = await servedPaperStudy({}, { silenceMs: 100 });
+    const people = ['P01', 'P02'];
+    for (const participant of people) store.storeRecords('paper', participant, completed(participant), now);
+    const exported = people.map(async (participant) => {
+      const { status, body } = await ask('GET', own(participant, '/export'), { token: experimenter });
+      expect(status).toBe(200);
+      return JSON.parse(strFromU8(unzipSync(body)[`paper-${participant}/records.json`] as Uint8Array)).records;
+    });
+    expect(await Promise.all(exported)).toEqual(people.map((participant) => completed(participant)));
   });
 
   test('does not exist where no token was set', async () => {

@@ -6,6 +6,7 @@ import { DatabaseSync } from '@photostructure/sqlite';
 import { strFromU8, unzipSync } from 'fflate';
 import { describe, expect, onTestFinished, test } from 'vitest';
 import { exportZip } from '../../server/study-export';
+import { unpacked } from '../../server/study-motion';
 import { normalisedCode } from '../../server/study-schema';
 import { openStudyStore, type StudyStore } from '../../server/study-store';
 import { begin, reported } from '../../src/core/study/progress';
@@ -284,7 +285,9 @@ describe('tracked frames', () => {
     expect(() => store.storeMotion('paper', 'P01', 'archery/1/trial-1', '{}', now)).toThrow('motion recording');
     store.storeRecords('paper', 'P02', completed('P02', { motion: true }), now);
     store.storeMotion('paper', 'P02', 'archery/1/trial-1', '{"frames":[]}', now);
-    expect(store.motion('paper')).toEqual([{ participant: 'P02', trial: 'archery/1/trial-1', text: '{"frames":[]}' }]);
+    expect(store.motion('paper').map(unpacked)).toEqual([
+      { participant: 'P02', trial: 'archery/1/trial-1', text: '{"frames":[]}' },
+    ]);
     expect(store.deleteParticipant('paper', 'P02', 'experimenter', now).motionFiles).toBe(1);
     expect(store.motion('paper')).toEqual([]);
   });
@@ -301,7 +304,7 @@ describe('an export', () => {
   const contentOf = (store: StudyStore, participant?: string) => {
     const { plan, simulated, retentionUntil } = store.study('paper');
     const records = store.records('paper', participant);
-    const motion = store.motion('paper', participant);
+    const motion = store.motion('paper', participant).map(unpacked);
     return { plan, simulated, records, motion, at: now, retentionUntil, software: testSoftware };
   };
 

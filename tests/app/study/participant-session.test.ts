@@ -1,6 +1,7 @@
 import 'fake-indexeddb/auto';
 import { request as httpRequest } from 'node:http';
 import { afterEach, expect, test, vi } from 'vitest';
+import { unpacked } from '../../../server/study-motion';
 import {
   createParticipantSession,
   isLater,
@@ -300,8 +301,8 @@ test('tracked frames reach the server with consent to them, and leave the device
   expect(await vault.motion('paper', 'P01')).toHaveLength(1);
   await first.exchange();
   await first.motionSent();
-  expect(store.motion('paper').map(({ trial, text }) => [trial, text])).toEqual([
-    ['archery/1/trial-1@1.1:trial', recording],
+  expect(store.motion('paper').map(unpacked)).toEqual([
+    { participant: 'P01', trial: 'archery/1/trial-1@1.1:trial', text: recording },
   ]);
   expect(await vault.motion('paper', 'P01')).toEqual([]);
 });
