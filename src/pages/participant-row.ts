@@ -1,4 +1,5 @@
 import type { StudyPlan } from '../core/study/plan';
+import { clockText } from '../core/study/progress';
 import { type Schedule, scheduleFor } from '../core/study/schedule';
 import type { ParticipantState, StudyCommand } from '../core/study/study-api';
 import { studyLink } from '../net/study-link';
@@ -56,7 +57,7 @@ export function participantRow(
       several ? `${participant}, version ${state.version}` : participant,
       stateBadge(state, silence),
       session ? placeText(schedule, session.step) : '',
-      session?.remainingSeconds != null && session.kind !== 'end' ? clock(session.remainingSeconds) : '',
+      session?.remainingSeconds != null && session.kind !== 'end' ? clockText(session.remainingSeconds) : '',
       session ? heardText(silence) : '',
       String(records),
       actionsCell(state, actions),
@@ -65,8 +66,6 @@ export function participantRow(
     ],
   };
 }
-
-const clock = (seconds: number) => `${Math.floor(seconds / 60)}:${String(Math.ceil(seconds) % 60).padStart(2, '0')}`;
 
 const heardText = (seconds: number) =>
   seconds < 120

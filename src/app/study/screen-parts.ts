@@ -16,12 +16,6 @@ export interface ScreenParts {
   readonly actions: ScreenActions;
 }
 
-/** Minutes and seconds: "7:00". */
-export const clock = (seconds: number): string => {
-  const whole = Math.ceil(seconds);
-  return `${Math.floor(whole / 60)}:${String(whole % 60).padStart(2, '0')}`;
-};
-
 export const pauseButton = ({ phrases, actions }: ScreenParts): ScreenButton => ({
   id: 'pause',
   label: phrases.say('pause'),

@@ -1,6 +1,6 @@
 import type { Phrases } from '../../core/study/phrases/phrases';
 import { taskTitle } from '../../core/study/plan';
-import type { Progress } from '../../core/study/progress';
+import { clockText, type Progress } from '../../core/study/progress';
 import type { RemoteTerms } from '../../core/study/remote-setup';
 import type { StudyStep } from '../../core/study/schedule';
 import { inLanguage } from '../../core/study/words';
@@ -9,7 +9,7 @@ import { calibrationScreen } from './calibration-screens';
 import type { Safekeeping } from './participant-session';
 import { questionPart } from './question-screen';
 import { roundScreen } from './round-screens';
-import { askToStopButton, clock, pauseButton, type ScreenParts } from './screen-parts';
+import { askToStopButton, pauseButton, type ScreenParts } from './screen-parts';
 import { noStorage } from './session-store';
 import type { StudyScreen } from './study-screen';
 import type { ScreenActions, ShownSession, StudySituation } from './study-situation';
@@ -153,7 +153,7 @@ function restScreen(
     id: 'rest',
     title: parts.phrases.say('rest.title'),
     text: [parts.phrases.say('rest.text')],
-    figure: clock(left),
+    figure: clockText(left),
     part: seconds > 0 ? 1 - left / seconds : 1,
     buttons: [pauseButton(parts)],
   };
@@ -185,7 +185,7 @@ function questionScreen(parts: ScreenParts, situation: StudySituation): StudyScr
   const last = at === questions.length - 1;
   const left = session.remaining();
   const time =
-    left === null ? '' : left > 0 ? say('question.timeLeft', { time: clock(left) }) : say('question.takeTime');
+    left === null ? '' : left > 0 ? say('question.timeLeft', { time: clockText(left) }) : say('question.takeTime');
   const { question, hint } = questionPart(questions, at, situation, actions);
   return {
     ...base,

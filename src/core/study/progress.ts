@@ -125,6 +125,12 @@ export function remainingSeconds(schedule: Schedule, progress: Progress, now: nu
   return 'seconds' in step ? Math.max(0, step.seconds - elapsedSeconds(progress, now)) : null;
 }
 
+/** Seconds that are left as minutes and seconds, "7:00"; a second that has begun counts whole. */
+export function clockText(seconds: number): string {
+  const whole = Math.ceil(seconds);
+  return `${Math.floor(whole / 60)}:${String(whole % 60).padStart(2, '0')}`;
+}
+
 /** Where in the study the participant is; null outside of the tasks. */
 export function placeOf(schedule: Schedule, progress: Progress): Place | null {
   const step = currentStep(schedule, progress);

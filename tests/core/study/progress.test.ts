@@ -3,6 +3,7 @@ import { describe, expect, test } from 'vitest';
 import type { ProgressEvent } from '../../../src/core/study/advance';
 import {
   begin,
+  clockText,
   elapsedSeconds,
   remainingSeconds,
   reported,
@@ -134,6 +135,17 @@ describe('a rest', () => {
     one.tell({ type: 'tick' });
     expect(one.step.kind).toBe('questionnaire');
   });
+});
+
+test.each([
+  [0, '0:00'],
+  [0.2, '0:01'],
+  [59.5, '1:00'],
+  [60, '1:00'],
+  [60.2, '1:01'],
+  [119.99, '2:00'],
+])('%d seconds left read %s: a second that has begun counts whole', (seconds, said) => {
+  expect(clockText(seconds)).toBe(said);
 });
 
 describe('a rest that another device goes on with', () => {
