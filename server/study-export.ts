@@ -59,7 +59,7 @@ function readme(content: ExportContent, leftOut: readonly string[], whole: boole
     'software.json which version of the program served it, with the SHA-256 of its networks',
     'codebook.csv  every column of the other tables: meaning, unit, values, source',
     'The tables are tidy: UTF-8, a row per observation, an empty field where there is no value.',
-    'An apostrophe before text that begins like a formula was put there by us.',
+    'An apostrophe before what a spreadsheet would take for a formula was put there by us.',
     ...(whole
       ? [
           'results/      what the page of results computes: planned, then explored',

@@ -55,12 +55,14 @@ export interface Table {
  * an apostrophe of ours in front makes it text.
  */
 const formula = /^[\s\p{Cc}\p{Cf}]*[=+\-@|%＝＋－＠]|^[\t\r\n]/u;
+/** The same within a cell of ours: a spreadsheet that separates by semicolons or tabs sees no quotes around it and begins a cell there. */
+const innerFormula = /([;\t\r\n])(?=[\s\p{Cc}\p{Cf}"]*[=+\-@|%＝＋－＠])/gu;
 
 function cellText(cell: Cell): string {
   if (cell === null) return '';
   if (typeof cell === 'boolean') return cell ? 'TRUE' : 'FALSE';
   if (typeof cell === 'number') return Number.isFinite(cell) ? String(cell) : '';
-  const safe = formula.test(cell) ? `'${cell}` : cell;
+  const safe = `${formula.test(cell) ? "'" : ''}${cell.replace(innerFormula, "$1'")}`;
   return /[",\r\n]|^\s|\s$/.test(safe) ? `"${safe.replaceAll('"', '""')}"` : safe;
 }
 
