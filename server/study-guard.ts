@@ -34,8 +34,8 @@ export interface StudyGuard {
   isParticipant(concerned: Concerned): boolean;
   /** What can be told from a request's head; invitations and codes come with its body. */
   admit(access: StudyAccess, concerned: Concerned): Promise<void>;
-  /** Throws unless this is the invitation to the place, or the request an experimenter's. */
-  admitInvited(concerned: Concerned, invitation: string | undefined): Promise<void>;
+  /** Runs what the invitation to the place opens, or an experimenter; throws where this is neither. */
+  claiming<T>(concerned: Concerned, invitation: string | undefined, claim: () => T): Promise<T>;
   /** Runs what a withdrawal code opens; throws where it opens nothing. */
   withdrawing<T>(concerned: Omit<Concerned, 'participant'>, code: string, withdraw: () => T | null): Promise<T>;
 }
@@ -82,9 +82,21 @@ export function createStudyGuard(options: StudyGuardOptions): StudyGuard {
     return token !== null && store.holds(study, participant, token);
   };
 
-  async function spendOpenPlace(request: IncomingMessage): Promise<void> {
+  /** What takes a place of an open study. One that was not taken is given back to the address. */
+  async function spendingOpenPlace<T>(request: IncomingMessage, claim: () => T): Promise<T> {
+    const network = networkOf(addressOf(request));
+    await spendOpenPlace(network);
     try {
-      await openPlaces.consume(networkOf(addressOf(request)));
+      return claim();
+    } catch (error) {
+      await openPlaces.reward(network);
+      throw error;
+    }
+  }
+
+  async function spendOpenPlace(network: string): Promise<void> {
+    try {
+      await openPlaces.consume(network);
     } catch (error) {
       if (!(error instanceof RateLimiterRes)) throw error;
       const seconds = Math.ceil(error.msBeforeNext / 1000);
@@ -101,9 +113,9 @@ export function createStudyGuard(options: StudyGuardOptions): StudyGuard {
       if (await isExperimenter(concerned.request)) return;
       throw new HttpError(401, 'this needs the token of the participant or of an experimenter');
     },
-    async admitInvited({ request, study, participant }, invitation) {
+    async claiming({ request, study, participant }, invitation, claim) {
       const { plan } = store.study(study);
-      if (bearerOf(request) !== null && (await isExperimenter(request))) return;
+      if (bearerOf(request) !== null && (await isExperimenter(request))) return claim();
       if (invitation === undefined) {
         const why = `${participant} is taken by invitation: it stands in the link of the participant`;
         throw new HttpError(403, why, { field: 'invitation' });
@@ -113,7 +125,7 @@ export function createStudyGuard(options: StudyGuardOptions): StudyGuard {
         store.invites(study, participant, invitation),
       );
       if (!right) throw new HttpError(403, `this is not the invitation of ${participant}`, { field: 'invitation' });
-      if (plan.entry === 'open') await spendOpenPlace(request);
+      return plan.entry === 'open' ? spendingOpenPlace(request, claim) : claim();
     },
     async withdrawing({ request, study }, code, withdraw) {
       store.study(study);

@@ -230,8 +230,8 @@ function participantTable({ store, now, guard, seats, software, makeZip }: Table
     route('POST', `${own}/claim`, 'invited', bodyLimits.json, async (call) => {
       const { study, participant } = call;
       const { invitation } = checked(claimSchema, jsonOf(call));
-      await guard.admitInvited(call, invitation);
-      const { token, withdrawalCode } = store.claim(study, participant, now());
+      const claim = () => store.claim(study, participant, now());
+      const { token, withdrawalCode } = await guard.claiming(call, invitation, claim);
       const { simulated } = store.study(study);
       const plan = store.planFor(study, participant);
       // A session that another device began goes on where that one was.

@@ -116,6 +116,18 @@ describe('a place in a study', () => {
   });
 });
 
+test('a claim of a place that is taken already leaves the address its places of an open study', async () => {
+  const server = await servedPaperStudy({ entry: 'open' });
+  const from = '203.0.113.7';
+  const claimed = async (participant: string) =>
+    (await server.ask('POST', claimPath(participant), { json: server.invited(participant), from })).status;
+  expect(await claimed('P01')).toBe(201);
+  for (let again = 0; again < openPlacesPerHour; again++) expect(await claimed('P01')).toBe(409);
+  const others = people.slice(1, 1 + openPlacesPerHour);
+  const statuses = await Promise.all(others.map(claimed));
+  expect(statuses.toSorted()).toEqual([...others.slice(1).map(() => 201), 429]);
+});
+
 describe('3000 guesses from one address', () => {
   const from = '203.0.113.9';
   const guesses = Array.from({ length: 3000 }, (_, number) => number);
