@@ -26,7 +26,7 @@ export class MotionSender {
     this.#options = options;
   }
 
-  /** Why the server takes a recording not, however often it is sent; null: it has refused none. */
+  /** Why the server refuses a recording, however often it is sent; null: it refuses none. */
   get refusal(): string | null {
     return this.#refusal;
   }
