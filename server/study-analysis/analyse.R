@@ -10,6 +10,7 @@ absolute <- 1e-9 # Figures this small differ by rounding.
 confidence <- 0.95
 constant <- 10 * .Machine$double.eps # Differences this small against the values are rounding, as t.test has it.
 constant_squares <- 1e-20 # Of values about 0: squares this small are rounding.
+equal_within <- 1e-9 # Values this near to each other, against the largest that they are computed from, are equal but for rounding.
 eta_confidence <- 0.9 # Of a share of the variance, which has but one side.
 largest_f <- 700 # F times its degrees of freedom beyond which the export has no interval,
 largest_lambda <- 1400 # nor where an end of it lies beyond this noncentrality.
@@ -57,6 +58,18 @@ biserial <- function(r, error) {
   list(rank_biserial = r, low_rank_biserial = ends[1], high_rank_biserial = ends[2])
 }
 
+# How far apart the same figure may come out that is computed from these values.
+rounding_of <- function(values) equal_within * max(abs(values))
+
+# Which of the values each is, 1 the smallest: those that are equal but for rounding are one, which ties depend on. (R's own digits.rank is
+# there from R 4.1 on, and not for all tests.)
+levels_of <- function(values, rounding = rounding_of(values)) {
+  in_order <- order(values)
+  found <- integer(length(values))
+  found[in_order] <- cumsum(c(TRUE, diff(values[in_order]) > rounding))
+  found
+}
+
 paired_t <- function(first, second) {
   d <- first - second
   row <- list(difference = mean(d), df = length(d) - 1)
@@ -69,10 +82,12 @@ paired_t <- function(first, second) {
 
 signed_rank <- function(first, second) {
   d <- first - second
-  kept <- d[d != 0]
+  rounding <- rounding_of(c(first, second))
+  kept <- d[abs(d) > rounding]
   if (length(kept) == 0) return(list(v = 0, method_wilcoxon = "exact"))
-  exact <- length(kept) == length(d) && !any(duplicated(abs(kept))) && length(kept) < exact_below
-  test <- suppressWarnings(wilcox.test(d, exact = exact, correct = TRUE))
+  amounts <- levels_of(abs(kept), rounding)
+  exact <- length(kept) == length(d) && !any(duplicated(amounts)) && length(kept) < exact_below
+  test <- suppressWarnings(wilcox.test(sign(kept) * amounts, exact = exact, correct = TRUE))
   v <- unname(test$statistic)
   n <- length(kept)
   total <- n * (n + 1) / 2
@@ -96,8 +111,10 @@ welch_t <- function(first, second) {
 
 rank_sum <- function(first, second) {
   n <- c(length(first), length(second))
-  exact <- !any(duplicated(c(first, second))) && all(n < exact_below)
-  test <- suppressWarnings(wilcox.test(first, second, exact = exact, correct = TRUE))
+  levels <- levels_of(c(first, second))
+  exact <- !any(duplicated(levels)) && all(n < exact_below)
+  of_first <- seq_along(first)
+  test <- suppressWarnings(wilcox.test(levels[of_first], levels[-of_first], exact = exact, correct = TRUE))
   w <- unname(test$statistic)
   # With nothing but ties there is no p.
   p <- if (is.nan(test$p.value)) NA else test$p.value
@@ -244,6 +261,7 @@ variance_analysis <- function(values, cohort) {
 rank_test <- function(values, cohort) {
   k <- ncol(values)
   df <- (if (k > 1) k else nlevels(cohort)) - 1
+  values[] <- levels_of(values)
   # With nothing but ties there is nothing to rank.
   spread <- if (k > 1) any(apply(values, 1, function(row) length(unique(row)) > 1)) else length(unique(c(values))) > 1
   if (!spread) return(list(df_ranks = df))

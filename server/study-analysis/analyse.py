@@ -28,6 +28,8 @@ CONFIDENCE = 0.95
 CONSTANT = 10 * np.finfo(float).eps
 # Of values about 0: squares this small are rounding.
 CONSTANT_SQUARES = 1e-20
+# Values this near to each other, against the largest that they are computed from, are equal but for rounding.
+EQUAL_WITHIN = 1e-9
 # Of a share of the variance, which has but one side.
 ETA_CONFIDENCE = 0.9
 # F times its degrees of freedom beyond which the export has no interval, nor where an end of it lies beyond this noncentrality.
@@ -93,6 +95,22 @@ def biserial(r, error):
     return {"rank_biserial": r, "low_rank_biserial": math.tanh(z - half), "high_rank_biserial": math.tanh(z + half)}
 
 
+def rounding_of(values):
+    """How far apart the same figure may come out that is computed from these values."""
+    return EQUAL_WITHIN * np.max(np.abs(values))
+
+
+def levels_of(values, rounding=None):
+    """Which of the values each is, 1 the smallest: those that are equal but for rounding are one, which ties depend on."""
+    values = np.asarray(values, float)
+    if rounding is None:
+        rounding = rounding_of(values)
+    order = np.argsort(values)
+    levels = np.ones(len(values), int)
+    levels[order[1:]] += np.cumsum(np.diff(values[order]) > rounding)
+    return levels
+
+
 def paired_t(first, second):
     """The two-sided paired t-test of first − second; what does not vary has a difference alone."""
     differences = np.subtract(first, second)
@@ -110,15 +128,17 @@ def paired_t(first, second):
 def signed_rank(first, second):
     """Wilcoxon's signed-rank test as R's wilcox.test: zeros dropped, exact where nothing is tied and pairs are few."""
     differences = np.subtract(first, second)
-    nonzero = differences[differences != 0]
+    rounding = rounding_of([first, second])
+    nonzero = differences[np.abs(differences) > rounding]
     if len(nonzero) == 0:
         return {"v": 0, "method_wilcoxon": "exact"}
-    ranks = stats.rankdata(np.abs(nonzero))
+    amounts = levels_of(np.abs(nonzero), rounding)
+    ranks = stats.rankdata(amounts)
     v = ranks[nonzero > 0].sum()
     n = len(nonzero)
     total = n * (n + 1) / 2
     exact = n == len(differences) and len(set(ranks)) == n and n < EXACT_BELOW
-    test = stats.wilcoxon(nonzero, zero_method="wilcox", correction=True, method="exact" if exact else "asymptotic")
+    test = stats.wilcoxon(np.sign(nonzero) * amounts, zero_method="wilcox", correction=True, method="exact" if exact else "asymptotic")
     return {
         "v": v,
         "p_wilcoxon": test.pvalue,
@@ -150,13 +170,14 @@ def welch_t(first, second):
 def rank_sum(first, second):
     """Wilcoxon's rank-sum test (Mann and Whitney's) as R's wilcox.test; with nothing but ties there is no p."""
     m, n = len(first), len(second)
-    values = [*first, *second]
-    exact = len(set(values)) == len(values) and m < EXACT_BELOW and n < EXACT_BELOW
-    test = stats.mannwhitneyu(first, second, use_continuity=True, method="exact" if exact else "asymptotic")
+    levels = levels_of([*first, *second])
+    different = len(set(levels))
+    exact = different == len(levels) and m < EXACT_BELOW and n < EXACT_BELOW
+    test = stats.mannwhitneyu(levels[:m], levels[m:], use_continuity=True, method="exact" if exact else "asymptotic")
     w = test.statistic
     return {
         "w": w,
-        "p_rank_sum": test.pvalue if len(set(values)) > 1 else None,
+        "p_rank_sum": test.pvalue if different > 1 else None,
         "method_rank_sum": "exact" if exact else "normal",
         **biserial(2 * w / (m * n) - 1, math.sqrt((m + n + 1) / (3 * m * n))),
     }
@@ -370,13 +391,15 @@ def rank_test(cohorts):
     """Friedman's test of the conditions; with one condition, Kruskal and Wallis's of the cohorts."""
     values = np.array([row for members in cohorts for row in members], float)
     count, conditions = values.shape
+    values = levels_of(values.ravel()).reshape(values.shape)
     df = (conditions if conditions > 1 else len(cohorts)) - 1
     # With nothing but ties there is nothing to rank.
     spread = any(len(set(row)) > 1 for row in values) if conditions > 1 else len(set(values.flat)) > 1
     if not spread:
         return {"df_ranks": df}
     if conditions == 1:
-        chi = stats.kruskal(*[np.ravel(members) for members in cohorts]).statistic
+        ends = np.cumsum([len(members) for members in cohorts])
+        chi = stats.kruskal(*np.split(values.ravel(), ends[:-1])).statistic
         size = chi / (count - 1)
     else:
         # By its formula: SciPy's function wants three conditions.

@@ -35,6 +35,15 @@ export const designs: Readonly<Record<string, StudyPlan>> = {
     conditions: [late(0), late(120)],
     planned: ['archery/score', 'archery/archery/Q1', 'archery/nasa-tlx-raw/raw'],
   }),
+  // Means of three, and of two conditions: what is tied is so but for rounding.
+  'two conditions of three rounds in two cohorts': paperPlan({
+    tasks: [{ ...archery, repetitions: 3, questionnaire: ['archery', 'nasa-tlx-raw'] }],
+    id: 'rounds',
+    participants: 20,
+    cohorts: [...cohorts],
+    conditions: [late(0), late(120)],
+    planned: ['archery/score', 'archery/nasa-tlx-raw/raw'],
+  }),
   'one condition in two cohorts': paperPlan({
     ...archeryAlone,
     id: 'between',

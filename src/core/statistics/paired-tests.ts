@@ -1,7 +1,7 @@
 import normalCdf from '@stdlib/stats-base-dists-normal-cdf';
 import signedRankCdf from '@stdlib/stats-base-dists-signrank-cdf';
 import { noncentralityOfT } from './noncentral';
-import { cubesOf, rankBiserialInterval, ranksOf } from './ranks';
+import { cubesOf, rankBiserialInterval, ranksOf, roundingOf } from './ranks';
 import { constantBelow, type Interval, meanSummary, twoSidedP } from './summaries';
 
 /** The two-sided paired t-test of first − second. */
@@ -66,17 +66,19 @@ const exactBelow = 50;
 
 /**
  * As R's `wilcox.test(first, second, paired = TRUE)` up to R 4.5: exact for fewer than 50 pairs without ties and zeros, else the
- * normal approximation with continuity correction, zeros dropped (Wilcoxon's way). Throws where the lists differ in length or are
- * empty.
+ * normal approximation with continuity correction, zeros dropped (Wilcoxon's way). Differences that are equal but for rounding are tied
+ * (R: with `digits.rank`), and those that are rounding alone are zeros. Throws where the lists differ in length or are empty.
  */
 export function signedRankTest(first: readonly number[], second: readonly number[]): SignedRankTest {
   refuseUnpaired(first, second);
   const all = first.map((value, index) => value - (second[index] as number));
-  const differences = all.filter((difference) => difference !== 0);
+  // Of the values: where they are large, rounding shows in a small difference.
+  const rounding = roundingOf([...first, ...second]);
+  const differences = all.filter((difference) => Math.abs(difference) > rounding);
   const n = differences.length;
   const zeros = all.length - n;
   if (n === 0) return { n, zeros, v: 0, method: 'exact', p: null, effect: null, effectInterval: null };
-  const { ranks, ties } = ranksOf(differences.map(Math.abs));
+  const { ranks, ties } = ranksOf(differences.map(Math.abs), rounding);
   const v = ranks.reduce((sum, rank, index) => sum + ((differences[index] as number) > 0 ? rank : 0), 0);
   const total = (n * (n + 1)) / 2;
   const effect = (2 * v - total) / total;

@@ -43,13 +43,16 @@ function remembered(pOf: (statistic: number) => number): (statistic: number) => 
   };
 }
 
+/** The rounding of drawn values: they are ranked as they are, since the p of a statistic holds where nothing is tied. */
+const untied = 0;
+
 function pairedStudy({ effect, alpha }: PlannedTest, n: number, normal: () => number): () => Finding {
   const critical = criticalT(1 - alpha, n - 1);
   const pOf = remembered((v) => signedRankP(v, n));
   return () => {
     const differences = Array.from({ length: n }, () => effect + normal());
     const t = (meanOf(differences) / deviationOf(differences)) * Math.sqrt(n);
-    const { ranks } = ranksOf(differences.map(Math.abs));
+    const { ranks } = ranksOf(differences.map(Math.abs), untied);
     const v = ranks.reduce((sum, rank, index) => sum + ((differences[index] as number) > 0 ? rank : 0), 0);
     return { t: Math.abs(t) >= critical, wilcoxon: pOf(v) <= alpha };
   };
@@ -62,7 +65,7 @@ function betweenStudy({ effect, alpha }: PlannedTest, n: number, normal: () => n
     const second = Array.from({ length: n }, normal);
     const { error, df } = standardError([deviationOf(first) ** 2, deviationOf(second) ** 2], [n, n]);
     const t = (meanOf(first) - meanOf(second)) / error;
-    const { ranks } = ranksOf([...first, ...second]);
+    const { ranks } = ranksOf([...first, ...second], untied);
     const w = ranks.slice(0, n).reduce((sum, rank) => sum + rank, 0) - (n * (n + 1)) / 2;
     return { t: twoSidedP(t, df) <= alpha, wilcoxon: pOf(w) <= alpha };
   };

@@ -1,5 +1,5 @@
 import gammainc from '@stdlib/math-base-special-gammainc';
-import { cubesOf, ranksOf } from './ranks';
+import { cubesOf, ranksOf, roundingOf } from './ranks';
 
 /** A test of several conditions or cohorts by ranks, by its χ² approximation. */
 export interface RankAnalysis {
@@ -19,7 +19,8 @@ export function friedmanTest(participants: readonly (readonly number[])[]): Rank
   const n = participants.length;
   const k = participants[0]?.length ?? 0;
   if (n === 0 || k < 2) throw new Error("Friedman's test needs participants and two conditions");
-  const ranked = participants.map(ranksOf);
+  const rounding = roundingOf(participants.flat());
+  const ranked = participants.map((own) => ranksOf(own, rounding));
   const sums = Array.from({ length: k }, (_, at) => ranked.reduce((sum, { ranks }) => sum + (ranks[at] as number), 0));
   const spread = n * k * (k + 1) - ranked.reduce((sum, { ties }) => sum + cubesOf(ties), 0) / (k - 1);
   const df = k - 1;

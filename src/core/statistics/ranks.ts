@@ -2,17 +2,35 @@ import normalCdf from '@stdlib/stats-base-dists-normal-cdf';
 import { bisect } from '../math/bisection';
 import type { Interval } from './summaries';
 
-/** Ranks from 1, ties sharing their mean rank, and the sizes of the groups of ties. */
-export function ranksOf(values: readonly number[]): {
+/** Values that lie no further apart than this share of the largest that they are computed from are equal but for rounding. */
+const equalWithin = 1e-9;
+
+/**
+ * How far apart the same figure may come out, in the unit of the values that it is computed from: means of thirds, their differences and
+ * means of means differ in the last digits where they are equal.
+ */
+export const roundingOf = (values: readonly number[]): number =>
+  equalWithin * values.reduce((largest, value) => Math.max(largest, Math.abs(value)), 0);
+
+/**
+ * Ranks from 1, ties sharing their mean rank, and the sizes of the groups of ties. Values next to each other are tied where they are no
+ * further apart than `rounding`; 0: where they are equal to the last digit.
+ */
+export function ranksOf(
+  values: readonly number[],
+  rounding = roundingOf(values),
+): {
   readonly ranks: readonly number[];
   readonly ties: readonly number[];
 } {
   const order = values.map((_, index) => index).toSorted((a, b) => (values[a] as number) - (values[b] as number));
+  const gapBefore = (at: number) =>
+    (values[order[at] as number] as number) - (values[order[at - 1] as number] as number);
   const ranks = new Array<number>(values.length);
   const ties: number[] = [];
   for (let start = 0; start < order.length; ) {
     let end = start + 1;
-    while (end < order.length && values[order[end] as number] === values[order[start] as number]) end += 1;
+    while (end < order.length && gapBefore(end) <= rounding) end += 1;
     for (let i = start; i < end; i++) ranks[order[i] as number] = (start + 1 + end) / 2;
     if (end - start > 1) ties.push(end - start);
     start = end;

@@ -15,7 +15,8 @@ import { type Column, number, type Table, text } from './tidy-csv';
 const ids = 'small letters, digits, hyphens';
 const cohorts = 'plan.json: cohorts';
 const welch = "computed: Welch's t-test";
-const rankSums = "computed: Wilcoxon's rank-sum test (Mann and Whitney's), as R's wilcox.test up to 4.5";
+const rankSums =
+  "computed: Wilcoxon's rank-sum test (Mann and Whitney's), as R's wilcox.test up to 4.5, ties within rounding";
 const ofEach = (figure: string) => `computed: the ${figure} of what each of the cohort had`;
 
 function columnsOf(facts: TableFacts): readonly Column[] {

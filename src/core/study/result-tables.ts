@@ -98,7 +98,7 @@ export const familyText = ({ family }: Pick<TableFacts, 'family'>, alike: string
   `computed: Holm over the rows of this table with the same ${alike}${family === 'planned' ? '' : ' and unit'}`;
 
 const t = 'computed: paired t-test';
-const wilcoxon = "computed: Wilcoxon's signed-rank test, as R's wilcox.test up to 4.5";
+const wilcoxon = "computed: Wilcoxon's signed-rank test, as R's wilcox.test up to 4.5, ties within rounding";
 const underBoth = (figure: string) => `computed: the ${figure} of what each had under both conditions`;
 
 function comparisonColumns(facts: TableFacts): readonly Column[] {

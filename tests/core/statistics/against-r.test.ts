@@ -5,6 +5,7 @@ import { rankSumCounts, rankSumTest, welchTest } from '../../../src/core/statist
 import { noncentralF, noncentralT } from '../../../src/core/statistics/noncentral';
 import { pairedTTest, signedRankTest } from '../../../src/core/statistics/paired-tests';
 import { friedmanTest, kruskalWallisTest } from '../../../src/core/statistics/rank-analyses';
+import { meanOf } from '../../../src/core/statistics/summaries';
 import { evenly, seed } from '../arbitraries';
 import { expectAsInR } from './as-in-r';
 import {
@@ -17,6 +18,7 @@ import {
   plantGrowth,
   roundingTimes,
   sleep,
+  threeRounds,
 } from './data-sets';
 
 interface InR {
@@ -106,6 +108,19 @@ test("the effect of a paired test and its interval, by R's pt: sleep", () => {
   expect(dz).toBeCloseTo(-1.284558, 6);
   expectAsInR(dzInterval?.low, -2.11801651397707);
   expectAsInR(dzInterval?.high, -0.414627756380144);
+});
+
+test('signed ranks of means of three rounds, by differences of nine digits: wilcox.test(first, second, paired = TRUE, digits.rank = 9)', () => {
+  const { v, method, p, effect, effectInterval } = signedRankTest(
+    threeRounds.first.map(meanOf),
+    threeRounds.second.map(meanOf),
+  );
+  // Of the sums R says the same; of the means without `digits.rank` V = 34.5, p = 0.024.
+  expect([v, method]).toEqual([32, 'normal']);
+  expectAsInR(p, 0.0418305945652447);
+  expectAsInR(effect, 0.777777777777778);
+  expectAsInR(effectInterval?.low, 0.256270691399519);
+  expectAsInR(effectInterval?.high, 0.948571402369858);
 });
 
 test('an effect whose interval reaches further than can be computed has none, rather than one that is cut off', () => {

@@ -144,3 +144,27 @@ export const chicks = [
     [41, 122, 264],
   ],
 ];
+
+/** Not of R: points of eight people in three rounds of archery under two conditions, made up so that differences of means are tied. */
+export const threeRounds = {
+  first: [
+    [5, 5, 10],
+    [10, 10, 5],
+    [20, 15, 15],
+    [15, 20, 20],
+    [10, 10, 15],
+    [30, 20, 25],
+    [5, 10, 10],
+    [20, 20, 20],
+  ],
+  second: [
+    [5, 5, 5],
+    [10, 5, 5],
+    [15, 20, 20],
+    [15, 15, 20],
+    [10, 10, 10],
+    [20, 20, 25],
+    [10, 5, 5],
+    [20, 15, 20],
+  ],
+};

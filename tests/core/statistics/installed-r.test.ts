@@ -4,11 +4,12 @@ import { expect, test } from 'vitest';
 import { normalNumbers } from '../../../src/core/math/random';
 import { rankSumTest, welchTest } from '../../../src/core/statistics/between-tests';
 import { pairedTTest, signedRankTest } from '../../../src/core/statistics/paired-tests';
+import { meanOf } from '../../../src/core/statistics/summaries';
 import { installed } from '../../server/installed';
 import { expectAsInR } from './as-in-r';
-import { chicks, depression, insectSprays, ozone, placenta, plantGrowth, sleep } from './data-sets';
+import { chicks, depression, insectSprays, ozone, placenta, plantGrowth, sleep, threeRounds } from './data-sets';
 
-/** R's own figures of two samples, a line each: name and value, 17 digits. Intervals of d by uniroot over pt with a noncentrality. */
+/** R's own figures of two samples, a line each: name and value, 17 digits. Ranks by nine digits, from R 4.1 on. Intervals of d by uniroot over pt with a noncentrality. */
 const program = `
 said <- function(name, value) cat(name, sprintf("%.17g", value), "\\n")
 ends <- function(t, df, unit) vapply(c(0.975, 0.025), function(share) {
@@ -23,11 +24,11 @@ ds <- (mean(a) - mean(b)) / sqrt(((n[1] - 1) * var(a) + (n[2] - 1) * var(b)) / (
 unit <- sqrt(sum(1 / n))
 of_ds <- ends(ds / unit, sum(n) - 2, unit)
 said("ds", ds); said("lowDs", of_ds[1]); said("highDs", of_ds[2])
-ranks <- suppressWarnings(wilcox.test(a, b))
+ranks <- suppressWarnings(wilcox.test(a, b, digits.rank = 9))
 said("w", ranks$statistic); said("ranksP", ranks$p.value)
 if (n[1] == n[2]) {
   paired <- t.test(a, b, paired = TRUE)
-  signed <- suppressWarnings(wilcox.test(a, b, paired = TRUE))
+  signed <- suppressWarnings(wilcox.test(a, b, paired = TRUE, digits.rank = 9))
   of_dz <- ends(paired$statistic, n[1] - 1, 1 / sqrt(n[1]))
   said("pairedT", paired$statistic); said("pairedP", paired$p.value); said("v", signed$statistic); said("signedP", signed$p.value)
   said("dz", mean(a - b) / sd(a - b)); said("lowDz", of_dz[1]); said("highDz", of_dz[2])
@@ -48,6 +49,7 @@ const samples: readonly (readonly [string, readonly number[], readonly number[]]
   ['PlantGrowth, control and second treatment', plantGrowth[0] as number[], plantGrowth[2] as number[]],
   ['InsectSprays A and B', insectSprays[0] as number[], insectSprays[1] as number[]],
   ['ChickWeight after 20 days, diets 1 and 3', column(chicks[0] as number[][], 2), column(chicks[2] as number[][], 2)],
+  ['means of three rounds', threeRounds.first.map(meanOf), threeRounds.second.map(meanOf)],
   ['drawn, equal sizes', drawn(3, 30, 0.6), drawn(4, 30, 0)],
   ['drawn, unequal sizes', drawn(5, 12, -1), drawn(6, 49, 0)],
   ['drawn, more than are ranked exactly', drawn(7, 60, 0.4), drawn(8, 60, 0)],

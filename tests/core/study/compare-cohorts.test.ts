@@ -129,6 +129,26 @@ describe('two cohorts', () => {
     expect(compared).toMatchObject([{ rankSum: { w: 0.5, effect: 0 } }]);
   });
 
+  test('are tied where the means of their rounds add up to the same under all conditions', () => {
+    // 5/3 + 5/3 + 1 is 4/3 + 2 + 1.
+    const rounds = [
+      [
+        [1, 2, 2],
+        [1, 2, 2],
+        [1, 1, 1],
+      ],
+      [
+        [1, 1, 2],
+        [2, 2, 2],
+        [1, 1, 1],
+      ],
+    ];
+    const rows = [0, 1, 2].flatMap((round) => rowsOf(rounds.map((own) => own.map((under) => under[round] as number))));
+    const measures = answerMeasures(rows, (participant) => participant);
+    const compared = compareCohorts(measures, { cohorts: ['P01', 'P02'], conditions: ['c0', 'c1', 'c2'] });
+    expect(compared).toMatchObject([{ rankSum: { w: 0.5, effect: 0 } }]);
+  });
+
   test('of whom one has no one: means alone, no test', () => {
     const measures = answerMeasures(rowsOf([[3], [4]]), () => 'all');
     const compared = compareCohorts(measures, { cohorts: ['all', 'none'], conditions: ['c0'] });

@@ -7,11 +7,13 @@ import {
   nullAnswerModel,
 } from '../../../src/core/rehearsal/answer-model';
 import { randomSource } from '../../../src/core/rehearsal/random-source';
+import { signedRankTest } from '../../../src/core/statistics/paired-tests';
 import { ordersByGroup } from '../../../src/core/study/allocation';
 import type { AnswerRow } from '../../../src/core/study/answer-tables';
 import { compareAnswers, compareScores } from '../../../src/core/study/compare-conditions';
 import { questionnairesOf, type StudyTask } from '../../../src/core/study/plan';
 import type { TrialRow } from '../../../src/core/study/study-tables';
+import { threeRounds } from '../statistics/data-sets';
 import { paperPlan } from './studies';
 
 const conditions = ['learned', 'ik'] as const;
@@ -146,5 +148,32 @@ describe('what is compared', () => {
     expect(points.comparisons[0]?.first?.mean).toBe(17);
     expect(percent.comparisons[0]?.first?.mean).toBeCloseTo(85, 9);
     expect(percent.comparisons[0]?.test?.t).toBeCloseTo(points.comparisons[0]?.test?.t as number, 9);
+  });
+
+  test('has the signed ranks of its sums, though the means of three rounds are compared, in points and in per cent', () => {
+    const trial = (condition: string, rounds: readonly (readonly number[])[]) =>
+      rounds.flatMap((own, index) =>
+        own.map(
+          (score, round): TrialRow => ({
+            participant: `P${index + 1}`,
+            simulated: false,
+            task: 'archery',
+            condition,
+            repetition: round + 1,
+            group: index + 1,
+            score,
+            maximum: 70,
+            excluded: '',
+          }),
+        ),
+      );
+    const rows = [...trial('learned', threeRounds.first), ...trial('ik', threeRounds.second)];
+    const sums = (rounds: readonly (readonly number[])[]) =>
+      rounds.map((own) => own.reduce((sum, score) => sum + score, 0));
+    const right = signedRankTest(sums(threeRounds.first), sums(threeRounds.second));
+    expect(right).toMatchObject({ v: 32, method: 'normal' });
+    const { points, percent } = compareScores(rows, [...conditions]);
+    expect(points.comparisons[0]?.signedRank).toEqual(right);
+    expect(percent.comparisons[0]?.signedRank).toEqual(right);
   });
 });
