@@ -8,7 +8,6 @@
 relative <- 1e-6
 absolute <- 1e-9 # Figures this small differ by rounding.
 confidence <- 0.95
-constant <- 10 * .Machine$double.eps # Differences this small against the values are rounding, as t.test has it.
 constant_squares <- 1e-20 # Of values about 0: squares this small are rounding.
 equal_within <- 1e-9 # Values this near to each other, against the largest that they are computed from, are equal but for rounding.
 eta_confidence <- 0.9 # Of a share of the variance, which has but one side.
@@ -73,7 +72,7 @@ levels_of <- function(values, rounding = rounding_of(values)) {
 paired_t <- function(first, second) {
   d <- first - second
   row <- list(difference = mean(d), df = length(d) - 1)
-  if (length(d) < 2 || sd(d) / sqrt(length(d)) <= constant * abs(mean(d))) return(row)
+  if (length(d) < 2 || sd(d) / sqrt(length(d)) <= rounding_of(c(first, second))) return(row)
   test <- t.test(first, second, paired = TRUE, conf.level = confidence)
   t <- unname(test$statistic)
   c(row, list(low_difference = test$conf.int[1], high_difference = test$conf.int[2], t = t, p = test$p.value,
@@ -100,7 +99,7 @@ welch_t <- function(first, second) {
   row <- list(difference = mean(first) - mean(second))
   if (any(n < 2)) return(row)
   error <- sqrt(var(first) / n[1] + var(second) / n[2])
-  if (error <= constant * max(abs(mean(first)), abs(mean(second)))) return(row)
+  if (error <= rounding_of(c(first, second))) return(row)
   test <- t.test(first, second, conf.level = confidence)
   df <- sum(n) - 2
   ds <- row$difference / sqrt(((n[1] - 1) * var(first) + (n[2] - 1) * var(second)) / df)
@@ -140,15 +139,12 @@ of_place <- function(rows, place) {
   rows[rows$task == place$task & rows$questionnaire == place$questionnaire & rows$id == place$id, ]
 }
 
-# Means that are equal but for rounding are equal: ranks depend on it. A single value stays as it is.
-rounded_mean <- function(values) if (length(values) > 1) signif(mean(values), 12) else values
-
 # A measure: the mean of what counts, of each (who) under each condition, a matrix with NA where there is none; who is in which cohort.
 measure <- function(rows, value, conditions, cohort_of, said) {
   everyone <- sort(unique(rows$who))
   counted <- rows[rows$excluded == "" & rows[[value]] != "", ]
   who <- factor(counted$who, everyone)
-  means <- tapply(as.numeric(counted[[value]]), list(who, factor(counted$condition, conditions)), rounded_mean)
+  means <- tapply(as.numeric(counted[[value]]), list(who, factor(counted$condition, conditions)), mean)
   cohort <- unname(cohort_of[rows$participant[match(everyone, rows$who)]])
   c(said, list(means = means, cohort = cohort))
 }
@@ -184,7 +180,7 @@ compared <- function(measures, first, second) {
 between <- function(measures, first, second, conditions) {
   rows <- lapply(measures, function(one) {
     # NA where a condition is missing.
-    values <- apply(one$means[, conditions, drop = FALSE], 1, rounded_mean)
+    values <- apply(one$means[, conditions, drop = FALSE], 1, mean)
     of <- function(cohort) unname(values[!is.na(values) & one$cohort == cohort])
     a <- of(first)
     b <- of(second)

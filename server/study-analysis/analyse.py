@@ -24,8 +24,6 @@ RELATIVE = 1e-6
 # Figures this small differ by rounding.
 ABSOLUTE = 1e-9
 CONFIDENCE = 0.95
-# Differences this small against the values are rounding, as R has it.
-CONSTANT = 10 * np.finfo(float).eps
 # Of values about 0: squares this small are rounding.
 CONSTANT_SQUARES = 1e-20
 # Values this near to each other, against the largest that they are computed from, are equal but for rounding.
@@ -116,7 +114,7 @@ def paired_t(first, second):
     differences = np.subtract(first, second)
     count = len(differences)
     result = {"difference": differences.mean(), "df": count - 1}
-    if count < 2 or stats.sem(differences) <= CONSTANT * abs(differences.mean()):
+    if count < 2 or stats.sem(differences) <= rounding_of([first, second]):
         return result
     test = stats.ttest_rel(first, second)
     _, low, high = mean_interval(differences)
@@ -156,7 +154,7 @@ def welch_t(first, second):
         return result
     variances = np.var(first, ddof=1), np.var(second, ddof=1)
     error = math.sqrt(variances[0] / m + variances[1] / n)
-    if error <= CONSTANT * max(abs(np.mean(first)), abs(np.mean(second))):
+    if error <= rounding_of([*first, *second]):
         return result
     test = stats.ttest_ind(first, second, equal_var=False)
     low, high = test.confidence_interval(CONFIDENCE)
@@ -204,17 +202,12 @@ class Measure(NamedTuple):
     cohorts: dict
 
 
-def rounded_mean(values):
-    """Means that are equal but for rounding are equal: ranks depend on it. A single value stays as it is."""
-    return float(f"{np.mean(values):.12g}") if len(values) > 1 else values[0]
-
-
 def measure(rows, value, cohort_of, begun):
     values = {}
     for row in rows:
         if row["excluded"] == "" and row[value] != "":
             values.setdefault(row["who"], {}).setdefault(row["condition"], []).append(float(row[value]))
-    means = {who: {condition: rounded_mean(own) for condition, own in by.items()} for who, by in values.items()}
+    means = {who: {condition: np.mean(own) for condition, own in by.items()} for who, by in values.items()}
     cohorts = {}
     for row in rows:
         cohorts.setdefault(row["who"], cohort_of.get(row["participant"], ""))
@@ -300,7 +293,7 @@ def between(measures, first, second, conditions):
     rows = []
     for found in measures:
         values = complete_values(found, conditions)
-        a, b = ([rounded_mean(own) for w, own in values.items() if found.cohorts[w] == cohort] for cohort in (first, second))
+        a, b = ([np.mean(own) for w, own in values.items() if found.cohorts[w] == cohort] for cohort in (first, second))
         condition = conditions[0] if len(conditions) == 1 else ""
         row = {**found.begun, "first": first, "second": second, "condition": condition, "n_first": len(a), "n_second": len(b)}
         row |= sides(first=a, second=b)

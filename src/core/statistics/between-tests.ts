@@ -1,7 +1,7 @@
 import normalCdf from '@stdlib/stats-base-dists-normal-cdf';
 import { noncentralityOfT } from './noncentral';
 import { cubesOf, rankBiserialInterval, ranksOf } from './ranks';
-import { constantBelow, criticalT, deviationOf, type Interval, meanOf, twoSidedP } from './summaries';
+import { criticalT, deviationOf, type Interval, meanOf, roundingOf, twoSidedP } from './summaries';
 
 /** Welch's two-sided t-test of first − second, of different participants. */
 export interface WelchTest {
@@ -41,7 +41,7 @@ export function welchTest(first: readonly number[], second: readonly number[], c
   if (n[0] < 2 || n[1] < 2) return untested;
   const variances = [deviationOf(first) ** 2, deviationOf(second) ** 2] as const;
   const { error, df } = standardError(variances, n);
-  if (error <= constantBelow * Math.max(Math.abs(means[0]), Math.abs(means[1]))) return untested;
+  if (error <= roundingOf([...first, ...second])) return untested;
   const t = meanDifference / error;
   const half = criticalT(confidence, df) * error;
   const pooledDf = n[0] + n[1] - 2;

@@ -1,8 +1,8 @@
 import normalCdf from '@stdlib/stats-base-dists-normal-cdf';
 import signedRankCdf from '@stdlib/stats-base-dists-signrank-cdf';
 import { noncentralityOfT } from './noncentral';
-import { cubesOf, rankBiserialInterval, ranksOf, roundingOf } from './ranks';
-import { constantBelow, type Interval, meanSummary, twoSidedP } from './summaries';
+import { cubesOf, rankBiserialInterval, ranksOf } from './ranks';
+import { type Interval, meanSummary, roundingOf, twoSidedP } from './summaries';
 
 /** The two-sided paired t-test of first − second. */
 export interface PairedTTest {
@@ -11,7 +11,7 @@ export interface PairedTTest {
   readonly meanDifference: number;
   readonly interval: Interval | null;
   readonly df: number;
-  /** null where all differences are alike (or there are fewer than two): there is no spread to measure the mean with. */
+  /** null where all differences are alike but for rounding (or there are fewer than two): there is no spread to measure the mean with. */
   readonly t: number | null;
   readonly p: number | null;
   /** Cohen's d_z: mean of the differences in their standard deviations; null where t is. */
@@ -34,7 +34,7 @@ export function pairedTTest(first: readonly number[], second: readonly number[],
   const { n, mean, standardDeviation, interval } = meanSummary(differences, confidence);
   const df = n - 1;
   const error = (standardDeviation ?? 0) / Math.sqrt(n);
-  if (standardDeviation === null || error <= constantBelow * Math.abs(mean)) {
+  if (standardDeviation === null || error <= roundingOf([...first, ...second])) {
     return { n, meanDifference: mean, interval: null, df, t: null, p: null, dz: null, dzInterval: null };
   }
   const t = mean / error;

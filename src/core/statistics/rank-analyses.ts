@@ -1,5 +1,6 @@
 import gammainc from '@stdlib/math-base-special-gammainc';
-import { cubesOf, ranksOf, roundingOf } from './ranks';
+import { cubesOf, ranksOf } from './ranks';
+import { roundingOf } from './summaries';
 
 /** A test of several conditions or cohorts by ranks, by its χ² approximation. */
 export interface RankAnalysis {

@@ -1,16 +1,6 @@
 import normalCdf from '@stdlib/stats-base-dists-normal-cdf';
 import { bisect } from '../math/bisection';
-import type { Interval } from './summaries';
-
-/** Values that lie no further apart than this share of the largest that they are computed from are equal but for rounding. */
-const equalWithin = 1e-9;
-
-/**
- * How far apart the same figure may come out, in the unit of the values that it is computed from: means of thirds, their differences and
- * means of means differ in the last digits where they are equal.
- */
-export const roundingOf = (values: readonly number[]): number =>
-  equalWithin * values.reduce((largest, value) => Math.max(largest, Math.abs(value)), 0);
+import { type Interval, roundingOf } from './summaries';
 
 /**
  * Ranks from 1, ties sharing their mean rank, and the sizes of the groups of ties. Values next to each other are tied where they are no

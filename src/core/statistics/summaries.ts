@@ -20,13 +20,6 @@ export interface MeanSummary {
 /** The arithmetic mean; NaN for no values. */
 export const meanOf = (values: readonly number[]) => values.reduce((sum, value) => sum + value, 0) / values.length;
 
-/**
- * The mean, of several values to twelve digits: means that are equal but for rounding are equal then, which ranks depend on. NaN for
- * no values.
- */
-export const roundedMeanOf = (values: readonly number[]): number =>
-  values.length === 1 ? (values[0] as number) : Number(meanOf(values).toPrecision(12));
-
 /** Of the sample, divided by n − 1; NaN for fewer than two values. */
 export function deviationOf(values: readonly number[]): number {
   const mean = meanOf(values);
@@ -50,5 +43,12 @@ export function meanSummary(values: readonly number[], confidence = 0.95): MeanS
 /** Probability of a t at least this far from 0, to either side, with df degrees of freedom. */
 export const twoSidedP = (t: number, df: number): number => Math.min(1, 2 * tCdf(-Math.abs(t), df));
 
-/** Differences this small against the values themselves are rounding: R calls such data essentially constant, by this very bound. */
-export const constantBelow = 10 * Number.EPSILON;
+/** Values that lie no further apart than this share of the largest that they are computed from are equal but for rounding. */
+const equalWithin = 1e-9;
+
+/**
+ * How far apart the same figure may come out, in the unit of the values that it is computed from: means of thirds, their differences and
+ * means of means differ in the last digits where they are equal.
+ */
+export const roundingOf = (values: readonly number[]): number =>
+  equalWithin * values.reduce((largest, value) => Math.max(largest, Math.abs(value)), 0);

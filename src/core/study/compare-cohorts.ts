@@ -1,6 +1,6 @@
 import { type RankSumTest, rankSumTest, type WelchTest, welchTest } from '../statistics/between-tests';
 import { asFamily } from '../statistics/holm';
-import { type MeanSummary, meanSummary, roundedMeanOf } from '../statistics/summaries';
+import { type MeanSummary, meanOf, meanSummary } from '../statistics/summaries';
 import { completeValues } from './compare-all';
 import type { Measure, Measured } from './measures';
 
@@ -36,7 +36,7 @@ export function compareCohorts(
     const { of, asked, unit } = measure;
     const { complete } = completeValues(measure, conditions);
     const valuesIn = (cohort: string) =>
-      complete.flatMap(({ who, own }) => (measure.cohorts.get(who) === cohort ? [roundedMeanOf(own)] : []));
+      complete.flatMap(({ who, own }) => (measure.cohorts.get(who) === cohort ? [meanOf(own)] : []));
     const first = valuesIn(cohorts[0]);
     const second = valuesIn(cohorts[1]);
     const both = first.length > 0 && second.length > 0;

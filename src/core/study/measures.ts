@@ -1,4 +1,4 @@
-import { roundedMeanOf } from '../statistics/summaries';
+import { meanOf } from '../statistics/summaries';
 import type { AnswerRow } from './answer-tables';
 import { refuseMixture, type TrialRow } from './study-tables';
 
@@ -59,9 +59,7 @@ function measured(name: Measured, observations: readonly Observation[], cohortOf
   }
   return {
     ...name,
-    means: new Map(
-      [...values].map(([who, own]) => [who, new Map([...own].map(([id, of]) => [id, roundedMeanOf(of)]))]),
-    ),
+    means: new Map([...values].map(([who, own]) => [who, new Map([...own].map(([id, of]) => [id, meanOf(of)]))])),
     cohorts,
     voided: observations.flatMap(({ participant, condition, excluded }) =>
       excluded ? [{ participant, of: name.of, reason: excluded, condition }] : [],

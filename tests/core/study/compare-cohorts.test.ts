@@ -129,24 +129,19 @@ describe('two cohorts', () => {
     expect(compared).toMatchObject([{ rankSum: { w: 0.5, effect: 0 } }]);
   });
 
-  test('are tied where the means of their rounds add up to the same under all conditions', () => {
-    // 5/3 + 5/3 + 1 is 4/3 + 2 + 1.
-    const rounds = [
-      [
-        [1, 2, 2],
-        [1, 2, 2],
-        [1, 1, 1],
-      ],
-      [
-        [1, 1, 2],
-        [2, 2, 2],
-        [1, 1, 1],
-      ],
+  test('are alike where the means of their rounds add up to the same under all conditions: tied, and without a spread', () => {
+    // Of three rounds under three conditions: 5/3 + 5/3 + 1 is 4/3 + 2 + 1.
+    const sums = [
+      [5, 5, 3],
+      [4, 6, 3],
+      [3, 5, 5],
+      [4, 4, 5],
     ];
+    const rounds = sums.map((own) => own.map((sum) => [0, 1, 2].map((round) => Math.floor((sum + round) / 3))));
     const rows = [0, 1, 2].flatMap((round) => rowsOf(rounds.map((own) => own.map((under) => under[round] as number))));
-    const measures = answerMeasures(rows, (participant) => participant);
-    const compared = compareCohorts(measures, { cohorts: ['P01', 'P02'], conditions: ['c0', 'c1', 'c2'] });
-    expect(compared).toMatchObject([{ rankSum: { w: 0.5, effect: 0 } }]);
+    const measures = answerMeasures(rows, (participant) => (participant < 'P03' ? 'first' : 'others'));
+    const compared = compareCohorts(measures, { cohorts: ['first', 'others'], conditions: ['c0', 'c1', 'c2'] });
+    expect(compared).toMatchObject([{ rankSum: { w: 2, p: null, effect: 0 }, test: { t: null, p: null, ds: null } }]);
   });
 
   test('of whom one has no one: means alone, no test', () => {

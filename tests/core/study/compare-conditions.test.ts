@@ -150,6 +150,18 @@ describe('what is compared', () => {
     expect(percent.comparisons[0]?.test?.t).toBeCloseTo(points.comparisons[0]?.test?.t as number, 9);
   });
 
+  test('has no t where all differences of means of three answers are alike', () => {
+    const answers = [4, 5, 6, 8].flatMap((sum, index) =>
+      [0, 1, 2].flatMap((round) => {
+        const part = Math.floor((sum + round) / 3);
+        return [answer(`P${index}`, 'ik', part), answer(`P${index}`, 'learned', part + (round === 0 ? 1 : 0))];
+      }),
+    );
+    const [compared] = compareAnswers(answers, [...conditions]).comparisons;
+    expect(compared?.test?.meanDifference).toBeCloseTo(1 / 3, 9);
+    expect(compared?.test).toMatchObject({ t: null, p: null, dz: null, interval: null });
+  });
+
   test('has the signed ranks of its sums, though the means of three rounds are compared, in points and in per cent', () => {
     const trial = (condition: string, rounds: readonly (readonly number[])[]) =>
       rounds.flatMap((own, index) =>
