@@ -2,6 +2,7 @@
 
 import argparse
 import sys
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -31,14 +32,15 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--noticed", action="store_true", help="instead of all that: what minutes of wearing tell of a wrong calibration, of people held out in four groups, for docs/accuracy.md")
     parser.add_argument("--leave-one-out", action="store_true", help="instead of all that: each subject held out in turn, for docs/training.md")
     parser.add_argument("--groups", type=int, help="with --leave-one-out: so many groups in turn instead of one subject at a time")
-    parser.add_argument("--steps", type=int, default=TrainConfig.learned.steps, help="of our network's training (default: %(default)s)")
-    parser.add_argument("--quick", action="store_true", help="a twentieth of the training: does it run?")
+    parser.add_argument("--steps", type=int, help=f"of our network's training (default: {TrainConfig.learned.steps})")
+    parser.add_argument("--quick", action="store_true", help="a twentieth of the training, but for --steps: does it run?")
     return parser
 
 
-def _config() -> TrainConfig:
+def config_of(arguments: Sequence[str]) -> TrainConfig:
+    """The run that a command line asks for; one that contradicts itself ends the program with a sentence."""
     parser = _parser()
-    given = parser.parse_args()
+    given = parser.parse_args(arguments)
     config = TrainConfig(
         mocap=given.mocap,
         out=given.out,
@@ -61,16 +63,17 @@ def _config() -> TrainConfig:
         parser.error(f"no fold {', '.join(sorted(unknown))}; there are {', '.join(FOLDS)}")
     if config.groups is not None and config.groups < 2:
         parser.error(f"--groups {config.groups}: two groups at least, or there is no one to train on")
-    if given.steps < 1:
+    if given.steps is not None and given.steps < 1:
         parser.error(f"--steps {given.steps}: at least one")
     if unknown := set(config.networks) - set(TrainConfig.networks):
         parser.error(f"no network {', '.join(sorted(unknown))}; there are {', '.join(TrainConfig.networks)}")
-    config = replace(config, paper=replace(config.paper, seed=config.seed), learned=replace(config.learned, seed=config.seed, steps=given.steps))
-    return quick(config) if given.quick else config
+    config = quick(config) if given.quick else config
+    steps = config.learned.steps if given.steps is None else given.steps
+    return replace(config, paper=replace(config.paper, seed=config.seed), learned=replace(config.learned, seed=config.seed, steps=steps))
 
 
 if __name__ == "__main__":
     try:
-        pipeline.main(_config())
+        pipeline.main(config_of(sys.argv[1:]))
     except MocapError as error:
         sys.exit(str(error))

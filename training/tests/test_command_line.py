@@ -1,0 +1,23 @@
+"""Facts about what a command line of `npm run train` asks for."""
+
+import pytest
+from threepoint_training.__main__ import config_of
+from threepoint_training.training_config import TrainConfig
+
+pytestmark = pytest.mark.training
+
+
+def test_without_options_the_recipe_is_trained():
+    assert config_of(["--generated"]).learned == TrainConfig.learned
+
+
+def test_a_quick_run_takes_the_steps_that_it_is_given():
+    assert config_of(["--generated", "--quick", "--steps", "7"]).learned.steps == 7
+    assert config_of(["--generated", "--quick"]).learned.steps < TrainConfig.learned.steps
+    assert config_of(["--generated", "--steps", "7"]).learned.steps == 7
+
+
+def test_a_run_has_one_seed_for_both_networks():
+    for arguments in (["--quick"], []):
+        config = config_of(["--generated", "--seed", "3", *arguments])
+        assert (config.paper.seed, config.learned.seed) == (3, 3)
