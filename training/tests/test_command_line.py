@@ -8,7 +8,8 @@ pytestmark = pytest.mark.training
 
 
 def test_without_options_the_recipe_is_trained():
-    assert config_of(["--generated"]).learned == TrainConfig.learned
+    config = config_of(["--generated"])
+    assert (config.task, config.learned.steps) == ("train", TrainConfig.learned.steps)
 
 
 def test_a_quick_run_takes_the_steps_that_it_is_given():
@@ -21,3 +22,14 @@ def test_a_run_has_one_seed_for_both_networks():
     for arguments in (["--quick"], []):
         config = config_of(["--generated", "--seed", "3", *arguments])
         assert (config.paper.seed, config.learned.seed) == (3, 3)
+
+
+@pytest.mark.parametrize(("option", "task"), [("--ablate", "ablation"), ("--noticed", "noticed wear"), ("--leave-one-out", "leave one out")])
+def test_a_study_is_done_instead_of_the_training(option, task):
+    assert config_of(["--generated", option]).task == task
+
+
+def test_two_studies_at_once_are_refused_in_a_sentence(capsys):
+    with pytest.raises(SystemExit):
+        config_of(["--generated", "--noticed", "--ablate"])
+    assert "--noticed and --ablate are runs of their own: give one of them" in capsys.readouterr().err

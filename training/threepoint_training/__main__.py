@@ -9,7 +9,14 @@ from pathlib import Path
 from . import pipeline
 from .motion import MocapError
 from .splits import FOLDS
-from .training_config import TrainConfig, quick
+from .training_config import Task, TrainConfig, quick
+
+# Options that ask for something else instead of training the networks, and what that is.
+_TASKS: dict[str, tuple[Task, str]] = {
+    "--ablate": ("ablation", "the recipe without each of its parts, for docs/training.md"),
+    "--noticed": ("noticed wear", "what minutes of wearing tell of a wrong calibration, of people held out in four groups, for docs/accuracy.md"),
+    "--leave-one-out": ("leave one out", "each subject held out in turn, for docs/training.md"),
+}
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -28,9 +35,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--networks", default=",".join(TrainConfig.networks), help="train and replace only these (default: paper,learned)")
     parser.add_argument("--no-frame-random", action="store_true", help="leave the paper's own protocol out; what an earlier run found stays")
     parser.add_argument("--refit-kinematics", action="store_true", help="also fit the page's body proportions and IK anew")
-    parser.add_argument("--ablate", action="store_true", help="instead of all that: the recipe without each of its parts, for docs/training.md")
-    parser.add_argument("--noticed", action="store_true", help="instead of all that: what minutes of wearing tell of a wrong calibration, of people held out in four groups, for docs/accuracy.md")
-    parser.add_argument("--leave-one-out", action="store_true", help="instead of all that: each subject held out in turn, for docs/training.md")
+    for option, (_, what) in _TASKS.items():
+        parser.add_argument(option, dest="tasks", action="append_const", const=option, help=f"instead of all that: {what}")
     parser.add_argument("--groups", type=int, help="with --leave-one-out: so many groups in turn instead of one subject at a time")
     parser.add_argument("--steps", type=int, help=f"of our network's training (default: {TrainConfig.learned.steps})")
     parser.add_argument("--quick", action="store_true", help="a twentieth of the training, but for --steps: does it run?")
@@ -41,6 +47,9 @@ def config_of(arguments: Sequence[str]) -> TrainConfig:
     """The run that a command line asks for; one that contradicts itself ends the program with a sentence."""
     parser = _parser()
     given = parser.parse_args(arguments)
+    tasks = list(dict.fromkeys(given.tasks or []))
+    if len(tasks) > 1:
+        parser.error(f"{' and '.join(tasks)} are runs of their own: give one of them")
     config = TrainConfig(
         mocap=given.mocap,
         out=given.out,
@@ -51,9 +60,7 @@ def config_of(arguments: Sequence[str]) -> TrainConfig:
         folds=tuple(given.folds.split(",")),
         networks=tuple(given.networks.split(",")),
         frame_random=not given.no_frame_random,
-        ablate=given.ablate,
-        noticed=given.noticed,
-        leave_one_out=given.leave_one_out,
+        task=_TASKS[tasks[0]][0] if tasks else TrainConfig.task,
         groups=given.groups,
         refit_kinematics=given.refit_kinematics,
         seed=given.seed,

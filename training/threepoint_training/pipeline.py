@@ -3,6 +3,7 @@
 A run is seeded: the same data and options write the same weights on the same machine.
 """
 
+from collections.abc import Callable
 from pathlib import Path
 
 import torch
@@ -14,37 +15,36 @@ from .generated_motion import generate_corpus
 from .model import CorrectionNetwork
 from .prepared_corpus import PreparedCorpus
 from .splits import measured_only, trainable
-from .training_config import REPOSITORY, TrainConfig
+from .training_config import REPOSITORY, Task, TrainConfig
 from .training_report import LABELS, TrainingReport
 
 TITLE = "MPJPE: IK and ours after torso and arm fitting, the paper's network raw [cm]"
 
 
-def main(config: TrainConfig, console: Console | None = None) -> dict[str, dict[str, float]]:
-    """Trains, writes models and contracts, prints the table and returns it: MPJPE [cm] by row and joint."""
+Rows = dict[str, dict[str, float]]
+
+
+def main(config: TrainConfig, console: Console | None = None) -> Rows:
+    """Does the configured task, prints its table and returns it: MPJPE [cm] by row and column; nothing where the table has other figures."""
     torch.set_num_threads(config.threads)
     report = TrainingReport(console or Console())
     with report.progress:
-        run = TrainingRun(config, _corpus(config, report), report)
-        if config.ablate:
-            return _ablate(run)
-        if config.noticed:
-            rows = noticed_wear.main(run.corpus, config.learned, config.ik, report=report.console.print)
-            noticed_wear.write(rows)
-            return {}
-        if config.leave_one_out:
-            _leave_one_out(run)
-            return {}
-        folds = cross_validate.usable_folds(run)
-        if "cross-validation" in config.stages and folds:
-            cross_validate.main(run, folds)
-        if "all-subjects" in config.stages:
-            _train_on_all_subjects(run)
-    if "all-subjects" in config.stages and config.out.resolve() == (REPOSITORY / "public/models").resolve():
-        golden.main(golden.GoldenConfig(config.out))
-        training_page.write(config.out)
-    report.table(TITLE, ("mean", *LABELS), report.rows)
-    return report.rows
+        return _TASKS[config.task](TrainingRun(config, _corpus(config, report), report))
+
+
+def _train(run: TrainingRun) -> Rows:
+    """Networks without the people of each fold, then those of the page; with the page's, golden vectors and docs/training.md are renewed."""
+    config = run.config
+    folds = cross_validate.usable_folds(run)
+    if "cross-validation" in config.stages and folds:
+        cross_validate.main(run, folds)
+    if "all-subjects" in config.stages:
+        _train_on_all_subjects(run)
+        if config.out.resolve() == (REPOSITORY / "public/models").resolve():
+            golden.main(golden.GoldenConfig(config.out))
+            training_page.write(config.out)
+    run.report.table(TITLE, ("mean", *LABELS), run.report.rows)
+    return run.report.rows
 
 
 def _train_on_all_subjects(run: TrainingRun) -> None:
@@ -68,7 +68,8 @@ def _train_on_all_subjects(run: TrainingRun) -> None:
         fit_networks.write(run, name, network, provenance, Destination(run.config.out))
 
 
-def _ablate(run: TrainingRun) -> dict[str, dict[str, float]]:
+def _ablate(run: TrainingRun) -> Rows:
+    """Trains the recipe without each of its parts; renews the tables of parts and of the neutral pose in docs/training.md."""
     recipe, networks = run.config.learned, dict[tuple[str, ...], CorrectionNetwork]()
     done = 0
     with run.report.task("ablation", len(ablation.FOLDS) * len(ablation.variants(recipe))) as advance:
@@ -88,7 +89,14 @@ def _ablate(run: TrainingRun) -> dict[str, dict[str, float]]:
     return shown
 
 
-def _leave_one_out(run: TrainingRun) -> None:
+def _notice(run: TrainingRun) -> Rows:
+    """Judges what minutes of wearing tell of a wrong calibration; renews that table of docs/accuracy.md."""
+    noticed_wear.write(noticed_wear.main(run.corpus, run.config.learned, run.config.ik, report=run.report.console.print))
+    return {}
+
+
+def _leave_one_out(run: TrainingRun) -> Rows:
+    """Holds each person, or group of people, out in turn; renews three tables of docs/training.md and what a contract states of them."""
     cross_validate.warn_without_contract(run, "learned")
     done, groups = 0, run.config.groups
     with run.report.task("leave one out", None) as advance:
@@ -106,6 +114,15 @@ def _leave_one_out(run: TrainingRun) -> None:
         run.report.found(row, errors)
     cross_validate.keep_in_contract(run, "learned", {row: run.report.rows[row] for row in rows.errors})
     leave_one_out.write(rows)
+    return {}
+
+
+_TASKS: dict[Task, Callable[[TrainingRun], Rows]] = {
+    "train": _train,
+    "ablation": _ablate,
+    "noticed wear": _notice,
+    "leave one out": _leave_one_out,
+}
 
 
 def _corpus(config: TrainConfig, report: TrainingReport) -> PreparedCorpus:

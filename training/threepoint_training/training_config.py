@@ -2,10 +2,14 @@
 
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Literal
 
 from . import fit_ik, train_learned, train_paper
 
 REPOSITORY = Path(__file__).parents[2]
+
+# What a run does: trains the networks, or renews the tables of one study instead.
+Task = Literal["train", "ablation", "noticed wear", "leave one out"]
 
 
 @dataclass(frozen=True)
@@ -27,10 +31,8 @@ class TrainConfig:
     folds: tuple[str, ...] = ("A", "B")
     networks: tuple[str, ...] = ("paper", "learned")
     frame_random: bool = True
-    ablate: bool = False
-    noticed: bool = False
-    leave_one_out: bool = False
-    # People held out in turn are held out so many groups at a time; None: one by one.
+    task: Task = "train"
+    # Of the task "leave one out": people are held out in this many groups in turn; None: one person at a time.
     groups: int | None = None
     refit_kinematics: bool = False
     seed: int = 2460
