@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from threepoint_training import fit_ik, hand_tilt, quaternion
-from threepoint_training.augment import AugmentConfig, BodyParts, draw_batch
+from threepoint_training.augment import AugmentConfig, BalanceConfig, BodyParts, draw_batch
 from threepoint_training.chest_features import CHEST_FEATURES, chest_axes
 from threepoint_training.features import ARM_LENGTH, FEATURES, HANDS, IK_JOINTS, SEEN, frame_features, hand_positions
 from threepoint_training.generated_motion import generate_corpus
@@ -86,6 +86,17 @@ def test_people_who_were_asked_for_many_things_are_drawn_twice_as_often():
     arms = parts.person[parts.draw_arms(np.random.default_rng(4), 6000)[0]]
     for drawn in (trunks, arms):
         np.testing.assert_allclose(np.bincount(drawn) / 6000, [0.4, 0.4, 0.2], atol=0.03)
+
+
+def test_people_count_alike_at_an_exponent_of_one_however_much_there_is_of_them():
+    people = ("001", "002")
+    # The first person has half of the second's frames.
+    shorter = replace(CORPUS, clip_people=("004", *CORPUS.clip_people[1:]), people=CORPUS.people | {"004": CORPUS.people["001"]})
+    parts = BodyParts(shorter, people, BalanceConfig(people=1.0))
+    assert np.bincount(parts.person).tolist() == [80, 160]
+    drawn = (parts.draw_trunks(np.random.default_rng(3), 6000), parts.draw_arms(np.random.default_rng(4), 6000)[0])
+    for frames in drawn:
+        np.testing.assert_allclose(np.bincount(parts.person[frames]) / 6000, [0.5, 0.5], atol=0.03)
 
 
 def test_arms_of_others_move_the_hands_but_not_the_torso():

@@ -13,7 +13,6 @@ from .chest_features import chest_features
 from .complete_hands import carry_with_head, complete_hands
 from .features import frame_features
 from .prepare import EYES_FROM_HEAD_JOINT
-from .posture_balance import BalanceConfig, weights
 from .prepared_corpus import JOINTS, MIRRORED_JOINTS, PreparedCorpus
 from .residual import residual
 from .simulate_trackers import FOREARM_ERROR, TrackerConfig, measured_tilts
@@ -29,6 +28,15 @@ FRAME_RATE = 60
 
 _MIRROR = np.array([-1.0, 1.0, 1.0])
 _MIRROR_TURN = np.array([1.0, -1.0, -1.0, 1.0])
+
+
+@dataclass(frozen=True)
+class BalanceConfig:
+    """How often the frames of a person are drawn: each in proportion to (frames of that person)^-people, `varied` times as often where that person
+    was asked for many things (`splits.VARIED`)."""
+
+    people: float = 0.5
+    varied: float = 2.0
 
 
 @dataclass(frozen=True)
@@ -111,39 +119,20 @@ class BodyParts:
         self.forearm_shares = np.stack(
             [np.linalg.norm(arm[:, 2] - arm[:, 1], axis=-1) / length for arm, length in zip(self.arms, self.arm_length, strict=True)], axis=1
         )
-        trunks = weights(self.person, self._trunk_postures(), balance.trunk_clusters, (balance.people, balance.trunks), balance.seed)
+        # Of every frame for its trunk, then of every left and every right arm.
+        owners = (self.person, np.tile(self.person, 2))
         favour = np.where(np.isin(self.people, VARIED), balance.varied, 1.0)
-        owners, postures = np.tile(self.person, 2), np.concatenate([self._arm_postures(side) for side in (0, 1)])
-        arms = weights(owners, postures, balance.arm_clusters, (balance.people, balance.arms), balance.seed)
-        counts = (trunks * favour[self.person], arms * favour[owners])
-        self._cumulative_trunks, self._cumulative_arms = (np.cumsum(each) / each.sum() for each in counts)
+        weights = (np.bincount(each)[each].astype(np.float64) ** -balance.people * favour[each] for each in owners)
+        self._cumulative_trunks, self._cumulative_arms = (np.cumsum(each) / each.sum() for each in weights)
 
     def draw_trunks(self, random: np.random.Generator, count: int) -> NDArray[np.int64]:
-        """Frames, people and how their trunks are held balanced."""
+        """Frames [N] to take trunks from, people balanced."""
         return _drawn(self._cumulative_trunks, random, count)
 
     def draw_arms(self, random: np.random.Generator, count: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Frames and sides, people and how that arm is held balanced."""
+        """Frames [N] to take arms from, people balanced, and which arm of each [N]: 0 the left, 1 the right."""
         side, frame = np.divmod(_drawn(self._cumulative_arms, random, count), len(self.person))
         return frame, side
-
-    def _up(self) -> Array:
-        """The room's up in chest space [F, 3]."""
-        return quaternion.rotate(quaternion.conjugate(self.chest), np.broadcast_to([0.0, 1.0, 0.0], (len(self.chest), 3)))
-
-    def _trunk_postures(self) -> Array:
-        """Up, the gaze and the hips in chest space and the head's height [F, 10], of like weight; lengths in eye heights."""
-        into_chest = quaternion.conjugate(self.chest)
-        gaze = quaternion.rotate(quaternion.multiply(into_chest, self.head_turn), np.broadcast_to([0.0, 0.0, -1.0], (len(self.chest), 3)))
-        joint = {name: self.torso[:, index] / self.sizes[:, :1] for index, name in enumerate(TORSO)}
-        hips = quaternion.rotate(into_chest, joint["hips"] - joint["chest"])
-        return np.concatenate([self._up(), gaze, 2 * hips, 2 * joint["head"][:, 1:2]], axis=1)
-
-    def _arm_postures(self, side: int) -> Array:
-        """Elbow and wrist from the shoulder in chest space, and up, as a right arm's [F, 9], of like weight; in arm lengths."""
-        arm = (self.arms[side] - self.arms[side][:, :1]) / self.arm_length[side][:, None, None]
-        up = self._up() * (_MIRROR if side == 0 else 1.0)
-        return np.concatenate([2 * arm[:, 1], 1.5 * arm[:, 2], 0.5 * up], axis=1)
 
 
 def _drawn(cumulative: Array, random: np.random.Generator, count: int) -> NDArray[np.int64]:
