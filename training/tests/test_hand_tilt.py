@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from ik_errors import errors_cm
 from threepoint_training import fit_ik, fit_proportions, hand_tilt, quaternion, solve_ik
 from threepoint_training.features import frame_features
 from threepoint_training.generated_motion import generate_corpus
@@ -78,9 +79,9 @@ def test_ik_of_turned_hands_is_fitted_beside_that_of_hands_as_they_come():
     truth = solve_ik.solve(positions, rotations, body)
     frames = fit_ik.Sample(positions, rotations, truth, body, np.full(len(truth), "test"))
     fitted = fit_ik.fit(frames, fit_ik.FitIkConfig(iterations=8, ridge=1e-7))
-    elbows = fit_ik.errors_cm(frames, fitted)[:, :2].mean()
+    elbows = errors_cm(frames, fitted)[:, :2].mean()
     mistaken = replace(frames, body=replace(BODY, hands_turned=~are_turned))
-    assert elbows < 0.5 * fit_ik.errors_cm(mistaken, fitted)[:, :2].mean()
+    assert elbows < 0.5 * errors_cm(mistaken, fitted)[:, :2].mean()
     assert fit_ik.unflatten(fit_ik.flatten(fitted)) == fitted
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from ik_errors import errors_cm
 from threepoint_training import fit_ik, quaternion, solve_ik
 from threepoint_training.generated_motion import generate_clip
 from threepoint_training.prepared_corpus import Person
@@ -133,9 +134,9 @@ def test_fitting_finds_the_parameters_that_made_the_motion(motion):
     positions, rotations = motion
     truth = solve_ik.solve(positions, rotations, BODY)
     frames = fit_ik.Sample(positions, rotations, truth, BODY, np.full(len(truth), "test"))
-    start = fit_ik.errors_cm(frames, fit_ik.PRIOR).mean()
+    start = errors_cm(frames, fit_ik.PRIOR).mean()
     fitted = fit_ik.fit(frames, fit_ik.FitIkConfig(iterations=8, ridge=1e-7))
-    assert fit_ik.errors_cm(frames, fitted).mean() < 0.2 * start
+    assert errors_cm(frames, fitted).mean() < 0.2 * start
 
 
 def test_parameters_survive_the_way_through_a_vector():

@@ -161,7 +161,7 @@ def test_the_loss_of_both_networks_falls(config, corpus):
 
     people = tuple(corpus.people)
     losses = []
-    train_learned.train(corpus, people, config.learned, lambda step, loss, _: losses.append(loss))
+    train_learned.train(corpus, people, config.learned, lambda step, loss: losses.append(loss))
     assert np.mean(losses[-10:]) < 0.9 * np.mean(losses[:5])
     losses.clear()
     frames = train_paper.frames_of(corpus, people, SEED)

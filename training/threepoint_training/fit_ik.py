@@ -161,8 +161,3 @@ def fit(frames: Sample, config: FitIkConfig, report: Callable[[int, float], None
             damping *= 4
         report(iteration, float(np.linalg.norm(errors, axis=-1).mean()))
     return unflatten(np.round(vector, 6))
-
-
-def errors_cm(frames: Sample, parameters: dict[str, Any]) -> Array:
-    """Distances [F, 6] in centimetres."""
-    return np.linalg.norm(solve_ik.solve(frames.positions, frames.rotations, frames.body, parameters) - frames.truth, axis=-1) * 100

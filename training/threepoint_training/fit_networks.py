@@ -72,7 +72,7 @@ def learned(run: TrainingRun, training: tuple[str, ...], label: str) -> torch.nn
     people = _people_of(run, "learned", training, label)
     with run.report.task(f"learned {label}", run.config.learned.steps) as advance:
         return train_learned.train(
-            run.corpus, people, run.config.learned, lambda step, loss, _: advance(step + 1, f"learned {label} {loss:.3f}")
+            run.corpus, people, run.config.learned, lambda step, loss: advance(step + 1, f"learned {label} {loss:.3f}")
         )
 
 

@@ -11,8 +11,12 @@ from numpy.typing import NDArray
 from onnx import numpy_helper
 
 
-def quantise_weights(model: onnx.ModelProto, smallest: int = 256) -> onnx.ModelProto:
-    """int8 weights, symmetric per output channel, for every layer's matrix or kernel of at least `smallest` numbers."""
+# Smaller matrices and kernels [numbers] stay in 32 bits: they would save nothing.
+_SMALLEST = 256
+
+
+def quantise_weights(model: onnx.ModelProto) -> onnx.ModelProto:
+    """int8 weights, symmetric per output channel, for every layer's matrix or kernel of at least 256 numbers."""
     quantised = onnx.ModelProto()
     quantised.CopyFrom(model)
     graph = quantised.graph
@@ -27,7 +31,7 @@ def quantise_weights(model: onnx.ModelProto, smallest: int = 256) -> onnx.ModelP
         if initialiser.name not in weights:
             continue
         values = numpy_helper.to_array(initialiser)
-        if values.size < smallest:
+        if values.size < _SMALLEST:
             continue
         axis = weights[initialiser.name]
         others = tuple(a for a in range(values.ndim) if a != axis)

@@ -95,8 +95,12 @@ class Condition:
     forearm_typed: bool = False
 
 
+# One for all tests, so that errors of different networks and conditions are compared on the same wearers and noise.
+_HELD_OUT_SEED = 1
+
+
 def held_out(
-    corpus: PreparedCorpus, people: tuple[str, ...], window_seconds: tuple[float, ...], seed: int = 1, condition: Condition = Condition()
+    corpus: PreparedCorpus, people: tuple[str, ...], window_seconds: tuple[float, ...], condition: Condition = Condition()
 ) -> HeldOut:
     """All frames of these people with the calibration they would have.
 
@@ -112,7 +116,7 @@ def held_out(
         person = corpus.people[name]
         # Keyed by the name: a person wears the same in every selection of people, and not what another person does.
         key = zlib.crc32(name.encode())
-        worn = draw_wearer(trackers, np.random.default_rng([seed, key]))
+        worn = draw_wearer(trackers, np.random.default_rng([_HELD_OUT_SEED, key]))
         aside = condition.offset * np.array([0.0, 0.0, 1.0])
         wearer = replace(
             worn,
@@ -123,11 +127,11 @@ def held_out(
         eye_height = person.eye_height * condition.eye_height
         body = body_from_calibration(np.array(eye_height), np.array(person.arm_span))
         if condition.forearm_typed:
-            body = body.with_forearms(corpus.forearm(name) + np.random.default_rng([seed, 3, key]).normal(size=1) * FOREARM_ERROR)
+            body = body.with_forearms(corpus.forearm(name) + np.random.default_rng([_HELD_OUT_SEED, 3, key]).normal(size=1) * FOREARM_ERROR)
         for clip in corpus.clips_of({name}):
             frames = corpus.clip_slice(clip)
-            random = np.random.default_rng([seed, 1, clip])
-            told = _told_tilts(forearms.elsewhere(clip), wearer, trackers, condition, np.random.default_rng([seed, 2, key]))
+            random = np.random.default_rng([_HELD_OUT_SEED, 1, clip])
+            told = _told_tilts(forearms.elsewhere(clip), wearer, trackers, condition, np.random.default_rng([_HELD_OUT_SEED, 2, key]))
             positions, rotations = simulate(corpus.positions[frames], corpus.rotations[frames], wearer, trackers, random)
             truth = corpus.truth(frames).astype(np.float64)
             count = len(truth)
@@ -198,9 +202,9 @@ def train(
     corpus: PreparedCorpus,
     people: tuple[str, ...],
     config: TrainLearnedConfig,
-    report: Callable[[int, float, Callable[[], CorrectionNetwork]], None] = lambda *_: None,
+    report: Callable[[int, float], None] = lambda *_: None,
 ) -> CorrectionNetwork:
-    """Trains on these people; report(step, loss, the averaged network so far, not shrunk)."""
+    """Trains on these people; report(step, loss)."""
     torch.manual_seed(config.seed)
     random = np.random.default_rng(config.seed)
     parts = BodyParts(corpus, people, config.augment.balance)
@@ -240,7 +244,7 @@ def train(
             weight = min(keep, (1 + step) / (10 + step))
             for average, value in zip(averaged.parameters(), network.parameters(), strict=True):
                 average.lerp_(value, 1 - weight)
-        report(step, float(loss.detach()), lambda: averaged)
+        report(step, float(loss.detach()))
     averaged.shrink(config.shrinkage, config.arm_shrinkage)
     return averaged
 
