@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from threepoint_training import prepare, quaternion, recordings
+from threepoint_training.generated_motion import generate_corpus
 from threepoint_training.motion import MocapError
 from threepoint_training.prepared_corpus import JOINTS, PreparedCorpus
 from threepoint_training.skeleton_map import read_skeleton_map
@@ -167,3 +168,10 @@ def test_recordings_carry_what_was_tracked_beside_the_truth(tmp_path: Path) -> N
     first = (tmp_path / "out" / index["clips"][0]["file"]).read_bytes()
     recordings.write(corpus, config)
     assert (tmp_path / "out" / index["clips"][0]["file"]).read_bytes() == first
+
+
+def test_frames_of_people_are_those_of_their_clips_and_a_stride_begins_anew_in_each():
+    corpus = generate_corpus(people=3, clips=2, frames=10, seed=1)
+    assert corpus.frames_of({"002"}).tolist() == list(range(20, 40))
+    assert corpus.frames_of(("001", "003"), stride=7).tolist() == [0, 7, 10, 17, 40, 47, 50, 57]
+    assert corpus.minutes_of({"001", "003"}) == pytest.approx(40 / 60 / 60)

@@ -78,14 +78,13 @@ class BodyParts:
     """The corpus of some people taken apart: torsos in the floor frame, arms in chest space, all on the right side."""
 
     def __init__(self, corpus: PreparedCorpus, people: tuple[str, ...], balance: BalanceConfig = BalanceConfig()) -> None:
-        clips = corpus.clips_of(set(people))
-        slices = [corpus.clip_slice(clip) for clip in clips]
-        frames = np.concatenate([np.arange(s.start, s.stop) for s in slices])
+        clips = corpus.clips_of(people)
+        frames = corpus.frames_of(people)
         positions = corpus.positions[frames].astype(np.float64)
         rotations = corpus.rotations[frames].astype(np.float64)
         joint = {name: positions[:, index] for index, name in enumerate(JOINTS)}
         sizes = [(corpus.people[corpus.clip_people[clip]].eye_height, corpus.people[corpus.clip_people[clip]].arm_span) for clip in clips]
-        lengths = [s.stop - s.start for s in slices]
+        lengths = np.diff(corpus.clip_starts)[clips]
         self.clip_start = np.repeat(np.cumsum([0, *lengths[:-1]]), lengths)
         self.sizes = np.repeat(np.array(sizes), lengths, axis=0)
         names = np.array([corpus.clip_people[clip] for clip in clips])

@@ -96,7 +96,7 @@ def sample(
     parts = []
     for name in people:
         person = corpus.people[name]
-        frames = np.concatenate([np.arange(s.start, s.stop) for s in map(corpus.clip_slice, corpus.clips_of({name}))])
+        frames = corpus.frames_of({name})
         if per_person is not None and per_person < len(frames):
             frames = np.sort(random.choice(frames, per_person, replace=False))
         true_positions = corpus.positions[frames].astype(np.float64)

@@ -14,9 +14,8 @@ def fit(corpus: PreparedCorpus, people: tuple[str, ...]) -> dict[str, Any]:
     rows = []
     for name in people:
         person = corpus.people[name]
-        clips = [np.asarray(corpus.positions[corpus.clip_slice(clip)], np.float64) for clip in corpus.clips_of({name})]
-        frames = np.concatenate(clips)
-        joint = {joint: frames[:, index] for index, joint in enumerate(JOINTS)}
+        positions = corpus.positions[corpus.frames_of({name})].astype(np.float64)
+        joint = {joint: positions[:, index] for index, joint in enumerate(JOINTS)}
         x = joint["rightUpperArm"] - joint["leftUpperArm"]
         x = x / np.linalg.norm(x, axis=-1, keepdims=True)
         up = joint["neck"] - joint["chest"]
@@ -73,7 +72,7 @@ def fit(corpus: PreparedCorpus, people: tuple[str, ...]) -> dict[str, Any]:
 
 def _standing_tilts(corpus: PreparedCorpus, name: str) -> tuple[float, float]:
     """How far [rad] thorax and lower back lean forward when this person stands upright: the shape of the spine, not a posture."""
-    frames = np.concatenate([np.arange(s.start, s.stop) for s in map(corpus.clip_slice, corpus.clips_of({name}))])
+    frames = corpus.frames_of({name})
     positions = corpus.positions[frames].astype(np.float64)
     head_height = positions[:, JOINTS.index("head"), 1] + EYES_FROM_HEAD_JOINT[1]
     standing = np.abs(head_height / corpus.people[name].eye_height - 1) < 0.04

@@ -67,7 +67,7 @@ class ForearmMeans:
     def __init__(self, corpus: PreparedCorpus, people: tuple[str, ...]) -> None:
         self._people = corpus.clip_people
         self._sums: dict[int, Array] = {}
-        for clip in corpus.clips_of(set(people)):
+        for clip in corpus.clips_of(people):
             frames = corpus.clip_slice(clip)
             positions = corpus.positions[frames].astype(np.float64)
             forearms = positions[:, _WRISTS] - positions[:, _ELBOWS]

@@ -131,7 +131,7 @@ def tables(corpus: PreparedCorpus, found: dict[str, HeldOutPerson]) -> Tables:
     trainable = splits.trainable(tuple(found))
     for names, mean in ((trainable, "all alike"), (splits.measured_only(tuple(found)), "another laboratory, all alike")):
         if names:
-            rows += [[name, *_cells(found[name].of_ik, found[name].ours), _minutes(corpus, name)] for name in names]
+            rows += [[name, *_cells(found[name].of_ik, found[name].ours), f"{corpus.minutes_of({name}):.1f}"] for name in names]
             means = (np.stack([getattr(found[name], method).mean(axis=0) for name in names]) for method in ("of_ik", "ours"))
             rows.append([mean, *_cells(*means), ""])
     judged, elsewhere = ([found[name] for name in names] for names in (trainable, splits.measured_only(tuple(found))))
@@ -188,11 +188,6 @@ def _cells(of_ik: NDArray[np.float64], ours: NDArray[np.float64]) -> list[str]:
     """Of errors [F, 6]."""
     elbows = ours[:, :2].mean() / of_ik[:, :2].mean()
     return [f"{of_ik.mean():.2f}", f"{ours.mean():.2f}", f"{ours.mean() / of_ik.mean():.2f}", f"{elbows:.2f}"]
-
-
-def _minutes(corpus: PreparedCorpus, name: str) -> str:
-    frames = sum(each.stop - each.start for each in map(corpus.clip_slice, corpus.clips_of({name})))
-    return f"{frames / corpus.rate_hz / 60:.1f}"
 
 
 def write(rows: Tables, page: Path = PAGE) -> None:

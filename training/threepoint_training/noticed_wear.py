@@ -78,7 +78,7 @@ class NoticedWearConfig:
 
 def usual_reach(corpus: PreparedCorpus, people: tuple[str, ...], config: NoticedWearConfig = NoticedWearConfig()) -> float:
     """How far wrists get from IK's shoulders while arms hang [arm lengths]: the mean of those of these people who are worn long enough."""
-    known = [name for name in people if _is_worn_long(corpus, name, config)]
+    known = [name for name in people if corpus.minutes_of({name}) >= config.fewest_minutes]
     worn = [_draw_worn(name, Fault(), number, config) for name in known for number in range(1, 1 + config.wearers)]
     reaches = [_hanging_reach(corpus, each, HEADSET_RISE["usualReach"], config).mean() for each in worn]
     return float(np.mean(reaches)) if reaches else HEADSET_RISE["usualReach"]
@@ -137,7 +137,7 @@ def _judged(corpus: PreparedCorpus, group: tuple[str, ...], recipe: TrainLearned
         usual = usual_reach(corpus, others, config)
         found = []
         for name in group:
-            if not _is_worn_long(corpus, name, config):
+            if corpus.minutes_of({name}) < config.fewest_minutes:
                 continue
             found.append(np.zeros((len(FAULTS), 2, 2)))
             for row, fault in zip(found[-1], FAULTS.values(), strict=True):
@@ -154,11 +154,6 @@ def _key(name: str) -> int:
     return zlib.crc32(name.encode())
 
 
-def _is_worn_long(corpus: PreparedCorpus, name: str, config: NoticedWearConfig) -> bool:
-    frames = sum(each.stop - each.start for each in map(corpus.clip_slice, corpus.clips_of({name})))
-    return frames / corpus.rate_hz >= 60 * config.fewest_minutes
-
-
 def _draw_worn(name: str, fault: Fault, number: int, config: NoticedWearConfig) -> _Worn:
     """A wearer of this number with that fault."""
     return _Worn(name, fault.worn(draw_wearer(TrackerConfig(), np.random.default_rng([config.seed, _key(name), number]))), fault)
@@ -166,7 +161,7 @@ def _draw_worn(name: str, fault: Fault, number: int, config: NoticedWearConfig) 
 
 def _hanging_reach(corpus: PreparedCorpus, worn: _Worn, usual: float, config: NoticedWearConfig) -> Array:
     """What is noticed of the reach of both hanging arms [2] over all clips of a person, in arm lengths."""
-    frames = np.concatenate([np.arange(each.start, each.stop, config.stride) for each in map(corpus.clip_slice, corpus.clips_of({worn.name}))])
+    frames = corpus.frames_of({worn.name}, config.stride)
     tracked = simulate(corpus.positions[frames], corpus.rotations[frames], worn.wearer, TrackerConfig(), np.random.default_rng(config.seed))
     reaches = notice_headset_rise.reaches(*tracked, _body(corpus, worn.name, worn.fault))
     return notice_headset_rise.hanging_reach(reaches, np.full(len(frames), config.stride / corpus.rate_hz), usual)[-1]

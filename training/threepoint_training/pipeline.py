@@ -130,8 +130,8 @@ def _corpus(config: TrainConfig, report: TrainingReport) -> PreparedCorpus:
     corpus = generate_corpus(people=6, clips=4, frames=600, seed=config.seed) if config.mocap is None else _prepared(config, config.mocap, report)
     for problem in corpus.problems:
         report.console.print(f"  {problem}", markup=False)
-    minutes, people = len(corpus.positions) / corpus.rate_hz / 60, tuple(corpus.people)
-    amount = f"{len(corpus.clips)} clips of {len(people)} people, {minutes:.0f} minutes at {corpus.rate_hz} Hz"
+    people = tuple(corpus.people)
+    amount = f"{len(corpus.clips)} clips of {len(people)} people, {corpus.minutes_of(people):.0f} minutes at {corpus.rate_hz} Hz"
     measured = f"; {', '.join(measured_only(people))} only measure" if measured_only(people) else ""
     report.console.print(f"{config.mocap or 'generated motion'}: {amount}{measured}", markup=False)
     return corpus

@@ -28,6 +28,10 @@ ESTIMATED_JOINTS = ("leftLowerArm", "rightLowerArm", "leftUpperArm", "rightUpper
 MIRRORED_JOINTS = [1, 0, 3, 2, 4, 5]
 
 
+# Names of people; not a single name, which would be searched for parts of names.
+People = set[str] | tuple[str, ...]
+
+
 @dataclass(frozen=True)
 class Person:
     """What a calibration would find: eye height and wrist-to-wrist span [m]."""
@@ -61,9 +65,19 @@ class PreparedCorpus:
         """The frames of a clip."""
         return slice(int(self.clip_starts[clip]), int(self.clip_starts[clip + 1]))
 
-    def clips_of(self, people: set[str] | frozenset[str]) -> list[int]:
+    def clips_of(self, people: People) -> list[int]:
         """The clips of these people."""
         return [clip for clip, person in enumerate(self.clip_people) if person in people]
+
+    def frames_of(self, people: People, stride: int = 1) -> NDArray[np.int64]:
+        """The frames of these people's clips, one clip after the other: of each clip the first and every `stride`-th after it."""
+        slices = [self.clip_slice(clip) for clip in self.clips_of(people)]
+        return np.concatenate([np.arange(each.start, each.stop, stride) for each in slices])
+
+    def minutes_of(self, people: People) -> float:
+        """How much motion there is of these people together [min]."""
+        slices = [self.clip_slice(clip) for clip in self.clips_of(people)]
+        return sum(each.stop - each.start for each in slices) / self.rate_hz / 60
 
     def truth(self, frames: slice | NDArray[np.int64]) -> NDArray[np.float32]:
         """The six estimated joints [frames, 6, 3]."""
@@ -71,8 +85,8 @@ class PreparedCorpus:
 
     def forearm(self, person: str) -> float:
         """How long a person's forearms are, from elbow to wrist, left and right together [m]."""
-        frames = np.concatenate([self.positions[self.clip_slice(clip)] for clip in self.clips_of({person})])
-        forearms = [frames[:, JOINTS.index(f"{side}Hand")] - frames[:, JOINTS.index(f"{side}LowerArm")] for side in ("left", "right")]
+        positions = self.positions[self.frames_of({person})]
+        forearms = [positions[:, JOINTS.index(f"{side}Hand")] - positions[:, JOINTS.index(f"{side}LowerArm")] for side in ("left", "right")]
         return float(np.linalg.norm(forearms, axis=-1).mean())
 
     def save(self, path: Path) -> None:
