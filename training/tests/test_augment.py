@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from threepoint_training import fit_ik, hand_tilt, quaternion
+from threepoint_training import hand_tilt, mirror, quaternion
 from threepoint_training.augment import AugmentConfig, BalanceConfig, BodyParts, draw_batch
 from threepoint_training.chest_features import CHEST_FEATURES, chest_axes
 from threepoint_training.features import ARM_LENGTH, FEATURES, HANDS, IK_JOINTS, SEEN, frame_features, hand_positions
@@ -42,7 +42,7 @@ def corpus_rows(corpus=CORPUS, tilts_of=None):
         tracked = simulate(corpus.positions[frames], corpus.rotations[frames], wearer, EXACT, np.random.default_rng(0))
         body = body_from_calibration(np.array(corpus.people[person].eye_height), np.array(corpus.people[person].arm_span))
         truth, tilts = corpus.truth(frames).astype(np.float64), tilts_of(person)
-        as_it_is, image = (*tracked, truth, tilts), (*fit_ik.mirror(*tracked, truth), tilts[::-1] * hand_tilt.MIRRORED_TILT)
+        as_it_is, image = (*tracked, truth, tilts), (*mirror.trackers(*tracked), mirror.joints(truth), mirror.tilts(tilts))
         for positions, rotations, joints, hands in (as_it_is, image):
             turned = body.with_hands(hands)
             vector, _ = frame_features(positions, rotations, turned)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from ik_errors import errors_cm
-from threepoint_training import fit_ik, fit_proportions, hand_tilt, quaternion, solve_ik
+from threepoint_training import fit_ik, fit_proportions, hand_tilt, mirror, quaternion, solve_ik
 from threepoint_training.features import frame_features
 from threepoint_training.generated_motion import generate_corpus
 from threepoint_training.simulate_trackers import TrackerConfig, measured_tilts
@@ -101,6 +101,6 @@ def test_a_fit_sees_hands_of_both_kinds():
 def test_the_usual_tilt_is_that_of_people_s_right_hands_and_of_their_left_ones_in_a_mirror():
     """Worn off by a tilt, hands are found to have it besides the little that generated ones have."""
     tilt = np.array([0.3, -0.2])
-    off = [np.append(-each, 0.0) for each in (tilt * hand_tilt.MIRRORED_TILT, tilt)]
+    off = [np.append(-each, 0.0) for each in (tilt * mirror.TILT, tilt)]
     before, after = (fit_proportions.fit(corpus, tuple(CORPUS.people))["handTilt"] for corpus in (CORPUS, worn_off(CORPUS, *off)))
     np.testing.assert_allclose(np.subtract(after, before), tilt, atol=0.01)

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from threepoint_training import fit_ik, hand_tilt, quaternion
+from threepoint_training import hand_tilt, mirror, quaternion
 from threepoint_training.features import frame_features
 from threepoint_training.generated_motion import generate_corpus
 from threepoint_training.kinematic_limits import HAND_TILTS, LIMB
@@ -175,9 +175,9 @@ def test_twice_the_frame_rate_gives_nearly_the_same_tilts():
 
 
 def test_the_mirror_image_has_the_mirrored_tilts():
-    positions, rotations, _ = fit_ik.mirror(POSITIONS, ROTATIONS, np.zeros((len(POSITIONS), 6, 3)))
+    positions, rotations = mirror.trackers(POSITIONS, ROTATIONS)
     seen = np.random.default_rng(2).uniform(size=(len(POSITIONS), 2)) > 0.3
     tilts = with_noticed_hands(BODY, POSITIONS, ROTATIONS, SECONDS, ToldTilts(TOLD, np.array([True, False])), seen).hand_tilts
-    told = ToldTilts(TOLD[::-1] * hand_tilt.MIRRORED_TILT, np.array([False, True]))
+    told = ToldTilts(mirror.tilts(TOLD), np.array([False, True]))
     mirrored = with_noticed_hands(BODY, positions, rotations, SECONDS, told, seen[:, ::-1]).hand_tilts
-    np.testing.assert_allclose(mirrored, tilts[:, ::-1] * hand_tilt.MIRRORED_TILT, atol=1e-9)
+    np.testing.assert_allclose(mirrored, mirror.tilts(tilts), atol=1e-9)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from ik_errors import errors_cm
-from threepoint_training import fit_ik, quaternion, solve_ik
+from threepoint_training import fit_ik, mirror, quaternion, solve_ik
 from threepoint_training.generated_motion import generate_clip
 from threepoint_training.prepared_corpus import Person
 from threepoint_training.simulate_trackers import TrackerConfig, draw_wearer, simulate
@@ -112,8 +112,8 @@ def test_bone_lengths_are_those_of_the_calibrated_body(motion, body):
 def test_the_mirror_image_has_the_mirrored_body(motion):
     positions, rotations = motion
     joints = solve_ik.solve(positions, rotations, BODY)
-    mirrored_positions, mirrored_rotations, expected = fit_ik.mirror(positions, rotations, joints)
-    np.testing.assert_allclose(solve_ik.solve(mirrored_positions, mirrored_rotations, BODY), expected, atol=1e-9)
+    mirrored_positions, mirrored_rotations = mirror.trackers(positions, rotations)
+    np.testing.assert_allclose(solve_ik.solve(mirrored_positions, mirrored_rotations, BODY), mirror.joints(joints), atol=1e-9)
 
 
 def test_finite_wherever_the_hands_are():

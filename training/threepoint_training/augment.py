@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from . import hand_tilt, quaternion
+from . import hand_tilt, mirror, quaternion
 from .chest_features import chest_features
 from .complete_hands import carry_with_head, complete_hands
 from .features import frame_features
 from .prepare import EYES_FROM_HEAD_JOINT
-from .prepared_corpus import JOINTS, MIRRORED_JOINTS, PreparedCorpus
+from .prepared_corpus import JOINTS, PreparedCorpus
 from .residual import residual
 from .simulate_trackers import FOREARM_ERROR, TrackerConfig, measured_tilts
 from .skeleton import body_from_calibration
@@ -25,9 +25,6 @@ TORSO = ("hips", "chest", "neck", "head")
 ARM = ("UpperArm", "LowerArm", "Hand")
 # Of the corpus [Hz].
 FRAME_RATE = 60
-
-_MIRROR = np.array([-1.0, 1.0, 1.0])
-_MIRROR_TURN = np.array([1.0, -1.0, -1.0, 1.0])
 
 
 @dataclass(frozen=True)
@@ -105,12 +102,12 @@ class BodyParts:
             arm = np.stack([joint[f"{side}{part}"] for part in ARM], axis=1) - joint["neck"][:, None]
             arm = quaternion.rotate(np.broadcast_to(inverse_chest[:, None], (*arm.shape[:-1], 4)), arm)
             wrist = quaternion.multiply(inverse_chest, rotations[:, turn])
-            self.arms.append(arm * _MIRROR if side == "left" else arm)
-            self.wrist_turns.append(wrist * _MIRROR_TURN if side == "left" else wrist)
+            self.arms.append(arm * mirror.POSITION if side == "left" else arm)
+            self.wrist_turns.append(wrist * mirror.ROTATION if side == "left" else wrist)
         forearms = hand_tilt.ForearmMeans(corpus, people)
         own = np.stack([forearms.of(name) for name in self.people])
         # Of each person's left and right hand [P, 2, 2], as a right hand's.
-        self.tilts = np.stack([own[:, 0] * hand_tilt.MIRRORED_TILT, own[:, 1]], axis=1)
+        self.tilts = np.stack([own[:, 0] * mirror.TILT, own[:, 1]], axis=1)
         self.arm_length = [
             np.linalg.norm(arm[:, 1] - arm[:, 0], axis=-1) + np.linalg.norm(arm[:, 2] - arm[:, 1], axis=-1) for arm in self.arms
         ]
@@ -170,7 +167,7 @@ class _Bodies:
         shoulder = arm[:, :1] * (self.sizes[:, :1] / parts.sizes[source, :1])[:, None]
         arm = shoulder + (arm - arm[:, :1]) * (self.arm_length / length)[:, None, None]
         if side == 0:
-            arm, wrist = arm * _MIRROR, wrist * _MIRROR_TURN
+            arm, wrist = arm * mirror.POSITION, wrist * mirror.ROTATION
         neck = torso[:, TORSO.index("neck")]
         arm = neck[:, None] + quaternion.rotate(np.broadcast_to(chest[:, None], (*arm.shape[:-1], 4)), arm)
         return arm, quaternion.multiply(chest, wrist)
@@ -185,7 +182,7 @@ class _Bodies:
     def tilts(self) -> Array:
         """Of the left and the right hand [N, 2, 2]: those of the people whose arms they are."""
         left, right = (self.parts.tilts[self.parts.person[frames], sides] for frames, sides in zip(self.arm_frames, self.arm_sides, strict=True))
-        return np.stack([left * hand_tilt.MIRRORED_TILT, right], axis=1)
+        return np.stack([left * mirror.TILT, right], axis=1)
 
     def forearms(self) -> Array:
         """Lengths of the left and of the right forearm [N, 2], in arms of the body's length."""
@@ -233,11 +230,8 @@ def _draw_worn(count: int, trackers: TrackerConfig, random: np.random.Generator)
 
 def _mirror_some(mirrored: NDArray[np.bool_], trackers: Array, rotations: Array) -> tuple[Array, Array]:
     """These of the bodies [N] seen in a mirror: tracked points [N, 3, 3] and rotations [N, 3, 4]."""
-    flip = mirrored[:, None, None]
-    return (
-        np.where(flip, trackers[:, [0, 2, 1]] * _MIRROR, trackers),
-        np.where(flip, rotations[:, [0, 2, 1]] * _MIRROR_TURN, rotations),
-    )
+    images = mirror.trackers(trackers, rotations)
+    return tuple(np.where(mirrored[:, None, None], image, own) for image, own in zip(images, (trackers, rotations), strict=True))
 
 
 def draw_batch(parts: BodyParts, count: int, config: AugmentConfig, random: np.random.Generator) -> Batch:
@@ -257,7 +251,7 @@ def draw_batch(parts: BodyParts, count: int, config: AugmentConfig, random: np.r
         sizes[:, 1] * (1 + random.normal(size=count) * config.arm_span_error),
     )
     tilts = bodies.tilts()
-    tilts = np.where(mirrored[:, None, None], tilts[:, ::-1] * hand_tilt.MIRRORED_TILT, tilts)
+    tilts = np.where(mirrored[:, None, None], mirror.tilts(tilts), tilts)
     tilts = measured_tilts(tilts, worn[:, 1:], config.trackers, random)
     otherwise = random.normal(size=tilts.shape) * config.mistaken_turn / np.sqrt(2)
     tilts = tilts + otherwise * (random.uniform(size=(count, 2, 1)) < config.mistaken_hands)
@@ -266,7 +260,7 @@ def draw_batch(parts: BodyParts, count: int, config: AugmentConfig, random: np.r
     forearms = np.where(mirrored[:, None], forearms[:, ::-1], forearms) + random.normal(size=(count, 1)) * config.forearm_error
     calibrated = calibrated.with_forearms(forearms, random.uniform(size=(count, 1)) < config.typed_forearms)
     truth = bodies.truth()
-    truth = np.where(mirrored[:, None, None], truth[:, MIRRORED_JOINTS] * _MIRROR, truth)
+    truth = np.where(mirrored[:, None, None], mirror.joints(truth), truth)
     columns = []
     targets = in_chest_frame = np.empty(0)
     for age in config.window_frames:

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from . import hand_tilt, quaternion, solve_ik
-from .prepared_corpus import ESTIMATED_JOINTS, JOINTS, MIRRORED_JOINTS, PreparedCorpus
+from . import hand_tilt, mirror, quaternion, solve_ik
+from .prepared_corpus import ESTIMATED_JOINTS, JOINTS, PreparedCorpus
 from .simulate_trackers import TrackerConfig, draw_wearer, measured_tilts, simulate
 from .skeleton import Body, body_from_calibration
 
@@ -111,17 +111,10 @@ def sample(
         sizes = np.tile([person.eye_height, person.arm_span], (len(frames), 1))
         parts.append((local, turns, truth, sizes, turned, np.full(len(frames), name)))
         if mirrored:
-            parts.append((*mirror(local, turns, truth), sizes, turned, np.full(len(frames), name)))
+            parts.append((*mirror.trackers(local, turns), mirror.joints(truth), sizes, turned, np.full(len(frames), name)))
     local, turns, truth, sizes, turned, names = (np.concatenate(columns) for columns in zip(*parts, strict=True))
     body = body_from_calibration(sizes[:, 0], sizes[:, 1], proportions)
     return Sample(local, turns, truth, replace(body, hands_turned=turned), names)
-
-
-def mirror(positions: Array, rotations: Array, truth: Array) -> tuple[Array, Array, Array]:
-    """Left and right exchanged: tracked points [F, 3, 3], rotations [F, 3, 4] and the six joints [F, 6, 3]."""
-    flip = np.array([-1.0, 1.0, 1.0])
-    turn = np.array([1.0, -1.0, -1.0, 1.0])
-    return positions[:, [0, 2, 1]] * flip, rotations[:, [0, 2, 1]] * turn, truth[:, MIRRORED_JOINTS] * flip
 
 
 def fit(frames: Sample, config: FitIkConfig, report: Callable[[int, float], None] = lambda *_: None) -> dict[str, Any]:

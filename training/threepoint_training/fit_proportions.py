@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from . import hand_tilt, quaternion
+from . import hand_tilt, mirror, quaternion
 from .prepare import EYES_FROM_HEAD_JOINT
 from .prepared_corpus import JOINTS, PreparedCorpus
 
@@ -29,7 +29,7 @@ def fit(corpus: PreparedCorpus, people: tuple[str, ...]) -> dict[str, Any]:
         def length(a: str, b: str, joint: dict[str, np.ndarray] = joint) -> float:
             return float(np.linalg.norm(joint[a] - joint[b], axis=-1).mean())
 
-        left = mean_in_chest(joint["leftUpperArm"] - joint["neck"]) * np.array([-1.0, 1.0, 1.0])
+        left = mean_in_chest(joint["leftUpperArm"] - joint["neck"]) * mirror.POSITION
         right = mean_in_chest(joint["rightUpperArm"] - joint["neck"])
         shoulder = (left + right) / 2
         shoulder *= (length("neck", "leftUpperArm") + length("neck", "rightUpperArm")) / 2 / np.linalg.norm(shoulder)
@@ -48,7 +48,7 @@ def fit(corpus: PreparedCorpus, people: tuple[str, ...]) -> dict[str, Any]:
             ) / person.eye_height
         )  # fmt: skip
         left_hand, right_hand = hand_tilt.ForearmMeans(corpus, (name,)).of(name)
-        hand = (left_hand * hand_tilt.MIRRORED_TILT + right_hand) / 2
+        hand = (left_hand * mirror.TILT + right_hand) / 2
         rows[-1] = np.concatenate(
             [rows[-1], [upper / (upper + fore), EYES_FROM_HEAD_JOINT[1] / person.eye_height, -EYES_FROM_HEAD_JOINT[2] / person.eye_height, *tilts, *hand]]
         )

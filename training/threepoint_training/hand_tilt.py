@@ -8,7 +8,7 @@ src/core/body/hand-tilt.ts.
 import numpy as np
 from numpy.typing import NDArray
 
-from . import quaternion, skeleton
+from . import mirror, quaternion, skeleton
 from .kinematic_limits import LIMB
 from .prepared_corpus import JOINTS, PreparedCorpus
 
@@ -16,8 +16,6 @@ Array = NDArray[np.float64]
 
 _ALONG_HAND = np.array([0.0, 0.0, -1.0])
 _ELBOWS, _WRISTS = ([JOINTS.index(f"{side}{part}") for side in ("left", "right")] for part in ("LowerArm", "Hand"))
-# A left hand's tilt as the right hand's of the mirror image.
-MIRRORED_TILT = np.array([1.0, -1.0])
 
 
 def turn_of(tilts: Array) -> Array:
@@ -33,7 +31,7 @@ def direction_of(tilts: Array) -> Array:
 def usual() -> Array:
     """The tilts [2, 2] of an average left and right hand, by the proportions in use."""
     right = np.array(skeleton.load_proportions()["handTilt"])
-    return np.stack([right * MIRRORED_TILT, right])
+    return np.stack([right * mirror.TILT, right])
 
 
 def tilt_of(forearms: Array) -> Array:

@@ -5,9 +5,9 @@ import torch
 from torch import Tensor, nn
 from torch.nn import functional
 
+from . import mirror
 from .chest_features import ARM_COLUMNS, ARMS, CHEST_FEATURES, CHEST_HEAD_AXES, CHEST_JOINT, REACH_LENGTHS, UP
 from .features import ARM_LENGTH, FEATURES, HANDS, HEAD_AXES, IK_JOINTS, SEEN
-from .prepared_corpus import MIRRORED_JOINTS
 from .residual import OUTPUTS
 
 
@@ -80,7 +80,7 @@ class CorrectionNetwork(nn.Module):
     def normalise(self, inputs: Tensor, targets: Tensor) -> None:
         """Takes mean and deviation from the training data; constant features keep their size."""
         bodies, corrections = self._with_mirror_images(inputs), targets.view(-1, 6, 3)
-        corrections = torch.stack([corrections, corrections[:, MIRRORED_JOINTS] * FLIP], dim=1).flatten(0, 1)
+        corrections = torch.stack([corrections, corrections[:, mirror.JOINTS] * FLIP], dim=1).flatten(0, 1)
         self._take("trunk", bodies, corrections[:, 2:].flatten(1))
         self._take("arm", self._right_arm(bodies, corrections[:, 3]), corrections[:, 1] - corrections[:, 3])
 
@@ -151,7 +151,8 @@ class ByteDropout(nn.Module):
 # Reach, its length, axes of the hand, IK's elbow, the room's up, whether the hand is seen.
 ARM_FEATURES = 17
 
-FLIP = torch.tensor([-1.0, 1.0, 1.0])
+# What a mirror multiplies the components of a position by.
+FLIP = torch.tensor(mirror.POSITION, dtype=torch.float32)
 # Mirrors the chest-frame features of an arm (reach, two axes of the hand, IK's elbow); a mirrored rotation's x axis changes its sign too.
 ARM_FLIP = torch.cat([FLIP, -FLIP, FLIP, FLIP])
 
@@ -189,7 +190,7 @@ def _mirror_image(taps: int) -> tuple[Tensor, Tensor]:
     left, right = HANDS
     frame[left], frame[right] = frame[right].clone(), frame[left].clone()
     frame[SEEN] = frame[SEEN].flip(0)
-    frame[IK_JOINTS] = frame[IK_JOINTS].view(6, 3)[MIRRORED_JOINTS].flatten()
+    frame[IK_JOINTS] = frame[IK_JOINTS].view(6, 3)[mirror.JOINTS].flatten()
     # A mirrored rotation's x axis is mirrored and turned round.
     frame_sign[HEAD_AXES] = torch.cat([-FLIP, FLIP])
     for hand in HANDS:

@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from . import splits, train_learned
+from . import mirror, splits, train_learned
 from .accuracy_tables import renew, table
 from .features import ARM_LENGTH, HEADSET_HEIGHT, hand_positions
 from .model import CorrectionNetwork
-from .prepared_corpus import JOINTS, MIRRORED_JOINTS, PreparedCorpus
+from .prepared_corpus import JOINTS, PreparedCorpus
 from .residual import OUTPUTS
 from .train_learned import HeldOut, TrainLearnedConfig
 from .train_paper import predict as predict_joints
@@ -22,8 +22,6 @@ from .training_page import PAGE
 Array = NDArray[np.float64]
 
 COLUMNS = ("mean", "elbows", "shoulders", "spine", "pelvis")
-
-_MIRROR = np.array([-1.0, 1.0, 1.0])
 
 
 @dataclass(frozen=True)
@@ -65,13 +63,13 @@ def _wrists(seen: HeldOut) -> tuple[Array, Array]:
 def measure(seen: HeldOut, frames: NDArray[np.bool_]) -> Array:
     """What a calibration would write down [3]: where the wrists hang from the headset, mean of both sides: out, up, back [eye heights]."""
     left, right = _wrists(seen)
-    return np.median((left[frames] * _MIRROR + right[frames]) / 2, axis=0)
+    return np.median((left[frames] * mirror.POSITION + right[frames]) / 2, axis=0)
 
 
 def bias(seen: HeldOut, output: NDArray[np.float32] | None = None) -> Array:
     """The mean of what is true minus what IK, or this output, says [6, 3], the same for both sides, chest frame [eye heights]."""
     residual = (seen.targets - (0 if output is None else output)).reshape(-1, 6, 3).mean(axis=0)
-    return (residual + residual[MIRRORED_JOINTS] * _MIRROR) / 2
+    return (residual + mirror.joints(residual)) / 2
 
 
 def predict(measures: Array, biases: Array, measured: Array, config: NeutralPoseConfig) -> Array:

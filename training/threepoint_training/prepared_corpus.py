@@ -24,8 +24,6 @@ TRACKED_COLUMNS = [JOINTS.index(joint) for joint in ROTATIONS]
 
 # The six joints that no tracker sees, in the order of every tensor (src/core/body/joints.ts).
 ESTIMATED_JOINTS = ("leftLowerArm", "rightLowerArm", "leftUpperArm", "rightUpperArm", "chest", "hips")
-# Which of them a mirror shows in the place of each.
-MIRRORED_JOINTS = [1, 0, 3, 2, 4, 5]
 
 
 # Names of people; not a single name, which would be searched for parts of names.
