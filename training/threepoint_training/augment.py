@@ -13,7 +13,7 @@ from .chest_features import chest_features
 from .complete_hands import carry_with_head, complete_hands
 from .features import frame_features
 from .prepare import EYES_FROM_HEAD_JOINT
-from .prepared_corpus import JOINTS, PreparedCorpus
+from .prepared_corpus import PreparedCorpus, chest_axes_of, joints_of
 from .residual import residual
 from .simulate_trackers import FOREARM_ERROR, TrackerConfig, measured_tilts
 from .skeleton import body_from_calibration
@@ -79,7 +79,7 @@ class BodyParts:
         frames = corpus.frames_of(people)
         positions = corpus.positions[frames].astype(np.float64)
         rotations = corpus.rotations[frames].astype(np.float64)
-        joint = {name: positions[:, index] for index, name in enumerate(JOINTS)}
+        joint = joints_of(positions)
         sizes = [(corpus.people[corpus.clip_people[clip]].eye_height, corpus.people[corpus.clip_people[clip]].arm_span) for clip in clips]
         lengths = np.diff(corpus.clip_starts)[clips]
         self.clip_start = np.repeat(np.cumsum([0, *lengths[:-1]]), lengths)
@@ -87,12 +87,7 @@ class BodyParts:
         names = np.array([corpus.clip_people[clip] for clip in clips])
         self.people, self.person = np.unique(np.repeat(names, lengths), return_inverse=True)
 
-        x = joint["rightUpperArm"] - joint["leftUpperArm"]
-        x /= np.linalg.norm(x, axis=-1, keepdims=True)
-        up = joint["neck"] - joint["chest"]
-        up = up - np.sum(up * x, -1, keepdims=True) * x
-        up /= np.maximum(np.linalg.norm(up, axis=-1, keepdims=True), 1e-9)
-        self.chest = quaternion.from_matrix(np.stack([x, up, np.cross(x, up)], axis=-1))
+        self.chest = quaternion.from_matrix(np.stack(chest_axes_of(joint), axis=-1))
         self.torso = np.stack([joint[name] for name in TORSO], axis=1)
         self.head_turn = rotations[:, 0]
         inverse_chest = quaternion.conjugate(self.chest)

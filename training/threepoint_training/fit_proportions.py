@@ -6,7 +6,7 @@ import numpy as np
 
 from . import hand_tilt, mirror, quaternion
 from .prepare import EYES_FROM_HEAD_JOINT
-from .prepared_corpus import JOINTS, PreparedCorpus
+from .prepared_corpus import JOINTS, PreparedCorpus, chest_axes_of, joints_of
 
 
 def fit(corpus: PreparedCorpus, people: tuple[str, ...]) -> dict[str, Any]:
@@ -15,13 +15,9 @@ def fit(corpus: PreparedCorpus, people: tuple[str, ...]) -> dict[str, Any]:
     for name in people:
         person = corpus.people[name]
         positions = corpus.positions[corpus.frames_of({name})].astype(np.float64)
-        joint = {joint: positions[:, index] for index, joint in enumerate(JOINTS)}
-        x = joint["rightUpperArm"] - joint["leftUpperArm"]
-        x = x / np.linalg.norm(x, axis=-1, keepdims=True)
-        up = joint["neck"] - joint["chest"]
-        up = up - np.sum(up * x, axis=-1, keepdims=True) * x
-        up = up / np.linalg.norm(up, axis=-1, keepdims=True)
-        chest = np.stack([x, up, np.cross(x, up)], axis=1)  # rows are the axes: chest @ v is v in the chest frame
+        joint = joints_of(positions)
+        # Rows are the axes: chest @ v is v in the chest frame.
+        chest = np.stack(chest_axes_of(joint), axis=1)
 
         def mean_in_chest(v: np.ndarray, chest: np.ndarray = chest) -> np.ndarray:
             return np.einsum("fij,fj->fi", chest, v).mean(axis=0)

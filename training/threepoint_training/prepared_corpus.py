@@ -26,6 +26,22 @@ TRACKED_COLUMNS = [JOINTS.index(joint) for joint in ROTATIONS]
 ESTIMATED_JOINTS = ("leftLowerArm", "rightLowerArm", "leftUpperArm", "rightUpperArm", "chest", "hips")
 
 
+def joints_of(positions: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+    """Each of JOINTS [F, 3] by its name, from positions [F, 11, 3]."""
+    return {name: positions[:, index] for index, name in enumerate(JOINTS)}
+
+
+def chest_axes_of(joints: dict[str, NDArray[np.float64]]) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """The axes [F, 3] of the chest by true joints, unit, in the joints' frame: x from the left to the right shoulder, y up the thorax, z backward."""
+    x = joints["rightUpperArm"] - joints["leftUpperArm"]
+    x = x / np.linalg.norm(x, axis=-1, keepdims=True)
+    up = joints["neck"] - joints["chest"]
+    up = up - np.sum(up * x, axis=-1, keepdims=True) * x
+    # A thorax along the line of the shoulders tells no direction.
+    up = up / np.maximum(np.linalg.norm(up, axis=-1, keepdims=True), 1e-9)
+    return x, up, np.cross(x, up)
+
+
 # Names of people; not a single name, which would be searched for parts of names.
 People = set[str] | tuple[str, ...]
 
