@@ -11,6 +11,11 @@ from .features import ARM_LENGTH, FEATURES, HANDS, HEAD_AXES, IK_JOINTS, SEEN
 from .residual import OUTPUTS
 
 
+# Inputs of the people trained on lie within so many standard deviations of their mean; what lies beyond is held there, here as in the page's
+# Perceptron.
+MOST_DEVIATIONS = 4.0
+
+
 class PaperNetwork(nn.Module):
     """Section 3.3 of the paper: [N, 2, 3, 3] -> [N, 18].
 
@@ -107,8 +112,7 @@ class CorrectionNetwork(nn.Module):
         mean, scale, output_mean, output_scale = (
             getattr(self, f"{name}_{key}") for key in ("input_mean", "input_scale", "output_mean", "output_scale")
         )
-        # Trackers stay within four deviations on the people trained on; inputs beyond are held there.
-        x = torch.clamp((inputs - mean) * (1 / scale), -4.0, 4.0)
+        x = torch.clamp((inputs - mean) * (1 / scale), -MOST_DEVIATIONS, MOST_DEVIATIONS)
         *hidden, last = getattr(self, name)
         for layer in hidden:
             x = layer(x)

@@ -9,7 +9,7 @@ import torch
 from torch import Tensor, nn
 
 from .chest_features import ARM_COLUMNS, ARMS, CHEST_FEATURES, REACH_LENGTHS, UP
-from .model import ARM_FLIP, FLIP
+from .model import ARM_FLIP, FLIP, MOST_DEVIATIONS
 
 # An everyday effect in eye heights: keeps the parameters near one.
 _EFFECT = 0.02
@@ -46,9 +46,9 @@ class SubjectEffects(nn.Module):
         return sum((each.square().sum() for each in self.parameters()), torch.zeros(()))
 
     def _standardised(self, name: str, features: Tensor) -> Tensor:
-        """In deviations, at most four, and a one for what is constant."""
+        """In standard deviations, at most MOST_DEVIATIONS, and a column of ones for the constant part."""
         mean, scale = getattr(self, f"{name}_mean"), getattr(self, f"{name}_scale")
-        return nn.functional.pad(torch.clamp((features - mean) / scale, -4.0, 4.0), (0, 1), value=1.0)
+        return nn.functional.pad(torch.clamp((features - mean) / scale, -MOST_DEVIATIONS, MOST_DEVIATIONS), (0, 1), value=1.0)
 
 
 # Chest-frame features that are about one arm: reach, two axes of the hand, IK's elbow; the room's up; the reach's length.

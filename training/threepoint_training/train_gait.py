@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from torch import nn
 
 from .accuracy_page import REPOSITORY
+from .model import MOST_DEVIATIONS
 from .splits import trainable
 
 Array = NDArray[np.float32]
@@ -25,8 +26,6 @@ _MIRROR = [2, 3, 0, 1, 5, 4, 8, 9, 6, 7]
 _MIRROR_SIGN = np.array([-1, 1, -1, 1, 1, 1, -1, 1, -1, 1], np.float32)
 _STANDING = slice(4, 6)
 _OTHERS = [0, 1, 2, 3, 6, 7, 8, 9]
-# As in Perceptron: what lies beyond so many deviations is held there.
-_MOST_DEVIATIONS = 4.0
 
 
 @dataclass(frozen=True)
@@ -94,12 +93,12 @@ def train(config: GaitConfig, data: _Data) -> GaitWeights:
     average = [parameter.detach().clone() for parameter in network.parameters()]
     for _ in range(config.steps):
         rows = np.minimum(np.searchsorted(data.drawn, random.random(config.batch)), len(data.drawn) - 1)
-        x = np.clip((data.inputs[rows] - mean) / scale, -_MOST_DEVIATIONS, _MOST_DEVIATIONS)
+        x = np.clip((data.inputs[rows] - mean) / scale, -MOST_DEVIATIONS, MOST_DEVIATIONS)
         x = torch.from_numpy((x + config.noise * random.standard_normal(x.shape)).astype(np.float32))
         y = torch.from_numpy((data.targets[rows] - centre) / spread)
-        said = network(x)
-        loss = nn.functional.smooth_l1_loss(said[:, _OTHERS], y[:, _OTHERS], beta=0.5)
-        loss = loss + config.standing_weight * nn.functional.binary_cross_entropy_with_logits(said[:, _STANDING], y[:, _STANDING])
+        predicted = network(x)
+        loss = nn.functional.smooth_l1_loss(predicted[:, _OTHERS], y[:, _OTHERS], beta=0.5)
+        loss = loss + config.standing_weight * nn.functional.binary_cross_entropy_with_logits(predicted[:, _STANDING], y[:, _STANDING])
         optimiser.zero_grad()
         loss.backward()
         optimiser.step()
