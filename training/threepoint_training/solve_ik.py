@@ -1,6 +1,7 @@
 """Inverse kinematics as docs/estimation.md states it, vectorised over frames; the twin of src/core/estimation/solve-ik.ts."""
 
 import json
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -53,73 +54,134 @@ def to_heading(positions: Array, rotations: Array) -> tuple[Array, Array, Array,
     return quaternion.rotate(inverse, positions - origin[:, None]), quaternion.multiply(inverse, rotations), yaw, origin
 
 
-def solve(positions: Array, rotations: Array, body: Body, parameters: dict[str, Any] | None = None) -> Array:
-    """The six estimated joints [F, 6, 3] from tracked points in the heading frame, hands turned by their tilts; body: one for all, or one per frame."""
-    k = parameters or load_parameters()
-    e, a = body.eye_height, body.arm
-    headset, wrists = positions[:, 0], positions[:, 1:]
-    head = quaternion.to_matrix(rotations[:, 0])
-    gaze, right_axis, = -head[..., :, 2], head[..., :, 0]
-    head_joint = headset - _apply(head, np.broadcast_to(body.eyes_in_head, headset.shape))
-    left, right = (wrists[:, 0] - head_joint) / a, (wrists[:, 1] - head_joint) / a
-    middle, across = (left + right) / 2, right - left
+@dataclass(frozen=True)
+class _Points:
+    """What the steps of one solution are given, heading frame [m]; hands relative to the head joint in arm lengths."""
 
+    headset: Array
+    wrists: Array  # [F, 2, 3]
+    hands: Array  # rotation matrices [F, 2, 3, 3]
+    head: Array  # rotation matrix [F, 3, 3]
+    head_joint: Array
+    left: Array
+    right: Array
+
+    @property
+    def middle(self) -> Array:
+        """Between the hands [F, 3]."""
+        return (self.left + self.right) / 2
+
+    @property
+    def across(self) -> Array:
+        """From the left to the right hand [F, 3]."""
+        return self.right - self.left
+
+
+def solve(positions: Array, rotations: Array, body: Body, parameters: dict[str, Any] | None = None) -> Array:
+    """The six estimated joints [F, 6, 3] from tracked points in the heading frame, hands turned by their tilts; body: one for all, or one per frame.
+
+    The numbered steps are those of docs/estimation.md.
+    """
+    k = parameters or load_parameters()
+    points = _points(positions, rotations, body)
+    turn = _turn_chest(points, k)
+    thorax_up, lower_back_up = _lean_trunk(points, turn, body, k)
+    chest = _thorax_frame(thorax_up, turn)
+    neck = _place_neck(points, chest, body, k)
+    chest_joint, hips = _place_trunk(neck, thorax_up, lower_back_up, body)
+    shoulders = [_place_shoulder(side, points, (neck, chest), body, k) for side in (0, 1)]
+    elbows = [_place_elbow(side, points, (shoulder, chest), body, k) for side, shoulder in enumerate(shoulders)]
+    return np.stack([*elbows, *shoulders, chest_joint, hips], axis=1)
+
+
+def _points(positions: Array, rotations: Array, body: Body) -> _Points:
+    headset, wrists = positions[:, 0], positions[:, 1:]
+    turns = quaternion.to_matrix(rotations)
+    head = turns[:, 0]
+    head_joint = headset - _apply(head, np.broadcast_to(body.eyes_in_head, headset.shape))
+    left, right = ((wrists[:, side] - head_joint) / body.arm for side in (0, 1))
+    return _Points(headset, wrists, turns[:, 1:], head, head_joint, left, right)
+
+
+def _turn_chest(points: _Points, k: dict[str, Any]) -> Array:
+    """1. Chest yaw, turned by the hands: a rotation about +Y [F, 3, 3]."""
+    middle, across = points.middle, points.across
     forward_x = k["yaw"][0] * across[:, 2] + k["yaw"][1] * middle[:, 0]
     forward_z = -1 - k["yaw"][0] * across[:, 0] + k["yaw"][1] * middle[:, 2]
     saturation = LIMITS["yawSaturation"]
-    yaw = saturation * np.tanh(np.arctan2(-forward_x, np.maximum(-forward_z, LIMITS["leastAhead"])) / saturation)
+    return _yaw_matrix(saturation * np.tanh(np.arctan2(-forward_x, np.maximum(-forward_z, LIMITS["leastAhead"])) / saturation))
 
-    crouch = _within(1 - headset[:, 1] / e[..., 0], LIMITS["crouch"])
-    looking_down = -gaze[:, 1]
+
+def _lean_trunk(points: _Points, turn: Array, body: Body, k: dict[str, Any]) -> tuple[Array, Array]:
+    """2. Lean: the up directions [F, 3] of thorax and lower back."""
+    middle, left, right = points.middle, points.left, points.right
+    crouch = _within(1 - points.headset[:, 1] / body.eye_height[..., 0], LIMITS["crouch"])
+    # Of the gaze, the head's −Z, and of its right axis the vertical parts.
+    looking_down, right_up = points.head[..., 1, 2], points.head[..., 1, 0]
     sagittal = np.stack([np.ones_like(crouch), looking_down, crouch, -middle[:, 2], -middle[:, 1], looking_down * crouch], -1)
-    lateral = np.stack([right_axis[:, 1], middle[:, 0], right[:, 1] - left[:, 1]], -1)
-    turn = _yaw_matrix(yaw)
+    lateral = np.stack([right_up, middle[:, 0], right[:, 1] - left[:, 1]], -1)
 
     def up(segment: dict[str, list[float]]) -> Array:
         alpha = _within(sagittal @ np.array(segment["forward"]), LIMITS["leanForward"])
         beta = _within(lateral @ np.array(segment["sideways"]), LIMITS["leanSideways"])
         return _apply(turn, np.stack([np.sin(beta), np.cos(alpha) * np.cos(beta), -np.sin(alpha) * np.cos(beta)], -1))
 
-    upper, lower = up(k["upper"]), up(k["lower"])
-    chest_x = normalise(np.cross(upper, turn[..., :, 2]))
-    chest = np.stack([chest_x, upper, np.cross(chest_x, upper)], -1)
+    return up(k["upper"]), up(k["lower"])
 
-    neck_length = np.linalg.norm(body.neck_to_head, axis=-1, keepdims=True)
-    neck_rest = np.broadcast_to(body.neck_to_head / neck_length, headset.shape)
-    neck = head_joint - neck_length * normalise((1 - k["neck"]) * _apply(chest, neck_rest) + k["neck"] * _apply(head, neck_rest))
-    chest_joint = neck - body.thorax * upper
-    hips = chest_joint - body.lower_back * lower
-    hips = np.concatenate([hips[:, :1], np.maximum(hips[:, 1:2], LIMITS["lowestHips"] * e), hips[:, 2:]], -1)
 
+def _thorax_frame(thorax_up: Array, turn: Array) -> Array:
+    """3. Thorax frame: its axes as columns [F, 3, 3]."""
+    x = normalise(np.cross(thorax_up, turn[..., :, 2]))
+    return np.stack([x, thorax_up, np.cross(x, thorax_up)], -1)
+
+
+def _place_neck(points: _Points, chest: Array, body: Body, k: dict[str, Any]) -> Array:
+    """4. Neck base [F, 3], below the head joint."""
+    length = np.linalg.norm(body.neck_to_head, axis=-1, keepdims=True)
+    rest = np.broadcast_to(body.neck_to_head / length, points.headset.shape)
+    return points.head_joint - length * normalise((1 - k["neck"]) * _apply(chest, rest) + k["neck"] * _apply(points.head, rest))
+
+
+def _place_trunk(neck: Array, thorax_up: Array, lower_back_up: Array, body: Body) -> tuple[Array, Array]:
+    """5. Chest joint and hips [F, 3], hips no lower than the floor allows."""
+    chest_joint = neck - body.thorax * thorax_up
+    hips = chest_joint - body.lower_back * lower_back_up
+    return chest_joint, np.concatenate([hips[:, :1], np.maximum(hips[:, 1:2], LIMITS["lowestHips"] * body.eye_height), hips[:, 2:]], -1)
+
+
+def _side_sign(side: int) -> Array:
+    """What takes an arm of this side (0: left) to a right one and back: the components of its vectors in the thorax frame are multiplied by it."""
+    return np.array([1.0 if side else -1.0, 1.0, 1.0])
+
+
+def _in_chest(chest: Array, v: Array, side: int) -> Array:
+    """Vectors [F, 3] of the heading frame in the thorax frame, those of the left side mirrored."""
+    return np.einsum("...ji,...j->...i", chest, v) * _side_sign(side)
+
+
+def _place_shoulder(side: int, points: _Points, thorax: tuple[Array, Array], body: Body, k: dict[str, Any]) -> Array:
+    """6. Shoulder [F, 3]: the clavicle swings with the hand. thorax: neck base and thorax frame."""
+    neck, chest = thorax
     rest = body.shoulder - body.clavicle_root
     clavicle_length = np.linalg.norm(rest, axis=-1, keepdims=True)
-    clavicle, untold_pole, pole = (np.array(k[name]) for name in ("clavicle", "untoldPole", "pole"))
+    reach = (_in_chest(chest, points.wrists[:, side] - neck, side) - body.shoulder) / body.arm
+    shift = body.eye_height * (np.concatenate([np.ones_like(reach[:, :1]), reach], -1) @ np.array(k["clavicle"]).T)
+    length = np.linalg.norm(shift, axis=-1, keepdims=True)
+    shift = shift * np.minimum(1, LIMITS["clavicleShift"] * clavicle_length / np.maximum(length, 1e-12))
+    return neck + _apply(chest, (body.clavicle_root + clavicle_length * normalise(rest + shift)) * _side_sign(side))
+
+
+def _place_elbow(side: int, points: _Points, arm: tuple[Array, Array], body: Body, k: dict[str, Any]) -> Array:
+    """7. Elbow [F, 3]: the swivel follows where the hand is and how it is turned. arm: shoulder and thorax frame."""
+    shoulder, chest = arm
+    wrist, hand = points.wrists[:, side], points.hands[:, side]
+    reach = _in_chest(chest, wrist - shoulder, side) / body.arm
+    axes = (_in_chest(chest, hand[..., :, axis], side) for axis in (1, 2))
+    columns = np.concatenate([np.ones_like(reach[:, :1]), reach, *axes], -1)
     turned = np.zeros(2, bool) if body.hands_turned is None else body.hands_turned
-    one = np.ones_like(neck[:, :1])
-    elbows, shoulders = [], []
-    for side, sign in ((0, -1.0), (1, 1.0)):
-        mirror = np.array([sign, 1.0, 1.0])
-        wrist = wrists[:, side]
-
-        def in_chest(v: Array, mirror: Array = mirror) -> Array:
-            return np.einsum("...ji,...j->...i", chest, v) * mirror
-
-        reach = in_chest(wrist - neck) - body.shoulder
-        q = reach / a
-        shift = e * (np.concatenate([one, q], -1) @ clavicle.T)
-        length = np.linalg.norm(shift, axis=-1, keepdims=True)
-        shift = shift * np.minimum(1, LIMITS["clavicleShift"] * clavicle_length / np.maximum(length, 1e-12))
-        shoulder = neck + _apply(chest, (body.clavicle_root + clavicle_length * normalise(rest + shift)) * mirror)
-
-        hand = quaternion.to_matrix(rotations[:, 1 + side])
-        q = in_chest(wrist - shoulder) / a
-        columns = np.concatenate([one, q, in_chest(hand[..., :, 1]), in_chest(hand[..., :, 2])], -1)
-        direction = np.where(turned[..., side, None], columns @ pole.T, columns @ untold_pole.T)
-        direction = _apply(chest, direction * mirror)
-        bones = body.upper_arm[..., side, None], body.forearm[..., side, None]
-        elbows.append(two_bone_elbow(shoulder, wrist, *bones, direction, chest=chest))
-        shoulders.append(shoulder)
-    return np.stack([*elbows, *shoulders, chest_joint, hips], axis=1)
+    pole = np.where(turned[..., side, None], columns @ np.array(k["pole"]).T, columns @ np.array(k["untoldPole"]).T)
+    bones = body.upper_arm[..., side, None], body.forearm[..., side, None]
+    return two_bone_elbow(shoulder, wrist, *bones, _apply(chest, pole * _side_sign(side)), chest=chest)
 
 
 def two_bone_elbow(shoulder: Array, wrist: Array, upper_arm: Array, forearm: Array, pole: Array, *, chest: Array) -> Array:
