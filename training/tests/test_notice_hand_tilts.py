@@ -177,7 +177,7 @@ def test_twice_the_frame_rate_gives_nearly_the_same_tilts():
 def test_the_mirror_image_has_the_mirrored_tilts():
     positions, rotations = mirror.trackers(POSITIONS, ROTATIONS)
     seen = np.random.default_rng(2).uniform(size=(len(POSITIONS), 2)) > 0.3
-    tilts = with_noticed_hands(BODY, POSITIONS, ROTATIONS, SECONDS, ToldTilts(TOLD, np.array([True, False])), seen).hand_tilts
+    tilts = with_noticed_hands(BODY, POSITIONS, ROTATIONS, SECONDS, told=ToldTilts(TOLD, np.array([True, False])), seen=seen).hand_tilts
     told = ToldTilts(mirror.tilts(TOLD), np.array([False, True]))
-    mirrored = with_noticed_hands(BODY, positions, rotations, SECONDS, told, seen[:, ::-1]).hand_tilts
+    mirrored = with_noticed_hands(BODY, positions, rotations, SECONDS, told=told, seen=seen[:, ::-1]).hand_tilts
     np.testing.assert_allclose(mirrored, mirror.tilts(tilts), atol=1e-9)

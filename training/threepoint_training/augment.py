@@ -16,7 +16,7 @@ from .prepare import EYES_FROM_HEAD_JOINT
 from .prepared_corpus import PreparedCorpus, chest_axes_of, joints_of
 from .residual import residual
 from .simulate_trackers import FOREARM_ERROR, TrackerConfig, measured_tilts
-from .skeleton import body_from_calibration
+from .skeleton import Body, body_from_calibration
 from .splits import VARIED
 
 Array = NDArray[np.float64]
@@ -223,58 +223,94 @@ def _draw_worn(count: int, trackers: TrackerConfig, random: np.random.Generator)
     return offsets, np.concatenate([head[:, None], hands], axis=1)
 
 
-def _mirror_some(mirrored: NDArray[np.bool_], trackers: Array, rotations: Array) -> tuple[Array, Array]:
-    """These of the bodies [N] seen in a mirror: tracked points [N, 3, 3] and rotations [N, 3, 4]."""
-    images = mirror.trackers(trackers, rotations)
-    return tuple(np.where(mirrored[:, None, None], image, own) for image, own in zip(images, (trackers, rotations), strict=True))
+@dataclass(frozen=True)
+class _Tracking:
+    """How bodies [N] are tracked, through their whole window."""
+
+    # As `_draw_worn` has them.
+    offsets: Array
+    worn: Array
+    # Which bodies are seen in a mirror; their left and right hands are those of the image.
+    mirrored: NDArray[np.bool_]
+    # For how many frames the left and the right hand have not been seen [N, 2]; 0: it is seen.
+    unseen: NDArray[np.int64]
+    # By how many frames what is reported is late [N].
+    late: NDArray[np.int64]
+
+    def images(self, own: Array, mirrored: Array) -> Array:
+        """What is true of the mirror image where a body is mirrored, else what is true of its own; both [N, …]."""
+        return np.where(self.mirrored.reshape(-1, *[1] * (own.ndim - 1)), mirrored, own)
 
 
-def draw_batch(parts: BodyParts, count: int, config: AugmentConfig, random: np.random.Generator) -> Batch:
-    """That many windows."""
-    bodies = _draw_bodies(parts, count, config, random)
+def _draw_tracking(count: int, config: AugmentConfig, random: np.random.Generator) -> _Tracking:
     offsets, worn = _draw_worn(count, config.trackers, random)
     mirrored = random.uniform(size=count) < 0.5
     lost = random.uniform(size=(count, 2)) < config.lost_hand
     unseen = np.where(lost, random.integers(1, config.lost_frames + 1, size=(count, 2)), 0)
-    # Arms are those of the body before it is mirrored.
-    unseen_arms = np.where(mirrored[:, None], unseen[:, ::-1], unseen)
     late = (random.uniform(size=count) < config.late).astype(np.int64)
-    sizes = bodies.sizes
-    bodies = replace(bodies, drop=np.where(random.uniform(size=count) < config.seated, random.uniform(0.2, 0.35, count), 0.0) * sizes[:, 0])
-    calibrated = body_from_calibration(
+    return _Tracking(offsets, worn, mirrored, unseen, late)
+
+
+def _calibrated(bodies: _Bodies, tracking: _Tracking, config: AugmentConfig, random: np.random.Generator) -> Body:
+    """What calibrations find of these bodies, as they are seen: sizes with errors, tilts of hands, and forearms where they are typed."""
+    count, sizes = len(bodies.newest), bodies.sizes
+    body = body_from_calibration(
         sizes[:, 0] * (1 + random.normal(size=count) * config.eye_height_error),
         sizes[:, 1] * (1 + random.normal(size=count) * config.arm_span_error),
     )
-    tilts = bodies.tilts()
-    tilts = np.where(mirrored[:, None, None], mirror.tilts(tilts), tilts)
-    tilts = measured_tilts(tilts, worn[:, 1:], config.trackers, random)
+    tilts = tracking.images(bodies.tilts(), mirror.tilts(bodies.tilts()))
+    tilts = measured_tilts(tilts, tracking.worn[:, 1:], config.trackers, random)
     otherwise = random.normal(size=tilts.shape) * config.mistaken_turn / np.sqrt(2)
     tilts = tilts + otherwise * (random.uniform(size=(count, 2, 1)) < config.mistaken_hands)
-    calibrated = calibrated.with_hands(np.where(hand_tilt.believed(tilts)[..., None], tilts, hand_tilt.usual()))
-    forearms = bodies.forearms()
-    forearms = np.where(mirrored[:, None], forearms[:, ::-1], forearms) + random.normal(size=(count, 1)) * config.forearm_error
-    calibrated = calibrated.with_forearms(forearms, random.uniform(size=(count, 1)) < config.typed_forearms)
-    truth = bodies.truth()
-    truth = np.where(mirrored[:, None, None], mirror.joints(truth), truth)
-    columns = []
-    targets = in_chest_frame = np.empty(0)
+    body = body.with_hands(np.where(hand_tilt.believed(tilts)[..., None], tilts, hand_tilt.usual()))
+    forearms = tracking.images(bodies.forearms(), bodies.forearms()[:, ::-1]) + random.normal(size=(count, 1)) * config.forearm_error
+    return body.with_forearms(forearms, random.uniform(size=(count, 1)) < config.typed_forearms)
+
+
+@dataclass(frozen=True)
+class _Reported:
+    """One frame of every window as estimators get it, floor frame: points [N, 3, 3], rotations [N, 3, 4]; and its features [N, 46]."""
+
+    positions: Array
+    rotations: Array
+    vector: Array
+
+
+def _window_at(age: int, bodies: _Bodies, tracking: _Tracking, calibrated: Body, noise: Array) -> _Reported:
+    """The frames `age` frames before the newest, trackers' positions with this noise [N, 3, 3] [m]."""
+    # Trackers may report what was true a frame before.
+    ago = age + tracking.late
+    # Arms are those of the body before it is mirrored.
+    unseen_arms = tracking.images(tracking.unseen, tracking.unseen[:, ::-1])
+    torso, frames = bodies.torso_at(ago)
+    hands = [bodies.hand_at(side, ago, unseen_arms[:, side]) for side in (0, 1)]
+    anchors = np.stack([torso[:, TORSO.index("head")], hands[0][0], hands[1][0]], axis=1)
+    rotations = np.stack([bodies.parts.head_turn[frames], hands[0][1], hands[1][1]], axis=1)
+    own, image = (anchors, rotations), mirror.trackers(anchors, rotations)
+    anchors, rotations = (tracking.images(*each) for each in zip(own, image, strict=True))
+    positions = anchors + quaternion.rotate(rotations, tracking.offsets) + noise
+    rotations = quaternion.multiply(rotations, tracking.worn)
+    seconds = tracking.unseen / FRAME_RATE
+    positions, rotations = complete_hands(positions, rotations, seconds, calibrated.eye_height[:, 0], calibrated.arm[:, 0])
+    vector, _ = frame_features(positions, rotations, calibrated, tracking.unseen == 0)
+    return _Reported(positions, rotations, vector)
+
+
+def draw_batch(parts: BodyParts, count: int, config: AugmentConfig, random: np.random.Generator) -> Batch:
+    """That many windows; config.window_frames names the newest frame, 0, too."""
+    bodies = _draw_bodies(parts, count, config, random)
+    tracking = _draw_tracking(count, config, random)
+    seated = np.where(random.uniform(size=count) < config.seated, random.uniform(0.2, 0.35, count), 0.0)
+    bodies = replace(bodies, drop=seated * bodies.sizes[:, 0])
+    calibrated = _calibrated(bodies, tracking, config, random)
+    window = {}
     for age in config.window_frames:
-        now = np.full(count, age)
-        # Trackers may report what was true a frame before.
-        torso, frames = bodies.torso_at(now + late)
-        hands = [bodies.hand_at(side, now + late, unseen_arms[:, side]) for side in (0, 1)]
-        anchors = np.stack([torso[:, TORSO.index("head")], hands[0][0], hands[1][0]], axis=1)
-        rotations = np.stack([parts.head_turn[frames], hands[0][1], hands[1][1]], axis=1)
-        anchors, rotations = _mirror_some(mirrored, anchors, rotations)
-        positions = anchors + quaternion.rotate(rotations, offsets)
-        positions = positions + random.normal(size=positions.shape) * config.trackers.position_noise
-        rotations = quaternion.multiply(rotations, worn)
-        positions, rotations = complete_hands(positions, rotations, unseen / FRAME_RATE, calibrated.eye_height[:, 0], calibrated.arm[:, 0])
-        vector, _ = frame_features(positions, rotations, calibrated, ~lost)
-        columns.append(vector)
-        if age == 0:
-            targets = residual(truth, positions, rotations, calibrated, vector)
-            in_chest_frame = chest_features(vector)
+        noise = random.normal(size=(count, 3, 3)) * config.trackers.position_noise
+        window[age] = _window_at(age, bodies, tracking, calibrated, noise)
+    newest, truth = window[0], bodies.truth()
+    truth = tracking.images(truth, mirror.joints(truth))
+    targets = residual(truth, newest.positions, newest.rotations, calibrated, newest.vector)
+    inputs = np.concatenate([*(each.vector for each in window.values()), chest_features(newest.vector)], axis=1)
     arms_of = np.stack([parts.person[frames] for frames in bodies.arm_frames], axis=1)
-    whose = np.column_stack([parts.person[bodies.newest], np.where(mirrored[:, None], arms_of[:, ::-1], arms_of)])
-    return Batch(np.concatenate([*columns, in_chest_frame], axis=1).astype(np.float32), targets.astype(np.float32), whose)
+    whose = np.column_stack([parts.person[bodies.newest], tracking.images(arms_of, arms_of[:, ::-1])])
+    return Batch(inputs.astype(np.float32), targets.astype(np.float32), whose)

@@ -91,7 +91,7 @@ def feature_vectors() -> list[dict[str, Any]]:
         seen = random.uniform(size=(FRAMES, 2)) > 0.15
         times = np.arange(FRAMES) * STRIDE / 60 + random.uniform(0, 0.01, FRAMES)
         seconds = np.diff(times, prepend=times[0])
-        body = notice_hand_tilts.with_noticed_hands(person.body(), positions, rotations, seconds, person.told(), seen)
+        body = notice_hand_tilts.with_noticed_hands(person.body(), positions, rotations, seconds, told=person.told(), seen=seen)
         vector, ik_joints = frame_features(positions, rotations, body, seen)
         floor_joints = _in_floor_frame(ik_joints, positions, rotations)
         cases.append(

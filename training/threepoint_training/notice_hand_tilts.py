@@ -60,7 +60,10 @@ def _prior_seconds(prior: Array, told: NDArray[np.bool_], total: Array) -> Array
 
 
 def with_noticed_hands(
-    body: Body, positions: Array, rotations: Array, seconds: Array, told: ToldTilts = NOTHING_TOLD, seen: NDArray[np.bool_] | None = None
+    body: Body, positions: Array, rotations: Array, seconds: Array, *, told: ToldTilts = NOTHING_TOLD, seen: NDArray[np.bool_] | None = None
 ) -> Body:
-    """The body with the hands of each frame turned as the page turns them, for one clip from its beginning."""
+    """The body with the hands of each frame turned as the page turns them, for one clip from its beginning.
+
+    positions [F, 3, 3] and rotations [F, 3, 4] of the tracked points, floor frame; seconds, told and seen as for `noticed`.
+    """
     return body.with_hands(noticed(untold_forearms(positions, rotations, body), seconds, told, seen))

@@ -97,6 +97,7 @@ class Condition:
 
 # One for all tests, so that errors of different networks and conditions are compared on the same wearers and noise.
 _HELD_OUT_SEED = 1
+_TRACKERS = TrackerConfig()
 
 
 def held_out(
@@ -107,61 +108,88 @@ def held_out(
     Tilts of hands are measured by the true forearms of the other clips of the same person (of one clip alone: by its own), with the
     calibration's error.
     """
-    trackers = TrackerConfig()
-    down = np.array([0.0, 1.0, 0.0])
-    tilt = quaternion.from_rotation_vector(np.array([-condition.tilt, 0.0, 0.0]))
     forearms = hand_tilt.ForearmMeans(corpus, people)
     rows = []
     for name in people:
-        person = corpus.people[name]
-        # Keyed by the name: a person wears the same in every selection of people, and not what another person does.
-        key = zlib.crc32(name.encode())
-        worn = draw_wearer(trackers, np.random.default_rng([_HELD_OUT_SEED, key]))
-        aside = condition.offset * np.array([0.0, 0.0, 1.0])
-        wearer = replace(
-            worn,
-            eyes_in_head=worn.eyes_in_head + aside,
-            wrist_offsets=worn.wrist_offsets + np.roll(aside, 2),
-            head_turn=quaternion.multiply(worn.head_turn, tilt),
-        )
-        eye_height = person.eye_height * condition.eye_height
-        body = body_from_calibration(np.array(eye_height), np.array(person.arm_span))
-        if condition.forearm_typed:
-            body = body.with_forearms(corpus.forearm(name) + np.random.default_rng([_HELD_OUT_SEED, 3, key]).normal(size=1) * FOREARM_ERROR)
+        wearer, body = _worn(name, condition), _calibrated(corpus, name, condition)
         for clip in corpus.clips_of({name}):
-            frames = corpus.clip_slice(clip)
-            random = np.random.default_rng([_HELD_OUT_SEED, 1, clip])
-            told = _told_tilts(forearms.elsewhere(clip), wearer, trackers, condition, np.random.default_rng([_HELD_OUT_SEED, 2, key]))
-            positions, rotations = simulate(corpus.positions[frames], corpus.rotations[frames], wearer, trackers, random)
-            truth = corpus.truth(frames).astype(np.float64)
-            count = len(truth)
-            reported = np.maximum(np.arange(count) - condition.late, 0)
-            drop = condition.seated * person.eye_height * down
-            positions, rotations, truth = positions[reported] - drop, rotations[reported], truth - drop
-            lost = np.zeros((count, 2), bool)
-            if condition.lost_hand:
-                positions, rotations, lost = _lose_hand(positions, rotations, clip % 2, corpus.rate_hz, body)
-            times = np.arange(count) / corpus.rate_hz
-            seconds = np.diff(times, prepend=0.0) * condition.hands_noticed
-            worn_by = notice_hand_tilts.with_noticed_hands(body, positions, rotations, seconds, told, ~lost)
-            vector, _ = frame_features(positions, rotations, worn_by, ~lost)
-            rows.append(
-                (
-                    network_input(vector, times, window_seconds).astype(np.float32),
-                    residual(truth, positions, rotations, worn_by, vector).astype(np.float32),
-                    np.full(count, eye_height),
-                    np.full(count, name),
-                    np.full(count, clip),
-                )
-            )
+            tracked = _disturb(corpus, clip, wearer, body, condition)
+            seconds = np.diff(tracked.times, prepend=0.0) * condition.hands_noticed
+            told = _told_tilts(forearms.elsewhere(clip), wearer, name, condition)
+            turned = notice_hand_tilts.with_noticed_hands(body, tracked.positions, tracked.rotations, seconds, told=told, seen=tracked.seen)
+            count = len(tracked.times)
+            rows.append((*_rows(tracked, turned, window_seconds), np.full(count, body.eye_height), np.full(count, name), np.full(count, clip)))
     return HeldOut(*(np.concatenate(column) for column in zip(*rows, strict=True)))
 
 
-def _told_tilts(tilts: Array, wearer: Wearer, trackers: TrackerConfig, condition: Condition, random: np.random.Generator) -> ToldTilts:
-    """What the guided calibration measures of hands with these tilts [2, 2], as far as it is believed."""
+def _random_of(name: str, *stream: int) -> np.random.Generator:
+    """Keyed by the name: a person wears the same in every selection of people, and not what another person does."""
+    return np.random.default_rng([_HELD_OUT_SEED, *stream, zlib.crc32(name.encode())])
+
+
+def _worn(name: str, condition: Condition) -> Wearer:
+    """How this person wears headset and hands."""
+    worn = draw_wearer(_TRACKERS, _random_of(name))
+    aside = condition.offset * np.array([0.0, 0.0, 1.0])
+    tilt = quaternion.from_rotation_vector(np.array([-condition.tilt, 0.0, 0.0]))
+    return replace(
+        worn,
+        eyes_in_head=worn.eyes_in_head + aside,
+        wrist_offsets=worn.wrist_offsets + np.roll(aside, 2),
+        head_turn=quaternion.multiply(worn.head_turn, tilt),
+    )
+
+
+def _calibrated(corpus: PreparedCorpus, name: str, condition: Condition) -> Body:
+    """The body that this person's calibration finds, hands as they come."""
+    person = corpus.people[name]
+    body = body_from_calibration(np.array(person.eye_height * condition.eye_height), np.array(person.arm_span))
+    if condition.forearm_typed:
+        body = body.with_forearms(corpus.forearm(name) + _random_of(name, 3).normal(size=1) * FOREARM_ERROR)
+    return body
+
+
+@dataclass(frozen=True)
+class _Tracked:
+    """A clip as trackers report it, floor frame: points [F, 3, 3], rotations [F, 3, 4] and which hands are seen [F, 2]; and the six true joints
+    [F, 6, 3]. times [F] since its beginning [s]."""
+
+    positions: Array
+    rotations: Array
+    seen: NDArray[np.bool_]
+    truth: Array
+    times: Array
+
+
+def _disturb(corpus: PreparedCorpus, clip: int, wearer: Wearer, body: Body, condition: Condition) -> _Tracked:
+    """A clip as this wearer's trackers report it: late, seated and with lost hands as the condition has it."""
+    frames = corpus.clip_slice(clip)
+    random = np.random.default_rng([_HELD_OUT_SEED, 1, clip])
+    positions, rotations = simulate(corpus.positions[frames], corpus.rotations[frames], wearer, _TRACKERS, random)
+    truth = corpus.truth(frames).astype(np.float64)
+    count = len(truth)
+    reported = np.maximum(np.arange(count) - condition.late, 0)
+    drop = condition.seated * corpus.people[corpus.clip_people[clip]].eye_height * np.array([0.0, 1.0, 0.0])
+    positions, rotations, truth = positions[reported] - drop, rotations[reported], truth - drop
+    lost = np.zeros((count, 2), bool)
+    if condition.lost_hand:
+        positions, rotations, lost = _lose_hand(positions, rotations, clip % 2, corpus.rate_hz, body)
+    return _Tracked(positions, rotations, ~lost, truth, np.arange(count) / corpus.rate_hz)
+
+
+def _rows(tracked: _Tracked, body: Body, window_seconds: tuple[float, ...]) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Inputs [F, T·46 + 38] and targets [F, 18] of a clip."""
+    vector, _ = frame_features(tracked.positions, tracked.rotations, body, tracked.seen)
+    inputs = network_input(vector, tracked.times, window_seconds)
+    targets = residual(tracked.truth, tracked.positions, tracked.rotations, body, vector)
+    return inputs.astype(np.float32), targets.astype(np.float32)
+
+
+def _told_tilts(tilts: Array, wearer: Wearer, name: str, condition: Condition) -> ToldTilts:
+    """What the guided calibration measures of hands with these tilts [2, 2], as far as it is believed; one error for all clips of a person."""
     if not condition.hands_measured:
         return NOTHING_TOLD
-    measured = measured_tilts(tilts, wearer.hand_turns, trackers, random) + np.array([condition.bent_wrists, 0.0])
+    measured = measured_tilts(tilts, wearer.hand_turns, _TRACKERS, _random_of(name, 2)) + np.array([condition.bent_wrists, 0.0])
     return ToldTilts(measured, hand_tilt.believed(measured))
 
 
