@@ -41,7 +41,7 @@ def test_people_are_held_out_alone_or_in_groups(count, groups):
     assert leave_one_out.groups_of(("1", "2", "3"), count) == groups
 
 
-def test_people_who_only_measure_have_rows_of_their_own_and_are_trained_on_by_none(monkeypatch):
+def test_evaluation_only_subjects_have_rows_of_their_own_and_are_trained_on_by_none(monkeypatch):
     person = CORPUS.people["003"]
     others = {name: each for name, each in CORPUS.people.items() if name != "003"}
     corpus = replace(

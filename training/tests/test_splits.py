@@ -1,4 +1,4 @@
-"""Facts about who trains and who only measures."""
+"""Facts about who trains and who is evaluation-only."""
 
 import pytest
 from threepoint_training import splits
@@ -8,7 +8,7 @@ SUBJECTS = ("001", "005", "014", "135", "901", "bk")
 
 def test_people_of_another_laboratory_train_in_no_fold():
     assert splits.trainable(SUBJECTS) == ("001", "005", "014", "135")
-    assert splits.measured_only(SUBJECTS) == ("901", "bk")
+    assert splits.evaluation_only(SUBJECTS) == ("901", "bk")
     assert splits.training_people("A", SUBJECTS) == ("001", "014")
 
 
@@ -30,8 +30,8 @@ def test_people_are_counted_of_those_who_may_be_trained_on_and_named_where_not_a
 
 
 @pytest.mark.training
-def test_weights_of_people_who_only_measure_are_not_written():
+def test_weights_of_evaluation_only_subjects_are_not_written():
     from threepoint_training.export import Provenance
 
-    with pytest.raises(ValueError, match="901: people who only measure"):
+    with pytest.raises(ValueError, match="901: evaluation-only subjects"):
         Provenance("motion", "", ("001", "901"), 1, {})

@@ -1,4 +1,4 @@
-"""Facts about the training of the gait network, on feet made of the inputs: it learns, alike from the same seed, and of no one who only measures."""
+"""Facts about the training of the gait network, on feet made of the inputs: it learns, the same from the same seed, and on no evaluation-only subject."""
 
 import json
 from pathlib import Path

@@ -12,7 +12,7 @@ from . import fit_networks, fitted_kinematics, skeleton, solve_ik, train_learned
 from .fit_networks import Destination, TrainingRun
 from .leave_one_out import IN_TURN
 from .motion import MocapError
-from .splits import FOLDS, measured_only, training_people
+from .splits import FOLDS, evaluation_only, training_people
 
 
 def usable_folds(run: TrainingRun) -> list[str]:
@@ -49,13 +49,16 @@ def main(run: TrainingRun, folds: list[str]) -> None:
 
 
 def _cross_validate(run: TrainingRun, fold: str, is_shipped: bool) -> tuple[dict[str, torch.nn.Module], train_paper.LearningCurve | None]:
-    """The networks of one fold and the learning curve of the paper's. Judged on the fold's people and, beside them, on those who only measure."""
+    """Trains one fold's networks; returns them and the learning curve of the paper's.
+
+    They are evaluated on the fold's held-out people and, in rows of their own, on evaluation-only subjects (never trained on).
+    """
     config, corpus, found = run.config, run.corpus, run.report.found
     subjects = tuple(corpus.people)
     training = training_people(fold, subjects)
     label = f"fold {fold}"
     judged = {label: tuple(person for person in FOLDS[fold] if person in subjects)}
-    if measured := measured_only(subjects):
+    if measured := evaluation_only(subjects):
         judged[f"another laboratory, {label}'s network"] = measured
     rows = {f"{given} ({', '.join(people)})": people for given, people in judged.items()}
     trained: dict[str, torch.nn.Module] = {}

@@ -18,7 +18,7 @@ from .features import FEATURES
 from .flat_weights import flat_file
 from .quantise import quantise_weights, run
 from .residual import OUTPUTS
-from .splits import measured_only
+from .splits import evaluation_only
 
 OPSET = 17
 # What onnxruntime's WASM may differ from its native build: sums in another order.
@@ -39,8 +39,8 @@ class Provenance:
     learning_curve: dict[str, list[float]] | None = None
 
     def __post_init__(self) -> None:
-        if unwanted := measured_only(self.people):
-            raise ValueError(f"{', '.join(unwanted)}: people who only measure (splits.py) are in no weight that is written")
+        if unwanted := evaluation_only(self.people):
+            raise ValueError(f"{', '.join(unwanted)}: evaluation-only subjects (splits.py) are never trained on; no such network is written")
 
 
 def to_onnx(network: torch.nn.Module, example: NDArray[np.float32], input_name: str, output_name: str) -> onnx.ModelProto:

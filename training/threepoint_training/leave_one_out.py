@@ -83,13 +83,13 @@ def main(
     report: Callable[[str], None] = lambda _: None,
     groups: int | None = None,
 ) -> Tables:
-    """Rows of the tables; cm over six joints after torso and arm fitting. groups: people held out so many groups at a time; None: one by one.
+    """Rows of the tables: errors in cm over the six joints after torso and arm fitting. groups: hold people out in this many groups; None: one by one.
 
-    People who only measure have rows of their own, by what is made of all the others.
+    Evaluation-only subjects (never trained on) have rows of their own, with proportions, IK and network trained on everyone else.
     """
     ik = replace(ik, frames_per_person=min(ik.frames_per_person, IK_FRAMES))
     trainable = splits.trainable(tuple(corpus.people))
-    turns = [*groups_of(trainable, groups), *([measured] if (measured := splits.measured_only(tuple(corpus.people))) else [])]
+    turns = [*groups_of(trainable, groups), *([measured] if (measured := splits.evaluation_only(tuple(corpus.people))) else [])]
     found: dict[str, HeldOutPerson] = {}
     for group in turns:
         report(", ".join(group))
@@ -126,15 +126,15 @@ def _mean_errors(person: HeldOut, network: CorrectionNetwork) -> NDArray[np.floa
 
 
 def tables(corpus: PreparedCorpus, found: dict[str, HeldOutPerson]) -> Tables:
-    """What was found of people as rows; the mean of those who may be trained on, all counted alike, then those who only measure and theirs."""
+    """Rows of the tables: trainable subjects and their mean, each person weighing the same, then evaluation-only subjects and theirs."""
     rows: list[list[str]] = []
     trainable = splits.trainable(tuple(found))
-    for names, mean in ((trainable, "all alike"), (splits.measured_only(tuple(found)), "another laboratory, all alike")):
+    for names, mean in ((trainable, "all alike"), (splits.evaluation_only(tuple(found)), "another laboratory, all alike")):
         if names:
             rows += [[name, *_cells(found[name].of_ik, found[name].ours), f"{corpus.minutes_of({name}):.1f}"] for name in names]
             means = (np.stack([getattr(found[name], method).mean(axis=0) for name in names]) for method in ("of_ik", "ours"))
             rows.append([mean, *_cells(*means), ""])
-    judged, elsewhere = ([found[name] for name in names] for names in (trainable, splits.measured_only(tuple(found))))
+    judged, elsewhere = ([found[name] for name in names] for names in (trainable, splits.evaluation_only(tuple(found))))
     by_posture, by_hands = (
         [*rows_of(judged), *([f"another laboratory: {name}", *cells] for name, *cells in rows_of(elsewhere))] for rows_of in (_posture_rows, _hand_rows)
     )

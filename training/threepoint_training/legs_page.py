@@ -8,7 +8,7 @@ from typing import Any
 
 from .accuracy_page import REPOSITORY
 from .accuracy_tables import renew, table
-from .splits import measured_only, trainable
+from .splits import evaluation_only, trainable
 
 Json = dict[str, Any]
 
@@ -32,7 +32,7 @@ def _cells(people: list[Json], driver: str) -> list[str]:
 def drivers(legs: Json) -> str:
     """By what the legs hang from: all people alike, and those of another laboratory in rows of their own."""
     people = legs["people"]
-    groups = {"": trainable(list(people)), ", another laboratory": measured_only(list(people))}
+    groups = {"": trainable(list(people)), ", another laboratory": evaluation_only(list(people))}
     rows = [
         [f"{label}{group}", *_cells([people[name] for name in names], driver)]
         for group, names in groups.items()
@@ -45,7 +45,7 @@ def drivers(legs: Json) -> str:
 def by_person(legs: Json) -> str:
     """Each person by themselves, under the learned network's pelvis, with the true foot's own speed while it stands."""
     people = legs["people"]
-    names = [*trainable(list(people)), *measured_only(list(people))]
+    names = [*trainable(list(people)), *evaluation_only(list(people))]
     rows = [
         [
             f"{name} (trained on)" if people[name]["seen"] else name,

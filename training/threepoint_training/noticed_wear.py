@@ -93,9 +93,9 @@ def main(
 ) -> list[list[str]]:
     """Rows of the table: errors in cm of people held out, as worn and with what was noticed corrected; people alike.
 
-    People who only measure have columns of their own, by what is made of all the others.
+    Evaluation-only subjects (never trained on) have columns of their own, with IK and network trained on everyone else.
     """
-    trainable, elsewhere = splits.trainable(tuple(corpus.people)), splits.measured_only(tuple(corpus.people))
+    trainable, elsewhere = splits.trainable(tuple(corpus.people)), splits.evaluation_only(tuple(corpus.people))
 
     def judged(group: tuple[str, ...]) -> Array:
         report(f"held out: {', '.join(group)}")

@@ -14,7 +14,7 @@ from .fit_networks import Destination, TrainingRun
 from .generated_motion import generate_corpus
 from .model import CorrectionNetwork
 from .prepared_corpus import PreparedCorpus
-from .splits import measured_only, trainable
+from .splits import evaluation_only, trainable
 from .training_config import REPOSITORY, Task, TrainConfig
 from .training_report import LABELS, TrainingReport
 
@@ -132,8 +132,8 @@ def _corpus(config: TrainConfig, report: TrainingReport) -> PreparedCorpus:
         report.console.print(f"  {problem}", markup=False)
     people = tuple(corpus.people)
     amount = f"{len(corpus.clips)} clips of {len(people)} people, {corpus.minutes_of(people):.0f} minutes at {corpus.rate_hz} Hz"
-    measured = f"; {', '.join(measured_only(people))} only measure" if measured_only(people) else ""
-    report.console.print(f"{config.mocap or 'generated motion'}: {amount}{measured}", markup=False)
+    never_trained_on = f"; evaluation-only: {', '.join(evaluation_only(people))}" if evaluation_only(people) else ""
+    report.console.print(f"{config.mocap or 'generated motion'}: {amount}{never_trained_on}", markup=False)
     return corpus
 
 

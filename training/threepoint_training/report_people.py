@@ -7,19 +7,19 @@ from pathlib import Path
 
 from .motion import MocapError
 from .motion_files import motion_files
-from .splits import FOLDS, VARIED, measured_only
+from .splits import FOLDS, VARIED, evaluation_only
 
 
 def main(mocap: Path) -> dict[str, list[str] | None]:
     """tables: the first eleven, of whom the tables of docs/accuracy.md are, or None (everyone) where one of them is missing.
 
-    home: the first fold's held-out people, elsewhere: those who only measure; as many of them as are there.
+    home: the first fold's held-out people, elsewhere: evaluation-only subjects (never trained on); of both, those who are in the folder.
     """
     people = {source.person for source in motion_files(mocap, None)}
     return {
         "tables": list(VARIED) if people >= set(VARIED) else None,
         "home": sorted(people & set(FOLDS["A"])),
-        "elsewhere": list(measured_only(list(people))),
+        "elsewhere": list(evaluation_only(list(people))),
     }
 
 
