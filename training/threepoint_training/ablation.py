@@ -1,6 +1,6 @@
-"""What each part of the recipe is for: the network trained without it, judged on people held out, as calibrated and disturbed.
+"""Ablation: the recipe trained without each of its parts, evaluated on held-out people, as calibrated and under disturbances.
 
-`npm run train -- --mocap DIR --ablate` calls this and renews the table of docs/training.md. 005 and 135 stand on neither side.
+`npm run train -- --mocap DIR --ablate` calls this and renews the table of docs/training.md. 005 and 135 are neither trained nor tested on.
 """
 
 from collections.abc import Callable
@@ -35,7 +35,7 @@ CONDITIONS: dict[str, Condition] = {
 
 @dataclass(frozen=True)
 class AblationConfig:
-    """steps: of each of the trainings, fewer than for the network that is shipped; they are compared with each other."""
+    """steps: of each training, fewer than for the page's network, for the variants are compared with each other alone."""
 
     steps: int = 600
     seed: int = 2460
@@ -43,7 +43,7 @@ class AblationConfig:
 
 
 def variants(config: TrainLearnedConfig) -> dict[str, TrainLearnedConfig]:
-    """The recipe, and what it is without each of its parts."""
+    """The recipe, and the recipe without each of its parts, by the labels of the table's rows."""
     augment, trackers = config.augment, config.augment.trackers
 
     def without(**changes: object) -> TrainLearnedConfig:
@@ -82,7 +82,7 @@ def main(
 ) -> list[list[str]]:
     """Rows of the table: MPJPE [cm] of each variant under each condition, mean over the folds; first IK.
 
-    trained(people held out, network) hands out the recipe's own networks.
+    report(text) is called before each training; trained(people held out, network) with each fold's network of the whole recipe.
     """
     reserved = set(splits.FOLDS["A"])
     folds = [fold for fold in config.folds if set(fold) <= set(corpus.people)]

@@ -13,9 +13,9 @@ REPOSITORY = Path(__file__).parents[2]
 
 @dataclass(frozen=True)
 class AccuracyPageConfig:
-    """What was measured, the models it was measured with, and the page.
+    """Files of the evaluation, of its figures, of the models evaluated and of the page.
 
-    home, elsewhere: evaluations of people held out and of another laboratory's, with hands as recorded and as measured.
+    home, elsewhere: evaluations of the held-out people and of evaluation-only subjects, each without hand tilts and with measured ones.
     """
 
     evaluation: Path
@@ -53,7 +53,7 @@ def sections(
 
 
 def laboratories(config: AccuracyPageConfig) -> tuple[tables.ByHands, tables.ByHands] | None:
-    """What was measured of them; None, said in a sentence, where that is not all of it."""
+    """The evaluations for the table of both laboratories; None, with a printed sentence, where one of them is missing."""
     missing = [path for path in (*config.home, *config.elsewhere) if not path.exists()]
     if missing:
         print(f"{', '.join(map(str, missing))}: not measured, so the table of both laboratories stays as it is")

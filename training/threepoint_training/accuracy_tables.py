@@ -21,12 +21,12 @@ ByHands = tuple[Json, Json]
 
 
 def held_out(evaluation: Json) -> Json:
-    """The figures that count: of people no network has seen, where there are any."""
+    """The figures of people on whom no network was trained; of all people where there are none such."""
     return evaluation.get("unseen", evaluation["estimators"])
 
 
 def people_held_out(evaluation: Json) -> list[str]:
-    """Their names; all names where all have been trained on."""
+    """Names of the people on whom no network was trained; all names where there are none such."""
     names = [name for name, person in evaluation["people"].items() if not person["seen"]]
     return sorted(names or evaluation["people"])
 

@@ -1,4 +1,4 @@
-"""Recombined bodies: one person's torso with the arms of two others, in chest space, as trackers would see it.
+"""Recombined bodies: one person's torso with the arms of two others, put together in the chest frame, as trackers would report them.
 
 Some dozen people are too few to learn how arms and torsos go together; their recombinations are many.
 """
@@ -45,17 +45,18 @@ class AugmentConfig:
     lost_hand: float = 0.06
     # Lost hands were seen last up to this long ago [frames].
     lost_frames: int = 180
-    # Trackers that report the frame before.
+    # Share of windows whose trackers report the frame before.
     late: float = 0.3
-    # People on a chair that their calibration knows nothing of, lower by 0.2 to 0.35 of the eye height.
+    # Share of people who sit, lower by 0.2 to 0.35 of the eye height, and were calibrated standing.
     seated: float = 0.04
     arm_scale: float = 0.03
     eye_height_error: float = 0.025
     arm_span_error: float = 0.02
-    # Hands that stand otherwise to their forearms than was noticed, each by itself: a wearer who has only begun, a controller gripped anew.
+    # Share of hands, each by itself, that are tilted otherwise than was noticed (a wearer who has only begun, a controller gripped anew), and by
+    # how much [rad].
     mistaken_hands: float = 0.1
     mistaken_turn: float = np.radians(40.0)
-    # Wearers who typed how long their forearm is, and by how much they err [m].
+    # Share of wearers who typed how long their forearm is, and by how much they err [m].
     typed_forearms: float = 0.5
     forearm_error: float = FOREARM_ERROR
     balance: BalanceConfig = BalanceConfig()
@@ -64,7 +65,7 @@ class AugmentConfig:
 
 @dataclass(frozen=True)
 class Batch:
-    """inputs [N, T·46 + 38], targets [N, 18]; float32. people [N, 3]: whose torso, left and right arm, as numbers of `BodyParts.people`."""
+    """inputs [N, T·46 + 38] and targets [N, 18] of the network; people [N, 3]: whose torso, left and right arm, as indices into `BodyParts.people`."""
 
     inputs: NDArray[np.float32]
     targets: NDArray[np.float32]
@@ -72,7 +73,11 @@ class Batch:
 
 
 class BodyParts:
-    """The corpus of some people taken apart: torsos in the floor frame, arms in chest space, all on the right side."""
+    """The frames [F] of some people taken apart.
+
+    Torsos are in the floor frame [m]. Arms hang from the neck, in the frame of the chest by the true joints, `chest` [F, 4]; left arms are kept
+    as their mirror images, so that each arm is a right one.
+    """
 
     def __init__(self, corpus: PreparedCorpus, people: tuple[str, ...], balance: BalanceConfig = BalanceConfig()) -> None:
         clips = corpus.clips_of(people)
@@ -132,7 +137,7 @@ def _drawn(cumulative: Array, random: np.random.Generator, count: int) -> NDArra
 
 @dataclass(frozen=True)
 class _Bodies:
-    """Bodies put together from torsos and arms: the newest frames [N] of each, and how large they are."""
+    """Bodies [N] put together from torsos and arms: the newest frame of each part, and their sizes."""
 
     parts: BodyParts
     newest: NDArray[np.int64]
@@ -208,7 +213,7 @@ def _draw_bodies(parts: BodyParts, count: int, config: AugmentConfig, random: np
 
 
 def _draw_worn(count: int, trackers: TrackerConfig, random: np.random.Generator) -> tuple[Array, Array]:
-    """How trackers are worn: offsets [N, 3, 3] in the head's and hands' frames [m], and rotations [N, 3, 4] against them."""
+    """How trackers of N wearers sit: offsets [N, 3, 3] in the frames of head and hands [m], and rotations [N, 3, 4] against those."""
     hands = quaternion.from_rotation_vector(random.normal(size=(count, 2, 3)) * trackers.hand_turn / np.sqrt(3))
     head = quaternion.from_rotation_vector(
         np.stack([random.normal(size=count) * trackers.headset_pitch, np.zeros(count), np.zeros(count)], -1)
@@ -227,7 +232,7 @@ def _draw_worn(count: int, trackers: TrackerConfig, random: np.random.Generator)
 class _Tracking:
     """How bodies [N] are tracked, through their whole window."""
 
-    # As `_draw_worn` has them.
+    # How they sit on head and hands, as `_draw_worn` returns it.
     offsets: Array
     worn: Array
     # Which bodies are seen in a mirror; their left and right hands are those of the image.
@@ -297,7 +302,7 @@ def _window_at(age: int, bodies: _Bodies, tracking: _Tracking, calibrated: Body,
 
 
 def draw_batch(parts: BodyParts, count: int, config: AugmentConfig, random: np.random.Generator) -> Batch:
-    """That many windows; config.window_frames names the newest frame, 0, too."""
+    """`count` windows of recombined bodies; config.window_frames must have the newest frame, 0."""
     bodies = _draw_bodies(parts, count, config, random)
     tracking = _draw_tracking(count, config, random)
     seated = np.where(random.uniform(size=count) < config.seated, random.uniform(0.2, 0.35, count), 0.0)

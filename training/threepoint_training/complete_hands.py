@@ -1,4 +1,4 @@
-"""Where hands are taken to be that are not seen: held, then on their way to rest beside the hip.
+"""Where unseen hands are taken to be: held where they were seen last, then on their way to rest beside the hip.
 
 The twin of src/core/estimation/complete-hands.ts for hands that stay lost.
 """
@@ -39,7 +39,7 @@ def _trapezoidal_easing(share: Array) -> Array:
 
 
 def _rest(headset: Array, gaze: Array, eye_height: Array, arm: Array) -> list[tuple[Array, Array]]:
-    """Left and right wrist beside the hips and how they are turned."""
+    """Positions [F, 3] and rotations [F, 4] of the left and the right wrist at rest beside the hips, floor frame."""
     p, hanging = load_proportions(), LOST_HAND["hanging"]
     yaw = quaternion.heading(gaze)
     eyes = eye_height[:, None] * np.array([0.0, p["eyesInHead"][0], -p["eyesInHead"][1]])

@@ -1,4 +1,4 @@
-"""Networks without the people of each fold, whose errors are what is claimed, and the paper's own protocol."""
+"""Cross-validation: networks trained without the people of each fold, on whom the reported errors are measured, and the paper's own protocol."""
 
 import json
 import re
@@ -16,7 +16,7 @@ from .splits import FOLDS, evaluation_only, training_people
 
 
 def usable_folds(run: TrainingRun) -> list[str]:
-    """The folds that the corpus has people for on both sides; the others are reported."""
+    """The folds for which the corpus has both held-out and training people; prints which are left out."""
     subjects = tuple(run.corpus.people)
     usable = []
     for fold in run.config.folds:
@@ -28,7 +28,7 @@ def usable_folds(run: TrainingRun) -> list[str]:
 
 
 def main(run: TrainingRun, folds: list[str]) -> None:
-    """Trains and judges the networks of these folds; the first fold's are written."""
+    """Trains and evaluates the networks of these folds; writes the first fold's."""
     shipped = folds[0]
     networks: dict[str, torch.nn.Module] = {}
     curve: train_paper.LearningCurve | None = None
@@ -81,7 +81,7 @@ def _cross_validate(run: TrainingRun, fold: str, is_shipped: bool) -> tuple[dict
 
 @contextmanager
 def _kinematics(run: TrainingRun, training: tuple[str, ...], fold: str, is_shipped: bool) -> Iterator[None]:
-    """Within it, proportions and IK are those of this fold's training people: the page's own for the shipped one."""
+    """A context with proportions and IK fitted on this fold's training people; for the shipped fold they are the page's own, refitted or as they are."""
     if is_shipped and not run.config.refit_kinematics:
         yield
         return
@@ -106,7 +106,7 @@ def compact_json(content: Any) -> str:
 
 
 def _found_by_other_runs(run: TrainingRun, name: str) -> dict[str, dict[str, float]]:
-    """What folds do not find anew: errors of people held out in turn and, where this run leaves it out, of the paper's protocol."""
+    """Errors of an earlier contract that this run does not measure: on people held out in turn and, without frame_random, of the paper's protocol."""
     kept = (IN_TURN,) if run.config.frame_random else (IN_TURN, "frame-random")
     contract = _contract_of_this_motion(run, name)
     if contract is None:
@@ -115,7 +115,7 @@ def _found_by_other_runs(run: TrainingRun, name: str) -> dict[str, dict[str, flo
 
 
 def warn_without_contract(run: TrainingRun, name: str) -> None:
-    """Says that what a run is about to find will stand in no contract; before it trains, for that may take half an hour."""
+    """Prints, before a training of half an hour, that no contract will state its errors because there is none of this corpus."""
     if _contract_of_this_motion(run, name) is None:
         run.report.console.print(
             f"No contract will state these errors: {run.config.cross_validation} has no {name} network of this motion (--cross-validation DIR names another)"
@@ -123,7 +123,7 @@ def warn_without_contract(run: TrainingRun, name: str) -> None:
 
 
 def keep_in_contract(run: TrainingRun, name: str, found: dict[str, dict[str, float]]) -> None:
-    """Adds errors to the contract of the first fold's network, from which the page's takes them, where there is one."""
+    """Adds errors [cm] to the contract of the first fold's network, from which the page's takes them; nothing where there is none of this corpus."""
     contract = _contract_of_this_motion(run, name)
     if contract is None:
         return
@@ -132,7 +132,7 @@ def keep_in_contract(run: TrainingRun, name: str, found: dict[str, dict[str, flo
 
 
 def _contract(run: TrainingRun, name: str) -> dict[str, Any] | None:
-    """Of the first fold's network, as an earlier run left it."""
+    """The contract of the first fold's network, as an earlier run wrote it; None: there is none."""
     file = run.config.cross_validation / f"{name}.json"
     return json.loads(file.read_text()) if file.exists() else None
 
@@ -143,7 +143,7 @@ def _contract_of_this_motion(run: TrainingRun, name: str) -> dict[str, Any] | No
 
 
 def earlier_errors(run: TrainingRun, name: str) -> tuple[dict[str, dict[str, float]], dict[str, list[float]] | None]:
-    """Errors and learning curve of the cross-validation's networks, from their contract; none, where there was no fold."""
+    """Errors [cm] and learning curve from the contract that cross-validation wrote; empty without one. One of another corpus raises MocapError."""
     file, contract = run.config.cross_validation / f"{name}.json", _contract(run, name)
     if contract is None:
         return {}, None

@@ -50,7 +50,8 @@ def as_the_page_fits(eye_height: float) -> FittingConfig:
 
 @dataclass(frozen=True)
 class _FittingInput:
-    """What fitting starts from [N, …]: estimated joints, wrists [N, 2, 3], the head joint, the heading's right axis, the arm's length and its upper arms'."""
+    """What fitting starts from, frame and unit as above: estimated joints [N, 6, 3], wrists [N, 2, 3], head joint [N, 3], the heading's right axis
+    [N, 3], and the lengths of the arm [N, 1, 1] and of the upper arms [N, 2, 1]."""
 
     estimated: Tensor
     wrists: Tensor
@@ -74,7 +75,7 @@ class DifferentiableKinematics:
         self.shoulders_from_neck = (left + right) / 2 - self.rest["neck"]
 
     def __call__(self, corrections: Tensor, inputs: Tensor, config: FittingConfig = LOSS) -> Tensor:
-        """What corrections of IK's joints [N, 6, 3] come to on the skeleton [N, 6, 3]; inputs [N, T·46 + 38] of the network."""
+        """The corrections [N, 6, 3] of IK's joints that remain after torso and arm fitting; inputs [N, T·46 + 38]: of the network."""
         return self.fit(corrections, inputs, config)[0]
 
     def fit(self, corrections: Tensor, inputs: Tensor, config: FittingConfig) -> tuple[Tensor, Tensor]:

@@ -20,7 +20,7 @@ VERSION = "1"
 
 @dataclass(frozen=True)
 class TrainingRun:
-    """What every step of a run is given."""
+    """Configuration, corpus and report, which every step of a run needs."""
 
     config: TrainConfig
     corpus: PreparedCorpus
@@ -47,21 +47,21 @@ def paper(
 
 
 def _people_of(run: TrainingRun, name: str, training: tuple[str, ...], label: str) -> tuple[str, ...]:
-    """Those of these people whom this network is made of; the run says who they are."""
+    """The subset of `training` this network trains on (splits.trained_on); prints their names."""
     people = trained_on(name, training)
     run.report.console.print(f"{name}, {label}: trained on {counted(people, tuple(run.corpus.people))}", markup=False)
     return people
 
 
 def paper_frames(run: TrainingRun, training: tuple[str, ...], label: str) -> train_paper.PaperFrames:
-    """All frames of those of these people whom the paper's network is made of."""
+    """All frames of the subset of `training` that the paper's network trains on."""
     return train_paper.frames_of(run.corpus, _people_of(run, "paper", training, label), run.config.seed)
 
 
 def followed_paper(
     run: TrainingRun, training: tuple[str, ...], test: train_paper.PaperFrames, label: str
 ) -> tuple[torch.nn.Module, train_paper.LearningCurve]:
-    """The paper's network trained on those of these people whom it is made of, and its learning curve on them and on the test's."""
+    """The paper's network trained on its subset of `training`, and its learning curve on those frames and on `test`."""
     frames = paper_frames(run, training, label)
     curve, watch = train_paper.follow_learning(frames, test)
     return paper(run, frames, label, watch=watch), curve
@@ -77,13 +77,13 @@ def learned(run: TrainingRun, training: tuple[str, ...], label: str) -> torch.nn
 
 
 def _frame_random_split(run: TrainingRun, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """The paper's protocol: 20 % of all frames, drawn at random, are the test; their neighbours train. Frames of both."""
+    """The paper's protocol: frames to train on, and 20 % of all frames, drawn at random, to test on; their neighbours are trained on."""
     test = np.sort(np.random.default_rng(run.config.seed).choice(count, count // 5, replace=False))
     return np.setdiff1d(np.arange(count), test), test
 
 
 def paper_frame_random_errors_cm(run: TrainingRun) -> np.ndarray:
-    """Of the paper's network under the paper's protocol [F, 6]."""
+    """Errors [F, 6] in cm of the paper's network on the test frames of the paper's protocol."""
     frames = paper_frames(run, trainable(tuple(run.corpus.people)), "frame-random")
     chosen, test = _frame_random_split(run, len(frames.inputs))
     network = paper(run, frames, "frame-random", chosen)
@@ -91,7 +91,7 @@ def paper_frame_random_errors_cm(run: TrainingRun) -> np.ndarray:
 
 
 def learned_frame_random_errors_cm(run: TrainingRun) -> np.ndarray:
-    """Of our network under the paper's protocol, raw joints [F, 6]."""
+    """Errors [F, 6] in cm of our network's raw joints on the test frames of the paper's protocol."""
     people = _people_of(run, "learned", trainable(tuple(run.corpus.people)), "frame-random")
     frames = train_learned.held_out(run.corpus, people, run.config.learned.window_seconds)
     chosen, test = _frame_random_split(run, len(frames.inputs))
@@ -106,7 +106,7 @@ def learned_frame_random_errors_cm(run: TrainingRun) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Destination:
-    """Where a network goes; fp32: with 32-bit weights too, None: not."""
+    """The folder that a network is written to; fp32: the folder for a copy with 32-bit weights, None: no copy."""
 
     out: Path
     fp32: Path | None = None
@@ -142,7 +142,7 @@ def provenance(
     errors: dict[str, dict[str, float]],
     curve: train_paper.LearningCurve | dict[str, list[float]] | None,
 ) -> export.Provenance:
-    """Where a network of this run comes from, with those of the people at hand whom it is made of."""
+    """What a contract states of a network of this run: corpus, seed, errors [cm] and the subset of `training` that it trained on."""
     source = "generated motion" if run.config.mocap is None else "CMU Graphics Lab Motion Capture Database and like files"
     return export.Provenance(
         corpus=source,

@@ -1,4 +1,4 @@
-"""Body proportions and constants of IK fitted without the people held out, so that their data makes no error smaller."""
+"""Body proportions and constants of IK fitted without the people held out, so that errors on these are of people whom nothing was fitted on."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -12,7 +12,7 @@ from .prepared_corpus import PreparedCorpus
 
 @dataclass(frozen=True)
 class Kinematics:
-    """As the parameter files in src/core hold them."""
+    """Body proportions and IK parameters, with the keys of their files in src/core."""
 
     proportions: dict[str, Any]
     parameters: dict[str, Any]
@@ -27,7 +27,7 @@ def fit(corpus: PreparedCorpus, people: tuple[str, ...], config: FitIkConfig, re
 
 @contextmanager
 def used(fitted: Kinematics) -> Iterator[None]:
-    """Within it, skeletons and IK are these instead of the page's."""
+    """A context in which skeletons and IK use these instead of the page's."""
     saved = skeleton.load_proportions, solve_ik.load_parameters
     skeleton.load_proportions, solve_ik.load_parameters = (lambda: fitted.proportions), (lambda: fitted.parameters)
     try:

@@ -1,4 +1,4 @@
-"""How a hand's frame stands to its forearm: what arms stretched ahead, wrists straight, tell of each hand once.
+"""How a hand's frame is turned against its forearm, as a calibration measures it once: arms stretched ahead, wrists straight.
 
 A tilt is two numbers [rad]: how far up (pitch) and to the left (yaw) of the hand's −Z its forearm points, elbow to wrist, as the rotation
 vector (pitch, yaw, 0). A hand whose tilt is known is turned by it, so that its −Z continues the forearm; the twin of
@@ -55,7 +55,7 @@ def normalised(rotations: Array, tilts: Array | None) -> Array:
 
 
 def believed(tilts: Array) -> NDArray[np.bool_]:
-    """Which of measured tilts [..., 2] are a hand's: no hand is held further from the others' than the limit; a bent wrist is."""
+    """Which measured tilts [..., 2] are plausible [...]: no steeper than hands are held; beyond that the wrist was bent."""
     return np.linalg.norm(tilts, axis=-1) <= LIMB["steepestHandTilt"]
 
 

@@ -1,4 +1,4 @@
-"""What a new wearer may expect: each person held out in turn, proportions, IK and network made of all the others, as what ships is.
+"""Leave-one-out: errors on each person (or group of people) held out in turn, with proportions, IK and network trained on everyone else.
 
 `npm run train -- --mocap DIR --leave-one-out` calls this and renews three tables of docs/training.md.
 """
@@ -21,7 +21,7 @@ from .train_paper import predict
 from .training_page import PAGE
 
 COLUMNS = ("IK", "ours", "ours / IK", "elbows, ours / IK", "minutes")
-# Of each person, for a fit of IK: with as many people as there are fits, more takes hours.
+# Frames of each person that IK is fitted on, at most: it is fitted anew for each person held out, and with more frames that takes hours.
 IK_FRAMES = 400
 POSTURE_COLUMNS = ("of all frames", "IK", "ours", "ours / IK", "elbows, ours / IK")
 HAND_COLUMNS = ("IK", "ours", "ours / IK", "elbows: IK", "ours", "ours / IK")
@@ -41,21 +41,22 @@ HANDS = {
     "wrists bent by 20°, nothing noticed": Condition(bent_wrists=np.radians(20.0), hands_noticed=False),
     "by 30°, nothing noticed": Condition(bent_wrists=np.radians(30.0), hands_noticed=False),
 }
-# Of the frames, for that table.
+# Every how many-th frame counts for that table.
 HAND_STRIDE = 3
-# Parts of all frames, from those nearest to what was trained on to those furthest from it.
+# Quantiles of the frames' distance from the motion trained on (`postures.distance`); the frames between two of them have a row.
 DISTANCES = (0.0, 0.25, 0.5, 0.75, 0.9, 1.0)
 
 
 @dataclass(frozen=True)
 class HeldOutPerson:
-    """A person whom proportions, IK and network have not seen: errors of IK and ours [F, 6] in cm, and what their frames are like."""
+    """A person held out: errors [F, 6] in cm of IK and ours, which frames [F] are of each posture, and how far they are from the motion trained on
+    [F]."""
 
     of_ik: NDArray[np.float64]
     ours: NDArray[np.float64]
     postures: dict[str, NDArray[np.bool_]]
     distance: NDArray[np.float32]
-    # By what is known of the hands: mean errors [2, 6] of IK and ours in cm.
+    # By rows of HANDS: mean errors [2, 6] in cm of IK and ours.
     hands: dict[str, NDArray[np.float64]] = field(default_factory=dict)
 
 
@@ -66,12 +67,12 @@ class Tables:
     people: list[list[str]]
     postures: list[list[str]]
     hands: list[list[str]]
-    # By what was judged and how: of each person the mean errors by joint in cm [P, 6].
+    # By the name that the contract gives them: mean errors [P, 6] in cm of each person by joint.
     errors: dict[str, NDArray[np.float64]]
 
 
 def groups_of(people: tuple[str, ...], count: int | None) -> list[tuple[str, ...]]:
-    """Who is held out together: each person alone (None), or so many groups of like size, neighbours in the list apart."""
+    """The groups held out in turn: each person alone (None), or `count` groups of nearly equal size, neighbours in the list in different ones."""
     count = len(people) if count is None else min(count, len(people))
     return [people[number::count] for number in range(count)]
 
@@ -100,14 +101,14 @@ def main(
 def hold_out(
     corpus: PreparedCorpus, people: tuple[str, ...], others: tuple[str, ...], recipe: TrainLearnedConfig, ik: FitIkConfig
 ) -> dict[str, HeldOutPerson]:
-    """These people, by proportions, IK and a network made of the others."""
+    """Errors on each of these people, with proportions, IK and network trained on `others`."""
     with fitted_kinematics.used(fitted_kinematics.fit(corpus, others, ik)):
         network = train_learned.train(corpus, others, recipe)
         return {name: judge(corpus, name, network, recipe.window_seconds) for name in people}
 
 
 def judge(corpus: PreparedCorpus, name: str, network: CorrectionNetwork, window_seconds: tuple[float, ...]) -> HeldOutPerson:
-    """A person by the kinematics in use and this network."""
+    """Errors on one person, with the kinematics in use and this network."""
     person = train_learned.held_out(corpus, (name,), window_seconds)
     ours = train_learned.fitted_errors_cm(predict(network, person.inputs), person)
     by_hands = {}
@@ -120,7 +121,7 @@ def judge(corpus: PreparedCorpus, name: str, network: CorrectionNetwork, window_
 
 
 def _mean_errors(person: HeldOut, network: CorrectionNetwork) -> NDArray[np.float64]:
-    """Of IK and of ours [2, 6]."""
+    """Mean errors [2, 6] in cm of IK and of ours."""
     ours = train_learned.fitted_errors_cm(predict(network, person.inputs), person)
     return np.stack([train_learned.ik_errors_cm(person).mean(axis=0), ours.mean(axis=0)])
 
@@ -142,7 +143,7 @@ def tables(corpus: PreparedCorpus, found: dict[str, HeldOutPerson]) -> Tables:
 
 
 def _errors(people: list[HeldOutPerson]) -> dict[str, NDArray[np.float64]]:
-    """Of IK and of ours, by what the guided calibration knows of the hands."""
+    """Mean errors [P, 6] in cm of IK and of ours, with hands measured and not, by the names that contracts give them."""
     who = f"{len(people)} people {IN_TURN}"
     return {
         f"{method}, {who}, {told}": np.stack([person.hands[condition][place] for person in people])
@@ -153,7 +154,7 @@ def _errors(people: list[HeldOutPerson]) -> dict[str, NDArray[np.float64]]:
 
 
 def _hand_rows(people: list[HeldOutPerson]) -> list[list[str]]:
-    """All people counted alike; none, no rows."""
+    """A row for each of HANDS, each person weighing the same; without people none."""
     rows = []
     for told in people[0].hands if people else ():
         of_ik, ours = np.mean([person.hands[told] for person in people], axis=0)
@@ -164,7 +165,7 @@ def _hand_rows(people: list[HeldOutPerson]) -> list[list[str]]:
 
 
 def _posture_rows(people: list[HeldOutPerson]) -> list[list[str]]:
-    """Frames of each posture, then by their distance from what was trained on; all people counted alike; none, no rows."""
+    """A row for each posture, then for each range of DISTANCES, each person weighing the same; without people none."""
     if not people:
         return []
     of_ik, ours, distance = (np.concatenate([getattr(person, key) for person in people]) for key in ("of_ik", "ours", "distance"))
@@ -185,7 +186,7 @@ def _posture_rows(people: list[HeldOutPerson]) -> list[list[str]]:
 
 
 def _cells(of_ik: NDArray[np.float64], ours: NDArray[np.float64]) -> list[str]:
-    """Of errors [F, 6]."""
+    """Cells for errors [F, 6] in cm: means of IK and ours, their ratio, and the elbows' ratio."""
     elbows = ours[:, :2].mean() / of_ik[:, :2].mean()
     return [f"{of_ik.mean():.2f}", f"{ours.mean():.2f}", f"{ours.mean() / of_ik.mean():.2f}", f"{elbows:.2f}"]
 

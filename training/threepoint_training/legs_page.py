@@ -30,7 +30,7 @@ def _cells(people: list[Json], driver: str) -> list[str]:
 
 
 def drivers(legs: Json) -> str:
-    """By what the legs hang from: all people alike, and those of another laboratory in rows of their own."""
+    """The table by the pelvis that legs hang from: means over people, each weighing the same; evaluation-only subjects in rows of their own."""
     people = legs["people"]
     groups = {"": trainable(list(people)), ", another laboratory": evaluation_only(list(people))}
     rows = [
@@ -43,7 +43,7 @@ def drivers(legs: Json) -> str:
 
 
 def by_person(legs: Json) -> str:
-    """Each person by themselves, under the learned network's pelvis, with the true foot's own speed while it stands."""
+    """The table by person, legs under the learned network's pelvis, with the speed of the true foot while it stands."""
     people = legs["people"]
     names = [*trainable(list(people)), *evaluation_only(list(people))]
     rows = [

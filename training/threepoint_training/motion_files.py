@@ -1,4 +1,4 @@
-"""Which files of a folder are motion, whose they are, and at which rate those that do not say it were recorded."""
+"""The motion files of a folder: which person each is of, and the frame rate of those that do not state it."""
 
 import csv
 import os

@@ -1,4 +1,4 @@
-"""What a neutral pose tells of its person: is their error under IK known from where they stand and let their hands hang?
+"""Does a neutral pose predict its person's error? Regression from where the wrists hang to the mean error of IK and of ours.
 
 `npm run train -- --mocap DIR --ablate` calls this and renews the table of docs/training.md. Each person is predicted from the others.
 """
@@ -26,7 +26,7 @@ COLUMNS = ("mean", "elbows", "shoulders", "spine", "pelvis")
 
 @dataclass(frozen=True)
 class NeutralPoseConfig:
-    """When a person stands in a neutral pose, and how much a regression over few people is held back."""
+    """Thresholds for a frame to be a neutral pose, and the regularisation of a regression over few people."""
 
     # The trunk's lean as a cosine, the height of the headset and of both wrists below it in eye heights, the wrists' speed [m/s].
     upright: float = 0.97
@@ -34,7 +34,7 @@ class NeutralPoseConfig:
     hands_below: float = 0.37
     hand_speed: float = 1.0
     fewest_frames: int = 60
-    # Ridge over standardised measures: weighs as much as this many people without any bias.
+    # Ridge over standardised measures: counts as much as this many people whose bias is zero.
     ridge: float = 4.0
     # No measure counts as further from the mean than this many deviations.
     furthest: float = 2.0
@@ -55,25 +55,29 @@ def neutral_frames(corpus: PreparedCorpus, name: str, seen: HeldOut, config: Neu
 
 
 def _wrists(seen: HeldOut) -> tuple[Array, Array]:
-    """From the headset, heading frame, eye heights."""
+    """Left and right wrist [F, 3] from the headset, heading frame [eye heights]."""
     left, right = np.moveaxis(hand_positions(seen.inputs) * seen.inputs[:, ARM_LENGTH, None, None].astype(np.float64), 1, 0)
     return left, right
 
 
 def measure(seen: HeldOut, frames: NDArray[np.bool_]) -> Array:
-    """What a calibration would write down [3]: where the wrists hang from the headset, mean of both sides: out, up, back [eye heights]."""
+    """What a calibration would measure [3]: where the wrists hang from the headset, both sides averaged, median over frames: out, up, back [eye
+    heights]."""
     left, right = _wrists(seen)
     return np.median((left[frames] * mirror.POSITION + right[frames]) / 2, axis=0)
 
 
 def bias(seen: HeldOut, output: NDArray[np.float32] | None = None) -> Array:
-    """The mean of what is true minus what IK, or this output, says [6, 3], the same for both sides, chest frame [eye heights]."""
+    """The mean error [6, 3] of IK's joints, or of this output: true minus estimated, left and right averaged, chest frame [eye heights]."""
     residual = (seen.targets - (0 if output is None else output)).reshape(-1, 6, 3).mean(axis=0)
     return (residual + mirror.joints(residual)) / 2
 
 
 def predict(measures: Array, biases: Array, measured: Array, config: NeutralPoseConfig) -> Array:
-    """The bias of a person measured so, from others' measures [N, 3] and biases [N, ...]: ridge around no bias at all."""
+    """The predicted bias [...] of a person with the measures `measured` [3], by ridge regression on others' measures [N, 3] and biases [N, ...].
+
+    Only deviations from the others' mean measures count: a person of mean measures is predicted no bias.
+    """
     mean, deviation = measures.mean(axis=0), np.maximum(measures.std(axis=0), 1e-6)
     others = (measures - mean) / deviation
     own = np.clip((measured - mean) / deviation, -config.furthest, config.furthest)
@@ -84,7 +88,7 @@ def predict(measures: Array, biases: Array, measured: Array, config: NeutralPose
 
 @dataclass(frozen=True)
 class Standing:
-    """A person who is seen in a neutral pose: all their frames, what their neutral pose measures, their error under IK."""
+    """A person who is seen in a neutral pose: all their frames, the measures [3] of that pose, and their bias [6, 3] under IK."""
 
     seen: HeldOut
     measured: Array

@@ -1,7 +1,7 @@
-"""How hands stand to their forearms, noticed while they move; the twin of src/core/estimation/notice-hand-tilts.ts.
+"""Hand tilts (hand_tilt) noticed while hands move; the twin of src/core/estimation/notice-hand-tilts.ts.
 
-Inverse kinematics that is told nothing of it says where forearms point; in the frames of their hands those directions have a mean, which is the
-tilt: errors of a posture go as the posture changes.
+Inverse kinematics without tilts estimates where forearms point. The mean of these directions in the frames of their hands is the tilt, for errors
+of single postures average out.
 """
 
 from dataclasses import dataclass, replace
@@ -53,7 +53,8 @@ def noticed(forearms: Array, seconds: Array, told: ToldTilts = NOTHING_TOLD, see
 
 
 def _prior_seconds(prior: Array, told: NDArray[np.bool_], total: Array) -> Array:
-    """As how much motion [s] each hand's prior [2, 3] counts beside the sum of what was noticed [2, 3]."""
+    """The weight of each hand's prior direction [2, 3], as seconds of motion [2], beside `total` [2, 3], the sum of noticed directions times seconds;
+    told: whose prior is a measured tilt."""
     angle = np.arctan2(np.linalg.norm(np.cross(prior, total), axis=-1), np.sum(prior * total, axis=-1))
     doubted = np.minimum(1.0, (HAND_TILTS["doubtAngle"] / np.maximum(angle, 1e-9)) ** 2)
     return np.where(told, HAND_TILTS["toldSeconds"] * doubted, HAND_TILTS["usualSeconds"])

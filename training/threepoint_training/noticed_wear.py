@@ -1,7 +1,7 @@
-"""Whose headset sits elsewhere, or whose height is wrong: what the page notices of it over minutes, and what its bodies gain by that.
+"""Errors under a misplaced headset or a wrong calibration, as worn and after correcting the headset's rise that the page notices over minutes.
 
-`npm run train -- --mocap DIR --noticed` calls this and renews the table of docs/accuracy.md. Each group of people is held out in turn: usual
-reach, IK and network are made of the others.
+`npm run train -- --mocap DIR --noticed` calls this and renews the table of docs/accuracy.md. Each group of people is held out in turn, with
+usual reach, IK and network from everyone else.
 """
 
 import zlib
@@ -33,7 +33,7 @@ PAGE = ROOT / "docs/accuracy.md"
 
 @dataclass(frozen=True)
 class Fault:
-    """A headset that sits so far up and back of where it is believed to [m], and by how much of themselves calibrated eye height and span are wrong."""
+    """What is wrong: how far up and back of its assumed place the headset sits [m], and the relative errors of calibrated eye height and arm span."""
 
     up: float = 0.0
     back: float = 0.0
@@ -41,7 +41,7 @@ class Fault:
     arm_span: float = 0.0
 
     def worn(self, wearer: Wearer) -> Wearer:
-        """By this wearer."""
+        """This wearer with the headset so misplaced."""
         return replace(wearer, eyes_in_head=wearer.eyes_in_head + np.array([0.0, self.up, self.back]))
 
 
@@ -61,23 +61,25 @@ COLUMNS = ("IK", "corrected", "ours", "corrected", "ours, another laboratory", "
 
 @dataclass(frozen=True)
 class NoticedWearConfig:
-    """Who is worn long enough, when reaches are taken, and of how many wearers."""
+    """Groups that are held out, who has enough recording time, and which frames and simulated wearers are used."""
 
     # So many groups are held out in turn.
     groups: int = 4
+    # People with less recording time are left out: it takes minutes to notice anything.
     fewest_minutes: float = 1.3
-    # Of the recordings at 60 Hz, for reaches, and of judged frames.
+    # Every how many-th frame (of 60 a second) is used for reaches, and for errors.
     stride: int = 6
     judged_stride: int = 24
-    # Of each person, for the usual reach.
+    # Simulated wearers of each person, for the usual reach.
     wearers: int = 3
-    # Of each clip, as in all figures of the page [s].
+    # No more of each clip is used for errors, as in all figures of the page [s].
     longest_clip: float = 15.0
     seed: int = 77
 
 
 def usual_reach(corpus: PreparedCorpus, people: tuple[str, ...], config: NoticedWearConfig = NoticedWearConfig()) -> float:
-    """How far wrists get from IK's shoulders while arms hang [arm lengths]: the mean of those of these people who are worn long enough."""
+    """Mean distance from IK's shoulders to the wrists while arms hang [arm lengths], over these people's simulated wearers; without people of enough
+    recording time that of headset-rise.json."""
     known = [name for name in people if corpus.minutes_of({name}) >= config.fewest_minutes]
     worn = [_draw_worn(name, Fault(), number, config) for name in known for number in range(1, 1 + config.wearers)]
     reaches = [_hanging_reach(corpus, each, HEADSET_RISE["usualReach"], config).mean() for each in worn]
@@ -91,7 +93,7 @@ def main(
     config: NoticedWearConfig = NoticedWearConfig(),
     report: Callable[[str], None] = lambda _: None,
 ) -> list[list[str]]:
-    """Rows of the table: errors in cm of people held out, as worn and with what was noticed corrected; people alike.
+    """Rows of the table: mean errors in cm on people held out, as worn and corrected, each person weighing the same.
 
     Evaluation-only subjects (never trained on) have columns of their own, with IK and network trained on everyone else.
     """
@@ -102,7 +104,8 @@ def main(
         return _judged(corpus, group, recipe, ik, config)
 
     shipped = splits.training_people("A", tuple(name for name in corpus.people if name in splits.VARIED))
-    report(f"usual reach of those whom the page's IK is fitted on: {usual_reach(corpus, shipped, config):.3f} (headset-rise.json: {HEADSET_RISE['usualReach']})")
+    reach = usual_reach(corpus, shipped, config)
+    report(f"usual reach of the people that the page's IK is fitted on: {reach:.3f} (headset-rise.json: {HEADSET_RISE['usualReach']})")
     home = [judged(group) for group in leave_one_out.groups_of(trainable, config.groups)]
     away = judged(elsewhere) if elsewhere else np.full((1, len(FAULTS), 2, 2), np.nan)
     rows = []
@@ -113,7 +116,7 @@ def main(
 
 @dataclass(frozen=True)
 class _Worn:
-    """On whom, how, with what wrong, and how far above its usual place the headset is taken to sit [m]."""
+    """A simulated wearer of a person, with a fault; rise: how far above its usual place the headset is taken to sit [m]."""
 
     name: str
     wearer: Wearer
@@ -123,14 +126,15 @@ class _Worn:
 
 @dataclass(frozen=True)
 class _Network:
-    """Ours, and how far back it looks [s]."""
+    """Our network, and the ages of the frames in its input [s]."""
 
     network: CorrectionNetwork
     window_seconds: tuple[float, ...]
 
 
 def _judged(corpus: PreparedCorpus, group: tuple[str, ...], recipe: TrainLearnedConfig, ik: FitIkConfig, config: NoticedWearConfig) -> Array:
-    """By what is made of the others, of each of a group who is worn long enough: errors [P, faults, 2, 2] of IK and ours, as worn and corrected, in cm."""
+    """Errors [P, faults, 2, 2] in cm for each person of `group` with enough recording time, with IK and network trained on everyone else; last
+    axes: (IK, ours), (as worn, corrected)."""
     others = tuple(name for name in splits.trainable(tuple(corpus.people)) if name not in group)
     with fitted_kinematics.used(fitted_kinematics.fit(corpus, others, ik)):
         made = _Network(train_learned.train(corpus, others, recipe), recipe.window_seconds)
@@ -150,17 +154,17 @@ def _judged(corpus: PreparedCorpus, group: tuple[str, ...], recipe: TrainLearned
 
 
 def _key(name: str) -> int:
-    """Of a person, for chance."""
+    """A number that a person's generators are seeded with."""
     return zlib.crc32(name.encode())
 
 
 def _draw_worn(name: str, fault: Fault, number: int, config: NoticedWearConfig) -> _Worn:
-    """A wearer of this number with that fault."""
+    """The person's simulated wearer of this number, with this fault."""
     return _Worn(name, fault.worn(draw_wearer(TrackerConfig(), np.random.default_rng([config.seed, _key(name), number]))), fault)
 
 
 def _hanging_reach(corpus: PreparedCorpus, worn: _Worn, usual: float, config: NoticedWearConfig) -> Array:
-    """What is noticed of the reach of both hanging arms [2] over all clips of a person, in arm lengths."""
+    """The reach [2] of the left and the right hanging arm that is noticed after all clips of a person [arm lengths]."""
     frames = corpus.frames_of({worn.name}, config.stride)
     tracked = simulate(corpus.positions[frames], corpus.rotations[frames], worn.wearer, TrackerConfig(), np.random.default_rng(config.seed))
     reaches = notice_headset_rise.reaches(*tracked, _body(corpus, worn.name, worn.fault))
@@ -173,7 +177,7 @@ def _body(corpus: PreparedCorpus, name: str, fault: Fault) -> Body:
 
 
 def _errors(corpus: PreparedCorpus, worn: _Worn, made: _Network, config: NoticedWearConfig) -> Array:
-    """Mean errors of IK and of the network [2]."""
+    """Mean errors [2] in cm of IK and of the network over all clips of the person."""
     name, body = worn.name, _body(corpus, worn.name, worn.fault)
     eye_height = body.eye_height.item()
     found = []

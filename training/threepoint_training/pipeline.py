@@ -48,9 +48,9 @@ def _train(run: TrainingRun) -> Rows:
 
 
 def _train_on_all_subjects(run: TrainingRun) -> None:
-    """The page's networks, each of those at hand whom it is made of (`splits.trained_on`).
+    """Trains and writes the page's networks, each on its subset of all trainable people (`splits.trained_on`).
 
-    Their contracts state the errors on people held out, of networks trained the same way without them.
+    Their contracts carry the errors of cross-validation: on held-out people, of networks trained in the same way without them.
     """
     subjects = trainable(tuple(run.corpus.people))
     for name in run.config.networks:

@@ -1,4 +1,4 @@
-"""Postures by which errors are told apart: what a wearer does where the network may be worse than the mean says."""
+"""Postures in which the network may err more than on average, for tables of errors by posture."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -98,7 +98,7 @@ class PreparedCorpus:
         return self.positions[frames][:, [JOINTS.index(joint) for joint in ESTIMATED_JOINTS]]
 
     def forearm(self, person: str) -> float:
-        """How long a person's forearms are, from elbow to wrist, left and right together [m]."""
+        """Mean length of a person's forearms, elbow to wrist, over both arms and all frames [m]."""
         positions = self.positions[self.frames_of({person})]
         forearms = [positions[:, JOINTS.index(f"{side}Hand")] - positions[:, JOINTS.index(f"{side}LowerArm")] for side in ("left", "right")]
         return float(np.linalg.norm(forearms, axis=-1).mean())

@@ -1,4 +1,4 @@
-"""Whom `npm run report` measures, of the people in a folder: it asks this and gives the names to the evaluation."""
+"""Which people of a folder `npm run report` evaluates; it runs this and passes the names on."""
 
 import argparse
 import json
@@ -11,9 +11,9 @@ from .splits import FOLDS, VARIED, evaluation_only
 
 
 def main(mocap: Path) -> dict[str, list[str] | None]:
-    """tables: the first eleven, of whom the tables of docs/accuracy.md are, or None (everyone) where one of them is missing.
+    """tables: the VARIED subjects, on whom the tables of docs/accuracy.md are measured; None (all people) where one of them is missing.
 
-    home: the first fold's held-out people, elsewhere: evaluation-only subjects (never trained on); of both, those who are in the folder.
+    home: the first fold's held-out people, elsewhere: evaluation-only subjects (never trained on); of both, those in the folder.
     """
     people = {source.person for source in motion_files(mocap, None)}
     return {
@@ -24,7 +24,7 @@ def main(mocap: Path) -> dict[str, list[str] | None]:
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description="Whom npm run report measures, as JSON.")
+    parser = argparse.ArgumentParser(description="Which people npm run report evaluates, as JSON.")
     parser.add_argument("--mocap", type=Path, required=True)
     try:
         print(json.dumps(main(parser.parse_args().mocap)))

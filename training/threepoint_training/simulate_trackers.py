@@ -34,7 +34,7 @@ class TrackerConfig:
 
 @dataclass(frozen=True)
 class Wearer:
-    """The constant part: offsets [m] in the head's and hands' frames and turns (xyzw)."""
+    """How trackers sit on one person: offsets [m] in the frames of head and hands, and rotations (xyzw) against those."""
 
     eyes_in_head: Array
     head_turn: Array
@@ -43,7 +43,7 @@ class Wearer:
 
 
 def draw_wearer(config: TrackerConfig, random: np.random.Generator) -> Wearer:
-    """One wearer's offsets."""
+    """A wearer with offsets and rotations drawn at random."""
     turns = random.normal(size=(2, 3)) * config.hand_turn / np.sqrt(3)
     return Wearer(
         eyes_in_head=EYES_FROM_HEAD_JOINT + random.normal(size=3) * config.headset_offset,

@@ -11,13 +11,13 @@ from torch import Tensor, nn
 from .chest_features import ARM_COLUMNS, ARMS, CHEST_FEATURES, REACH_LENGTHS, UP
 from .model import ARM_FLIP, FLIP, MOST_DEVIATIONS
 
-# An everyday effect in eye heights: keeps the parameters near one.
+# A typical effect [eye heights]; parameters are multiplied by it, and so stay near one.
 _EFFECT = 0.02
 
 
 class SubjectEffects(nn.Module):
-    """Of each of `subjects`: corrections of shoulders, chest joint and hips linear in the chest-frame features, of an elbow linear in those of
-    its arm, and constant ones of the own arms' shoulders."""
+    """Corrections of each of `subjects`' own: of shoulders, chest joint and hips, linear in the chest-frame features; of elbows, linear in the
+    features of their arm; and a constant one of the shoulder that an arm of this subject hangs from."""
 
     def __init__(self, subjects: int, inputs: Tensor) -> None:
         """inputs [N, T·46 + 38]: some of the training's, for mean and deviation of the chest-frame features."""

@@ -18,7 +18,8 @@ _STEP, _STEPS, _HALVINGS = math.pi / 18, 18, 6
 
 @dataclass(frozen=True)
 class ElbowCircles:
-    """All places of the elbows of arms [N, 2, …]: circles about the lines from shoulder to wrist; axis: along those, unit."""
+    """The circles on which the elbows of arms can lie, about the lines from shoulder to wrist: centre and axis (unit, towards the wrist) [N, 2, 3],
+    radius [N, 2, 1]."""
 
     centre: Tensor
     axis: Tensor
@@ -53,7 +54,7 @@ def limit_swivel(circles: ElbowCircles, poles: Tensor, trunk: Trunk) -> tuple[Te
 
 
 def _inside(circles: ElbowCircles, zero: Tensor, quarter: Tensor, trunk: Trunk) -> Callable[[Tensor], Tensor]:
-    """Whether elbows at swivel angles [N, 2] are in the trunk's capsule, angles counted from `zero` towards `quarter`."""
+    """A function that tells of swivel angles [N, 2], from `zero` towards `quarter` [rad], whether elbows there are in the trunk capsule [N, 2]."""
     unit = (trunk.neck - trunk.chest).norm(dim=-1)[:, None]
     spine = trunk.neck - trunk.hips
     up = _unit(spine)

@@ -30,7 +30,7 @@ _OTHERS = [0, 1, 2, 3, 6, 7, 8, 9]
 
 @dataclass(frozen=True)
 class GaitConfig:
-    """frames: what gait-frames wrote. out: the page's network. held_out: where networks without some people go, by groups of them."""
+    """frames: the folder that gait-frames wrote. out: the page's network. held_out: the folder for networks trained without each group of people."""
 
     frames: Path
     out: Path = REPOSITORY / "src/core/estimation/gait-network.json"
@@ -47,7 +47,7 @@ class GaitConfig:
 
 @dataclass(frozen=True)
 class _Data:
-    """Inputs and targets [rows, …], persons and mirrored persons, and how often each row is drawn (sums up, the last is 1)."""
+    """Inputs [R, …] and targets [R, 10] of people and of their mirror images; drawn [R]: the cumulative probability of drawing rows, its last 1."""
 
     inputs: Array
     targets: Array
@@ -61,7 +61,7 @@ def _load(config: GaitConfig, index: dict[str, Any], people: tuple[str, ...]) ->
         plain, mirrored, feet = np.split(rows, [index["inputs"], 2 * index["inputs"]], axis=1)
         inputs += [plain, mirrored]
         targets += [feet, feet[:, _MIRROR] * _MIRROR_SIGN]
-        # Between frames alike and people alike.
+        # A person's weight grows with the root of their frames: between each frame, and each person, weighing the same.
         weights.append(np.full(2 * len(rows), len(rows) ** -0.5))
     sums = np.cumsum(np.concatenate(weights))
     return _Data(np.concatenate(inputs), np.concatenate(targets), sums / sums[-1])
@@ -135,7 +135,7 @@ def _write(path: Path, weights: GaitWeights, people: tuple[str, ...], corpus_has
 
 
 def main(config: GaitConfig) -> None:
-    """Trains without each group of people, then on all who may be trained on."""
+    """Trains without each group of people, then on all trainable people."""
     index = json.loads((config.frames / "index.json").read_text())
     people = trainable(list(index["people"]))
     if config.held_out:

@@ -1,4 +1,4 @@
-"""Trains our network: the residual of the IK solution on recombined bodies; small, averaged, stopped early."""
+"""Trains our network, which predicts the residual of IK's joints, on recombined bodies; its weights are averaged over steps, then shrunk."""
 
 import zlib
 from collections.abc import Callable
@@ -37,13 +37,13 @@ class TrainLearnedConfig:
     learning_rate: float = 5e-3
     weight_decay: float = 1e-2
     average_half_life_steps: float = 300.0
-    # Of the learned corrections of trunk and arm: what holds for the people trained on holds for others in part.
+    # What corrections of trunk and arm are multiplied by after training: what is learned of the people trained on holds for others in part.
     shrinkage: float = 0.9
     arm_shrinkage: float = 1.0
-    # Of errors of joints after torso and arm fitting, and of raw joints, so that what fitting takes back is kept small.
+    # Weights in the loss of errors after torso and arm fitting, and of raw joints: these keep small what fitting would undo.
     fitted_loss_weight: float = 1.0
     auxiliary_loss_weight: float = 0.1
-    # Of the per-subject random effects; at a learning rate of 0 they stay 0.
+    # Ridge and learning rate of the per-subject random effects; at a rate of 0 they stay 0.
     effects_ridge: float = 1e-3
     effects_learning_rate: float = 2e-2
     seed: int = 2460
@@ -57,7 +57,9 @@ class TrainLearnedConfig:
 
 @dataclass(frozen=True)
 class HeldOut:
-    """People as trackers see them, clip by clip, with the truth; corrections in eye heights times `eye_height` are metres."""
+    """Frames of people as trackers report them, one clip after the other: inputs [F, T·46 + 38] and targets [F, 18] of the network, targets in
+    eye heights (times `eye_height` [F] they are metres), and each frame's person and clip [F].
+    """
 
     inputs: NDArray[np.float32]
     targets: NDArray[np.float32]
@@ -103,10 +105,9 @@ _TRACKERS = TrackerConfig()
 def held_out(
     corpus: PreparedCorpus, people: tuple[str, ...], window_seconds: tuple[float, ...], condition: Condition = Condition()
 ) -> HeldOut:
-    """All frames of these people with the calibration they would have.
+    """All frames of these people as trackers report them under this condition, with the calibration that they would have.
 
-    Tilts of hands are measured by the true forearms of the other clips of the same person (of one clip alone: by its own), with the
-    calibration's error.
+    Hand tilts are measured on the true forearms of the same person's other clips (of a single clip: on its own), with the calibration's error.
     """
     forearms = hand_tilt.ForearmMeans(corpus, people)
     rows = []
@@ -216,13 +217,13 @@ def fitted_errors_cm(output: NDArray[np.float32], people: HeldOut) -> NDArray[np
 
 
 def raw_errors_cm(output: NDArray[np.float32], people: HeldOut) -> NDArray[np.float64]:
-    """Distances [F, 6] in centimetres of a network's output, before the skeleton."""
+    """Distances [F, 6] in centimetres of a network's output, before torso and arm fitting."""
     difference = (output - people.targets).reshape(-1, 6, 3)
     return np.linalg.norm(difference, axis=-1) * people.eye_height[:, None] * 100
 
 
 def ik_errors_cm(people: HeldOut) -> NDArray[np.float64]:
-    """The same for IK, to which nothing is added, after torso and arm fitting."""
+    """Distances [F, 6] in centimetres of IK's joints after torso and arm fitting."""
     return fitted_errors_cm(np.zeros((1, OUTPUTS), np.float32), people)
 
 
@@ -279,7 +280,7 @@ def train(
 
 @dataclass(frozen=True)
 class TrainFrameRandomConfig:
-    """Our network where it may know the neighbours of every test frame, as the paper's did: wider, trained longer, nothing varied."""
+    """Our network under the paper's protocol, which trains on the neighbours of every test frame: wider, trained longer, without augmentation."""
 
     width: int = 512
     hidden_layers: int = 3
@@ -312,10 +313,10 @@ def train_frame_random(
     return network.eval()
 
 
-# An everyday residual in eye heights: keeps the loss near one.
+# A typical residual [eye heights]; divides the loss, which so stays near one.
 _RESIDUAL = 0.025
 
 
 def _distance(corrections: torch.Tensor, truth: torch.Tensor) -> torch.Tensor:
-    """Distances, not squares: what MPJPE counts, and steadier against climbers and tumblers."""
+    """Mean distance; not its square: MPJPE counts distances, and the large errors of people who climb and tumble would outweigh all others."""
     return (corrections - truth).norm(dim=-1).mean()

@@ -12,7 +12,7 @@ METHODS = {"IK": "IK", "paper": "the paper's network", "learned": "ours"}
 
 
 def results(contracts: list[dict[str, Any]]) -> str:
-    """What contracts state of people held out, by protocol; of a row that two of them state, the first one's."""
+    """The table of errors [cm] on held-out people that contracts state, by protocol; where two contracts state a row, the first one's."""
     found: dict[str, dict[str, dict[str, float]]] = {}
     for contract in contracts:
         for row, errors in contract["errors"].items():

@@ -24,7 +24,7 @@ class TrainingReport:
         self.rows: dict[str, dict[str, float]] = {}
 
     def found(self, row: str, errors: np.ndarray) -> None:
-        """Errors of frames [F, 6]; a run takes most of an hour, so what is known is printed at once, in a log too."""
+        """Keeps errors [F, 6] in cm as a row, and prints their mean at once: a run takes most of an hour."""
         self.rows[row] = {"mean": float(errors.mean())} | dict(zip(LABELS, errors.mean(axis=0).tolist(), strict=True))
         self.console.print(f"{row}: {self.rows[row]['mean']:.2f} cm")
 
