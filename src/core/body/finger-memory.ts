@@ -15,7 +15,7 @@ import {
 export const heldSeconds = 0.5;
 export const relaxHalfLife = 0.25;
 
-/** The fingers of one hand as they are shown: finite in every frame, seen, lost or no numbers. */
+/** The fingers of one hand as they are shown: finite in every frame, whether they are seen, lost or not finite. */
 export class FingerMemory {
   /** Overwritten by the next `follow`. */
   readonly shape: HandShape;
@@ -33,7 +33,7 @@ export class FingerMemory {
     this.shape = this.#shape;
   }
 
-  /** What is seen now; null: nothing. A finger with a number that is none is not seen. */
+  /** What is seen now; null: nothing. A finger with a bend that is not finite counts as not seen. */
   follow(seen: HandShape | null, deltaSeconds: number): HandShape {
     for (let i = 0; i < fingerNames.length; i++) {
       const name = fingerNames[i]!;

@@ -140,8 +140,8 @@ function bendAgainst(frame: MutableQuat, to: Vec3): number {
 }
 
 /**
- * How a finger is bent whose joints and tip are there: the first bone exactly, the others as far as a hinge bends. A point that is no
- * number makes numbers that are none.
+ * How a finger is bent whose joints and tip are there: the first bone exactly, the others as far as a hinge bends. A NaN position gives at
+ * least one NaN bend.
  */
 export function bendOfPoints(name: FingerName, points: FingerPoints, target: MutableFingerBend): MutableFingerBend {
   const [first, second, third, tip] = points;

@@ -10,7 +10,7 @@ import { type FingerName, fingerNames, type MutableHandShape } from './hand-shap
 export const closedPinch = 0.012;
 export const openPinch = 0.05;
 
-/** How far two finger tips that are so far apart [m] close on each other; NaN where that is no number. */
+/** How far two finger tips that are so far apart [m] close on each other, 0 to 1; NaN for a gap that is not finite. */
 export const pinchOf = (gap: number): number =>
   Number.isFinite(gap) ? 1 - smoothstep(closedPinch, openPinch, gap) : Number.NaN;
 
@@ -38,7 +38,7 @@ export function setHandJoint(
   if (side === 'right') mirrorPoint(target, target);
 }
 
-/** How the fingers with these joints are bent; a finger with a joint that is no place has numbers that are none. */
+/** How the fingers with these joints are bent. A NaN joint position gives its finger, and a pinch that needs it, NaN. */
 export function shapeOfJoints(joints: HandJoints, target: MutableHandShape): MutableHandShape {
   for (let i = 0; i < fingerNames.length; i++) {
     const name = fingerNames[i]!;

@@ -33,8 +33,8 @@ export function armLength({ eyeHeight, armSpan }: Calibration): number {
 }
 
 /**
- * Upper arm and forearm, as long as the arm together. A forearm that is told counts by `forearmTrust`, the average arm's by the rest; one that
- * no such arm has is taken for the longest or shortest that it can have.
+ * Bone lengths [m] that sum to armLength. A calibrated forearm is clamped to forearmShare of the arm, then blended with the average by
+ * forearmTrust.
  */
 export function armBones(calibration: Calibration): LimbBones {
   const arm = armLength(calibration);

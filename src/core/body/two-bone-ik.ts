@@ -65,8 +65,8 @@ export function elbowCircle(
 }
 
 /**
- * How far an arm that reaches `reach` stretches after a hand `far` away, in one unit: as far as that until it is nearly straight, then ever less,
- * never quite to its reach. Of an arm that snaps straight the elbow leaps ("soft IK", Andy Nicholas, 2009).
+ * Soft-IK reach (Andy Nicholas, 2009): equals `far` up to softReach·reach, then approaches `reach` exponentially, so the elbow does not
+ * snap. Same unit in and out.
  */
 export function softenedReach(far: number, reach: number): number {
   const near = reach * limits.softReach;

@@ -23,7 +23,10 @@ const shortestSeconds = 0.2;
 const fastest = 2.25;
 /** The share of the shortest time in which they get up to speed, and down from it. */
 const ramp = 0.2;
-/** From the first [s] on an arm whose goal runs away is drawn to it, at the second it is there: no measured transition took longer than 0.7 s. */
+/**
+ * Catch-up window [s since the jump] of an arm whose hand is tracked: the minimum progress along the arcs ramps from 0 to 1, so a moving
+ * goal is reached by the end. Longest measured transition: 0.7 s.
+ */
 const [hurrySeconds, longestSeconds] = [0.7, 0.9];
 /** An arm that bends less than this [sine of the angle] has no plane of its own to bend in. */
 const allButStraight = 0.1;
@@ -132,8 +135,8 @@ function distanceAt(transition: ArmTransition, drawn: ArmDirections, wanted: Wan
 }
 
 /**
- * The share of the arcs up to which neither elbow nor wrist is further than this [m] from where it was drawn; where the shoulder has
- * carried them further off than that at any share, the one at which they are nearest.
+ * The share of the arcs up to which neither elbow nor wrist is further than this [m] from where it was drawn. If shoulder motion alone
+ * exceeds the limit at every share, returns the share with the smallest distance. Shares are sampled in steps of 1/pathSteps.
  */
 function shareWithin(transition: ArmTransition, drawn: ArmDirections, wanted: WantedArm, metres: number): number {
   let [nearest, least] = [0, distanceAt(transition, drawn, wanted, 0)];
@@ -194,7 +197,7 @@ export function followTransition(
   aimArc(forearm, drawn.forearm, wanted.forearm);
   const toGo = pathLength(transition, drawn, wanted);
   const step = stepOf(transition, toGo, wanted, passed);
-  // The arm goes on while the shoulder moves; one whose goal runs away is drawn to it in the end.
+  // Minimum share per frame: a third of the nominal progress, so shoulder motion cannot stall the transition; plus the catch-up ramp.
   const least = Math.min(1, (transition.speed * passed) / Math.max(3 * toGo, 1e-9));
   const hurry =
     wanted.seconds === 0 ? clamp((transition.age - hurrySeconds) / (longestSeconds - hurrySeconds), 0, 1) : 0;

@@ -62,7 +62,10 @@ export interface CompletedHand extends MutablePose<'floor'> {
   confidence: number;
   /** Where its arm belongs: where the hand is seen, is held, or will rest. */
   readonly goal: MutablePose<'floor'>;
-  /** The goal is elsewhere than in the frame before for no motion of the wearer: the drawn arm must bridge the distance. */
+  /**
+   * True in the frame in which the goal changes discontinuously: the hand was reacquired, or begins to sink. The drawn arm must then be
+   * blended.
+   */
   jumped: boolean;
 }
 

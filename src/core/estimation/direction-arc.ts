@@ -17,7 +17,7 @@ export interface DirectionArc {
   readonly second: MutableQuat;
   /** The first leg's share of the whole path. */
   share: number;
-  /** The direction by whose way the path leads, unit; a path that is not roundabout leads straight to its end. */
+  /** Intermediate direction, unit; used only while `roundabout`. */
   readonly via: MutableVec3;
   roundabout: boolean;
 }
@@ -60,7 +60,7 @@ export function directionArc(
   return aimArc(target, from, to);
 }
 
-/** The rest of the same path, from a direction on it to an end that has moved. */
+/** Recomputes both legs from the current direction to a moved end. */
 export function aimArc(arc: DirectionArc, from: Vec3, to: Vec3): DirectionArc {
   const { first, second, via, roundabout } = arc;
   const a = angleBetween(identity, rotationBetween(from, roundabout ? via : to, first));
@@ -69,7 +69,7 @@ export function aimArc(arc: DirectionArc, from: Vec3, to: Vec3): DirectionArc {
   return arc;
 }
 
-/** So much of the path in [0, 1] is behind: once its first leg is, it leads straight to its end. */
+/** Drops the via point once progress in [0, 1] has passed the first leg. */
 export function passArc(arc: DirectionArc, progress: number): void {
   if (progress >= arc.share) arc.roundabout = false;
 }

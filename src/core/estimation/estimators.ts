@@ -16,7 +16,7 @@ export type NetworkName = 'paper' | 'learned';
 /** Whether a method needs a network. */
 export const needsRegressor = (name: EstimatorName): name is NetworkName => name === 'paper' || name === 'learned';
 
-/** The network that a method draws with; the device's body can do without: learned draws where the device reports none. null: no network. */
+/** The network a method loads, or null. `device` uses `learned` as its fallback, but also works without it. */
 export const networkOf = (name: EstimatorName): NetworkName | null =>
   needsRegressor(name) ? name : name === 'device' ? 'learned' : null;
 

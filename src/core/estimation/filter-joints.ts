@@ -90,7 +90,10 @@ const steadiness = ({ source, confidence }: CompletedHand): number => (source ==
 const settleDurationAfter = ({ source, jumped, confidence }: CompletedHand): number =>
   jumped && source === 'tracked' ? confidenceSeconds * (1 - confidence) : 0;
 
-/** Turns the offsets along with the body. When a hand is seen again, notes by how much the joints jump; that arm's elbow gets half of its shoulder's offset. */
+/**
+ * Rotates the stored offsets with the body. On a reacquisition stores, per joint, old minus new position, to be faded out; the elbow of an
+ * arm whose hand jumped gets half of its shoulder's offset.
+ */
 function followJumps(
   state: FilterJointsState,
   joints: JointPositions,

@@ -47,7 +47,7 @@ const { anatomicalPasses, extremePasses } = limits.reach;
 const turnSpeed = 12;
 /** Longest half-life [s] of the shoulders' line, where they are estimated so close together that it says little. */
 const shoulderLineHalfLife = 0.15;
-/** Shoulders nearer to each other than the first say nothing of their line, further apart than the second all [share of their distance at rest]. */
+/** Confidence in the shoulder line rises from 0 to 1 between these shoulder distances [share of rest width]. */
 const [undefinedLine, definedLine] = [0.2, 0.7];
 /** Hips turn at most this fast about the chest joint [rad/s]: 4 cm in a frame at 60 Hz. */
 const hipsTurnSpeed = 6;
@@ -119,6 +119,7 @@ export interface TorsoBones {
   readonly reach: number;
 }
 
+/** Measures a skeleton for `fitTorso`: [m], T-pose facing −Z. Both arms are taken to be as long as the right one. */
 export function torsoBones(skeleton: Skeleton): TorsoBones {
   const offsets = skeleton.restOffsets;
   const thorax = add(offsets.upperChest, offsets.neck);
@@ -203,7 +204,10 @@ export function fitTorso(
   return pose;
 }
 
-/** The shoulders' line: never faster than `turnSpeed`, and slowly where the shoulders are estimated close together. From `lineBefore`, however often a frame calls it. */
+/**
+ * Writes the shoulders' line: never faster than `turnSpeed`, and slowly where the shoulders are estimated close together. Idempotent within
+ * a frame: always starts from `lineBefore`.
+ */
 function followShoulderLine(
   state: FitTorsoState,
   targets: Readonly<Record<Side, Vec3>>,
@@ -220,7 +224,7 @@ function followShoulderLine(
   turnTowards(line, before, share, turnSpeed * Math.max(deltaSeconds, 0));
 }
 
-/** Replaces a unit vector by the one that `before` comes to when it turns towards it by a share of the angle between them, but by `most` [rad] at most. */
+/** Turns `before` towards `wanted` by min(share·angle, most) [rad] and writes the result into `wanted`; all unit. */
 function turnTowards(wanted: MutableVec3, before: Vec3, share: number, most: number): void {
   const angle = Math.atan2(length(cross(before, wanted, b)), dot(before, wanted));
   const turn = Math.min(angle * share, most);
@@ -304,9 +308,9 @@ function placeSpine(
 }
 
 /**
- * The hips at `lowerBack` [m] from the chest joint towards where they are estimated, but never below the floor. An estimate that is almost at the chest
- * hardly says where they are, and one almost below a chest that is too low for them to hang not on which side they lie: beside the body's
- * own turn they turn with a limited speed.
+ * Hips at `lowerBack` [m] from the chest joint, towards the estimate, never below the floor. The direction is rate-limited (hipsTurnSpeed,
+ * relative to the body's turn) because it is ill-defined when the estimate is close to the chest joint, or directly below a chest joint
+ * that is too low.
  */
 function hangHips(
   { known, pose, towardsHips: towards }: FitTorsoState,

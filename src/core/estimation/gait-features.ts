@@ -27,7 +27,10 @@ const ahead = vec3(0, 0, 0);
 const overhead = vec3(0, 0, 0);
 const way = vec3(0, 0, 0);
 
-/** Which way hips face [rad], 0 towards −Z; bent over, their forward points down and their up points ahead: together they know the way. */
+/**
+ * Yaw of hips [rad, 0 = −Z] from a weighted sum of their forward and up axes, so it stays defined when bent over. Upside down with forward
+ * not below the horizon both weights are 0: the result is then 0 or ±π, by the signs of zeros.
+ */
 export function yawOfHips(orientation: Quat): number {
   rotate(orientation, forward, ahead);
   rotate(orientation, up, overhead);

@@ -35,8 +35,8 @@ const [standingAt, yawAt] = [4, 6] as const;
 export const shippedGait: GaitNetwork = shipped;
 
 /**
- * Expects feet from a second of hips, head and hands: a small network, computed for a person and their mirror image, the mean of both. What
- * it expects is where feet are on average, not a step: a stepping makes feet of it that stand.
+ * Predicts the mean foot pose from a second of hips, head and hands; avatar/legs/stepping turns it into discrete steps. A small network,
+ * computed for a person and their mirror image and averaged.
  */
 export class Gait {
   /** Overwritten by the next update. */

@@ -35,7 +35,10 @@ export interface JointSource {
 
 /** The network behind a joint source. */
 export interface JointNetwork {
-  /** Whether `ask` is to be called about a frame of this time [s]: not where it answers within `joints`, nor where it was asked about a frame just before. */
+  /**
+   * Whether `ask` is to be called for a frame of this time [s]. False if inference runs synchronously inside `joints`, or a frame less than
+   * one interval ago was already requested.
+   */
   wantsFrame(time: number): boolean;
   /** Asks about this frame, unless a question is open; resolves when that is answered, however it ends. Never rejects. */
   ask(solved: SolvedFrame): Promise<void>;

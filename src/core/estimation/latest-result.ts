@@ -2,7 +2,7 @@ import { reasonOf } from '../errors/reasons';
 import { allFinite } from '../math/all-finite';
 import type { PoseRegressor } from './pose-regressor';
 
-/** Latest-result inference: runs a regressor one at a time and hands over what it finished; nothing it does wrong gets out as an exception. */
+/** Latest-result inference: runs a regressor one run at a time and hands over what it finished; errors are stored in `fault`, never thrown. */
 export class LatestResult {
   readonly #regressor: PoseRegressor;
   readonly #outputs: number;

@@ -23,7 +23,10 @@ const furthestLean = 0.6;
 /** A trunk leans after a hand that comes back, and straightens after one that is lost, at most this fast [m/s]. */
 const leanSpeed = 0.6;
 
-/** Offset of a shoulder's target, from the estimated shoulder towards a hand that the arm alone reaches not at all or nearly straight [m], floor frame. */
+/**
+ * Offset of a shoulder's target [m, floor frame], from the estimated shoulder towards a hand that is out of reach, or reachable only with
+ * a nearly straight arm.
+ */
 export interface Lean {
   /** What would reach the hand: in this frame, and in the one before. */
   readonly wanted: MutableVec3;
@@ -53,8 +56,8 @@ export function beginLean(lean: Lean): void {
 }
 
 /**
- * Leans a shoulder further towards a hand: until the arm reaches it softly, or, beyond what anatomy allows for that, at all. False: it does. No
- * hand on its way to rest is leaned after.
+ * Adds to the lean until the wrist distance is the soft reach (first `anatomicalPasses`) or the full reach (later passes, which also
+ * raise `extremity`). Returns false when nothing is missing, or the hand is sinking.
  *
  * reach: the arm's [m]; pass: how often this frame has leaned already.
  */
@@ -76,8 +79,8 @@ export function leanFurther(
 }
 
 /**
- * Leans as far as is wanted, but after a hand that was lost or has come back no faster than people do; then only what is wanted
- * anew is had at once. False: the lean is not yet what is wanted.
+ * Follows `wanted` at no more than leanSpeed; for a fully confident tracked hand this frame's change of `wanted` is applied at once, and
+ * in the first frame (not `known`) all of it. Returns whether `wanted` was reached.
  */
 export function followLean(
   { wanted, wantedBefore, offset }: Lean,

@@ -22,8 +22,8 @@ export function weightsOf({ name, weights }: ModelContract): FlatWeights {
 export class LearnedNetwork {
   readonly #features: number;
   /**
-   * Reach, its length, axes of the hand, IK's elbow, the room's up, whether the hand is seen. The same number as `armColumns`: the reach's
-   * length is computed, and the last column, the arm's length, is used only as divisor.
+   * Arm network inputs: reach (3), its length (1), hand axes, IK elbow, up, seen. `armColumns` has the same count: it lacks the computed
+   * length and ends with the arm length, used only as a divisor.
    */
   readonly #armInputs: number;
   readonly #trunk: Perceptron;
@@ -71,7 +71,7 @@ export class LearnedNetwork {
     return this.#output;
   }
 
-  /** Left and right shoulder, chest joint and hips: the mean of what is said of the body and, mirrored back, of its image. Elbows go with their shoulders. */
+  /** Averages the outputs for the body and its un-mirrored image; elbows start from their shoulder's correction. */
   #correctTrunk(trunk: Float64Array, image: number): void {
     const output = this.#output;
     for (let joint = 0; joint < 4; joint++) {

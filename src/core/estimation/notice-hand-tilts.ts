@@ -22,7 +22,7 @@ interface HandTiltState {
   /** The direction that a calibration tells, or the usual one, unit. */
   readonly prior: MutableVec3;
   told: boolean;
-  /** The sum of every direction noticed, each as long as it was seen [s] and forgotten by and by. */
+  /** Sum of observed directions times seconds [s], decaying with time constant memorySeconds while the hand is tracked. */
   readonly noticed: MutableVec3;
 }
 
@@ -63,7 +63,10 @@ export function tellHandTilts(state: HandTiltsState, told: HandTilts | undefined
 
 const direction = vec3(0, 0, 0);
 
-/** As how much motion [s] the prior counts beside what was noticed. */
+/**
+ * Weight of the prior, as the seconds of observed motion it equals. A measured tilt's shrinks with the square of doubtAngle/angle once
+ * prior and observations differ by more than doubtAngle; the usual tilt's is constant.
+ */
 function priorSeconds({ prior, told, noticed }: HandTiltState): number {
   if (!told) return usualSeconds;
   const angle = Math.atan2(length(cross(prior, noticed, direction)), dot(prior, noticed));
@@ -77,9 +80,9 @@ function turnAfter(state: HandTiltsState, side: Side): void {
 }
 
 /**
- * Notices where the forearms of hands that are seen point in the frames of those hands, for the frames to come. Inverse kinematics tells it from
- * where hands and head are and, little, from how the hands are turned; its errors go as the posture changes, the tilt stays.
- * It is told nothing of the tilts themselves, so that no error can feed itself.
+ * Accumulates, per tracked hand, the forearm direction that IK gives without knowledge of tilts (frame of the hand as it is tracked),
+ * weighted by time. Takes effect next frame. The input ignores the estimate, so errors cannot feed back; IK's own errors average out as
+ * the posture changes. No time passed: nothing changes.
  */
 export function noticeHandTilts(
   state: HandTiltsState,

@@ -5,9 +5,9 @@ import type { CompletedFrame } from './complete-hands';
 import { furthest, hanging, share, speed, unremarkable, usualReach } from './headset-rise.json';
 import type { SolvedFrame } from './joint-source';
 
-/** How far above its usual place on the head a headset sits. */
+/** Estimate of how far the headset sits above its nominal place on the head. */
 export interface HeadsetRiseState {
-  /** How far each wrist gets from its shoulder while the arm hangs [arm lengths]: a quantile, followed. */
+  /** Tracked quantile of the shoulder–wrist distance while the arm hangs [arm lengths]. */
   readonly reach: Record<Side, number>;
   /** [m] */
   rise: number;
@@ -32,9 +32,9 @@ interface NoticedFrame extends Pick<SolvedFrame, 'points' | 'ik'> {
 const fromShoulder = vec3(0, 0, 0);
 
 /**
- * Notices by arms that hang how much higher the headset sits than is believed: it carries IK's shoulders up with it, and an arm that hangs straight
- * then seems longer than it is. Follows a quantile of that reach by stochastic approximation (Robbins and Monro, Annals of Mathematical
- * Statistics 22(3), 1951), slowly; people's own shoulders differ as well, so that what is unremarkable counts for nothing.
+ * Estimates how far the headset sits above its nominal place [m], which carries IK's shoulders up with it. While an arm hangs, a quantile of
+ * the shoulder–wrist distance is tracked (stochastic approximation: Robbins and Monro, Annals of Mathematical Statistics 22(3), 1951); the
+ * mean of both arms less usualReach, less a dead zone for anatomical variation, is attributed to the headset, within ±furthest.
  *
  * arm: its length [m]; lowered: by how much the head of this frame was lowered for what had been noticed before [m].
  */

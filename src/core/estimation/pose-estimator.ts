@@ -9,16 +9,16 @@ export type ThreePointName = (typeof threePointNames)[number];
 export const estimatorNames = [...threePointNames, 'device'] as const;
 export type EstimatorName = (typeof estimatorNames)[number];
 
-/** The question that one frame puts to a network. */
+/** Deferred inference for one frame. */
 export interface InferenceRequest {
   /**
-   * Asks it, when the picture is on its way; what it answers is used from then on. Call it before the next `update` or not at
-   * all: then the network goes on from older frames. Resolves when the answer is there, however it ends; rejects never.
+   * Call it after the frame is submitted and before the next `update`; if skipped, older results stay in use. Resolves when the run has
+   * ended, with or without a result; never rejects.
    */
   ask(): Promise<void>;
 }
 
-/** What one frame shows, and what it wants to know. The estimator owns both and overwrites them with the next frame. */
+/** Output of one update; owned by the estimator and overwritten by the next. */
 export interface Estimate {
   /** Floor frame. Head and hands are of this very frame, however old the network's answer is. */
   readonly pose: AvatarPose;

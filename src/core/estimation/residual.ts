@@ -17,9 +17,9 @@ import { makeChestAxes } from './solve-ik';
 const defaultHalfLife = 0.04;
 
 /**
- * Seconds between questions, at least: the correction is damped over more than that, and asking about every frame costs twice the processor's time for 0.1 to
- * 0.4 % less error (docs/decisions.md). No headset's display (60 to 120 Hz) has a multiple of its frame time near it: of 60 to 90 Hz every second frame is asked about, of 120 Hz
- * every third.
+ * Minimum interval between inferences [s]; the correction's half-life is longer. More often doubles CPU time for 0.1–0.4 % less error
+ * (docs/decisions.md). At least 2 ms from any multiple of the frame times of 60, 72, 80, 90 (every second frame) and 120 Hz (every third),
+ * so the choice of frames does not depend on timing noise. At 100 Hz it is exactly two frames: there noise decides between two and three.
  */
 const questionSeconds = 0.02;
 

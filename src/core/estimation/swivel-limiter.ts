@@ -35,7 +35,7 @@ const guessedSwivelSpeed = 5;
 const swivelHalfLife = 0.35;
 /** An estimated elbow nearer to the arm's line than this [m] says little: the arm is nearly straight. */
 const definedPole = 0.04;
-/** A hand nearer to the shoulder than the first says nothing about the line between them, further than the second all [arm lengths]. */
+/** Confidence in the arm's axis rises from 0 to 1 between these wrist distances from the shoulder [arm lengths]. */
 const [handAtShoulder, handAway] = [0.1, 0.3];
 
 /** What an elbow remembers, so that it does not flip: chest frame. */

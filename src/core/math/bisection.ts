@@ -1,6 +1,6 @@
 /**
- * The last value that is not too far, in [low, high], to (high − low) / 2^halvings: `low` is not, and all beyond the first that
- * is are.
+ * Largest value in [low, high] at which the monotone predicate `tooFar` is still false, from below, to within
+ * (high − low) / 2^halvings. Requires `tooFar(low)` to be false.
  */
 export function bisect(low: number, high: number, tooFar: (value: number) => boolean, halvings: number): number {
   let from = low;

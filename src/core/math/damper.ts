@@ -28,8 +28,8 @@ export function smoothstep(start: number, end: number, value: number): number {
 }
 
 /**
- * Trapezoidal easing: 0 at and below `start`, 1 at and above `end`; the speed rises evenly over the first fifth, is constant,
- * and falls evenly over the last fifth. At most 1.25 times the mean speed, where smoothstep has 1.5.
+ * Trapezoidal easing: 0 at and below `start`, 1 at and above `end`. With ramp = `trapezoidalRamp`, the speed rises evenly over the first
+ * ramp·duration, is constant, and falls evenly over the last ramp·duration; peak speed 1/(1−ramp) of the mean, where smoothstep has 1.5.
  */
 export function trapezoidalEasing(start: number, end: number, value: number): number {
   const ramp = easing.trapezoidalRamp;
@@ -38,4 +38,5 @@ export function trapezoidalEasing(start: number, end: number, value: number): nu
   return t < ramp ? (t * t) / (2 * ramp * (1 - ramp)) : (t - ramp / 2) / (1 - ramp);
 }
 
+/** The value in [low, high] nearest to `value`; NaN stays NaN; `high` < `low` gives `low`. */
 export const clamp = (value: number, low: number, high: number): number => Math.max(low, Math.min(high, value));

@@ -106,6 +106,7 @@ export function composeTransforms<To extends Frame, Via extends Frame, From exte
   return target;
 }
 
+/** The transform back: `toFromFrom` becomes `fromFromTo`. The orientation must be unit; target may be `t`. */
 export function invertTransform<To extends Frame, From extends Frame>(
   t: Transform<To, From>,
   target: MutableTransform<From, To> = makeTransform(),

@@ -164,7 +164,7 @@ export const alignDirections = (
     ? multiply(toFrame, inverse, target)
     : rotationBetween(main, toMain, target);
 
-/** Along the shorter arc from a (t = 0) to b (t = 1). */
+/** Along the shorter arc from a (t = 0) to b (t = 1), both unit; t beyond [0, 1] extrapolates. Half a turn apart: one of the two arcs. */
 export function slerp(a: Quat, b: Quat, t: number, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat {
   const cosine = a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w;
   const sign = cosine < 0 ? -1 : 1;

@@ -78,7 +78,7 @@ export function normalise(a: Vec3, fallback: Vec3 = up, target: MutableVec3 = ve
 export const reject = (a: Vec3, axis: Vec3, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 =>
   addScaled(a, axis, -dot(a, axis), target);
 
-/** From a (t = 0) to b (t = 1) along the straight line. */
+/** From a (t = 0) to b (t = 1) along the straight line; t beyond [0, 1] extrapolates. t = 1 may miss b by rounding. */
 export const lerp = (a: Vec3, b: Vec3, t: number, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 =>
   setVec3(target, a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t, a.z + (b.z - a.z) * t);
 

@@ -57,6 +57,7 @@ export function fromHandPlace(head: Vec3, { far, x, y, z }: HandPlaceSteps, targ
   return add(head, setVec3(target, x * unit, y * unit, z * unit), target);
 }
 
+/** Writes a place as 40 bits; steps beyond its grid would write another place: `toHandPlace` makes none. */
 export function writeHandPlace(writer: BitWriter, { far, x, y, z }: HandPlaceSteps): void {
   const { most, count } = far ? wide : near;
   const code = (far ? nearCodes : 0) + ((x + most) * count + (y + most)) * count + (z + most);

@@ -134,6 +134,7 @@ export const toMillimetres = ({ eyeHeight, armSpan, forearm }: Calibration): Cal
   ...(forearm !== undefined && { forearm: millimetres(forearm) }),
 });
 
+/** Wire form of a seat: lengths rounded to millimetres, null for an empty seat. */
 export function packSeatInfo(info: SeatInfo | null): PackedSeatInfo {
   if (!info) return null;
   const { eyeHeight, armSpan, forearm = null } = toMillimetres(info.calibration);

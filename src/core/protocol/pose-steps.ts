@@ -17,13 +17,16 @@ import {
   type VecSteps,
 } from './quantise';
 
-/** The head: ±8.19 m from the origin of the floor frame, −1 to 3.095 m above it; beyond: at the edge. No headset plays in more than 15 m. */
+/** Bits of the head's x and z: ±8.19 m from the origin of the floor frame; beyond: at the edge. No headset plays in more than 15 m. */
 export const headBits = 16;
+/** Bits of the head's height: −1 to 3.095 m above the floor; beyond: at the edge. */
 export const heightBits = 14;
+/** Lowest height of a head on the wire [m], floor frame. */
 export const lowestHead = -1;
 /** Of head and hands: 0.1° at most. */
 export const trackedBits = 11;
 export const forearmBits = 6;
+/** Of the swivel angle over ±π: steps of 0.18°. */
 export const swivelBits = 11;
 /** A clavicle swings ±1.3 rad about each of two axes, and mostly by less than half of that. */
 export const clavicleRange = 1.3;
@@ -31,8 +34,9 @@ export const clavicleRange = 1.3;
 export const directionBits = 8;
 export const flexionBits = 7;
 export const freeHandBits = 6;
-/** How far a wrist is drawn beyond the hand, or before it, along its arm: multiples of this [m]. */
+/** How far a wrist is drawn beyond the hand, or before it, along its arm: signed steps of so many bits. */
 export const stretchBits = 4;
+/** A step of that [m]: ±1.4 mm in all. */
 export const stretchUnit = 0.0002;
 /** What is left for the trunk when one arm has a wrist of its own, when both have, and otherwise. */
 export const trunkBitsFor = (freeArms: number): number => 10 - freeArms;
@@ -158,6 +162,7 @@ export const headPosition = ({ x, y, z }: VecSteps, target: MutableVec3 = vec3(0
 export const limited = (steps: number, bits: number): number =>
   clamp(Math.round(steps), -mostSteps(bits), mostSteps(bits));
 
+/** The nearest steps to a head, floor frame; positions beyond the ranges of `headBits` and `heightBits` end at the edge. */
 export function headSteps({ position: { x, y, z }, orientation }: Pose<'floor'>, target: HeadSteps): HeadSteps {
   const { position } = target;
   position.x = limited(x / placeUnit, headBits);
@@ -167,12 +172,14 @@ export function headSteps({ position: { x, y, z }, orientation }: Pose<'floor'>,
   return target;
 }
 
+/** The nearest steps to a hand, floor frame, from a head at `head` [m] as the receiver has it; see `toHandPlace` for hands far off. */
 export function handSteps(head: Vec3, { position, orientation }: Pose<'floor'>, target: HandPoseSteps): HandPoseSteps {
   toHandPlace(head, position, target.place);
   toQuatSteps(orientation, trackedBits, target.orientation);
   return target;
 }
 
+/** Writes the pose of a hand as steps tell it, floor frame; `head`: as the receiver has it [m]. */
 export function handPose(
   head: Vec3,
   { place, orientation }: HandPoseSteps,

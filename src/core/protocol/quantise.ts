@@ -19,8 +19,7 @@ export const toStep = (value: number, range: number, bits: number): number =>
 export const fromStep = (step: number, range: number, bits: number): number => (step / mostSteps(bits)) * range;
 
 /**
- * The nearest step to a value of [−range, range] that is mostly about zero: there steps are half as long as even ones, at the ends of the range
- * half as long again.
+ * Non-uniform quantiser for values concentrated near 0: half the uniform step at 0, 1.5 times at ±range. Beyond: the end of the range.
  */
 export function toCentredStep(value: number, range: number, bits: number): number {
   const step = toStep((Math.sqrt(1 + 8 * clamp(Math.abs(value) / range, 0, 1)) - 1) / 2, 1, bits);
@@ -55,6 +54,7 @@ export const makeQuatSteps = (): QuatSteps => ({ largest: 3, a: 0, b: 0, c: 0 })
 /** The three that are not largest lie within ±1/√2. */
 const range = Math.SQRT1_2;
 
+/** The nearest steps to a unit quaternion; q and −q give the same, equal largest components the first of w, x, y, z. */
 export function toQuatSteps({ x, y, z, w }: Quat, bits: number, target: QuatSteps = makeQuatSteps()): QuatSteps {
   let largest = 3;
   let most = w;
@@ -144,7 +144,7 @@ export function toDirectionSteps(
   return target;
 }
 
-/** The unit vector. */
+/** The unit vector through that place of the cube; `axis` in 0 to 2. */
 export function fromDirectionSteps(
   { axis, negative, a, b }: DirectionSteps,
   bits: number,

@@ -3,14 +3,14 @@ import * as v from 'valibot';
 /** A room in which there are voices has no more seats than this: each page has a connection to each other one. */
 export const mostVoices = 6;
 
-/** Names one page's stay among the voices; another one after a reload, and wherever all its connections begin anew. */
+/** Identifies one page's voice session; a new id after a reload, or when all peer connections restart. */
 const session = v.pipe(v.string(), v.regex(/^[\w-]{8,16}$/));
 
 /** How a page takes part in the voices of its room. */
 export const voice = v.strictObject({ session, muted: v.boolean() });
 export type Voice = v.InferOutput<typeof voice>;
 
-/** The same in a seat's packed row: 1 for muted; 0 alone: its player does not take part. */
+/** Wire form of `Voice` in a packed seat: [session, muted as 0 or 1]; 0 alone: not taking part. */
 export const packedVoice = v.union([v.literal(0), v.tuple([session, v.picklist([0, 1])])]);
 export type PackedVoice = v.InferOutput<typeof packedVoice>;
 

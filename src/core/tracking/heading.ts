@@ -46,6 +46,7 @@ export interface Heading {
   confidence: number;
 }
 
+/** Writes the heading of a head that is turned so, floor frame. On its side: `yawOf`'s fallback, with confidence 0. */
 export function readHeading(orientation: Quat, target: Heading = { yaw: Number.NaN, confidence: Number.NaN }): Heading {
   target.yaw = yawOf(orientation);
   const { x, z } = rotate(orientation, right, axis);
