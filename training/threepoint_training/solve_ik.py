@@ -86,11 +86,11 @@ def solve(positions: Array, rotations: Array, body: Body, parameters: dict[str, 
     points = _points(positions, rotations, body)
     turn = _turn_chest(points, k)
     thorax_up, lower_back_up = _lean_trunk(points, turn, body, k)
-    chest = _thorax_frame(thorax_up, turn)
-    neck = _place_neck(points, chest, body, k)
+    thorax = _thorax_frame(thorax_up, turn)
+    neck = _place_neck(points, thorax, body, k)
     chest_joint, hips = _place_trunk(neck, thorax_up, lower_back_up, body)
-    shoulders = [_place_shoulder(side, points, (neck, chest), body, k) for side in (0, 1)]
-    elbows = [_place_elbow(side, points, (shoulder, chest), body, k) for side, shoulder in enumerate(shoulders)]
+    shoulders = [_place_shoulder(side, points, (neck, thorax), body, k) for side in (0, 1)]
+    elbows = [_place_elbow(side, points, (shoulder, thorax), body, k) for side, shoulder in enumerate(shoulders)]
     return np.stack([*elbows, *shoulders, chest_joint, hips], axis=1)
 
 
@@ -135,11 +135,11 @@ def _thorax_frame(thorax_up: Array, turn: Array) -> Array:
     return np.stack([x, thorax_up, np.cross(x, thorax_up)], -1)
 
 
-def _place_neck(points: _Points, chest: Array, body: Body, k: dict[str, Any]) -> Array:
+def _place_neck(points: _Points, thorax: Array, body: Body, k: dict[str, Any]) -> Array:
     """4. Neck base [F, 3], below the head joint."""
     length = np.linalg.norm(body.neck_to_head, axis=-1, keepdims=True)
     rest = np.broadcast_to(body.neck_to_head / length, points.headset.shape)
-    return points.head_joint - length * normalise((1 - k["neck"]) * _apply(chest, rest) + k["neck"] * _apply(points.head, rest))
+    return points.head_joint - length * normalise((1 - k["neck"]) * _apply(thorax, rest) + k["neck"] * _apply(points.head, rest))
 
 
 def _place_trunk(neck: Array, thorax_up: Array, lower_back_up: Array, body: Body) -> tuple[Array, Array]:
@@ -154,43 +154,43 @@ def _side_sign(side: int) -> Array:
     return np.array([1.0 if side else -1.0, 1.0, 1.0])
 
 
-def _in_chest(chest: Array, v: Array, side: int) -> Array:
+def _in_thorax(thorax: Array, v: Array, side: int) -> Array:
     """Vectors [F, 3] of the heading frame in the thorax frame, those of the left side mirrored."""
-    return np.einsum("...ji,...j->...i", chest, v) * _side_sign(side)
+    return np.einsum("...ji,...j->...i", thorax, v) * _side_sign(side)
 
 
-def _place_shoulder(side: int, points: _Points, thorax: tuple[Array, Array], body: Body, k: dict[str, Any]) -> Array:
-    """6. Shoulder [F, 3]: the clavicle swings with the hand. thorax: neck base and thorax frame."""
-    neck, chest = thorax
+def _place_shoulder(side: int, points: _Points, trunk: tuple[Array, Array], body: Body, k: dict[str, Any]) -> Array:
+    """6. Shoulder [F, 3]: the clavicle swings with the hand. trunk: neck base and thorax frame."""
+    neck, thorax = trunk
     rest = body.shoulder - body.clavicle_root
     clavicle_length = np.linalg.norm(rest, axis=-1, keepdims=True)
-    reach = (_in_chest(chest, points.wrists[:, side] - neck, side) - body.shoulder) / body.arm
+    reach = (_in_thorax(thorax, points.wrists[:, side] - neck, side) - body.shoulder) / body.arm
     shift = body.eye_height * (np.concatenate([np.ones_like(reach[:, :1]), reach], -1) @ np.array(k["clavicle"]).T)
     length = np.linalg.norm(shift, axis=-1, keepdims=True)
     shift = shift * np.minimum(1, LIMITS["clavicleShift"] * clavicle_length / np.maximum(length, 1e-12))
-    return neck + _apply(chest, (body.clavicle_root + clavicle_length * normalise(rest + shift)) * _side_sign(side))
+    return neck + _apply(thorax, (body.clavicle_root + clavicle_length * normalise(rest + shift)) * _side_sign(side))
 
 
 def _place_elbow(side: int, points: _Points, arm: tuple[Array, Array], body: Body, k: dict[str, Any]) -> Array:
     """7. Elbow [F, 3]: the swivel follows where the hand is and how it is turned. arm: shoulder and thorax frame."""
-    shoulder, chest = arm
+    shoulder, thorax = arm
     wrist, hand = points.wrists[:, side], points.hands[:, side]
-    reach = _in_chest(chest, wrist - shoulder, side) / body.arm
-    axes = (_in_chest(chest, hand[..., :, axis], side) for axis in (1, 2))
+    reach = _in_thorax(thorax, wrist - shoulder, side) / body.arm
+    axes = (_in_thorax(thorax, hand[..., :, axis], side) for axis in (1, 2))
     columns = np.concatenate([np.ones_like(reach[:, :1]), reach, *axes], -1)
     turned = np.zeros(2, bool) if body.hands_turned is None else body.hands_turned
     pole = np.where(turned[..., side, None], columns @ np.array(k["pole"]).T, columns @ np.array(k["untoldPole"]).T)
     bones = body.upper_arm[..., side, None], body.forearm[..., side, None]
-    return two_bone_elbow(shoulder, wrist, *bones, _apply(chest, pole * _side_sign(side)), chest=chest)
+    return two_bone_elbow(shoulder, wrist, *bones, _apply(thorax, pole * _side_sign(side)), thorax=thorax)
 
 
-def two_bone_elbow(shoulder: Array, wrist: Array, upper_arm: Array, forearm: Array, pole: Array, *, chest: Array) -> Array:
-    """The elbow [F, 3] on the side of `pole`, or where that is along the arm, below or behind the chest's axes; out of reach: on the straight arm."""
+def two_bone_elbow(shoulder: Array, wrist: Array, upper_arm: Array, forearm: Array, pole: Array, *, thorax: Array) -> Array:
+    """The elbow [F, 3] on the side of `pole`, or where that is along the arm, below or behind the thorax's axes; out of reach: on the straight arm."""
     axis = wrist - shoulder
     distance = np.linalg.norm(axis, axis=-1, keepdims=True)
     axis = np.where(distance > 1e-9, axis / np.maximum(distance, 1e-9), -chest[..., :, 1])
     across = pole - _dot(pole, axis) * axis
-    for substitute in (-chest[..., :, 1], chest[..., :, 2]):
+    for substitute in (-chest[..., :, 1], thorax[..., :, 2]):
         short = np.linalg.norm(across, axis=-1, keepdims=True) < LIMB["undefinedPole"]
         across = np.where(short, substitute - _dot(substitute, axis) * axis, across)
     across = normalise(across)

@@ -39,8 +39,8 @@ export function armLength({ eyeHeight, armSpan }: Calibration): number {
 export function armBones(calibration: Calibration): LimbBones {
   const arm = armLength(calibration);
   const average = (1 - proportions.upperArmShare) * arm;
-  const told = clamp(calibration.forearm ?? average, forearmShare.min * arm, forearmShare.max * arm);
-  const lower = average + forearmTrust * (told - average);
+  const plausible = clamp(calibration.forearm ?? average, forearmShare.min * arm, forearmShare.max * arm);
+  const lower = average + forearmTrust * (plausible - average);
   return { upper: arm - lower, lower };
 }
 

@@ -15,7 +15,7 @@ import {
   type Vec3,
   vec3,
 } from '../math/vec3';
-import { aimArc, alongArc, type DirectionArc, directionArc, makeDirectionArc, passArc } from './direction-arc';
+import { advanceArc, alongArc, type DirectionArc, directionArc, makeDirectionArc, retargetArc } from './direction-arc';
 
 /** A transition takes so long [s] at least. */
 const shortestSeconds = 0.2;
@@ -57,8 +57,8 @@ export interface WantedArm extends ArmDirections {
   readonly shoulder: Vec3;
   /** Where the hand is seen or will rest; the arm itself may end short of it. */
   readonly hand: Vec3;
-  /** How long the way to it takes at least [s]: a hand sinks slowly to rest. 0: the hand is seen. */
-  readonly seconds: number;
+  /** Shortest time of the way to it [s]: a hand sinks slowly to rest. 0: the hand is seen. */
+  readonly minDuration: number;
   readonly bones: LimbBones;
   /** Where an arm passes that swings all the way round, unit. */
   readonly outside: Vec3;
@@ -74,8 +74,8 @@ export interface ArmTransition {
   age: number;
   /** Beyond what the hand itself moves [m/s]. */
   speed: number;
-  /** The longest path [m] that elbow or wrist had to go since the jump: it says how fast they may. */
-  metres: number;
+  /** The longest path that elbow or wrist had to go since the jump [m]: it says how fast they may. */
+  longestPath: number;
   /** Where the hand belonged in the frame before, and where elbow and wrist were drawn [m]. */
   readonly hand: MutableVec3;
   readonly elbow: MutableVec3;
@@ -87,7 +87,7 @@ export interface ArmTransition {
 export const makeArmTransition = (): ArmTransition => ({
   age: Number.NaN,
   speed: Number.NaN,
-  metres: Number.NaN,
+  longestPath: Number.NaN,
   hand: vec3(0, 0, 0),
   elbow: vec3(0, 0, 0),
   wrist: vec3(0, 0, 0),
@@ -155,7 +155,7 @@ export function startTransition(transition: ArmTransition, drawn: ArmDirections,
   directionArc(drawn.forearm, wanted.forearm, wanted.outside, transition.forearm);
   transition.age = 0;
   transition.speed = 0;
-  transition.metres = 0;
+  transition.longestPath = 0;
   remember(transition, drawn, wanted);
 }
 
@@ -170,9 +170,9 @@ function remember(transition: ArmTransition, drawn: ArmDirections, wanted: Wante
 /** How far [m] elbow and wrist may go in this frame: up to the speed evenly, evenly down to a stand, and along with the hand. */
 function stepOf(transition: ArmTransition, toGo: number, wanted: WantedArm, deltaSeconds: number): number {
   const { hand } = transition;
-  const seconds = Math.max(shortestSeconds, wanted.seconds);
-  transition.metres = Math.max(transition.metres, toGo);
-  const topSpeed = Math.min(fastest, transition.metres / (seconds * (1 - ramp)));
+  const seconds = Math.max(shortestSeconds, wanted.minDuration);
+  transition.longestPath = Math.max(transition.longestPath, toGo);
+  const topSpeed = Math.min(fastest, transition.longestPath / (seconds * (1 - ramp)));
   const acceleration = topSpeed / (seconds * ramp);
   const slowing = Math.sqrt(2 * acceleration * toGo);
   transition.speed = Math.min(transition.speed + acceleration * deltaSeconds, topSpeed, slowing);
@@ -193,14 +193,14 @@ export function followTransition(
   }
   const passed = Math.max(deltaSeconds, 0);
   transition.age += passed;
-  aimArc(upperArm, drawn.upperArm, wanted.upperArm);
-  aimArc(forearm, drawn.forearm, wanted.forearm);
+  retargetArc(upperArm, drawn.upperArm, wanted.upperArm);
+  retargetArc(forearm, drawn.forearm, wanted.forearm);
   const toGo = pathLength(transition, drawn, wanted);
   const step = stepOf(transition, toGo, wanted, passed);
   // Minimum share per frame: a third of the nominal progress, so shoulder motion cannot stall the transition; plus the catch-up ramp.
   const least = Math.min(1, (transition.speed * passed) / Math.max(3 * toGo, 1e-9));
   const hurry =
-    wanted.seconds === 0 ? clamp((transition.age - hurrySeconds) / (longestSeconds - hurrySeconds), 0, 1) : 0;
+    wanted.minDuration === 0 ? clamp((transition.age - hurrySeconds) / (longestSeconds - hurrySeconds), 0, 1) : 0;
   const share = Math.max(hurry, least, shareWithin(transition, drawn, wanted, step));
   if (share === 1 && transition.age >= shortestSeconds) transition.age = Number.NaN;
   goAlong(transition, wanted, drawn, share);
@@ -216,8 +216,8 @@ function goAlong({ upperArm, forearm }: ArmTransition, wanted: WantedArm, drawn:
   copyVec3(drawn.upperArm, bone);
   rotate(alongArc(upperArm, share, turn), drawn.upperArm, drawn.upperArm);
   rotate(alongArc(forearm, share, turn), drawn.forearm, drawn.forearm);
-  passArc(upperArm, share);
-  passArc(forearm, share);
+  advanceArc(upperArm, share);
+  advanceArc(forearm, share);
   // The hinge is the bones' normal; of an all but straight arm it turns from the drawn one's to the wanted one's.
   rotate(rotationBetween(bone, drawn.upperArm, turn), drawn.hinge, unbent);
   lerp(unbent, wanted.hinge, share, unbent);

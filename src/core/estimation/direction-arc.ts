@@ -57,11 +57,11 @@ export function directionArc(
   normalise(subtract(to, from, across), from, across);
   addScaled(lerp(from, to, 0.5, via), normalise(reject(outside, across, aside), outside, aside), 0.5, via);
   normalise(via, outside, via);
-  return aimArc(target, from, to);
+  return retargetArc(target, from, to);
 }
 
 /** Recomputes both legs from the current direction to a moved end. */
-export function aimArc(arc: DirectionArc, from: Vec3, to: Vec3): DirectionArc {
+export function retargetArc(arc: DirectionArc, from: Vec3, to: Vec3): DirectionArc {
   const { first, second, via, roundabout } = arc;
   const a = angleBetween(identity, rotationBetween(from, roundabout ? via : to, first));
   const b = roundabout ? angleBetween(identity, rotationBetween(via, to, second)) : 0;
@@ -70,7 +70,7 @@ export function aimArc(arc: DirectionArc, from: Vec3, to: Vec3): DirectionArc {
 }
 
 /** Drops the via point once progress in [0, 1] has passed the first leg. */
-export function passArc(arc: DirectionArc, progress: number): void {
+export function advanceArc(arc: DirectionArc, progress: number): void {
   if (progress >= arc.share) arc.roundabout = false;
 }
 

@@ -51,7 +51,7 @@ import { outsideOfBody } from './direction-arc';
 import type { TorsoPose } from './fit-torso';
 import type { JointPositions } from './joint-positions';
 import { restSeconds } from './lost-hand.json';
-import { type EstimatedPole, estimatedPole, limitSwivel, type SwivelLimits, type SwivelState } from './swivel-limiter';
+import { type EstimatedPole, estimatedPole, limitSwivel, type SwivelContext, type SwivelState } from './swivel-limiter';
 
 /** How far a wrist bends against the forearm [rad]: 90°, the extreme of flexion. */
 const wristLimit = Math.PI / 2;
@@ -133,7 +133,7 @@ const fallbackPoles: readonly [MutableVec3, MutableVec3] = [vec3(0, 0, 0), vec3(
 const ikPoles: [Vec3, Vec3] = [fallbackPoles[0], fallbackPoles[0]];
 const estimated: Record<'shoulder' | 'elbow' | 'wrist', Vec3> = { shoulder: zero, elbow: zero, wrist: zero };
 /** Of the arm at hand. */
-const limits: Mutable<Omit<SwivelLimits, 'torso'>> & { torso: TorsoPose | null } = {
+const swivelContext: Mutable<Omit<SwivelContext, 'torso'>> & { torso: TorsoPose | null } = {
   side: 'left',
   torso: null,
   armLength: Number.NaN,
@@ -144,7 +144,7 @@ const wanted: Mutable<WantedArm> & { readonly outside: MutableVec3 } = {
   ...makeArmDirections(),
   shoulder: zero,
   hand: zero,
-  seconds: Number.NaN,
+  minDuration: Number.NaN,
   bones: { upper: Number.NaN, lower: Number.NaN },
   outside: vec3(0, 0, 0),
 };
@@ -173,7 +173,7 @@ function fitArm(side: Side, state: ArmState, input: ArmsInput, deltaSeconds: num
   const { wrist, elbow, pole, circle } = bent;
   wanted.shoulder = torso.shoulders[side];
   wanted.hand = completed.goal.position;
-  wanted.seconds = completed.source === 'sinking' ? restSeconds : 0;
+  wanted.minDuration = completed.source === 'sinking' ? restSeconds : 0;
   wanted.bones = bones;
   normalise(subtract(elbow, wanted.shoulder, wanted.upperArm), undefined, wanted.upperArm);
   normalise(subtract(wrist, elbow, wanted.forearm), undefined, wanted.forearm);
@@ -202,7 +202,7 @@ function bendArm(
   const shoulder = torso.shoulders[side];
   const floorFromChest = torso.rotations.upperChest;
   const armLength = bones.upper + bones.lower;
-  restingWrist(completed, shoulder, armLength, wrist);
+  wristTarget(completed, shoulder, armLength, wrist);
   rotate(floorFromChest, downAndBack[side], fallbackPoles[0]);
   rotate(floorFromChest, backward, fallbackPoles[1]);
   elbowCircle(shoulder, wrist, bones, fallbackPoles[0], circle);
@@ -211,17 +211,17 @@ function bendArm(
   estimated.wrist = completed.position;
   ikPoles[0] = poles[side];
   estimatedPole(estimated, circle, ikPoles, wantedPole);
-  limits.side = side;
-  limits.torso = torso;
-  limits.armLength = armLength;
-  limits.confidence = completed.confidence;
-  limits.deltaSeconds = deltaSeconds;
-  limitSwivel(before, wantedPole, circle, limits as SwivelLimits, pole);
+  swivelContext.side = side;
+  swivelContext.torso = torso;
+  swivelContext.armLength = armLength;
+  swivelContext.confidence = completed.confidence;
+  swivelContext.deltaSeconds = deltaSeconds;
+  limitSwivel(before, wantedPole, circle, swivelContext as SwivelContext, pole);
   elbowOnCircle(circle, pole, elbow);
 }
 
 /** Where the wrist is to be: as tracked, or nearer than a place to rest as that comes near the arm's reach. */
-function restingWrist(
+function wristTarget(
   { goal: { position }, source }: CompletedHand,
   shoulder: Vec3,
   armLength: number,

@@ -40,7 +40,7 @@ import type { JointPositions } from './joint-positions';
 import limits from './kinematic-limits.json';
 import { beginLean, followLean, type Lean, leanFurther, makeLean } from './lean-after-hand';
 
-const { torso: shares, torsoExtreme: extreme } = limits;
+const { torso: torsoLimits, torsoExtreme: extremeLimits } = limits;
 const { anatomicalPasses, extremePasses } = limits.reach;
 
 /** Shoulders turn at most this fast [rad/s]; a pirouette's do 12. */
@@ -236,7 +236,7 @@ function turnTowards(wanted: MutableVec3, before: Vec3, share: number, most: num
 
 /** How far the clavicle swings or the neck bends from rest against the thorax [rad], so far on the way from anatomy to the extreme [0 to 1]. */
 const limitOf = (joint: 'clavicleSwing' | 'neckBend', extremity: number): number =>
-  shares[joint] + extremity * (extreme[joint] - shares[joint]);
+  torsoLimits[joint] + extremity * (extremeLimits[joint] - torsoLimits[joint]);
 
 /** Neck, chest joint, the upper chest's rotation and the shoulders, from where the shoulders are to be. */
 function placeThorax(
@@ -262,7 +262,7 @@ function placeThorax(
   // Chest joint and hips follow a share of what the neck was moved by; a hand far out of reach does not throw them about.
   subtract(pose.neck, impliedNeck, moved);
   const far = length(moved);
-  scale(moved, shares.neckShiftShare * Math.min(1, bones.neckLength / Math.max(far, 1e-9)), moved);
+  scale(moved, torsoLimits.neckShiftShare * Math.min(1, bones.neckLength / Math.max(far, 1e-9)), moved);
   subtract(pose.neck, add(joints.chest, moved, b), thoraxUp);
   normalise(thoraxUp, roughUp, thoraxUp);
   addScaled(pose.neck, thoraxUp, -bones.thoraxLength, pose.chest);
@@ -297,11 +297,11 @@ function placeSpine(
   const { hips, chest, neck, rotations } = pose;
   hangHips(state, add(joints.hips, moved, a), frame.bodyTurn, bones.lowerBackLength, deltaSeconds);
   const lowerBackUp = normalise(subtract(chest, hips, a), up, a);
-  const pelvisLine = normalise(lerp(shoulderLine, headingRight, shares.pelvisToHead, b), shoulderLine, b);
+  const pelvisLine = normalise(lerp(shoulderLine, headingRight, torsoLimits.pelvisToHead, b), shoulderLine, b);
   alignDirections(bones.lowerBack, lowerBackUp, pelvisLine, rotations.hips);
   lerp(pelvisLine, shoulderLine, spineToShoulders, c);
   alignDirections(bones.lowerBack, lowerBackUp, c, rotations.spine);
-  lerp(pelvisLine, shoulderLine, shares.chestToShoulders, c);
+  lerp(pelvisLine, shoulderLine, torsoLimits.chestToShoulders, c);
   alignDirections(bones.thorax, thoraxUp, c, rotations.chest);
   lerp(shoulderLine, rotate(head.orientation, right, a), 0.5, c);
   alignDirections(bones.neck, subtract(headJoint, neck, a), c, rotations.neck);

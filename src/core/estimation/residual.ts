@@ -21,7 +21,7 @@ const defaultHalfLife = 0.04;
  * (docs/decisions.md). At least 2 ms from any multiple of the frame times of 60, 72, 80, 90 (every second frame) and 120 Hz (every third),
  * so the choice of frames does not depend on timing noise. At 100 Hz it is exactly two frames: there noise decides between two and three.
  */
-const questionSeconds = 0.02;
+const inferenceInterval = 0.02;
 
 /** Numbers of the network's input: the features at each age, and the newest frame's chest-frame features. */
 export const learnedInputCount = (windowSeconds: readonly number[]): number =>
@@ -136,7 +136,7 @@ class Residual implements JointSource, JointNetwork {
   }
 
   #isDue(time: number): boolean {
-    return time - this.#askedAt >= questionSeconds;
+    return time - this.#askedAt >= inferenceInterval;
   }
 
   /** Takes a frame that is asked about into the window. */

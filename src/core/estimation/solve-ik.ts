@@ -63,7 +63,7 @@ export const makeChestAxes = (): ChestAxes => ({ z: vec3(0, 0, 0), y: vec3(0, 0,
 /** What inverse kinematics finds, heading frame. */
 export interface IkSolution {
   readonly joints: MutableJointPositions;
-  /** By the shoulders and the chest joint. */
+  /** The chest frame (docs/glossary.md): by the shoulders and the chest joint. */
   readonly chest: ChestAxes;
   /** Where each elbow points from the line between shoulder and wrist, unit. */
   readonly poles: Readonly<Record<Side, MutableVec3>>;
@@ -103,9 +103,9 @@ const left = vec3(0, 0, 0);
 const rightHand = vec3(0, 0, 0);
 const middle = vec3(0, 0, 0);
 const across = vec3(0, 0, 0);
-/** The chest's yaw, and the chest's frame: y from the chest joint to the neck. */
+/** The thorax's yaw, and the thorax frame (docs/glossary.md): y from the chest joint to the neck. */
 const yaw = quat(0, 0, 0, 1);
-const chest = quat(0, 0, 0, 1);
+const thorax = quat(0, 0, 0, 1);
 const thoraxUp = vec3(0, 0, 0);
 const lowerBackUp = vec3(0, 0, 0);
 const neck = vec3(0, 0, 0);
@@ -155,7 +155,7 @@ function turnChest(): void {
   fromAxisAngle(up, most * Math.tanh(Math.atan2(-aheadX, Math.max(-aheadZ, bounds.leastAhead)) / most), yaw);
 }
 
-/** 2. Lean of thorax and lower back. 3. Chest frame. */
+/** 2. Lean of thorax and lower back. 3. Thorax frame. */
 function leanTrunk(head: Pose<'heading'>, body: ChestSpaceBody): void {
   const lookingDown = -rotate(head.orientation, forward, a).y;
   const crouch = clamp(1 - head.position.y / body.eyeHeight, bounds.crouch.min, bounds.crouch.max);
@@ -172,7 +172,7 @@ function leanTrunk(head: Pose<'heading'>, body: ChestSpaceBody): void {
   upDirection(parameters.lower, lowerBackUp);
 
   normalise(cross(thoraxUp, rotate(yaw, backward, a), a), right, a);
-  fromAxes(a, thoraxUp, cross(a, thoraxUp, b), chest);
+  fromAxes(a, thoraxUp, cross(a, thoraxUp, b), thorax);
 }
 
 function upDirection(segment: { forward: number[]; sideways: number[] }, target: MutableVec3): void {
@@ -186,7 +186,7 @@ function upDirection(segment: { forward: number[]; sideways: number[] }, target:
 /** 4. Neck base. 5. Chest joint and hips. */
 function placeTrunk(head: Pose<'heading'>, body: ChestSpaceBody, joints: MutableJointPositions): void {
   const neckLength = length(body.neckToHead);
-  rotate(chest, body.neckToHead, a);
+  rotate(thorax, body.neckToHead, a);
   rotate(head.orientation, body.neckToHead, b);
   normalise(scale(lerp(a, b, parameters.neck, a), 1 / neckLength, a), thoraxUp, a);
   addScaled(headJoint, a, -neckLength, neck);
@@ -195,9 +195,9 @@ function placeTrunk(head: Pose<'heading'>, body: ChestSpaceBody, joints: Mutable
   joints.hips.y = Math.max(joints.hips.y, bounds.lowestHips * body.eyeHeight);
 }
 
-/** A vector of the heading frame in the chest frame, mirrored for the left arm. */
-const inChest = (v: Vec3, sigma: number, target: MutableVec3): MutableVec3 =>
-  mirror(rotateInverse(chest, v, target), sigma);
+/** A vector of the heading frame in the thorax frame, mirrored for the left arm. */
+const inThorax = (v: Vec3, sigma: number, target: MutableVec3): MutableVec3 =>
+  mirror(rotateInverse(thorax, v, target), sigma);
 
 function placeArm(
   side: Side,
@@ -210,20 +210,20 @@ function placeArm(
   const shoulder = side === 'left' ? joints.leftUpperArm : joints.rightUpperArm;
   placeShoulder(wrist, body, sigma, shoulder);
   scale(thoraxUp, -1, fallbackPoles[0]);
-  rotate(chest, backward, fallbackPoles[1]);
+  rotate(thorax, backward, fallbackPoles[1]);
   elbowCircle(shoulder, wrist.position, body.armBones, fallbackPoles[0], circle);
 
   // 7. Elbow: the swivel follows where the hand is and how it is turned.
   handFeatures[0] = 1;
-  inChest(subtract(wrist.position, shoulder, a), sigma, a);
+  inThorax(subtract(wrist.position, shoulder, a), sigma, a);
   writeTo(handFeatures, 1, scale(a, 1 / body.arm, a));
-  writeTo(handFeatures, 4, inChest(rotate(wrist.orientation, up, a), sigma, a));
-  writeTo(handFeatures, 7, inChest(rotate(wrist.orientation, backward, a), sigma, a));
+  writeTo(handFeatures, 4, inThorax(rotate(wrist.orientation, up, a), sigma, a));
+  writeTo(handFeatures, 7, inThorax(rotate(wrist.orientation, backward, a), sigma, a));
   placeElbow(parameters.pole, sigma, poles[side], side === 'left' ? joints.leftLowerArm : joints.rightLowerArm);
 
   // The same from the hand as it is tracked: its axes are those of the turned hand, turned back.
-  writeTo(handFeatures, 4, inChest(rotate(wrist.orientation, rotateInverse(turn, up, a), a), sigma, a));
-  writeTo(handFeatures, 7, inChest(rotate(wrist.orientation, rotateInverse(turn, backward, a), a), sigma, a));
+  writeTo(handFeatures, 4, inThorax(rotate(wrist.orientation, rotateInverse(turn, up, a), a), sigma, a));
+  writeTo(handFeatures, 7, inThorax(rotate(wrist.orientation, rotateInverse(turn, backward, a), a), sigma, a));
   placeElbow(parameters.untoldPole, sigma, untoldPole, untoldElbow);
   normalise(subtract(wrist.position, untoldElbow, a), circle.axis, a);
   rotate(turn, rotateInverse(wrist.orientation, a, a), untoldForearms[side]);
@@ -231,7 +231,7 @@ function placeArm(
 
 /** The elbow on its circle, and its pole, by these weights of the hand's features. */
 function placeElbow(rows: readonly (readonly number[])[], sigma: number, pole: MutableVec3, elbow: MutableVec3): void {
-  rotate(chest, mirror(affine(rows, handFeatures, pole), sigma), pole);
+  rotate(thorax, mirror(affine(rows, handFeatures, pole), sigma), pole);
   poleAcross(circle.axis, pole, fallbackPoles, pole);
   elbowOnCircle(circle, pole, elbow);
 }
@@ -239,7 +239,7 @@ function placeElbow(rows: readonly (readonly number[])[], sigma: number, pole: M
 /** 6. Shoulder: the clavicle swings with the hand. */
 function placeShoulder(wrist: Pose<'heading'>, body: ChestSpaceBody, sigma: number, target: MutableVec3): void {
   const restShoulder = add(body.clavicleRoot, body.clavicle, b);
-  const fromNeck = inChest(subtract(wrist.position, neck, a), sigma, a);
+  const fromNeck = inThorax(subtract(wrist.position, neck, a), sigma, a);
   const fromShoulder = subtract(fromNeck, restShoulder, a);
   reach[0] = 1;
   writeTo(reach, 1, scale(fromShoulder, 1 / body.arm, a));
@@ -250,7 +250,7 @@ function placeShoulder(wrist: Pose<'heading'>, body: ChestSpaceBody, sigma: numb
   normalise(add(body.clavicle, a, a), right, a);
   scale(a, body.clavicleLength, a);
   mirror(add(body.clavicleRoot, a, a), sigma);
-  add(neck, rotate(chest, a, a), target);
+  add(neck, rotate(thorax, a, a), target);
 }
 
 function writeTo(values: Float64Array, at: number, { x, y, z }: Vec3): void {

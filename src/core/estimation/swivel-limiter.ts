@@ -71,7 +71,7 @@ export function estimatedPole(
   return target;
 }
 
-export interface SwivelLimits {
+export interface SwivelContext {
   readonly side: Side;
   readonly torso: TorsoPose;
   /** Upper arm and forearm together [m]. */
@@ -102,7 +102,7 @@ export function limitSwivel(
   before: SwivelState | null,
   wantedPole: EstimatedPole,
   circle: ElbowCircle,
-  { side, torso, armLength, confidence, deltaSeconds }: SwivelLimits,
+  { side, torso, armLength, confidence, deltaSeconds }: SwivelContext,
   target: MutableVec3,
 ): MutableVec3 {
   const { axis } = circle;

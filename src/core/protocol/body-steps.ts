@@ -39,7 +39,7 @@ import {
   swivelBits,
   type TrunkSteps,
 } from './pose-steps';
-import { across, toCentredStep, toDirectionSteps, toQuatSteps, toStep } from './quantise';
+import { perpendicularAxes, toCentredStep, toDirectionSteps, toQuatSteps, toStep } from './quantise';
 import { armAxis, armBones, chestAxis, RebuiltArm, RebuiltTrunk, spineAxis, swivelAxes } from './rebuild-body';
 
 /** A body's wrist this near to the tracked hand is drawn there [m, rad]; else it is sent on its own. */
@@ -174,7 +174,7 @@ class Rebuilding {
     const angle = Math.acos(clamp(dot(rest, towards), -1, 1));
     cross(rest, towards, towards);
     scale(normalise(towards, undefined, towards), angle, towards);
-    across(rest, acrossU, acrossV);
+    perpendicularAxes(rest, acrossU, acrossV);
     steps.clavicleU = toCentredStep(dot(towards, acrossU), clavicleRange, bits);
     steps.clavicleV = toCentredStep(dot(towards, acrossV), clavicleRange, bits);
   }

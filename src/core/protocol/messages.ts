@@ -139,16 +139,15 @@ export function packSeatInfo(info: SeatInfo | null): PackedSeatInfo {
   if (!info) return null;
   const { eyeHeight, armSpan, forearm = null } = toMillimetres(info.calibration);
   const { name, presence, bot, avatar } = info;
-  const told = packVoice(info.voice);
-  return [name, eyeHeight, armSpan, forearm, presences.indexOf(presence), bot ? 1 : 0, avatar, told];
+  return [name, eyeHeight, armSpan, forearm, presences.indexOf(presence), bot ? 1 : 0, avatar, packVoice(info.voice)];
 }
 
 export function unpackSeatInfo(packed: PackedSeatInfo): SeatInfo | null {
   if (!packed) return null;
-  const [name, eyeHeight, armSpan, forearm, presence, bot, avatar, told] = packed;
+  const [name, eyeHeight, armSpan, forearm, presence, bot, avatar, wireVoice] = packed;
   const calibration = { eyeHeight, armSpan, ...(forearm !== null && { forearm }) };
   const at = presences[presence] ?? 'gone';
-  return { name, calibration, presence: at, bot: bot === 1, avatar, voice: unpackVoice(told) };
+  return { name, calibration, presence: at, bot: bot === 1, avatar, voice: unpackVoice(wireVoice) };
 }
 
 /**

@@ -182,7 +182,7 @@ export function readDirection(
 }
 
 /** Writes two unit vectors that make a right-handed frame with a unit vector. */
-export function across(axis: Vec3, u: MutableVec3, v: MutableVec3): void {
+export function perpendicularAxes(axis: Vec3, u: MutableVec3, v: MutableVec3): void {
   if (Math.abs(axis.y) < 0.9) setVec3(u, axis.z, 0, -axis.x);
   else setVec3(u, 0, -axis.z, axis.y);
   cross(axis, normalise(u, undefined, u), v);

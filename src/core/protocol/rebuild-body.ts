@@ -35,7 +35,7 @@ import {
   swivelBits,
   type TrunkSteps,
 } from './pose-steps';
-import { across, fromCentredStep, fromDirectionSteps, fromQuatSteps, fromStep } from './quantise';
+import { fromCentredStep, fromDirectionSteps, fromQuatSteps, fromStep, perpendicularAxes } from './quantise';
 
 const down: Vec3 = { x: 0, y: -1, z: 0 };
 
@@ -136,7 +136,7 @@ export class RebuiltArm {
   placeShoulder(trunk: RebuiltTrunk, { clavicleU, clavicleV }: ArmSteps, bits: number, skeleton: Skeleton): void {
     const { position, orientation } = this.shoulder;
     const rest = clavicleRest(this.side, skeleton);
-    across(normalise(rest, undefined, axis), acrossU, acrossV);
+    perpendicularAxes(normalise(rest, undefined, axis), acrossU, acrossV);
     scale(acrossU, fromCentredStep(clavicleU, clavicleRange, bits), turn);
     addScaled(turn, acrossV, fromCentredStep(clavicleV, clavicleRange, bits), turn);
     const angle = length(turn);

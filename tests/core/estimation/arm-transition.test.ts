@@ -50,7 +50,7 @@ const wantedOf = (directions: ArmDirections): WantedArm => ({
   hand: wristOf(directions),
   bones,
   outside,
-  seconds: 0,
+  minDuration: 0,
 });
 const copied = (directions: ArmDirections): ArmDirections => {
   const copy = makeArmDirections();
