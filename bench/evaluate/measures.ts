@@ -1,8 +1,8 @@
 import { estimatedJoints } from '../../src/core/body/joints';
-import { swivelAngle } from '../../src/core/body/two-bone-ik';
 import type { JointPositions } from '../../src/core/estimation/joint-positions';
 import { distance, normalise, reject, subtract, type Vec3 } from '../../src/core/math/vec3';
 import type { TruthJoint } from './recordings';
+import { swivelAngle } from './swivel-angle';
 
 /** Names of the six joints in every report. */
 export const reportNames = ['leftElbow', 'rightElbow', 'leftShoulder', 'rightShoulder', 'spine', 'pelvis'] as const;

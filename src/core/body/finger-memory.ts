@@ -12,8 +12,8 @@ import {
 } from './hand-shape';
 
 /** A finger that is not seen keeps its last bend for this long [s], then relaxes with this half-life [s]. */
-export const heldSeconds = 0.5;
-export const relaxHalfLife = 0.25;
+const heldSeconds = 0.5;
+const relaxHalfLife = 0.25;
 
 /** The fingers of one hand as they are shown: finite in every frame, whether they are seen, lost or not finite. */
 export class FingerMemory {

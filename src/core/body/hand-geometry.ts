@@ -42,7 +42,7 @@ export type FingerPoints = readonly [MutableVec3, MutableVec3, MutableVec3, Muta
 export const makeFingerPoints = (): FingerPoints => [vec3(0, 0, 0), vec3(0, 0, 0), vec3(0, 0, 0), vec3(0, 0, 0)];
 
 /** Orientations of the three bones of a finger: −Z along the bone, +X the axis about which they bend (backward). */
-export type FingerFrames = readonly [MutableQuat, MutableQuat, MutableQuat];
+type FingerFrames = readonly [MutableQuat, MutableQuat, MutableQuat];
 
 export const makeFingerFrames = (): FingerFrames => [quat(0, 0, 0, 1), quat(0, 0, 0, 1), quat(0, 0, 0, 1)];
 
@@ -88,7 +88,7 @@ const direction = vec3(0, 0, 0);
 const turn = quat(0, 0, 0, 1);
 
 /** Where the first bone of a finger points, unit. */
-export const firstDirection = ({ knuckle, spread }: FingerBend, target: MutableVec3): MutableVec3 =>
+const firstDirection = ({ knuckle, spread }: FingerBend, target: MutableVec3): MutableVec3 =>
   setVec3(target, Math.sin(spread), -Math.cos(spread) * Math.sin(knuckle), -Math.cos(spread) * Math.cos(knuckle));
 
 /** The orientations of a finger's three bones. */

@@ -11,7 +11,7 @@ export const closedPinch = 0.012;
 export const openPinch = 0.05;
 
 /** How far two finger tips that are so far apart [m] close on each other, 0 to 1; NaN for a gap that is not finite. */
-export const pinchOf = (gap: number): number =>
+const pinchOf = (gap: number): number =>
   Number.isFinite(gap) ? 1 - smoothstep(closedPinch, openPinch, gap) : Number.NaN;
 
 /** The joints of one hand, in the frame of its wrist as a left hand has it (hand-geometry). */

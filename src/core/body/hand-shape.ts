@@ -123,7 +123,7 @@ export function mixHandShape(
 }
 
 /** How far each part of a hand is closed, 0 at ease to 1 as in a fist. */
-export interface HandClosing {
+interface HandClosing {
   readonly thumb: number;
   readonly index: number;
   /** Middle, ring and little finger. */

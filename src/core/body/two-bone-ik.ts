@@ -1,16 +1,5 @@
 import { clamp } from '../math/damper';
-import {
-  addScaled,
-  cross,
-  dot,
-  length,
-  type MutableVec3,
-  normalise,
-  reject,
-  subtract,
-  type Vec3,
-  vec3,
-} from '../math/vec3';
+import { addScaled, length, type MutableVec3, normalise, reject, subtract, type Vec3, vec3 } from '../math/vec3';
 import limits from './limb-limits.json';
 
 /** The lengths [m] of a limb's two bones. */
@@ -89,16 +78,3 @@ export function poleAcross(
 /** The elbow on its circle in the direction `pole` (unit, at right angles to the axis) from the centre. */
 export const elbowOnCircle = (circle: ElbowCircle, pole: Vec3, target?: MutableVec3): MutableVec3 =>
   addScaled(circle.centre, pole, circle.radius, target);
-
-const axisBefore = vec3(0, 0, 0);
-const fromAxis = vec3(0, 0, 0);
-const toAxis = vec3(0, 0, 0);
-
-/** The signed angle (−π, π] [rad] about shoulder→wrist from one elbow to another: the error in swivel. */
-export function swivelAngle(shoulder: Vec3, wrist: Vec3, elbow: Vec3, otherElbow: Vec3): number {
-  const axis = normalise(subtract(wrist, shoulder, axisBefore), undefined, axisBefore);
-  const a = reject(subtract(elbow, shoulder, fromAxis), axis, fromAxis);
-  const b = reject(subtract(otherElbow, shoulder, toAxis), axis, toAxis);
-  const cosine = dot(a, b);
-  return Math.atan2(dot(cross(a, b, a), axis), cosine);
-}

@@ -158,7 +158,7 @@ const restAxes: Readonly<Record<Side, MutableQuat>> = {
 };
 
 /** A relaxed arm below a head joint at this height [m], body frame: the wrist beside the thigh, the back of the hand outward, fingers down. */
-export function restingHand(
+function restingHand(
   side: Side,
   headJointHeight: number,
   body: ChestSpaceBody,

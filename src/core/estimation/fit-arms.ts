@@ -59,7 +59,7 @@ const wristLimit = Math.PI / 2;
 const forearmSpeed = 20;
 
 /** The rotations of an arm's bones, floor frame. */
-export interface ArmRotations {
+interface ArmRotations {
   readonly upperArm: MutableQuat;
   readonly lowerArm: MutableQuat;
   readonly hand: MutableQuat;
@@ -102,7 +102,7 @@ export const armBones = ({ restOffsets }: Skeleton): LimbBones => ({
 });
 
 /** What both arms of one frame are fitted to; floor frame. */
-export interface ArmsInput {
+interface ArmsInput {
   readonly frame: CompletedFrame;
   readonly joints: JointPositions;
   readonly torso: TorsoPose;

@@ -56,14 +56,14 @@ const spineToShoulders = 0.35;
 /** The height [m] of the hip joints' middle when sitting on the floor. */
 const lowestHips = 0.09;
 
-const trunkBones = ['hips', 'spine', 'chest', 'upperChest', 'neck'] as const;
+type TrunkBone = 'hips' | 'spine' | 'chest' | 'upperChest' | 'neck';
 
 /** A trunk with its bones' lengths under the head, floor frame. */
 export interface TorsoPose {
   readonly hips: MutableVec3;
   readonly chest: MutableVec3;
   readonly neck: MutableVec3;
-  readonly rotations: Readonly<Record<(typeof trunkBones)[number], MutableQuat>>;
+  readonly rotations: Readonly<Record<TrunkBone, MutableQuat>>;
   readonly clavicles: Readonly<Record<Side, MutableQuat>>;
   readonly shoulders: Readonly<Record<Side, MutableVec3>>;
 }
@@ -103,7 +103,7 @@ export const makeFitTorsoState = (): FitTorsoState => ({
 });
 
 /** What the fitting of the torso needs of a skeleton, measured once. */
-export interface TorsoBones {
+interface TorsoBones {
   readonly skeleton: Skeleton;
   /** From chest joint to neck, from hips to chest joint, and from the neck to the head, at rest; their side is the body's right. */
   readonly thorax: RestDirections;

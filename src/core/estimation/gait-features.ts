@@ -14,7 +14,7 @@ export interface GaitPoints {
 }
 
 /** How long ago [s] the frames are that a gait is told from: steps take half a second. */
-export const gaitAges = [0, 0.1, 0.2, 0.35, 0.5, 0.75, 1] as const;
+const gaitAges = [0, 0.1, 0.2, 0.35, 0.5, 0.75, 1] as const;
 
 /** hips, their yaw, head, its yaw, left hand, right hand. */
 const sampleWidth = 14;

@@ -14,7 +14,7 @@ export interface GaitNetwork {
 }
 
 /** Where a foot is expected, floor frame [m], where its toes point [rad, 0 towards −Z], and how surely it stands on the floor [0, 1]. */
-export interface ExpectedFoot {
+interface ExpectedFoot {
   readonly x: number;
   readonly z: number;
   readonly yaw: number;

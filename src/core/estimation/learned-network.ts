@@ -19,7 +19,7 @@ export function weightsOf({ name, weights }: ModelContract): FlatWeights {
  * The learned network without a runtime (training/threepoint_training/model.py, CorrectionNetwork): features in, corrections of six joints out.
  * A body and its mirror image go through the network together; the trunk's correction is the mean of both, each arm is computed as a right one.
  */
-export class LearnedNetwork {
+class LearnedNetwork {
   readonly #features: number;
   /**
    * Arm network inputs: reach (3), its length (1), hand axes, IK elbow, up, seen. `armColumns` has the same count: it lacks the computed

@@ -186,16 +186,10 @@ export function angleBetween(a: Quat, b: Quat): number {
   return 2 * Math.atan2(Math.sqrt(x * x + y * y + z * z), Math.abs(w));
 }
 
-/** The twist of q = swing·twist about a unit axis. A half-turn swing: the identity. */
+/** The twist of q = swing·twist: about the unit axis, while the swing's axis is at right angles to it. A half-turn swing: the identity. */
 export function twistOf(q: Quat, axis: Vec3, target: MutableQuat = quat(0, 0, 0, 1)): MutableQuat {
   const along = q.x * axis.x + q.y * axis.y + q.z * axis.z;
   return normaliseQuat(setQuat(target, axis.x * along, axis.y * along, axis.z * along, q.w), target);
-}
-
-/** q = swing·twist: the twist is about the unit axis, the swing about an axis at right angles to it. Half-turn swings: no twist. */
-export function swingTwist(q: Quat, axis: Vec3): { readonly swing: Quat; readonly twist: Quat } {
-  const twist = twistOf(q, axis);
-  return { swing: multiply(q, conjugate(twist)), twist };
 }
 
 /** The signed angle (−π, π] of a rotation about a unit axis, from its twist part. */

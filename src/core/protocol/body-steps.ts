@@ -107,7 +107,7 @@ function isFree(side: Side, joints: JointPoses, hand: Pose<'floor'>, skeleton: S
 }
 
 /** A body with its joints, and the head and hands from which the receiver will rebuild it. */
-export interface SentBody {
+interface SentBody {
   readonly body: UpperBodyPose;
   readonly joints: JointPoses;
   /** As the receiver has them. */

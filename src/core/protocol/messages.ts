@@ -76,11 +76,6 @@ const clientMessage = v.variant('type', [
 export type ClientMessage = v.InferOutput<typeof clientMessage>;
 export type Joining = Omit<v.InferOutput<typeof join>, 'type' | 'version'>;
 
-/** The kinds of message that a client may send. */
-export const clientMessageTypes: readonly ClientMessage['type'][] = clientMessage.options.map(
-  ({ entries }) => entries.type.literal,
-);
-
 /** The message, checked field by field; null for anything else. */
 export function clientMessageFrom(value: unknown): ClientMessage | null {
   const result = v.safeParse(clientMessage, value, { abortEarly: true });
@@ -123,7 +118,7 @@ const packedSeatInfo = v.nullable(
     packedVoice,
   ]),
 );
-export type PackedSeatInfo = v.InferOutput<typeof packedSeatInfo>;
+type PackedSeatInfo = v.InferOutput<typeof packedSeatInfo>;
 
 const millimetres = (metres: number): number => Math.round(metres * 1000) / 1000;
 
@@ -154,16 +149,7 @@ export function unpackSeatInfo(packed: PackedSeatInfo): SeatInfo | null {
  * Why the Room ends a client's stay: the same person connected again (replaced), a person took a bot's seat (yielded), the client
  * asked for it (left), broke the rules, reads too slowly, or the room or its server ends.
  */
-export const farewells = [
-  'replaced',
-  'yielded',
-  'left',
-  'misbehaved',
-  'slow',
-  'stopping',
-  'closed',
-  'old-page',
-] as const;
+const farewells = ['replaced', 'yielded', 'left', 'misbehaved', 'slow', 'stopping', 'closed', 'old-page'] as const;
 export type Farewell = (typeof farewells)[number];
 
 /** What a Room says of itself, in any game. */
@@ -204,7 +190,7 @@ const welcome = v.strictObject({
 });
 
 /** What a game brings into the messages of its Room: its states as they are sent, and its events. */
-export interface SentGame {
+interface SentGame {
   readonly snapshot: unknown;
   readonly event: unknown;
 }

@@ -91,7 +91,7 @@ function writeFingers(side: Side, { fingers }: PosePacket, hand: TrackedPose | n
 type MutableTracked = MutablePose<'floor'> & { tracking: TrackedPose['tracking'] };
 
 /** Head and hands of a packet, in memory that the next packet may use. */
-export interface PointsBuffer extends PointsPacket {
+interface PointsBuffer extends PointsPacket {
   timeMs: number;
   jump: boolean;
   readonly pose: {

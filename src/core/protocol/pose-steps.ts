@@ -22,7 +22,7 @@ export const headBits = 16;
 /** Bits of the head's height: −1 to 3.095 m above the floor; beyond: at the edge. */
 export const heightBits = 14;
 /** Lowest height of a head on the wire [m], floor frame. */
-export const lowestHead = -1;
+const lowestHead = -1;
 /** Of head and hands: 0.1° at most. */
 export const trackedBits = 11;
 export const forearmBits = 6;
@@ -39,20 +39,20 @@ export const stretchBits = 4;
 /** A step of that [m]: ±1.4 mm in all. */
 export const stretchUnit = 0.0002;
 /** What is left for the trunk when one arm has a wrist of its own, when both have, and otherwise. */
-export const trunkBitsFor = (freeArms: number): number => 10 - freeArms;
-export const clavicleBitsFor = (freeArms: number): number => (freeArms === 2 ? 8 : 9);
-export const twistBitsFor = (freeArms: number): number => (freeArms > 0 ? 6 : 7);
+const trunkBitsFor = (freeArms: number): number => 10 - freeArms;
+const clavicleBitsFor = (freeArms: number): number => (freeArms === 2 ? 8 : 9);
+const twistBitsFor = (freeArms: number): number => (freeArms > 0 ? 6 : 7);
 /** A forearm twists a quarter turn either way. */
 export const forearmRange = Math.PI / 2;
 
 /** The head as steps. */
-export interface HeadSteps {
+interface HeadSteps {
   readonly position: VecSteps;
   readonly orientation: QuatSteps;
 }
 
 /** Where a hand is from the head, and how it is turned. */
-export interface HandPoseSteps {
+interface HandPoseSteps {
   readonly place: HandPlaceSteps;
   readonly orientation: QuatSteps;
 }
@@ -114,7 +114,7 @@ export const bodyBitsFor = ({ left, right }: BodySteps['arms']): BodyBits =>
 
 export type Tracking = TrackedPose['tracking'] | 'lost';
 
-export interface HandSteps {
+interface HandSteps {
   tracking: Tracking;
   /** Whether it is anywhere: a lost hand is where the body's wrist is. */
   placed: boolean;

@@ -50,7 +50,8 @@ const bend = vec3(0, 0, 0);
 const hinge = vec3(0, 0, 0);
 const direction = vec3(0, 0, 0);
 const circle = makeElbowCircle();
-const fallbacks: readonly [Vec3, Vec3] = [axis, acrossU];
+/** A pole is a sum of both axes across the arm, so that no fallback is ever needed. */
+const fallbacks: readonly [Vec3, Vec3] = [acrossU, acrossU];
 const bones = { upper: 0, lower: 0 };
 
 /** The axis a joint twists about: the way to the next one. */

@@ -12,7 +12,7 @@ export type Voice = v.InferOutput<typeof voice>;
 
 /** Wire form of `Voice` in a packed seat: [session, muted as 0 or 1]; 0 alone: not taking part. */
 export const packedVoice = v.union([v.literal(0), v.tuple([session, v.picklist([0, 1])])]);
-export type PackedVoice = v.InferOutput<typeof packedVoice>;
+type PackedVoice = v.InferOutput<typeof packedVoice>;
 
 export const packVoice = (of: Voice | null): PackedVoice => (of ? [of.session, of.muted ? 1 : 0] : 0);
 export const unpackVoice = (packed: PackedVoice): Voice | null =>

@@ -5,7 +5,7 @@ import { right, zero } from '../math/vec3';
 import type { TrackingFrame } from './tracking-frame';
 
 /** Notices a wearer who stands taller than the calibration says. Smaller tells nothing: people crouch, slouch and sit. */
-export interface HeightWatch {
+interface HeightWatch {
   /**
    * Once a frame, with the calibration in force: the same, grown, in the frame that proves it too small; else null. Another
    * object is another calibration, unless it is the one that was returned.

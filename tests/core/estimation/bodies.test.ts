@@ -1,9 +1,9 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
+import { swivelAngle } from '../../../bench/evaluate/swivel-angle';
 import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
 import { estimatedJoints } from '../../../src/core/body/joints';
 import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
-import { swivelAngle } from '../../../src/core/body/two-bone-ik';
 import { createEstimator } from '../../../src/core/estimation/estimators';
 import type { JointPositions } from '../../../src/core/estimation/joint-positions';
 import { fromAxisAngle, multiply, twistAngle } from '../../../src/core/math/quat';
