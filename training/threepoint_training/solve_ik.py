@@ -188,9 +188,9 @@ def two_bone_elbow(shoulder: Array, wrist: Array, upper_arm: Array, forearm: Arr
     """The elbow [F, 3] on the side of `pole`, or where that is along the arm, below or behind the thorax's axes; out of reach: on the straight arm."""
     axis = wrist - shoulder
     distance = np.linalg.norm(axis, axis=-1, keepdims=True)
-    axis = np.where(distance > 1e-9, axis / np.maximum(distance, 1e-9), -chest[..., :, 1])
+    axis = np.where(distance > 1e-9, axis / np.maximum(distance, 1e-9), -thorax[..., :, 1])
     across = pole - _dot(pole, axis) * axis
-    for substitute in (-chest[..., :, 1], thorax[..., :, 2]):
+    for substitute in (-thorax[..., :, 1], thorax[..., :, 2]):
         short = np.linalg.norm(across, axis=-1, keepdims=True) < LIMB["undefinedPole"]
         across = np.where(short, substitute - _dot(substitute, axis) * axis, across)
     across = normalise(across)

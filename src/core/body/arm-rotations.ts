@@ -1,4 +1,4 @@
-import { wrapAngle } from '../math/angle';
+import { unwrapAngle } from '../math/angle';
 import { alignDirections, type MutableQuat, multiply, type Quat, restDirections, rotate } from '../math/quat';
 import type { Side } from '../math/side';
 import { add, cross, type MutableVec3, subtract, type Vec3, vec3 } from '../math/vec3';
@@ -8,7 +8,7 @@ import { type Skeleton, wristFromHandBone } from './skeleton';
 export const alongArm: Readonly<Record<Side, Vec3>> = { left: vec3(-1, 0, 0), right: vec3(1, 0, 0) };
 
 /** The elbow's hinge in T-pose: it bends forearms forward. */
-const hingeAtRest: Readonly<Record<Side, Vec3>> = { left: vec3(0, -1, 0), right: vec3(0, 1, 0) };
+export const hingeAtRest: Readonly<Record<Side, Vec3>> = { left: vec3(0, -1, 0), right: vec3(0, 1, 0) };
 
 const armAtRest = {
   left: restDirections(alongArm.left, hingeAtRest.left),
@@ -47,6 +47,6 @@ export const clavicleRest = (side: Side, { restOffsets }: Skeleton): Vec3 =>
  * run away by more than 1¼ half turns begins anew as it is, in [−π, π].
  */
 export function unwrapTwist(angle: number, before: number): number {
-  const near = before + wrapAngle(angle - before);
+  const near = unwrapAngle(angle, before);
   return Math.abs(near) > 1.25 * Math.PI ? angle : near;
 }

@@ -44,6 +44,17 @@ export function armBones(calibration: Calibration): LimbBones {
   return { upper: arm - lower, lower };
 }
 
+/** Upper arm and forearm of this side of a skeleton [m]. */
+export function armBonesOf(
+  { restOffsets }: Skeleton,
+  side: Side,
+  target: { upper: number; lower: number } = { upper: 0, lower: 0 },
+): LimbBones {
+  target.upper = length(side === 'left' ? restOffsets.leftLowerArm : restOffsets.rightLowerArm);
+  target.lower = length(side === 'left' ? restOffsets.leftHand : restOffsets.rightHand);
+  return target;
+}
+
 const leanForward = (angle: number, v: Vec3): Vec3 => {
   const c = Math.cos(angle);
   const s = Math.sin(angle);

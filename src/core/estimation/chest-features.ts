@@ -1,6 +1,18 @@
 import type { ChestSpaceBody } from '../body/skeleton';
 import { rotate } from '../math/quat';
-import { dot, length, type MutableVec3, right, scale, setVec3, subtract, up, type Vec3, vec3 } from '../math/vec3';
+import {
+  dot,
+  length,
+  type MutableVec3,
+  right,
+  scale,
+  setVec3,
+  subtract,
+  up,
+  type Vec3,
+  vec3,
+  writeVec3,
+} from '../math/vec3';
 import type { ChestAxes, IkSolution, ThreePoints } from './solve-ik';
 
 /** Numbers of one frame in the chest frame; their order is in docs/estimation.md. */
@@ -24,11 +36,7 @@ export function headingFromChest({ x, y, z }: ChestAxes, v: Vec3, target: Mutabl
 const vector = vec3(0, 0, 0);
 
 function write(target: Float32Array, next: number, chest: ChestAxes, v: MutableVec3): number {
-  const { x, y, z } = inChest(chest, v, v);
-  target[next] = x;
-  target[next + 1] = y;
-  target[next + 2] = z;
-  return next + 3;
+  return writeVec3(inChest(chest, v, v), target, next);
 }
 
 /**

@@ -2,7 +2,7 @@ import { estimatedJoints } from '../body/joints';
 import type { ChestSpaceBody } from '../body/skeleton';
 import type { Pose } from '../math/pose';
 import { rotate } from '../math/quat';
-import { right, up, type Vec3, vec3 } from '../math/vec3';
+import { right, up, type Vec3, vec3, writeVec3 } from '../math/vec3';
 import type { JointPositions } from './joint-positions';
 import type { ThreePoints } from './solve-ik';
 
@@ -16,14 +16,6 @@ export interface SeenHands {
 }
 
 const axis = vec3(0, 0, 0);
-
-/** Writes a vector from `next` on and returns the index behind it. */
-function write(features: Float32Array, next: number, { x, y, z }: Vec3): number {
-  features[next] = x;
-  features[next + 1] = y;
-  features[next + 2] = z;
-  return next + 3;
-}
 
 /** A position relative to the headset, in units of `unit` [m]. */
 function writeFromHeadset(
@@ -41,8 +33,8 @@ function writeFromHeadset(
 
 /** The first two columns of a rotation. */
 function writeColumns(features: Float32Array, start: number, { orientation }: Pose<'heading'>): number {
-  const next = write(features, start, rotate(orientation, right, axis));
-  return write(features, next, rotate(orientation, up, axis));
+  const next = writeVec3(rotate(orientation, right, axis), features, start);
+  return writeVec3(rotate(orientation, up, axis), features, next);
 }
 
 /** One frame's features from three points and IK's joints, both in this frame's heading frame. */

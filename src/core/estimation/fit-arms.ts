@@ -1,5 +1,5 @@
 import { alongArm, armBoneRotation, elbowHinge, handBoneRotation, unwrapTwist } from '../body/arm-rotations';
-import type { Skeleton } from '../body/skeleton';
+import { armBonesOf, type Skeleton } from '../body/skeleton';
 import {
   type ElbowCircle,
   elbowCircle,
@@ -28,7 +28,6 @@ import {
   backward,
   copyVec3,
   distance,
-  length,
   type MutableVec3,
   normalise,
   subtract,
@@ -96,10 +95,8 @@ const makeArmState = (): ArmState => ({
 
 export const makeFitArmsState = (): FitArmsState => ({ left: makeArmState(), right: makeArmState() });
 
-export const armBones = ({ restOffsets }: Skeleton): LimbBones => ({
-  upper: length(restOffsets.rightLowerArm),
-  lower: length(restOffsets.rightHand),
-});
+/** The bones that both arms are fitted with: the right one's. */
+export const armBones = (skeleton: Skeleton): LimbBones => armBonesOf(skeleton, 'right');
 
 /** What both arms of one frame are fitted to; floor frame. */
 interface ArmsInput {

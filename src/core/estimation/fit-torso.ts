@@ -1,6 +1,6 @@
 import { clavicleRest, clavicleRoot } from '../body/arm-rotations';
 import limbLimits from '../body/limb-limits.json';
-import type { Skeleton } from '../body/skeleton';
+import { armBonesOf, type Skeleton } from '../body/skeleton';
 import { clamp, smoothingFactor, smoothstep } from '../math/damper';
 import {
   alignDirections,
@@ -126,6 +126,7 @@ export function torsoBones(skeleton: Skeleton): TorsoBones {
   const lowerBack = add(offsets.spine, offsets.chest);
   const left = add(offsets.leftShoulder, offsets.leftUpperArm);
   const rightShoulder = add(offsets.rightShoulder, offsets.rightUpperArm);
+  const { upper, lower } = armBonesOf(skeleton, 'right');
   return {
     skeleton,
     thorax: restDirections(thorax, right),
@@ -136,7 +137,7 @@ export function torsoBones(skeleton: Skeleton): TorsoBones {
     neckLength: length(offsets.head),
     shouldersFromNeck: subtract(lerp(left, rightShoulder, 0.5), offsets.neck),
     shoulderWidth: 2 * rightShoulder.x,
-    reach: (length(offsets.rightLowerArm) + length(offsets.rightHand)) * limbLimits.straightest,
+    reach: (upper + lower) * limbLimits.straightest,
   };
 }
 

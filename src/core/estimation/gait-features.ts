@@ -1,7 +1,7 @@
-import { wrapAngle } from '../math/angle';
+import { unwrapAngle } from '../math/angle';
 import type { Pose } from '../math/pose';
 import { type Quat, rotate } from '../math/quat';
-import { addScaled, forward, scale, up, type Vec3, vec3 } from '../math/vec3';
+import { addScaled, forward, scale, up, type Vec3, vec3, writeVec3 } from '../math/vec3';
 import { yawOf } from '../tracking/heading';
 import { FeatureWindow } from './features';
 
@@ -39,15 +39,6 @@ export function yawOfHips(orientation: Quat): number {
   return Math.atan2(-way.x, -way.z);
 }
 
-/** The angle that differs from `angle` by whole turns and lies nearest to `before`. */
-const unwrapped = (angle: number, before: number): number => before + wrapAngle(angle - before);
-
-function writePoint(target: Float32Array, at: number, { x, y, z }: Vec3): void {
-  target[at] = x;
-  target[at + 1] = y;
-  target[at + 2] = z;
-}
-
 /**
  * A gait network's inputs: hips, head and hands at each age, in the frame of the hips as they are now (origin on the floor under them, their
  * yaw), in eye heights.
@@ -63,15 +54,15 @@ export class GaitFeatures {
 
   /** Adds a frame at a time [s] that does not go back, and reads all ages. eyeHeight [m]. */
   update({ hips, head, leftHand, rightHand }: GaitPoints, eyeHeight: number, time: number): void {
-    this.#hipsYaw = unwrapped(yawOfHips(hips.orientation), this.#hipsYaw);
-    this.#headYaw = unwrapped(yawOf(head.orientation), this.#headYaw);
+    this.#hipsYaw = unwrapAngle(yawOfHips(hips.orientation), this.#hipsYaw);
+    this.#headYaw = unwrapAngle(yawOf(head.orientation), this.#headYaw);
     const sample = this.#window.push(time);
-    writePoint(sample, hipsAt, hips.position);
+    writeVec3(hips.position, sample, hipsAt);
     sample[hipsYawAt] = this.#hipsYaw;
-    writePoint(sample, headAt, head.position);
+    writeVec3(head.position, sample, headAt);
     sample[headYawAt] = this.#headYaw;
-    writePoint(sample, leftAt, leftHand);
-    writePoint(sample, rightAt, rightHand);
+    writeVec3(leftHand, sample, leftAt);
+    writeVec3(rightHand, sample, rightAt);
     this.#window.read(gaitAges, this.#samples);
     for (let age = 0; age < gaitAges.length; age++) this.#writeAge(age, hips.position, eyeHeight);
   }

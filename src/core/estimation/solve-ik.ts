@@ -23,6 +23,7 @@ import {
   up,
   type Vec3,
   vec3,
+  writeVec3,
 } from '../math/vec3';
 import parameters from './ik-parameters.json';
 import { type MutableJointPositions, makeJoints } from './joint-positions';
@@ -216,14 +217,14 @@ function placeArm(
   // 7. Elbow: the swivel follows where the hand is and how it is turned.
   handFeatures[0] = 1;
   inThorax(subtract(wrist.position, shoulder, a), sigma, a);
-  writeTo(handFeatures, 1, scale(a, 1 / body.arm, a));
-  writeTo(handFeatures, 4, inThorax(rotate(wrist.orientation, up, a), sigma, a));
-  writeTo(handFeatures, 7, inThorax(rotate(wrist.orientation, backward, a), sigma, a));
+  writeVec3(scale(a, 1 / body.arm, a), handFeatures, 1);
+  writeVec3(inThorax(rotate(wrist.orientation, up, a), sigma, a), handFeatures, 4);
+  writeVec3(inThorax(rotate(wrist.orientation, backward, a), sigma, a), handFeatures, 7);
   placeElbow(parameters.pole, sigma, poles[side], side === 'left' ? joints.leftLowerArm : joints.rightLowerArm);
 
   // The same from the hand as it is tracked: its axes are those of the turned hand, turned back.
-  writeTo(handFeatures, 4, inThorax(rotate(wrist.orientation, rotateInverse(turn, up, a), a), sigma, a));
-  writeTo(handFeatures, 7, inThorax(rotate(wrist.orientation, rotateInverse(turn, backward, a), a), sigma, a));
+  writeVec3(inThorax(rotate(wrist.orientation, rotateInverse(turn, up, a), a), sigma, a), handFeatures, 4);
+  writeVec3(inThorax(rotate(wrist.orientation, rotateInverse(turn, backward, a), a), sigma, a), handFeatures, 7);
   placeElbow(parameters.untoldPole, sigma, untoldPole, untoldElbow);
   normalise(subtract(wrist.position, untoldElbow, a), circle.axis, a);
   rotate(turn, rotateInverse(wrist.orientation, a, a), untoldForearms[side]);
@@ -242,7 +243,7 @@ function placeShoulder(wrist: Pose<'heading'>, body: ChestSpaceBody, sigma: numb
   const fromNeck = inThorax(subtract(wrist.position, neck, a), sigma, a);
   const fromShoulder = subtract(fromNeck, restShoulder, a);
   reach[0] = 1;
-  writeTo(reach, 1, scale(fromShoulder, 1 / body.arm, a));
+  writeVec3(scale(fromShoulder, 1 / body.arm, a), reach, 1);
   scale(affine(parameters.clavicle, reach, a), body.eyeHeight, a);
   const far = length(a);
   const most = bounds.clavicleShift * body.clavicleLength;
@@ -251,12 +252,6 @@ function placeShoulder(wrist: Pose<'heading'>, body: ChestSpaceBody, sigma: numb
   scale(a, body.clavicleLength, a);
   mirror(add(body.clavicleRoot, a, a), sigma);
   add(neck, rotate(thorax, a, a), target);
-}
-
-function writeTo(values: Float64Array, at: number, { x, y, z }: Vec3): void {
-  values[at] = x;
-  values[at + 1] = y;
-  values[at + 2] = z;
 }
 
 /** The chest's axes by its joints: x between the shoulders, y the part of the way from the chest joint to their middle that is normal to it. */

@@ -82,4 +82,12 @@ export const reject = (a: Vec3, axis: Vec3, target: MutableVec3 = vec3(0, 0, 0))
 export const lerp = (a: Vec3, b: Vec3, t: number, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 =>
   setVec3(target, a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t, a.z + (b.z - a.z) * t);
 
+/** Writes x, y, z from index `at` on; returns the index behind them. */
+export function writeVec3({ x, y, z }: Vec3, target: Float32Array | Float64Array, at: number): number {
+  target[at] = x;
+  target[at + 1] = y;
+  target[at + 2] = z;
+  return at + 3;
+}
+
 export const isFiniteVec3 = (a: Vec3): boolean => Number.isFinite(a.x + a.y + a.z);

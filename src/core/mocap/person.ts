@@ -1,5 +1,6 @@
 import type { Calibration } from '../body/calibration';
 import { conjugate, fromAxisAngle, multiply, type Quat, quat, rotate, setQuat } from '../math/quat';
+import { sides } from '../math/side';
 import { distance, forward, length, right, subtract, vec3 } from '../math/vec3';
 import { headingOf } from '../tracking/heading';
 import { eyesFromHeadJoint } from './mocap-rules.json';
@@ -13,7 +14,6 @@ export interface Piece {
   readonly to: number;
 }
 
-const sides = ['left', 'right'] as const;
 /** The ankle's height above the sole as a share of thigh and shin (Winter, Biomechanics: 0.039 and 0.491 of stature). */
 const soleOfLeg = 0.039 / 0.491;
 /** A trunk that deviates less from upright (as a cosine) than this is. */

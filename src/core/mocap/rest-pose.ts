@@ -1,4 +1,5 @@
 import { sideSign } from '../body/skeleton';
+import { sides } from '../math/side';
 import { distance, dot, down, length, normalise, right, scale, subtract, up, type Vec3, zero } from '../math/vec3';
 import { shortestBone } from './mocap-rules.json';
 import type { SkeletonMap, TruthJoint } from './skeleton-map';
@@ -45,7 +46,7 @@ export function checkRest(rest: RestPose, { joints }: SkeletonMap): void {
     const so = length(across) < 0.02 ? 'lie on each other' : `lie ${told(across)} of each other`;
     refuse(`the shoulders, ${joints.leftUpperArm} and ${joints.rightUpperArm}, ${so}`, 'left and right');
   }
-  for (const side of ['left', 'right'] as const) {
+  for (const side of sides) {
     const outward = scale(right, sideSign(side));
     const [shoulder, elbow, hand] = [`${side}UpperArm`, `${side}LowerArm`, `${side}Hand`] as const;
     bone(shoulder, elbow, `the ${side} arm`);

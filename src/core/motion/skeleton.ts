@@ -5,7 +5,7 @@ import { type FingerBend, type FingerName, fingerNames } from '../body/hand-shap
 import { type JointName, jointNames, parentOf } from '../body/joints';
 import { type Skeleton, sideSign, skeletonFromCalibration, wristFromHandBone } from '../body/skeleton';
 import { type MutableQuat, type Quat, rotateInverse, setQuat } from '../math/quat';
-import type { Side } from '../math/side';
+import { type Side, sides } from '../math/side';
 import { add, type MutableVec3, setVec3, subtract, type Vec3, vec3 } from '../math/vec3';
 
 /**
@@ -30,8 +30,6 @@ export const turnPoint = (point: Vec3, target: MutableVec3 = vec3(0, 0, 0)): Mut
 
 /** The same rotation seen in the frame that is turned by half about +Y. */
 export const turnRotation = (q: Quat, target: MutableQuat): MutableQuat => setQuat(target, -q.x, q.y, -q.z, q.w);
-
-const sides = ['left', 'right'] as const;
 
 const straight: FingerBend = { knuckle: 0, spread: 0, middle: 0, end: 0 };
 const thumbAside: FingerBend = { ...straight, spread: Math.PI / 4 };

@@ -16,14 +16,12 @@ import { wristFromHandBone } from '../body/skeleton';
 import { estimateRecording } from '../estimation/estimate-recording';
 import type { PoseEstimator } from '../estimation/pose-estimator';
 import { conjugate, copyQuat, type MutableQuat, multiply, type Quat, quat } from '../math/quat';
-import type { Side } from '../math/side';
+import { type Side, sides } from '../math/side';
 import { vec3 } from '../math/vec3';
 import type { Replayable } from '../tracking/recording';
 import type { TrackingFrame } from '../tracking/tracking-frame';
 import type { Motion } from './motion';
 import { motionSkeleton, restBend, turnPoint, turnRotation } from './skeleton';
-
-const sides = ['left', 'right'] as const;
 
 /** The inverse of each finger bone's frame at rest. */
 const fromRest = Object.fromEntries(

@@ -4,13 +4,11 @@ import { fingerBones } from '../body/finger-bones';
 import { type Fingers, fingerNames, unknownFingers } from '../body/hand-shape';
 import { type MutablePose, makePose, type Pose } from '../math/pose';
 import { fromAxes, fromAxisAngle, multiply, type Quat, quat, rotate } from '../math/quat';
-import type { Side } from '../math/side';
+import { type Side, sides } from '../math/side';
 import { add, backward, cross, normalise, right, scale, up, type Vec3, vec3, zero } from '../math/vec3';
 import { makePosedBones, poseBones } from './motion';
 import { type MotionBone, motionSkeleton, turnPoint } from './skeleton';
 import { BoneRotations } from './take-motion';
-
-const sides = ['left', 'right'] as const;
 
 /** A joint of WebXR Body Tracking: which bone carries it, where on it [m, T-pose], how its axes lie there in T-pose. */
 interface XRJoint {

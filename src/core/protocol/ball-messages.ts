@@ -1,7 +1,7 @@
 import * as v from 'valibot';
 import type { BallDeed, BallEvent } from '../games/ball/ball-state';
 import { type PackedBall, packedBallSchema } from './ball-snapshot';
-import { type RoomMessage, roomMessageReader } from './messages';
+import { finiteWithin, type RoomMessage, roomMessageReader, seconds, wholeFrom } from './messages';
 
 /** The ball game as the messages of its Room carry it. */
 export interface SentBallGame {
@@ -13,12 +13,9 @@ export type BallRoomMessage = RoomMessage<SentBallGame>;
 /** The name by which pages ask for a room of this game. */
 export const ballKind = 'ball';
 
-const finiteWithin = (limit: number) => v.pipe(v.number(), v.finite(), v.minValue(-limit), v.maxValue(limit));
-const wholeFrom = (min: number, max: number) => v.pipe(v.number(), v.integer(), v.minValue(min), v.maxValue(max));
 /** Not in the order of a vector: see `Vec3` for why an object with schemas in it must not be written like one. */
 const vector = (limit: number) =>
   v.strictObject({ z: finiteWithin(limit), y: finiteWithin(limit), x: finiteWithin(limit) });
-const seconds = finiteWithin(5e9);
 const side = v.picklist(['left', 'right']);
 const ball = wholeFrom(0, 19);
 const player = wholeFrom(0, 2);

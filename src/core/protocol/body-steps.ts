@@ -1,7 +1,7 @@
-import { alongArm, clavicleRest, handBoneRotation } from '../body/arm-rotations';
+import { alongArm, clavicleRest, handBoneRotation, hingeAtRest } from '../body/arm-rotations';
 import type { UpperBodyPose } from '../body/avatar-pose';
 import type { JointPoses } from '../body/forward-kinematics';
-import type { Skeleton } from '../body/skeleton';
+import { armBonesOf, type Skeleton } from '../body/skeleton';
 import { elbowFlexion } from '../body/two-bone-ik';
 import { clamp } from '../math/damper';
 import type { Pose } from '../math/pose';
@@ -40,7 +40,7 @@ import {
   type TrunkSteps,
 } from './pose-steps';
 import { perpendicularAxes, toCentredStep, toDirectionSteps, toQuatSteps, toStep } from './quantise';
-import { armAxis, armBones, chestAxis, RebuiltArm, RebuiltTrunk, spineAxis, swivelAxes } from './rebuild-body';
+import { armAxis, chestAxis, RebuiltArm, RebuiltTrunk, spineAxis, swivelAxes } from './rebuild-body';
 
 /** A body's wrist this near to the tracked hand is drawn there [m, rad]; else it is sent on its own. */
 const sameWrist = 0.003;
@@ -54,9 +54,6 @@ const jointsOf = {
   right: { shoulder: 'rightUpperArm', elbow: 'rightLowerArm', wrist: 'rightHand' },
 } as const;
 
-/** The elbow's hinge in T-pose. */
-const hingeAtRest: Readonly<Record<Side, Vec3>> = { left: vec3(0, -1, 0), right: vec3(0, 1, 0) };
-
 // Scratch of one call.
 const axis = vec3(0, 0, 0);
 const toHand = vec3(0, 0, 0);
@@ -67,6 +64,7 @@ const pole = vec3(0, 0, 0);
 const acrossU = vec3(0, 0, 0);
 const acrossV = vec3(0, 0, 0);
 const difference = quat(0, 0, 0, 1);
+const bones = { upper: 0, lower: 0 };
 
 /** How far one rotation is twisted from another about an axis, as steps. */
 function twistSteps(about: Vec3, from: Quat, to: Quat, range: number, bits: number): number {
@@ -95,7 +93,7 @@ function writeTrunk(
 function isFree(side: Side, joints: JointPoses, hand: Pose<'floor'>, skeleton: Skeleton): boolean {
   const names = jointsOf[side];
   const { position, orientation } = joints[names.wrist];
-  const { upper, lower } = armBones(side, skeleton);
+  const { upper, lower } = armBonesOf(skeleton, side, bones);
   const shoulder = joints[names.shoulder].position;
   const far = length(subtract(hand.position, shoulder, toHand));
   // What a straight arm cannot reach it points at.
@@ -144,7 +142,7 @@ class Rebuilding {
     const { position, orientation } = joints[names.wrist];
     const far = distance(joints[names.shoulder].position, position);
     if (steps.free) {
-      const { upper, lower } = armBones(side, skeleton);
+      const { upper, lower } = armBonesOf(skeleton, side, bones);
       toDirectionSteps(subtract(position, shoulder, towards), directionBits, steps.direction);
       steps.flexion = levels(elbowFlexion(upper, lower, far) / Math.PI, flexionBits);
       toQuatSteps(orientation, freeHandBits, steps.hand);
@@ -204,9 +202,15 @@ class Rebuilding {
     steps.swivel = toStep(Math.atan2(dot(pole, acrossV), dot(pole, acrossU)), Math.PI, swivelBits);
     steps.forearmTwist = 0;
     arm.bend(this.trunk, steps, skeleton);
-    steps.forearmTwist = twistSteps(alongArm[side], arm.lowerArm, elbow.orientation, forearmRange, forearmBits);
+    steps.forearmTwist = twistSteps(
+      alongArm[side],
+      arm.rotations.lowerArm,
+      elbow.orientation,
+      forearmRange,
+      forearmBits,
+    );
     const { restOffsets } = skeleton;
-    rotate(arm.upperArm, side === 'left' ? restOffsets.leftLowerArm : restOffsets.rightLowerArm, towards);
+    rotate(arm.rotations.upperArm, side === 'left' ? restOffsets.leftLowerArm : restOffsets.rightLowerArm, towards);
     return distance(add(shoulder, towards, towards), elbow.position);
   }
 }

@@ -13,10 +13,13 @@ export const protocolVersion = 8;
 /** No control message is longer [bytes of UTF-8]; a snapshot takes at most half of it. */
 export const longestMessage = 4096;
 
-const finiteWithin = (limit: number) => v.pipe(v.number(), v.finite(), v.minValue(-limit), v.maxValue(limit));
-const wholeFrom = (min: number, max: number) => v.pipe(v.number(), v.integer(), v.minValue(min), v.maxValue(max));
+/** A finite number in [−limit, limit]. */
+export const finiteWithin = (limit: number) => v.pipe(v.number(), v.finite(), v.minValue(-limit), v.maxValue(limit));
+/** A whole number in [min, max]. */
+export const wholeFrom = (min: number, max: number) =>
+  v.pipe(v.number(), v.integer(), v.minValue(min), v.maxValue(max));
 /** Seconds since any clock's start: within a century and a half. */
-const seconds = finiteWithin(5e9);
+export const seconds = finiteWithin(5e9);
 /** Sixteen seats at most. */
 export const mostSeats = 16;
 const seat = wholeFrom(0, mostSeats - 1);

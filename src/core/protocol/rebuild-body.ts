@@ -1,16 +1,18 @@
 import { alongArm, armBoneRotation, clavicleRest, elbowHinge, handBoneRotation } from '../body/arm-rotations';
-import type { UpperBodyPose } from '../body/avatar-pose';
+import { makeUpperBodyPose, type UpperBodyPose } from '../body/avatar-pose';
 import { headJointOf } from '../body/head-joint';
-import type { Skeleton } from '../body/skeleton';
+import { writeLocalRotations } from '../body/local-rotations';
+import { armBonesOf, type Skeleton } from '../body/skeleton';
 import { elbowCircle, elbowOnCircle, makeElbowCircle, poleAcross } from '../body/two-bone-ik';
 import { makePose, type Pose } from '../math/pose';
-import { conjugate, copyQuat, fromAxisAngle, type MutableQuat, multiply, type Quat, quat, rotate } from '../math/quat';
-import type { Side } from '../math/side';
+import { fromAxisAngle, type MutableQuat, multiply, type Quat, quat, rotate } from '../math/quat';
+import { type Side, sides } from '../math/side';
 import {
   add,
   addScaled,
   copyVec3,
   cross,
+  down,
   forward,
   length,
   type MutableVec3,
@@ -37,8 +39,6 @@ import {
 } from './pose-steps';
 import { fromCentredStep, fromDirectionSteps, fromQuatSteps, fromStep, perpendicularAxes } from './quantise';
 
-const down: Vec3 = { x: 0, y: -1, z: 0 };
-
 // Scratch of one call.
 const axis = vec3(0, 0, 0);
 const turn = vec3(0, 0, 0);
@@ -59,13 +59,6 @@ export const spineAxis = ({ restOffsets }: Skeleton, target: MutableVec3): Mutab
   normalise(add(restOffsets.spine, restOffsets.chest, target), undefined, target);
 export const chestAxis = ({ restOffsets }: Skeleton, target: MutableVec3): MutableVec3 =>
   normalise(add(restOffsets.upperChest, restOffsets.neck, target), undefined, target);
-
-/** The bones of an arm [m]; the same object in every call. */
-export function armBones(side: Side, { restOffsets }: Skeleton): { readonly upper: number; readonly lower: number } {
-  bones.upper = length(side === 'left' ? restOffsets.leftLowerArm : restOffsets.rightLowerArm);
-  bones.lower = length(side === 'left' ? restOffsets.leftHand : restOffsets.rightHand);
-  return bones;
-}
 
 /** Rotations of the trunk's joints against the floor, and where the clavicles begin, as the receiver rebuilds them. */
 export class RebuiltTrunk {
@@ -128,9 +121,8 @@ export class RebuiltArm {
   readonly shoulder = makePose<'floor'>();
   readonly wrist = vec3(0, 0, 0);
   readonly elbow = vec3(0, 0, 0);
-  readonly upperArm = quat(0, 0, 0, 1);
-  readonly lowerArm = quat(0, 0, 0, 1);
-  readonly hand = quat(0, 0, 0, 1);
+  /** Floor frame. */
+  readonly rotations = { upperArm: quat(0, 0, 0, 1), lowerArm: quat(0, 0, 0, 1), hand: quat(0, 0, 0, 1) };
 
   constructor(private readonly side: Side) {}
 
@@ -153,27 +145,28 @@ export class RebuiltArm {
   ): void {
     const { position: shoulder } = this.shoulder;
     if (free) {
-      const { upper, lower } = armBones(this.side, skeleton);
+      const { upper, lower } = armBonesOf(skeleton, this.side, bones);
       const angle = (flexion / (2 ** flexionBits - 1)) * Math.PI;
       const far = Math.sqrt(upper * upper + lower * lower + 2 * upper * lower * Math.cos(angle));
       addScaled(shoulder, fromDirectionSteps(towards, directionBits, direction), far, this.wrist);
-      fromQuatSteps(turnedAs, freeHandBits, this.hand);
+      fromQuatSteps(turnedAs, freeHandBits, this.rotations.hand);
       return;
     }
     normalise(subtract(hand.position, shoulder, direction), undefined, direction);
     addScaled(hand.position, direction, stretch * stretchUnit, this.wrist);
-    handBoneRotation(this.side, hand.orientation, this.hand);
+    handBoneRotation(this.side, hand.orientation, this.rotations.hand);
   }
 
   /** The elbow swivels to where it is told, the forearm twists. */
   bend({ upperChest }: RebuiltTrunk, { swivel, forearmTwist }: ArmSteps, skeleton: Skeleton): void {
-    const { side, wrist, elbow, upperArm, lowerArm } = this;
+    const { side, wrist, elbow } = this;
+    const { upperArm, lowerArm } = this.rotations;
     const { position: shoulder } = this.shoulder;
     armAxis(shoulder, wrist, upperChest, axis);
     swivelAxes(side, upperChest, axis, acrossU, acrossV);
     const angle = fromStep(swivel, Math.PI, swivelBits);
     addScaled(scale(acrossU, Math.cos(angle), pole), acrossV, Math.sin(angle), pole);
-    elbowCircle(shoulder, wrist, armBones(side, skeleton), axis, circle);
+    elbowCircle(shoulder, wrist, armBonesOf(skeleton, side, bones), axis, circle);
     elbowOnCircle(circle, poleAcross(circle.axis, pole, fallbacks, bend), elbow);
     elbowHinge(pole, axis, hinge);
     armBoneRotation(side, subtract(elbow, shoulder, direction), hinge, upperArm);
@@ -185,9 +178,6 @@ export class RebuiltArm {
 const receivedTrunk = new RebuiltTrunk();
 const receivedArms = { left: new RebuiltArm('left'), right: new RebuiltArm('right') };
 
-/** A new rotation of a joint against its parent. */
-const local = (parent: Quat, child: Quat): Quat => multiply(conjugate(parent, turned), child);
-
 /** The body that a packet's numbers stand for. */
 export function placeBody(
   head: Pose<'floor'>,
@@ -197,33 +187,16 @@ export function placeBody(
 ): UpperBodyPose {
   const trunk = receivedTrunk;
   trunk.place(head, trunkSteps, bits, skeleton);
-  const place = (side: Side): RebuiltArm => {
+  for (const side of sides) {
     const arm = receivedArms[side];
     arm.placeShoulder(trunk, arms[side], bits.clavicle, skeleton);
     arm.aim(hands[side], arms[side], skeleton);
     arm.bend(trunk, arms[side], skeleton);
-    return arm;
-  };
-  const left = place('left');
-  const right = place('right');
-  const { hips, spine, chest, upperChest, neck } = trunk;
-  return {
-    hipsPosition: copyVec3(trunk.hipsPosition),
-    localRotations: {
-      hips: copyQuat(hips),
-      spine: local(hips, spine),
-      chest: local(spine, chest),
-      upperChest: local(chest, upperChest),
-      neck: local(upperChest, neck),
-      head: local(neck, head.orientation),
-      leftShoulder: local(upperChest, left.shoulder.orientation),
-      leftUpperArm: local(left.shoulder.orientation, left.upperArm),
-      leftLowerArm: local(left.upperArm, left.lowerArm),
-      leftHand: local(left.lowerArm, left.hand),
-      rightShoulder: local(upperChest, right.shoulder.orientation),
-      rightUpperArm: local(right.shoulder.orientation, right.upperArm),
-      rightLowerArm: local(right.upperArm, right.lowerArm),
-      rightHand: local(right.lowerArm, right.hand),
-    },
-  };
+  }
+  const { left, right } = receivedArms;
+  const clavicles = { left: left.shoulder.orientation, right: right.shoulder.orientation };
+  const body = makeUpperBodyPose();
+  copyVec3(trunk.hipsPosition, body.hipsPosition);
+  writeLocalRotations(trunk, head.orientation, clavicles, receivedArms, body.localRotations);
+  return body;
 }

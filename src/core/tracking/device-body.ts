@@ -1,8 +1,7 @@
 import type { JointName } from '../body/joints';
 import { allFinite } from '../math/all-finite';
+import { sides } from '../math/side';
 import { type MutableVec3, setVec3 } from '../math/vec3';
-
-const sides = ['left', 'right'] as const;
 
 /** What is kept of WebXR Body Tracking's joints, in the specification's order: all but what lies within a hand, whose fingers a frame has anyway. */
 export const deviceJointNames: readonly string[] = [

@@ -4,7 +4,7 @@ import { sideSign, skeletonFromCalibration } from '../body/skeleton';
 import { clamp } from '../math/damper';
 import { makePose, type Pose, type TrackedPose, transformPose } from '../math/pose';
 import { rotate, rotateInverse } from '../math/quat';
-import type { Side } from '../math/side';
+import { type Side, sides } from '../math/side';
 import { add, addScaled, distance, forward, length, normalise, scale, subtract, type Vec3, vec3 } from '../math/vec3';
 import { type CalibrationFault, calibrationFaults } from './calibration-faults';
 import { headingFromFloor } from './heading';
@@ -120,7 +120,7 @@ function measure(samples: readonly Sample[]): GuidedCalibration {
     return failed('gaze');
   }
   const wrists: MeasuredWrist[] = [];
-  for (const side of ['left', 'right'] as const) {
+  for (const side of sides) {
     const seen = samples.map((sample) => sample[side]).filter((wrist) => wrist !== null);
     const part = seen.length / samples.length;
     if (part === 0) continue;

@@ -1,6 +1,6 @@
 import { copyPose, makePose, type TrackedPose, type Transform, transformPoint } from '../../math/pose';
 import { identity, rotate } from '../../math/quat';
-import { otherSide, type Side } from '../../math/side';
+import { otherSide, type Side, sides } from '../../math/side';
 import { addScaled, copyVec3, distance, type Vec3, vec3, zero } from '../../math/vec3';
 import type { TrackingFrame } from '../../tracking/tracking-frame';
 import {
@@ -96,7 +96,6 @@ const nearMargin = 0.03;
 /** Longer without a frame is a pause, not a slow device [s]. */
 export const pauseSeconds = 1;
 
-const sides = ['left', 'right'] as const;
 const none: readonly never[] = [];
 
 const seenHand = (hand: TrackedPose | null): TrackedPose | null => (hand?.tracking === 'tracked' ? hand : null);

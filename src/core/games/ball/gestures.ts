@@ -7,7 +7,7 @@ import {
   transformPoint,
   transformPose,
 } from '../../math/pose';
-import type { Side } from '../../math/side';
+import { type Side, sides } from '../../math/side';
 import { copyVec3, distance, length, type MutableVec3, type Vec3, vec3 } from '../../math/vec3';
 import type { TrackingFrame } from '../../tracking/tracking-frame';
 import {
@@ -97,8 +97,6 @@ interface Holding {
   /** An opened pinch counts with the next frame that sees the hand: fingers also seem to open when a camera loses them. */
   opened: Opened | null;
 }
-
-const sides = ['left', 'right'] as const;
 
 const seenHand = (hand: TrackedPose | null): TrackedPose | null => (hand?.tracking === 'tracked' ? hand : null);
 
