@@ -1,5 +1,4 @@
 import type { LimbBones } from '../body/two-bone-ik';
-import { bisect } from '../math/bisection';
 import { clamp } from '../math/damper';
 import { quat, rotate, rotationBetween } from '../math/quat';
 import {
@@ -30,8 +29,9 @@ const ramp = 0.2;
 const [hurrySeconds, longestSeconds] = [0.7, 0.9];
 /** An arm that bends less than this [sine of the angle] has no plane of its own to bend in. */
 const allButStraight = 0.1;
-/** A path is measured in so many steps. */
+/** A path is measured in so many steps, and a share of it found to a sixty-fourth of one. */
 const pathSteps = 8;
+const shareHalvings = 6;
 
 /** The directions of an arm's bones, unit, and of the elbow's hinge, floor frame. */
 export interface ArmDirections {
@@ -139,14 +139,25 @@ function distanceAt(transition: ArmTransition, drawn: ArmDirections, wanted: Wan
  * exceeds the limit at every share, returns the share with the smallest distance. Shares are sampled in steps of 1/pathSteps.
  */
 function shareWithin(transition: ArmTransition, drawn: ArmDirections, wanted: WantedArm, metres: number): number {
-  let [nearest, least] = [0, distanceAt(transition, drawn, wanted, 0)];
+  let nearest = 0;
+  let least = distanceAt(transition, drawn, wanted, 0);
   for (let step = 1; step <= pathSteps && (least > metres || nearest === step - 1); step++) {
     const off = distanceAt(transition, drawn, wanted, step / pathSteps);
-    if (off <= metres || off < least) [nearest, least] = [step, off];
+    if (off <= metres || off < least) {
+      nearest = step;
+      least = off;
+    }
   }
-  if (least > metres || nearest === pathSteps) return nearest / pathSteps;
-  const tooFar = (share: number): boolean => distanceAt(transition, drawn, wanted, share) > metres;
-  return bisect(nearest / pathSteps, (nearest + 1) / pathSteps, tooFar, 6);
+  let share = nearest / pathSteps;
+  if (least > metres || nearest === pathSteps) return share;
+  // Bisection written out: a predicate for `bisect` would be a new closure in every frame.
+  let tooFar = (nearest + 1) / pathSteps;
+  for (let i = 0; i < shareHalvings; i++) {
+    const middle = (share + tooFar) / 2;
+    if (distanceAt(transition, drawn, wanted, middle) > metres) tooFar = middle;
+    else share = middle;
+  }
+  return share;
 }
 
 /** Begins a transition from the arm that was drawn to the one that belongs there. */

@@ -1,18 +1,36 @@
 import type { Calibration } from '../body/calibration';
+import { makePose, type TrackedPose } from '../math/pose';
 import type { PoseEstimator } from './pose-estimator';
 import { WornHeadset } from './worn-headset';
+
+/** What `update` returns, overwritten by the next. */
+interface OwnedPose {
+  head: TrackedPose;
+  leftHand: TrackedPose | null;
+  rightHand: TrackedPose | null;
+  readonly body: null;
+}
 
 /** Head and hands as they are tracked, and no body. */
 export function createHandsOnly(calibration: Calibration): PoseEstimator {
   const headset = new WornHeadset(calibration);
+  const pose: OwnedPose = {
+    head: { ...makePose<'floor'>(), tracking: 'emulated' },
+    leftHand: null,
+    rightHand: null,
+    body: null,
+  };
+  const estimate = { pose, request: null };
   return {
     name: 'hands-only',
     calibrate: (next) => headset.calibrate(next),
     reset: () => undefined,
-    update: ({ head, leftHand, rightHand }) => ({
-      pose: { head: headset.head(head, 0), leftHand, rightHand, body: null },
-      request: null,
-    }),
+    update({ head, leftHand, rightHand }) {
+      pose.head = headset.head(head, 0);
+      pose.leftHand = leftHand;
+      pose.rightHand = rightHand;
+      return estimate;
+    },
     fault: () => null,
   };
 }

@@ -25,13 +25,33 @@ interface Sample {
   readonly right: Pose<'heading'> | null;
 }
 
+/** Samples, newest first: a state grows by a sample without a copy of the ones before, which earlier states share. */
+interface SampleList {
+  readonly newest: Sample;
+  readonly before: SampleList | null;
+  readonly count: number;
+}
+
+const withSample = (newest: Sample, before: SampleList | null): SampleList => ({
+  newest,
+  before,
+  count: (before?.count ?? 0) + 1,
+});
+
+/** Oldest first. */
+function samplesOf(list: SampleList): readonly Sample[] {
+  const samples: Sample[] = [];
+  for (let rest: SampleList | null = list; rest; rest = rest.before) samples.push(rest.newest);
+  return samples.reverse();
+}
+
 export type GuidedCalibration =
   | {
       readonly kind: 'measuring';
       /** How much is done, 0 to 1. */
       readonly part: number;
       readonly startTime: number | null;
-      readonly samples: readonly Sample[];
+      readonly samples: SampleList | null;
     }
   | { readonly kind: 'done'; readonly calibration: Calibration }
   | {
@@ -41,16 +61,16 @@ export type GuidedCalibration =
       readonly reason: string;
     };
 
-export const startGuidedCalibration: GuidedCalibration = { kind: 'measuring', part: 0, startTime: null, samples: [] };
+export const startGuidedCalibration: GuidedCalibration = { kind: 'measuring', part: 0, startTime: null, samples: null };
 
 /** The next state after a frame; `done` and `failed` stay as they are. Time that runs backwards starts the measuring again. */
 export function stepGuidedCalibration(state: GuidedCalibration, frame: TrackingFrame): GuidedCalibration {
   if (state.kind !== 'measuring') return state;
   const startTime = state.startTime === null || frame.time < state.startTime ? frame.time : state.startTime;
-  const samples = startTime === frame.time ? [sampleOf(frame)] : [...state.samples, sampleOf(frame)];
+  const samples = withSample(sampleOf(frame), startTime === frame.time ? null : state.samples);
   const seconds = frame.time - startTime;
-  const enough = samples.length >= FEWEST_SAMPLES || seconds >= longestMeasuringSeconds;
-  if (seconds >= measuringSeconds && enough) return measure(samples);
+  const enough = samples.count >= FEWEST_SAMPLES || seconds >= longestMeasuringSeconds;
+  if (seconds >= measuringSeconds && enough) return measure(samplesOf(samples));
   return { kind: 'measuring', part: Math.min(1, seconds / measuringSeconds), startTime, samples };
 }
 

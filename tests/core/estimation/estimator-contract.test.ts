@@ -79,6 +79,21 @@ describe.each(subjects)('$label', ({ name, plain }) => {
     );
   });
 
+  test('an estimate is written over the one before: a frame makes none anew', async () => {
+    await fc.assert(
+      fc.asyncProperty(person, async ({ at, calibration, start }) => {
+        const estimator = create(calibration);
+        const first = estimator.update(at(start));
+        const { pose } = first;
+        await first.request?.ask();
+        const second = estimator.update(at(start + rate));
+        expect(second).toBe(first);
+        expect(second.pose).toBe(pose);
+      }),
+      runs(5),
+    );
+  });
+
   bodyFact('the head is exactly where it is tracked', async () => {
     await fc.assert(
       fc.asyncProperty(person, async ({ at, calibration, start }) => {
