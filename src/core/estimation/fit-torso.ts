@@ -162,6 +162,11 @@ const thorax: PlacedThorax = { up: vec3(0, 0, 0), moved: vec3(0, 0, 0) };
 const shoulderTargets: Readonly<Record<Side, MutableVec3>> = { left: vec3(0, 0, 0), right: vec3(0, 0, 0) };
 const headingRight = vec3(0, 0, 0);
 const roughUp = vec3(0, 0, 0);
+const shoulderMiddle = vec3(0, 0, 0);
+/** The neck's base that the wanted shoulders hang from, before it is brought onto the neck's length from the head. */
+const impliedNeck = vec3(0, 0, 0);
+/** From the neck to the head on a neck at rest [m]. */
+const neckAtRest = vec3(0, 0, 0);
 const a = vec3(0, 0, 0);
 const b = vec3(0, 0, 0);
 const c = vec3(0, 0, 0);
@@ -250,21 +255,20 @@ function placeThorax(
   const neckBend = limitOf('neckBend', Math.max(lean.left.extremity, lean.right.extremity));
   const { upperChest } = pose.rotations;
   followShoulderLine(state, targets, bones, deltaSeconds);
-  const middle = lerp(targets.left, targets.right, 0.5, a);
+  lerp(targets.left, targets.right, 0.5, shoulderMiddle);
 
-  // The neck's base that these shoulders hang from, then brought onto the neck's length from the head.
-  normalise(subtract(middle, joints.chest, roughUp), up, roughUp);
+  normalise(subtract(shoulderMiddle, joints.chest, roughUp), up, roughUp);
   const roughChest = alignDirections(bones.thorax, roughUp, shoulderLine, rotation);
-  const impliedNeck = subtract(middle, rotate(roughChest, bones.shouldersFromNeck, b), a);
-  const neckRest = rotate(roughChest, bones.neck.main, b);
-  limitAngle(rotationBetween(neckRest, subtract(frame.headJoint, impliedNeck, c), swing), neckBend, swing);
-  subtract(frame.headJoint, rotate(swing, neckRest, c), pose.neck);
+  subtract(shoulderMiddle, rotate(roughChest, bones.shouldersFromNeck, a), impliedNeck);
+  rotate(roughChest, bones.neck.main, neckAtRest);
+  limitAngle(rotationBetween(neckAtRest, subtract(frame.headJoint, impliedNeck, a), swing), neckBend, swing);
+  subtract(frame.headJoint, rotate(swing, neckAtRest, a), pose.neck);
 
   // Chest joint and hips follow a share of what the neck was moved by; a hand far out of reach does not throw them about.
   subtract(pose.neck, impliedNeck, moved);
   const far = length(moved);
   scale(moved, torsoLimits.neckShiftShare * Math.min(1, bones.neckLength / Math.max(far, 1e-9)), moved);
-  subtract(pose.neck, add(joints.chest, moved, b), thoraxUp);
+  subtract(pose.neck, add(joints.chest, moved, a), thoraxUp);
   normalise(thoraxUp, roughUp, thoraxUp);
   addScaled(pose.neck, thoraxUp, -bones.thoraxLength, pose.chest);
   alignDirections(bones.thorax, thoraxUp, shoulderLine, upperChest);

@@ -2,7 +2,7 @@ import { sideSign } from '../body/skeleton';
 import { type ElbowCircle, poleAcross } from '../body/two-bone-ik';
 import { wrapAngle } from '../math/angle';
 import { clamp, smoothingFactor, smoothstep } from '../math/damper';
-import { fromAxes, quat, rotate, rotateInverse, rotationBetween } from '../math/quat';
+import { fromAxes, type Quat, quat, rotate, rotateInverse, rotationBetween } from '../math/quat';
 import type { Side } from '../math/side';
 import {
   addScaled,
@@ -81,14 +81,35 @@ export interface SwivelContext {
   readonly deltaSeconds: number;
 }
 
-/** Angles about the arm's line are counted from `zero`, which leads away from the trunk, towards `quarter`. */
-const zero = vec3(0, 0, 0);
-const quarter = vec3(0, 0, 0);
+/** Swivel angles are counted about the arm's line from `zero`, which leads away from the trunk, towards `quarter`; both unit, floor frame. */
+interface SwivelAxes {
+  readonly zero: MutableVec3;
+  readonly quarter: MutableVec3;
+}
+
+/** The swivel angles at which the elbow is clear of the trunk, around 0. */
+interface ClearRange {
+  low: number;
+  high: number;
+}
+
+// Scratch of one call.
+const axes: SwivelAxes = { zero: vec3(0, 0, 0), quarter: vec3(0, 0, 0) };
+const clear: ClearRange = { low: -Math.PI + 0.5, high: Math.PI - 0.5 };
 const carried = vec3(0, 0, 0);
 
-const angleOf = (direction: Vec3): number => Math.atan2(dot(direction, quarter), dot(direction, zero));
+/** Writes the axes for an arm along `axis`; those of an arm along the chest's own side axis begin behind. */
+function swivelAxes(side: Side, floorFromChest: Quat, axis: Vec3, { zero, quarter }: SwivelAxes): void {
+  reject(rotate(floorFromChest, setVec3(zero, sideSign(side), 0, 0), zero), axis, zero);
+  if (length(zero) <= 1e-3) reject(rotate(floorFromChest, backward, zero), axis, zero);
+  normalise(zero, undefined, zero);
+  cross(axis, zero, quarter);
+}
 
-function poleAt(angle: number, target: MutableVec3): MutableVec3 {
+const angleOf = (direction: Vec3, { zero, quarter }: SwivelAxes): number =>
+  Math.atan2(dot(direction, quarter), dot(direction, zero));
+
+function poleAt(angle: number, { zero, quarter }: SwivelAxes, target: MutableVec3): MutableVec3 {
   scale(zero, Math.cos(angle), target);
   return addScaled(target, quarter, Math.sin(angle), target);
 }
@@ -107,34 +128,26 @@ export function limitSwivel(
 ): MutableVec3 {
   const { axis } = circle;
   const floorFromChest = torso.rotations.upperChest;
-  reject(rotate(floorFromChest, setVec3(zero, sideSign(side), 0, 0), zero), axis, zero);
-  if (length(zero) <= 1e-3) reject(rotate(floorFromChest, backward, zero), axis, zero);
-  normalise(zero, undefined, zero);
-  cross(axis, zero, quarter);
-
-  const limited = findClearSwivel(circle, torso);
-  const estimated = angleOf(wantedPole.direction);
-  const wanted = limited ? nearestWithin(estimated) : estimated;
-  if (before === null) return poleAt(wanted, target);
+  swivelAxes(side, floorFromChest, axis, axes);
+  const limited = findClearRange(circleInCapsule(circle, axes, torso, inTrunk), clear);
+  const estimated = angleOf(wantedPole.direction, axes);
+  const wanted = limited ? nearestWithin(clear, estimated) : estimated;
+  if (before === null) return poleAt(wanted, axes, target);
 
   rotationBetween(rotate(floorFromChest, before.axis, carried), axis, turn);
   rotate(turn, rotate(floorFromChest, before.pole, carried), carried);
-  const kept = angleOf(carried);
-  const inside = limited && nearestWithin(kept) !== kept;
+  const kept = angleOf(carried, axes);
+  const inside = limited && nearestWithin(clear, kept) !== kept;
   // Free to turn both ways round, the elbow takes the shorter; else the one that does not lead through the trunk.
   const toGo = limited && !inside ? wanted - kept : wrapAngle(wanted - kept);
   const defined = wantedPole.confidence * smoothstep(handAtShoulder * armLength, handAway * armLength, circle.span);
   const followed = inside ? toGo : toGo * smoothingFactor(swivelHalfLife * (1 - defined) ** 3, deltaSeconds);
   const most = (guessedSwivelSpeed + (swivelSpeed - guessedSwivelSpeed) * confidence) * Math.max(deltaSeconds, 0);
-  return poleAt(kept + clamp(followed, -most, most), target);
+  return poleAt(kept + clamp(followed, -most, most), axes, target);
 }
 
-/** The swivel angles at which the elbow is clear of the trunk, around 0; written by `findClearSwivel`. */
-const clear = { low: -Math.PI + 0.5, high: Math.PI - 0.5 };
-
 /** The clear angle nearest to one in (−π, π]. */
-function nearestWithin(angle: number): number {
-  const { low, high } = clear;
+function nearestWithin({ low, high }: ClearRange, angle: number): number {
   if (angle >= low && angle <= high) return angle;
   // The larger the cosine, the smaller the turn.
   return Math.cos(angle - low) > Math.cos(angle - high) ? low : high;
@@ -152,12 +165,23 @@ const side = vec3(0, 0, 0);
 const trunkUp = vec3(0, 0, 0);
 const floorFromTrunk = quat(0, 0, 0, 1);
 const behind = vec3(0, 0, 0);
-/** The elbow's circle in units of the trunk's capsule: its centre, and its radius towards `zero` and `quarter`. */
-const centre = vec3(0, 0, 0);
-const towardsZero = vec3(0, 0, 0);
-const towardsQuarter = vec3(0, 0, 0);
-/** From the hips to the neck [heights of the capsule's caps]. */
-const trunk = { height: 0.5 };
+
+/** An elbow's circle beside the trunk's capsule, in the trunk's frame and in the capsule's units (`inCapsule`). */
+interface CircleInCapsule {
+  readonly centre: MutableVec3;
+  /** The circle's radius towards `zero` and `quarter`. */
+  readonly towardsZero: MutableVec3;
+  readonly towardsQuarter: MutableVec3;
+  /** From the hips to the neck [heights of the capsule's caps]. */
+  trunkHeight: number;
+}
+
+const inTrunk: CircleInCapsule = {
+  centre: vec3(0, 0, 0),
+  towardsZero: vec3(0, 0, 0),
+  towardsQuarter: vec3(0, 0, 0),
+  trunkHeight: 0.5,
+};
 
 /** A vector in the trunk's frame, with the capsule's half width, height of the caps and half depth as units of x, y and z. */
 function inCapsule(v: Vec3, unit: number, target: MutableVec3): MutableVec3 {
@@ -168,31 +192,43 @@ function inCapsule(v: Vec3, unit: number, target: MutableVec3): MutableVec3 {
   return target;
 }
 
-/** The squared distance of a point from the capsule's axis; below 1 it is inside. */
-function squaredDistance(x: number, y: number, z: number): number {
-  const beyond = y - clamp(y, 0, trunk.height);
+/** The squared distance of a point from the axis of a capsule of this height; below 1 it is inside. */
+function squaredDistance(x: number, y: number, z: number, height: number): number {
+  const beyond = y - clamp(y, 0, height);
   return x * x + beyond * beyond + z * z;
 }
 
-/** Finds the swivel angles at which an elbow is clear of the trunk; false: all are. */
-function findClearSwivel(circle: ElbowCircle, { hips, chest, neck, rotations }: TorsoPose): boolean {
+/** Places an elbow's circle, floor frame, beside the capsule of this trunk. */
+function circleInCapsule(
+  circle: ElbowCircle,
+  { zero, quarter }: SwivelAxes,
+  { hips, chest, neck, rotations }: TorsoPose,
+  target: CircleInCapsule,
+): CircleInCapsule {
+  const { centre, towardsZero, towardsQuarter } = target;
   const unit = distance(neck, chest);
   normalise(subtract(neck, hips, trunkUp), up, trunkUp);
   normalise(reject(rotate(rotations.upperChest, right, side), trunkUp, side), right, side);
   fromAxes(side, trunkUp, cross(side, trunkUp, behind), floorFromTrunk);
-  trunk.height = distance(neck, hips) / (capsule.cap * unit);
+  target.trunkHeight = distance(neck, hips) / (capsule.cap * unit);
   inCapsule(subtract(circle.centre, hips, centre), unit, centre);
   inCapsule(scale(zero, circle.radius, towardsZero), unit, towardsZero);
   inCapsule(scale(quarter, circle.radius, towardsQuarter), unit, towardsQuarter);
+  return target;
+}
+
+/** Writes the swivel angles at which an elbow is clear of the trunk; false: all are, and nothing may be written. */
+function findClearRange(circle: CircleInCapsule, target: ClearRange): boolean {
+  const { centre, towardsZero, towardsQuarter, trunkHeight } = circle;
   const furthest = Math.sqrt(dot(towardsZero, towardsZero) + dot(towardsQuarter, towardsQuarter));
-  if (Math.sqrt(squaredDistance(centre.x, centre.y, centre.z)) - furthest >= 1) return false;
-  clear.high = border(1);
-  clear.low = -border(-1);
-  return clear.high < Math.PI || clear.low > -Math.PI;
+  if (Math.sqrt(squaredDistance(centre.x, centre.y, centre.z, trunkHeight)) - furthest >= 1) return false;
+  target.high = border(circle, 1);
+  target.low = -border(circle, -1);
+  return target.high < Math.PI || target.low > -Math.PI;
 }
 
 /** Whether an elbow so many parts of a turn away is inside the trunk. Whole numbers: the engine hands them on without a box. */
-function isInside(parts: number): boolean {
+function isInside({ centre, towardsZero, towardsQuarter, trunkHeight }: CircleInCapsule, parts: number): boolean {
   const step = Math.abs(parts) / partsPerStep;
   const whole = Number.isInteger(step);
   const cosine = whole ? stepCosines[step]! : Math.cos(parts * swivelPart);
@@ -202,19 +238,20 @@ function isInside(parts: number): boolean {
       centre.x + towardsZero.x * cosine + towardsQuarter.x * sine,
       centre.y + towardsZero.y * cosine + towardsQuarter.y * sine,
       centre.z + towardsZero.z * cosine + towardsQuarter.z * sine,
+      trunkHeight,
     ) < 1
   );
 }
 
 /** From 0 on in the direction of `sign`: the last clear angle. */
-function border(sign: 1 | -1): number {
+function border(circle: CircleInCapsule, sign: 1 | -1): number {
   let blocked = partsPerStep;
-  while (blocked <= partsPerHalfTurn && !isInside(sign * blocked)) blocked += partsPerStep;
+  while (blocked <= partsPerHalfTurn && !isInside(circle, sign * blocked)) blocked += partsPerStep;
   if (blocked > partsPerHalfTurn) return Math.PI;
   let clearParts = blocked - partsPerStep;
   while (blocked - clearParts > 1) {
     const middle = (clearParts + blocked) >> 1;
-    if (isInside(sign * middle)) blocked = middle;
+    if (isInside(circle, sign * middle)) blocked = middle;
     else clearParts = middle;
   }
   return clearParts * swivelPart;
