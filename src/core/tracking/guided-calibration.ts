@@ -128,64 +128,79 @@ const failed = (fault: CalibrationFault): GuidedCalibration => ({
   reason: calibrationFaults[fault],
 });
 
-function measure(samples: readonly Sample[]): GuidedCalibration {
-  if (samples.length < FEWEST_SAMPLES) return failed('lost');
+/** A head at rest: height of the eyes above the floor [m], and the elevation of its gaze as a sine. */
+interface MeasuredHead {
+  readonly height: number;
+  readonly gaze: number;
+}
+
+function measureHead(samples: readonly Sample[]): MeasuredHead | CalibrationFault {
   const heads = samples.map(({ head }) => head);
-  const head = middleOf(heads);
-  if (heads.some((position) => distance(position, head) > HEAD_SWAY)) {
-    return failed('headMoved');
-  }
+  const middle = middleOf(heads);
+  if (heads.some((position) => distance(position, middle) > HEAD_SWAY)) return 'headMoved';
   const gaze = robustMean(samples.map((sample) => sample.gaze));
-  if (Math.abs(gaze) > STEEPEST_GAZE) {
-    return failed('gaze');
-  }
+  return Math.abs(gaze) > STEEPEST_GAZE ? 'gaze' : { height: middle.y, gaze };
+}
+
+/** One hand that is never seen may be missing: the other one's arm then stands for both. */
+function measureWrists(samples: readonly Sample[]): readonly MeasuredWrist[] | CalibrationFault {
   const wrists: MeasuredWrist[] = [];
   for (const side of sides) {
     const seen = samples.map((sample) => sample[side]).filter((wrist) => wrist !== null);
     const part = seen.length / samples.length;
     if (part === 0) continue;
-    if (part < SEEN) return failed(side === 'left' ? 'leftUnseen' : 'rightUnseen');
+    if (part < SEEN) return side === 'left' ? 'leftUnseen' : 'rightUnseen';
     const position = middleOf(seen.map((wrist) => wrist.position));
     const sway = seen.reduce((sum, wrist) => sum + distance(wrist.position, position), 0) / seen.length;
-    if (sway > HAND_SWAY) return failed('handsMoved');
+    if (sway > HAND_SWAY) return 'handsMoved';
     wrists.push({ side, position, seen });
   }
-  // One hand that is never seen may be missing: the other one's arm then stands for both.
-  if (wrists.length === 0) return failed('handsUnseen');
+  return wrists.length === 0 ? 'handsUnseen' : wrists;
+}
 
-  let eyeHeight = head.y;
-  const reaches = () => wrists.map(({ side, position }) => reachOf(side, position, head.y, eyeHeight));
-  let arms = reaches();
-  const far = arms.filter((arm) => arm !== null);
-  if (far.length === arms.length && Math.min(...far) > SEATED_ARM * head.y) {
+/** Eye height, and the mean length of the arms from shoulder to wrist [m]. */
+interface MeasuredBody {
+  readonly eyeHeight: number;
+  readonly arm: number;
+}
+
+function measureBody(wrists: readonly MeasuredWrist[], headHeight: number): MeasuredBody | CalibrationFault {
+  const reaches = (eyeHeight: number): readonly number[] | null => {
+    const arms = wrists.map(({ side, position }) => reachOf(side, position, headHeight, eyeHeight));
+    return arms.every((arm) => arm !== null) ? arms : null;
+  };
+  const mean = (lengths: readonly number[]): number => lengths.reduce((sum, arm) => sum + arm, 0) / lengths.length;
+  let eyeHeight = headHeight;
+  let arms = reaches(eyeHeight);
+  if (arms && Math.min(...arms) > SEATED_ARM * headHeight) {
     // Seated, or above a floor that is not where it should be: then the arms tell how tall the wearer is.
-    for (let i = 0; i < 8 && arms.every((arm) => arm !== null); i++) {
-      eyeHeight = arms.reduce((sum, arm) => sum + (arm ?? 0), 0) / arms.length / ORDINARY_ARM;
-      arms = reaches();
+    for (let i = 0; i < 8 && arms; i++) {
+      eyeHeight = mean(arms) / ORDINARY_ARM;
+      arms = reaches(eyeHeight);
     }
   }
-  if (arms.some((arm) => arm === null)) {
-    return failed('elsewhere');
-  }
-  const lengths = arms.filter((arm) => arm !== null);
-  const shortest = Math.min(...lengths);
-  if (shortest < SHORTEST_ARM * eyeHeight) {
-    return failed('bent');
-  }
-  if (Math.max(...lengths) > LONGEST_ARM * eyeHeight) {
-    return failed('tooLong');
-  }
-  if (Math.max(...lengths) - shortest > UNEVEN_ARMS) {
-    return failed('uneven');
-  }
-  const arm = lengths.reduce((sum, l) => sum + l, 0) / lengths.length;
-  const shoulder = restShoulder('right', eyeHeight);
-  const gazePitch = looksAhead(wrists.map(({ position }) => position)) ? Math.asin(gaze) : null;
+  if (!arms) return 'elsewhere';
+  const [shortest, longest] = [Math.min(...arms), Math.max(...arms)];
+  if (shortest < SHORTEST_ARM * eyeHeight) return 'bent';
+  if (longest > LONGEST_ARM * eyeHeight) return 'tooLong';
+  return longest - shortest > UNEVEN_ARMS ? 'uneven' : { eyeHeight, arm: mean(arms) };
+}
+
+function measure(samples: readonly Sample[]): GuidedCalibration {
+  if (samples.length < FEWEST_SAMPLES) return failed('lost');
+  const head = measureHead(samples);
+  if (typeof head === 'string') return failed(head);
+  const wrists = measureWrists(samples);
+  if (typeof wrists === 'string') return failed(wrists);
+  const body = measureBody(wrists, head.height);
+  if (typeof body === 'string') return failed(body);
+  const { eyeHeight, arm } = body;
+  const gazePitch = looksAhead(wrists.map(({ position }) => position)) ? Math.asin(head.gaze) : null;
   const calibration: Calibration = {
     eyeHeight,
-    armSpan: 2 * (arm + shoulder.x),
+    armSpan: 2 * (arm + restShoulder('right', eyeHeight).x),
     ...(gazePitch !== null && { gazePitch: clamp(gazePitch, -steepestGazePitch, steepestGazePitch) }),
-    ...tiltsOf(wrists, head.y, eyeHeight),
+    ...tiltsOf(wrists, head.height, eyeHeight),
   };
   const complaint = calibrationComplaint(calibration);
   return complaint === null
