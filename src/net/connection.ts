@@ -28,6 +28,8 @@ export interface ConnectionStatus {
 /** The room as it is known here. */
 export interface RoomView {
   readonly id: string;
+  /** Another one where the room was made anew under its name, and what was played in it is forgotten. */
+  readonly epoch: string;
   /** By seat number; null: free. */
   readonly seats: readonly (SeatInfo | null)[];
   /** Ours; null: a spectator. Also the player's index in the match. */

@@ -83,6 +83,7 @@ export abstract class RoomSession implements Connection {
     if (!known) return null;
     this.#view ??= {
       id: known.room,
+      epoch: known.epoch,
       seats: known.seats,
       mySeat: known.seat,
       spectators: known.spectators,

@@ -60,6 +60,10 @@ export interface BodyFrame {
 /** What one frame of the match brought: to be seen, heard and felt. */
 export interface BallFrame {
   readonly state: BallState;
+  /** Of the room that the match is in: see `RoomView.epoch`. */
+  readonly epoch: string;
+  /** Whether the room is heard; without it the state is what was known last. */
+  readonly connection: ConnectionStatus['phase'];
   /** Seconds of the match. */
   readonly time: number;
   readonly me: number | null;

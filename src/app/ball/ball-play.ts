@@ -215,6 +215,8 @@ class MatchPlay implements BallPlay {
     this.sight.opening = opening;
     this.newest = {
       state,
+      epoch: before.epoch,
+      connection: line.status.phase,
       time: time + before.matchAhead,
       me,
       role: me === null ? null : (state.players[me]?.role ?? null),

@@ -52,6 +52,7 @@ export function createArcheryRunner(host: ArcheryHost): ArcheryRunner {
     },
     waitingFor: null,
     standing: false,
+    interrupted: false,
     pause: () => undefined,
     get end() {
       return end;

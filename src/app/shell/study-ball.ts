@@ -35,10 +35,20 @@ export function createBallRunner(host: BallHost): BallRunner {
   let joinsLate = false;
   /** Second of the match at which this participant's trial began; null: not yet. */
   let from: number | null = null;
+  /** The room that it began in. */
+  let epoch = '';
   let end: TaskEnd | null = null;
+  let interrupted = false;
   let happened: TaskEvent[] = [];
   let missing: readonly string[] = [];
   let standing = false;
+  const forget = () => {
+    happened = [];
+    end = null;
+    interrupted = false;
+    from = null;
+    standing = false;
+  };
 
   return {
     async prepare(next) {
@@ -46,20 +56,24 @@ export function createBallRunner(host: BallHost): BallRunner {
       await host.goToBall(next);
     },
     start({ seconds }) {
-      happened = [];
-      end = null;
-      from = null;
+      forget();
       wanted = { seconds };
       missing = place?.members ?? [];
-      standing = false;
       const ball = host.ball();
       joinsLate = ball?.room?.match?.phase === 'running';
       // The seat still wants what this page wanted before it was loaded again, which may have been a pause.
       ball?.pause(false);
       ball?.ready(true);
     },
-    played({ state, me, players, events, time, paused }) {
+    played({ state, connection, me, players, events, time, paused, ...frame }) {
       if (!wanted || end) return;
+      const over = state.phase === 'over';
+      // A match that the room has forgotten, or that is told of no more, has no result.
+      interrupted = (from !== null && frame.epoch !== epoch) || (connection === 'ended' && !(from !== null && over));
+      if (interrupted) {
+        wanted = null;
+        return;
+      }
       standing = paused;
       if (from === null) {
         const there = players.flatMap((player) => (player?.ready ? [player.name] : []));
@@ -69,14 +83,20 @@ export function createBallRunner(host: BallHost): BallRunner {
         if (state.phase !== 'running') return;
         // However late this page draws its first frame of the match.
         from = joinsLate ? time : (state.startedAt ?? time);
+        epoch = frame.epoch;
       }
       const at = Math.max(0, time - from);
       happened.push(...events.flatMap((event) => taskEvents(event, me, at)));
-      const over = state.phase === 'over';
       // Where the room's own bell rings no later, its word is the last one: a ball may still be in the air.
       const limit = state.options.seconds <= wanted.seconds ? wanted.seconds + bellDelay : wanted.seconds;
-      if (!over && at < limit) return;
-      end = { seconds: at, ended: (over && state.end) || 'time', score: state.score, maximum: state.options.balls };
+      // A page that does not hear the room does not know the score: it waits for its return.
+      if (!over && (at < limit || connection !== 'joined')) return;
+      end = {
+        seconds: Math.min(at, limit),
+        ended: (over && state.end) || 'time',
+        score: state.score,
+        maximum: state.options.balls,
+      };
       wanted = null;
     },
     take() {
@@ -93,13 +113,13 @@ export function createBallRunner(host: BallHost): BallRunner {
     get standing() {
       return standing && end === null;
     },
+    get interrupted() {
+      return interrupted;
+    },
     pause: (on) => host.ball()?.pause(on),
     abort() {
       wanted = null;
-      standing = false;
-      from = null;
-      end = null;
-      happened = [];
+      forget();
       host.leaveBall();
     },
     assists: () => [],

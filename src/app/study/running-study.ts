@@ -154,6 +154,7 @@ export class RunningStudy {
     }
     // No sheet hangs there while a round is played: this is how it is stopped.
     if (this.#raised.follow(this.playing ? frame : null)) this.#apply({ type: 'pause' });
+    if (this.#trial?.interrupted) this.#apply({ type: 'reload' });
     const finished = this.#trial?.follow(time, frame);
     if (finished) this.#finishTrial(finished);
   }
@@ -170,10 +171,7 @@ export class RunningStudy {
     if (!worn) this.conclude();
     const { running, paused } = this.session.progress;
     // A round is void when the headset comes off in the middle of it.
-    if (!worn && running && !paused && this.#trial) {
-      this.session.apply({ type: 'reload' });
-      void this.exchange();
-    }
+    if (!worn && running && !paused && this.#trial) this.#apply({ type: 'reload' });
     if (!worn) this.#guide.cancel();
     this.show();
   }

@@ -45,6 +45,8 @@ export interface PlayedTrial {
   readonly waitingFor: readonly string[] | null;
   /** The game's clock stands because another of the group pauses. */
   readonly standing: boolean;
+  /** The game was lost under it: the trial is void. */
+  readonly interrupted: boolean;
   /** Stops game and clock, or lets them go on; nothing is counted in between. */
   pause(on: boolean): void;
   /** Every frame drawn; `frame` null: the head was not seen. Answers once, when the end has been seen for a moment; until then null. */
@@ -121,6 +123,10 @@ class LoggedTrial implements PlayedTrial {
 
   get standing(): boolean {
     return this.#runner.standing;
+  }
+
+  get interrupted(): boolean {
+    return this.#runner.interrupted;
   }
 
   pause(on: boolean): void {

@@ -37,6 +37,8 @@ export interface TaskRunner {
   readonly standing: boolean;
   /** null: no trial, or one that goes on. */
   readonly end: TaskEnd | null;
+  /** What was started is lost, and has no end: the trial counts for nothing. */
+  readonly interrupted: boolean;
   /** Stops the game's clock for the whole group, or no longer wants it stopped. What is played alone stands with the page. */
   pause(on: boolean): void;
   /** Puts the game away: after its end, or before it, when the trial counts for nothing. */

@@ -6,6 +6,7 @@ import { defaultCalibration } from '../../../src/core/body/calibration';
 import { unknownFingers } from '../../../src/core/body/hand-shape';
 import { createEstimator } from '../../../src/core/estimation/estimators';
 import { allReleased, type Buttons } from '../../../src/core/games/button-presses';
+import type { Connection, ConnectionStatus, Visitor } from '../../../src/net/connection';
 import { createLoopbackHost } from '../../../src/net/loopback-connection';
 import { poseOf } from '../../core/estimation/drawn';
 
@@ -28,12 +29,53 @@ const step = {
   seconds,
 } as PlayedStep;
 
+/** The room of a server that can be cut off, and that has forgotten what was played when it is started anew. */
+function restartedRoom() {
+  const made = (epoch: string) => createLoopbackHost({ seed: 3, ball: { seconds }, epoch });
+  let room = made('first');
+  let cutOff: ConnectionStatus['phase'] | null = null;
+  const moves: ((time: number) => void)[] = [];
+  return {
+    /** A connection of a page. While it is cut off the room goes on, and the page knows of it what it knew before. */
+    connect(visitor: Visitor, now: number): Connection {
+      let line = room.connect(visitor, now);
+      let known = line.room;
+      moves.push((time) => {
+        line = room.connect(visitor, time);
+      });
+      return new Proxy(line, {
+        get(_, name: keyof Connection) {
+          if (!cutOff) known = line.room;
+          if (name === 'room') return known;
+          if (cutOff && name === 'status') return { ...line.status, phase: cutOff };
+          if (cutOff && name === 'update') {
+            return (time: number) => ({ ...line.update(time), events: [], poses: [], news: [] });
+          }
+          const value = line[name];
+          return typeof value === 'function' ? value.bind(line) : value;
+        },
+      });
+    },
+    cut(phase: 'reconnecting' | 'ended'): void {
+      cutOff = phase;
+    },
+    mend(): void {
+      cutOff = null;
+    },
+    restart(time: number): void {
+      room = made('second');
+      cutOff = null;
+      for (const move of moves) move(time);
+    },
+  };
+}
+
 /**
  * Three participants of one group in one room, each page with its own trial, frame by frame. `stopped`: the seat of the second wants
  * the clock to stand, as that page left it before it was loaded again.
  */
 async function group({ stopped = false } = {}) {
-  const room = createLoopbackHost({ seed: 3, ball: { seconds } });
+  const room = restartedRoom();
   let time = 10;
   const pages = await Promise.all(
     people.map(async (participant, seat) => {
@@ -86,6 +128,9 @@ async function group({ stopped = false } = {}) {
         get finished() {
           return finished;
         },
+        get interrupted() {
+          return trial?.interrupted ?? false;
+        },
       };
     }),
   );
@@ -98,7 +143,14 @@ async function group({ stopped = false } = {}) {
   };
   pass(1);
   pages[1]?.play.pause(stopped);
-  return { pages, pass, trials: pages.map((page) => page.start()) };
+  return {
+    pages,
+    pass,
+    trials: pages.map((page) => page.start()),
+    cut: room.cut,
+    mend: room.mend,
+    restart: () => room.restart(time),
+  };
 }
 
 test('who pauses in a shared match stops it for the whole group, and the pause counts for nothing', {
@@ -146,4 +198,41 @@ test('a match that takes a slow page by surprise lasted as long for its particip
   const [slow, ...others] = pages.map(({ finished }) => finished?.outcome);
   expect(slow?.seconds).toBeGreaterThanOrEqual(seconds);
   for (const other of others) expect(other?.seconds).toBeCloseTo(slow?.seconds ?? Number.NaN, 1);
+});
+
+test('a match that its server has forgotten is interrupted for the whole group, and leaves no result', async () => {
+  const { pages, pass, cut, restart } = await group();
+  pass(4);
+  cut('reconnecting');
+  pass(1);
+  expect(pages.map(({ interrupted }) => interrupted)).toEqual([false, false, false]);
+  restart();
+  pass(seconds + 8);
+  expect(pages.map(({ interrupted }) => interrupted)).toEqual([true, true, true]);
+  expect(pages.map(({ finished }) => finished !== null)).toEqual([false, false, false]);
+});
+
+test.each(['before it begins', 'while it runs'])(
+  'a participant who is sent away from a match %s has no result of it',
+  async (when) => {
+    const { pages, pass, cut } = await group();
+    if (when === 'while it runs') pass(4);
+    cut('ended');
+    pass(seconds + 8);
+    expect(pages.map(({ interrupted }) => interrupted)).toEqual([true, true, true]);
+    expect(pages.map(({ finished }) => finished !== null)).toEqual([false, false, false]);
+  },
+);
+
+test('a participant without a connection at the bell waits for what the room says of the match', async () => {
+  const { pages, pass, cut, mend } = await group();
+  pass(4);
+  cut('reconnecting');
+  pass(seconds + 8);
+  expect(pages.map(({ finished }) => finished !== null)).toEqual([false, false, false]);
+  mend();
+  pass(8);
+  const outcomes = pages.map(({ finished }) => finished?.outcome);
+  expect(outcomes.map((outcome) => outcome?.ended)).toEqual(['time', 'time', 'time']);
+  expect(outcomes.map((outcome) => outcome?.score)).toEqual(pages.map(({ play }) => play.probe()?.score));
 });

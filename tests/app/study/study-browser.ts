@@ -104,6 +104,7 @@ export class OneShotGame implements TaskRunner {
   readonly waitingFor = null;
   readonly standing = false;
   end: TaskEnd | null = null;
+  interrupted = false;
   running = false;
   paused = false;
   /** Why the game cannot be loaded; null: it can. */
@@ -123,6 +124,12 @@ export class OneShotGame implements TaskRunner {
     this.seeds.push(seed);
     this.running = this.#here;
     this.end = null;
+    this.interrupted = false;
+  }
+
+  /** Its server has forgotten it. */
+  breakOff(): void {
+    this.interrupted = this.running;
   }
 
   hit(points: number): void {
@@ -145,6 +152,7 @@ export class OneShotGame implements TaskRunner {
     this.#here = false;
     this.running = false;
     this.end = null;
+    this.interrupted = false;
   }
 
   assists(): readonly string[] {

@@ -170,6 +170,30 @@ describe('a round', () => {
     ]);
   });
 
+  test.each([false, true])('whose game breaks off is void and is played again; in a pause: %s', async (paused) => {
+    const server = await studyServer();
+    const { tab } = await beforeTheRound(server);
+    const { archery } = tab.host.games;
+    tab.display.press('start');
+    tab.draw(1);
+    if (paused) await server.experimenter.command('paper', 'P01', { type: 'pause' });
+    await tab.exchange();
+    archery.breakOff();
+    tab.draw(1);
+    expect(archery.running).toBe(false);
+    if (paused) tab.display.press('resume');
+    expect(tab.display.shown).toBe('trial-ready');
+    expect(tab.display.inHeadset?.text[0]).toBe('The last attempt was interrupted and does not count.');
+    await canStart(tab);
+    play(tab, 20);
+    await tab.exchange();
+    expect(eventsOf(server)).toEqual(paused ? ['pause', 'interrupted', 'resume'] : ['interrupted']);
+    expect(trialsOf(server).map(({ place, outcome }) => [place.attempt, outcome.score])).toEqual([
+      [1, 10],
+      [2, 20],
+    ]);
+  });
+
   test('stands in a pause, headset on or off, and goes on as the same attempt', async () => {
     const server = await studyServer();
     const { tab } = await beforeTheRound(server);
