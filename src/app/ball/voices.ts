@@ -84,6 +84,9 @@ export class Voices {
   #toldSilent = true;
   #fault: string | null = null;
   #stay: Stay | null = null;
+  /** Another one with every leaving: what was begun before it is not gone on with. */
+  #turn = 0;
+  #disposed = false;
 
   constructor(options: VoicesOptions) {
     this.#options = options;
@@ -126,7 +129,7 @@ export class Voices {
       // A server that does not say has no voices.
       void this.#terms.renew().catch(() => undefined);
     }
-    if (this.#stay && play.status.phase === 'ended') this.leave();
+    if ((this.#stay || this.#phase === 'joining') && play.status.phase === 'ended') this.leave();
   }
 
   /** Once a frame: lets voices come from where these bodies have their heads. Gives those that are to be seen, until the next call. */
@@ -153,15 +156,18 @@ export class Voices {
   async join(): Promise<void> {
     const { openAudio } = this.#options;
     const terms = this.#terms;
-    if (!terms || this.#stay || this.#phase === 'joining') return;
+    if (!terms || this.#disposed || this.#stay || this.#phase === 'joining') return;
+    const turn = this.#turn;
     this.#phase = 'joining';
     this.#fault = null;
     this.#muted = true;
     try {
       const [context, fresh] = await Promise.all([openAudio(), terms.renew()]);
+      if (turn !== this.#turn) return;
       await this.#microphone.open();
-      this.#enter(context, fresh);
+      if (turn === this.#turn) this.#enter(context, fresh);
     } catch (error) {
+      if (turn !== this.#turn) return;
       this.#microphone.close();
       this.#phase = 'off';
       this.#fault = `Voices could not be joined: ${firstLine(reasonOf(error))}`;
@@ -169,6 +175,7 @@ export class Voices {
   }
 
   leave(): void {
+    this.#turn += 1;
     const stay = this.#stay;
     this.#stay = null;
     this.#phase = 'off';
@@ -184,7 +191,9 @@ export class Voices {
   /** Unmuted without a microphone, it is asked for again first. */
   async setMuted(muted: boolean): Promise<void> {
     if (this.#phase !== 'in') return;
+    const turn = this.#turn;
     if (!muted && !this.#microphone.track) await this.#microphone.open();
+    if (turn !== this.#turn) return;
     this.#muted = muted || !this.#microphone.track;
     this.#sendTrack();
     this.#say();
@@ -258,6 +267,7 @@ export class Voices {
   }
 
   dispose(): void {
+    this.#disposed = true;
     this.#line?.listen(null);
     this.leave();
   }

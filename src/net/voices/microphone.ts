@@ -87,6 +87,7 @@ export class Microphone {
       this.#stopAsking();
       stream.getAudioTracks()[0]?.addEventListener('ended', this.#lose, { once: true });
     } catch (error) {
+      if (!this.#wanted) return;
       this.#complaint = refusalOf(error);
       // Who refuses is not asked again every two seconds: the page's own button does that.
       if (error instanceof DOMException && error.name === 'NotAllowedError') this.#stopAsking();

@@ -1,0 +1,111 @@
+import { beforeEach, describe, expect, test, vi } from 'vitest';
+import { Voices } from '../../../src/app/ball/voices';
+import { createLoopbackHost } from '../../../src/net/loopback-connection';
+import type { VoiceTerms } from '../../../src/net/voices/voice-terms';
+import { visitor } from '../../net/people';
+
+const told: VoiceTerms = { voices: true, iceServers: [], goodFor: null };
+
+/** What the browser has of a microphone: each question waits for its answer. */
+const device = { questions: [] as (() => void)[], live: 0 };
+
+class Track extends EventTarget {
+  enabled = true;
+  #live = true;
+
+  constructor() {
+    super();
+    device.live += 1;
+  }
+
+  stop(): void {
+    if (this.#live) device.live -= 1;
+    this.#live = false;
+  }
+}
+
+function getUserMedia(): Promise<unknown> {
+  return new Promise((resolve) => {
+    device.questions.push(() => {
+      const track = new Track();
+      resolve({ getAudioTracks: () => [track], getTracks: () => [track] });
+    });
+  });
+}
+
+beforeEach(() => {
+  vi.stubGlobal('navigator', { mediaDevices: { getUserMedia } });
+  vi.stubGlobal('document', Object.assign(new EventTarget(), { visibilityState: 'visible' }));
+  Object.assign(device, { questions: [], live: 0 });
+});
+
+/** Lets all that waits for nothing outside of the page go on. */
+const settle = () => new Promise((resolve) => setImmediate(resolve));
+
+/** A player in a room, whose server says what it has to say of voices when the test wants. */
+function seated() {
+  const play = createLoopbackHost().connect(visitor('Ann'), 0);
+  const answers: (() => void)[] = [];
+  const voices = new Voices({
+    play: { room: play.room, status: play.status, voices: play.voices },
+    terms: () => new Promise((resolve) => answers.push(() => resolve(told))),
+    // Nothing is to be heard here: no one comes as far.
+    openAudio: async () => ({}) as AudioContext,
+    relayOnly: () => false,
+  });
+  return { voices, answers };
+}
+
+describe('a microphone', () => {
+  test.each(['leave', 'dispose'] as const)(
+    'is not asked for where the server answers after the player chose to %s',
+    async (end) => {
+      const { voices, answers } = seated();
+      const joined = voices.join();
+      voices[end]();
+      answers[0]?.();
+      await joined;
+      expect(device.questions).toHaveLength(0);
+      expect(voices.probe()).toMatchObject({ said: null });
+    },
+  );
+
+  test.each(['leave', 'dispose'] as const)(
+    'that opens after the player chose to %s is closed at once, and no one has joined',
+    async (end) => {
+      const { voices, answers } = seated();
+      const joined = voices.join();
+      answers[0]?.();
+      await settle();
+      voices[end]();
+      device.questions[0]?.();
+      await joined;
+      expect(device.live).toBe(0);
+      expect(voices.state.phase).toBe('off');
+      expect(voices.probe()).toMatchObject({ said: null });
+    },
+  );
+
+  test('is not asked for again by a room that was left for good', async () => {
+    const { voices, answers } = seated();
+    voices.dispose();
+    await voices.join();
+    expect(answers).toHaveLength(0);
+    expect(voices.probe().phase).not.toBe('joining');
+  });
+
+  test('of a player who leaves and joins again is asked for once, by the second of the two', async () => {
+    const { voices, answers } = seated();
+    const first = voices.join();
+    voices.leave();
+    void voices.join();
+    answers[0]?.();
+    await first;
+    expect(device.questions).toHaveLength(0);
+    answers[1]?.();
+    await settle();
+    expect(device.questions).toHaveLength(1);
+    expect(voices.state.phase).toBe('joining');
+    voices.dispose();
+  });
+});
