@@ -109,10 +109,6 @@ export class GuestMessages {
 
   /** Whether this message is still within what a client may send. */
   #isWithin(guest: Guest, budget: Budget, at: number): boolean {
-    if (!guest.flood.spend(at)) {
-      this.kick(guest, 'misbehaved', 'flood');
-      return false;
-    }
     if (budget.spend(at)) return true;
     if (budget.overdrawn > mostOverdrawn) this.kick(guest, 'misbehaved', 'budget');
     return false;

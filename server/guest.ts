@@ -24,8 +24,6 @@ export interface Guest {
   readonly events: Budget;
   /** Of pages that set up their voices with each other. */
   readonly signals: Budget;
-  /** Messages of any kind. */
-  readonly flood: Budget;
   joined: boolean;
   badMessages: number;
   /** The last time that the connection could take a frame [s]. */
@@ -33,8 +31,6 @@ export interface Guest {
   ended: boolean;
 }
 
-/** More than this many messages of any kind in a second is an attack. */
-const floodPerSecond = 300;
 /** Two pages that connect need a dozen signals, and begin anew after a lost network; a page may have five others to connect to. */
 const signalsPerSecond = 20;
 const signalsAtOnce = 80;
@@ -58,7 +54,6 @@ export const createGuest = (
   poses: createBudget(posesPerSecond),
   events: createBudget(eventsPerSecond, 2 * eventsPerSecond),
   signals: createBudget(signalsPerSecond, signalsAtOnce),
-  flood: createBudget(floodPerSecond),
   joined: false,
   badMessages: 0,
   writableAt: now,

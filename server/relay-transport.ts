@@ -7,6 +7,7 @@ import type { Logger } from 'pino';
 import { Server, type Socket } from 'socket.io';
 import { longestMessage } from '../src/core/protocol/messages';
 import { relayParser } from '../src/core/protocol/small-frames';
+import { createBudget } from './budget';
 import { clientAddress } from './client-address';
 import { createTally } from './door';
 import { HttpError, refusal, sendRawAnswer } from './http/answer';
@@ -20,6 +21,20 @@ import { handshakeMs } from './web-server';
 /** Where the relay is found on its server. */
 export const relayPath = '/relay';
 
+/** What is heard of a connection below socket.io. */
+export interface WireListener {
+  onPose(bytes: Uint8Array): void;
+  /** More came than `framesPerSecond`: no more is heard, and the connection ends after this. */
+  onFlood(): void;
+}
+
+/**
+ * More frames in a second than this, of whatever kind, are an attack: messages, poses, acknowledgements, pings and answers to pings, before
+ * a room is joined and after. A page sends 40 poses, 20 messages of its own and 20 signals a second, 80 of these at once, and what waited for its
+ * network for 5 s at once.
+ */
+const framesPerSecond = 300;
+
 /** WebSockets below the rooms: who may open one, and how all of them end. */
 export interface RelayTransport {
   readonly io: Server;
@@ -27,9 +42,9 @@ export interface RelayTransport {
   readonly sockets: number;
   /**
    * Binary messages are poses and pass Engine.IO and socket.io by, which do more with a message than a room with a pose. A connection that
-   * sends one without having a listener is closed.
+   * sends one without having a listener is closed, and so is one that floods the relay.
    */
-  onPose(socket: Socket, listener: (bytes: Uint8Array) => void): void;
+  listen(socket: Socket, listener: WireListener): void;
   /** Opens a WebSocket, or answers why not; false where the address is not the relay's. */
   upgrade(request: IncomingMessage, socket: Duplex, head: Buffer): boolean;
   close(): void;
@@ -68,24 +83,29 @@ function complaintAbout({ method, headers }: IncomingMessage, query: URLSearchPa
   return null;
 }
 
-/** Lets `listener` have a connection's binary messages; Engine.IO gets the others, as before. */
-function divert(conn: Socket['conn'], listener: (bytes: Uint8Array) => void): void {
+/** Lets `listener` have a connection's binary messages; Engine.IO gets the others, as before. `take`: whether a frame is to be heard at all. */
+function divert(conn: Socket['conn'], take: () => boolean, listener: (bytes: Uint8Array) => void): void {
   // reason: Engine.IO leaves the WebSocket there for its own transport, and does not say so in its types.
   const { websocket } = conn.request as unknown as { readonly websocket: EventEmitter & ReceivingWebSocket };
   for (const engines of websocket.listeners('message')) {
     websocket.off('message', engines as () => void);
     websocket.on('message', (received: Buffer, isBinary: boolean) => {
+      if (!take()) return;
       if (isBinary) listener(received);
       else engines.call(websocket, received, isBinary);
     });
   }
-  takeShortMessages(websocket, listener);
+  websocket.on('ping', take);
+  websocket.on('pong', take);
+  takeShortMessages(websocket, (bytes) => {
+    if (take()) listener(bytes);
+  });
 }
 
-/** Opens WebSockets at `relayPath`, so many for each address. */
+/** Opens WebSockets at `relayPath`, so many for each address. `now`: seconds, monotonic. */
 export function createRelayTransport(
   configuration: RelayConfiguration,
-  { log, metrics }: { readonly log: Logger; readonly metrics: RelayMetrics },
+  { log, metrics, now }: { readonly log: Logger; readonly metrics: RelayMetrics; readonly now: () => number },
 ): RelayTransport {
   const addresses = createTally(configuration.connectionsPerAddress);
   const site = createSitePolicy(configuration);
@@ -100,12 +120,32 @@ export function createRelayTransport(
   });
   const io = new Server({ serveClient: false, connectTimeout: handshakeMs, parser: relayParser });
   io.bind(engine);
-  const poseListeners = new WeakMap<Socket['conn'], (bytes: Uint8Array) => void>();
+  const listeners = new WeakMap<Socket['conn'], WireListener>();
   engine.on('connection', (conn: Socket['conn']) => {
     const raw = conn.request.socket;
-    divert(conn, (bytes) => {
-      const listener = poseListeners.get(conn);
-      if (listener) listener(bytes);
+    const budget = createBudget(framesPerSecond);
+    let floods = false;
+    const end = () => {
+      const listener = listeners.get(conn);
+      if (listener) listener.onFlood();
+      else {
+        metrics.kicked('flood');
+        log.warn('a connection without a place flooded the relay');
+      }
+      // A guest who has left the rooms may still have the connection.
+      conn.close();
+      destroySoon(raw);
+    };
+    const take = (): boolean => {
+      if (floods || budget.spend(now())) return !floods;
+      floods = true;
+      // What came before is still on its way through socket.io, which lets a tick pass for each packet.
+      setImmediate(end);
+      return false;
+    };
+    divert(conn, take, (bytes) => {
+      const listener = listeners.get(conn);
+      if (listener) listener.onPose(bytes);
       else conn.close();
     });
     conn.once('close', () => destroySoon(raw));
@@ -132,7 +172,7 @@ export function createRelayTransport(
     get sockets() {
       return engine.clientsCount;
     },
-    onPose: (socket, listener) => void poseListeners.set(socket.conn, listener),
+    listen: (socket, listener) => void listeners.set(socket.conn, listener),
     upgrade(request, socket, head) {
       const target = targetOf(request.url);
       if (!target || target.path.replace(/\/$/, '') !== relayPath) return false;

@@ -76,7 +76,7 @@ export function createRelay(
     avatarBytes: avatars.bytes,
   });
   const metrics = createRelayMetrics(census);
-  const transport = createRelayTransport(configuration, { log, metrics });
+  const transport = createRelayTransport(configuration, { log, metrics, now });
   const host = createSocketHost(transport, { configuration, kinds, tokens, log, metrics, now });
   const wornBy = (room: string, identity: string) => host.room(room)?.wornBy(identity) ?? null;
   const avatars = new AvatarStore({ mostBytes: configuration.avatarMegabytes * 2 ** 20, wornBy, now });

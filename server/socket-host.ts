@@ -76,7 +76,7 @@ function createGate({ kinds, tokens, metrics, log }: SocketHostOptions): Paramet
 }
 
 /** Serves rooms on the transport's WebSockets. */
-export function createSocketHost({ io, onPose, close }: RelayTransport, options: SocketHostOptions): SocketHost {
+export function createSocketHost({ io, listen, close }: RelayTransport, options: SocketHostOptions): SocketHost {
   const { configuration, kinds, log, metrics, now } = options;
   const guests = new Set<Guest>();
   const rooms = createHostedRooms({
@@ -95,7 +95,10 @@ export function createSocketHost({ io, onPose, close }: RelayTransport, options:
   io.on('connection', (socket) => {
     const guest = createGuest(socket, configuration, now());
     guests.add(guest);
-    onPose(socket, (bytes) => messages.onPose(guest, bytes));
+    listen(socket, {
+      onPose: (bytes) => messages.onPose(guest, bytes),
+      onFlood: () => messages.kick(guest, 'misbehaved', 'flood'),
+    });
     socket.on(messageEvent, (value: unknown) => messages.onMessage(guest, value));
     socket.onAny((event: string) => {
       if (event !== messageEvent) messages.kick(guest, 'misbehaved', 'unknown-event');

@@ -1,0 +1,66 @@
+import { expect, onTestFinished, test } from 'vitest';
+import { WebSocket } from 'ws';
+import { rawGuest, startRelay, until } from './running-relay';
+
+/** More than any connection may send at once, by far. */
+const frames = 2000;
+
+/** A connection of a page that shows no pass: it hears of the rooms and has no place in any. */
+async function stranger(url: string): Promise<WebSocket> {
+  const socket = new WebSocket(`${url.replace('http', 'ws')}/relay/?EIO=4&transport=websocket`);
+  onTestFinished(() => socket.terminate());
+  await new Promise<void>((resolve) => {
+    socket.on('message', (received: Buffer) => {
+      const text = received.toString();
+      if (text[0] === '0') socket.send('40["/lobby"]');
+      if (text.startsWith('40')) resolve();
+    });
+  });
+  return socket;
+}
+
+test.each<[what: string, send: (socket: WebSocket) => void]>([
+  ['acknowledgements to the lobby', (socket) => socket.send(`43["/lobby",[${JSON.stringify('x'.repeat(3900))}],1]`)],
+  ['answers to pings that no one sent', (socket) => socket.send('3')],
+  ['pings of WebSockets', (socket) => socket.ping()],
+  ['pongs of WebSockets', (socket) => socket.pong()],
+])(
+  'a stranger who floods the relay with %s is thrown out, and a guest beside them is still answered',
+  async (_, send) => {
+    const relay = await startRelay();
+    onTestFinished(() => relay.close());
+    const guest = await rawGuest(relay.url, 'beside');
+    onTestFinished(() => void guest.socket.disconnect());
+    const socket = await stranger(relay.url);
+    let closed = false;
+    socket.on('close', () => {
+      closed = true;
+    });
+    for (let i = 0; i < frames; i++) send(socket);
+    await until('the end of the flood', () => closed, 5);
+    guest.say({ type: 'ping', sent: 0 });
+    await until('the answer to another', () => guest.heard.some(({ type }) => type === 'pong'));
+    expect(guest.closedAt).toBeNull();
+    expect(await (await fetch(`${relay.url}/metrics`)).text()).toContain('threepoint_kicks_total{reason="flood"} 1');
+  },
+);
+
+test('a guest whose packets are none that the rooms count is told that it misbehaves', async () => {
+  const relay = await startRelay();
+  onTestFinished(() => relay.close());
+  const guest = await rawGuest(relay.url, 'acknowledging');
+  const { engine } = guest.socket.io;
+  for (let i = 0; i < frames; i++) engine.write('3["/",[],1]');
+  await until('the end of the flood', () => guest.closedAt !== null, 5);
+  expect(guest.heard.at(-1)).toEqual({ type: 'farewell', reason: 'misbehaved' });
+});
+
+test('a guest who has left the rooms and floods the relay is thrown out too', async () => {
+  const relay = await startRelay();
+  onTestFinished(() => relay.close());
+  const guest = await rawGuest(relay.url, 'leaving');
+  const { engine } = guest.socket.io;
+  engine.write('1["/"]');
+  for (let i = 0; i < frames; i++) engine.write('3["/",[],1]');
+  await until('the end of the flood', () => guest.closedAt !== null, 5);
+});
