@@ -2,6 +2,7 @@ import { Group, type Mesh, type MeshBasicMaterial, type Object3D, type PlaneGeom
 import type { AvatarPose } from '../core/body/avatar-pose';
 import { type Calibration, sameMeasures } from '../core/body/calibration';
 import type { Fingers } from '../core/body/hand-shape';
+import { PassingFault } from '../core/errors/passing-fault';
 import { type MutableTransform, makeTransform, type Transform, transformPoint } from '../core/math/pose';
 import { copyQuat } from '../core/math/quat';
 import { copyVec3, type Vec3 } from '../core/math/vec3';
@@ -28,13 +29,16 @@ export interface SeenPerson {
 }
 
 export interface RemoteAvatarsOptions {
-  /** The body for what a person has on. Rejects where there is none; asked once for a file, and for one of ours with every body that is needed. */
+  /**
+   * The body for what a person has on; asked once for a file, and for one of ours with every body that is needed. Rejects where there is none: with a
+   * PassingFault it is asked again after some seconds.
+   */
   load(avatar: WornAvatar): Promise<LoadedAvatar>;
   /** All are to be drawn as the plain one; asked in every frame. */
   plain(): boolean;
   /** How far a person's mouth is open: 0 shut to 1; asked in every frame for each who is drawn. */
   mouthOf(id: number): number;
-  /** A person's avatar cannot be shown: the plain one stays. Told once for each avatar. */
+  /** A person's avatar cannot be shown: the plain one stays. Told once for each avatar, and not of a fault that has passed soon. */
   onRefused(avatar: WornAvatar, reason: unknown): void;
 }
 
@@ -69,6 +73,19 @@ interface Body {
 /** A body from a file that no one has had on for so long [s] gives its memory back. */
 const keptSeconds = 20;
 
+/** What could not be had is asked for again so much later [s]. */
+const againSeconds = 5;
+/** A fault that should have passed has not after so many attempts. */
+const patientAttempts = 3;
+
+/** Why an avatar is not shown. */
+interface Refusal {
+  readonly attempts: number;
+  /** When it is asked for again [s]; Infinity: never. */
+  readonly again: number;
+  readonly told: boolean;
+}
+
 /** The second body draws from the first one's memory on the graphics device: only bones and colours are its own. */
 function shareGeometry(from: Object3D, to: Object3D): void {
   const sources: Mesh[] = [];
@@ -94,7 +111,8 @@ function isAmong(people: readonly SeenPerson[], id: number): boolean {
 
 /**
  * Bodies are made when they are first needed and kept for the next person who comes. Files are loaded one at a time, and whose file is on its way,
- * or refused, has the plain body on.
+ * or refused, has the plain body on. What could not be had is asked for again: a person who was away for long names their file before it is in
+ * the store again.
  */
 export const createRemoteAvatars = (options: RemoteAvatarsOptions): RemoteAvatars => new OthersBodies(options);
 
@@ -104,7 +122,7 @@ class OthersBodies implements RemoteAvatars {
   readonly #bodies: Body[] = [];
   /** What is being made: of our own bodies and of files, one each. */
   readonly #making: { own: boolean; file: boolean } = { own: false, file: false };
-  readonly #refused = new Set<WornAvatar>();
+  readonly #refused = new Map<WornAvatar, Refusal>();
   #disposed = false;
   /** The time of the newest frame [s]. */
   #now = 0;
@@ -167,7 +185,7 @@ class OthersBodies implements RemoteAvatars {
       if (own) own.id = null;
       return take(wanted, id);
     }
-    if (avatar !== plainAvatar && !this.#refused.has(avatar)) this.#make(avatar);
+    if (avatar !== plainAvatar && this.#now >= (this.#refused.get(avatar)?.again ?? 0)) this.#make(avatar);
     if (own?.of === plainAvatar) return own;
     const plain = this.#freeBody(plainAvatar, people);
     if (plain) {
@@ -196,18 +214,28 @@ class OthersBodies implements RemoteAvatars {
     });
   }
 
-  /** Never rejects: of a file that is none the plain body stays; without the plain one the next frame throws why. */
+  /** Never rejects: where it is not to be had the plain body stays; without the plain one the next frame throws why. */
   async #load(avatar: WornAvatar): Promise<void> {
     try {
       const loaded = await this.#options.load(avatar);
       const made = await createAvatarBetweenFrames(loaded);
       if (this.#disposed) made.dispose();
       else this.#add(made, avatar);
+      this.#refused.delete(avatar);
     } catch (error) {
       if (avatar === plainAvatar) this.#failed = error;
-      this.#refused.add(avatar);
-      if (!this.#disposed) this.#options.onRefused(avatar, error);
+      this.#refuse(avatar, error);
     }
+  }
+
+  #refuse(avatar: WornAvatar, error: unknown): void {
+    const before = this.#refused.get(avatar);
+    const passes = error instanceof PassingFault;
+    const attempts = (before?.attempts ?? 0) + 1;
+    const tells = !before?.told && (!passes || attempts >= patientAttempts);
+    const again = passes ? this.#now + againSeconds : Number.POSITIVE_INFINITY;
+    this.#refused.set(avatar, { attempts, again, told: tells || before?.told === true });
+    if (tells && !this.#disposed) this.#options.onRefused(avatar, error);
   }
 
   #add(avatar: Avatar, of: WornAvatar): void {

@@ -1,3 +1,4 @@
+import { PassingFault } from '../core/errors/passing-fault';
 import { firstLine, reasonOf } from '../core/errors/reasons';
 
 /** What a file is to be, with its article, and how much of it this page reads. */
@@ -21,7 +22,7 @@ export interface ReadOptions {
 
 /**
  * The bytes of a file of this device or of what an address answers. What is larger than its kind may be is refused before it is read, or as
- * soon as that shows. Rejects with a sentence that names the file.
+ * soon as that shows. Rejects with a sentence that names the file; with a PassingFault where the network or the server is to blame.
  */
 export async function readLimited(
   source: string | File,
@@ -51,7 +52,7 @@ async function download(
   const aborting = new AbortController();
   signal?.addEventListener('abort', () => aborting.abort());
   const response = await fetch(url, { signal: aborting.signal, headers }).catch((error: unknown) => {
-    throw new Error(`${name}: could not be fetched (${firstLine(reasonOf(error))})`);
+    throw new PassingFault(`${name}: could not be fetched (${firstLine(reasonOf(error))})`);
   });
   /** Ends the answer, so that nothing more of it comes. */
   const refuse = (error: Error): never => {
@@ -59,7 +60,7 @@ async function download(
     throw error;
   };
   if (!response.ok || !response.body)
-    return refuse(new Error(`${name}: the server answers ${response.status} ${response.statusText}`.trim()));
+    return refuse(new PassingFault(`${name}: the server answers ${response.status} ${response.statusText}`.trim()));
   if (/^text\/html\b/i.test(response.headers.get('content-type') ?? ''))
     return refuse(new Error(`${name}: the server answers with a web page, not with ${kind.what}`));
   const total = Number(response.headers.get('content-length')) || 0;
@@ -69,7 +70,7 @@ async function download(
   const reader = response.body.getReader();
   for (;;) {
     const { done, value } = await reader.read().catch((error: unknown) => {
-      throw new Error(`${name}: the connection was lost on the way (${firstLine(reasonOf(error))})`);
+      throw new PassingFault(`${name}: the connection was lost on the way (${firstLine(reasonOf(error))})`);
     });
     if (done) break;
     pieces.push(value);

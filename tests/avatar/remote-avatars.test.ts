@@ -1,17 +1,26 @@
 import { readFileSync } from 'node:fs';
 import { Mesh, type MeshStandardMaterial, SkinnedMesh } from 'three';
-import { describe, expect, test } from 'vitest';
+import { describe, expect, onTestFinished, test } from 'vitest';
 import { parseAvatar } from '../../src/avatar/load-avatar';
 import { createRemoteAvatars, type RemoteAvatars, type SeenPerson } from '../../src/avatar/remote-avatars';
 import { defaultCalibration } from '../../src/core/body/calibration';
 import { forwardKinematics } from '../../src/core/body/forward-kinematics';
 import { unknownFingers } from '../../src/core/body/hand-shape';
 import { skeletonFromCalibration } from '../../src/core/body/skeleton';
+import { PassingFault } from '../../src/core/errors/passing-fault';
 import { createIk } from '../../src/core/estimation/estimators';
 import { transformPoint } from '../../src/core/math/pose';
 import { fromAxisAngle } from '../../src/core/math/quat';
 import { distance, up, vec3 } from '../../src/core/math/vec3';
-import { bodyOf, isOwnAvatar, type OwnBody, ownAvatarOf, plainAvatar } from '../../src/core/protocol/worn-avatar';
+import {
+  type AvatarHash,
+  bodyOf,
+  isOwnAvatar,
+  type OwnBody,
+  ownAvatarOf,
+  plainAvatar,
+  type WornAvatar,
+} from '../../src/core/protocol/worn-avatar';
 import { actorFrame } from '../../src/core/tracking/actor-motion';
 import { poseOf } from '../core/estimation/drawn';
 
@@ -113,5 +122,61 @@ describe('bodies of others', () => {
     const [place] = others.object.children;
     expect(place?.children.some((child) => child instanceof Mesh)).toBe(true);
     others.dispose();
+  });
+});
+
+describe('an avatar that could not be had', () => {
+  const file = 'A'.repeat(43) as AvatarHash;
+
+  /** One person with this file on; `answers`: what becomes of each attempt to have it, the last one of all that follow. */
+  function wearing(answers: readonly (Error | null)[]) {
+    const told: string[] = [];
+    let asked = 0;
+    const others = createRemoteAvatars({
+      async load(avatar: WornAvatar) {
+        if (avatar === file) {
+          const fault = answers[Math.min(asked, answers.length - 1)];
+          asked += 1;
+          if (fault) throw fault;
+        }
+        return parseAvatar(bytesOf('mannequin'), 'avatar');
+      },
+      plain: () => false,
+      mouthOf: () => 0,
+      onRefused: (_, reason) => told.push((reason as Error).message),
+    });
+    onTestFinished(() => others.dispose());
+    /** Frames at this time, until this is true or so many have been drawn. */
+    const show = async (time: number, isTrue: () => boolean, most = 5000) => {
+      for (let i = 0; i < most && !isTrue(); i++) {
+        others.show([person(1, { avatar: file })], time);
+        await new Promise((resolve) => setTimeout(resolve));
+      }
+    };
+    return { others, told, show, asked: () => asked };
+  }
+
+  test('for a fault that passes is shown once it can be had, and no one is told of a mannequin', async () => {
+    const { others, told, show, asked } = wearing([new PassingFault('the server answers 404'), null]);
+    await show(0, () => asked() === 1 && others.drawnAs(1) === plainAvatar);
+    await show(4, () => asked() > 1, 100);
+    expect([asked(), others.drawnAs(1)]).toEqual([1, plainAvatar]);
+    await show(6, () => others.drawnAs(1) === file);
+    expect([asked(), others.drawnAs(1)]).toEqual([2, file]);
+    expect(told).toEqual([]);
+  });
+
+  test('for a fault that does not pass soon is told of once, and asked for on and on', async () => {
+    const { told, show, asked } = wearing([new PassingFault('the server answers 404')]);
+    for (let attempt = 1; attempt <= 6; attempt++) await show(10 * attempt, () => asked() === attempt);
+    expect(asked()).toBe(6);
+    expect(told).toEqual(['the server answers 404']);
+  });
+
+  test('for its own faults is told of at once and asked for no more', async () => {
+    const { others, told, show, asked } = wearing([new Error('no humanoid')]);
+    await show(0, () => asked() === 1 && others.drawnAs(1) === plainAvatar);
+    await show(60, () => asked() > 1, 100);
+    expect([asked(), told]).toEqual([1, ['no humanoid']]);
   });
 });

@@ -2,6 +2,7 @@ import { decoders } from '../../avatar/decoders/decoders';
 import { checkInWorker } from '../../avatar/file/check-in-worker';
 import { seenAvatarLimits } from '../../avatar/file/inspect-avatar';
 import { type LoadedAvatar, parseAvatar, parseChecked } from '../../avatar/load-avatar';
+import { PassingFault } from '../../core/errors/passing-fault';
 import { reasonOf } from '../../core/errors/reasons';
 import {
   type AvatarHash,
@@ -46,12 +47,17 @@ export class SeenAvatars {
     this.#patienceMs = patienceMs;
   }
 
+  /** Rejects with a PassingFault where it could not be fetched. */
   async load(avatar: WornAvatar): Promise<LoadedAvatar> {
     if (!isOwnAvatar(avatar)) return this.#loadFile(avatar);
     const body = bodyOf(avatar);
     const known = this.#own.get(body);
     const file = known ?? this.#fetchOwn(body);
-    if (!known) this.#own.set(body, file);
+    if (!known) {
+      this.#own.set(body, file);
+      // What was lost on the way is fetched again when it is needed again.
+      file.catch(() => this.#own.delete(body));
+    }
     return parseAvatar(await file, `${body}.vrm`);
   }
 
@@ -75,14 +81,20 @@ export class SeenAvatars {
     const late = AbortSignal.timeout(this.#patienceMs);
     const signal = AbortSignal.any([this.#leaving.signal, late]);
     let reason = '';
-    for (const { url, headers } of await this.#exchange.addressesOf(hash)) {
+    let passes = false;
+    const addresses = await this.#exchange.addressesOf(hash).catch((error: unknown) => {
+      throw new PassingFault(reasonOf(error));
+    });
+    for (const { url, headers } of addresses) {
       try {
         return await readLimited(url, seenFile, { headers, signal });
       } catch (error) {
+        passes ||= error instanceof PassingFault;
         reason ||= reasonOf(error).replace(`${hash}: `, '');
         if (signal.aborted) break;
       }
     }
-    throw new Error(late.aborted ? 'it did not arrive in time' : reason);
+    if (late.aborted) throw new PassingFault('it did not arrive in time');
+    throw passes ? new PassingFault(reason) : new Error(reason);
   }
 }

@@ -1,19 +1,17 @@
 import { createHash } from 'node:crypto';
-import { createServer } from 'node:http';
+import { createServer, type RequestListener } from 'node:http';
 import type { AddressInfo } from 'node:net';
 import { expect, onTestFinished, test } from 'vitest';
 import { SeenAvatars } from '../../../src/app/ball/seen-avatars';
+import { PassingFault } from '../../../src/core/errors/passing-fault';
 import type { AvatarHash } from '../../../src/core/protocol/worn-avatar';
 import { collectGarbage } from '../../collect-garbage';
 
 const hash = createHash('sha256').update('an avatar').digest('base64url') as AvatarHash;
 
-/** A server that begins an answer and never ends it. */
-async function neverEnding(): Promise<string> {
-  const server = createServer((_request, response) => {
-    response.writeHead(200, { 'content-type': 'model/gltf-binary' });
-    response.write('glTF');
-  });
+/** Where a server of this machine answers so. */
+async function answeredBy(answer: RequestListener): Promise<string> {
+  const server = createServer(answer);
   await new Promise<void>((resolve) => server.listen(0, '127.0.0.1', resolve));
   onTestFinished(() => {
     server.closeAllConnections();
@@ -22,10 +20,16 @@ async function neverEnding(): Promise<string> {
   return `http://127.0.0.1:${(server.address() as AddressInfo).port}/${hash}`;
 }
 
+/** An answer that begins and never ends. */
+const neverEnding: RequestListener = (_request, response) => {
+  response.writeHead(200, { 'content-type': 'model/gltf-binary' });
+  response.write('glTF');
+};
+
 const unused = () => Promise.reject(new Error('not of this test'));
 
 test('a file that never ends is given up with a sentence, and the next place is not asked', async () => {
-  const [first, second] = [await neverEnding(), await neverEnding()];
+  const [first, second] = [await answeredBy(neverEnding), await answeredBy(neverEnding)];
   const asked: string[] = [];
   const seen = new SeenAvatars(
     new ArrayBuffer(0),
@@ -48,4 +52,43 @@ test('a file that never ends is given up with a sentence, and the next place is 
   onTestFinished(() => clearInterval(collecting));
   await expect(seen.load(hash)).rejects.toThrow('it did not arrive in time');
   expect(asked).toEqual([first]);
+});
+
+/** Loads from the store of a room that has files at these addresses. */
+const from = (urls: readonly string[]) =>
+  new SeenAvatars(new ArrayBuffer(0), unused, {
+    ...{ terms: unused, liesElsewhere: unused, store: unused },
+    addressesOf: async () => urls.map((url) => ({ url, headers: {} })),
+  });
+
+test.each<[what: string, answer: RequestListener, passes: boolean]>([
+  ['a file that is not there yet', (_, response) => response.writeHead(404).end(), true],
+  ['a connection that is lost', ({ socket }) => socket.destroy(), true],
+  [
+    'a file that is too large',
+    (_, response) => response.writeHead(200, { 'content-length': String(2 ** 30) }).flushHeaders(),
+    false,
+  ],
+])('%s is said to be a fault that passes, or not', async (_, answer, passes) => {
+  const fault = await from([await answeredBy(answer)])
+    .load(hash)
+    .catch((error: unknown) => error);
+  expect(fault).toBeInstanceOf(Error);
+  expect(fault instanceof PassingFault).toBe(passes);
+});
+
+test('a body of our own that was lost on the way once is fetched again', async () => {
+  let asked = 0;
+  const seen = new SeenAvatars(
+    new ArrayBuffer(0),
+    () => {
+      asked += 1;
+      return Promise.reject(new PassingFault('the network is gone'));
+    },
+    null,
+  );
+  for (const attempt of [1, 2]) {
+    await expect(seen.load('woman-fair')).rejects.toThrow('the network is gone');
+    expect(asked).toBe(attempt);
+  }
 });
