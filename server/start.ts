@@ -60,6 +60,11 @@ export async function startServer(options: StartOptions): Promise<RunningServer>
     ...(credentials && { credentials }),
     upgrade: relay.upgrade,
     door,
+  }).catch(async (error: unknown) => {
+    // Their timers would keep the process from ending.
+    await relay.close();
+    studies.close();
+    throw error;
   });
   return {
     port: server.port,

@@ -1,13 +1,17 @@
+import { fork } from 'node:child_process';
 import { X509Certificate } from 'node:crypto';
 import { statSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { type AddressInfo, connect } from 'node:net';
 import { join } from 'node:path';
+import { fileURLToPath } from 'node:url';
 import { describe, expect, onTestFinished, test } from 'vitest';
 import { certificateFor } from '../../server/certificate';
 import { lanAddresses } from '../../server/lan-addresses';
 import { serve } from '../../server/web-server';
 import { directoryWith } from '../temporary-directory';
+import { isAlive, kill } from './child-process';
+import { until } from './running-relay';
 import { ask } from './running-server';
 
 const now = new Date();
@@ -27,6 +31,19 @@ describe('the port', () => {
     onTestFinished(() => server.close());
     expect(server.port).toBeGreaterThan(port);
     expect((await ask(`http://127.0.0.1:${server.port}`, '/')).body.toString()).toBe('hello');
+  });
+
+  test('where none is free, the server says so and its process ends', async () => {
+    const script = fileURLToPath(new URL('./unserved-process.ts', import.meta.url));
+    const child = fork(script, [directoryWith()], { execArgv: ['--import', 'tsx'], stdio: 'pipe' });
+    onTestFinished(() => kill(child));
+    let said = '';
+    child.stderr?.on('data', (text: Buffer) => {
+      said += text;
+    });
+    await until('the end of the process', () => !isAlive(child), 30);
+    expect(child.exitCode).toBe(1);
+    expect(said).toContain('are in use; name another');
   });
 
   test('is free again once the server has closed, even with a connection open', async () => {
