@@ -76,7 +76,7 @@ describe('the address of the page', () => {
     const { switches, complaints } = readSwitches(asked);
     expect(complaints).toContain('The address says replay= and no value: replay takes the address of a recording.');
     expect(complaints).toContain(
-      'The address says seconds=x, which this page does not know: seconds takes a whole number from 1 to 9999.',
+      'The address says seconds=x, which this page does not know: seconds takes a whole number from 1 to 3600.',
     );
     expect(complaints).toContain(
       'The address says balls=99, which this page does not know: balls takes a whole number from 1 to 20.',
@@ -84,6 +84,14 @@ describe('the address of the page', () => {
     expect(complaints).toHaveLength(10);
     for (const complaint of complaints) expect(complaint).not.toMatch(/[/^\\>(){}|"]/);
     expect(switches).toMatchObject({ replay: null, seconds: null, balls: null, seed: null, room: null, study: null });
+  });
+
+  test('a round may be as long as a room takes it, and no longer', () => {
+    expect(readSwitches('?seconds=3600').switches.seconds).toBe(3600);
+    expect(readSwitches('?seconds=3601')).toMatchObject({
+      switches: { seconds: null },
+      complaints: [expect.anything()],
+    });
   });
 
   test('a value without end is shown as far as it is read', () => {

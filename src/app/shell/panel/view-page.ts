@@ -1,6 +1,7 @@
 import { type ViewName, viewNames } from '../../../scene/desktop-view';
 import { button, element } from '../../../ui/element';
 import { toggle } from '../../../ui/toggle';
+import { estimatorOrder } from '../estimator-texts';
 import type { PanelPage, ViewActions } from './panel-state';
 
 const viewTexts: Readonly<Record<ViewName, string>> = {
@@ -10,7 +11,7 @@ const viewTexts: Readonly<Record<ViewName, string>> = {
 };
 
 const keys: readonly (readonly [string, string])[] = [
-  ['1 – 4', 'estimator'],
+  [`1 – ${estimatorOrder.length}`, 'estimator'],
   ['V', 'next view'],
   ['C', 'calibrate'],
   ['R', 'recentre'],
@@ -18,6 +19,7 @@ const keys: readonly (readonly [string, string])[] = [
   ['B', 'debug skeleton'],
   ['U', 'upper body only'],
   ['O', 'frame times'],
+  ['T', 'mute, in voices'],
   ['P', 'this panel'],
   ['Arrows, + −', 'camera, with the picture focused'],
 ];

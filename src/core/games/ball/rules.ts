@@ -22,7 +22,9 @@ function checkedOptions(options: Partial<BallOptions>): BallOptions {
   if (!(Number.isInteger(balls) && balls >= 1 && balls <= 20)) {
     throw new Error(`ball game: balls must be 1 to 20, is ${balls}`);
   }
-  if (!(seconds > 0 && seconds <= 3600)) throw new Error(`ball game: seconds must be above 0, is ${seconds}`);
+  if (!(seconds > 0 && seconds <= 3600)) {
+    throw new Error(`ball game: seconds must be between 0 and 3600, is ${seconds}`);
+  }
   if (!Number.isInteger(rotation)) throw new Error(`ball game: rotation must be a whole number, is ${rotation}`);
   return { balls, seconds, rotation, everySeat };
 }

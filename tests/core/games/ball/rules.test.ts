@@ -23,6 +23,12 @@ import {
   velocityTo,
 } from './playing';
 
+test.each([0, -1, 3601, Number.NaN])('a round of %s s is refused with the bounds of one', (seconds) => {
+  expect(() => ballRules.start(['Ann'], 0, { seconds })).toThrow(
+    `ball game: seconds must be between 0 and 3600, is ${seconds}`,
+  );
+});
+
 describe('the court', () => {
   test('has both throwers 5 m from the basket holder, who face each other', () => {
     for (const thrower of [leftThrower, rightThrower]) {
