@@ -18,7 +18,10 @@ import { advanceArc, alongArc, type DirectionArc, directionArc, makeDirectionArc
 
 /** A transition takes so long [s] at least. */
 const shortestSeconds = 0.2;
-/** Elbow and wrist go at most this fast [m/s] beyond what the hand itself moves: 3.75 cm in a frame at 60 Hz. */
+/**
+ * Elbow and wrist go at most this fast [m/s] beyond what the hand itself moves, 3.75 cm in a frame at 60 Hz; an arm that has further to go
+ * than it gets by `hurrySeconds` so, all the way round, goes evenly as fast as it must.
+ */
 const fastest = 2.25;
 /** The share of the shortest time in which they get up to speed, and down from it. */
 const ramp = 0.2;
@@ -183,7 +186,8 @@ function stepOf(transition: ArmTransition, toGo: number, wanted: WantedArm, delt
   const { hand } = transition;
   const seconds = Math.max(shortestSeconds, wanted.minDuration);
   transition.longestPath = Math.max(transition.longestPath, toGo);
-  const topSpeed = Math.min(fastest, transition.longestPath / (seconds * (1 - ramp)));
+  const needed = transition.longestPath / (hurrySeconds - shortestSeconds * ramp);
+  const topSpeed = Math.min(Math.max(fastest, needed), transition.longestPath / (seconds * (1 - ramp)));
   const acceleration = topSpeed / (seconds * ramp);
   const slowing = Math.sqrt(2 * acceleration * toGo);
   transition.speed = Math.min(transition.speed + acceleration * deltaSeconds, topSpeed, slowing);

@@ -1,4 +1,4 @@
-import { afterAll } from 'vitest';
+import { afterAll, vi } from 'vitest';
 
 /** A 2D context that takes every call and draws nothing. */
 function deafContext(): unknown {
@@ -14,6 +14,8 @@ function deafContext(): unknown {
  * file's tests are over: stubs of vitest are taken back before each test, and views are built for several.
  */
 export function drawNowhere(): void {
+  // Stubs of the file before are taken back before the next test: a document among them would take ours away.
+  vi.unstubAllGlobals();
   const page = { createElement: () => ({ width: 0, height: 0, getContext: deafContext }) };
   Object.defineProperty(globalThis, 'document', { configurable: true, value: page });
   afterAll(() => void Reflect.deleteProperty(globalThis, 'document'));
