@@ -1,6 +1,5 @@
 import { sides } from '../math/side';
-import { type HandTilts, isBelievableTilt, sameTilts } from './hand-tilt';
-import { steepestHandTilt } from './limb-limits.json';
+import { type HandTilts, isBelievableTilt, sameTilts, steepestHandTilt } from './hand-tilt';
 
 /** What the user tells us, or two seconds of standing still reveal, about their body. */
 export interface Calibration {

@@ -1,8 +1,8 @@
 import { fromAxisAngle, limitAngle, type MutableQuat, quat, rotationBetween } from '../math/quat';
 import type { Side } from '../math/side';
 import { forward, type Vec3, vec3 } from '../math/vec3';
-import { handTilt as averageTilt } from './body-proportions.json';
-import { steepestHandTilt } from './limb-limits.json';
+import proportions from './body-proportions.json' with { type: 'json' };
+import limits from './limb-limits.json' with { type: 'json' };
 
 /**
  * Where a forearm, elbow to wrist, points in the frame of its hand, arm and wrist straight: how far up of −Z (pitch) and to the left of it
@@ -25,7 +25,7 @@ export const sameTilts = (a: HandTilts | undefined, b: HandTilts | undefined): b
 
 /** That of the average person's hand, of whom nothing is known. */
 export function usualHandTilt(side: Side): HandTilt {
-  const [pitch, yaw] = averageTilt as [number, number];
+  const [pitch, yaw] = proportions.handTilt as [number, number];
   // A left hand is a right one's mirror image.
   return { pitch, yaw: side === 'left' ? -yaw : yaw };
 }
@@ -37,7 +37,10 @@ export function handTiltOf({ x, y, z }: Vec3): HandTilt {
   return { pitch: y * perAcross, yaw: -x * perAcross };
 }
 
-/** No hand is held further from the others' than this; a bent wrist is. */
+/** No hand is held further from the others' than this [rad]; a bent wrist is. */
+export const { steepestHandTilt } = limits;
+
+/** Whether a hand may be held so. */
 export const isBelievableTilt = ({ pitch, yaw }: HandTilt): boolean => Math.hypot(pitch, yaw) <= steepestHandTilt;
 
 /** The rotation that a hand of this tilt is turned by, in its own frame, so that its −Z continues the forearm. */
