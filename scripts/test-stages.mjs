@@ -26,7 +26,8 @@ const playwright = (tests) => async (report) => {
 /**
  * Each stage: the commands it consists of (report: where its runner leaves the outcome), its runner, how long it may take, and the suite it
  * belongs to: 'day' (npm test), 'full' (npm run test:full), 'training', 'nightly'. `singleCore`: it keeps one core busy, so that another of
- * its kind can run beside it. `chosen`: which unit tests it runs, by their tags.
+ * its kind can run beside it. `waits`: it uses all cores, but waits for servers and sockets so much that another can use one of them.
+ * `chosen`: which unit tests it runs, by their tags.
  */
 export const stages = {
   // The longest first: of those of one core two run side by side.
@@ -81,6 +82,7 @@ export const stages = {
   },
   unit: {
     suite: 'day',
+    waits: true,
     runner: 'vitest',
     chosen: (tags) => !tags.includes('full'),
     commands: (report) => vitest(report, '--tags-filter=!full'),

@@ -44,8 +44,8 @@ async function runStage(name, { quiet = false } = {}) {
 }
 
 /**
- * Runs stages in their order. Neighbours that keep one core busy run side by side, as many as there are cores; every other stage has the
- * machine to itself.
+ * Runs stages in their order. Neighbours that keep one core busy run side by side, as many as there are cores. Every other stage has the
+ * machine to itself, but for one that waits a good deal: it runs beside those before it, which leave it a core.
  */
 async function runStages(names) {
   const outcomes = [];
@@ -56,8 +56,13 @@ async function runStages(names) {
     const lane = async () => {
       for (let name = beside.shift(); name; name = beside.shift()) outcomes.push(await runStage(name, { quiet: true }));
     };
-    await Promise.all(Array.from({ length: Math.min(availableParallelism(), beside.length) }, lane));
-    if (waiting.length > 0) outcomes.push(await runStage(waiting.shift()));
+    const next = waiting.shift();
+    const withNext = next !== undefined && stages[next].waits === true;
+    const cores = Math.max(1, availableParallelism() - (withNext ? 1 : 0));
+    const lanes = Array.from({ length: Math.min(cores, beside.length) }, lane);
+    if (!withNext) await Promise.all(lanes);
+    if (next !== undefined) outcomes.push(await runStage(next));
+    await Promise.all(lanes);
   }
   return outcomes;
 }
