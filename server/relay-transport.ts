@@ -102,6 +102,22 @@ function divert(conn: Socket['conn'], take: () => boolean, listener: (bytes: Uin
   });
 }
 
+/**
+ * Watches how often a connection sends: the function it gives says of each frame whether it is to be heard. From the first frame too many on
+ * none is, and `end` is called once. `now`: seconds, monotonic.
+ */
+function createFloodWatch(now: () => number, end: () => void): () => boolean {
+  const budget = createBudget(framesPerSecond);
+  let floods = false;
+  return () => {
+    if (floods || budget.spend(now())) return !floods;
+    floods = true;
+    // What came before is still on its way through socket.io, which lets a tick pass for each packet.
+    setImmediate(end);
+    return false;
+  };
+}
+
 /** Opens WebSockets at `relayPath`, so many for each address. `now`: seconds, monotonic. */
 export function createRelayTransport(
   configuration: RelayConfiguration,
@@ -123,9 +139,7 @@ export function createRelayTransport(
   const listeners = new WeakMap<Socket['conn'], WireListener>();
   engine.on('connection', (conn: Socket['conn']) => {
     const raw = conn.request.socket;
-    const budget = createBudget(framesPerSecond);
-    let floods = false;
-    const end = () => {
+    const take = createFloodWatch(now, () => {
       const listener = listeners.get(conn);
       if (listener) listener.onFlood();
       else {
@@ -135,14 +149,7 @@ export function createRelayTransport(
       // A guest who has left the rooms may still have the connection.
       conn.close();
       destroySoon(raw);
-    };
-    const take = (): boolean => {
-      if (floods || budget.spend(now())) return !floods;
-      floods = true;
-      // What came before is still on its way through socket.io, which lets a tick pass for each packet.
-      setImmediate(end);
-      return false;
-    };
+    });
     divert(conn, take, (bytes) => {
       const listener = listeners.get(conn);
       if (listener) listener.onPose(bytes);

@@ -52,11 +52,37 @@ function bearerOf(request: IncomingMessage): string | null {
 const tooMany = (message: string, seconds: number) =>
   new HttpError(429, message, { headers: { 'retry-after': String(seconds) } });
 
+/** Counts the places of open studies that each network takes: runs what takes one, and gives it back to the network where that throws. */
+function createOpenPlaces(): <T>(address: string, claim: () => T) => Promise<T> {
+  const taken = new RateLimiterMemory({ points: openPlacesPerHour, duration: 3600 });
+
+  async function spend(network: string): Promise<void> {
+    try {
+      await taken.consume(network);
+    } catch (error) {
+      if (!(error instanceof RateLimiterRes)) throw error;
+      const seconds = Math.ceil(error.msBeforeNext / 1000);
+      throw tooMany(`${openPlacesPerHour} places were taken from this address; try again in ${seconds} s`, seconds);
+    }
+  }
+
+  return async (address, claim) => {
+    const network = networkOf(address);
+    await spend(network);
+    try {
+      return claim();
+    } catch (error) {
+      await taken.reward(network);
+      throw error;
+    }
+  };
+}
+
 export function createStudyGuard(options: StudyGuardOptions): StudyGuard {
   const { store, experimenterToken, trustProxy, onWrongGuess } = options;
   const experimenterDigest = experimenterToken === null ? null : digest(experimenterToken);
   const guesses = createGuessLimits(onWrongGuess);
-  const openPlaces = new RateLimiterMemory({ points: openPlacesPerHour, duration: 3600 });
+  const spendingOpenPlace = createOpenPlaces();
   const addressOf = (request: IncomingMessage) => clientAddress(request, trustProxy);
 
   async function attempt(guess: Parameters<typeof guesses.attempt>[0], isRight: () => boolean): Promise<boolean> {
@@ -82,28 +108,6 @@ export function createStudyGuard(options: StudyGuardOptions): StudyGuard {
     return token !== null && store.holds(study, participant, token);
   };
 
-  /** What takes a place of an open study. One that was not taken is given back to the address. */
-  async function spendingOpenPlace<T>(request: IncomingMessage, claim: () => T): Promise<T> {
-    const network = networkOf(addressOf(request));
-    await spendOpenPlace(network);
-    try {
-      return claim();
-    } catch (error) {
-      await openPlaces.reward(network);
-      throw error;
-    }
-  }
-
-  async function spendOpenPlace(network: string): Promise<void> {
-    try {
-      await openPlaces.consume(network);
-    } catch (error) {
-      if (!(error instanceof RateLimiterRes)) throw error;
-      const seconds = Math.ceil(error.msBeforeNext / 1000);
-      throw tooMany(`${openPlacesPerHour} places were taken from this address; try again in ${seconds} s`, seconds);
-    }
-  }
-
   return {
     isParticipant,
     async admit(access, concerned) {
@@ -125,7 +129,7 @@ export function createStudyGuard(options: StudyGuardOptions): StudyGuard {
         store.invites(study, participant, invitation),
       );
       if (!right) throw new HttpError(403, `this is not the invitation of ${participant}`, { field: 'invitation' });
-      return plan.entry === 'open' ? spendingOpenPlace(request, claim) : claim();
+      return plan.entry === 'open' ? spendingOpenPlace(addressOf(request), claim) : claim();
     },
     async withdrawing({ request, study }, code, withdraw) {
       store.study(study);
