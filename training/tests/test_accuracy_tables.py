@@ -114,6 +114,15 @@ def test_aims_are_met_or_missed_by_the_figures():
     assert verdict(text, "size") == ["≤ 300 kB", "43 kB", "met"]
 
 
+def test_what_a_contract_states_nothing_of_was_not_measured():
+    """Cross-validation alone states nothing of people in turn."""
+    errors = {name: figures for name, figures in CONTRACTS["learned"]["errors"].items() if "fold B" in name}
+    text = accuracy_tables.aims(evaluation(), CONTRACTS | {"learned": CONTRACTS["learned"] | {"errors": errors}})
+    assert verdict(text, "MPJPE relative to IK, people in turn") == ["≤ 0.82", "–", "not measured"]
+    assert verdict(text, "elbows relative to IK, people in turn") == ["≤ 0.82", "–", "not measured"]
+    assert verdict(text, "MPJPE relative to IK, fold B (014)")[1] == "0.900"
+
+
 def test_laboratories_stand_beside_each_other_with_hands_as_recorded_and_measured():
     home, elsewhere = LABORATORIES
     # Elbows of their own, so that they are told from the mean of all joints.
