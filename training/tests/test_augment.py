@@ -7,7 +7,7 @@ import pytest
 from threepoint_training import hand_tilt, mirror, quaternion
 from threepoint_training.augment import AugmentConfig, BalanceConfig, BodyParts, draw_batch
 from threepoint_training.chest_features import CHEST_FEATURES, chest_axes
-from threepoint_training.features import ARM_LENGTH, FEATURES, HANDS, IK_JOINTS, SEEN, frame_features, hand_positions
+from threepoint_training.features import ARM_LENGTH, FEATURES, HANDS, HEADSET_HEIGHT, IK_JOINTS, SEEN, frame_features, hand_positions
 from threepoint_training.generated_motion import generate_corpus
 from threepoint_training.prepare import EYES_FROM_HEAD_JOINT
 from threepoint_training.residual import network_input, residual
@@ -20,6 +20,7 @@ EXACT = TrackerConfig(*[0.0] * 7)
 PLAIN = AugmentConfig(
     recombined=0,
     lost_hand=0,
+    returned=0,
     late=0,
     seated=0,
     arm_scale=0,
@@ -156,6 +157,60 @@ def test_a_hand_lost_for_a_moment_is_where_it_was_while_the_arm_moves_on():
     moved = np.linalg.norm((hand_positions(frozen.inputs) - hand_positions(seen.inputs))[:, 0], axis=1)
     # Six frames of generated motion: some hands moved by centimetres, none to the hips.
     assert 0.002 < np.median(moved) < 0.2
+
+
+def lost_for_frames(window, frames):
+    """Every hand lost for one to `frames` frames, and the same windows with every hand seen."""
+    plain = replace(PLAIN, window_frames=window, lost_frames=frames)
+    return (draw_batch(PARTS, 300, replace(plain, lost_hand=part), np.random.default_rng(7)) for part in (1.0, 0.0))
+
+
+def frame_of(batch, place):
+    """Features [N, 46] of this frame of the window."""
+    return batch.inputs[:, place * FEATURES : (place + 1) * FEATURES]
+
+
+def test_a_hand_that_has_just_been_lost_is_seen_in_the_earlier_frames_of_the_window():
+    lost, seen = lost_for_frames((0, 6, 15), 1)
+    assert (frame_of(lost, 0)[:, SEEN] == 0).all()
+    assert np.abs(hand_positions(frame_of(lost, 0)) - hand_positions(frame_of(seen, 0))).max() > 0.01
+    np.testing.assert_array_equal(lost.inputs[:, FEATURES : 3 * FEATURES], seen.inputs[:, FEATURES : 3 * FEATURES])
+
+
+def test_a_hand_lost_for_the_whole_window_is_held_at_one_place_beside_the_headset():
+    """Six frames are as long as a hand is held."""
+    lost, _ = lost_for_frames((0, 4), 6)
+    newest, before = frame_of(lost, 0), frame_of(lost, 1)
+    held = before[:, SEEN] == 0
+    # A third of the hands: those lost for five or six frames.
+    assert held.mean() == pytest.approx(1 / 3, abs=0.06)
+    np.testing.assert_allclose(hand_positions(newest)[held], hand_positions(before)[held], atol=1e-6)
+
+
+def test_a_hand_that_has_been_seen_again_was_lost_in_earlier_frames_of_the_window():
+    """It is back for one to sixteen frames of a window of fifteen: the last of them were before the loss was over."""
+    plain = replace(PLAIN, window_frames=(0, 6, 15), lost_frames=60, returned=1.0)
+    back, seen = (draw_batch(PARTS, 2000, replace(plain, lost_hand=part), np.random.default_rng(7)) for part in (1.0, 0.0))
+    np.testing.assert_array_equal(frame_of(back, 0), frame_of(seen, 0))
+    lost = [frame_of(back, place)[:, SEEN] == 0 for place in (1, 2)]
+    # Back for at most six of the sixteen, or for fifteen, and not lost so shortly that it was seen before that.
+    assert lost[0].mean() == pytest.approx(6 / 16, abs=0.05)
+    assert lost[1].mean() == pytest.approx(15 / 16, abs=0.12)
+    moved = hand_positions(frame_of(back, 2))[lost[1]] - hand_positions(frame_of(seen, 2))[lost[1]]
+    assert np.median(np.linalg.norm(moved, axis=1)) > 0.02
+
+
+def test_trackers_jitter_in_position_and_rotation_at_every_frame_of_the_window_anew():
+    still = replace(PLAIN, window_frames=(0, 6))
+    jittery = replace(still, trackers=replace(EXACT, position_noise=1e-3, rotation_noise=1e-2))
+    exact, noisy = (draw_batch(PARTS, 2000, config, np.random.default_rng(12)) for config in (still, jittery))
+    moved = [frame_of(noisy, place) - frame_of(exact, place) for place in (0, 1)]
+    for frame in moved:
+        # In eye heights; generated people's are 1.4 to 1.8 m.
+        assert 0.5e-3 < frame[:, HEADSET_HEIGHT].std() < 0.75e-3
+        # An axis is moved by the rotations about the two others, and by those of the head that the heading frame follows.
+        assert np.linalg.norm(frame[:, HANDS[0]][:, 3:6], axis=1).mean() == pytest.approx(1e-2 * np.sqrt(2 / 3), rel=0.25)
+    assert abs(np.corrcoef(*(frame[:, HEADSET_HEIGHT] for frame in moved))[0, 1]) < 0.1
 
 
 def test_late_trackers_tell_of_the_frame_before():

@@ -3,7 +3,8 @@
 Some dozen people are too few to learn how arms and torsos go together; their recombinations are many.
 """
 
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,6 +46,8 @@ class AugmentConfig:
     lost_hand: float = 0.06
     # Lost hands were seen last up to this long ago [frames].
     lost_frames: int = 180
+    # Share of lost hands that are seen again: since one frame, or up to one more than the window is long. They were seen last so long before that.
+    returned: float = 0.15
     # Share of windows whose trackers report the frame before.
     late: float = 0.3
     # Share of people who sit, lower by 0.2 to 0.35 of the eye height, and were calibrated standing.
@@ -189,12 +192,17 @@ class _Bodies:
         left, right = (self.parts.forearm_shares[frames, sides] for frames, sides in zip(self.arm_frames, self.arm_sides, strict=True))
         return np.stack([left, right], axis=1) * self.arm_length[:, None]
 
-    def hand_at(self, side: int, ago: NDArray[np.int64], unseen: NDArray[np.int64]) -> tuple[Array, Array]:
-        """A wrist and its rotation that many frames before the newest; unseen for so many: where it was last, carried along with the head."""
-        arm, turn = self.arm_at(side, ago + unseen)
-        (before, frames_before), (now, frames) = self.torso_at(ago + unseen), self.torso_at(ago)
-        head, turns = TORSO.index("head"), self.parts.head_turn
-        return carry_with_head(arm[:, 2], turn, (before[:, head], turns[frames_before]), (now[:, head], turns[frames]))
+    def tracked_at(self, ago: NDArray[np.int64]) -> tuple[Array, Array]:
+        """Head joint and wrists [N, 3, 3] and their rotations [N, 3, 4] that many frames before the newest."""
+        torso, frames = self.torso_at(ago)
+        (left, left_turn), (right, right_turn) = (self.arm_at(side, ago) for side in (0, 1))
+        positions = np.stack([torso[:, TORSO.index("head")], left[:, 2], right[:, 2]], axis=1)
+        return positions, np.stack([self.parts.head_turn[frames], left_turn, right_turn], axis=1)
+
+    def of(self, chosen: NDArray[np.int64]) -> "_Bodies":
+        """These bodies alone."""
+        frames, sides = (tuple(each[chosen] for each in arms) for arms in (self.arm_frames, self.arm_sides))
+        return _Bodies(self.parts, self.newest[chosen], frames, sides, self.sizes[chosen], self.arm_length[chosen], self.drop[chosen])
 
 
 def _draw_bodies(parts: BodyParts, count: int, config: AugmentConfig, random: np.random.Generator) -> _Bodies:
@@ -237,10 +245,19 @@ class _Tracking:
     worn: Array
     # Which bodies are seen in a mirror; their left and right hands are those of the image.
     mirrored: NDArray[np.bool_]
-    # For how many frames the left and the right hand have not been seen [N, 2]; 0: it is seen.
-    unseen: NDArray[np.int64]
+    # For how many frames the left and the right hand are lost [N, 2], 0: never; and for how many they have been seen again, 0: they are still lost.
+    lost: NDArray[np.int64]
+    returned: NDArray[np.int64]
     # By how many frames what is reported is late [N].
     late: NDArray[np.int64]
+
+    def of(self, chosen: NDArray[np.int64]) -> "_Tracking":
+        """That of these bodies alone."""
+        return _Tracking(*(getattr(self, each.name)[chosen] for each in fields(self)))
+
+    def unseen_at(self, age: int) -> NDArray[np.int64]:
+        """For how many frames the left and the right hand had not been seen [N, 2], that many frames before the newest; 0: it was seen."""
+        return np.where(age < self.returned, 0, np.maximum(self.lost + self.returned - age, 0))
 
     def images(self, own: Array, mirrored: Array) -> Array:
         """What is true of the mirror image where a body is mirrored, else what is true of its own; both [N, …]."""
@@ -250,10 +267,11 @@ class _Tracking:
 def _draw_tracking(count: int, config: AugmentConfig, random: np.random.Generator) -> _Tracking:
     offsets, worn = _draw_worn(count, config.trackers, random)
     mirrored = random.uniform(size=count) < 0.5
-    lost = random.uniform(size=(count, 2)) < config.lost_hand
-    unseen = np.where(lost, random.integers(1, config.lost_frames + 1, size=(count, 2)), 0)
+    lost, returned = (random.uniform(size=(count, 2)) < share for share in (config.lost_hand, config.returned))
+    lost_frames = np.where(lost, random.integers(1, config.lost_frames + 1, size=(count, 2)), 0)
+    returned_frames = np.where(returned, random.integers(1, max(config.window_frames) + 2, size=(count, 2)), 0)
     late = (random.uniform(size=count) < config.late).astype(np.int64)
-    return _Tracking(offsets, worn, mirrored, unseen, late)
+    return _Tracking(offsets, worn, mirrored, lost_frames, returned_frames, late)
 
 
 def _calibrated(bodies: _Bodies, tracking: _Tracking, config: AugmentConfig, random: np.random.Generator) -> Body:
@@ -281,23 +299,36 @@ class _Reported:
     vector: Array
 
 
-def _window_at(age: int, bodies: _Bodies, tracking: _Tracking, calibrated: Body, noise: Array) -> _Reported:
-    """The frames `age` frames before the newest, trackers' positions with this noise [N, 3, 3] [m]."""
+def _trackers_at(ago: NDArray[np.int64], bodies: _Bodies, tracking: _Tracking) -> tuple[Array, Array]:
+    """Headset and hands [N, 3, 3] and their rotations [N, 3, 4] as they were that many frames before the newest, seen or not, without noise."""
+    own = bodies.tracked_at(ago)
+    positions, rotations = (tracking.images(*each) for each in zip(own, mirror.trackers(*own), strict=True))
+    return positions + quaternion.rotate(rotations, tracking.offsets), quaternion.multiply(rotations, tracking.worn)
+
+
+def _with_noise(positions: Array, rotations: Array, trackers: TrackerConfig, random: np.random.Generator) -> tuple[Array, Array]:
+    """What trackers report that are at these positions [N, 3, 3] and rotations [N, 3, 4]."""
+    jitter = quaternion.from_rotation_vector(random.normal(size=positions.shape) * trackers.rotation_noise / np.sqrt(3))
+    return positions + random.normal(size=positions.shape) * trackers.position_noise, quaternion.multiply(rotations, jitter)
+
+
+def _window_at(age: int, bodies: _Bodies, tracking: _Tracking, calibrated: Body, noisy: Callable[[Array, Array], tuple[Array, Array]]) -> _Reported:
+    """The frames `age` frames before the newest; noisy(positions, rotations): what trackers that are there report.
+
+    Lost hands are where they were seen last, carried along with the headset, as `complete_hands` wants them.
+    """
     # Trackers may report what was true a frame before.
     ago = age + tracking.late
-    # Arms are those of the body before it is mirrored.
-    unseen_arms = tracking.images(tracking.unseen, tracking.unseen[:, ::-1])
-    torso, frames = bodies.torso_at(ago)
-    hands = [bodies.hand_at(side, ago, unseen_arms[:, side]) for side in (0, 1)]
-    anchors = np.stack([torso[:, TORSO.index("head")], hands[0][0], hands[1][0]], axis=1)
-    rotations = np.stack([bodies.parts.head_turn[frames], hands[0][1], hands[1][1]], axis=1)
-    own, image = (anchors, rotations), mirror.trackers(anchors, rotations)
-    anchors, rotations = (tracking.images(*each) for each in zip(own, image, strict=True))
-    positions = anchors + quaternion.rotate(rotations, tracking.offsets) + noise
-    rotations = quaternion.multiply(rotations, tracking.worn)
-    seconds = tracking.unseen / FRAME_RATE
-    positions, rotations = complete_hands(positions, rotations, seconds, calibrated.eye_height[:, 0], calibrated.arm[:, 0])
-    vector, _ = frame_features(positions, rotations, calibrated, tracking.unseen == 0)
+    positions, rotations = noisy(*_trackers_at(ago, bodies, tracking))
+    unseen = tracking.unseen_at(age)
+    for hand in (0, 1):
+        lost, column = np.flatnonzero(unseen[:, hand]), 1 + hand
+        place, turn = noisy(*_trackers_at(ago[lost] + unseen[lost, hand], bodies.of(lost), tracking.of(lost)))
+        positions[lost, column], rotations[lost, column] = carry_with_head(
+            place[:, column], turn[:, column], (place[:, 0], turn[:, 0]), (positions[lost, 0], rotations[lost, 0])
+        )
+    positions, rotations = complete_hands(positions, rotations, unseen / FRAME_RATE, calibrated.eye_height[:, 0], calibrated.arm[:, 0])
+    vector, _ = frame_features(positions, rotations, calibrated, unseen == 0)
     return _Reported(positions, rotations, vector)
 
 
@@ -308,10 +339,11 @@ def draw_batch(parts: BodyParts, count: int, config: AugmentConfig, random: np.r
     seated = np.where(random.uniform(size=count) < config.seated, random.uniform(0.2, 0.35, count), 0.0)
     bodies = replace(bodies, drop=seated * bodies.sizes[:, 0])
     calibrated = _calibrated(bodies, tracking, config, random)
-    window = {}
-    for age in config.window_frames:
-        noise = random.normal(size=(count, 3, 3)) * config.trackers.position_noise
-        window[age] = _window_at(age, bodies, tracking, calibrated, noise)
+
+    def noisy(positions: Array, rotations: Array) -> tuple[Array, Array]:
+        return _with_noise(positions, rotations, config.trackers, random)
+
+    window = {age: _window_at(age, bodies, tracking, calibrated, noisy) for age in config.window_frames}
     newest, truth = window[0], bodies.truth()
     truth = tracking.images(truth, mirror.joints(truth))
     targets = residual(truth, newest.positions, newest.rotations, calibrated, newest.vector)
