@@ -10,7 +10,7 @@ from threepoint_training.differentiable_kinematics import DifferentiableKinemati
 from threepoint_training.features import ARM_LENGTH, IK_JOINTS
 from threepoint_training.generated_motion import generate_corpus
 from threepoint_training.skeleton import load_proportions
-from threepoint_training.train_learned import Condition, HeldOut, fitted_errors_cm, held_out, ik_errors_cm, raw_errors_cm
+from threepoint_training.train_learned import Condition, HeldOut, fitted_errors_cm, held_out, ik_errors_cm, mean_distance, raw_errors_cm
 
 pytestmark = pytest.mark.training
 
@@ -73,3 +73,12 @@ def test_errors_are_those_of_joints_on_their_bones():
     assert raw_errors_cm(below.reshape(1, 18), there)[:, 5].min() > 10
     np.testing.assert_allclose(fitted_errors_cm(below.reshape(1, 18), there)[:, :5], ik_errors_cm(there)[:, :5], atol=1e-3)
     assert np.median(fitted_errors_cm(below.reshape(1, 18), there)[:, 5]) < 3
+
+
+def test_elbows_count_in_the_loss_for_what_their_share_says():
+    """A third is every joint alike."""
+    away = torch.zeros(10, 6, 3)
+    away[:, :2, 0], away[:, 2:, 1] = 3.0, 1.5
+    still = torch.zeros_like(away)
+    assert mean_distance(away, still).item() == pytest.approx((2 * 3.0 + 4 * 1.5) / 6)
+    assert mean_distance(away, still, 0.8).item() == pytest.approx(0.8 * 3.0 + 0.2 * 1.5)

@@ -63,11 +63,13 @@ def variants(config: TrainLearnedConfig) -> dict[str, TrainLearnedConfig]:
         "hands that stand as they were noticed": without(mistaken_hands=0.0),
         "without lost hands": without(lost_hand=0.0),
         "lost hands held for a moment only": without(lost_frames=12),
+        "lost hands not seen again": without(returned=0.0),
         "without late trackers": without(late=0.0),
         "without seated people": without(seated=0.0),
         "headsets tilted by 8°, gaze not calibrated": without(trackers=tilted),
         "no shrinkage": replace(config, shrinkage=1.0, arm_shrinkage=1.0),
         "no per-subject random effects": replace(config, effects_learning_rate=0.0),
+        "every joint alike in the loss": replace(config, elbow_share=1 / 3),
         "loss on raw joints alone": replace(config, fitted_loss_weight=0.0, auxiliary_loss_weight=1.0),
         "only the newest frame": without(window_frames=(0,)),
     }
