@@ -1,0 +1,58 @@
+import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
+import { defaultCalibration } from '../../src/core/body/calibration';
+import { createIk } from '../../src/core/estimation/estimators';
+import { distance } from '../../src/core/math/vec3';
+import { actorFrame } from '../../src/core/tracking/actor-motion';
+import { avatarMotion, loadAvatar } from '../../src/lib/three';
+import { changed, mannequin } from '../avatar/glb';
+import { poseOf } from '../core/estimation/drawn';
+
+afterEach(() => {
+  vi.unstubAllGlobals();
+});
+
+describe('an avatar', () => {
+  beforeEach(() => {
+    vi.stubGlobal('self', globalThis);
+  });
+
+  /** The mannequin as other programs write it: no VRM, its nodes called as nothing else is. */
+  const bones: Record<string, string> = {};
+  const foreign = changed((json) => {
+    for (const [bone, { node }] of Object.entries(json.extensions.VRMC_vrm?.humanoid.humanBones ?? {})) {
+      bones[bone] = `part ${node}`;
+      json.nodes[node]!.name = `part ${node}`;
+    }
+    json.extensions = {};
+    json.extensionsUsed = [];
+  });
+
+  test('of a humanoid without VRM stands on a map of its bones', async () => {
+    const [own, other] = [await loadAvatar(mannequin()), await loadAvatar(foreign, { bones })];
+    const pose = poseOf(createIk(defaultCalibration), actorFrame(1, defaultCalibration));
+    const wrist = (avatar: typeof own) => {
+      avatar.fitTo(defaultCalibration);
+      avatar.apply(pose, 1);
+      return avatar.jointPositions().leftHand!;
+    };
+    expect(distance(wrist(own), pose.leftHand!.position)).toBeLessThan(0.001);
+    expect(distance(wrist(other), wrist(own))).toBeLessThan(1e-6);
+  });
+
+  test('without a map it is refused, and a map with a name that is not there too', async () => {
+    await expect(loadAvatar(foreign)).rejects.toThrow(/no humanoid in it/);
+    await expect(loadAvatar(foreign, { bones: { ...bones, leftHand: 'Paw' } })).rejects.toThrow(
+      'the avatar: bones.leftHand: no node is called “Paw”',
+    );
+    const { leftHand, ...handless } = bones;
+    expect(leftHand).toBeDefined();
+    await expect(loadAvatar(foreign, { bones: handless })).rejects.toThrow('its humanoid has no leftHand');
+  });
+
+  test.each(Object.entries({ loadAvatar, avatarMotion }))(
+    'that has not arrived whole is refused by %s',
+    async (_, take) => {
+      await expect(take(mannequin().slice(0, -4))).rejects.toThrow(/^the avatar: no VRM or GLB file \(.*cut short\)$/);
+    },
+  );
+});
