@@ -1,91 +1,10 @@
-import 'fake-indexeddb/auto';
-import { request as httpRequest } from 'node:http';
 import { afterEach, expect, test, vi } from 'vitest';
-import { unpacked } from '../../../server/study-motion';
-import {
-  createParticipantSession,
-  isLater,
-  type ParticipantSession,
-  startSession,
-} from '../../../src/app/study/participant-session';
-import { openStudyVault, type StudyVault } from '../../../src/app/study/study-vault';
-import { writeRecording } from '../../../src/core/tracking/recording';
-import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
+import { createParticipantSession, isLater, startSession } from '../../../src/app/study/participant-session';
 import { createParticipantClient } from '../../../src/net/study-client';
-import { aWomanOf26, outcomeOf, paperPlan } from '../../core/study/studies';
-import { answeringHost } from '../../net/answering-host';
-import { type StudyServer, studyServer } from './study-server';
-
-const plan = paperPlan();
-const calibration = { eyeHeight: 1.62, armSpan: 1.4 };
+import { calibration, device, toTheFirstQuestion, toTheFirstRest } from './participant-device';
+import { studyServer } from './study-server';
 
 afterEach(() => vi.restoreAllMocks());
-
-let vaults = 0;
-
-/** A device with a vault of its own and a clock that rises with every look. */
-async function device(
-  { origin, invitation }: { readonly origin: string; readonly invitation: string },
-  { clock = 1e9 }: { readonly clock?: number } = {},
-) {
-  vaults += 1;
-  const name = `vault ${vaults}`;
-  let now = clock;
-  const client = createParticipantClient(origin);
-  const options = (vault: StudyVault | null) => ({
-    client,
-    vault,
-    now: () => {
-      now += 1;
-      return now;
-    },
-    onChange: () => undefined,
-  });
-  const vault = await openStudyVault(name);
-  const claim = await client.claim('paper', 'P01', invitation);
-  const first = createParticipantSession(
-    startSession(claim, 'paper', 'P01'),
-    { records: [], motion: [] },
-    options(vault),
-  );
-  return {
-    first,
-    claim,
-    options,
-    vault,
-    /** The page is loaded again: nothing is left but the vault. */
-    async reload(): Promise<ParticipantSession> {
-      const again = await openStudyVault(name);
-      const kept = await again.session('paper', 'P01');
-      if (!kept) throw new Error('the vault holds no session');
-      const left = { records: await again.records('paper', 'P01'), motion: await again.motion('paper', 'P01') };
-      const session = createParticipantSession(kept, left, options(again));
-      session.apply({ type: 'reload' });
-      return session;
-    },
-  };
-}
-
-function toTheFirstRest(session: ParticipantSession, motion = false): void {
-  const said = [
-    session.apply({ type: 'consent', motion, version: plan.consent.version }),
-    session.apply({ type: 'demographics', demographics: aWomanOf26 }),
-    session.apply({ type: 'calibrated', calibration }),
-    session.apply({ type: 'start' }),
-    session.apply({ type: 'trial-finished', outcome: outcomeOf(10) }),
-    session.apply({ type: 'start' }),
-    session.apply({ type: 'trial-finished', outcome: outcomeOf(40) }),
-  ];
-  expect(said).toEqual(said.map(() => null));
-  expect(session.step.kind).toBe('rest');
-}
-
-function toTheFirstQuestion(session: ParticipantSession, motion = false): void {
-  toTheFirstRest(session, motion);
-  // A rest is over when enough ticks of this clock have passed.
-  for (let i = 0; i < 200 && session.step.kind === 'rest'; i++) session.apply({ type: 'tick' });
-  expect(session.step.kind).toBe('questionnaire');
-}
 
 test('what the server has acknowledged leaves the device, and nothing before', async () => {
   const server = await studyServer();
@@ -226,15 +145,6 @@ test('the experimenter’s commands are followed once, also across a reload; one
   expect(said).toContainEqual(expect.objectContaining({ type: 'void-block', reason: 'the phone rang' }));
 });
 
-const upright = { orientation: { x: 0, y: 0, z: 0, w: 1 }, tracking: 'tracked' } as const;
-const frame: TrackingFrame = {
-  time: 1,
-  head: { position: { x: 0, y: 1.6, z: 0 }, ...upright },
-  leftHand: null,
-  rightHand: null,
-};
-const recording = writeRecording({ device: 'Test headset', rateHz: 72, calibration, frames: [frame] });
-
 test('a device that takes over follows no command that another one has followed', async () => {
   const server = await studyServer();
   const { store, experimenter } = server;
@@ -289,79 +199,6 @@ test('a session that an older page kept follows no command again', async () => {
   const second = await reload();
   await second.exchange();
   expect(second.progress.paused).toBe(false);
-});
-
-test('tracked frames reach the server with consent to them, and leave the device then', async () => {
-  const server = await studyServer();
-  const { store } = server;
-  const { first, vault } = await device(server);
-  toTheFirstQuestion(first, true);
-  first.keepMotion('archery/1/trial-1@1.1:trial', recording);
-  await first.settled();
-  expect(await vault.motion('paper', 'P01')).toHaveLength(1);
-  await first.exchange();
-  await first.motionSent();
-  expect(store.motion('paper').map(unpacked)).toEqual([
-    { participant: 'P01', trial: 'archery/1/trial-1@1.1:trial', text: recording },
-  ]);
-  expect(await vault.motion('paper', 'P01')).toEqual([]);
-});
-
-test('a recording that the server refuses is reported and kept, and holds up neither commands nor other recordings', async () => {
-  const server = await studyServer();
-  const { store, experimenter } = server;
-  const { first, vault } = await device(server);
-  toTheFirstQuestion(first, true);
-  first.keepMotion('archery/1/trial-1@1.1:trial', 'no recording');
-  first.keepMotion('archery/2/trial-1@1.1:trial', recording);
-  await first.exchange();
-  await first.motionSent();
-  expect(store.progress('paper', 'P01')?.step).toBe(first.step.id);
-  expect(store.motion('paper').map(({ trial }) => trial)).toEqual(['archery/2/trial-1@1.1:trial']);
-  expect(await vault.motion('paper', 'P01')).toHaveLength(1);
-  await experimenter.command('paper', 'P01', { type: 'pause' });
-  await first.exchange();
-  expect(first.progress.paused).toBe(true);
-  expect(first.safekeeping).toMatchObject({
-    unsent: 1,
-    online: true,
-    refusal: expect.stringContaining('no JSON'),
-    lockedOut: false,
-  });
-});
-
-/** A way to the server on which recordings stop before they arrive, how often is counted. */
-async function wayWithoutMotion({ origin }: StudyServer) {
-  const stopped = { count: 0 };
-  const { server } = await answeringHost((request, response) => {
-    if (request.url?.includes('/motion?')) {
-      stopped.count += 1;
-      return;
-    }
-    const { method = 'GET', headers } = request;
-    const onward = httpRequest(`${origin}${request.url}`, { method, headers }, (answer) => {
-      answer.pipe(response.writeHead(answer.statusCode ?? 0, answer.headers));
-    });
-    request.pipe(onward);
-  });
-  const address = server.address() as { readonly port: number };
-  return { origin: `http://127.0.0.1:${address.port}`, stopped };
-}
-
-test('while a recording is on its way, progress is reported and commands are followed', async () => {
-  const server = await studyServer();
-  const { store, experimenter } = server;
-  const way = await wayWithoutMotion(server);
-  const { first } = await device({ ...way, invitation: server.invitation });
-  toTheFirstQuestion(first, true);
-  first.keepMotion('archery/1/trial-1@1.1:trial', recording);
-  await first.exchange();
-  expect(store.progress('paper', 'P01')?.step).toBe(first.step.id);
-  await experimenter.command('paper', 'P01', { type: 'pause' });
-  await first.exchange();
-  expect(first.progress.paused).toBe(true);
-  expect(way.stopped.count).toBe(1);
-  expect(first.safekeeping).toMatchObject({ unsent: 1, online: true, refusal: null });
 });
 
 test('a device whose place was released stops, and can forget', async () => {

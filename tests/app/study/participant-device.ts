@@ -1,0 +1,80 @@
+import 'fake-indexeddb/auto';
+import { expect } from 'vitest';
+import {
+  createParticipantSession,
+  type ParticipantSession,
+  startSession,
+} from '../../../src/app/study/participant-session';
+import { openStudyVault, type StudyVault } from '../../../src/app/study/study-vault';
+import { createParticipantClient } from '../../../src/net/study-client';
+import { aWomanOf26, outcomeOf, paperPlan } from '../../core/study/studies';
+
+const plan = paperPlan();
+
+/** How the participant is measured. */
+export const calibration = { eyeHeight: 1.62, armSpan: 1.4 };
+
+/** A device of P01's with a vault of its own and a clock that rises with every look. */
+export async function device(
+  { origin, invitation }: { readonly origin: string; readonly invitation: string },
+  { clock = 1e9 }: { readonly clock?: number } = {},
+) {
+  const name = `vault ${crypto.randomUUID()}`;
+  let now = clock;
+  const client = createParticipantClient(origin);
+  const options = (vault: StudyVault | null) => ({
+    client,
+    vault,
+    now: () => {
+      now += 1;
+      return now;
+    },
+    onChange: () => undefined,
+  });
+  const vault = await openStudyVault(name);
+  const claim = await client.claim('paper', 'P01', invitation);
+  const first = createParticipantSession(
+    startSession(claim, 'paper', 'P01'),
+    { records: [], motion: [] },
+    options(vault),
+  );
+  return {
+    first,
+    claim,
+    options,
+    vault,
+    /** The page is loaded again: nothing is left but the vault. */
+    async reload(): Promise<ParticipantSession> {
+      const again = await openStudyVault(name);
+      const kept = await again.session('paper', 'P01');
+      if (!kept) throw new Error('the vault holds no session');
+      const left = { records: await again.records('paper', 'P01'), motion: await again.motion('paper', 'P01') };
+      const session = createParticipantSession(kept, left, options(again));
+      session.apply({ type: 'reload' });
+      return session;
+    },
+  };
+}
+
+/** The participant has played the first round and rests; `motion`: with consent to tracked frames. */
+export function toTheFirstRest(session: ParticipantSession, motion = false): void {
+  const said = [
+    session.apply({ type: 'consent', motion, version: plan.consent.version }),
+    session.apply({ type: 'demographics', demographics: aWomanOf26 }),
+    session.apply({ type: 'calibrated', calibration }),
+    session.apply({ type: 'start' }),
+    session.apply({ type: 'trial-finished', outcome: outcomeOf(10) }),
+    session.apply({ type: 'start' }),
+    session.apply({ type: 'trial-finished', outcome: outcomeOf(40) }),
+  ];
+  expect(said).toEqual(said.map(() => null));
+  expect(session.step.kind).toBe('rest');
+}
+
+/** The participant has played the first round, rested, and sits before its questions; `motion`: with consent to tracked frames. */
+export function toTheFirstQuestion(session: ParticipantSession, motion = false): void {
+  toTheFirstRest(session, motion);
+  // A rest is over when enough ticks of this clock have passed.
+  for (let i = 0; i < 200 && session.step.kind === 'rest'; i++) session.apply({ type: 'tick' });
+  expect(session.step.kind).toBe('questionnaire');
+}

@@ -1,0 +1,90 @@
+import { request as httpRequest } from 'node:http';
+import { expect, test } from 'vitest';
+import { unpacked } from '../../../server/study-motion';
+import { writeRecording } from '../../../src/core/tracking/recording';
+import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
+import { answeringHost } from '../../net/answering-host';
+import { calibration, device, toTheFirstQuestion } from './participant-device';
+import { type StudyServer, studyServer } from './study-server';
+
+const upright = { orientation: { x: 0, y: 0, z: 0, w: 1 }, tracking: 'tracked' } as const;
+const frame: TrackingFrame = {
+  time: 1,
+  head: { position: { x: 0, y: 1.6, z: 0 }, ...upright },
+  leftHand: null,
+  rightHand: null,
+};
+const recording = writeRecording({ device: 'Test headset', rateHz: 72, calibration, frames: [frame] });
+
+test('tracked frames reach the server with consent to them, and leave the device then', async () => {
+  const server = await studyServer();
+  const { store } = server;
+  const { first, vault } = await device(server);
+  toTheFirstQuestion(first, true);
+  first.keepMotion('archery/1/trial-1@1.1:trial', recording);
+  await first.settled();
+  expect(await vault.motion('paper', 'P01')).toHaveLength(1);
+  await first.exchange();
+  await first.motionSent();
+  expect(store.motion('paper').map(unpacked)).toEqual([
+    { participant: 'P01', trial: 'archery/1/trial-1@1.1:trial', text: recording },
+  ]);
+  expect(await vault.motion('paper', 'P01')).toEqual([]);
+});
+
+test('a recording that the server refuses is reported and kept, and holds up neither commands nor other recordings', async () => {
+  const server = await studyServer();
+  const { store, experimenter } = server;
+  const { first, vault } = await device(server);
+  toTheFirstQuestion(first, true);
+  first.keepMotion('archery/1/trial-1@1.1:trial', 'no recording');
+  first.keepMotion('archery/2/trial-1@1.1:trial', recording);
+  await first.exchange();
+  await first.motionSent();
+  expect(store.progress('paper', 'P01')?.step).toBe(first.step.id);
+  expect(store.motion('paper').map(({ trial }) => trial)).toEqual(['archery/2/trial-1@1.1:trial']);
+  expect(await vault.motion('paper', 'P01')).toHaveLength(1);
+  await experimenter.command('paper', 'P01', { type: 'pause' });
+  await first.exchange();
+  expect(first.progress.paused).toBe(true);
+  expect(first.safekeeping).toMatchObject({
+    unsent: 1,
+    online: true,
+    refusal: expect.stringContaining('no JSON'),
+    lockedOut: false,
+  });
+});
+
+/** A way to the server on which recordings stop before they arrive, how often is counted. */
+async function wayWithoutMotion({ origin }: StudyServer) {
+  const stopped = { count: 0 };
+  const { server } = await answeringHost((request, response) => {
+    if (request.url?.includes('/motion?')) {
+      stopped.count += 1;
+      return;
+    }
+    const { method = 'GET', headers } = request;
+    const onward = httpRequest(`${origin}${request.url}`, { method, headers }, (answer) => {
+      answer.pipe(response.writeHead(answer.statusCode ?? 0, answer.headers));
+    });
+    request.pipe(onward);
+  });
+  const address = server.address() as { readonly port: number };
+  return { origin: `http://127.0.0.1:${address.port}`, stopped };
+}
+
+test('while a recording is on its way, progress is reported and commands are followed', async () => {
+  const server = await studyServer();
+  const { store, experimenter } = server;
+  const way = await wayWithoutMotion(server);
+  const { first } = await device({ ...way, invitation: server.invitation });
+  toTheFirstQuestion(first, true);
+  first.keepMotion('archery/1/trial-1@1.1:trial', recording);
+  await first.exchange();
+  expect(store.progress('paper', 'P01')?.step).toBe(first.step.id);
+  await experimenter.command('paper', 'P01', { type: 'pause' });
+  await first.exchange();
+  expect(first.progress.paused).toBe(true);
+  expect(way.stopped.count).toBe(1);
+  expect(first.safekeeping).toMatchObject({ unsent: 1, online: true, refusal: null });
+});
