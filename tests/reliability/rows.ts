@@ -211,7 +211,7 @@ export const promiseRows = {
     inject: 'Promise 8: a game and a study played, then the server’s files and memory read',
     sees: 'No motion kept without consent; none older than 2 s in a room',
     target: '0 bytes of motion on disk; 0 poses older than 2 s',
-    tests: ['tests/server/privacy.test.ts', 'tests/server/study-store.test.ts'],
+    tests: ['tests/server/privacy.test.ts', 'tests/server/study-deletion.test.ts', 'tests/server/study-motion.test.ts'],
   },
 } as const satisfies Readonly<Record<string, Row>>;
 
@@ -260,7 +260,7 @@ export const attackRows = {
       'Places of a study claimed without an invitation: by another site’s page, by a loop over all of them, by guesses',
     sees: 'A sentence; the places stay free for those who were invited',
     target: '0 places taken',
-    tests: ['tests/server/study-entry.test.ts', 'tests/server/study-store.test.ts'],
+    tests: ['tests/server/study-entry.test.ts', 'tests/server/study-places.test.ts'],
   },
   'other-sites': {
     inject:

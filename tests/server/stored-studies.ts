@@ -1,0 +1,37 @@
+import { join } from 'node:path';
+import { onTestFinished } from 'vitest';
+import { openStudyStore, type StudyStore } from '../../server/study-store';
+import { scheduleFor } from '../../src/core/study/schedule';
+import type { StudyRecord } from '../../src/core/study/study-record';
+import { paperPlan, session } from '../core/study/studies';
+import { directoryWith } from '../temporary-directory';
+import { now } from './running-studies';
+
+/** A store in a file of its own, or in this one; closed when the test ends. */
+export function opened(file = join(directoryWith(), 'studies.db')): { store: StudyStore; file: string } {
+  const store = openStudyStore(file);
+  let open = true;
+  const close = store.close;
+  store.close = () => {
+    if (open) close();
+    open = false;
+  };
+  onTestFinished(() => store.close());
+  return { store, file };
+}
+
+/** A store that has the paper's study. */
+export function withPaperStudy(options = { simulated: false }) {
+  const { store, file } = opened();
+  store.addStudy(paperPlan(), { ...options, at: now });
+  return { store, file };
+}
+
+/** Everything that one participant does, consent to motion recording or not. */
+export function completed(participant = 'P01', { simulated = false, motion = false } = {}): StudyRecord[] {
+  const schedule = scheduleFor(paperPlan(), participant);
+  const one = session(schedule, simulated);
+  one.tell({ type: 'consent', version: schedule.consentVersion, motion });
+  one.doUntil(({ kind }) => kind === 'end');
+  return one.records;
+}

@@ -1,0 +1,77 @@
+import { readdirSync, readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { describe, expect, test } from 'vitest';
+import { normalisedCode } from '../../server/study-schema';
+import { now } from './running-studies';
+import { completed, withPaperStudy } from './stored-studies';
+
+const day = 86_400;
+
+describe('deleting', () => {
+  const bytesOf = (file: string) => {
+    const folder = join(file, '..');
+    return readdirSync(folder)
+      .map((name) => readFileSync(join(folder, name)).toString('latin1'))
+      .join();
+  };
+
+  test('leaves a receipt and no trace in the file', () => {
+    const { store, file } = withPaperStudy();
+    store.claim('paper', 'P01', now);
+    const records = completed();
+    store.storeRecords('paper', 'P01', records, now);
+    store.addRemark('paper', 'P01', 'wore a conspicuous hat', now);
+    expect(bytesOf(file)).toContain('conspicuous hat');
+    const receipt = store.deleteParticipant('paper', 'P01', 'experimenter', now + 9);
+    expect(receipt).toEqual({
+      number: 1,
+      study: 'paper',
+      participant: 'P01',
+      reason: 'experimenter',
+      records: records.length + 1,
+      motionFiles: 0,
+      at: now + 9,
+    });
+    expect(store.records('paper')).toEqual([]);
+    expect(store.receipts('paper')).toEqual([receipt]);
+    expect(bytesOf(file)).not.toContain('conspicuous hat');
+    expect(bytesOf(file)).not.toContain('Computer science');
+  });
+
+  test('concerns one participant alone', () => {
+    const { store } = withPaperStudy();
+    for (const participant of ['P01', 'P02']) {
+      store.storeRecords('paper', participant, completed(participant), now);
+    }
+    store.deleteParticipant('paper', 'P01', 'experimenter', now);
+    expect(store.records('paper').every(({ participant }) => participant === 'P02')).toBe(true);
+    expect(store.records('paper')).toHaveLength(completed('P02').length);
+  });
+
+  test('by the withdrawal code, however it is typed, and for good', () => {
+    const { store } = withPaperStudy();
+    const { withdrawalCode } = store.claim('paper', 'P01', now);
+    store.storeRecords('paper', 'P01', completed(), now);
+    expect(store.withdraw('paper', '0000-0000-0000-0000', now)).toBeNull();
+    const typed = (withdrawalCode as string).toLowerCase().replaceAll('-', ' ');
+    expect(store.withdraw('paper', typed, now)).toMatchObject({ participant: 'P01', reason: 'withdrawn' });
+    expect(() => store.claim('paper', 'P01', now)).toThrow('has withdrawn');
+    expect(() => store.storeRecords('paper', 'P01', completed(), now)).toThrow('has withdrawn');
+    expect(store.withdraw('paper', withdrawalCode as string, now)).toBeNull();
+  });
+
+  test('takes o for 0 and l for 1 in a code, since they look alike', () => {
+    expect(normalisedCode('o1lI 23ab-cdef-ghjk')).toBe('0111-23AB-CDEF-GHJK');
+  });
+
+  test('happens by itself after the retention date, not before', () => {
+    const { store } = withPaperStudy();
+    store.claim('paper', 'P01', now);
+    store.storeRecords('paper', 'P01', completed(), now);
+    const expired = (at: number) => store.deleteExpired(at, (_, error) => expect(error).toBeNull());
+    expect(expired(now + 365 * day)).toEqual([]);
+    expect(expired(now + 365 * day + 1)).toMatchObject([{ participant: 'P01', reason: 'retention' }]);
+    expect(store.records('paper')).toEqual([]);
+    expect(expired(now + 366 * day)).toEqual([]);
+  });
+});
