@@ -1,16 +1,20 @@
 import fc from 'fast-check';
-import { test } from 'vitest';
+import { afterAll, beforeAll, test } from 'vitest';
 import type { AvatarPose } from '../../../src/core/body/avatar-pose';
 import type { Calibration } from '../../../src/core/body/calibration';
 import { forwardKinematics } from '../../../src/core/body/forward-kinematics';
 import { jointNames } from '../../../src/core/body/joints';
 import { skeletonFromCalibration } from '../../../src/core/body/skeleton';
+import { createEstimator, needsRegressor } from '../../../src/core/estimation/estimators';
 import { estimatorNames, type PoseEstimator } from '../../../src/core/estimation/pose-estimator';
+import type { PoseRegressor } from '../../../src/core/estimation/pose-regressor';
 import { distance } from '../../../src/core/math/vec3';
 import type { TrackingFrame } from '../../../src/core/tracking/tracking-frame';
-import { evenly, standpoint } from '../arbitraries';
+import { cases } from '../../nightly';
+import { evenly, seed, standpoint } from '../arbitraries';
 import { type Joints, showAll } from './drawn';
 import { movingPerson } from './moving-person';
+import { openPlainModel, openShippedModel } from './shipped-models';
 
 export const rate = 1 / 60;
 
@@ -50,3 +54,25 @@ export const subjects = [
   ...estimatorNames.map((name) => ({ label: name as string, name, plain: false })),
   { label: 'learned, without a runtime', name: 'learned' as const, plain: true },
 ];
+
+/** The subjects that show a body. */
+export const bodies = subjects.filter(({ name }) => name !== 'hands-only');
+
+/** Makes estimators of this subject for the tests of the suite that calls it: their network is opened before the first and closed after the last. */
+export function openSubject({ name, plain }: (typeof subjects)[number]) {
+  const wantsModel = needsRegressor(name);
+  let regressor: PoseRegressor | null = null;
+  beforeAll(async () => {
+    if (wantsModel) regressor = plain ? openPlainModel() : await openShippedModel(name);
+  });
+  afterAll(() => regressor?.dispose());
+
+  return {
+    create: (calibration: Calibration): PoseEstimator => createEstimator(name, calibration, regressor),
+    /** Inference costs: fewer cases where every frame runs a network, and none to shrink the one that fails. */
+    runs: (most: number) => ({
+      seed,
+      ...(wantsModel ? { numRuns: cases(Math.ceil(most / 5)), endOnFailure: true } : { numRuns: cases(most) }),
+    }),
+  };
+}
