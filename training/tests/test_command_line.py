@@ -29,6 +29,21 @@ def test_a_study_is_done_instead_of_the_training(option, task):
     assert config_of(["--generated", option]).task == task
 
 
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        (["--groups", "4"], "--groups 4 is of --leave-one-out: give both"),
+        (["--leave-one-out", "--groups", "1"], "--groups 1: two groups at least"),
+        (["--ablate", "--steps", "7"], "--ablate trains each variant with 600 steps: it takes neither --steps nor --quick"),
+        (["--ablate", "--quick"], "--ablate trains each variant with 600 steps: it takes neither --steps nor --quick"),
+    ],
+)
+def test_options_that_would_be_ignored_are_refused_in_a_sentence(options, sentence, capsys):
+    with pytest.raises(SystemExit):
+        config_of(["--generated", *options])
+    assert sentence in " ".join(capsys.readouterr().err.split())
+
+
 def test_two_studies_at_once_are_refused_in_a_sentence(capsys):
     with pytest.raises(SystemExit):
         config_of(["--generated", "--noticed", "--ablate"])

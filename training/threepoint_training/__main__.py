@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from . import pipeline
+from .ablation import AblationConfig
 from .motion import MocapError
 from .splits import FOLDS
 from .training_config import Task, TrainConfig, quick
@@ -68,10 +69,14 @@ def config_of(arguments: Sequence[str]) -> TrainConfig:
     )
     if unknown := set(config.folds) - set(FOLDS):
         parser.error(f"no fold {', '.join(sorted(unknown))}; there are {', '.join(FOLDS)}")
+    if config.groups is not None and config.task != "leave one out":
+        parser.error(f"--groups {config.groups} is of --leave-one-out: give both")
     if config.groups is not None and config.groups < 2:
         parser.error(f"--groups {config.groups}: two groups at least, or there is no one to train on")
     if given.steps is not None and given.steps < 1:
         parser.error(f"--steps {given.steps}: at least one")
+    if config.task == "ablation" and (given.quick or given.steps is not None):
+        parser.error(f"--ablate trains each variant with {AblationConfig.steps} steps: it takes neither --steps nor --quick")
     if unknown := set(config.networks) - set(TrainConfig.networks):
         parser.error(f"no network {', '.join(sorted(unknown))}; there are {', '.join(TrainConfig.networks)}")
     config = quick(config) if given.quick else config
