@@ -44,7 +44,7 @@ class TrainLearnedConfig:
     fitted_loss_weight: float = 1.0
     auxiliary_loss_weight: float = 0.1
     # Of both losses, a third would be every joint alike. An elbow hangs from its shoulder: trunks are put where elbows come right, too.
-    elbow_share: float = 0.8
+    elbow_share: float = 2 / 3
     # Ridge and learning rate of the per-subject random effects; at a rate of 0 they stay 0.
     effects_ridge: float = 1e-3
     effects_learning_rate: float = 2e-2
