@@ -2,6 +2,7 @@ import { copyPose, makePose, type TrackedPose, type Transform, transformPoint } 
 import { identity, rotate } from '../../math/quat';
 import { otherSide, type Side, sides } from '../../math/side';
 import { addScaled, copyVec3, distance, type Vec3, vec3, zero } from '../../math/vec3';
+import { longestStep } from '../../tracking/page-clock';
 import type { TrackingFrame } from '../../tracking/tracking-frame';
 import {
   allReleased,
@@ -93,8 +94,8 @@ export interface ArcheryGestures {
 /** A press nocks when the fist is this near to the nocking point [m]; it stays near until it is a little further away. */
 export const nockReach = 0.18;
 const nearMargin = 0.03;
-/** Longer without a frame is a pause, not a slow device [s]. */
-export const pauseSeconds = 1;
+/** Frames further apart than this [s] have a pause between them, of which the page's clock counts its longest step, give or take a rounding. */
+const longestFrame = longestStep - 1e-3;
 
 const none: readonly never[] = [];
 
@@ -261,7 +262,7 @@ class BowGestures implements ArcheryGestures {
 
   /** An archer who stops watching for that long, has no arrows left, or puts the controller away, does not shoot on going on. */
   #mustCancel({ stringSide }: Roles): boolean {
-    if (this.#delta > pauseSeconds || !this.#now.armed || this.#presses.changedKind(stringSide)) return true;
+    if (this.#delta > longestFrame || !this.#now.armed || this.#presses.changedKind(stringSide)) return true;
     return this.#nocked !== null && this.#nocked.side !== stringSide;
   }
 

@@ -1,0 +1,50 @@
+import { expect, test } from 'vitest';
+import { createArcheryPlay } from '../../../src/app/archery/archery-play';
+import { defaultCalibration } from '../../../src/core/body/calibration';
+import { allReleased } from '../../../src/core/games/button-presses';
+import { createPageClock } from '../../../src/core/tracking/page-clock';
+import { type Posed, posed } from '../../core/games/archery/bowman';
+
+const frameMs = 1000 / 72;
+
+/** A page at 72 Hz on which a person shoots with the left hand on the bow; time stamps in milliseconds, as the device gives them. */
+function range() {
+  const play = createArcheryPlay(
+    defaultCalibration,
+    () => ({ bowSide: 'left', oneHanded: false, everyHitCounts: false }),
+    () => 7,
+  );
+  let stamp = 30_000;
+  const clock = createPageClock(() => stamp);
+  const said: string[] = [];
+  const frame = (pose: Posed, trigger: number, ms = frameMs) => {
+    stamp += ms;
+    const buttons = { left: allReleased, right: { ...allReleased, trigger } };
+    const { cues, events } = play.follow(posed(clock.frame(stamp), pose), buttons);
+    said.push(...[...cues, ...events].map(({ type }) => type).filter((type) => type !== 'creak'));
+  };
+  return {
+    play,
+    said,
+    frame,
+    hold(pose: Posed, trigger: number, seconds: number) {
+      for (let i = 0; i < Math.round(seconds * 72); i++) frame(pose, trigger);
+    },
+  };
+}
+
+test.each([0.6, 3, 600])(
+  'a headset that is taken off at full draw for %d s, frames and all, shoots no arrow',
+  (away) => {
+    const { play, said, frame, hold } = range();
+    hold({}, 0, 0.1);
+    hold({}, 1, 0.1);
+    for (let i = 1; i <= 36; i++) frame({ draw: i / 72 }, 1);
+    hold({ draw: 0.5 }, 1, 0.5);
+    expect(play.newest?.bow?.stage).toBe('anchored');
+    frame({ draw: 0.5 }, 0, 1000 * away);
+    hold({ draw: 0.5 }, 0, 0.2);
+    expect(said.at(-1)).toBe('cancelled');
+    expect(play.newest?.state).toMatchObject({ phase: 'ready', arrowsLeft: 5 });
+  },
+);
