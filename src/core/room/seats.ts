@@ -167,8 +167,8 @@ export class Seats {
   retake(index: number, client: ClientId, { name, calibration, avatar, voice }: Client, time: number): void {
     const seat = this.at(index);
     if (!seat) return;
-    // To the rules a player who was away for long comes anew; within the grace nothing has happened.
-    if (!seat.playing) this.#listener.act({ type: 'join', player: index });
+    // To the rules a player who was away for long comes anew; within the grace all that was theirs still is.
+    this.#listener.act({ type: seat.playing ? 'reconnect' : 'join', player: index });
     Object.assign(seat, {
       client,
       lostAt: null,

@@ -5,6 +5,8 @@ import type { Vec3 } from '../math/vec3';
 export type SeatAction =
   | { readonly type: 'join'; readonly player: number }
   | { readonly type: 'leave'; readonly player: number }
+  /** The player was never away for the rules, but is on another connection: perhaps a page that knows nothing of what the old one did. */
+  | { readonly type: 'reconnect'; readonly player: number }
   | { readonly type: 'ready'; readonly player: number; readonly ready: boolean }
   /** Nothing has been heard of this player for so long that where they were is forgotten. */
   | { readonly type: 'silent'; readonly player: number }

@@ -77,6 +77,22 @@ describe('seats', () => {
     expect(longer.room.match.players[0]?.present).toBe(true);
   });
 
+  test('a page that is loaded again at once counts its deeds anew: none is taken for one seen before', () => {
+    const told = toldRoom();
+    told.begin();
+    told.pose('ann', 0, atRack(0), told.time + 0.01);
+    told.tick();
+    told.act('ann', { type: 'grab', sequence: 1, side: 'right', ball: 0 });
+    told.tick();
+    told.room.disconnect('ann', told.time);
+    told.pass(1);
+    told.join('ann again', {}, 'ann');
+    told.act('ann again', { type: 'drop', sequence: 1, side: 'right' });
+    told.tick();
+    expect(told.happened('refused')).toEqual([]);
+    expect(told.room.match.balls[0]?.on).toBe('rack');
+  });
+
   test('a second connection of the same person replaces the first', () => {
     const told = toldRoom();
     told.begin();

@@ -51,10 +51,12 @@ function returnHeld(state: BallState, player: number | null): Step {
 
 const forgotten = { head: null, left: null, right: null } as const;
 
+/** Deeds are numbered by a page, from 1: those of another page of the same player's as well. */
+const uncounted = { sequence: 0, seen: 0 } as const;
+
 function join(state: BallState, index: number): Step {
   if (state.players[index]!.present) return unchanged(state);
-  // A new face counts its deeds from 1 again.
-  const change = { present: true, ready: false, at: -1, ...forgotten, sequence: 0, seen: 0 };
+  const change = { present: true, ready: false, at: -1, ...forgotten, ...uncounted };
   return { state: withPlayer(state, index, change), events: [{ type: 'joined', player: index }] };
 }
 
@@ -151,10 +153,12 @@ function act(state: BallState, action: BallAction): Step {
       return join(state, action.player);
     case 'leave':
       return leave(state, action.player);
+    case 'reconnect':
+      return unchanged(withPlayer(state, action.player, uncounted));
     case 'ready':
       return setReady(state, action.player, action.ready);
     case 'silent':
-      return { state: withPlayer(state, action.player, forgotten), events: [] };
+      return unchanged(withPlayer(state, action.player, forgotten));
     case 'pose':
       return pose(state, action);
     case 'grab':
