@@ -209,8 +209,8 @@ export class BallBots {
     const seen = line.room;
     if (!seen || seen.mySeat === null || !seen.match) return;
     const { match, mySeat } = seen;
-    if (update.news.some((what) => what !== 'seats')) bot.gestures = null;
     bot.gestures ??= gesturesOf(line);
+    if (update.news.length > 0) bot.gestures.resume();
     bot.gestures.hear(update.events);
     const actor = this.actorOf(bot, stationOf(seen, mySeat), match.phase, mySeat);
     const mover = { line, gestures: bot.gestures, actor, estimator };

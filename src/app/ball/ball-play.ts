@@ -169,7 +169,7 @@ class MatchPlay implements BallPlay {
     const update = this.connection.update(time);
     for (const pose of update.poses) this.remote.receive(pose);
     if (update.events.length > 0) this.events = [...this.events, ...update.events];
-    if (update.news.some((what) => what !== 'seats')) this.gestures = null;
+    if (update.news.length > 0) this.gestures?.resume();
     this.gestures?.hear(update.events);
     this.watchSeats();
     this.bots.seat(this.connection, time);

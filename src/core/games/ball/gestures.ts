@@ -24,6 +24,7 @@ import type { BallAction, BallDeed, BallEvent, BallState } from './ball-state';
 import { slowestThrow } from './deeds';
 import { ballRadius } from './flight';
 import { createHandSpeed, type HandSpeed } from './hand-speed';
+import { ballInHand } from './state-readings';
 import { rackPosition } from './stations';
 
 /** Who plays and how the match stands; asked for in every frame. */
@@ -45,7 +46,7 @@ export interface BallPulse {
   readonly seconds: number;
 }
 
-/** Something to hear or see in a caption. slipped: the ball was another player's. */
+/** Something to hear or see in a caption. slipped: the match has the ball elsewhere. */
 export interface BallCue {
   readonly type: 'near' | 'grabbed' | 'thrown' | 'dropped' | 'slipped';
   readonly side: Side;
@@ -70,8 +71,8 @@ export interface BallGestures {
   follow(frame: TrackingFrame, buttons: Buttons): BallGestureFrame;
   /** What the match said: a ball that was refused is in no hand. */
   hear(events: readonly BallEvent[]): void;
-  /** The number of the last deed; a player who returns goes on from there. */
-  readonly sequence: number;
+  /** The match is known afresh, perhaps without deeds of these hands: from the next frame on they hold no ball that it has elsewhere, and put back what only it has in them. */
+  resume(): void;
 }
 
 /** A press takes a ball from this far from the fist [m]. */
@@ -106,7 +107,7 @@ interface HandMemory {
   holding: Holding | null;
   /** The newest throw, until it is known to be refused: then the ball is still in the hand. */
   thrown: { readonly sequence: number; readonly ball: number } | null;
-  /** A throw was refused: the ball is to be put back. */
+  /** The match has a ball in this hand that is not there, as after a throw that was refused: it is to be put back. */
   unthrown: boolean;
   /** The middle of the fist in this frame, arena frame. */
   readonly fist: MutableVec3;
@@ -129,7 +130,12 @@ const makeHandMemory = (): HandMemory => ({
 type PoseAction = Extract<BallAction, { type: 'pose' }>;
 
 class PlayerGestures implements BallGestures {
-  sequence: number;
+  /** The number of the last deed. */
+  private sequence = 0;
+  /** The hands have not been compared with the match that is known now. */
+  private stale = true;
+  /** Since when a hand may hold a ball by the word of the match alone [s]; null: none does. */
+  private strayedAt: number | null = null;
   private readonly presses: ButtonPresses = createButtonPresses();
   private readonly hands: Readonly<Record<Side, HandMemory>> = { left: makeHandMemory(), right: makeHandMemory() };
   private readonly near: Record<Side, number | null> = { left: null, right: null };
@@ -145,11 +151,7 @@ class PlayerGestures implements BallGestures {
   private haptics: BallPulse[] = [];
   private cues: BallCue[] = [];
 
-  constructor(
-    private readonly settings: () => BallGestureSettings,
-    firstSequence: number,
-  ) {
-    this.sequence = firstSequence;
+  constructor(private readonly settings: () => BallGestureSettings) {
     this.now = { player: 0, state: null as never, arenaFromFloor: makeTransform<'arena', 'floor'>(), matchAhead: 0 };
     this.pose = { type: 'pose', player: 0, at: 0, head: this.head, left: null, right: null };
   }
@@ -165,6 +167,8 @@ class PlayerGestures implements BallGestures {
     this.pose.left = left && transformPose(arenaFromFloor, left, this.hands.left.pose);
     this.pose.right = right && transformPose(arenaFromFloor, right, this.hands.right.pose);
     const playing = state.players[player]?.role === 'thrower' && state.phase === 'running';
+    if (this.stale) this.compare(state, player);
+    this.findStrays(state, player);
     for (const side of sides) {
       const hand = this.hands[side];
       if (hand.unthrown) this.act({ type: 'drop', sequence: this.number(), side });
@@ -181,6 +185,10 @@ class PlayerGestures implements BallGestures {
     for (const event of events) for (const side of sides) this.hearOf(side, event, player);
   }
 
+  resume(): void {
+    this.stale = true;
+  }
+
   private begin(frame: TrackingFrame): void {
     this.now = this.settings();
     const { player, arenaFromFloor, matchAhead } = this.now;
@@ -190,6 +198,28 @@ class PlayerGestures implements BallGestures {
     transformPoint(arenaFromFloor, frame.head.position, this.head);
     this.actions = [this.pose];
     this.haptics = [];
+  }
+
+  /** Takes out of the hands what the match has elsewhere. */
+  private compare(state: BallState, player: number): void {
+    this.stale = false;
+    this.strayedAt = this.time;
+    for (const side of sides) {
+      const hand = this.hands[side];
+      if (!hand.holding || hand.holding.ball === ballInHand(state, player, side)) continue;
+      this.slipped.push({ type: 'slipped', side, ball: hand.holding.ball });
+      hand.holding = null;
+    }
+  }
+
+  /** What a while later still is in a hand by the word of the match alone is to be put back; what the last player on a new seat held is back by then. */
+  private findStrays(state: BallState, player: number): void {
+    if (this.strayedAt === null || this.time - this.strayedAt < holdSeconds) return;
+    this.strayedAt = null;
+    for (const side of sides) {
+      const hand = this.hands[side];
+      if (!hand.holding && ballInHand(state, player, side) >= 0) hand.unthrown = true;
+    }
   }
 
   /** Another thing is before the page: what is held is held until the hands come back. */
@@ -331,9 +361,8 @@ class PlayerGestures implements BallGestures {
   }
 }
 
-/** One per player; deeds are numbered from the one after `firstSequence`. */
-export const createBallGestures = (settings: () => BallGestureSettings, firstSequence = 0): BallGestures =>
-  new PlayerGestures(settings, firstSequence);
+/** One per player; deeds are numbered from 1. */
+export const createBallGestures = (settings: () => BallGestureSettings): BallGestures => new PlayerGestures(settings);
 
 /** The ball in a rack that a fist would take, unless one of the two hands has just taken it. */
 function nearestBall(state: BallState, fist: Vec3, left: Holding | null, right: Holding | null): number | null {

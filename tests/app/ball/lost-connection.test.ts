@@ -1,0 +1,230 @@
+import { describe, expect, test } from 'vitest';
+import { createBallPlay } from '../../../src/app/ball/ball-play';
+import { holdSeconds } from '../../../src/core/games/ball/gestures';
+import { allReleased, type Buttons } from '../../../src/core/games/button-presses';
+import type { Pose } from '../../../src/core/math/pose';
+import type { Side } from '../../../src/core/math/side';
+import { addScaled, type Vec3, vec3 } from '../../../src/core/math/vec3';
+import type { BallRoomMessage } from '../../../src/core/protocol/ball-messages';
+import type { ClientMessage } from '../../../src/core/protocol/messages';
+import type { ConnectionStatus, ConnectionUpdate } from '../../../src/net/connection';
+import { RoomSession } from '../../../src/net/room-session';
+import { toldRoom } from '../../core/room/told-room';
+import { atRack, fists, holding, opening, shownAt, visitor } from '../../net/people';
+
+type Told = ReturnType<typeof toldRoom>;
+
+/** Ann's wire to a room that a test tells everything: it can be lost, and come back. */
+class LossyWire extends RoomSession {
+  readonly #told: Told;
+  #connections: number;
+  #heard = 0;
+  #whole = false;
+
+  /** before: connections of other pages. */
+  constructor(told: Told, before = 0) {
+    super(visitor('Ann', { seat: 0 }), true);
+    this.#told = told;
+    this.#connections = before;
+    this.connect();
+  }
+
+  connect(): void {
+    this.#connections += 1;
+    this.#heard = this.#told.said.length;
+    this.#whole = true;
+    this.#told.room.join(this.#name, 'ann', this.joining(), this.#told.time);
+  }
+
+  lose(): void {
+    this.#whole = false;
+    this.#told.room.disconnect(this.#name, this.#told.time);
+  }
+
+  override get status(): ConnectionStatus {
+    return { phase: this.#whole ? 'joined' : 'reconnecting', attempt: 0, retryIn: null, reason: null };
+  }
+
+  override update(time: number): ConnectionUpdate {
+    const fresh = this.#whole ? this.#told.said.slice(this.#heard) : [];
+    this.#heard = this.#told.said.length;
+    for (const { to, message } of fresh) {
+      if (to === 'all' || to === this.#name) this.onMessage(message as BallRoomMessage, time);
+    }
+    return this.takeUpdate(time, this.#whole);
+  }
+
+  override leave(): void {
+    this.transmit({ type: 'leave' });
+  }
+
+  protected override transmit(message: ClientMessage): void {
+    if (this.#whole && message.type !== 'join') this.#told.room.onMessage(this.#name, message, this.#told.time);
+  }
+
+  protected override transmitPose(bytes: Uint8Array): void {
+    if (this.#whole) this.#told.room.onPose(this.#name, bytes, this.#told.time);
+  }
+
+  get #name(): string {
+    return `ann ${this.#connections}`;
+  }
+}
+
+const trigger = (pressure: number): Buttons => ({ left: allReleased, right: { ...allReleased, trigger: pressure } });
+
+/** Ann throws by hand, Cal holds the basket; the round runs. */
+function court() {
+  const told = toldRoom();
+  let wire = new LossyWire(told);
+  const open = (line: LossyWire) =>
+    createBallPlay({
+      connect: () => line,
+      visitor: visitor('Ann'),
+      bots: () => false,
+      acting: () => false,
+      seed: 1,
+    });
+  let page = open(wire);
+  told.join('cal', { name: 'Cal', seat: 2 });
+  for (const client of ['ann 1', 'cal']) told.room.onMessage(client, { type: 'ready', ready: true }, told.time);
+
+  /** A frame of Ann's page with her right fist there. */
+  const frame = (wrists: Readonly<Record<Side, Pose<'arena'> | null>>, pressure: number) => {
+    told.pose('cal', 2, holding(opening));
+    told.tick();
+    look(wrists, pressure);
+  };
+  /** The same while the room has not come to its next tick. */
+  const look = (wrists: Readonly<Record<Side, Pose<'arena'> | null>>, pressure: number) => {
+    page.begin(told.time);
+    const { pose } = shownAt(wire, 0, wrists);
+    const tracked = { time: told.time, head: pose.head, leftHand: pose.leftHand, rightHand: pose.rightHand };
+    page.follow(told.time, tracked, trigger(pressure));
+    wire.sendPose(told.time, shownAt(wire, 0, wrists));
+  };
+  const self = {
+    told,
+    look,
+    hold(fist: Vec3, pressure: number, seconds: number) {
+      for (let i = 0; i < Math.round(seconds * 60); i++) frame(fists(vec3(-1.3, 0.8, 0), fist), pressure);
+    },
+    grab(ball: number) {
+      self.hold(atFist(ball), 0, 0.2);
+      self.hold(atFist(ball), 1, 0.2);
+    },
+    throw() {
+      for (let i = 0; i < 15; i++) frame(fists(vec3(-1.3, 0.8, 0), addScaled(ahead, vec3(0, 3, -4), i / 60)), 1);
+      self.hold(addScaled(ahead, vec3(0, 3, -4), 15 / 60), 0, 0.2);
+    },
+    sit: (seat: number) => page.sit(seat),
+    lose: () => wire.lose(),
+    connect: () => wire.connect(),
+    /** The page is loaded again; the pass that it finds makes it the same person. */
+    reload() {
+      wire.lose();
+      self.told.pass(0.5);
+      wire = new LossyWire(told, 100);
+      page = open(wire);
+    },
+    get held() {
+      return page.newest?.held.right ?? null;
+    },
+    ball: (number: number) => told.room.match.balls[number]?.on,
+  };
+  self.hold(ahead, 0, 0.5);
+  expect(told.room.match.phase).toBe('running');
+  return self;
+}
+
+const ahead = vec3(-0.8, 1.3, -0.3);
+const atFist = (ball: number): Vec3 => addScaled(atRack(ball).right.position, vec3(0, 0, -1), 0.08);
+
+describe('a connection that is lost for a moment', () => {
+  test('leaves the ball in the hand, which throws it when it opens', () => {
+    const ann = court();
+    ann.grab(0);
+    expect(ann.ball(0)).toBe('hand');
+    ann.lose();
+    ann.hold(ahead, 1, 1);
+    ann.connect();
+    ann.hold(ahead, 1, 0.3);
+    expect([ann.held, ann.ball(0)]).toEqual([0, 'hand']);
+    ann.throw();
+    expect(ann.ball(0)).toBe('air');
+  });
+
+  test('loses a grab: the hand is empty, and takes the same ball anew', () => {
+    const ann = court();
+    ann.lose();
+    ann.grab(0);
+    expect(ann.held).toBe(0);
+    ann.connect();
+    ann.hold(ahead, 1, 0.3);
+    expect([ann.held, ann.ball(0)]).toEqual([null, 'rack']);
+    ann.grab(0);
+    expect([ann.held, ann.ball(0)]).toEqual([0, 'hand']);
+  });
+
+  test('loses a throw: the ball goes back, and the hand takes another', () => {
+    const ann = court();
+    ann.grab(0);
+    ann.lose();
+    ann.throw();
+    ann.connect();
+    ann.hold(ahead, 0, 2 * holdSeconds);
+    expect([ann.held, ann.ball(0)]).toEqual([null, 'rack']);
+    ann.grab(2);
+    expect([ann.held, ann.ball(2)]).toEqual([2, 'hand']);
+  });
+});
+
+test('a connection that is lost for longer than the ball is kept leaves an empty hand, which takes another', () => {
+  const ann = court();
+  ann.grab(0);
+  ann.lose();
+  ann.hold(ahead, 1, 4);
+  ann.connect();
+  ann.hold(ahead, 1, 0.3);
+  expect([ann.held, ann.ball(0)]).toEqual([null, 'rack']);
+  ann.grab(2);
+  expect([ann.held, ann.ball(2)]).toEqual([2, 'hand']);
+});
+
+test('a page that is loaded again at once puts back what its player held; they go on with other balls', () => {
+  const ann = court();
+  for (const ball of [0, 1]) {
+    ann.grab(ball);
+    ann.throw();
+    expect(ann.ball(ball)).not.toBe('rack');
+  }
+  ann.grab(2);
+  ann.reload();
+  ann.hold(ahead, 1, 2 * holdSeconds);
+  expect([ann.held, ann.ball(2)]).toEqual([null, 'rack']);
+  ann.grab(3);
+  expect([ann.held, ann.ball(3)]).toEqual([3, 'hand']);
+  ann.throw();
+  expect(ann.ball(3)).toBe('air');
+});
+
+test('a player who takes the seat of a bot that holds a ball has nothing to put back, and is warned of nothing', () => {
+  const ann = court();
+  ann.told.join('bot', { name: 'Max', seat: 1, bot: true });
+  ann.told.pass(0.1, () => ann.told.pose('bot', 1, atRack(10)));
+  ann.told.act('bot', { type: 'grab', sequence: 1, side: 'right', ball: 10 });
+  ann.told.pass(0.1);
+  expect(ann.ball(10)).toBe('hand');
+  ann.sit(1);
+  ann.look(fists(ahead), 0);
+  ann.hold(vec3(0.8, 1.3, -0.3), 0, 1);
+  expect([ann.ball(10), ann.told.happened('refused')]).toEqual(['rack', []]);
+});
+
+test('a thrower who changes places keeps no ball', () => {
+  const ann = court();
+  ann.grab(0);
+  ann.sit(1);
+  ann.hold(ahead, 1, 0.3);
+  expect([ann.held, ann.ball(0)]).toEqual([null, 'rack']);
+});
