@@ -9,7 +9,7 @@ import {
   defaultArcheryGestureSettings,
   type HapticPulse,
 } from '../../core/games/archery/gestures';
-import { archeryRules, delayed, matchTime, secondsLeft } from '../../core/games/archery/rules';
+import { archeryRules, delayed, fullScore, matchTime, secondsLeft } from '../../core/games/archery/rules';
 import { createSteeredArcher, type SteeredArcher } from '../../core/games/archery/steered-archer';
 import type { Buttons } from '../../core/games/button-presses';
 import { createMatch, type Match } from '../../core/games/match';
@@ -101,7 +101,7 @@ export function probeOf({ state, bow }: ArcheryFrame): ArcheryProbe {
 export function roundOf({ state }: ArcheryFrame) {
   return {
     score: state.score,
-    of: state.targets.reduce((sum, { points }) => sum + points, 0),
+    of: fullScore(state),
     arrowsLeft: state.arrowsLeft,
     secondsLeft: secondsLeft(state),
     over: state.phase === 'over',

@@ -1,5 +1,5 @@
 import type { ArcheryState } from '../../core/games/archery/archery-state';
-import { secondsLeft } from '../../core/games/archery/rules';
+import { fullScore, secondsLeft } from '../../core/games/archery/rules';
 import { ink, paintCard, paintGround, signFont } from '../../scene/boards/lettering';
 import { paintScoreHeading } from '../../scene/boards/score-heading';
 import { paintButton } from '../../scene/boards/sheet';
@@ -17,9 +17,6 @@ export interface BoardText {
   /** The last sentence: what the last arrow did, or what to do. */
   readonly line: string;
 }
-
-/** Points of all targets together: a full score where each counts once. */
-export const maximumScore = (state: ArcheryState): number => state.targets.reduce((sum, { points }) => sum + points, 0);
 
 /** How an arrow's end reads on a board. */
 export function arrowResult(state: ArcheryState, index: number): string {
@@ -58,7 +55,7 @@ export function boardText(state: ArcheryState, time: number): BoardText {
       : Math.max(0, state.options.seconds - (state.phase === 'ready' ? 0 : time));
   return {
     score: state.score,
-    maximum: maximumScore(state),
+    maximum: fullScore(state),
     arrows: state.options.arrows,
     arrowsLeft: state.arrowsLeft,
     seconds: Math.ceil(left),
@@ -140,7 +137,7 @@ export function paintResult(context: CanvasRenderingContext2D, state: ArcherySta
   const { width, height } = resultSize;
   paintCard(context, width, height);
 
-  const maximum = maximumScore(state);
+  const maximum = fullScore(state);
   const percent = maximum > 0 ? Math.round((100 * state.score) / maximum) : 0;
   context.textBaseline = 'alphabetic';
   context.textAlign = 'center';

@@ -1,4 +1,4 @@
-import { matchTime } from '../../core/games/archery/rules';
+import { fullScore, matchTime } from '../../core/games/archery/rules';
 import type { ArcheryFrame } from '../archery/archery-play';
 import type { TaskEnd, TaskEvent, TaskRunner } from '../study/task-runner';
 
@@ -40,8 +40,7 @@ export function createArcheryRunner(host: ArcheryHost): ArcheryRunner {
         }
         if (event.type === 'ended') {
           running = false;
-          const maximum = state.targets.reduce((sum, { points }) => sum + points, 0);
-          end = { seconds: matchTime(state), ended: event.end, score: event.score, maximum };
+          end = { seconds: matchTime(state), ended: event.end, score: event.score, maximum: fullScore(state) };
         }
       }
     },

@@ -1,7 +1,7 @@
 import { Color } from 'three';
 import { describe, expect, it } from 'vitest';
 import { onRestartButton } from '../../../src/app/archery/result-panel';
-import { arrowResult, boardText, maximumScore } from '../../../src/app/archery/scoreboard-drawing';
+import { arrowResult, boardText } from '../../../src/app/archery/scoreboard-drawing';
 import { ringColor, rings } from '../../../src/app/archery/target-rings';
 import { scoredBy } from '../../../src/app/archery/target-stands';
 import type { ArcheryState, Arrow, Landing } from '../../../src/core/games/archery/archery-state';
@@ -33,8 +33,12 @@ const withArrows = (arrows: readonly Arrow[], more: Partial<ArcheryState> = {}):
 });
 
 describe('the scoreboard', () => {
+  it('says that every arrow can win the best target where every hit counts', () => {
+    const every = archeryRules.start([], 7, { everyHitCounts: true });
+    expect(boardText(every, 0).maximum).toBe(100);
+  });
+
   it('says that the highest score is 50 and that the clock stands before the first arrow', () => {
-    expect(maximumScore(ready)).toBe(50);
     expect(boardText(ready, 30)).toMatchObject({ score: 0, maximum: 50, arrowsLeft: 5, seconds: 70 });
   });
 

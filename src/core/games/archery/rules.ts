@@ -139,6 +139,17 @@ export function secondsLeft(state: ArcheryState): number {
   return Math.max(0, state.options.seconds - (state.phase === 'over' ? lastLanding(state) : matchTime(state)));
 }
 
+/** The points of all targets together, or, where every hit counts, of the best one with every arrow. */
+export function fullScore({ options, targets }: ArcheryState): number {
+  let sum = 0;
+  let best = 0;
+  for (const { points } of targets) {
+    sum += points;
+    best = Math.max(best, points);
+  }
+  return options.everyHitCounts ? options.arrows * best : sum;
+}
+
 const isAbove = ({ x, z }: Vec3, margin: number): boolean =>
   Math.abs(x) <= zone.width / 2 - margin && Math.abs(z) <= zone.depth / 2 - margin;
 
