@@ -35,7 +35,7 @@ export interface RoomView {
   /** Ours; null: a spectator. Also the player's index in the match. */
   readonly mySeat: number | null;
   readonly spectators: number;
-  /** Roles move on by one seat with every rematch. */
+  /** Roles move on with every rematch. */
   readonly rotate: boolean;
   /**
    * The match with our own actions as they will turn out if the rules allow them; null before the first welcome. Heads, hands and the basket are

@@ -1,6 +1,6 @@
 import type { BallAction, BallDeed, BallEvent, BallOptions, BallState } from '../games/ball/ball-state';
 import { ballRules } from '../games/ball/rules';
-import { arenaFromSeatFloor, stations } from '../games/ball/stations';
+import { arenaFromSeatFloor, holderStation, stations } from '../games/ball/stations';
 import { createMatch } from '../games/match';
 import type { Transform } from '../math/pose';
 import { ballActionFrom, ballKind, type SentBallGame } from '../protocol/ball-messages';
@@ -36,10 +36,12 @@ export class BallPolicy implements MatchPolicy<BallGame> {
     return createMatch(ballRules, ballRules.start(players, this.#seed, options), { onTick });
   }
 
-  /** A round needs a thrower and the holder; roles that move on bring both about sooner or later. */
-  mayRestart({ players }: BallState, rotate: boolean): boolean {
-    const roles = new Set(players.filter(({ present }) => present).map(({ role }) => role));
-    return rotate || roles.size === 2;
+  /** A round needs a thrower and the holder. */
+  nextRoles({ players }: BallState, rotate: boolean): number | null {
+    const taken = players.filter(({ present }) => present).map(({ station }) => station);
+    const canPlay = (by: number): boolean =>
+      taken.length > 1 && taken.some((station) => (station + by) % stations.length === holderStation);
+    return (rotate ? [1, 2, 0] : [0]).find(canPlay) ?? null;
   }
 
   snapshot(state: BallState): PackedBall {

@@ -53,7 +53,7 @@ const clientMessage = v.variant('type', [
   join,
   /** Ready for the match, or after its end for another. */
   v.strictObject({ type: v.literal('ready'), ready: v.boolean() }),
-  /** Whether roles move on by one seat with every rematch. */
+  /** Whether roles move on with every rematch. */
   v.strictObject({ type: v.literal('rotate'), rotate: v.boolean() }),
   /** The page is hidden, or the headset is off. */
   v.strictObject({ type: v.literal('away'), away: v.boolean() }),

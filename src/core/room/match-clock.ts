@@ -30,7 +30,7 @@ export class MatchClock<Game extends HostedGame> {
   /** Room time at which the clock was stopped; null: it runs. */
   #stoppedAt: number | null = null;
   #rotation = 0;
-  /** Roles move on by one seat with every match. */
+  /** Roles move on with every match. */
   rotate = false;
 
   constructor(policy: MatchPolicy<Game>, listener: MatchClockListener<Game>) {
@@ -98,7 +98,8 @@ export class MatchClock<Game extends HostedGame> {
       return;
     }
     this.#followHost(time);
-    this.#restartIfWanted(time);
+    // What came since the last tick is for this match to take in: another one begins with what its last tick knew.
+    if (this.state.tick !== tick) this.#restartIfWanted(time);
   }
 
   #newMatch(): HostedMatch<Game> {
@@ -137,8 +138,9 @@ export class MatchClock<Game extends HostedGame> {
     if (before.phase !== 'over') return;
     const present = before.players.filter((player) => player.present);
     if (present.length === 0 || !present.every(({ ready }) => ready)) return;
-    if (!this.#policy.mayRestart(before, this.rotate)) return;
-    if (this.rotate) this.#rotation += 1;
+    const movedOn = this.#policy.nextRoles(before, this.rotate);
+    if (movedOn === null) return;
+    this.#rotation += movedOn;
     this.#match = this.#newMatch();
     this.#matchStart = time;
     before.players.forEach(({ present }, player) => {

@@ -44,8 +44,11 @@ export interface MatchPolicy<Game extends HostedGame> {
   readonly tickSeconds: number;
   /** A match that waits for its players. `rotation`: roles have moved on by this many seats; `onTick`: hears of each tick before it is stepped. */
   start(rotation: number, onTick: (actions: readonly MatchAction<Game>[]) => void): HostedMatch<Game>;
-  /** Whether those present, who all want another match, can play one with their roles as they are or, if `rotate`, moved on. */
-  mayRestart(state: Game['state'], rotate: boolean): boolean;
+  /**
+   * By how many seats roles move on for another match of those present, who all want one: 0 or, if `rotate`, as few as let them play. null: they
+   * can play none.
+   */
+  nextRoles(state: Game['state'], rotate: boolean): number | null;
   snapshot(state: Game['state']): Game['snapshot'];
   /** The action that a page sent, checked field by field; null: it is none of this game's. */
   readAction(value: unknown): Game['action'] | null;

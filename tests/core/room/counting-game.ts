@@ -67,7 +67,7 @@ export const countingPolicy = (seats: number, goal = 3): MatchPolicy<CountingGam
     };
     return createMatch(rules, rules.start(), { onTick });
   },
-  mayRestart: () => true,
+  nextRoles: () => 0,
   snapshot: ({ total }) => ({ total }),
   readAction(value) {
     const { type, to } = (value ?? {}) as { type?: unknown; to?: unknown };

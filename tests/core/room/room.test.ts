@@ -247,6 +247,48 @@ describe('a match in a room', () => {
     );
   });
 
+  const readies = (told: ReturnType<typeof toldRoom>, clients: readonly string[]) => {
+    for (const client of clients) told.room.onMessage(client, { type: 'ready', ready: true }, told.time);
+  };
+
+  test.each([[[0, 2]], [[1, 2]], [[0, 1, 2]]])(
+    'moves roles on so that those on seats %j can play each next one',
+    (seats) => {
+      const told = toldRoom({ ball: { balls: 2, seconds: 0.5 } });
+      const clients = seats.map((seat) => `player ${seat}`);
+      clients.forEach((client, index) => void told.join(client, { seat: seats[index]! }));
+      told.room.onMessage(clients[0]!, { type: 'rotate', rotate: true }, told.time);
+      const held: (string | undefined)[] = [];
+      for (let match = 0; match < 6; match++) {
+        readies(told, clients);
+        told.pass(0.2);
+        expect(told.room.match.phase).toBe('running');
+        held.push(clients[seats.findIndex((seat) => told.room.match.players[seat]?.role === 'holder')]);
+        told.pass(1);
+        expect(told.room.match.phase).toBe('over');
+      }
+      expect(held.slice(0, clients.length).sort()).toEqual(clients);
+      expect(held.slice(clients.length, 2 * clients.length)).toEqual(held.slice(0, clients.length));
+    },
+  );
+
+  test('that begins between two ticks of the last one knows who has come since', () => {
+    const told = toldRoom({ ball: { balls: 2, seconds: 0.5 } });
+    told.begin();
+    told.pass(1);
+    told.room.onMessage('cal', { type: 'leave' }, told.time);
+    readies(told, ['ann', 'ben']);
+    told.tick();
+    told.tick(1 / 120);
+    expect(told.room.match.phase).toBe('over');
+    told.room.onMessage('ann', { type: 'rotate', rotate: true }, told.time);
+    told.join('dot', { seat: 2 });
+    told.tick(1 / 600);
+    readies(told, ['ann', 'ben', 'dot']);
+    told.pass(0.1);
+    expect(told.room.match.players.map(({ present }) => present)).toEqual([true, true, true]);
+  });
+
   test('a match clock that stood still says so, and its numbers go on', () => {
     const told = toldRoom();
     told.begin();
