@@ -9,7 +9,7 @@ import {
   defaultArcheryGestureSettings,
   type HapticPulse,
 } from '../../core/games/archery/gestures';
-import { archeryRules, delayed, fullScore, matchTime, secondsLeft } from '../../core/games/archery/rules';
+import { archeryRules, delayed, fullScore, isArmed, matchTime, secondsLeft } from '../../core/games/archery/rules';
 import { createSteeredArcher, type SteeredArcher } from '../../core/games/archery/steered-archer';
 import type { Buttons } from '../../core/games/button-presses';
 import { createMatch, type Match } from '../../core/games/match';
@@ -123,7 +123,7 @@ export function createArcheryPlay(
     ...defaultArcheryGestureSettings,
     bowSide: settings().bowSide,
     oneHanded: settings().oneHanded,
-    armed: match.state.phase !== 'over' && match.state.arrowsLeft > 0,
+    armed: isArmed(match.state),
   }));
 
   function restart(person: Calibration, eyeHeight = person.eyeHeight): void {

@@ -2,16 +2,17 @@ import { expect, test } from 'vitest';
 import { createArcheryPlay } from '../../../src/app/archery/archery-play';
 import { defaultCalibration } from '../../../src/core/body/calibration';
 import { allReleased } from '../../../src/core/games/button-presses';
+import { vec3 } from '../../../src/core/math/vec3';
 import { createPageClock } from '../../../src/core/tracking/page-clock';
 import { type Posed, posed } from '../../core/games/archery/bowman';
 
 const frameMs = 1000 / 72;
 
 /** A page at 72 Hz on which a person shoots with the left hand on the bow; time stamps in milliseconds, as the device gives them. */
-function range() {
+function range(settings: { readonly seconds?: number } = {}) {
   const play = createArcheryPlay(
     defaultCalibration,
-    () => ({ bowSide: 'left', oneHanded: false, everyHitCounts: false }),
+    () => ({ bowSide: 'left', oneHanded: false, everyHitCounts: false, ...settings }),
     () => 7,
   );
   let stamp = 30_000;
@@ -48,3 +49,21 @@ test.each([0.6, 3, 600])(
     expect(play.newest?.state).toMatchObject({ phase: 'ready', arrowsLeft: 5 });
   },
 );
+
+test('no arrow is nocked after the bell, even while the last one flies', () => {
+  const { play, said, frame, hold } = range({ seconds: 2 });
+  const upward: Posed = { direction: vec3(0, 2, -1) };
+  const drawn = { ...upward, draw: 0.5 };
+  hold(upward, 0, 0.1);
+  hold(upward, 1, 0.1);
+  hold(drawn, 1, 0.5);
+  hold(upward, 0, 0.5);
+  hold(upward, 1, 0.1);
+  hold(drawn, 1, 2);
+  expect(play.newest?.state).toMatchObject({ phase: 'running', arrowsLeft: 4 });
+  expect(said.at(-1)).toBe('cancelled');
+  frame(drawn, 0);
+  hold(upward, 0, 0.1);
+  hold(upward, 1, 0.1);
+  expect(said.filter((type) => type === 'nocked')).toHaveLength(2);
+});

@@ -19,6 +19,7 @@ import { arrowLength, maximumDraw, minimumDraw } from './bow';
 import { forwardOf, stringAtRest, turnBow } from './bow-hand';
 import { HeldBow, holdSeconds } from './held-bow';
 import { NockedArrow } from './nocked-arrow';
+import { releaseInterval } from './rules';
 
 /** What the archer, the menu and the round decide; asked for in every frame, so that all of it can change during play. */
 export interface ArcheryGestureSettings {
@@ -28,7 +29,7 @@ export interface ArcheryGestureSettings {
   readonly rest: Vec3;
   /** true: the hand with the bow draws by holding a button and aims where its knuckles point. */
   readonly oneHanded: boolean;
-  /** false: there is no arrow to nock, because the quiver is empty or the round is over. */
+  /** false: there is no arrow to nock, because the quiver is empty or the bell has rung. */
   readonly armed: boolean;
   readonly arenaFromFloor: Transform<'arena', 'floor'>;
 }
@@ -127,6 +128,7 @@ class BowGestures implements ArcheryGestures {
   readonly #bow = new HeldBow();
   #nocked: NockedArrow | null = null;
   #wasNear = false;
+  #shotAt = Number.NEGATIVE_INFINITY;
   #lastTime: number | null = null;
   // Of the frame that is followed now.
   #now: ArcheryGestureSettings = defaultArcheryGestureSettings;
@@ -327,7 +329,7 @@ class BowGestures implements ArcheryGestures {
 
   #letGo(arrow: NockedArrow, roles: Roles): void {
     if (arrow.button === 'pinch' && !arrow.opened) arrow.opened = true;
-    else if (arrow.draw < minimumDraw) this.#cancel(roles.stringSide);
+    else if (arrow.draw < minimumDraw || this.#time - this.#shotAt < releaseInterval) this.#cancel(roles.stringSide);
     else this.#shoot(arrow, roles);
   }
 
@@ -345,6 +347,7 @@ class BowGestures implements ArcheryGestures {
   }
 
   #shoot(arrow: NockedArrow, { bowSide, stringSide }: Roles): void {
+    this.#shotAt = this.#time;
     const { arenaFromFloor } = this.#now;
     const tip = arrow.nock(this.#bow.inHand, this.#point);
     addScaled(tip, arrow.direction, arrowLength, tip);

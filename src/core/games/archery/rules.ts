@@ -150,6 +150,10 @@ export function fullScore({ options, targets }: ArcheryState): number {
   return options.everyHitCounts ? options.arrows * best : sum;
 }
 
+/** Whether there is an arrow to nock: one is left, and the bell has not rung. */
+export const isArmed = (state: ArcheryState): boolean =>
+  state.phase !== 'over' && state.arrowsLeft > 0 && matchTime(state) < state.options.seconds;
+
 const isAbove = ({ x, z }: Vec3, margin: number): boolean =>
   Math.abs(x) <= zone.width / 2 - margin && Math.abs(z) <= zone.depth / 2 - margin;
 

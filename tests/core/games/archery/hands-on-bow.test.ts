@@ -134,6 +134,18 @@ describe('one hand', () => {
     expect(archer.releases).toEqual([]);
   });
 
+  test('that is quicker than the rules let it be puts the arrow back, and shoots the next one', () => {
+    const archer = bowman({ oneHanded: true });
+    archer.hold({}, 0.1).hold({}, 1, 1).hold({}, 0.05);
+    archer.hold({}, 0.4, 1).hold({}, 0.05);
+    expect(archer.said).toEqual(['nocked', 'released', 'nocked', 'cancelled']);
+    archer.hold({}, 0.4, 1).hold({}, 0.05);
+    expect(archer.releases).toHaveLength(2);
+    let state = archeryRules.start(['archer'], 1);
+    for (const { actions } of archer.frames) state = archeryRules.step(state, actions).state;
+    expect(state.arrows, 'the rules take what was heard to fly').toHaveLength(2);
+  });
+
   test('lost while drawing holds, then cancels', () => {
     const archer = bowman({ oneHanded: true });
     archer

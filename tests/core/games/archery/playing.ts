@@ -12,7 +12,7 @@ import {
   defaultArcheryGestureSettings,
   type GestureFrame,
 } from '../../../../src/core/games/archery/gestures';
-import { archeryRules, delayed } from '../../../../src/core/games/archery/rules';
+import { archeryRules, delayed, isArmed } from '../../../../src/core/games/archery/rules';
 import type { Buttons } from '../../../../src/core/games/button-presses';
 import { createMatch } from '../../../../src/core/games/match';
 import type { TrackingFrame } from '../../../../src/core/tracking/tracking-frame';
@@ -52,7 +52,7 @@ export function playRound({ archer: body, seed = 1, options = {}, times, spoil }
   const gestures = createArcheryGestures(() => ({
     ...defaultArcheryGestureSettings,
     bowSide: body.bowSide,
-    armed: match.state.phase !== 'over' && match.state.arrowsLeft > 0,
+    armed: isArmed(match.state),
   }));
   const round = { events: [], cues: [], frames: [], gestures: [] } as {
     events: ArcheryEvent[];
