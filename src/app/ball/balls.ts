@@ -12,10 +12,10 @@ import {
   Vector3,
 } from 'three';
 import type { BallPlace, BallState, TimedLaunch } from '../../core/games/ball/ball-state';
-
 import type { Opening } from '../../core/games/ball/basket';
 import { ballRadius, basketDepth, basketRadius } from '../../core/games/ball/flight';
 import { ballPosition } from '../../core/games/ball/state-readings';
+import { ballsPerRack } from '../../core/games/ball/stations';
 import { addScaled, dot, length, reject, subtract, type Vec3 } from '../../core/math/vec3';
 import { disposeTree } from '../../scene/dispose-tree';
 import { painted } from '../../scene/painted-geometry';
@@ -71,8 +71,10 @@ const createMaterial = (quality: Quality) =>
     ? new MeshStandardMaterial({ vertexColors: true, roughness: 0.55 })
     : new MeshLambertMaterial({ vertexColors: true });
 
+/** None of them is seen until it is put somewhere. */
 function createMesh(geometry: BufferGeometry, material: Material, count: number): InstancedMesh {
   const mesh = new InstancedMesh(geometry, material, count);
+  for (let i = 0; i < count; i++) mesh.setMatrixAt(i, gone);
   mesh.castShadow = mesh.receiveShadow = true;
   mesh.frustumCulled = false;
   return mesh;
@@ -95,11 +97,13 @@ const gone = new Matrix4().makeScale(0, 0, 0);
 const one = new Vector3(1, 1, 1);
 const upward = new Vector3(0, 1, 0);
 
-export const createBalls = (count: number, quality: Quality): Balls => new MatchBalls(count, quality);
+/** `most`: a match may have fewer. */
+export const createBalls = (most: number, quality: Quality): Balls => new MatchBalls(most, quality);
 
 class MatchBalls implements Balls {
   readonly object = new Group();
-  readonly #perLook: number;
+  /** Of the match that is shown. */
+  #perRack = 0;
   /** The balls of the first rack and those of the second. */
   readonly #meshes: readonly [InstancedMesh, InstancedMesh];
   readonly #shadows: ShadowDiscs;
@@ -110,20 +114,21 @@ class MatchBalls implements Balls {
   readonly #rolled = new Quaternion();
   readonly #basketTurn = new Quaternion();
 
-  constructor(count: number, quality: Quality) {
-    this.#perLook = Math.ceil(count / 2);
+  constructor(most: number, quality: Quality) {
+    const perRack = ballsPerRack(most);
     const material = createMaterial(quality);
     const [first, second] = looks;
     this.#meshes = [
-      createMesh(geometryOf(first, quality), material, this.#perLook),
-      createMesh(geometryOf(second, quality), material, this.#perLook),
+      createMesh(geometryOf(first, quality), material, perRack),
+      createMesh(geometryOf(second, quality), material, perRack),
     ];
-    this.#shadows = createShadowDiscs(count);
+    this.#shadows = createShadowDiscs(most);
     this.object.name = 'balls';
     this.object.add(...this.#meshes, this.#shadows.object);
   }
 
   show(state: BallState, time: number, inHand: InHand, opening: Opening | null): void {
+    this.#perRack = ballsPerRack(state.options.balls);
     let caught = 0;
     for (let ball = 0; ball < state.balls.length; ball++) {
       const place = state.balls[ball]!;
@@ -170,7 +175,7 @@ class MatchBalls implements Balls {
   }
 
   #setMatrix(ball: number, matrix: Matrix4): void {
-    this.#meshes[ball < this.#perLook ? 0 : 1].setMatrixAt(ball % this.#perLook, matrix);
+    this.#meshes[ball < this.#perRack ? 0 : 1].setMatrixAt(ball % this.#perRack, matrix);
   }
 
   /** Each ball lies turned in its own way; one on its way turns about the axis across it. */

@@ -1,4 +1,4 @@
-import { holderStation, rackPosition, stations, throwingDistance } from '../../core/games/ball/stations';
+import { ballsPerRack, holderStation, rackPosition, stations, throwingDistance } from '../../core/games/ball/stations';
 
 /** Where things of the court are, arena frame [m]: the throwers stand about the origin and throw along −Z. */
 export const court = {
@@ -43,7 +43,7 @@ export const roleTexts = ['Thrower 1', 'Thrower 2', 'Basket holder'] as const;
 
 /** Middle and size of a rack's tray [m]. */
 export function trayOf(side: 0 | 1, balls: number) {
-  const perRack = Math.ceil(balls / 2);
+  const perRack = ballsPerRack(balls);
   const places = Array.from({ length: perRack }, (_, slot) => rackPosition(side * perRack + slot, balls));
   const xs = places.map(({ x }) => x);
   const zs = places.map(({ z }) => z);

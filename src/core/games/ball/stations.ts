@@ -38,12 +38,15 @@ const rackHeight = 0.85;
 const spacing = 0.17;
 const columns = 2;
 
+/** The first so many balls of a match belong in the first thrower's rack, the others in the second's. */
+export const ballsPerRack = (balls: number): number => Math.ceil(balls / 2);
+
 /**
  * Where a ball lies in its rack, arena frame: beside the thrower, towards the other one, so that both can reach the nearer balls
  * of both racks.
  */
 export function rackPosition(ball: number, balls: number, target: MutableVec3 = vec3(0, 0, 0)): MutableVec3 {
-  const perRack = Math.ceil(balls / 2);
+  const perRack = ballsPerRack(balls);
   const side = ball < perRack ? -1 : 1;
   const slot = ball % perRack;
   const column = slot % columns;
